@@ -46,8 +46,8 @@ fn main() {
     fs::write(out.join("page.in"), list).expect("the folder can be written");
 }
 
-/// Passes the version, with the commit where it is known: from `BUILD_COMMIT`, else from the repository. A debug build asks no
-/// repository, so that a commit does not build all tests again.
+/// Passes the version, with the commit where it is known: from `BUILD_COMMIT`, else from the repository. A debug build
+/// asks no repository, so that a commit does not build all tests again.
 fn pass_version() {
     println!("cargo::rerun-if-env-changed=BUILD_COMMIT");
     let given = std::env::var("BUILD_COMMIT").ok().filter(|commit| !commit.is_empty() && commit != "unknown");

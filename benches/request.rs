@@ -1,8 +1,8 @@
 //! The cost of a whole request and of its parts: `cargo bench --bench request`.
 //!
-//! `POST /simulate` of 20 reversals with the stress at 200 radii, at 8 connections, against two baseline handlers in another
-//! process: one parses the same body and writes the same reply, computed once; one returns finished bytes. All take turns in
-//! every round. Then, without HTTP, the cost of parsing, solving and writing, and of writing a number.
+//! `POST /simulate` of 20 reversals with the stress at 200 radii, at 8 connections, against two baseline handlers in
+//! another process: one parses the same body and writes the same reply, computed once; one returns finished bytes. All
+//! take turns in every round. Then, without HTTP, the cost of parsing, solving and writing, and of writing a number.
 
 mod load;
 
@@ -21,7 +21,11 @@ use tokio::net::TcpListener;
 use tokio::runtime::Handle;
 use tokio::task::spawn_blocking;
 
-const BODY: &str = r#"{"contact":{"profile":{"type":"sphere","radius":0.01},"material":{"effective":{"e_star":1.15e11,"g_star":8.5e10}},"friction":0.3,"preload":{"normal_force":10}},"path":{"falling_amplitude":{"reversals":20}},"stress":{"points":200}}"#;
+const BODY: &str = concat!(
+    r#"{"contact":{"profile":{"type":"sphere","radius":0.01},"friction":0.3,"preload":{"normal_force":10},"#,
+    r#""material":{"effective":{"e_star":1.15e11,"g_star":8.5e10}}},"#,
+    r#""path":{"falling_amplitude":{"reversals":20}},"stress":{"points":200}}"#,
+);
 const CONNECTIONS: usize = 8;
 const ROUNDS: usize = 7;
 const ROUND: Duration = Duration::from_secs(2);

@@ -1,8 +1,9 @@
 //! Moves a second by store, against a bare handler: `cargo bench --bench service`. Needs PostgreSQL, as the tests do.
 //!
-//! `POST /contacts/{id}/move` at 32 connections over 256 contacts, by each store, as a ratio to the baseline: an axum handler in
-//! its own process that parses the same body and writes a reply of the same shape. All take turns in every round, so that a
-//! busy machine slows them alike. The load comes from plain sockets, because it shares the processors with the service.
+//! `POST /contacts/{id}/move` at 32 connections over 256 contacts, by each store, as a ratio to the baseline: an axum
+//! handler in its own process that parses the same body and writes a reply of the same shape. All take turns in every
+//! round, so that a busy machine slows them alike. The load comes from plain sockets, because it shares the processors
+//! with the service.
 
 #[allow(dead_code, reason = "the benchmark uses a part of it")]
 #[path = "../tests/common/postgres.rs"]

@@ -1,9 +1,9 @@
 //! The time to open a session that is not cached, by each store: `cargo bench --bench sessions`. Needs PostgreSQL, as
 //! the tests do.
 //!
-//! A session of a million moves, its slip history some ten pieces deep and a hundred thousand, opened from its snapshot and the
-//! moves beyond it, half as many as there can be; and the same without a snapshot, from the first move on. Before that, how
-//! much the process grows by sessions that are stored and not cached.
+//! A session of a million moves, its slip history some ten pieces deep and a hundred thousand, opened from its snapshot
+//! and the moves beyond it, half as many as there can be; and the same without a snapshot, from the first move on.
+//! Before that, how much the process grows by sessions that are stored and not cached.
 
 // Made for the tests, of which this uses a part.
 #[allow(dead_code)]

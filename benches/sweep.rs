@@ -1,7 +1,8 @@
 //! The cost of a sweep, and how it scales with cores and replicas: `cargo bench --bench sweep`. Needs PostgreSQL.
 //!
-//! A million points of a sphere after 20 reversals: the simulation alone, the sweep on one thread up to one a core beside as many
-//! threads that do nothing but the simulation, and as a job that replicas share over PostgreSQL, each of them bound to one core.
+//! A million points of a sphere after 20 reversals: the simulation alone, the sweep on one thread up to one a core
+//! beside as many threads that do nothing but the simulation, and as a job that replicas share over PostgreSQL, each of
+//! them bound to one core.
 
 mod load;
 #[allow(dead_code, reason = "the benchmark uses a part of it")]
@@ -14,7 +15,7 @@ use std::time::{Duration, Instant};
 
 use load::{Connection, Process, serve};
 use serde_json::json;
-use stickslip::admission::{Stop, Turn};
+use stickslip::admission::{SolverSlot, Stop};
 use stickslip::simulation::{Sweep, SweepResult, simulate};
 use stickslip_wire::{self as wire, SimulateRequest, SweepRequest};
 
@@ -41,7 +42,7 @@ fn request() -> String {
 
 fn plan() -> Sweep {
     let draft = wire::read::<SweepRequest>(request().as_bytes()).expect("a valid sweep");
-    Sweep::plan(draft).expect("a sweep with outputs")
+    Sweep::plan(draft, &Stop::default()).expect("a sweep with outputs")
 }
 
 /// The time of so many simulations on each of the threads at once: what the machine can do.
@@ -62,8 +63,8 @@ fn time_of_sweep(threads: usize) -> (SweepResult, Duration) {
     let (mut rows, begin) = (SweepResult::default(), Instant::now());
     while rows.values.len() < POINTS {
         let rest = rows.values.len()..POINTS;
-        let turns = (0..threads).map(|_| Turn::alone()).collect();
-        rows.append(plan.slice(rest, turns, &Stop::default(), None).expect("it is not stopped"));
+        let slots = (0..threads).map(|_| SolverSlot::alone()).collect();
+        rows.append(plan.slice(rest, slots, &Stop::default(), None).expect("it is not stopped"));
     }
     (rows, begin.elapsed())
 }
@@ -106,7 +107,8 @@ fn main() {
         let rate = POINTS as f64 / time.as_secs_f64();
         let speedup = first.as_ref().map_or(1.0, |(_, alone)| alone.as_secs_f64() / time.as_secs_f64());
         println!(
-            "{POINTS} points, {threads} threads: {:.1} s, {rate:.0} points/s, {speedup:.2} times one; the simulation alone {machine:.2}",
+            "{POINTS} points, {threads} threads: {:.1} s, {rate:.0} points/s, {speedup:.2} times one; the simulation \
+                alone {machine:.2}",
             time.as_secs_f64()
         );
         match &first {

@@ -3,8 +3,8 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// The commit of a folder that is the root of a git repository, and the files that change with it. None elsewhere, such as in a
-/// source archive, even one that lies within another repository.
+/// The commit of a folder that is the root of a git repository, and the files that change with it. None elsewhere, such
+/// as in a source archive, even one that lies within another repository.
 pub fn commit_of(folder: &Path) -> Option<(String, Vec<PathBuf>)> {
     let git = |arguments: &[&str]| {
         let output = Command::new("git").args(arguments).current_dir(folder).output().ok()?;

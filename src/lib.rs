@@ -1,5 +1,6 @@
-//! The service stickslip: frictional contact of two elastic bodies, exact and with all of its history, over HTTP. The physics
-//! is in `stickslip-mechanics`, the JSON types are in `stickslip-wire`. A module imports only from those below it here.
+//! The service stickslip: frictional contact of two elastic bodies, exact and with all of its history, over HTTP. The
+//! physics is in `stickslip-mechanics`, the JSON types are in `stickslip-wire`. A module imports only from those below
+//! it here.
 //!
 //! [`api`] is HTTP: routes, middleware, formats, problem documents, the OpenAPI document, the page. The binary adds the
 //! command line.
@@ -10,20 +11,30 @@
 //!
 //! [`jobs`] are sweeps over many simulations, at once or beyond the request that asks for them.
 //!
-//! [`sessions`] are the contacts that live on the server: a cache over the store, one writer at a time each, replay, retries.
+//! [`sessions`] are the contacts that live on the server: a cache over the store, one writer at a time each, replay,
+//! retries.
+//!
+//! [`computations`] are what takes a document and gives one without storing anything, each with its name, cost, table
+//! and picture, in one list.
 //!
 //! [`simulation`] computes the reply to a checked request, and estimates what that costs.
 //!
-//! [`admission`] gives permits for solver threads, places and memory, and ends work that takes too long or is not waited for.
+//! [`formats`] writes tables and pictures.
 //!
-//! [`store`] stores what must survive: definitions, moves, snapshots, jobs, and replies for retries. It knows no physics.
+//! [`admission`] gives permits for solver threads, places and memory, and ends work that takes too long or is not
+//! waited for.
 //!
-//! [`metrics`] are counters, gauges and histograms; [`otlp`] sends traces. Every module may use both, and TLS to servers that need
-//! not be verified.
+//! [`store`] stores what must survive: definitions, moves, snapshots, jobs, and replies for retries. It knows no
+//! physics.
+//!
+//! [`metrics`] are counters, gauges and histograms; [`otlp`] sends traces. Every module may use both, and TLS to
+//! servers that need not be verified.
 
 pub mod access;
 pub mod admission;
 pub mod api;
+pub mod computations;
+pub mod formats;
 pub mod jobs;
 pub mod metrics;
 pub mod otlp;

@@ -61,8 +61,8 @@ const ANSWER: usize = 64 * 1024;
 /// Where spans are sent from. It ends by [`Exporter::finish`].
 pub struct Exporter(SdkTracerProvider);
 
-/// A layer that sends spans to the collector at `endpoint`, such as `http://localhost:4318`, by way of `runtime`, and the
-/// exporter that ends it.
+/// A layer that sends spans to the collector at `endpoint`, such as `http://localhost:4318`, by way of `runtime`, and
+/// the exporter that ends it.
 ///
 /// # Errors
 /// Why nothing can be sent to such an endpoint.
@@ -110,8 +110,8 @@ fn is_ours(metadata: &Metadata<'_>) -> bool {
 }
 
 impl Exporter {
-    /// Sends what waits, as long as that takes no longer than a collector may. It blocks the thread, which must be none of
-    /// the runtime.
+    /// Sends what waits, as long as that takes no longer than a collector may. It blocks the thread, which must be none
+    /// of the runtime.
     pub fn finish(self) {
         // An unreachable collector has been logged already.
         if let Err(OTelSdkError::Timeout(_)) = self.0.shutdown_with_timeout(PATIENCE) {

@@ -1,5 +1,5 @@
-//! TLS to a server whose certificate is not verified: a database that is to be reached as libpq would by default, or this
-//! very service.
+//! TLS to a server whose certificate is not verified: a database that is to be reached as libpq would by default, or
+//! this very service.
 
 use std::sync::Arc;
 

@@ -1,10 +1,10 @@
-//! The engine: moves with the length of the path, stresses with radii and pieces of slip history, tables with their points,
-//! and sweeps with theirs.
+//! The engine: moves with the length of the path, stresses with radii and pieces of slip history, tables with their
+//! points, and sweeps with theirs.
 
 use std::hint::black_box;
 
 use serde_json::json;
-use stickslip::admission::{Stop, Turn};
+use stickslip::admission::{SolverSlot, Stop};
 use stickslip::simulation::{Sweep, SweepResult};
 use stickslip_mechanics::Contact;
 use stickslip_wire::{self as wire, SweepRequest};
@@ -70,8 +70,9 @@ fn stress(virgin: &Contact, reversals: usize) -> [([f64; 5], f64); 3] {
     })
 }
 
-/// Tables with their points P: the law is a + b log2 P + c P for a move and for the stress at 200 radii after 20 reversals. A move looks
-/// up levels and radii; a stress weights every point once, and looks up clusters at every radius.
+/// Tables with their points P: the law is a + b log2 P + c P for a move and for the stress at 200 radii after 20
+/// reversals. A move looks up levels and radii; a stress weights every point once, and looks up clusters at every
+/// radius.
 fn tables() {
     println!("\n| work on a table | of no points, us | for each doubling, us | each point, ns | off by |");
     println!("|---|---|---|---|---|");
@@ -120,11 +121,11 @@ fn sweeps() {
 
 fn sweep(request: &str, points: usize) -> SweepResult {
     let draft = wire::read::<SweepRequest>(request.as_bytes()).expect("a valid sweep");
-    let sweep = Sweep::plan(draft).expect("a sweep with outputs");
+    let sweep = Sweep::plan(draft, &Stop::default()).expect("a sweep with outputs");
     let mut rows = SweepResult::default();
     while rows.values.len() < points {
         let rest = rows.values.len()..points;
-        rows.append(sweep.slice(rest, vec![Turn::alone()], &Stop::default(), None).expect("it is not stopped"));
+        rows.append(sweep.slice(rest, vec![SolverSlot::alone()], &Stop::default(), None).expect("it is not stopped"));
     }
     rows
 }

@@ -1,7 +1,7 @@
 //! How cost grows: `cargo bench --bench growth`. For cores see `cargo bench --bench sweep`.
 //!
-//! Each law is fitted to the times by least squares, and the table says how far the worst of them is off. The engine on every
-//! shape; the service with its contacts, and the time to start.
+//! Each law is fitted to the times by least squares, and the table says how far the worst of them is off. The engine on
+//! every shape; the service with its contacts, and the time to start.
 
 mod engine;
 mod law;

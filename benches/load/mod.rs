@@ -11,7 +11,10 @@ use tokio::task::JoinHandle;
 use uuid::Uuid;
 
 /// A ball under load, as the body of `POST /contacts`.
-pub const CONTACT: &str = r#"{"profile":{"type":"sphere","radius":0.01},"material":{"effective":{"e_star":1.15e11,"g_star":8.5e10}},"friction":0.3,"preload":{"normal_force":10}}"#;
+pub const CONTACT: &str = concat!(
+    r#"{"profile":{"type":"sphere","radius":0.01},"friction":0.3,"preload":{"normal_force":10},"#,
+    r#""material":{"effective":{"e_star":1.15e11,"g_star":8.5e10}}}"#,
+);
 
 /// Ticks of the processor time a second, on Linux.
 const TICKS_PER_SECOND: f64 = 100.0;
@@ -127,7 +130,8 @@ impl Connection {
     async fn send(&mut self, method: &str, path: &str, body: &[u8]) -> &[u8] {
         self.buffer.clear();
         let head = format!(
-            "{method} {path} HTTP/1.1\r\nhost: localhost\r\ncontent-type: application/json\r\ncontent-length: {}\r\n\r\n",
+            "{method} {path} HTTP/1.1\r\nhost: localhost\r\ncontent-type: application/json\r\ncontent-length: \
+                {}\r\n\r\n",
             body.len()
         );
         self.buffer.extend_from_slice(head.as_bytes());

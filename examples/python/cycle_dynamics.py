@@ -13,7 +13,7 @@ import numpy
 import pandas
 import requests
 from scipy.interpolate import CubicSpline
-from scipy.optimize import brentq
+from scipy.optimize import root
 
 CONTACT = {
     "profile": {"type": "sphere", "radius": 0.01},
@@ -23,38 +23,71 @@ CONTACT = {
 }
 MASS = 0.1  # kg
 DRIVE_FORCE = 0.5  # N, amplitude
-AMPLITUDES = numpy.geomspace(1e-10, 1e-6, 400)  # m; solutions beyond the table are not found
+AMPLITUDES = numpy.geomspace(1e-10, 1e-6, 400)  # m; no larger oscillation is found
+ORDERS = numpy.arange(1, 24, 2)  # harmonics that are balanced; even ones vanish at constant load
+INSTANTS = 1024  # of a period
 
 
 def cycles(service):
     """The table of steady cycles, a row for each amplitude."""
-    body = {"contact": CONTACT, "drive": {"displacement": list(AMPLITUDES)}, "harmonics": 1}
+    body = {"contact": CONTACT, "drive": {"displacement": list(AMPLITUDES)}}
     reply = requests.post(f"{service}/cycle?format=csv", json=body, timeout=30)
     reply.raise_for_status()
     return pandas.read_csv(io.StringIO(reply.text))
 
 
+def masing(displacement, loading):
+    """The force over a steady period: branches are the first loading curve at twice its size, and closed loops are left."""
+    start = int(numpy.argmax(displacement))
+    period = numpy.roll(displacement, -start)
+    turns = [(period[0], float(loading(period[0])))]
+    way, before = -1.0, period[0]
+    origins, base, ways = numpy.empty_like(period), numpy.empty_like(period), numpy.empty_like(period)
+    for index, place in enumerate(period):
+        if way * (place - before) < 0:
+            origin, held = turns[-1]
+            turns.append((before, held + 2 * way * float(loading(abs(before - origin) / 2))))
+            way = -way
+        while len(turns) > 2 and way * (place - turns[-2][0]) > 0:
+            del turns[-2:]
+        origins[index], base[index], ways[index] = turns[-1][0], turns[-1][1], way
+        before = place
+    force = base + 2 * ways * loading(numpy.abs(period - origins) / 2)
+    return numpy.roll(force, start)
+
+
 def response(table, count=100):
-    """All steady oscillations at each frequency: M U'' + F(U) = P cos(w t)."""
+    """The steady oscillation at each frequency: M U'' + F(U) = P cos(w t)."""
     amplitude = table["displacement_amplitude"].to_numpy()
-    # The complex stiffness k + i w c of the equivalent spring and damper.
-    harmonic = table["in_phase_1"] - 1j * table["quadrature_1"]
-    stiffness = CubicSpline(numpy.log(amplitude), harmonic.to_numpy() / amplitude)
-    natural = numpy.sqrt(table["tangent_stiffness"][0] / MASS) / (2 * numpy.pi)
+    curve = CubicSpline(numpy.append(0, amplitude), numpy.append(0, table["force_amplitude"].to_numpy()))
+
+    def loading(displacement):
+        return curve(numpy.minimum(displacement, amplitude[-1]))
+
+    stiffness = table["tangent_stiffness"][0]
+    angles = 2 * numpy.pi * numpy.arange(INSTANTS) / INSTANTS
+    waves = numpy.concatenate([numpy.cos(numpy.outer(ORDERS, angles)), numpy.sin(numpy.outer(ORDERS, angles))])
+    squares = numpy.tile(ORDERS**2, 2)
+    drive = numpy.zeros(2 * len(ORDERS))
+    drive[0] = DRIVE_FORCE
+    natural = numpy.sqrt(stiffness / MASS) / (2 * numpy.pi)
     rows = []
     for frequency in natural * numpy.linspace(0.3, 1.5, count):
+        inertia = MASS * (2 * numpy.pi * frequency) ** 2
 
-        def dynamic_stiffness(size, inertia=MASS * (2 * numpy.pi * frequency) ** 2):
-            return stiffness(numpy.log(size)) - inertia
+        def lack(unknowns):
+            force = masing(unknowns @ waves * unit, loading)
+            return (waves @ force * 2 / INSTANTS - inertia * squares * unknowns * unit - drive) / DRIVE_FORCE
 
-        def surplus(size):
-            return abs(dynamic_stiffness(size)) * size - DRIVE_FORCE
-
-        signs = numpy.sign(surplus(amplitude))
-        for index in numpy.flatnonzero(signs[1:] != signs[:-1]):
-            size = brentq(surplus, amplitude[index], amplitude[index + 1], rtol=1e-12, xtol=1e-20)
-            rows.append((frequency, size, numpy.degrees(numpy.angle(dynamic_stiffness(size)))))
-    return pandas.DataFrame(rows, columns=["frequency", "amplitude", "phase"])
+        unit = DRIVE_FORCE / stiffness
+        start = numpy.zeros_like(drive)
+        start[0], start[len(ORDERS)] = 1 / (1 - inertia / stiffness + 0.1), 0.1
+        found = root(lack, rows[-1][3] if rows else start, tol=1e-9)
+        if not found.success:
+            found = root(lack, start, method="lm", tol=1e-9)
+        first = unit * (found.x[0] + 1j * found.x[len(ORDERS)])
+        rows.append((frequency, abs(first), numpy.degrees(numpy.angle(first)), found.x))
+    return pandas.DataFrame([row[:3] for row in rows], columns=["frequency", "amplitude", "phase"])
 
 
 if __name__ == "__main__":

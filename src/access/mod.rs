@@ -1,7 +1,7 @@
 //! Access control: keys, their roles and tenants, independent of HTTP.
 //!
-//! Only the SHA-256 hash of a key is kept. A slow hash protects passwords, which can be guessed; a key is 256 random bits, which
-//! cannot, and it is hashed for every request.
+//! Only the SHA-256 hash of a key is kept. A slow hash protects passwords, which can be guessed; a key is 256 random
+//! bits, which cannot, and it is hashed for every request.
 
 mod entry;
 
@@ -91,14 +91,14 @@ impl Holder {
 /// All known keys.
 #[derive(Debug, Default)]
 pub struct Keys {
-    // By the prefix of the hash. The time of a lookup can reveal at most a prefix of the hash of the presented key, which a
-    // client cannot choose bit by bit; the rest is compared in constant time.
+    // By the prefix of the hash. The time of a lookup can reveal at most a prefix of the hash of the presented key,
+    // which a client cannot choose bit by bit; the rest is compared in constant time.
     by_prefix: HashMap<[u8; PREFIX], Vec<Arc<Holder>>>,
 }
 
 impl Keys {
-    /// Adds the keys of a text: entries `name:roles:tenant:sha256:hash` or `name:roles:tenant:sha256:hash:expires_at`, one per
-    /// line or separated by commas. Roles are joined by `+`, the tenant may be empty, and `#` begins a note.
+    /// Adds the keys of a text: entries `name:roles:tenant:sha256:hash` or `name:roles:tenant:sha256:hash:expires_at`,
+    /// one per line or separated by commas. Roles are joined by `+`, the tenant may be empty, and `#` begins a note.
     ///
     /// # Errors
     /// [`InvalidEntry`] with the line and the reason. It shows nothing of a key.

@@ -15,13 +15,13 @@ pub const LARGEST: usize = 256 * 1024 * 1024;
 /// Reservations up to this are not counted: the number of requests bounds them.
 pub const UNCOUNTED: usize = 16 * 1024;
 
-/// The divisor of the bytes of work that gives those of the states that work loads and copies, which come on top. A request that
-/// holds memory for its body waits for memory for a state; one that holds memory for a state waits for none, so that requests never
-/// wait for each other in a circle.
+/// The divisor of the bytes of work that gives those of the states that work loads and copies, which come on top. A
+/// request that holds memory for its body waits for memory for a state; one that holds memory for a state waits for
+/// none, so that requests never wait for each other in a circle.
 pub const STATES_SHARE: usize = 4;
 
-/// The divisor of the bytes of work that gives those beside them for small reservations, so that these do not wait behind large
-/// ones, which have to wait for much.
+/// The divisor of the bytes of work that gives those beside them for small reservations, so that these do not wait
+/// behind large ones, which have to wait for much.
 pub const SMALL_SHARE: usize = 8;
 /// The most bytes of a small reservation.
 pub const SMALL: usize = 1024 * 1024;
@@ -107,8 +107,8 @@ impl Pool {
         Ok(reservation)
     }
 
-    /// Reserves bytes for all the states that a piece of work loads or copies, but at most all that there are for states. Nothing
-    /// else may be waited for until they are released, except a thread.
+    /// Reserves bytes for all the states that a piece of work loads or copies, but at most all that there are for
+    /// states. Nothing else may be waited for until they are released, except a thread.
     ///
     /// # Errors
     /// As [`Pool::wait`].

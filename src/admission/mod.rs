@@ -1,15 +1,15 @@
-//! Admission: turns on solver threads, permits for places and memory, quotas of clients, time limits and cancellation.
+//! Admission: slots on solver threads, permits for requests and memory, quotas of clients, time limits, cancellation.
 
 mod client;
+mod fair_scheduler;
 mod memory;
 mod pool;
 mod quota;
 mod stop;
-mod turnstile;
 
 pub use client::Client;
+pub use fair_scheduler::{INTERACTIVE, Kind, SLICE, SolverSlot};
 pub use memory::*;
 pub use pool::*;
 pub use quota::*;
 pub use stop::*;
-pub use turnstile::{INTERACTIVE, Kind, SLICE, Turn};

@@ -1,4 +1,4 @@
-//! The resources of the server and their permits: threads for the solver, places for requests, bytes of memory.
+//! The resources of the server and their permits: threads for the solver, permits for requests, bytes of memory.
 //!
 //! A request for resources that are in use waits for a bounded time in a queue of bounded length, and is then refused.
 //! So the memory of requests is bounded too, however many arrive.
@@ -17,9 +17,9 @@ use tracing::Span;
 
 use crate::metrics::{Counted, SECONDS, SHORT_SECONDS, counter, gauge, histogram};
 
+use super::fair_scheduler::{FairScheduler, INTERACTIVE, Kind, SolverSlot};
 use super::memory::{BYTES, UNIT};
 use super::stop::{LONGEST_WORK, Stop, StopOnDrop};
-use super::turnstile::{INTERACTIVE, Kind, Turn, Turnstile};
 use super::{Client, Quota, QuotaExceeded, QuotaLimits, Quotas, Share};
 
 /// Estimated nanoseconds of work.
@@ -70,8 +70,8 @@ pub struct Pool(pub(super) Arc<Shared>);
 #[derive(Debug)]
 pub(super) struct Shared {
     pub(super) capacity: Capacity,
-    threads: Turnstile,
-    places: Arc<Semaphore>,
+    threads: FairScheduler,
+    requests: Arc<Semaphore>,
     pub(super) units: Arc<Semaphore>,
     pub(super) small: Arc<Semaphore>,
     pub(super) states: Arc<Semaphore>,
@@ -80,9 +80,9 @@ pub(super) struct Shared {
     meters: Arc<PoolMeters>,
 }
 
-/// A place among the requests that are served, held until dropped.
+/// Permission to be served, held until dropped.
 #[derive(Debug)]
-pub struct Place(#[expect(dead_code, reason = "held for its drop")] OwnedSemaphorePermit);
+pub struct RequestPermit(#[expect(dead_code, reason = "held for its drop")] OwnedSemaphorePermit);
 
 /// The metrics of a pool.
 #[derive(Debug)]
@@ -138,8 +138,8 @@ impl Pool {
         let semaphore = |permits: usize| Arc::new(Semaphore::new(permits.clamp(1, Semaphore::MAX_PERMITS)));
         Pool(Arc::new(Shared {
             capacity,
-            threads: Turnstile::new(capacity.threads),
-            places: semaphore(capacity.requests),
+            threads: FairScheduler::new(capacity.threads),
+            requests: semaphore(capacity.requests),
             units: semaphore((capacity.bytes / UNIT).min(u32::MAX as usize)),
             small: semaphore(capacity.small_bytes() / UNIT),
             states: semaphore(capacity.state_bytes() / UNIT),
@@ -181,7 +181,7 @@ impl Pool {
         let taken = |most: usize, semaphore: &Semaphore| most.max(1).saturating_sub(semaphore.available_permits());
         Taken {
             threads: self.0.threads.taken(),
-            requests: taken(self.0.capacity.requests, &self.0.places),
+            requests: taken(self.0.capacity.requests, &self.0.requests),
             waiting: taken(self.0.capacity.queue, &self.0.queue),
             bytes: UNIT
                 * (taken(self.0.capacity.bytes / UNIT, &self.0.units)
@@ -192,7 +192,13 @@ impl Pool {
     /// A flag for work that must end within the deadline.
     #[must_use]
     pub fn deadline(&self) -> (Stop, StopOnDrop) {
-        Stop::within(self.0.capacity.deadline)
+        self.deadline_after(Duration::ZERO)
+    }
+
+    /// The same for a request that has had so much work done before.
+    #[must_use]
+    pub fn deadline_after(&self, spent: Duration) -> (Stop, StopOnDrop) {
+        Stop::within_rest(self.0.capacity.deadline, spent)
     }
 
     /// Waits for `request` within the limits of time and of the queue.
@@ -204,7 +210,7 @@ impl Pool {
         if let Poll::Ready(granted) = futures::poll!(request.as_mut()) {
             return Ok(granted);
         }
-        let _place = self.0.queue.try_acquire().map_err(|_| PoolError::QueueFull)?;
+        let _queued = self.0.queue.try_acquire().map_err(|_| PoolError::QueueFull)?;
         timeout(self.0.capacity.wait, request).await.map_err(|_| PoolError::Busy)
     }
 
@@ -216,17 +222,17 @@ impl Pool {
         if let Ok(permit) = Arc::clone(semaphore).try_acquire_many_owned(number) {
             return Ok(permit);
         }
-        // In a box, so that a request that need not wait is not as large as one that does. The semaphores are never closed, so their own
-        // error cannot occur.
+        // In a box, so that a request that need not wait is not as large as one that does. The semaphores are never
+        // closed, so their own error cannot occur.
         Box::pin(self.wait(Arc::clone(semaphore).acquire_many_owned(number))).await?.map_err(|_| PoolError::Busy)
     }
 
-    /// Acquires a place among the requests that are served.
+    /// Waits until a request may be served.
     ///
     /// # Errors
     /// As [`Pool::wait`].
-    pub async fn enter(&self) -> Result<Place, PoolError> {
-        self.permits(&self.0.places, 1).await.map(Place)
+    pub async fn admit_request(&self) -> Result<RequestPermit, PoolError> {
+        self.permits(&self.0.requests, 1).await.map(RequestPermit)
     }
 
     /// The metrics.
@@ -235,37 +241,38 @@ impl Pool {
         &self.0.meters
     }
 
-    async fn turn(&self, client: Client, kind: Kind) -> Result<Turn, PoolError> {
+    async fn wait_for_slot(&self, client: Client, kind: Kind) -> Result<SolverSlot, PoolError> {
         let (_waiting, begin) = (Counted::by(&self.0.meters.waiting), Instant::now());
-        let turn = self.wait(self.0.threads.turn(client, kind)).await.inspect_err(|_| self.0.meters.refused.inc())?;
+        let slot =
+            self.wait(self.0.threads.wait_for_slot(client, kind)).await.inspect_err(|_| self.0.meters.refused.inc())?;
         self.0.meters.wait.observe(begin.elapsed().as_secs_f64());
-        Ok(turn)
+        Ok(slot)
     }
 
-    /// Runs `work`, which must be short, with a turn on each thread that nobody waits for, at least one.
+    /// Runs `work`, which must be short, with a slot on each thread that nobody waits for, at least one.
     ///
     /// # Errors
     /// As [`Pool::run`].
     pub async fn share<T: Send + 'static>(
         &self,
         kind: Kind,
-        work: impl FnOnce(Vec<Turn>) -> T + Send + 'static,
+        work: impl FnOnce(Vec<SolverSlot>) -> T + Send + 'static,
     ) -> Result<T, PoolError> {
         let client = Client::current();
-        let mut turns = vec![self.turn(client.clone(), kind).await?];
-        while let Some(turn) = self.0.threads.another(&client, kind) {
-            turns.push(turn);
+        let mut slots = vec![self.wait_for_slot(client.clone(), kind).await?];
+        while let Some(slot) = self.0.threads.another(&client, kind) {
+            slots.push(slot);
         }
         let meters = Arc::clone(&self.0.meters);
         let task = spawn_blocking(move || {
-            let _running: Vec<_> = turns.iter().map(|_| Counted::by(&meters.running)).collect();
-            meters.timed(|| work(turns))
+            let _running: Vec<_> = slots.iter().map(|_| Counted::by(&meters.running)).collect();
+            meters.timed(|| work(slots))
         });
         task.await.map_err(|_| PoolError::Panicked)
     }
 
-    /// Runs `work`: in place if its estimated cost is below [`INLINE`], else on a thread of the blocking pool, which it shares by the
-    /// checks of its [`Stop`]. Work of cost zero is not counted.
+    /// Runs `work`: in place if its estimated cost is below [`INLINE`], else on a thread of the blocking pool, which it
+    /// shares by the checks of its [`Stop`]. Work of cost zero is not counted.
     ///
     /// # Errors
     /// As [`Pool::wait`], or [`PoolError::Panicked`] if the work did.
@@ -290,13 +297,13 @@ impl Pool {
         cost: Nanoseconds,
         work: impl FnOnce() -> T + Send + 'static,
     ) -> Result<T, PoolError> {
-        let turn = self.turn(Client::current(), Kind::of(cost)).await?;
+        let slot = self.wait_for_slot(Client::current(), Kind::of(cost)).await?;
         let (meters, request) = (Arc::clone(&self.0.meters), Span::current());
         let task = spawn_blocking(move || {
             let _running = Counted::by(&meters.running);
             let _request = request.entered();
-            // The turn stays with the work: a caller that gives up does not free a thread that is still busy.
-            turn.work(|| meters.timed(work))
+            // The slot stays with the work: a caller that gives up does not free a thread that is still busy.
+            slot.work(|| meters.timed(work))
         });
         task.await.map_err(|_| PoolError::Panicked)
     }

@@ -114,14 +114,16 @@ impl fmt::Display for QuotaExceeded {
                 let limit = ByteSize::b(limit as u64);
                 write!(
                     f,
-                    "bodies that are arriving from you would take more than the {limit} that `{name}` allows: send fewer at a time"
+                    "bodies that are arriving from you would take more than the {limit} that `{name}` allows: send \
+                        fewer at a time"
                 )
             }
             Quota::StoreBytes => {
                 let limit = ByteSize::b(limit as u64);
                 write!(
                     f,
-                    "beyond the {limit} in the store that `{name}` allows your contacts: delete some, or do with fewer moves"
+                    "beyond the {limit} in the store that `{name}` allows your contacts: delete some, or do with fewer \
+                        moves"
                 )
             }
         }
@@ -160,7 +162,7 @@ impl Quotas {
         Quotas { limits, used: Arc::default(), refused }
     }
 
-    /// The limits.
+    /// The most that a client may have of each.
     #[must_use]
     pub fn limits(&self) -> &QuotaLimits {
         &self.limits

@@ -4,7 +4,7 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, OnceLock};
 use std::time::{Duration, Instant};
 
-use super::turnstile;
+use super::fair_scheduler;
 
 /// How long the solver works for one request by default.
 pub const LONGEST_WORK: Duration = Duration::from_secs(60);
@@ -20,8 +20,9 @@ pub enum Interrupted {
     TimeLimit(Duration),
 }
 
-/// A flag that long loops check. Work on the blocking pool outlives the handler that asked for it; the flag ends it. At a check
-/// the work also gives way to others whose turn it is, so that no more than some milliseconds may pass between two checks.
+/// A flag that long loops check. Work on the blocking pool outlives the handler that asked for it; the flag ends it. At
+/// a check the work also gives way to others that are next, so that no more than some milliseconds may pass between
+/// two checks.
 #[derive(Clone, Debug, Default)]
 pub struct Stop(Arc<Flag>);
 
@@ -35,6 +36,10 @@ struct Flag {
     started: OnceLock<Instant>,
     // Nanoseconds for which the work has given way to others since, which do not count either.
     waited: AtomicU64,
+    // Work for the same request before that counts for the deadline.
+    spent: Duration,
+    // Nanoseconds of all work for it before, under flags of its own.
+    before: AtomicU64,
 }
 
 /// Raises the flag when dropped: held by a handler, it does so when the client hangs up.
@@ -48,10 +53,18 @@ impl Stop {
         Stop::within(LONGEST_WORK)
     }
 
-    /// A flag that is raised when the guard is dropped, or after the work has taken `allowed`. The default flag is never raised.
+    /// A flag that is raised when the guard is dropped, or after the work has taken `allowed`. The default flag is
+    /// never raised.
     #[must_use]
     pub fn within(allowed: Duration) -> (Stop, StopOnDrop) {
-        let stop = Stop(Arc::new(Flag { allowed: Some(allowed), ..Flag::default() }));
+        Stop::within_rest(allowed, Duration::ZERO)
+    }
+
+    /// The same for the rest of work that has taken `spent` before.
+    #[must_use]
+    pub fn within_rest(allowed: Duration, spent: Duration) -> (Stop, StopOnDrop) {
+        let stop = Stop(Arc::new(Flag { allowed: Some(allowed), spent, ..Flag::default() }));
+        stop.count(spent);
         (stop.clone(), StopOnDrop(stop))
     }
 
@@ -64,8 +77,8 @@ impl Stop {
 
     /// A flag for a part of the work: it is raised with this one, or after the part has taken `allowed`.
     #[must_use]
-    pub fn child_deadline(&self, allowed: Duration) -> Stop {
-        Stop(Arc::new(Flag { allowed: Some(allowed), parent: Some(self.clone()), ..Flag::default() }))
+    pub fn child_deadline(&self, allowed: Option<Duration>) -> Stop {
+        Stop(Arc::new(Flag { allowed, parent: Some(self.clone()), ..Flag::default() }))
     }
 
     /// The time limit of the work, if it has one.
@@ -74,12 +87,29 @@ impl Stop {
         self.0.allowed
     }
 
+    /// Counts work that has been done for the same request under other flags, as time that the request took.
+    pub fn count(&self, work: Duration) {
+        self.0.before.fetch_add(work.as_nanos() as u64, Ordering::Relaxed);
+    }
+
+    /// The work that has been counted by [`Stop::count`].
+    #[must_use]
+    pub fn before(&self) -> Duration {
+        Duration::from_nanos(self.0.before.load(Ordering::Relaxed))
+    }
+
+    /// How long the work has given way to others.
+    #[must_use]
+    pub fn waited(&self) -> Duration {
+        Duration::from_nanos(self.0.waited.load(Ordering::Relaxed))
+    }
+
     /// Ends the work if the flag is raised.
     ///
     /// # Errors
     /// [`Interrupted::Abandoned`] if the guard was dropped, [`Interrupted::TimeLimit`] if the time is up.
     pub fn check(&self) -> Result<(), Interrupted> {
-        self.check_after(turnstile::give_way())
+        self.check_after(fair_scheduler::give_way())
     }
 
     /// The same, when the work has just waited for so long.
@@ -91,14 +121,15 @@ impl Stop {
         if self.0.raised.load(Ordering::Relaxed) {
             return Err(Interrupted::Abandoned);
         }
+        if !waited.is_zero() {
+            self.0.waited.fetch_add(waited.as_nanos() as u64, Ordering::Relaxed);
+        }
         let Some(allowed) = self.0.allowed else { return Ok(()) };
         let Some(started) = self.0.started.get() else {
-            self.0.started.get_or_init(Instant::now);
+            self.0.started.get_or_init(|| Instant::now().checked_sub(waited).unwrap_or_else(Instant::now));
             return Ok(());
         };
-        let waited = waited.as_nanos() as u64;
-        let waited = self.0.waited.fetch_add(waited, Ordering::Relaxed).saturating_add(waited);
-        let worked = started.elapsed().saturating_sub(Duration::from_nanos(waited));
+        let worked = (self.0.spent + started.elapsed()).saturating_sub(self.waited());
         if worked >= allowed { Err(Interrupted::TimeLimit(allowed)) } else { Ok(()) }
     }
 }

@@ -2,6 +2,7 @@
 
 use std::error::Error as _;
 use std::sync::Arc;
+use std::time::Duration;
 
 use axum::body::Body;
 use axum::extract::{FromRequest, Request};
@@ -12,9 +13,12 @@ use futures::StreamExt as _;
 use http_body::Body as _;
 use sha2::{Digest as _, Sha256};
 
-use crate::admission::{INLINE, Place, Pool, PoolError, Quota, Reservation, UNCOUNTED};
+use crate::admission::{
+    INLINE, Nanoseconds, Pool, PoolError, Quota, RequestPermit, Reservation, Stop, StopOnDrop, UNCOUNTED,
+};
 use crate::otlp;
 use crate::server::connections::SlowBody;
+use crate::server::limits::DISCARDED;
 use crate::simulation::{bytes, cost};
 use crate::store::RequestKey;
 use stickslip_wire::{self as wire, Document};
@@ -24,9 +28,6 @@ use super::params::IdempotencyKey;
 use super::problem::{Code, Problem};
 use super::reply;
 use super::state::App;
-
-/// Bytes of a body above the limit that are read and discarded, so that the client can read the answer.
-const DRAIN_LIMIT: usize = 8 * BODY_LIMIT;
 
 /// A checked body, and the headers that make the request safe to repeat. If it is `OPTIONAL`, no body at all counts as
 /// `{}`.
@@ -39,13 +40,28 @@ pub struct CheckedBody<T: Document, const OPTIONAL: bool = false> {
     pub held: HeldResources,
 }
 
-/// The resources that a request holds: a place until it is answered, and memory until the client has the reply.
+/// The resources that a request holds: its permit until it is answered, and memory until the client has the reply.
 pub struct HeldResources {
     memory: Reservation,
-    _place: Place,
+    _permit: RequestPermit,
+    /// The work of its check.
+    spent: Duration,
+}
+
+/// A body that has been read.
+enum ReadBody<T: Document> {
+    Checked(T::Checked),
+    /// The check prepares a profile, at this cost.
+    Unprepared(T, Nanoseconds),
 }
 
 impl HeldResources {
+    /// A flag for the work that is left of the request, which must end within the deadline together with its check.
+    #[must_use]
+    pub fn deadline(&self, pool: &Pool) -> (Stop, StopOnDrop) {
+        pool.deadline_after(self.spent)
+    }
+
     /// Changes the reservation to this much memory.
     ///
     /// # Errors
@@ -81,8 +97,8 @@ impl<T: Document + 'static, const OPTIONAL: bool> FromRequest<Arc<App>> for Chec
         }
         let expects = parts.headers.contains_key(header::EXPECT);
         let (mut bytes, mut memory) = read(body, expects, &app.pool).await?;
-        // Only once the body has arrived, so that a slow client takes no place from others.
-        let place = app.pool.enter().await?;
+        // Only once the body has arrived, so that a slow client keeps no others waiting.
+        let permit = app.pool.admit_request().await?;
         if OPTIONAL && bytes.is_empty() {
             bytes.extend_from_slice(b"{}");
         } else if declared.is_none() {
@@ -94,13 +110,32 @@ impl<T: Document + 'static, const OPTIONAL: bool> FromRequest<Arc<App>> for Chec
         if cost > 0 {
             app.pool.resize(&mut memory, length.saturating_mul(bytes::EXPANSION)).await?;
         }
+        let (stop, _guard) = app.pool.deadline();
+        let profiles = app.sessions.profiles(&stop);
+        let check = profiles.clone();
         let work = move || {
+            let _parsing = otlp::part!("parse").entered();
             let key = key.map(|key| RequestKey { key, fingerprint: fingerprint(&parts, &bytes) });
-            let read = || wire::read::<T>(&bytes);
-            otlp::part!("parse").in_scope(read).map(|body| (body, key))
+            let document = wire::parse::<T>(&bytes)?;
+            let cost = check.cost(&document)?;
+            let read = if cost < INLINE {
+                ReadBody::Checked(check.check(document)??)
+            } else {
+                ReadBody::Unprepared(document, cost)
+            };
+            Ok::<_, Problem>((read, key))
         };
-        let (body, key) = app.pool.run(cost, work).await??;
-        Ok(CheckedBody { body, key, held: HeldResources { memory, _place: place } })
+        let (read, key) = app.pool.run(cost, work).await??;
+        let body = match read {
+            ReadBody::Checked(body) => body,
+            ReadBody::Unprepared(document, cost) => {
+                let shape = document.profile().map_or(0, |defined| bytes::of_shape(defined.profile));
+                app.pool.resize(&mut memory, shape.max(length.saturating_mul(bytes::EXPANSION))).await?;
+                let work = move || otlp::part!("prepare").in_scope(|| profiles.check(document));
+                app.pool.run(cost, work).await???
+            }
+        };
+        Ok(CheckedBody { body, key, held: HeldResources { memory, _permit: permit, spent: stop.before() } })
     }
 }
 
@@ -144,7 +179,7 @@ async fn read(body: Body, expects: bool, pool: &Pool) -> Result<(Vec<u8>, Reserv
                 bytes.reserve_exact(room - bytes.len());
             }
             bytes.extend_from_slice(&chunk);
-        } else if length > DRAIN_LIMIT {
+        } else if length > DISCARDED {
             break;
         }
     }

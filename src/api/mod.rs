@@ -1,10 +1,13 @@
 //! HTTP: `router` is the table of contents; each resource has a file; [`problem`] says which error to use when.
 
+mod computations;
 mod extract;
+mod facts;
 pub mod formats;
 pub mod limits;
 pub mod middleware;
 mod openapi;
+mod parameters;
 mod params;
 pub mod problem;
 mod query;
@@ -31,18 +34,20 @@ use utoipa_axum::routes;
 use utoipa_swagger_ui::{Config, SwaggerUi};
 
 use crate::admission::Pool;
+use crate::formats::Format;
 use crate::server::tls::Tls;
 use crate::server::{self, ConnectionLimiter, ConnectionLimits, Service};
 
+use facts::{Facts, FactsOfRoutes, Routes};
 use middleware::{access_control, observe, security_headers};
 use request_metrics::RequestMetrics;
 use resources::meta::OpenApiText;
 use resources::{
-    accuracy, contacts, cycle, cycles, events, fit, fretting, history, hysteresis_loop, jobs, meta, metrics, moves,
-    observations, page,
+    contacts, cycle, cycles, events, history, hysteresis_loop, jobs, meta, metrics, moves, observations, page, stress,
+    subsurface, sweep,
 };
-use resources::{profile_fit, protocols, simulate, stress, subsurface, sweep};
 
+pub use facts::Need;
 pub use problem::Problem;
 pub use state::{Access, App};
 
@@ -55,7 +60,8 @@ pub async fn serve(listener: TcpListener, app: App, stop: impl Future<Output = (
     serve_within(limiter, listener, None, app, stop).await
 }
 
-/// Serves the API on `listener`, by TLS if it is given, for the connections that `limiter` admits, until `stop` is done.
+/// Serves the API on `listener`, by TLS if it is given, for the connections that `limiter` admits, until `stop` is
+/// done.
 ///
 /// # Errors
 /// As [`server::serve`].
@@ -93,7 +99,7 @@ pub async fn serve_within(
 
 /// All routes.
 fn router(app: App, metrics: Arc<RequestMetrics>, stops: watch::Receiver<bool>) -> Router {
-    let (api, _) = described(document()).split_for_parts();
+    let (api, _) = described(document()).router.split_for_parts();
     let docs = SwaggerUi::new("/docs").config(Config::from("/openapi.json").validator_url("none"));
     let access = app.access.clone();
     let pool = app.pool.clone();
@@ -115,7 +121,7 @@ fn with_middleware(
     stops: watch::Receiver<bool>,
 ) -> Router {
     let origins = (!access.origins.is_empty()).then(|| security_headers::cross_origin(&access.origins));
-    let keys = access.keys.map(|keys| from_fn_with_state((keys, pool.clone()), access_control::admit));
+    let keys = access.keys.map(|keys| from_fn_with_state((keys, pool.clone(), facts()), access_control::admit));
     let layers = ServiceBuilder::new()
         .layer(SetSensitiveRequestHeadersLayer::new([AUTHORIZATION]))
         .layer(from_fn_with_state((metrics, pool, stops), observe))
@@ -129,43 +135,64 @@ fn with_middleware(
 /// The OpenAPI document, as `/openapi.json` serves it and `stickslip openapi` prints it.
 pub fn document() -> &'static str {
     static DOCUMENT: OnceLock<String> = OnceLock::new();
-    DOCUMENT.get_or_init(|| openapi::complete(described("").get_openapi()))
+    DOCUMENT.get_or_init(|| {
+        let Routes { router, facts } = described("");
+        openapi::complete(router.get_openapi(), &facts)
+    })
 }
 
-/// The routes that the OpenAPI document describes. `document` is its text, which one of them serves.
-fn described(document: &'static str) -> OpenApiRouter<Arc<App>> {
-    OpenApiRouter::with_openapi(openapi::base())
-        .routes(routes!(simulate::simulate_path))
-        .routes(routes!(accuracy::compare_solvers))
-        .routes(routes!(protocols::find_protocol))
-        .routes(routes!(cycle::compute_steady_cycle))
-        .routes(routes!(fretting::rate_fretting))
-        .routes(routes!(profile_fit::fit_profile))
-        .routes(routes!(fit::fit_loops))
-        .routes(routes!(sweep::run_sweep))
-        .routes(routes!(jobs::list_jobs))
-        .routes(routes!(jobs::get_job, jobs::cancel_job))
-        .routes(routes!(jobs::get_job_result))
-        .routes(routes!(jobs::watch_job))
-        .routes(routes!(contacts::create_contact, contacts::list_contacts))
-        .routes(routes!(contacts::get_contact, contacts::rename_contact, contacts::delete_contact))
-        .routes(routes!(contacts::get_definition))
-        .routes(routes!(contacts::fork_contact))
-        .routes(routes!(moves::move_contact))
-        .routes(routes!(moves::follow_path))
-        .routes(routes!(moves::relax_contact))
-        .routes(routes!(observations::follow_bench))
-        .routes(routes!(observations::get_friction))
-        .routes(routes!(stress::get_stress))
-        .routes(routes!(subsurface::compute_subsurface_stress))
-        .routes(routes!(cycle::get_steady_cycle))
-        .routes(routes!(history::get_history))
-        .routes(routes!(hysteresis_loop::get_loop))
-        .routes(routes!(cycles::get_cycles))
-        .routes(routes!(events::watch_contact))
-        .routes(routes!(meta::get_openapi).layer(Extension(OpenApiText(document))))
-        .routes(routes!(meta::get_problem))
-        .routes(routes!(meta::check_health))
-        .routes(routes!(meta::check_readiness))
-        .routes(routes!(metrics::metrics))
+/// The facts of all routes.
+fn facts() -> &'static FactsOfRoutes {
+    static FACTS: OnceLock<FactsOfRoutes> = OnceLock::new();
+    FACTS.get_or_init(|| {
+        let mut facts = described("").facts;
+        for path in [routes::PAGE, routes::PAGE_FILES, "/docs", "/docs/{*rest}"] {
+            facts.add("GET", path, Facts::OPEN);
+        }
+        facts
+    })
+}
+
+/// What a method on a route needs.
+pub fn need(method: &str, route: &str) -> Need {
+    access_control::need(facts(), method, route)
+}
+
+/// The routes that the OpenAPI document describes, with their facts. `document` is its text, which one of them serves.
+fn described(document: &'static str) -> Routes {
+    let router = OpenApiRouter::with_openapi(openapi::base());
+    let mut routes = Routes { router, facts: FactsOfRoutes::default() };
+    computations::add_routes(&mut routes);
+    let page = Facts::READS_CONTACT.formats(&Format::ALL).conditional();
+    routes
+        .with(Facts::WRITES.formats(&Format::TABLES), routes!(sweep::run_sweep))
+        .with(Facts::READS, routes!(jobs::list_jobs))
+        .with(Facts::READS, routes!(jobs::get_job))
+        .with(Facts::WRITES, routes!(jobs::cancel_job))
+        .with(Facts::READS_RESULT.formats(&Format::TABLES), routes!(jobs::get_job_result))
+        .with(Facts::READS.events(&["JobReply", "JobEndEvent"]), routes!(jobs::watch_job))
+        .with(Facts::WRITES, routes!(contacts::create_contact))
+        .with(Facts::READS, routes!(contacts::list_contacts))
+        .with(Facts::READS_CONTACT.conditional(), routes!(contacts::get_contact))
+        .with(Facts::CHANGES_CONTACT, routes!(contacts::rename_contact))
+        .with(Facts::CHANGES_CONTACT, routes!(contacts::delete_contact))
+        .with(Facts::READS_CONTACT, routes!(contacts::get_definition))
+        .with(Facts::COPIES_CONTACT.optional_body(), routes!(contacts::fork_contact))
+        .with(Facts::CHANGES_CONTACT, routes!(moves::move_contact))
+        .with(Facts::CHANGES_CONTACT, routes!(moves::follow_path))
+        .with(Facts::CHANGES_CONTACT, routes!(moves::relax_contact))
+        .with(Facts::CHANGES_CONTACT, routes!(observations::follow_bench))
+        .with(Facts::READS_CONTACT, routes!(observations::get_friction))
+        .with(page, routes!(stress::get_stress))
+        .with(Facts::READS_CONTACT.formats(&Format::ALL), routes!(subsurface::compute_subsurface_stress))
+        .with(page, routes!(cycle::get_steady_cycle))
+        .with(page.paged(), routes!(history::get_history))
+        .with(page.paged(), routes!(hysteresis_loop::get_loop))
+        .with(page, routes!(cycles::get_cycles))
+        .with(Facts::READS_CONTACT.events(&["StateEvent", "EndEvent"]), routes!(events::watch_contact))
+        .with(Facts::OPEN, routes!(meta::get_openapi).layer(Extension(OpenApiText(document))))
+        .with(Facts::OPEN, routes!(meta::get_problem))
+        .with(Facts::OPEN, routes!(meta::check_health))
+        .with(Facts::READY, routes!(meta::check_readiness))
+        .with(Facts::METRICS, routes!(metrics::metrics))
 }

@@ -7,13 +7,15 @@ use axum::extract::{FromRequestParts, Path};
 use axum::http::request::Parts;
 use axum::http::{HeaderMap, header};
 use utoipa::IntoParams;
+use utoipa::openapi::path::{Parameter, ParameterIn};
 use uuid::Uuid;
 
+use super::parameters::{MOVE_NUMBER, described};
 use super::problem::{Code, Problem};
 use super::state::App;
 
 /// Characters of an idempotency key.
-pub const KEY_LENGTH: usize = 255;
+const KEY_LENGTH: usize = 255;
 
 /// The contact in the path.
 #[derive(IntoParams)]
@@ -37,7 +39,8 @@ pub struct JobPath {
 pub struct IfMatch {
     /// The sequence that the contact must have, in quotes: an `ETag` of it. If it has another one, nothing changes and
     /// the answer is 412.
-    #[param(rename = "If-Match", value_type = Option<String>, nullable = false)]
+    #[param(rename = "If-Match", value_type = Option<String>, nullable = false,
+        pattern = r#"^("[0-9]{1,19}(\.[0-9a-f]{8})?"|\*)$"#)]
     pub sequence: Option<u64>,
 }
 
@@ -47,18 +50,24 @@ pub struct IfMatch {
 pub struct IdempotencyKey {
     /// A name of your choice for this request. A repetition with the same name and body within 24 hours changes nothing
     /// and gets the first reply again; with another body it is refused.
-    #[param(rename = "Idempotency-Key", nullable = false)]
+    #[param(rename = "Idempotency-Key", nullable = false, min_length = 1, max_length = 255, pattern = "^[!-~]+$")]
     pub key: Option<String>,
 }
 
 /// Where a stream of events continues.
-#[derive(IntoParams)]
-#[into_params(parameter_in = Header)]
 pub struct LastEventId {
-    /// The sequence of the last event that the client has received. The stream continues with the next one, without a
-    /// gap; if the header is left out, it begins with the present state.
-    #[param(rename = "Last-Event-ID", nullable = false)]
+    /// The sequence of the last event that the client has received.
     pub sequence: Option<u64>,
+}
+
+impl IntoParams for LastEventId {
+    fn into_params(_: impl Fn() -> Option<ParameterIn>) -> Vec<Parameter> {
+        let description = "The sequence of the last event that the client has received. The stream continues with the \
+                           next one, without a gap; if the header is left out, it begins with the present state.";
+        let mut parameter = described("Last-Event-ID", description.to_owned(), &MOVE_NUMBER, None);
+        parameter.parameter_in = ParameterIn::Header;
+        vec![parameter]
+    }
 }
 
 /// How the client wants to be answered (RFC 7240).

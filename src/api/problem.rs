@@ -9,6 +9,8 @@ use axum::http::{HeaderValue, StatusCode, header};
 use axum::response::{IntoResponse, Response};
 
 use crate::admission::PoolError;
+use crate::computations::ComputeError;
+use crate::formats::Unwritable;
 use crate::jobs::JobError;
 use crate::sessions::SessionError;
 use crate::simulation::{Failure, SweepError};
@@ -111,6 +113,29 @@ impl From<Rejection> for Problem {
     }
 }
 
+impl From<Fault> for Problem {
+    fn from(Fault { pointer, detail }: Fault) -> Self {
+        Problem::at(Code::InvalidInput, pointer, detail)
+    }
+}
+
+impl From<Unwritable> for Problem {
+    fn from(error: Unwritable) -> Self {
+        Problem::internal(error.to_string())
+    }
+}
+
+impl From<ComputeError> for Problem {
+    fn from(error: ComputeError) -> Self {
+        match error {
+            ComputeError::Unknown(_) => Problem::new(Code::NotFound, error.to_string()),
+            ComputeError::Rejected(rejection) => rejection.into(),
+            ComputeError::Failed(failure) => failure.into(),
+            ComputeError::Unwritable(error) => error.into(),
+        }
+    }
+}
+
 impl From<Failure> for Problem {
     fn from(failure: Failure) -> Self {
         let (code, detail) = (failure.code(), failure.to_string());
@@ -122,6 +147,8 @@ impl From<Failure> for Problem {
             | Failure::TooLong { pointer, .. }
             | Failure::Search { pointer, .. }
             | Failure::CycleTooLarge { pointer } => Problem::at(code, pointer, detail),
+            Failure::Preparation { pointer, .. } => Problem::at(code, pointer, detail),
+            Failure::NeedsServer { pointer } => Problem::at(code, pointer, detail),
             Failure::Stopped | Failure::Lifted => Problem::new(code, detail),
         }
     }
@@ -182,11 +209,15 @@ impl From<SessionError> for Problem {
                 );
                 Problem::new(Code::DamagedContact, advice).because(detail)
             }
+            SessionError::Store(StoreError::Locked(_)) => {
+                let advice = "another transaction of the database holds it: nothing has changed, try again";
+                Problem::new(Code::StorageUnavailable, advice).because(detail)
+            }
             SessionError::Store(StoreError::Unavailable(_)) => {
                 let advice = "the change may or may not be stored; retry with the same Idempotency-Key, or look";
                 Problem::new(Code::StorageUnavailable, advice).because(detail)
             }
-            SessionError::Store(_) | SessionError::Broken(_) => Problem::internal(detail),
+            SessionError::Store(_) | SessionError::Unwritable(_) | SessionError::Broken(_) => Problem::internal(detail),
         }
     }
 }

@@ -7,7 +7,7 @@ use axum::http::{HeaderMap, HeaderValue, StatusCode, header};
 use axum::response::{IntoResponse, Response};
 
 use crate::admission::Reservation;
-use crate::otlp;
+use crate::formats;
 use crate::store::Reply;
 
 use super::params::list_members;
@@ -15,9 +15,6 @@ use super::problem::Problem;
 
 /// Number of headers of a finished reply, so that the map need not grow step by step.
 const HEADERS: usize = 12;
-
-/// Capacity that a text begins with if its length is not known.
-const ROOM: usize = 128;
 
 /// 200 with a JSON body.
 pub fn json(body: Vec<u8>) -> Response {
@@ -80,18 +77,5 @@ pub fn holding(mut response: Response, held: Reservation) -> Response {
 /// # Errors
 /// [`Problem::internal`] if it cannot be written, which is a fault of the service.
 pub fn written(value: &impl serde::Serialize) -> Result<Vec<u8>, Problem> {
-    written_in(ROOM, value)
-}
-
-/// As [`written`], with this capacity from the start: a text that grows is copied repeatedly.
-///
-/// # Errors
-/// As [`written`].
-pub fn written_in(room: usize, value: &impl serde::Serialize) -> Result<Vec<u8>, Problem> {
-    let _span = otlp::part!("write").entered();
-    let mut text = Vec::with_capacity(room);
-    match serde_json::to_writer(&mut text, value) {
-        Ok(()) => Ok(text),
-        Err(error) => Err(Problem::internal(format!("a reply cannot be written: {error}"))),
-    }
+    Ok(formats::json(formats::CAPACITY, value)?)
 }

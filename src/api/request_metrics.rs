@@ -59,8 +59,8 @@ pub struct Endpoint {
 struct Route([OnceLock<Endpoint>; METHODS.len()]);
 
 impl RequestMetrics {
-    /// Nothing has passed yet. What the OpenAPI document describes is shown from the beginning: a rate needs a zero to rise
-    /// from.
+    /// Nothing has passed yet. What the OpenAPI document describes is shown from the beginning: a rate needs a zero to
+    /// rise from.
     pub fn of(document: &Value) -> RequestMetrics {
         let (families, mut routes) = (Families::new(), HashMap::new());
         for (path, item) in document["paths"].as_object().into_iter().flatten() {

@@ -24,6 +24,9 @@ pub struct Healthcheck {
     /// File with the certificate of a service with TLS. It is not verified: the service is on this machine.
     #[arg(long, env = "STICKSLIP_TLS_CERT")]
     tls_cert: Option<PathBuf>,
+    /// Its private key, which is not read.
+    #[arg(long, env = "STICKSLIP_TLS_KEY")]
+    tls_key: Option<PathBuf>,
 }
 
 /// Fails unless the service replies that it is healthy.
@@ -37,7 +40,7 @@ pub fn healthcheck(options: &Healthcheck) -> Result<(), String> {
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
     let runtime = runtime.map_err(|error| format!("cannot start: {error}"))?;
     let check = async {
-        match options.tls_cert {
+        match options.tls_cert.as_ref().or(options.tls_key.as_ref()) {
             Some(_) => tls::healthz(address).await,
             None => Client::new(format!("http://{address}")).healthz().await.map_err(|error| error.to_string()),
         }

@@ -5,6 +5,7 @@ use std::fs::File;
 use std::io::{self, Read as _, Write};
 use std::path::Path;
 
+use serde_json::Value;
 use stickslip::api::Problem;
 
 /// The content of a file, or of standard input for `-`.
@@ -25,12 +26,20 @@ pub fn json(value: &impl serde::Serialize) -> String {
 
 /// The problem document that the service would send, as the message of an error.
 pub fn problem(problem: impl Into<Problem>) -> String {
-    json(&problem.into().document("command line"))
+    fault(problem, true)
 }
 
 /// Prints a line on standard output.
 pub fn print(text: impl Display) -> Result<(), String> {
     write(|out| writeln!(out, "{text}"))
+}
+
+/// Says on standard error what was taken for what in a file. Where that cannot be written, the result counts still.
+pub fn say(file: &Path, sentences: &[String]) {
+    let mut err = io::stderr().lock();
+    for sentence in sentences {
+        writeln!(err, "{}: {sentence}", file.display()).ok();
+    }
 }
 
 /// Writes to standard output. A reader that closes the pipe early, such as `head`, is no error.
@@ -40,4 +49,22 @@ pub fn write(write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(),
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(format!("cannot write: {error}")),
         _ => Ok(()),
     }
+}
+
+/// A problem as the message of an error: the document that the service would send, or two lines for readers.
+pub fn fault(error: impl Into<Problem>, as_json: bool) -> String {
+    let document = error.into().document("command line");
+    if as_json {
+        return json(&document);
+    }
+    let places = document.errors.iter().map(|fault| format!("\n{}: {}", fault.pointer, fault.detail));
+    format!("{}: {}", document.title, if document.errors.is_empty() { &document.detail } else { "" })
+        .trim_end()
+        .to_owned()
+        + &places.collect::<String>()
+}
+
+/// The JSON value in a text.
+pub fn parsed(text: &[u8]) -> Result<Value, String> {
+    serde_json::from_slice(text).map_err(|error| format!("not JSON: {error}"))
 }

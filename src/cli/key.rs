@@ -64,7 +64,8 @@ pub fn key(key: Key) -> Result<(), String> {
 /// The roles of the first key: of an operator who is alone.
 const FIRST_ROLES: [Role; 2] = [Role::Write, Role::Metrics];
 
-/// Makes a file with the entry of a new key, for its owner alone, and prints the key; a file that exists stays as it is.
+/// Makes a file with the entry of a new key, for its owner alone, and prints the key; a file that exists stays as it
+/// is.
 pub fn make_first_key(file: &Path) -> Result<(), String> {
     if fs::symlink_metadata(file).is_ok() {
         return Ok(());
@@ -86,8 +87,8 @@ pub fn key_files(setting: &[String]) -> impl Iterator<Item = PathBuf> {
     setting.iter().filter(|part| !part.contains(ENTRY)).map(PathBuf::from)
 }
 
-/// The keys of a setting: entries, or files with entries. `None` without the setting. A setting without an entry is an error,
-/// so that an empty file does not open the service to everybody.
+/// The keys of a setting: entries, or files with entries. `None` without the setting. A setting without an entry is an
+/// error, so that an empty file does not open the service to everybody.
 pub fn read_keys(setting: &[String]) -> Result<Option<Keys>, String> {
     if setting.is_empty() {
         return Ok(None);

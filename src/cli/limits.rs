@@ -33,8 +33,8 @@ pub struct Limits {
     /// Most requests that wait; more are refused.
     #[arg(long, env = "STICKSLIP_MAX_QUEUE", default_value_t = admission::QUEUE, value_parser = at_least_one)]
     max_queue: usize,
-    /// Most requests of one client processed or waiting at a time [default: half of --max-requests]. A client is a tenant where there
-    /// are keys, else an address. Behind a proxy without keys all clients have one address.
+    /// Most requests of one client processed or waiting at a time [default: half of --max-requests]. A client is a
+    /// tenant where there are keys, else an address. Behind a proxy without keys all clients have one address.
     #[arg(long, env = "STICKSLIP_MAX_REQUESTS_PER_CLIENT", value_parser = at_least_one)]
     max_requests_per_client: Option<usize>,
     /// Most streams of events that one client follows.
@@ -56,7 +56,12 @@ pub struct Limits {
     #[arg(long, env = "STICKSLIP_MAX_WAIT", default_value = "10s", value_parser = duration)]
     max_wait: Duration,
     /// Bytes of memory for all large requests together: bodies, work and replies.
-    #[arg(long, env = "STICKSLIP_WORK_BYTES", default_value_t = ByteSize::b(admission::BYTES as u64), value_parser = work_bytes)]
+    #[arg(
+        long,
+        env = "STICKSLIP_WORK_BYTES",
+        default_value_t = ByteSize::b(admission::BYTES as u64),
+        value_parser = work_bytes
+    )]
     work_bytes: ByteSize,
     /// Longest time that the solver works for one request.
     #[arg(long, env = "STICKSLIP_DEADLINE", default_value = "60s", value_parser = duration)]

@@ -2,48 +2,34 @@
 
 mod backup;
 mod check;
-mod cycle;
-mod fit;
-mod fretting;
+mod compute;
 mod healthcheck;
 mod io;
 mod key;
 mod limits;
-mod profile;
 mod progress;
-mod protocol;
 mod reload;
 mod report;
-mod scan_table;
 mod serve;
 mod settings;
-mod subsurface;
 mod sweep;
-mod table;
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
-use stickslip::admission::Stop;
-use stickslip::{api, simulation};
+use stickslip::api;
 use stickslip_report::figures;
-use stickslip_wire::{self as wire, SimulateRequest};
 
 use backup::Backup;
 use check::Check;
-use cycle::Cycle;
-use fit::Fit;
-use fretting::Fretting;
+use compute::Compute;
 use healthcheck::Healthcheck;
-use io::{json, print, problem, read};
+use io::print;
 use key::Key;
-use profile::Profile;
-use protocol::Protocol;
 use report::Report;
 use serve::Serve;
 use settings::{Settings, SettingsError};
-use subsurface::Subsurface;
 use sweep::Sweep;
 
 /// Simulate the frictional contact of two elastic bodies exactly: as a service, or from the command line.
@@ -58,27 +44,13 @@ struct Cli {
 
 #[derive(Subcommand)]
 enum Command {
-    /// Serve HTTP; the same as no command at all.
+    /// Serve HTTP; the same as no command at all where there is a store or one is named.
     Serve(Serve),
     /// Print the settings of `serve` with the source of each; secrets are masked.
     Config(Serve),
-    /// Run the body of POST /simulate from a file and print the reply.
-    Simulate {
-        /// The file, or - for standard input.
-        file: PathBuf,
-    },
-    /// Find a protocol that leaves little shear stress, and print the reply of POST /protocols.
-    Protocol(Protocol),
-    /// Run the body of POST /cycle from a file and print the reply, or a fretting map.
-    Cycle(Cycle),
-    /// Run the body of POST /simulate from a file and print the stress below the surface that it asks for.
-    Subsurface(Subsurface),
-    /// Run the body of POST /fretting from a file and print the reply.
-    Fretting(Fretting),
-    /// Fit a profile to a scan of heights and print it, with what the scan says of the contact.
-    Profile(Profile),
-    /// Fit friction and stiffness to a measured loop of force over displacement, and print what it determines.
-    Fit(Fit),
+    /// A computation: the body of its request from a file, and its reply.
+    #[command(flatten)]
+    Compute(Compute),
     /// Run the body of POST /sweep from a file and print the table.
     Sweep(Sweep),
     /// Print the OpenAPI document.
@@ -115,7 +87,17 @@ pub fn run() -> ExitCode {
             return ExitCode::from(USAGE_ERROR);
         }
     };
-    match cli.command.unwrap_or(Command::Serve(cli.serve)).run(&settings) {
+    let command = match cli.command {
+        Some(command) => command,
+        None => {
+            if let Err(line) = cli.serve.check_implied(&settings) {
+                eprintln!("{line}");
+                return ExitCode::from(USAGE_ERROR);
+            }
+            Command::Serve(cli.serve)
+        }
+    };
+    match command.run(&settings) {
         Ok(()) => ExitCode::SUCCESS,
         Err(message) => {
             eprintln!("{message}");
@@ -129,13 +111,7 @@ impl Command {
         match self {
             Command::Serve(options) => serve::serve(options),
             Command::Config(_) => print(settings),
-            Command::Simulate { file } => simulate(&file),
-            Command::Protocol(protocol) => protocol.run(),
-            Command::Cycle(cycle) => cycle.run(),
-            Command::Subsurface(subsurface) => subsurface.run(),
-            Command::Fretting(fretting) => fretting.run(),
-            Command::Profile(profile) => profile.run(),
-            Command::Fit(fit) => fit.run(),
+            Command::Compute(compute) => compute.run(),
             Command::Sweep(sweep) => sweep.run(),
             Command::Openapi => print(api::document().trim_end()),
             Command::Healthcheck(options) => healthcheck::healthcheck(&options),
@@ -148,10 +124,4 @@ impl Command {
             }
         }
     }
-}
-
-/// Reads the body of `POST /simulate` and prints the reply.
-fn simulate(file: &Path) -> Result<(), String> {
-    let simulation = wire::read::<SimulateRequest>(&read(file)?).map_err(problem)?;
-    print(json(&simulation::simulate(&simulation, &Stop::default()).map_err(problem)?))
 }

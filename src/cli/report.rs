@@ -27,8 +27,8 @@ pub struct Report {
     #[arg(long, value_name = "SECONDS")]
     budget: Option<u32>,
     /// Also run the solvers of crates/report/external, with this Python; see docs/speed-and-accuracy.md.
-    #[arg(long, value_name = "PYTHON")]
-    peers: Option<PathBuf>,
+    #[arg(long, alias = "peers", value_name = "PYTHON")]
+    external: Option<PathBuf>,
 }
 
 /// Time of the short run, s: two minutes with the runs that are under way at its end.
@@ -44,7 +44,7 @@ impl Report {
             repetition_time: Duration::from_millis(if self.full { 5_000 } else { 200 }),
             budget: self.budget.or((!self.full).then_some(BUDGET)).map(|seconds| Duration::from_secs(seconds.into())),
             compiler: env!("BUILD_COMPILER"),
-            python: self.peers,
+            python: self.external,
         };
         let bar = progress::bar(options.scenes.len() as u64, "scenes");
         let show = |scene: &str| {

@@ -2,7 +2,7 @@
 
 use std::io;
 use std::net::SocketAddr;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -31,7 +31,7 @@ use super::io::print;
 use super::key;
 use super::limits::Limits;
 use super::reload::reload_on_change;
-use super::settings::ConfigFile;
+use super::settings::{ConfigFile, Settings};
 
 /// How long work that does not check for cancellation may delay the end of the process.
 const SHUTDOWN_TIMEOUT: Duration = Duration::from_millis(500);
@@ -39,13 +39,17 @@ const SHUTDOWN_TIMEOUT: Duration = Duration::from_millis(500);
 /// How long the process may take at its end to release the chunks of jobs under way.
 const JOB_RELEASE_TIMEOUT: Duration = Duration::from_secs(2);
 
-/// Threads for the store and for work that begins, beside those of work that has begun, which are at most as many as requests.
+/// Threads for the store and for work that begins, beside those of work that has begun, which are at most as many as
+/// requests.
 const SPARE_THREADS: usize = 512;
 const MOST_THREADS: usize = 10_000;
 
-/// The shortest time after which an idle contact may expire, and the shortest lease on a chunk of a job: it must be renewed in
-/// time.
+/// The shortest time after which an idle contact may expire, and the shortest lease on a chunk of a job: it must be
+/// renewed in time.
 const SHORTEST_TIME: Duration = Duration::from_secs(1);
+
+/// The store in the present folder that is served if no other one is named.
+const DEFAULT_STORE: &str = "sqlite:stickslip.db";
 
 /// The settings. Each can be a flag, a variable or an entry of the configuration file (`settings`).
 #[derive(Args)]
@@ -58,8 +62,8 @@ pub struct Serve {
     /// API keys: entries as `stickslip key new` prints them, or files with such entries, separated by commas.
     #[arg(long, env = "STICKSLIP_KEYS", value_delimiter = ',')]
     keys: Vec<String>,
-    /// File of keys for a service that has no --keys and is not --insecure; if there is none, it is made, with one key of the
-    /// roles write and metrics, which is printed this once.
+    /// File of keys for a service that has no --keys and is not --insecure; if there is none, it is made, with one key
+    /// of the roles write and metrics, which is printed this once.
     #[arg(long, env = "STICKSLIP_FIRST_KEY", value_name = "FILE")]
     first_key: Option<PathBuf>,
     /// File with the certificate of the service and those of its authorities (PEM): TLS, with --tls-key.
@@ -79,9 +83,9 @@ pub struct Serve {
     /// Origins of web pages that may call the service (CORS), such as https://lab.example, separated by commas.
     #[arg(long, env = "STICKSLIP_CORS_ORIGINS", value_delimiter = ',')]
     cors_origins: Vec<Origin>,
-    /// Store of the contacts: `sqlite:PATH` for a file, `postgres://…` for a database that several processes can share,
-    /// `memory:` for this process until it ends.
-    #[arg(long, env = "STICKSLIP_STORE", default_value = "sqlite:stickslip.db")]
+    /// Store of the contacts: `sqlite:PATH` for a file, `postgres://…` for a database that several processes can
+    /// share, `memory:` for this process until it ends.
+    #[arg(long, env = "STICKSLIP_STORE", default_value = DEFAULT_STORE)]
     store: String,
     /// Bytes of memory to cache the states of contacts, such as 64MiB. Other states are replayed when needed.
     #[arg(long, env = "STICKSLIP_CACHE_BYTES", default_value_t = ByteSize::b(sessions::CAPACITY as u64))]
@@ -110,6 +114,24 @@ pub struct Serve {
 enum LogFormat {
     Text,
     Json,
+}
+
+impl Serve {
+    /// Checks that it is meant where no command was given: that a store is named, or that there is one. Otherwise a
+    /// file would be made wherever somebody tries the program.
+    ///
+    /// # Errors
+    /// A line that says what to do.
+    pub fn check_implied(&self, settings: &Settings) -> Result<(), String> {
+        let path = DEFAULT_STORE.trim_start_matches("sqlite:");
+        if !settings.is_default("store") || Path::new(path).exists() {
+            return Ok(());
+        }
+        Err(format!(
+            "there is no store {path} in this folder: `stickslip serve` makes one, --store names another, and \
+             `stickslip --help` shows the commands"
+        ))
+    }
 }
 
 /// Serves until a signal stops it.
@@ -160,7 +182,8 @@ pub fn serve(mut options: Serve) -> Result<(), String> {
 }
 
 impl Serve {
-    /// Sets `--keys` to the file of `--first-key`, which is made if there is none, unless there are keys or none are wanted.
+    /// Sets `--keys` to the file of `--first-key`, which is made if there is none, unless there are keys or none are
+    /// wanted.
     fn take_first_key(&mut self) -> Result<(), String> {
         let Some(file) = self.first_key.take().filter(|_| self.keys.is_empty() && !self.insecure) else {
             return Ok(());
@@ -171,8 +194,8 @@ impl Serve {
     }
 }
 
-/// Has a write beyond the limit of the size of files (`ulimit -f`) fail, as on a full disk: without a handler, the signal that
-/// comes with it ends the process. The handler stays for good.
+/// Has a write beyond the limit of the size of files (`ulimit -f`) fail, as on a full disk: without a handler, the
+/// signal that comes with it ends the process. The handler stays for good.
 async fn survive_file_size_limit() -> Result<(), String> {
     let kind = SignalKind::from_raw(rustix::process::Signal::XFSZ.as_raw());
     signal(kind).map(drop).map_err(|error| format!("cannot listen for signals: {error}"))
@@ -205,8 +228,8 @@ fn access(options: &Serve) -> Result<(Access, Option<KeysInForce>), String> {
     if keys.is_none() && !listen.ip().to_canonical().is_loopback() {
         if !options.insecure {
             return Err(format!(
-                "refusing to listen on {listen} without keys: give --keys, or --first-key to have one made, or a loopback \
-                 address such as 127.0.0.1:{}, or --insecure to let in everybody who can reach it",
+                "refusing to listen on {listen} without keys: give --keys, or --first-key to have one made, or a \
+                 loopback address such as 127.0.0.1:{}, or --insecure to let in everybody who can reach it",
                 listen.port()
             ));
         }
@@ -215,7 +238,8 @@ fn access(options: &Serve) -> Result<(Access, Option<KeysInForce>), String> {
     if let Some(keys) = &keys {
         tracing::info!(keys = keys.count(), "a key is needed");
         if !listen.ip().to_canonical().is_loopback() && options.tls_cert.is_none() {
-            tracing::warn!(%listen, "keys are sent unencrypted: give --tls-cert and --tls-key, or let no one but a proxy reach this address");
+            tracing::warn!(%listen, "keys are sent unencrypted: give --tls-cert and --tls-key, or let no one but a \
+                proxy reach this address");
         }
     }
     let origins: Arc<[_]> = options.cors_origins.iter().map(|Origin(origin)| origin.clone()).collect();
@@ -249,7 +273,7 @@ fn reload(options: &Serve, keys: Option<KeysInForce>, tls: Option<Tls>) -> (Vec<
                     tracing::info!(keys = read.count(), "keys read again");
                     keys.send_replace(Arc::new(read));
                 }
-                Err(error) => tracing::error!(error, "the keys are still those before"),
+                Err(error) => tracing::error!(error, "keys unchanged"),
             }
         }
         if let Some(tls) = &tls {
@@ -299,8 +323,8 @@ async fn listen(
         tracing::warn!(
             memory_bound = %ByteSize::b(memory_bound),
             memory = %ByteSize::b(memory),
-            "the memory bound is above the memory of this machine or of its control group: lower --work-bytes, --cache-bytes or \
-             --max-connections"
+            "the memory bound is above the memory of this machine or of its control group: lower --work-bytes, \
+             --cache-bytes or --max-connections"
         );
     }
     let capacity = usize::try_from(options.cache_bytes.as_u64()).unwrap_or(usize::MAX);

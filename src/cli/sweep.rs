@@ -5,8 +5,8 @@ use std::path::PathBuf;
 
 use clap::Args;
 use clap::builder::PossibleValuesParser;
-use stickslip::admission::{Stop, Turn};
-use stickslip::api::formats::{Format, tables};
+use stickslip::admission::{SolverSlot, Stop};
+use stickslip::formats::Format;
 use stickslip::simulation::{Sweep as Plan, SweepResult};
 use stickslip_wire::{self as wire, SweepRequest};
 
@@ -29,15 +29,16 @@ pub struct Sweep {
 impl Sweep {
     /// Computes and prints the table, with progress on a terminal.
     pub fn run(&self) -> Result<(), String> {
-        let plan = wire::read::<SweepRequest>(&read(&self.file)?).and_then(Plan::plan).map_err(problem)?;
+        let plan = wire::read::<SweepRequest>(&read(&self.file)?).and_then(|sweep| Plan::plan(sweep, &Stop::default()));
+        let plan = plan.map_err(problem)?;
         let cores = std::thread::available_parallelism().map_or(1, usize::from);
         let threads = self.threads.unwrap_or(cores).max(1);
         let (points, outputs) = (plan.points(), plan.numbers(1));
         let (mut result, mut done) = (SweepResult::default(), 0);
         let bar = progress::bar(points as u64, "points");
         while done < points {
-            let turns = (0..threads).map(|_| Turn::alone()).collect();
-            let slice = plan.slice(done..points, turns, &Stop::default(), None);
+            let slots = (0..threads).map(|_| SolverSlot::alone()).collect();
+            let slice = plan.slice(done..points, slots, &Stop::default(), None);
             result.append(slice.map_err(problem)?);
             done = result.values.len() / outputs;
             bar.set_position(done as u64);
@@ -47,7 +48,7 @@ impl Sweep {
             eprintln!("{} of {points} points failed; the first: {}", result.failed, json(&result.failures[0]));
         }
         let format = Format::named(&self.format, &Format::TABLES).unwrap_or(Format::Csv);
-        let mut blocks = tables::sweep(plan.checked(), result).blocks(format);
+        let mut blocks = result.table(plan.checked()).blocks(format);
         write(|out| blocks.try_for_each(|block| out.write_all(&block.map_err(io::Error::other)?)))
     }
 }

@@ -11,7 +11,7 @@ use crate::store::StoreError;
 /// Why a sweep or a job has no result.
 #[derive(Debug, thiserror::Error)]
 pub enum JobError {
-    /// There is no such job, or it has been deleted.
+    /// The job was not found, or has been deleted.
     #[error("there is no job {0}")]
     NotFound(Uuid),
     /// It has not ended.

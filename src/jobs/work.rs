@@ -120,8 +120,18 @@ impl Jobs {
     async fn open(&self, id: Uuid) -> Result<(Job, Arc<Sweep>), JobError> {
         let job = self.common.store.job(id).await.map_err(store_error(id))?;
         let request = self.common.store.job_request(id).await.map_err(store_error(id))?;
-        let plan = move || wire::read::<SweepRequest>(request.as_bytes()).and_then(Sweep::plan);
-        let sweep = self.common.pool.run(INLINE, plan).await?;
+        let read = move || wire::read::<SweepRequest>(request.as_bytes());
+        let checked = self.common.pool.run(INLINE, read).await?;
+        let plan = |checked| async {
+            let stop = Stop::default();
+            let cost = Sweep::planning_cost(&checked);
+            let plan = self.common.pool.run(cost, move || Sweep::plan(checked, &stop));
+            Client::Tenant(job.tenant.clone()).serve(plan).await
+        };
+        let sweep = match checked {
+            Ok(checked) => plan(checked).await?,
+            Err(rejection) => Err(rejection),
+        };
         let sweep = sweep
             .map_err(|error| JobError::Broken(format!("this version does not accept the stored request: {error}")))?;
         Ok((job, Arc::new(sweep)))
@@ -162,7 +172,7 @@ impl Jobs {
         for _ in 0..SAVE_ATTEMPTS {
             match self.common.store.save_chunk(claim, result.clone()).await {
                 Ok(()) => return Ok(()),
-                Err(StoreError::Full(_) | StoreError::Unavailable(_)) => {
+                Err(StoreError::Full(_) | StoreError::Unavailable(_) | StoreError::Locked(_)) => {
                     tokio::time::sleep(PAUSE).await;
                     // Fails while the store is unreachable.
                     let _ = self.common.store.renew(claim, lease).await;

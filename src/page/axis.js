@@ -1,5 +1,5 @@
 // From values to pixels and back: ranges, ticks, and the unit prefix.
-import { formatNumber, unitScale } from "./units.js";
+import { formatNumber, raised, unitScale } from "./units.js";
 
 /** One axis of a plot, linear or logarithmic. */
 export class Axis {
@@ -15,7 +15,7 @@ export class Axis {
     this.start = start;
     this.end = end;
     const shown = unitScale(Math.max(Math.abs(this.from), Math.abs(this.to)), this.unit);
-    this.scale = this.unit && !this.log ? shown : { factor: 1, unit: this.unit };
+    this.scale = this.unit ? shown : { factor: 1, unit: this.unit };
   }
 
   at(value) {
@@ -35,8 +35,9 @@ export class Axis {
   /** Values with their texts, about one in so many pixels. */
   ticks(apart) {
     const count = Math.max(2, Math.floor(Math.abs(this.end - this.start) / apart));
-    if (this.log) return decadeTicks(this.from, this.to, count);
     const { factor } = this.scale;
+    if (this.log)
+      return decadeTicks(this.from / factor, this.to / factor, count).map(([value, text]) => [value * factor, text]);
     // A depth grows downwards.
     const [low, high] = this.from < this.to ? [this.from, this.to] : [this.to, this.from];
     const span = (high - low) / factor;
@@ -72,8 +73,7 @@ function decadeTicks(from, to, count) {
 function powerOfTen(value) {
   const power = Math.floor(Math.log10(value) + 1e-9);
   const digit = Math.round(value / 10 ** power);
-  const raised = String(power).replace(/./g, (sign) => (sign === "-" ? "⁻" : "⁰¹²³⁴⁵⁶⁷⁸⁹"[sign]));
-  return `${digit === 1 ? "" : `${digit} · `}10${raised}`;
+  return `${digit === 1 ? "" : `${digit} · `}10${raised(power)}`;
 }
 
 /** The range of some values, with a margin. */

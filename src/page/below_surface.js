@@ -1,9 +1,8 @@
 // The stress below the surface of a contact in its present state: a section along the motion, and its largest value in words.
 import { call } from "./api.js";
-import { copyButtons } from "./copy_as_code.js";
 import { debounce, el } from "./dom.js";
 import { Choice, Fields, NumberField } from "./form_fields.js";
-import { sectionPlot } from "./section_plot.js";
+import { gridPoints, sectionPlot } from "./section_plot.js";
 import { formatQuantity } from "./units.js";
 
 /** How long contact and fields rest before the service is asked, ms. */
@@ -13,17 +12,14 @@ const [HALF, DEPTH] = [2, 1.5];
 const [COLUMNS, ROWS] = [61, 31];
 const NAMES = { von_mises: "von Mises stress", max_shear: "shear stress on any plane", hydrostatic: "hydrostatic stress" };
 
-/** The bodies that have a stress: all but a rigid one. */
-function elasticBodies({ material }) {
-  const names = { first: "first, with the profile", second: "second" };
-  const rigid = (index) => material.bodies?.[index] === "rigid";
-  return Object.fromEntries(Object.entries(names).filter((_, index) => !rigid(index)));
-}
+/** The bodies of a material, where they are known. */
+export const bodiesOf = ({ bodies, effective }) => bodies ?? effective.bodies;
 
-/** The points of a reply, `[x, z, value]`, from left to right and then down. */
-function pointsOf(reply, field) {
-  const points = reply.x.map((x, index) => [x, reply.z[index], reply[field][index]]);
-  return Array.from({ length: ROWS }, (_, row) => points.filter((_, index) => index % ROWS === row)).flat();
+/** The bodies that have a stress: all but a rigid one. */
+export function elasticBodies({ material }) {
+  const names = { first: "first, with the profile", second: "second" };
+  const rigid = (index) => bodiesOf(material)?.[index] === "rigid";
+  return Object.fromEntries(Object.entries(names).filter((_, index) => !rigid(index)));
 }
 
 function place([x, z]) {
@@ -51,12 +47,16 @@ export function belowSurfaceCard(model) {
     max_shear: "largest shear stress",
     hydrostatic: "hydrostatic (mean)",
   });
-  const isReduced = model.definition.material.effective !== undefined;
+  const isReduced = bodiesOf(model.definition.material) === undefined;
   const poisson =
     isReduced && new NumberField(form, () => "/poisson_ratio", { label: "Poisson’s ratio of the body", value: "0.3" });
   const fields = [body, field, ...(poisson ? [poisson] : [])];
   const text = el("p", { id: "below-text", "aria-live": "polite" });
-  const chart = sectionPlot();
+  const chart = sectionPlot({
+    name: "below",
+    title: "Section along the motion",
+    note: "The plane y = 0, x along the motion of the first body, at 61 × 31 points. Dashed: the edge of the contact. The ring marks the largest value.",
+  });
   chart.element.hidden = true;
   let wanted = null;
 
@@ -76,7 +76,8 @@ export function belowSurfaceCard(model) {
     if (isStale()) return;
     try {
       const [name] = asked.fields;
-      const points = pointsOf(await call("POST", path, asked, model.signal), name);
+      const reply = await call("POST", path, asked, model.signal);
+      const points = gridPoints(reply, reply[name], ROWS);
       if (isStale()) return;
       form.clear();
       chart.element.hidden = false;
@@ -103,16 +104,11 @@ export function belowSurfaceCard(model) {
   const element = el(
     "section",
     { class: "card below", id: "below-card" },
-    el(
-      "div",
-      { class: "head" },
-      el("h2", {}, "Below the surface"),
-      copyButtons(() => [{ method: "POST", path, body: request() }]),
-    ),
+    el("h2", {}, "Stress below the surface, now"),
     el("div", { class: "row choices" }, ...fields.map((one) => one.element)),
     form.rest,
     text,
     chart.element,
   );
-  return { element, chart, show };
+  return { element, chart, show, calls: () => [{ method: "POST", path, body: request() }] };
 }

@@ -1,6 +1,6 @@
 // A plot of lines over two axes, as SVG: values under the pointer, zoom, keyboard, and a menu to save it.
 import { Axis, dataRange } from "./axis.js";
-import { drawLegend, drawCursor } from "./chart_cursor.js";
+import { drawCursor, drawLegend, inkedPlaces } from "./chart_cursor.js";
 import { handleInput } from "./chart_input.js";
 import { menu } from "./chart_menu.js";
 import { drawBands, drawGrid, drawLevel, drawSeries, spreadNames } from "./chart_parts.js";
@@ -43,14 +43,15 @@ export class Chart {
     handleInput(this);
   }
 
-  /** Zooms to ranges of both axes, or, with nothing, to all there is. */
-  look(view) {
+  /** Zooms to ranges of both axes, or, with nothing, to the recent part or to all there is. */
+  look(view, isWhole = false) {
     this.view = view;
+    this.isWhole = isWhole;
     this.onlook?.();
     this.redraw();
   }
 
-  /** Shows data: `series`, and optionally `bands` along x, `levels` of y, `marks`, a `range` or what it covers at `least`, a
+  /** Shows data: `series`, and optionally the `recent` points that the axes fit where older ones lie far from them, `bands` along x, `levels` of y, `marks`, a `range` or what it covers at `least`, a
    *  `layer` below, a `table`, and a text for when it is `empty`. */
   draw(data) {
     this.data = data;
@@ -71,8 +72,8 @@ export class Chart {
 
   ranges() {
     if (this.view) return this.view;
-    const points = this.visible().flatMap((series) => series.points);
-    const { range: own = {}, least = {} } = this.data;
+    const { range: own = {}, least = {}, recent } = this.data;
+    const points = (!this.isWhole && recent) || this.visible().flatMap((series) => series.points);
     const x = own.x ?? dataRange(points.map((point) => point[0]).concat(least.x ?? []), this.x.log);
     const y =
       own.y ??
@@ -138,6 +139,7 @@ export class Chart {
       );
     }
     spreadNames(this);
+    this.inked = this.mode === "radius" || this.data.layer ? [] : inkedPlaces(this);
     if (this.data.note) this.note.textContent = this.data.note;
     drawLegend(this);
     this.refresh();

@@ -57,7 +57,7 @@ export function handleInput(chart) {
     else return;
     event.preventDefault();
   });
-  chart.reset = () => chart.look(null);
+  chart.reset = () => chart.look(null, true);
   chart.zoom = (by) => {
     const { x, y } = chart;
     const kept = (axis) => {

@@ -1,5 +1,6 @@
 // The menu of a plot: zoom, and files to save.
-import { el, notice, save, svg, svgWithSubscripts } from "./dom.js";
+import { el, notice, save, svg, svgWithSubscripts, withSubscripts } from "./dom.js";
+import { menuEntry, popupMenu } from "./popup_menu.js";
 
 // The properties that keep the look of a plot without the style sheet of the page.
 const STYLES = [
@@ -19,46 +20,32 @@ const STYLES = [
   "font-weight",
 ];
 
+/** What a chart can be saved as, and how. */
+const FORMATS = {
+  PNG: savePng,
+  SVG: (chart) => save(`${chart.name}.svg`, "image/svg+xml", svgText(chart)),
+  CSV: (chart) => save(`${chart.name}.csv`, "text/csv", csvText(chart)),
+};
+
 /** A menu for a chart. */
 export function menu(chart) {
-  const entry = (text, act) =>
-    el(
-      "button",
-      {
-        type: "button",
-        onclick: (event) => {
-          event.currentTarget.closest("details").open = false;
-          act();
-        },
-      },
-      text,
-    );
-  return el(
-    "details",
-    {
-      class: "menu",
-      onkeydown: (event) => {
-        if (event.key !== "Escape") return;
-        event.currentTarget.open = false;
-        event.currentTarget.firstElementChild.focus();
-      },
-      onfocusout: (event) => {
-        if (!event.currentTarget.contains(event.relatedTarget)) event.currentTarget.open = false;
-      },
-    },
-    el("summary", { "aria-label": `Zoom or save: ${chart.title}`, title: "Zoom or save" }, "⋯"),
-    el(
-      "div",
-      {},
-      entry("Zoom in", () => chart.zoom(0.6)),
-      entry("Zoom out", () => chart.zoom(1 / 0.6)),
-      entry("Show all", () => chart.reset()),
-      entry("Save PNG", () => savePng(chart)),
-      entry("Save SVG", () => save(`${chart.name}.svg`, "image/svg+xml", svgText(chart))),
-      entry("Save CSV", () => save(`${chart.name}.csv`, "text/csv", csvText(chart))),
-    ),
-  );
+  const entries = [
+    menuEntry("Zoom in", () => chart.zoom(0.6)),
+    menuEntry("Zoom out", () => chart.zoom(1 / 0.6)),
+    menuEntry("Show all", () => chart.reset()),
+    ...Object.entries(FORMATS).map(([name, act]) => menuEntry(`Save ${name}`, () => act(chart))),
+  ];
+  return popupMenu("⋯", { class: "menu", label: `Zoom or save: ${chart.title}` }, entries);
 }
+
+/** A row of a menu that saves a chart in each format. */
+export const saveRow = (chart) =>
+  el(
+    "div",
+    { class: "save-row" },
+    el("span", { class: "faint" }, withSubscripts(chart.title)),
+    ...Object.entries(FORMATS).map(([name, act]) => menuEntry(name, () => act(chart), `${chart.title} as ${name}`)),
+  );
 
 /** The plot as an SVG document, with its title and its legend above it. */
 export function svgText(chart) {

@@ -87,7 +87,7 @@ export function drawLevel(chart, { y, label, kind }) {
 }
 
 /** A series: its line, interrupted where values are missing, and its dots. */
-export function drawSeries(chart, { name, points, kind, dots, label, line = true }) {
+export function drawSeries(chart, { name, points, kind, dots, label, size = 3, line = true }) {
   const places = points.map(([x, y]) => (y === null || (chart.y.log && y <= 0) ? null : [chart.x.at(x), chart.y.at(y)]));
   const drawn = [];
   if (line) {
@@ -101,14 +101,14 @@ export function drawSeries(chart, { name, points, kind, dots, label, line = true
   }
   if (dots)
     for (const place of places)
-      if (place) drawn.push(svg("circle", { class: `dot ${kind}`, cx: place[0], cy: place[1], r: 3 }));
+      if (place) drawn.push(svg("circle", { class: `dot ${kind}`, cx: place[0], cy: place[1], r: size }));
   const last = places.findLast(Boolean);
   if (label && last) {
     const late = last[0] > (chart.box.left + chart.box.right) / 2;
     drawn.push(
       svg(
         "text",
-        { class: "small over series-name", x: last[0] + (late ? -8 : 8), y: last[1] + 4, "text-anchor": late ? "end" : "start" },
+        { class: "small over series-name", x: last[0] + (late ? -8 : 8), y: last[1] + (line ? -5 : 4), "text-anchor": late ? "end" : "start" },
         name,
       ),
     );

@@ -3,11 +3,13 @@ import { call, follow, pages } from "./api.js";
 import { FIELDS, contactView } from "./contact_view.js";
 import { curvedPath, stepCounts, straightPath } from "./curved_path.js";
 import { latestOnly, notice, debounce } from "./dom.js";
+import { WITHOUT_STRESS } from "./form_options.js";
 
 const MAX_HISTORY = 1000;
 
-/** Shows a contact in `main`, until `signal`. */
-export async function showContact(main, id, signal) {
+/** Shows a tab of a contact in `main`, until `signal`; `ready` is called when there is something to show. What it returns opens
+ *  another tab, and says which query the address of the view has. */
+export async function showContact(main, { id, tab }, signal, ready) {
   const [contact, definition] = await Promise.all([
     call("GET", `/contacts/${id}`),
     call("GET", `/contacts/${id}/definition`),
@@ -35,6 +37,8 @@ export async function showContact(main, id, signal) {
     history,
     signal,
     friction: definition.friction,
+    // A contact that is known by its load curve alone has no stress.
+    hasStress: !WITHOUT_STRESS.includes(definition.profile.type),
     state: history.at(-1)?.state ?? contact.state,
     first: begin ? history.shift() : { sequence: 0, state: virgin },
     isComplete: begin === 0,
@@ -47,6 +51,7 @@ export async function showContact(main, id, signal) {
   model.reach = (state) => 1.5 * (Math.max(model.slip(state), figures.gross_slip_displacement) || 1e-7);
   model.move = latestOnly((body) => call("POST", `/contacts/${id}/move`, body, signal));
 
+  if (signal.aborted) return;
   const view = contactView(model, contact, () => redraw());
   // At most one redraw a frame, however many moves arrive.
   let frame = null;
@@ -58,12 +63,8 @@ export async function showContact(main, id, signal) {
     });
   };
   const loadStress = latestOnly(async () => {
-    const stress = await call("GET", `/contacts/${id}/stress?${FIELDS}`, undefined, signal).catch((error) => {
-      // A contact that is known by its load curve alone has none to draw.
-      if (error.code === "no_stress_field") return null;
-      throw error;
-    });
-    model.stress = stress;
+    if (!model.hasStress) return;
+    model.stress = await call("GET", `/contacts/${id}/stress?${FIELDS}`, undefined, signal);
     redraw();
   });
   const loadFriction = latestOnly(async () => {
@@ -109,8 +110,12 @@ export async function showContact(main, id, signal) {
     refineLater();
   };
   follow(id, history.at(-1)?.sequence ?? model.first.sequence, addMove, view.report, signal);
+  signal.addEventListener("abort", () => view.report("left"));
   main.replaceChildren(view.element);
+  ready?.();
+  view.open(tab);
   view.plots.forEach((plot) => plot.redraw());
+  return view;
 }
 
 /** The largest displacement and force of the loop. */

@@ -1,6 +1,6 @@
 // The list of contacts, with a search by the service.
 import { call, pages } from "./api.js";
-import { copyButtons } from "./copy_as_code.js";
+import { copyMenu } from "./copy_as_code.js";
 import { debounce, el, latestOnly } from "./dom.js";
 import { PROFILES } from "./form_options.js";
 import { formatQuantity } from "./units.js";
@@ -70,7 +70,7 @@ export async function contactList(main, signal) {
       { class: "head" },
       el("h1", {}, "Contacts"),
       el("a", { class: "button primary", href: "#/new", id: "new" }, "New contact"),
-      copyButtons(() => [{ method: "GET", path: "/contacts?limit=1000" }]),
+      copyMenu(() => [{ method: "GET", path: "/contacts?limit=1000" }]),
     ),
     ...(items.length ? [field, said, rows] : [empty]),
   );

@@ -7,7 +7,7 @@ import { formatQuantity } from "./units.js";
 const TURNS = "Rings mark the turning points that the contact remembers. A move beyond one closes its loop and erases it.";
 
 /** The plots, and a function that draws them from the model of a contact; `overlay` says what else the first two show. */
-export function contactPlots() {
+export function contactPlots({ hasStress }) {
   const loop = new Chart({
     name: "loop",
     title: "Hysteresis loop",
@@ -39,23 +39,25 @@ export function contactPlots() {
   top.onhover = (hit) => stress.showCursor(hit && atRadius(stress, hit.ring));
 
   const draw = (model, overlay) => {
-    loop.draw(loopData(model, overlay.loop()));
+    const data = loopData(model, overlay.loop());
+    loop.draw(data);
     if (model.stress) {
       stress.draw(stressData(model, overlay.shear()));
       top.show(model);
     }
-    work.draw(energyData(model));
+    work.draw(energyData(model, data.recent !== undefined));
   };
-  return { all: [loop, stress, top, work], loop, draw };
+  return { all: hasStress ? [loop, stress, top, work] : [loop, work], loop, stress, top, work, draw };
 }
 
 /** The points of a move in the plot of energies. */
 function atMove(chart, sequence) {
-  const dots = chart
+  const found = chart
     .visible()
-    .map((series) => series.points.find((point) => point[0] === sequence))
-    .filter(Boolean);
-  return dots.length ? { x: sequence, dots, lines: [`move ${sequence}`, ...dots.map((dot) => formatQuantity(dot[1], "J"))] } : null;
+    .map(({ name, points }) => ({ name, dot: points.find((point) => point[0] === sequence) }))
+    .filter(({ dot }) => dot);
+  const lines = found.map(({ name, dot }) => `${name} ${formatQuantity(dot[1], "J")}`);
+  return found.length ? { x: sequence, dots: found.map(({ dot }) => dot), lines: [`move ${sequence}`, ...lines] } : null;
 }
 
 function atSequence(chart, sequence) {
@@ -74,6 +76,22 @@ function atRadius(chart, radius) {
   return { x: radius, dots, lines: [] };
 }
 
+/** The newest moves, which the axes fit; and how many times wider all of them may be before the older ones are left outside. */
+const [RECENT, MOST_WIDER] = [10, 5];
+const OLDER = "Older moves lie far outside: “Show all”, or the key 0, shows them.";
+
+/** The part of points `[x, y, sequence]` that the newest moves have, where all points would make it hardly visible. */
+function recentPart(points, first, history) {
+  if (history.length <= RECENT) return undefined;
+  const from = history.at(-RECENT - 1)?.sequence ?? first.sequence;
+  const part = points.filter(([, , sequence]) => sequence >= from);
+  const wide = (some) => {
+    const [low, high] = some.reduce(([low, high], [x]) => [Math.min(low, x), Math.max(high, x)], [Infinity, -Infinity]);
+    return high - low;
+  };
+  return part.length > 1 && wide(points) > MOST_WIDER * wide(part) ? part : undefined;
+}
+
 /** The loop: the whole path, the part since the last reversal, what was measured, and the present state. */
 function loopData({ path, state, friction, first, history, slip, isComplete }, overlaid) {
   let turn = path.length - 1;
@@ -83,15 +101,21 @@ function loopData({ path, state, friction, first, history, slip, isComplete }, o
   const measured = history
     .filter(({ observation }) => observation)
     .map(({ sequence, state: s, observation }) => [s.displacement, observation.force, sequence]);
+  const least = limit > 0 ? { x: [-slip(state), slip(state)], y: [-limit, limit] } : {};
+  // What is far beyond slip has to be wide beside the least range, too.
+  const reach = least.x ? [...least.x, ...least.x].map((x) => [x, 0, Infinity]) : [];
+  const recent = recentPart([...path, ...reach], first, history);
+  const notes = [isComplete ? TURNS : "Of this long history the last moves are drawn, straight from state to state."];
   return {
+    recent,
     series: [
       { name: "whole path", kind: "past", points: path },
       { name: "since the last reversal", kind: "now", points: path.slice(Math.max(0, turn - 1)), hover: false },
       ...overlaid,
       ...(measured.length ? [{ name: "measured", kind: "measured", points: measured, dots: true, line: false }] : []),
     ],
-    note: isComplete ? TURNS : "Of this long history the last moves are drawn, straight from state to state.",
-    least: limit > 0 ? { x: [-slip(state), slip(state)], y: [-limit, limit] } : {},
+    note: [...notes, ...(recent ? [OLDER] : [])].join(" "),
+    least,
     levels:
       limit > 0
         ? [
@@ -173,16 +197,23 @@ function stressData({ stress, state, friction }, overlaid) {
   };
 }
 
-function energyData({ first, history, figures }) {
+/** The energies; `isRecent` has the axes fit those of the newest moves. */
+function energyData({ first, history, figures }, isRecent) {
   const all = [first, ...history];
+  const points = (of, states = all) => states.map(({ sequence, state }) => [sequence, state[of]]);
+  const range = isRecent
+    ? { recent: ["dissipated_energy", "elastic_energy"].flatMap((of) => points(of, all.slice(-RECENT - 1))) }
+    : {
+        least: {
+          x: [first.sequence, first.sequence + 5],
+          y: [0, (figures.gross_slip_force * figures.gross_slip_displacement) / 2],
+        },
+      };
   return {
-    least: {
-      x: [first.sequence, first.sequence + 5],
-      y: [0, (figures.gross_slip_force * figures.gross_slip_displacement) / 2],
-    },
+    ...range,
     series: [
-      { name: "friction work", kind: "work", points: all.map(({ sequence, state }) => [sequence, state.dissipated_energy]) },
-      { name: "stored", kind: "stored", points: all.map(({ sequence, state }) => [sequence, state.elastic_energy]) },
+      { name: "friction work", kind: "work", points: points("dissipated_energy") },
+      { name: "stored", kind: "stored", points: points("elastic_energy") },
     ],
   };
 }

@@ -1,80 +1,180 @@
-// The elements of the view of a contact: its plots, its state in words, and the controls that move it.
+// The elements of the view of a contact: its state in words, the controls that move it, and a tab for each question.
 import { call } from "./api.js";
 import { belowSurfaceCard } from "./below_surface.js";
+import { saveRow } from "./chart_menu.js";
 import { contactPlots } from "./contact_plots.js";
-import { copyButtons } from "./copy_as_code.js";
 import { contactTitle } from "./contact_title.js";
+import { copyMenu } from "./copy_as_code.js";
+import { crackCard } from "./crack_search.js";
 import { figureList } from "./create_form.js";
 import { el, notice } from "./dom.js";
-import { goBack } from "./go_back.js";
+import { fittedLoop } from "./loop_fit.js";
 import { loopOverlay } from "./loop_overlay.js";
-import { moveControl } from "./move_controls.js";
+import { moveHands } from "./move_hands.js";
 import { pathCard } from "./path_run.js";
 import { protocolCard } from "./protocol_run.js";
+import { responseCard } from "./frequency_response.js";
 import { stateText } from "./state_text.js";
 import { steadyCard } from "./steady_cycle.js";
-import { studyCards } from "./studies.js";
+import { accuracyCard, mapCard, residualCard } from "./studies.js";
+import { TABS, columns, tabBar } from "./tabs.js";
 import { trustCard } from "./trust.js";
 import { viewLink } from "./view_link.js";
 
 /** The query for the stresses that are shown. */
 export const FIELDS = "points=300&residual=true&fields=pressure,shear,slip,displacement";
-const CONNECTION = { live: "live", waiting: "reconnecting …", deleted: "deleted", expired: "expired", damaged: "damaged", refused: "not allowed" };
+const CONNECTION = {
+  live: "live",
+  waiting: "reconnecting …",
+  left: "loading …",
+  deleted: "deleted",
+  expired: "expired",
+  damaged: "damaged",
+  refused: "not allowed",
+};
+/** The tabs that do not follow the present state, so that it does not stand beside them. */
+const WITHOUT_STATE = ["loop", "accuracy"];
 
 /** The elements for a contact, and functions that update them; `changed` asks for new plots. */
 export function contactView(model, contact, changed) {
   const { id, figures } = model;
-  const plots = contactPlots();
-  const steady = steadyCard(model);
-  const below = belowSurfaceCard(model);
-  const studies = studyCards(model);
+  const plots = contactPlots(model);
+  const hands = moveHands(model);
   const trust = trustCard(model);
-  const back = goBack(model);
+  const path = pathCard(model);
   const title = contactTitle(id, contact.label);
   const overlay = loopOverlay(model, plots.loop, changed);
   const live = el("span", { class: "badge", role: "status" }, "connecting …");
   const stateElement = el("div", { class: "state-text", "aria-live": "polite" });
-  const controls = [
-    moveControl({
-      name: "displacement",
-      label: "Displacement U",
-      unit: "m",
-      value: (state) => state.displacement,
-      limits: (state) => {
-        const reach = Math.max(model.reach(state), Math.abs(state.displacement));
-        return [-reach, reach];
-      },
-      send: (displacement) => model.move({ displacement }),
-    }),
-    moveControl({
-      name: "force",
-      label: "Tangential force F",
-      unit: "N",
-      value: (state) => state.force,
-      limits: (state) => {
-        const limit = 0.999 * model.friction * state.normal_force || 1;
-        return [-limit, limit];
-      },
-      send: (force) => model.move({ force }),
-    }),
-    moveControl({
-      name: "load",
-      label: "Normal load F_N",
-      unit: "N",
-      value: (state) => state.normal_force,
-      limits: (state) => [0, Math.max(2 * figures.normal_force, state.normal_force) || 10],
-      send: (normal_force) => model.move({ normal_force }),
-    }),
+  const preload = el(
+    "details",
+    { class: "card preload" },
+    el("summary", {}, "Figures at the preload"),
+    el("dl", { class: "figures" }, figureList(figures)),
+  );
+
+  /** What each tab has: `columns` of cards, the parts that follow the state, its plots, and the requests behind it. */
+  const { loop, stress, top, work } = plots;
+  const steady = steadyCard(model);
+  const response = responseCard(model);
+  const map = mapCard(model);
+  const fit = fittedLoop(model);
+  const solvers = accuracyCard(model);
+  const views = {
+    live: {
+      columns: model.hasStress ? [[loop, top], [stress, work, path]] : [[loop, path], [work]],
+      parts: [],
+      plots: plots.all,
+      calls: () => stateCalls(model),
+    },
+    loop: { columns: [[fit.form], [fit.results]], parts: [], plots: fit.charts, calls: fit.calls },
+    damping: {
+      columns: [[steady, map], [response]],
+      parts: [steady, map, response],
+      plots: [map.chart, ...response.charts],
+      calls: () => [steady, response, map].flatMap((one) => one.calls()),
+    },
+    accuracy: { columns: [[trust], [solvers]], parts: [], plots: [solvers.chart], calls: () => [...trust.calls(), ...solvers.calls()] },
+  };
+  if (model.hasStress) {
+    const below = belowSurfaceCard(model);
+    const crack = crackCard(model);
+    views.crack = {
+      columns: [[crack.form], [crack.results, below]],
+      parts: [below, crack],
+      plots: [crack.chart, below.chart],
+      calls: () => [...crack.calls(), ...below.calls()],
+    };
+    const protocol = protocolCard(model);
+    const residual = residualCard(model);
+    views.residual = {
+      columns: [[protocol], [residual]],
+      parts: [],
+      plots: [residual.chart],
+      calls: () => [...protocol.calls(), ...residual.calls()],
+    };
+  }
+  const panels = Object.fromEntries(
+    Object.keys(TABS)
+      .filter((tab) => tab in views)
+      .map((tab) => {
+        const cards = columns(...views[tab].columns.map((column) => column.map((one) => one.element)));
+        return [tab, el("section", { class: "panel", id: `tab-${tab}`, "aria-label": TABS[tab], hidden: true }, cards)];
+      }),
+  );
+  const all = Object.values(views).flatMap((view) => view.plots);
+  const link = viewLink({ plots: all, units: hands.units, overlay });
+  const tabs = tabBar(id, panels);
+  const menu = el("div", {});
+  let view = views.live;
+  let state = model.state;
+
+  const side = el("aside", { class: "side" }, stateElement, trust.line, hands.element, preload);
+  const element = el(
+    "div",
+    { class: "contact" },
+    el("div", { class: "head" }, title.heading, title.form, live, el("span", { class: "faint" }, id), title.button),
+    el("div", { class: "tab-row" }, tabs.element, menu),
+    el("div", { class: "contact-view" }, side, el("div", { class: "panels" }, ...Object.values(panels))),
+    el("p", { class: "row last" }, forkButton(model), removeButton(model)),
+  );
+  /** Opens a tab, and brings it up to date. */
+  const open = (wanted) => {
+    const tab = tabs.open(wanted);
+    view = views[tab];
+    side.classList.toggle("aside", WITHOUT_STATE.includes(tab));
+    side.classList.toggle("beside", tab !== "live");
+    menu.replaceChildren(copyMenu(view.calls, [link.entry, ...view.plots.map(saveRow)]));
+    document.title = `${TABS[tab]} · ${title.heading.textContent} – stickslip`;
+    link.write();
+    show(state);
+    // The lines of a plot that was hidden have the width of nothing.
+    for (const plot of view.plots) plot.redraw();
+  };
+  const show = (now) => {
+    state = now;
+    stateElement.replaceChildren(...stateText(state, model));
+    for (const one of [hands, trust, ...view.parts]) one.show(state);
+  };
+  return {
+    element,
+    open,
+    query: link.query,
+    plots: plots.all,
+    draw: () => plots.draw(model, overlay),
+    show,
+    report: (what) => {
+      live.textContent = CONNECTION[what] ?? what;
+      // Nothing more is asked of a contact that is no longer there.
+      model.isGone ||= what === "deleted" || what === "expired" || what === "damaged";
+      live.classList.toggle("on", what === "live");
+    },
+  };
+}
+
+/** The requests behind the state of a contact. */
+function stateCalls({ id, history, hasStress }) {
+  const last = history.at(-1)?.move;
+  return [
+    { method: "GET", path: `/contacts/${id}` },
+    ...(hasStress ? [{ method: "GET", path: `/contacts/${id}/stress?${FIELDS}` }] : []),
+    { method: "GET", path: `/contacts/${id}/history?limit=1000` },
+    ...(last ? [{ method: "POST", path: `/contacts/${id}/move`, body: last }] : []),
   ];
-  const jump = (text, displacement) =>
-    el(
-      "button",
-      {
-        type: "button",
-        onclick: () => model.move({ displacement: displacement() }).catch((error) => notice(error.message, true)),
-      },
-      text,
-    );
+}
+
+function forkButton({ id }) {
+  const fork = async () => {
+    try {
+      location.hash = `#/contacts/${(await call("POST", `/contacts/${id}/fork`, {})).id}`;
+    } catch (error) {
+      notice(error.message, true);
+    }
+  };
+  return el("button", { type: "button", class: "quiet", onclick: fork }, "Fork: a copy to go on with");
+}
+
+function removeButton({ id }) {
   const remove = async () => {
     if (!confirm("Delete this contact and its history?")) return;
     try {
@@ -84,83 +184,5 @@ export function contactView(model, contact, changed) {
       notice(error.message, true);
     }
   };
-  const fork = async () => {
-    try {
-      location.hash = `#/contacts/${(await call("POST", `/contacts/${id}/fork`, {})).id}`;
-    } catch (error) {
-      notice(error.message, true);
-    }
-  };
-  const calls = () => {
-    const last = model.history.at(-1)?.move;
-    return [
-      { method: "GET", path: `/contacts/${id}` },
-      { method: "GET", path: `/contacts/${id}/stress?${FIELDS}` },
-      { method: "GET", path: `/contacts/${id}/history?limit=1000` },
-      ...(last ? [{ method: "POST", path: `/contacts/${id}/move`, body: last }] : []),
-    ];
-  };
-  const side = el(
-    "aside",
-    { class: "side" },
-    stateElement,
-    el(
-      "section",
-      { class: "card hands", "aria-label": "Move it" },
-      el("h2", {}, "Move it"),
-      ...controls.map((one) => one.element),
-      el(
-        "div",
-        { class: "row" },
-        jump("← slip", () => -model.reach(model.state) / 1.5),
-        jump("U = 0", () => 0),
-        jump("slip →", () => model.reach(model.state) / 1.5),
-      ),
-      back.element,
-    ),
-    trust.element,
-    steady.element,
-    el(
-      "details",
-      { class: "card preload" },
-      el("summary", {}, "Figures at the preload"),
-      el("dl", { class: "figures" }, figureList(figures)),
-    ),
-  );
-  const element = el(
-    "div",
-    { class: "contact" },
-    el(
-      "div",
-      { class: "head" },
-      title.heading,
-      title.form,
-      live,
-      el("span", { class: "faint" }, id),
-      copyButtons(calls),
-      viewLink({ plots: [...plots.all, below.chart], units: controls.map((one) => one.unit), overlay }),
-      title.button,
-      el("button", { type: "button", class: "quiet", onclick: fork }, "Fork"),
-      el("button", { type: "button", class: "quiet danger", onclick: remove }, "Delete"),
-    ),
-    el("div", { class: "contact-view" }, side, el("div", { class: "plots" }, ...plots.all.map((plot) => plot.element), below.element)),
-    protocolCard(model),
-    pathCard(model),
-    studies.element,
-  );
-  return {
-    element,
-    plots: plots.all,
-    draw: () => plots.draw(model, overlay),
-    show: (state) => {
-      stateElement.replaceChildren(...stateText(state, model));
-      for (const one of [...controls, back, trust, steady, below, studies]) one.show(state);
-    },
-    report: (what) => {
-      live.textContent = CONNECTION[what] ?? what;
-      // Nothing more is asked of a contact that is no longer there.
-      model.isGone ||= what === "deleted" || what === "expired" || what === "damaged";
-      live.classList.toggle("on", what === "live");
-    },
-  };
+  return el("button", { type: "button", class: "quiet danger", id: "delete", onclick: remove }, "Delete this contact");
 }

@@ -1,6 +1,7 @@
 // The requests behind what is on screen, as commands for curl and as Python with requests.
 import { hasKey } from "./api.js";
-import { el, notice } from "./dom.js";
+import { notice } from "./dom.js";
+import { menuEntry, popupMenu } from "./popup_menu.js";
 
 const base = () => new URL(".", location.href).href.replace(/[?#].*$/, "").replace(/\/$/, "");
 
@@ -41,11 +42,14 @@ function pythonLiteral(value) {
   return JSON.stringify(value);
 }
 
-/** Buttons that show the calls of what is on screen, to be copied. */
-export function copyButtons(calls) {
-  const button = (name, write) =>
-    el("button", { type: "button", class: "quiet", onclick: () => show(name, write(calls())) }, `Copy as ${name}`);
-  return el("span", { class: "row copying" }, button("curl", curl), button("Python", python));
+/** A menu for the requests behind a view, as commands, and for what `more` adds to it. */
+export function copyMenu(calls, more = []) {
+  const entry = (name, write) => menuEntry(`Copy as ${name}`, () => show(name, write(calls())));
+  return popupMenu("Copy or save", { class: "menu copying", id: "copy-menu" }, [
+    entry("curl", curl),
+    entry("Python", python),
+    ...more,
+  ]);
 }
 
 async function show(name, text) {

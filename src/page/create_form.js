@@ -1,13 +1,14 @@
 // The form that creates a contact, and shows its figures while one types.
 import { call } from "./api.js";
 import { Chart } from "./chart.js";
-import { copyButtons } from "./copy_as_code.js";
+import { copyMenu } from "./copy_as_code.js";
 import { el, latestOnly, notice, debounce, withSubscripts } from "./dom.js";
 import { Fields, NumberField, TextField } from "./form_fields.js";
 import { WITHOUT_STRESS } from "./form_options.js";
 import { materialFields, preloadFields } from "./material_fields.js";
 import { profileFields } from "./profile_fields.js";
 import { formatNumber, formatQuantity } from "./units.js";
+import { showWarnings, warningList } from "./warning_list.js";
 
 /** Shows the form in `main`. */
 export function createForm(main, signal) {
@@ -44,7 +45,7 @@ export function createForm(main, signal) {
     x: { label: "Radius r", unit: "m" },
     y: { label: "Stress", unit: "Pa" },
   });
-  const warnings = el("ul", { class: "warnings" });
+  const warnings = warningList();
   const derived = el(
     "section",
     { class: "card derived", "aria-label": "What follows" },
@@ -55,16 +56,18 @@ export function createForm(main, signal) {
   );
   const derive = latestOnly(async () => {
     try {
-      const contact = definition();
+      const contact = form.standingIn(definition);
       const drawn = !WITHOUT_STRESS.includes(contact.profile.type);
       const stress = drawn ? { stress: { points: 200, fields: ["pressure"] } } : {};
       const reply = await call("POST", "/simulate", { contact, path: { displacement: [0] }, steps: "last", ...stress }, signal);
-      form.clear();
-      derived.classList.remove("stale");
+      // What follows is not that of numbers which stand in for others.
+      const isMistaken = form.check() !== undefined;
+      derived.classList.toggle("stale", isMistaken);
+      if (isMistaken) return;
       figures.replaceChildren(...figureList(reply.contact));
       chart.element.hidden = !drawn;
       if (drawn) chart.draw(pressureData(reply, Number(friction.value)));
-      warnings.replaceChildren(...reply.warnings.map((warning) => el("li", {}, warning.message)));
+      showWarnings(warnings, reply.warnings);
     } catch (error) {
       if (signal.aborted) return;
       derived.classList.add("stale");
@@ -73,6 +76,11 @@ export function createForm(main, signal) {
   });
   const submit = async (event) => {
     event.preventDefault();
+    const mistaken = form.check();
+    if (mistaken) {
+      mistaken.control.focus();
+      return derive();
+    }
     try {
       const made = await call("POST", "/contacts", body());
       location.hash = `#/contacts/${made.id}`;
@@ -87,7 +95,7 @@ export function createForm(main, signal) {
       "div",
       { class: "head" },
       el("h1", {}, "New contact"),
-      copyButtons(() => [{ method: "POST", path: "/contacts", body: body() }]),
+      copyMenu(() => [{ method: "POST", path: "/contacts", body: body() }]),
     ),
     el(
       "form",

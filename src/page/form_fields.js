@@ -20,6 +20,7 @@ class Field {
       el("div", { class: "value" }, control, ...more),
       this.fault,
     );
+    this.form = form;
     form.add(this);
   }
 
@@ -32,7 +33,7 @@ class Field {
 
 /** A number with its unit. */
 export class NumberField extends Field {
-  constructor(form, pointer, { label, units, unit, value }) {
+  constructor(form, pointer, { label, units, unit, value, optional = false }) {
     const control = el("input", {
       type: "text",
       inputmode: "decimal",
@@ -49,11 +50,26 @@ export class NumberField extends Field {
       );
     super(form, pointer, label, control, choice ? [choice] : []);
     this.choice = choice;
+    this.initial = value;
+    this.isOptional = optional;
+  }
+
+  /** What is wrong with the text itself, in words. */
+  get mistake() {
+    const text = this.control.value.trim();
+    if (this.isLeftOut) return undefined;
+    if (text === "") return this.isOptional ? undefined : "A number is missing here.";
+    return typeof parseNumber(text) === "string" ? "This must be a number, without its unit." : undefined;
   }
 
   /** In SI. */
   get value() {
-    return parseNumber(this.control.value, Number(this.choice?.value ?? 0));
+    return parseNumber(this.text(), Number(this.choice?.value ?? 0));
+  }
+
+  /** What was typed, or what stood there at first while the form asks for the faults of all other fields. */
+  text() {
+    return this.form.isStandingIn && this.mistake ? (this.initial ?? "") : this.control.value;
   }
 }
 
@@ -108,10 +124,29 @@ export class Fields {
     this.rest.textContent = "";
   }
 
+  /** Says at each field that has no number what is wrong with it; the first of them, if there is one. */
+  check() {
+    this.clear();
+    const wrong = this.present().filter((field) => field.mistake);
+    for (const field of wrong) field.showFault(field.mistake);
+    return wrong[0];
+  }
+
+  /** What `read` makes of the form with the numbers of the beginning in place of texts that are none, so that the service finds
+   *  the faults of the other fields too. */
+  standingIn(read) {
+    this.isStandingIn = true;
+    try {
+      return read();
+    } finally {
+      this.isStandingIn = false;
+    }
+  }
+
   /** Places each fault at the field whose pointer it has, or which is nearest above it; `root` is where the form begins. */
   place(refusal, root = "") {
-    this.clear();
-    const fields = this.present();
+    const mistaken = this.check();
+    const fields = this.present().filter((field) => !field.mistake);
     const left = [];
     const detailsOf = new Map();
     for (const { pointer, detail } of refusal.errors ?? []) {
@@ -127,7 +162,7 @@ export class Fields {
     }
     for (const [field, details] of detailsOf)
       field.showFault(details.slice(0, 3).join("; ") + (details.length > 3 ? `; and ${details.length - 3} more` : ""));
-    this.rest.textContent = (left.length || detailsOf.size ? left : [refusal.message]).join("; ");
-    return detailsOf.keys().next().value;
+    this.rest.textContent = (left.length || detailsOf.size || mistaken ? left : [refusal.message]).join("; ");
+    return mistaken ?? detailsOf.keys().next().value;
   }
 }

@@ -1,16 +1,20 @@
 // Back to an earlier move: by a fork, so that the contact keeps what it has done.
 import { call } from "./api.js";
 import { el, notice } from "./dom.js";
+import { addressOf, contactAddress } from "./tabs.js";
 import { viewQuery } from "./view_link.js";
 
 /** The controls, and a function that shows how far back they may go. */
 export function goBack(model) {
   const sequence = () => model.history.at(-1)?.sequence ?? model.first.sequence;
   const to = async (move) => {
+    // The copy of an earlier press is on its way.
+    if (model.signal.aborted) return;
     try {
       const { id } = await call("POST", `/contacts/${model.id}/fork`, { sequence: move });
-      location.hash = `#/contacts/${id}${viewQuery()}`;
-      notice(`A copy as it was after ${move} ${move === 1 ? "move" : "moves"}. The contact that you came from keeps its own.`);
+      location.hash = `${addressOf(id, contactAddress(location.hash).tab)}${viewQuery()}`;
+      const moves = `${move} ${move === 1 ? "move" : "moves"}`;
+      notice(`The contact as it was after ${moves}: a copy of the same name. The one with all its moves stays in the list.`);
     } catch (error) {
       if (!model.signal.aborted) notice(error.errors?.[0]?.detail ?? error.message, true);
     }

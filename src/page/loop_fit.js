@@ -1,44 +1,39 @@
-// A loop that a bench has measured, as a file or pasted: the service fits friction and stiffness to it.
+// Loops that a bench has measured, as files or pasted: the service fits friction and stiffness to them.
 import { call } from "./api.js";
 import { Chart } from "./chart.js";
 import { el, notice } from "./dom.js";
-import { Choice, Fields, NumberField, TextField } from "./form_fields.js";
+import { Fields, NumberField } from "./form_fields.js";
 import { FORCE, LENGTH } from "./form_options.js";
-import { fileInput, tableRows } from "./table_text.js";
-import { formatQuantity, parseNumber } from "./units.js";
+import { loopRecord, unitOf } from "./loop_record.js";
+import { formatQuantity } from "./units.js";
+import { showWarnings, warningList } from "./warning_list.js";
 
-/** What may be free: its name on the page, its unit, and whether it is so at first. */
+/** What may be free: its name on the page, its unit, whether it is so at first, and whether only a sphere has it. */
 const PARAMETERS = {
   friction: ["friction μ", "", true],
   g_star: ["modulus G*", "Pa", true],
   machine_compliance: ["compliance of the machine", "m/N", false],
   displacement_offset: ["zero of the displacement", "m", false],
   force_offset: ["zero of the force", "N", true],
-  e_star: ["modulus E*", "Pa", false],
-  radius: ["radius", "m", false],
+  drift: ["drift of the displacement", "m/s", false],
+  e_star: ["modulus E*", "Pa", false, true],
+  radius: ["radius", "m", false, true],
 };
-const COMPLIANCE = [
-  ["m/N", 0],
-  ["µm/N", -6],
-  ["nm/N", -9],
-];
-const STARTS = {
-  steady: "in a cycle that was repeated before",
-  virgin: "with a contact that was never moved",
-  unknown: "not known",
+/** The units in which a known value may be given. */
+const SCALES = {
+  "": undefined,
+  Pa: [["GPa", 9], ["MPa", 6], ["Pa", 0]],
+  "m/N": [["nm/N", -9], ["µm/N", -6], ["m/N", 0]],
+  m: [["µm", -6], ["nm", -9], ["mm", -3], ["m", 0]],
+  N: [["N", 0], ["mN", -3]],
+  "m/s": [["nm/s", -9], ["µm/s", -6], ["m/s", 0]],
 };
+const MOST_RECORDS = 16;
+/** Up to how many points of a record are drawn one by one. */
+const MOST_DOTS = 4000;
+
 /** The symbols of units in the API. */
 const symbol = (select) => select.selectedOptions[0].textContent.replace("µ", "u");
-
-/** A list of units. */
-export function unitOf(name, units, usual) {
-  const options = units.map(([text, power]) => el("option", { value: power, selected: text === usual }, text));
-  return el("select", { "aria-label": `Unit of ${name}` }, options);
-}
-
-/** A field for the number of a column. */
-export const columnOf = (name, number) =>
-  el("input", { type: "number", min: 1, max: 99, value: String(number), "aria-label": `Column of ${name}` });
 
 /** A row for each quantity that was estimated. */
 function estimateRows(estimates) {
@@ -50,51 +45,68 @@ function estimateRows(estimates) {
   });
 }
 
-/** What a card of a study needs, with the form as its `body` and what was found as its `results`. */
-export function loopFit(model) {
+/** The fields of what is known of each parameter: its value and its standard error. */
+function knownFields(form, offered) {
+  return offered.map(([name, [label, unit]]) => {
+    const field = (member, text) =>
+      new NumberField(form, () => `/known/${name}/${member}`, {
+        label: text,
+        units: SCALES[unit],
+        unit: SCALES[unit]?.[0][0],
+        optional: true,
+      });
+    const value = field("value", label[0].toUpperCase() + label.slice(1));
+    const error = field("standard_error", "Its standard error");
+    return { name, value, error, element: el("div", { class: "pair" }, value.element, error.element) };
+  });
+}
+
+/** The form and its results as cards, the plots, and the request. */
+export function fittedLoop(model) {
   const form = new Fields();
-  const text = new TextField(
-    form,
-    () => "/loops",
-    "Displacement and force, one point a line",
-    el("textarea", { name: "loop", rows: 6, spellcheck: "false", value: "" }),
-  );
-  const [displacementUnit, forceUnit] = [unitOf("displacements", LENGTH, "µm"), unitOf("forces", FORCE, "N")];
-  const [displacementColumn, forceColumn] = [columnOf("displacements", 1), columnOf("forces", 2)];
-  const start = new Choice(form, () => "/loops/0/start", "The record begins", STARTS, "steady");
-  const compliance = new NumberField(form, () => "/known/machine_compliance/value", {
-    label: "Compliance of the machine, if it is known",
-    units: COMPLIANCE,
-    unit: "nm/N",
-  });
-  const error = new NumberField(form, () => "/known/machine_compliance/standard_error", {
-    label: "Its standard error",
-    units: COMPLIANCE,
-    unit: "nm/N",
-  });
+  const units = { displacement: unitOf("displacements", LENGTH, "µm"), force: unitOf("forces", FORCE, "N") };
+  const records = [];
+  const list = el("div", {});
+  const add = () => {
+    const record = loopRecord(form, records.length, units);
+    records.push(record);
+    list.append(record.element);
+    more.disabled = records.length === MOST_RECORDS;
+    fewer.disabled = records.length === 1;
+  };
+  const drop = () => {
+    records.pop().element.remove();
+    more.disabled = false;
+    fewer.disabled = records.length === 1;
+  };
+  const more = el("button", { type: "button", class: "quiet", onclick: add }, "Add a record");
+  const fewer = el("button", { type: "button", class: "quiet", onclick: drop }, "Remove the last record");
+  add();
   const offered = Object.entries(PARAMETERS).filter(
-    ([name]) => !["radius", "e_star"].includes(name) || model.definition.profile.type === "sphere",
+    ([, [, , , ofSphere]]) => !ofSphere || model.definition.profile.type === "sphere",
   );
   const boxes = offered.map(([name, [label, , checked]]) => {
     const box = el("input", { type: "checkbox", name, checked });
     return [box, el("label", {}, box, ` ${label}`)];
   });
-  const column = (rows, place) => rows.map((row) => parseNumber(row[Number(place.value) - 1] ?? ""));
+  const known = knownFields(form, offered);
+  const noise = { force: [FORCE, "mN"], displacement: [LENGTH, "nm"] };
+  const noises = Object.entries(noise).map(([name, [offers, unit]]) => [
+    name,
+    new NumberField(form, () => `/noise/${name}`, { label: `Noise of the ${name}`, units: offers, unit, optional: true }),
+  ]);
   const request = () => {
-    const rows = tableRows(text.value);
-    const [displacement, force] = [displacementColumn, forceColumn].map((place) => column(rows, place));
-    // A row that lacks a number is a gap.
-    const whole = displacement.map((value, index) => value !== undefined && force[index] !== undefined);
-    const present = (values) => values.filter((_, index) => whole[index]);
-    const record = { displacement: present(displacement), force: present(force) };
-    if (start.value !== "unknown") record.start = start.value;
-    const known = { value: compliance.value, ...(error.value === undefined ? {} : { standard_error: error.value }) };
+    const given = known.filter(({ value }) => value.value !== undefined);
+    const told = noises.filter(([, field]) => field.value !== undefined);
     return {
       contact: model.definition,
-      loops: [record],
-      units: { displacement: symbol(displacementUnit), force: symbol(forceUnit) },
+      loops: records.map((record) => record.value()),
+      units: { displacement: symbol(units.displacement), force: symbol(units.force) },
       free: boxes.filter(([box]) => box.checked).map(([box]) => box.name),
-      ...(compliance.value === undefined ? {} : { known: { machine_compliance: known } }),
+      known: given.length
+        ? Object.fromEntries(given.map(({ name, value, error }) => [name, { value: value.value, standard_error: error.value }]))
+        : undefined,
+      noise: told.length ? Object.fromEntries(told.map(([name, field]) => [name, field.value])) : undefined,
     };
   };
 
@@ -105,10 +117,21 @@ export function loopFit(model) {
     x: { label: "Displacement", unit: "m" },
     y: { label: "Tangential force F", unit: "N" },
   });
-  chart.more = (_, series) => [series.name];
+  const left = new Chart({
+    name: "left",
+    title: "What the fit leaves",
+    mode: "nearest",
+    height: 200,
+    x: { label: "Displacement", unit: "m" },
+    y: { label: "Measured less fitted", unit: "N" },
+  });
+  for (const plot of [chart, left]) {
+    plot.more = (_, series) => [series.name];
+    plot.element.hidden = true;
+  }
   const estimates = el("dl", { class: "figures", id: "loop-estimates", "aria-live": "polite" });
-  const said = el("p", { class: "note", id: "loop-said" });
-  const warnings = el("ul", { class: "warnings", id: "loop-warnings" });
+  const said = el("p", { class: "note", id: "loop-said" }, "Choose a file or paste columns, and fit.");
+  const warnings = warningList("loop-warnings");
   let fitted = null;
   const create = async () => {
     try {
@@ -117,49 +140,82 @@ export function loopFit(model) {
       notice(refusal.message, true);
     }
   };
-  const button = el("button", { type: "button", id: "create-fitted", hidden: true, onclick: create }, "Create this contact");
-  const compute = async () => {
-    let reply;
-    try {
-      reply = await call("POST", "/fit", request(), model.signal);
-    } catch (refusal) {
-      form.place(refusal);
-      throw refusal;
-    }
-    form.clear();
+  const make = el("button", { type: "button", id: "create-fitted", hidden: true, onclick: create }, "Create this contact");
+  const show = (reply) => {
     fitted = reply.contact;
-    button.hidden = false;
+    make.hidden = false;
     estimates.replaceChildren(...estimateRows(reply.estimates));
-    said.textContent = `Determined: ${reply.identifiable.join(", ")}. Residual ${formatQuantity(reply.residual.rms, "N", 3)} rms.`;
-    warnings.replaceChildren(...reply.warnings.map((warning) => el("li", {}, warning.message)));
-    const line = (name, kind, of) => ({
+    const { rms, runs } = reply.residual;
+    const like = runs.random ? "like noise" : "not like noise";
+    said.textContent = `Determined: ${reply.identifiable.join(", ")}. Residual ${formatQuantity(rms, "N", 3)} rms, ${like}.`;
+    showWarnings(warnings, reply.warnings);
+    const line = (name, kind, of, more) => ({
       name,
       kind,
       // Loops are not joined with each other.
       points: reply.curve.flatMap((one) => [...one.displacement.map((x, index) => [x, of(one)[index]]), [0, null]]),
+      ...more,
     });
+    const dots = reply.curve.every((one) => one.displacement.length <= MOST_DOTS);
+    for (const plot of [chart, left]) plot.element.hidden = false;
     chart.draw({
-      series: [line("measured", "past", (one) => one.measured), line("fitted", "now", (one) => one.force)],
+      series: [
+        line("fitted", "now", (one) => one.force),
+        line("measured", "points", (one) => one.measured, { dots, size: 1.7 }),
+      ],
     });
+    const rest = (one) => one.measured.map((force, index) => force - one.force[index]);
+    left.draw({ series: [line("residual", "points", rest, { dots: true, line: false, size: 1.7 })], least: { y: [0] } });
   };
-  const body = el(
-    "div",
-    {},
-    text.element,
-    el("label", {}, "or a file ", fileInput(text.control)),
-    el(
-      "div",
-      { class: "row" },
-      el("label", {}, "Displacement: column ", displacementColumn),
-      displacementUnit,
-      el("label", {}, "Force: column ", forceColumn),
-      forceUnit,
-    ),
-    start.element,
+  const fit = async () => {
+    button.disabled = true;
+    try {
+      const first = form.check();
+      if (first) return first.control.focus();
+      show(await call("POST", "/fit", request(), model.signal));
+      form.clear();
+    } catch (refusal) {
+      form.place(refusal);
+      if (!model.signal.aborted) notice(refusal.message, true);
+    } finally {
+      button.disabled = false;
+    }
+  };
+  const button = el("button", { type: "button", class: "primary", id: "fit-loop", onclick: fit }, "Fit");
+  const card = el(
+    "section",
+    { class: "card", id: "loop-card" },
+    el("h2", {}, "Fit a measured loop"),
+    el("p", {}, "Force over displacement of a bench, for this contact: which friction and stiffness it has, and how surely."),
+    list,
+    el("p", { class: "row" }, more, fewer),
     el("fieldset", {}, el("legend", {}, "To be found"), el("div", { class: "row" }, ...boxes.map(([, label]) => label))),
-    el("div", { class: "row choices" }, compliance.element, error.element),
+    el(
+      "details",
+      {},
+      el("summary", {}, "What is known from elsewhere, and the noise"),
+      el("p", { class: "note" }, "With a standard error a known value takes part in the fit; without one it is held."),
+      ...known.map((one) => one.element),
+      ...noises.map(([, field]) => field.element),
+    ),
     form.rest,
+    el("p", { class: "row" }, button),
   );
-  const results = el("div", {}, estimates, said, warnings, button);
-  return { chart, compute, body, results, calls: () => [{ method: "POST", path: "/fit", body: request() }] };
+  const results = el(
+    "section",
+    { class: "card", "aria-label": "What was found" },
+    el("h2", {}, "What was found"),
+    estimates,
+    said,
+    warnings,
+    make,
+    chart.element,
+    left.element,
+  );
+  return {
+    form: { element: card },
+    results: { element: results },
+    charts: [chart, left],
+    calls: () => [{ method: "POST", path: "/fit", body: request() }],
+  };
 }

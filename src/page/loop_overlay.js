@@ -2,8 +2,8 @@
 import { call, follow, pages } from "./api.js";
 import { debounce, el, notice } from "./dom.js";
 import { FORCE, LENGTH } from "./form_options.js";
-import { columnOf, unitOf } from "./loop_fit.js";
-import { guessColumn, tableRows } from "./table_text.js";
+import { columnOf, unitOf } from "./loop_record.js";
+import { guessColumn, tableRows, textOf } from "./table_text.js";
 import { parseNumber } from "./units.js";
 
 /** Moves of the other contact, and contacts to choose from. */
@@ -55,7 +55,7 @@ function measuredFile(loop, changed) {
   };
   const open = async (chosen) => {
     if (!chosen) return;
-    file = { name: chosen.name, text: await chosen.text() };
+    file = { name: chosen.name, text: await textOf(chosen) };
     for (const name of ["displacement", "force"]) {
       const guess = guessColumn(file.text, name);
       if (!guess) continue;

@@ -1,6 +1,5 @@
 // Runs a whole path on a contact: cycles, or any other path of the API as JSON.
 import { call } from "./api.js";
-import { copyButtons } from "./copy_as_code.js";
 import { el } from "./dom.js";
 import { formatQuantity } from "./units.js";
 
@@ -39,9 +38,10 @@ export function pathCard(model) {
     run.disabled = true;
     const before = model.state.dissipated_energy;
     try {
-      const { steps } = await call("POST", path, request().body, model.signal);
+      const { steps, warnings } = await call("POST", path, request().body, model.signal);
       const work = steps[0].dissipated_energy - before;
-      status.textContent = `Done. Friction work of the path: ${formatQuantity(work, "J", 4)}.`;
+      const warned = (warnings ?? []).map(({ message }) => ` Note: ${message}`).join("");
+      status.textContent = `Done. Friction work of the path: ${formatQuantity(work, "J", 4)}.${warned}`;
     } catch (error) {
       const fault = error.errors?.[0];
       if (!model.signal.aborted) status.textContent = fault ? `${fault.pointer}: ${fault.detail}` : error.message;
@@ -49,17 +49,13 @@ export function pathCard(model) {
       run.disabled = false;
     }
   };
-  return el(
+  const element = el(
     "section",
     { class: "card", id: "path-card" },
-    el(
-      "div",
-      { class: "head" },
-      el("h2", {}, "Run a path"),
-      copyButtons(() => [request()]),
-    ),
+    el("h2", {}, "Run a path"),
     el("p", {}, "Cycles between two turns, or any other path that the API takes, as JSON. It is run whole or not at all."),
     el("form", { onsubmit: begin }, text, el("p", { class: "row" }, run)),
     status,
   );
+  return { element, calls: () => (parsed() === null ? [] : [request()]) };
 }

@@ -3,7 +3,7 @@ import { el } from "./dom.js";
 import { Choice, NumberField, TextField } from "./form_fields.js";
 import { COLUMNS, PROFILES, WITHOUT_STRESS } from "./form_options.js";
 import { scanFit } from "./scan_fit.js";
-import { tableRows } from "./table_text.js";
+import { guessColumn, tableRows } from "./table_text.js";
 import { parseNumber } from "./units.js";
 
 /** An editor of a profile at the pointer that `at` gives; `changed` is called when its fields change. */
@@ -68,11 +68,23 @@ function columns(form, at, changed, body, type) {
   );
   const text = new TextField(form, at, label, el("textarea", { rows: 8, spellcheck: "false", value: "" }));
   text.control.value = example;
-  const read = () => {
-    const pairs = tableRows(text.value);
-    const column = (index) => pairs.map((pair) => parseNumber(pair[index] ?? "", Number(units[index].value)) ?? null);
-    return Object.fromEntries(described.map(([name], index) => [name, column(index)]));
+  const rows = () => tableRows(text.value);
+  const column = (index, unit = units[index]) => rows().map((row) => parseNumber(row[index] ?? "", Number(unit.value)) ?? null);
+  const read = () => Object.fromEntries(described.map(([name], index) => [name, column(index)]));
+  /** The scan in the text: a line through the axis, or points of the surface where there are three columns. */
+  const scan = () =>
+    rows().some((row) => row.length > 2)
+      ? { points: { x: column(0), y: column(1, units[0]), z: column(2, units[1]) } }
+      : { line: { x: column(0), z: column(1) } };
+  // A header that names units chooses them.
+  const readUnits = () => {
+    for (const [index, name] of ["radius", "height"].entries()) {
+      const unit = guessColumn(text.value, name)?.unit;
+      const option = [...units[index].options].find(({ text }) => text.replace("µ", "u") === unit);
+      if (option) units[index].value = option.value;
+    }
   };
+  if (type === "tabulated") text.control.addEventListener("input", readUnits);
   const write = ({ r, z }) => {
     const inUnit = (value, unit) => Number((value / 10 ** Number(unit.value)).toPrecision(12));
     text.control.value = r.map((radius, index) => `${inUnit(radius, units[0])}\t${inUnit(z[index], units[1])}`).join("\n");
@@ -88,7 +100,7 @@ function columns(form, at, changed, body, type) {
       `Paste two columns from a spreadsheet or a file; they are separated by tabs, blanks, commas or semicolons.${first}`,
     ),
   );
-  if (type === "tabulated") body.append(scanFit(text.control, read, write));
+  if (type === "tabulated") body.append(scanFit(text.control, scan, write));
   return read;
 }
 

@@ -1,6 +1,5 @@
 // Runs a protocol on a contact, move by move: reversals of falling amplitude that reduce its shear stress.
 import { call, offered } from "./api.js";
-import { copyButtons } from "./copy_as_code.js";
 import { el, pause, withSubscripts } from "./dom.js";
 import { formatNumber, formatQuantity } from "./units.js";
 
@@ -85,15 +84,10 @@ export function protocolCard(model) {
       stop.hidden = true;
     }
   };
-  return el(
+  const element = el(
     "section",
     { class: "card", id: "protocol-card" },
-    el(
-      "div",
-      { class: "head" },
-      el("h2", {}, "Reduce the shear stress"),
-      copyButtons(() => [requestOfRun()]),
-    ),
+    el("h2", {}, "Reduce the shear stress"),
     el(
       "p",
       {},
@@ -110,4 +104,5 @@ export function protocolCard(model) {
     ),
     status,
   );
+  return { element, calls: () => [requestOfRun()] };
 }

@@ -5,7 +5,7 @@ import { el, notice } from "./dom.js";
 import { fileInput } from "./table_text.js";
 import { formatQuantity } from "./units.js";
 
-/** Controls below the text field `control` of a table. `read` gives its columns in m, `write` takes those of the profile. */
+/** Controls below the text field `control` of a table. `read` gives the scan in m, `write` takes those of the profile. */
 export function scanFit(control, read, write) {
   const chart = new Chart({
     name: "scan",
@@ -17,9 +17,8 @@ export function scanFit(control, read, write) {
   chart.element.hidden = true;
   const said = el("p", { class: "note", id: "scan-said", "aria-live": "polite" });
   const fit = async () => {
-    const { r, z } = read();
     try {
-      const reply = await call("POST", "/profiles/fit", { scan: { line: { x: r, z } } });
+      const reply = await call("POST", "/profiles/fit", { scan: read() });
       const points = ({ radius, height }) => radius.map((r, index) => [r, height[index]]);
       chart.element.hidden = false;
       chart.draw({

@@ -1,37 +1,48 @@
 // A section through a body: a stress as shades over x and depth, the edge of the contact, and the largest value.
 import { Chart } from "./chart.js";
 import { svg } from "./dom.js";
-import { formatQuantity } from "./units.js";
+import { formatNumber, formatQuantity } from "./units.js";
 
-const SHADES = 16;
+const SHADES = 24;
+/** How far beyond the surface a section with a mark reaches, so that one on the surface is seen whole; a part of its depth. */
+const RIM = 0.06;
 
-/** The plot; `show` draws points `[x, z, value]` in rows of so many `columns`, and returns its smallest, largest and first infinite one. */
-export function sectionPlot() {
+/** The points of a reply over a grid, `[x, z, value]`, from left to right and then down. */
+export function gridPoints({ x, z }, values, rows) {
+  const points = x.map((place, index) => [place, z[index], values[index]]);
+  return Array.from({ length: rows }, (_, row) => points.filter((_, index) => index % rows === row)).flat();
+}
+
+/** The plot; `show` draws points `[x, z, value]` in rows of so many `columns`, marks the `worst` place, by default the largest of
+ *  them, and returns its smallest, largest and first infinite one. */
+export function sectionPlot({ name, title, note }) {
   const chart = new Chart({
-    name: "below",
-    title: "Section along the motion",
+    name,
+    title,
     mode: "nearest",
     aspect: 1.5 / 4,
     x: { label: "x, along the motion", unit: "m" },
     y: { label: "Depth z", unit: "m" },
-    note: "The plane y = 0, x along the motion of the first body, at 61 × 31 points. Dashed: the edge of the contact. The ring marks the largest value.",
+    note,
   });
-  chart.show = (points, { field, name, columns, radius }) => {
+  chart.show = (points, { field, name, columns, radius, unit = "Pa", worst }) => {
     const finite = points.filter((point) => point[2] !== null);
     const low = finite.reduce((least, point) => (point[2] < least[2] ? point : least));
     const high = finite.reduce((most, point) => (point[2] > most[2] ? point : most));
     const largest = -low[2] > high[2] ? low : high;
-    const [from, to] = [Math.min(low[2], 0), Math.max(high[2], 0)];
-    const scale = { from, step: (to - from) / SHADES || 1, full: Math.abs(largest[2]) || 1 };
-    chart.more = ([, , value]) => [`${name} ${formatQuantity(value, "Pa")}`];
+    const [from, to] = [Math.min(low[2], 0), Math.max(high[2], worst?.value ?? 0, 0)];
+    const text = (value, digits) => (unit ? formatQuantity(value, unit, digits) : formatNumber(value, digits));
+    const scale = { from, to, step: (to - from) / SHADES || 1, full: Math.max(Math.abs(from), Math.abs(to)) || 1, text };
+    const [x, z] = worst ? [worst.point[0], worst.point[2]] : largest;
+    chart.more = ([, , value]) => [`${name} ${text(value)}`];
     chart.draw({
       series: [{ name, points, line: false }],
       // Depth grows downwards.
-      range: { x: [points[0][0], points.at(-1)[0]], y: [points.at(-1)[1], 0] },
-      marks: [{ x: largest[0], y: largest[1], class: "turn" }],
+      range: { x: [points[0][0], points.at(-1)[0]], y: [points.at(-1)[1], worst ? -RIM * points.at(-1)[1] : 0] },
+      marks: [{ x, y: z, class: "turn worst" }],
       layer: (plot, group) =>
         group.append(...shades(plot, points, columns, scale), ...edges(plot, radius), ...shadeScale(plot, scale)),
-      table: () => ({ columns: ["x_m", "depth_m", `${field}_pa`], rows: points }),
+      table: () => ({ columns: ["x_m", "depth_m", unit === "Pa" ? `${field}_pa` : field], rows: points }),
     });
     return { low, high, infinite: points.find((point) => point[2] === null) };
   };
@@ -44,23 +55,48 @@ function colour(index, { from, step, full }) {
   return `color-mix(in oklab, var(${value < 0 ? "--minus" : "--plus"}) ${Math.round(100 * Math.abs(value))}%, var(--none))`;
 }
 
-/** One path for each shade, of the cells about its points; neighbours in a row are one rectangle. */
+/** The part of a polygon of corners `[x, y, value]` in which values, straight between the corners, are at least `level`. */
+function above(corners, level) {
+  return corners.flatMap((corner, index) => {
+    const next = corners[(index + 1) % corners.length];
+    const own = corner[2] >= level ? [corner] : [];
+    if (corner[2] >= level === next[2] >= level) return own;
+    const part = (level - corner[2]) / (next[2] - corner[2]);
+    return [...own, [corner[0] + part * (next[0] - corner[0]), corner[1] + part * (next[1] - corner[1]), level]];
+  });
+}
+
+/** One path for each shade, of all that is at least as large, so that each is drawn over the one before. */
 function shades(plot, points, columns, scale) {
-  const [dx, dz] = [points[1][0] - points[0][0], points[columns][1] - points[0][1]];
+  const rows = points.length / columns;
   // An infinite value has the shade of the largest.
-  const shadeOf = ([, , value]) => Math.min(SHADES - 1, Math.floor(((value ?? Infinity) - scale.from) / scale.step));
+  const corner = (row, column) => {
+    const [x, z, value] = points[row * columns + column];
+    return [plot.x.at(x), plot.y.at(z), value ?? scale.to];
+  };
   const paths = Array.from({ length: SHADES }, () => []);
-  for (let begin = 0, end = 1; end <= points.length; end += 1) {
-    const shade = shadeOf(points[begin]);
-    if (end % columns !== 0 && shadeOf(points[end]) === shade) continue;
-    const [left, right] = [points[begin][0] - dx / 2, points[end - 1][0] + dx / 2].map((x) => plot.x.at(x).toFixed(2));
-    const [top, bottom] = [-dz / 2, dz / 2].map((z) => plot.y.at(points[begin][1] + z).toFixed(2));
-    paths[shade].push(`M${left},${top}H${right}V${bottom}H${left}Z`);
-    begin = end;
+  const write = (path, [first, ...others]) =>
+    path.push(`M${first[0].toFixed(2)},${first[1].toFixed(2)}${others.map(([x, y]) => `L${x.toFixed(2)},${y.toFixed(2)}`).join("")}Z`);
+  for (let row = 0; row + 1 < rows; row += 1) {
+    // Cells that are above a level as a whole are one rectangle with their neighbours.
+    const begun = paths.map(() => null);
+    for (let column = 0; column + 1 < columns; column += 1) {
+      const cell = [corner(row, column), corner(row, column + 1), corner(row + 1, column + 1), corner(row + 1, column)];
+      const [least, most] = [Math.min(...cell.map(([, , value]) => value)), Math.max(...cell.map(([, , value]) => value))];
+      for (const [index, path] of paths.entries()) {
+        const level = index === 0 ? -Infinity : scale.from + index * scale.step;
+        if (least >= level && begun[index]) [begun[index][1], begun[index][2]] = [cell[1], cell[2]];
+        else if (least >= level) begun[index] = [...cell];
+        else {
+          if (begun[index]) write(path, begun[index]);
+          begun[index] = null;
+          if (most >= level) write(path, above(cell, level));
+        }
+      }
+    }
+    for (const [index, path] of paths.entries()) if (begun[index]) write(path, begun[index]);
   }
-  return paths.map((path, index) =>
-    svg("path", { class: "shade", d: path.join(""), fill: colour(index, scale), "shape-rendering": "crispEdges" }),
-  );
+  return paths.map((path, index) => svg("path", { class: "shade", d: path.join(""), fill: colour(index, scale) }));
 }
 
 /** The edge of the contact on both sides. */
@@ -77,8 +113,8 @@ function edges(plot, radius) {
 /** The shades with the values at their ends. */
 function shadeScale(plot, scale) {
   const { left, bottom } = plot.box;
-  const [x, y, wide] = [left + 8, bottom - 14, 5];
-  const ends = [scale.from, scale.from + SHADES * scale.step].map((value) => (value === 0 ? "0" : formatQuantity(value, "Pa", 2)));
+  const [x, y, wide] = [left + 8, bottom - 14, 4];
+  const ends = [scale.from, scale.to].map((value) => (value === 0 ? "0" : scale.text(value, 2)));
   return [
     ...Array.from({ length: SHADES }, (_, index) =>
       svg("rect", { x: x + wide * index, y, width: wide, height: 8, fill: colour(index, scale), "shape-rendering": "crispEdges" }),

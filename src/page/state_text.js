@@ -2,13 +2,18 @@
 import { el, withSubscripts } from "./dom.js";
 import { formatNumber, formatQuantity } from "./units.js";
 
-const NAMES = { stick: "Stick", partial_slip: "Partial slip", gross_slip: "Gross slip", separated: "Apart" };
+const NAMES = { stick: "Stick", partial_slip: "Partial slip", gross_slip: "Gross slip", separated: "Lifted off" };
 
-function sentence({ regime, stick_radius: c, contact_radius: a }, moved) {
+/** The regime of a state; bodies without a load between them are apart, whatever the last move did. */
+export const regimeOf = ({ regime, normal_force: load }) => (load > 0 ? regime : "separated");
+
+function sentence(state, moved) {
+  const { stick_radius: c, contact_radius: a } = state;
+  const regime = regimeOf(state);
+  if (regime === "separated") return "The bodies are apart: there is no load, no friction and no history. A load brings them together.";
   if (!moved) return "Nothing has moved yet: pull the slider, and watch the ring that slips grow from the edge.";
   if (regime === "stick") return "The last move slipped nowhere: the whole contact stuck.";
   if (regime === "gross_slip") return "The last move slipped everywhere: the whole contact slid, and its history is erased.";
-  if (regime === "separated") return "The bodies do not touch, and there is no history.";
   return `Inside r = ${formatQuantity(c, "m", 3)} (${formatNumber((100 * c) / a, 2)} % of the contact radius) the surfaces stuck in the last move; the ring outside slipped.`;
 }
 
@@ -30,7 +35,7 @@ export function stateText(state, { friction, history, first, measured, stress })
   const use = limit > 0 ? Math.min(1, Math.abs(state.force) / limit) : 0;
   const pair = (name, value) => el("div", {}, el("dt", {}, withSubscripts(name)), el("dd", {}, value));
   return [
-    el("p", { class: `regime ${state.regime}` }, NAMES[state.regime]),
+    el("p", { class: `regime ${regimeOf(state)}` }, NAMES[regimeOf(state)]),
     el("p", {}, sentence(state, history.length > 0 || first.sequence > 0)),
     el(
       "p",

@@ -1,6 +1,5 @@
 // The steady cycle of a contact between plus and minus the displacement that the slider stands at.
 import { call } from "./api.js";
-import { copyButtons } from "./copy_as_code.js";
 import { debounce, el, withSubscripts } from "./dom.js";
 import { formatNumber, formatQuantity } from "./units.js";
 
@@ -65,7 +64,6 @@ export function steadyCard(model) {
     el("h2", {}, "Steady cycle"),
     text,
     list,
-    copyButtons(() => [{ method: "GET", path: path() }]),
   );
-  return { element, show };
+  return { element, show, calls: () => [{ method: "GET", path: path() }] };
 }

@@ -1,11 +1,9 @@
 // Studies of a virgin contact of this kind: a fretting map, remaining stress against the number of reversals, and speed against
-// error of the solvers; and a fit to a loop that was measured on it.
+// error of the solvers.
 import { call, offered } from "./api.js";
 import { Chart } from "./chart.js";
-import { copyButtons } from "./copy_as_code.js";
 import { el, notice, withSubscripts } from "./dom.js";
 import { frettingMap } from "./fretting_map.js";
-import { loopFit } from "./loop_fit.js";
 import { virginContact, PROTOCOLS } from "./protocol_run.js";
 
 /** Up to how many reversals the best protocol is searched for. */
@@ -14,38 +12,21 @@ const REVERSALS = [1, 2, 3, 4, 5, 7, 10, 14, 20, 30, 50, 70, 100, 140, 200];
 // Smaller errors are drawn as this one: a logarithmic axis has no zero.
 const SMALLEST_ERROR = 1e-17;
 
-/** The cards below a contact, and a function that shows its state in them. */
-export function studyCards(model) {
+/** The card of the fretting map; `show` moves its mark. */
+export function mapCard(model) {
   const map = frettingMap(model);
-  const mapCard = card({
+  const made = card({
     id: "compute-map",
     signal: model.signal,
     title: "Fretting map",
     text: "For this shape and friction: which loads and amplitudes slide, and how much friction work a steady cycle does.",
     ...map,
   });
-  const element = el("div", { class: "studies" }, mapCard, residual(model));
-  const fit = () =>
-    card({
-      id: "fit-loop",
-      signal: model.signal,
-      title: "Fit a measured loop",
-      text: "Force over displacement of a bench, for this contact: which friction and stiffness it has, and how surely.",
-      ...loopFit(model),
-    });
-  for (const [path, make] of [
-    ["/fit", fit],
-    ["/accuracy", () => accuracy(model)],
-  ]) {
-    offered(path).then((is) => {
-      if (is) element.append(make());
-    });
-  }
-  return { element, show: map.mark };
+  return { ...made, show: map.mark };
 }
 
 /** A card with a button that computes a plot; `body` stands before the button, and `results` after the plot. */
-function card({ title, text, chart, calls, compute, id, signal, body, results }) {
+function card({ title, text, chart, calls, compute, id, signal }) {
   const bar = el("progress", { max: 1, value: 0, hidden: true, "aria-label": `Progress: ${title}` });
   const button = el(
     "button",
@@ -71,19 +52,19 @@ function card({ title, text, chart, calls, compute, id, signal, body, results })
     "Compute",
   );
   chart.element.hidden = true;
-  return el(
+  const element = el(
     "section",
     { class: "card" },
-    el("div", { class: "head" }, el("h2", {}, withSubscripts(title)), copyButtons(calls)),
+    el("h2", {}, withSubscripts(title)),
     el("p", {}, withSubscripts(text)),
-    body,
     el("p", { class: "row" }, button, bar),
     chart.element,
-    results,
   );
+  return { element, chart, calls };
 }
 
-function residual(model) {
+/** The card of what remains after so many reversals. */
+export function residualCard(model) {
   const full = model.figures.max_pressure && model.friction * model.figures.max_pressure;
   const chart = new Chart({
     name: "residual",
@@ -147,7 +128,8 @@ function residual(model) {
   });
 }
 
-function accuracy(model) {
+/** The card that compares the solvers; it stays hidden where the service does not offer that. */
+export function accuracyCard(model) {
   const chart = new Chart({
     name: "accuracy",
     title: "Speed against error",
@@ -182,7 +164,7 @@ function accuracy(model) {
     });
     chart.draw({ empty: "No solver answered.", series, table });
   };
-  return card({
+  const made = card({
     id: "compute-accuracy",
     signal: model.signal,
     title: "Speed against error",
@@ -191,4 +173,9 @@ function accuracy(model) {
     text: "The scene of 20 reversals on this contact by each solver: its time on this server, and its error.",
     calls: () => [{ method: "POST", path: "/accuracy", body: body() }],
   });
+  made.element.hidden = true;
+  offered("/accuracy").then((is) => {
+    made.element.hidden = !is;
+  });
+  return made;
 }

@@ -29,16 +29,18 @@ export function inPower(value, power) {
   return String(Number(`${digits}e${Number(own) - power}`));
 }
 
+/** The digits of a power, raised. */
+export const raised = (power) => String(power).replace(/./g, (sign) => (sign === "-" ? "⁻" : "⁰¹²³⁴⁵⁶⁷⁸⁹"[sign]));
+
 /** A number with `digits` significant digits, and a true minus. */
 export function formatNumber(value, digits = 4) {
   if (value === null || value === undefined) return "∞";
   if (value === 0) return "0";
   const size = Math.abs(value);
-  const text =
-    size < 1e-3 || size >= 1e6
-      ? value.toExponential(digits - 1).replace(/\.?0*e\+?/, " × 10^")
-      : String(Number(value.toPrecision(digits)));
-  return text.replace(/-/g, "−");
+  const minus = (number) => String(number).replace("-", "−");
+  if (size >= 1e-3 && size < 1e6) return minus(Number(value.toPrecision(digits)));
+  const [mantissa, power] = value.toExponential(digits - 1).split("e").map(Number);
+  return `${minus(mantissa)} × 10${raised(power)}`;
 }
 
 /** A value with its unit: `160.2 nm`. */

@@ -1,11 +1,13 @@
 // The view in the address: the zoom of plots, the lines switched off, chosen units, and the contact compared with. A link, a
 // bookmark or a reload shows the same again.
-import { el, notice } from "./dom.js";
+import { notice } from "./dom.js";
+import { menuEntry } from "./popup_menu.js";
 
-/** The view that the address has, as it stands behind the identifier of a contact. */
+/** The view that the address has, as it stands behind the identifier of a contact and its tab. */
 export const viewQuery = () => location.hash.match(/\?.*$/)?.[0] ?? "";
 
-/** Keeps the address in step with plots, unit choices and the contact compared with, once it has been applied to them. */
+/** Keeps the address in step with plots, unit choices and the contact compared with, once it has been applied to them. What it
+ *  returns copies the link, and writes the view to the address of a tab that was opened. */
 export function viewLink({ plots, units, overlay }) {
   const given = new URLSearchParams(viewQuery());
   for (const plot of plots) {
@@ -18,6 +20,7 @@ export function viewLink({ plots, units, overlay }) {
     const wanted = [...choice.options].find((option) => option.text === given.get(choice.id));
     if (wanted) choice.value = wanted.value;
   }
+  let query = "";
   const write = () => {
     const now = new URLSearchParams();
     for (const plot of plots) {
@@ -27,7 +30,7 @@ export function viewLink({ plots, units, overlay }) {
     for (const choice of units) if (choice.value !== "") now.set(choice.id, choice.selectedOptions[0].text);
     if (overlay.other()) now.set("with", overlay.other());
     const [path] = location.hash.split("?");
-    const query = now.size ? `?${now}` : "";
+    query = now.size ? `?${now}` : "";
     // Not through `location`, which would load the view anew.
     history.replaceState(null, "", `${path}${query}`);
   };
@@ -35,7 +38,7 @@ export function viewLink({ plots, units, overlay }) {
   for (const choice of units) choice.addEventListener("change", write);
   overlay.oncompare = write;
   if (given.get("with")) overlay.compare(given.get("with"));
-  return el("button", { type: "button", class: "quiet", id: "copy-link", onclick: copy }, "Copy link");
+  return { write, query: () => query, entry: menuEntry("Copy link", copy) };
 }
 
 async function copy() {

@@ -8,6 +8,11 @@ pub const GRACE: Duration = Duration::from_secs(3);
 pub const HEAD: usize = 32 * 1024;
 /// Bytes that a connection reads ahead, and bytes that it buffers for writing.
 pub const BUFFER: usize = 40 * 1024;
+/// Bytes of a body that nobody wants and that are read all the same, so that the client can read the answer and send
+/// its next request. Beyond that the connection is closed.
+pub const DISCARDED: usize = 64 * 1024 * 1024;
+/// How long they may take to arrive.
+pub const DISCARD_TIME: Duration = Duration::from_secs(2);
 /// Bytes of a reply that are handed to the socket at a time.
 pub const PIECE: usize = 16 * 1024;
 /// Spare connections beyond the limit, for a short time each: they answer health checks, and refuse other requests with

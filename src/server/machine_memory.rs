@@ -15,8 +15,8 @@ pub fn available() -> Option<u64> {
     least(&read(Path::new("/proc/meminfo"))?, limits.iter().map(String::as_str))
 }
 
-/// The files that may limit the memory of a process with these control groups (`/proc/self/cgroup`, cgroups(7)): those of its own
-/// and of all that these are within, for version 2 and version 1.
+/// The files that may limit the memory of a process with these control groups (`/proc/self/cgroup`, cgroups(7)): those
+/// of its own and of all that these are within, for version 2 and version 1.
 fn limit_files(groups: &str) -> Vec<PathBuf> {
     let mut files = Vec::new();
     for line in groups.lines() {

@@ -33,9 +33,9 @@ const ACCEPT_RETRY_DELAY: Duration = Duration::from_millis(50);
 /// The least time between two log lines about refused connections.
 const LOG_INTERVAL: Duration = Duration::from_secs(1);
 
-/// Serves on `listener`, by TLS if it is given, the connections that `limiter` admits, until `stop` is done. Then `end_streams` is
-/// called, and other requests may be done within the time that the limits give; what is left then is refused. Connections that are
-/// still open [`GRACE`] later are closed.
+/// Serves on `listener`, by TLS if it is given, the connections that `limiter` admits, until `stop` is done. Then
+/// `end_streams` is called, and other requests may be done within the time that the limits give; what is left then is
+/// refused. Connections that are still open [`GRACE`] later are closed.
 ///
 /// # Errors
 /// None at present: a failure to accept a connection is waited out.
@@ -124,9 +124,11 @@ fn accept(
         None => tokio::spawn(serve_connection(stream, peer, permit, limits, service, closing)),
         Some(acceptor) => tokio::spawn(async move {
             let accepted = tokio::select! {
-                accepted = timeout(limits.head, acceptor.accept_with(stream, |tls| tls.set_buffer_limit(Some(PIECE)))) => accepted,
-                _ = closing.changed() => return,
-            };
+                    accepted = timeout(
+                limits.head, acceptor.accept_with(stream, |tls| tls.set_buffer_limit(Some(PIECE))),
+            ) => accepted,
+                    _ = closing.changed() => return,
+                };
             match accepted {
                 Ok(Ok(stream)) => serve_connection(stream, peer, permit, limits, service, closing).await,
                 Ok(Err(error)) => tracing::debug!(%error, "a client did not speak TLS as the server does"),

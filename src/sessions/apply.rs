@@ -8,19 +8,21 @@ use tracing::Instrument as _;
 use uuid::Uuid;
 
 use crate::admission::{Reservation, Stop};
+use crate::computations::{OnContact as _, find_from_state};
 use crate::otlp;
-use crate::simulation::cost::{self, Work};
-use crate::simulation::{Timer, accuracy, equal_peaks, excess_error, follow, new_warnings, stresses};
-use crate::store::{Measured, Record, Reply, RequestKey, StoreError, Usage};
+use crate::simulation::bytes::{RECORD_BYTES, of_moves, of_stress};
+use crate::simulation::cost::Work;
+use crate::simulation::{FarMove, Timer, accuracy, equal_peaks, excess_error, follow, new_warnings, stresses};
+use crate::store::{IdempotentRequest, Measured, Record, Reply, RequestKey, StoreError, Usage};
 use stickslip_wire::session::Advance;
-use stickslip_wire::{MoveReply, Observation, PathReply, Plan, RelaxReply, Steps, limits};
+use stickslip_wire::{MoveReply, Observation, PathReply, Plan, RelaxReply, State, Steps, limits};
 
 use super::cache::Guard;
-use super::group::{Turn, may_join};
+use super::group::{GroupResult, may_join};
 use super::loaded::LoadedSession;
 use super::observe::check_plausible;
-use super::relax::{find_protocol, without_step};
-use super::{ATTEMPTS, SessionError, Sessions, written};
+use super::relax::without_step;
+use super::{ATTEMPTS, SessionError, Sessions, unless_answered, written};
 
 /// Why the exact solver answers for a session.
 const REASON: &str = "stored contacts use the exact solver";
@@ -35,6 +37,16 @@ pub(super) struct Done {
 pub(super) const PIECES_OF_A_MOVE: usize = 8;
 
 impl Sessions {
+    /// Bytes that moves take, with their records and the reply; rather too many than too few.
+    #[must_use]
+    pub fn bytes_of_moves(advance: &Advance) -> usize {
+        let radii = advance.stress.as_ref().map_or(0, |stress| stress.length());
+        advance.relax.map_or(0, |relax| relax.task.bytes())
+            + of_moves(&advance.plan, advance.steps)
+            + advance.plan.length() * RECORD_BYTES
+            + of_stress(radii)
+    }
+
     /// Applies moves to a session, all or none of them, if it is at the sequence that the client expects.
     ///
     /// # Errors
@@ -51,19 +63,30 @@ impl Sessions {
         if let Some(reply) = request.earlier_reply().await? {
             return Ok(reply);
         }
-        let advance = Arc::new(advance);
+        let made = self.apply_anew(id, Arc::new(advance), expected, &request).await;
+        unless_answered(&request, made).await
+    }
+
+    async fn apply_anew(
+        &self,
+        id: Uuid,
+        advance: Arc<Advance>,
+        expected: Option<u64>,
+        request: &IdempotentRequest<'_>,
+    ) -> Result<Reply, SessionError> {
         // A client that hangs up in the queue leaves it.
         let mut guard = if !request.has_key() && may_join(&advance) {
-            match self.turn(id, &advance, expected).await? {
-                Turn::Own(guard) => guard,
-                Turn::Settled(settled) => return settled,
+            match self.lock_or_join(id, &advance, expected).await? {
+                GroupResult::Locked(guard) => guard,
+                GroupResult::Answered(answer) => return answer,
             }
         } else {
             self.lock(id).await?
         };
         let (stop, _raised_at_the_end) = self.common.pool.deadline();
         let move_bytes = self.common.store.move_bytes();
-        let mut room = self.room(Usage::of(0, advance.plan.length() as u64 * move_bytes, None)).await?;
+        let mut reservation =
+            self.reserve_storage(Usage::of(0, advance.plan.length() as u64 * move_bytes, None)).await?;
         // A cached state may be behind the store. A refusal counts only once the state has caught up.
         let mut caught_up = guard.live.is_none();
         let mut found = 0;
@@ -81,10 +104,11 @@ impl Sessions {
                 }
                 return Err(SessionError::Stale { expected, found: sequence });
             }
+            stop.count(std::mem::take(&mut guard.loading));
             let (mut live, Done { records, mut reply }) = match self.compute(&advance, &mut guard, &stop).await {
                 Ok(done) => done,
                 Err(SessionError::Failure(_) | SessionError::Rejected(_))
-                    if !caught_up && Box::pin(self.catch_up(&mut guard)).await? =>
+                    if !caught_up && Box::pin(self.catch_up(&mut guard, u64::MAX)).await? =>
                 {
                     caught_up = true;
                     continue;
@@ -99,15 +123,15 @@ impl Sessions {
             let moves = records.len() as u64;
             let receipt = request.receipt(&reply);
             let added = Usage::of(0, moves * move_bytes, receipt.as_ref());
-            if added.bytes > room.bytes() {
-                drop(room);
-                room = self.room(added).await?;
+            if added.bytes > reservation.bytes() {
+                drop(reservation);
+                reservation = self.reserve_storage(added).await?;
             }
             let stored = self.common.store.append(guard.id(), sequence, records, receipt);
             match stored.instrument(otlp::part!("store")).await {
                 Ok(()) => {
                     self.common.metrics.moves.inc_by(moves);
-                    room.used(added);
+                    reservation.used(added);
                     self.offer_snapshot(&mut live);
                     guard.live = Some(live);
                     return Ok(reply);
@@ -119,7 +143,7 @@ impl Sessions {
                     (caught_up, found) = (true, moved);
                     self.current(&mut guard).await?.shared = true;
                 }
-                Err(other) => return Ok(request.after_refusal(other).await?),
+                Err(other) => return Err(other.into()),
             }
         }
         Err(SessionError::Overtaken { found })
@@ -148,7 +172,7 @@ impl Sessions {
         let radii = advance.stress.as_ref().map_or(0, |stress| stress.length());
         let (moves, curved) = (advance.plan.length(), advance.plan.curved());
         let profile = live.contact.profile();
-        let sought = advance.relax.map_or(0, |relax| cost::of_protocol(profile, &relax.task, depth));
+        let sought = advance.relax.map_or(0, |relax| relax.task.cost(profile, depth));
         let work = Work { moves, curved, depth, radii, residual: false };
         let cost = work.cost(profile).saturating_add(sought);
         let (advance, stop) = (Arc::clone(advance), stop.clone());
@@ -180,12 +204,12 @@ pub(super) fn attempt(
 /// Makes the moves, and writes the reply: the part of the work that needs a processor.
 fn make(live: &mut LoadedSession, advance: &Advance, by: Option<&Arc<str>>, stop: &Stop) -> Result<Done, SessionError> {
     let solving = otlp::part!("solve").entered();
-    let timer = Timer::start();
+    let timer = Timer::start(stop);
     let now = Timestamp::now();
     let mut records: Vec<Record> = Vec::with_capacity(advance.plan.length());
     let mut sequence = live.session.sequence;
     let tolerance = advance.tolerance;
-    let relaxed = advance.relax.map(|relax| find_protocol(live, &relax.task, stop)).transpose()?;
+    let relaxed = advance.relax.map(|relax| find_from_state(&live.contact, &relax.task, stop)).transpose()?;
     let plan = relaxed.as_ref().map(|found| Plan::Displacement(found.path.displacement.clone()));
     let plan = plan.as_ref().unwrap_or(&advance.plan);
     let protocol = equal_peaks(plan, &live.contact)?;
@@ -193,13 +217,15 @@ fn make(live: &mut LoadedSession, advance: &Advance, by: Option<&Arc<str>>, stop
     check_plausible(observations, live.contact.normal_force())?;
     let (before, error_before) = (live.contact.contact_radius(), live.contact.path_error());
     let (mut largest, mut error) = (before, 0.0f64);
+    let mut far = FarMove::from(live.contact.displacement());
     let begin = Instant::now();
     let followed = follow(&mut live.contact, plan, protocol.as_ref(), tolerance, stop, |step, contact| {
         sequence += 1;
         largest = largest.max(contact.contact_radius());
         error = error.max(contact.path_error() - error_before);
         let measured = observations.get(records.len()).map(|&Observation { force, at, .. }| Measured { force, at });
-        let state = contact.state().into();
+        let state: State = contact.state().into();
+        far.reach(state.displacement, contact.gross_slip_displacement(), contact.profile(), state.contact_radius);
         records.push(Record { sequence, step, tolerance, state, measured, by: by.cloned(), at: now });
     });
     followed.map_err(|failure| if advance.relax.is_some() { without_step(failure) } else { failure })?;
@@ -209,7 +235,8 @@ fn make(live: &mut LoadedSession, advance: &Advance, by: Option<&Arc<str>>, stop
     let stress = advance.stress.as_ref().map(|sampling| stresses(&live.contact, sampling, stop)).transpose()?;
     let accuracy = accuracy(&live.contact, timer, REASON);
     let excess = excess_error(error, tolerance, advance.plan.curved());
-    let warnings = new_warnings(&live.contact, before, largest, excess);
+    let mut warnings = new_warnings(&live.contact, before, largest, excess);
+    warnings.extend(far.warning());
     let id = live.session.id;
     drop(solving);
     let shown = |steps: Steps| match steps {

@@ -9,7 +9,7 @@ use uuid::Uuid;
 
 use crate::store::{Record, Snapshot, Store, StoreError};
 use stickslip_mechanics::Contact;
-use stickslip_wire::{Move, State};
+use stickslip_wire::{Move, PrepareAnew, State};
 
 use super::loaded::LoadedSession;
 use super::snapshot::{SnapshotState, compare};
@@ -168,7 +168,7 @@ impl Check<'_> {
         if let Some(ahead) = snapshot.as_ref().map(|snapshot| snapshot.sequence).filter(|taken| *taken > sequence) {
             self.found(Some(id), format!("its snapshot is of move {ahead}, and the last one stored is {sequence}"));
         }
-        match LoadedSession::of_stored(session) {
+        match LoadedSession::of_stored(session, &PrepareAnew) {
             Ok(live) => self.replay(id, sequence, live.contact, snapshot).await,
             Err(why) => {
                 self.found(Some(id), format!("its definition is invalid: {why}"));

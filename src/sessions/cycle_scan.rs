@@ -1,13 +1,14 @@
 //! The closed cycles of a path, found as its states arrive.
 //!
-//! The turning points of the displacement are on a stack, as in the memory of the contact itself (Madelung 1905): a move
-//! that comes back to a turning point after an excursion closes a cycle, which leaves the stack with it (rainflow). Where
-//! the path begins there is no turning point: the first loading is half a stroke, so that its end is forgotten once the
-//! displacement goes farther to the other side. Gross slip forgets the beginning, as if the path came from infinity.
+//! The turning points of the displacement are on a stack, as in the memory of the contact itself (Madelung 1905): a
+//! move that comes back to a turning point after an excursion closes a cycle, which leaves the stack with it
+//! (rainflow). Where the path begins there is no turning point: the first loading is half a stroke, so that its end is
+//! forgotten once the displacement goes farther to the other side. Gross slip forgets the beginning, as if the path
+//! came from infinity.
 //!
-//! A closed cycle at constant load is steady, whatever the history (Masing 1926), if all of the ring that slips in it had
-//! slipped the other way before. That holds if the stroke that led to its first turning point was as long at the same
-//! load. Of any other cycle only what was recorded is known.
+//! A closed cycle at constant load is steady, whatever the history (Masing 1926), if all of the ring that slips in it
+//! had slipped the other way before. That holds if the stroke that led to its first turning point was as long at the
+//! same load. Of any other cycle only what was recorded is known.
 
 use std::collections::VecDeque;
 

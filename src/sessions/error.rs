@@ -3,6 +3,7 @@
 use uuid::Uuid;
 
 use crate::admission::PoolError;
+use crate::formats::Unwritable;
 use crate::simulation;
 use crate::store::StoreError;
 use stickslip_wire::Rejection;
@@ -10,7 +11,7 @@ use stickslip_wire::Rejection;
 /// Why an operation on a session failed. Nothing has changed then.
 #[derive(Debug, thiserror::Error)]
 pub enum SessionError {
-    /// There is no such session.
+    /// The session was not found.
     #[error("there is no contact {0}")]
     NotFound(Uuid),
     /// There was such a session, and it has expired.
@@ -62,7 +63,10 @@ pub enum SessionError {
     /// The storage refused or failed.
     #[error(transparent)]
     Store(#[from] StoreError),
-    /// A reply cannot be written, or the like: a fault of this program.
+    /// A reply cannot be written: a fault of this program.
+    #[error(transparent)]
+    Unwritable(#[from] Unwritable),
+    /// Another fault of this program.
     #[error("{0}")]
     Broken(String),
 }

@@ -1,15 +1,14 @@
 //! The friction of a contact by its observations: the newest measured cycle, beside the model with another friction.
 //!
-//! The estimate follows from what is stored, and is kept with the cached session until the next such cycle closes. A cycle
-//! counts if all of its moves are observations under one load. Noise closes cycles too: those with few moves are passed
-//! over, and so are those that are small beside others.
+//! The estimate follows from what is stored, and is kept with the cached session until the next such cycle closes. A
+//! cycle counts if all of its moves are observations under one load. Noise closes cycles too: those with few moves are
+//! passed over, and so are those that are small beside others.
 
 use std::time::Duration;
 
 use uuid::Uuid;
 
-use crate::admission::Stop;
-use crate::simulation::{bytes, cost};
+use crate::admission::{Nanoseconds, Stop};
 use crate::store;
 use stickslip_measured::loops::{Error, Known, LoopFit, Noise, Note, Parameter, Record, Start, Task, fit};
 use stickslip_mechanics::Contact;
@@ -25,6 +24,11 @@ const MOVES: u64 = 8;
 const COMPARED: usize = 100;
 /// How long an estimate may take.
 pub(super) const TIME: Duration = Duration::from_secs(5);
+/// Time of a fit to a cycle, and for each of its points.
+const FIT_COST: Nanoseconds = 500_000;
+const POINT_COST: Nanoseconds = 10_000;
+/// Bytes of a fit for each of its points.
+const POINT_BYTES: usize = 256;
 /// Indentations are the same load if they agree to this part.
 const SAME_LOAD: f64 = 1e-12;
 
@@ -75,7 +79,7 @@ impl Sessions {
     /// [`SessionError::NotFound`] or [`SessionError::Expired`], or a failure of the store or of the pool.
     pub async fn friction(&self, id: Uuid) -> Result<FrictionReply, SessionError> {
         let (stop, _raised_at_the_end) = self.common.pool.deadline();
-        let stop = stop.child_deadline(TIME);
+        let stop = stop.child_deadline(Some(TIME));
         // The lock is held for copies alone, so that the session can move on meanwhile.
         let (virgin, sequence, known, mut estimated) = {
             let mut guard = self.lock(id).await?;
@@ -94,8 +98,8 @@ impl Sessions {
         Ok(FrictionReply { id, sequence, friction: estimated.and_then(|estimated| estimated.friction) })
     }
 
-    /// What the newest cycle of a log says that is not a small one; `earlier` if it is the same cycle, or if this takes too
-    /// long. `new` are the last moves of the log, which the store does not have yet.
+    /// What the newest cycle of a log says that is not a small one; `earlier` if it is the same cycle, or if this takes
+    /// too long. `new` are the last moves of the log, which the store does not have yet.
     pub(super) async fn estimate(
         &self,
         id: Uuid,
@@ -114,7 +118,7 @@ impl Sessions {
         if moves >= *limits::PATH_MOVES.end() {
             return Ok(unknown);
         }
-        let _held = self.common.pool.reserve(bytes::of_friction(moves) + PAGE * store::RECORD_BYTES).await?;
+        let _held = self.common.pool.reserve(moves * POINT_BYTES + PAGE * store::RECORD_BYTES).await?;
         let mut cycle = MeasuredCycle::default();
         let stored = to.min(log.sequence - new.len() as u64);
         let mut read = from.saturating_sub(1);
@@ -133,7 +137,7 @@ impl Sessions {
         }
         let (virgin, stop) = (virgin.clone(), stop.clone());
         let fit = move || fitted(virgin, cycle, &stop);
-        let friction = self.common.pool.run(cost::of_friction(moves), fit).await?;
+        let friction = self.common.pool.run(FIT_COST + POINT_COST * moves as u64, fit).await?;
         Ok(match friction {
             Some(friction) => {
                 let friction = friction.map(|(value, interval)| FrictionEstimate { value, interval, from, to });
@@ -144,7 +148,8 @@ impl Sessions {
     }
 }
 
-/// The coefficient of friction of a cycle with its 95 % interval, if the cycle determines it; nothing at all if the time is up.
+/// The coefficient of friction of a cycle with its 95 % interval, if the cycle determines it; nothing at all if the
+/// time is up.
 fn fitted(virgin: Contact, cycle: MeasuredCycle, stop: &Stop) -> Option<Option<(f64, [f64; 2])>> {
     let MeasuredCycle { displacement, force, load } = cycle;
     let normal_force = load.map(|(_, normal_force)| normal_force);
@@ -164,7 +169,8 @@ fn fitted(virgin: Contact, cycle: MeasuredCycle, stop: &Stop) -> Option<Option<(
     }
 }
 
-/// The friction of a fit with its interval, unless the contact does not slide as a whole or the interval is as wide as that.
+/// The friction of a fit with its interval, unless the contact does not slide as a whole or the interval is as wide as
+/// that.
 fn determined(found: &LoopFit) -> Option<(f64, [f64; 2])> {
     let friction = found.estimates.first()?;
     let [Some(low), Some(high)] = friction.interval else { return None };

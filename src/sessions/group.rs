@@ -1,8 +1,10 @@
-//! Moves of several clients on one session that wait for its lock at the same time: whoever gets the lock makes them all, in the order
-//! of their arrival, and they share one append to the store. Each has a reply, or a refusal, of its own.
+//! Moves of several clients on one session that wait for its lock at the same time: whoever gets the lock makes them
+//! all, in the order of their arrival, and they share one append to the store. Each has a reply, or a refusal, of its
+//! own.
 //!
-//! Only single straight moves without stresses and without an idempotency key are made for others: they take about a microsecond,
-//! and a refused one has changed nothing. Whatever a group does not settle, its client does alone, as if it had not waited.
+//! Only single straight moves without stresses and without an idempotency key are made for others: they take about a
+//! microsecond, and a refused one has changed nothing. Whatever a group does not finish, its client does alone, as if
+//! it had not waited.
 
 use std::sync::Arc;
 
@@ -19,20 +21,20 @@ use stickslip_wire::{Plan, limits};
 
 use super::apply::{Done, PIECES_OF_A_MOVE, attempt};
 use super::cache::{Guard, Waiting};
-use super::room::Room;
+use super::storage_reservation::StorageReservation;
 use super::{SessionError, Sessions};
 
 /// Moves that are made together at most.
 const GROUP: usize = 64;
 
 /// A move that may be made by whoever has the lock.
-pub(super) struct Member {
+pub(super) struct WaitingMove {
     advance: Arc<Advance>,
     /// The sequence that the client expects.
     expected: Option<u64>,
     /// The name of its key.
     by: Option<Arc<str>>,
-    room: Room,
+    reservation: StorageReservation,
     span: Span,
     outcome: oneshot::Sender<Outcome>,
 }
@@ -40,24 +42,24 @@ pub(super) struct Member {
 /// What a group has done of a move.
 enum Outcome {
     /// It is stored, or the store has refused the group.
-    Settled(Result<Reply, SessionError>),
+    Answered(Result<Reply, SessionError>),
     /// Nothing.
-    Left,
+    NotMade,
 }
 
 /// Who makes a move.
-pub(super) enum Turn {
+pub(super) enum GroupResult {
     /// Whoever has asked.
-    Own(Guard),
+    Locked(Guard),
     /// Another one has made it.
-    Settled(Result<Reply, SessionError>),
+    Answered(Result<Reply, SessionError>),
 }
 
 /// Moves under way together.
 struct Group {
     sessions: Sessions,
     guard: Guard,
-    members: Vec<Member>,
+    moves: Vec<WaitingMove>,
 }
 
 /// Whether a move may be made together with others.
@@ -72,51 +74,52 @@ impl Sessions {
     ///
     /// # Errors
     /// [`SessionError`]; nothing has changed then.
-    pub(super) async fn turn(
+    pub(super) async fn lock_or_join(
         &self,
         id: Uuid,
         advance: &Arc<Advance>,
         expected: Option<u64>,
-    ) -> Result<Turn, SessionError> {
+    ) -> Result<GroupResult, SessionError> {
         match self.common.cache.try_lock(&self.tenant, id) {
-            Ok(guard) => Ok(Turn::Own(guard)),
+            Ok(guard) => Ok(GroupResult::Locked(guard)),
             // In a box, so that a move that need not wait is not as large as one that does.
-            Err(waiting) => Box::pin(self.turn_in_line(waiting, advance, expected)).await,
+            Err(waiting) => Box::pin(self.join_queue(waiting, advance, expected)).await,
         }
     }
 
-    async fn turn_in_line(
+    async fn join_queue(
         &self,
         waiting: Waiting,
         advance: &Arc<Advance>,
         expected: Option<u64>,
-    ) -> Result<Turn, SessionError> {
+    ) -> Result<GroupResult, SessionError> {
         let id = waiting.id();
-        let room = self.room(Usage::of(0, self.common.store.move_bytes(), None)).await?;
-        let (outcome, mut settled) = oneshot::channel();
+        let reservation = self.reserve_storage(Usage::of(0, self.common.store.move_bytes(), None)).await?;
+        let (outcome, mut answer) = oneshot::channel();
         let (advance, by) = (Arc::clone(advance), self.by.clone());
-        let place = waiting.stand(Some(Member { advance, expected, by, room, span: Span::current(), outcome }));
+        let position =
+            waiting.enqueue(Some(WaitingMove { advance, expected, by, reservation, span: Span::current(), outcome }));
         let lock = waiting.awaited().lock_owned();
         let wait = async {
             tokio::select! {
                 biased;
-                done = &mut settled => Err(done),
+                done = &mut answer => Err(done),
                 lock = lock => Ok(lock),
             }
         };
         let waited = self.common.pool.wait(wait).await;
-        match (waited, place.leave()) {
-            (Ok(Ok(lock)), Some(member)) => {
+        match (waited, position.leave()) {
+            (Ok(Ok(lock)), Some(waiting_move)) => {
                 let guard = waiting.guard(lock);
                 let others = if is_groupable(&guard) { guard.take_moves(GROUP - 1) } else { Vec::new() };
                 if others.is_empty() {
-                    return Ok(Turn::Own(guard));
+                    return Ok(GroupResult::Locked(guard));
                 }
-                let members = std::iter::once(member).chain(others).collect();
-                let group = Group { sessions: self.clone(), guard, members };
+                let moves = std::iter::once(waiting_move).chain(others).collect();
+                let group = Group { sessions: self.clone(), guard, moves };
                 // In a task of its own: whose client leaves does not take the others with it.
                 tokio::spawn(Client::current().serve(group.make().in_current_span()));
-                self.outcome(id, settled.await).await
+                self.outcome(id, answer.await).await
             }
             (Err(busy), Some(_)) => Err(busy.into()),
             (Ok(Err(done)), _) => self.outcome(id, done).await,
@@ -124,15 +127,19 @@ impl Sessions {
             (waited, None) => {
                 // With the lock in hand it could not wait for the lock again.
                 drop(waited);
-                self.outcome(id, settled.await).await
+                self.outcome(id, answer.await).await
             }
         }
     }
 
-    async fn outcome(&self, id: Uuid, done: Result<Outcome, oneshot::error::RecvError>) -> Result<Turn, SessionError> {
+    async fn outcome(
+        &self,
+        id: Uuid,
+        done: Result<Outcome, oneshot::error::RecvError>,
+    ) -> Result<GroupResult, SessionError> {
         match done {
-            Ok(Outcome::Settled(settled)) => Ok(Turn::Settled(settled)),
-            Ok(Outcome::Left) => Ok(Turn::Own(self.lock(id).await?)),
+            Ok(Outcome::Answered(answer)) => Ok(GroupResult::Answered(answer)),
+            Ok(Outcome::NotMade) => Ok(GroupResult::Locked(self.lock(id).await?)),
             Err(_) => Err(StoreError::Unavailable("the move was given up with others".to_owned()).into()),
         }
     }
@@ -143,22 +150,22 @@ fn is_groupable(guard: &Guard) -> bool {
     guard.live.as_ref().is_some_and(|live| !live.shared)
 }
 
-impl Member {
-    fn settle(self, settled: Result<Reply, SessionError>) {
+impl WaitingMove {
+    fn finish(self, answer: Result<Reply, SessionError>) {
         // The client may have left.
-        let _ = self.outcome.send(Outcome::Settled(settled));
+        let _ = self.outcome.send(Outcome::Answered(answer));
     }
 
-    fn leave(self) {
-        let _ = self.outcome.send(Outcome::Left);
+    fn decline(self) {
+        let _ = self.outcome.send(Outcome::NotMade);
     }
 }
 
 impl Group {
-    /// Makes the moves, stores them, and tells each member what has become of its own. The guard is dropped last.
+    /// Makes the moves, stores them, and tells each waiting move what has become of its own. The guard is dropped last.
     async fn make(mut self) {
         let Some(before) = self.guard.live.as_ref().map(|live| live.session.sequence) else {
-            return self.members.into_iter().for_each(Member::leave);
+            return self.moves.into_iter().for_each(WaitingMove::decline);
         };
         let Ok((made, records)) = self.compute().await else { return };
         if records.is_empty() {
@@ -177,55 +184,59 @@ impl Group {
                     live
                 });
                 let added = Usage::of(0, common.store.move_bytes(), None);
-                for (member, reply) in made {
-                    let Member { room, outcome, .. } = member;
-                    room.used(added);
-                    let _ = outcome.send(Outcome::Settled(Ok(reply)));
+                for (waiting_move, reply) in made {
+                    let WaitingMove { reservation, outcome, .. } = waiting_move;
+                    reservation.used(added);
+                    let _ = outcome.send(Outcome::Answered(Ok(reply)));
                 }
             }
             // Nothing has changed: each finds out for itself what is wrong.
             Err(StoreError::Stale { .. } | StoreError::NotFound | StoreError::Expired(_)) => {
-                made.into_iter().for_each(|(member, _)| member.leave());
+                made.into_iter().for_each(|(waiting_move, _)| waiting_move.decline());
             }
-            Err(error) => made.into_iter().for_each(|(member, _)| member.settle(Err(again(&error).into()))),
+            Err(error) => made.into_iter().for_each(|(waiting_move, _)| waiting_move.finish(Err(again(&error).into()))),
         }
     }
 
-    /// Makes the moves one after the other. The guard has the state after them, or, if one of them has spoiled it, nothing; nothing is
-    /// to be stored then, and every member has been told to go on alone.
-    async fn compute(&mut self) -> Result<(Vec<(Member, Reply)>, Vec<Record>), ()> {
+    /// Makes the moves one after the other. The guard has the state after them, or, if one of them has spoiled it,
+    /// nothing; nothing is to be stored then, and every waiting move has been told to go on alone.
+    async fn compute(&mut self) -> Result<(Vec<(WaitingMove, Reply)>, Vec<Record>), ()> {
         let (stop, _raised_at_the_end) = self.sessions.common.pool.deadline();
-        let (mut made, mut records) = (Vec::with_capacity(self.members.len()), Vec::with_capacity(self.members.len()));
-        let mut members = std::mem::take(&mut self.members).into_iter();
-        while let Some(member) = members.next() {
+        let (mut made, mut records) = (Vec::with_capacity(self.moves.len()), Vec::with_capacity(self.moves.len()));
+        let mut moves = std::mem::take(&mut self.moves).into_iter();
+        while let Some(waiting_move) = moves.next() {
             let fits = |guard: &Guard| {
                 guard.live.as_ref().is_some_and(|live| {
-                    member.expected.is_none_or(|expected| expected == live.session.sequence)
+                    waiting_move.expected.is_none_or(|expected| expected == live.session.sequence)
                         && live.contact.memory_depth() + PIECES_OF_A_MOVE <= limits::MEMORY_DEPTH
                 })
             };
             // A refusal counts only once the store has been asked, which its client does alone.
             let Some(live) = (if fits(&self.guard) { self.guard.live.take() } else { None }) else {
-                member.leave();
+                waiting_move.decline();
                 continue;
             };
             let work = Work { moves: 1, depth: live.contact.memory_depth(), ..Work::default() };
             let cost = work.cost(live.contact.profile());
             let (advance, by, stop, span) =
-                (Arc::clone(&member.advance), member.by.clone(), stop.clone(), member.span.clone());
+                (Arc::clone(&waiting_move.advance), waiting_move.by.clone(), stop.clone(), waiting_move.span.clone());
             let solve = move || span.in_scope(|| attempt(live, &advance, by.as_ref(), &stop));
             match self.sessions.common.pool.run(cost, solve).await {
                 Ok((live, Ok(Done { records: more, reply }))) => {
                     self.guard.live = Some(live);
                     records.extend(more);
-                    made.push((member, reply));
+                    made.push((waiting_move, reply));
                 }
                 Ok((live, Err(SessionError::Failure(_)))) => {
                     self.guard.live = Some(live);
-                    member.leave();
+                    waiting_move.decline();
                 }
                 _ => {
-                    made.into_iter().map(|(member, _)| member).chain([member]).chain(members).for_each(Member::leave);
+                    made.into_iter()
+                        .map(|(waiting_move, _)| waiting_move)
+                        .chain([waiting_move])
+                        .chain(moves)
+                        .for_each(WaitingMove::decline);
                     return Err(());
                 }
             }
@@ -234,11 +245,12 @@ impl Group {
     }
 }
 
-/// The same failure for another member.
+/// The same failure for another waiting move.
 fn again(error: &StoreError) -> StoreError {
     match error {
         StoreError::Full(why) => StoreError::Full(why.clone()),
         StoreError::Unavailable(why) => StoreError::Unavailable(why.clone()),
+        StoreError::Locked(why) => StoreError::Locked(why.clone()),
         StoreError::Damaged { contact, what } => StoreError::Damaged { contact: *contact, what: what.clone() },
         other => StoreError::Failed(other.to_string()),
     }

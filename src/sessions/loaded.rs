@@ -4,17 +4,17 @@ use std::sync::Arc;
 
 use crate::simulation::{self, bytes, present_warnings};
 use crate::store::{CONTACT_BYTES, Reply, Session};
-use stickslip_mechanics::{Contact, Setup};
-use stickslip_wire::profile::{Profile, SumProfile, TabulatedProfile};
-use stickslip_wire::{ContactSummary, Faults, JsonPath, NewSession, SessionReply, Warning};
+use stickslip_mechanics::Contact;
+use stickslip_wire::definition::SharedSetup;
+use stickslip_wire::{ContactSummary, Faults, JsonPath, NewSession, Prepare, SessionReply, Warning};
 
 use super::cycles::CycleLog;
 use super::friction::Estimated;
 use super::snapshot::ReplayCost;
 use super::{SessionError, written};
 
-/// Bytes of a session besides its pieces, its label and its tables: what is fixed, and the entry in the cache. The process grows by
-/// 800.
+/// Bytes of a session besides its pieces, its label and its tables: what is fixed, and the entry in the cache. The
+/// process grows by 800.
 const FIXED: usize = 1024;
 
 /// Bytes of a definition as JSON besides its tables, and of a number in these.
@@ -41,16 +41,16 @@ pub(super) struct LoadedSession {
 
 /// Values that follow from the definition and never change.
 pub(super) struct Derived {
-    pub(super) figures: ContactSummary,
+    pub(super) summary: ContactSummary,
     pub(super) warnings: Vec<Warning>,
 }
 
 impl LoadedSession {
     /// A contact at its preload, and what follows from its definition. Whatever the sequence of `session` is, the state
     /// is that before the first move.
-    pub(super) fn start(session: Session, setup: Setup) -> Result<LoadedSession, simulation::Failure> {
+    pub(super) fn start(session: Session, setup: SharedSetup) -> Result<LoadedSession, simulation::Failure> {
         let contact = simulation::contact(setup, "")?;
-        let derived = Derived { figures: contact.initial_summary().into(), warnings: present_warnings(&contact) };
+        let derived = Derived { summary: contact.initial_summary().into(), warnings: present_warnings(&contact) };
         let derived = Arc::new(derived);
         let replay_cost = ReplayCost::default();
         let (cycles, past_cycles, estimated) = (None, None, None);
@@ -58,29 +58,29 @@ impl LoadedSession {
     }
 
     /// The same of a session as it is stored, or why its definition is invalid.
-    pub(super) fn of_stored(session: Session) -> Result<LoadedSession, String> {
+    pub(super) fn of_stored(session: Session, profiles: &dyn Prepare) -> Result<LoadedSession, String> {
         let mut faults = Faults::default();
-        let setup = session.definition.check(JsonPath::Root, &mut faults);
+        let setup = session.definition.check(JsonPath::Root, profiles, &mut faults);
         let setup = faults.done(setup).map_err(|error| error.to_string())?;
         LoadedSession::start(session, setup).map_err(|error| error.to_string())
     }
 
-    /// Bytes of memory, rather too many than too few: what forks share is counted for each.
+    /// Bytes of memory without its profile, rather too many than too few: what forks share is counted for each.
     pub(super) fn bytes(&self) -> usize {
         let label = self.session.label.as_ref().map_or(0, String::capacity);
         let warnings: usize = self.derived.warnings.iter().map(|warning| warning.message.capacity()).sum();
         let cycles: usize = [&self.cycles, &self.past_cycles].into_iter().flatten().map(|cycles| cycles.bytes()).sum();
-        FIXED
-            + self.contact.memory_bytes()
-            + label
-            + warnings
-            + cycles
-            + bytes::of_shape(&self.session.definition.profile)
+        FIXED + self.contact.memory_bytes() + label + warnings + cycles
+    }
+
+    /// Bytes of its profile, which other sessions may share.
+    pub(super) fn shape_bytes(&self) -> usize {
+        bytes::of_shape(&self.session.definition.profile)
     }
 
     /// Bytes that its definition takes in the store, roughly, without its moves.
     pub(super) fn stored_bytes(&self) -> u64 {
-        CONTACT_BYTES + (DEFINITION + NUMBER * 2 * table_points(&self.session.definition.profile)) as u64
+        CONTACT_BYTES + (DEFINITION + NUMBER * 2 * self.session.definition.profile.points()) as u64
     }
 
     /// The reply that presents a session.
@@ -90,7 +90,7 @@ impl LoadedSession {
             id,
             label: label.clone(),
             sequence,
-            contact: self.derived.figures.clone(),
+            contact: self.derived.summary.clone(),
             state: self.contact.state().into(),
             created_at,
             updated_at,
@@ -104,21 +104,10 @@ impl LoadedSession {
             id: *id,
             label: label.clone(),
             sequence: *sequence,
-            contact: self.derived.figures.clone(),
+            contact: self.derived.summary.clone(),
             state: self.contact.state().into(),
             warnings: self.derived.warnings.clone(),
         };
         Ok(Reply { created: Some(*id), sequence: *sequence, body: written(&new)? })
-    }
-}
-
-/// Points of all tables of a profile, asperities included.
-pub(super) fn table_points(profile: &Profile) -> usize {
-    match profile {
-        Profile::Tabulated(TabulatedProfile { r, .. }) => r.len(),
-        Profile::Sum(SumProfile { parts }) => parts.iter().map(table_points).sum(),
-        Profile::Asperities(asperities) => asperities.gaps.len(),
-        Profile::LoadCurve(curve) => curve.indentation.len(),
-        _ => 0,
     }
 }

@@ -13,7 +13,11 @@ pub struct SessionMetrics {
     pub moves: IntCounter,
     /// How often a session that was asked for was cached.
     pub hits: IntCounter,
-    /// How long it took to load those that were not, s.
+    /// Profiles with tables, curves or asperities that have been prepared.
+    pub profiles_prepared: IntCounter,
+    /// How often one that was needed was ready.
+    pub profiles_shared: IntCounter,
+    /// How long it took to load those sessions that were not, s.
     pub open: Histogram,
 }
 
@@ -24,6 +28,14 @@ impl Default for SessionMetrics {
         SessionMetrics {
             moves: counter(Opts::new("stickslip_moves_total", "Moves made and stored.")),
             hits: counter(Opts::new("stickslip_cache_hits_total", hits)),
+            profiles_prepared: counter(Opts::new(
+                "stickslip_profiles_prepared_total",
+                "Profiles with tables, load curves or asperities that were prepared.",
+            )),
+            profiles_shared: counter(Opts::new(
+                "stickslip_profiles_shared_total",
+                "Times that such a profile was needed and already prepared.",
+            )),
             open: histogram(Opts::new("stickslip_contact_open_seconds", help), SECONDS),
         }
     }
@@ -35,7 +47,7 @@ pub struct Readings<'a> {
     pub counted: &'a SessionMetrics,
     /// Cached sessions that no request uses.
     pub cached: usize,
-    /// Bytes of their states.
+    /// Bytes of their states, and of the profiles that are ready.
     pub bytes: usize,
     /// How many bytes there may be.
     pub capacity: usize,

@@ -2,8 +2,9 @@
 //!
 //! Moves of one session queue at its lock in the order of their arrival, and those that wait together are made together
 //! (`group`); sessions do not wait for each other. A move is computed, appended to the store, and only then visible: a
-//! read shows a state that is stored. A client that hangs up while its move is computed leaves no trace; one that hangs up
-//! later has its move stored or not, as a client that loses its connection must expect, and the next request asks the store.
+//! read shows a state that is stored. A client that hangs up while its move is computed leaves no trace; one that hangs
+//! up later has its move stored or not, as a client that loses its connection must expect, and the next request asks
+//! the store.
 //!
 //! Other processes may work on the same store. A cached state is always one that the session has been in, so that
 //! the moves stored after it lead to the current one: a read applies them first, and a move whose sequence another
@@ -26,11 +27,12 @@ mod group;
 mod loaded;
 mod metrics;
 mod observe;
+mod profiles;
 mod read;
 mod relax;
 mod replay;
-mod room;
 mod snapshot;
+mod storage_reservation;
 mod trace;
 
 use std::sync::Arc;
@@ -41,6 +43,7 @@ use tracing::Instrument as _;
 use uuid::Uuid;
 
 use crate::admission::Pool;
+use crate::formats;
 use crate::otlp;
 use crate::store::{
     CONTACT_BYTES, IdempotentRequest, Listeners, Reply, RequestKey, Session, Store, StoreError, Tenant, Usage,
@@ -55,7 +58,8 @@ pub use error::SessionError;
 pub use events::STREAMS;
 use loaded::LoadedSession;
 pub use metrics::{Readings, SessionMetrics};
-use room::{Accounts, Room};
+pub use profiles::Profiles;
+use storage_reservation::{StorageReservation, UsageByTenant};
 
 /// How often a change is tried if other processes move the contact first. Each time, one of them has made progress.
 const ATTEMPTS: usize = 100;
@@ -78,7 +82,7 @@ struct Common {
     snapshots: Arc<Semaphore>,
     listeners: Listeners,
     metrics: SessionMetrics,
-    accounts: Accounts,
+    usage: UsageByTenant,
 }
 
 impl Sessions {
@@ -94,7 +98,7 @@ impl Sessions {
             snapshots: Arc::new(Semaphore::new(snapshot::AT_ONCE)),
             listeners: Listeners::new(STREAMS),
             metrics,
-            accounts: Accounts::default(),
+            usage: UsageByTenant::default(),
         };
         Sessions { tenant: Tenant::default(), by: None, common: Arc::new(common) }
     }
@@ -130,9 +134,9 @@ impl Sessions {
         IdempotentRequest::new(&*self.common.store, &self.tenant, key)
     }
 
-    /// Room in the store for what a change will add, within the quotas of the tenant.
-    async fn room(&self, wanted: Usage) -> Result<Room, SessionError> {
-        self.common.accounts.room(&self.common.store, &self.common.pool, &self.tenant, wanted).await
+    /// Reserves space in the store for what a change will add, within the quotas of the tenant.
+    async fn reserve_storage(&self, requested: Usage) -> Result<StorageReservation, SessionError> {
+        self.common.usage.reserve(&self.common.store, &self.common.pool, &self.tenant, requested).await
     }
 
     /// Exclusive use of a session: waits for earlier requests, as long as the pool permits.
@@ -166,14 +170,14 @@ impl Sessions {
         let reply = live.created_reply()?;
         let receipt = request.receipt(&reply);
         let added = Usage::of(1, live.stored_bytes(), receipt.as_ref());
-        let room = self.room(added).await?;
+        let reservation = self.reserve_storage(added).await?;
         // A request that finds the new session in the store waits until it is cached.
         let mut guard = self.common.cache.lock(&self.tenant, live.session.id).await;
         let stored = self.common.store.create(live.session.clone(), receipt);
         if let Err(error) = stored.instrument(otlp::part!("store")).await {
             return Ok(request.after_refusal(error).await?);
         }
-        room.used(added);
+        reservation.used(added);
         guard.live = Some(Box::new(live));
         Ok(reply)
     }
@@ -182,19 +186,29 @@ impl Sessions {
     ///
     /// # Errors
     /// [`SessionError`]; nothing has been made then.
-    pub async fn fork(&self, id: Uuid, wanted: ForkRequest, key: Option<RequestKey>) -> Result<Reply, SessionError> {
+    pub async fn fork(&self, id: Uuid, asked: ForkRequest, key: Option<RequestKey>) -> Result<Reply, SessionError> {
         let request = self.request(key);
         if let Some(reply) = request.earlier_reply().await? {
             return Ok(reply);
         }
-        // A tenant that has no room for another one is refused before its past is read.
-        drop(self.room(Usage::of(1, CONTACT_BYTES, None)).await?);
+        let forked = self.fork_anew(id, asked, &request).await;
+        unless_answered(&request, forked).await
+    }
+
+    async fn fork_anew(
+        &self,
+        id: Uuid,
+        asked: ForkRequest,
+        request: &IdempotentRequest<'_>,
+    ) -> Result<Reply, SessionError> {
+        // A tenant at its quota is refused before its past is read.
+        drop(self.reserve_storage(Usage::of(1, CONTACT_BYTES, None)).await?);
         let mut guard = self.lock(id).await?;
-        let (mut copy, _held) = self.after(&mut guard, wanted.sequence).await?;
+        let (mut copy, _held) = self.after(&mut guard, asked.sequence).await?;
         let now = Timestamp::now();
         copy.session = Session {
             id: Uuid::now_v7(),
-            label: wanted.label.or(copy.session.label),
+            label: asked.label.or(copy.session.label),
             created_at: now,
             updated_at: now,
             ..copy.session
@@ -204,19 +218,19 @@ impl Sessions {
         let extent = self.common.store.extent(id).await.map_err(|error| self.store_failure(&mut guard, error))?;
         let moves = copy.session.sequence * self.common.store.move_bytes();
         let added = Usage::of(1, copy.stored_bytes() + moves + extent.snapshot, receipt.as_ref());
-        let room = self.room(added).await?;
+        let reservation = self.reserve_storage(added).await?;
         let mut new = self.common.cache.lock(&self.tenant, copy.session.id).await;
         // The original may have moved on meanwhile in another process: its past stays what it was.
         let stored = self.common.store.fork(id, copy.session.clone(), receipt);
         match stored.instrument(otlp::part!("store")).await {
             Ok(()) => {
-                room.used(added);
+                reservation.used(added);
                 new.live = Some(copy);
                 Ok(reply)
             }
             Err(error @ (StoreError::NotFound | StoreError::Expired(_))) => Err(self.store_failure(&mut guard, error)),
             Err(StoreError::Stale { found }) => Err(SessionError::Overtaken { found }),
-            Err(error) => Ok(request.after_refusal(error).await?),
+            Err(error) => Err(error.into()),
         }
     }
 
@@ -235,25 +249,42 @@ impl Sessions {
         if let Some(reply) = request.earlier_reply().await? {
             return Ok(reply);
         }
+        let renamed = self.rename_anew(id, label, expected, &request).await;
+        unless_answered(&request, renamed).await
+    }
+
+    async fn rename_anew(
+        &self,
+        id: Uuid,
+        label: Option<String>,
+        expected: Option<u64>,
+        request: &IdempotentRequest<'_>,
+    ) -> Result<Reply, SessionError> {
         let mut guard = self.lock(id).await?;
-        let now = self.current(&mut guard).await?.reply();
-        if let Some(expected) = expected.filter(|expected| *expected != now.sequence) {
-            return Err(SessionError::Stale { expected, found: now.sequence });
-        }
-        let renamed = SessionReply { label: label.clone(), ..now };
-        let reply = Reply { created: None, sequence: renamed.sequence, body: written(&renamed)? };
-        let receipt = request.receipt(&reply);
-        let added = Usage::of(0, 0, receipt.as_ref());
-        let room = self.room(added).await?;
-        let stored = self.common.store.rename(id, label, receipt);
-        match stored.instrument(otlp::part!("store")).await {
-            Ok(()) => {
-                room.used(added);
-                Ok(reply)
+        let mut overtaken = 0;
+        for _ in 0..ATTEMPTS {
+            let now = self.current(&mut guard).await?.reply();
+            if let Some(expected) = expected.filter(|expected| *expected != now.sequence) {
+                return Err(SessionError::Stale { expected, found: now.sequence });
             }
-            Err(error @ (StoreError::NotFound | StoreError::Expired(_))) => Err(self.store_failure(&mut guard, error)),
-            Err(error) => Ok(request.after_refusal(error).await?),
+            let renamed = SessionReply { label: label.clone(), ..now };
+            let reply = Reply { created: None, sequence: renamed.sequence, body: written(&renamed)? };
+            let receipt = request.receipt(&reply);
+            let added = Usage::of(0, 0, receipt.as_ref());
+            let reservation = self.reserve_storage(added).await?;
+            // The reply shows the sequence, and the client may expect one: both hold only as long as no other process
+            // moves it.
+            let stored = self.common.store.rename(id, label.clone(), reply.sequence, receipt);
+            match stored.instrument(otlp::part!("store")).await {
+                Ok(()) => {
+                    reservation.used(added);
+                    return Ok(reply);
+                }
+                Err(StoreError::Stale { found }) => overtaken = found,
+                Err(error) => return Err(self.store_failure(&mut guard, error)),
+            }
         }
+        Err(SessionError::Overtaken { found: overtaken })
     }
 
     /// Deletes a session, if it is at the sequence that the client expects.
@@ -273,7 +304,7 @@ impl Sessions {
                 (Ok(()), _) => {
                     guard.live = None;
                     let bytes = CONTACT_BYTES + at * self.common.store.move_bytes();
-                    self.common.accounts.give_back(&self.tenant, Usage::of(1, bytes, None));
+                    self.common.usage.give_back(&self.tenant, Usage::of(1, bytes, None));
                     return Ok(());
                 }
                 (Err(StoreError::Stale { found }), Some(expected)) => {
@@ -287,13 +318,22 @@ impl Sessions {
     }
 }
 
+/// What a request is answered that was not answered before. One that is refused may be refused for what the same
+/// request, sent twice, has changed elsewhere meanwhile: then it gets the reply to that one.
+async fn unless_answered(
+    request: &IdempotentRequest<'_>,
+    done: Result<Reply, SessionError>,
+) -> Result<Reply, SessionError> {
+    match done {
+        Err(SessionError::Store(error)) => Ok(request.after_refusal(error).await?),
+        Err(refusal) => request.earlier_reply().await?.ok_or(refusal),
+        done => done,
+    }
+}
+
 /// Bytes that suffice for most replies, so that a buffer need not grow step by step.
 const REPLY: usize = 768;
 
 fn written(reply: &impl serde::Serialize) -> Result<Vec<u8>, SessionError> {
-    let _writing = otlp::part!("write").entered();
-    let mut bytes = Vec::with_capacity(REPLY);
-    serde_json::to_writer(&mut bytes, reply)
-        .map_err(|error| SessionError::Broken(format!("a reply cannot be written: {error}")))?;
-    Ok(bytes)
+    Ok(formats::json(REPLY, reply)?)
 }

@@ -3,7 +3,6 @@
 use std::sync::Arc;
 
 use crate::admission::Stop;
-use crate::simulation::cost;
 use crate::store::Record;
 use stickslip_mechanics::range;
 use stickslip_report::plot::in_unit;
@@ -14,6 +13,9 @@ use super::cycles::STATE_COST;
 use super::friction::TIME;
 use super::loaded::LoadedSession;
 use super::{SessionError, Sessions, written};
+
+/// Time to write one observation as JSON, ns.
+const WRITING_COST: u64 = 240;
 
 /// Refuses forces that no coefficient of friction explains at this normal force, N: they are in another unit.
 pub(super) fn check_plausible(observations: &[Observation], normal_force: f64) -> Result<(), Rejection> {
@@ -34,8 +36,8 @@ pub(super) fn check_plausible(observations: &[Observation], normal_force: f64) -
 }
 
 impl Sessions {
-    /// The reply to observations that have led to `live` and are not stored yet. The guard has the state before them. If the
-    /// estimate of the friction takes too long, it is the one before.
+    /// The reply to observations that have led to `live` and are not stored yet. The guard has the state before them.
+    /// If the estimate of the friction takes too long, it is the one before.
     pub(super) async fn observed(
         &self,
         guard: &mut Guard,
@@ -45,7 +47,7 @@ impl Sessions {
     ) -> Result<Vec<u8>, SessionError> {
         let id = guard.id();
         let (virgin, before) = (live.contact.virgin(), live.session.sequence - records.len() as u64);
-        let stop = stop.child_deadline(TIME);
+        let stop = stop.child_deadline(Some(TIME));
         let (mut log, seen) = self.read_states(id, before, live.cycles.take(), &virgin, &stop).await?;
         // It is not read again if these observations are overtaken.
         if let Some(live) = &mut guard.live {
@@ -76,6 +78,6 @@ impl Sessions {
         });
         let friction = live.estimated.and_then(|estimated| estimated.friction);
         let reply = ObservationsReply { id, sequence: live.session.sequence, items: items.collect(), friction };
-        self.common.pool.run(cost::writing_observations(records.len()), move || written(&reply)).await?
+        self.common.pool.run(WRITING_COST * records.len() as u64, move || written(&reply)).await?
     }
 }

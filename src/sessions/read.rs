@@ -5,20 +5,16 @@ use std::sync::Arc;
 use tracing::Instrument as _;
 use uuid::Uuid;
 
-use crate::admission::{Nanoseconds, Reservation};
+use crate::admission::{Reservation, Stop};
+use crate::computations::{OnContact, Shown};
 use crate::otlp;
-use crate::simulation::cost::{self, Work};
-use crate::simulation::{self, Timer, bytes, stresses};
+use crate::simulation::{bytes, cost};
 use stickslip_mechanics::Contact;
-use stickslip_wire::cycle::CycleTask;
 use stickslip_wire::subsurface::SubsurfaceTask;
-use stickslip_wire::{
-    CycleReply, HistoryItem, HistoryPage, Sampling, SessionPage, SessionReply, StressReply, SubsurfaceReply,
-    SubsurfaceRequest,
-};
+use stickslip_wire::{ContactDefinition, HistoryItem, HistoryPage, SessionPage, SessionReply, SubsurfaceRequest};
 
 use super::cache::Guard;
-use super::loaded::table_points;
+use super::replay::{PAGE, damaged};
 use super::{SessionError, Sessions, written};
 
 impl Sessions {
@@ -44,116 +40,69 @@ impl Sessions {
                 None => self.find_own(id).await?.definition,
             }
         };
-        let points = table_points(&definition.profile);
+        let points = definition.profile.points();
         let held = self.common.pool.reserve(points * bytes::WRITTEN_POINT_BYTES).await?;
         let work = move || written(&*definition);
         Ok((self.common.pool.run(cost::writing_table(points), work).await??, held))
     }
 
-    /// The reply that `write` makes of the stresses of a session, with the sequence and the reserved memory. Writing
-    /// takes at most `more` bytes beyond JSON's columns, and `longer` time.
+    /// The reply of a computation on a session, which `said` to have this definition, with the sequence that it belongs
+    /// to and the memory that it takes.
     ///
     /// # Errors
-    /// [`SessionError::NotFound`] or [`SessionError::Expired`], or a failure of the store or of the pool.
-    pub async fn stress<T: Send + 'static>(
+    /// [`SessionError`], among them [`SessionError::OtherDefinition`].
+    pub async fn compute_on<T: OnContact>(
         &self,
         id: Uuid,
-        sampling: Sampling,
-        residual: bool,
-        (more, longer): (usize, Nanoseconds),
-        write: impl FnOnce(&StressReply, &Contact, u64) -> T + Send + 'static,
-    ) -> Result<(u64, T, Reservation), SessionError> {
+        said: Option<ContactDefinition>,
+        task: T,
+        shown: Shown,
+    ) -> Result<(u64, Vec<u8>, Reservation), SessionError> {
         let (stop, _guard) = self.common.pool.deadline();
-        let held = self.common.pool.reserve(bytes::of_stress(sampling.length()) + more).await?;
-        let (contact, sequence, state) = self.copy(id).await?;
-        let looking = Work { depth: contact.memory_depth(), radii: sampling.length(), residual, ..Work::default() };
-        let cost = looking.cost(contact.profile()).saturating_add(longer);
+        let held = self.common.pool.reserve(task.bytes() + shown.bytes(task.rows())).await?;
+        let (contact, sequence, state) = self.copy(id, said, &stop).await?;
+        let cost = task.cost(contact.profile(), contact.memory_depth()).saturating_add(shown.format.cost());
         let work = move || {
             let _state = state;
-            let solving = otlp::part!("solve").entered();
-            let stress = stresses(&contact, &sampling, &stop)?;
-            let reply = StressReply {
-                radius: stress.radius,
-                pressure: stress.pressure,
-                shear: stress.shear,
-                slip: stress.slip,
-                displacement: stress.displacement,
-                residual: residual.then(|| simulation::residual(&contact, &stop)).transpose()?,
-            };
-            drop(solving);
-            Ok::<_, SessionError>(write(&reply, &contact, sequence))
+            let outcome = otlp::part!("solve").in_scope(|| task.run(contact, sequence, &stop))?;
+            Ok::<_, SessionError>(shown.write(&outcome)?)
         };
         Ok((sequence, self.common.pool.run(cost, work).await??, held))
     }
 
-    /// The reply that `write` makes of the steady cycles of a session at its present load, as [`Sessions::stress`].
+    /// The stresses below the surface that a request asks for, checked against the definition of the session.
     ///
     /// # Errors
-    /// As [`Sessions::stress`], and a force of μ F_N or more.
-    pub async fn cycle<T: Send + 'static>(
-        &self,
-        id: Uuid,
-        task: CycleTask,
-        (more, longer): (usize, Nanoseconds),
-        write: impl FnOnce(&CycleReply, &Contact, &CycleTask) -> T + Send + 'static,
-    ) -> Result<(u64, T, Reservation), SessionError> {
-        let (stop, _guard) = self.common.pool.deadline();
-        let held = self.common.pool.reserve(bytes::of_cycle(&task) + more).await?;
-        let (contact, sequence, state) = self.copy(id).await?;
-        let cost = cost::of_cycle(contact.profile(), &task).saturating_add(longer);
-        let work = move || {
-            let _state = state;
-            let contact = contact.without_history();
-            let solve = || simulation::cycle(&contact, &task, Timer::start(), &stop);
-            let reply = otlp::part!("solve").in_scope(solve)?;
-            Ok::<_, SessionError>(write(&reply, &contact, &task))
-        };
-        Ok((sequence, self.common.pool.run(cost, work).await??, held))
+    /// [`SessionError::NotFound`] or [`SessionError::Expired`], a request that does not fit the definition, or a
+    /// failure of the store.
+    pub async fn subsurface_task(&self, id: Uuid, request: SubsurfaceRequest) -> Result<SubsurfaceTask, SessionError> {
+        let mut guard = self.lock(id).await?;
+        Ok(request.of_contact(&self.current(&mut guard).await?.session.definition)?)
     }
 
-    /// The reply that `write` makes of the stress below the surface of a session, as [`Sessions::stress`]; for each place it takes
-    /// `more` bytes.
-    ///
-    /// # Errors
-    /// As [`Sessions::stress`], and a request that does not fit the definition.
-    pub async fn subsurface<T: Send + 'static>(
+    /// A copy of the contact, which `said` to have this definition, with its sequence and memory for it; `stop` counts
+    /// what loading it takes. The lock is held for the copy alone, so that the session can move on meanwhile.
+    pub(super) async fn copy(
         &self,
         id: Uuid,
-        request: SubsurfaceRequest,
-        (more, longer): (impl Fn(usize) -> usize, Nanoseconds),
-        write: impl FnOnce(&SubsurfaceReply, &SubsurfaceTask) -> T + Send + 'static,
-    ) -> Result<(u64, T, Reservation), SessionError> {
-        let (stop, _guard) = self.common.pool.deadline();
-        let task = {
-            let mut guard = self.lock(id).await?;
-            request.of_contact(&self.current(&mut guard).await?.session.definition)?
-        };
-        let held = self.common.pool.reserve(bytes::of_subsurface(&task) + more(task.places.count())).await?;
-        let (contact, sequence, state) = self.copy(id).await?;
-        let cost = cost::of_subsurface(contact.profile(), &task, contact.memory_depth()).saturating_add(longer);
-        let work = move || {
-            let _state = state;
-            let solve = || simulation::subsurface_reply(&contact, &task, &stop);
-            let reply = otlp::part!("solve").in_scope(solve)?;
-            Ok::<_, SessionError>(write(&reply, &task))
-        };
-        Ok((sequence, self.common.pool.run(cost, work).await??, held))
-    }
-
-    /// A copy of the contact with its sequence, and memory for it. The lock is held for the copy alone, so that the session can
-    /// move on meanwhile.
-    async fn copy(&self, id: Uuid) -> Result<(Contact, u64, Reservation), SessionError> {
+        said: Option<ContactDefinition>,
+        stop: &Stop,
+    ) -> Result<(Contact, u64, Reservation), SessionError> {
         let mut guard = self.lock(id).await?;
         let live = self.current(&mut guard).await?;
+        if said.is_some_and(|said| said != *live.session.definition) {
+            return Err(SessionError::OtherDefinition(id));
+        }
         let (contact, sequence) = (live.contact.memory_bytes(), live.session.sequence);
         let mut held = self.reserve_copy(&mut guard, contact).await?;
         held.shrink(contact);
+        stop.count(guard.loading);
         let live = guard.live.as_ref().ok_or(SessionError::NotFound(id))?;
         Ok((live.contact.clone(), sequence, held))
     }
 
-    /// Memory for a copy of the state in a guard: that of a state which was brought from the store has it already, so that
-    /// nobody waits for memory while he holds some.
+    /// Memory for a copy of the state in a guard: that of a state which was brought from the store has it already, so
+    /// that nobody waits for memory while he holds some.
     pub(super) async fn reserve_copy(&self, guard: &mut Guard, bytes: usize) -> Result<Reservation, SessionError> {
         if guard.held.is_counted() {
             return Ok(std::mem::take(&mut guard.held));
@@ -189,6 +138,25 @@ impl Sessions {
         }
         let heading = self.common.store.heading(id).await;
         heading.map(|heading| heading.sequence).map_err(|error| self.store_error(id, error))
+    }
+
+    /// Checks that the first `end` moves of a session are all stored.
+    ///
+    /// # Errors
+    /// [`SessionError::Store`] with [`StoreError::Damaged`] if they are not, or a failure of the store.
+    pub async fn check_complete(&self, id: Uuid, end: u64) -> Result<(), SessionError> {
+        let store = &self.common.store;
+        if store.count_moves(id, end).await.map_err(|error| self.store_error(id, error))? == end {
+            return Ok(());
+        }
+        // Which one is missing is found by reading them.
+        let mut at = 0;
+        while at < end {
+            let page = store.history(id, at, PAGE).await.map_err(|error| self.store_error(id, error))?;
+            let Some(last) = page.last() else { break };
+            at = last.sequence;
+        }
+        Err(damaged(id, &format_args!("of its {end} moves some are missing")))
     }
 
     /// A page of a session's moves, oldest first.

@@ -8,6 +8,7 @@ use uuid::Uuid;
 use crate::admission::Reservation;
 use crate::simulation::bytes::EXPANSION;
 use crate::simulation::cost::Work;
+use crate::simulation::{Failure, Timer};
 use crate::store::{Extent, RECORD_BYTES, Record, Session, StoreError, Whole};
 use stickslip_wire::limits;
 
@@ -25,7 +26,8 @@ pub(super) const PIECE_BYTES: usize = 96;
 const COPIES: usize = 3;
 /// Bytes of a definition that holds no table.
 const SHORT_DEFINITION: u64 = 1_024;
-/// Moves that are read together with the session that made them: with their records they take less than a small request.
+/// Moves that are read together with the session that made them: with their records they take less than a small
+/// request.
 const SMALL_HISTORY: u64 = 64;
 
 impl Sessions {
@@ -49,7 +51,8 @@ impl Sessions {
                 live.session.label = stored.label;
             }
             if stored.sequence > cached {
-                Box::pin(self.catch_up(guard)).await?;
+                // No further: the label belongs to this sequence.
+                Box::pin(self.catch_up(guard, stored.sequence)).await?;
             } else if stored.sequence < cached {
                 // The store has been restored from a backup.
                 guard.live = None;
@@ -58,20 +61,21 @@ impl Sessions {
         self.cached(guard).await
     }
 
-    /// Applies the moves that are stored after the cached state; returns whether there were any.
-    pub(super) async fn catch_up(&self, guard: &mut Guard) -> Result<bool, SessionError> {
+    /// Applies the moves that are stored after the cached state, up to a sequence; returns whether there were any.
+    pub(super) async fn catch_up(&self, guard: &mut Guard, last: u64) -> Result<bool, SessionError> {
         let id = guard.id();
         let mut moved = false;
-        while let Some(sequence) = guard.live.as_ref().map(|live| live.session.sequence) {
-            let page = match self.common.store.history(id, sequence, PAGE).await {
+        while let Some(sequence) = guard.live.as_ref().map(|live| live.session.sequence).filter(|at| *at < last) {
+            let limit = usize::try_from(last - sequence).map_or(PAGE, |left| left.min(PAGE));
+            let page = match self.common.store.history(id, sequence, limit).await {
                 Ok(page) => page,
                 Err(error) => return Err(self.store_failure(guard, error)),
             };
-            let last_page = page.len() < PAGE;
+            let last_page = page.len() < limit;
             if !page.is_empty()
                 && let Some(live) = guard.live.take()
             {
-                guard.live = Some(self.follow(live, page).await?);
+                guard.live = Some(self.follow(guard, live, page).await?);
                 moved = true;
             }
             if last_page {
@@ -108,22 +112,22 @@ impl Sessions {
                 live.session.updated_at = updated_at;
             }
             live.shared = false;
-            // The state, and a copy of it.
-            guard.held.shrink(2 * live.bytes());
+            // The state, and a copy of it, which shares the profile.
+            guard.held.shrink(2 * live.bytes() + live.shape_bytes());
         }
         self.common.metrics.open.observe(begin.elapsed().as_secs_f64());
         Ok(())
     }
 
-    /// Replays a session from what one read of the store has returned. Returns the sequence that the store named, and when the session
-    /// last moved.
+    /// Replays a session from what one read of the store has returned. Returns the sequence that the store named, and
+    /// when the session last moved.
     async fn load_whole(&self, guard: &mut Guard, whole: Whole) -> Result<(u64, Timestamp), SessionError> {
         let Whole { session, moves } = whole;
         let last = (session.sequence, session.updated_at);
-        let mut live = first_state(session)?;
+        let mut live = self.first_state(guard, session).await?;
         live.session.sequence = 0;
         if !moves.is_empty() {
-            live = self.follow(live, moves).await?;
+            live = self.follow(guard, live, moves).await?;
         }
         guard.live = Some(live);
         Ok(last)
@@ -144,37 +148,48 @@ impl Sessions {
         {
             return Err(damaged(id, &format_args!("move {} is missing", session.sequence + 1)));
         }
-        let mut live = first_state(session)?;
-        (live.contact, live.session.sequence) = self.load_snapshot(snapshot, live.contact, last.0).await?;
+        let mut live = self.first_state(guard, session).await?;
+        (live.contact, live.session.sequence) =
+            self.load_snapshot(&mut guard.loading, snapshot, live.contact, last.0).await?;
         guard.live = Some(live);
-        self.catch_up(guard).await?;
+        self.catch_up(guard, last.0).await?;
         Ok(last)
     }
 
-    /// A copy of the session after so many of its moves, or after all of them, and the memory of a state that is made for it.
+    /// A copy of the session after so many of its moves, or after all of them, and the memory of a state that is made
+    /// for it.
     ///
     /// # Errors
-    /// [`SessionError::NoSuchMove`] if it has made fewer, and as [`Sessions::current`].
+    /// [`SessionError::NoSuchMove`] if it has made fewer, and as [`Sessions::current`]; but what is damaged after the
+    /// last of so many moves is none.
     pub(super) async fn after(
         &self,
         guard: &mut Guard,
         sequence: Option<u64>,
     ) -> Result<(Box<LoadedSession>, Reservation), SessionError> {
         let id = guard.id();
-        let now = self.current(guard).await?;
-        let found = now.session.sequence;
+        let (bytes, session) = match self.current(guard).await {
+            Ok(now) => (now.contact.memory_bytes(), now.session.clone()),
+            // What was made before the damage may be whole.
+            Err(SessionError::Store(StoreError::Damaged { .. })) if sequence.is_some() => {
+                let extent = self.common.store.extent(id).await.map_err(|error| self.store_failure(guard, error))?;
+                (bytes_to_load(&extent), self.find_own(id).await?)
+            }
+            Err(error) => return Err(error),
+        };
+        let found = session.sequence;
         let wanted = sequence.unwrap_or(found);
         if wanted > found {
             return Err(SessionError::NoSuchMove { found });
         }
-        let (bytes, session) = (now.contact.memory_bytes(), now.session.clone());
         let held = self.reserve_copy(guard, bytes).await?;
-        if let (Some(now), true) = (&guard.live, wanted == found) {
+        if let Some(now) = guard.live.as_ref().filter(|now| now.session.sequence == wanted && wanted == found) {
             return Ok((now.clone(), held));
         }
         let snapshot = self.common.store.snapshot(id).await;
-        let mut live = Box::new(LoadedSession::of_stored(session).map_err(|error| damaged(id, &error))?);
-        (live.contact, live.session.sequence) = self.load_snapshot(snapshot, live.contact, wanted).await?;
+        let mut live = self.first_state(guard, session).await?;
+        (live.contact, live.session.sequence) =
+            self.load_snapshot(&mut guard.loading, snapshot, live.contact, wanted).await?;
         while live.session.sequence < wanted {
             let reached = live.session.sequence;
             let limit = usize::try_from(wanted - reached).map_or(PAGE, |left| left.min(PAGE));
@@ -183,14 +198,34 @@ impl Sessions {
             if page.is_empty() {
                 return Err(damaged(id, &format_args!("move {} is missing", reached + 1)));
             }
-            live = self.follow(live, page).await?;
+            live = self.follow(guard, live, page).await?;
         }
         Ok((live, held))
+    }
+
+    /// The state of a stored session before its first move. The sequence of the session is that of the store.
+    async fn first_state(&self, guard: &mut Guard, session: Session) -> Result<Box<LoadedSession>, SessionError> {
+        let id = session.id;
+        let (stop, _raised_at_the_end) = self.common.pool.deadline();
+        let profiles = self.profiles(&stop);
+        let cost = profiles.cost_of(&session.definition.defined_profile(""))?;
+        let work = move || {
+            let timer = Timer::start(&stop);
+            let first = LoadedSession::of_stored(session, &profiles).map(Box::new);
+            if first.is_err() {
+                stop.check().map_err(Failure::from)?;
+            }
+            Ok::<_, Failure>((first, timer.elapsed()))
+        };
+        let (first, work) = self.common.pool.run(cost, work).await??;
+        guard.loading += work;
+        first.map_err(|error| damaged(id, &error))
     }
 
     /// Applies stored moves.
     async fn follow(
         &self,
+        guard: &mut Guard,
         mut live: Box<LoadedSession>,
         page: Vec<Record>,
     ) -> Result<Box<LoadedSession>, SessionError> {
@@ -204,12 +239,15 @@ impl Sessions {
                 live.session.sequence = record.sequence;
                 live.session.updated_at = record.at;
             }
-            live.replay_cost.add(page.len(), begin.elapsed());
-            Ok(live)
+            let work = begin.elapsed();
+            live.replay_cost.add(page.len(), work);
+            Ok((live, work))
         });
-        replayed.await?.map_err(|error: stickslip_mechanics::Error| {
+        let (live, work) = replayed.await?.map_err(|error: stickslip_mechanics::Error| {
             damaged(id, &format_args!("a stored move cannot be made again: {error}"))
-        })
+        })?;
+        guard.loading += work;
+        Ok(live)
     }
 
     /// The session as it is stored, if it belongs to the tenant.
@@ -239,18 +277,13 @@ impl Sessions {
     }
 }
 
-/// The state of a stored session before its first move. The sequence of the session is that of the store.
-fn first_state(session: Session) -> Result<Box<LoadedSession>, SessionError> {
-    let id = session.id;
-    Ok(Box::new(LoadedSession::of_stored(session).map_err(|error| damaged(id, &error))?))
-}
-
 /// Whether a session takes so little that it may be read before memory is reserved for it.
 fn is_small(extent: &Extent) -> bool {
     extent.sequence <= SMALL_HISTORY && extent.definition <= SHORT_DEFINITION && extent.snapshot == 0
 }
 
-/// Bytes that a session takes while it is brought from the store, with a copy of its state; rather too many than too few.
+/// Bytes that a session takes while it is brought from the store, with a copy of its state; rather too many than too
+/// few.
 fn bytes_to_load(extent: &Extent) -> usize {
     let number = |count: u64| usize::try_from(count).unwrap_or(usize::MAX);
     let pieces = number(extent.sequence).saturating_mul(PIECES).min(limits::MEMORY_DEPTH);

@@ -4,7 +4,7 @@
 //! the session replayed from its beginning. It is due once what it spares a replay outweighs what it costs to write and
 //! read, which bounds both the time to open a session and the bytes written for a move.
 
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use crate::store::{Snapshot, StoreError};
 use stickslip_mechanics::Contact;
@@ -65,8 +65,10 @@ impl Sessions {
     }
 
     /// The contact after some stored move and the number of that move; `initial` and 0 if there is no snapshot to read.
+    /// `loading` is increased by the time that it takes.
     pub(super) async fn load_snapshot(
         &self,
+        loading: &mut Duration,
         snapshot: Result<Option<Snapshot>, StoreError>,
         initial: Contact,
         last: u64,
@@ -82,12 +84,16 @@ impl Sessions {
         // Reading a byte is below a nanosecond.
         let cost = snapshot.state.len() as u64;
         let read = self.common.pool.run(cost, move || {
-            match checked(&snapshot.state).and_then(|state| initial.unpack(state)) {
+            let begin = Instant::now();
+            let read = match checked(&snapshot.state).and_then(|state| initial.unpack(state)) {
                 Some(contact) => (contact, snapshot.sequence),
                 None => (initial, 0),
-            }
+            };
+            (read, begin.elapsed())
         });
-        Ok(read.await?)
+        let (read, work) = read.await?;
+        *loading += work;
+        Ok(read)
     }
 }
 

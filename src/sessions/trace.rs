@@ -1,5 +1,7 @@
 //! The path between recorded states, computed again in small steps on a copy: the session itself does not move.
 
+use std::time::Duration;
+
 use uuid::Uuid;
 
 use crate::admission::Stop;
@@ -47,7 +49,9 @@ impl Sessions {
             self.current(&mut guard).await?.contact.virgin()
         };
         let snapshot = self.common.store.snapshot(id).await;
-        let (mut contact, mut at) = self.load_snapshot(snapshot, initial, after).await?;
+        // A trace does not say how long it took.
+        let loading = &mut Duration::default();
+        let (mut contact, mut at) = self.load_snapshot(loading, snapshot, initial, after).await?;
         while at < last {
             let most = usize::try_from(last - at).unwrap_or(PAGE).min(PAGE);
             let records = self.common.store.history(id, at, most).await.map_err(|error| self.store_error(id, error))?;

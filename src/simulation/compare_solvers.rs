@@ -81,8 +81,7 @@ pub fn compare_solvers(comparison: &Comparison, stop: &Stop) -> Result<AccuracyR
     let fields = Fields { pressure: false, shear: true, slip: false, displacement: false };
     let sampling = Sampling { points: Points::Radii(radii), fields };
     let shears = stresses(&truth, &sampling, stop)?.shear.unwrap_or_default();
-    let figures = truth.summary();
-    let pressure = figures.unit_pressure();
+    let pressure = truth.summary().unit_pressure();
     let pressure = if pressure.is_finite() { pressure } else { 0.0 };
     let estimate = truth.accuracy();
     let reference = Reference {

@@ -3,15 +3,16 @@
 use std::f64::consts::TAU;
 
 use stickslip_mechanics::cycle::{self, OscillatingCycle, OscillatingLoad, Oscillation};
-use stickslip_mechanics::{Contact, Error, Move, Normal, Setup, Tangential};
+use stickslip_mechanics::{Contact, Error, Move, Normal, Tangential};
 use stickslip_wire::cycle::CycleTask;
+use stickslip_wire::definition::SharedSetup;
 use stickslip_wire::reply::finite;
 use stickslip_wire::{CycleReply, FrictionWork, Harmonic, SteadyCycle};
 
 use super::cycle_map::map_of;
 use super::cycle_studies::{best_load, resonance};
 use super::run::{Timer, accuracy, contact};
-use super::warnings::{excess_error, warnings_at};
+use super::warnings::{excess_error, resonance_warning, warnings_at};
 use super::{Failure, needs_stress_field};
 use crate::admission::Stop;
 
@@ -26,11 +27,11 @@ const REASON_STEPPED: &str =
 ///
 /// # Errors
 /// As [`cycle()`], and [`Failure::Refused`] for a preload that cannot be reached.
-pub fn cycle_of(setup: Setup, task: &CycleTask, stop: &Stop) -> Result<(Contact, CycleReply), Failure> {
+pub fn cycle_of(setup: SharedSetup, task: &CycleTask, stop: &Stop) -> Result<(Contact, CycleReply), Failure> {
     if let Some(map) = task.map {
         return map_of(setup, task, map, stop);
     }
-    let timer = Timer::start();
+    let timer = Timer::start(stop);
     let contact = contact(setup, "/contact")?;
     let reply = cycle(&contact, task, timer, stop)?;
     Ok((contact, reply))
@@ -40,7 +41,7 @@ pub fn cycle_of(setup: Setup, task: &CycleTask, stop: &Stop) -> Result<(Contact,
 ///
 /// # Errors
 /// [`Failure::Refused`] for a force of μ F_N or more, [`Failure`] if the work was ended.
-pub fn cycle(contact: &Contact, task: &CycleTask, timer: Timer, stop: &Stop) -> Result<CycleReply, Failure> {
+pub fn cycle(contact: &Contact, task: &CycleTask, timer: Timer<'_>, stop: &Stop) -> Result<CycleReply, Failure> {
     if task.density.is_some() {
         needs_stress_field(contact, "/work_density")?;
     }
@@ -88,8 +89,13 @@ pub fn cycle(contact: &Contact, task: &CycleTask, timer: Timer, stop: &Stop) -> 
     let estimated = turned.apply(&step).map_or(contact, |()| &turned);
     let mut accuracy = accuracy(estimated, timer, reason);
     accuracy.force_error = accuracy.force_error.max(error);
-    let warnings = warnings_at(contact, contact.contact_radius(), contact.indentation(), missed);
-    let frequency_response = task.response.as_ref().map(|asked| resonance(contact, asked, stop)).transpose()?;
+    let mut warnings = warnings_at(contact, contact.contact_radius(), contact.indentation(), missed);
+    let mut frequency_response = None;
+    if let Some(asked) = &task.response {
+        let (found, error) = resonance(contact, asked, stop)?;
+        warnings.extend(resonance_warning(error, asked.1));
+        frequency_response = Some(found);
+    }
     Ok(CycleReply { contact: contact.summary().into(), cycles, frequency_response, accuracy, warnings })
 }
 

@@ -1,7 +1,8 @@
 //! A fretting map: the steady cycles of a contact under many loads.
 
-use stickslip_mechanics::{Contact, Setup};
+use stickslip_mechanics::Contact;
 use stickslip_wire::cycle::{CycleTask, FrettingMap};
+use stickslip_wire::definition::SharedSetup;
 use stickslip_wire::{Accuracy, CycleReply};
 
 use super::Failure;
@@ -13,8 +14,13 @@ use crate::admission::Stop;
 ///
 /// # Errors
 /// As [`cycles_under`], and [`Failure::Refused`] for a preload that cannot be reached.
-pub fn map_of(setup: Setup, task: &CycleTask, map: FrettingMap, stop: &Stop) -> Result<(Contact, CycleReply), Failure> {
-    let timer = Timer::start();
+pub fn map_of(
+    setup: SharedSetup,
+    task: &CycleTask,
+    map: FrettingMap,
+    stop: &Stop,
+) -> Result<(Contact, CycleReply), Failure> {
+    let timer = Timer::start(stop);
     let contact = contact(setup, "/contact")?;
     let mut loads = map.loads();
     let first = loads.next().unwrap_or(map.normal_force.from);
@@ -38,7 +44,7 @@ pub fn cycles_under(
     contact: &Contact,
     load: f64,
     task: &CycleTask,
-    timer: Timer,
+    timer: Timer<'_>,
     stop: &Stop,
 ) -> Result<CycleReply, Failure> {
     let refused = |error| Failure::Refused { pointer: "/map/normal_force".to_owned(), error };

@@ -2,6 +2,7 @@
 
 use stickslip_mechanics::Contact;
 use stickslip_mechanics::cycle::{Drive, Resonator, SteadyCycle, best_load as best_of};
+use stickslip_wire::reply::finite;
 use stickslip_wire::{BestLoad, BestLoadStudy, FrequencyResponse, LoadCurve, Resonance, ResonancePoint};
 
 use super::Failure;
@@ -35,8 +36,12 @@ pub fn best_load(
     Ok(Some(BestLoad { normal_force: best.normal_force, dissipated_energy: best.dissipated_energy, curve }))
 }
 
-/// The oscillations of a mass on the contact.
-pub fn resonance(contact: &Contact, asked: &FrequencyResponse, stop: &Stop) -> Result<Resonance, Failure> {
+/// The oscillations of a mass on the contact to a tolerance, of the amplitude, and their largest error likewise.
+pub fn resonance(
+    contact: &Contact,
+    (asked, tolerance): &(FrequencyResponse, f64),
+    stop: &Stop,
+) -> Result<(Resonance, f64), Failure> {
     let body = Resonator { mass: asked.mass, drive_force: asked.drive_force };
     let natural_frequency = body.natural_frequency(contact);
     let frequencies = asked.frequencies.clone().unwrap_or_else(|| {
@@ -44,15 +49,20 @@ pub fn resonance(contact: &Contact, asked: &FrequencyResponse, stop: &Stop) -> R
         let at = |index: usize| from + (to - from) * index as f64 / (FREQUENCIES - 1) as f64;
         (0..FREQUENCIES).map(at).filter(|frequency| *frequency > 0.0).collect()
     });
-    let Some(found) = body.respond(contact, &frequencies, &|| stop.check().is_ok()) else {
+    let Some(found) = body.respond(contact, &frequencies, *tolerance, &|| stop.check().is_ok()) else {
         stop.check()?;
         return Err(Failure::Stopped);
     };
     let point = |found: stickslip_mechanics::cycle::Response| ResonancePoint {
         frequency: found.frequency,
         amplitude: found.amplitude,
+        amplitude_error: finite(found.amplitude_error),
         phase: found.phase.to_degrees(),
+        peak: found.peak,
+        peak_error: finite(found.peak_error),
         third_harmonic: found.third_harmonic,
     };
-    Ok(Resonance { natural_frequency, points: found.into_iter().map(point).collect() })
+    let error =
+        found.iter().map(|found| found.amplitude_error.max(found.peak_error) / found.amplitude).fold(0.0, f64::max);
+    Ok((Resonance { natural_frequency, points: found.into_iter().map(point).collect() }, error))
 }

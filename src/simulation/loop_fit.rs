@@ -137,7 +137,9 @@ fn reply(fit: LoopFit, definition: ContactDefinition) -> FitReply {
 fn fitted(definition: ContactDefinition, fit: &LoopFit, names: &[FitParameter]) -> ContactDefinition {
     let has = |name: FitParameter| names.contains(&name);
     let elasticity = fit.contact.elasticity();
-    let moduli = Effective { e_star: elasticity.e_star(), g_star: elasticity.g_star() };
+    // Those of the bodies, where they are known, stay the constants of the stress below the surface.
+    let bodies = definition.material.bodies().map(<[_]>::to_vec);
+    let moduli = Effective { e_star: elasticity.e_star(), g_star: elasticity.g_star(), bodies };
     let is_modulus_fitted = has(FitParameter::GStar) || has(FitParameter::EStar);
     let profile = match fit.contact.profile() {
         mechanics::Profile::Sphere(sphere) if has(FitParameter::Radius) => {
@@ -157,8 +159,8 @@ fn warning(note: Note) -> Warning {
     let (code, message) = match note {
         Note::MachineComplianceUnknown => (
             "machine_compliance_unknown",
-            "the compliance of the machine is taken for zero: a soft machine makes friction and stiffness wrong, and the fit looks \
-             perfect all the same. Give it as `known`, or free it where the loop reaches gross slip",
+            "the compliance of the machine is taken for zero: a soft machine makes friction and stiffness wrong, and \
+             the fit looks perfect all the same. Give it as `known`, or free it where the loop reaches gross slip",
         ),
         Note::PartialSlipOnly => (
             "partial_slip_only",
@@ -170,13 +172,18 @@ fn warning(note: Note) -> Warning {
         ),
         Note::FirstBranchUnknown => (
             "first_branch_unknown",
-            "how a record begins, or where its displacement is zero, is not known: it is taken for a part of a steady cycle about its own \
-             middle. Say `start`; in a steady cycle nothing determines `displacement_offset`",
+            "how a record begins, or where its displacement is zero, is not known: it is taken for a part of a steady \
+             cycle about its own middle. Say `start`; in a steady cycle nothing determines `displacement_offset`",
+        ),
+        Note::Quantised => (
+            "quantised",
+            "the forces come in steps that are not small beside their noise: where the contact slides their rounding \
+             does not average out. Standard errors and intervals are wider by what it may shift",
         ),
         Note::NotCoulomb => (
             "not_coulomb",
-            "what the fit leaves is no noise: the contact has another friction law, shape or load, or the bench another error. \
-             The standard errors are too small",
+            "the residual is not noise: the contact has another friction law, shape or load, or the bench \
+             another error. The standard errors are too small",
         ),
     };
     Warning { code: code.to_owned(), message: message.to_owned() }

@@ -11,7 +11,9 @@ mod cycle;
 mod cycle_map;
 mod cycle_studies;
 mod fretting;
+mod fretting_warnings;
 mod loop_fit;
+mod prepare;
 mod profile_fit;
 mod protocol;
 mod reply_template;
@@ -28,13 +30,14 @@ pub use cycle::{cycle, cycle_of};
 pub use cycle_map::cycles_under;
 pub use fretting::fretting;
 pub use loop_fit::fit_loops;
+pub use prepare::{check, cost_of_preparation};
 pub use profile_fit::fit_profile;
 pub use protocol::{Subject, protocol, protocol_for};
 pub use run::{Timer, accuracy, contact, equal_peaks, follow, residual, simulate, stresses};
 pub use solver::Solver;
 pub use subsurface::{subsurface, subsurface_reply};
 pub use sweep::{Sweep, SweepError, SweepResult};
-pub use warnings::{excess_error, new_warnings, present_warnings};
+pub use warnings::{FarMove, excess_error, new_warnings, present_warnings};
 
 use std::time::Duration;
 
@@ -81,7 +84,8 @@ pub enum Failure {
     },
     /// The states of a cycle are too many, or too large, to be held together.
     #[error(
-        "the states of this cycle take too much memory: make it of fewer moves, or straight in displacement and indentation"
+        "the states of this cycle take too much memory: make it of fewer moves, or straight in displacement and \
+            indentation"
     )]
     CycleTooLarge {
         /// JSON pointer to the path.
@@ -95,9 +99,23 @@ pub enum Failure {
         /// How long work may take.
         allowed: Duration,
     },
+    /// The profile cannot be prepared within the time limit of one request.
+    #[error(
+        "preparing this profile is estimated at {:.3} s, and {} s are allowed: give fewer points",
+        estimate.as_secs_f64(), allowed.as_secs_f64()
+    )]
+    Preparation {
+        /// JSON pointer to it.
+        pointer: &'static str,
+        /// The estimate.
+        estimate: Duration,
+        /// How long work may take.
+        allowed: Duration,
+    },
     /// The extrema cannot be found within the time limit of one request.
     #[error(
-        "finding the extrema of a slip history of up to {depth} pieces is estimated at {estimate} s, and {} s are allowed: up to {fits} pieces fit",
+        "finding the extrema of a slip history of up to {depth} pieces is estimated at {estimate} s, and {} s are \
+            allowed: up to {fits} pieces fit",
         allowed.as_secs_f64()
     )]
     Search {
@@ -115,6 +133,12 @@ pub enum Failure {
     /// A contact that is to be relaxed does not touch.
     #[error("the indenter is lifted off, so there is no stress to relax: move it back into contact first")]
     Lifted,
+    /// The request names a stored contact, and only a server has any.
+    #[error("needs a running service")]
+    NeedsServer {
+        /// JSON pointer to its name.
+        pointer: &'static str,
+    },
     /// The client no longer waits for the result.
     #[error("stopped: the client no longer waits for the result")]
     Stopped,
@@ -151,19 +175,23 @@ impl Failure {
                 mechanics::Error::BeyondProfile { .. } => Code::BeyondProfile,
                 mechanics::Error::NotConvexEnough { .. } => Code::ProfileNotConvexEnough,
                 mechanics::Error::ForceExceedsFriction { .. } => Code::ForceExceedsFriction,
-                mechanics::Error::Interrupted => Code::TooMuchWork,
+                mechanics::Error::Interrupted | mechanics::Error::CycleTooLarge => Code::TooMuchWork,
                 mechanics::Error::Unsupported { .. } => Code::UnsupportedMove,
             },
             Failure::Scan { error: scan::Error::TooShort { .. }, .. } => Code::BeyondProfile,
-            Failure::Scan { .. } | Failure::Loops { .. } => Code::InvalidInput,
+            Failure::Scan { .. } | Failure::Loops { .. } | Failure::NeedsServer { .. } => Code::InvalidInput,
             Failure::MemoryFull { .. } | Failure::Lifted => Code::Conflict,
-            Failure::TooLong { .. } | Failure::Search { .. } | Failure::CycleTooLarge { .. } => Code::TooMuchWork,
+            Failure::TooLong { .. }
+            | Failure::Preparation { .. }
+            | Failure::Search { .. }
+            | Failure::CycleTooLarge { .. } => Code::TooMuchWork,
             Failure::Stopped => Code::Overloaded,
         }
     }
 }
 
-/// Refuses what the member at `pointer` asks for, if it needs a stress and the contact is known by its load curve alone.
+/// Refuses what the member at `pointer` asks for, if it needs a stress and the contact is known by its load curve
+/// alone.
 ///
 /// # Errors
 /// [`Failure::Refused`] with [`Error::NoStressField`](mechanics::Error::NoStressField).

@@ -65,7 +65,12 @@ fn reply(fit: ScanFit, contact: Option<scan::ContactEstimate>, line: bool) -> Pr
     let columns = |of: &scan::Column| ColumnPair { radius: of.radius.clone(), height: of.height.clone() };
     let unknown = Estimate { value: None, standard_error: None };
     ProfileFitReply {
-        profile: Profile::Tabulated(TabulatedProfile { r: fit.table.radius.clone(), z: fit.table.height.clone() }),
+        profile: Profile::Tabulated(TabulatedProfile {
+            r: fit.table.radius.clone(),
+            z: fit.table.height.clone(),
+            indentation_error: Some(fit.standard_errors.indentation.clone()),
+            pressure_error: Some(fit.standard_errors.pressure.clone()),
+        }),
         radius_of_curvature: fit.radius_of_curvature.map_or(unknown, estimate),
         centre: pair(fit.centre),
         tilt: pair(fit.tilt),

@@ -6,6 +6,7 @@ use stickslip_mechanics::protocol::{
 };
 use stickslip_mechanics::range::{self, Quantity};
 use stickslip_mechanics::{Contact, Error, Setup};
+use stickslip_wire::definition::SharedSetup;
 use stickslip_wire::protocol::{
     Aim, Comparison, DisplacementPath, FirstStroke, Gap, JudgedReply, Outcome, PressureUnit, ProtocolKind,
     ProtocolReply, ProtocolTask, Robustness, RobustnessReply, StartReply,
@@ -24,7 +25,7 @@ pub struct Subject<'a> {
     /// The displacement to begin with, m, of a contact that has never moved; else it begins from the present state.
     pub first: Option<f64>,
     /// The definition, from which contacts with another coefficient of friction are made.
-    pub setup: Option<&'a Setup>,
+    pub setup: Option<&'a SharedSetup>,
 }
 
 impl Subject<'_> {
@@ -102,7 +103,7 @@ impl Subject<'_> {
 /// # Errors
 /// As [`protocol`], and if the preload cannot be reached.
 pub fn protocol_for(
-    setup: &Setup,
+    setup: &SharedSetup,
     first: Option<f64>,
     task: &ProtocolTask,
     stop: &Stop,
@@ -125,10 +126,10 @@ const FEWER: usize = 3;
 /// # Errors
 /// [`Failure`] if there is no friction to move against, the target cannot be reached, or the time limit is reached.
 pub fn protocol(subject: &Subject<'_>, task: &ProtocolTask, stop: &Stop) -> Result<ProtocolReply, Failure> {
-    let timer = Timer::start();
+    let timer = Timer::start(stop);
     let contact = subject.contact;
-    let (figures, judged) = (contact.summary(), EvaluationRange::of(contact));
-    let unit = figures.unit_shear();
+    let (summary, judged) = (contact.summary(), EvaluationRange::of(contact));
+    let unit = summary.unit_shear();
     let end = PathEnd::from(task.end);
     let (reversals, chosen) = match task.aim {
         Aim::Reversals(reversals) => (reversals, subject.design(task.kind.into(), reversals, end, stop)?),
@@ -167,7 +168,7 @@ pub fn protocol(subject: &Subject<'_>, task: &ProtocolTask, stop: &Stop) -> Resu
         minimax: other(ProtocolKind::Minimax)?,
     };
     Ok(ProtocolReply {
-        contact: figures.into(),
+        contact: summary.into(),
         kind: task.kind,
         end: task.end,
         reversals,
@@ -184,7 +185,7 @@ pub fn protocol(subject: &Subject<'_>, task: &ProtocolTask, stop: &Stop) -> Resu
             from_radius: judged.from,
             to_radius: judged.to,
             unit,
-            pressure: if figures.max_pressure.is_some() { PressureUnit::Largest } else { PressureUnit::Mean },
+            pressure: if summary.max_pressure.is_some() { PressureUnit::Largest } else { PressureUnit::Mean },
             objective: objective(&judged),
         },
         residual: own.residual,
@@ -207,12 +208,12 @@ fn objective(judged: &EvaluationRange) -> String {
     match (from > 0.0, vertical) {
         (false, false) => "the largest shear stress of the whole contact".to_owned(),
         (true, false) => format!(
-            "the largest shear stress from the radius {from:e} m on: further in it is infinite at a radius where the slope of the \
-             profile jumps, whatever is done"
+            "the largest shear stress from the radius {from:e} m on: further in it is infinite at a radius where the \
+             slope of the profile jumps, whatever is done"
         ),
         (false, true) => format!(
-            "the largest shear stress up to the radius {to:e} m: at the vertical edge it is infinite unless the path ends with no \
-             load there"
+            "the largest shear stress up to the radius {to:e} m: at the vertical edge it is infinite unless the path \
+             ends with no load there"
         ),
         (true, true) => format!(
             "the largest shear stress between the radii {from:e} m and {to:e} m: further in it is always infinite, and \
@@ -228,11 +229,12 @@ fn gap(design: &Design, bound: Option<f64>) -> Gap {
         }
         (false, FirstMove::Stay) => "the present state has less than any path that was found would leave",
         (false, FirstMove::Partial) => {
-            "alternating extrema outside, and inside the part of the history that leaves least with them; found by search, no \
-             bound is known"
+            "alternating extrema outside, and inside the part of the history that leaves least with them; found by \
+             search, no bound is known"
         }
         (false, FirstMove::Given | FirstMove::GrossSlip) => {
-            "alternating extrema, all but one equal for the sake of the end, or the better one of the two laws; found by search"
+            "alternating extrema, all but one equal for the sake of the end, or the better one of the two laws; found \
+                by search"
         }
     };
     let proven = bound.map(|bound| 1.0 - bound / design.largest).filter(|gap| gap.is_finite());

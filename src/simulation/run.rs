@@ -3,8 +3,9 @@
 use std::time::{Duration, Instant};
 
 use stickslip_mechanics::{
-    self as mechanics, Contact, ErrorEstimate, Preload, Profile, Setup, Springs, protocol, range::Quantity, springs,
+    self as mechanics, Contact, ErrorEstimate, Preload, Profile, Springs, protocol, range::Quantity, springs,
 };
+use stickslip_wire::definition::SharedSetup;
 use stickslip_wire::reply::{Accuracy, State, finite};
 use stickslip_wire::simulate::Simulation;
 use stickslip_wire::{
@@ -14,22 +15,33 @@ use stickslip_wire::{
 use super::{
     Failure, Solver, cost, needs_stress_field, quantity,
     subsurface::subsurface,
-    warnings::{Observed, assumption, bulk_warning, excess_error, stress_warning, warnings},
+    warnings::{FarMove, Observed, assumption, bulk_warning, excess_error, stress_warning, warnings},
 };
 use crate::admission::{LONGEST_WORK, Stop};
 
 /// Why the solver is the one that the request names.
 const AS_ASKED: &str = "as asked for";
 
-/// Measures the time spent computing.
+/// Measures the time spent computing for a request: with what its [`Stop`] has counted before, and without the time for
+/// which it has given way to others.
 #[derive(Clone, Copy, Debug)]
-pub struct Timer(Instant);
+pub struct Timer<'a> {
+    stop: &'a Stop,
+    begin: Instant,
+    waited: Duration,
+}
 
-impl Timer {
+impl Timer<'_> {
     /// Starts now.
     #[must_use]
-    pub fn start() -> Timer {
-        Timer(Instant::now())
+    pub fn start(stop: &Stop) -> Timer<'_> {
+        Timer { stop, begin: Instant::now(), waited: stop.waited() }
+    }
+
+    /// The time up to now.
+    #[must_use]
+    pub fn elapsed(&self) -> Duration {
+        self.stop.before() + (self.begin.elapsed() + self.waited).saturating_sub(self.stop.waited())
     }
 }
 
@@ -38,7 +50,7 @@ impl Timer {
 /// # Errors
 /// [`Failure`] if the mechanics has no answer to it, or the client hung up.
 pub fn simulate(simulation: &Simulation, stop: &Stop) -> Result<SimulateReply, Failure> {
-    let timer = Timer::start();
+    let timer = Timer::start(stop);
     if let Some(wire::Solver::Springs(wire::Springs { count })) = simulation.solver {
         let springs = spring_foundation(&simulation.setup, &simulation.plan, count)?;
         return run(springs, simulation, timer, AS_ASKED, stop);
@@ -53,7 +65,7 @@ pub fn simulate(simulation: &Simulation, stop: &Stop) -> Result<SimulateReply, F
 pub(super) fn simulate_on(
     contact: Contact,
     simulation: &Simulation,
-    timer: Timer,
+    timer: Timer<'_>,
     stop: &Stop,
 ) -> Result<SimulateReply, Failure> {
     let reason = match (simulation.solver, simulation.plan.curved()) {
@@ -68,19 +80,22 @@ pub(super) fn simulate_on(
 pub(super) fn run<S: Solver>(
     mut solver: S,
     simulation: &Simulation,
-    timer: Timer,
+    timer: Timer<'_>,
     reason: &str,
     stop: &Stop,
 ) -> Result<SimulateReply, Failure> {
-    let figures = solver.summary();
+    let summary = solver.summary();
     let protocol = equal_peaks(&simulation.plan, &solver)?;
-    let mut largest = figures.contact_radius;
+    let mut largest = summary.contact_radius;
     let all = simulation.steps == Steps::All;
     let mut steps: Vec<State> = Vec::with_capacity(if all { simulation.plan.length() } else { 1 });
     // Gross slip erases the error of a curved path, but not that of the states before it.
     let (curved, mut path_error) = (simulation.plan.curved(), 0.0f64);
+    let mut far = FarMove::from(solver.displacement());
     follow(&mut solver, &simulation.plan, protocol.as_ref(), simulation.tolerance, stop, |_, solver| {
         largest = largest.max(solver.contact_radius());
+        let (displacement, gross_slip) = (solver.displacement(), solver.gross_slip_displacement());
+        far.reach(displacement, gross_slip, solver.exact().profile(), solver.contact_radius());
         if curved > 0 && all {
             path_error = path_error.max(solver.path_error());
         }
@@ -106,14 +121,14 @@ pub(super) fn run<S: Solver>(
     let (profile, elasticity) = (solver.exact().profile(), solver.exact().elasticity());
     let observed = Observed {
         contact_radius: largest,
-        e_star: figures.e_star,
+        e_star: summary.e_star,
         // Only tables have noise, and a table has no vertical edge.
-        indentation: figures.indentation.max(profile.level(largest)),
+        indentation: summary.indentation.max(profile.level(largest)),
         noise: profile.noise(largest),
         excess_error: excess_error(path_error, simulation.tolerance, curved),
     };
     Ok(SimulateReply {
-        contact: figures.into(),
+        contact: summary.into(),
         steps,
         stress,
         residual,
@@ -123,6 +138,7 @@ pub(super) fn run<S: Solver>(
             .into_iter()
             .chain(stress_warning(simulation.stress.is_some() || simulation.residual, estimate.stress_error))
             .chain(bulk_warning(simulation.subsurface.as_ref().is_some_and(|task| task.bulk.is_some())))
+            .chain(far.warning())
             .collect(),
         accuracy,
     })
@@ -132,7 +148,7 @@ pub(super) fn run<S: Solver>(
 ///
 /// # Errors
 /// [`Failure::Refused`] if the preload cannot be reached.
-pub fn contact(setup: Setup, base: &str) -> Result<Contact, Failure> {
+pub fn contact(setup: SharedSetup, base: &str) -> Result<Contact, Failure> {
     let refused = refused_at(base, setup.preload);
     Contact::new(setup).map_err(refused)
 }
@@ -141,7 +157,7 @@ pub fn contact(setup: Setup, base: &str) -> Result<Contact, Failure> {
 ///
 /// # Errors
 /// As [`contact()`], for a definition at `/contact`.
-pub(super) fn spring_foundation(setup: &Setup, plan: &Plan, count: usize) -> Result<Springs, Failure> {
+pub(super) fn spring_foundation(setup: &SharedSetup, plan: &Plan, count: usize) -> Result<Springs, Failure> {
     let start = contact(setup.clone(), "/contact")?;
     // Only what has a normal target reaches further, and the law of equal peaks has none.
     let moves = moves(plan, &start, None)?.map(|step| step.step());
@@ -216,7 +232,8 @@ pub(super) fn cycle_moves(plan: &Plan, contact: &Contact) -> Result<Vec<mechanic
     Ok(moves(plan, contact, protocol.as_ref())?.map(|step| step.step()).collect())
 }
 
-/// The pointer to what has led to the refusal of a move of a plan: the move, or the number at fault if the plan has one for it.
+/// The pointer to what has led to the refusal of a move of a plan: the move, or the number at fault if the plan has one
+/// for it.
 fn place(plan: &Plan, index: usize, step: Option<&Move>, error: &mechanics::Error) -> String {
     let named = match (plan, error) {
         (Plan::Cycles(_), mechanics::Error::ForceExceedsFriction { .. }) => Some(Quantity::Force),
@@ -227,8 +244,8 @@ fn place(plan: &Plan, index: usize, step: Option<&Move>, error: &mechanics::Erro
     plan.place_of(index, named)
 }
 
-/// Makes the moves of a plan one after the other, and shows each, and the contact after it, to `each`. `protocol` is what
-/// [`equal_peaks`] has found for the plan.
+/// Makes the moves of a plan one after the other, and shows each, and the contact after it, to `each`. `protocol` is
+/// what [`equal_peaks`] has found for the plan.
 ///
 /// # Errors
 /// [`Failure`] at the first move without an answer, with a pointer to it; the moves before it have been made.
@@ -317,11 +334,11 @@ pub fn residual<S: Solver>(solver: &S, stop: &Stop) -> Result<Residual, Failure>
 }
 
 /// Which solver answered, how well, and how long it took.
-pub fn accuracy<S: Solver>(solver: &S, timer: Timer, reason: &str) -> Accuracy {
+pub fn accuracy<S: Solver>(solver: &S, timer: Timer<'_>, reason: &str) -> Accuracy {
     accuracy_of(solver, &solver.accuracy(), timer, reason)
 }
 
-fn accuracy_of<S: Solver>(solver: &S, estimate: &ErrorEstimate, timer: Timer, reason: &str) -> Accuracy {
+fn accuracy_of<S: Solver>(solver: &S, estimate: &ErrorEstimate, timer: Timer<'_>, reason: &str) -> Accuracy {
     let assumed = assumption(solver.exact().profile()).map(|(_, assumed)| format!("; {assumed}"));
     Accuracy {
         solver: S::KIND,
@@ -329,6 +346,6 @@ fn accuracy_of<S: Solver>(solver: &S, estimate: &ErrorEstimate, timer: Timer, re
         force_error: estimate.force_error,
         stress_error: estimate.stress_error,
         subsurface_error: None,
-        compute_time: timer.0.elapsed().as_secs_f64(),
+        compute_time: timer.elapsed().as_secs_f64(),
     }
 }

@@ -37,6 +37,10 @@ pub trait Solver {
     }
     /// Contact radius a, m.
     fn contact_radius(&self) -> f64;
+    /// Tangential displacement of the indenter, m.
+    fn displacement(&self) -> f64;
+    /// Displacement of gross slip on first loading, m, at the present load.
+    fn gross_slip_displacement(&self) -> f64;
     /// The extrema of the shear stress, if `go_on` has not ended the search for them.
     fn residual(&self, go_on: &dyn Fn() -> bool) -> Option<Residual>;
     /// mu p_max at the present load, Pa, or mu times the mean pressure where p_max is infinite.
@@ -90,6 +94,14 @@ impl Solver for Contact {
 
     fn contact_radius(&self) -> f64 {
         self.contact_radius()
+    }
+
+    fn displacement(&self) -> f64 {
+        self.displacement()
+    }
+
+    fn gross_slip_displacement(&self) -> f64 {
+        self.gross_slip_displacement()
     }
 
     fn residual(&self, go_on: &dyn Fn() -> bool) -> Option<Residual> {
@@ -154,6 +166,14 @@ impl Solver for Springs {
 
     fn contact_radius(&self) -> f64 {
         self.contact_radius()
+    }
+
+    fn displacement(&self) -> f64 {
+        self.displacement()
+    }
+
+    fn gross_slip_displacement(&self) -> f64 {
+        self.gross_slip_displacement()
     }
 
     fn residual(&self, go_on: &dyn Fn() -> bool) -> Option<Residual> {

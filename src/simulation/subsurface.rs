@@ -40,7 +40,7 @@ pub fn subsurface(contact: &Contact, task: &SubsurfaceTask, stop: &Stop) -> Resu
 /// # Errors
 /// As [`subsurface`].
 pub fn subsurface_reply(contact: &Contact, task: &SubsurfaceTask, stop: &Stop) -> Result<SubsurfaceReply, Failure> {
-    let timer = Timer::start();
+    let timer = Timer::start(stop);
     needs_stress_field(contact, "")?;
     let (stress, error) = subsurface(contact, task, stop)?;
     let accuracy = Accuracy { subsurface_error: Some(error), ..accuracy(contact, timer, REASON) };

@@ -99,6 +99,14 @@ impl Solver for Counting<'_> {
         self.contact.contact_radius()
     }
 
+    fn displacement(&self) -> f64 {
+        self.contact.displacement()
+    }
+
+    fn gross_slip_displacement(&self) -> f64 {
+        self.contact.gross_slip_displacement()
+    }
+
     fn residual(&self, go_on: &dyn Fn() -> bool) -> Option<Residual> {
         self.count(|calls| &mut calls.residuals, 1);
         self.contact.residual_while(go_on)
@@ -140,7 +148,8 @@ fn counted(parabola: bool, asked: &Value) -> (Calls, SimulateReply) {
     let simulation = read::<SimulateRequest>(body.to_string().as_bytes()).unwrap();
     let calls = Cell::default();
     let solver = Counting { contact: contact(simulation.setup.clone(), "/contact").unwrap(), calls: &calls };
-    let reply = run(solver, &simulation, Timer::start(), "counted", &Stop::default()).unwrap();
+    let stop = Stop::default();
+    let reply = run(solver, &simulation, Timer::start(&stop), "counted", &stop).unwrap();
     (calls.get(), reply)
 }
 

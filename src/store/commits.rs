@@ -1,10 +1,11 @@
 //! Metrics of a store that commits.
 
-use std::time::Duration;
+use std::sync::{Mutex, PoisonError};
+use std::time::{Duration, Instant};
 
 use prometheus::{Histogram, IntCounter, IntGauge, Opts};
 
-use crate::metrics::{SECONDS, SIZES, counter, gauge, histogram};
+use crate::metrics::{Counted, SECONDS, SIZES, counter, gauge, histogram};
 
 /// The changes that a store makes, and the transactions in which it makes them.
 #[derive(Debug)]
@@ -17,6 +18,9 @@ pub struct Commits {
     pub time: Histogram,
     /// Transactions that failed.
     pub failed: IntCounter,
+    /// When a transaction was last durable, or, if that is later, the first of the waiting changes arrived. A std
+    /// mutex: held for a read or a write.
+    progress: Mutex<Instant>,
 }
 
 impl Commits {
@@ -30,12 +34,33 @@ impl Commits {
         let help = "Time of a transaction of the store, until it is durable.";
         let time = histogram(named("stickslip_commit_seconds", help), SECONDS);
         let failed = counter(named("stickslip_commit_failures_total", "Transactions that failed."));
-        Commits { pending, size, time, failed }
+        Commits { pending, size, time, failed, progress: Mutex::new(Instant::now()) }
+    }
+
+    /// Counts a change whose caller waits, until the result is dropped.
+    pub fn wait(&self) -> Counted<'_> {
+        if self.pending.get() == 0 {
+            self.progressed();
+        }
+        Counted::by(&self.pending)
     }
 
     /// Counts a transaction that is durable.
     pub fn committed(&self, changes: usize, time: Duration) {
+        self.progressed();
         self.size.observe(changes as f64);
         self.time.observe(time.as_secs_f64());
+    }
+
+    /// Notes a transaction that is durable, and that made no change.
+    pub fn progressed(&self) {
+        *self.progress.lock().unwrap_or_else(PoisonError::into_inner) = Instant::now();
+    }
+
+    /// For how long changes have waited while no transaction became durable.
+    #[must_use]
+    pub fn stalled(&self) -> Duration {
+        let progress = *self.progress.lock().unwrap_or_else(PoisonError::into_inner);
+        if self.pending.get() == 0 { Duration::ZERO } else { progress.elapsed() }
     }
 }

@@ -1,7 +1,7 @@
 //! Stores: definitions of contacts, their moves, and the replies that retries get again.
 //!
 //! A store returns definitions and moves as they were saved, and contains no physics. Every call is atomic, and what it
-//! has acknowledged is as durable as the store is. [`memory`] keeps all of it in the process and forgets it at the end;
+//! has acknowledged is as durable as the store is. [`memory`] keeps all of it in the process, until that ends;
 //! [`sqlite`] keeps it in a file, and [`postgres`] in a database that many processes share. [`open()`] chooses by the
 //! URL.
 
@@ -218,8 +218,8 @@ pub struct Whole {
 pub struct Usage {
     /// Contacts.
     pub contacts: u64,
-    /// Bytes of its contacts, of their moves and snapshots, and of the replies that are kept for retries: as many as the storage
-    /// takes for them, within a factor of two.
+    /// Bytes of its contacts, of their moves and snapshots, and of the replies that are kept for retries: as many as
+    /// the storage takes for them, within a factor of two.
     pub bytes: u64,
 }
 
@@ -240,7 +240,7 @@ pub const RECEIPT_OVERHEAD: u64 = 256;
 /// [`StoreError::Unavailable`] and [`StoreError::Failed`].
 #[derive(Debug, thiserror::Error)]
 pub enum StoreError {
-    /// There is no such session.
+    /// The session was not found.
     #[error("there is no such contact")]
     NotFound,
     /// There was such a session, of this tenant; it has expired.
@@ -272,6 +272,9 @@ pub enum StoreError {
     /// There is no room left. Nothing has changed.
     #[error("the storage is full: {0}")]
     Full(String),
+    /// Another transaction of the database holds what is to be changed. Nothing has changed.
+    #[error("another transaction holds what is to be changed: {0}")]
+    Locked(String),
     /// The storage cannot be reached for now; whether the change was made is unknown.
     #[error("the storage is unreachable: {0}")]
     Unavailable(String),
@@ -296,8 +299,8 @@ pub trait Store: JobStore {
     /// What can be known of a session without reading it.
     async fn extent(&self, id: Uuid) -> Result<Extent>;
 
-    /// What can be known of a session without reading it; and the session with its moves, where `is_small` says so of that and the
-    /// store can read it in the same step.
+    /// What can be known of a session without reading it; and the session with its moves, where `is_small` says so of
+    /// that and the store can read it in the same step.
     async fn load(&self, id: Uuid, is_small: IsSmall) -> Result<(Extent, Option<Whole>)> {
         let _ = is_small;
         Ok((self.extent(id).await?, None))
@@ -315,9 +318,9 @@ pub trait Store: JobStore {
     /// The sequence of a session and its label: all that a caller who has the rest cached needs to ask.
     async fn heading(&self, id: Uuid) -> Result<Heading>;
 
-    /// At most `limit` sessions of a tenant, or of all tenants, with identifiers greater than `after`, in order; of those
-    /// alone whose label contains `label`, whatever the case of ASCII letters. Without their definitions: a page of those
-    /// could be larger than the memory.
+    /// At most `limit` sessions of a tenant, or of all tenants, with identifiers greater than `after`, in order; of
+    /// those alone whose label contains `label`, whatever the case of ASCII letters. Without their definitions: a page
+    /// of those could be larger than the memory.
     async fn list(
         &self,
         tenant: Option<Tenant>,
@@ -326,8 +329,9 @@ pub trait Store: JobStore {
         limit: usize,
     ) -> Result<Vec<SessionSummary>>;
 
-    /// Gives a session another label, or none, and stores the receipt with it. Its sequence and its times stay.
-    async fn rename(&self, id: Uuid, label: Option<String>, receipt: Option<Receipt>) -> Result<()>;
+    /// Gives a session that is at sequence `expected` another label, or none, and stores the receipt with it. Its
+    /// sequence and its times stay.
+    async fn rename(&self, id: Uuid, label: Option<String>, expected: u64, receipt: Option<Receipt>) -> Result<()>;
 
     /// Appends moves to a session that is at sequence `expected`, all or none of them, and the receipt with them. The
     /// records are numbered from `expected + 1`.
@@ -338,6 +342,9 @@ pub trait Store: JobStore {
     /// # Errors
     /// [`StoreError::Damaged`] if one of them is missing.
     async fn history(&self, id: Uuid, after: u64, limit: usize) -> Result<Vec<Record>>;
+
+    /// How many of the first `end` moves of a session are stored: fewer if it is damaged.
+    async fn count_moves(&self, id: Uuid, end: u64) -> Result<u64>;
 
     /// Stores `copy`, with the moves of `id` up to the copy's sequence as its own, and the receipt with it.
     /// [`StoreError::Stale`] if `id` has not made that many.

@@ -91,8 +91,9 @@ pub async fn open_to_read(url: &str) -> Result<Arc<dyn Store>, OpenError> {
     }
 }
 
-/// Copies a store to a file that is not there yet, while it is in use or not; returns its bytes. Meanwhile `progress` is called
-/// now and then with the bytes of the copy so far and of the store, which may have free pages that are not copied.
+/// Copies a store to a file that is not there yet, while it is in use or not; returns its bytes. Meanwhile `progress`
+/// is called now and then with the bytes of the copy so far and of the store, which may have free pages that are not
+/// copied.
 ///
 /// # Errors
 /// [`OpenError`] if the store is none that is kept in a file, or why there is no copy.

@@ -16,7 +16,32 @@ const LIMIT: Duration = Duration::from_secs(2);
 #[derive(Default)]
 pub(super) struct Probe {
     // Held while a probe is under way: those who ask meanwhile get its outcome.
-    last: Mutex<Option<(Instant, Result<(), String>)>>,
+    last: Mutex<Option<(Instant, Result<(), Failure>)>>,
+}
+
+/// Why a probe failed.
+#[derive(Clone)]
+enum Failure {
+    Full(String),
+    Unavailable(String),
+}
+
+impl From<StoreError> for Failure {
+    fn from(error: StoreError) -> Failure {
+        match error {
+            StoreError::Full(why) => Failure::Full(why),
+            other => Failure::Unavailable(other.to_string()),
+        }
+    }
+}
+
+impl From<Failure> for StoreError {
+    fn from(failure: Failure) -> StoreError {
+        match failure {
+            Failure::Full(why) => StoreError::Full(why),
+            Failure::Unavailable(why) => StoreError::Unavailable(why),
+        }
+    }
 }
 
 impl Probe {
@@ -24,12 +49,12 @@ impl Probe {
     pub(super) async fn outcome(&self, write: impl Future<Output = Result<()>>) -> Result<()> {
         let mut last = self.last.lock().await;
         if last.as_ref().is_none_or(|(at, _)| at.elapsed() >= INTERVAL) {
-            let outcome = timeout(LIMIT, write).await.map_err(|_| "no answer in time".to_owned());
-            let outcome = outcome.and_then(|written| written.map_err(|error| error.to_string()));
+            let outcome = timeout(LIMIT, write).await.map_err(|_| Failure::Unavailable("no answer in time".to_owned()));
+            let outcome = outcome.and_then(|written| written.map_err(Failure::from));
             *last = Some((Instant::now(), outcome));
         }
         let outcome = last.as_ref().map_or(Ok(()), |(_, outcome)| outcome.clone());
-        outcome.map_err(StoreError::Unavailable)
+        outcome.map_err(StoreError::from)
     }
 }
 
@@ -49,7 +74,7 @@ mod tests {
             Err(StoreError::Full("no room".to_owned()))
         };
         let outcomes = join_all((0..100).map(|_| probe.outcome(write()))).await;
-        assert!(outcomes.iter().all(|outcome| matches!(outcome, Err(StoreError::Unavailable(_)))));
+        assert!(outcomes.iter().all(|outcome| matches!(outcome, Err(StoreError::Full(_)))));
         assert_eq!(written.get(), 1);
     }
 }

@@ -107,7 +107,8 @@ pub(super) fn record<R: RowReader>(row: &mut R) -> Result<Record, R::Error> {
     })
 }
 
-/// Refuses a page of at most `limit` moves after the move `after` in which a move is missing; `last` is that of the contact.
+/// Refuses a page of at most `limit` moves after the move `after` in which a move is missing; `last` is that of the
+/// contact.
 pub(super) fn check_page(
     contact: Uuid,
     after: u64,

@@ -75,9 +75,8 @@ fn body(name: &str) -> Option<Value> {
             let (u, f): (Vec<f64>, Vec<f64>) =
                 angles.map(|angle| (3e-7 * angle.cos(), 3.0 * (angle + 0.5).cos())).unzip();
             let record = json!({"displacement": u, "force": f, "start": "steady"});
-            Some(
-                json!({"contact": ball(), "loops": [record], "free": ["friction"], "known": {"machine_compliance": {"value": 0.0}}}),
-            )
+            Some(json!({"contact": ball(), "loops": [record], "free": ["friction"],
+                    "known": {"machine_compliance": {"value": 0.0}}}))
         }
         "relax" => Some(json!({"reversals": 2})),
         "observations" => Some(json!({"observations": [{"displacement": 1e-8, "force": 0.1}]})),
@@ -487,7 +486,7 @@ async fn a_changed_file_of_keys_counts_at_once_and_ends_the_events_of_revoked_ke
     until("the key is known again", async || (list("revoked").await == 200).then_some(())).await;
     server.replace("nonsense");
     let said = || std::fs::read_to_string(server.folder.path().join("log")).unwrap();
-    until("the log says so", async || said().contains("the keys are still those before").then_some(())).await;
+    until("the log says so", async || said().contains("keys unchanged").then_some(())).await;
     assert_eq!((list("revoked").await, list("kept").await), (200, 200));
 }
 
@@ -655,7 +654,8 @@ async fn the_history_names_the_key_that_made_a_move_where_keys_are_in_use() {
         assert!(sequences.iter().all(|count| *count > 5), "relaxing moves the contact: {sequences:?}");
         drop(servers);
 
-        // Without keys nobody has a name, and there is no field and no column for one; with keys what was made meanwhile has none.
+        // Without keys nobody has a name, and there is no field and no column for one; with keys what was made
+        // meanwhile has none.
         let open = Process::start(&store).await;
         let path = format!("{}/contacts/{id}", open.base);
         let moved = server_free_move(&path).await;

@@ -138,7 +138,10 @@ async fn a_solver_that_cannot_follow_the_path_has_the_reason_in_its_row() {
     let server = Server::start().await;
     let limit = FRICTION * 4.0 / 3.0 * E_STAR * (RADIUS * INDENTATION).sqrt() * INDENTATION;
     let path = |curved: Value| json!([{"displacement": 0.1 * UNIT}, curved, {"force": 0.3 * limit}]);
-    let body = |curved: Value| json!({"contact": parabola(), "path": {"moves": path(curved)}, "solvers": ["exact", springs(100)]});
+    let body = |curved: Value| {
+        json!({"contact": parabola(), "path": {"moves": path(curved)},
+        "solvers": ["exact", springs(100)]})
+    };
     // While the load falls nothing new is touched, and all that slips is as at the end: a curve costs no digits.
     let lowered = body(json!({"normal_force": 0.5 * limit / FRICTION, "force": 0.4 * limit}));
     let row = &compared(&server, &lowered).await.rows[0];

@@ -1,4 +1,5 @@
-//! Steady cycles over HTTP: the figures of closed forms, every fault with its place, and a contact that they do not change.
+//! Steady cycles over HTTP: the figures of closed forms, every fault with its place, and a contact that they do not
+//! change.
 
 use std::f64::consts::PI;
 
@@ -170,12 +171,14 @@ async fn every_fault_has_its_place() {
             "/frequency_response/mass",
         ),
         (
-            json!({"drive": {"force": 1.0}, "frequency_response": {"mass": 1.0, "drive_force": 1.0, "frequencies": [0.0]}}),
+            json!({"drive": {"force": 1.0}, "frequency_response": {"mass": 1.0, "drive_force": 1.0,
+                "frequencies": [0.0]}}),
             "invalid_input",
             "/frequency_response/frequencies/0",
         ),
         (
-            json!({"drive": {"force": 1.0}, "machine": {"stiffness": 1.0}, "frequency_response": {"mass": 1.0, "drive_force": 1.0}}),
+            json!({"drive": {"force": 1.0}, "machine": {"stiffness": 1.0},
+                "frequency_response": {"mass": 1.0, "drive_force": 1.0}}),
             "invalid_input",
             "/frequency_response",
         ),
@@ -185,7 +188,7 @@ async fn every_fault_has_its_place() {
         let refused = problem(server.post("/cycle", &of(&ball(), &asked)).await).await;
         let place = refused.errors.first().map(|fault| fault.pointer.as_str());
         assert_eq!((refused.status, refused.code.as_str(), place), (422, code, Some(pointer)), "{refused:?}");
-        assert!(code != "force_exceeds_friction" || refused.detail.contains(" N"), "{refused:?}");
+        assert!(code != "force_exceeds_friction" || refused.detail.contains("N was asked for"), "{refused:?}");
     }
     let contact = format!("/contacts/{}", server.contact().await);
     for (query, code, pointer) in [
@@ -247,7 +250,9 @@ async fn a_map_has_the_cycles_of_each_load() {
     let printed = run(&["cycle", file.to_str().unwrap(), "--map", "1:100:3"]);
     let text = String::from_utf8(printed.stdout).unwrap();
     let lines: Vec<Vec<&str>> = text.lines().map(|line| line.split(',').collect()).collect();
-    assert_eq!((lines.len(), lines[0][0], lines[0][5]), (10, "normal_force", "dissipated_energy"));
+    assert_eq!((lines.len(), lines[0][0]), (10, "normal_force"));
+    let column = |name: &str| lines[0].iter().position(|column| *column == name).unwrap();
+    let (regime, work) = (column("regime"), column("dissipated_energy"));
     let server = Server::start().await;
     let map = json!({"normal_force": {"from": 1.0, "to": 100.0, "count": 3}});
     let body = of(&ball(), &json!({"drive": asked["drive"], "map": map}));
@@ -260,8 +265,8 @@ async fn a_map_has_the_cycles_of_each_load() {
         let reply = good(server.post("/cycle", &of(&pressed, &json!({"drive": asked["drive"]}))).await).await;
         for (row, cycle) in rows.iter().zip(reply["cycles"].as_array().unwrap()) {
             close(row[0].parse().unwrap(), load, 1e-14);
-            assert_eq!(row[3], cycle["regime"].as_str().unwrap());
-            close(row[5].parse().unwrap(), number(&cycle["dissipated_energy"]), 1e-9);
+            assert_eq!(row[regime], cycle["regime"].as_str().unwrap());
+            close(row[work].parse().unwrap(), number(&cycle["dissipated_energy"]), 1e-9);
             let cell = cells.next().unwrap();
             close(number(&cell["normal_force"]), load, 1e-14);
             close(
@@ -278,7 +283,7 @@ async fn a_map_has_the_cycles_of_each_load() {
     assert!(cells.next().is_none());
     let csv = server.post("/cycle?format=csv", &body).await.text().await.unwrap();
     assert!(csv.starts_with("normal_force,gross_slip_displacement,displacement_amplitude,force_amplitude,"), "{csv}");
-    assert_eq!(csv.lines().count(), 10);
+    assert_eq!((csv.lines().count(), &csv), (10, &text), "the columns and numbers of the command line");
     for wrong in ["1:100", "0:1:3", "2:1:3", "1:2:1", "1:2:1001", "a:b:c"] {
         assert!(!run(&["cycle", file.to_str().unwrap(), "--map", wrong]).status.success(), "{wrong}");
     }
@@ -302,8 +307,13 @@ async fn a_map_has_the_lines_of_the_ball_and_refuses_what_is_wrong_at_its_place(
         assert_eq!(row["regime"], if slides { "gross_slip" } else { "partial_slip" });
     }
     let picture = server.post("/cycle?format=svg", &of(&ball(), &base)).await.text().await.unwrap();
-    for text in ["Fretting map", "log₁₀(normal force / N)", "log₁₀(displacement amplitude U₀ / m)", "gross slip above"]
-    {
+    for text in [
+        "Fretting map",
+        "log₁₀(normal force / N)",
+        "log₁₀(displacement amplitude U₀ / m)",
+        "gross \
+        slip above",
+    ] {
         assert!(picture.contains(text), "{text}");
     }
     // The boundary, and a line for each power of ten of the work.
@@ -313,7 +323,10 @@ async fn a_map_has_the_lines_of_the_ball_and_refuses_what_is_wrong_at_its_place(
     let lines = picture.matches("<polyline").count();
     assert!(decades > 5 && lines > decades, "{decades} {lines}");
 
-    let force = |from: Value, to: Value, count: Value| json!({"map": {"normal_force": {"from": from, "to": to, "count": count}}});
+    let force = |from: Value, to: Value, count: Value| {
+        let range = json!({"from": from, "to": to, "count": count});
+        json!({"map": {"normal_force": range}})
+    };
     for (wrong, pointer) in [
         (force(json!(0.0), json!(1.0), json!(3)), "/map/normal_force/from"),
         (force(json!(1.0), json!(1e300), json!(3)), "/map/normal_force/to"),
@@ -378,8 +391,49 @@ async fn the_best_load_beats_every_other_and_a_mass_on_the_contact_answers_its_d
         close(number(&point["amplitude"]), (1.0 / stiffness / (1.0 - share * share)).abs(), 1e-6);
         let lag = if share < 1.0 { 0.0 } else { 180.0 };
         assert!((number(&point["phase"]) - lag).abs() < 1e-3, "{point}");
+        close(number(&point["peak"]), number(&point["amplitude"]), 1e-5);
+        assert!(number(&point["amplitude_error"]) <= 1e-6 * number(&point["amplitude"]), "{point}");
     }
     let automatic = json!({"drive": {"displacement": 0.0}, "frequency_response": {"mass": 5.0, "drive_force": 1e9}});
     let reply = good(server.post("/cycle", &of(&unit_sphere(), &automatic)).await).await;
     assert!(reply["frequency_response"]["points"].as_array().unwrap().len() >= 200);
+}
+
+#[tokio::test]
+async fn an_oscillation_of_a_mass_has_its_peak_its_errors_and_a_warning_where_it_was_not_found() {
+    let server = Server::start().await;
+    let contact = json!({
+        "profile": {"type": "sphere", "radius": 0.01},
+        "material": {"effective": {"e_star": 1e11, "g_star": 8e10}},
+        "friction": 0.4,
+        "preload": {"indentation": 1e-6}
+    });
+    let base = json!({"drive": {"displacement": 0.0}, "frequency_response": {"mass": 2.0, "drive_force": 1.0}});
+    let reply = good(server.post("/cycle", &of(&contact, &base)).await).await;
+    let limit = number(&reply["contact"]["gross_slip_force"]);
+    let unit = number(&reply["contact"]["gross_slip_displacement"]);
+    let natural = number(&reply["frequency_response"]["natural_frequency"]);
+    let asked = |force: f64, frequencies: &[f64], tolerance: f64| {
+        let frequencies: Vec<f64> = frequencies.iter().map(|share| share * natural).collect();
+        let body = json!({"mass": 2.0, "drive_force": force * limit, "frequencies": frequencies});
+        of(&contact, &json!({"drive": {"displacement": 0.0}, "frequency_response": body, "tolerance": tolerance}))
+    };
+    // The steady oscillation of integration in time, where the first harmonic alone would have 0.6281.
+    let reply = good(server.post("/cycle", &asked(0.7, &[0.29, 0.9], 1e-4)).await).await;
+    let points = reply["frequency_response"]["points"].as_array().unwrap();
+    close(number(&points[0]["amplitude"]), 0.65847 * unit, 1e-4);
+    close(number(&points[0]["peak"]), 0.81155 * unit, 1e-4);
+    for point in points {
+        for error in ["amplitude_error", "peak_error"] {
+            assert!(number(&point[error]) <= 1e-4 * number(&point["amplitude"]), "{point}");
+        }
+    }
+    assert!(reply["warnings"].as_array().unwrap().iter().all(|warning| warning["code"] != "tolerance_not_met"));
+    // So slow a drive beyond friction is not followed, and says so.
+    let reply = good(server.post("/cycle", &asked(1.2, &[0.001], 1e-4)).await).await;
+    let point = &reply["frequency_response"]["points"][0];
+    assert!(point["amplitude_error"].is_null() && point["peak_error"].is_null(), "{point}");
+    assert!(number(&point["amplitude"]) > unit, "{point}");
+    let warned = reply["warnings"].as_array().unwrap().iter().any(|warning| warning["code"] == "tolerance_not_met");
+    assert!(warned, "{reply}");
 }

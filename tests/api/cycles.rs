@@ -127,8 +127,9 @@ async fn a_bench_run_has_its_cycles_with_their_work() {
 }
 
 /// The cycles at constant load, each by its definition: the first return to a turning point after an excursion that was
-/// no larger than a way by which the displacement had come to it. The first loading counts as one from its mirror image,
-/// gross slip as one from infinity. Where several turning points are equal, each begins or turns one cycle at most.
+/// no larger than a way by which the displacement had come to it. The first loading counts as one from its mirror
+/// image, gross slip as one from infinity. Where several turning points are equal, each begins or turns one cycle at
+/// most.
 fn by_definition(history: &[HistoryItem]) -> Vec<(u64, u64, f64)> {
     let states: Vec<_> = history.iter().map(|item| item.state).collect();
     let at = |index: usize| if index == 0 { 0.0 } else { states[index - 1].displacement };

@@ -80,7 +80,10 @@ async fn a_load_oscillates_about_that_of_the_contact_when_the_path_begins() {
         assert_eq!(reply.status(), 200);
     }
     let post = async |id: &str, path: Value| server.post(&format!("/contacts/{id}/path"), &json!({"path": path})).await;
-    let cycles = |size: f64| json!({"cycles": {"displacement": 1e-7, "count": 1, "points_per_cycle": 4, "normal": {"normal_force": size}}});
+    let cycles = |size: f64| {
+        json!({"cycles": {"displacement": 1e-7, "count": 1, "points_per_cycle": 4,
+        "normal": {"normal_force": size}}})
+    };
     // More than the load at the beginning, though less than three times the preload.
     let refused = problem(post(&one, cycles(21.0)).await).await;
     assert_eq!((refused.status, refused.code.as_str()), (422, "invalid_input"));
@@ -135,7 +138,8 @@ async fn the_work_of_each_cycle_is_that_of_the_chord_of_the_load() {
 
 #[tokio::test]
 async fn the_work_under_an_oscillating_load_is_that_of_the_scaled_problem() {
-    // d = 1 + 0.2 sin t and W = 0.3 sin(t + phi) on a ball of the radius 1: the integral of q dW over a cycle, from elsewhere.
+    // d = 1 + 0.2 sin t and W = 0.3 sin(t + phi) on a ball of the radius 1: the integral of q dW over a cycle, from
+    // elsewhere.
     const WORK: [(f64, f64); 3] = [(0.0, 0.0054460663), (45.0, 0.0094410809), (90.0, 0.0196853445)];
     const POINTS: usize = 4000;
     let server = Server::start().await;

@@ -1,5 +1,5 @@
-//! The documents of requests without a server: every fault is found at its place, and extreme integers in any count are refused
-//! or accepted, but nothing overflows. Numbers of replies are found by their pointers.
+//! The documents of requests without a server: every fault is found at its place, and extreme integers in any count are
+//! refused or accepted, but nothing overflows. Numbers of replies are found by their pointers.
 
 use serde_json::{Number, Value, json};
 use stickslip_wire::json_value::{JsonValue, Pointer};

@@ -113,6 +113,10 @@ async fn without_keys_pages_of_other_sites_see_and_change_nothing() {
         assert_eq!(send(method, path, &[("host", &rebound)]).await, 403, "{method} {path}");
         assert_eq!(send(method, path, &[("host", "192.0.2.1")]).await, 403, "{method} {path}");
     }
+    for host in ["evil@localhost", "evil@lab.example", "lab.example:evil", "lab.example:99999"] {
+        assert_eq!(send("GET", "/contacts", &[("host", host)]).await, 403, "{host}");
+    }
+    assert_eq!(send("POST", &fork, &[("origin", &server.base), ("origin", "https://evil.example")]).await, 400);
     for host in [rebound.as_str(), "lab.example", "localhost"] {
         assert_eq!(send("GET", "/healthz", &[("host", host)]).await, 200);
         assert_eq!(send("GET", "/contacts", &[("host", host)]).await, if host == rebound { 403 } else { 200 });

@@ -17,7 +17,8 @@ fn serve(file: &Path, more: &[&str]) -> Command {
     command
 }
 
-/// Starts a service and ends it: its lines on standard output up to the one that names its address, which is called with `key`.
+/// Starts a service and ends it: its lines on standard output up to the one that names its address, which is called
+/// with `key`.
 async fn first_lines(file: &Path, more: &[&str]) -> (Process, Vec<String>) {
     let mut child = serve(file, more).stdout(Stdio::piped()).spawn().unwrap();
     let stdout = BufReader::new(child.stdout.take().unwrap());

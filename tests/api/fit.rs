@@ -1,13 +1,13 @@
-//! Measured loops over HTTP: what a fit finds in loops of known contacts, what it warns of, every refusal with its place, and all
-//! formats.
+//! Measured loops over HTTP: what a fit finds in loops of known contacts, what it warns of, every refusal with its
+//! place, and all formats.
 
 use crate::common;
 
 use common::{Server, ball, good, number, problem, run, with};
 use serde_json::{Value, json};
 
-/// Displacement and force of the ball, m and N, by `/simulate`, from its first move through two cycles; the amplitude is in units
-/// of the displacement of gross slip.
+/// Displacement and force of the ball, m and N, by `/simulate`, from its first move through two cycles; the amplitude
+/// is in units of the displacement of gross slip.
 async fn two_cycles(server: &Server, amplitude: f64) -> [Vec<f64>; 2] {
     let body = json!({"contact": ball(), "path": {"displacement": [0.0]}, "steps": "last"});
     let figures = good(server.post("/simulate", &body).await).await;
@@ -71,7 +71,8 @@ async fn friction_and_modulus_of_a_loop_are_found_again_and_make_its_contact() {
     assert_eq!((codes(&reply), number(&reply["correlations"]["friction"]["friction"])), (vec![], 1.0));
     assert!(number(&reply["residual"]["largest"]) < 1e-8 && reply["identifiable"].as_array().unwrap().len() == 2);
 
-    // In micrometres and millinewtons, from the first move on, off zero, through a machine of 50 nm/N, with noise of 5 mN.
+    // In micrometres and millinewtons, from the first move on, off zero, through a machine of 50 nm/N, with noise of 5
+    // mN.
     let compliance = 5e-8;
     let [displacement, force] = two_cycles(&server, 2.0).await;
     let measured = [
@@ -101,6 +102,66 @@ async fn friction_and_modulus_of_a_loop_are_found_again_and_make_its_contact() {
     let created = good(server.post("/contacts", &reply["contact"]).await).await;
     assert!((number(&created["contact"]["g_star"]) / estimate(&reply, "g_star") - 1.0).abs() < 1e-12);
     assert_eq!(number(&reply["contact"]["friction"]).to_bits(), estimate(&reply, "friction").to_bits());
+}
+
+#[tokio::test]
+async fn a_fitted_contact_keeps_the_constants_of_its_bodies_for_the_next_step() {
+    let server = Server::start().await;
+    let [displacement, force] = steady(&server, 2.0).await;
+    // An interface that is softer than its bodies, by a tenth of the stiffness of the contact.
+    let soft = [displacement.iter().zip(&force).map(|(u, f)| u + 2e-9 * f).collect(), force];
+    let fretting = |contact: &Value| {
+        json!({
+            "contact": contact, "path": {"displacement": [1e-7, -1e-7]}, "body": "first",
+            "points": [[-6e-5, 0.0, 0.0]], "criteria": {"crossland": {"alpha": 0.3}, "swt": {}}
+        })
+    };
+    let steel = json!([{"youngs_modulus": 2.1e11, "poisson_ratio": 0.3}, "rigid"]);
+    for free in [json!(["friction"]), json!(["friction", "g_star"])] {
+        let reply = good(server.post("/fit", &with(body(&soft), "/free", free.clone())).await).await;
+        let contact = &reply["contact"];
+        let bodies = if free.as_array().unwrap().len() == 1 {
+            &contact["material"]["bodies"]
+        } else {
+            &contact["material"]["effective"]["bodies"]
+        };
+        assert_eq!(bodies, &steel, "{free}: {contact}");
+        // Young's modulus and Poisson's ratio are known to the fatigue criteria, and a rigid body is still one.
+        let rated = good(server.post("/fretting", &fretting(contact)).await).await;
+        assert!(number(&rated["swt"]["largest"]["value"]) > 0.0);
+        let g_star = reply["estimates"].get("g_star").map_or_else(g_star, |estimate| number(&estimate["value"]));
+        assert!((number(&rated["contact"]["g_star"]) / g_star - 1.0).abs() < 1e-12);
+        assert!((number(&rated["contact"]["e_star"]) / (2.1e11 / 0.91) - 1.0).abs() < 1e-12);
+        let refused = problem(server.post("/fretting", &with(fretting(contact), "/body", json!("second"))).await).await;
+        assert_eq!(refused.errors[0].pointer, "/body");
+        // What is known of the bodies is warned of as before.
+        let made = good(server.post("/contacts", contact).await).await;
+        assert!(codes(&made).contains(&"dundurs_beta"), "{made}");
+        assert_eq!(
+            good(server.get(&format!("/contacts/{}/definition", made["id"].as_str().unwrap())).await).await["material"],
+            contact["material"]
+        );
+    }
+    // The stress of the same moduli is that of the bodies.
+    let moduli = json!({"effective": {"e_star": 2.1e11 / 0.91, "g_star": g_star(), "bodies": steel}});
+    let [one, other] = [with(ball(), "/material", moduli.clone()), ball()].map(|contact| fretting(&contact));
+    let [one, other] =
+        [good(server.post("/fretting", &one).await).await, good(server.post("/fretting", &other).await).await];
+    for name in ["crossland", "swt"] {
+        let [one, other] = [&one, &other].map(|reply| number(&reply[name]["values"][0]));
+        assert!((one / other - 1.0).abs() < 1e-12, "{name} {one} {other}");
+    }
+    for (pointer, wrong) in [
+        ("/bodies", json!(["rigid", "rigid"])),
+        ("/bodies", json!([steel[0]])),
+        ("/bodies/0/poisson_ratio", json!(0.6)),
+        ("/bodies/1", json!("soft")),
+    ] {
+        let place = format!("/effective{pointer}");
+        let asked = with(ball(), "/material", with(moduli.clone(), &place, wrong));
+        let refused = problem(server.post("/contacts", &asked).await).await;
+        assert_eq!(refused.errors[0].pointer, format!("/material{place}"));
+    }
 }
 
 #[tokio::test]
@@ -261,6 +322,7 @@ fn a_file_of_a_bench_is_fitted_without_a_server() {
     assert!(codes(&document(&[])).contains(&"machine_compliance_unknown"));
     let contact = document(&[&free[..], &["--only-contact"]].concat());
     assert_eq!(contact, found["contact"]);
+    assert_eq!(contact["material"]["effective"]["bodies"][1], "rigid");
     let table = fit(&[&free[..], &["--format", "csv"]].concat());
     assert_eq!(table.stdout.iter().filter(|byte| **byte == b'\n').count(), 752);
     for (wrong, said) in [
@@ -272,4 +334,21 @@ fn a_file_of_a_bench_is_fitted_without_a_server() {
         let text = String::from_utf8_lossy(&refused.stderr).into_owned();
         assert!(!refused.status.success() && text.contains(said), "{text}");
     }
+}
+
+#[tokio::test]
+async fn forces_in_steps_are_warned_of() {
+    let server = Server::start().await;
+    let [displacement, force] = steady(&server, 1.5).await;
+    let slides = force.iter().copied().fold(0.0, f64::max);
+    let read = |step: f64| -> Vec<f64> {
+        let noisy = force.iter().enumerate().map(|(index, force)| force + step / 3.0 * 1.7 * noise(index));
+        noisy.map(|force| (force / step).round() * step).collect()
+    };
+    let fitted = good(server.post("/fit", &body(&[displacement.clone(), read(0.03 * slides)])).await).await;
+    assert!(codes(&fitted).contains(&"quantised") && !codes(&fitted).contains(&"not_coulomb"), "{fitted}");
+    let smooth: Vec<f64> =
+        force.iter().enumerate().map(|(index, force)| force + 0.01 * slides * noise(index)).collect();
+    let fitted = good(server.post("/fit", &body(&[displacement, smooth])).await).await;
+    assert!(!codes(&fitted).contains(&"quantised"), "{fitted}");
 }

@@ -1,9 +1,9 @@
-//! Random bodies of `POST /simulate`, `POST /cycle`, `POST /fretting` and `POST /fit`: each is answered with a reply that obeys the
-//! laws, or refused with the place of the fault. None panics.
+//! Random bodies of `POST /simulate`, `POST /cycle`, `POST /fretting` and `POST /fit`: each is answered with a reply
+//! that obeys the laws, or refused with the place of the fault. None panics.
 //!
-//! The number of cases is fixed, and case n is the same on every run and every machine. `STICKSLIP_FUZZ_CASES` sets
-//! another number of each kind, `STICKSLIP_FUZZ_SEED` for other cases. `fuzz/` runs the same checks under a coverage-guided
-//! fuzzer.
+//! The number of cases is fixed, and case n is the same on every run and every machine. `STICKSLIP_LONG=1`, which
+//! `./check long` sets, asks for many more, `STICKSLIP_FUZZ_CASES` for another number of each kind, and
+//! `STICKSLIP_FUZZ_SEED` for other cases. `fuzz/` runs the same checks under a coverage-guided fuzzer.
 
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
@@ -22,9 +22,10 @@ const NOTABLE: Duration = Duration::from_secs(2);
 /// A case that takes longer is taken for an endless loop.
 const HANGING: Duration = Duration::from_secs(600);
 
-/// The number of cases to run: `usual` unless the environment asks for another.
-pub fn case_count(usual: u64) -> u64 {
-    from_environment("STICKSLIP_FUZZ_CASES").unwrap_or(usual)
+/// The number of cases to run, of the usual and the long run, unless the environment asks for another.
+pub fn case_count([usual, long]: [u64; 2]) -> u64 {
+    let is_long = from_environment("STICKSLIP_LONG").is_some_and(|flag| flag > 0);
+    from_environment("STICKSLIP_FUZZ_CASES").unwrap_or(if is_long { long } else { usual })
 }
 
 /// What all random numbers derive from.
@@ -58,14 +59,14 @@ fn watch(running: Running) {
 
 /// Runs this many cases, and shrinks the first that breaks a law.
 fn fuzz<S: Strategy>(
-    usual: u64,
+    numbers: [u64; 2],
     strategy: S,
     write: impl Fn(&S::Value) -> Vec<u8>,
     examine: impl Fn(&[u8]) -> Outcome,
 ) {
     let running: Running = Arc::default();
     watch(Arc::clone(&running));
-    let (cases, seed, start) = (case_count(usual), seed(), Instant::now());
+    let (cases, seed, start) = (case_count(numbers), seed(), Instant::now());
     let (mut counts, mut slowest) = ([0_u64; 3], Duration::ZERO);
     for case in 0..cases {
         let mut bytes = [0; 32];
@@ -119,33 +120,38 @@ fn bodies_that_once_broke_a_law() {
 
 #[test]
 fn raw_bytes() {
-    fuzz(1_200_000, crate::damage::raw(), Clone::clone, examine);
+    fuzz([150_000, 1_200_000], crate::damage::raw(), Clone::clone, examine);
 }
 
 #[test]
 fn damaged_requests() {
-    fuzz(35_000, crate::damage::damaged(), Clone::clone, examine);
+    fuzz([10_000, 35_000], crate::damage::damaged(), Clone::clone, examine);
 }
 
 #[test]
 fn sound_requests() {
-    fuzz(9_500, crate::requests::random_request(), |request| request.to_json().to_string().into_bytes(), examine);
+    fuzz(
+        [3_000, 9_500],
+        crate::requests::random_request(),
+        |request| request.to_json().to_string().into_bytes(),
+        examine,
+    );
 }
 
 #[test]
 fn cycles() {
     let write = |request: &RandomCycle| request.to_json().to_string().into_bytes();
-    fuzz(1_000, crate::cycle_requests::random_cycle(), write, cycle_laws::examine);
+    fuzz([400, 1_000], crate::cycle_requests::random_cycle(), write, cycle_laws::examine);
 }
 
 #[test]
 fn fretting() {
     let write = |request: &RandomFretting| request.to_json().to_string().into_bytes();
-    fuzz(800, crate::depth_requests::random_fretting(), write, fretting_laws::examine);
+    fuzz([150, 800], crate::depth_requests::random_fretting(), write, fretting_laws::examine);
 }
 
 #[test]
 fn fits() {
     let write = |request: &RandomFit| request.to_json().to_string().into_bytes();
-    fuzz(150, fit_laws::random_fit(), write, fit_laws::examine);
+    fuzz([60, 150], fit_laws::random_fit(), write, fit_laws::examine);
 }

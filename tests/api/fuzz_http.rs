@@ -1,10 +1,10 @@
-//! Random requests over HTTP to the real binary: no 5xx but for overload, no panic, and each refusal is a problem document
-//! that names the place of the fault in the body.
+//! Random requests over HTTP to the real binary: no 5xx but for overload, no panic, and each refusal is a problem
+//! document that names the place of the fault in the body.
 //!
-//! Requests are generated from the schemas and examples of the OpenAPI document, for every path and method, and damaged; raw
-//! sockets get requests with random bytes. The number of cases is fixed, and case n is the same on every run and every
-//! machine, as is the order of cases on each contact. `STICKSLIP_FUZZ_CASES` asks for another number of each kind,
-//! `STICKSLIP_FUZZ_SEED` for other cases.
+//! Requests are generated from the schemas and examples of the OpenAPI document, for every path and method, and
+//! damaged; raw sockets get requests with random bytes. The number of cases is fixed, and case n is the same on every
+//! run and every machine, as is the order of cases on each contact. `STICKSLIP_LONG=1` and `STICKSLIP_FUZZ_CASES` ask
+//! for other numbers of each kind, `STICKSLIP_FUZZ_SEED` for other cases.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -28,8 +28,8 @@ const TASKS: u64 = 8;
 const CONTACTS_PER_TASK: usize = 2;
 
 /// Runs so many cases in several tasks; `case` gets the index of its task and the number of the case.
-async fn run(usual: u64, case: impl AsyncFn(usize, u64, &mut Random) + Clone) {
-    let (cases, seed, start) = (case_count(usual), seed(), Instant::now());
+async fn run(numbers: [u64; 2], case: impl AsyncFn(usize, u64, &mut Random) + Clone) {
+    let (cases, seed, start) = (case_count(numbers), seed(), Instant::now());
     let tasks = (0..TASKS).map(async |task| {
         // Every task has cases of its own, so that the speed of the others does not change their order.
         for number in (task..cases).step_by(TASKS as usize) {
@@ -171,7 +171,7 @@ async fn requests_by_the_schemas() {
     let (http, answered, refused) = (reqwest::Client::new(), AtomicU64::new(0), AtomicU64::new(0));
     let base = format!("http://{}", service.address);
     let contacts: Vec<&[String]> = contacts.chunks(CONTACTS_PER_TASK).collect();
-    run(50_000, async |task, number, random| {
+    run([10_000, 50_000], async |task, number, random| {
         let request = request(&schemas, contacts[task], random);
         // Most cases should find their contact.
         if request.method == "DELETE" && number % 50 != 0 {
@@ -185,7 +185,8 @@ async fn requests_by_the_schemas() {
         if let Some(body) = &request.body {
             call = call.header("content-type", "application/json").body(body.clone());
         }
-        // The server closes a connection whose request it did not read to the end, perhaps as the next one is sent on it.
+        // The server closes a connection whose request it did not read to the end, perhaps as the next one is sent on
+        // it.
         let mut sent = call.try_clone().unwrap().send().await;
         for _ in 0..3 {
             if sent.is_err() {
@@ -219,11 +220,11 @@ async fn bytes_on_the_socket() {
         ),
         crate::common::raw::post(&format!("/contacts/{id}/move"), r#"{"displacement": 1e-8}"#),
         crate::common::raw::get(&format!("/contacts/{id}/stress?points=5")),
-        "POST /simulate HTTP/1.1\r\nhost: localhost\r\ncontent-type: application/json\r\ntransfer-encoding: chunked\r\n\r\n\
-         5\r\n{\"a\":\r\n2\r\n1}\r\n0\r\n\r\n"
+        "POST /simulate HTTP/1.1\r\nhost: localhost\r\ncontent-type: application/json\r\ntransfer-encoding: \
+         chunked\r\n\r\n5\r\n{\"a\":\r\n2\r\n1}\r\n0\r\n\r\n"
             .to_owned(),
     ];
-    run(60_000, async |_, number, random| {
+    run([15_000, 60_000], async |_, number, random| {
         let mut bytes = pick(&sound, random).clone().into_bytes();
         if random.below(6) == 0 {
             bytes = (0..random.below(3_000)).map(|_| random.next() as u8).collect();

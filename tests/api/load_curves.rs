@@ -120,7 +120,8 @@ async fn stresses_of_them_are_refused_at_their_place() {
             ("/cycle", json!({"drive": {"displacement": 1e-7}, "work_density": {"points": 3}}), "/work_density"),
             (
                 "/fretting",
-                json!({"path": path, "body": "first", "points": [[0.0, 0.0, 1e-5]], "criteria": {"crossland": {"alpha": 0.3}}}),
+                json!({"path": path, "body": "first", "points": [[0.0, 0.0, 1e-5]],
+                    "criteria": {"crossland": {"alpha": 0.3}}}),
                 "/contact/profile",
             ),
         ] {

@@ -178,8 +178,8 @@ async fn prometheus_reads_what_a_client_counted() {
     ] {
         assert_eq!(prometheus.count(query).await, expected, "{query}");
     }
-    // A client that waits for each answer has each change in a transaction of its own. On a machine so slow that a replay of
-    // the moves would take long, there are snapshots besides.
+    // A client that waits for each answer has each change in a transaction of its own. On a machine so slow that a
+    // replay of the moves would take long, there are snapshots besides.
     let (made, committed) = ("stickslip_commit_changes_sum{store=\"sqlite\"}", "stickslip_commit_seconds_count");
     let (made, committed) = (prometheus.count(made).await, prometheus.count(committed).await);
     let changes = 3 + 11 + 4 + 1;

@@ -1,4 +1,5 @@
-//! Traces: a real receiver of OTLP gets a span for each request, in the trace that the client names, and spans of its parts.
+//! Traces: a real receiver of OTLP gets a span for each request, in the trace that the client names, and spans of its
+//! parts.
 
 use crate::common;
 

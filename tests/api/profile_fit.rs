@@ -2,10 +2,11 @@
 
 use crate::common;
 
-use common::{Server, ball, good, number, problem, with};
+use common::{Server, ball, good, number, problem, run, with};
 use serde_json::{Value, json};
 
-/// A line over a ball of 10 mm, in micrometres and nanometres, upside down, with a little noise that is the same every time.
+/// A line over a ball of 10 mm, in micrometres and nanometres, upside down, with a little noise that is the same every
+/// time.
 fn line() -> Value {
     let x: Vec<f64> = (0..401).map(|index| f64::from(index - 200)).collect();
     let noise = |index: usize| ((index * 7919) % 101) as f64 / 50.0 - 1.0;
@@ -160,4 +161,85 @@ async fn all_formats_have_the_points_of_the_reply() {
         let text: String = bytes.iter().take(40).map(|byte| char::from(*byte)).collect();
         assert!(text.starts_with(begins), "{format}: {text}");
     }
+}
+
+#[tokio::test]
+async fn a_contact_of_a_fitted_profile_states_the_error_of_the_fit() {
+    let server = Server::start().await;
+    let mut task = loaded();
+    // A worn ball: nothing rises over the first 40 um.
+    let shape = |x: f64| if x.abs() < 40.0 { 0.0 } else { (x * x - 1600.0) / 20.0 };
+    let z: Vec<f64> =
+        (0..401).map(|index| ((index * 7919) % 101) as f64 / 10.0 + shape(f64::from(index - 200))).collect();
+    task["scan"]["line"]["z"] = json!(z);
+    let reply = good(server.post("/profiles/fit", &task).await).await;
+    let errors = &reply["profile"]["indentation_error"];
+    assert_eq!(errors.as_array().unwrap().len(), reply["profile"]["r"].as_array().unwrap().len());
+    let mut contact = ball();
+    (contact["friction"], contact["profile"]) = (json!(0.3), reply["profile"].clone());
+    let simulate = |contact: &Value| json!({"contact": contact, "path": {"force": [1.0]}});
+    let stated = good(server.post("/simulate", &simulate(&contact)).await).await;
+    let indentation = &reply["contact"]["indentation"];
+    let share = number(&indentation["standard_error"]) / number(&indentation["value"]);
+    let error = number(&stated["accuracy"]["force_error"]);
+    assert!((0.5..20.0).contains(&(error / share)), "{error} of {share}");
+    let codes = |reply: &Value| reply["warnings"].to_string();
+    assert!(!codes(&stated).contains("noisy_table"), "{stated}");
+    // Both members or none, as long as the table, and no negative number.
+    for (pointer, value, fault) in [
+        ("/contact/profile/indentation_error", json!([1e-9]), "/contact/profile/indentation_error"),
+        ("/contact/profile/pressure_error/0", json!(-1e-9), "/contact/profile/pressure_error/0"),
+    ] {
+        let refused = problem(server.post("/simulate", &with(simulate(&contact), pointer, value)).await).await;
+        assert_eq!(refused.errors[0].pointer, fault, "{refused:?}");
+    }
+    contact["profile"].as_object_mut().unwrap().remove("pressure_error");
+    let refused = problem(server.post("/simulate", &simulate(&contact)).await).await;
+    assert!(format!("{refused:?}").contains("pressure_error"), "{refused:?}");
+}
+
+#[test]
+fn a_file_of_an_instrument_is_read_as_it_is() {
+    let folder = tempfile::tempdir().unwrap();
+    let fitted = |name: &str, bytes: &[u8]| -> (Value, String) {
+        let file = folder.path().join(name);
+        std::fs::write(&file, bytes).unwrap();
+        let output = run(&["profile", file.to_str().unwrap(), "--format", "json"]);
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert!(output.status.success(), "{said}");
+        (serde_json::from_slice(&output.stdout).unwrap(), said)
+    };
+    let radius = |reply: &Value| number(&reply["radius_of_curvature"]["value"]);
+    let scan = &line()["scan"]["line"];
+    let rows = (0..401).map(|index| format!("{};{}\n", scan["x"][index], scan["z"][index])).collect::<String>();
+    // The units are those of the header, in whatever encoding; a header without units is in metres, which no ball is.
+    let text = format!("X [µm];Z [nm]\n{}", rows.replace('.', ","));
+    let wide: Vec<u8> = text.encode_utf16().flat_map(u16::to_le_bytes).collect();
+    let latin: Vec<u8> = text.chars().map(|letter| u8::try_from(u32::from(letter)).unwrap()).collect();
+    let (expected, said) = fitted("utf-8.csv", text.as_bytes());
+    assert!((radius(&expected) / 0.01 - 1.0).abs() < 0.01, "{}", radius(&expected));
+    assert!(said.contains("x is `X [µm]`, in um") && said.contains("decimal commas"), "{said}");
+    for (name, bytes) in [("utf-16.csv", &wide), ("latin-1.csv", &latin)] {
+        assert_eq!(fitted(name, bytes).0["profile"], expected["profile"], "{name}");
+    }
+    // A matrix of Gwyddion with more heights than a request may have, and a hole.
+    let height = |row: usize, column: usize| {
+        let (x, y) = (column as f64 - 300.0, row as f64 - 280.0);
+        if (row, column) == (7, 5) { "nan".to_owned() } else { format!("{:e}", -5e-11 * (x * x + y * y)) }
+    };
+    let rows = (0..560).map(|row| (0..600).map(|column| height(row, column)).collect::<Vec<_>>().join("\t"));
+    let header = "# Channel: Height\n# Width: 600 µm\n# Height: 560 µm\n# Value units: m\n";
+    let matrix = format!("{header}{}\n", rows.collect::<Vec<_>>().join("\n"));
+    let (found, said) = fitted("map.txt", matrix.as_bytes());
+    assert!((radius(&found) / 0.01 - 1.0).abs() < 0.01, "{}", radius(&found));
+    assert!(said.contains("600 x 560 heights in m") && said.contains("to 300 x 280 heights"), "{said}");
+    // What is wrong is said by line and column.
+    let file = folder.path().join("wrong.csv");
+    std::fs::write(&file, "X [um];Z [nm]\n1;2\n3;four\n").unwrap();
+    let refused = run(&["profile", file.to_str().unwrap()]);
+    let said = String::from_utf8(refused.stderr).unwrap();
+    assert!(
+        !refused.status.success() && said.contains("line 3 is not a row of numbers: column 2 has `four`"),
+        "{said}"
+    );
 }

@@ -301,8 +301,8 @@ fn steel(profile: &Value) -> Value {
     json!({"profile": profile, "material": material, "friction": 0.3, "preload": {"indentation": 3e-6}})
 }
 
-/// On a parabola the best from a part of gross slip is the best from gross slip, 0.6 after one reversal, times the root of
-/// that part. The residual of every reply says by itself what it is relative to.
+/// On a parabola the best from a part of gross slip is the best from gross slip, 0.6 after one reversal, times the root
+/// of that part. The residual of every reply says by itself what it is relative to.
 #[tokio::test]
 async fn a_small_start_and_a_live_history_are_relaxed_as_far_as_can_be() {
     let server = Server::start().await;

@@ -7,7 +7,7 @@ use std::path::Path;
 use std::process::{Command, Output};
 
 use common::clean;
-use common::process::ended;
+use common::process::{Process, ended};
 use tempfile::tempdir;
 
 /// Three values of every setting, none of them its default.
@@ -206,4 +206,25 @@ fn whatever_is_wrong_ends_the_start_with_one_line_that_says_what_and_what_is_all
     // Kubernetes sets these for every container beside a service of this name.
     let beside = [("STICKSLIP_SERVICE_HOST", "10.0.0.1"), ("STICKSLIP_PORT_8080_TCP", "tcp://10.0.0.1:8080")];
     in_force(binary(&["config"]).envs(beside));
+}
+
+#[tokio::test]
+async fn without_a_command_it_serves_the_store_of_the_folder_and_makes_none() {
+    let folder = tempdir().unwrap();
+    let with = |arguments: &[&str]| {
+        let mut command = binary(arguments);
+        command.args(["--listen", "127.0.0.1:0"]).current_dir(folder.path());
+        command
+    };
+    let output = ended(&mut with(&[]));
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert_eq!((output.status.code(), said.lines().count()), (Some(2), 1), "{said}");
+    assert!(said.contains("stickslip.db") && said.contains("`stickslip serve`"), "{said}");
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
+    for arguments in [&["serve"][..], &[]] {
+        let process = Process::of(with(arguments)).await;
+        process.client.healthz().await.unwrap();
+        process.stop().await;
+        assert!(folder.path().join("stickslip.db").exists());
+    }
 }

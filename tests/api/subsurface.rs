@@ -1,4 +1,5 @@
-//! Stress below the surface over HTTP: published figures, every fault with its place, all formats, and a contact that stays as it is.
+//! Stress below the surface over HTTP: published figures, every fault with its place, all formats, and a contact that
+//! stays as it is.
 
 use std::f64::consts::PI;
 
@@ -59,7 +60,8 @@ async fn a_contact_tells_its_stress_and_stays_as_it_is() {
     }
     let place = format!("{base}/subsurface");
     let body = json!({
-        "body": "second", "poisson_ratio": 0.3, "plane": {"normal": "y", "offset": 0.0, "x": [-1.0, 1.0, 5], "z": [0.0, 1.0, 3]},
+        "body": "second", "poisson_ratio": 0.3,
+            "plane": {"normal": "y", "offset": 0.0, "x": [-1.0, 1.0, 5], "z": [0.0, 1.0, 3]},
         "fields": ["tensor", "principal", "von_mises", "max_shear", "hydrostatic"], "bulk": {"xx": 1.0}
     });
     let response = server.post(&place, &body).await;

@@ -70,6 +70,8 @@ async fn a_service_with_a_certificate_speaks_tls_alone_and_takes_a_new_one_while
     let check = ["--listen", &address, "--tls-cert", files[1]];
     assert!(healthcheck(&check).status().unwrap().success());
     assert!(!healthcheck(&check[..2]).status().unwrap().success());
+    // With the flags of `serve`.
+    assert!(healthcheck(&[&check[..2], &files].concat()).status().unwrap().success());
 
     // What is no certificate leaves the one in force.
     std::fs::write(&certificate, "nothing yet").unwrap();

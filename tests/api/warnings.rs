@@ -77,15 +77,18 @@ async fn each_warning_has_its_cause_and_its_page() {
         (json!({"profile": parabola(0.01), "preload": {"contact_radius": 0.0029}}), &[]),
         (json!({"profile": parabola(0.01), "preload": {"contact_radius": 0.0031}}), &["large_contact"]),
         (
-            json!({"profile": {"type": "rounded_cone", "slope": 0.5, "tip_radius": 0.005}, "preload": {"contact_radius": 0.0029}}),
+            json!({"profile": {"type": "rounded_cone", "slope": 0.5, "tip_radius": 0.005},
+                "preload": {"contact_radius": 0.0029}}),
             &[],
         ),
         (
-            json!({"profile": {"type": "rounded_cone", "slope": 0.5, "tip_radius": 0.005}, "preload": {"contact_radius": 0.0031}}),
+            json!({"profile": {"type": "rounded_cone", "slope": 0.5, "tip_radius": 0.005},
+                "preload": {"contact_radius": 0.0031}}),
             &["large_contact"],
         ),
         (
-            json!({"profile": {"type": "sum", "parts": [parabola(0.02), {"type": "sphere", "radius": 0.02}]}, "preload": {"contact_radius": 0.0031}}),
+            json!({"profile": {"type": "sum", "parts": [parabola(0.02), {"type": "sphere", "radius": 0.02}]},
+                "preload": {"contact_radius": 0.0031}}),
             &["large_contact"],
         ),
         (json!({"profile": {"type": "cone", "slope": 0.29}}), &[]),
@@ -95,16 +98,19 @@ async fn each_warning_has_its_cause_and_its_page() {
         (json!({"profile": {"type": "truncated_sphere", "radius": 0.01, "flat_radius": 0.001}}), &[]),
         // A path may lead from no load at all.
         (
-            json!({"profile": measured(1e-15), "preload": {"normal_force": 0.0}, "path": {"moves": [{"normal_force": 10.0}]}}),
+            json!({"profile": measured(1e-15), "preload": {"normal_force": 0.0},
+                "path": {"moves": [{"normal_force": 10.0}]}}),
             &[],
         ),
         (
-            json!({"profile": measured(1e-9), "preload": {"normal_force": 0.0}, "path": {"moves": [{"normal_force": 10.0}]}}),
+            json!({"profile": measured(1e-9), "preload": {"normal_force": 0.0},
+                "path": {"moves": [{"normal_force": 10.0}]}}),
             &["noisy_table"],
         ),
         // A radius of 10 and moduli of 115 GPa: millimetres and megapascals.
         (
-            json!({"profile": {"type": "sphere", "radius": 10.0}, "material": {"effective": {"e_star": 1.15e5, "g_star": 8.5e4}}}),
+            json!({"profile": {"type": "sphere", "radius": 10.0},
+                "material": {"effective": {"e_star": 1.15e5, "g_star": 8.5e4}}}),
             &["units"],
         ),
         (json!({"profile": measured(1e-9)}), &["noisy_table"]),

@@ -1,8 +1,8 @@
 //! Kills a server under load repeatedly, and checks that no acknowledged move is lost.
 //!
-//! Clients move sessions, each move with an idempotency key, and repeat a move with its key until it is acknowledged. So in
-//! the end every session must hold exactly the moves that were acknowledged for it: one more would be a move made twice, one
-//! less a move lost.
+//! Clients move sessions, each move with an idempotency key, and repeat a move with its key until it is acknowledged.
+//! So in the end every session must hold exactly the moves that were acknowledged for it: one more would be a move made
+//! twice, one less a move lost.
 
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};

@@ -40,13 +40,9 @@ impl Service {
     pub fn start_on(store: &str, arguments: &[&str]) -> Service {
         let folder = tempfile::tempdir().unwrap();
         let log = File::create(folder.path().join("log")).unwrap();
-        let mut child = Command::new(env!("CARGO_BIN_EXE_stickslip"))
+        let mut child = super::clean(Command::new(env!("CARGO_BIN_EXE_stickslip")))
             .args(["serve", "--listen", "127.0.0.1:0", "--store", store])
             .args(arguments)
-            // Not settings of the service, which refuses unknown ones.
-            .env_remove("STICKSLIP_FUZZ_CASES")
-            .env_remove("STICKSLIP_FUZZ_SEED")
-            .env_remove("STICKSLIP_SOAK_MINUTES")
             .stdout(Stdio::piped())
             .stderr(log)
             .spawn()

@@ -126,7 +126,8 @@ async fn every_panel_of_a_contact_works_on_sqlite() {
     let page: Value = reqwest::get(of(&variable["url"])).await.unwrap().json().await.unwrap();
     let mut select_contacts = node();
     let script = "const [, expression, page] = process.argv;\
-                  require('jsonata')(expression).evaluate(JSON.parse(page)).then((found) => console.log(JSON.stringify(found)))";
+                  require('jsonata')(expression).evaluate(JSON.parse(page)).then((found) => \
+                  console.log(JSON.stringify(found)))";
     let expression = variable["root_selector"].as_str().unwrap();
     let said = succeed(select_contacts.args(["-e", script, expression, &page.to_string()]), "it is installed");
     let choices: Vec<Value> = serde_json::from_str(&said).unwrap();

@@ -2,7 +2,7 @@
 
 use std::process::Command;
 
-use stickslip::api::middleware::access_control::{Need, need};
+use stickslip::api::{Need, need};
 use stickslip_wire::Code;
 
 use crate::common::process::Process;

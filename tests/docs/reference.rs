@@ -317,7 +317,7 @@ fn the_reference_knows_the_units_of_the_contract() {
         ("ProfileFitReply", "centre.y", "m"),
         ("FrettingReply", "ruiz_tension", "N²/m³"),
         ("Rating", "values[]", "that of the criterion"),
-        ("ContactDefinition", "material.bodies[].youngs_modulus", "Pa"),
+        ("Body", "youngs_modulus", "Pa"),
         ("CycleReply", "cycles[].harmonics[].in_phase", "that of the answer"),
         ("FitReply", "correlations.{name}.{name}", "1"),
         ("PowerLawProfile", "coefficient", "m^(1−n)"),

@@ -39,7 +39,7 @@ fn the_report_finds_the_known_orders_of_error() {
         assert!(row["solver"] != "exact" || ratio.to_bits() == 1.0_f64.to_bits(), "{row}");
         assert!(row["solver"] == "reference" || row["runs"].as_u64() >= Some(3), "{row}");
     }
-    assert_eq!((&report["missing"], &report["peers"]), (&json!([]), &json!([])));
+    assert_eq!((&report["missing"], &report["external"]), (&json!([]), &json!([])));
 
     let error = |scene: &str, solver: &str, springs: Value, column: &str| -> f64 {
         let same = |row: &&Value| row["scene"] == scene && row["solver"] == solver && row["springs"] == springs;
@@ -95,7 +95,8 @@ fn solvers_without_time_left_are_listed_and_not_estimated() {
 fn a_python_that_does_not_exist_is_named() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().to_str().unwrap();
-    let arguments = ["report", "--out", out, "--scenes", "reversal", "--largest", "10", "--peers", "/no/such/python"];
+    let arguments =
+        ["report", "--out", out, "--scenes", "reversal", "--largest", "10", "--external", "/no/such/python"];
     let output = crate::common::run(&arguments);
     assert!(!output.status.success());
     assert!(String::from_utf8_lossy(&output.stderr).contains("/no/such/python does not run"));

@@ -39,7 +39,8 @@ fn the_commit_is_that_of_the_repository_and_of_no_other() {
     std::fs::create_dir(&inner).unwrap();
     assert_eq!(commit::commit_of(&inner), None, "a source archive within another repository");
 
-    // Whatever moves the commit changes one of the files, so that the build script runs again, and no other run is needed.
+    // Whatever moves the commit changes one of the files, so that the build script runs again, and no other run is
+    // needed.
     let read = |files: &[PathBuf]| files.iter().map(|file| std::fs::read(file).unwrap()).collect::<Vec<_>>();
     let before = read(&files);
     assert_eq!(read(&files), before);

@@ -1,7 +1,8 @@
 //! The balance of energy at constant load, without quadrature: bounds that hold for any concave force.
 //!
-//! While the indenter moves one way under a constant load, the slip ring grows and the tangential stiffness 2 G* c, c the stick
-//! radius, falls. So the force over the displacement lies above its chords and below its tangents, and so does its work.
+//! While the indenter moves one way under a constant load, the slip ring grows and the tangential stiffness 2 G* c, c
+//! the stick radius, falls. So the force over the displacement lies above its chords and below its tangents, and so
+//! does its work.
 
 use stickslip_wire::simulate::Simulation;
 use stickslip_wire::{Path, SimulateReply, SimulateRequest, SolverKind, State};
@@ -12,7 +13,8 @@ use super::laws::{again, largest_load};
 const MOVES: usize = 5;
 /// Into how many parts each is split.
 const PARTS: usize = 12;
-/// The allowed error of the balance, relative to the friction limit times the sum of the distance and the gross-slip displacement.
+/// The allowed error of the balance, relative to the friction limit times the sum of the distance and the gross-slip
+/// displacement.
 const BALANCE: f64 = 1e-9;
 
 /// # Panics

@@ -3,7 +3,8 @@
 use std::f64::consts::PI;
 
 use stickslip::admission::{Nanoseconds, Stop};
-use stickslip::simulation::{cost, cycle_of};
+use stickslip::computations::{Computation as _, Cycle};
+use stickslip::simulation::cycle_of;
 use stickslip_mechanics::cycle::Drive;
 use stickslip_wire::cycle::{CycleRequest, CycleTask};
 use stickslip_wire::{CycleReply, Document as _, SteadyCycle, parse};
@@ -26,13 +27,14 @@ pub fn examine(body: &[u8]) -> Outcome {
         Ok(request) => request,
         Err(rejection) => return refused(body, rejection.into()),
     };
-    let (_, setup, task) = match request.check() {
+    let checked = match request.check() {
         Ok(checked) => checked,
         Err(rejection) => return refused(body, rejection.into()),
     };
-    if cost::of_cycle(&setup.profile, &task) > MAX_COST {
+    if Cycle::cost(&checked) > MAX_COST {
         return Outcome::TooExpensive;
     }
+    let (_, setup, task) = checked;
     match cycle_of(setup, &task, &Stop::default()) {
         Ok((_, reply)) => {
             laws(&task, &reply);

@@ -93,6 +93,8 @@ pub struct RandomFretting {
     /// Mean, amplitude, Pa, and phase.
     bulk: Option<[f64; 3]>,
     stress_paths: bool,
+    /// Without places.
+    search: bool,
 }
 
 /// A random request: mostly of a path that closes.
@@ -112,14 +114,16 @@ pub fn random_fretting() -> impl Strategy<Value = RandomFretting> {
         1 => (depth(true), surface.boxed()),
     ];
     let bulk = prop::option::weighted(0.3, (-3e8..3e8_f64, 0.0..3e8_f64, -360.0..360.0_f64));
-    (contact(), closed_path(), asked, bulk, any::<bool>()).prop_map(
-        |(contact, path, (depth, criteria), bulk, stress_paths)| RandomFretting {
+    let search = prop::bool::weighted(0.04);
+    (contact(), closed_path(), asked, bulk, any::<bool>(), search).prop_map(
+        |(contact, path, (depth, criteria), bulk, stress_paths, search)| RandomFretting {
             contact,
             path,
             depth,
             criteria,
             bulk: bulk.map(|(mean, amplitude, phase)| [mean, amplitude, phase]),
             stress_paths,
+            search,
         },
     )
 }
@@ -137,7 +141,10 @@ impl RandomFretting {
         if let Some([mean, amplitude, phase]) = self.bulk {
             request["bulk"] = json!({"mean": mean, "amplitude": amplitude, "phase": phase});
         }
-        if self.stress_paths {
+        if self.search {
+            let members = request.as_object_mut().expect("a request is an object");
+            members.retain(|name, _| !matches!(name.as_str(), "points" | "line" | "plane" | "surface"));
+        } else if self.stress_paths {
             request["stress_paths"] = json!([0]);
         }
         request

@@ -4,7 +4,8 @@ use proptest::prelude::*;
 use proptest::sample::{select, subsequence};
 use serde_json::{Value, json};
 use stickslip::admission::{Nanoseconds, Stop};
-use stickslip::simulation::{cost, fit_loops};
+use stickslip::computations::{Computation as _, FitLoops};
+use stickslip::simulation::fit_loops;
 use stickslip_wire::fit::{FitParameter, FitRequest};
 use stickslip_wire::{CreateRequest, Document as _, FitReply, parse};
 
@@ -21,7 +22,8 @@ pub struct RandomFit {
     free: Vec<&'static str>,
     known: Option<(&'static str, f64)>,
     start: Option<&'static str>,
-    /// Amplitude over the displacement of gross slip, friction over that of the contact, machine over contact, noise over force.
+    /// Amplitude over the displacement of gross slip, friction over that of the contact, machine over contact, noise
+    /// over force.
     parts: (f64, f64, f64, f64),
     points: usize,
     turns: usize,
@@ -92,7 +94,7 @@ pub fn examine(body: &[u8]) -> Outcome {
         Ok(task) => task,
         Err(rejection) => return refused(body, rejection.into()),
     };
-    if cost::of_fit(&task) > MAX_COST {
+    if FitLoops::cost(&task) > MAX_COST {
         return Outcome::TooExpensive;
     }
     match fit_loops(task, &Stop::default()) {

@@ -1,7 +1,8 @@
 //! What must hold for any body of `POST /fretting`.
 
 use stickslip::admission::{Nanoseconds, Stop};
-use stickslip::simulation::{cost, fretting};
+use stickslip::computations::{Computation as _, Fretting};
+use stickslip::simulation::fretting;
 use stickslip_mechanics::fatigue::MAX_INSTANTS;
 use stickslip_wire::fretting::{FrettingRequest, FrettingTask};
 use stickslip_wire::{Document as _, FrettingReply, parse};
@@ -20,13 +21,14 @@ pub fn examine(body: &[u8]) -> Outcome {
         Ok(request) => request,
         Err(rejection) => return refused(body, rejection.into()),
     };
-    let (_, setup, task) = match request.check() {
+    let checked = match request.check() {
         Ok(checked) => checked,
         Err(rejection) => return refused(body, rejection.into()),
     };
-    if cost::of_fretting(&setup.profile, &task) > MAX_COST {
+    if Fretting::cost(&checked) > MAX_COST {
         return Outcome::TooExpensive;
     }
+    let (_, setup, task) = checked;
     let spiked = setup.profile.rim_radius().is_some() || !setup.profile.singular_radii().is_empty();
     match fretting(setup, &task, &Stop::default()) {
         Ok(reply) => {
@@ -38,25 +40,33 @@ pub fn examine(body: &[u8]) -> Outcome {
 }
 
 fn laws(task: &FrettingTask, reply: &FrettingReply, spiked: bool) {
-    let count = task.places.count();
+    // A search has a place for each criterion.
+    let count = if task.searches() { reply.ratings().count() } else { task.places.count() };
     assert!([&reply.x, &reply.y, &reply.z].iter().all(|column| column.len() == count));
     assert!((1..=MAX_INSTANTS).contains(&reply.instants) && reply.change.is_finite(), "{reply:?}");
     for (name, _, rating) in reply.ratings() {
         assert_eq!(rating.values.len(), count, "{name}");
+        let of_surface = matches!(name, "ruiz" | "ruiz_tension" | "friction_work");
         for (value, z) in rating.values.iter().zip(&reply.z) {
-            assert!(value.is_some() || (spiked && *z <= 0.0), "{name} is null at the depth {z}: {reply:?}");
+            assert!(
+                value.is_some() || (spiked && *z <= 0.0) || (of_surface && task.searches() && *z > 0.0),
+                "{name} is null at the depth {z}: {reply:?}"
+            );
         }
         let found = rating.values.iter().copied().flatten();
         let never_negative = !matches!(name, "crossland" | "dang_van" | "findley");
         assert!(!never_negative || found.clone().all(|value| value >= 0.0), "{name}: {rating:?}");
         let most = found.reduce(f64::max);
-        assert_eq!(rating.largest.as_ref().map(|largest| largest.value), most, "{name}");
+        let unbounded = task.searches() && rating.values.contains(&None);
+        assert!(unbounded || rating.largest.as_ref().map(|largest| largest.value) == most, "{name}: {rating:?}");
+        assert!(rating.margin.is_none_or(|margin| margin > 0.0), "{name}: {rating:?}");
         if let Some(largest) = &rating.largest {
             let place = (0..count).find(|index| {
                 let place = [reply.x[*index], reply.y[*index], reply.z[*index]];
                 place.map(f64::to_bits) == largest.point.map(f64::to_bits)
             });
             assert_eq!(place.and_then(|index| rating.values[index]), Some(largest.value), "{name}: {largest:?}");
+            assert!(largest.error >= 0.0 && largest.error.is_finite(), "{name}: {largest:?}");
             let length = largest.plane.map(|normal| normal.iter().map(|part| part * part).sum::<f64>());
             assert!(length.is_none_or(|length| (length - 1.0).abs() < 1e-12), "{name}: {largest:?}");
             assert!(largest.at.is_none_or(|at| at.part > 0.0 && at.part <= 1.0), "{name}: {largest:?}");

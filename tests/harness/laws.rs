@@ -15,7 +15,8 @@ const FORCE: f64 = 1e-10;
 /// The allowed error of stresses, relative to mu p_max: at a cusp it is the root of the rounding error of the radius.
 const STRESS: f64 = 1e-6;
 
-/// Contact radii, m, and normal forces, N, below which products of a few of them lose their digits, and then themselves.
+/// Contact radii, m, and normal forces, N, below which products of a few of them lose their digits, and then
+/// themselves.
 const SMALLEST: f64 = 1e-100;
 
 /// A longer slip history is left by curved moves alone: such a request is too slow to be repeated with variations.

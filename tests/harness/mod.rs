@@ -35,8 +35,8 @@ pub fn examine(body: &[u8]) -> Outcome {
         Ok(simulation) => simulation,
         Err(rejection) => return refused(body, rejection.into()),
     };
-    // Curved moves leave a slip history whose length is not known beforehand, of which the search for extrema costs the square; and where a
-    // load has no closed inverse, each of their many chords costs a search.
+    // Curved moves leave a slip history whose length is not known beforehand, of which the search for extrema costs the
+    // square; and where a load has no closed inverse, each of their many chords costs a search.
     let searched = matches!(
         request.contact.profile,
         Profile::Sum(_) | Profile::Tabulated(_) | Profile::Asperities(_) | Profile::LoadCurve(_)

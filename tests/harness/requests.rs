@@ -1,4 +1,5 @@
-//! Random requests that proptest can shrink, over all members of `POST /simulate`. Sizes are kept in units of the contact.
+//! Random requests that proptest can shrink, over all members of `POST /simulate`. Sizes are kept in units of the
+//! contact.
 
 use proptest::prelude::*;
 use proptest::sample::select;
@@ -145,8 +146,8 @@ fn table() -> impl Strategy<Value = Value> {
     })
 }
 
-/// Contacts that are known by their load curve alone: asperities of even, crowded or repeated gaps, a power of the indentation
-/// with or without noise, ellipses.
+/// Contacts that are known by their load curve alone: asperities of even, crowded or repeated gaps, a power of the
+/// indentation with or without noise, ellipses.
 fn curve() -> impl Strategy<Value = Value> {
     let radius = || quantity(&range::RADIUS, -5.0, 0.0);
     let gaps = prop::collection::vec(prop_oneof![4 => 0.0..1.0_f64, 1 => 0.0..1e-9_f64, 1 => Just(0.5)], 1..80);
@@ -221,7 +222,8 @@ fn target() -> impl Strategy<Value = Target> {
     let tiny = (any::<bool>(), -18.0..-1.0_f64);
     prop_oneof![
         12 => (-1.2..1.2_f64).prop_map(Target::Scaled),
-        2 => select(vec![0.0, 1.0, -1.0, 0.5, 2.0, 1.0 - 1e-15, 1.0 - f64::EPSILON, 1.0 + 1e-12]).prop_map(Target::Scaled),
+        2 => select(vec![0.0, 1.0, -1.0, 0.5, 2.0, 1.0 - 1e-15, 1.0 - f64::EPSILON, 1.0 +
+            1e-12]).prop_map(Target::Scaled),
         2 => tiny.prop_map(|(up, power)| Target::Scaled(10_f64.powf(power).copysign(if up { 1.0 } else { -1.0 }))),
         1 => (1.0..1e6_f64).prop_map(Target::Scaled),
         3 => (1..6_usize).prop_map(Target::Repeated),
@@ -286,7 +288,8 @@ fn path() -> impl Strategy<Value = RandomPath> {
         6 => prop::collection::vec(step(), 1..7).prop_map(RandomPath::Moves),
         4 => prop::collection::vec(target(), 1..12).prop_map(RandomPath::Displacement),
         2 => prop::collection::vec(target(), 1..8).prop_map(RandomPath::Force),
-        2 => (1..30_usize, prop::option::of(target())).prop_map(|(count, size)| RandomPath::FallingAmplitude(count, size)),
+        2 => (1..30_usize, prop::option::of(target())).prop_map(|(count, size)| RandomPath::FallingAmplitude(count,
+            size)),
         1 => (1..20_usize, prop::option::of(prop_oneof![4 => 0.0..1.0_f64, 1 => any_magnitude()]))
             .prop_map(|(count, cutoff)| RandomPath::EqualPeaks(count, cutoff)),
         2 => cycles().prop_map(RandomPath::Cycles),

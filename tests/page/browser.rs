@@ -28,8 +28,8 @@ pub struct Browser {
     http: reqwest::Client,
 }
 
-/// A driver with its temporary files in a folder, and its port. It looks for a free port on IPv6 and then takes the same on IPv4, where it may be in use; then
-/// the driver ends, and another one is started.
+/// A driver with its temporary files in a folder, and its port. It looks for a free port on IPv6 and then takes the
+/// same on IPv4, where it may be in use; then the driver ends, and another one is started.
 fn driver(folder: &Path) -> (Child, String) {
     let started = (0..10).find_map(|_| {
         let mut driver = Command::new("chromedriver")
@@ -99,8 +99,8 @@ impl Browser {
         self.post("se/log", &json!({"type": kind})).await.as_array().unwrap().clone()
     }
 
-    /// Asserts that since the last call the browser logged nothing but lines with one of the `known` words, and sent requests to
-    /// the host of `base` alone.
+    /// Asserts that since the last call the browser logged nothing but lines with one of the `known` words, and sent
+    /// requests to the host of `base` alone.
     pub async fn stayed_quiet_and_at(&self, base: &str, known: &[&str]) {
         for complaint in self.log("browser").await {
             let text = complaint["message"].as_str().unwrap();
@@ -148,7 +148,8 @@ impl Browser {
         }
     }
 
-    /// Writes a text in place of what a field has; again if the page has drawn the field anew meanwhile, with a state that came.
+    /// Writes a text in place of what a field has; again if the page has drawn the field anew meanwhile, with a state
+    /// that came.
     pub async fn write(&self, css: &str, text: &str) {
         const TRIES: usize = 5;
         for _ in 0..TRIES {
@@ -162,7 +163,14 @@ impl Browser {
         }
     }
 
-    /// Where the parts of an element across its width are, at half its height, for the mouse; the element is brought into view.
+    /// Chooses a file of the repository in a field.
+    pub async fn upload(&self, css: &str, file: &str) {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(file);
+        self.find(css).await.send_keys(path.to_str().unwrap()).await.unwrap();
+    }
+
+    /// Where the parts of an element across its width are, at half its height, for the mouse; the element is brought
+    /// into view.
     async fn across(&self, css: &str) -> impl Fn(f64) -> PointerAction {
         let element = self.find(css).await;
         let argument = serde_json::to_value(&element).unwrap();
@@ -202,8 +210,8 @@ impl Browser {
 
     /// Chooses an entry of the list below a label.
     pub async fn choose(&self, label: &str, value: &str) {
-        let script = "const label = [...document.querySelectorAll('label')].find((one) => one.innerText === arguments[0]); \
-                      const list = document.getElementById(label.htmlFor); list.value = arguments[1]; \
+        let script = "const label = [...document.querySelectorAll('label')].find((one) => one.innerText === \
+                      arguments[0]); const list = document.getElementById(label.htmlFor); list.value = arguments[1]; \
                       list.dispatchEvent(new Event('change', { bubbles: true }));";
         self.page.execute(script, vec![json!(label), json!(value)]).await.unwrap();
     }

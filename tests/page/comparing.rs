@@ -55,11 +55,16 @@ async fn a_measured_file_and_another_contact_are_drawn_over_the_loop_and_a_link_
         assert!(off(point, &past) < 0.1, "{point:?} is not on the path that it was read from");
     }
     // In another unit it is elsewhere.
-    let other_unit = "(() => { const unit = document.querySelector('[aria-label=\"Unit of measured force\"]'); unit.value = '0'; \
-                      unit.dispatchEvent(new Event('change', { bubbles: true })); })() ?? null";
+    let other_unit = "(() => { const unit = document.querySelector('[aria-label=\"Unit of measured force\"]'); \
+                      unit.value = '0'; unit.dispatchEvent(new Event('change', { bubbles: true })); })() ?? null";
     browser.value(other_unit).await;
-    browser.until("Number(document.querySelectorAll('#plot-loop .level line').length) === 2 && \
-                   [...document.querySelectorAll('#plot-loop .grid text')].some((text) => Number(text.textContent) >= 1)").await;
+    browser
+        .until(
+            "Number(document.querySelectorAll('#plot-loop .level line').length) === 2 && \
+                   [...document.querySelectorAll('#plot-loop .grid text')].some((text) => Number(text.textContent) >= \
+                   1)",
+        )
+        .await;
     browser.click("#overlay button").await;
     browser.until("document.querySelector('#plot-loop .line.file') === null").await;
 
@@ -72,7 +77,12 @@ async fn a_measured_file_and_another_contact_are_drawn_over_the_loop_and_a_link_
         twin.id
     );
     browser.value(&compare).await;
-    browser.until("document.querySelector('#plot-loop .line.other') !== null && document.querySelector('#plot-stress .line.other') !== null").await;
+    browser
+        .until(
+            "document.querySelector('#plot-loop .line.other') !== null && document.querySelector('#plot-stress \
+        .line.other') !== null",
+        )
+        .await;
     browser.until(&format!("location.hash.includes('with={}')", twin.id)).await;
     let (past, twins) = (line(&browser, "loop", "past").await, line(&browser, "loop", "other").await);
     for end in [&twins[0], twins.last().unwrap()] {

@@ -5,7 +5,9 @@ mod browser;
 #[path = "../common/mod.rs"]
 mod common;
 mod comparing;
+mod journeys;
 mod moving;
+mod questions;
 
 use std::f64::consts::PI;
 use std::path::Path;
@@ -53,9 +55,12 @@ fn hertz(force: f64, radius: f64, modulus: f64) -> String {
     format!("{} µm", four(1e6 * (3.0 * force * radius / (4.0 * modulus)).cbrt()))
 }
 
+/// What the address of each tab has behind that of its contact.
+const TABS: [&str; 6] = ["", "/loop", "/crack", "/damping", "/residual", "/accuracy"];
 const E_STAR: f64 = 2.1e11 / (1.0 - 0.3 * 0.3);
 /// The drawn path of the loop, `[x, y]` in pixels; an empty one while the page draws it.
-const WAY: &str = "(document.querySelector('#plot-loop .line.past')?.getAttribute('d') ?? '').slice(1).split('L').map((p) => p.split(',').map(Number))";
+const WAY: &str = "(document.querySelector('#plot-loop .line.past')?.getAttribute('d') ?? \
+    '').slice(1).split('L').map((p) => p.split(',').map(Number))";
 
 #[tokio::test]
 async fn a_contact_is_made_moved_reloaded_and_followed() {
@@ -149,41 +154,53 @@ async fn it_fits_small_windows_and_dark_rooms_and_needs_no_mouse() {
         ("wide-light", 1280, 900, false),
     ] {
         browser.look(width, height, dark).await;
-        for view in ["#/", "#/new", &format!("#/contacts/{}", session.id)] {
+        let contact = format!("#/contacts/{}", session.id);
+        let tabs = TABS.map(|tab| format!("{contact}{tab}"));
+        let mut titles: Vec<Vec<String>> = Vec::new();
+        for view in ["#/", "#/new"].into_iter().chain(tabs.iter().map(String::as_str)) {
             browser.page.goto(&format!("{}/{view}", server.address)).await.unwrap();
             browser.until("document.querySelector('h1') !== null").await;
             browser.until("document.documentElement.scrollWidth <= innerWidth").await;
+            if view.ends_with("crack") {
+                browser.until("document.querySelector('#plot-below .shade') !== null").await;
+            }
+            if *view == contact {
+                browser.until("document.querySelectorAll('.plot .slipping').length === 1").await;
+            }
             // What is folded must fit, be readable, and have names too.
             browser
                 .value("document.querySelectorAll('details:not(.menu)').forEach((one) => one.open = true) ?? null")
                 .await;
             browser.until("document.documentElement.scrollWidth <= innerWidth").await;
             assert_eq!(axe::serious(&browser).await, [""; 0], "{view} {name}");
+            if view.starts_with(&contact) {
+                let drawn = browser
+                    .value(
+                        "[...document.querySelectorAll('.panel:not([hidden]) .chart')].map((chart) => \
+                         [...chart.querySelectorAll('.title')].map((title) => title.textContent))\
+                         .filter((titles) => titles.length)",
+                    )
+                    .await;
+                titles.extend(serde_json::from_value::<Vec<Vec<String>>>(drawn).unwrap());
+            }
+            let part = if *view == contact { "live" } else { view.rsplit('/').next().unwrap() };
+            browser.picture(&format!("{name}-{part}")).await;
         }
-        browser.until("document.querySelectorAll('.plot .slipping').length === 1").await;
-        browser.until("document.querySelector('#plot-below .shade') !== null").await;
-        browser.until("document.documentElement.scrollWidth <= innerWidth").await;
         // Both axes of every plot are named, and have their unit but where they count.
-        let titles = browser
-            .value(
-                "[...document.querySelectorAll('.plots .chart')].map((chart) => \
-                 [...chart.querySelectorAll('.title')].map((title) => title.textContent))",
-            )
-            .await;
-        let titles: Vec<Vec<String>> = serde_json::from_value(titles).unwrap();
         assert_eq!(titles.len(), 5);
         for title in titles.iter().flatten() {
             assert!(title == "Move" || title.ends_with(')'), "{title}");
         }
         assert!(titles.iter().all(|titles| titles.len() == 2), "{titles:?}");
         grounds.push(browser.value("getComputedStyle(document.body).backgroundColor").await);
-        browser.picture(name).await;
     }
+    browser.page.goto(&format!("{}/#/contacts/{}", server.address, session.id)).await.unwrap();
+    browser.until("document.querySelectorAll('.plot .slipping').length === 1").await;
     assert_eq!((&grounds[0], &grounds[1]), (&grounds[3], &grounds[2]));
     assert_ne!(grounds[0], grounds[1]);
 
-    // As many turning points are marked as there are pieces beyond the two that a virgin contact has once it moves; passing one
-    // wipes out what came after it.
+    // As many turning points are marked as there are pieces beyond the two that a virgin contact has once it moves;
+    // passing one wipes out what came after it.
     for (part, turns) in [(-0.4, 3), (-0.8, 1)] {
         moved(&server, &session, &[part]).await;
         let depth = server.client.contact(session.id).await.unwrap().state.memory_depth;
@@ -223,7 +240,7 @@ async fn a_protocol_run_reduces_the_stress_and_shows_how_much() {
     let session = ball(&server).await;
     moved(&server, &session, &[1.0, 0.0]).await;
     let browser = Browser::start(1280, 900, false).await;
-    browser.page.goto(&format!("{}/#/contacts/{}", server.address, session.id)).await.unwrap();
+    browser.page.goto(&format!("{}/#/contacts/{}/residual", server.address, session.id)).await.unwrap();
     browser.write("#reversals", "4").await;
     browser.click("#run").await;
     let status = "document.querySelector('#run-status').innerText";
@@ -290,7 +307,7 @@ async fn the_best_run_keeps_its_promise_and_solvers_are_compared() {
     let dry = reqwest::Client::new().post(relax).json(&json!({"reversals": 3, "dry_run": true})).send().await.unwrap();
     let promised = dry.json::<Value>().await.unwrap()["residual"]["max"].as_f64().unwrap();
     let browser = Browser::start(1280, 900, false).await;
-    browser.page.goto(&format!("{}/#/contacts/{}", server.address, session.id)).await.unwrap();
+    browser.page.goto(&format!("{}/#/contacts/{}/residual", server.address, session.id)).await.unwrap();
     browser.until("document.querySelector('#protocol option[value=relax]') !== null").await;
     browser.value("document.querySelector('#protocol').value = 'relax'").await;
     browser.write("#reversals", "3").await;
@@ -302,22 +319,24 @@ async fn the_best_run_keeps_its_promise_and_solvers_are_compared() {
     let share = 100.0 * promised / (0.3 * session.contact.max_pressure.unwrap());
     assert!(now.contains(&format!("({share:.1} % of")), "{said} instead of {share}");
 
+    browser.click("#to-accuracy").await;
     browser.click("#compute-accuracy").await;
     browser.until("document.querySelectorAll('#plot-accuracy .dot').length >= 3").await;
     let names = browser.value("document.querySelector('#plot-accuracy').textContent").await;
     assert!(names.as_str().unwrap().contains("exact") && names.as_str().unwrap().contains("springs"), "{names}");
     // No name lies on another.
-    let lie = "(() => { const boxes = [...document.querySelectorAll('#plot-accuracy .series-name')].map((name) => name.getBoundingClientRect()); \
-               return boxes.length >= 3 && boxes.every((one, index) => boxes.slice(index + 1).every((two) => \
-               one.right < two.left || two.right < one.left || one.bottom - 2 < two.top || two.bottom - 2 < one.top)); })()";
+    let lie = "(() => { const boxes = [...document.querySelectorAll('#plot-accuracy .series-name')].map((name) => \
+               name.getBoundingClientRect()); return boxes.length >= 3 && boxes.every((one, index) => \
+               boxes.slice(index + 1).every((two) => one.right < two.left || two.right < one.left || one.bottom - 2 < \
+               two.top || two.bottom - 2 < one.top)); })()";
     assert_eq!(browser.value(lie).await, true);
     browser.picture("accuracy").await;
     browser.stayed_quiet_and_at(&server.address, &[]).await;
     browser.close().await;
 }
 
-/// Friction work of a steady cycle of the ball, J, whose amplitude is this part of the displacement of gross slip (Mindlin &
-/// Deresiewicz 1953).
+/// Friction work of a steady cycle of the ball, J, whose amplitude is this part of the displacement of gross slip
+/// (Mindlin & Deresiewicz 1953).
 fn work_of_cycle(session: &NewSession, part: f64) -> f64 {
     let left = 1.0 - part;
     let area = part - 0.4 * (1.0 - left.powf(2.5)) - 0.5 * (1.0 - left.powf(1.5)) * part;
@@ -329,7 +348,7 @@ async fn the_steady_cycle_follows_the_slider() {
     let server = Binary::start(&[]);
     let session = ball(&server).await;
     let browser = Browser::start(1280, 900, false).await;
-    browser.page.goto(&format!("{}/#/contacts/{}", server.address, session.id)).await.unwrap();
+    browser.page.goto(&format!("{}/#/contacts/{}/damping", server.address, session.id)).await.unwrap();
     browser.find("#steady-card").await;
     let card = "document.querySelector('#steady-card').innerText";
     browser.until(&format!("{card}.includes('Pull the displacement')")).await;
@@ -399,7 +418,7 @@ async fn the_mark_of_a_fretting_map_is_where_its_lines_say() {
     let server = Binary::start(&[]);
     let session = ball(&server).await;
     let browser = Browser::start(1280, 900, false).await;
-    browser.page.goto(&format!("{}/#/contacts/{}", server.address, session.id)).await.unwrap();
+    browser.page.goto(&format!("{}/#/contacts/{}/damping", server.address, session.id)).await.unwrap();
     browser.click("#compute-map").await;
     let bound = "document.querySelector('#plot-map .line.bound')";
     browser.until(&format!("{bound} !== null && document.querySelector('#plot-map .mark') === null")).await;
@@ -409,7 +428,8 @@ async fn the_mark_of_a_fretting_map_is_where_its_lines_say() {
         let middle = 0.5 * (low + high);
         *(if work_of_cycle(&session, middle) < 1e-7 { &mut low } else { &mut high }) = middle;
     }
-    let contour = "[...document.querySelectorAll('#plot-map text.small')].find((text) => text.textContent === '100 nJ').previousSibling";
+    let contour = "[...document.querySelectorAll('#plot-map text.small')].find((text) => text.textContent === '100 \
+        nJ').previousSibling";
     for (part, line) in [(1.0, bound), (low, contour)] {
         moved(&server, &session, &[part]).await;
         // The height of the line at the mark, which must be within the map.
@@ -430,8 +450,8 @@ async fn the_mark_of_a_fretting_map_is_where_its_lines_say() {
     browser.close().await;
 }
 
-/// The largest pressure of the ball, Pa, and the parts of it that Hertz's stress on the axis has at a depth in contact radii:
-/// von Mises and the mean, under this Poisson's ratio.
+/// The largest pressure of the ball, Pa, and the parts of it that Hertz's stress on the axis has at a depth in contact
+/// radii: von Mises and the mean, under this Poisson's ratio.
 fn below(session: &NewSession, poisson: f64, depth: f64) -> (f64, f64) {
     let most = 3.0 * 10.0 / (2.0 * PI * session.contact.contact_radius.powi(2));
     let axial = -1.0 / (1.0 + depth * depth);
@@ -450,7 +470,7 @@ async fn the_stress_below_the_surface_follows_the_moves() {
     let server = Binary::start(&[]);
     let session = ball(&server).await;
     let browser = Browser::start(1280, 900, false).await;
-    browser.page.goto(&format!("{}/#/contacts/{}", server.address, session.id)).await.unwrap();
+    browser.page.goto(&format!("{}/#/contacts/{}/crack", server.address, session.id)).await.unwrap();
     let text = "document.querySelector('#below-text')?.innerText";
     let says = |words: &str| format!("{text}?.includes({words:?})");
     // Of the rows of the section, the one at 0.5 a is nearest to Hertz's depth of 0.48 a.
@@ -462,12 +482,13 @@ async fn the_stress_below_the_surface_follows_the_moves() {
     assert_eq!(browser.value("document.querySelectorAll('#below-card input').length").await, 0);
     // The edges are at a quarter and three quarters of four contact radii, and the darkest shade is where the ring is.
     let drawn = "(() => { const frame = document.querySelector('#plot-below rect.field').getBBox(); \
-                 const edges = [...document.querySelectorAll('#plot-below .contact-edge')].map((line) => (line.getBBox().x - frame.x) / frame.width); \
-                 const dark = [...document.querySelectorAll('#plot-below .shade')].at(-1).getBBox(); \
-                 const ring = document.querySelector('#plot-below .mark'); \
+                 const edges = [...document.querySelectorAll('#plot-below .contact-edge')].map((line) => \
+                 (line.getBBox().x - frame.x) / frame.width); const dark = [...document.querySelectorAll('#plot-below \
+                 .shade')].at(-1).getBBox(); const ring = document.querySelector('#plot-below .mark'); \
                  const [x, y] = ['cx', 'cy'].map((name) => Number(ring.getAttribute(name))); \
-                 return Math.abs(edges[0] - 0.25) < 1e-3 && Math.abs(edges[1] - 0.75) < 1e-3 && Math.abs((y - frame.y) / frame.height - 1 / 3) < 1e-3 \
-                 && x > dark.x && x < dark.x + dark.width && y > dark.y && y < dark.y + dark.height; })()";
+                 return Math.abs(edges[0] - 0.25) < 1e-3 && Math.abs(edges[1] - 0.75) < 1e-3 && Math.abs((y - frame.y) \
+                 / frame.height - 1 / 3) < 1e-3 && x > dark.x && x < dark.x + dark.width && y > dark.y && y < dark.y + \
+                 dark.height; })()";
     browser.until(drawn).await;
     browser.choose("Stress", "max_shear").await;
     browser.until(&says(&format!("Largest shear stress on any plane {}, {depth}", pascals(0.5 * mises)))).await;
@@ -523,7 +544,7 @@ async fn below_the_surface_reduced_moduli_need_a_poissons_ratio_and_an_edge_is_i
     request.profile = serde_json::from_value(json!({"type": "flat_punch", "radius": 1e-4})).unwrap();
     let punch = server.client.create(&request, &Options::default()).await.unwrap();
     let browser = Browser::start(400, 850, true).await;
-    browser.page.goto(&format!("{}/#/contacts/{}", server.address, session.id)).await.unwrap();
+    browser.page.goto(&format!("{}/#/contacts/{}/crack", server.address, session.id)).await.unwrap();
     let text = "document.querySelector('#below-text')?.innerText";
     for (typed, poisson) in [("0.3", 0.3), ("0", 0.0), ("0,5", 0.5)] {
         browser.write("#below-card input", typed).await;
@@ -543,7 +564,7 @@ async fn below_the_surface_reduced_moduli_need_a_poissons_ratio_and_an_edge_is_i
     browser.write("#below-card input", "0.5").await;
     browser.until(&format!("{fault} === '' && !document.querySelector('#plot-below').hidden")).await;
 
-    browser.page.goto(&format!("{}/#/contacts/{}", server.address, punch.id)).await.unwrap();
+    browser.page.goto(&format!("{}/#/contacts/{}/crack", server.address, punch.id)).await.unwrap();
     browser.until(&format!("{text}?.startsWith('Infinite on the surface at x = −100 µm, where')")).await;
     browser.stayed_quiet_and_at(&server.address, &["status of 422"]).await;
     browser.close().await;
@@ -699,9 +720,10 @@ async fn a_pasted_loop_becomes_friction_and_a_contact() {
     let server = Binary::start(&[]);
     let session = ball(&server).await;
     let browser = Browser::start(1280, 900, false).await;
-    browser.page.goto(&format!("{}/#/contacts/{}", server.address, session.id)).await.unwrap();
+    browser.page.goto(&format!("{}/#/contacts/{}/loop", server.address, session.id)).await.unwrap();
     browser.find("textarea[name=loop]").await;
-    // What a rig has recorded of such a ball with a friction of 0.42: time, displacement in µm and force, with decimal commas.
+    // What a rig has recorded of such a ball with a friction of 0.42: time, displacement in µm and force, with decimal
+    // commas.
     let table = std::fs::read_to_string("examples/data/ball_loop.csv").unwrap();
     let paste = format!("document.querySelector('textarea[name=loop]').value = {} ?? null", json!(table));
     browser.value(&paste).await;
@@ -720,7 +742,7 @@ async fn a_pasted_loop_becomes_friction_and_a_contact() {
     assert_eq!(browser.value("document.querySelector('#loop-warnings').children.length").await, 0);
     browser.picture("loop-fit").await;
     browser.click("#create-fitted").await;
-    browser.until(&format!("!location.hash.endsWith('{}')", session.id)).await;
+    browser.until(&format!("!location.hash.includes('{}')", session.id)).await;
     let hash = browser.value("location.hash").await;
     let id = hash.as_str().unwrap().rsplit('/').next().unwrap().parse().unwrap();
     let made = server.client.definition(id).await.unwrap();
@@ -747,7 +769,12 @@ async fn it_asks_for_a_key_where_one_is_needed_and_finds_by_label() {
     browser.click("#key .primary").await;
     let rows = "[...document.querySelectorAll('.list strong')].map((name) => name.innerText).join()";
     browser.until(&format!("{rows} === 'Rubber foot,Steel ball'")).await;
-    browser.until("[...document.querySelectorAll('.list .shape')].every((shape) => shape.innerText === 'Sphere (Hertz’s parabola), 10 N')").await;
+    browser
+        .until(
+            "[...document.querySelectorAll('.list .shape')].every((shape) => shape.innerText === 'Sphere \
+        (Hertz’s parabola), 10 N')",
+        )
+        .await;
     browser.write("#search", "EL BA").await;
     browser.until(&format!("{rows} === 'Steel ball'")).await;
     browser.write("#search", "nothing").await;

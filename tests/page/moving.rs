@@ -55,7 +55,12 @@ async fn a_typed_number_keeps_its_unit_and_is_shown_before_it_is_sent() {
 
     // A slider sends once, where it is let go; by keyboard each step.
     browser.drag("#slide-displacement", 0.97, 0.6).await;
-    browser.until("document.querySelector('#plot-work .said') && !document.querySelector('.side').innerText.includes('4.9 µm')").await;
+    browser
+        .until(
+            "document.querySelector('#plot-work .said') && \
+        !document.querySelector('.side').innerText.includes('4.9 µm')",
+        )
+        .await;
     let (sequence, dragged) = displacement(&server, &session).await;
     assert_eq!(sequence, 3);
     assert!(dragged > 0.0 && dragged < 4e-6, "{dragged}");
@@ -76,8 +81,58 @@ async fn a_typed_number_keeps_its_unit_and_is_shown_before_it_is_sent() {
     browser.picture("fault").await;
     moved(&server, &session, &[0.0]).await;
     let force = "Number(document.querySelector('#box-force').value)";
-    browser.until(&format!("{fault} === '' && Math.abs({force}) < 3.1 && !document.querySelector('#box-force').hasAttribute('aria-invalid')")).await;
+    browser
+        .until(&format!(
+            "{fault} === '' && Math.abs({force}) < 3.1 && \
+        !document.querySelector('#box-force').hasAttribute('aria-invalid')"
+        ))
+        .await;
     browser.stayed_quiet_and_at(&server.address, &["status of 422"]).await;
+    browser.close().await;
+}
+
+#[tokio::test]
+async fn a_move_far_beyond_slip_is_asked_for_before_it_is_sent() {
+    let server = Binary::start(&[]);
+    let session = ball(&server).await;
+    let browser = Browser::start(1280, 900, false).await;
+    browser.page.goto(&format!("{}/#/contacts/{}", server.address, session.id)).await.unwrap();
+    browser.until("document.querySelector('.badge.on') !== null").await;
+    let choose = "(() => { const unit = document.querySelector('#unit-displacement'); unit.value = '-6'; \
+                  unit.dispatchEvent(new Event('change')); })() ?? null";
+    browser.value(choose).await;
+    let (open, fault) =
+        ("document.querySelector('#far').open", "document.querySelector('#fault-displacement').innerText");
+    // A tenth of the radius is 1 mm, and what is not farther is sent unasked.
+    for (typed, answer, sequence) in [
+        ("999", None, 1),
+        ("1e9", Some("\u{e00c}"), 1),
+        ("1e9", Some("\u{e007}"), 1),
+        ("1001", Some("\u{e004}\u{e007}"), 2),
+    ] {
+        browser.write("#box-displacement", typed).await;
+        browser.press("#box-displacement", "\u{e007}").await;
+        if let Some(keys) = answer {
+            browser.until(open).await;
+            browser.picture("far").await;
+            assert!(displacement(&server, &session).await.0 < 2, "nothing is sent while the page asks");
+            // By keyboard alone: Escape and Enter take it back, and Tab leads to the button that sends it.
+            for key in keys.chars() {
+                browser.press("#far :focus", &key.to_string()).await;
+            }
+            browser.until(&format!("!{open}")).await;
+        }
+        if answer.is_some() && sequence == 1 {
+            browser.until(&format!("{fault} === 'Not sent.'")).await;
+            browser.until("document.activeElement === document.querySelector('#box-displacement')").await;
+            assert_eq!(browser.value("document.querySelector('#box-displacement').value").await, typed);
+        } else {
+            let sent = async || (displacement(&server, &session).await.0 == sequence).then_some(());
+            until("the move is sent", sent).await;
+        }
+    }
+    assert_eq!(displacement(&server, &session).await, (2, 1.001e-3));
+    browser.stayed_quiet_and_at(&server.address, &[]).await;
     browser.close().await;
 }
 
@@ -101,6 +156,10 @@ async fn undo_goes_back_by_a_fork_and_a_name_changes_in_place() {
         assert_eq!(now.sequence, sequence, "{act}");
         let expected = usize::try_from(sequence).unwrap().checked_sub(1).map(|last| path[last].state);
         assert_eq!(now.state, expected.unwrap_or(session.state));
+        // It looks like the same contact, and the page says that it is a copy.
+        assert_eq!(browser.value("document.querySelector('h1').innerText").await, "Steel ball");
+        let said = browser.value("document.querySelector('#notice').innerText").await;
+        assert!(said.as_str().unwrap().contains("a copy of the same name"), "{said}");
     }
     browser.until("document.querySelector('#undo').disabled").await;
     assert_eq!(server.client.contact(session.id).await.unwrap().sequence, 3, "the original keeps its moves");
@@ -171,7 +230,8 @@ async fn the_largest_shear_stress_and_the_warnings_are_in_sight() {
     let server = Binary::start(&[]);
     let mut request = create();
     // Equal bodies with Poisson's ratio zero: no warning is due.
-    request.material = serde_json::from_value(json!({"bodies": [{"youngs_modulus": 2.1e11, "poisson_ratio": 0.0}, {"youngs_modulus": 2.1e11, "poisson_ratio": 0.0}]})).unwrap();
+    let body = json!({"youngs_modulus": 2.1e11, "poisson_ratio": 0.0});
+    request.material = serde_json::from_value(json!({"bodies": [body, body]})).unwrap();
     let quiet = server.client.create(&request, &Options::default()).await.unwrap();
     assert!(quiet.warnings.is_empty(), "{:?}", quiet.warnings);
     let warned = ball(&server).await;
@@ -180,7 +240,12 @@ async fn the_largest_shear_stress_and_the_warnings_are_in_sight() {
     for session in [&quiet, &warned] {
         browser.page.goto(&format!("{}/#/contacts/{}", server.address, session.id)).await.unwrap();
         let count = format!("document.querySelectorAll('#warnings li').length === {}", session.warnings.len());
-        browser.until(&format!("document.querySelector('#trust-card summary')?.innerText.startsWith('Accuracy') && document.querySelector('#trust-card dd') !== null && {count}")).await;
+        browser
+            .until(&format!(
+                "document.querySelector('#trust-card summary')?.innerText.startsWith('Accuracy') && \
+            document.querySelector('#trust-card dd') !== null && {count}"
+            ))
+            .await;
         browser.until(&format!("{said}.includes('Largest shear stress0 Pa = 0 % of μ p')")).await;
         // After gross slip it is the whole of it; back at zero sqrt(1/2).
         let full = 0.3 * session.contact.max_pressure.unwrap();

@@ -1,4 +1,5 @@
-//! Admission: turns on threads, permits for places and memory, quotas, work that is ended, and the estimate that decides where work runs.
+//! Admission: turns on threads, permits for places and memory, quotas, work that is ended, and the estimate that
+//! decides where work runs.
 
 use std::net::{IpAddr, Ipv4Addr, Ipv6Addr};
 use std::pin::pin;
@@ -28,11 +29,11 @@ fn small() -> Pool {
 #[tokio::test]
 async fn requests_beyond_the_capacity_wait_and_are_refused() {
     let pool = small();
-    let places = (pool.enter().await.unwrap(), pool.enter().await.unwrap());
-    let (second, third) = tokio::join!(pool.enter(), pool.enter());
+    let places = (pool.admit_request().await.unwrap(), pool.admit_request().await.unwrap());
+    let (second, third) = tokio::join!(pool.admit_request(), pool.admit_request());
     assert_eq!((second.unwrap_err(), third.unwrap_err()), (PoolError::Busy, PoolError::QueueFull));
     drop(places);
-    assert!(pool.enter().await.is_ok());
+    assert!(pool.admit_request().await.is_ok());
     assert_eq!((pool.taken().requests, pool.taken().waiting), (0, 0));
 }
 

@@ -1,6 +1,7 @@
 //! Fairness, on the real binary: heavy requests and jobs of some clients do not keep the threads from others.
 
 use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
 use crate::common::raw::{PATIENCE, Service, get, post};
@@ -27,7 +28,8 @@ fn search(reversals: usize) -> Value {
 }
 
 fn heavy_job() -> String {
-    json!({"base": search(4_000), "axes": [{"pointer": "/contact/friction", "linear": {"from": 0.1, "to": 0.6, "count": 200}}],
+    json!({"base": search(4_000), "axes": [{"pointer": "/contact/friction",
+        "linear": {"from": 0.1, "to": 0.6, "count": 200}}],
         "outputs": ["/residual/max"], "job": true})
     .to_string()
 }
@@ -132,13 +134,15 @@ fn other_kinds() -> [(&'static str, &'static str, Value); 5] {
         (
             "springs",
             "/simulate",
-            json!({"contact": ball(), "path": falling(1_900), "steps": "last", "solver": {"springs": {"count": 1_000_000}}}),
+            json!({"contact": ball(), "path": falling(1_900), "steps": "last",
+                "solver": {"springs": {"count": 1_000_000}}}),
         ),
         ("a protocol", "/protocols", json!({"contact": table, "reversals": 60})),
         (
             "cycles of an oscillating load",
             "/cycle",
-            json!({"contact": table, "drive": {"force": drive}, "normal": {"normal_force": 1.0, "phase": 1.0}, "harmonics": 31}),
+            json!({"contact": table, "drive": {"force": drive}, "normal": {"normal_force": 1.0, "phase": 1.0},
+                "harmonics": 31}),
         ),
     ]
 }
@@ -168,6 +172,64 @@ async fn work_of_every_kind_gives_way() {
         }
         times.sort();
         println!("beside {name}: alone {:?}, median {:?}, 99 of 100 within {:?}", alone[10], times[50], times[98]);
+    }
+}
+
+/// A simulation whose table of 10 000 points is not that of any other.
+fn tabulated(number: usize) -> String {
+    let radius = 0.01 * (1.0 + 1e-6 * number as f64);
+    let radii: Vec<_> = (0..10_000).map(|index| 1e-7 * f64::from(index)).collect();
+    let heights: Vec<_> = radii.iter().map(|r| r * r / (2.0 * radius)).collect();
+    let mut contact = ball();
+    contact["profile"] = json!({"type": "tabulated", "r": radii, "z": heights});
+    post("/simulate", &json!({"contact": contact, "path": {"displacement": [1e-8]}}).to_string())
+}
+
+/// `cargo test --test service beside_clients_that_send_tables -- --ignored --nocapture` prints the figures of
+/// docs/overload.md.
+#[tokio::test]
+#[ignore = "measures times"]
+async fn a_short_call_beside_clients_that_send_tables() {
+    const SENDERS: usize = 8;
+    let (name, short) = &ordinary()[1];
+    for (kind, different) in [("ever new", 1_000), ("the same", 0)] {
+        let service = Arc::new(Service::start(&["--log", "warn"]));
+        let mut times = Vec::new();
+        for _ in 0..50 {
+            times.push(time_of(&service, short).await);
+        }
+        times.sort();
+        let alone = times[25];
+        let (bodies, sent) = (Arc::new(AtomicUsize::new(0)), Arc::new(AtomicUsize::new(0)));
+        let senders: Vec<_> = (0..SENDERS)
+            .map(|sender| {
+                let (service, bodies, sent) = (Arc::clone(&service), Arc::clone(&bodies), Arc::clone(&sent));
+                tokio::spawn(async move {
+                    let address = format!("127.0.0.{}", 10 + sender);
+                    loop {
+                        let number = bodies.fetch_add(1, Ordering::Relaxed) * different / 1_000;
+                        let answer = service.ask(&address, &tabulated(number)).await.expect("an answer");
+                        assert_eq!(answer.statuses, [200], "{}", answer.text);
+                        sent.fetch_add(1, Ordering::Relaxed);
+                    }
+                })
+            })
+            .collect();
+        while sent.load(Ordering::Relaxed) < SENDERS {
+            sleep(Duration::from_millis(50)).await;
+        }
+        let mut times = Vec::new();
+        for _ in 0..100 {
+            times.push(time_of(&service, short).await);
+        }
+        times.sort();
+        let served = sent.load(Ordering::Relaxed);
+        println!(
+            "{name}: alone {alone:?}; beside {SENDERS} clients that send {kind} tables of 10 000 points (of which \
+             {served} were answered) {:?}, 99 of 100 within {:?}",
+            times[50], times[98]
+        );
+        senders.iter().for_each(tokio::task::JoinHandle::abort);
     }
 }
 

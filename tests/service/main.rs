@@ -9,6 +9,7 @@ mod fairness;
 mod hostile_http;
 mod memory;
 mod overload;
+mod profiles;
 mod quotas;
 mod soak;
 mod soak_round;

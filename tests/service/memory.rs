@@ -1,4 +1,5 @@
-//! Memory, on the real binary: contacts that are not cached are read within the bound, and a bound beyond the machine is told.
+//! Memory, on the real binary: contacts that are not cached are read within the bound, and a bound beyond the machine
+//! is told.
 
 use std::time::Duration;
 
@@ -67,8 +68,8 @@ async fn cold_contacts_that_are_asked_for_at_once_stay_within_the_memory_bound()
         peak / MIB,
         bound / MIB
     );
-    // What this store keeps comes on top of the bound. The program is there before the contacts are asked for, and so is what the
-    // store keeps; and these requests take nothing of the bytes of work.
+    // What this store keeps comes on top of the bound. The program is there before the contacts are asked for, and so
+    // is what the store keeps; and these requests take nothing of the bytes of work.
     let allowed = bound - memory_budget::PROGRAM as usize - capacity.bytes;
     assert!(peak - before < allowed, "{peak} after {before}: more than {allowed} beside");
 }

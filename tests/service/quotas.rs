@@ -160,7 +160,8 @@ async fn bodies_that_do_not_arrive_take_no_more_than_the_share_of_their_client()
     let service = Service::start(&["--max-body-bytes-per-client", "8MiB", "--log", "warn"]);
     let whole = post("/simulate", &" ".repeat(4 * MIB as usize));
     let ask = async |source: &str| service.ask(source, &whole).await.unwrap();
-    // Each of these holds room for its 4 MiB, and sends no more. One may be refused beside a whole one: then another takes its place.
+    // Each of these holds room for its 4 MiB, and sends no more. One may be refused beside a whole one: then another
+    // takes its place.
     let mut stalled: Vec<TcpStream> = Vec::new();
     let refused = async {
         loop {

@@ -1,9 +1,9 @@
-//! A soak: mixed load on the real binary while it is killed, its disk fills, its file is locked, its database freezes, and
-//! hostile heads arrive. In the end nothing acknowledged is lost, nothing is doubled, and the memory has stayed within the
-//! bound that the log states.
+//! A soak: mixed load on the real binary while it is killed, its disk fills, its file is locked, its database freezes,
+//! and hostile heads arrive. In the end nothing acknowledged is lost, nothing is doubled, and the memory has stayed
+//! within the bound that the log states.
 //!
-//! `STICKSLIP_SOAK_MINUTES` says how long it takes, roughly. Without it each accident happens once, after a fixed number of
-//! operations.
+//! `STICKSLIP_SOAK_MINUTES` says how long it takes, roughly. Without it each accident happens once, after a fixed
+//! number of operations.
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;

@@ -6,7 +6,7 @@ use crate::fixtures::{along, keyed};
 use common::kill::{Random, exact, history, replays_to_the_last_bit};
 use common::process::Process;
 use common::small_disk::SmallDisk;
-use common::{Server, create, until};
+use common::{Server, create, problem, until};
 use futures::future::join_all;
 use stickslip_wire::client::{Client, Error, Options};
 use stickslip_wire::{Move, MoveReply};
@@ -80,7 +80,8 @@ async fn a_full_disk_refuses_changes_and_loses_none() {
     assert_eq!(refusal(&unborn), (507, "storage_full"));
     let server = Server::at(&process.base);
     let ready = async |expected: u16| (server.get("/readyz").await.status() == expected).then_some(());
-    until("it is not ready", async || ready(503).await).await;
+    until("it is not ready", async || ready(507).await).await;
+    assert_eq!(problem(server.get("/readyz").await).await.code, "storage_full");
     for (id, acknowledged) in sessions.iter().zip(&acknowledged) {
         let past: Vec<_> = history(&client, *id).await.iter().map(|item| exact(&item.state)).collect();
         assert_eq!(past, acknowledged.iter().map(exact).collect::<Vec<_>>());
@@ -127,7 +128,7 @@ async fn a_disk_that_is_full_at_start_is_read() {
                 refusal(&apply(&process.client, id, Move::force(0.2), 1).await.unwrap_err()),
                 (507, "storage_full")
             );
-            assert_eq!(server.get("/readyz").await.status(), 503);
+            assert_eq!(problem(server.get("/readyz").await).await.code, "storage_full");
         }
         process.stop().await;
         disk.clear();

@@ -1,5 +1,5 @@
-//! A store that does not answer: requests are refused after the time that the documentation gives, and nothing is lost or
-//! doubled when it answers again.
+//! A store that does not answer: requests are refused after the time that the documentation gives, and nothing is lost
+//! or doubled when it answers again.
 
 use crate::common;
 
@@ -16,8 +16,8 @@ use stickslip::sessions::CAPACITY;
 use stickslip::store::{PostgresStore, SqliteStore};
 use tempfile::tempdir;
 
-/// The documentation gives 2 s for each, and all wait at once: one after the other they would take 24 s. A busy machine stays far
-/// below that.
+/// The documentation gives 2 s for each, and all wait at once: one after the other they would take 24 s. A busy machine
+/// stays far below that.
 const LIMIT: Duration = Duration::from_secs(20);
 const CONTACTS: usize = 12;
 
@@ -51,8 +51,8 @@ async fn all_at_once(server: &Server, ids: &[String], reads: bool) -> Vec<(Durat
     moves
 }
 
-/// All are refused in time while the store is frozen, and made once when it is not. The contacts are made by another server, which
-/// may be the same.
+/// All are refused in time while the store is frozen, and made once when it is not. The contacts are made by another
+/// server, which may be the same.
 async fn is_survived<T>(maker: &Server, server: &Server, freeze: impl FnOnce() -> T, reads: bool) {
     let ids = join_all((0..CONTACTS).map(|_| maker.contact())).await;
     let frozen = freeze();

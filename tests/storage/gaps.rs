@@ -1,4 +1,5 @@
-//! A contact of which a move is missing in the store: nothing is answered for it, and the contacts beside it are served.
+//! A contact of which a move is missing in the store: nothing is answered for it, and the contacts beside it are
+//! served.
 
 use crate::common;
 use crate::fixtures::{along, url};
@@ -12,8 +13,8 @@ use common::{Server, create, problem, run, until};
 use futures::StreamExt as _;
 use reqwest::Method;
 use rusqlite::Connection;
-use stickslip_wire::EndReason;
 use stickslip_wire::client::{Client, Event, Options};
+use stickslip_wire::{EndReason, ForkRequest};
 use tempfile::tempdir;
 use uuid::Uuid;
 
@@ -31,8 +32,21 @@ async fn moved(client: &Client) -> Uuid {
 async fn is_damaged(base: &str, log: &Path, store: &str, (damaged, whole): (Uuid, Uuid), missing: &str) {
     let server = Server::at(base);
     let past = format!("/contacts/{damaged}");
-    for question in ["", "/history", "/history?format=csv&limit=20", "/cycles", "/loop", "/stress?points=2", "/events"]
-    {
+    for question in [
+        "",
+        "/history",
+        "/history?format=csv&limit=20",
+        "/history?format=csv",
+        "/history?format=csv&cycles=false",
+        "/history?format=ndjson",
+        "/history?format=arrow",
+        "/cycles",
+        "/loop",
+        "/loop?format=csv",
+        "/loop?format=csv&points_per_move=3",
+        "/stress?points=2",
+        "/events",
+    ] {
         let refusal = problem(server.get(&format!("{past}{question}")).await).await;
         assert_eq!((refusal.status, &*refusal.code), (500, "damaged_contact"), "{question}: {refusal:?}");
         assert!(refusal.detail.contains(&damaged.to_string()), "{refusal:?}");
@@ -43,6 +57,9 @@ async fn is_damaged(base: &str, log: &Path, store: &str, (damaged, whole): (Uuid
         let refusal = server.send(Method::POST, &format!("{past}/{change}"), Some(body), &[]).await;
         assert_eq!(problem(refusal).await.code, "damaged_contact", "{change}");
     }
+    // What was made before the gap is rescued.
+    let before = ForkRequest { sequence: Some(6), label: None };
+    assert_eq!(server.client.fork(damaged, &before, &Options::default()).await.unwrap().sequence, 6);
     assert_eq!(server.client.contact(whole).await.unwrap().sequence, MOVES as u64);
     let lines = std::fs::read_to_string(log).unwrap();
     let named = lines.lines().filter(|line| line.contains("ERROR") && line.contains(&damaged.to_string()));

@@ -44,14 +44,16 @@ fn steps(records: &[Record]) -> Vec<(u64, Move, String)> {
     records.iter().map(|record| (record.sequence, record.step, exact(&record.state))).collect()
 }
 
-// On one thread the first of them has the contact when the others come, each in its turn: what waits is the same in every run.
+// On one thread the first of them has the contact when the others come, each in its turn: what waits is the same in
+// every run.
 #[tokio::test]
 async fn moves_that_wait_together_share_a_commit_in_the_order_of_their_arrival() {
     let folder = tempdir().unwrap();
     let (sessions, store) = sessions(&folder.path().join("groups.db"));
     let (together, alone) = (made(&sessions).await, made(&sessions).await);
     let mut random = Random(7);
-    // Of five one expects another sequence, and of seven one has a force that friction does not bear: these two are refused.
+    // Of five one expects another sequence, and of seven one has a force that friction does not bear: these two are
+    // refused.
     let wanted: Vec<(Move, Option<u64>)> = (0..40)
         .map(|index| match index {
             _ if index % 5 == 4 => (Move::displacement(1e-8), Some(10_000)),

@@ -15,7 +15,8 @@ use crate::common::kill::exact;
 use crate::common::postgres::Cluster;
 use crate::fixtures::{receipt, record, records, session, snapshot, stored, url};
 
-/// A next version: a column with a value for what is there, and a table filled from another. A second time it would fail.
+/// A next version: a column with a value for what is there, and a table filled from another. A second time it would
+/// fail.
 const STEP: &str = "
 ALTER TABLE contacts ADD COLUMN colour text NOT NULL DEFAULT 'grey';
 CREATE TABLE labels (label text);
@@ -141,8 +142,8 @@ async fn connect(url: &str) -> Client {
     client
 }
 
-/// A contact at an earlier version of the tables, with one move to a force: version 1 knew no observations, and version 2 not
-/// by which key a move was made.
+/// A contact at an earlier version of the tables, with one move to a force: version 1 knew no observations, and version
+/// 2 not by which key a move was made.
 #[tokio::test]
 async fn what_earlier_versions_have_stored_is_read() {
     let folder = tempdir().unwrap();
@@ -176,7 +177,8 @@ async fn what_earlier_versions_have_stored_is_read() {
         client.execute(contact, &[&made.id, &definition]).await.unwrap();
         let moved = format!(
             "INSERT INTO moves VALUES
-            ($1, 1, NULL, '-0', NULL, NULL, false, 1e-10, 1, '-0', 3, 4, 5, 6, 'stick', 7, 8, 9, now(), 0, 11{observed})"
+            ($1, 1, NULL, '-0', NULL, NULL, false, 1e-10, 1, '-0', 3, 4, 5, 6, 'stick', 7, 8, 9, now(), 0,
+                11{observed})"
         );
         client.execute(&moved, &[&made.id]).await.unwrap();
         reads_earlier_version(&PostgresStore::open(&url).await.unwrap(), made.id, version).await;

@@ -18,7 +18,8 @@ use stickslip::store::{MemoryStore, Snapshot, SqliteStore, Store};
 use stickslip_mechanics::Contact;
 use stickslip_wire::client::{Client, Event, Options};
 use stickslip_wire::{
-    CreateRequest, EndReason, Faults, ForkRequest, JsonPath, Move, Path, PathRequest, State, Steps, StressRequest,
+    CreateRequest, EndReason, Faults, ForkRequest, JsonPath, Move, Path, PathRequest, PrepareAnew, State, Steps,
+    StressRequest,
 };
 use uuid::Uuid;
 
@@ -44,7 +45,7 @@ fn along(moves: Vec<Move>) -> PathRequest {
 /// Every move of a session made again from its definition, with nothing of the session layer.
 async fn replayed(store: &dyn Store, id: Uuid) -> Contact {
     let session = store.find(id).await.unwrap();
-    let setup = session.definition.check(JsonPath::Root, &mut Faults::default()).unwrap();
+    let setup = session.definition.check(JsonPath::Root, &PrepareAnew, &mut Faults::default()).unwrap();
     let mut contact = Contact::new(setup).unwrap();
     for record in store.history(id, 0, 1_000_000).await.unwrap() {
         contact.apply_within(&record.step.step(), record.tolerance).unwrap();

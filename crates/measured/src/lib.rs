@@ -7,7 +7,9 @@
 //! |---|---|
 //! | [`scan`] | which profile does a scan of heights show? |
 //! | [`loops`] | which friction, stiffness and compliance does a measured loop show? |
+//! | [`import`] | which numbers are in a file of an instrument, and in which units? |
 
+pub mod import;
 mod linear;
 pub mod loops;
 mod robust;

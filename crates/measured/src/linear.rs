@@ -1,4 +1,5 @@
-//! What least squares need beside the linear algebra of the library: mirrored sums, and a factor that knows when it is singular.
+//! What least squares need beside the linear algebra of the library: mirrored sums, and a factor that knows when it is
+//! singular.
 
 use nalgebra::{Cholesky, DMatrix, DVector, DVectorView, Dyn};
 

@@ -20,8 +20,8 @@ pub(crate) fn median(sizes: &mut [f64]) -> f64 {
     quantile(sizes, 0.5)
 }
 
-/// A robust standard deviation: from the median and the 90th percentile of the sizes, the larger. A tenth of the points may be
-/// outliers, and half of the residuals zero, as those of rounded heights can be.
+/// A robust standard deviation: from the median and the 90th percentile of the sizes, the larger. A tenth of the points
+/// may be outliers, and half of the residuals zero, as those of rounded heights can be.
 pub(crate) fn robust_deviation(sizes: &mut [f64]) -> f64 {
     (median(sizes) / MEDIAN_SIZE).max(quantile(sizes, 0.9) / LARGE_SIZE)
 }

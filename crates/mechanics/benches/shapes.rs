@@ -1,18 +1,20 @@
-//! What the shape costs, over the same on a sphere: 20 reversals with the shear stress at 200 radii, a move with its force, all
-//! extrema of the shear stress after 20 reversals, the displacement of the surface at a radius, one of 200, in the same state, and
-//! the search for the protocol of 50 reversals that leaves the least.
+//! What the shape costs, over the same on a sphere: 20 reversals with the shear stress at 200 radii, a move with its
+//! force, all extrema of the shear stress after 20 reversals, the displacement of the surface at a radius, one of 200,
+//! in the same state, and the search for the protocol of 50 reversals that leaves the least. Below it, what a table
+//! costs before its first move.
 //!
-//! `cargo bench -p stickslip-mechanics --bench shapes` prints a table. Each run of a shape follows one of the sphere, and the ratio is
-//! the median over such pairs, so that other work on the machine counts on both sides.
+//! `cargo bench -p stickslip-mechanics --bench shapes` prints a table. Each run of a shape follows one of the sphere,
+//! and the ratio is the median over such pairs, so that other work on the machine counts on both sides.
 
 mod scenes;
 
 use std::hint::black_box;
 use std::time::{Duration, Instant};
 
-use scenes::{contact, radii, reversed, shapes, slide, sphere};
-use stickslip_mechanics::Contact;
+use scenes::{BALL, VALID, contact, elasticity, points, radii, reversed, shapes, slide, sphere};
+use stickslip_mechanics::profile::{Asperities, Direction, Ellipsoid, LoadCurve, Tabulated};
 use stickslip_mechanics::protocol::minimax;
+use stickslip_mechanics::{Contact, Profile};
 
 const REVERSALS: usize = 20;
 const RADII: usize = 200;
@@ -25,6 +27,23 @@ const PROTOCOL: usize = 50;
 
 /// The time of a piece of work on a new contact.
 type Scene = fn(&Contact) -> Duration;
+
+/// Every profile without a stress field, with its name.
+fn curves() -> Vec<(&'static str, Profile)> {
+    let asperities = |count: u32| {
+        let mut random = fastrand::Rng::with_seed(2);
+        let gaps: Vec<f64> = (0..count).map(|_| 1e-6 * random.f64()).collect();
+        Profile::Asperities(Asperities::new(&[1e-4], &gaps).expect(VALID))
+    };
+    let levels: Vec<f64> = (0..100).map(|index| 1e-8 * f64::from(index)).collect();
+    let forces: Vec<f64> = levels.iter().map(|level| 1e10 * level.powf(1.5)).collect();
+    vec![
+        ("100 asperities", asperities(100)),
+        ("10 000 asperities", asperities(10_000)),
+        ("load curve of 100 points", Profile::LoadCurve(LoadCurve::new(&levels, &forces, &elasticity()).expect(VALID))),
+        ("ellipsoid", Profile::Ellipsoid(Ellipsoid::new([BALL, 2.0 * BALL], Direction::X).expect(VALID))),
+    ]
+}
 
 /// The time of the reversals and the shear stress.
 fn stresses(virgin: &Contact) -> Duration {
@@ -69,17 +88,67 @@ fn protocol(virgin: &Contact) -> Duration {
     start.elapsed()
 }
 
+/// The time of a contact of a new profile with one move, its force and its errors.
+fn request(profile: impl FnOnce() -> Profile) -> Duration {
+    let start = Instant::now();
+    let mut contact = contact(profile());
+    let full = contact.gross_slip_displacement();
+    slide(&mut contact, 0.5 * full);
+    black_box((contact.force(), contact.accuracy()));
+    start.elapsed()
+}
+
+/// Prints what tables cost with the contact that first needs them, and with its first move.
+fn new_tables(rows: &[(bool, u32)]) {
+    println!(
+        "\nTables made ready for a contact, the least time in us, and with one move, over the same of the sphere.\n"
+    );
+    println!("| points | heights | made ready | with one move | |");
+    println!("|---|---|---|---|---|");
+    for &(parabola, count) in rows {
+        let (radii, z) = points(count, parabola);
+        let table = || Tabulated::new(&radii, &z).expect("a valid table");
+        let (mut ready, mut times, mut ratios) = (Vec::new(), Vec::new(), Vec::new());
+        for _ in 0..PAIRS {
+            let unit = request(sphere).as_secs_f64();
+            let start = Instant::now();
+            black_box(contact(Profile::Tabulated(table())));
+            ready.push(1e6 * start.elapsed().as_secs_f64());
+            let time = request(|| Profile::Tabulated(table())).as_secs_f64();
+            times.push(1e6 * time);
+            ratios.push(time / unit);
+        }
+        let heights = if parabola { "parabola" } else { "sphere" };
+        let least = ready.into_iter().fold(f64::INFINITY, f64::min);
+        println!("| {count} | {heights} | {least:.1} | {:.1} | {:.0} |", median(times), median(ratios));
+    }
+}
+
+/// The median time of a scene in us for each of `count` parts of it, and over that of the sphere.
+fn compared(scene: Scene, (sphere, shape): (&Contact, &Contact), count: usize, pairs: usize) -> String {
+    let (mut times, mut ratios) = (Vec::new(), Vec::new());
+    for _ in 0..pairs {
+        let unit = scene(sphere).as_secs_f64();
+        let time = scene(shape).as_secs_f64();
+        times.push(1e6 * time / count as f64);
+        ratios.push(time / unit);
+    }
+    format!("{:.3} | {:.1}", median(times), median(ratios))
+}
+
 fn median(mut values: Vec<f64>) -> f64 {
     values.sort_by(f64::total_cmp);
     values[values.len() / 2]
 }
 
 fn main() {
-    let sphere = contact(sphere());
+    let filter = std::env::args().skip(1).find(|argument| !argument.starts_with("--")).unwrap_or_default();
+    let wanted = |name: &str| name.contains(&filter);
+    let unit = contact(sphere());
     println!("Times in us, and over the sphere's.\n");
     println!("| shape | stress at 200 radii | | a move | | extrema | | displacement at a radius | | minimax | |");
     println!("|---|---|---|---|---|---|---|---|---|---|---|");
-    for (name, profile) in shapes() {
+    for (name, profile) in shapes().into_iter().filter(|(name, _)| wanted(name)) {
         let shape = contact(profile);
         let scenes: [(Scene, usize, usize); 5] = [
             (stresses, 1, PAIRS),
@@ -88,16 +157,16 @@ fn main() {
             (displacements, RADII, PAIRS),
             (protocol, 1, PAIRS_OF_SEARCHES),
         ];
-        let figures = scenes.map(|(scene, count, pairs)| {
-            let (mut times, mut ratios) = (Vec::new(), Vec::new());
-            for _ in 0..pairs {
-                let unit = scene(&sphere).as_secs_f64();
-                let time = scene(&shape).as_secs_f64();
-                times.push(1e6 * time / count as f64);
-                ratios.push(time / unit);
-            }
-            format!("{:.3} | {:.1}", median(times), median(ratios))
-        });
+        let figures = scenes.map(|(scene, count, pairs)| compared(scene, (&unit, &shape), count, pairs));
         println!("| {name} | {} |", figures.join(" | "));
+    }
+    println!("\nWhat has no stress field, a move in us, and over the sphere's.\n");
+    println!("| profile | a move | |");
+    println!("|---|---|---|");
+    for (name, profile) in curves().into_iter().filter(|(name, _)| wanted(name)) {
+        println!("| {name} | {} |", compared(moves, (&unit, &contact(profile)), MOVES, PAIRS));
+    }
+    if wanted("table made ready") {
+        new_tables(&[true, false].map(|parabola| [100, 1_000, 10_000].map(|count| (parabola, count))).concat());
     }
 }

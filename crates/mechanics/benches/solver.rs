@@ -134,7 +134,8 @@ fn cycles(criterion: &mut Criterion) {
     group.finish();
 }
 
-/// The stress tensor at 10 000 points below the surface after 20 reversals, beside the shear stress of the surface at as many radii.
+/// The stress tensor at 10 000 points below the surface after 20 reversals, beside the shear stress of the surface at
+/// as many radii.
 fn depths(criterion: &mut Criterion) {
     const POINTS: usize = 10_000;
     let mut group = criterion.benchmark_group("10000 points after 20 reversals");
@@ -235,7 +236,8 @@ fn stresses(criterion: &mut Criterion) {
     group.finish();
 }
 
-/// Random moves of many asperities: their cost grows with the logarithm of the number. Preparation sorts and clusters them.
+/// Random moves of many asperities: their cost grows with the logarithm of the number. Preparation sorts and clusters
+/// them.
 fn asperities(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("asperities");
     for count in [100, 10_000, 1_000_000] {

@@ -6,6 +6,10 @@ use super::normal::mean_pressure;
 /// A relative slope of g above this is the edge of a punch, whose radius is exact.
 const MAX_STEEPNESS: f64 = 1e4;
 
+/// What a stress errs by over mu p_max, over what the force errs by over mu F_N, if the path begins at another
+/// indentation: beside the radii at which slip once stopped the stress is steep.
+const STRESS_OF_MOVED: f64 = 5.0;
+
 /// Estimated errors by rounding, curved moves, the interpolation of a table or a discretisation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ErrorEstimate {
@@ -13,8 +17,8 @@ pub struct ErrorEstimate {
     pub force_error: f64,
     /// The part of it that comes from moves straight in a force.
     pub path_error: f64,
-    /// Error of the shear stress over mu p_max, or over mu times the mean pressure where the former is infinite; of no meaning
-    /// for a profile without a stress field.
+    /// Error of the shear stress over mu p_max, or over mu times the mean pressure where the former is infinite; of no
+    /// meaning for a profile without a stress field.
     pub stress_error: f64,
 }
 
@@ -22,10 +26,12 @@ impl Contact {
     /// The errors of the present state by rounding, curved moves and the interpolation of a table.
     ///
     /// The force is a sum over pieces, each good to some units in its last place, so that its rounding error scales
-    /// with the magnitudes of the terms; so does that of a stress, whose terms are bounded by mu p. The g of a table
-    /// has an error between its points: for a given w over y the force changes by 2 G* m int |error of g| dx at most,
-    /// and by as much again where the load is given. A stress has cusps: the estimate holds for a radius moved by some
-    /// units in its last place, or by the error of the g of a table.
+    /// with the magnitudes of the terms; so does that of a stress, whose terms are bounded by mu p. Between the points
+    /// of a table or a load curve the load F(y) up to a level has an error
+    /// ([`InterpolationError`](crate::profile::InterpolationError)), and the tangential force is a sum of F at the
+    /// levels at which the slope of w over y jumps: the squares of the errors add up. An error of the initial
+    /// indentation, where load or radius is given instead, moves the path. A stress has cusps: the estimate holds for a
+    /// radius moved by some units in its last place, or by the error of the force times the contact radius.
     ///
     /// ```
     #[doc = include_str!("example.txt")]
@@ -49,12 +55,30 @@ impl Contact {
         let kernel =
             self.elasticity.e_star() / std::f64::consts::PI * (self.path_kernel + 2.0 * doubt.kernel) / mean_pressure;
         let kernel = finite(kernel);
-        let unresolved = finite(2.0 * self.elasticity.e_star() * doubt.load / self.normal_force());
+        let unit_of_load = 2.0 * self.elasticity.e_star() / self.normal_force();
+        let moved = finite(unit_of_load * radius * self.indentation_error);
+        let unresolved = moved + if doubt.load > 0.0 { finite(unit_of_load * self.load_error()) } else { 0.0 };
         let unit = f64::EPSILON * self.profile.cancellation(radius);
         ErrorEstimate {
             path_error: self.path_error,
             force_error: unit * (2.0 + 6.0 * terms + steepness) + self.path_error + unresolved,
-            stress_error: unit * (4.0 + 12.0 * terms + 2.0 * steepness) + self.path_error + unresolved + kernel,
+            stress_error: unit * (4.0 + 12.0 * terms + 2.0 * steepness)
+                + self.path_error
+                + unresolved
+                + STRESS_OF_MOVED * moved
+                + kernel,
         }
+    }
+
+    /// The error of int w dx over the contact, m^2, w in levels, that the points of a table or a load curve leave.
+    fn load_error(&self) -> f64 {
+        let (mut sum, mut beyond) = (0.0, 0.0);
+        for (ring, line) in self.history.rings() {
+            let slope = line.slope.value();
+            let error = (slope - beyond) * self.profile.interpolation_error(ring.outer.radius).load;
+            sum += error * error;
+            beyond = slope;
+        }
+        sum.sqrt()
     }
 }

@@ -35,6 +35,9 @@ pub struct Contact {
     pub(super) normal_force: f64,
     pub(super) dissipated: DoubleDouble,
     pub(super) initial: ContactSummary,
+    /// Error of the initial indentation by the points of a table or a load curve, where load or radius is given
+    /// instead, m.
+    pub(super) indentation_error: f64,
     pub(super) path_error: f64,
     pub(super) path_kernel: f64,
     /// 1/m; zero without friction, when the surface carries nothing and the slip history does not follow the
@@ -47,41 +50,22 @@ impl Contact {
     ///
     /// # Errors
     /// [`Error::OutOfRange`] for friction or preload outside [`range`]; [`Error::BeyondProfile`] and
-    /// [`Error::NotConvexEnough`] for a preload that the profile has no contact for; [`Error::BodiesNeeded`] for an ellipsoid and
-    /// bodies that are unknown.
+    /// [`Error::NotConvexEnough`] for a preload that the profile has no contact for; [`Error::BodiesNeeded`] for an
+    /// ellipsoid and bodies that are unknown.
     ///
     /// ```
     #[doc = include_str!("example.txt")]
     /// assert!((contact.contact_radius() - 0.1).abs() < 1e-15);
     /// assert!((contact.normal_force() - 4000.0).abs() < 1e-9);
     /// assert_eq!(contact.force(), 0.0);
+    ///
+    /// let mild = setup.shared();
+    /// let rough = Setup { friction: 0.7, ..mild.clone() };
+    /// assert_eq!(Contact::new(mild)?.contact_radius(), Contact::new(rough)?.contact_radius());
     /// # Ok::<(), Error>(())
     /// ```
-    pub fn new(setup: Setup) -> Result<Contact, Error> {
-        let Setup { profile, elasticity, friction, preload } = setup;
-        Contact::with_profile(Arc::new(profile), elasticity, friction, preload)
-    }
-
-    /// The virgin contact of a profile that it shares with others, because a table is large.
-    ///
-    /// # Errors
-    /// As [`Contact::new`].
-    ///
-    /// ```
-    #[doc = include_str!("example.txt")]
-    /// let profile = std::sync::Arc::new(setup.profile);
-    /// let [mild, rough] = [0.1, 0.7].map(|friction| {
-    ///     Contact::with_profile(profile.clone(), setup.elasticity, friction, setup.preload)
-    /// });
-    /// assert_eq!(mild?.contact_radius(), rough?.contact_radius());
-    /// # Ok::<(), Error>(())
-    /// ```
-    pub fn with_profile(
-        profile: Arc<Profile>,
-        elasticity: Elasticity,
-        friction: f64,
-        preload: Preload,
-    ) -> Result<Contact, Error> {
+    pub fn new<P: Into<Arc<Profile>>>(setup: Setup<P>) -> Result<Contact, Error> {
+        let Setup { profile, elasticity, friction, preload } = setup.shared();
         let elasticity = match &*profile {
             Profile::Ellipsoid(ellipsoid) => elasticity.along_ellipse(ellipsoid.shear_share())?,
             _ => elasticity,
@@ -102,6 +86,12 @@ impl Contact {
             Preload::Indentation(_) | Preload::ContactRadius(_) => normal::force(&profile, &elasticity, history.edge()),
         };
         let initial = ContactSummary::of(&profile, &elasticity, friction, history.edge(), normal_force);
+        let doubt = profile.interpolation_error(initial.contact_radius);
+        let indentation_error = match preload {
+            Preload::NormalForce(_) if doubt.load > 0.0 => doubt.load / initial.contact_radius,
+            Preload::NormalForce(_) | Preload::Indentation(_) => 0.0,
+            Preload::ContactRadius(_) => doubt.level,
+        };
         let inverse_scale = if friction > 0.0 {
             DoubleDouble::from(elasticity.g_star()).over(DoubleDouble::from(elasticity.e_star()) * friction)
         } else {
@@ -116,6 +106,7 @@ impl Contact {
             normal_force,
             dissipated: DoubleDouble::ZERO,
             initial,
+            indentation_error,
             path_error: 0.0,
             path_kernel: 0.0,
             inverse_scale,
@@ -161,6 +152,7 @@ impl Contact {
             displacement: DoubleDouble::ZERO,
             dissipated: DoubleDouble::ZERO,
             initial,
+            indentation_error: self.indentation_error,
             path_error: 0.0,
             path_kernel: 0.0,
             ..self
@@ -313,6 +305,19 @@ impl Contact {
     #[must_use]
     pub fn contact_radius(&self) -> f64 {
         self.history.edge().radius
+    }
+
+    /// Tangential displacement U of the indenter, m.
+    ///
+    /// ```
+    #[doc = include_str!("example.txt")]
+    /// contact.apply(&slide(0.001))?;
+    /// assert_eq!(contact.displacement(), 0.001);
+    /// # Ok::<(), Error>(())
+    /// ```
+    #[must_use]
+    pub fn displacement(&self) -> f64 {
+        self.displacement.value()
     }
 
     /// Indentation d, m; below zero a gap.

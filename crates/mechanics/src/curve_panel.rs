@@ -9,9 +9,9 @@
 //!   c = (dF_x/dd)/(2 G* m), J = int h/x^2 dx and K = int (D - h)/x^2 dx; J = D/x0 - D/x1 - K.
 
 use super::curved_move::{CurvedMove, NormalPath, PathPoint, TangentialPath};
-use super::profile::gauss::Panel as GaussPanel;
 use super::profile::{Ring, StressRadius};
 use super::{Contact, DoubleDouble};
+use crate::numerics::gauss::QuadraturePanel;
 
 /// A rate of slip below this, relative to the levels and positions that it is a difference of, is rounding.
 const RATE_ROUND_OFF: f64 = 16.0 * f64::EPSILON;
@@ -21,7 +21,7 @@ const RATE_ROUND_OFF: f64 = 16.0 * f64::EPSILON;
 const BEGINNING: f64 = 1e-3;
 
 /// A stretch of a curved path, from the present state on.
-pub(super) struct Panel {
+pub(super) struct PathPanel {
     /// Where the two chords meet.
     pub(super) elbow: PathPoint,
     pub(super) end: PathPoint,
@@ -46,7 +46,7 @@ struct Quadrature {
 /// A quadrature over the radii of a ring of an integrand of (x, D - h, h).
 fn over_ring(contact: &Contact, ring: &Ring, integrand: impl Fn(f64, f64, f64) -> f64) -> Quadrature {
     let (inner, width) = (ring.inner.radius, ring.outer.radius - ring.inner.radius);
-    let integral = |rule: GaussPanel| {
+    let integral = |rule: QuadraturePanel| {
         let mut sum = 0.0;
         // Over the root of the distance from the inner radius: next to a flat g rises like a root.
         rule.visit(|u, share| {
@@ -58,8 +58,8 @@ fn over_ring(contact: &Contact, ring: &Ring, integrand: impl Fn(f64, f64, f64) -
         });
         width * sum
     };
-    let value = integral(GaussPanel::fine(1.0));
-    Quadrature { value, difference: (value - integral(GaussPanel::coarse(1.0))).abs() }
+    let value = integral(QuadraturePanel::fine(1.0));
+    Quadrature { value, difference: (value - integral(QuadraturePanel::coarse(1.0))).abs() }
 }
 
 /// Whether slip towards `sign` goes on while the position advances and the indentation rises by so much.
@@ -92,11 +92,12 @@ impl Contact {
     }
 
     /// The stretch of a path from here, at `done`, to `next`.
-    pub(super) fn panel(&self, path: &CurvedMove, done: f64, next: f64) -> Panel {
+    pub(super) fn panel(&self, path: &CurvedMove, done: f64, next: f64) -> PathPanel {
         let end = self.point_on(path, next);
         let start = self.history.edge().level;
         let rise = end.indentation - start;
-        let mut panel = Panel { elbow: end, end, sticks: false, turn: None, within: 0.0, quadrature: 0.0, kernel: 0.0 };
+        let mut panel =
+            PathPanel { elbow: end, end, sticks: false, turn: None, within: 0.0, quadrature: 0.0, kernel: 0.0 };
         let middle = self.point_on(path, 0.5 * (done + next));
         let rises = (middle.indentation - start, end.indentation - middle.indentation);
         if rise.value().abs() <= 0.0 || rises.0.value() * rises.1.value() <= 0.0 {
@@ -139,7 +140,7 @@ impl Contact {
     }
 
     /// The elbow and the errors of a stretch without slip, on which the position advances by `whole`.
-    fn bend_stuck(&self, path: &CurvedMove, panel: &mut Panel, ring: &Ring, (whole, bend): (f64, f64)) {
+    fn bend_stuck(&self, path: &CurvedMove, panel: &mut PathPanel, ring: &Ring, (whole, bend): (f64, f64)) {
         let inner = ring.inner.radius;
         let touched = self.profile.moments(ring).first;
         let (gained, error) = match (path.tangential, path.normal) {

@@ -8,7 +8,7 @@
 
 use std::ops::{Add, Mul, Sub};
 
-use super::curve_panel::Panel;
+use super::curve_panel::PathPanel;
 use super::{Contact, DoubleDouble, Error};
 
 /// Error of the tangential force, relative to mu F_N, that a move may have unless the caller prescribes another.
@@ -55,7 +55,7 @@ pub(super) struct CurvedMove {
 }
 
 /// A point of the curve.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 pub(super) struct PathPoint {
     /// d, m.
     pub(super) indentation: DoubleDouble,
@@ -87,12 +87,14 @@ fn between<T: Copy + Add<Output = T> + Sub<Output = T> + Mul<f64, Output = T>>(f
 }
 
 impl Contact {
-    /// Follows a path while `keep_going` returns true; `tolerance` is relative to mu F_N.
+    /// Follows a path while `keep_going` returns true; `tolerance` is relative to mu F_N. `visit` is told the part of
+    /// the path that is done, from 0 to 1, and the end of each chord.
     pub(super) fn follow(
         &mut self,
         path: &CurvedMove,
         tolerance: f64,
         keep_going: &dyn Fn() -> bool,
+        visit: &mut dyn FnMut(f64, &Contact),
     ) -> Result<(), Error> {
         self.check_limit(path)?;
         if matches!(path.normal, NormalPath::Force { .. }) && self.history.edge().level < DoubleDouble::ZERO {
@@ -100,6 +102,7 @@ impl Contact {
             let touch =
                 PathPoint { indentation: DoubleDouble::ZERO, normal_force: 0.0, displacement: self.displacement };
             self.advance(&touch);
+            visit(0.0, self);
         }
         let unit = self.force_unit();
         let largest = self.friction * self.normal_force_on(path, 0.0).max(self.normal_force_on(path, 1.0));
@@ -130,8 +133,10 @@ impl Contact {
             let inner = self.history.edge().level;
             if !straight {
                 self.advance(&panel.elbow);
+                visit(0.5 * (done + next), self);
             }
             self.advance(&panel.end);
+            visit(next, self);
             let slip = self.history.slip_from().map_or(panel.end.indentation, |start| start.level);
             while traces.last().is_some_and(|last| last.inner >= slip || last.inner >= panel.end.indentation) {
                 traces.pop();
@@ -152,7 +157,7 @@ impl Contact {
     }
 
     /// Where slip begins or ends on a stretch, unless that is at an end of it: W - d or W + d has an extremum there.
-    fn turn(&self, path: &CurvedMove, (done, next): (f64, f64), panel: &Panel) -> Option<f64> {
+    fn turn(&self, path: &CurvedMove, (done, next): (f64, f64), panel: &PathPanel) -> Option<f64> {
         let (sign, rises_first) = panel.turn?;
         let towards = if rises_first { -1.0 } else { 1.0 };
         let distance = |part: f64| {

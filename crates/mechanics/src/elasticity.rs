@@ -117,8 +117,28 @@ impl Elasticity {
         })
     }
 
-    /// The same bodies over an ellipse of contact: 1/G* = sum (1 - nu_i^2)/E_i [1 + nu_i/(1 - nu_i) s], body by body as for a circle,
-    /// where the share s of [`Ellipsoid`](crate::profile::Ellipsoid::shear_share) is one half (Mindlin 1949; Johnson 1985, 7.2).
+    /// The same bodies with measured reduced moduli (Pa) in place of those that follow from their constants: an
+    /// interface of rough surfaces is softer than its bodies, whose stress has their own constants nevertheless.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`] by [`range::E_STAR`] and [`range::G_STAR`].
+    ///
+    /// ```
+    /// use stickslip_mechanics::{Body, Elasticity};
+    ///
+    /// let steel = Elasticity::against_rigid(Body::new(2.1e11, 0.3)?);
+    /// let measured = steel.with_moduli(steel.e_star(), 1.7e11)?;
+    /// assert_eq!((measured.g_star(), measured.largest_poisson_ratio()), (1.7e11, Some(0.3)));
+    /// # Ok::<(), stickslip_mechanics::Error>(())
+    /// ```
+    pub fn with_moduli(self, e_star: f64, g_star: f64) -> Result<Elasticity, Error> {
+        let moduli = Elasticity::effective(e_star, g_star)?;
+        Ok(Elasticity { e_star: moduli.e_star, g_star: moduli.g_star, ..self })
+    }
+
+    /// The same bodies over an ellipse of contact: 1/G* = sum (1 - nu_i^2)/E_i [1 + nu_i/(1 - nu_i) s], body by body as
+    /// for a circle, where the share s of [`Ellipsoid`](crate::profile::Ellipsoid::shear_share) is one half (Mindlin
+    /// 1949; Johnson 1985, 7.2).
     ///
     /// # Errors
     /// [`Error::BodiesNeeded`] where only the reduced moduli are known.

@@ -3,6 +3,10 @@
 use thiserror::Error as ThisError;
 
 use super::range::{Quantity, short};
+use super::unit_prefix::in_unit;
+
+/// What a move can do whose target is beyond the limit of friction.
+const WITHIN_LIMIT: &str = ": the largest tangential force that this move can meet is just below it";
 
 /// A request that has no answer. Nothing has changed when one is returned.
 #[derive(Clone, Debug, PartialEq, ThisError)]
@@ -66,8 +70,9 @@ pub enum Error {
     BodiesNeeded,
     /// No quasi-static state carries this tangential force: the contact would slide away.
     #[error(
-        "friction holds no more than mu F_N = {} N, which the tangential force would meet {:.3} % of the way to {} N",
-        short(*limit), part * 100.0, short(*target)
+        "friction holds no more than mu F_N = {}{}, and {} was asked for", in_unit(*limit, "N"),
+        if target.abs() >= *limit { WITHIN_LIMIT } else { " on the way" },
+        in_unit(*target, "N")
     )]
     ForceExceedsFriction {
         /// The tangential force that the move was to lead to, N.
@@ -85,6 +90,12 @@ pub enum Error {
         /// Its change in the last cycle tried, m.
         drift: f64,
     },
+    /// A cycle whose states cannot be held together.
+    #[error(
+        "the states of this cycle take too much memory: make it of fewer moves, or straight in displacement and \
+            indentation"
+    )]
+    CycleTooLarge,
     /// The caller has ended the computation before it was complete.
     #[error("interrupted")]
     Interrupted,
@@ -139,4 +150,25 @@ pub enum UnsupportedMove {
     /// A tangential force while the indentation changes.
     #[error("springs follow a tangential force only at constant indentation")]
     TangentialForceWithNormalTarget,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Error;
+
+    #[test]
+    fn a_force_that_friction_cannot_hold_is_told_the_largest_that_it_can() {
+        let said = |target: f64, limit: f64| Error::ForceExceedsFriction { target, limit, part: 0.5 }.to_string();
+        assert_eq!(
+            said(2000.0, 3.0),
+            "friction holds no more than mu F_N = 3 N: the largest tangential force that this move can meet is just \
+             below it, and 2 kN was asked for"
+        );
+        assert!(
+            said(-25.0, 0.012_345_678).contains("mu F_N = 12.3457 mN:")
+                && said(-25.0, 3.0).ends_with("-25 N was asked for")
+        );
+        // Where the load falls on the way, the target itself may be held.
+        assert!(said(2.82, 7.4).starts_with("friction holds no more than mu F_N = 7.4 N on the way, and 2.82 N"));
+    }
 }

@@ -5,9 +5,9 @@
 //! mean of the bound at both ends, a quadratic in y; no instant is simulated. Every term is positive: nothing cancels
 //! however small the move. Works here are over 2 G* m^2, in m^3.
 
-use super::double_double::DoubleDouble;
 use super::profile::{Moments, Point, Profile, Ring};
 use super::slip_history::{Line, Piece, ROUND_OFF, SAME_TURNING_POINT, SlipHistory};
+use crate::numerics::double_double::DoubleDouble;
 
 /// The ring that slips at the end of a move: towards `sign`, with w = sign (indentation - y).
 pub(super) struct SlipRing {

@@ -28,7 +28,8 @@
 //! - the shear stress tau(r) = -(G*/pi) int_r^a u_x'(x)/sqrt(x^2 - r^2) dx,
 //! - the elastic energy G* m^2 int_0^a w^2 dx, and the friction work of each move,
 //!
-//! all as sums over pieces of a few integrals that each [`Profile`] has in closed form.
+//! all as sums over pieces of a few integrals of each [`Profile`]: in closed form where there is one, else by a series
+//! or a quadrature to round-off.
 //!
 //! Positive displacement gives positive force and positive shear stress. Energies are those of the tangential problem
 //! alone.
@@ -56,14 +57,13 @@
 //! | [`protocol`] | which paths leave little shear stress? |
 //! | [`springs`] | what is the result of the discrete foundation of the paper? |
 //! | [`range`](mod@range), `error` | which numbers are accepted, and what is refused? |
-//! | `double_double` | how do small differences of levels keep their digits? |
+//! | `numerics` | how are differences kept exact, roots found, functions integrated, and what is far away summed? |
 
 mod accuracy;
 mod contact;
 mod curve_panel;
 mod curved_move;
 pub mod cycle;
-mod double_double;
 pub mod elasticity;
 mod error;
 mod extrema;
@@ -72,6 +72,7 @@ mod force_control;
 mod friction_work;
 mod moves;
 mod normal;
+mod numerics;
 mod packed;
 pub mod profile;
 pub mod protocol;
@@ -85,6 +86,7 @@ pub mod subsurface;
 mod surface_displacement;
 #[cfg(test)]
 mod tests;
+mod unit_prefix;
 
 /// Runs the example of the README as a test.
 #[cfg(doctest)]
@@ -94,13 +96,14 @@ struct Readme;
 pub use accuracy::ErrorEstimate;
 pub use contact::Contact;
 pub use curved_move::{DEFAULT_TOLERANCE, MAX_CHORDS};
-pub use double_double::DoubleDouble;
 pub use elasticity::{Body, Elasticity};
 pub use error::{CurveFault, Error, TableFault, UnsupportedMove};
 pub use normal::{ContactSummary, Preload};
+pub use numerics::double_double::DoubleDouble;
 pub use packed::ENGINE;
 pub use profile::{Profile, Sphere};
 pub use shear_stress::{Peak, Residual};
 pub use springs::Springs;
 pub use state::{Move, Normal, Regime, Setup, State, Tangential};
 pub use subsurface::Stress;
+pub use unit_prefix::{in_unit, unit_prefix};

@@ -58,6 +58,18 @@ impl Contact {
     /// # Ok::<(), Error>(())
     /// ```
     pub fn apply_while(&mut self, step: &Move, tolerance: f64, keep_going: &dyn Fn() -> bool) -> Result<(), Error> {
+        self.apply_visited(step, tolerance, keep_going, &mut |_, _| ())
+    }
+
+    /// As [`Contact::apply_while`]; `visit` is told the part of the move that is done, from 0 to 1, and the contact at
+    /// the end of each of the chords that the move is made of, of which a straight one has one.
+    pub(super) fn apply_visited(
+        &mut self,
+        step: &Move,
+        tolerance: f64,
+        keep_going: &dyn Fn() -> bool,
+        visit: &mut dyn FnMut(f64, &Contact),
+    ) -> Result<(), Error> {
         let normal = self.normal_path(step)?;
         let tangential = self.tangential_path(step)?;
         // Without a tangential target the displacement stays, and every path to the new indentation ends in the same
@@ -74,11 +86,12 @@ impl Contact {
                 NormalPath::Force { to, .. } => (self.indentation_for(to), to),
             };
             self.advance(&PathPoint { indentation, normal_force, displacement });
+            visit(1.0, self);
             return Ok(());
         }
         // A path of many chords can be interrupted half-way; the cost of a copy is negligible against it.
         let before = self.clone();
-        let followed = self.follow(&CurvedMove { tangential, normal }, tolerance, keep_going);
+        let followed = self.follow(&CurvedMove { tangential, normal }, tolerance, keep_going, visit);
         if followed.is_err() {
             *self = before;
         }

@@ -87,7 +87,8 @@ impl ContactSummary {
         self.max_pressure.unwrap_or_else(|| mean_pressure(self.normal_force, self.contact_radius))
     }
 
-    /// mu times [`ContactSummary::unit_pressure`], Pa: what residual stresses are relative to. Not finite without a load.
+    /// mu times [`ContactSummary::unit_pressure`], Pa: what residual stresses are relative to. Not finite without a
+    /// load.
     ///
     /// ```
     #[doc = include_str!("example.txt")]
@@ -184,9 +185,10 @@ pub(super) fn max_pressure(profile: &Profile, elasticity: &Elasticity, edge: &Po
     if profile.kernel_falls() || profile.least_fall(0.0, edge.radius) > 0.0 {
         return Some(at(0.0));
     }
-    // A scan, then a ternary search about its largest value: a profile that is steep outside has its maximum off the centre.
-    // Beside a flat end that hardly exceeds the contact it lies within the thin annulus beyond the flat, which may be narrower
-    // than a unit in the last place of a radius: so radii at even steps of the level are scanned too, and told apart by their squares.
+    // A scan, then a ternary search about its largest value: a profile that is steep outside has its maximum off the
+    // centre. Beside a flat end that hardly exceeds the contact it lies within the thin annulus beyond the flat, which
+    // may be narrower than a unit in the last place of a radius: so radii at even steps of the level are scanned too,
+    // and told apart by their squares.
     let pressure_at = |square: DoubleDouble| {
         pressure(profile, elasticity, edge, &StressRadius { radius: square.value().sqrt(), square })
     };

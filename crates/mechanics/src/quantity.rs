@@ -41,6 +41,8 @@ quantities! {
     TablePoints = "points of the table", "Number of points of a tabulated profile.";
     TableRadius = "r", "Radius in a table.";
     TableHeight = "z", "Height in a table.";
+    IndentationError = "indentation_error", "Standard error of an indentation of a table.";
+    PressureError = "pressure_error", "Standard error of a pressure of a table, over E*.";
     Asperities = "number of asperities", "Number of asperities in a set.";
     Gap = "gap", "Gap of an asperity.";
     CurvePoints = "points of the load curve", "Number of points of a load curve.";

@@ -38,6 +38,10 @@ pub const TABLE_POINTS: Range = Range { quantity: Quantity::TablePoints, unit: "
 pub const TABLE_RADIUS: Range = Range { quantity: Quantity::TableRadius, unit: "m", min: 0.0, max: 1e9 };
 /// A height in a table.
 pub const TABLE_HEIGHT: Range = Range { quantity: Quantity::TableHeight, unit: "m", min: -1e9, max: 1e9 };
+/// The standard error of an indentation of a table.
+pub const INDENTATION_ERROR: Range = Range { quantity: Quantity::IndentationError, unit: "m", min: 0.0, max: 1e9 };
+/// The standard error of a pressure of a table, over E*.
+pub const PRESSURE_ERROR: Range = Range { quantity: Quantity::PressureError, unit: "", min: 0.0, max: 1e9 };
 /// How many asperities a set may have.
 pub const ASPERITIES: Range = Range { quantity: Quantity::Asperities, unit: "", min: 1.0, max: 1e6 };
 /// The gap of an asperity above any plane.

@@ -126,7 +126,8 @@ impl Contact {
     }
 
     /// As [`Contact::residual`], while `keep_going` returns true, which is asked at every kink of the slip history and
-    /// knot of the profile, and every few thousand terms between them: the cost grows with the square of its depth. `None` if it returned false.
+    /// knot of the profile, and every few thousand terms between them: the cost grows with the square of its depth.
+    /// `None` if it returned false.
     ///
     /// ```
     #[doc = include_str!("example.txt")]

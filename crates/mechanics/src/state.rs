@@ -1,18 +1,30 @@
 //! The definition of a contact, its moves and its state.
 
+use std::sync::Arc;
+
 use super::{Contact, Elasticity, Preload, Profile};
 
-/// What a contact is made of.
+/// What a contact is made of. Its profile is a [`Profile`], or an `Arc` of one that others share, because a table is
+/// large.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Setup {
+pub struct Setup<P = Profile> {
     /// The shape of the indenter.
-    pub profile: Profile,
+    pub profile: P,
     /// The reduced moduli.
     pub elasticity: Elasticity,
     /// Coulomb's coefficient of friction mu.
     pub friction: f64,
     /// The normal load that the virgin contact starts with.
     pub preload: Preload,
+}
+
+impl<P: Into<Arc<Profile>>> Setup<P> {
+    /// The same, whose copies share the profile.
+    #[must_use]
+    pub fn shared(self) -> Setup<Arc<Profile>> {
+        let Setup { profile, elasticity, friction, preload } = self;
+        Setup { profile: profile.into(), elasticity, friction, preload }
+    }
 }
 
 /// The end of a move, which is straight in the quantities named.

@@ -142,7 +142,9 @@ mod tests {
     use proptest::test_runner::RngSeed;
 
     proptest! {
-        #![proptest_config(ProptestConfig { cases: 48, failure_persistence: None, rng_seed: RngSeed::Fixed(0), ..ProptestConfig::default() })]
+        #![proptest_config(ProptestConfig {
+            cases: 48, failure_persistence: None, rng_seed: RngSeed::Fixed(0), ..ProptestConfig::default()
+        })]
 
         #[test]
         fn displacements_at_once_are_those_ring_by_ring(

@@ -4,13 +4,12 @@ use serde::{Deserialize, Serialize};
 use serde_with::{apply, skip_serializing_none};
 use utoipa::ToSchema;
 
-use stickslip_mechanics::Setup;
-
-use super::check::{Fault, Faults, JsonPath};
-use super::definition::ContactDefinition;
+use super::check::{Fault, Faults, JsonPath, Rejection};
+use super::definition::{ContactDefinition, DefinedProfile, SharedSetup};
+use super::document::Document;
 use super::limits::{Items, Tolerance, limits};
-use super::parse::{Document, Rejection};
 use super::path::{Path, Plan};
+use super::prepare::Prepare;
 use super::reply::SolverKind;
 use super::simulate::{Solver, Springs, most_springs};
 use super::single_key::not_null;
@@ -37,8 +36,8 @@ pub struct AccuracyRequest {
     pub contact: ContactDefinition,
     /// The path.
     pub path: Path,
-    /// Where the shear stress at the end of the path is compared; left out, at 200 radii evenly spaced from the centre to the
-    /// edge. `fields`, if named, must hold `shear`; nothing else is compared.
+    /// Where the shear stress at the end of the path is compared; left out, at 200 radii evenly spaced from the centre
+    /// to the edge. `fields`, if named, must hold `shear`; nothing else is compared.
     pub stress: Option<StressRequest>,
     /// The solvers, in the order of the rows; left out, the exact one and 10, 100, 1000 and 10 000 springs.
     pub solvers: Option<Vec<Solver>>,
@@ -72,8 +71,8 @@ pub struct Reference {
     pub compute_time: f64,
     /// The unit of force errors: the largest friction limit μ F_N along the path, N.
     pub force_unit: f64,
-    /// The unit of stress errors: μ times the largest pressure at the end of the path (or, where that is infinite, the mean),
-    /// Pa.
+    /// The unit of stress errors: μ times the largest pressure at the end of the path (or, where that is infinite, the
+    /// mean), Pa.
     pub stress_unit: f64,
     /// How many radii are compared: those where the stress of the reference is finite.
     pub radii: usize,
@@ -90,10 +89,11 @@ pub struct AccuracyRow {
     /// Largest difference of the shear stress at the end, over the radii, relative to `stress_unit`, a pure number;
     /// likewise.
     pub stress_error: Option<f64>,
-    /// Error of the force as the solver estimates it, without a reference, relative to `force_unit`, a pure number; likewise.
+    /// Error of the force as the solver estimates it, without a reference, relative to `force_unit`, a pure number;
+    /// likewise.
     pub estimated_force_error: Option<f64>,
-    /// Error of the stress as the solver estimates it, relative to `stress_unit`, a pure number: for radii some cells away
-    /// from kinks; likewise.
+    /// Error of the stress as the solver estimates it, relative to `stress_unit`, a pure number: for radii some cells
+    /// away from kinks; likewise.
     pub estimated_stress_error: Option<f64>,
     /// Time spent computing, s: the median of a few runs if one takes less than some milliseconds.
     pub compute_time: f64,
@@ -109,7 +109,7 @@ pub struct Comparison {
     /// The contact as it was sent.
     pub definition: ContactDefinition,
     /// The contact.
-    pub setup: Setup,
+    pub setup: SharedSetup,
     /// The path.
     pub plan: Plan,
     /// Where the shear stress is compared; no other field is.
@@ -145,9 +145,13 @@ fn ladder() -> Vec<Solver> {
 impl Document for AccuracyRequest {
     type Checked = Comparison;
 
-    fn check(self) -> Result<Comparison, Rejection> {
+    fn profile(&self) -> Option<DefinedProfile<'_>> {
+        Some(self.contact.defined_profile("/contact/profile"))
+    }
+
+    fn check_with(self, profiles: &dyn Prepare) -> Result<Comparison, Rejection> {
         let mut faults = Faults::default();
-        let setup = self.contact.check(JsonPath::Root.member("contact"), &mut faults);
+        let setup = self.contact.check(JsonPath::Root.member("contact"), profiles, &mut faults);
         // Stresses are always compared.
         faults.needs_stress_field(setup.as_ref(), JsonPath::Root.member("contact").member("profile"));
         let plan = self.path.check(JsonPath::Root.member("path"), &mut faults);

@@ -2,10 +2,9 @@
 
 use std::fmt;
 use std::ops::RangeInclusive;
+use std::sync::Arc;
 
-use stickslip_mechanics::{Error, Setup, range::Range};
-
-use super::parse::Rejection;
+use stickslip_mechanics::{Error, Profile, Setup, TableFault, range::Range};
 
 /// Faults that one reply lists; a body can have a great many.
 const LISTED_FAULTS: usize = 100;
@@ -21,8 +20,36 @@ pub struct Fault {
     pub detail: String,
 }
 
-/// A place in a JSON document, written as a JSON pointer (RFC 6901). It borrows its parent, so that no pointer is written
-/// while nothing is wrong.
+/// Why a body is refused.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum Rejection {
+    /// It is not JSON at all.
+    #[error("the body is not JSON: {0}")]
+    NotJson(String),
+    /// It is JSON, but not a valid document of this call.
+    #[error("{}", summary(.0))]
+    Invalid(Vec<Fault>),
+    /// Every number is in its range, but the mechanics refuses the combination.
+    #[error("{pointer}: {error}")]
+    Refused {
+        /// JSON pointer to the member that it refuses.
+        pointer: String,
+        /// Why.
+        error: Error,
+    },
+}
+
+fn summary(faults: &[Fault]) -> String {
+    match faults {
+        [] => "the request is invalid".to_owned(),
+        [one] if one.pointer.is_empty() => one.detail.clone(),
+        [one] => format!("{}: {}", one.pointer, one.detail),
+        many => format!("{} faults, the first at {}: {}", many.len(), many[0].pointer, many[0].detail),
+    }
+}
+
+/// A place in a JSON document, written as a JSON pointer (RFC 6901). It borrows its parent, so that no pointer is
+/// written while nothing is wrong.
 #[derive(Clone, Copy, Debug)]
 pub enum JsonPath<'a> {
     /// The whole document.
@@ -91,7 +118,7 @@ impl Faults {
     }
 
     /// Refuses what is asked for at this place if it needs a stress and the contact is known by its load curve alone.
-    pub fn needs_stress_field(&mut self, setup: Option<&Setup>, at: JsonPath<'_>) {
+    pub fn needs_stress_field(&mut self, setup: Option<&Setup<Arc<Profile>>>, at: JsonPath<'_>) {
         if let Some(Err(error)) = setup.map(|setup| setup.profile.check_stress_field()) {
             self.unanswerable(at, error);
         }
@@ -152,4 +179,25 @@ impl Faults {
             (_, None) => Err(Rejection::Invalid(self.found)),
         }
     }
+}
+
+/// The shape, unless the mechanics refuses it although each number is in its range: then a fault is added.
+pub(super) fn accepted(shape: Result<Profile, Error>, at: JsonPath<'_>, faults: &mut Faults) -> Option<Profile> {
+    match shape {
+        Ok(shape) => return Some(shape),
+        // It follows from a fault that has been noted already.
+        Err(_) if !faults.is_empty() => {}
+        Err(error @ (Error::NotConvexEnough { .. } | Error::BeyondProfile { .. } | Error::Interrupted)) => {
+            faults.unanswerable(at, error);
+        }
+        Err(Error::Table { fault, index }) => match fault {
+            TableFault::FirstRadiusNotZero | TableFault::RadiusNotRising => {
+                faults.add(at.member("r").index(index), fault);
+            }
+            // The heights, and the two lengths, are at fault as a whole.
+            TableFault::LengthsDiffer | TableFault::HeightNeverRises => faults.add(at.member("z"), fault),
+        },
+        Err(error) => faults.add(at, error),
+    }
+    None
 }

@@ -19,7 +19,8 @@ use crate::{
     SweepRequest, WorkDensity,
 };
 
-/// A handle on a service; clones share its connections. Every call fails with an [`Error`], and so may a stream of events.
+/// A handle on a service; clones share its connections. Every call fails with an [`Error`], and so may a stream of
+/// events.
 #[derive(Clone, Debug)]
 pub struct Client {
     base: String,
@@ -93,8 +94,8 @@ impl Client {
         Client { base: base.trim_end_matches('/').to_owned(), authorization: None, http: reqwest::Client::new() }
     }
 
-    /// The same client with a key, which every call presents. A key that no header can hold is not one of any service, and
-    /// left out.
+    /// The same client with a key, which every call presents. A key that no header can hold is not one of any service,
+    /// and left out.
     #[must_use]
     pub fn with_key(mut self, key: &str) -> Client {
         self.authorization = HeaderValue::from_str(&format!("Bearer {key}")).ok();
@@ -255,8 +256,8 @@ impl Client {
         json(self.call(Method::GET, &format!("/contacts/{id}/cycles")).query(&[("last", last)])).await
     }
 
-    /// `GET /contacts/{id}/events`: the states beyond the move `after`, or the present one and then each new one. The stream
-    /// ends when the service or the connection does; go on from the sequence of the last state then.
+    /// `GET /contacts/{id}/events`: the states beyond the move `after`, or the present one and then each new one. The
+    /// stream ends when the service or the connection does; go on from the sequence of the last state then.
     pub async fn events(
         &self,
         id: Uuid,

@@ -3,8 +3,8 @@
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-/// A closed cycle: the displacement went from one turning point to the opposite one and came back. Smaller cycles within
-/// it are cycles of their own.
+/// A closed cycle: the displacement went from one turning point to the opposite one and came back. Smaller cycles
+/// within it are cycles of their own.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Cycle {
     /// The number of the move after which it began, at its first turning point.
@@ -20,8 +20,8 @@ pub struct Cycle {
     /// Force amplitude over displacement amplitude, N/m; `null` beyond all numbers.
     pub secant_stiffness: Option<f64>,
     /// Displacement at zero force over the displacement amplitude, both from the middle of the loop, a pure number;
-    /// `null` without friction, and if the cycle is not steady: the load changed within it, or so shortly before that the
-    /// force does not come back with the displacement. Amplitude and work are then those of the recorded states.
+    /// `null` without friction, and if the cycle is not steady: the load changed within it, or so shortly before that
+    /// the force does not come back with the displacement. Amplitude and work are then those of the recorded states.
     pub sliding_ratio: Option<f64>,
 }
 

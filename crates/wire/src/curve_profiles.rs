@@ -6,9 +6,8 @@ use utoipa::ToSchema;
 use stickslip_mechanics::profile::{self as families, Asperities, Ellipsoid, LoadCurve, Profile as Shape};
 use stickslip_mechanics::{CurveFault, Elasticity, Error, range, range::Range};
 
-use super::check::{Faults, JsonPath};
+use super::check::{Faults, JsonPath, accepted};
 use super::limits::{self, Limit as _};
-use super::profile::accepted;
 
 /// Hertzian asperities between two rigid bodies, of which each is an elastic contact of its own.
 #[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
@@ -21,8 +20,8 @@ pub struct AsperitiesProfile {
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub radius: Option<f64>,
-    /// Distances of the tips from the flat before the load, m, in any order; an offset does not matter, because the indentation
-    /// counts from the first touch.
+    /// Distances of the tips from the flat before the load, m, in any order; an offset does not matter, because the
+    /// indentation counts from the first touch.
     pub gaps: Vec<f64>,
 }
 
@@ -56,7 +55,7 @@ pub enum MotionAxis {
 
 impl AsperitiesProfile {
     /// The checked profile; its faults are noted at `at`.
-    pub(super) fn check(&self, at: JsonPath<'_>, faults: &mut Faults) -> Option<Shape> {
+    pub(super) fn check(&self, at: JsonPath<'_>, keep_going: &dyn Fn() -> bool, faults: &mut Faults) -> Option<Shape> {
         faults.part(|faults| {
             limits::ASPERITY_GAPS.check(&self.gaps, at.member("gaps"), faults);
             match (&self.radii, self.radius) {
@@ -71,19 +70,26 @@ impl AsperitiesProfile {
             faults.add(at.member("gaps"), format_args!("{gaps} gaps for {radii} radii: there must be as many"));
             return None;
         }
-        accepted(Asperities::new(radii, &self.gaps).map(Shape::Asperities), at, faults)
+        accepted(Asperities::new_while(radii, &self.gaps, keep_going).map(Shape::Asperities), at, faults)
     }
 }
 
 impl LoadCurveProfile {
     /// The checked profile of these bodies; its faults are noted at `at`.
-    pub(super) fn check(&self, bodies: &Elasticity, at: JsonPath<'_>, faults: &mut Faults) -> Option<Shape> {
+    pub(super) fn check(
+        &self,
+        bodies: &Elasticity,
+        at: JsonPath<'_>,
+        keep_going: &dyn Fn() -> bool,
+        faults: &mut Faults,
+    ) -> Option<Shape> {
         let LoadCurveProfile { indentation, normal_force } = self;
         faults.part(|faults| {
             limits::CURVE_INDENTATIONS.check(indentation, at.member("indentation"), faults);
             limits::CURVE_FORCES.check(normal_force, at.member("normal_force"), faults);
         })?;
-        let curve = LoadCurve::new(indentation, normal_force, bodies);
+        let curve =
+            if keep_going() { LoadCurve::new(indentation, normal_force, bodies) } else { Err(Error::Interrupted) };
         if let Err(Error::Curve { fault, index }) = curve {
             let (member, whole) = match fault {
                 CurveFault::LengthsDiffer => ("normal_force", true),

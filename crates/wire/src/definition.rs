@@ -1,16 +1,19 @@
 //! The definition of a contact: profile, material, friction and preload.
 
+use std::sync::Arc;
+
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
+use serde_with::skip_serializing_none;
 use utoipa::ToSchema;
 
 use stickslip_mechanics::{self as mechanics, Setup, elasticity, range, range::Quantity};
 
 use super::check::{Faults, JsonPath};
 use super::limits::{Items, limits};
+use super::prepare::Prepare;
 use super::profile::Profile;
-use super::single_key::single_key;
-use super::subsurface::BodyName;
+use super::single_key::{not_null, single_key};
 
 /// Two bodies pressed together, at rest and never moved tangentially.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
@@ -28,6 +31,30 @@ pub struct ContactDefinition {
 }
 limits!(ContactDefinition { friction: range::FRICTION });
 
+/// A checked definition, whose profile copies and other contacts share.
+pub type SharedSetup = Setup<Arc<mechanics::Profile>>;
+
+/// The profile of the contact that a document defines.
+#[derive(Clone, Copy, Debug)]
+pub struct DefinedProfile<'a> {
+    /// JSON pointer to it.
+    pub pointer: &'static str,
+    /// The profile.
+    pub profile: &'a Profile,
+    /// The bodies that have it.
+    pub material: &'a Material,
+}
+
+/// One of the two bodies in contact.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum BodyName {
+    /// The one with the profile, which moves along x: its surface feels −τ.
+    First,
+    /// The plane one: its surface feels +τ.
+    Second,
+}
+
 /// The elastic constants, one key: the two bodies, or their reduced moduli.
 #[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
@@ -38,7 +65,7 @@ pub enum Material {
     Effective(Effective),
 }
 single_key!(Material { "bodies" => Bodies, "effective" => Effective });
-limits!(enum Material { Bodies "bodies": Items(2..=2) });
+limits!(enum Material { Bodies "bodies": BODIES });
 
 /// One of the two bodies: its elastic constants, or the string `"rigid"`.
 // Untagged when written. It is read by hand below, so that a fault in the object names its member.
@@ -71,6 +98,7 @@ pub struct ElasticBody {
 limits!(ElasticBody { youngs_modulus: range::YOUNGS_MODULUS, poisson_ratio: range::POISSON_RATIO });
 
 /// The reduced moduli of the pair of bodies.
+#[skip_serializing_none]
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Effective {
@@ -78,8 +106,15 @@ pub struct Effective {
     pub e_star: f64,
     /// G*, Pa: 1/G* = Σ (2−νᵢ)/(4Gᵢ).
     pub g_star: f64,
+    /// The two bodies that they were measured of, where these are known: the contact has the moduli above, and the
+    /// stress below its surface, the fatigue criteria and the warnings the constants of these.
+    #[serde(default, deserialize_with = "not_null")]
+    #[schema(nullable = false)]
+    pub bodies: Option<Vec<Body>>,
 }
-limits!(Effective { e_star: range::E_STAR, g_star: range::G_STAR });
+limits!(Effective { e_star: range::E_STAR, g_star: range::G_STAR, bodies: BODIES });
+/// How many bodies there are.
+const BODIES: Items = Items(2..=2);
 
 /// The normal load that the contact starts with, one key. Zero is a contact just touching.
 #[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
@@ -138,11 +173,19 @@ impl ContactDefinition {
         })
     }
 
-    /// The checked setup; its faults are noted at `at`.
-    pub fn check(&self, at: JsonPath<'_>, faults: &mut Faults) -> Option<Setup> {
+    /// The profile, which is at this JSON pointer.
+    #[must_use]
+    pub fn defined_profile(&self, pointer: &'static str) -> DefinedProfile<'_> {
+        DefinedProfile { pointer, profile: &self.profile, material: &self.material }
+    }
+
+    /// The checked setup with its profile prepared by `profiles`; its faults are noted at `at`.
+    pub fn check(&self, at: JsonPath<'_>, profiles: &dyn Prepare, faults: &mut Faults) -> Option<SharedSetup> {
         // A load curve is one of certain bodies, whose own faults are noted after those of the profile.
-        let bodies = self.material.check(at, &mut Faults::default());
-        let profile = self.profile.check(bodies.as_ref(), at.member("profile"), faults);
+        let (bodies, place) = (self.material.elasticity(), at.member("profile"));
+        let profile = profiles.profile(&self.profile, bodies.as_ref(), &mut || {
+            self.profile.check(bodies.as_ref(), place, &|| profiles.keep_going(), faults)
+        });
         let elasticity = self.material.check(at.member("material"), faults);
         if matches!((&self.profile, &self.material), (Profile::Ellipsoid(_), Material::Effective(_))) {
             faults.add(at.member("material").member("effective"), mechanics::Error::BodiesNeeded);
@@ -152,8 +195,8 @@ impl ContactDefinition {
         Some(Setup { profile: profile?, elasticity: elasticity?, friction: self.friction, preload })
     }
 
-    /// The JSON pointer, in a definition with this preload, to the quantity that the mechanics refuses. A preload can be at
-    /// fault by what follows from it, such as the indentation under a force.
+    /// The JSON pointer, in a definition with this preload, to the quantity that the mechanics refuses. A preload can
+    /// be at fault by what follows from it, such as the indentation under a force.
     #[must_use]
     pub fn place_of(quantity: Quantity, preload: &mechanics::Preload) -> &'static str {
         match quantity {
@@ -172,11 +215,25 @@ impl ContactDefinition {
 }
 
 impl Material {
+    /// The two bodies, where they are known.
+    #[must_use]
+    pub fn bodies(&self) -> Option<&[Body]> {
+        match self {
+            Material::Bodies(bodies) => Some(bodies),
+            Material::Effective(moduli) => moduli.bodies.as_deref(),
+        }
+    }
+
+    /// Their elasticity, unless they are at fault.
+    #[must_use]
+    pub fn elasticity(&self) -> Option<elasticity::Elasticity> {
+        self.check(JsonPath::Root, &mut Faults::default())
+    }
+
     /// Young's modulus of one of the bodies, Pa, where it is known.
     #[must_use]
     pub fn youngs_modulus(&self, body: BodyName) -> Option<f64> {
-        let Material::Bodies(bodies) = self else { return None };
-        match bodies.get(usize::from(body == BodyName::Second))? {
+        match self.bodies()?.get(usize::from(body == BodyName::Second))? {
             Body::Elastic(body) => Some(body.youngs_modulus),
             Body::Rigid(_) => None,
         }
@@ -185,8 +242,15 @@ impl Material {
     pub(crate) fn check(&self, at: JsonPath<'_>, faults: &mut Faults) -> Option<elasticity::Elasticity> {
         match self {
             Material::Effective(moduli) => {
-                moduli.check_members(at.member("effective"), faults);
-                elasticity::Elasticity::effective(moduli.e_star, moduli.g_star).ok()
+                let at = at.member("effective");
+                moduli.check_members(at, faults);
+                let Effective { e_star, g_star, bodies } = moduli;
+                match bodies {
+                    Some(bodies) => {
+                        check_bodies(bodies, at.member("bodies"), faults)?.with_moduli(*e_star, *g_star).ok()
+                    }
+                    None => elasticity::Elasticity::effective(*e_star, *g_star).ok(),
+                }
             }
             Material::Bodies(bodies) => {
                 let elasticity = check_bodies(bodies, at.member("bodies"), faults);

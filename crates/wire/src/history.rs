@@ -44,8 +44,8 @@ pub struct HistoryPage {
     pub next: Option<u64>,
 }
 
-/// A page of the hysteresis loop of a contact, oldest first. The first page begins with the virgin contact at sequence zero; the
-/// pages in sequence are the whole loop.
+/// A page of the hysteresis loop of a contact, oldest first. The first page begins with the virgin contact at sequence
+/// zero; the pages in sequence are the whole loop.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct LoopPage {
     /// The number of the move that a point belongs to.

@@ -97,7 +97,8 @@ impl Pointer {
         &self.0
     }
 
-    /// Puts a number where it points to: in place of a number, or as a member that is missing. Returns whether it could.
+    /// Puts a number where it points to: in place of a number, or as a member that is missing. Returns whether it
+    /// could.
     pub fn put(&self, document: &mut Value, number: Number) -> bool {
         let Some((last, parents)) = self.0.split_last() else { return false };
         let parent = parents.iter().try_fold(document, |node, segment| match node {

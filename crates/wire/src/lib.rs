@@ -20,6 +20,7 @@ pub mod closed_cycle;
 pub mod curve_profiles;
 pub mod cycle;
 pub mod definition;
+pub mod document;
 pub mod event;
 pub mod fit;
 pub mod fretting;
@@ -32,6 +33,7 @@ pub mod observation;
 pub mod parse;
 pub mod path;
 pub mod pointer_lookup;
+pub mod prepare;
 pub mod problem;
 pub mod profile;
 pub mod profile_fit;
@@ -45,13 +47,14 @@ pub mod subsurface;
 pub mod sweep;
 
 pub use accuracy::{AccuracyReply, AccuracyRequest, AccuracyRow, Comparison, Reference};
-pub use check::{Fault, Faults, JsonPath};
+pub use check::{Fault, Faults, JsonPath, Rejection};
 pub use closed_cycle::{Cycle, CyclePage};
 pub use cycle::{
     Amplitudes, BestLoad, BestLoadStudy, CycleDrive, CycleReply, CycleRequest, FrequencyResponse, FrettingMap,
     FrictionWork, Harmonic, LoadCurve, LoadSpan, Machine, Resonance, ResonancePoint, SteadyCycle, WorkDensity,
 };
-pub use definition::{Body, ContactDefinition, Effective, ElasticBody, Material, Preload};
+pub use definition::{Body, BodyName, ContactDefinition, DefinedProfile, Effective, ElasticBody, Material, Preload};
+pub use document::{Document, read};
 pub use event::{EndEvent, EndReason, StateEvent};
 pub use fit::{FitReply, FitRequest};
 pub use fretting::{
@@ -61,10 +64,11 @@ pub use fretting::{
 pub use history::{HistoryItem, HistoryPage, LoopPage};
 pub use job::{JobEndEvent, JobList, JobProgress, JobReply, JobState};
 pub use observation::{
-    FrictionEstimate, FrictionReply, Observation, ObservationsReply, ObservationsRequest, ObservedForce, ObservedMove,
+    FrictionEstimate, FrictionReply, ObservationsReply, ObservationsRequest, ObservedForce, ObservedMove,
 };
-pub use parse::{Document, Rejection, parse, parse_value, read};
-pub use path::{CyclicPath, EqualPeaks, FallingAmplitude, FirstTurn, Move, NormalOscillation, Path, Plan};
+pub use parse::{parse, parse_value};
+pub use path::{CyclicPath, EqualPeaks, FallingAmplitude, FirstTurn, Move, NormalOscillation, Observation, Path, Plan};
+pub use prepare::{Prepare, PrepareAnew, PrepareOnce};
 pub use problem::{Code, ProblemDocument};
 pub use profile::{Profile, SphereProfile};
 pub use profile_fit::{ProfileFitReply, ProfileFitRequest};
@@ -77,7 +81,28 @@ pub use session::{
 pub use simulate::{SimulateReply, SimulateRequest, Solver, Springs, Steps};
 pub use stress::{Field, Fields, Points, Sampling, Stress, StressRequest};
 pub use subsurface::{
-    BodyName, Bulk, Direction, Subsurface, SubsurfaceField, SubsurfaceLine, SubsurfacePlane, SubsurfaceReply,
-    SubsurfaceRequest, SubsurfaceSurface,
+    Bulk, Direction, Subsurface, SubsurfaceField, SubsurfaceLine, SubsurfacePlane, SubsurfaceReply, SubsurfaceRequest,
+    SubsurfaceSurface,
 };
 pub use sweep::{Axis, NamedOutput, Output, PointFailure, Span, SweepReply, SweepRequest};
+
+/// Schema, member and keywords of every limit but those of profiles.
+#[must_use]
+pub fn all_limits() -> Vec<(&'static str, &'static str, serde_json::Value)> {
+    macro_rules! of_all {
+        { $($document:ty),* } => {
+            [$(<$document as limits::Limited>::limits_of_schema()),*].concat()
+        };
+    }
+    of_all! {
+        AccuracyRequest, Axis, BestLoadStudy, Bulk, BulkCycle, profile_fit::CentrePlace, ContactDefinition,
+        CreateRequest, CycleDrive, CycleRequest, CyclicPath, Effective, ElasticBody, EqualPeaks, FallingAmplitude,
+        FatemiSocie, Findley, fit::FitNoise, FitRequest, ForkRequest, FrequencyResponse, FrettingRequest,
+        fit::KnownValue, profile_fit::LineScan, LoadSpan, Machine, profile_fit::MapScan, Material, fit::MeasuredLoop,
+        Move, MoveRequest, NamedOutput, NormalOscillation, Observation, ObservationsRequest, Path, PathRequest,
+        profile_fit::PointScan, Preload, ProtocolRequest, protocol::ProtocolStart, RelaxRequest, RenameRequest,
+        protocol::Robustness, profile_fit::ScanLoad, SimulateRequest, profile_fit::Smoothing, Span, Springs,
+        StrainBased, StressRequest, SubsurfaceLine, SubsurfacePlane, SubsurfaceRequest, SubsurfaceSurface,
+        SurfaceCriterion, SweepRequest, Weighted, WorkDensity
+    }
+}

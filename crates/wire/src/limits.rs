@@ -103,6 +103,12 @@ pub trait Limited {
 
     /// The names of the members that have a limit, with the keywords of each.
     fn limits() -> Vec<(&'static str, Value)>;
+
+    /// The same with the name of the schema.
+    #[must_use]
+    fn limits_of_schema() -> Vec<(&'static str, &'static str, Value)> {
+        Self::limits().into_iter().map(|(member, keywords)| (Self::SCHEMA, member, keywords)).collect()
+    }
 }
 
 /// The number of elements of an array, whose elements have checks of their own.
@@ -299,8 +305,8 @@ impl Limit<f64> for Tolerance {
     }
 }
 
-/// Declares the limits of the members of a document, `limits!(Document { member: limit, .. } and Shared)`, or of a choice with
-/// one key, `limits!(enum Choice { Variant "key": limit, .. })`. `check_members` then checks them.
+/// Declares the limits of the members of a document, `limits!(Document { member: limit, .. } and Shared)`, or of a
+/// choice with one key, `limits!(enum Choice { Variant "key": limit, .. })`. `check_members` then checks them.
 /// `Shared` is a document whose limited members this one has too, and which checks them itself.
 macro_rules! limits {
     ($document:ident and $shared:ty) => {
@@ -346,7 +352,9 @@ macro_rules! limits {
             fn check_members(&self, at: $crate::check::JsonPath<'_>, faults: &mut $crate::check::Faults) {
                 #[allow(unreachable_patterns)]
                 match self {
-                    $($choice::$variant(value) => $crate::limits::Limit::check(&$limit, value, at.member($key), faults),)*
+                    $($choice::$variant(value) => {
+                        $crate::limits::Limit::check(&$limit, value, at.member($key), faults);
+                    })*
                     _ => {}
                 }
             }
@@ -354,36 +362,3 @@ macro_rules! limits {
     };
 }
 pub(crate) use limits;
-
-/// Schema, member and keywords of every limit but those of profiles.
-#[must_use]
-pub fn all() -> Vec<(&'static str, &'static str, Value)> {
-    use super::fit::{FitNoise, KnownValue, MeasuredLoop};
-    use super::profile_fit::{CentrePlace, LineScan, MapScan, PointScan, ScanLoad, Smoothing};
-    use super::protocol::{ProtocolStart, Robustness};
-    use super::{
-        AccuracyRequest, Axis, BestLoadStudy, Bulk, BulkCycle, ContactDefinition, CreateRequest, CycleDrive,
-        CycleRequest, CyclicPath, Effective, ElasticBody, EqualPeaks, FallingAmplitude, FatemiSocie, Findley,
-        FitRequest, ForkRequest, FrequencyResponse, FrettingRequest, LoadSpan, Machine, Material, Move, MoveRequest,
-        NamedOutput, NormalOscillation, Observation, ObservationsRequest, Path, PathRequest, Preload, ProtocolRequest,
-        RelaxRequest, RenameRequest, SimulateRequest, Span, Springs, StrainBased, StressRequest, SubsurfaceLine,
-        SubsurfacePlane, SubsurfaceRequest, SubsurfaceSurface, SurfaceCriterion, SweepRequest, Weighted, WorkDensity,
-    };
-
-    fn of<D: Limited>() -> Vec<(&'static str, &'static str, Value)> {
-        D::limits().into_iter().map(|(member, keywords)| (D::SCHEMA, member, keywords)).collect()
-    }
-    macro_rules! of_all {
-        { $($document:ty),* } => { [$(of::<$document>()),*].concat() };
-    }
-    of_all! {
-        AccuracyRequest, Axis, BestLoadStudy, Bulk, BulkCycle, CentrePlace, ContactDefinition, CreateRequest,
-        CycleDrive, CycleRequest, CyclicPath, Effective, ElasticBody, EqualPeaks, FallingAmplitude, FatemiSocie,
-        Findley, FitNoise, FitRequest, ForkRequest, FrequencyResponse, FrettingRequest, KnownValue, LineScan,
-        LoadSpan, Machine, MapScan, Material, MeasuredLoop, Move, MoveRequest, NamedOutput, NormalOscillation,
-        Observation, ObservationsRequest, Path, PathRequest, PointScan, Preload, ProtocolRequest, ProtocolStart,
-        RelaxRequest, RenameRequest, Robustness, ScanLoad, SimulateRequest, Smoothing, Span, Springs, StrainBased,
-        StressRequest, SubsurfaceLine, SubsurfacePlane, SubsurfaceRequest, SubsurfaceSurface, SurfaceCriterion,
-        SweepRequest, Weighted, WorkDensity
-    }
-}

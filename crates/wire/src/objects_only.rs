@@ -1,8 +1,8 @@
 //! A deserializer that accepts only an object for a struct: serde's own also accepts an array of the members' values,
 //! in the order of their declaration.
 //!
-//! It delegates to another deserializer, and wraps the deserializers of nested values. What is inside an enum is not wrapped: the
-//! enums that serde reads have no content, and choices with content are objects (`single_key!`).
+//! It delegates to another deserializer, and wraps the deserializers of nested values. What is inside an enum is not
+//! wrapped: the enums that serde reads have no content, and choices with content are objects (`single_key!`).
 
 use serde::Deserializer;
 use serde::de::{DeserializeSeed, EnumAccess, MapAccess, SeqAccess, Visitor};

@@ -6,41 +6,27 @@ use serde_with::{apply, skip_serializing_none};
 use utoipa::ToSchema;
 use uuid::Uuid;
 
-use stickslip_mechanics::{DEFAULT_TOLERANCE, range};
+use stickslip_mechanics::DEFAULT_TOLERANCE;
 
-use super::check::{Faults, JsonPath};
+use super::check::{Faults, JsonPath, Rejection};
+use super::document::Document;
 use super::limits::{Items, PATH_MOVES, limits};
-use super::parse::{Document, Rejection};
-use super::path::Plan;
+use super::path::{Observation, Plan};
+use super::prepare::Prepare;
 use super::session::Advance;
 use super::simulate::Steps;
-use super::single_key::not_null;
 
 /// Measurements on a bench, in their order: the contact follows all of them, or none.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
-#[schema(example = json!({"observations": [{"displacement": 1e-7, "force": 1.21}, {"displacement": 2e-7, "force": 2.04}]}))]
+#[schema(example = json!({
+    "observations": [{"displacement": 1e-7, "force": 1.21}, {"displacement": 2e-7, "force": 2.04}]
+}))]
 pub struct ObservationsRequest {
     /// The measurements.
     pub observations: Vec<Observation>,
 }
 limits!(ObservationsRequest { observations: Items(PATH_MOVES) });
-
-/// A displacement and the force that was measured there.
-#[skip_serializing_none]
-#[apply(Option => #[serde(default, deserialize_with = "not_null")] #[schema(nullable = false)])]
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-#[serde(deny_unknown_fields)]
-#[schema(example = json!({"displacement": 1e-7, "force": 1.21, "at": "2026-03-01T12:00:00.25Z"}))]
-pub struct Observation {
-    /// Tangential displacement of the indenter, m, to which the contact is moved.
-    pub displacement: f64,
-    /// Measured tangential force, N.
-    pub force: f64,
-    /// When it was measured (RFC 3339, from 1678 to 2261); not before the measurement that precedes it.
-    pub at: Option<Timestamp>,
-}
-limits!(Observation { displacement: range::DISPLACEMENT, force: range::FORCE });
 
 /// The result of observations.
 #[apply(Option => #[serde(skip_serializing_if = "Option::is_none")] #[schema(nullable = false)])]
@@ -52,7 +38,8 @@ pub struct ObservationsReply {
     pub sequence: u64,
     /// The observations beside what the contact predicts.
     pub items: Vec<ObservedMove>,
-    /// The coefficient of friction by the last measured cycle; left out as long as the observations do not determine it.
+    /// The coefficient of friction by the last measured cycle; left out as long as the observations do not determine
+    /// it.
     pub friction: Option<FrictionEstimate>,
 }
 
@@ -121,7 +108,7 @@ impl ObservedForce {
 impl Document for ObservationsRequest {
     type Checked = Advance;
 
-    fn check(self) -> Result<Advance, Rejection> {
+    fn check_with(self, _: &dyn Prepare) -> Result<Advance, Rejection> {
         let mut faults = Faults::default();
         let plan = faults.part(|faults| {
             self.check_members(JsonPath::Root, faults);

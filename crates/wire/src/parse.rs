@@ -4,61 +4,11 @@ use serde::de::{DeserializeOwned, IgnoredAny};
 use serde_json::Value;
 use serde_path_to_error::{Deserializer, Path, Segment, Track};
 
-use stickslip_mechanics as mechanics;
-
-use super::check::{Fault, escaped};
+use super::check::{Fault, Rejection, escaped};
 use super::objects_only::ObjectsOnly;
 
 /// Longest detail or pointer of a fault: both can quote the body, which may be long.
 const LONGEST_TEXT: usize = 400;
-
-/// Why a body is refused.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum Rejection {
-    /// It is not JSON at all.
-    #[error("the body is not JSON: {0}")]
-    NotJson(String),
-    /// It is JSON, but not a valid document of this call.
-    #[error("{}", summary(.0))]
-    Invalid(Vec<Fault>),
-    /// Every number is in its range, but the mechanics refuses the combination.
-    #[error("{pointer}: {error}")]
-    Refused {
-        /// JSON pointer to the member that it refuses.
-        pointer: String,
-        /// Why.
-        error: mechanics::Error,
-    },
-}
-
-fn summary(faults: &[Fault]) -> String {
-    match faults {
-        [] => "the request is invalid".to_owned(),
-        [one] if one.pointer.is_empty() => one.detail.clone(),
-        [one] => format!("{}: {}", one.pointer, one.detail),
-        many => format!("{} faults, the first at {}: {}", many.len(), many[0].pointer, many[0].detail),
-    }
-}
-
-/// The body of a call.
-pub trait Document: DeserializeOwned {
-    /// The checked document.
-    type Checked: Send + 'static;
-
-    /// Checks every number against its range.
-    ///
-    /// # Errors
-    /// [`Rejection::Invalid`] with every fault, or [`Rejection::Refused`].
-    fn check(self) -> Result<Self::Checked, Rejection>;
-}
-
-/// Parses and checks a body.
-///
-/// # Errors
-/// [`Rejection`] by [`parse()`] and by [`Document::check`].
-pub fn read<T: Document>(body: &[u8]) -> Result<T::Checked, Rejection> {
-    parse::<T>(body)?.check()
-}
 
 /// Parses a body.
 ///

@@ -4,6 +4,7 @@ mod cycles;
 
 use std::ops::RangeInclusive;
 
+use jiff::Timestamp;
 use serde::{Deserialize, Serialize};
 use serde_with::{apply, skip_serializing_none};
 use utoipa::ToSchema;
@@ -15,7 +16,6 @@ use stickslip_mechanics::{
 
 use super::check::{Faults, JsonPath};
 use super::limits::{Items, Keywords as _, Limited, Numbers, PATH_MOVES, limits};
-use super::observation::Observation;
 use super::single_key::{not_null, single_key};
 
 pub(crate) use cycles::PHASE;
@@ -25,8 +25,8 @@ pub use cycles::{Cycles, CyclicPath, FirstTurn, NormalOscillation};
 const REVERSALS: RangeInclusive<usize> = 1..=99_999;
 
 /// One move, straight to its targets: at most one tangential target (`displacement` or `force`) and one normal target
-/// (`indentation` or `normal_force`), at least one in all. Without a tangential target the displacement stays, without a
-/// normal one the indentation stays.
+/// (`indentation` or `normal_force`), at least one in all. Without a tangential target the displacement stays, without
+/// a normal one the indentation stays.
 #[skip_serializing_none]
 #[apply(Option => #[serde(default, deserialize_with = "not_null")] #[schema(nullable = false)])]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
@@ -59,8 +59,8 @@ pub enum Path {
     Force(Vec<f64>),
     /// Back and forth with an amplitude that falls linearly to zero (eq. 20 of the paper).
     FallingAmplitude(FallingAmplitude),
-    /// Back and forth from gross slip to rest, with the amplitudes that leave equal peaks of shear stress on the profile of the
-    /// contact.
+    /// Back and forth from gross slip to rest, with the amplitudes that leave equal peaks of shear stress on the
+    /// profile of the contact.
     EqualPeaks(EqualPeaks),
     /// Equal cycles about a mean, under a constant load or one that oscillates too.
     Cycles(CyclicPath),
@@ -84,9 +84,9 @@ limits!(enum Path {
 pub struct EqualPeaks {
     /// Number of reversals N_R; the path has one move more.
     pub reversals: usize,
-    /// Radius from which on the peaks are equal, m, up to the contact radius. The law needs one where the slope of the profile
-    /// jumps (the tip of a cone, the rim of a flat), from that radius on; left out, it is there a tenth of the way from that
-    /// radius to the edge, else zero.
+    /// Radius from which on the peaks are equal, m, up to the contact radius. The law needs one where the slope of the
+    /// profile jumps (the tip of a cone, the rim of a flat), from that radius on; left out, it is there a tenth of the
+    /// way from that radius to the edge, else zero.
     pub cutoff_radius: Option<f64>,
 }
 limits!(EqualPeaks { reversals: REVERSALS, cutoff_radius: range::CONTACT_RADIUS });
@@ -114,6 +114,22 @@ impl Limited for Move {
         widest.targets().map(|(name, _, range)| (name, range.keywords())).into()
     }
 }
+
+/// A displacement and the force that was measured there.
+#[skip_serializing_none]
+#[apply(Option => #[serde(default, deserialize_with = "not_null")] #[schema(nullable = false)])]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+#[schema(example = json!({"displacement": 1e-7, "force": 1.21, "at": "2026-03-01T12:00:00.25Z"}))]
+pub struct Observation {
+    /// Tangential displacement of the indenter, m, to which the contact is moved.
+    pub displacement: f64,
+    /// Measured tangential force, N.
+    pub force: f64,
+    /// When it was measured (RFC 3339, from 1678 to 2261); not before the measurement that precedes it.
+    pub at: Option<Timestamp>,
+}
+limits!(Observation { displacement: range::DISPLACEMENT, force: range::FORCE });
 
 /// A checked path. Its moves may depend on the contact.
 #[derive(Clone, Debug)]

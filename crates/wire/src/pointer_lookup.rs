@@ -1,4 +1,5 @@
-//! One number of a reply, without writing the rest of it: a serializer that follows a JSON pointer and skips everything else.
+//! One number of a reply, without writing the rest of it: a serializer that follows a JSON pointer and skips everything
+//! else.
 
 use std::fmt;
 

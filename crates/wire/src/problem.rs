@@ -65,7 +65,8 @@ codes! {
     Forbidden = 403 "forbidden": "The key does not allow this", "the key has not the role that this needs";
     /// The service has no keys, and the request names a host that is not its own, or comes from a page of another site.
     ForeignOrigin = 403 "foreign_origin": "The request comes from another site",
-        "call the service by an address or a name of its own, or have its operator add yours: [browsers](access.md#browsers)";
+        "call the service by an address or a name of its own, or have its operator add yours: \
+            [browsers](access.md#browsers)";
     /// The path does not exist.
     NotFound = 404 "not_found": "There is nothing at this path", "no such path";
     /// The contact does not exist.
@@ -129,7 +130,8 @@ codes! {
         "wait for a job to end, or delete one; `Retry-After` says when to try again";
     /// The client has as much of something that all share as one client may have.
     QuotaExceeded = 429 "quota_exceeded": "A quota of the client is used up",
-        "`detail` names the [quota](overload.md#quotas): end, close or delete something, or wait as long as `Retry-After` says";
+        "`detail` names the [quota](overload.md#quotas): end, close or delete something, or wait as long as \
+            `Retry-After` says";
     /// A fault of this program. Its cause goes to the log; the client gets the identifier of the request.
     Internal = 500 "internal": "The server has failed", "a fault of the server: tell its operator the `request_id`";
     /// What is stored of the contact is not what has been stored: moves are missing, or cannot be made again.

@@ -1,8 +1,8 @@
 //! The profile: which shape touches the flat.
 //!
 //! The families with numbers for parameters, their documents, checks and limits come from the table
-//! [`stickslip_mechanics::for_each_family!`]; tables of heights and sums are written out here, and contacts that are known by
-//! their load curve alone in [`curve_profiles`](super::curve_profiles).
+//! [`stickslip_mechanics::for_each_family!`]; tables of heights and sums are written out here, and contacts that are
+//! known by their load curve alone in [`curve_profiles`](super::curve_profiles).
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -14,9 +14,9 @@ use utoipa::ToSchema;
 use utoipa::openapi::{RefOr, Schema};
 
 use stickslip_mechanics::profile::{Profile as Shape, Sum, Tabulated};
-use stickslip_mechanics::{Elasticity, Error, TableFault, for_each_family, profile as families, range, range::Range};
+use stickslip_mechanics::{Elasticity, Error, for_each_family, profile as families, range, range::Range};
 
-use super::check::{Faults, JsonPath};
+use super::check::{Faults, JsonPath, accepted};
 use super::curve_profiles::{AsperitiesProfile, EllipsoidProfile, LoadCurveProfile, MotionAxis};
 use super::limits;
 
@@ -32,7 +32,8 @@ macro_rules! documents {
         #[schema(example = json!({"type": "sphere", "radius": 0.01}), no_recursion)]
         pub enum Profile {
             $($(#[$about])* $Family($Document),)+
-            /// A measured profile, through whose points a smooth curve is drawn that keeps their monotony and convexity.
+            /// A measured profile, through whose points a smooth curve is drawn that keeps their monotony and
+            /// convexity.
             Tabulated(TabulatedProfile),
             /// Several profiles added up, z = Σ zᵢ.
             Sum(SumProfile),
@@ -56,7 +57,8 @@ macro_rules! documents {
         pub const NUMBERS: &[(&str, &str, Range)] =
             &[$($((stringify!($Document), stringify!($number), range::$RANGE),)+)+];
 
-        /// The schemas of the documents that [`Profile`] chooses from, by name: its recursion keeps the derivation from finding them.
+        /// The schemas of the documents that [`Profile`] chooses from, by name: its recursion keeps the derivation from
+        /// finding them.
         #[must_use]
         pub fn schemas() -> Vec<(String, RefOr<Schema>)> {
             fn named<T: ToSchema>() -> (String, RefOr<Schema>) {
@@ -90,7 +92,7 @@ macro_rules! documents {
             fn members(self) -> &'static [&'static str] {
                 match self {
                     $(Kind::$Family => &[$(stringify!($number)),+],)+
-                    Kind::Tabulated => &["r", "z"],
+                    Kind::Tabulated => &["r", "z", "indentation_error", "pressure_error"],
                     Kind::Sum => &["parts"],
                     Kind::Asperities => &["radii", "radius", "gaps"],
                     Kind::LoadCurve => &["indentation", "normal_force"],
@@ -100,17 +102,24 @@ macro_rules! documents {
         }
 
         impl Profile {
-            /// The checked profile of these bodies, `None` if they are at fault; its own faults are noted at `at`.
-            pub fn check(&self, bodies: Option<&Elasticity>, at: JsonPath<'_>, faults: &mut Faults) -> Option<Shape> {
+            /// The checked profile of these bodies, `None` if they are at fault; its own faults are noted at `at`, and
+            /// so it is if `keep_going` has returned false.
+            pub fn check(
+                &self,
+                bodies: Option<&Elasticity>,
+                at: JsonPath<'_>,
+                keep_going: &dyn Fn() -> bool,
+                faults: &mut Faults,
+            ) -> Option<Shape> {
                 match self {
                     $(Profile::$Family($Document { $($number),+ }) => {
                         $(faults.number(at.member(stringify!($number)), *$number, &range::$RANGE);)+
                         accepted(families::$Family::new($(*$number),+).map(Shape::$Family), at, faults)
                     })+
-                    Profile::Tabulated(TabulatedProfile { r, z }) => check_table(r, z, Tabulated::new, at, faults),
-                    Profile::Sum(SumProfile { parts }) => check_sum(parts, bodies, at, faults),
-                    Profile::Asperities(asperities) => asperities.check(at, faults),
-                    Profile::LoadCurve(curve) => curve.check(bodies?, at, faults),
+                    Profile::Tabulated(table) => check_table(table, Tabulated::new_while, at, keep_going, faults),
+                    Profile::Sum(SumProfile { parts }) => check_sum(parts, bodies, at, keep_going, faults),
+                    Profile::Asperities(asperities) => asperities.check(at, keep_going, faults),
+                    Profile::LoadCurve(curve) => curve.check(bodies?, at, keep_going, faults),
                     Profile::Ellipsoid(ellipsoid) => ellipsoid.check(at, faults),
                 }
             }
@@ -120,9 +129,15 @@ macro_rules! documents {
             fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
                 let mut members = deserializer.deserialize_struct("Members", &[], MembersVisitor)?;
                 Ok(match members.kind()? {
-                    $(Kind::$Family => Profile::$Family($Document { $($number: members.number(stringify!($number))?),+ }),)+
+                    $(Kind::$Family => Profile::$Family($Document {
+                        $($number: members.number(stringify!($number))?),+
+                    }),)+
                     Kind::Tabulated => {
-                        Profile::Tabulated(TabulatedProfile { r: members.column("r")?, z: members.column("z")? })
+                        let mut given = |name| members.columns.remove(name);
+                        let indentation_error = given("indentation_error");
+                        let pressure_error = given("pressure_error");
+                        let (r, z) = (members.column("r")?, members.column("z")?);
+                        Profile::Tabulated(TabulatedProfile { r, z, indentation_error, pressure_error })
                     }
                     Kind::Sum => Profile::Sum(SumProfile {
                         parts: members.parts.ok_or_else(|| D::Error::missing_field("parts"))?,
@@ -147,13 +162,41 @@ macro_rules! documents {
 }
 for_each_family!(documents);
 
+impl Profile {
+    /// Points of all its tables and curves, and asperities: what preparing it takes time and memory for.
+    #[must_use]
+    pub fn points(&self) -> usize {
+        match self {
+            Profile::Tabulated(TabulatedProfile { r, .. }) => r.len(),
+            Profile::Sum(SumProfile { parts }) => parts.iter().map(Profile::points).sum(),
+            Profile::Asperities(asperities) => asperities.gaps.len(),
+            Profile::LoadCurve(curve) => curve.indentation.len(),
+            _ => 0,
+        }
+    }
+
+    /// Whether what is prepared belongs to certain bodies: a load curve is scaled to their moduli.
+    #[must_use]
+    pub fn depends_on_bodies(&self) -> bool {
+        matches!(self, Profile::LoadCurve(_))
+    }
+}
+
 /// A table of heights over radii, of equal lengths.
+#[serde_with::apply(Option => #[serde(default, skip_serializing_if = "Option::is_none")] #[schema(nullable = false)])]
 #[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
 pub struct TabulatedProfile {
     /// Radii, m: from 0 on, increasing. The contact radius stays below the last.
     pub r: Vec<f64>,
     /// Heights z above the plane, m; an offset does not matter.
     pub z: Vec<f64>,
+    /// Standard errors of the indentation at which a contact has each radius, m, as `POST /profiles/fit` gives them:
+    /// they take the place of what the heights say of their noise and of the shape between them. Of the length of `r`,
+    /// and together with `pressure_error`.
+    pub indentation_error: Option<Vec<f64>>,
+    /// The largest standard error of the pressure in a contact of each radius, over E*, a pure number. Of the length of
+    /// `r`, and together with `indentation_error`.
+    pub pressure_error: Option<Vec<f64>>,
 }
 
 /// A sum of profiles.
@@ -164,33 +207,65 @@ pub struct SumProfile {
 }
 
 /// The constructor of a table from radii and heights: on its own, or as part of a sum.
-type Through = fn(&[f64], &[f64]) -> Result<Tabulated, Error>;
+type Through = fn(&[f64], &[f64], &dyn Fn() -> bool) -> Result<Tabulated, Error>;
 
-fn check_table(r: &[f64], z: &[f64], through: Through, at: JsonPath<'_>, faults: &mut Faults) -> Option<Shape> {
-    for (name, numbers, range) in [("r", r, &range::TABLE_RADIUS), ("z", z, &range::TABLE_HEIGHT)] {
-        let place = at.member(name);
-        if faults.length(place, numbers.len(), &limits::TABLE_POINTS) {
+fn check_table(
+    table: &TabulatedProfile,
+    through: Through,
+    at: JsonPath<'_>,
+    keep_going: &dyn Fn() -> bool,
+    faults: &mut Faults,
+) -> Option<Shape> {
+    let TabulatedProfile { r, z, indentation_error, pressure_error } = table;
+    for (name, given, other) in [
+        ("indentation_error", indentation_error, pressure_error),
+        ("pressure_error", pressure_error, indentation_error),
+    ] {
+        if given.is_none() && other.is_some() {
+            faults.add(at.member(name), "the two errors of a table go together: give both or neither");
+        }
+    }
+    let errors = indentation_error.as_ref().zip(pressure_error.as_ref());
+    let columns = [("r", Some(r), &range::TABLE_RADIUS), ("z", Some(z), &range::TABLE_HEIGHT)].into_iter().chain([
+        ("indentation_error", errors.map(|errors| errors.0), &range::INDENTATION_ERROR),
+        ("pressure_error", errors.map(|errors| errors.1), &range::PRESSURE_ERROR),
+    ]);
+    for (name, numbers, range) in columns {
+        let (place, Some(numbers)) = (at.member(name), numbers) else { continue };
+        if name.ends_with("_error") && numbers.len() != r.len() {
+            faults.add(place, format_args!("{} elements: r has {}", numbers.len(), r.len()));
+        } else if faults.length(place, numbers.len(), &limits::TABLE_POINTS) {
             numbers.iter().enumerate().for_each(|(index, value)| faults.number(place.index(index), *value, range));
         }
     }
     if !faults.is_empty() {
         return None;
     }
-    accepted(through(r, z).map(Shape::Tabulated), at, faults)
+    let made = through(r, z, keep_going).and_then(|made| match errors {
+        Some((indentation, pressure)) => made.with_standard_errors(indentation, pressure),
+        None => Ok(made),
+    });
+    accepted(made.map(Shape::Tabulated), at, faults)
 }
 
-fn check_sum(parts: &[Profile], bodies: Option<&Elasticity>, at: JsonPath<'_>, faults: &mut Faults) -> Option<Shape> {
+fn check_sum(
+    parts: &[Profile],
+    bodies: Option<&Elasticity>,
+    at: JsonPath<'_>,
+    keep_going: &dyn Fn() -> bool,
+    faults: &mut Faults,
+) -> Option<Shape> {
     let place = at.member("parts");
     if !faults.length(place, parts.len(), &limits::SUM_PARTS) {
         return None;
     }
     let mut check = |(index, part): (usize, &Profile)| match part {
-        Profile::Tabulated(TabulatedProfile { r, z }) => check_table(r, z, Tabulated::part, place.index(index), faults),
-        part => part.check(bodies, place.index(index), faults),
+        Profile::Tabulated(table) => check_table(table, Tabulated::part_while, place.index(index), keep_going, faults),
+        part => part.check(bodies, place.index(index), keep_going, faults),
     };
     let shapes: Vec<_> = parts.iter().enumerate().map(&mut check).collect();
     let shapes: Option<Vec<Shape>> = shapes.into_iter().collect();
-    match Sum::new(shapes?) {
+    match Sum::new_while(shapes?, keep_going) {
         Err(error @ Error::NoSurface { part }) => {
             faults.add(place.index(part), error);
             None
@@ -199,27 +274,8 @@ fn check_sum(parts: &[Profile], bodies: Option<&Elasticity>, at: JsonPath<'_>, f
     }
 }
 
-/// The shape, unless the mechanics refuses it although each number is in its range: then a fault is added.
-pub(super) fn accepted(shape: Result<Shape, Error>, at: JsonPath<'_>, faults: &mut Faults) -> Option<Shape> {
-    match shape {
-        Ok(shape) => return Some(shape),
-        // It follows from a fault that has been noted already.
-        Err(_) if !faults.is_empty() => {}
-        Err(error @ (Error::NotConvexEnough { .. } | Error::BeyondProfile { .. })) => faults.unanswerable(at, error),
-        Err(Error::Table { fault, index }) => match fault {
-            TableFault::FirstRadiusNotZero | TableFault::RadiusNotRising => {
-                faults.add(at.member("r").index(index), fault);
-            }
-            // The heights, and the two lengths, are at fault as a whole.
-            TableFault::LengthsDiffer | TableFault::HeightNeverRises => faults.add(at.member("z"), fault),
-        },
-        Err(error) => faults.add(at, error),
-    }
-    None
-}
-
-/// The members of all families side by side. Reading them flat keeps the path of a fault, which serde's tagged enums lose
-/// in their buffer, and allows `type` anywhere.
+/// The members of all families side by side. Reading them flat keeps the path of a fault, which serde's tagged enums
+/// lose in their buffer, and allows `type` anywhere.
 #[derive(Default)]
 struct Members {
     kind: Option<Kind>,
@@ -230,7 +286,8 @@ struct Members {
 }
 
 /// The names of the members that are arrays of numbers.
-const COLUMNS: [&str; 6] = ["r", "z", "radii", "gaps", "indentation", "normal_force"];
+const COLUMNS: [&str; 8] =
+    ["r", "z", "indentation_error", "pressure_error", "radii", "gaps", "indentation", "normal_force"];
 
 /// The names of all members, each once.
 static NAMES: LazyLock<Vec<&'static str>> = LazyLock::new(|| {

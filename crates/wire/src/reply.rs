@@ -96,8 +96,8 @@ pub struct Residual {
     pub min: Option<f64>,
     /// Mean magnitude of the peaks, Pa; `null` without a peak.
     pub mean: Option<f64>,
-    /// `max` over μ times the largest pressure at the present load (or, where that is infinite, the mean), a pure number;
-    /// `null` where `max` is, without a load and without friction.
+    /// `max` over μ times the largest pressure at the present load (or, where that is infinite, the mean), a pure
+    /// number; `null` where `max` is, without a load and without friction.
     pub relative: Option<f64>,
 }
 
@@ -117,18 +117,19 @@ pub struct Accuracy {
     pub solver: SolverKind,
     /// Why this one.
     pub reason: String,
-    /// Estimated error of the forces, relative to the friction limit μ F_N, a pure number: of rounding, of curved paths, of the
-    /// interpolation of a table, of springs.
+    /// Estimated error of the forces, relative to the friction limit μ F_N, a pure number: of rounding, of curved
+    /// paths, of the interpolation of a table, of springs.
     pub force_error: f64,
-    /// Estimated error of the stresses, relative to μ times the largest pressure (or, where that is infinite, to the mean), a
-    /// pure number; of no meaning for a profile without a stress field.
+    /// Estimated error of the stresses, relative to μ times the largest pressure (or, where that is infinite, to the
+    /// mean), a pure number; of no meaning for a profile without a stress field.
     pub stress_error: f64,
     /// Estimated error of the stress below the surface, relative to the largest pressure (or to the mean), a pure
     /// number, if it was asked for.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub subsurface_error: Option<f64>,
-    /// Time spent computing, s.
+    /// Processor time that the request took but for HTTP, s: with the check, the preparation of the profile unless it
+    /// was ready, and the loading of a stored contact; without the time for which the work gave way to that of others.
     pub compute_time: f64,
 }
 
@@ -155,9 +156,10 @@ pub struct Protocol {
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[schema(example = json!({"code": "dundurs_beta", "message": "the bodies are unlike"}))]
 pub struct Warning {
-    /// A name for programs: `dundurs_beta`, `large_contact`, `slip_direction`, `noisy_table`, `tolerance_not_met`, `units`,
-    /// `interaction_neglected`, `load_curve_alone`, `elliptic_slip`, `bulk_shift_neglected`; of fits also `many_outliers`,
-    /// `short_scan`, `machine_compliance_unknown`, `partial_slip_only`, `beyond_gross_slip`, `first_branch_unknown`, `not_coulomb`.
+    /// A name for programs: `dundurs_beta`, `large_contact`, `slip_direction`, `noisy_table`, `tolerance_not_met`,
+    /// `units`, `interaction_neglected`, `load_curve_alone`, `elliptic_slip`, `bulk_shift_neglected`; of fits also
+    /// `many_outliers`, `short_scan`, `machine_compliance_unknown`, `partial_slip_only`, `beyond_gross_slip`,
+    /// `first_branch_unknown`, `not_coulomb`.
     pub code: String,
     /// An explanation for people.
     pub message: String,
@@ -170,17 +172,17 @@ pub fn finite(value: f64) -> Option<f64> {
 }
 
 impl From<mechanics::ContactSummary> for ContactSummary {
-    fn from(figures: mechanics::ContactSummary) -> Self {
+    fn from(summary: mechanics::ContactSummary) -> Self {
         ContactSummary {
-            e_star: figures.e_star,
-            g_star: figures.g_star,
-            indentation: figures.indentation,
-            contact_radius: figures.contact_radius,
-            normal_force: figures.normal_force,
-            max_pressure: figures.max_pressure,
-            semi_axes: figures.semi_axes,
-            gross_slip_displacement: figures.gross_slip_displacement,
-            gross_slip_force: figures.gross_slip_force,
+            e_star: summary.e_star,
+            g_star: summary.g_star,
+            indentation: summary.indentation,
+            contact_radius: summary.contact_radius,
+            normal_force: summary.normal_force,
+            max_pressure: summary.max_pressure,
+            semi_axes: summary.semi_axes,
+            gross_slip_displacement: summary.gross_slip_displacement,
+            gross_slip_force: summary.gross_slip_force,
         }
     }
 }

@@ -8,13 +8,14 @@ use serde_with::{apply, skip_serializing_none};
 use utoipa::ToSchema;
 use uuid::Uuid;
 
-use stickslip_mechanics::{DEFAULT_TOLERANCE, Setup};
+use stickslip_mechanics::DEFAULT_TOLERANCE;
 
-use super::check::{Faults, JsonPath};
-use super::definition::{ContactDefinition, Material, Preload};
+use super::check::{Faults, JsonPath, Rejection};
+use super::definition::{ContactDefinition, DefinedProfile, Material, Preload, SharedSetup};
+use super::document::Document;
 use super::limits::{Characters, Tolerance, limits};
-use super::parse::{Document, Rejection};
 use super::path::{Move, Path, Plan};
+use super::prepare::Prepare;
 use super::profile::Profile;
 use super::protocol::Relaxation;
 use super::reply::{Accuracy, ContactSummary, Protocol, Residual, State, Warning};
@@ -106,8 +107,8 @@ limits!(PathRequest { tolerance: Tolerance });
 pub struct ForkRequest {
     /// A label for the new contact; left out, that of the original.
     pub label: Option<String>,
-    /// After how many moves of the original the new contact begins; left out, after all of them. It has made these moves
-    /// itself, and none of the later ones.
+    /// After how many moves of the original the new contact begins; left out, after all of them. It has made these
+    /// moves itself, and none of the later ones.
     pub sequence: Option<u64>,
 }
 limits!(ForkRequest { label: LABEL, sequence: SEQUENCE });
@@ -252,7 +253,7 @@ pub struct Creation {
     /// The definition as it was sent, to be stored.
     pub definition: ContactDefinition,
     /// The contact.
-    pub setup: Setup,
+    pub setup: SharedSetup,
 }
 
 /// Moves that have passed all checks, to be applied to a contact.
@@ -281,12 +282,17 @@ impl From<Relaxation> for Advance {
 impl Document for CreateRequest {
     type Checked = Creation;
 
-    fn check(self) -> Result<Creation, Rejection> {
+    fn profile(&self) -> Option<DefinedProfile<'_>> {
+        let CreateRequest { profile, material, .. } = self;
+        Some(DefinedProfile { pointer: "/profile", profile, material })
+    }
+
+    fn check_with(self, profiles: &dyn Prepare) -> Result<Creation, Rejection> {
         let mut faults = Faults::default();
         self.check_members(JsonPath::Root, &mut faults);
         let CreateRequest { label, profile, material, friction, preload } = self;
         let definition = ContactDefinition { profile, material, friction, preload };
-        let setup = definition.check(JsonPath::Root, &mut faults);
+        let setup = definition.check(JsonPath::Root, profiles, &mut faults);
         faults.done(setup.map(|setup| Creation { label, definition, setup }))
     }
 }
@@ -308,7 +314,7 @@ impl MoveRequest {
 impl Document for MoveRequest {
     type Checked = Advance;
 
-    fn check(self) -> Result<Advance, Rejection> {
+    fn check_with(self, _: &dyn Prepare) -> Result<Advance, Rejection> {
         let mut faults = Faults::default();
         let step = self.step();
         step.check(JsonPath::Root, &mut faults);
@@ -328,7 +334,7 @@ impl From<Move> for MoveRequest {
 impl Document for PathRequest {
     type Checked = Advance;
 
-    fn check(self) -> Result<Advance, Rejection> {
+    fn check_with(self, _: &dyn Prepare) -> Result<Advance, Rejection> {
         let mut faults = Faults::default();
         let plan = self.path.check(JsonPath::Root.member("path"), &mut faults);
         let stress = self.stress.and_then(|stress| stress.check(JsonPath::Root.member("stress"), &mut faults));
@@ -340,7 +346,7 @@ impl Document for PathRequest {
 impl Document for RenameRequest {
     type Checked = RenameRequest;
 
-    fn check(self) -> Result<RenameRequest, Rejection> {
+    fn check_with(self, _: &dyn Prepare) -> Result<RenameRequest, Rejection> {
         let mut faults = Faults::default();
         self.check_members(JsonPath::Root, &mut faults);
         faults.done(Some(self))
@@ -350,7 +356,7 @@ impl Document for RenameRequest {
 impl Document for ForkRequest {
     type Checked = ForkRequest;
 
-    fn check(self) -> Result<ForkRequest, Rejection> {
+    fn check_with(self, _: &dyn Prepare) -> Result<ForkRequest, Rejection> {
         let mut faults = Faults::default();
         self.check_members(JsonPath::Root, &mut faults);
         faults.done(Some(self))

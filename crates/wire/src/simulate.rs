@@ -4,13 +4,14 @@ use serde::{Deserialize, Serialize};
 use serde_with::{apply, skip_serializing_none};
 use utoipa::ToSchema;
 
-use stickslip_mechanics::{Setup, range};
+use stickslip_mechanics::range;
 
-use super::check::{Faults, JsonPath};
-use super::definition::ContactDefinition;
+use super::check::{Faults, JsonPath, Rejection};
+use super::definition::{ContactDefinition, DefinedProfile, SharedSetup};
+use super::document::Document;
 use super::limits::{SPRING_SEARCH, SPRING_STEPS, Tolerance, Whole, limits};
-use super::parse::{Document, Rejection};
 use super::path::{Path, Plan};
+use super::prepare::Prepare;
 use super::reply::{Accuracy, ContactSummary, Protocol, Residual, State, Warning};
 use super::single_key::{not_null, single_key};
 use super::stress::{Sampling, Stress, StressRequest};
@@ -67,8 +68,9 @@ pub enum Steps {
 pub enum Solver {
     /// The exact solver, which stores turning points of the path.
     Exact,
-    /// The spring foundation of the paper: a reference for comparison, slower and approximate. It follows a tangential force only at
-    /// constant indentation, and a normal force only without a tangential target (else `unsupported_move`).
+    /// The spring foundation of the paper: a reference for comparison, slower and approximate. It follows a tangential
+    /// force only at constant indentation, and a normal force only without a tangential target (else
+    /// `unsupported_move`).
     Springs(Springs),
 }
 single_key!(Solver { "springs" => Springs } or { "exact" => Exact });
@@ -111,7 +113,7 @@ pub struct Simulation {
     /// The contact as it was sent, for the warnings.
     pub definition: ContactDefinition,
     /// The contact.
-    pub setup: Setup,
+    pub setup: SharedSetup,
     /// The path.
     pub plan: Plan,
     /// The requested stresses.
@@ -131,9 +133,13 @@ pub struct Simulation {
 impl Document for SimulateRequest {
     type Checked = Simulation;
 
-    fn check(self) -> Result<Simulation, Rejection> {
+    fn profile(&self) -> Option<DefinedProfile<'_>> {
+        Some(self.contact.defined_profile("/contact/profile"))
+    }
+
+    fn check_with(self, profiles: &dyn Prepare) -> Result<Simulation, Rejection> {
         let mut faults = Faults::default();
-        let setup = self.contact.check(JsonPath::Root.member("contact"), &mut faults);
+        let setup = self.contact.check(JsonPath::Root.member("contact"), profiles, &mut faults);
         let plan = self.path.check(JsonPath::Root.member("path"), &mut faults);
         let stress = self.stress.and_then(|stress| stress.check(JsonPath::Root.member("stress"), &mut faults));
         let at = JsonPath::Root.member("subsurface");

@@ -1,7 +1,7 @@
 //! Reading a choice that is an object with one key.
 //!
-//! serde's own externally tagged enums do as much, but call a second key a syntax error; here it is a fault with a name.
-//! The value is read in place, so that a fault inside it keeps its path.
+//! serde's own externally tagged enums do as much, but call a second key a syntax error; here it is a fault with a
+//! name. The value is read in place, so that a fault inside it keeps its path.
 
 use serde::{Deserialize, Deserializer};
 

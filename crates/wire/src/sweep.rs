@@ -12,11 +12,13 @@ use utoipa::ToSchema;
 
 use stickslip_mechanics::range::{Quantity, Range};
 
-use super::check::{Faults, JsonPath};
+use super::check::{Faults, JsonPath, Rejection};
 use super::definition::ContactDefinition;
+use super::document::Document;
 use super::json_value::{JsonValue, Pointer};
 use super::limits::{Items, Limit, Numbers, limits};
-use super::parse::{Document, Rejection, parse_value};
+use super::parse::parse_value;
+use super::prepare::Prepare;
 use super::simulate::SimulateRequest;
 use super::single_key::not_null;
 use column::ColumnName;
@@ -39,8 +41,8 @@ const SWEEP_POINTS: usize = 2_000_000;
 /// Numbers that come out of a sweep: points times outputs.
 const SWEEP_NUMBERS: usize = 8_000_000;
 
-/// Many simulations that differ in up to three numbers, and which numbers of each reply are wanted. The points are all combinations of the
-/// values of the axes, the last axis running fastest.
+/// Many simulations that differ in up to three numbers, and which numbers of each reply are wanted. The points are all
+/// combinations of the values of the axes, the last axis running fastest.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 #[schema(example = json!({
@@ -57,8 +59,8 @@ pub struct SweepRequest {
     pub base: JsonValue,
     /// The numbers that change.
     pub axes: Vec<Axis>,
-    /// JSON pointers to numbers in the reply to `POST /simulate`, a column each, with or without a name. Where a point does
-    /// not have one, such as a peak of a number that it does not reach, the column has `null`.
+    /// JSON pointers to numbers in the reply to `POST /simulate`, a column each, with or without a name. Where a point
+    /// does not have one, such as a peak of a number that it does not reach, the column has `null`.
     #[schema(example = json!(["/residual/max"]))]
     pub outputs: Vec<Output>,
     /// Always make a job of it, even if it is small.
@@ -67,7 +69,8 @@ pub struct SweepRequest {
 }
 limits!(SweepRequest { axes: Items(AXES), outputs: Items(OUTPUTS) });
 
-/// A number of the base and the values that it takes: `pointer`, and one key out of `linear`, `logarithmic` and `values`.
+/// A number of the base and the values that it takes: `pointer`, and one key out of `linear`, `logarithmic` and
+/// `values`.
 #[skip_serializing_none]
 #[apply(Option => #[serde(default, deserialize_with = "not_null")] #[schema(nullable = false)])]
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
@@ -88,8 +91,8 @@ pub struct Axis {
 }
 limits!(Axis { name: ColumnName, values: AXIS_VALUES });
 
-/// Values from one to another. Where the field takes whole numbers, each of them must be whole to one part in 1e9, and is
-/// rounded; else list the values.
+/// Values from one to another. Where the field takes whole numbers, each of them must be whole to one part in 1e9, and
+/// is rounded; else list the values.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Span {
@@ -107,8 +110,8 @@ limits!(Span { count: 2..=2_000_000_usize, from: AXIS_VALUE, to: AXIS_VALUE });
 pub struct SweepReply {
     /// How many points, and numbers in each column.
     pub points: usize,
-    /// The columns by their names or pointers: the axes, then the outputs, in the unit of the field; `null` where a point
-    /// has no such number or no answer.
+    /// The columns by their names or pointers: the axes, then the outputs, in the unit of the field; `null` where a
+    /// point has no such number or no answer.
     pub columns: BTreeMap<String, Vec<Option<f64>>>,
     /// How many points have no answer.
     pub failed: u64,
@@ -164,7 +167,7 @@ enum Values {
 impl Document for SweepRequest {
     type Checked = CheckedSweep;
 
-    fn check(self) -> Result<CheckedSweep, Rejection> {
+    fn check_with(self, _: &dyn Prepare) -> Result<CheckedSweep, Rejection> {
         let mut faults = Faults::default();
         let at = JsonPath::Root.member("axes");
         let mut axes = Vec::new();

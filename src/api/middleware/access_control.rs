@@ -1,4 +1,4 @@
-//! Access control: the role that each route requires, and the key that a request presents.
+//! Access control: the key that a request presents, and whether it has the role that the route requires.
 
 use std::sync::{Arc, OnceLock};
 use std::time::Duration;
@@ -16,72 +16,14 @@ use tokio::time::sleep;
 use crate::access::{Holder, Keys, Role};
 use crate::admission::{Client, Pool, Quota};
 
+use crate::api::facts::{FactsOfRoutes, Need};
 use crate::api::problem::{Code, Problem};
-use crate::api::routes;
 
-/// What a request needs.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Need {
-    /// Nothing.
-    Nothing,
-    /// A key with this role.
-    Key(Role),
-}
-
-use Need::{Key, Nothing};
-
-/// The role that each route requires. A route that is not listed requires the highest role.
-const ROUTE_ROLES: &[(&str, &str, Need)] = &[
-    ("POST", "/accuracy", Key(Role::Read)),
-    ("POST", "/simulate", Key(Role::Read)),
-    ("POST", "/protocols", Key(Role::Read)),
-    ("POST", "/cycle", Key(Role::Read)),
-    ("POST", "/fretting", Key(Role::Read)),
-    ("POST", "/profiles/fit", Key(Role::Read)),
-    ("POST", "/fit", Key(Role::Read)),
-    ("POST", "/sweep", Key(Role::Write)),
-    ("GET", "/jobs", Key(Role::Read)),
-    ("GET", "/jobs/{id}", Key(Role::Read)),
-    ("DELETE", "/jobs/{id}", Key(Role::Write)),
-    ("GET", "/jobs/{id}/result", Key(Role::Read)),
-    ("GET", "/jobs/{id}/events", Key(Role::Read)),
-    ("GET", "/contacts", Key(Role::Read)),
-    ("POST", "/contacts", Key(Role::Write)),
-    ("GET", "/contacts/{id}", Key(Role::Read)),
-    ("PATCH", "/contacts/{id}", Key(Role::Write)),
-    ("DELETE", "/contacts/{id}", Key(Role::Write)),
-    ("GET", "/contacts/{id}/definition", Key(Role::Read)),
-    ("POST", "/contacts/{id}/move", Key(Role::Write)),
-    ("POST", "/contacts/{id}/path", Key(Role::Write)),
-    ("POST", "/contacts/{id}/relax", Key(Role::Write)),
-    ("POST", "/contacts/{id}/observations", Key(Role::Write)),
-    ("GET", "/contacts/{id}/friction", Key(Role::Read)),
-    ("POST", "/contacts/{id}/fork", Key(Role::Write)),
-    ("GET", "/contacts/{id}/stress", Key(Role::Read)),
-    ("GET", "/contacts/{id}/cycle", Key(Role::Read)),
-    ("POST", "/contacts/{id}/subsurface", Key(Role::Read)),
-    ("GET", "/contacts/{id}/history", Key(Role::Read)),
-    ("GET", "/contacts/{id}/loop", Key(Role::Read)),
-    ("GET", "/contacts/{id}/cycles", Key(Role::Read)),
-    ("GET", "/contacts/{id}/events", Key(Role::Read)),
-    ("GET", routes::METRICS, Key(Role::Metrics)),
-    ("GET", "/healthz", Nothing),
-    ("GET", "/readyz", Nothing),
-    ("GET", "/openapi.json", Nothing),
-    ("GET", "/problems/{code}", Nothing),
-    ("GET", routes::PAGE, Nothing),
-    ("GET", routes::PAGE_FILES, Nothing),
-    ("GET", "/docs", Nothing),
-    ("GET", "/docs/{*rest}", Nothing),
-];
-
-/// What a method on a route needs.
-pub fn need(method: &str, route: &str) -> Need {
-    let method = if method == "HEAD" { "GET" } else { method };
+/// What a method on a route needs: the highest role, where nothing is known of it.
+pub fn need(facts: &FactsOfRoutes, method: &str, route: &str) -> Need {
     // With the slash that a folder may have.
     let route = if route == "/docs/" { "/docs" } else { route };
-    let listed = ROUTE_ROLES.iter().find(|(listed, at, _)| *listed == method && *at == route);
-    listed.map_or(Key(Role::Write), |(.., need)| *need)
+    facts.get(method, route).map_or(Need::Key(Role::Write), |facts| facts.need)
 }
 
 /// Where the holder of the key of a request is found, once the key has been accepted.
@@ -90,15 +32,15 @@ pub type Caller = Arc<OnceLock<Arc<Holder>>>;
 /// How long a wait for the end of a key lasts at most, so that any end can be waited for.
 const LONGEST_WAIT: Duration = Duration::from_secs(24 * 60 * 60);
 
-/// Admits a request whose key has the required role, and restricts it to the tenant of that key, within its quotas. Events end
-/// with the key.
+/// Admits a request whose key has the required role, and restricts it to the tenant of that key, within its quotas.
+/// Events end with the key.
 pub async fn admit(
-    State((mut keys, pool)): State<(watch::Receiver<Arc<Keys>>, Pool)>,
+    State((mut keys, pool, facts)): State<(watch::Receiver<Arc<Keys>>, Pool, &'static FactsOfRoutes)>,
     mut request: Request,
     next: Next,
 ) -> Response {
     let route = request.extensions().get::<MatchedPath>().map_or("", MatchedPath::as_str);
-    let Key(role) = need(request.method().as_str(), route) else {
+    let Need::Key(role) = need(facts, request.method().as_str(), route) else {
         return next.run(request).await;
     };
     let known = Arc::clone(&keys.borrow_and_update());

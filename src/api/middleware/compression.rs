@@ -1,4 +1,5 @@
-//! Compression of replies by gzip or zstd, as `Accept-Encoding` says: what may be compressed, and the tag that it has then.
+//! Compression of replies by gzip or zstd, as `Accept-Encoding` says: what may be compressed, and the tag that it has
+//! then.
 
 use std::sync::Arc;
 
@@ -27,7 +28,8 @@ const COMPRESSED: [&str; 7] = [
 ];
 /// Bytes below which compression is not worth its time.
 const SMALLEST: u64 = 1024;
-/// Bytes that an encoder takes until its reply is sent: zstd at its fastest has a window of 512 KiB, held twice, and tables.
+/// Bytes that an encoder takes until its reply is sent: zstd at its fastest has a window of 512 KiB, held twice, and
+/// tables.
 const ENCODER: usize = 2 * 1024 * 1024;
 /// The codings, each with the suffix that it adds to an entity tag: a tag identifies bytes.
 const CODINGS: [(&str, &str); 2] = [("gzip", "+gzip\""), ("zstd", "+zstd\"")];
@@ -56,8 +58,8 @@ impl Client {
     }
 }
 
-/// Compresses a reply as its client accepts it, if that is worth its time and there is memory for it. A compressed reply
-/// gets a tag of its own.
+/// Compresses a reply as its client accepts it, if that is worth its time and there is memory for it. A compressed
+/// reply gets a tag of its own.
 pub async fn compress(mut response: Response, client: Client, pool: &Pool) -> Response {
     if let Some(tags) = client.tags.filter(|_| response.status() == StatusCode::NOT_MODIFIED) {
         // The tag that the client sent, not that of a representation which it does not have.
@@ -90,7 +92,8 @@ async fn encode(response: Response, accepted: Vec<HeaderValue>) -> Response {
     let Ok(mut response) = coded.oneshot(request).await.map(|response| response.map(Body::new)) else {
         return Problem::internal("a reply was compressed twice").into_response();
     };
-    // The library refuses a client that accepts no coding that there is, but the work is done: it gets the reply as it is.
+    // The library refuses a client that accepts no coding that there is, but the work is done: it gets the reply as it
+    // is.
     *response.status_mut() = status;
     if let Some(coding) = response.headers().get(header::CONTENT_ENCODING).cloned() {
         let suffix = CODINGS.iter().find(|(name, _)| coding == name).map(|(_, suffix)| *suffix);

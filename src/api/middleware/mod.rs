@@ -16,7 +16,8 @@ use tokio::sync::watch;
 use crate::admission::Pool;
 use crate::api::request_metrics::RequestMetrics;
 
-/// Logs a request and compresses its reply: one layer, because each such layer puts the request and its answer into a box.
+/// Logs a request and compresses its reply: one layer, because each such layer puts the request and its answer into a
+/// box.
 pub async fn observe(
     State((metrics, pool, stops)): State<(Arc<RequestMetrics>, Pool, watch::Receiver<bool>)>,
     mut request: Request,

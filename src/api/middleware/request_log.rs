@@ -1,5 +1,5 @@
-//! Around every request: one line in the log, one count, one span, and the document of a problem. The line of a change says who
-//! made it.
+//! Around every request: one line in the log, one count, one span, and the document of a problem. The line of a change
+//! says who made it.
 
 use std::sync::Arc;
 use std::time::Instant;
@@ -89,7 +89,8 @@ pub async fn log_request(
         response = next.run(request).instrument(span) => response,
         // Or else, like its service, it is gone.
         Ok(_) = stops.wait_for(|stops| *stops) => {
-            Problem::new(Code::Stopping, "the server stops before this is done: it may have been stored").into_response()
+            Problem::new(Code::Stopping, "the server stops before this is done: it may have been \
+                stored").into_response()
         }
     };
     let made = response.headers().get(header::LOCATION).and_then(|location| location.to_str().ok());
@@ -155,7 +156,8 @@ macro_rules! line {
         let (key, tenant) = $guard.caller.get().map(|holder| (&*holder.name, holder.tenant.name())).unzip();
         let status = $status;
         tracing::$level!(
-            request_id, %method, route, status, duration_ms, client, key, tenant, contact, $($more,)* traceparent, $message
+            request_id, %method, route, status, duration_ms, client, key, tenant, contact, $($more,)* traceparent,
+            $message
         );
     }};
 }

@@ -62,8 +62,8 @@ pub fn protect(headers: &mut HeaderMap, method: &Method, kind: Kind) {
             // A dashboard elsewhere may show a plot. Its scripts see nothing of it but its size.
             headers.insert(RESOURCE_POLICY, HeaderValue::from_static("cross-origin"));
         }
-        // What has a version may be kept by the browser that got it, and be shown again once the server has said that it is
-        // the present one.
+        // What has a version may be kept by the browser that got it, and be shown again once the server has said that
+        // it is the present one.
         let versioned = matches!(*method, Method::GET | Method::HEAD) && headers.contains_key(header::ETAG);
         let keeping = if versioned { "private, no-cache" } else { "no-store" };
         headers.insert(header::CACHE_CONTROL, HeaderValue::from_static(keeping));

@@ -32,12 +32,13 @@ pub fn base() -> utoipa::openapi::OpenApi {
 
 fn introduction() -> String {
     format!(
-        "Frictional contact of two elastic bodies, with memory: tangential displacement, force, slip and stress along any \
-         path, exactly. All quantities are in SI units. Positive displacement gives positive force and positive shear stress. \
-         Numbers that are infinite are `null`.\n\nEvery refusal is a problem document (RFC 9457, `{MEDIA_TYPE}`) with a JSON \
-         pointer to each fault. A failed call changes nothing, and a read never does.\n\nLimits: a body has at most {} bytes, \
-         a path {} moves, a stress request {} radii, the memory of a contact {} pieces, a page {} items; the \
-         springs of the spring foundation times moves and stress points are at most {}.",
+        "Frictional contact of two elastic bodies, with memory: tangential displacement, force, slip and stress along \
+         any path, exactly. All quantities are in SI units. Positive displacement gives positive force and positive \
+         shear stress. Numbers that are infinite are `null`.\n\nEvery refusal is a problem document (RFC 9457, \
+         `{MEDIA_TYPE}`) with a JSON pointer to each fault. A failed call changes nothing, and a read never \
+         does.\n\nLimits: a body has at most {} bytes, a path {} moves, a stress request {} radii, the memory of a \
+         contact {} pieces, a page {} items; the springs of the spring foundation times moves and stress points are at \
+         most {}.",
         BODY_LIMIT,
         limits::PATH_MOVES.end(),
         limits::STRESS_POINTS.end(),

@@ -2,7 +2,6 @@
 //! express.
 
 mod base;
-mod parameters;
 mod refusals;
 mod responses;
 mod schemas;
@@ -11,21 +10,23 @@ use serde_json::{Map, Value, json};
 
 use stickslip_mechanics::range::{self, Range};
 use stickslip_wire::limits::{self, Keywords as _};
-use stickslip_wire::profile;
+use stickslip_wire::{all_limits, profile};
+
+use super::computations;
+use super::facts::FactsOfRoutes;
 
 pub use base::base;
 
 /// The text of the document, from what the attributes generate.
-pub fn complete(described: &utoipa::openapi::OpenApi) -> String {
+pub fn complete(described: &utoipa::openapi::OpenApi, facts: &FactsOfRoutes) -> String {
     let mut document = serde_json::to_value(described).unwrap_or_default();
     // A document without it is of no server at all to some tools.
     document["servers"] = json!([{"url": "/", "description": "The server that this document comes from"}]);
+    computations::write(&mut document);
     write_limits(&mut document);
     schemas::write(&mut document);
-    parameters::write(&mut document);
-    refusals::write(&mut document);
-    refusals::write_keys(&mut document);
-    responses::write(&mut document);
+    refusals::write(&mut document, facts);
+    responses::write(&mut document, facts);
     format!("{document:#}\n")
 }
 
@@ -46,6 +47,8 @@ fn profile_limits() -> Vec<(&'static str, &'static str, Value)> {
         .chain([
             ("TabulatedProfile", "r", column(range::TABLE_RADIUS)),
             ("TabulatedProfile", "z", column(range::TABLE_HEIGHT)),
+            ("TabulatedProfile", "indentation_error", column(range::INDENTATION_ERROR)),
+            ("TabulatedProfile", "pressure_error", column(range::PRESSURE_ERROR)),
             ("SumProfile", "parts", limits::Items(limits::SUM_PARTS).keywords()),
             ("AsperitiesProfile", "radii", limits::ASPERITY_RADII.keywords()),
             ("AsperitiesProfile", "radius", range::RADIUS.keywords()),
@@ -58,7 +61,7 @@ fn profile_limits() -> Vec<(&'static str, &'static str, Value)> {
 }
 
 fn write_limits(document: &mut Value) {
-    for (schema, property, keywords) in limits::all().into_iter().chain(profile_limits()) {
+    for (schema, property, keywords) in all_limits().into_iter().chain(profile_limits()) {
         if let Some(schema) = document.pointer_mut(&format!("/components/schemas/{schema}")) {
             visit_property(schema, property, &|node| write_keywords(node, &keywords));
         }

@@ -4,13 +4,14 @@ use serde_json::{Map, Value, json};
 
 use super::operations;
 use super::refusals::refusal;
-use crate::api::formats::Format;
+use crate::api::facts::FactsOfRoutes;
+use crate::formats::Format;
 
 /// Replies of the program by operation: `UPDATE=1 cargo test --test api shows_a_reply` prints them anew.
 const EXAMPLES: &str = include_str!("../../../openapi/examples.json");
 
 /// Completes the responses.
-pub fn write(document: &mut Value) {
+pub fn write(document: &mut Value, facts: &FactsOfRoutes) {
     let examples: Map<String, Value> = serde_json::from_str(EXAMPLES).unwrap_or_default();
     let (of_contacts, of_jobs) = (links(document, "/contacts/{id}"), links(document, "/jobs/{id}"));
     for (method, path, operation) in operations(document) {
@@ -20,26 +21,19 @@ pub fn write(document: &mut Value) {
                 made["links"] = links.clone();
             }
         }
-        match (method, path) {
-            (
-                "get",
-                "/contacts/{id}/stress"
-                | "/contacts/{id}/history"
-                | "/contacts/{id}/loop"
-                | "/contacts/{id}/cycles"
-                | "/contacts/{id}/cycle",
-            ) => {
-                write_formats(operation, &Format::ALL);
-                write_conditional(operation, true);
-            }
-            ("post", "/cycle" | "/fretting" | "/profiles/fit" | "/fit" | "/contacts/{id}/subsurface") => {
-                write_formats(operation, &Format::ALL);
-            }
-            ("get", "/contacts/{id}") => write_conditional(operation, false),
-            ("post", "/sweep") | ("get", "/jobs/{id}/result") => write_formats(operation, &Format::TABLES),
-            ("get", "/contacts/{id}/events") => write_events(operation, &["StateEvent", "EndEvent"]),
-            ("get", "/jobs/{id}/events") => write_events(operation, &["JobReply", "JobEndEvent"]),
-            _ => {}
+        let Some(facts) = facts.get(&method.to_uppercase(), path) else { continue };
+        if !facts.formats.is_empty() {
+            write_formats(operation, facts.formats);
+        }
+        if facts.paged {
+            operation["responses"]["200"]["headers"]["Link"] =
+                text("The URL of the next page (`rel=\"next\"`), if there is one");
+        }
+        if facts.conditional {
+            write_conditional(operation, !facts.formats.is_empty());
+        }
+        if !facts.events.is_empty() {
+            write_events(operation, facts.events);
         }
         write_example(operation, &examples);
     }
@@ -103,12 +97,6 @@ fn write_conditional(operation: &mut Value, varies: bool) {
 
 /// The formats of a table.
 fn write_formats(operation: &mut Value, formats: &[Format]) {
-    let names: Vec<_> = formats.iter().map(|format| format.name()).collect();
-    for parameter in operation["parameters"].as_array_mut().into_iter().flatten() {
-        if parameter["name"] == "format" {
-            parameter["schema"]["enum"] = json!(names);
-        }
-    }
     let content = &mut operation["responses"]["200"]["content"];
     for format in formats.iter().filter(|format| **format != Format::Columns) {
         content[format.media_type()] = json!({"schema": match format {
@@ -117,14 +105,11 @@ fn write_formats(operation: &mut Value, formats: &[Format]) {
             _ => json!({"type": "string"}),
         }});
     }
-    if ["get_history", "get_loop"].iter().any(|name| operation["operationId"] == *name) {
-        operation["responses"]["200"]["headers"]["Link"] =
-            text("The URL of the next page (`rel=\"next\"`), if there is one");
-    }
     operation["responses"]["406"] = refusal("Accept admits none of the formats");
 }
 
-/// Server-sent events: a text to clients that read a reply whole, and to those that follow it, one event after the other.
+/// Server-sent events: a text to clients that read a reply whole, and to those that follow it, one event after the
+/// other.
 fn write_events(operation: &mut Value, data: &[&str]) {
     let schemas: Vec<Value> = data.iter().map(|name| json!({"$ref": format!("#/components/schemas/{name}")})).collect();
     let event = json!({

@@ -2,14 +2,14 @@
 
 use axum::http::{HeaderMap, StatusCode};
 use axum::response::Response;
-use utoipa::IntoParams;
 use uuid::Uuid;
 
 use crate::api::extract::{CheckedBody, OptionalBody};
 use crate::api::formats::Format;
+use crate::api::parameters::{IDENTIFIER, Text, count, parameters};
 use crate::api::params::{ContactPath, IdempotencyKey, IfMatch};
 use crate::api::problem::Problem;
-use crate::api::query::{CheckedQuery, QueryParams, QueryReader};
+use crate::api::query::{CheckedQuery, DEFAULT_PAGE, PAGE};
 use crate::api::reply;
 use crate::api::state::TenantApp;
 use stickslip_wire::session::LABEL;
@@ -26,7 +26,8 @@ const SUMMARY_BYTES: usize = 2_048;
 #[utoipa::path(
     post, path = "/contacts", tag = "contacts", params(IdempotencyKey), request_body = CreateRequest,
     responses((status = 201, description = "The new contact", body = NewSession, headers(
-        ("Location" = String, description = "The path of the contact"), ("ETag" = String, description = "Its sequence in quotes")
+        ("Location" = String, description = "The path of the contact"), ("ETag" = String, description = "Its sequence \
+            in quotes")
     )))
 )]
 pub async fn create_contact(
@@ -36,27 +37,16 @@ pub async fn create_contact(
     Ok(reply::of_change(app.sessions.create(request.body, request.key).await?))
 }
 
-/// Which contacts to list.
-#[derive(IntoParams)]
-#[into_params(parameter_in = Query)]
-pub struct ListQuery {
-    /// Those alone whose label contains this text. Upper and lower case are the same for the letters A to Z; the empty text
-    /// finds all that have a label.
-    #[param(nullable = false)]
-    label: Option<String>,
-    /// How many contacts at most.
-    #[param(value_type = Option<usize>, nullable = false)]
-    limit: usize,
-    /// The `next` of the previous page.
-    #[param(nullable = false)]
-    after: Option<Uuid>,
-}
-
-impl QueryParams for ListQuery {
-    fn take(query: &mut QueryReader, _: &HeaderMap) -> Option<ListQuery> {
-        let label = query.text("label", &LABEL);
-        let (after, limit) = query.contacts();
-        Some(ListQuery { label, limit, after })
+parameters! {
+    /// Which contacts to list.
+    pub struct ListQuery {
+        /// Those alone whose label contains this text. Upper and lower case are the same for the letters A to Z; the
+        /// empty text finds all that have a label.
+        label: Option<String> = Text(LABEL);
+        /// The `next` of the previous page.
+        after: Option<Uuid> = IDENTIFIER;
+        /// How many contacts at most.
+        limit: usize = count(&PAGE), or DEFAULT_PAGE;
     }
 }
 
@@ -81,7 +71,8 @@ pub async fn list_contacts(
 #[utoipa::path(
     get, path = "/contacts/{id}", tag = "contacts", params(ContactPath),
     responses((status = 200, description = "The contact and its state", body = SessionReply,
-        headers(("ETag" = String, description = "Its sequence, and a checksum of its label behind a dot if it has one, in quotes"))))
+        headers(("ETag" = String, description = "Its sequence, and a checksum of its label behind a dot if it has one, \
+            in quotes"))))
 )]
 pub async fn get_contact(
     TenantApp(app): TenantApp,
@@ -105,9 +96,11 @@ fn tag(session: &SessionReply) -> String {
 
 /// Rename a contact
 ///
-/// Gives the contact another label, or none. This is no move: its sequence, its history and the time of its last move stay.
+/// Gives the contact another label, or none. This is no move: its sequence, its history and the time of its last move
+/// stay.
 #[utoipa::path(
-    patch, path = "/contacts/{id}", tag = "contacts", params(ContactPath, IfMatch, IdempotencyKey), request_body = RenameRequest,
+    patch, path = "/contacts/{id}", tag = "contacts", params(ContactPath, IfMatch, IdempotencyKey),
+    request_body = RenameRequest,
     responses((status = 200, description = "The contact and its state", body = SessionReply,
         headers(("ETag" = String, description = "Its sequence in quotes"))))
 )]
@@ -155,13 +148,14 @@ pub async fn get_definition(
 
 /// Fork a contact
 ///
-/// Creates a new contact with the same history, or with its first `sequence` moves, which then evolves independently: so a
-/// move is undone, and the original keeps it. The body may be left out.
+/// Creates a new contact with the same history, or with its first `sequence` moves, which then evolves independently:
+/// so a move is undone, and the original keeps it. The body may be left out.
 #[utoipa::path(
     post, path = "/contacts/{id}/fork", tag = "contacts", params(ContactPath, IdempotencyKey),
     request_body(content = ForkRequest, example = json!({"label": "what if"})),
     responses((status = 201, description = "The new contact", body = NewSession, headers(
-        ("Location" = String, description = "The path of the contact"), ("ETag" = String, description = "Its sequence in quotes")
+        ("Location" = String, description = "The path of the contact"), ("ETag" = String, description = "Its sequence \
+            in quotes")
     )))
 )]
 pub async fn fork_contact(

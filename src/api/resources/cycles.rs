@@ -2,38 +2,28 @@
 
 use axum::http::{HeaderMap, header};
 use axum::response::Response;
-use utoipa::IntoParams;
 
-use stickslip_wire::{CyclePage, JsonPath, limits};
+use stickslip_wire::{CyclePage, limits};
 
 use crate::api::formats::{Format, plots, tables};
+use crate::api::parameters::{Formats, count, parameters};
 use crate::api::params::ContactPath;
 use crate::api::problem::Problem;
-use crate::api::query::{COUNT, CheckedQuery, DEFAULT_PAGE, QueryParams, QueryReader};
+use crate::api::query::{CheckedQuery, DEFAULT_PAGE};
 use crate::api::reply;
 use crate::api::state::TenantApp;
 
 /// Bytes of a cycle in the longest of the formats.
 const CYCLE_BYTES: usize = 1_024;
 
-/// Which cycles to list.
-#[derive(IntoParams)]
-#[into_params(parameter_in = Query)]
-pub struct CycleQuery {
-    /// How many of the newest cycles at most.
-    #[param(value_type = Option<usize>, nullable = false)]
-    last: usize,
-    /// `columns` (this document), `rows` (a JSON array of flat objects), `csv`, `ndjson`, `arrow` (an Arrow IPC
-    /// stream), or a plot as `svg` or `png`. If it is left out, `Accept` decides.
-    #[param(value_type = Option<String>, nullable = false, default = "columns")]
-    format: Option<Format>,
-}
-
-impl QueryParams for CycleQuery {
-    fn take(query: &mut QueryReader, _: &HeaderMap) -> Option<CycleQuery> {
-        let last = query.number("last", COUNT).unwrap_or(DEFAULT_PAGE);
-        query.faults.count(JsonPath::Root.member("last"), last, &limits::CYCLES);
-        Some(CycleQuery { last, format: query.format(&Format::ALL) })
+parameters! {
+    /// Which cycles to list.
+    pub struct CyclesQuery {
+        /// How many of the newest cycles at most.
+        last: usize = count(&limits::CYCLES), or DEFAULT_PAGE;
+        /// `columns` (this document), `rows` (a JSON array of flat objects), `csv`, `ndjson`, `arrow` (an Arrow IPC
+        /// stream), or a plot as `svg` or `png`. If it is left out, `Accept` decides.
+        format: Option<Format> = Formats(&Format::ALL);
     }
 }
 
@@ -41,7 +31,7 @@ impl QueryParams for CycleQuery {
 ///
 /// The newest closed cycles of its displacement, oldest first.
 #[utoipa::path(
-    get, path = "/contacts/{id}/cycles", tag = "contacts", params(ContactPath, CycleQuery),
+    get, path = "/contacts/{id}/cycles", tag = "contacts", params(ContactPath, CyclesQuery),
     responses((status = 200, description = "The newest cycles", body = CyclePage,
         headers(("ETag" = String, description = "The sequence that they belong to, in quotes"))))
 )]
@@ -49,9 +39,9 @@ pub async fn get_cycles(
     TenantApp(app): TenantApp,
     ContactPath { id }: ContactPath,
     headers: HeaderMap,
-    CheckedQuery(query): CheckedQuery<CycleQuery>,
+    CheckedQuery(query): CheckedQuery<CyclesQuery>,
 ) -> Result<Response, Problem> {
-    let CycleQuery { last, format } = query;
+    let CyclesQuery { last, format } = query;
     let format = Format::chosen(format, &headers, &Format::ALL)?;
     if headers.contains_key(header::IF_NONE_MATCH) {
         // Before anything is read.

@@ -1,32 +1,22 @@
 //! `/contacts/{id}/events`: each new state of a contact, as a server-sent event.
 
-use axum::http::HeaderMap;
 use axum::response::sse::{Event, KeepAlive, Sse};
 use futures::{Stream, StreamExt as _};
-use utoipa::IntoParams;
 
 use crate::api::limits::KEEP_ALIVE;
+use crate::api::parameters::{count, parameters};
 use crate::api::params::{ContactPath, LastEventId};
 use crate::api::problem::Problem;
-use crate::api::query::{COUNT, CheckedQuery, PAGE, QueryParams, QueryReader};
+use crate::api::query::{CheckedQuery, PAGE};
 use crate::api::state::TenantApp;
 use crate::store::StreamEvent;
-use stickslip_wire::{EndEvent, JsonPath, StateEvent};
+use stickslip_wire::{EndEvent, StateEvent};
 
-/// When a stream of events ends by itself.
-#[derive(IntoParams)]
-#[into_params(parameter_in = Query)]
-pub struct EventsQuery {
-    /// End the stream after so many events. Without it, it goes on as long as the contact.
-    #[param(nullable = false)]
-    limit: Option<usize>,
-}
-
-impl QueryParams for EventsQuery {
-    fn take(query: &mut QueryReader, _: &HeaderMap) -> Option<EventsQuery> {
-        let limit = query.number("limit", COUNT);
-        query.faults.count(JsonPath::Root.member("limit"), limit.unwrap_or(*PAGE.start()), &PAGE);
-        Some(EventsQuery { limit })
+parameters! {
+    /// When a stream of events ends by itself.
+    pub struct EventsQuery {
+        /// End the stream after so many events. Without it, it goes on as long as the contact.
+        limit: Option<usize> = count(&PAGE);
     }
 }
 

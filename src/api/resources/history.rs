@@ -4,43 +4,32 @@ use std::sync::Arc;
 
 use axum::http::{HeaderMap, HeaderValue, header};
 use axum::response::Response;
-use utoipa::IntoParams;
 use uuid::Uuid;
 
 use stickslip_wire::HistoryPage;
 
 use super::whole_history;
-use crate::api::formats::{Format, TableStream, plots, tables, unwritable};
+use crate::api::formats::{Format, TableStream, plots, tables};
+use crate::api::parameters::{FLAG, Formats, parameters};
 use crate::api::params::ContactPath;
 use crate::api::problem::Problem;
-use crate::api::query::{CheckedQuery, Moves, MovesQuery, QueryParams, QueryReader};
+use crate::api::query::{CheckedQuery, Moves, MovesQuery};
 use crate::api::reply;
 use crate::api::state::{App, TenantApp};
+use crate::formats::Unwritable;
 
 /// Bytes of an item of a history.
 pub(super) const ITEM_BYTES: usize = 2_048;
 
-/// Which moves to list.
-#[derive(IntoParams)]
-#[into_params(parameter_in = Query)]
-pub struct HistoryQuery {
-    #[param(ignore)]
-    moves: MovesQuery,
-    /// Whether to add the cycle that a move closed to it. This needs the moves before the page too, once: without it
-    /// nothing but the page is read.
-    #[param(value_type = Option<bool>, nullable = false, default = true)]
-    cycles: bool,
-    /// `columns` (this document), `rows` (a JSON array of flat objects), `csv`, `ndjson`, `arrow` (an Arrow IPC
-    /// stream), or a plot as `svg` or `png`. If it is left out, `Accept` decides.
-    #[param(value_type = Option<String>, nullable = false, default = "columns")]
-    format: Option<Format>,
-}
-
-impl QueryParams for HistoryQuery {
-    fn take(query: &mut QueryReader, _: &HeaderMap) -> Option<HistoryQuery> {
-        let moves = query.moves();
-        let cycles = query.number("cycles", "true or false").unwrap_or(true);
-        Some(HistoryQuery { moves, cycles, format: query.format(&Format::ALL) })
+parameters! {
+    /// What a history has of each move.
+    pub struct HistoryQuery {
+        /// Whether to add the cycle that a move closed to it. This needs the moves before the page too, once: without
+        /// it nothing but the page is read.
+        cycles: bool = FLAG, or true;
+        /// `columns` (this document), `rows` (a JSON array of flat objects), `csv`, `ndjson`, `arrow` (an Arrow IPC
+        /// stream), or a plot as `svg` or `png`. If it is left out, `Accept` decides.
+        format: Option<Format> = Formats(&Format::ALL);
     }
 }
 
@@ -56,9 +45,9 @@ pub async fn get_history(
     TenantApp(app): TenantApp,
     ContactPath { id }: ContactPath,
     headers: HeaderMap,
-    CheckedQuery(query): CheckedQuery<HistoryQuery>,
+    CheckedQuery((moves, query)): CheckedQuery<(MovesQuery, HistoryQuery)>,
 ) -> Result<Response, Problem> {
-    let HistoryQuery { moves, cycles, format } = query;
+    let HistoryQuery { cycles, format } = query;
     let format = Format::chosen(format, &headers, &Format::ALL)?;
     let unmarked = if cycles { "" } else { "-unmarked" };
     let (after, limit) = match moves.of(format) {
@@ -113,7 +102,7 @@ async fn write_page(
     if cycles {
         app.sessions.mark(id, &mut page).await?;
     }
-    let block = table.push(&tables::history(&page, app.sessions.names_makers())).map_err(unwritable)?;
+    let block = table.push(&tables::history(&page, app.sessions.names_makers())).map_err(Unwritable::new)?;
     Ok((table, block))
 }
 

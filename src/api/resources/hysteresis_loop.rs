@@ -4,43 +4,31 @@ use std::sync::Arc;
 
 use axum::http::HeaderMap;
 use axum::response::Response;
-use utoipa::IntoParams;
 use uuid::Uuid;
 
 use crate::sessions::Sessions;
-use stickslip_wire::{JsonPath, LoopPage, limits};
+use stickslip_wire::{LoopPage, limits};
 
 use super::history::{ITEM_BYTES, newest, version, with_next};
 use super::whole_history;
-use crate::api::formats::{Format, TableStream, plots, tables, unwritable};
+use crate::api::formats::{Format, TableStream, plots, tables};
+use crate::api::parameters::{Formats, count, parameters};
 use crate::api::params::ContactPath;
 use crate::api::problem::Problem;
-use crate::api::query::{COUNT, CheckedQuery, Moves, MovesQuery, QueryParams, QueryReader};
+use crate::api::query::{CheckedQuery, Moves, MovesQuery};
 use crate::api::reply;
 use crate::api::state::{App, TenantApp};
+use crate::formats::Unwritable;
 
-/// Which part of a loop to trace.
-#[derive(IntoParams)]
-#[into_params(parameter_in = Query)]
-pub struct LoopQuery {
-    #[param(ignore)]
-    moves: MovesQuery,
-    /// Points for each move, evenly spaced in the quantity that the move prescribes. With 1 they are the recorded
-    /// states; with more, the moves are repeated in small steps on a copy of the contact.
-    #[param(value_type = Option<usize>, nullable = false, default = 1)]
-    points_per_move: usize,
-    /// `columns` (this document), `rows` (a JSON array of flat objects), `csv`, `ndjson`, `arrow` (an Arrow IPC
-    /// stream), or a plot as `svg` or `png`. If it is left out, `Accept` decides.
-    #[param(value_type = Option<String>, nullable = false, default = "columns")]
-    format: Option<Format>,
-}
-
-impl QueryParams for LoopQuery {
-    fn take(query: &mut QueryReader, _: &HeaderMap) -> Option<LoopQuery> {
-        let moves = query.moves();
-        let points_per_move = query.number("points_per_move", COUNT).unwrap_or(1);
-        query.faults.count(JsonPath::Root.member("points_per_move"), points_per_move, &limits::LOOP_POINTS);
-        Some(LoopQuery { moves, points_per_move, format: query.format(&Format::ALL) })
+parameters! {
+    /// How a loop is traced.
+    pub struct LoopQuery {
+        /// Points for each move, evenly spaced in the quantity that the move prescribes. With 1 they are the recorded
+        /// states; with more, the moves are repeated in small steps on a copy of the contact.
+        points_per_move: usize = count(&limits::LOOP_POINTS), or 1;
+        /// `columns` (this document), `rows` (a JSON array of flat objects), `csv`, `ndjson`, `arrow` (an Arrow IPC
+        /// stream), or a plot as `svg` or `png`. If it is left out, `Accept` decides.
+        format: Option<Format> = Formats(&Format::ALL);
     }
 }
 
@@ -56,9 +44,9 @@ pub async fn get_loop(
     TenantApp(app): TenantApp,
     ContactPath { id }: ContactPath,
     headers: HeaderMap,
-    CheckedQuery(query): CheckedQuery<LoopQuery>,
+    CheckedQuery((moves, query)): CheckedQuery<(MovesQuery, LoopQuery)>,
 ) -> Result<Response, Problem> {
-    let LoopQuery { moves, points_per_move: points, format } = query;
+    let LoopQuery { points_per_move: points, format } = query;
     let format = Format::chosen(format, &headers, &Format::ALL)?;
     let bytes = |moves: usize| moves * ITEM_BYTES + Sessions::bytes_of_trace(moves * points) + format.bytes(0, 0);
     let (after, limit) = match moves.of(format) {
@@ -96,6 +84,6 @@ async fn write_page(
 ) -> Result<(TableStream, Vec<u8>), Problem> {
     let past = app.sessions.history(id, after, limit).await?;
     let page = app.sessions.trace(id, after, &past.items, points).await?;
-    let block = table.push(&tables::hysteresis_loop(&page)).map_err(unwritable)?;
+    let block = table.push(&tables::hysteresis_loop(&page)).map_err(Unwritable::new)?;
     Ok((table, block))
 }

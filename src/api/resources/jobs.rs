@@ -5,47 +5,33 @@ use axum::http::{HeaderMap, StatusCode};
 use axum::response::sse::{Event, KeepAlive, Sse};
 use axum::response::{IntoResponse as _, Response};
 use futures::StreamExt as _;
-use utoipa::IntoParams;
 use uuid::Uuid;
 
-use crate::api::formats::{Format, tables};
+use crate::api::formats::Format;
 use crate::api::limits::KEEP_ALIVE;
+use crate::api::parameters::{Formats, JOB_STATE, parameters};
 use crate::api::params::JobPath;
 use crate::api::problem::Problem;
-use crate::api::query::{CheckedQuery, QueryParams, QueryReader};
+use crate::api::query::CheckedQuery;
 use crate::api::reply;
 use crate::api::state::{App, TenantApp};
 use crate::store::StreamEvent;
 use stickslip_wire::{JobEndEvent, JobList, JobReply, JobState, SweepReply};
 
-/// How a table is written.
-#[derive(IntoParams)]
-#[into_params(parameter_in = Query)]
-pub struct TableQuery {
-    /// `columns` (this document), `rows` (a JSON array of flat objects), `csv`, `ndjson` or `arrow` (an Arrow IPC
-    /// stream). If it is left out, `Accept` decides.
-    #[param(value_type = Option<String>, nullable = false, default = "columns")]
-    pub format: Option<Format>,
-}
-
-impl QueryParams for TableQuery {
-    fn take(query: &mut QueryReader, _: &HeaderMap) -> Option<TableQuery> {
-        Some(TableQuery { format: query.format(&Format::TABLES) })
+parameters! {
+    /// How a table is written.
+    pub struct TableQuery {
+        /// `columns` (this document), `rows` (a JSON array of flat objects), `csv`, `ndjson` or `arrow` (an Arrow IPC
+        /// stream). If it is left out, `Accept` decides.
+        format: Option<Format> = Formats(&Format::TABLES);
     }
 }
 
-/// Which jobs to list.
-#[derive(IntoParams)]
-#[into_params(parameter_in = Query)]
-pub struct JobsQuery {
-    /// Only those in this state.
-    #[param(nullable = false, inline)]
-    state: Option<JobState>,
-}
-
-impl QueryParams for JobsQuery {
-    fn take(query: &mut QueryReader, _: &HeaderMap) -> Option<JobsQuery> {
-        Some(JobsQuery { state: query.state() })
+parameters! {
+    /// Which jobs to list.
+    pub struct JobsQuery {
+        /// Only those in this state.
+        state: Option<JobState> = JOB_STATE;
     }
 }
 
@@ -94,7 +80,7 @@ pub async fn get_job_result(
     let format = Format::chosen(query.format, &headers, &Format::TABLES)?;
     let memory = app.pool.reserve(app.jobs.size(id).await?).await?;
     let (sweep, result) = app.jobs.result(id).await?;
-    let table = Body::from_stream(futures::stream::iter(tables::sweep(&sweep, result).blocks(format)));
+    let table = Body::from_stream(futures::stream::iter(result.table(&sweep).blocks(format)));
     Ok(reply::holding(format.reply(table), memory))
 }
 

@@ -15,6 +15,8 @@ use crate::api::problem::{Code, Problem};
 use crate::api::reply;
 use crate::api::state::App;
 use crate::server::connections::Refusal;
+use crate::sessions::SessionError;
+use crate::store::StoreError;
 
 /// Check that the process is alive
 ///
@@ -29,14 +31,17 @@ pub async fn check_health() -> Result<Response, Problem> {
 
 /// Check that the service is ready
 ///
-/// The store can be read and accepts changes. If not, the answer is 503: send requests elsewhere.
+/// The store can be read and accepts changes. If not, the answer is 503, or 507 where the storage is full: send
+/// requests elsewhere.
 #[utoipa::path(
     get, path = "/readyz", tag = "service",
-    responses((status = 200, description = "It is ready", body = serde_json::Value, example = json!({"status": "ready"})))
+    responses((status = 200, description = "It is \
+        ready", body = serde_json::Value, example = json!({"status": "ready"})))
 )]
 pub async fn check_readiness(State(app): State<Arc<App>>) -> Result<Response, Problem> {
     match app.sessions.ready().await {
         Ok(()) => Ok(reply::json(reply::written(&json!({"status": "ready"}))?)),
+        Err(error @ SessionError::Store(StoreError::Full(_))) => Err(error.into()),
         Err(error) => Err(Problem::new(Code::Overloaded, "the store is not ready").because(error.to_string())),
     }
 }

@@ -71,6 +71,8 @@ fn gauge(page: &Registry, options: Opts, value: f64) -> prometheus::Result<()> {
 fn sessions(page: &Registry, readings: &Readings<'_>) -> prometheus::Result<()> {
     show(page, &readings.counted.moves)?;
     show(page, &readings.counted.hits)?;
+    show(page, &readings.counted.profiles_prepared)?;
+    show(page, &readings.counted.profiles_shared)?;
     let misses =
         IntCounter::new("stickslip_cache_misses_total", "Times that it was not, and was brought from the store.")?;
     misses.inc_by(readings.counted.open.get_sample_count());
@@ -78,7 +80,7 @@ fn sessions(page: &Registry, readings: &Readings<'_>) -> prometheus::Result<()> 
     show(page, &readings.counted.open)?;
     for (name, help, value) in [
         ("stickslip_cache_contacts", "Contacts in memory that nobody works on.", readings.cached),
-        ("stickslip_cache_bytes", "Bytes of their states.", readings.bytes),
+        ("stickslip_cache_bytes", "Bytes of their states, and of profiles that are ready.", readings.bytes),
         (
             "stickslip_cache_capacity_bytes",
             "Bytes that the states may take, as set by --cache-bytes.",

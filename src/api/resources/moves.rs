@@ -8,7 +8,7 @@ use crate::api::params::{ContactPath, IdempotencyKey, IfMatch};
 use crate::api::problem::Problem;
 use crate::api::reply;
 use crate::api::state::{App, TenantApp};
-use crate::simulation::bytes;
+use crate::sessions::Sessions;
 use stickslip_wire::session::Advance;
 use stickslip_wire::{Document, MoveReply, MoveRequest, PathReply, PathRequest, RelaxReply, RelaxRequest};
 
@@ -47,7 +47,9 @@ pub async fn move_contact(
         ("falling amplitude" = (summary = "Until almost no force is left, the last state alone",
             value = json!({"path": {"falling_amplitude": {"reversals": 20, "amplitude": 2e-7}}, "steps": "last"}))),
         ("moves" = (summary = "Lift off and touch again",
-            value = json!({"path": {"moves": [{"indentation": -1e-7}, {"indentation": 1e-6}, {"displacement": 1e-7}]}})))
+            value = json!({
+                "path": {"moves": [{"indentation": -1e-7}, {"indentation": 1e-6}, {"displacement": 1e-7}]}
+            })))
     )),
     responses((status = 200, description = "The states along the path", body = PathReply,
         headers(("ETag" = String, description = "The new sequence in quotes"))))
@@ -73,7 +75,8 @@ pub async fn follow_path(
             value = json!({"target": 0.2, "steps": "all"})))
     )),
     responses((status = 200, description = "The path, and what remains", body = RelaxReply,
-        headers(("ETag" = String, description = "The sequence in quotes: the new one, or the present one after a dry run"))))
+        headers(("ETag" = String, description = "The sequence in quotes: the new one, or the present one after a dry \
+            run"))))
 )]
 pub async fn relax_contact(
     TenantApp(app): TenantApp,
@@ -87,7 +90,7 @@ pub async fn relax_contact(
         return Ok(reply::holding(reply::at_sequence(sequence, body), memory));
     }
     let advance = Advance::from(body);
-    held.resize(&app.pool, bytes::of_advance(&advance)).await?;
+    held.resize(&app.pool, Sessions::bytes_of_moves(&advance)).await?;
     Ok(held.on(reply::of_change(app.sessions.apply_moves(id, advance, sequence, key).await?)))
 }
 
@@ -98,6 +101,6 @@ pub(super) async fn advance<T: Document<Checked = Advance>>(
     sequence: Option<u64>,
     CheckedBody { body, key, mut held }: CheckedBody<T>,
 ) -> Result<Response, Problem> {
-    held.resize(&app.pool, bytes::of_advance(&body)).await?;
+    held.resize(&app.pool, Sessions::bytes_of_moves(&body)).await?;
     Ok(held.on(reply::of_change(app.sessions.apply_moves(id, body, sequence, key).await?)))
 }

@@ -16,17 +16,20 @@ use super::moves::advance;
 
 /// Follow a bench
 ///
-/// Moves the contact to each measured displacement, and keeps the measured force beside the force that it predicts: all of
-/// the observations or none.
+/// Moves the contact to each measured displacement, and keeps the measured force beside the force that it predicts: all
+/// of the observations or none.
 #[utoipa::path(
     post, path = "/contacts/{id}/observations", tag = "contacts", params(ContactPath, IfMatch, IdempotencyKey),
     request_body(content = ObservationsRequest, examples(
         ("measured" = (summary = "Two measurements",
-            value = json!({"observations": [{"displacement": 1e-7, "force": 1.21}, {"displacement": 2e-7, "force": 2.04}]}))),
+            value = json!({
+                "observations": [{"displacement": 1e-7, "force": 1.21}, {"displacement": 2e-7, "force": 2.04}]
+            }))),
         ("with its time" = (summary = "With the instant of the measurement",
             value = json!({"observations": [{"displacement": 1e-7, "force": 1.21, "at": "2026-03-01T12:00:00.25Z"}]})))
     )),
-    responses((status = 200, description = "The observations beside what the contact predicts", body = ObservationsReply,
+    responses((status = 200, description = "The observations beside what the contact \
+        predicts", body = ObservationsReply,
         headers(("ETag" = String, description = "The new sequence in quotes"))))
 )]
 pub async fn follow_bench(

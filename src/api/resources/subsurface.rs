@@ -2,40 +2,32 @@
 
 use axum::http::HeaderMap;
 use axum::response::Response;
-use utoipa::IntoParams;
 
-use stickslip_wire::subsurface::SubsurfaceTask;
 use stickslip_wire::{SubsurfaceReply, SubsurfaceRequest};
 
+use crate::api::computations;
 use crate::api::extract::CheckedBody;
-use crate::api::formats::{Format, SUBSURFACE_ROW, plots, tables};
+use crate::api::formats::Format;
+use crate::api::parameters::{Formats, parameters};
 use crate::api::params::ContactPath;
-use crate::api::problem::{Code, Problem};
-use crate::api::query::{CheckedQuery, QueryParams, QueryReader};
-use crate::api::reply;
+use crate::api::problem::Problem;
+use crate::api::query::CheckedQuery;
 use crate::api::state::TenantApp;
 
-/// How the stresses are written.
-#[derive(IntoParams)]
-#[into_params(parameter_in = Query)]
-pub struct SubsurfaceFormat {
-    /// `columns` (this document), `rows` (a JSON array of flat objects), `csv`, `ndjson`, `arrow` (an Arrow IPC
-    /// stream), or a picture as `svg` or `png`: of one field in a plane or on the surface. If it is left out, `Accept`
-    /// decides.
-    #[param(value_type = Option<String>, nullable = false, default = "columns")]
-    format: Option<Format>,
-}
-
-impl QueryParams for SubsurfaceFormat {
-    fn take(query: &mut QueryReader, _: &HeaderMap) -> Option<SubsurfaceFormat> {
-        Some(SubsurfaceFormat { format: query.format(&Format::ALL) })
+parameters! {
+    /// How the stresses are written.
+    pub struct SubsurfaceFormat {
+        /// `columns` (this document), `rows` (a JSON array of flat objects), `csv`, `ndjson`, `arrow` (an Arrow IPC
+        /// stream), or a picture as `svg` or `png`: of one field in a plane or on the surface. If it is left out,
+        /// `Accept` decides.
+        format: Option<Format> = Formats(&Format::ALL);
     }
 }
 
 /// Compute the stress below the surface
 ///
-/// The stress tensor and its invariants in one of the two bodies, in the present state of the contact, after whatever history.
-/// Nothing changes.
+/// The stress tensor and its invariants in one of the two bodies, in the present state of the contact, after whatever
+/// history. Nothing changes.
 #[utoipa::path(
     post, path = "/contacts/{id}/subsurface", tag = "contacts", params(ContactPath, SubsurfaceFormat),
     request_body(content = SubsurfaceRequest, examples(
@@ -59,19 +51,6 @@ pub async fn compute_subsurface_stress(
 ) -> Result<Response, Problem> {
     let CheckedQuery(query) = query?;
     let format = Format::chosen(query.format, &headers, &Format::ALL)?;
-    let CheckedBody { body, held, .. } = request;
-    let more = (move |places: usize| format.bytes(places, SUBSURFACE_ROW), format.cost());
-    let write = move |stress: &SubsurfaceReply, task: &SubsurfaceTask| written(format, stress, task);
-    let (sequence, body, memory) = app.sessions.subsurface(id, body, more, write).await?;
-    drop(held);
-    let tag = format.tag(&sequence.to_string());
-    Ok(reply::holding(reply::tagged(format.reply(body?), &tag), memory))
-}
-
-/// The stresses in a format.
-fn written(format: Format, reply: &SubsurfaceReply, task: &SubsurfaceTask) -> Result<Vec<u8>, Problem> {
-    if format.is_plot() && !task.is_section() {
-        return Err(Problem::at(Code::InvalidInput, "/fields", plots::NO_SECTION));
-    }
-    format.write(reply, || plots::section(&reply.stress, task), || tables::subsurface(&reply.stress))
+    let task = app.sessions.subsurface_task(id, request.body).await?;
+    computations::of_contact(&app, id, format, task).await
 }

@@ -8,16 +8,15 @@ use axum::response::{IntoResponse as _, Response};
 use uuid::Uuid;
 
 use super::jobs::{self, TableQuery};
-use crate::admission::INLINE;
 use crate::api::extract::CheckedBody;
-use crate::api::formats::{Format, tables};
+use crate::api::formats::Format;
 use crate::api::params::{IdempotencyKey, Prefer, accepts_events};
 use crate::api::problem::Problem;
 use crate::api::query::CheckedQuery;
 use crate::api::reply;
 use crate::api::state::TenantApp;
 use crate::jobs::AT_ONCE;
-use crate::simulation::Sweep;
+use crate::simulation::{Failure, Sweep};
 use stickslip_wire::{JobReply, SweepReply, SweepRequest};
 
 /// Bytes of a number of the table while it is computed.
@@ -48,7 +47,13 @@ pub async fn run_sweep(
     let format = if events { Format::Columns } else { Format::chosen(query.format, &headers, &Format::TABLES)? };
     let CheckedBody { body: checked, key, mut held } = body;
     let wants_job = checked.request.job || respond_async || events;
-    let sweep = app.pool.run(INLINE, move || Sweep::plan(checked)).await??;
+    let (stop, _guard) = app.pool.deadline();
+    let (cost, profiles) = (Sweep::planning_cost(&checked), app.sessions.profiles(&stop));
+    let planned = app.pool.run(cost, move || Sweep::plan(checked, &profiles)).await?;
+    if planned.is_err() {
+        stop.check().map_err(|interrupted| Failure::interrupted(interrupted, "/base/contact/profile"))?;
+    }
+    let sweep = planned?;
     if wants_job || sweep.cost() > AT_ONCE {
         let made = app.jobs.start(&sweep, key).await?;
         let id = made.created.unwrap_or(Uuid::nil());
@@ -70,6 +75,6 @@ pub async fn run_sweep(
     let sweep = Arc::new(sweep);
     let result = app.jobs.at_once(&sweep, &stop).await?;
     held.resize(&app.pool, table_bytes).await?;
-    let table = Body::from_stream(futures::stream::iter(tables::sweep(sweep.checked(), result).blocks(format)));
+    let table = Body::from_stream(futures::stream::iter(result.table(sweep.checked()).blocks(format)));
     Ok(held.on(format.reply(table)))
 }

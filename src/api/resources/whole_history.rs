@@ -5,6 +5,7 @@ use std::io;
 use axum::body::Body;
 use axum::http::HeaderMap;
 use axum::response::Response;
+use futures::future::{Either, ready};
 use futures::stream;
 use uuid::Uuid;
 
@@ -16,8 +17,8 @@ use crate::api::state::App;
 /// Moves that are read at once.
 pub(super) const PAGE: usize = 500;
 
-/// The reply with all moves of a contact, for which `bytes` are reserved. `marking` distinguishes tables of one format. `write`
-/// appends so many moves after another one to the table.
+/// The reply with all moves of a contact, for which `bytes` are reserved. `marking` distinguishes tables of one format.
+/// `write` appends so many moves after another one to the table.
 pub(super) async fn reply<F>(
     app: &App,
     id: Uuid,
@@ -34,28 +35,42 @@ where
     if reply::is_current(headers, &tag) {
         return Ok(reply::not_modified(&tag));
     }
+    app.sessions.check_complete(id, end).await?;
     let memory = app.pool.reserve(bytes).await?;
-    Ok(reply::holding(reply::tagged(format.reply(table(format, end, write)), &tag), memory))
+    // Before the reply begins, which cannot be taken back.
+    let first = write(TableStream::new(format), 0, length_of_page(0, end)).await?;
+    Ok(reply::holding(reply::tagged(format.reply(table(first, end, write)), &tag), memory))
 }
 
-/// The table of the moves 1 to `end`.
-fn table<F>(format: Format, end: u64, write: impl Fn(TableStream, u64, usize) -> F + Send + 'static) -> Body
+/// Moves of the page after a move.
+fn length_of_page(after: u64, end: u64) -> usize {
+    PAGE.min(usize::try_from(end - after).unwrap_or(PAGE))
+}
+
+/// The table of the moves 1 to `end`, of which the first page is written.
+fn table<F>(
+    first: (TableStream, Vec<u8>),
+    end: u64,
+    write: impl Fn(TableStream, u64, usize) -> F + Send + 'static,
+) -> Body
 where
     F: Future<Output = Result<(TableStream, Vec<u8>), Problem>> + Send + 'static,
 {
-    let blocks = stream::try_unfold(Some((TableStream::new(format), 0)), move |state| {
-        let page = state.map(|(table, after)| {
-            let limit = PAGE.min(usize::try_from(end - after).unwrap_or(PAGE));
-            (after + limit as u64, write(table, after, limit))
+    let first = (length_of_page(0, end) as u64, Either::Left(ready(Ok(first))));
+    let blocks = stream::try_unfold((Some(first), None), move |(first, state)| {
+        let next = state.map(|(table, after)| {
+            let limit = length_of_page(after, end);
+            (after + limit as u64, Either::Right(write(table, after, limit)))
         });
+        let page = first.or(next);
         async move {
             let Some((reached, page)) = page else { return Ok::<_, io::Error>(None) };
             let (mut table, mut block) = page.await.map_err(broken_off)?;
             if reached < end {
-                return Ok(Some((block, Some((table, reached)))));
+                return Ok(Some((block, (None, Some((table, reached))))));
             }
             block.extend(table.finish().map_err(|error| broken_off(Problem::internal(error.to_string())))?);
-            Ok(Some((block, None)))
+            Ok(Some((block, (None, None))))
         }
     });
     Body::from_stream(blocks)

@@ -18,7 +18,8 @@ pub struct ConfigValues {
 }
 
 impl ConfigValues {
-    /// Reads a file. Every key must be known and have one value; the parser of the command line validates the values later.
+    /// Reads a file. Every key must be known and have one value; the parser of the command line validates the values
+    /// later.
     pub fn read(path: &Path, command: &Command) -> Result<ConfigValues, SettingsError> {
         let place = path.display();
         let text = std::fs::read_to_string(path)

@@ -1,8 +1,9 @@
 //! Settings: each can be a flag, a variable of the environment or an entry of a file, under the same name.
 //!
-//! A setting is an argument with a long flag and a variable `STICKSLIP_…`, of a command with [`ConfigFile`]; nothing else
-//! declares it. A flag precedes the environment, then the file, then the default: the values of the file replace the defaults,
-//! and the arguments are parsed again. The sources are parsed one after the other, so that an error can name its source.
+//! A setting is an argument with a long flag and a variable `STICKSLIP_…`, of a command with [`ConfigFile`]; nothing
+//! else declares it. A flag precedes the environment, then the file, then the default: the values of the file replace
+//! the defaults, and the arguments are parsed again. The sources are parsed one after the other, so that an error can
+//! name its source.
 
 mod error;
 mod file;

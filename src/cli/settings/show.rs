@@ -8,6 +8,9 @@ use toml::Value;
 
 use super::{Settings, masked, settings_of};
 
+/// The source of a setting that no source has.
+const DEFAULT: &str = "default";
+
 impl Display for Settings {
     fn fmt(&self, out: &mut Formatter<'_>) -> fmt::Result {
         write!(out, "# flag before environment before file before default")?;
@@ -35,6 +38,12 @@ impl Settings {
         Some(if bare { value } else { Value::String(value).to_string() })
     }
 
+    /// Whether a setting has its default, as no source has it.
+    pub fn is_default(&self, key: &str) -> bool {
+        let mut settings = settings_of(&self.command).filter(|arg| arg.get_long() == Some(key));
+        settings.next().is_some_and(|arg| self.source(arg) == DEFAULT)
+    }
+
     fn source(&self, arg: &Arg) -> String {
         match (self.matches.value_source(arg.get_id().as_str()), &self.file) {
             (Some(ValueSource::CommandLine), _) => "flag".to_owned(),
@@ -44,7 +53,7 @@ impl Settings {
             (_, Some(file)) if arg.get_long().is_some_and(|key| file.get(key).is_some()) => {
                 format!("file {}", masked(&file.path.to_string_lossy()))
             }
-            _ => "default".to_owned(),
+            _ => DEFAULT.to_owned(),
         }
     }
 }

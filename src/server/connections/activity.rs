@@ -22,8 +22,8 @@ enum Phase {
     Closing,
 }
 
-/// Written by the socket and the service of a connection, read by its timer and by the limiter. No other memory is published
-/// through it, so relaxed ordering suffices.
+/// Written by the socket and the service of a connection, read by its timer and by the limiter. No other memory is
+/// published through it, so relaxed ordering suffices.
 #[derive(Debug)]
 pub struct ConnectionActivity {
     opened: Instant,

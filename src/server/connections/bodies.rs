@@ -1,5 +1,7 @@
-//! Bodies of requests with a deadline, and bodies of replies that hold the resources of their request until they are sent.
+//! Bodies of requests with a deadline, and bodies of replies that hold the resources of their request until they are
+//! sent.
 
+use std::future::poll_fn;
 use std::pin::Pin;
 use std::sync::Arc;
 use std::task::{Context, Poll};
@@ -7,19 +9,20 @@ use std::time::Duration;
 
 use axum::body::{Body, Bytes};
 use http_body::{Frame, SizeHint};
-use tokio::time::{Instant, Sleep, sleep};
+use tokio::sync::oneshot;
+use tokio::time::{Instant, Sleep, sleep, timeout};
 
 use super::ConnectionActivity;
-use crate::admission::{Client, Place, Reservation};
-use crate::server::limits::PIECE;
+use crate::admission::{Client, RequestPermit, Reservation};
+use crate::server::limits::{DISCARD_TIME, DISCARDED, PIECE};
 
 /// The body of a request did not arrive in time.
 #[derive(Debug, thiserror::Error)]
 #[error("the body did not arrive in time")]
 pub struct SlowBody;
 
-/// The body of a request, which must arrive completely within a time limit. Only waits for the client count, and not what the
-/// server itself does between them.
+/// The body of a request, which must arrive completely within a time limit. Only waits for the client count, and not
+/// what the server itself does between them.
 pub struct DeadlineBody<B> {
     body: B,
     /// What is left of the time.
@@ -66,6 +69,71 @@ where
     }
 }
 
+/// The body of a request, of which the service gets back what a handler has not read.
+pub struct ReturnedBody<B: Unpin> {
+    body: Option<B>,
+    back: Option<oneshot::Sender<B>>,
+}
+
+impl<B: Unpin> ReturnedBody<B> {
+    /// A body, and where its rest comes back when it is dropped before its end.
+    pub fn new(body: B) -> (ReturnedBody<B>, oneshot::Receiver<B>) {
+        let (back, returned) = oneshot::channel();
+        (ReturnedBody { body: Some(body), back: Some(back) }, returned)
+    }
+}
+
+impl<B: Unpin> Drop for ReturnedBody<B> {
+    fn drop(&mut self) {
+        if let (Some(body), Some(back)) = (self.body.take(), self.back.take()) {
+            // The request may be over already.
+            let _ = back.send(body);
+        }
+    }
+}
+
+impl<B: http_body::Body + Unpin> http_body::Body for ReturnedBody<B> {
+    type Data = B::Data;
+    type Error = B::Error;
+
+    fn poll_frame(mut self: Pin<&mut Self>, cx: &mut Context<'_>) -> Poll<Option<Result<Frame<B::Data>, B::Error>>> {
+        let Some(body) = &mut self.body else { return Poll::Ready(None) };
+        let frame = Pin::new(body).poll_frame(cx);
+        if let Poll::Ready(None | Some(Err(_))) = frame {
+            self.back = None;
+        }
+        frame
+    }
+
+    fn is_end_stream(&self) -> bool {
+        self.body.as_ref().is_none_or(http_body::Body::is_end_stream)
+    }
+
+    fn size_hint(&self) -> SizeHint {
+        self.body.as_ref().map_or_else(SizeHint::default, http_body::Body::size_hint)
+    }
+}
+
+/// Reads what is left of a body and discards it; returns whether that was all of it, in time.
+pub async fn discard<B>(mut body: B) -> bool
+where
+    B: http_body::Body<Data = Bytes> + Unpin,
+{
+    let read = async {
+        let mut length = 0;
+        while !body.is_end_stream() {
+            let Some(frame) = poll_fn(|cx| Pin::new(&mut body).poll_frame(cx)).await else { break };
+            let Ok(frame) = frame else { return false };
+            length += frame.data_ref().map_or(0, Bytes::len);
+            if length > DISCARDED {
+                return false;
+            }
+        }
+        true
+    };
+    timeout(DISCARD_TIME, read).await.unwrap_or(false)
+}
+
 /// Marks the connection as serving a request until dropped.
 pub struct RequestInProgress(pub Arc<ConnectionActivity>);
 
@@ -75,28 +143,28 @@ impl Drop for RequestInProgress {
     }
 }
 
-/// The body of a reply, sent in pieces that own their memory: when the last piece has been handed to the socket, the resources
-/// of the request are free, and no more than that piece is still in flight.
+/// The body of a reply, sent in pieces that own their memory: when the last piece has been handed to the socket, the
+/// resources of the request are free, and no more than that piece is still in flight.
 pub struct TrackedBody {
     body: Body,
     // On whose behalf what it streams is computed.
     client: Client,
     rest: Bytes,
     _request: RequestInProgress,
-    _place: Option<Place>,
+    _permit: Option<RequestPermit>,
     _memory: Option<Arc<Reservation>>,
 }
 
 impl TrackedBody {
-    /// A body that releases `request`, `place` and `memory` when it is dropped.
+    /// A body that releases `request`, `permit` and `memory` when it is dropped.
     pub fn new(
         body: Body,
         client: Client,
         request: RequestInProgress,
-        place: Option<Place>,
+        permit: Option<RequestPermit>,
         memory: Option<Arc<Reservation>>,
     ) -> TrackedBody {
-        TrackedBody { body, client, rest: Bytes::new(), _request: request, _place: place, _memory: memory }
+        TrackedBody { body, client, rest: Bytes::new(), _request: request, _permit: permit, _memory: memory }
     }
 
     fn next_piece(&mut self) -> Bytes {

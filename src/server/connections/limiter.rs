@@ -61,8 +61,8 @@ pub struct ConnectionCounts {
     pub closed: u64,
 }
 
-/// A connection that is counted until this is dropped. A spare one is answered for the health of the server alone; every
-/// other request is refused.
+/// A connection that is counted until this is dropped. A spare one is answered for the health of the server alone;
+/// every other request is refused.
 pub struct ConnectionPermit {
     limiter: ConnectionLimiter,
     /// Its number; none for a spare one, which is never closed to make room.
@@ -84,7 +84,7 @@ impl ConnectionLimiter {
         &self.proxies
     }
 
-    /// The limits.
+    /// What connections are held to.
     #[must_use]
     pub fn limits(&self) -> &ConnectionLimits {
         &self.limits
@@ -150,8 +150,8 @@ impl ConnectionLimiter {
 }
 
 impl Table {
-    /// Closes at most `most` connections that wait for their clients: those of the clients with the most connections first,
-    /// and of these the ones that have waited longest.
+    /// Closes at most `most` connections that wait for their clients: those of the clients with the most connections
+    /// first, and of these the ones that have waited longest.
     fn make_room(&mut self, most: usize) {
         let now = Instant::now();
         if self.searched_in_vain.is_some_and(|last| now < last + SEARCH_PAUSE) {

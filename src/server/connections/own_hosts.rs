@@ -1,5 +1,5 @@
-//! What pages of other sites may send to a service without keys: nothing by a name that is not its own (DNS rebinding), and no
-//! changes (cross-site request forgery).
+//! What pages of other sites may send to a service without keys: nothing by a name that is not its own (DNS rebinding),
+//! and no changes (cross-site request forgery).
 
 use std::net::{IpAddr, SocketAddr};
 use std::sync::Arc;
@@ -13,7 +13,8 @@ const HEALTH: [&str; 2] = ["/healthz", "/readyz"];
 /// The names by which a service without keys is called, and the origins whose pages may change something.
 #[derive(Clone, Debug)]
 pub struct OwnHosts {
-    /// Where it listens. If that is all addresses, it may be called by any address: only a name can be pointed elsewhere.
+    /// Where it listens. If that is all addresses, it may be called by any address: only a name can be pointed
+    /// elsewhere.
     pub listen: SocketAddr,
     /// Names and addresses besides that and loopback ones.
     pub names: Arc<[Authority]>,
@@ -54,6 +55,14 @@ impl OwnHosts {
 
     fn is_own(&self, host: &Authority) -> bool {
         let name = host.host();
+        // What stands before the name, or after it without being a port, is no part of a host.
+        let port = host
+            .as_str()
+            .strip_prefix(name)
+            .and_then(|rest| rest.strip_prefix(':').or(rest.is_empty().then_some(rest)));
+        if port.is_none_or(|port| !port.is_empty() && (host.port_u16().is_none() || port.starts_with('+'))) {
+            return false;
+        }
         let known = |known: &Authority| {
             known.host().eq_ignore_ascii_case(name) && known.port_u16().is_none_or(|port| host.port_u16() == Some(port))
         };
@@ -102,6 +111,13 @@ mod tests {
             (true, "127.0.0.1", "192.0.2.1"),
             (true, "127.0.0.1", ""),
             (true, "127.0.0.1", "a b"),
+            (true, "127.0.0.1", "evil@localhost"),
+            (true, "127.0.0.1", "evil@lab.example"),
+            (true, "127.0.0.1", "lab.example:evil"),
+            (true, "127.0.0.1", "lab.example:99999"),
+            (true, "127.0.0.1", "stickslip:+8080"),
+            (true, "127.0.0.1", "evil@[::1]:8080"),
+            (false, "127.0.0.1", "localhost:"),
             (false, "192.0.2.1", "192.0.2.1:8080"),
             (true, "192.0.2.1", "192.0.2.2:8080"),
             (false, "0.0.0.0", "192.0.2.2:8080"),

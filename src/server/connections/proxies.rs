@@ -1,6 +1,6 @@
 //! The address of the client behind proxies, as those that are trusted state it.
 
-use std::net::IpAddr;
+use std::net::{IpAddr, SocketAddr};
 use std::str::FromStr;
 
 use axum::http::HeaderMap;
@@ -45,8 +45,8 @@ pub fn is_trusted(trusted: &[Network], address: IpAddr) -> bool {
     trusted.iter().any(|network| network.contains(address))
 }
 
-/// The client of a request that came from `peer`. A proxy appends to `X-Forwarded-For` the address that called it; the last
-/// address that is not one of `trusted` is the client. What stands before it could be made up.
+/// The client of a request that came from `peer`. A proxy appends to `X-Forwarded-For` the address that called it; the
+/// last address that is not one of `trusted` is the client. What stands before it could be made up.
 pub fn client(peer: IpAddr, headers: &HeaderMap, trusted: &[Network]) -> IpAddr {
     let mut client = peer.to_canonical();
     if !is_trusted(trusted, client) {
@@ -55,13 +55,20 @@ pub fn client(peer: IpAddr, headers: &HeaderMap, trusted: &[Network]) -> IpAddr 
     let lines = headers.get_all("x-forwarded-for");
     let lines: Vec<&str> = lines.iter().map(|line| line.to_str().unwrap_or_default()).collect();
     for stated in lines.into_iter().rev().flat_map(|line| line.rsplit(',')) {
-        let Ok(stated) = stated.trim().parse::<IpAddr>() else { break };
+        let Some(stated) = address(stated.trim()) else { break };
         client = stated.to_canonical();
         if !is_trusted(trusted, client) {
             break;
         }
     }
     client
+}
+
+/// An address as proxies state it: some with the port, and with it or without it an IPv6 address in brackets.
+fn address(stated: &str) -> Option<IpAddr> {
+    let bare = stated.strip_prefix('[').and_then(|stated| stated.strip_suffix(']')).unwrap_or(stated);
+    let with_port = || stated.parse::<SocketAddr>().ok().map(|stated| stated.ip());
+    bare.parse().ok().or_else(with_port)
 }
 
 #[cfg(test)]
@@ -85,6 +92,11 @@ mod tests {
             ("fd00:0:0:1::1", &["2001:db8::1"], "fd00:0:0:1::1"),
             ("127.0.0.1", &["10.1.2.3"], "10.1.2.3"),
             ("127.0.0.1", &["198.51.100.7, nonsense"], "127.0.0.1"),
+            ("127.0.0.1", &["1.2.3.4:5678"], "1.2.3.4"),
+            ("127.0.0.1", &["1.1.1.1, 1.2.3.4:5678, 10.1.2.3:80"], "1.2.3.4"),
+            ("127.0.0.1", &["[2001:db8::1]:443"], "2001:db8::1"),
+            ("127.0.0.1", &["[2001:db8::1]"], "2001:db8::1"),
+            ("127.0.0.1", &["1.2.3.4:99999"], "127.0.0.1"),
         ] {
             let mut headers = HeaderMap::new();
             for line in lines {

@@ -1,4 +1,4 @@
-//! Serves one request of a connection: acquires a place, calls the router, and returns a reply that releases the place.
+//! Serves one request of a connection: acquires a permit, calls the router, and returns a reply that releases it.
 
 use std::net::IpAddr;
 use std::sync::Arc;
@@ -11,7 +11,7 @@ use hyper::body::Incoming;
 use tokio::sync::watch;
 use tower_service::Service as _;
 
-use super::bodies::{DeadlineBody, RequestInProgress, TrackedBody};
+use super::bodies::{DeadlineBody, RequestInProgress, ReturnedBody, TrackedBody, discard};
 use super::proxies::{self, ClientAddress, Network};
 use super::{ConnectionActivity, OwnHosts};
 use crate::admission::{Client, Pool, PoolError, Quota, Reservation};
@@ -70,17 +70,22 @@ impl Service {
             return Err(Closed);
         }
         let in_progress = RequestInProgress(activity);
-        let mut request = request.map(|body| Body::new(DeadlineBody::new(body, self.body_time)));
+        let (head, body) = request.into_parts();
+        let (body, mut unread) = ReturnedBody::new(DeadlineBody::new(body, self.body_time));
+        let mut request = Request::from_parts(head, Body::new(body));
         let address = proxies::client(peer, request.headers(), &self.proxies);
         request.extensions_mut().insert(ClientAddress(address));
         let client = Client::of_address(address);
         let fault = in_progress.0.head_fault().or_else(|| ambiguity(&request));
         // Only the HTTP library knows where chunks end, and what follows them has not been inspected.
-        let last = fault.is_some() || request.headers().contains_key(header::TRANSFER_ENCODING);
+        let mut last = fault.is_some() || request.headers().contains_key(header::TRANSFER_ENCODING);
+        // Of a head that can be read in two ways nobody knows where the body ends. A client that is not asked for its
+        // body sends none.
+        let readable = fault.is_none() && !spare && !request.headers().contains_key(header::EXPECT);
         let always = ALWAYS_ANSWERED.contains(&request.uri().path());
         let share = || client.within(|| self.pool.share_of(Quota::Requests));
         let share = (self.by_address && !always).then(share).transpose();
-        let place = if let Some(fault) = fault {
+        let permit = if let Some(fault) = fault {
             Err(Refusal::Ambiguous(fault))
         } else if let Some(why) = self.hosts.as_ref().and_then(|hosts| hosts.refuse(&request)) {
             Err(Refusal::Foreign(why))
@@ -91,24 +96,30 @@ impl Service {
         } else if spare {
             Err(Refusal::Full(PoolError::Busy))
         } else if request.method() == Method::POST {
-            // It acquires its place once its body has arrived.
+            // It acquires its permit once its body has arrived.
             Ok(None)
         } else {
             let mut stopping = self.stopping.subscribe();
             tokio::select! {
                 biased;
-                place = self.pool.enter() => place.map(Some).map_err(Refusal::Full),
+                permit = self.pool.admit_request() => permit.map(Some).map_err(Refusal::Full),
                 _ = stopping.wait_for(|stopping| *stopping) => Err(Refusal::Stopping),
             }
         };
-        let (reply, place) = match place {
-            Ok(place) => (client.clone().serve(self.router.clone().call(request)).await, place),
+        let (reply, permit) = match permit {
+            Ok(permit) => (client.clone().serve(self.router.clone().call(request)).await, permit),
             Err(refusal) => {
                 request.extensions_mut().insert(refusal);
                 (self.refusals.clone().call(request).await, None)
             }
         };
         let Ok(mut reply) = reply;
+        // The next request of the connection begins after the body.
+        if let Ok(rest) = unread.try_recv()
+            && !rest.is_end_stream()
+        {
+            last |= !readable || !discard(rest).await;
+        }
         if last {
             reply.headers_mut().insert(header::CONNECTION, HeaderValue::from_static("close"));
         }
@@ -117,8 +128,8 @@ impl Service {
         let memory = reply.extensions_mut().remove::<Arc<Reservation>>();
         // An endless stream has a limit of its own and occupies no solver. A compressed reply ends, but has no length.
         let ends = reply.body().size_hint().exact().is_some() || reply.headers().contains_key(header::CONTENT_ENCODING);
-        let place = place.filter(|_| ends);
-        Ok(reply.map(|body| TrackedBody::new(body, client, in_progress, place, memory)))
+        let permit = permit.filter(|_| ends);
+        Ok(reply.map(|body| TrackedBody::new(body, client, in_progress, permit, memory)))
     }
 }
 
@@ -131,6 +142,8 @@ fn ambiguity<B>(request: &Request<B>) -> Option<&'static str> {
         Some("the head has more than one Content-Type")
     } else if twice("idempotency-key") {
         Some("the head has more than one Idempotency-Key")
+    } else if twice("origin") {
+        Some("the head has more than one Origin")
     } else {
         None
     }

@@ -1,8 +1,9 @@
-//! A guard against request smuggling: heads that a proxy and this server might end in different places, or give different bodies.
+//! A guard against request smuggling: heads that a proxy and this server might end in different places, or give
+//! different bodies.
 //!
-//! The HTTP library accepts some that the standard allows: lines that end in a line feed alone, a length beside a transfer
-//! coding, the same length twice, other codings below the chunks. The guard inspects the bytes of a head as they arrive, and
-//! such requests are refused. It also tells where a sound head ends and how long its body is.
+//! The HTTP library accepts some that the standard allows: lines that end in a line feed alone, a length beside a
+//! transfer coding, the same length twice, other codings below the chunks. The guard inspects the bytes of a head as
+//! they arrive, and such requests are refused. It also tells where a sound head ends and how long its body is.
 
 use memchr::memchr;
 

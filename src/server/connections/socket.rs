@@ -1,5 +1,5 @@
-//! The stream of a connection: records what the client sends and reads, inspects the head of each request from its first byte,
-//! and hands on nothing beyond a request until its reply is done.
+//! The stream of a connection: records what the client sends and reads, inspects the head of each request from its
+//! first byte, and hands on nothing beyond a request until its reply is done.
 
 use std::io::{self, IoSlice};
 use std::pin::Pin;

@@ -11,11 +11,11 @@ use serde::Deserialize as _;
 use serde_json::Value;
 
 use super::{Sweep, SweepError, SweepResult};
-use crate::admission::{Kind, Nanoseconds, Pool, Stop, Turn};
-use crate::simulation::{Failure, simulate};
+use crate::admission::{Kind, Nanoseconds, Pool, SolverSlot, Stop};
+use crate::simulation::{Failure, check, simulate};
 use stickslip_wire::check::Fault;
 use stickslip_wire::pointer_lookup::{Lookup, lookup};
-use stickslip_wire::{Code, Document as _, PointFailure, Rejection, SimulateReply, SimulateRequest};
+use stickslip_wire::{Code, PointFailure, Rejection, SimulateReply, SimulateRequest};
 
 /// How long a sweep keeps its threads.
 const SLICE_TIME: Duration = Duration::from_millis(25);
@@ -42,14 +42,14 @@ impl Sweep {
         while next < points.end {
             let (sweep, stop) = (Arc::clone(self), stop.clone());
             let rest = next..points.end;
-            let slice = pool.share(kind, move |turns| sweep.slice(rest, turns, &stop, allowed)).await??;
+            let slice = pool.share(kind, move |slots| sweep.slice(rest, slots, &stop, allowed)).await??;
             next += slice.values.len() / self.checked.outputs.len().max(1);
             result.append(slice);
         }
         Ok(result)
     }
 
-    /// Computes the first of these points, as many as fit in a slice, on a thread of its own for each turn.
+    /// Computes the first of these points, as many as fit in a slice, on a thread of its own for each slot.
     ///
     /// # Errors
     /// [`Failure`] if it was stopped, or the system has no thread for it.
@@ -59,7 +59,7 @@ impl Sweep {
     pub fn slice(
         &self,
         points: Range<usize>,
-        turns: Vec<Turn>,
+        slots: Vec<SolverSlot>,
         stop: &Stop,
         allowed: Option<Duration>,
     ) -> Result<SweepResult, Failure> {
@@ -85,8 +85,8 @@ impl Sweep {
         };
         let mut done = thread::scope(|scope| {
             // A thread that the system refuses leaves its part to the others.
-            let start = |turn: Turn| Builder::new().spawn_scoped(scope, || turn.work(work)).ok();
-            let threads: Vec<_> = turns.into_iter().filter_map(start).collect();
+            let start = |slot: SolverSlot| Builder::new().spawn_scoped(scope, || slot.work(work)).ok();
+            let threads: Vec<_> = slots.into_iter().filter_map(start).collect();
             let done = threads.into_iter().map(|thread| thread.join().unwrap_or_else(|panic| resume_unwind(panic)));
             done.flatten().collect::<Vec<_>>()
         });
@@ -111,7 +111,7 @@ impl Sweep {
         let outputs = self.checked.outputs.len();
         for point in points {
             stop.check()?;
-            let own = allowed.map_or_else(|| stop.clone(), |allowed| stop.child_deadline(allowed));
+            let own = stop.child_deadline(allowed.or(stop.time_limit()));
             match self.point(document, point, &own) {
                 Ok(reply) => {
                     result.values.extend(self.checked.outputs.iter().map(|output| match lookup(&reply, output) {
@@ -134,7 +134,8 @@ impl Sweep {
         self.checked.put(document, point);
         let request = SimulateRequest::deserialize(&*document)
             .map_err(|error| Rejection::Invalid(vec![Fault { pointer: String::new(), detail: error.to_string() }]));
-        let simulation = request.and_then(SimulateRequest::check).map_err(of_rejection)?;
+        let checked = check(request.map_err(of_rejection)?, stop, stop).map_err(of_failure)?;
+        let simulation = checked.map_err(of_rejection)?;
         let reply = match &self.shared {
             Some(shared) => shared.simulate(simulation, stop),
             None => simulate(&simulation, stop),
@@ -163,8 +164,10 @@ fn of_failure(refusal: Failure) -> PointFailure {
         | Failure::Search { pointer, .. }
         | Failure::CycleTooLarge { pointer }
         | Failure::Loops { pointer, .. } => failure(code, pointer, detail),
-        Failure::Scan { pointer, .. } => failure(code, pointer.to_owned(), detail),
-        Failure::Stopped | Failure::Lifted => failure(code, String::new(), detail),
+        Failure::Scan { pointer, .. } | Failure::Preparation { pointer, .. } => {
+            failure(code, pointer.to_owned(), detail)
+        }
+        Failure::Stopped | Failure::Lifted | Failure::NeedsServer { .. } => failure(code, String::new(), detail),
     }
 }
 

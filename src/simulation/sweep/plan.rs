@@ -4,6 +4,7 @@ use serde_json::Value;
 
 use super::Sweep;
 use super::shared::{self, Shared};
+use crate::admission::{INLINE, Nanoseconds};
 use crate::simulation::reply_template::reply_template;
 use crate::simulation::{bytes, cost};
 use stickslip_wire::check::{Fault, Faults, JsonPath};
@@ -11,19 +12,28 @@ use stickslip_wire::json_value::{Pointer, index};
 use stickslip_wire::pointer_lookup::{Lookup, lookup};
 use stickslip_wire::simulate::Simulation;
 use stickslip_wire::sweep::CheckedSweep;
-use stickslip_wire::{Document as _, Rejection, SimulateRequest, parse_value};
+use stickslip_wire::{Document as _, Prepare, PrepareOnce, Rejection, SimulateRequest, parse_value};
 
 /// Bytes that a value in a body takes once it is parsed, for each byte that it is written with; twice, as it is turned
 /// into a request.
 const VALUE_BYTES: usize = 32;
 
 impl Sweep {
-    /// Checks the corners of a sweep, and estimates its cost.
+    /// The cost of [`Sweep::plan`]: above all of the profile, which each corner may have its own of.
+    #[must_use]
+    pub fn planning_cost(checked: &CheckedSweep) -> Nanoseconds {
+        let corners = 1_u64 << checked.axes.len();
+        INLINE.saturating_add(cost::of_profile_in(&checked.request.base.0).saturating_mul(corners))
+    }
+
+    /// Checks the corners of a sweep, with a profile that `profiles` prepares once if no axis changes it, and estimates
+    /// its cost.
     ///
     /// # Errors
     /// [`Rejection::Invalid`] if an axis leaves the range of its field, the base is at fault whatever the axes say, or
     /// an output does not exist; [`Rejection::Refused`] if the mechanics takes none of the corners.
-    pub fn plan(checked: CheckedSweep) -> Result<Sweep, Rejection> {
+    pub fn plan(checked: CheckedSweep, profiles: &dyn Prepare) -> Result<Sweep, Rejection> {
+        let profiles = PrepareOnce::by(profiles);
         let mut document = checked.request.base.0.clone();
         let mut sweep = Sweep { checked, base: Value::Null, shared: None, cost_per_point: 0, bytes: 0 };
         let mut outputs = vec![Lookup::Nothing; sweep.checked.outputs.len()];
@@ -31,7 +41,7 @@ impl Sweep {
         for point in sweep.corners() {
             sweep.checked.put(&mut document, point);
             let request = parse_value::<SimulateRequest>(&document).map_err(|fault| Rejection::Invalid(vec![fault]));
-            match request.and_then(SimulateRequest::check) {
+            match request.and_then(|request| request.check_with(&profiles)) {
                 Ok(simulation) => {
                     accepted += 1;
                     sweep.inspect(simulation, &mut outputs);
@@ -65,7 +75,8 @@ impl Sweep {
     }
 
     fn inspect(&mut self, simulation: Simulation, outputs: &mut [Lookup]) {
-        self.cost_per_point = self.cost_per_point.max(cost::of_simulation(&simulation));
+        let preparation = cost::of_preparation(&simulation.definition.profile);
+        let mut cost = cost::of_simulation(&simulation);
         self.bytes = self.bytes.max(bytes::of_simulation(&simulation));
         let reply = reply_template(&simulation);
         for (output, found) in self.checked.outputs.iter().zip(outputs) {
@@ -76,6 +87,10 @@ impl Sweep {
         if self.shared.is_none() {
             self.shared = Shared::of(simulation, &self.checked.axes);
         }
+        if self.shared.is_none() {
+            cost = cost.saturating_add(preparation);
+        }
+        self.cost_per_point = self.cost_per_point.max(cost);
     }
 
     /// Refuses faults that every point has, and values out of the range of their field.

@@ -1,6 +1,13 @@
 //! Results of consecutive points of a sweep, and their encoding as bytes for a store.
 
+use std::sync::Arc;
+
+use serde_json::Number;
+
+use stickslip_wire::sweep::{CheckedSweep, indices};
 use stickslip_wire::{PointFailure, limits};
+
+use crate::formats::{Cells, Column, Table};
 
 /// The outputs of consecutive points.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -29,6 +36,28 @@ impl SweepResult {
         self.failed += next.failed;
         self.failures.extend(next.failures);
         self.failures.truncate(limits::SWEEP_FAILURES);
+    }
+
+    /// The table of the sweep: a row for each point, with the values of its axes and its outputs.
+    #[must_use]
+    pub fn table(self, sweep: &CheckedSweep) -> Table<'static> {
+        let SweepResult { values, failed, failures } = self;
+        let (axes, values) = (Arc::new(sweep.axes.clone()), Arc::new(values));
+        let (request, count) = (&sweep.request, sweep.outputs.len());
+        let mut columns = Vec::with_capacity(axes.len() + count);
+        for (index, axis) in request.axes.iter().enumerate() {
+            let axes = Arc::clone(&axes);
+            let value = move |row| indices(&axes, row).nth(index).map(|(axis, index)| axis.number(index));
+            columns.push(Column::new(axis.column(), None, Cells::Numbers(Box::new(value))));
+        }
+        for (index, output) in request.outputs.iter().enumerate() {
+            let values = Arc::clone(&values);
+            let value = move |row| values.get(row * count + index).and_then(|value| Number::from_f64(*value));
+            columns.push(Column::new(output.column(), None, Cells::Numbers(Box::new(value))));
+        }
+        let failures = serde_json::to_string(&failures).unwrap_or_else(|_| "[]".to_owned());
+        let before = format!("{{\"points\":{},\"columns\":{{", sweep.points);
+        Table::new(sweep.points, columns, [before, format!("}},\"failed\":{failed},\"failures\":{failures}}}")])
     }
 
     /// Its bytes: how many failed, the length of their list, the list as JSON, and the numbers.

@@ -1,16 +1,16 @@
-//! What the points of a sweep share: a profile that no axis changes is checked and made once, and so is the whole contact if
-//! no axis changes that.
+//! What the points of a sweep share: a profile that no axis changes is checked and made once, and so is the whole
+//! contact if no axis changes that.
 
 use std::sync::Arc;
 
 use serde_json::{Value, json};
-use stickslip_mechanics::{Contact, Profile, Setup};
+use stickslip_mechanics::{Contact, Profile};
 use stickslip_wire::simulate::Simulation;
 use stickslip_wire::sweep::AxisValues;
-use stickslip_wire::{self as wire, SimulateReply, Solver};
+use stickslip_wire::{SimulateReply, Solver};
 
 use crate::admission::Stop;
-use crate::simulation::run::{Timer, refused_at, simulate_on};
+use crate::simulation::run::{Timer, contact, simulate_on};
 use crate::simulation::{Failure, simulate};
 
 #[derive(Debug)]
@@ -31,31 +31,27 @@ impl Shared {
         let changed = |member: &str| {
             axes.iter().any(|axis| axis.pointer.segments().iter().map(String::as_str).take(2).eq(["contact", member]))
         };
-        // A load curve is scaled to the bodies.
-        let of_bodies = matches!(point.definition.profile, wire::Profile::LoadCurve(_));
-        if changed("profile") || of_bodies && changed("material") {
+        if changed("profile") || point.definition.profile.depends_on_bodies() && changed("material") {
             return None;
         }
         let fixed = !["material", "friction", "preload"].into_iter().any(changed);
-        let Setup { profile, elasticity, friction, preload } = point.setup;
-        let profile = Arc::new(profile);
-        let contact = fixed.then(|| Contact::with_profile(Arc::clone(&profile), elasticity, friction, preload).ok());
+        let profile = Arc::clone(&point.setup.profile);
+        let contact = fixed.then(|| Contact::new(point.setup).ok());
         Some(Shared { profile, contact: contact.flatten() })
     }
 
     /// The reply to a point whose profile is the placeholder.
     pub(super) fn simulate(&self, mut point: Simulation, stop: &Stop) -> Result<SimulateReply, Failure> {
         if matches!(point.solver, Some(Solver::Springs(_))) {
-            point.setup.profile = Profile::clone(&self.profile);
+            point.setup.profile = Arc::clone(&self.profile);
             return simulate(&point, stop);
         }
-        let timer = Timer::start();
+        let timer = Timer::start(stop);
         let contact = match &self.contact {
             Some(contact) => contact.clone(),
             None => {
-                let Setup { elasticity, friction, preload, .. } = point.setup;
-                Contact::with_profile(Arc::clone(&self.profile), elasticity, friction, preload)
-                    .map_err(refused_at("/contact", preload))?
+                point.setup.profile = Arc::clone(&self.profile);
+                contact(point.setup.clone(), "/contact")?
             }
         };
         simulate_on(contact, &point, timer, stop)

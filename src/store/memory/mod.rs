@@ -199,13 +199,10 @@ impl Store for MemoryStore {
         Ok(found.take(limit).map(summary).collect())
     }
 
-    async fn rename(&self, id: Uuid, label: Option<String>, receipt: Option<Receipt>) -> Result<()> {
+    async fn rename(&self, id: Uuid, label: Option<String>, expected: u64, receipt: Option<Receipt>) -> Result<()> {
         let mut inner = self.lock();
         inner.receipts.check_free(receipt.as_ref())?;
-        inner.get(id)?;
-        if let Some(stored) = inner.sessions.get_mut(&id) {
-            stored.session.label = label;
-        }
+        inner.at(id, expected)?.session.label = label;
         inner.receipts.insert(receipt);
         Ok(())
     }
@@ -233,6 +230,10 @@ impl Store for MemoryStore {
             let start = usize::try_from(after).unwrap_or(usize::MAX).min(stored.moves.len());
             stored.moves[start..].iter().take(limit).cloned().collect()
         })
+    }
+
+    async fn count_moves(&self, id: Uuid, end: u64) -> Result<u64> {
+        self.lock().get(id).map(|stored| end.min(stored.moves.len() as u64))
     }
 
     async fn fork(&self, id: Uuid, copy: Session, receipt: Option<Receipt>) -> Result<()> {

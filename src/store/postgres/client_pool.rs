@@ -1,6 +1,6 @@
 //! A pool of connections for all that does not go through the writer, with retries where a connection is lost.
 
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use deadpool_postgres::{
     GenericClient, Hook, HookError, Manager, ManagerConfig, Object, Pool, RecyclingMethod, Runtime,
@@ -11,7 +11,7 @@ use tokio_postgres::types::ToSql;
 use crate::store::{Result, StoreError};
 
 use super::connect::ConnectTarget;
-use super::fault::{Backoff, Fault, Outage};
+use super::fault::{Backoff, Fault, LOCK_WAIT, Outage};
 use super::sql;
 
 /// Connections of the pool. Reads are short; more would only make the database switch between them.
@@ -132,6 +132,7 @@ impl ClientPool {
 #[derive(Default)]
 pub(super) struct Tries {
     backoff: Backoff,
+    lock: Option<(Instant, Backoff)>,
     collisions: usize,
     count: usize,
 }
@@ -143,6 +144,14 @@ impl Tries {
         match &fault {
             Fault::Lost(text) if outage.worth_waiting(text) && self.count < TRIES => {}
             Fault::Conflict(_) if self.collisions < COLLISIONS => self.collisions += 1,
+            Fault::Locked(_) => {
+                let (begin, backoff) = self.lock.get_or_insert_with(|| (Instant::now(), Backoff::for_lock()));
+                if begin.elapsed() >= LOCK_WAIT {
+                    return Err(fault.into_store_error());
+                }
+                backoff.pause().await;
+                return Ok(());
+            }
             _ => return Err(fault.into_store_error()),
         }
         self.backoff.pause().await;
@@ -158,6 +167,34 @@ pub(super) async fn rows(
 ) -> Result<Vec<Row>, Fault> {
     let statement = client.prepare_cached(statement).await?;
     Ok(client.query(&statement, parameters).await?)
+}
+
+/// The same for a statement that may take long. It is sent at once with the settings around it, so that no transaction
+/// waits for this process.
+pub(super) async fn long_rows(
+    client: &Object,
+    statement: &str,
+    parameters: &[Parameter<'_>],
+) -> Result<Vec<Row>, Fault> {
+    let statement = client.prepare_cached(statement).await?;
+    // Polled in this order, and sent as they are polled.
+    let (begun, rows, ended) = futures::join!(
+        client.batch_execute(sql::ALLOW_LONG),
+        client.query(&statement, parameters),
+        client.batch_execute(sql::ALLOW_SHORT),
+    );
+    begun?;
+    let rows = rows?;
+    ended?;
+    Ok(rows)
+}
+
+/// Whether the row that a statement is about exists, by the first column of what it returns: whether it was free.
+pub(super) fn existed(rows: &[Row]) -> Result<bool, Fault> {
+    match rows.first().map(|row| row.get(0)) {
+        Some(false) => Err(Fault::locked()),
+        found => Ok(found.is_some()),
+    }
 }
 
 /// The number of rows that a statement has changed, likewise.

@@ -22,8 +22,10 @@ use crate::unverified_tls;
 /// How long connecting may take, unless the URL says otherwise.
 const CONNECT_TIMEOUT: Duration = Duration::from_secs(3);
 /// How long sent bytes may stay unconfirmed before a connection counts as lost, and how long one may be silent before
-/// it is tested.
+/// it is tested, and how often and how many times.
 const SILENCE: Duration = Duration::from_secs(10);
+const KEEPALIVE_INTERVAL: Duration = Duration::from_secs(2);
+const KEEPALIVES: u32 = 3;
 
 /// A connection whose messages have yet to be driven.
 pub(super) type Driver = Connection<Socket, <MakeRustlsConnect as MakeTlsConnect<Socket>>::Stream>;
@@ -51,6 +53,12 @@ impl ConnectTarget {
         }
         if !url.contains("keepalives_idle=") {
             config.keepalives_idle(SILENCE);
+        }
+        if config.get_keepalives_interval().is_none() {
+            config.keepalives_interval(KEEPALIVE_INTERVAL);
+        }
+        if config.get_keepalives_retries().is_none() {
+            config.keepalives_retries(KEEPALIVES);
         }
         if config.get_application_name().is_none() {
             config.application_name("stickslip");

@@ -22,6 +22,11 @@ const BRIEF_PATIENCE: Duration = Duration::from_millis(250);
 const FIRST_PAUSE: Duration = Duration::from_millis(25);
 const LONGEST_PAUSE: Duration = Duration::from_millis(400);
 
+/// How long a change waits for locks that other transactions hold, from its arrival.
+pub(super) const LOCK_WAIT: Duration = Duration::from_secs(5);
+/// How soon to try it again at first, as most locks are held for the time of a commit.
+const FIRST_LOCK_PAUSE: Duration = Duration::from_millis(2);
+
 /// Why the database failed.
 #[derive(Debug)]
 pub(super) enum Fault {
@@ -29,6 +34,8 @@ pub(super) enum Fault {
     Lost(String),
     /// Nothing has changed, and a retry may succeed at once: two transactions conflicted.
     Conflict(String),
+    /// Nothing has changed: another transaction holds a lock.
+    Locked(String),
     /// Nothing has changed: a key or an identifier is there already.
     Duplicate(String),
     /// Nothing has changed, and another attempt would fail too.
@@ -68,18 +75,23 @@ fn distrusted(error: &Error) -> bool {
     })
 }
 
+/// The codes of `idle_in_transaction_session_timeout` and `transaction_timeout`.
+const SILENT_IN_TRANSACTION: [&str; 2] = ["25P03", "25P04"];
+
 fn refused(refusal: &DbError) -> Fault {
     let text = format!("{} ({})", refusal.message(), refusal.code().code());
     let code = refusal.code();
     let class = code.code().get(..2).unwrap_or_default();
     match class {
-        // The server stops, has crashed, is starting, has no connection left, or has become a standby.
+        // The server stops, has crashed, is starting, has no connection left, or has become a standby; or it has ended
+        // a transaction because this process was silent for too long.
         "08" | "57" if *code != SqlState::QUERY_CANCELED => Fault::Lost(text),
         _ if *code == SqlState::TOO_MANY_CONNECTIONS || *code == SqlState::READ_ONLY_SQL_TRANSACTION => {
             Fault::Lost(text)
         }
+        _ if SILENT_IN_TRANSACTION.contains(&code.code()) => Fault::Lost(text),
         "40" => Fault::Conflict(text),
-        _ if *code == SqlState::LOCK_NOT_AVAILABLE => Fault::Conflict(text),
+        _ if *code == SqlState::LOCK_NOT_AVAILABLE => Fault::Locked(text),
         _ if *code == SqlState::UNIQUE_VIOLATION => Fault::Duplicate(text),
         _ if *code == SqlState::DISK_FULL => Fault::Refused(StoreError::Full(text)),
         "53" => Fault::Refused(StoreError::Unavailable(text)),
@@ -94,10 +106,16 @@ impl Fault {
         Fault::Lost("no answer in time".to_owned())
     }
 
+    /// Another transaction holds the row of what is to be changed.
+    pub(super) fn locked() -> Fault {
+        Fault::Locked("another transaction holds its row".to_owned())
+    }
+
     /// The error for the caller when there is no further attempt.
     pub(super) fn into_store_error(self) -> StoreError {
         match self {
             Fault::Lost(text) | Fault::Conflict(text) => StoreError::Unavailable(text),
+            Fault::Locked(text) => StoreError::Locked(text),
             Fault::Duplicate(text) => StoreError::Failed(text),
             Fault::Refused(error) => error,
         }
@@ -123,8 +141,8 @@ impl Outage {
         self.heard.send_replace(Instant::now());
     }
 
-    /// Ends when nothing has been heard of the database for as long as a request waits. A request that takes long is not
-    /// silence: other answers come meanwhile (`listen.rs` asks for them).
+    /// Ends when nothing has been heard of the database for as long as a request waits. A request that takes long is
+    /// not silence: other answers come meanwhile (`listen.rs` asks for them).
     pub(super) async fn silence(&self) {
         let (begin, mut heard) = (Instant::now(), self.heard.subscribe());
         let known = self.lock().is_some() && heard.borrow().elapsed() >= PATIENCE;
@@ -177,9 +195,20 @@ impl Default for Backoff {
 }
 
 impl Backoff {
+    /// Waits for a lock.
+    pub(super) fn for_lock() -> Backoff {
+        Backoff(FIRST_LOCK_PAUSE)
+    }
+
     /// Waits, each time longer.
     pub(super) async fn pause(&mut self) {
-        tokio::time::sleep(self.0).await;
-        self.0 = (2 * self.0).min(LONGEST_PAUSE);
+        tokio::time::sleep(self.next()).await;
+    }
+
+    /// How long to wait, each time longer.
+    pub(super) fn next(&mut self) -> Duration {
+        let pause = self.0;
+        self.0 = (2 * pause).min(LONGEST_PAUSE);
+        pause
     }
 }

@@ -11,15 +11,17 @@ use deadpool_postgres::Object;
 use uuid::Uuid;
 
 use crate::store::jobs::{ChunkResult, Claim, JOB_LIFETIME, JOB_TIME_LIMIT, Job, JobLimits, JobStore};
-use crate::store::rows;
+use crate::store::rows as read;
 use crate::store::{Receipt, Result, StoreError, Tenant};
 
 use super::PostgresStore;
-use super::client_pool::{self, ANSWER, ClientPool, LONG_ANSWER, Parameter, execute, try_once, with_retries};
-use super::columns::{Receipts, Sessions, from_bigint, reader, split_time, to_bigint};
+use super::client_pool::{
+    ANSWER, ClientPool, LONG_ANSWER, Parameter, existed, long_rows, rows, try_once, with_retries,
+};
+use super::columns::{Receipts, from_bigint, reader, split_time, to_bigint};
 use super::fault::Fault;
 use super::sql;
-use super::transactions::{begin, create};
+use super::transactions::begin;
 
 /// Jobs that one statement deletes: their results are large.
 const PURGED_AT_ONCE: i64 = 4;
@@ -30,91 +32,50 @@ impl ClientPool {
         connection: &mut Object,
         (job, request): (&Job, &str),
         limits: JobLimits,
-        receipt: Option<&Receipt>,
+        receipts: &Receipts,
         commit_sent: &AtomicBool,
     ) -> Result<(), Fault> {
         let transaction = begin(connection).await?;
         let tenant = job.tenant.name();
         // Tenants that share a number wait for each other, and no more.
-        execute(&transaction, sql::LOCK_TENANT, &[&i64::from(crc32fast::hash(tenant.as_bytes()))]).await?;
+        let lock = i64::from(crc32fast::hash(tenant.as_bytes()));
+        existed(&rows(&transaction, sql::LOCK_TENANT, &[&lock]).await?)?;
         let statement = transaction.prepare_cached(sql::JOBS_OF_TENANT).await?;
         let found = transaction.query_one(&statement, &[&tenant]).await?;
         limits.check(from_bigint(found.get(0)), from_bigint(found.get(1)), from_bigint(found.get(2)), job)?;
         let (at, ns) = split_time(job.created_at);
         let (points, chunk) = (to_bigint(job.points), to_bigint(job.chunk));
-        let (bytes, cost) = (to_bigint(job.bytes), to_bigint(job.cost));
-        let row: [Parameter<'_>; 9] = [&job.id, &tenant, &at, &ns, &points, &chunk, &bytes, &cost, &request];
-        execute(&transaction, sql::CREATE_JOB, &row).await?;
-        execute(&transaction, sql::CREATE_CHUNKS, &[&job.id, &to_bigint(job.chunks())]).await?;
-        if let Some(receipt) = receipt {
-            let mut receipts = Receipts::default();
-            receipts.push((job.id, receipt));
-            create(&transaction, &Sessions::default(), &receipts).await?;
-        }
-        self.announce(&transaction, &[job.id]).await?;
+        let (bytes, cost, chunks) = (to_bigint(job.bytes), to_bigint(job.cost), to_bigint(job.chunks()));
+        let row: [Parameter<'_>; 10] = [&job.id, &tenant, &at, &ns, &points, &chunk, &bytes, &cost, &request, &chunks];
+        let row: Vec<_> = row.into_iter().chain(receipts.parameters()).collect();
+        rows(&transaction, &sql::create_job(self.announces), &row).await?;
         commit_sent.store(true, Ordering::Relaxed);
         transaction.commit().await?;
         Ok(())
-    }
-    /// Whether there was such a job.
-    async fn save_chunk(&self, connection: &mut Object, claim: Claim, result: &ChunkResult) -> Result<bool, Fault> {
-        let transaction = begin(connection).await?;
-        let Claim { job, chunk, .. } = claim;
-        if client_pool::rows(&transaction, sql::LOCK_JOB, &[&job]).await?.is_empty() {
-            return Ok(false);
-        }
-        if execute(&transaction, sql::SAVE_CHUNK, &[&job, &to_bigint(chunk), &result.content]).await? > 0 {
-            let (points, failed) = (to_bigint(result.points), to_bigint(result.failed));
-            execute(&transaction, sql::COUNT_CHUNK, &[&job, &points, &failed]).await?;
-            self.announce(&transaction, &[job]).await?;
-        }
-        transaction.commit().await?;
-        Ok(true)
-    }
-
-    async fn fail_job(&self, connection: &mut Object, id: Uuid, error: &str) -> Result<(), Fault> {
-        let transaction = begin(connection).await?;
-        if !client_pool::rows(&transaction, sql::LOCK_JOB, &[&id]).await?.is_empty() {
-            execute(&transaction, sql::FAIL_JOB, &[&id, &error]).await?;
-            execute(&transaction, sql::DROP_CHUNKS, &[&id]).await?;
-            self.announce(&transaction, &[id]).await?;
-            transaction.commit().await?;
-        }
-        Ok(())
-    }
-
-    async fn delete_job(&self, connection: &mut Object, id: Uuid, commit_sent: &AtomicBool) -> Result<bool, Fault> {
-        let transaction = begin(connection).await?;
-        if execute(&transaction, sql::DELETE_JOB, &[&id]).await? == 0 {
-            return Ok(commit_sent.load(Ordering::Relaxed));
-        }
-        self.announce(&transaction, &[id]).await?;
-        commit_sent.store(true, Ordering::Relaxed);
-        transaction.commit().await?;
-        Ok(true)
     }
 
     /// Deletes the expired jobs.
     pub(super) async fn purge_jobs(&self) -> Result<()> {
-        while to_bigint(with_retries!(self, LONG_ANSWER, connection => purge(connection))?) == PURGED_AT_ONCE {}
+        let times = [JOB_LIFETIME, JOB_TIME_LIMIT].map(|time| time.as_secs_f64());
+        let which: [Parameter<'_>; 3] = [&times[0], &times[1], &PURGED_AT_ONCE];
+        let purge = async |connection: &Object| long_rows(connection, sql::PURGE_JOBS, &which).await;
+        while to_bigint(with_retries!(self, LONG_ANSWER, connection => purge(connection))?.len() as u64)
+            == PURGED_AT_ONCE
+        {}
         Ok(())
     }
-}
-
-async fn purge(connection: &mut Object) -> Result<u64, Fault> {
-    let transaction = begin(connection).await?;
-    let times = [JOB_LIFETIME, JOB_TIME_LIMIT].map(|time| time.as_secs_f64());
-    let gone = execute(&transaction, sql::PURGE_JOBS, &[&times[0], &times[1], &PURGED_AT_ONCE]).await?;
-    transaction.commit().await?;
-    Ok(gone)
 }
 
 #[async_trait]
 impl JobStore for PostgresStore {
     async fn create_job(&self, job: Job, request: String, limits: JobLimits, receipt: Option<Receipt>) -> Result<()> {
-        let (pool, receipt, commit_sent) = (&self.pool, receipt.as_ref(), AtomicBool::new(false));
+        let (pool, commit_sent, mut receipts) = (&self.pool, AtomicBool::new(false), Receipts::default());
+        if let Some(receipt) = &receipt {
+            receipts.push((job.id, receipt));
+            pool.free_key(receipt).await?;
+        }
         let made = with_retries!(pool, LONG_ANSWER, connection =>
-            pool.create_job(connection, (&job, &request), limits, receipt, &commit_sent));
+            pool.create_job(connection, (&job, &request), limits, &receipts, &commit_sent));
         let Err(error) = made else { return Ok(()) };
         // A lost connection may have hidden that an earlier attempt went well.
         if commit_sent.into_inner() && pool.row(sql::JOB, &[&job.id]).await?.is_some() {
@@ -128,12 +89,12 @@ impl JobStore for PostgresStore {
 
     async fn job(&self, id: Uuid) -> Result<Job> {
         let row = self.pool.row(sql::JOB, &[&id]).await?.ok_or(StoreError::NotFound)?;
-        rows::job(&mut reader(&row))
+        read::job(&mut reader(&row))
     }
 
     async fn jobs(&self, tenant: Tenant) -> Result<Vec<Job>> {
         let found = self.pool.rows(sql::JOBS, &[&tenant.name()]).await?;
-        found.iter().map(|row| rows::job(&mut reader(row))).collect()
+        found.iter().map(|row| read::job(&mut reader(row))).collect()
     }
 
     async fn job_request(&self, id: Uuid) -> Result<String> {
@@ -161,13 +122,19 @@ impl JobStore for PostgresStore {
     }
 
     async fn save_chunk(&self, claim: Claim, result: ChunkResult) -> Result<()> {
-        let found = with_retries!(self.pool, ANSWER, connection => self.pool.save_chunk(connection, claim, &result))?;
+        let (chunk, points, failed) = (to_bigint(claim.chunk), to_bigint(result.points), to_bigint(result.failed));
+        let parameters: [Parameter<'_>; 5] = [&claim.job, &chunk, &result.content, &points, &failed];
+        let statement = sql::save_chunk(self.pool.announces);
+        let save = async |connection: &Object| existed(&rows(connection, &statement, &parameters).await?);
+        let found = with_retries!(self.pool, ANSWER, connection => save(connection))?;
         self.changes.wake(claim.job);
         if found { Ok(()) } else { Err(StoreError::NotFound) }
     }
 
     async fn fail_job(&self, id: Uuid, error: String) -> Result<()> {
-        with_retries!(self.pool, ANSWER, connection => self.pool.fail_job(connection, id, &error))?;
+        let statement = sql::fail_job(self.pool.announces);
+        let fail = async |connection: &Object| existed(&rows(connection, &statement, &[&id, &error]).await?);
+        with_retries!(self.pool, ANSWER, connection => fail(connection))?;
         self.changes.wake(id);
         Ok(())
     }
@@ -178,9 +145,16 @@ impl JobStore for PostgresStore {
     }
 
     async fn delete_job(&self, id: Uuid) -> Result<()> {
-        let commit_sent = AtomicBool::new(false);
-        let deleted =
-            with_retries!(self.pool, LONG_ANSWER, connection => self.pool.delete_job(connection, id, &commit_sent))?;
+        let (sent, statement) = (AtomicBool::new(false), sql::delete_job(self.pool.announces));
+        let delete = async |connection: &Object| {
+            let in_doubt = sent.load(Ordering::Relaxed);
+            sent.store(true, Ordering::Relaxed);
+            let found = long_rows(connection, &statement, &[&id]).await?;
+            // It has been answered, and what an earlier attempt has done is no clearer.
+            sent.store(in_doubt, Ordering::Relaxed);
+            Ok(existed(&found)? || in_doubt)
+        };
+        let deleted = with_retries!(self.pool, LONG_ANSWER, connection => delete(connection))?;
         self.changes.wake(id);
         if deleted { Ok(()) } else { Err(StoreError::NotFound) }
     }

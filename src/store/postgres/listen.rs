@@ -1,5 +1,5 @@
-//! One connection that listens to changes that other processes make, and asks now and then whether the database is there:
-//! a connection to a database that is frozen stays open and says nothing.
+//! One connection that listens to changes that other processes make, and asks now and then whether the database is
+//! there: a connection to a database that is frozen stays open and says nothing.
 
 use std::sync::Arc;
 use std::time::Duration;

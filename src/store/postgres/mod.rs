@@ -2,18 +2,21 @@
 //!
 //! Moves and new sessions queue at a writer, which sends what has gathered as one transaction in one round trip. The
 //! sequence of a contact decides which of several processes that move it at once wins; the primary key of the moves is
-//! a second barrier. Everything else goes through a pool of connections. A lost connection is replaced, and what is
-//! safe to repeat is repeated for a while; then the callers get an error.
+//! a second barrier. A change whose contact another transaction holds waits apart from the others. Everything else goes
+//! through a pool of connections. A lost connection is replaced, and what is safe to repeat is repeated for a while;
+//! then the callers get an error.
 //!
 //! `docs/postgres.md` describes the tables and what the database must support.
 
 mod batch_tx;
 mod client_pool;
 mod columns;
+mod committer;
 mod connect;
 mod fault;
 mod jobs;
 mod listen;
+mod lock_line;
 mod outcome;
 mod request;
 pub mod schema;
@@ -44,12 +47,14 @@ use super::{
 use client_pool::{ANSWER, ClientPool};
 use columns::{from_bigint, reader, reader_from, to_bigint};
 use connect::ConnectTarget;
-use fault::{Backoff, Fault};
+use fault::{Backoff, Fault, LOCK_WAIT};
 use request::Change;
 use writer::Writer;
 
 /// How long a start waits for the database.
 const START: Duration = Duration::from_secs(15);
+/// How long changes may wait without a commit before the store counts as not ready.
+const STALLED: Duration = LOCK_WAIT;
 /// How long the check whether the database takes changes may take.
 const READY: Duration = Duration::from_secs(2);
 
@@ -131,7 +136,7 @@ async fn prepare(target: &ConnectTarget) -> Result<bool> {
             Err(fault) => fault,
         };
         match fault {
-            Fault::Lost(_) | Fault::Conflict(_) if begin.elapsed() < START => backoff.pause().await,
+            Fault::Lost(_) | Fault::Conflict(_) | Fault::Locked(_) if begin.elapsed() < START => backoff.pause().await,
             fault => return Err(fault.into_store_error()),
         }
     }
@@ -146,10 +151,10 @@ impl From<SchemaError<tokio_postgres::Error>> for Fault {
     }
 }
 
-/// The definition of a session as it is stored: exactly the JSON that it was.
 /// Bytes that a move takes in the table, with the longest name of a key, and in its index.
 const MOVE_BYTES: u64 = 320;
 
+/// The definition of a session as it is stored: exactly the JSON that it was.
 fn definition(session: &Session) -> Result<String> {
     let written = serde_json::to_string(&*session.definition);
     written.map_err(|error| StoreError::Failed(format!("a definition cannot be written: {error}")))
@@ -164,7 +169,12 @@ impl Store for PostgresStore {
             done.map(drop).map_err(Fault::into_store_error)
         };
         execute(sql::BEAT).await?;
-        self.probe.outcome(execute(sql::PROBE)).await
+        self.probe.outcome(execute(sql::PROBE)).await?;
+        let stalled = self.writer.commits.stalled();
+        if stalled < STALLED {
+            return Ok(());
+        }
+        Err(StoreError::Unavailable(format!("changes wait, and none was committed for {} s", stalled.as_secs())))
     }
 
     async fn create(&self, session: Session, receipt: Option<Receipt>) -> Result<()> {
@@ -226,8 +236,8 @@ impl Store for PostgresStore {
         found.iter().map(|row| rows::summary(&mut reader(row))).collect()
     }
 
-    async fn rename(&self, id: Uuid, label: Option<String>, receipt: Option<Receipt>) -> Result<()> {
-        self.pool.rename(id, label, receipt).await
+    async fn rename(&self, id: Uuid, label: Option<String>, expected: u64, receipt: Option<Receipt>) -> Result<()> {
+        self.pool.rename(id, label, expected, receipt).await
     }
 
     async fn append(&self, id: Uuid, expected: u64, records: Vec<Record>, receipt: Option<Receipt>) -> Result<()> {
@@ -243,6 +253,11 @@ impl Store for PostgresStore {
         let page = moves.map(|row| rows::record(&mut reader_from(row, 1))).collect::<Result<Vec<Record>>>()?;
         rows::check_page(id, after, &page, limit, last)?;
         Ok(page)
+    }
+
+    async fn count_moves(&self, id: Uuid, end: u64) -> Result<u64> {
+        let row = self.pool.row(sql::COUNT_MOVES, &[&id, &to_bigint(end)]).await?;
+        Ok(row.map_or(0, |row| from_bigint(row.get(0))))
     }
 
     async fn fork(&self, id: Uuid, copy: Session, receipt: Option<Receipt>) -> Result<()> {

@@ -7,9 +7,8 @@ use super::columns::{from_bigint, to_bigint};
 use super::request::{Change, WriteRequest};
 use super::sql;
 
-/// Reads whether a request is stored, or why it was refused; one that is neither may be tried again. `in_doubt` if an
-/// earlier attempt at it may have been committed.
-pub(super) async fn outcome_of(pool: &ClientPool, request: &WriteRequest, in_doubt: bool) -> Result<bool> {
+/// Reads whether a request is stored, or why it was refused; one that is neither may be tried again.
+pub(super) async fn outcome_of(pool: &ClientPool, request: &WriteRequest) -> Result<bool> {
     let (id, expected, last) = match &request.change {
         Change::Create(session, _) => (session.id, None, 0),
         Change::Append { id, expected, records } => {
@@ -25,7 +24,7 @@ pub(super) async fn outcome_of(pool: &ClientPool, request: &WriteRequest, in_dou
         None => sequence.is_some(),
     };
     match (expected, sequence.map(from_bigint)) {
-        _ if in_doubt && stored => Ok(true),
+        _ if request.in_doubt && stored => Ok(true),
         _ if taken => Err(StoreError::KeyTaken),
         (None, None) => Ok(false),
         (None, Some(_)) => Err(StoreError::Failed(format!("there is a contact {id} already"))),

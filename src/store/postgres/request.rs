@@ -1,11 +1,14 @@
 //! Changes on their way to the writer, and batches of them.
 
 use std::collections::{HashSet, VecDeque};
+use std::time::Instant;
 
 use tokio::sync::oneshot;
 use uuid::Uuid;
 
-use crate::store::{Receipt, Record, Result, Session};
+use crate::store::{Receipt, Record, Result, Session, StoreError};
+
+use super::fault::{Backoff, LOCK_WAIT};
 
 /// Requests in one transaction.
 const REQUESTS: usize = 512;
@@ -26,10 +29,40 @@ pub(super) struct WriteRequest {
     pub(super) receipt: Option<Receipt>,
     /// A random number of the request: it shows, after a lost connection, whose moves were stored.
     pub(super) stamp: i64,
+    arrived: Instant,
+    /// Whether an earlier attempt may have been committed.
+    pub(super) in_doubt: bool,
+    /// When it is tried next, if another transaction holds a lock that it needs.
+    pub(super) due: Instant,
+    backoff: Backoff,
     pub(super) answer: oneshot::Sender<Result<()>>,
 }
 
 impl WriteRequest {
+    /// A request that arrives now, and where its answer is awaited.
+    pub(super) fn new(change: Change, receipt: Option<Receipt>) -> (WriteRequest, oneshot::Receiver<Result<()>>) {
+        let (answer, answered) = oneshot::channel();
+        let (stamp, arrived, backoff) = (random_stamp(), Instant::now(), Backoff::for_lock());
+        (WriteRequest { change, receipt, stamp, arrived, in_doubt: false, due: arrived, backoff, answer }, answered)
+    }
+
+    /// Lets it wait for a lock, each time longer.
+    pub(super) fn postpone(&mut self) {
+        self.due = Instant::now() + self.backoff.next();
+    }
+
+    /// Whether it has waited for locks for as long as it may.
+    pub(super) fn is_overdue(&self) -> bool {
+        self.arrived.elapsed() >= LOCK_WAIT
+    }
+
+    /// Answers that another transaction holds what it changes.
+    pub(super) fn refuse_as_locked(self) {
+        let why = "its locks were not released in time".to_owned();
+        let refusal = if self.in_doubt { StoreError::Unavailable(why) } else { StoreError::Locked(why) };
+        self.answer(Err(refusal));
+    }
+
     pub(super) fn id(&self) -> Uuid {
         match &self.change {
             Change::Create(session, _) => session.id,
@@ -55,7 +88,7 @@ impl WriteRequest {
 }
 
 /// A random number that no other request has.
-pub(super) fn stamp() -> i64 {
+fn random_stamp() -> i64 {
     let (_, random) = Uuid::now_v7().as_u64_pair();
     i64::from_ne_bytes(random.to_ne_bytes())
 }
@@ -82,10 +115,9 @@ pub(super) fn collect_batch(backlog: &mut VecDeque<WriteRequest>) -> Vec<WriteRe
 
 #[cfg(test)]
 mod tests {
-    use super::{Change, WriteRequest, collect_batch, stamp};
+    use super::{Change, WriteRequest, collect_batch};
     use crate::store::{Receipt, Reply, RequestKey};
     use std::collections::VecDeque;
-    use tokio::sync::oneshot;
     use uuid::Uuid;
 
     fn request(id: Uuid, expected: u64, key: Option<&str>) -> WriteRequest {
@@ -93,8 +125,7 @@ mod tests {
             request: RequestKey { key: key.to_owned(), fingerprint: [0; 32] },
             reply: Reply { created: None, sequence: 1, body: Vec::new() },
         });
-        let change = Change::Append { id, expected, records: Vec::new() };
-        WriteRequest { change, receipt, stamp: stamp(), answer: oneshot::channel().0 }
+        WriteRequest::new(Change::Append { id, expected, records: Vec::new() }, receipt).0
     }
 
     #[test]

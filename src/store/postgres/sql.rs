@@ -1,30 +1,47 @@
 //! Every statement that is sent, by name. `docs/postgres.md` says which features of the database they need.
 
-/// The channel of notifications of changes.
-pub(super) const CHANNEL: &str = "stickslip_changes";
+// The channel of notifications of changes.
+macro_rules! channel {
+    () => {
+        "stickslip_changes"
+    };
+}
 
-/// Bounds for every statement of a connection; and no notices, which only say that a table exists already.
+/// Bounds for every statement of a connection; and no notices, which only say that a table exists already. A lock is
+/// waited for briefly: until the transactions of other processes are done that are under way, but not longer with a
+/// connection. What a client that falls silent in the middle of a transaction holds is given back by the server, where
+/// it has these settings: if the client is there and says nothing, or if the network to it is gone.
 pub(super) const PREPARE_CONNECTION: &str =
-    "SET statement_timeout = '10s'; SET lock_timeout = '5s'; SET client_min_messages = 'warning'";
+    "SET statement_timeout = '10s'; SET lock_timeout = '250ms'; SET client_min_messages = 'warning';
+SET SESSION CHARACTERISTICS AS TRANSACTION ISOLATION LEVEL READ COMMITTED;
+SELECT set_config(name, CASE name
+    WHEN 'idle_in_transaction_session_timeout' THEN '2s'
+    WHEN 'transaction_timeout' THEN '70s'
+    WHEN 'tcp_user_timeout' THEN '10s'
+    WHEN 'tcp_keepalives_idle' THEN '10'
+    WHEN 'tcp_keepalives_interval' THEN '2'
+    ELSE '3' END, false)
+FROM pg_settings WHERE name IN ('idle_in_transaction_session_timeout', 'transaction_timeout', 'tcp_user_timeout',
+    'tcp_keepalives_idle', 'tcp_keepalives_interval', 'tcp_keepalives_count')";
 
-/// For the statements that copy or delete all moves of a contact.
-pub(super) const ALLOW_LONG: &str = "SET LOCAL statement_timeout = '60s'";
+/// For the statements that copy or delete all moves of a contact, and after them.
+pub(super) const ALLOW_LONG: &str = "SET statement_timeout = '60s'";
+pub(super) const ALLOW_SHORT: &str = "SET statement_timeout = '10s'";
 
-pub(super) const BEGIN: &str = "BEGIN ISOLATION LEVEL READ COMMITTED";
-pub(super) const COMMIT: &str = "COMMIT";
-
-/// Settings of the writer's connection, where the database has them. A statement of a batch is a transaction of its own. To plan it
-/// for each batch takes as long as to execute it for a few contacts, so that its plan is kept; and while the tables grow too, so that
-/// it uses their indexes however small they are.
-pub(super) const PREPARE_WRITER: &str = "SET SESSION CHARACTERISTICS AS TRANSACTION ISOLATION LEVEL READ COMMITTED;
+/// Settings of the writer's connection, where the database has them. A statement of a batch is a transaction of its
+/// own. To plan it for each batch takes as long as to execute it for a few contacts, so that its plan is kept; and
+/// while the tables grow too, so that it uses their indexes however small they are.
+pub(super) const PREPARE_WRITER: &str = "
 SELECT set_config(name, CASE name WHEN 'enable_seqscan' THEN 'off' ELSE 'force_generic_plan' END, false)
 FROM pg_settings WHERE name IN ('plan_cache_mode', 'enable_seqscan')";
 
-/// Locks the sessions of a batch in the order of their identifiers, so that two batches never wait for each other, and
-/// returns their sequences. Appends moves to those of them that are at the expected sequence, and stores the receipts of these alone.
-const APPEND: &str = "
+/// Makes sessions. Locks those to append to, in the order of their identifiers, but for those that another transaction
+/// holds, and appends moves to those of them that are at the expected sequence. Stores the receipts of what it has
+/// changed alone. Returns the sessions to append to that exist, with their sequences unless another transaction holds
+/// them.
+const BATCH: &str = "
 WITH locked AS (
-    SELECT id, sequence FROM contacts WHERE id = ANY($1::uuid[]) ORDER BY id FOR UPDATE
+    SELECT id, sequence FROM contacts WHERE id = ANY($1::uuid[]) ORDER BY id FOR NO KEY UPDATE SKIP LOCKED
 ), won AS (
     UPDATE contacts
     SET sequence = request.sequence,
@@ -44,47 +61,52 @@ WITH locked AS (
         $11::double precision[], $12::boolean[], $13::double precision[], $14::double precision[],
         $15::double precision[], $16::double precision[], $17::double precision[], $18::double precision[],
         $19::double precision[], $20::text[], $21::double precision[], $22::double precision[], $23::bigint[],
-        $24::timestamptz[], $25::smallint[], $26::double precision[], $27::bigint[], $28::text[], $29::bigint[]) AS move (contact)
+        $24::timestamptz[], $25::smallint[], $26::double precision[], $27::bigint[], $28::text[], $29::bigint[])
+        AS move (contact)
     JOIN won ON won.id = move.contact
+), made AS (
+    INSERT INTO contacts (id, label, definition, sequence, created_at, created_ns, updated_at, updated_ns, tenant)
+    SELECT * FROM unnest($36::uuid[], $37::text[], $38::text[], $39::bigint[], $40::timestamptz[], $41::smallint[],
+        $42::timestamptz[], $43::smallint[], $44::text[])
+    RETURNING id
 ), kept AS (
     INSERT INTO receipts (key, fingerprint, created, sequence, body)
     SELECT receipt.key, receipt.fingerprint, receipt.created, receipt.sequence, receipt.body
     FROM unnest($30::uuid[], $31::text[], $32::bytea[], $33::uuid[], $34::bigint[], $35::bytea[])
         AS receipt (contact, key, fingerprint, created, sequence, body)
-    JOIN won ON won.id = receipt.contact
+    JOIN (SELECT id FROM won UNION ALL SELECT id FROM made) AS changed ON changed.id = receipt.contact
     ORDER BY receipt.key
+), found AS (
+    SELECT contacts.id, locked.sequence FROM contacts LEFT JOIN locked ON locked.id = contacts.id
+    WHERE contacts.id = ANY($1::uuid[])
 )";
 
-/// Makes the changes of a batch to sessions that exist, and announces them if the database has notifications.
-pub(super) fn append(announces: bool) -> String {
-    let found = "SELECT locked.id, locked.sequence FROM locked";
-    if announces {
-        let told = "told AS (SELECT count(pg_notify($36, payload)) FROM unnest($37::text[]) AS payload)";
-        format!("{APPEND}, {told} {found}, told")
-    } else {
-        format!("{APPEND} {found}")
+/// A statement that returns its `found`, and announces the identifiers in another part of it if the database has
+/// notifications. As many fit into the payload of one notification.
+fn announcing(announces: bool, statement: &str, changed: &str) -> String {
+    if !announces {
+        return format!("{statement} SELECT found.* FROM found");
     }
+    let channel = channel!();
+    format!(
+        "{statement}, told AS (
+    SELECT count(pg_notify('{channel}', ids)) FROM (
+        SELECT string_agg(id::text, ',') AS ids
+        FROM (SELECT id, row_number() OVER () / 200 AS page FROM {changed}) AS numbered GROUP BY page) AS paged
+) SELECT found.* FROM found, told"
+    )
 }
 
-/// Makes sessions, and keeps the receipts.
-pub(super) const CREATE: &str = "
-WITH made AS (
-    INSERT INTO contacts (id, label, definition, sequence, created_at, created_ns, updated_at, updated_ns, tenant)
-    SELECT * FROM unnest($1::uuid[], $2::text[], $3::text[], $4::bigint[], $5::timestamptz[], $6::smallint[],
-        $7::timestamptz[], $8::smallint[], $9::text[])
-)
-INSERT INTO receipts (key, fingerprint, created, sequence, body)
-SELECT * FROM unnest($10::text[], $11::bytea[], $12::uuid[], $13::bigint[], $14::bytea[]) AS receipt (key)
-ORDER BY receipt.key";
-
-/// Announces changes; a payload names as many sessions as fit.
-pub(super) const NOTIFY: &str = "SELECT pg_notify($1, payload) FROM unnest($2::text[]) AS payload";
+/// Makes the changes of a batch.
+pub(super) fn batch(announces: bool) -> String {
+    announcing(announces, BATCH, "won")
+}
 
 /// Fails if the database has no notifications.
-pub(super) const PROBE_NOTIFY: &str = "SELECT pg_notify('stickslip_changes', '')";
+pub(super) const PROBE_NOTIFY: &str = concat!("SELECT pg_notify('", channel!(), "', '')");
 
 /// Begins to receive notifications.
-pub(super) const LISTEN: &str = "LISTEN stickslip_changes";
+pub(super) const LISTEN: &str = concat!("LISTEN ", channel!());
 
 /// The outcome of a request: the sequence of its session, whose it was if it has expired, whether its key is taken, and
 /// the stamp of its last move.
@@ -116,8 +138,9 @@ SELECT tenant, sequence, octet_length(definition),
     (SELECT octet_length(state) FROM snapshots WHERE contact = contacts.id)
 FROM contacts WHERE id = $1";
 
-/// What is stored for a tenant: how many contacts and bytes. A contact takes `$2` of them besides its definition and its snapshot,
-/// a move `$3`, and a receipt `$4`. The lengths are known without reading what is stored apart from its row.
+/// What is stored for a tenant: how many contacts and bytes. A contact takes `$2` of them besides its definition and
+/// its snapshot, a move `$3`, and a receipt `$4`. The lengths are known without reading what is stored apart from its
+/// row.
 pub(super) const USAGE: &str = "
 SELECT count(*), coalesce(sum($2::bigint + octet_length(definition) + $3::bigint * sequence
         + coalesce((SELECT octet_length(state) FROM snapshots WHERE contact = contacts.id), 0)), 0)::bigint
@@ -143,17 +166,35 @@ FROM contacts WHERE tenant = $4 AND id > $1
     AND ($3::text IS NULL OR strpos(lower(label COLLATE "C"), lower($3 COLLATE "C")) > 0)
 ORDER BY id LIMIT $2"#;
 
-pub(super) const RENAME: &str = "UPDATE contacts SET label = $2 WHERE id = $1";
+/// Names a session that is at a sequence, and keeps the receipt. Returns, if the session exists, whether it was at that
+/// sequence and free, and its sequence.
+pub(super) const RENAME: &str = "
+WITH held AS (
+    SELECT id FROM contacts WHERE id = $1 AND sequence = $3 FOR NO KEY UPDATE SKIP LOCKED
+), renamed AS (
+    UPDATE contacts SET label = $2 FROM held WHERE contacts.id = held.id RETURNING contacts.id
+), kept AS (
+    INSERT INTO receipts (key, fingerprint, created, sequence, body)
+    SELECT receipt.key, receipt.fingerprint, receipt.created, receipt.sequence, receipt.body
+    FROM unnest($4::uuid[], $5::text[], $6::bytea[], $7::uuid[], $8::bigint[], $9::bytea[])
+        AS receipt (contact, key, fingerprint, created, sequence, body)
+    JOIN renamed ON renamed.id = receipt.contact
+)
+SELECT held.id IS NOT NULL, contacts.sequence
+FROM contacts LEFT JOIN held ON held.id = contacts.id WHERE contacts.id = $1";
 
-/// The sequence of a contact, and some of its moves beside it: in one statement, so that both are of one state of the database.
+/// The sequence of a contact, and some of its moves beside it: in one statement, so that both are of one state of the
+/// database.
 pub(super) const HISTORY: &str = "
 SELECT contacts.sequence, past.*
 FROM contacts LEFT JOIN LATERAL (
-SELECT sequence, at, at_ns, target_displacement, target_force, target_indentation, target_normal_force, relative, tolerance,
-    displacement, force, indentation, normal_force, contact_radius, stick_radius, regime, dissipated_energy,
+SELECT sequence, at, at_ns, target_displacement, target_force, target_indentation, target_normal_force, relative,
+    tolerance, displacement, force, indentation, normal_force, contact_radius, stick_radius, regime, dissipated_energy,
     elastic_energy, memory_depth, observed_force, observed_at, made_by
 FROM moves WHERE contact = $1 AND sequence > $2 ORDER BY sequence LIMIT $3) AS past ON true
 WHERE contacts.id = $1 ORDER BY past.sequence";
+
+pub(super) const COUNT_MOVES: &str = "SELECT count(*) FROM moves WHERE contact = $1 AND sequence <= $2";
 
 pub(super) const RECEIPT: &str = "
 SELECT fingerprint, created, sequence, body FROM receipts
@@ -166,23 +207,56 @@ INSERT INTO snapshots (contact, sequence, state) SELECT id, $2::bigint, $3::byte
 ON CONFLICT (contact) DO UPDATE SET sequence = excluded.sequence, state = excluded.state
 WHERE snapshots.sequence < excluded.sequence";
 
-/// Copies the moves of `$2` up to `$3`. No lock is needed: moves are only appended.
-pub(super) const COPY_PAST: &str = "
-INSERT INTO moves (contact, sequence, target_displacement, target_force, target_indentation, target_normal_force,
-    relative, tolerance, displacement, force, indentation, normal_force, contact_radius, stick_radius, regime,
-    dissipated_energy, elastic_energy, memory_depth, at, at_ns, observed_force, observed_at, made_by, stamp)
-SELECT $1::uuid, sequence, target_displacement, target_force, target_indentation, target_normal_force,
-    relative, tolerance, displacement, force, indentation, normal_force, contact_radius, stick_radius, regime,
-    dissipated_energy, elastic_energy, memory_depth, at, at_ns, observed_force, observed_at, made_by, stamp
-FROM moves WHERE contact = $2 AND sequence <= $3";
+/// Makes a session with the first `$2` moves of `$1` and with its snapshot, if that is not after them, unless there are
+/// fewer; and keeps the receipt. Returns the sequence of `$1` and how many of these moves there are. No lock is needed:
+/// moves are only appended.
+pub(super) const FORK: &str = "
+WITH source AS (
+    SELECT sequence, (SELECT count(*) FROM moves WHERE contact = $1 AND sequence <= $2) AS moves
+    FROM contacts WHERE id = $1
+), made AS (
+    INSERT INTO contacts (id, label, definition, sequence, created_at, created_ns, updated_at, updated_ns, tenant)
+    SELECT copy.*
+    FROM unnest($3::uuid[], $4::text[], $5::text[], $6::bigint[], $7::timestamptz[], $8::smallint[],
+        $9::timestamptz[], $10::smallint[], $11::text[]) AS copy
+    JOIN source ON source.sequence >= $2 AND source.moves = $2
+    RETURNING id
+), past AS (
+    INSERT INTO moves (contact, sequence, target_displacement, target_force, target_indentation, target_normal_force,
+        relative, tolerance, displacement, force, indentation, normal_force, contact_radius, stick_radius, regime,
+        dissipated_energy, elastic_energy, memory_depth, at, at_ns, observed_force, observed_at, made_by, stamp)
+    SELECT made.id, sequence, target_displacement, target_force, target_indentation, target_normal_force,
+        relative, tolerance, displacement, force, indentation, normal_force, contact_radius, stick_radius, regime,
+        dissipated_energy, elastic_energy, memory_depth, at, at_ns, observed_force, observed_at, made_by, stamp
+    FROM moves, made WHERE moves.contact = $1 AND moves.sequence <= $2
+), state AS (
+    INSERT INTO snapshots (contact, sequence, state)
+    SELECT made.id, sequence, state FROM snapshots, made WHERE snapshots.contact = $1 AND snapshots.sequence <= $2
+), kept AS (
+    INSERT INTO receipts (key, fingerprint, created, sequence, body)
+    SELECT receipt.key, receipt.fingerprint, receipt.created, receipt.sequence, receipt.body
+    FROM unnest($12::uuid[], $13::text[], $14::bytea[], $15::uuid[], $16::bigint[], $17::bytea[])
+        AS receipt (contact, key, fingerprint, created, sequence, body)
+    JOIN made ON made.id = receipt.contact
+)
+SELECT source.sequence, source.moves FROM source";
 
-pub(super) const COPY_SNAPSHOT: &str = "
-INSERT INTO snapshots (contact, sequence, state)
-SELECT $1::uuid, sequence, state FROM snapshots WHERE contact = $2 AND sequence <= $3";
-
-pub(super) const DELETE: &str = "DELETE FROM contacts WHERE id = $1 AND sequence = $2";
-
-pub(super) const DELETE_PAST: &str = "DELETE FROM moves WHERE contact = $1";
+/// Deletes a session that is at a sequence, with its moves, which have all been committed then. Returns, if the session
+/// exists, whether it was at that sequence and free, and its sequence.
+pub(super) fn delete(announces: bool) -> String {
+    let statement = "
+WITH held AS (
+    SELECT id FROM contacts WHERE id = $1 AND sequence = $2 FOR UPDATE SKIP LOCKED
+), gone AS (
+    DELETE FROM contacts USING held WHERE contacts.id = held.id RETURNING contacts.id
+), past AS (
+    DELETE FROM moves USING held WHERE moves.contact = held.id
+), found AS (
+    SELECT held.id IS NOT NULL AS held, contacts.sequence
+    FROM contacts LEFT JOIN held ON held.id = contacts.id WHERE contacts.id = $1
+)";
+    announcing(announces, statement, "gone")
+}
 
 /// Receipts past their time, some at a time. What another replica is deleting is left to it.
 pub(super) const PURGE_RECEIPTS: &str = "
@@ -194,18 +268,20 @@ pub(super) const IDLE: &str = "
 SELECT id FROM contacts WHERE (updated_at, updated_ns) < ($1, $2) LIMIT $3";
 
 /// Deletes those of the sessions that are still idle. What another replica moves or deletes meanwhile is left to it.
-pub(super) const PURGE_IDLE: &str = "
-WITH gone AS (
+pub(super) fn purge_idle(announces: bool) -> String {
+    let statement = "
+WITH found AS (
     DELETE FROM contacts WHERE id IN (
         SELECT id FROM contacts WHERE id = ANY($1) AND (updated_at, updated_ns) < ($2, $3)
         ORDER BY id FOR UPDATE SKIP LOCKED)
     RETURNING id, tenant
 ), past AS (
-    DELETE FROM moves WHERE contact IN (SELECT id FROM gone)
+    DELETE FROM moves WHERE contact IN (SELECT id FROM found)
 ), marked AS (
-    INSERT INTO expired (id, tenant) SELECT id, tenant FROM gone ON CONFLICT DO NOTHING
-)
-SELECT id FROM gone";
+    INSERT INTO expired (id, tenant) SELECT id, tenant FROM found ON CONFLICT DO NOTHING
+)";
+    announcing(announces, statement, "found")
+}
 
 /// Moves whose contact does not exist: a recursive query that reads one row of the index for each contact.
 pub(super) const ORPHANED_MOVES: &str = "
@@ -222,8 +298,8 @@ WHERE contact IS NOT NULL AND NOT EXISTS (SELECT 1 FROM contacts WHERE contacts.
 pub(super) const JOB_FAULTS: &str = "
 WITH stored AS (
     SELECT j.id, count(c.chunk) AS chunks,
-        coalesce(sum(CASE WHEN c.content IS NOT NULL THEN greatest(least(j.chunk, j.points - c.chunk * j.chunk), 0) END), 0)
-            AS computed
+        coalesce(sum(CASE WHEN c.content IS NOT NULL
+            THEN greatest(least(j.chunk, j.points - c.chunk * j.chunk), 0) END), 0) AS computed
     FROM jobs AS j LEFT JOIN job_chunks AS c ON c.job = j.id GROUP BY j.id
 )
 SELECT 'job ' || id || ': ' || done || ' points are counted as done, and ' || s.computed || ' are stored'
@@ -241,20 +317,32 @@ UNION ALL
 SELECT 'job ' || id || ': of ' || done || ' points ' || failed || ' have no answer' FROM jobs
 WHERE failed NOT BETWEEN 0 AND done";
 
-/// Held while the jobs of a tenant are counted and another is made.
-pub(super) const LOCK_TENANT: &str = "SELECT pg_advisory_xact_lock($1)";
+/// Held while the jobs of a tenant are counted and another is made; false if another transaction holds it.
+pub(super) const LOCK_TENANT: &str = "SELECT pg_try_advisory_xact_lock($1)";
 
 pub(super) const JOBS_OF_TENANT: &str = "
 SELECT count(*), coalesce(sum(bytes), 0)::bigint,
     coalesce(sum(CASE WHEN finished_at IS NULL THEN cost ELSE 0 END), 0)::bigint
 FROM jobs WHERE tenant = $1";
 
-pub(super) const CREATE_JOB: &str = "
-INSERT INTO jobs (id, tenant, created_at, created_ns, points, chunk, done, failed, bytes, cost, request)
-VALUES ($1, $2, $3, $4, $5, $6, 0, 0, $7, $8, $9)";
-
-pub(super) const CREATE_CHUNKS: &str = "
-INSERT INTO job_chunks (job, chunk) SELECT $1::uuid, chunk FROM generate_series(0::bigint, $2::bigint - 1) AS chunk";
+/// Makes a job with its chunks, and keeps the receipt.
+pub(super) fn create_job(announces: bool) -> String {
+    let statement = "
+WITH found AS (
+    INSERT INTO jobs (id, tenant, created_at, created_ns, points, chunk, done, failed, bytes, cost, request)
+    VALUES ($1, $2, $3, $4, $5, $6, 0, 0, $7, $8, $9) RETURNING id
+), chunks AS (
+    INSERT INTO job_chunks (job, chunk)
+    SELECT found.id, number FROM found, generate_series(0::bigint, $10::bigint - 1) AS number
+), kept AS (
+    INSERT INTO receipts (key, fingerprint, created, sequence, body)
+    SELECT receipt.key, receipt.fingerprint, receipt.created, receipt.sequence, receipt.body
+    FROM unnest($11::uuid[], $12::text[], $13::bytea[], $14::uuid[], $15::bigint[], $16::bytea[])
+        AS receipt (contact, key, fingerprint, created, sequence, body)
+    JOIN found ON found.id = receipt.contact
+)";
+    announcing(announces, statement, "found")
+}
 
 pub(super) const JOB: &str = "
 SELECT id, tenant, created_at, created_ns, finished_at, error, points, chunk, done, failed, bytes, cost
@@ -286,26 +374,65 @@ pub(super) const RELEASE: &str = "
 UPDATE job_chunks SET owner = NULL, leased_until = NULL
 WHERE job = $1 AND chunk = $2 AND owner = $3 AND content IS NULL";
 
-/// Locks a job that has not ended: before its chunks, as deleting it does.
-pub(super) const LOCK_JOB: &str = "SELECT id FROM jobs WHERE id = $1 AND finished_at IS NULL FOR UPDATE";
+// A job that has not ended, locked unless another transaction holds it: before its chunks, as deleting it does. `found`
+// says, if there is such a job, whether it was free.
+macro_rules! held_job {
+    () => {
+        "
+WITH held AS (
+    SELECT id FROM jobs WHERE id = $1 AND finished_at IS NULL FOR NO KEY UPDATE SKIP LOCKED
+), found AS (
+    SELECT held.id IS NOT NULL AS held FROM jobs LEFT JOIN held ON held.id = jobs.id
+    WHERE jobs.id = $1 AND jobs.finished_at IS NULL
+)"
+    };
+}
 
-pub(super) const SAVE_CHUNK: &str = "
-UPDATE job_chunks SET content = $3, owner = NULL, leased_until = NULL
-WHERE job = $1 AND chunk = $2 AND content IS NULL";
+/// Stores the result of a chunk that has none, and counts it.
+pub(super) fn save_chunk(announces: bool) -> String {
+    let statement = concat!(
+        held_job!(),
+        ", saved AS (
+    UPDATE job_chunks SET content = $3, owner = NULL, leased_until = NULL FROM held
+    WHERE job_chunks.job = held.id AND job_chunks.chunk = $2 AND job_chunks.content IS NULL
+    RETURNING job_chunks.job AS id
+), counted AS (
+    UPDATE jobs SET done = done + $4, failed = failed + $5,
+        finished_at = CASE WHEN done + $4 = points THEN clock_timestamp() END
+    FROM saved WHERE jobs.id = saved.id
+)"
+    );
+    announcing(announces, statement, "saved")
+}
 
-pub(super) const COUNT_CHUNK: &str = "
-UPDATE jobs SET done = done + $2, failed = failed + $3,
-    finished_at = CASE WHEN done + $2 = points THEN clock_timestamp() END
-WHERE id = $1";
-
-pub(super) const FAIL_JOB: &str = "UPDATE jobs SET finished_at = now(), error = $2 WHERE id = $1";
-
-pub(super) const DROP_CHUNKS: &str = "DELETE FROM job_chunks WHERE job = $1 AND content IS NULL";
+/// Ends a job with an error, and deletes the chunks that have no result.
+pub(super) fn fail_job(announces: bool) -> String {
+    let statement = concat!(
+        held_job!(),
+        ", failed AS (
+    UPDATE jobs SET finished_at = now(), error = $2 FROM held WHERE jobs.id = held.id
+), dropped AS (
+    DELETE FROM job_chunks USING held WHERE job_chunks.job = held.id AND job_chunks.content IS NULL
+)"
+    );
+    announcing(announces, statement, "held")
+}
 
 pub(super) const CHUNKS: &str = "
 SELECT content FROM job_chunks WHERE job = $1 AND chunk >= $2 AND content IS NOT NULL ORDER BY chunk LIMIT $3";
 
-pub(super) const DELETE_JOB: &str = "DELETE FROM jobs WHERE id = $1";
+/// Deletes a job with its chunks. Returns, if it exists, whether it was free.
+pub(super) fn delete_job(announces: bool) -> String {
+    let statement = "
+WITH held AS (
+    SELECT id FROM jobs WHERE id = $1 FOR UPDATE SKIP LOCKED
+), gone AS (
+    DELETE FROM jobs USING held WHERE jobs.id = held.id
+), found AS (
+    SELECT held.id IS NOT NULL AS held FROM jobs LEFT JOIN held ON held.id = jobs.id WHERE jobs.id = $1
+)";
+    announcing(announces, statement, "held")
+}
 
 /// Expired jobs, some at a time. What another replica is deleting is left to it.
 pub(super) const PURGE_JOBS: &str = "
@@ -313,4 +440,5 @@ DELETE FROM jobs WHERE id IN (
     SELECT id FROM jobs
     WHERE finished_at < now() - $1::double precision * INTERVAL '1 second'
         OR created_at < now() - $2::double precision * INTERVAL '1 second'
-    LIMIT $3 FOR UPDATE SKIP LOCKED)";
+    LIMIT $3 FOR UPDATE SKIP LOCKED)
+RETURNING id";

@@ -1,21 +1,24 @@
-//! Changes that take a transaction of their own: they are rare, or they are long.
+//! Changes that are not made in batches: they are rare, or they are long. Each is one statement, which commits by
+//! itself, so that no row stays locked while the database waits for this process.
 //!
-//! A change whose connection is lost during its commit is repeated. Once a commit has been sent, a contact that is
-//! missing counts as deleted, and one that exists as created.
+//! A change whose connection is lost is repeated. Once it has been sent, a contact that is missing counts as deleted,
+//! and one that exists as created. What another transaction holds is tried again for a while, between which no
+//! connection is held.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use deadpool_postgres::{Object, Transaction};
 use jiff::Timestamp;
-use tokio_postgres::IsolationLevel;
 use tokio_postgres::error::SqlState;
+use tokio_postgres::{IsolationLevel, Row};
 use uuid::Uuid;
 
 use crate::store::{RECEIPT_LIFETIME, Receipt, Result, Session, Snapshot, StoreError, Tenant};
 
-use super::batch_tx::{announcements, created};
-use super::client_pool::{ANSWER, ClientPool, LONG_ANSWER, Parameter, execute, rows, try_once, with_retries};
-use super::columns::{Receipts, Sessions, split_time, to_bigint};
+use super::client_pool::{
+    ANSWER, ClientPool, LONG_ANSWER, Parameter, execute, long_rows, rows, try_once, with_retries,
+};
+use super::columns::{Receipts, Sessions, from_bigint, split_time, to_bigint};
 use super::fault::Fault;
 use super::sql;
 
@@ -36,58 +39,63 @@ impl ClientPool {
         }
     }
 
-    /// Why a session is no longer at the expected sequence.
-    async fn not_at(&self, id: Uuid) -> StoreError {
-        match self.row(sql::SEQUENCE, &[&id]).await {
-            Ok(Some(row)) => StoreError::Stale { found: super::columns::from_bigint(row.get(0)) },
-            Ok(None) => self.missing(id).await,
-            Err(error) => error,
-        }
-    }
-
     /// [`crate::store::Store::rename`]: made twice, if its connection is lost, it is the same.
-    pub(super) async fn rename(&self, id: Uuid, label: Option<String>, receipt: Option<Receipt>) -> Result<()> {
+    pub(super) async fn rename(
+        &self,
+        id: Uuid,
+        label: Option<String>,
+        expected: u64,
+        receipt: Option<Receipt>,
+    ) -> Result<()> {
         let mut receipts = Receipts::default();
         if let Some(receipt) = &receipt {
             receipts.push((id, receipt));
+            self.free_key(receipt).await?;
         }
-        let renamed = with_retries!(self, ANSWER, connection => rename_on(connection, id, label.as_deref(), &receipts));
-        match (renamed, receipt) {
-            (Ok(true), _) => Ok(()),
-            (Ok(false), _) => Err(self.missing(id).await),
+        let (sent, sequence) = (AtomicBool::new(false), to_bigint(expected));
+        let parameters: [Parameter<'_>; 3] = [&id, &label, &sequence];
+        let parameters: Vec<_> = parameters.into_iter().chain(receipts.parameters()).collect();
+        let rename = async |connection: &Object| {
+            let in_doubt = sent.swap(true, Ordering::Relaxed);
+            let found = rows(connection, sql::RENAME, &parameters).await?;
+            sent.store(in_doubt, Ordering::Relaxed);
+            done_at(&found, expected)
+        };
+        match (with_retries!(self, ANSWER, connection => rename(connection)), receipt) {
+            // It may have been made before the connection was lost, and the contact moved since.
+            (Ok(Err(StoreError::Stale { found })), _) if sent.into_inner() => {
+                Err(StoreError::Unavailable(format!("the connection was lost in a commit, and {id} is now at {found}")))
+            }
+            (Ok(Err(StoreError::NotFound)), _) => Err(self.missing(id).await),
+            (Ok(renamed), _) => renamed,
             (Err(_), Some(receipt)) if self.receipt(&receipt.request.key).await?.is_some() => Err(StoreError::KeyTaken),
             (Err(error), _) => Err(error),
         }
     }
 
-    /// [`crate::store::Store::delete`]
-    pub(super) async fn delete(&self, id: Uuid, expected: u64) -> Result<()> {
-        let commit_sent = AtomicBool::new(false);
-        if with_retries!(self, LONG_ANSWER, connection => self.delete_on(connection, id, expected, &commit_sent))? {
-            return Ok(());
-        }
-        match self.not_at(id).await {
-            StoreError::NotFound if commit_sent.into_inner() => Ok(()),
-            error => Err(error),
-        }
+    /// Makes room for the key of a receipt, if it is kept for a request from long ago.
+    pub(super) async fn free_key(&self, receipt: &Receipt) -> Result<()> {
+        let (keys, lifetime) = ([receipt.request.key.as_str()], RECEIPT_LIFETIME.as_secs_f64());
+        self.rows(sql::DELETE_OLD_KEYS, &[&&keys[..], &lifetime]).await.map(drop)
     }
 
-    async fn delete_on(
-        &self,
-        connection: &mut Object,
-        id: Uuid,
-        expected: u64,
-        commit_sent: &AtomicBool,
-    ) -> Result<bool, Fault> {
-        let transaction = begin(connection).await?;
-        if execute(&transaction, sql::DELETE, &[&id, &to_bigint(expected)]).await? == 0 {
-            return Ok(false);
+    /// [`crate::store::Store::delete`]
+    pub(super) async fn delete(&self, id: Uuid, expected: u64) -> Result<()> {
+        let (sent, statement) = (AtomicBool::new(false), sql::delete(self.announces));
+        let delete = async |connection: &Object| {
+            let in_doubt = sent.swap(true, Ordering::Relaxed);
+            let found = long_rows(connection, &statement, &[&id, &to_bigint(expected)]).await?;
+            // It has been answered, and what an earlier attempt has done is no clearer.
+            sent.store(in_doubt, Ordering::Relaxed);
+            Ok(match done_at(&found, expected)? {
+                Err(StoreError::NotFound) if in_doubt => Ok(()),
+                done => done,
+            })
+        };
+        match with_retries!(self, LONG_ANSWER, connection => delete(connection))? {
+            Err(StoreError::NotFound) => Err(self.missing(id).await),
+            deleted => deleted,
         }
-        execute(&transaction, sql::DELETE_PAST, &[&id]).await?;
-        self.announce(&transaction, &[id]).await?;
-        commit_sent.store(true, Ordering::Relaxed);
-        transaction.commit().await?;
-        Ok(true)
     }
 
     /// [`crate::store::Store::fork`]
@@ -97,26 +105,39 @@ impl ClientPool {
         sessions.push((&copy, definition));
         if let Some(receipt) = &receipt {
             receipts.push((copy.id, receipt));
+            self.free_key(receipt).await?;
         }
-        let fork = Fork { id, copy: copy.id, sequence: to_bigint(copy.sequence), sessions, receipts };
-        let commit_sent = AtomicBool::new(false);
-        let forked = with_retries!(self, LONG_ANSWER, connection => fork.make(connection, &commit_sent));
-        match forked {
-            Ok(true) => Ok(()),
-            Ok(false) => Err(match self.not_at(id).await {
-                // It is where it should be, and yet there were fewer moves to copy.
-                StoreError::Stale { found } if found == copy.sequence => {
-                    StoreError::Damaged { contact: id, what: format!("some of its {found} moves are missing") }
-                }
-                error => error,
-            }),
-            Err(error) => match self.row(sql::SEQUENCE, &[&copy.id]).await? {
-                Some(_) if commit_sent.into_inner() => Ok(()),
-                _ => match receipt {
-                    Some(receipt) if self.receipt(&receipt.request.key).await?.is_some() => Err(StoreError::KeyTaken),
-                    _ => Err(error),
-                },
-            },
+        let moves = to_bigint(copy.sequence);
+        let parameters: [Parameter<'_>; 2] = [&id, &moves];
+        let parameters: Vec<_> =
+            parameters.into_iter().chain(sessions.parameters()).chain(receipts.parameters()).collect();
+        let sent = AtomicBool::new(false);
+        let fork = async |connection: &Object| {
+            sent.store(true, Ordering::Relaxed);
+            long_rows(connection, sql::FORK, &parameters).await
+        };
+        let forked = match with_retries!(self, LONG_ANSWER, connection => fork(connection)) {
+            Ok(forked) => forked,
+            Err(error) => {
+                return match self.row(sql::SEQUENCE, &[&copy.id]).await? {
+                    Some(_) if sent.into_inner() => Ok(()),
+                    _ => match receipt {
+                        Some(receipt) if self.receipt(&receipt.request.key).await?.is_some() => {
+                            Err(StoreError::KeyTaken)
+                        }
+                        _ => Err(error),
+                    },
+                };
+            }
+        };
+        match forked.first().map(|row| (from_bigint(row.get(0)), row.get::<_, i64>(1))) {
+            None => Err(self.missing(id).await),
+            Some((found, _)) if found < copy.sequence => Err(StoreError::Stale { found }),
+            Some((found, stored)) if stored != moves => {
+                let what = format!("some of its {found} moves are missing");
+                Err(StoreError::Damaged { contact: id, what })
+            }
+            Some(_) => Ok(()),
         }
     }
 
@@ -158,62 +179,21 @@ impl ClientPool {
         }
     }
 
-    async fn purge_idle(&self, connection: &mut Object, which: &[Parameter<'_>]) -> Result<Vec<Uuid>, Fault> {
-        let transaction = begin(connection).await?;
-        let gone = rows(&transaction, sql::PURGE_IDLE, which).await?;
-        let gone: Vec<Uuid> = gone.iter().map(|row| row.get(0)).collect();
-        self.announce(&transaction, &gone).await?;
-        transaction.commit().await?;
-        Ok(gone)
-    }
-
-    /// Announces changes when the transaction is committed.
-    pub(super) async fn announce(&self, transaction: &Transaction<'_>, ids: &[Uuid]) -> Result<(), Fault> {
-        if self.announces && !ids.is_empty() {
-            execute(transaction, sql::NOTIFY, &[&sql::CHANNEL, &announcements(ids)]).await?;
-        }
-        Ok(())
+    async fn purge_idle(&self, connection: &Object, which: &[Parameter<'_>]) -> Result<Vec<Uuid>, Fault> {
+        let gone = long_rows(connection, &sql::purge_idle(self.announces), which).await?;
+        Ok(gone.iter().map(|row| row.get(0)).collect())
     }
 }
 
-/// A copy of a session to be made.
-struct Fork {
-    id: Uuid,
-    copy: Uuid,
-    sequence: i64,
-    sessions: Sessions,
-    receipts: Receipts,
-}
-
-impl Fork {
-    /// Makes it, unless the session has made fewer moves or is deleted.
-    async fn make(&self, connection: &mut Object, commit_sent: &AtomicBool) -> Result<bool, Fault> {
-        let transaction = begin(connection).await?;
-        create(&transaction, &self.sessions, &self.receipts).await?;
-        let found = rows(&transaction, sql::SEQUENCE, &[&self.id]).await?;
-        if found.first().is_none_or(|row| row.get::<_, i64>(0) < self.sequence) {
-            return Ok(false);
-        }
-        let copied = execute(&transaction, sql::COPY_PAST, &[&self.copy, &self.id, &self.sequence]).await?;
-        execute(&transaction, sql::COPY_SNAPSHOT, &[&self.copy, &self.id, &self.sequence]).await?;
-        // Fewer if the session was deleted in between.
-        if to_bigint(copied) != self.sequence {
-            return Ok(false);
-        }
-        commit_sent.store(true, Ordering::Relaxed);
-        transaction.commit().await?;
-        Ok(true)
-    }
-}
-
-async fn rename_on(connection: &mut Object, id: Uuid, label: Option<&str>, receipts: &Receipts) -> Result<bool, Fault> {
-    let transaction = begin(connection).await?;
-    if execute(&transaction, sql::RENAME, &[&id, &label]).await? == 0 {
-        return Ok(false);
-    }
-    create(&transaction, &Sessions::default(), receipts).await?;
-    transaction.commit().await?;
-    Ok(true)
+/// What a change at a sequence has done, by the row that its statement returns if the contact exists: whether it was at
+/// that sequence and free, and its sequence.
+fn done_at(found: &[Row], expected: u64) -> Result<Result<()>, Fault> {
+    Ok(match found.first().map(|row| (row.get(0), from_bigint(row.get(1)))) {
+        Some((true, _)) => Ok(()),
+        Some((false, found)) if found == expected => return Err(Fault::locked()),
+        Some((false, found)) => Err(StoreError::Stale { found }),
+        None => Err(StoreError::NotFound),
+    })
 }
 
 /// Begins a transaction that may take long.
@@ -221,14 +201,4 @@ pub(super) async fn begin(connection: &mut Object) -> Result<Transaction<'_>, Fa
     let transaction = connection.build_transaction().isolation_level(IsolationLevel::ReadCommitted).start().await?;
     transaction.batch_execute(sql::ALLOW_LONG).await?;
     Ok(transaction)
-}
-
-/// Makes sessions, and keeps receipts in place of expired ones.
-pub(super) async fn create(
-    transaction: &Transaction<'_>,
-    sessions: &Sessions,
-    receipts: &Receipts,
-) -> Result<(), Fault> {
-    execute(transaction, sql::DELETE_OLD_KEYS, &[&receipts.key, &RECEIPT_LIFETIME.as_secs_f64()]).await?;
-    execute(transaction, sql::CREATE, &created(sessions, receipts)).await.map(drop)
 }

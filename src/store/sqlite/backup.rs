@@ -32,8 +32,8 @@ pub(super) fn open_read_only(path: &Path) -> Result<Connection, String> {
     Ok(database)
 }
 
-/// The mark in the header of a file, read without SQLite, which would make a log. No process of ours has the file open where
-/// there is no log: closing it here ends no lock.
+/// The mark in the header of a file, read without SQLite, which would make a log. No process of ours has the file open
+/// where there is no log: closing it here ends no lock.
 fn mark(path: &Path) -> io::Result<i32> {
     let mut mark = [0; 4];
     File::open(path)?.read_exact_at(&mut mark, MARK)?;
@@ -41,8 +41,8 @@ fn mark(path: &Path) -> io::Result<i32> {
 }
 
 /// Copies the store at a path to a file that is not there yet: one state of it, whatever is written meanwhile. The copy
-/// gets its name when it is complete and on the disk. Returns its bytes. Calls `progress` meanwhile with its bytes so far and those
-/// of the store.
+/// gets its name when it is complete and on the disk. Returns its bytes. Calls `progress` meanwhile with its bytes so
+/// far and those of the store.
 pub(super) fn backup(path: &Path, copy: &Path, progress: impl FnMut(u64, u64) + Send) -> Result<u64, String> {
     let describe = |error: io::Error| format!("{}: {error}", copy.display());
     if fs::symlink_metadata(copy).is_ok() {

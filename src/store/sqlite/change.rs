@@ -97,12 +97,17 @@ impl Transaction<'_> {
     }
 
     /// [`crate::store::Store::rename`]
-    pub(super) fn rename(&self, id: Uuid, label: Option<&str>, receipt: Option<&Receipt>) -> Result<Done, Fault> {
+    pub(super) fn rename(
+        &self,
+        id: Uuid,
+        label: Option<&str>,
+        expected: u64,
+        receipt: Option<&Receipt>,
+    ) -> Result<Done, Fault> {
         check_key(self.database, receipt)?;
-        let mut rename = self.database.prepare_cached("UPDATE contacts SET label = ?2 WHERE id = ?1")?;
-        if rename.execute(params![id.to_string(), label])? == 0 {
-            return Err(missing(self.database, id));
-        }
+        let number = number_at(self.database, id, expected)?;
+        let mut rename = self.database.prepare_cached("UPDATE contacts SET label = ?2 WHERE number = ?1")?;
+        rename.execute(params![number, label])?;
         insert_receipt(self.database, receipt)?;
         Ok(Done::Made(0))
     }

@@ -211,9 +211,10 @@ impl Store for SqliteStore {
         self.readers.read(move |database| read::list(database, tenant.as_ref(), label.as_deref(), after, limit)).await
     }
 
-    async fn rename(&self, id: Uuid, label: Option<String>, receipt: Option<Receipt>) -> Result<()> {
-        let rename =
-            move |transaction: &mut Transaction<'_>| transaction.rename(id, label.as_deref(), receipt.as_ref());
+    async fn rename(&self, id: Uuid, label: Option<String>, expected: u64, receipt: Option<Receipt>) -> Result<()> {
+        let rename = move |transaction: &mut Transaction<'_>| {
+            transaction.rename(id, label.as_deref(), expected, receipt.as_ref())
+        };
         self.change(1, [], rename).await.map(drop)
     }
 
@@ -226,6 +227,10 @@ impl Store for SqliteStore {
 
     async fn history(&self, id: Uuid, after: u64, limit: usize) -> Result<Vec<Record>> {
         self.readers.read(move |database| read::history(database, id, after, limit)).await
+    }
+
+    async fn count_moves(&self, id: Uuid, end: u64) -> Result<u64> {
+        self.readers.read(move |database| read::count_moves(database, id, end)).await
     }
 
     async fn fork(&self, id: Uuid, copy: Session, receipt: Option<Receipt>) -> Result<()> {

@@ -134,6 +134,12 @@ pub(super) fn history(database: &Connection, id: Uuid, after: u64, limit: usize)
     Ok(page)
 }
 
+pub(super) fn count_moves(database: &Connection, id: Uuid, end: u64) -> Result<u64, Fault> {
+    let (number, _) = number_and_sequence(database, id)?;
+    let sql = "SELECT count(*) FROM moves WHERE contact = ?1 AND sequence <= ?2";
+    Ok(database.prepare_cached(sql)?.query_row(params![number, to_integer(end)?], |row| reader(row).count())?)
+}
+
 pub(super) fn receipt(database: &Connection, key: &str, not_before: Timestamp) -> Result<Option<Receipt>, Fault> {
     let sql = "SELECT fingerprint, created, sequence, body FROM receipts WHERE key = ?1 AND at > ?2";
     let mut statement = database.prepare_cached(sql)?;

@@ -7,9 +7,9 @@ use crate::store::schema::{self, SchemaError};
 /// Marks a file as one of this program: "stck" in the header.
 pub(super) const APPLICATION: i32 = 0x7374_636b;
 
-/// The same while a process writes to it: "stco". A file with this mark has not been closed, and is not whole without its
-/// write-ahead log. The mark is in the file itself before anything is written to the log, and is taken back when the log
-/// has been merged.
+/// The same while a process writes to it: "stco". A file with this mark has not been closed, and is not whole without
+/// its write-ahead log. The mark is in the file itself before anything is written to the log, and is taken back when
+/// the log has been merged.
 pub(super) const IN_USE: i32 = 0x7374_636f;
 
 /// The migrations, oldest first: each leads from one version of the tables to the next.

@@ -81,7 +81,8 @@ async fn a_sweep_equals_its_points_one_by_one_bit_for_bit() {
     let tabulated = json!({"base": tabulated, "axes": [{"pointer": "/path/displacement/0", "linear":
         {"from": -1e-7, "to": 1e-7, "count": 5}}], "outputs": ["/steps/0/force", "/contact/max_pressure"]});
     assert_eq!(compare(&server, &tabulated).await, (10, 0));
-    let springs = json!({"base": base_of_springs(), "axes": [{"pointer": "/solver/springs/count", "values": [200, 101, 150]}],
+    let springs = json!({"base": base_of_springs(),
+        "axes": [{"pointer": "/solver/springs/count", "values": [200, 101, 150]}],
         "outputs": ["/residual/max", "/protocol/displacement/1"]});
     assert_eq!(compare(&server, &springs).await, (6, 0));
 }
@@ -255,7 +256,8 @@ async fn every_format_holds_the_same_numbers_at_once_and_from_a_job() {
     }
 }
 
-/// The same table twice, once with names: the same numbers under other headings, at once, from a job, and by the typed client.
+/// The same table twice, once with names: the same numbers under other headings, at once, from a job, and by the typed
+/// client.
 #[tokio::test]
 async fn named_columns_hold_the_numbers_of_their_pointers() {
     let server = Server::start().await;

@@ -63,7 +63,7 @@ pub async fn a_label_changes_alone_and_finds_its_session(store: &dyn Store) {
     };
     for label in [Some("50 %_ Ärger of A.B\\C"), None, Some("")] {
         let label = label.map(str::to_owned);
-        store.rename(made.id, label.clone(), None).await.unwrap();
+        store.rename(made.id, label.clone(), 2, None).await.unwrap();
         let renamed = Session { label: label.clone(), ..made.clone() };
         assert_eq!(exact(&store.find(made.id).await.unwrap()), exact(&renamed));
         assert_eq!(store.heading(made.id).await.unwrap(), Heading { sequence: 2, label: label.clone() });
@@ -82,12 +82,18 @@ pub async fn a_label_changes_alone_and_finds_its_session(store: &dyn Store) {
         }
         assert_eq!(found("").await, label.is_some());
     }
-    let nobody = store.rename(Uuid::now_v7(), Some("nobody".to_owned()), None).await;
+    let nobody = store.rename(Uuid::now_v7(), Some("nobody".to_owned()), 0, None).await;
     assert!(matches!(nobody, Err(StoreError::NotFound)));
     // A key that is taken refuses it, and it takes its key.
-    store.rename(made.id, Some("first".to_owned()), Some(receipt("naming", None, 2))).await.unwrap();
-    let twice = store.rename(made.id, Some("second".to_owned()), Some(receipt("naming", None, 2))).await;
+    store.rename(made.id, Some("first".to_owned()), 2, Some(receipt("naming", None, 2))).await.unwrap();
+    let twice = store.rename(made.id, Some("second".to_owned()), 2, Some(receipt("naming", None, 2))).await;
     assert!(matches!(twice, Err(StoreError::KeyTaken)), "{twice:?}");
+    // At another sequence it changes nothing, and takes no key.
+    for wrong in [1, 3] {
+        let late = store.rename(made.id, Some("late".to_owned()), wrong, Some(receipt("late", None, 2))).await;
+        assert!(matches!(late, Err(StoreError::Stale { found: 2 })), "{late:?}");
+    }
+    assert!(store.receipt("late").await.unwrap().is_none());
     assert_eq!(store.heading(made.id).await.unwrap().label.as_deref(), Some("first"));
 }
 

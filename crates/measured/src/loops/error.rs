@@ -76,8 +76,8 @@ pub enum Error {
     },
     /// No loop tells these apart.
     #[error(
-        "`{}` and `{}` cannot be separated: loops determine only `{combination}`, at whatever load; hold one of them, or give it in \
-         `known` with its standard error",
+        "`{}` and `{}` cannot be separated: loops determine only `{combination}`, at whatever load; hold one of them, \
+         or give it in `known` with its standard error",
         parameter.name(), with.name()
     )]
     Inseparable {
@@ -96,7 +96,8 @@ pub enum Error {
     },
     /// The contact carries no tangential force.
     #[error(
-        "a contact without friction or load has no loop: a friction coefficient and a normal force above zero are needed"
+        "a contact without friction or load has no loop: a friction coefficient and a normal force above zero are \
+            needed"
     )]
     NoContact {
         /// Which record; none where it is the contact itself.

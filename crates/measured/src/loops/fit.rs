@@ -1,4 +1,5 @@
-//! The best values: robust against outliers first, least squares of what is left then, within the bounds of the parameters.
+//! The best values: robust against outliers first, least squares of what is left then, within the bounds of the
+//! parameters.
 
 use super::least_squares::{Control, Data};
 use super::record::{clamp_friction, stiffness};
@@ -103,7 +104,8 @@ pub(super) fn fit(data: &Data, noise: Option<f64>, proceed: &dyn Fn() -> bool) -
     Ok(fitted)
 }
 
-/// The minimum over all columns but those `held`, within the bounds of the parameters: values, cost, and the columns at bounds.
+/// The minimum over all columns but those `held`, within the bounds of the parameters: values, cost, and the columns at
+/// bounds.
 pub(super) fn within_bounds(
     data: &Data,
     from: &[f64],

@@ -16,7 +16,8 @@ const MET: f64 = 0.01;
 const MOST_GUESSED: f64 = 1.0;
 /// Steps to one end of an interval.
 const MOST_STEPS: usize = 16;
-/// An interval ends nowhere if it is wider than this factor to one side of a positive value, or this many standard errors.
+/// An interval ends nowhere if it is wider than this factor to one side of a positive value, or this many standard
+/// errors.
 const WIDEST: f64 = 1e3;
 
 /// Covariances of the columns; `None` where data and priors leave a column open.
@@ -88,8 +89,8 @@ impl Covariance {
     }
 }
 
-/// The interval of a column at 95 %, by profile likelihood: where the least sum of squares over all other columns has risen by the square of
-/// the quantile. `None` at an end that the data leave open.
+/// The interval of a column at 95 %, by profile likelihood: where the least sum of squares over all other columns has
+/// risen by the square of the quantile. `None` at an end that the data leave open.
 pub(super) fn interval(
     data: &Data,
     fitted: &Fitted,

@@ -73,7 +73,8 @@ impl Data {
         self.records.iter().map(|record| record.samples.len()).sum()
     }
 
-    /// Rows at these values, each sample's times its factor, which is one over its standard deviation, and zero where it is left out.
+    /// Rows at these values, each sample's times its factor, which is one over its standard deviation, and zero where
+    /// it is left out.
     pub(super) fn rows(&self, values: &[f64], factors: &[f64]) -> Rows {
         let count = factors.len() + self.priors.len();
         let mut residual = DVector::zeros(count);

@@ -1,9 +1,9 @@
 //! The first loading of a contact through the spring of its machine, with its derivatives.
 //!
-//! At constant load the tangential force on first loading to the displacement v is F = 2 mu E* int X dy over the ring of depth
-//! v/m, m = mu E*/G*: for another mu and G* it follows from the same ring integral, scaled. The machine takes C F of what is measured,
-//! h = v + C F(v). A contact with a spring in series still obeys Masing's rule (1926), so that this curve, at twice its size, is every
-//! branch of every loop.
+//! At constant load the tangential force on first loading to the displacement v is F = 2 mu E* int X dy over the ring
+//! of depth v/m, m = mu E*/G*: for another mu and G* it follows from the same ring integral, scaled. The machine takes
+//! C F of what is measured, h = v + C F(v). A contact with a spring in series still obeys Masing's rule (1926), so that
+//! this curve, at twice its size, is every branch of every loop.
 
 use stickslip_mechanics::Contact;
 

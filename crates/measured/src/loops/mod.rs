@@ -1,13 +1,17 @@
 //! A measured loop of force over displacement becomes friction, stiffness and compliance of the machine.
 //!
-//! The forward model is the exact contact at constant load behind a machine spring, of any profile (`loading_curve`, `model`). Its
-//! parameters are fitted by least squares (Levenberg-Marquardt with the exact Jacobian, whose gradients are carried through the turning points;
-//! `least_squares`) after outliers have been found (Huber 1964; `fit`). Turning points come from the record (`reversals`, `record`), and are
-//! parameters themselves where the displacement is noisy. Intervals are those of the profile likelihood, since the linear ones are wrong by a
-//! factor of two for a loop in partial slip (`intervals`).
+//! The forward model is the exact contact at constant load behind a machine spring, of any profile (`loading_curve`,
+//! `model`). Its parameters are fitted by least squares (Levenberg-Marquardt with the exact Jacobian, whose gradients
+//! are carried through the turning points; `least_squares`) after outliers have been found (Huber 1964; `fit`). Turning
+//! points come from the record (`reversals`, `record`), and are parameters themselves where the displacement is noisy.
+//! Intervals are those of the profile likelihood, since the linear ones are wrong by a factor of two for a loop in
+//! partial slip (`intervals`).
 //!
-//! A loop that stays in partial slip does not distinguish the compliance of the machine from that of the contact, and a fit that ignores the
-//! machine looks as good as one that does not. So a compliance that is neither sought nor known widens all intervals by all that it could be.
+//! A loop that stays in partial slip does not distinguish the compliance of the machine from that of the contact, and a
+//! fit that ignores the machine looks as good as one that does not. So a compliance that is neither sought nor known
+//! widens all intervals by all that it could be.
+//!
+//! Forces in steps do not average out where the contact slides: what that may shift is added (`quantised`).
 //!
 //! SI units throughout.
 
@@ -21,6 +25,7 @@ mod model;
 mod outcome;
 mod parameter;
 mod prepare;
+mod quantised;
 mod record;
 mod result;
 mod reversals;
@@ -177,16 +182,24 @@ pub struct LoopFit {
 /// [`Error`], which says what the records lack; [`Error::Interrupted`] as soon as `proceed` says no.
 pub fn fit(task: &Task, proceed: &dyn Fn() -> bool) -> Result<LoopFit, Error> {
     let data = prepare(task, false)?;
-    let fitted = fit::fit(&data, task.noise.force, proceed)?;
+    let steps: Vec<Option<f64>> = task.records.iter().map(quantised::step).collect();
+    let step = steps.iter().flatten().copied().fold(0.0, f64::max);
+    // Rounding is noise too.
+    let force_noise =
+        task.noise.force.map(|noise| if step > noise { noise.hypot(quantised::variance(step).sqrt()) } else { noise });
+    let fitted = fit::fit(&data, force_noise, proceed)?;
+    let (curves, residual, sticking) = left_over(&data, &fitted)?;
+    let roundings = quantised::roundings(&steps, &curves);
+    let is_quantised = roundings.iter().any(Option::is_some);
     let compliance = Parameter::MachineCompliance;
     let compliance_unknown =
         !task.free.contains(&compliance) && !task.known.iter().any(|known| known.parameter == compliance);
-    let mut doubt = Doubt::new(task, &data, &fitted, proceed)?;
+    let mut doubt = Doubt::new(task, &data, &fitted, &roundings, proceed)?;
     if compliance_unknown {
         // What a compliance that may be anything leaves open is open.
         let wider = prepare(task, true)?;
-        let free = fit::fit(&wider, task.noise.force, proceed)?;
-        let own = std::mem::replace(&mut doubt, Doubt::new(task, &wider, &free, proceed)?);
+        let free = fit::fit(&wider, force_noise, proceed)?;
+        let own = std::mem::replace(&mut doubt, Doubt::new(task, &wider, &free, &roundings, proceed)?);
         for (estimate, own) in doubt.estimates.iter_mut().zip(&own.estimates) {
             let ([low, high], value) = (estimate.interval, own.value);
             let interval = [low.map(|low| low.min(value)), high.map(|high| high.max(value))];
@@ -194,11 +207,10 @@ pub fn fit(task: &Task, proceed: &dyn Fn() -> bool) -> Result<LoopFit, Error> {
         }
     }
     let Doubt { estimates, correlations, identifiable } = doubt;
-    let (curves, residual, sticking) = left_over(&data, &fitted)?;
     let bench = data.layout.bench(&fitted.values);
     let displacement_noise = data.records.iter().map(|record| record.noise).fold(0.0, f64::max);
     let force = data.records.iter().map(|record| record.half_force).fold(0.0, f64::max);
-    let noisy = task.noise.force.is_some_and(|noise| noise > 0.0 && residual.rms > MORE_THAN_NOISE * noise);
+    let noisy = force_noise.is_some_and(|noise| noise > 0.0 && residual.rms > MORE_THAN_NOISE * noise);
     let steady_offset = task.free.contains(&Parameter::DisplacementOffset)
         && data.layout.column(Parameter::DisplacementOffset).is_none();
     let slides = |record: &Branches| {
@@ -210,7 +222,9 @@ pub fn fit(task: &Task, proceed: &dyn Fn() -> bool) -> Result<LoopFit, Error> {
         (!data.records.iter().any(slides), Note::PartialSlipOnly),
         (sticking < FEW_STICKING, Note::BeyondGrossSlip),
         (steady_offset || task.records.iter().any(|record| record.start.is_none()), Note::FirstBranchUnknown),
-        (noisy || (!residual.runs.random && residual.rms > ROUNDING * force), Note::NotCoulomb),
+        // Rounding keeps its sign for long stretches too.
+        (noisy || (!residual.runs.random && residual.rms > ROUNDING * force && !is_quantised), Note::NotCoulomb),
+        (is_quantised, Note::Quantised),
     ];
     Ok(LoopFit {
         estimates,

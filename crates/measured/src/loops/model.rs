@@ -1,9 +1,11 @@
-//! The force that a contact on its bench would have shown at the points of a record, and how it depends on the parameters.
+//! The force that a contact on its bench would have shown at the points of a record, and how it depends on the
+//! parameters.
 //!
-//! The memory of a contact at constant load is its turning points (Masing 1926, Madelung 1905): each branch is the first loading curve
-//! at twice its size from the last turning point; where a branch comes back to the turning point before the last, both are forgotten;
-//! beyond all of them the first loading curve goes on. The gradients are carried through the turning points, since the force there depends
-//! on every parameter too. A steady loop is one about its own middle, in which the contact would have been at rest.
+//! The memory of a contact at constant load is its turning points (Masing 1926, Madelung 1905): each branch is the
+//! first loading curve at twice its size from the last turning point; where a branch comes back to the turning point
+//! before the last, both are forgotten; beyond all of them the first loading curve goes on. The gradients are carried
+//! through the turning points, since the force there depends on every parameter too. A steady loop is one about its own
+//! middle, in which the contact would have been at rest.
 
 use super::loading_curve::{Bench, LoadingCurve, LoadingPoint};
 use super::record::{Branches, Sample, Turn};
@@ -180,7 +182,8 @@ impl Walk<'_> {
         kept
     }
 
-    /// The force on a branch in this direction at a place, and its gradient, where `kept` turning points are remembered.
+    /// The force on a branch in this direction at a place, and its gradient, where `kept` turning points are
+    /// remembered.
     fn force(&self, kept: usize, at: (f64, &[f64]), direction: f64, gradient: &mut [f64]) -> Predicted {
         let (place, place_by) = at;
         let (from, twice) = match kept.checked_sub(1) {

@@ -7,6 +7,7 @@ use super::fit::Fitted;
 use super::identifiable::identifiable;
 use super::intervals::{Covariance, interval};
 use super::least_squares::Data;
+use super::quantised::{Rounding, shifts};
 use super::{Curve, Error, Estimate, Parameter, Residual, Runs, Task};
 
 /// Standard deviations by which too few runs are no accident.
@@ -20,9 +21,23 @@ pub(super) struct Doubt {
 }
 
 impl Doubt {
-    pub(super) fn new(task: &Task, data: &Data, fitted: &Fitted, proceed: &dyn Fn() -> bool) -> Result<Doubt, Error> {
+    pub(super) fn new(
+        task: &Task,
+        data: &Data,
+        fitted: &Fitted,
+        roundings: &[Option<Rounding>],
+        proceed: &dyn Fn() -> bool,
+    ) -> Result<Doubt, Error> {
         let covariance = Covariance::new(data, fitted)?;
-        let estimates = estimates(task, data, fitted, &covariance, proceed)?;
+        let mut estimates = estimates(task, data, fitted, &covariance, proceed)?;
+        let shifts = shifts(data, fitted, &covariance, roundings);
+        for estimate in &mut estimates {
+            let Some(column) = data.layout.column(estimate.parameter) else { continue };
+            let ([most, variance], [low, high]) = (shifts[column], estimate.interval);
+            let least = if estimate.parameter.positive() { 0.0 } else { f64::NEG_INFINITY };
+            estimate.standard_error = estimate.standard_error.map(|error| (error * error + variance).sqrt());
+            estimate.interval = [low.map(|low| (low - most).max(least)), high.map(|high| high + most)];
+        }
         let column = |estimate: &Estimate| data.layout.column(estimate.parameter);
         let correlation = |a: &Estimate, b: &Estimate| covariance.correlation(column(a)?, column(b)?);
         let correlations = estimates.iter().map(|a| estimates.iter().map(|b| correlation(a, b)).collect()).collect();

@@ -1,4 +1,5 @@
-//! The quantities that a fit determines: their names, units, and which of them the loops of a profile can tell from each other.
+//! The quantities that a fit determines: their names, units, and which of them the loops of a profile can tell from
+//! each other.
 
 use stickslip_mechanics::{Contact, Profile};
 
@@ -93,7 +94,8 @@ impl Parameter {
     }
 }
 
-/// What the loops of a profile say about its moduli and its size: at a given load they depend on the stiffness 2 G* a alone.
+/// What the loops of a profile say about its moduli and its size: at a given load they depend on the stiffness 2 G* a
+/// alone.
 pub(super) fn combination(profile: &Profile) -> &'static str {
     match profile {
         Profile::Sphere(_) => "g_star * (radius/e_star)^(1/3)",

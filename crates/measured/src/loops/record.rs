@@ -155,8 +155,8 @@ impl Branches {
         Ok(())
     }
 
-    /// By how much the force on the way up is below that on the way down, where that is sure: from the regression of the force on
-    /// displacement and direction.
+    /// By how much the force on the way up is below that on the way down, where that is sure: from the regression of
+    /// the force on displacement and direction.
     fn wrong_way(&self) -> Option<f64> {
         let scale = self.extremes[0].displacement - self.extremes[1].displacement;
         let rows = || self.samples.iter().filter(|sample| sample.branch > 0 || self.start == Start::Steady);
@@ -205,7 +205,8 @@ pub(super) fn stiffness(contact: &Contact) -> f64 {
     2.0 * contact.elasticity().g_star() * contact.contact_radius()
 }
 
-/// The extreme of a noisy displacement: the vertex of the parabola through the points about it that are within the noise.
+/// The extreme of a noisy displacement: the vertex of the parabola through the points about it that are within the
+/// noise.
 fn vertex(displacement: &[f64], at: usize, noise: f64) -> f64 {
     let near = |index: &usize| (displacement[*index] - displacement[at]).abs() < 8.0 * noise;
     let first = (0..at).rev().take_while(near).last().unwrap_or(at);

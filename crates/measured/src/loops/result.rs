@@ -65,8 +65,11 @@ pub enum Note {
     PartialSlipOnly,
     /// Nearly all points slide: what they say of the stiffness is little.
     BeyondGrossSlip,
-    /// How a record began was not said or cannot be known: it is taken as a part of a steady loop, whose middle is its zero.
+    /// How a record began was not said or cannot be known: it is taken as a part of a steady loop, whose middle is its
+    /// zero.
     FirstBranchUnknown,
+    /// The forces come in steps that are not small beside the noise: standard errors and intervals are the wider.
+    Quantised,
     /// The residual is no noise: friction is not Coulomb's, or the contact is another one.
     NotCoulomb,
 }

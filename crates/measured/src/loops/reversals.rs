@@ -9,7 +9,8 @@ const NOISY_EVERY: usize = 10;
 const SMALL_SWING: f64 = 0.05;
 /// A reversal is a swing of this many standard deviations of the noise.
 const SIGNIFICANT: f64 = 8.0;
-/// The standard deviation of fourth differences of white noise, over that of the noise: the root of the sum of the squares of 1, 4, 6, 4, 1.
+/// The standard deviation of fourth differences of white noise, over that of the noise: the root of the sum of the
+/// squares of 1, 4, 6, 4, 1.
 const FOURTH_DIFFERENCE: f64 = 8.366_600_265_340_756;
 
 /// Where a displacement turns.

@@ -1,9 +1,9 @@
 //! The first loading curve of a contact, sampled once for all searches.
 //!
-//! For another friction coefficient and modulus the curve is the same one, scaled. So the exact contact is asked once a load, at the nodes of
-//! Chebyshev series on panels that are halved until the series end; after that a point costs the same for every profile. The coordinate is
-//! t = 1 - sqrt(1 - s), s the displacement over that of gross slip: the curve of a ball is a polynomial in it, and the panels of others
-//! need to be small only at the ends.
+//! For another friction coefficient and modulus the curve is the same one, scaled. So the exact contact is asked once a
+//! load, at the nodes of Chebyshev series on panels that are halved until the series end; after that a point costs the
+//! same for every profile. The coordinate is t = 1 - sqrt(1 - s), s the displacement over that of gross slip: the curve
+//! of a ball is a polynomial in it, and the panels of others need to be small only at the ends.
 
 use std::f64::consts::PI;
 

@@ -1,18 +1,23 @@
 //! What a scan alone says of the contact under a load, with standard errors.
 //!
-//! Delta method: d = g(a), F_N = 2 E* L(a), L = int_0^a x g' dx and p(r) = (E*/pi) int_r^a g'/sqrt(x^2 - r^2) dx are linear in the
-//! curvatures at a given a, and a follows from what the load fixes. With D the change by a curvature at fixed a:
-//! dL = DL + a g'(a) da, dd = Dg + g'(a) da, dp = Dp + (E*/pi) g'(a)/sqrt(a^2 - r^2) da. A largest pressure moves along a maximum, so
-//! that its place does not matter.
+//! Delta method: d = g(a), F_N = 2 E* L(a), L = int_0^a x g' dx and p(r) = (E*/pi) int_r^a g'/sqrt(x^2 - r^2) dx are
+//! linear in the curvatures at a given a, and a follows from what the load fixes. With D the change by a curvature at
+//! fixed a: dL = DL + a g'(a) da, dd = Dg + g'(a) da, dp = Dp + (E*/pi) g'(a)/sqrt(a^2 - r^2) da. A largest pressure
+//! moves along a maximum, so that its place does not matter.
 
 use stickslip_mechanics::profile::{Profile, Ring, RoundedPunch, Sphere, StressRadius};
 use stickslip_mechanics::{Contact, Elasticity, Preload, Setup};
 
-use super::{Error, Estimate, ScanFit};
+use super::curve::Curve;
+use super::{Error, Estimate, ScanFit, StandardErrors};
 use crate::linear::{dot, quadratic};
+use nalgebra::DMatrix;
 
 /// Radii at which the place of the largest pressure is sought.
 const PLACES: usize = 128;
+
+/// Radii in a contact at which the error of the pressure is computed.
+const PRESSURES: usize = 12;
 
 /// A contact under a load, as the scan determines it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -40,6 +45,36 @@ fn functionals(b: f64, a: f64, at: f64) -> Result<[f64; 3], Error> {
     Ok([level, load, shape.kernel(&StressRadius::new(at), &whole)])
 }
 
+/// The change of g, L and pi/E* p in a contact of radius a by each curvature, the pressure at a radius.
+fn by_curvature(curve: &Curve, a: f64, at: f64) -> Result<Vec<[f64; 3]>, Error> {
+    let from = curve.breaks.iter().map(|&b| functionals(b, a, at)).collect::<Result<Vec<_>, _>>()?;
+    Ok(from.windows(2).map(|pair| [0, 1, 2].map(|index| pair[0][index] - pair[1][index])).collect())
+}
+
+/// The standard errors at radii that begin, halve and end the intervals of a curve, in turns. Those of the pressure are
+/// computed where intervals end, and hold back to where they begin.
+pub(super) fn standard_errors(
+    curve: &Curve,
+    covariance: &DMatrix<f64>,
+    radii: &[f64],
+) -> Result<StandardErrors, Error> {
+    let error = |changes: &[[f64; 3]], which: usize| {
+        let gradient: Vec<f64> = changes.iter().map(|change| change[which]).collect();
+        quadratic(covariance, &gradient).max(0.0).sqrt()
+    };
+    let indentation =
+        radii.iter().map(|&a| Ok(error(&by_curvature(curve, a, 0.0)?, 0))).collect::<Result<Vec<_>, Error>>()?;
+    let at_end = |&a: &f64| {
+        (0..PRESSURES).try_fold(0.0, |largest, place| {
+            let at = a * place as f64 / PRESSURES as f64;
+            Ok(f64::max(largest, error(&by_curvature(curve, a, at)?, 2) / std::f64::consts::PI))
+        })
+    };
+    let at_ends = curve.breaks[1..].iter().map(at_end).collect::<Result<Vec<f64>, Error>>()?;
+    let pressure = (0..radii.len()).map(|index| at_ends[(index.max(1) - 1) / 2]).collect();
+    Ok(StandardErrors { indentation, pressure })
+}
+
 impl ScanFit {
     /// The contact under a load, m, N and Pa.
     ///
@@ -56,17 +91,13 @@ impl ScanFit {
             .max_by(|&one, &other| pressures[one].total_cmp(&pressures[other]))
             .map_or(0.0, |index| radii[index]);
 
-        let count = self.curve.curvatures.len();
-        let from = (0..=count)
-            .map(|index| functionals(index as f64 * self.curve.width, a, at))
-            .collect::<Result<Vec<_>, _>>()?;
+        let from = by_curvature(&self.curve, a, at)?;
         let slope = self.profile.slope(a);
         let edge = slope / ((a - at) * (a + at)).sqrt();
         // Per curvature: the change of radius, then those of all else.
         let changes: Vec<[f64; 4]> = from
-            .windows(2)
-            .map(|pair| {
-                let [level, load, pressure] = [0, 1, 2].map(|index| pair[0][index] - pair[1][index]);
+            .into_iter()
+            .map(|[level, load, pressure]| {
                 let wider = match preload {
                     _ if a <= 0.0 => 0.0,
                     Preload::NormalForce(_) => -load / (a * slope),
@@ -90,8 +121,8 @@ impl ScanFit {
         })
     }
 
-    /// The error for a contact that is larger than the scan, with the radius at which a surface would carry the load that goes on
-    /// with g' rising as it does on average, g' = s x.
+    /// The error for a contact that is larger than the scan, with the radius at which a surface would carry the load
+    /// that goes on with g' rising as it does on average, g' = s x.
     fn too_short(&self, error: stickslip_mechanics::Error, elasticity: &Elasticity, preload: Preload) -> Error {
         use stickslip_mechanics::Error as Refusal;
         if !matches!(error, Refusal::BeyondProfile { .. } | Refusal::NotConvexEnough { .. }) {
@@ -112,12 +143,9 @@ impl ScanFit {
 
     /// g, L and pressure of the whole curve at its end.
     fn at_end(&self, reach: f64) -> Result<[f64; 3], Error> {
-        let count = self.curve.curvatures.len();
-        let from = (0..=count)
-            .map(|index| functionals(index as f64 * self.curve.width, reach, 0.0))
-            .collect::<Result<Vec<_>, _>>()?;
+        let from = by_curvature(&self.curve, reach, 0.0)?;
         let sum = |which: usize| {
-            let shares: Vec<f64> = from.windows(2).map(|pair| pair[0][which] - pair[1][which]).collect();
+            let shares: Vec<f64> = from.iter().map(|change| change[which]).collect();
             dot(&shares, &self.curve.curvatures)
         };
         Ok([sum(0), sum(1), sum(2)])

@@ -33,16 +33,19 @@ pub enum Error {
     },
     /// No axis about which the surface falls away to all sides.
     #[error(
-        "about no axis does the surface fall away from a peak: is it a hollow, or the other way up than `orientation` says?"
+        "about no axis does the surface fall away from a peak: is it a hollow, or the other way up than `orientation` \
+            says?"
     )]
     Hollow,
     /// The curve follows the noise so closely that no rising profile is near it.
     #[error(
-        "so fine a curve follows the noise, and its profile would not rise: give fewer `knots`, or leave `smoothing` out"
+        "so fine a curve follows the noise, and its profile would not rise: give fewer `knots`, or leave `smoothing` \
+            out"
     )]
     Rough,
     /// The axis given is not in the scan.
-    #[error("the scan has no points near this axis: the nearest is {} away, the farthest {}", micrometres(*nearest), micrometres(*farthest))]
+    #[error("the scan has no points near this axis: the nearest is {} away, the farthest \
+        {}", micrometres(*nearest), micrometres(*farthest))]
     AxisOutside {
         /// Distance of the nearest point, m.
         nearest: f64,
@@ -53,7 +56,8 @@ pub enum Error {
     #[error("the points lie at too few distances from the axis to determine a profile")]
     Scattered,
     /// The contact under the load would be larger than the scan.
-    #[error("the scan does not reach the edge of the contact: {} of about {}", micrometres(*reach), micrometres(*needed))]
+    #[error("the scan does not reach the edge of the contact: {} of about \
+        {}", micrometres(*reach), micrometres(*needed))]
     TooShort {
         /// Radius that the scan reaches, m.
         reach: f64,

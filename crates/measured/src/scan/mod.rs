@@ -1,11 +1,12 @@
 //! A scan becomes a profile.
 //!
-//! The heights z(x, y) of an instrument have noise, outliers, a tilt, an axis that is not where the scan begins, and sometimes the
-//! wrong way up. The contact needs f(r) whose g rises, and g is made of slopes: 1 nm of noise between neighbouring points of a
-//! ball makes it fall. So f is fitted: a curve of piecewise constant curvature (`curve`), by penalised least squares
-//! (`normal_equations`, `smoothing`), about the axis that fits best (`start`, `fit`), without outliers (`noise`), among the curves whose g
-//! rises (`programme`). Standard errors follow from the covariance (F + penalty)^-1 s^2 of the curvatures (Nychka 1988: it contains the
-//! bias of the penalty on average), s^2 being that of the noise times its inflation by correlation, by the delta method (`contact`).
+//! The heights z(x, y) of an instrument have noise, outliers, a tilt, an axis that is not where the scan begins, and
+//! sometimes the wrong way up. The contact needs f(r) whose g rises, and g is made of slopes: 1 nm of noise between
+//! neighbouring points of a ball makes it fall. So f is fitted: a curve of piecewise constant curvature (`curve`), by
+//! penalised least squares (`normal_equations`, `smoothing`, `local_penalty`), about the axis that fits best (`start`,
+//! `fit`), without outliers (`noise`), among the curves whose g rises (`programme`). Standard errors follow from the
+//! covariance (F + penalty)^-1 s^2 of the curvatures (Nychka 1988: it contains the bias of the penalty, where that goes
+//! with the radius), s^2 being that of the noise times its inflation by correlation, by the delta method (`contact`).
 //!
 //! Lengths are in m throughout.
 
@@ -13,6 +14,7 @@ mod contact;
 mod curve;
 mod error;
 mod fit;
+mod local_penalty;
 mod noise;
 mod normal_equations;
 mod programme;
@@ -115,11 +117,22 @@ pub struct Column {
     pub height: Vec<f64>,
 }
 
+/// Standard errors at the radii of a table.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct StandardErrors {
+    /// Of the indentation at which a contact has this radius, m.
+    pub indentation: Vec<f64>,
+    /// The largest of the pressure in a contact of this radius, over E*.
+    pub pressure: Vec<f64>,
+}
+
 /// A profile from a scan.
 #[derive(Clone, Debug)]
 pub struct ScanFit {
     /// Radii and heights of the table, m: `Tabulated::new` accepts them.
     pub table: Column,
+    /// The standard errors at its radii: `Tabulated::with_standard_errors` accepts them.
+    pub standard_errors: StandardErrors,
     /// The radius of curvature on the axis, m; `None` where the surface is flat there, or hollow.
     pub radius_of_curvature: Option<Estimate>,
     /// The axis, m.

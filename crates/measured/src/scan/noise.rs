@@ -1,6 +1,6 @@
 //! What the residual says about the noise: its size, its correlation, its outliers.
 
-use super::curve::Curve;
+use super::curve::{Curve, interval};
 
 /// Blocks that an estimate of the variance of means needs.
 const FEWEST_BLOCKS: usize = 6;
@@ -16,14 +16,14 @@ pub(super) struct Residual {
 
 /// How many times the variance of a mean over radii exceeds that of independent noise of this `variance`.
 ///
-/// What differs between the two sides of the axis is noise, whatever the shape: its sums over ever wider rings, in which
-/// correlated noise does not average out, are compared with what independent noise would leave (batch means). The largest ratio
-/// counts. Without two sides the residual itself is taken.
+/// What differs between the two sides of the axis is noise, whatever the shape: its sums over ever wider rings, in
+/// which correlated noise does not average out, are compared with what independent noise would leave (batch means). The
+/// largest ratio counts. Without two sides the residual itself is taken.
 pub(super) fn inflation(residuals: &[Residual], curve: &Curve, variance: f64) -> f64 {
     let rings = curve.curvatures.len();
     let mut sums = vec![[0.0; 4]; rings];
     for residual in residuals {
-        let ring = &mut sums[((residual.radius / curve.width) as usize).min(rings - 1)];
+        let ring = &mut sums[interval(&curve.breaks, residual.radius)];
         let side = usize::from(residual.side > 0.0);
         ring[side] += residual.value;
         ring[2 + side] += 1.0;

@@ -1,19 +1,16 @@
 //! Least squares for the curvatures of a curve, from sums over the points of each interval.
 //!
-//! Within an interval the curve is a quadratic in S = (r - r_j)/h, so that sums of S^k and z S^k say all there is to know of the
-//! points: the equations cost no more for a million points than for a thousand. The penalty is on steps of the curvature, so
-//! that a parabola, and no other shape, is free of it.
+//! Within an interval of width h the curve is a quadratic in S = (r - r_j)/h, so that sums of S^k and z S^k say all
+//! there is to know of the points: the equations cost no more for a million points than for a thousand. The penalty is
+//! on steps of the curvature, so that a parabola, and no other shape, is free of it.
 
-use nalgebra::{DMatrix, DVectorView};
+use nalgebra::DMatrix;
 
-use super::curve::Curve;
+use super::curve::{Curve, interval};
 use crate::linear::{add, dot, factor, quadratic, solve};
 
 /// Columns beside the curve that a fit can have: tilt along x and y, shift of the axis along x and y.
 pub(super) const MOST_COLUMNS: usize = 4;
-
-/// The curvatures found lack what the penalty takes, about half of it in a step that is half smoothed away: so it counts as often.
-const LACKING: f64 = 2.0;
 
 /// Sums over the points of one interval.
 #[derive(Clone, Copy, Default)]
@@ -28,7 +25,7 @@ struct Sums {
 
 /// The sums over all points.
 pub(super) struct Statistics {
-    width: f64,
+    breaks: Vec<f64>,
     sums: Vec<Sums>,
     column_count: usize,
     columns: [[f64; MOST_COLUMNS]; MOST_COLUMNS],
@@ -39,10 +36,10 @@ pub(super) struct Statistics {
 }
 
 impl Statistics {
-    pub(super) fn new(width: f64, intervals: usize, column_count: usize) -> Statistics {
+    pub(super) fn new(breaks: Vec<f64>, column_count: usize) -> Statistics {
         Statistics {
-            width,
-            sums: vec![Sums::default(); intervals],
+            sums: vec![Sums::default(); breaks.len() - 1],
+            breaks,
             column_count,
             columns: Default::default(),
             column_heights: Default::default(),
@@ -53,9 +50,8 @@ impl Statistics {
 
     /// Adds a point of this height at radius r, with its other columns.
     pub(super) fn add(&mut self, weight: f64, r: f64, height: f64, columns: &[f64; MOST_COLUMNS]) {
-        let place = r / self.width;
-        let index = (place as usize).min(self.sums.len() - 1);
-        let step = place - index as f64;
+        let index = interval(&self.breaks, r);
+        let step = (r - self.breaks[index]) / (self.breaks[index + 1] - self.breaks[index]);
         let sums = &mut self.sums[index];
         let mut power = weight;
         for k in 0..5 {
@@ -84,15 +80,18 @@ impl Statistics {
         let size = intervals + 1 + self.column_count;
         let mut matrix = DMatrix::zeros(size, size);
         let mut right = vec![0.0; size];
-        let area = self.width * self.width;
+        let widths: Vec<f64> = self.breaks.windows(2).map(|ends| ends[1] - ends[0]).collect();
+        let middles: Vec<f64> = self.breaks.windows(2).map(|ends| 0.5 * (ends[0] + ends[1])).collect();
         for (index, sums) in self.sums.iter().enumerate() {
             if sums.powers[0] <= 0.0 {
                 continue;
             }
             // What one unit of each curvature adds, as a quadratic in S.
-            let mut rows: Vec<(usize, [f64; 3])> =
-                (0..index).map(|inner| (inner, [area * ((index - inner) as f64 - 0.5), area, 0.0])).collect();
-            rows.push((index, [0.0, 0.0, 0.5 * area]));
+            let (start, width) = (self.breaks[index], widths[index]);
+            let mut rows: Vec<(usize, [f64; 3])> = (0..index)
+                .map(|inner| (inner, [widths[inner] * (start - middles[inner]), widths[inner] * width, 0.0]))
+                .collect();
+            rows.push((index, [0.0, 0.0, 0.5 * width * width]));
             rows.push((intervals, [1.0, 0.0, 0.0]));
             for (place, &(row, quadratic)) in rows.iter().enumerate() {
                 let mut products = [0.0; 3];
@@ -116,32 +115,39 @@ impl Statistics {
             right[intervals + 1 + row] = self.column_heights[row];
         }
         let scale = (0..intervals).map(|index| matrix[(index, index)]).sum::<f64>() / intervals as f64;
-        let stiffness = vec![1.0; intervals - 1];
+        // A curvature that wanders steps the farther, the wider its intervals are.
+        let distances: Vec<f64> = middles.windows(2).map(|pair| pair[1] - pair[0]).collect();
+        let mean = distances.iter().sum::<f64>() / distances.len() as f64;
+        let nearness: Vec<f64> = distances.iter().map(|distance| mean / distance).collect();
         Equations {
-            width: self.width,
+            breaks: self.breaks.clone(),
             intervals,
             matrix,
             right,
             square: self.square,
             count: self.count,
             scale,
-            stiffness,
+            nearness,
+            stiffness: vec![1.0; intervals - 1],
         }
     }
 }
 
 /// The normal equations without the penalty.
+#[derive(Clone)]
 pub(super) struct Equations {
-    pub(super) width: f64,
+    pub(super) breaks: Vec<f64>,
     pub(super) intervals: usize,
     pub(super) matrix: DMatrix<f64>,
     pub(super) right: Vec<f64>,
     square: f64,
     pub(super) count: f64,
     /// The mean of the curvatures' diagonal, which penalties are relative to.
-    scale: f64,
-    /// How much each step of the curvature counts.
-    stiffness: Vec<f64>,
+    pub(super) scale: f64,
+    /// One over the distance between neighbouring intervals, in units of one over the mean distance.
+    pub(super) nearness: Vec<f64>,
+    /// How much each step of the curvature counts beside that.
+    pub(super) stiffness: Vec<f64>,
 }
 
 /// A solution for one penalty.
@@ -157,28 +163,35 @@ pub(super) struct Solution {
     pub(super) freedom: f64,
 }
 
+impl Solution {
+    /// The variance of a residual of so many points.
+    pub(super) fn variance(&self, count: f64) -> f64 {
+        self.squares / (count - self.freedom).max(1.0)
+    }
+}
+
 impl Equations {
+    /// The same equations for a curvature that may step the farther the nearer the axis is: by its own size over a
+    /// factor of the radius, as that of a tip of any sharpness does.
+    pub(super) fn without_scale(&self) -> Equations {
+        let mut equations = self.clone();
+        let nearness = equations.nearness.iter_mut().zip(&self.breaks[1..]);
+
+        let end = self.breaks[self.intervals];
+        nearness.for_each(|(nearness, radius)| *nearness *= (radius / end).powi(3));
+        equations
+    }
+
     /// The matrix with the penalty on steps of the curvature.
     pub(super) fn penalised(&self, penalty: f64) -> DMatrix<f64> {
         let mut matrix = self.matrix.clone();
         for index in 1..self.intervals {
-            let strength = penalty * self.scale * self.stiffness[index - 1];
+            let strength = penalty * self.scale * self.stiffness[index - 1] * self.nearness[index - 1];
             add(&mut matrix, index, index, strength);
             add(&mut matrix, index - 1, index - 1, strength);
             add(&mut matrix, index, index - 1, -strength);
         }
         matrix
-    }
-
-    /// Lets the curvature step where it does in a solution: beside an edge a uniform penalty would smooth it away, and elsewhere
-    /// leave noise in.
-    pub(super) fn adapt(&mut self, solution: &Solution) {
-        let steps: Vec<f64> =
-            solution.unknowns[..self.intervals].windows(2).map(|pair| (pair[1] - pair[0]).powi(2)).collect();
-        let typical = steps.iter().sum::<f64>() / steps.len() as f64;
-        if typical > 0.0 {
-            self.stiffness = steps.iter().map(|step| 1.0 / (1.0 + step / typical)).collect();
-        }
     }
 
     /// The solution for a penalty; `None` if the points do not determine it.
@@ -191,14 +204,11 @@ impl Equations {
         Some(Solution { penalty, unknowns, inverse, squares, freedom })
     }
 
-    /// How far a solution's curvatures may be off whatever the noise: what the penalty takes from the curvatures that were found,
-    /// -(N + P)^-1 P k, and what they change by when pairs of intervals have one curvature.
-    pub(super) fn systematic(&self, solution: &Solution) -> [Vec<f64>; 2] {
+    /// What a solution's curvatures change by when pairs of intervals have one curvature: how far they may be off
+    /// because intervals are no shorter.
+    pub(super) fn change_of_halving(&self, solution: &Solution) -> Vec<f64> {
         let (found, count) = (&solution.unknowns, self.intervals);
         let full = self.penalised(solution.penalty);
-        let pulled = (&full - &self.matrix) * DVectorView::from_slice(found, found.len());
-        let taken = (&solution.inverse * pulled).iter().take(count).map(|lack| LACKING * lack).collect();
-
         let pair_of = |row: usize| if row < count { row / 2 } else { row - count + count.div_ceil(2) };
         let size = pair_of(found.len() - 1) + 1;
         let (mut matrix, mut right) = (DMatrix::zeros(size, size), vec![0.0; size]);
@@ -209,8 +219,7 @@ impl Equations {
             right[pair_of(row)] += self.right[row];
         }
         let coarse = factor(matrix).map(|factor| solve(&factor, &right));
-        let changed = (0..count).map(|row| coarse.as_ref().map_or(0.0, |coarse| coarse[pair_of(row)] - found[row]));
-        [taken, changed.collect()]
+        (0..count).map(|row| coarse.as_ref().map_or(0.0, |coarse| coarse[pair_of(row)] - found[row])).collect()
     }
 
     /// The sum of squared residuals.
@@ -221,6 +230,6 @@ impl Equations {
     /// The curve of some unknowns, with a parabola added that had been taken off the heights.
     pub(super) fn curve(&self, unknowns: &[f64], parabola: f64) -> Curve {
         let curvatures = unknowns[..self.intervals].iter().map(|curvature| curvature + parabola).collect();
-        Curve::new(self.width, curvatures, unknowns[self.intervals])
+        Curve::new(self.breaks.clone(), curvatures, unknowns[self.intervals])
     }
 }

@@ -1,7 +1,7 @@
 //! The quadratic programme: the penalised fit among the curves whose g rises.
 //!
-//! Where g fell, the contact would be a ring. g' is linear in the curvatures, so that g' >= 0 at many radii makes a convex
-//! programme, with one solution: Clarabel's interior point method (Goulart & Chen 2024) finds it.
+//! Where g fell, the contact would be a ring. g' is linear in the curvatures, so that g' >= 0 at many radii makes a
+//! convex programme, with one solution: Clarabel's interior point method (Goulart & Chen 2024) finds it.
 
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSettingsBuilder, DefaultSolver, IPSolver, NonnegativeConeT, SolverStatus};
@@ -12,12 +12,12 @@ use super::normal_equations::{Equations, Solution};
 /// Radii in each interval at which g must rise. After a fall of the curvature, g' falls steepest at once.
 const PLACES: [f64; 3] = [0.03, 0.3, 1.0];
 
-/// The unknowns of the constrained fit; those of the plain one if g rises there. `parabola` is what the heights lack: its curvature
-/// is to be added to all. `None` if the method fails.
+/// The unknowns of the constrained fit; those of the plain one if g rises there. `parabola` is what the heights lack:
+/// its curvature is to be added to all. `None` if the method fails.
 pub(super) fn constrained(equations: &Equations, plain: &Solution, parabola: f64) -> Option<Vec<f64>> {
-    let (width, intervals) = (equations.width, equations.intervals);
-    let places = (0..intervals).flat_map(|index| PLACES.map(|share| (index as f64 + share) * width));
-    let rows: Vec<(f64, Vec<f64>)> = places.map(|x| (x, g_slopes(width, intervals, x))).collect();
+    let breaks = &equations.breaks;
+    let places = breaks.windows(2).flat_map(|ends| PLACES.map(|share| ends[0] + share * (ends[1] - ends[0])));
+    let rows: Vec<(f64, Vec<f64>)> = places.map(|x| (x, g_slopes(breaks, x))).collect();
     let rises = |(_, row): &(f64, Vec<f64>)| {
         row.iter().zip(&plain.unknowns).map(|(a, k)| a * (k + parabola)).sum::<f64>() >= 0.0
     };

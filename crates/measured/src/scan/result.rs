@@ -5,39 +5,62 @@ use stickslip_mechanics::profile::{Profile, Tabulated};
 
 use super::curve::Curve;
 use super::fit::{Fitted, Scaled};
-use super::{Column, DRAWN_POINTS, Error, Estimate, Orientation, Scan, ScanFit, Units, noise, programme};
+use super::{Column, DRAWN_POINTS, Error, Estimate, Orientation, Scan, ScanFit, Units, contact, noise, programme};
 use crate::linear::dot;
 
-/// Parabolas added to a curve whose table does not rise, as shares of its mean curvature.
-const LIFTS: [f64; 8] = [0.0, 1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 1e-1];
-/// Intervals between neighbouring points of the table.
-const TABLE_STEP: f64 = 0.5;
+/// The least g'(x)/x over its mean, as much as the table needs to rise.
+const FLOORS: [f64; 10] = [1e-6, 1e-5, 1e-4, 3e-4, 1e-3, 3e-3, 1e-2, 3e-2, 0.1, 0.3];
+/// The share of the parabola of the mean curvature in the curve, where no floor makes the table rise.
+const SHARES: [f64; 5] = [0.01, 0.03, 0.1, 0.3, 0.6];
 
 /// The fit in m, with its table.
 pub(super) fn finished(scan: &Scan, fitted: &Fitted, scaled: &Scaled, units: &Units) -> Result<ScanFit, Error> {
     let Fitted { equations, solution, parabola, .. } = fitted;
-    let unknowns = programme::constrained(equations, solution, *parabola);
-    let unknowns = unknowns.unwrap_or_else(|| solution.unknowns.clone());
-    let constrained = unknowns != solution.unknowns;
     let bend = units.height / (units.length * units.length);
-    let curve = equations.curve(&unknowns, *parabola);
-    let curvatures: Vec<f64> = curve.curvatures.iter().map(|curvature| curvature * bend).collect();
-    let width = curve.width * units.length;
-    let reach = width * curvatures.len() as f64;
-    let mean = 2.0 * (curve.height(curve.end()) - curve.offset) / curve.end().powi(2) * bend;
-    if mean * reach * reach <= 0.0 {
+    let breaks: Vec<f64> = fitted.curve.breaks.iter().map(|radius| radius * units.length).collect();
+    let (end, intervals) = (fitted.curve.end(), equations.intervals);
+    let mean = 2.0 * (fitted.curve.height(end) - fitted.curve.offset) / (end * end);
+    if mean <= 0.0 {
         return Err(Error::Hollow);
     }
-    let (table, profile, curve) = table(width, &curvatures, mean)?;
-    let intervals = curvatures.len();
+    let rising = |floor: f64| {
+        let unknowns = programme::constrained(equations, solution, *parabola - floor * mean);
+        unknowns.unwrap_or_else(|| solution.unknowns.clone())
+    };
+    let unknowns = rising(0.0);
+    let constrained = unknowns != solution.unknowns;
+    // The mechanics draws a curve of its own through the table: where g hardly rises, that of the table may fall.
+    let evened = |share: f64| {
+        let mut evened = unknowns.clone();
+        evened[..intervals].iter_mut().for_each(|curvature| *curvature += share * (mean - *parabola - *curvature));
+        evened
+    };
+    let candidates =
+        std::iter::once(unknowns.clone()).chain(FLOORS.into_iter().map(rising)).chain(SHARES.into_iter().map(evened));
+    let (mut made, mut lifted) = (None, unknowns.clone());
+    for candidate in candidates {
+        lifted = candidate;
+        let curvatures = lifted[..intervals].iter().map(|curvature| (curvature + parabola) * bend).collect();
+        made = table(Curve::new(breaks.clone(), curvatures, 0.0))?;
+        if made.is_some() {
+            break;
+        }
+    }
+    let (table, profile, curve) = made.ok_or(Error::Rough)?;
     let variance = fitted.variance * fitted.inflation * bend * bend;
-    let systematic = equations.systematic(solution);
+    // What the curvatures would change by with other intervals, another penalty, and without the lift.
+    let lift = lifted.iter().zip(&unknowns).map(|(lifted, plain)| lifted - plain).collect();
+    let systematic = [equations.change_of_halving(solution), fitted.without_scale.clone(), lift];
     let covariance = DMatrix::from_fn(intervals, intervals, |row, column| {
-        let off: f64 = systematic.iter().map(|off| off[row] * off[column]).sum();
+        let off: f64 = systematic.iter().map(|off: &Vec<f64>| off[row] * off[column]).sum();
         variance * solution.inverse[(row, column)] + bend * bend * off
     });
-    let apex = Estimate { value: curvatures[0], standard_error: covariance[(0, 0)].sqrt() };
-    let radius_of_curvature = (apex.value > 0.0 && apex.value * apex.value > covariance[(0, 0)])
+    let standard_errors = contact::standard_errors(&curve, &covariance, &table.radius)?;
+    // The radius of the curve that the scan shows: a tip too small for it could have any.
+    let sharper = bend * fitted.without_scale[0];
+    let variance_at_apex = (covariance[(0, 0)] - sharper * sharper).max(0.0);
+    let apex = Estimate { value: curve.curvatures[0], standard_error: variance_at_apex.sqrt() };
+    let radius_of_curvature = (apex.value > 0.0 && apex.value * apex.value > variance_at_apex)
         .then(|| Estimate { value: 1.0 / apex.value, standard_error: apex.standard_error / (apex.value * apex.value) });
     let (raw, left_out) = drawn(fitted, scaled, units);
     let residuals: Vec<f64> =
@@ -45,6 +68,7 @@ pub(super) fn finished(scan: &Scan, fitted: &Fitted, scaled: &Scaled, units: &Un
     let sign = if units.orientation == Orientation::PeakDown { 1.0 } else { -1.0 };
     Ok(ScanFit {
         table,
+        standard_errors,
         radius_of_curvature,
         centre: [0, 1].map(|axis| units.middle[axis] + fitted.axis[axis] * units.length),
         tilt: fitted.tilt.map(|tilt| sign * tilt * units.height / units.length),
@@ -63,25 +87,20 @@ pub(super) fn finished(scan: &Scan, fitted: &Fitted, scaled: &Scaled, units: &Un
     })
 }
 
-/// The table of a curve, and the profile that it makes. The mechanics draws a curve of its own through the points: where g hardly
-/// rises, that of the table may fall, and a small parabola lifts it.
-fn table(width: f64, curvatures: &[f64], mean: f64) -> Result<(Column, Profile, Curve), Error> {
-    let mut refused = Error::Rough;
-    for lift in LIFTS {
-        let curve = Curve::new(width, curvatures.iter().map(|curvature| curvature + lift * mean).collect(), 0.0);
-        let radius: Vec<f64> = (0..=2 * curvatures.len()).map(|index| index as f64 * TABLE_STEP * width).collect();
-        let height: Vec<f64> = radius.iter().map(|&r| curve.height(r)).collect();
-        let end = radius[radius.len() - 1];
-        match Tabulated::new(&radius, &height).map(Profile::Tabulated) {
-            Ok(profile) if profile.check_radius(end * (1.0 - 1e-9)).is_ok() => {
-                return Ok((Column { radius, height }, profile, curve));
-            }
-            Ok(_)
-            | Err(stickslip_mechanics::Error::NotConvexEnough { .. } | stickslip_mechanics::Error::Table { .. }) => {}
-            Err(error) => refused = error.into(),
+/// The table of a curve, with a point at the ends and the middle of each interval, and the profile that it makes;
+/// `None` if that does not rise.
+fn table(curve: Curve) -> Result<Option<(Column, Profile, Curve)>, Error> {
+    use stickslip_mechanics::Error as Refusal;
+    let halves = curve.breaks.windows(2).flat_map(|ends| [ends[0], 0.5 * (ends[0] + ends[1])]);
+    let radius: Vec<f64> = halves.chain([curve.end()]).collect();
+    let height: Vec<f64> = radius.iter().map(|&r| curve.height(r)).collect();
+    match Tabulated::new(&radius, &height).map(Profile::Tabulated) {
+        Ok(profile) if profile.check_radius(curve.end() * (1.0 - 1e-9)).is_ok() => {
+            Ok(Some((Column { radius, height }, profile, curve)))
         }
+        Ok(_) | Err(Refusal::NotConvexEnough { .. } | Refusal::Table { .. }) => Ok(None),
+        Err(error) => Err(error.into()),
     }
-    Err(refused)
 }
 
 /// The least g'(x)/x over the mean.

@@ -1,8 +1,8 @@
-//! How smooth the curve is: the choice of the penalty.
+//! How smooth the curve is: the choice of one penalty for all radii, from which those of single radii are sought
+//! (`local_penalty`).
 //!
-//! Generalised cross-validation (Craven & Wahba 1979) takes the penalty with the least RSS/(n - c tr A)^2, A the influence matrix;
-//! c = 1.4 keeps it from following noise now and then (Kim & Gu 2004). Noise that is correlated from point to point looks like
-//! shape to it: then tr A counts as many times as the correlation inflates the variance of a mean (Altman 1990).
+//! Generalised cross-validation (Craven & Wahba 1979) takes the penalty with the least RSS/(n - c tr A)^2, A the
+//! influence matrix; c = 1.4 keeps it from following noise now and then (Kim & Gu 2004).
 
 use super::normal_equations::{Equations, Solution};
 
@@ -24,17 +24,16 @@ pub enum Smoothing {
     Knots(usize),
 }
 
-/// The best solution. `inflation` says how many times the variance of a mean exceeds that of independent noise, and
-/// `height` is the unit of height, m.
-pub(super) fn choose(equations: &Equations, smoothing: Smoothing, inflation: f64, height: f64) -> Option<Solution> {
+/// The best solution with one penalty for all radii; `height` is the unit of height, m.
+pub(super) fn choose(equations: &Equations, smoothing: Smoothing, height: f64) -> Option<Solution> {
     let count = equations.count;
     let score = |solution: &Solution| match smoothing {
         Smoothing::Auto => {
-            let left = count - CAUTION * inflation * solution.freedom;
+            let left = count - CAUTION * solution.freedom;
             if left > 0.0 { solution.squares / (left * left) } else { f64::INFINITY }
         }
         // Mallows' criterion.
-        Smoothing::Noise(noise) => solution.squares + 2.0 * inflation * (noise / height).powi(2) * solution.freedom,
+        Smoothing::Noise(noise) => solution.squares + 2.0 * (noise / height).powi(2) * solution.freedom,
         Smoothing::Knots(_) => 0.0,
     };
     if let Smoothing::Knots(_) = smoothing {

@@ -1,10 +1,11 @@
 //! Where a fit begins: which way up the scan is, and about where its axis lies.
 //!
-//! The scan is thinned to the median of each cell of a grid, which single spikes do not reach. Its parabola by least squares tells
-//! the way up; then a coarse curve is fitted about each axis of a grid over the scan.
+//! The scan is thinned to the median of each cell of a grid, which single spikes do not reach. Its parabola by least
+//! squares tells the way up; then a coarse curve is fitted about each axis of a grid over the scan.
 
 use nalgebra::DMatrix;
 
+use super::curve::equal_breaks;
 use super::normal_equations::{MOST_COLUMNS, Statistics};
 use crate::linear::{add, factor, solve};
 
@@ -92,7 +93,7 @@ pub(super) fn axis(points: &[[f64; 3]], plane: bool, keep_going: &dyn Fn() -> bo
 fn cost(points: &[[f64; 3]], [x0, y0]: [f64; 2]) -> Option<f64> {
     let radius = |point: &[f64; 3]| (point[0] - x0).hypot(point[1] - y0);
     let end = points.iter().map(radius).fold(0.0, f64::max);
-    let mut statistics = Statistics::new(end / INTERVALS as f64, INTERVALS, 0);
+    let mut statistics = Statistics::new(equal_breaks(end, INTERVALS), 0);
     for point in points {
         statistics.add(1.0, radius(point), point[2], &[0.0; MOST_COLUMNS]);
     }

@@ -74,7 +74,8 @@ fn outliers_are_left_out_and_counted() {
     }
 }
 
-/// A displacement that is noisy turns back and forth all the time; the loop is found in it, and its turning points are refined.
+/// A displacement that is noisy turns back and forth all the time; the loop is found in it, and its turning points are
+/// refined.
 #[test]
 fn turning_points_are_found_in_a_noisy_displacement() {
     let bench = Bench::default();
@@ -148,7 +149,8 @@ proptest! {
         virgin in any::<bool>(),
     ) {
         let bench = Bench::default();
-        let (displacement, force) = columns.iter().map(|(u, f)| (u * 10.0_f64.powf(scales.0), f * 10.0_f64.powf(scales.1))).unzip();
+        let scale = (10.0_f64.powf(scales.0), 10.0_f64.powf(scales.1));
+        let (displacement, force) = columns.iter().map(|(u, f)| (u * scale.0, f * scale.1)).unzip();
         let time = Some((0..columns.len()).map(|place| place as f64).collect());
         let start = Some(if virgin { Start::Virgin } else { Start::Steady });
         let record = Record { displacement, force, time, normal_force: None, start, weight: 1.0 };

@@ -2,5 +2,6 @@
 
 mod bench;
 mod faults;
+mod quantised;
 mod recovery;
 mod statistics;

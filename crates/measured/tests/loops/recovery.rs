@@ -83,8 +83,8 @@ fn six_parameters_of_a_bench_are_recovered() {
     }
 }
 
-/// In partial slip one load leaves the machine open; the stiffness of a ball goes with the root of the third degree of the load, that of a
-/// machine not at all.
+/// In partial slip one load leaves the machine open; the stiffness of a ball goes with the root of the third degree of
+/// the load, that of a machine not at all.
 #[test]
 fn two_loads_separate_the_contact_from_its_machine() {
     let light = Bench { compliance: 3e-8, ..Bench::default() };

@@ -72,7 +72,10 @@ proptest! {
 
     #[test]
     fn any_numbers_have_a_profile_or_an_error(
-        points in prop::collection::vec((-1e-3..1e-3f64, prop_oneof![Just(0.0), -1e-6..1e-6f64, Just(1e300), Just(f64::NAN)]), 0..60),
+        points in prop::collection::vec(
+            (-1e-3..1e-3f64, prop_oneof![Just(0.0), -1e-6..1e-6f64, Just(1e300), Just(f64::NAN)]),
+            0..60,
+        ),
         plane in any::<bool>(),
         level in any::<bool>(),
         smoothing in prop_oneof![Just(Smoothing::Auto), Just(Smoothing::Knots(100)), Just(Smoothing::Noise(1e-9))],

@@ -14,6 +14,8 @@ pub enum Shape {
     Cone(f64, f64),
     /// Radius of the flat, of the edge.
     Punch(f64, f64),
+    /// A cone with a hyperbola as its tip: slope, and radius over which it is blunt.
+    Hyperboloid(f64, f64),
 }
 
 impl Shape {
@@ -35,6 +37,7 @@ impl Shape {
                 }
             }
             Shape::Punch(flat, edge) => (r - flat).max(0.0).powi(2) / (2.0 * edge),
+            Shape::Hyperboloid(slope, blunt) => slope * r * r / (r.hypot(blunt) + blunt),
         }
     }
 
@@ -42,14 +45,19 @@ impl Shape {
     pub fn profile(&self, reach: f64) -> Profile {
         match *self {
             Shape::Ball(radius) => Profile::Sphere(Sphere::new(radius).unwrap()),
-            Shape::WornBall(..) => {
-                let radii: Vec<f64> = (0..=2_000).map(|index| 1.01 * reach * f64::from(index) / 2_000.0).collect();
-                let heights: Vec<f64> = radii.iter().map(|&r| self.height(r)).collect();
-                Profile::Tabulated(Tabulated::new(&radii, &heights).unwrap())
-            }
+            Shape::WornBall(..) => self.table(reach, 1),
+            Shape::Hyperboloid(..) => self.table(reach, 2),
             Shape::Cone(slope, tip) => Profile::RoundedCone(RoundedCone::new(slope, tip).unwrap()),
             Shape::Punch(flat, edge) => Profile::RoundedPunch(RoundedPunch::new(flat, edge).unwrap()),
         }
+    }
+
+    /// A table of 2000 steps, which grow outward as a power of the radius.
+    fn table(&self, reach: f64, power: i32) -> Profile {
+        let radii: Vec<f64> =
+            (0..=2_000).map(|index| 1.01 * reach * (f64::from(index) / 2_000.0).powi(power)).collect();
+        let heights: Vec<f64> = radii.iter().map(|&r| self.height(r)).collect();
+        Profile::Tabulated(Tabulated::new(&radii, &heights).unwrap())
     }
 }
 

@@ -4,26 +4,39 @@ use stickslip_mechanics::profile::{
     Cone, ExactSphere, PowerLaw, RoundedCone, RoundedPunch, Sum, Tabulated, TruncatedCone, TruncatedSphere,
 };
 use stickslip_mechanics::protocol::falling_amplitude;
-use stickslip_mechanics::{Contact, Elasticity, Move, Preload, Profile, Setup, Sphere, Tangential};
+use stickslip_mechanics::{Body, Contact, Elasticity, Move, Preload, Profile, Setup, Sphere, Tangential};
 
-const BALL: f64 = 0.01;
-const VALID: &str = "valid parameters";
+pub const BALL: f64 = 0.01;
+pub const VALID: &str = "valid parameters";
 
 /// The sphere in Hertz's approximation.
 pub fn sphere() -> Profile {
     Profile::Sphere(Sphere::new(BALL).expect(VALID))
 }
 
+/// Radii and heights of so many points of an exact sphere, or of the parabola at its tip.
+pub fn points(count: u32, parabola: bool) -> (Vec<f64>, Vec<f64>) {
+    let radii: Vec<f64> = (0..count).map(|index| 2e-4 * f64::from(index) / f64::from(count - 1)).collect();
+    let root = |r: f64| if parabola { BALL } else { ((BALL - r) * (BALL + r)).sqrt() };
+    let heights = radii.iter().map(|r| r * r / (BALL + root(*r))).collect();
+    (radii, heights)
+}
+
 /// A table of so many points of an exact sphere.
-pub fn table(points: u32) -> Profile {
-    let radii: Vec<f64> = (0..points).map(|index| 2e-4 * f64::from(index) / f64::from(points - 1)).collect();
-    let heights: Vec<f64> = radii.iter().map(|r| r * r / (BALL + ((BALL - r) * (BALL + r)).sqrt())).collect();
+pub fn table(count: u32) -> Profile {
+    let (radii, heights) = points(count, false);
     Profile::Tabulated(Tabulated::new(&radii, &heights).expect(VALID))
+}
+
+/// Steel on steel.
+pub fn elasticity() -> Elasticity {
+    let steel = Body::new(2.1e11, 0.3).expect(VALID);
+    Elasticity::of_bodies(steel, steel)
 }
 
 /// The virgin contact of a profile under 10 N.
 pub fn contact(profile: Profile) -> Contact {
-    let elasticity = Elasticity::effective(1.15e11, 8.5e10).expect(VALID);
+    let elasticity = elasticity();
     Contact::new(Setup { profile, elasticity, friction: 0.3, preload: Preload::NormalForce(10.0) }).expect(VALID)
 }
 
@@ -63,5 +76,6 @@ pub fn shapes() -> Vec<(&'static str, Profile)> {
         ("sphere and fourth power", Profile::Sum(Sum::new(vec![sphere(), power(4.0, 1e6)]).expect(VALID))),
         ("table of 1000 points", table(1_000)),
         ("table of 10 000 points", table(10_000)),
+        ("sphere and table of 1000 points", Profile::Sum(Sum::new(vec![sphere(), table(1_000)]).expect(VALID))),
     ]
 }

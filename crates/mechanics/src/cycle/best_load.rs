@@ -1,8 +1,8 @@
 //! The normal force under which a given drive does most friction work.
 //!
-//! Without a load there is no friction, and under a large one little slip. At a given displacement the contact slides for
-//! a part of the way where the most work is done, or no further than that; a given force needs a load that holds it.
-//! The work may have several maxima, so that loads of some decades are compared before the best of them is refined.
+//! Without a load there is no friction, and under a large one little slip. At a given displacement the contact slides
+//! for a part of the way where the most work is done, or no further than that; a given force needs a load that holds
+//! it. The work may have several maxima, so that loads of some decades are compared before the best of them is refined.
 
 use super::{Drive, SteadyCycle};
 use crate::{Contact, Error};

@@ -5,18 +5,18 @@
 //!
 //! a_n = 4/(pi n) int sin(n th) dR, b_n = -4/(pi n) int cos(n th) dR,
 //!
-//! the even ones zero. What is straight, R = kappa S with the stiffness just after the reversal, gives kappa S0 cos(th);
-//! only the rest, which goes with X(d) - X(y), is integrated, so that small cycles keep the digits of their higher
-//! harmonics. The integrand is smooth over the angle phi with s = s0 sin^2(phi/2), but for the tip and the kinks of the
-//! profile; panels shrink towards these.
+//! the even ones zero. What is straight, R = kappa S with the stiffness just after the reversal, gives kappa S0
+//! cos(th); only the rest, which goes with X(d) - X(y), is integrated, so that small cycles keep the digits of their
+//! higher harmonics. The integrand is smooth over the angle phi with s = s0 sin^2(phi/2), but for the tip and the kinks
+//! of the profile; panels shrink towards these.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use super::{SteadyCycle, masing_harmonics};
-use crate::double_double::DoubleDouble;
 use crate::normal::load;
+use crate::numerics::double_double::DoubleDouble;
+use crate::numerics::gauss::QuadraturePanel;
 use crate::profile::Ring;
-use crate::profile::gauss::Panel;
 use crate::profile::ring_quadrature::{approach, split};
 
 /// The turn of the highest harmonic that a panel of twenty points follows, rad.
@@ -155,7 +155,7 @@ impl<'a, 'b> Branch<'a, 'b> {
             return sums;
         }
         for pair in ends.windows(2) {
-            Panel::fine(pair[1] - pair[0]).visit(|offset, share| {
+            QuadraturePanel::fine(pair[1] - pair[0]).visit(|offset, share| {
                 let ([sin, cos], weight) = self.at(pair[0] + offset);
                 // By the recurrence of two steps: cos((n + 2) th) = 2 cos(2 th) cos(n th) - cos((n - 2) th).
                 let double = 2.0 * (2.0 * cos * cos - 1.0);

@@ -1,8 +1,8 @@
 //! The harmonics of a steady cycle whose displacement is driven, without a machine.
 //!
-//! With c = cos(th), h = S (1 - c)/2 the depth that a branch has slipped and S that which the drive would, the integrals of
-//! [`harmonics`](super::harmonics) are taken by parts once more: with e_m = th - sin(2 m th)/(2 m), q_m = sin^2(m th)/m and
-//! n = 2 m + 1,
+//! With c = cos(th), h = S (1 - c)/2 the depth that a branch has slipped and S that which the drive would, the
+//! integrals of [`harmonics`](super::harmonics) are taken by parts once more: with e_m = th - sin(2 m th)/(2 m), q_m =
+//! sin^2(m th)/m and n = 2 m + 1,
 //!
 //! int_0^h sin(n th) dh = (S/4) (e_(m+1) - e_m), int_0^h cos(n th) dh = (S/4) (q_(m+1) - q_m),
 //!
@@ -18,10 +18,10 @@ const SMALL: f64 = 1.0;
 const TERMS: usize = 9;
 
 /// Sums of e_m and q_m, for m from zero on.
-type Sums = Vec<[f64; 2]>;
+type HarmonicSums = Vec<[f64; 2]>;
 
-/// int sin(n th) dR and int cos(n th) dR for odd n up to `count`, without the straight part unless the contact slides, and
-/// what they are off by as a part of the force amplitude.
+/// int sin(n th) dR and int cos(n th) dR for odd n up to `count`, without the straight part unless the contact slides,
+/// and what they are off by as a part of the force amplitude.
 pub(super) fn integrals(cycle: &SteadyCycle<'_>, count: usize) -> (Vec<[f64; 2]>, f64) {
     let (contact, ring) = (cycle.contact, &cycle.ring);
     let orders = count.div_ceil(2);
@@ -57,12 +57,12 @@ pub(super) fn integrals(cycle: &SteadyCycle<'_>, count: usize) -> (Vec<[f64; 2]>
     }
 }
 
-fn differences(sums: &Sums, unit: f64) -> Vec<[f64; 2]> {
+fn differences(sums: &HarmonicSums, unit: f64) -> Vec<[f64; 2]> {
     sums.windows(2).map(|pair| [0, 1].map(|kind| unit * (pair[1][kind] - pair[0][kind]))).collect()
 }
 
 /// Adds e_m and q_m where the drive has fallen by `depth` of `total`, m from one on; both are zero at m = 0.
-fn add(sums: &mut Sums, weight: f64, depth: f64, total: f64) {
+fn add(sums: &mut HarmonicSums, weight: f64, depth: f64, total: f64) {
     let left = (total - depth).max(0.0);
     let (sin, cos) = (2.0 * (depth * left).sqrt() / total, (left - depth) / total);
     let angle = sin.atan2(cos);

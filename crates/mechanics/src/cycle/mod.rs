@@ -16,9 +16,12 @@ mod best_load;
 mod harmonics;
 mod lap;
 mod masing_harmonics;
+mod masing_loop;
+mod mass_motion;
 mod oscillating;
 mod response;
 mod sphere_harmonics;
+mod steady_motion;
 
 pub use best_load::{BestLoad, best_load};
 pub use harmonics::{Harmonic, Harmonics};
@@ -26,11 +29,11 @@ pub use oscillating::{OscillatingCycle, OscillatingLoad, Oscillation};
 pub use response::{Resonator, Response};
 
 use super::curved_move::PathPoint;
-use super::double_double::DoubleDouble;
 use super::normal::{depth_for, load, whole};
 use super::profile::{Moments, Ring};
 use super::slip_history::SlipHistory;
 use super::{Contact, Error, Regime};
+use crate::numerics::double_double::DoubleDouble;
 
 /// More steps than a machine spring ever takes; a safeguard only.
 const MOST_STEPS: usize = 200;

@@ -12,7 +12,7 @@ use std::f64::consts::TAU;
 use super::lap::Lap;
 use super::{Drive, Harmonic};
 use crate::curved_move::PathPoint;
-use crate::double_double::DoubleDouble;
+use crate::numerics::double_double::DoubleDouble;
 use crate::range::{self, Quantity, short};
 use crate::slip_history::SlipHistory;
 use crate::{Contact, Error, Normal, Regime};
@@ -54,8 +54,8 @@ pub struct OscillatingCycle {
     pub max_elastic_energy: f64,
     /// 2 G* a where the drive is largest, N/m.
     pub tangent_stiffness: f64,
-    /// Half the distance of the displacements at which the force changes its sign, over the amplitude; `None` if it does
-    /// not do so twice.
+    /// Half the distance of the displacements at which the force changes its sign, over the amplitude; `None` if it
+    /// does not do so twice.
     pub sliding_ratio: Option<f64>,
     /// Radius of the part that never slips, m.
     pub stick_radius: f64,
@@ -268,8 +268,8 @@ impl Oscillation {
         turns
     }
 
-    /// The displacement, m, between two straight moves with the integral of U over d of the curve; `None` where it is not
-    /// given, or where one of the two would slip otherwise than the curve.
+    /// The displacement, m, between two straight moves with the integral of U over d of the curve; `None` where it is
+    /// not given, or where one of the two would slip otherwise than the curve.
     fn elbow(&self, contact: &Contact, angles: [f64; 3]) -> Option<f64> {
         let amplitude = self.displaced()?;
         let moved = angles.map(|angle| amplitude * angle.cos());

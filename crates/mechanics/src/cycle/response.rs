@@ -1,19 +1,25 @@
-//! A mass on a contact, driven by a force: amplitude and phase over the frequency, by harmonic balance.
+//! A mass on a contact, driven by a force: its steady oscillation at a frequency.
 //!
-//! M U'' + F(U) = P cos(w t) with U = U0 cos(th), th = w t - psi, and the first harmonic of F, a cos(th) + b sin(th):
-//! (a - M w^2 U0)^2 + b^2 = P^2, tan(psi) = -b/(a - M w^2 U0). The loop gets softer as it grows, so that the curve leans
-//! over and up to three amplitudes belong to a frequency. The third harmonic, which the balance leaves out, says how far
-//! it may be off.
+//! M U'' + F(U) = P cos(w t), F with the exact slip history. A contact at constant load is a row of springs with
+//! sliders, and two motions of a mass on such a row never draw apart: with the difference of the speeds dV and of the
+//! forces of the springs df_i, d/dt (M dV^2/2 + sum df_i^2/(2 k_i)) = -sum df_i (slip_1 - slip_2)_i/k_i <= 0. So there
+//! is one steady oscillation at each frequency, whatever the start, and half a period later it is its own mirror image.
+//! (Caughey 1960 found this of bilinear hysteresis: the curve leans to lower frequencies and does not fold.)
+//!
+//! It is found by `steady_motion` from the balance of the first harmonic alone, which takes U for a cosine.
 
 use std::f64::consts::TAU;
 
-use super::{Harmonic, SteadyCycle};
+use super::masing_loop::FirstLoading;
+use super::mass_motion::DrivenMass;
+use super::{Drive, Harmonic, SteadyCycle};
 use crate::Contact;
+use crate::numerics::roots::between;
 
-/// Amplitudes, evenly spaced in their logarithm, between which roots are sought.
-const AMPLITUDES: usize = 1_024;
-/// Halvings of the bracket of a root.
-const HALVINGS: usize = 50;
+/// Digits, as a logarithm, to which the balance of the first harmonic is solved: it is a start.
+const START: f64 = 1e-3;
+/// Where the free oscillation is this many times as fast as the drive, the mass follows the force.
+const QUASI_STATIC: f64 = 100.0;
 
 /// A mass that hangs on the contact alone, and the force that drives it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,12 +35,19 @@ pub struct Resonator {
 pub struct Response {
     /// Frequency, Hz.
     pub frequency: f64,
-    /// Amplitude of the displacement, m.
+    /// Amplitude of the first harmonic of the displacement, m.
     pub amplitude: f64,
-    /// By how much it lags behind the force, rad.
+    /// By how much the first harmonic lags behind the force, rad.
     pub phase: f64,
+    /// Half the range of the displacement, m.
+    pub peak: f64,
     /// The third harmonic of the contact's force over the first.
     pub third_harmonic: f64,
+    /// Error of the amplitude, m, and as part of it that of the phase, rad: an estimate; infinite where the steady
+    /// oscillation was not found, and the amplitude is that of the balance of the first harmonic.
+    pub amplitude_error: f64,
+    /// Error of the peak, m: an estimate, or infinite.
+    pub peak_error: f64,
 }
 
 impl Resonator {
@@ -54,8 +67,8 @@ impl Resonator {
         (SteadyCycle::of(contact, 0.0).tangent_stiffness() / self.mass).sqrt() / TAU
     }
 
-    /// All steady oscillations at each of `frequencies`, Hz, above zero; one frequency after the other, the smallest
-    /// amplitude first. `None` if `keep_going` returned false: it is asked at every amplitude and frequency.
+    /// The steady oscillation at each of `frequencies`, Hz, above zero, to `tolerance`, of the amplitude; the errors
+    /// say where it was not met. `None` if `keep_going` returned false: it is asked at every frequency and on the way.
     ///
     /// ```
     #[doc = include_str!("../example.txt")]
@@ -64,7 +77,7 @@ impl Resonator {
     /// let body = Resonator { mass: 1.0, drive_force: 1e-3 };
     /// let low = 0.1 * body.natural_frequency(&contact);
     /// // So little a force is carried by the stiffness, 1 - 0.01 of it being left.
-    /// let found = body.respond(&contact, &[low], &|| true).unwrap();
+    /// let found = body.respond(&contact, &[low], 1e-7, &|| true).unwrap();
     /// let expected = 1e-3 / (2.0 * 2e6 * 0.1 * 0.99);
     /// assert_eq!(found.len(), 1);
     /// assert!((found[0].amplitude / expected - 1.0).abs() < 1e-6);
@@ -75,49 +88,86 @@ impl Resonator {
         &self,
         contact: &Contact,
         frequencies: &[f64],
+        tolerance: f64,
         keep_going: &dyn Fn() -> bool,
     ) -> Option<Vec<Response>> {
-        let stiffness = SteadyCycle::of(contact, 0.0).tangent_stiffness();
-        let limit = contact.friction * contact.normal_force;
-        let inertia = |frequency: f64| self.mass * (TAU * frequency).powi(2);
-        let (least, most) = frequencies.iter().fold((f64::INFINITY, 0.0_f64), |(least, most), &frequency| {
-            // The first harmonic of F lies below the stiffness times U0, and below 4/pi of the limit.
-            let small = 0.5 * self.drive_force / (stiffness + inertia(frequency));
-            let large = 2.0 * (self.drive_force + 1.3 * limit) / inertia(frequency);
-            (least.min(small), most.max(large))
-        });
-        let first = |amplitude: f64| SteadyCycle::of(contact, amplitude).harmonics(1).harmonics[0];
-        let mut table: Vec<(f64, Harmonic)> = Vec::with_capacity(AMPLITUDES + 1);
-        for index in 0..=AMPLITUDES {
-            let amplitude = least * (most / least).powf(index as f64 / AMPLITUDES as f64);
-            keep_going().then(|| table.push((amplitude, first(amplitude))))?;
-        }
-        let mut found = Vec::new();
-        for &frequency in frequencies {
+        let natural = self.natural_frequency(contact);
+        let respond = |&frequency: &f64| {
             keep_going().then_some(())?;
-            let lack = |amplitude: f64, force: &Harmonic| {
-                (force.in_phase - inertia(frequency) * amplitude).hypot(force.quadrature) - self.drive_force
+            let mass = DrivenMass {
+                loading: FirstLoading::new(contact),
+                drive_force: self.drive_force,
+                inertia: self.mass * (TAU * frequency).powi(2),
+                ratio: natural / frequency,
+                keep_going,
             };
-            for pair in table.windows(2) {
-                let [(mut low, _), (mut high, _)] = [pair[0], pair[1]];
-                let below = lack(low, &pair[0].1) < 0.0;
-                if below == (lack(high, &pair[1].1) < 0.0) {
-                    continue;
-                }
-                for _ in 0..HALVINGS {
-                    let middle = 0.5 * (low + high);
-                    if (lack(middle, &first(middle)) < 0.0) == below { low = middle } else { high = middle }
-                }
-                let harmonics = SteadyCycle::of(contact, high).harmonics(3).harmonics;
-                let size = |order: usize| harmonics[order - 1].in_phase.hypot(harmonics[order - 1].quadrature);
-                found.push(Response {
-                    frequency,
-                    amplitude: high,
-                    phase: (-harmonics[0].quadrature).atan2(harmonics[0].in_phase - inertia(frequency) * high),
-                    third_harmonic: if size(1) > 0.0 { size(3) / size(1) } else { 0.0 },
-                });
-            }
-        }
-        Some(found)
+            let start = mass.balance_of_first(contact);
+            let found = if mass.ratio > QUASI_STATIC {
+                mass.quasi_static(contact)
+            } else {
+                mass.steady([start.amplitude, start.phase], tolerance).ok()?
+            };
+            Some(Response { frequency, ..found.unwrap_or(start) })
+        };
+        frequencies.iter().map(respond).collect()
     }
+}
+
+impl DrivenMass<'_> {
+    /// The balance of the first harmonic alone: (a - M w^2 U0)^2 + b^2 = P^2 with the first harmonic a cos(th) + b
+    /// sin(th) of the force in a cycle of the amplitude U0. Its error is not known.
+    fn balance_of_first(&self, contact: &Contact) -> Response {
+        let first = |amplitude: f64| SteadyCycle::of(contact, amplitude).harmonics(1).harmonics[0];
+        let lag = |amplitude: f64, force: Harmonic| [force.in_phase - self.inertia * amplitude, -force.quadrature];
+        let lack = |logarithm: f64| {
+            let [carried, lost] = lag(logarithm.exp(), first(logarithm.exp()));
+            carried.hypot(lost) - self.drive_force
+        };
+        // The first harmonic of F lies below the stiffness times U0, and below 4/pi of the limit.
+        let small = 0.5 * self.drive_force / (self.inertia * (1.0 + self.ratio * self.ratio));
+        let large = 2.0 * (self.drive_force + 1.3 * self.loading.limit()) / self.inertia;
+        let ends = [small, large].map(f64::ln).map(|logarithm| (logarithm, lack(logarithm)));
+        let amplitude = between(ends, START, lack).exp();
+        let [carried, lost] = lag(amplitude, first(amplitude));
+        Response {
+            frequency: 0.0,
+            amplitude,
+            phase: lost.atan2(carried),
+            peak: amplitude,
+            third_harmonic: third_over_first(&SteadyCycle::of(contact, amplitude)),
+            amplitude_error: f64::INFINITY,
+            peak_error: f64::INFINITY,
+        }
+    }
+
+    /// The oscillation of a drive so slow that the contact's force is the drive's, but for the inertia of the mass,
+    /// which may add to the force what its acceleration does at the softest point of the cycle, and swing to twice
+    /// that. `None` where the contact might slide.
+    fn quasi_static(&self, contact: &Contact) -> Option<Response> {
+        let driven = |force| SteadyCycle::driven(contact, Drive::Force(force), 0.0).ok();
+        let cycle = driven(self.drive_force)?;
+        let softest = 2.0 * contact.elasticity.g_star() * cycle.ring.inner.radius;
+        let swing = 2.0 * self.drive_force * self.inertia / softest;
+        let peak = cycle.displacement_amplitude();
+        let farther = driven(self.drive_force + swing)?.displacement_amplitude();
+        let Harmonic { in_phase, quadrature, .. } = cycle.harmonics(1).harmonics[0];
+        // The other way as well, and the ringing of the mass.
+        let error = 2.0 * (farther - peak);
+        Some(Response {
+            frequency: 0.0,
+            amplitude: in_phase.hypot(quadrature),
+            phase: quadrature.atan2(in_phase),
+            peak,
+            third_harmonic: 0.0,
+            amplitude_error: error,
+            peak_error: error,
+        })
+    }
+}
+
+/// The third harmonic of a cycle over the first.
+fn third_over_first(cycle: &SteadyCycle<'_>) -> f64 {
+    let harmonics = cycle.harmonics(3).harmonics;
+    let size = |order: usize| harmonics[order - 1].in_phase.hypot(harmonics[order - 1].quadrature);
+    if size(1) > 0.0 { size(3) / size(1) } else { 0.0 }
 }

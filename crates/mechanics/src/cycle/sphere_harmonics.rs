@@ -1,14 +1,14 @@
 //! The integrals of [`masing_harmonics`](super::masing_harmonics) on a sphere, g = x^2/R.
 //!
-//! For the sines the integrand is even and periodic, over th or, where the contact slides, over the psi with x = a cos(psi):
-//! equal steps converge like exp(-2 N eta) and exp(-4 N eta), eta the distance of the tip's branch point from the axis. For
-//! the cosines it is a polynomial in x, which Gauss's rule takes exactly.
+//! For the sines the integrand is even and periodic, over th or, where the contact slides, over the psi with x = a
+//! cos(psi): equal steps converge like exp(-2 N eta) and exp(-4 N eta), eta the distance of the tip's branch point from
+//! the axis. For the cosines it is a polynomial in x, which Gauss's rule takes exactly.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use super::SteadyCycle;
 use crate::Profile;
-use crate::profile::gauss::Panel;
+use crate::numerics::gauss::QuadraturePanel;
 
 /// Up to this order a rule of twenty points takes the polynomials exactly.
 const MOST_ORDERS: usize = 18;
@@ -17,8 +17,8 @@ const NEAR: f64 = 0.02;
 /// The logarithm of round-off.
 const DIGITS: f64 = 37.0;
 
-/// The integrals for odd n up to `count`, if the drive would slip the depth `total`, m; `None` where the general quadrature
-/// must give them.
+/// The integrals for odd n up to `count`, if the drive would slip the depth `total`, m; `None` where the general
+/// quadrature must give them.
 pub(super) fn integrals(cycle: &SteadyCycle<'_>, total: f64, count: usize) -> Option<Vec<[f64; 2]>> {
     let (ring, slides) = (&cycle.ring, cycle.slide > 0.0);
     let share = total / ring.outer.level.value();
@@ -46,7 +46,7 @@ pub(super) fn integrals(cycle: &SteadyCycle<'_>, total: f64, count: usize) -> Op
             add(&mut sums, 0, -unit * sin * lost, [sin, -sin, cos]);
         });
     }
-    let rule = if count <= 6 { Panel::coarse } else { Panel::fine };
+    let rule = if count <= 6 { QuadraturePanel::coarse } else { QuadraturePanel::fine };
     let (edge, width) = (ring.outer.radius, cycle.moments.width);
     let curvature = edge * edge / ring.outer.level.value();
     rule(width).visit(|below, weight| {

@@ -27,13 +27,15 @@ pub(super) enum EndBehaviour {
     InverseRoot(f64),
     /// It is infinite as the logarithm of the distance, or a power nearly so.
     Logarithm,
-    /// It is infinite as the inverse of the distance; the distance of the next kink beyond the end, in squares, m^2, or zero.
+    /// It is infinite as the inverse of the distance; the distance of the next kink beyond the end, in squares, m^2, or
+    /// zero.
     Inverse(f64),
 }
 
-/// An interval of radii in which the shear stress is smooth. A *place* q in it runs from minus infinity at the inner end
-/// to infinity at the outer: e^-|q| is the distance to the nearer end, in halves of the difference of their squares.
-pub(super) struct SmoothInterval {
+/// An interval of radii in which the shear stress is smooth. A *place* q in it runs from minus infinity at the inner
+/// end to infinity at the outer: e^-|q| is the distance to the nearer end, in halves of the difference of their
+/// squares.
+pub(super) struct StressInterval {
     pub(super) inner: StressRadius,
     pub(super) outer: StressRadius,
     /// How it begins, and the sign of the derivative there, zero if unknown.
@@ -53,7 +55,7 @@ pub(super) struct Sample {
     pub(super) value: f64,
 }
 
-impl SmoothInterval {
+impl StressInterval {
     pub(super) fn half(&self) -> f64 {
         0.5 * (self.outer.square - self.inner.square).value()
     }

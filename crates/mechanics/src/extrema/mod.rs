@@ -13,16 +13,17 @@ mod settled;
 use super::profile::{KernelSlopes, StressRadius};
 use super::{Contact, DoubleDouble};
 use derivative::{Derivative, NOISE, Pace};
-use interval::{EndBehaviour, KNOT_FLOOR, MAX_PLACE, Sample, SmoothInterval};
+use interval::{EndBehaviour, KNOT_FLOOR, MAX_PLACE, Sample, StressInterval};
 use settled::Known;
 
 /// With more intervals than this between the knots of a table, each is sampled at its middle and its ends alone.
 const SPARSE_ABOVE: usize = 100;
 
-/// A root is known when its place is to this, relative to one more than it: the distance to the nearer end, to as much of itself. The
-/// stress at the extremum is then off by the square of this, which is far below its rounding.
+/// A root is known when its place is to this, relative to one more than it: the distance to the nearer end, to as much
+/// of itself. The stress at the extremum is then off by the square of this, which is far below its rounding.
 const RESOLUTION: f64 = 1e-12;
-/// A step of interpolation this short, likewise, ends at the root: its error is of third order, in steps of which this is the shortest.
+/// A step of interpolation this short, likewise, ends at the root: its error is of third order, in steps of which this
+/// is the shortest.
 const LAST_STEP: f64 = 1e-7;
 /// After this many steps towards a root every second one halves the interval.
 const QUICK_STEPS: usize = 12;
@@ -121,7 +122,7 @@ impl Contact {
                 if known == Known::Sign || one_change && start.1 * end.1 > 0.0 {
                     search.cross(&inner, -bend);
                 } else {
-                    search.search_interval(&SmoothInterval { inner, outer, start, end, sparse, one_change });
+                    search.search_interval(&StressInterval { inner, outer, start, end, sparse, one_change });
                 }
                 (inner, start) = (outer, next);
             }
@@ -183,12 +184,12 @@ impl Search<'_, '_, '_> {
         self.sign = value.signum();
     }
 
-    fn sample(&self, interval: &SmoothInterval, place: f64) -> Sample {
+    fn sample(&self, interval: &StressInterval, place: f64) -> Sample {
         Sample { place, value: self.derivative.at(&interval.at(place)) * interval.weight(place) }
     }
 
     /// Goes through an interval from its inner end to its outer.
-    fn search_interval(&mut self, interval: &SmoothInterval) {
+    fn search_interval(&mut self, interval: &StressInterval) {
         if interval.half() <= 0.0 {
             return;
         }
@@ -225,7 +226,7 @@ impl Search<'_, '_, '_> {
     }
 
     /// Where the derivative dips through zero between two samples of one sign, if it does.
-    fn dip(&self, interval: &SmoothInterval, mut low: Sample, mut high: Sample) -> Option<Sample> {
+    fn dip(&self, interval: &StressInterval, mut low: Sample, mut high: Sample) -> Option<Sample> {
         let sign = low.value.signum();
         for _ in 0..48 {
             let third = (high.place - low.place) / 3.0;
@@ -245,9 +246,10 @@ impl Search<'_, '_, '_> {
         None
     }
 
-    /// Finds the change of sign between two samples: inverse quadratic interpolation where it is safe, else halving (Chandrupatla
-    /// 1997). There is no value at an end that is infinitely far. A sample `beyond` them, if there is one, is for the first step.
-    fn find_root(&mut self, interval: &SmoothInterval, from: Sample, to: Sample, beyond: Option<Sample>) {
+    /// Finds the change of sign between two samples: inverse quadratic interpolation where it is safe, else halving
+    /// (Chandrupatla 1997). There is no value at an end that is infinitely far. A sample `beyond` them, if there is
+    /// one, is for the first step.
+    fn find_root(&mut self, interval: &StressInterval, from: Sample, to: Sample, beyond: Option<Sample>) {
         let known = |sample: Sample| if sample.place.is_finite() { sample.value } else { f64::NAN };
         // The last place and the one across the root from it.
         let mut last = Sample { place: to.place.min(MAX_PLACE), value: known(to) };
@@ -289,8 +291,8 @@ impl Search<'_, '_, '_> {
     }
 }
 
-/// Where inverse quadratic interpolation puts a root between `last` and `across`, as a share of the way; `None` where the curve
-/// through these and the `third` sample may not be monotone, or a value is unknown.
+/// Where inverse quadratic interpolation puts a root between `last` and `across`, as a share of the way; `None` where
+/// the curve through these and the `third` sample may not be monotone, or a value is unknown.
 fn inverse_quadratic(last: Sample, across: Sample, third: Sample) -> Option<f64> {
     let (a, b, c) = (last.value, across.value, third.value);
     let xi = (last.place - across.place) / (third.place - across.place);

@@ -1,18 +1,23 @@
-//! Intervals between kinks of the slip history in which the sign of d tau/d(r^2) is known without a search, or has one change at most.
+//! Intervals between kinks of the slip history in which the sign of d tau/d(r^2) is known without a search, or has one
+//! change at most.
 //!
-//! With s_i the slope of the piece over the ring i and r in the ring j, whose outer end is c, d tau/d(r^2) is a positive factor times
-//! s_j D - sum over i > j of s_i R_i. D = -dK(r, c)/d(r^2) falls as c grows, and R_i = int dy/(2 v^3) > 0 over the levels of the ring i,
-//! v = sqrt(x^2 - r^2), since d^2 K/(d(r^2) dc) = g'(c)/(2 v^3) > 0. The sign is that of s_j in two cases:
+//! With s_i the slope of the piece over the ring i and r in the ring j, whose outer end is c, d tau/d(r^2) is a
+//! positive factor times s_j D - sum over i > j of s_i R_i. D = -dK(r, c)/d(r^2) falls as c grows, and R_i = int dy/(2
+//! v^3) > 0 over the levels of the ring i, v = sqrt(x^2 - r^2), since d^2 K/(d(r^2) dc) = g'(c)/(2 v^3) > 0. The sign
+//! is that of s_j in two cases:
 //!
-//! - The bends s_(i+1) - s_i alternate in sign and do not grow outward, and the kernel up to the edge falls: by parts, the sum is an
-//!   alternating one of the D up to each kink, none of which is below that up to the edge, led by the first.
-//! - The slopes alternate in sign, their size times the depth of the ring does not grow outward beyond the ring j, and the kernel up to
-//!   c falls: v only grows outward, so each R_i outweighs the next, and the first of them has the sign of s_j D.
+//! - The bends s_(i+1) - s_i alternate in sign and do not grow outward, and the kernel up to the edge falls: by parts,
+//!   the sum is an alternating one of the D up to each kink, none of which is below that up to the edge, led by the
+//!   first.
+//! - The slopes alternate in sign, their size times the depth of the ring does not grow outward beyond the ring j, and
+//!   the kernel up to c falls: v only grows outward, so each R_i outweighs the next, and the first of them has the sign
+//!   of s_j D.
 //!
-//! Whether a kernel falls is known from [`Profile::least_fall`](super::super::Profile), once for all r of an interval. Where it may not,
-//! but g'/x rises ever less with x^2 ([`Profile::rises_concavely`](super::super::Profile)), D grows with r. Then the derivative over that
-//! of the factor grows away from zero too, and changes its sign once at most, in the same two cases: dD/d(r^2) falls as c grows, as
-//! D does, by d^2 D/(d(r^2) dc) = -3 g'(c)/(4 v^5), and of the dR_i/d(r^2) = int 3 dy/(4 v^5) each outweighs the next.
+//! Whether a kernel falls is known from [`Profile::least_fall`](super::super::Profile), once for all r of an interval.
+//! Where it may not, but g'/x rises ever less with x^2 ([`Profile::rises_concavely`](super::super::Profile)), D grows
+//! with r. Then the derivative over that of the factor grows away from zero too, and changes its sign once at most, in
+//! the same two cases: dD/d(r^2) falls as c grows, as D does, by d^2 D/(d(r^2) dc) = -3 g'(c)/(4 v^5), and of the
+//! dR_i/d(r^2) = int 3 dy/(4 v^5) each outweighs the next.
 
 use super::super::Contact;
 use super::super::profile::Ring;

@@ -1,37 +1,42 @@
 //! The steady cycle of a contact under a closed list of moves, held at instants.
 
-use super::{Criterion, Value};
+use crate::curved_move::PathPoint;
+use crate::numerics::double_double::DoubleDouble;
 use crate::range::Quantity;
 use crate::subsurface::Side;
-use crate::{Contact, DEFAULT_TOLERANCE, Error, Move, Stress};
+use crate::{Contact, DEFAULT_TOLERANCE, Error, Move, Normal, Stress, Tangential};
 
-/// Change of a criterion, relative to it, below which more instants are not worth their cost.
-pub const DEFAULT_REFINEMENT: f64 = 1e-4;
-/// The largest number of instants of a move that [`Cycle::refined`] tries.
-pub const MAX_INSTANTS: usize = 256;
-
-const FEWEST_INSTANTS: usize = 4;
 /// A cycle is closed if it ends as near as this to where it began, relative to its largest displacement or indentation.
 const CLOSED: f64 = 1e-9;
 /// Under forces a contact can shake down over many cycles. One that has not after so many never will, or too late.
 const MOST_LAPS: usize = 64;
+/// Bytes that the states and the chords of a cycle may take.
+pub const MOST_BYTES: usize = 32 * 1024 * 1024;
 
 /// A contact that has come to the start of a steady cycle.
 #[derive(Clone, Debug)]
 pub struct Cycle {
     start: Contact,
     moves: Vec<Move>,
+    /// The straight parts of the moves in (d, U), one for each move but for curved ones.
+    chords: Vec<Chord>,
+    /// States before some of the chords, the first of each move among them, by the indices of the chords.
+    saved: Vec<(usize, Contact)>,
+    /// The parts of each move after which its effect is not smooth in the part.
+    turns: Vec<Vec<f64>>,
 }
 
-/// A criterion over as many instants as it needs.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Refined {
-    /// Over the states of this many instants.
-    pub value: Value,
-    /// Instants of each move.
-    pub instants: usize,
-    /// Change from half as many, relative to the value: above the tolerance if [`MAX_INSTANTS`] were not enough.
-    pub change: f64,
+/// A straight part of a move.
+#[derive(Clone, Copy, Debug)]
+struct Chord {
+    step: usize,
+    /// The parts of the move at its ends.
+    from: f64,
+    to: f64,
+    end: PathPoint,
+    /// The level of the edge, and that down to which there was slip, m, at its end.
+    edge: f64,
+    front: f64,
 }
 
 impl Cycle {
@@ -71,8 +76,162 @@ impl Cycle {
         }
         match open {
             Some((quantity, drift)) => Err(Error::OpenCycle { quantity, drift }),
-            None => Ok(Cycle { start: here, moves: moves.to_vec() }),
+            None => Cycle { start: here, moves: moves.to_vec(), chords: vec![], saved: vec![], turns: vec![] }
+                .traced(keep_going),
         }
+    }
+
+    /// With its chords, states before them, and turns.
+    fn traced(mut self, keep_going: &dyn Fn() -> bool) -> Result<Cycle, Error> {
+        let mut here = self.start.clone();
+        let mut size = here.memory_bytes();
+        for (step, target) in self.moves.iter().enumerate() {
+            let (mut done, chords) = (0.0, &mut self.chords);
+            here.apply_visited(target, DEFAULT_TOLERANCE, keep_going, &mut |to, contact| {
+                let history = &contact.history;
+                size = size.max(contact.memory_bytes());
+                let edge = history.edge().level;
+                let end = PathPoint {
+                    indentation: edge,
+                    normal_force: contact.normal_force,
+                    displacement: contact.displacement,
+                };
+                let front = history.slip_from().map_or(f64::INFINITY, |start| start.level.value());
+                chords.push(Chord { step, from: done, to, end, edge: edge.value(), front });
+                done = to;
+            })?;
+        }
+        let mut here = self.start.clone();
+        let held = MOST_BYTES / 2 / size;
+        if held < self.moves.len() || self.chords.len() * size_of::<Chord>() > MOST_BYTES / 2 {
+            return Err(Error::CycleTooLarge);
+        }
+        let every = 1 + self.chords.len() / (held - self.moves.len() + 1);
+        self.turns = vec![Vec::new(); self.moves.len()];
+        let mut slipped = false;
+        for (index, chord) in self.chords.iter().enumerate() {
+            if !keep_going() {
+                return Err(Error::Interrupted);
+            }
+            let first = index == 0 || self.chords[index - 1].step != chord.step;
+            if first || index % every == 0 {
+                self.saved.push((index, here.clone()));
+            }
+            let turns = &mut self.turns[chord.step];
+            let target = (chord.end.indentation, here.scaled(chord.end.displacement));
+            turns.extend(here.history.turns(target).iter().map(|part| chord.from + part * (chord.to - chord.from)));
+            if !first && slipped != chord.front.is_finite() {
+                turns.push(chord.from);
+            }
+            slipped = chord.front.is_finite();
+            here.advance(&chord.end);
+        }
+        Ok(self)
+    }
+
+    /// The contact at its start and end.
+    #[must_use]
+    pub fn start(&self) -> &Contact {
+        &self.start
+    }
+
+    /// Whether a move is followed by chords.
+    pub(super) fn is_curved(&self) -> bool {
+        self.chords.len() > self.moves.len()
+    }
+
+    /// The number of moves.
+    pub(super) fn moves(&self) -> usize {
+        self.moves.len()
+    }
+
+    /// The parts of a move, above 0 and below 1, after which its effect on every place is not smooth.
+    pub(super) fn turns(&self, step: usize) -> &[f64] {
+        &self.turns[step]
+    }
+
+    /// The parts of a move after which the edge of the contact or of the slip passes a level, m.
+    pub(super) fn passes(&self, step: usize, level: f64) -> Vec<f64> {
+        let first = self.chords.partition_point(|chord| chord.step < step);
+        let mut parts = Vec::new();
+        for index in first..self.chords.len() {
+            let chord = self.chords[index];
+            if chord.step != step {
+                break;
+            }
+            // The cycle ends where it begins.
+            let before = self.chords[index.checked_sub(1).unwrap_or(self.chords.len() - 1)];
+            let slipped = chord.from > 0.0 && before.front <= level;
+            let edge_passes = (before.edge - level) * (chord.edge - level) < 0.0;
+            if edge_passes || (chord.front <= level && !slipped) {
+                let state = self.before(index);
+                let target = (chord.end.indentation, state.scaled(chord.end.displacement));
+                let passes = state.history.passes(target, level);
+                parts.extend(passes.iter().map(|part| chord.from + part * (chord.to - chord.from)));
+            }
+        }
+        parts
+    }
+
+    /// The state before a chord.
+    fn before(&self, index: usize) -> Contact {
+        let saved = self.saved.partition_point(|(chord, _)| *chord <= index) - 1;
+        let (from, state) = &self.saved[saved];
+        let mut here = state.clone();
+        self.chords[*from..index].iter().for_each(|chord| here.advance(&chord.end));
+        here
+    }
+
+    /// The contact after a part of a move, which is of the displacement or the indentation where the move is straight
+    /// in both,
+    /// and the part of what the move prescribes.
+    pub(super) fn state(&self, step: usize, part: f64) -> (Contact, f64) {
+        let first = self.chords.partition_point(|chord| chord.step < step);
+        let index = first + self.chords[first..].partition_point(|chord| chord.step == step && chord.to < part);
+        let chord = self.chords[index.min(self.chords.len() - 1)];
+        let mut here = self.before(index.min(self.chords.len() - 1));
+        let start = PathPoint {
+            indentation: here.history.edge().level,
+            normal_force: here.normal_force,
+            displacement: here.displacement,
+        };
+        let share = if chord.to > chord.from { (part - chord.from) / (chord.to - chord.from) } else { 1.0 };
+        if share < 1.0 {
+            let to = |from: DoubleDouble, to: DoubleDouble| from + (to - from) * share;
+            here.advance(&PathPoint {
+                indentation: to(start.indentation, chord.end.indentation),
+                normal_force: start.normal_force + share * (chord.end.normal_force - start.normal_force),
+                displacement: to(start.displacement, chord.end.displacement),
+            });
+        } else {
+            here.advance(&chord.end);
+        }
+        let prescribed = if chord.from > 0.0 || chord.to < 1.0 || part <= 0.0 || part >= 1.0 {
+            part
+        } else {
+            self.prescribed_part(step, part, &here)
+        };
+        (here, prescribed)
+    }
+
+    /// The part of a move to a force, which is straight in (d, U), after a part of that line.
+    fn prescribed_part(&self, step: usize, part: f64, here: &Contact) -> f64 {
+        let share = |of: &dyn Fn(&Contact) -> f64| {
+            let at = |step: usize| {
+                let saved = self.saved.iter().find(|(index, _)| self.chords[*index].step == step);
+                saved.map_or(of(&self.start), |(_, contact)| of(contact))
+            };
+            let (from, to) = (at(step), at(step + 1));
+            if (to - from).abs() > 0.0 { (of(here) - from) / (to - from) } else { part }
+        };
+        let found = match (self.moves[step].tangential, self.moves[step].normal) {
+            (Some(Tangential::Force(_)), _) => share(&Contact::force),
+            (None, Some(Normal::NormalForce(_))) => {
+                share(&|contact| contact.normal_force_at(contact.history.edge().level))
+            }
+            _ => part,
+        };
+        found.clamp(f64::MIN_POSITIVE, 1.0)
     }
 
     /// The contact at so many instants of each move, at least one, equally spaced in what the move is straight in; the
@@ -105,70 +264,25 @@ impl Cycle {
     pub fn stress_paths(
         &self,
         instants: usize,
-        body: (Side, f64),
+        (side, poisson): (Side, f64),
         places: &[[f64; 3]],
         keep_going: &dyn Fn() -> bool,
     ) -> Result<Vec<Vec<Stress>>, Error> {
-        stresses(&self.states(instants, keep_going)?, body, places, keep_going)
-    }
-
-    /// A criterion at one place, m, over instants that are doubled, from four a move to [`MAX_INSTANTS`], until it
-    /// changes by at most `tolerance`, relative to it, such as [`DEFAULT_REFINEMENT`].
-    ///
-    /// # Errors
-    /// As [`Cycle::stress_paths`].
-    pub fn refined(
-        &self,
-        criterion: &Criterion,
-        body: (Side, f64),
-        place: [f64; 3],
-        tolerance: f64,
-        keep_going: &dyn Fn() -> bool,
-    ) -> Result<Refined, Error> {
-        let over = |instants: usize| -> Result<Value, Error> {
-            Ok(criterion.of(&self.stress_paths(instants, body, &[place], keep_going)?[0]))
-        };
-        let mut instants = FEWEST_INSTANTS;
-        let mut value = over(instants)?;
-        loop {
-            instants *= 2;
-            let finer = over(instants)?;
-            let off = (finer.value - value.value).abs();
-            // Infinite ones do not change.
-            let change = if off > 0.0 { off / finer.value.abs() } else { 0.0 };
-            value = finer;
-            if change <= tolerance || instants >= MAX_INSTANTS {
-                return Ok(Refined { value, instants, change });
+        let mut paths = vec![Vec::with_capacity(instants * self.moves.len()); places.len()];
+        for state in self.states(instants, keep_going)? {
+            if !keep_going() {
+                return Err(Error::Interrupted);
+            }
+            let field = state.into_subsurface(side, poisson)?;
+            for (path, place) in paths.iter_mut().zip(places) {
+                path.push(field.at(*place));
             }
         }
+        Ok(paths)
     }
 }
 
 /// Makes a move, unless the caller has lost interest: a straight move would not ask.
 fn follow(contact: &mut Contact, step: &Move, keep_going: &dyn Fn() -> bool) -> Result<(), Error> {
     if keep_going() { contact.apply_while(step, DEFAULT_TOLERANCE, keep_going) } else { Err(Error::Interrupted) }
-}
-
-/// The stresses in some states at each of the places, m, in one of the bodies: axes, Poisson's ratio and infinite stresses as in
-/// [`Contact::subsurface`].
-///
-/// # Errors
-/// [`Error::Interrupted`] if `keep_going` returned false, and [`Error::OutOfRange`] for Poisson's ratio.
-pub fn stresses(
-    states: &[Contact],
-    (side, poisson): (Side, f64),
-    places: &[[f64; 3]],
-    keep_going: &dyn Fn() -> bool,
-) -> Result<Vec<Vec<Stress>>, Error> {
-    let mut paths = vec![Vec::with_capacity(states.len()); places.len()];
-    for state in states {
-        if !keep_going() {
-            return Err(Error::Interrupted);
-        }
-        let field = state.subsurface(side, poisson)?;
-        for (path, place) in paths.iter_mut().zip(places) {
-            path.push(field.at(*place));
-        }
-    }
-    Ok(paths)
 }

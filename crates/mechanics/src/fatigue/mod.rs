@@ -2,11 +2,14 @@
 //!
 //! | criterion | value | unit |
 //! |---|---|---|
-//! | Crossland (1956) | sqrt(J2a) + alpha max hydrostatic stress, sqrt(J2a) = radius of the smallest ball around the deviators over sqrt(2) | Pa |
-//! | Dang Van (1973) | max over instants of \[Tresca shear of (deviator - centre of that ball) + alpha hydrostatic stress\] | Pa |
+//! | Crossland (1956) | sqrt(J2a) + alpha max hydrostatic stress, sqrt(J2a) = radius of the smallest ball around the
+//! deviators over sqrt(2) | Pa |
+//! | Dang Van (1973) | max over instants of \[Tresca shear of (deviator - centre of that ball) + alpha hydrostatic
+//! stress\] | Pa |
 //! | Findley (1959) | max over planes of \[tau_a + k max sigma_n\] | Pa |
 //! | Smith, Watson & Topper (1970) | max over planes of max sigma_n (range of eps_n)/2; zero without tension | Pa |
-//! | Fatemi & Socie (1988) | max over planes of gamma_a (1 + k max sigma_n/sigma_y), gamma_a = tau_a/G, no factor below zero | – |
+//! | Fatemi & Socie (1988) | max over planes of gamma_a (1 + k max sigma_n/sigma_y), gamma_a = tau_a/G, no factor below
+//! zero | – |
 //!
 //! Tresca shear is half the difference of the outer principal stresses; sigma_n and eps_n are the normal stress and
 //! strain of a plane; tau_a is the radius of the smallest circle around the path of the shear stress in the plane.
@@ -16,17 +19,28 @@
 //! looks at the surface alone.
 
 mod ball;
+mod chebyshev;
+mod curve;
 mod cycle;
 mod planes;
+mod rating;
+mod refined;
 mod ruiz;
+mod search;
+mod study;
 
 use std::f64::consts::SQRT_2;
 
 use super::{Error, Stress, range};
 pub use ball::{Ball, enclosing_ball};
-pub use cycle::{Cycle, DEFAULT_REFINEMENT, MAX_INSTANTS, Refined, stresses};
-use planes::{Vector, axes, dot, largest, unit};
+pub use curve::MAX_INSTANTS;
+pub use cycle::{Cycle, MOST_BYTES};
+use planes::{Vector, axes, dot, highest, peaks, unit};
+pub use rating::{Instant, Measure, Rated};
+pub use refined::Refined;
 pub use ruiz::Ruiz;
+pub use search::Worst;
+pub use study::{Bulk, DEFAULT_REFINEMENT, FIELD_BYTES, Largest, Ratings, Study};
 
 /// sqrt(6).
 const SQRT_6: f64 = 2.449_489_742_783_178;
@@ -144,21 +158,40 @@ impl Criterion {
                 );
                 (sum, None, instant)
             }
-            Criterion::Findley { .. } => self.on_worst_plane(path, &[]),
-            Criterion::SmithWatsonTopper { .. } | Criterion::FatemiSocie { .. } => {
-                let mut tension: Vec<Vector> = path.iter().map(tension_axis).collect();
-                tension.dedup_by(|one, other| dot(one, other).abs() > SAME_PLANE);
-                self.on_worst_plane(path, &tension)
-            }
+            _ => self.on_worst_plane(path),
         };
         Value { value, plane, instant: Some(instant) }
     }
 
-    fn on_worst_plane(&self, path: &[Stress], more: &[Vector]) -> (f64, Option<[f64; 3]>, usize) {
+    /// Its value over finite stresses as [`Criterion::of`], but on the planes of the grid alone: lower by some per
+    /// cent.
+    fn roughly(&self, path: &[Stress]) -> f64 {
+        if matches!(self, Criterion::Crossland { .. } | Criterion::DangVan { .. }) {
+            return self.of(path).value;
+        }
         let mut shears = Vec::with_capacity(path.len());
-        let (value, normal) = largest(more, |normal, bound| self.on_plane(path, normal, bound, &mut shears).0);
+        let normal = highest(&self.starts(path), |normal| self.on_plane(path, normal, true, &mut shears).0);
+        self.on_plane(path, &normal, false, &mut shears).0
+    }
+
+    /// The planes that a search must not miss: of largest tension, where a criterion is cut off without.
+    fn starts(&self, path: &[Stress]) -> Vec<Vector> {
+        let mut tension: Vec<Vector> = match self {
+            Criterion::SmithWatsonTopper { .. } | Criterion::FatemiSocie { .. } => {
+                path.iter().map(tension_axis).collect()
+            }
+            _ => Vec::new(),
+        };
+        tension.dedup_by(|one, other| dot(one, other).abs() > SAME_PLANE);
+        tension
+    }
+
+    fn on_worst_plane(&self, path: &[Stress]) -> (f64, Option<[f64; 3]>, usize) {
+        let mut shears = Vec::with_capacity(path.len());
+        let (value, normal) =
+            peaks(&self.starts(path), |normal, bound| self.on_plane(path, normal, bound, &mut shears).0)[0];
         let (_, instant) = self.on_plane(path, &normal, false, &mut shears);
-        (value, Some(if normal[2] < 0.0 { normal.map(|part| -part) } else { normal }), instant)
+        (value, Some(upward(normal)), instant)
     }
 
     /// The value on one plane, or a bound of it, and the instant of the largest normal stress. `shears` is room to work
@@ -171,8 +204,7 @@ impl Criterion {
             Criterion::Findley { k } => shear_amplitude(path, normal, bound, shears) + k * tension,
             Criterion::SmithWatsonTopper { .. } if tension <= 0.0 => 0.0,
             Criterion::SmithWatsonTopper { youngs_modulus, poisson } => {
-                let strain =
-                    |stress: &Stress| (1.0 + poisson) * resolved(stress, &along) - 3.0 * poisson * stress.hydrostatic();
+                let strain = |stress: &Stress| strained(stress, &along, poisson);
                 let (_, longest) = most(path.iter().map(strain));
                 let (_, shortest) = most(path.iter().map(|stress| -strain(stress)));
                 tension * 0.5 * (longest + shortest) / youngs_modulus
@@ -191,6 +223,16 @@ impl Criterion {
     }
 }
 
+/// The normal strain on a plane times Young's modulus, Pa.
+fn strained(stress: &Stress, along: &[f64; 6], poisson: f64) -> f64 {
+    (1.0 + poisson) * resolved(stress, along) - 3.0 * poisson * stress.hydrostatic()
+}
+
+/// The normal of a plane that points downwards, into the body.
+fn upward(normal: Vector) -> Vector {
+    if normal[2] < 0.0 { normal.map(|part| -part) } else { normal }
+}
+
 /// The largest of some values, at least one, and its index, the first of equal ones.
 fn most(values: impl Iterator<Item = f64>) -> (usize, f64) {
     values.enumerate().fold((0, f64::NEG_INFINITY), |most, next| if next.1 > most.1 { next } else { most })
@@ -199,10 +241,15 @@ fn most(values: impl Iterator<Item = f64>) -> (usize, f64) {
 /// The centre of the smallest ball around the deviators of a path, and sqrt(J2a): its radius over sqrt(2).
 fn deviator_ball(path: &[Stress]) -> (Stress, f64) {
     let deviators: Vec<[f64; 5]> = path.iter().map(deviator).collect();
-    let Ball { center: [first, second, xy, yz, xz], radius } = enclosing_ball(&deviators);
+    let Ball { center, radius } = enclosing_ball(&deviators);
+    (from_deviator(&center), radius / SQRT_2)
+}
+
+/// The stress of a deviator in that basis.
+fn from_deviator(&[first, second, xy, yz, xz]: &[f64; 5]) -> Stress {
     let (equal, rest) = (first / SQRT_2, second / SQRT_6);
     let components = [equal - rest, -equal - rest, 2.0 * rest, xy / SQRT_2, yz / SQRT_2, xz / SQRT_2];
-    (Stress::from_components(components), radius / SQRT_2)
+    Stress::from_components(components)
 }
 
 /// The deviator in an orthonormal basis: its length is sqrt(s : s).
@@ -216,6 +263,11 @@ fn weights([a, b, c]: &Vector, [x, y, z]: &Vector) -> [f64; 6] {
     [a * x, b * y, c * z, a * y + b * x, b * z + c * y, a * z + c * x]
 }
 
+/// The weights of the components in two shear stresses on a plane, at right angles to each other.
+fn shear_axes(normal: &Vector) -> [[f64; 6]; 2] {
+    axes(normal).map(|axis| weights(&axis, normal))
+}
+
 fn resolved(stress: &Stress, [xx, yy, zz, xy, yz, xz]: &[f64; 6]) -> f64 {
     (xx * stress.xx + yy * stress.yy + zz * stress.zz) + (xy * stress.xy + yz * stress.yz + xz * stress.xz)
 }
@@ -223,7 +275,7 @@ fn resolved(stress: &Stress, [xx, yy, zz, xy, yz, xz]: &[f64; 6]) -> f64 {
 /// The radius of the smallest circle around the shear stresses of a path in a plane, or of one about the middle of
 /// their ranges.
 fn shear_amplitude(path: &[Stress], normal: &Vector, bound: bool, shears: &mut Vec<[f64; 2]>) -> f64 {
-    let [one, two] = axes(normal).map(|axis| weights(&axis, normal));
+    let [one, two] = shear_axes(normal);
     shears.clear();
     shears.extend(path.iter().map(|stress| [resolved(stress, &one), resolved(stress, &two)]));
     if !bound {

@@ -44,9 +44,12 @@ static NORMALS: LazyLock<Vec<Vector>> = LazyLock::new(|| {
     normals
 });
 
-/// The largest value of a function that opposite normals share, and the normal, sought from the grid and from `more`.
-/// The function takes whether a bound from above will do, which is to be cheaper: it spares low planes the exact value.
-pub(super) fn largest(more: &[Vector], mut value: impl FnMut(&Vector, bool) -> f64) -> (f64, Vector) {
+/// The largest peaks of a function that opposite normals share, and their normals, sought from the grid and from
+/// `more`;
+/// the largest of all comes first. The function takes whether a bound from above will do, which is to be cheaper: it
+/// spares
+/// low planes the exact value.
+pub(super) fn peaks(more: &[Vector], mut value: impl FnMut(&Vector, bool) -> f64) -> Vec<(f64, Vector)> {
     let highest_first = |one: &(f64, Vector), other: &(f64, Vector)| other.0.total_cmp(&one.0);
     let mut bounds: Vec<(f64, Vector)> =
         NORMALS.iter().chain(more).map(|normal| (value(normal, true), *normal)).collect();
@@ -75,19 +78,33 @@ pub(super) fn largest(more: &[Vector], mut value: impl FnMut(&Vector, bool) -> f
         }
         let hidden = start.0 >= best.0 - OFF_PEAK * (top - bottom) && !near(&start.1, &found);
         if hidden || !near(&start.1, &normals[..rank]) {
-            let peak = climb(*start, |normal| value(normal, false));
+            let peak = climb(*start, FIRST_STEP, |normal| value(normal, false));
             if peak.0 > best.0 {
                 best = peak;
             }
             found.push(peak);
         }
     }
-    best
+    found.push(best);
+    found.sort_by(highest_first);
+    found
 }
 
-/// The peak next to a normal: parabolas through six values, and the best value seen where a parabola has no maximum.
-fn climb(start: (f64, Vector), mut value: impl FnMut(&Vector) -> f64) -> (f64, Vector) {
-    let (mut best, mut step) = (start, FIRST_STEP);
+/// The normal of the grid and of `more` on which a function is largest.
+pub(super) fn highest(more: &[Vector], mut value: impl FnMut(&Vector) -> f64) -> Vector {
+    let best = (f64::NEG_INFINITY, NORMALS[0]);
+    let higher = |best: (f64, Vector), normal: &Vector| {
+        let found = value(normal);
+        if found > best.0 { (found, *normal) } else { best }
+    };
+    NORMALS.iter().chain(more).fold(best, higher).1
+}
+
+/// The peak next to a normal, from a distance of the first parabola on: parabolas through six values, and the best
+/// value seen
+/// where a parabola has no maximum.
+pub(super) fn climb(start: (f64, Vector), mut step: f64, mut value: impl FnMut(&Vector) -> f64) -> (f64, Vector) {
+    let mut best = start;
     for _ in 0..MOST_STEPS {
         if step < LAST_STEP {
             break;

@@ -1,10 +1,10 @@
-//! Many Hertzian asperities on one rigid motion, which do not interact elastically: X(y) = sum sqrt(R_i (y - h_i)) over the gaps
-//! h_i < y (Greenwood & Williamson 1966; with friction by Ciavarella 1998 and Jaeger 1998).
+//! Many Hertzian asperities on one rigid motion, which do not interact elastically: X(y) = sum sqrt(R_i (y - h_i)) over
+//! the gaps h_i < y (Greenwood & Williamson 1966; with friction by Ciavarella 1998 and Jaeger 1998).
 //!
-//! Each asperity that is touched adds the moments of a parabola from its own tip on, so that a thin ring keeps its digits. The
-//! levels are divided into cells of a few gaps each. Within a cell the asperities whose gaps lie far below it are one series of
-//! X' ([`Local`]), the others are summed one by one; whole cells are summed by a [`MomentTree`]. So a ring costs two cells and the
-//! logarithm of their number.
+//! Each asperity that is touched adds the moments of a parabola from its own tip on, so that a thin ring keeps its
+//! digits. The levels are divided into cells of a few gaps each. Within a cell the asperities whose gaps lie far below
+//! it are one series of X' ([`Local`]), the others are summed one by one; whole cells are summed by a [`MomentTree`].
+//! So a ring costs two cells and the logarithm of their number.
 //!
 //! One asperity alone is a [`Sphere`].
 
@@ -12,12 +12,12 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use super::curve_family::CurveFamily;
-use super::far_field::{FarField, Local};
-use super::gauss::TWELVE_POINTS;
 use super::moment_tree::MomentTree;
-use super::roots::increasing;
 use super::{DoubleDouble, Error, Moments, Ring, Sphere, range};
 use crate::error::CurveFault;
+use crate::numerics::far_field::{FarField, Local};
+use crate::numerics::gauss::TWELVE_POINTS;
+use crate::numerics::roots::increasing;
 
 /// Asperities in the smallest cluster: fewer are summed one by one sooner than as the twenty points of a cluster.
 const LEAF: usize = 16;
@@ -45,7 +45,8 @@ pub(super) struct Set {
     gaps: Vec<f64>,
     roots: Vec<f64>,
     clusters: FarField,
-    /// Cells of levels, rising from zero, with X' by the asperities far below each; their upper ends; and their moments.
+    /// Cells of levels, rising from zero, with X' by the asperities far below each; their upper ends; and their
+    /// moments.
     cells: Vec<Local>,
     ends: Vec<f64>,
     whole_cells: MomentTree,
@@ -54,12 +55,12 @@ pub(super) struct Set {
 }
 
 impl Asperities {
-    /// Parabolas of these radii of curvature, m, one for all or one each, whose tips are this far, m, from the flat. An offset of
-    /// the gaps does not matter: indentations count from the first touch.
+    /// Parabolas of these radii of curvature, m, one for all or one each, whose tips are this far, m, from the flat. An
+    /// offset of the gaps does not matter: indentations count from the first touch.
     ///
     /// # Errors
-    /// [`Error::OutOfRange`] by [`range::ASPERITIES`], [`range::RADIUS`] and [`range::GAP`], [`Error::Curve`] for radii and gaps
-    /// that differ in number.
+    /// [`Error::OutOfRange`] by [`range::ASPERITIES`], [`range::RADIUS`] and [`range::GAP`], [`Error::Curve`] for radii
+    /// and gaps that differ in number.
     ///
     /// ```
     /// use stickslip_mechanics::profile::{Asperities, Profile};
@@ -70,6 +71,14 @@ impl Asperities {
     /// # Ok::<(), stickslip_mechanics::Error>(())
     /// ```
     pub fn new(radii: &[f64], gaps: &[f64]) -> Result<Asperities, Error> {
+        Asperities::new_while(radii, gaps, &|| true)
+    }
+
+    /// The same while `keep_going` returns true.
+    ///
+    /// # Errors
+    /// As [`Asperities::new`], and [`Error::Interrupted`].
+    pub fn new_while(radii: &[f64], gaps: &[f64], keep_going: &dyn Fn() -> bool) -> Result<Asperities, Error> {
         range::ASPERITIES.check(gaps.len() as f64)?;
         if radii.len() != 1 && radii.len() != gaps.len() {
             return Err(Error::Curve { fault: CurveFault::LengthsDiffer, index: radii.len().min(gaps.len()) });
@@ -84,7 +93,7 @@ impl Asperities {
         let (gaps, roots): (Vec<f64>, Vec<f64>) = set.into_iter().map(|(gap, root)| (gap - first, root)).unzip();
         Ok(Asperities(match (gaps.len(), radii) {
             (1, &[radius]) => Count::One(Sphere::of_curvature(radius)),
-            _ => Count::Many(Arc::new(Set::new(gaps, roots))),
+            _ => Count::Many(Arc::new(Set::new(gaps, roots, keep_going)?)),
         }))
     }
 
@@ -99,9 +108,9 @@ impl Asperities {
 }
 
 impl Set {
-    fn new(gaps: Vec<f64>, roots: Vec<f64>) -> Set {
+    fn new(gaps: Vec<f64>, roots: Vec<f64>, keep_going: &dyn Fn() -> bool) -> Result<Set, Error> {
         let last = gaps[gaps.len() - 1];
-        let clusters = FarField::new(&gaps, &roots, LEAF);
+        let clusters = FarField::new(&gaps, &roots, LEAF, keep_going);
         // Above the last gap cells double in width, until all asperities are one cluster far below.
         let start = gaps[gaps.len().saturating_sub(LEAF)];
         let width = last - if start < last { start } else { 0.0 };
@@ -110,7 +119,10 @@ impl Set {
         })
         .map(|(end, _)| end)
         .collect();
-        let cells = clusters.locals(&beyond, (&gaps, &roots), |distance| 0.5 / distance.sqrt());
+        let cells = clusters.locals(&beyond, (&gaps, &roots), |distance| 0.5 / distance.sqrt(), keep_going);
+        if !keep_going() {
+            return Err(Error::Interrupted);
+        }
         let total = roots.iter().sum();
         let ends = cells.iter().map(|cell| cell.high).collect();
         let mut set = Set { gaps, roots, clusters, cells, ends, whole_cells: MomentTree::new([].into_iter()), total };
@@ -120,7 +132,7 @@ impl Set {
         };
         let whole_cells: Vec<_> = set.cells.iter().map(whole).collect();
         set.whole_cells = MomentTree::new(whole_cells.into_iter());
-        set
+        Ok(set)
     }
 
     /// The cell below whose upper end a level lies, if it does not lie above all.
@@ -134,7 +146,8 @@ impl Set {
         cell.items.start + self.gaps[cell.items.clone()].partition_point(|&gap| above(level, gap) > 0.0)
     }
 
-    /// The sums over some asperities of what one gives by sqrt(R) and its gap, which is smooth in the gap up to `level` alone.
+    /// The sums over some asperities of what one gives by sqrt(R) and its gap, which is smooth in the gap up to `level`
+    /// alone.
     fn sum<const N: usize>(
         &self,
         some: Range<usize>,

@@ -18,7 +18,8 @@ pub(crate) struct Calls {
 }
 
 thread_local! {
-    static CALLS: Cell<Calls> = const { Cell::new(Calls { moments: 0, kernel: 0, kernel_slope: 0, displacement_integral: 0, states: 0 }) };
+    static CALLS: Cell<Calls> =
+        const { Cell::new(Calls { moments: 0, kernel: 0, kernel_slope: 0, displacement_integral: 0, states: 0 }) };
 }
 
 /// Counts a call.

@@ -89,7 +89,8 @@ impl Shape for Cone {
         if outer <= 0.0 {
             return 0.0;
         }
-        // d arcosh(c/r)/d(r^2) = -1/(2 r^2) * c/v, v = sqrt(c^2 - r^2), of which the part -1/(2 r^2) is common: c/v - 1 = r^2/(v (c + v)).
+        // d arcosh(c/r)/d(r^2) = -1/(2 r^2) * c/v, v = sqrt(c^2 - r^2), of which the part -1/(2 r^2) is common: c/v - 1
+        // = r^2/(v (c + v)).
         let share = |radius: f64, v: f64| 0.5 / (v * (radius + v));
         let v = outer.sqrt();
         let end = share(span.outer_radius, v);

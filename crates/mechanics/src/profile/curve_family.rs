@@ -1,9 +1,10 @@
 //! Families that are known by their load curve alone: X(y) = F_N'(y)/(2 E*), and no surface.
 //!
-//! The slip history asks for X and its integrals over rings of levels, which every contact has whose tangential compliance is
-//! proportional to its normal one, point by point of the load curve (Ciavarella 1998; Jaeger 1998). Such a family is to the
-//! rest of the mechanics the body of revolution with the same curve, g the inverse of X, but for what needs a surface: its
-//! kernels and slopes are NaN, and whoever asks for a stress checks [`Profile::check_stress_field`](super::Profile) first.
+//! The slip history asks for X and its integrals over rings of levels, which every contact has whose tangential
+//! compliance is proportional to its normal one, point by point of the load curve (Ciavarella 1998; Jaeger 1998). Such
+//! a family is to the rest of the mechanics the body of revolution with the same curve, g the inverse of X, but for
+//! what needs a surface: its kernels and slopes are NaN, and whoever asks for a stress checks
+//! [`Profile::check_stress_field`](super::Profile) first.
 
 use super::ring_quadrature::{DepthNode, RingNodes};
 use super::shape::{End, Shape};
@@ -46,7 +47,8 @@ pub(super) trait CurveFamily {
         Point { level, radius, square: DoubleDouble::square_of(radius) }
     }
 
-    /// Nodes at even steps of the angle whose cosine is 1 - 2 h/depth, each with the width between its neighbours' midpoints.
+    /// Nodes at even steps of the angle whose cosine is 1 - 2 h/depth, each with the width between its neighbours'
+    /// midpoints.
     fn nodes_at(&self, ring: &Ring, panels: usize) -> Vec<DepthNode> {
         let depth = |half_steps: usize| {
             let sine = (std::f64::consts::FRAC_PI_4 * half_steps as f64 / panels as f64).sin();

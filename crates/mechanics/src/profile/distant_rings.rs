@@ -1,14 +1,15 @@
 //! The kernels of many rings of a parabola, far from the radii that they are wanted at: near-linear in rings and radii.
 //!
-//! In units of the edge, X = xi^2 and Y = rho^2, a ring of weight w adds (c_1/2) w int dX/sqrt(X - Y): clusters of rings are [`Multipole`]s.
-//! Their intervals begin at their own inner ends, so that a history within a millionth of the edge keeps its digits, and the moments of the
-//! smallest ones are sums over the ends of rings: int P_n = (P_(n+1) - P_(n-1))/(2n + 1).
+//! In units of the edge, X = xi^2 and Y = rho^2, a ring of weight w adds (c_1/2) w int dX/sqrt(X - Y): clusters of
+//! rings are [`Multipole`]s. Their intervals begin at their own inner ends, so that a history within a millionth of the
+//! edge keeps its digits, and the moments of the smallest ones are sums over the ends of rings: int P_n = (P_(n+1) -
+//! P_(n-1))/(2n + 1).
 
 use std::ops::Range;
 
-use super::cluster_tree::{Cluster, ClusterTree};
-use super::multipole::{Multipole, ORDERS, add_polynomials};
 use super::slope_series::{LANES, Lanes};
+use crate::numerics::cluster_tree::{Cluster, ClusterTree};
+use crate::numerics::multipole::{Multipole, ORDERS, add_polynomials};
 
 /// Rings in the smallest clusters.
 const LEAF: usize = 12;
@@ -31,9 +32,9 @@ impl DistantRings {
         }))
     }
 
-    /// Twice what the first `count` rings add to the sum of v_outer - v_inner times weights, where they are far from all places; `near` gets
-    /// the runs of those that are not. `distance` is how far the inner end of a ring is beyond all the places, less its rounding, and
-    /// `excess` how far it is beyond each.
+    /// Twice what the first `count` rings add to the sum of v_outer - v_inner times weights, where they are far from
+    /// all places; `near` gets the runs of those that are not. `distance` is how far the inner end of a ring is beyond
+    /// all the places, less its rounding, and `excess` how far it is beyond each.
     pub(super) fn sum(
         &self,
         count: usize,

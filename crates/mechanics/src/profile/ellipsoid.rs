@@ -1,12 +1,14 @@
-//! Two bodies whose gap is x^2/(2 R_x) + y^2/(2 R_y): Hertz's ellipse of contact, pressed along z and moved along x or y.
+//! Two bodies whose gap is x^2/(2 R_x) + y^2/(2 R_y): Hertz's ellipse of contact, pressed along z and moved along x or
+//! y.
 //!
-//! With q = b/a the ratio of the semi-axes, e^2 = 1 - q^2 and kappa = (K - E)/(e^2 K) of the complete elliptic integrals of e, his
-//! solution (Johnson 1985, eqs 4.26) reads R_b/R_a = q^2 kappa/(1 - kappa), a^2 = 2 R_a kappa d and
+//! With q = b/a the ratio of the semi-axes, e^2 = 1 - q^2 and kappa = (K - E)/(e^2 K) of the complete elliptic
+//! integrals of e, his solution (Johnson 1985, eqs 4.26) reads R_b/R_a = q^2 kappa/(1 - kappa), a^2 = 2 R_a kappa d and
 //! F_N = (4/3) E* sqrt(R) d^(3/2), R = 2 R_a kappa (pi/2K)^2. So the load curve is that of a ball of the radius R.
 //!
-//! The stuck ellipse has 1 + nu/(1 - nu) kappa times the normal compliance along its major axis, 1 - kappa instead of kappa along
-//! its minor one (Mindlin 1949), body by body: [`Elasticity::along_ellipse`](crate::Elasticity::along_ellipse). Partial slip follows from
-//! the load curve by Ciavarella (1998) and Jaeger (1998), which is exact for a circle alone.
+//! The stuck ellipse has 1 + nu/(1 - nu) kappa times the normal compliance along its major axis, 1 - kappa instead of
+//! kappa along its minor one (Mindlin 1949), body by body:
+//! [`Elasticity::along_ellipse`](crate::Elasticity::along_ellipse). Partial slip follows from the load curve by
+//! Ciavarella (1998) and Jaeger (1998), which is exact for a circle alone.
 
 use super::{Error, Sphere, range};
 
@@ -75,8 +77,8 @@ impl Ellipsoid {
     }
 }
 
-/// kappa and pi/(2 K) of an ellipse of this ratio of the semi-axes, by the arithmetic-geometric mean: pi/(2 K) = M(1, q),
-/// kappa = 1/2 + sum over n > 0 of 2^(n-1) (c_n/e)^2.
+/// kappa and pi/(2 K) of an ellipse of this ratio of the semi-axes, by the arithmetic-geometric mean: pi/(2 K) = M(1,
+/// q), kappa = 1/2 + sum over n > 0 of 2^(n-1) (c_n/e)^2.
 fn integrals(ratio: f64) -> (f64, f64) {
     let (mut arithmetic, mut geometric) = (0.5 * (1.0 + ratio), ratio.sqrt());
     let (mut share, mut weight) = ((1.0 - ratio) / (4.0 * (1.0 + ratio)), 1.0);

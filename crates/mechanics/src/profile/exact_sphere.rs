@@ -1,18 +1,19 @@
-//! Exact sphere, f = R - sqrt(R^2 - r^2): g(x) = x artanh(x/R), int x dg = ((R^2 + x^2) artanh(x/R) - x R)/2 (Segedin 1957).
+//! Exact sphere, f = R - sqrt(R^2 - r^2): g(x) = x artanh(x/R), int x dg = ((R^2 + x^2) artanh(x/R) - x R)/2 (Segedin
+//! 1957).
 //!
-//! With x = R tanh(sigma): g = R sigma tanh(sigma), all of it smooth for |Im sigma| < pi/2. For the kernel let C = sqrt(R^2 - x^2),
-//! D = sqrt(R^2 - r^2), q = x/C = sinh(sigma) and sinh(s) = sqrt(x^2 - r^2)/C; then cosh(s) = D/C and
-//! K = int (R/D + asinh(q)/(q cosh s)) ds, of which only the second term needs a quadrature, at any r and up to x = R. Well below
-//! the equator, short series serve: [`shallow_sphere`], [`slope_series`](super::slope_series).
+//! With x = R tanh(sigma): g = R sigma tanh(sigma), all of it smooth for |Im sigma| < pi/2. For the kernel let C =
+//! sqrt(R^2 - x^2), D = sqrt(R^2 - r^2), q = x/C = sinh(sigma) and sinh(s) = sqrt(x^2 - r^2)/C; then cosh(s) = D/C and
+//! K = int (R/D + asinh(q)/(q cosh s)) ds, of which only the second term needs a quadrature, at any r and up to x = R.
+//! Well below the equator, short series serve: [`shallow_sphere`], [`slope_series`](super::slope_series).
 
-use super::gauss::{Singular, along_strip};
 use super::power_series::{self, Series};
-use super::roots::increasing;
 use super::shallow_sphere::{self, LIMIT};
 use super::shape::{End, Shape};
 use super::slope_series::MOST_POWERS;
 use super::smooth_coordinate::{self, SmoothCoordinate};
 use super::{DoubleDouble, Error, Moments, Ring, Span, StressRadius, range, series_kernel};
+use crate::numerics::gauss::{Singular, along_strip};
+use crate::numerics::roots::increasing;
 
 /// A sphere, not its osculating paraboloid.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,7 +23,7 @@ pub struct ExactSphere {
 
 /// A radius x in the coordinate sigma.
 #[derive(Clone, Copy)]
-struct Place {
+struct SpherePlace {
     x: f64,
     /// sqrt(R^2 - x^2), m.
     height: f64,
@@ -74,12 +75,12 @@ impl ExactSphere {
         series_kernel::kernel_and_slope(&self.slope_series(span.outer_radius)?, at, span)
     }
 
-    fn place(&self, radius: f64, square: DoubleDouble) -> Place {
+    fn place(&self, radius: f64, square: DoubleDouble) -> SpherePlace {
         let height = self.height_square(square).sqrt();
-        Place { x: radius, height, sigma: (radius / height).asinh() }
+        SpherePlace { x: radius, height, sigma: (radius / height).asinh() }
     }
 
-    fn ends(&self, span: &Span) -> (Place, Place, f64) {
+    fn ends(&self, span: &Span) -> (SpherePlace, SpherePlace, f64) {
         let inner = self.place(span.inner_radius, span.inner);
         let outer = self.place(span.outer_radius, span.outer);
         let turn = (self.radius * span.width() / (inner.height * outer.height)).asinh();
@@ -87,7 +88,7 @@ impl ExactSphere {
     }
 
     /// x_outer - x and g_outer - g where sigma is smaller by `turn`.
-    fn below(&self, outer: Place, turn: f64) -> (f64, f64) {
+    fn below(&self, outer: SpherePlace, turn: f64) -> (f64, f64) {
         let sigma = outer.sigma - turn;
         let dx = outer.height * turn.sinh() / sigma.cosh();
         (dx, turn * outer.x + sigma * dx)
@@ -176,8 +177,8 @@ impl Shape for ExactSphere {
         }
         let sigma = self.sigma(level.value());
         if sigma > 1.0 {
-            // By R^2 - x^2 = (R/cosh(sigma))^2: beside the equator the level depends on that difference, of which a rounded x
-            // has few digits.
+            // By R^2 - x^2 = (R/cosh(sigma))^2: beside the equator the level depends on that difference, of which a
+            // rounded x has few digits.
             let height = self.radius / sigma.cosh();
             return DoubleDouble::square_of(self.radius) - DoubleDouble::square_of(height);
         }
@@ -279,7 +280,8 @@ impl Shape for ExactSphere {
         let length = (step / (v_low + height)).ln_1p() + 0.5 * (gap / square_outer).ln_1p();
         let top = (outer / square_outer).sqrt().asinh();
         let (square, stretch) = (at.square.value() / (height * height), self.radius / height);
-        // Inward from the outer end, where asinh(q)/(q cosh s) is least: the panels must not end early, so from s = low on.
+        // Inward from the outer end, where asinh(q)/(q cosh s) is least: the panels must not end early, so from s = low
+        // on.
         let low = (top - length).max(0.0);
         let curved = along_strip(length, 1.0, f64::INFINITY, |s| {
             let s = low + s;

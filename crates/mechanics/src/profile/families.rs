@@ -1,11 +1,12 @@
 //! The table of the families, from which the enum, its dispatch and the JSON documents follow.
 
-/// The table of the families whose parameters are plain numbers: calls the macro `$callback` with all entries, after `$prefix`.
+/// The table of the families whose parameters are plain numbers: calls the macro `$callback` with all entries, after
+/// `$prefix`.
 ///
-/// An entry is a description, `module::Family`, the description and the name of its JSON document, and the parameters in the
-/// order of the constructor: a description with the unit, the name and the constant of [`range`](crate::range) that bounds it.
-/// The `type` in JSON is the name of the family in snake case. The families made of other things, such as
-/// [`Tabulated`](crate::profile::Tabulated) and [`Sum`](crate::profile::Sum), are not in the table.
+/// An entry is a description, `module::Family`, the description and the name of its JSON document, and the parameters
+/// in the order of the constructor: a description with the unit, the name and the constant of [`range`](crate::range)
+/// that bounds it. The `type` in JSON is the name of the family in snake case. The families made of other things, such
+/// as [`Tabulated`](crate::profile::Tabulated) and [`Sum`](crate::profile::Sum), are not in the table.
 #[macro_export]
 macro_rules! for_each_family {
     ($callback:ident $($prefix:tt)*) => {

@@ -1,5 +1,6 @@
-//! Flat punch of radius b: X(y) = b for every level, so a ring has no width and its kernel is that of the vertical edge,
-//! depth/sqrt(b^2 - r^2) (Boussinesq 1885). The edge itself is treated in `profile/ring_integrals.rs`; the face is treated here.
+//! Flat punch of radius b: X(y) = b for every level, so a ring has no width and its kernel is that of the vertical
+//! edge, depth/sqrt(b^2 - r^2) (Boussinesq 1885). The edge itself is treated in `profile/ring_integrals.rs`; the face
+//! is treated here.
 
 use super::shape::Shape;
 use super::{Error, Moments, Span, StressRadius, range};

@@ -1,16 +1,17 @@
 //! The kernels of many adjoining rings, weighted and summed, at many radii.
 //!
-//! A ring that is far from r acts by the points of a Gauss rule over its radii, and many of them as one cluster ([`Multipole`]); only near
-//! rings are asked for their kernels. A rule counts as good where it finds the depth of its ring, which is known.
+//! A ring that is far from r acts by the points of a Gauss rule over its radii, and many of them as one cluster
+//! ([`Multipole`]); only near rings are asked for their kernels. A rule counts as good where it finds the depth of its
+//! ring, which is known.
 
-use super::cluster_tree::ClusterTree;
-use super::gauss::TWENTY_POINTS;
-use super::multipole::Multipole;
 use super::shape::Shape;
 use super::slope_series::SeriesRings;
 use super::smooth_pieces::SmoothPieces;
 use super::tabulated::WeightedPanels;
 use super::{Profile, Ring, StressRadius};
+use crate::numerics::cluster_tree::ClusterTree;
+use crate::numerics::gauss::TWENTY_POINTS;
+use crate::numerics::multipole::Multipole;
 
 /// What the derivative of a table's kernels counts for, in terms of a sum over rings.
 const PANEL_TERMS: usize = 8;
@@ -20,12 +21,13 @@ const FEW: usize = 256;
 const FEW_FOR_PIECES: usize = 40;
 /// Few extrema are as near to the centre as this part of the radius of the core.
 const CORE: f64 = 0.1;
-/// A ring is near if it is nearer than this, in squares of radii over that of the edge: a smaller difference has lost digits.
+/// A ring is near if it is nearer than this, in squares of radii over that of the edge: a smaller difference has lost
+/// digits.
 const NEAR: f64 = 1e-3;
 
 impl Profile {
-    /// The sum of [`Profile::kernel`] times a weight over rings that adjoin each other from the centre outward, at each of
-    /// `radii` (m).
+    /// The sum of [`Profile::kernel`] times a weight over rings that adjoin each other from the centre outward, at each
+    /// of `radii` (m).
     #[must_use]
     pub fn kernel_sums(&self, rings: &[(Ring, f64)], radii: &[f64]) -> Vec<f64> {
         self.kernel_sums_at(rings, &StressRadius::of_all(radii))
@@ -53,7 +55,7 @@ impl Profile {
         let core = rings.first().map_or(0.0, |(ring, _)| ring.outer.radius);
         let pieces = SmoothPieces::new(self, rings, CORE * core).map(KernelSlopes::Pieces);
         pieces.or_else(|| match self {
-            Profile::Tabulated(table) => WeightedPanels::new(table, rings).map(KernelSlopes::Panels),
+            Profile::Tabulated(table) => table.weighted_panels(rings).map(KernelSlopes::Panels),
             _ => None,
         })
     }

@@ -1,20 +1,24 @@
 //! A load curve F_N(d), measured or computed elsewhere, as the contact that has it: X = F_N'/(2 E*).
 //!
-//! F_N is joined by the shape-preserving quadratic spline of Schumaker (1983): X is continuous and straight between the points and
-//! one more in each interval, so that it does not fall where the points do not let it. Up to the first point it is the power law
-//! through the first two, as a curve begins. The integrals over a ring are polynomials in its depth and keep their digits.
+//! F_N is joined by the shape-preserving quadratic spline of Schumaker (1983): X is continuous and straight between the
+//! points and one more in each interval, so that it does not fall where the points do not let it. Up to the first point
+//! it is the power law through the first two, as a curve begins. The integrals over a ring are polynomials in its depth
+//! and keep their digits.
 //!
-//! The error is estimated by leaving out every other point, once those of even index and once those of odd: the larger
-//! int |change of X| dy. On smooth curves it is some three times the error, which falls as n^-2.
+//! F_N is exact at the points, and between them it errs by some h times the error of X in the gap of the width h, which
+//! is what [`open_gaps`](super::open_gaps) leave open. Up to the first point d1 it is F_N (d/d1)^n times ln(d1/d) times
+//! the error of the exponent n, for which the change of n over an e-fold of d beyond the first point stands. The
+//! factors are fitted to random curves (`tests/physics/open_gaps.rs`).
 
 use std::sync::Arc;
 
 use super::curve_family::CurveFamily;
-use super::gauss::Panel;
 use super::moment_tree::MomentTree;
+use super::open_gaps::open_slopes;
 use super::{DoubleDouble, Error, InterpolationError, Moments, Ring, range};
 use crate::elasticity::Elasticity;
 use crate::error::CurveFault;
+use crate::numerics::gauss::QuadraturePanel;
 
 /// A fall of the slope up to this, of itself, is rounding.
 const ROUND_OFF: f64 = 1e-12;
@@ -25,6 +29,15 @@ const END: f64 = 4.0 * f64::EPSILON;
 /// A share of a level from which on the power law is integrated by a rule, because differences of powers cancel.
 const THIN: f64 = 0.5;
 
+/// The error of int X dy in a gap over its width times that of X, and the share of the latter that a level of given X
+/// errs by.
+const OF_LOAD: f64 = 0.4;
+const OF_RADIUS: f64 = 0.15;
+/// The share of the error of the exponent that the slope at the first point errs by, over F_N/d there.
+const OF_EXPONENT: f64 = 0.5;
+/// Points this much further out tell another exponent.
+const FURTHER: f64 = 1.5;
+
 /// A contact known by its load curve; copies share it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LoadCurve(Arc<Curve>);
@@ -33,18 +46,27 @@ pub struct LoadCurve(Arc<Curve>);
 #[derive(Debug, PartialEq)]
 struct Curve {
     /// From the origin on.
-    knots: Vec<Knot>,
+    knots: Vec<CurveKnot>,
     /// The exponent of X up to the first knot.
     exponent: f64,
     /// Moments of the pieces.
     tree: MomentTree,
-    /// The estimated error of int X dy up to increasing radii.
-    errors: Vec<(f64, f64)>,
+    /// The gaps between the points, and the error of the exponent.
+    gaps: Vec<CurveGap>,
+    exponent_error: f64,
+}
+
+/// A gap between two points: the levels of both, m, and the error of X in it, m.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct CurveGap {
+    low: f64,
+    high: f64,
+    radius: f64,
 }
 
 /// An end of a straight piece.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Knot {
+struct CurveKnot {
     level: f64,
     /// X, m.
     radius: f64,
@@ -53,8 +75,8 @@ struct Knot {
 }
 
 impl LoadCurve {
-    /// The curve through the points (d, F_N), m and N, of these bodies. Both begin at zero, the indentation rises by 1e-15 m from
-    /// point to point at the least, and F_N is convex.
+    /// The curve through the points (d, F_N), m and N, of these bodies. Both begin at zero, the indentation rises by
+    /// 1e-15 m from point to point at the least, and F_N is convex.
     ///
     /// # Errors
     /// [`Error::OutOfRange`] by [`range::CURVE_POINTS`], [`range::PRELOAD_INDENTATION`] and [`range::NORMAL_FORCE`],
@@ -98,7 +120,8 @@ impl LoadCurve {
             return fault(CurveFault::SlopeFalls, index + 1);
         }
         let mut curve = Curve::through(&points);
-        curve.errors = curve.errors_of(&points);
+        curve.exponent_error = exponent_error(&points);
+        curve.gaps = gaps(&points, curve.exponent_error.min(curve.exponent + 1.0));
         Ok(LoadCurve(Arc::new(curve)))
     }
 }
@@ -106,6 +129,36 @@ impl LoadCurve {
 /// The mean of X between two points.
 fn secant(low: (f64, f64), high: (f64, f64)) -> f64 {
     (high.1 - low.1) / (high.0 - low.0)
+}
+
+/// The exponent of the power law through two points.
+fn exponent(low: (f64, f64), high: (f64, f64)) -> f64 {
+    (high.1 / low.1).ln() / (high.0 / low.0).ln()
+}
+
+/// The error of the exponent up to the first point: how it changes over an e-fold of the indentation, or that of a
+/// straight line where there is but one.
+fn exponent_error(points: &[(f64, f64)]) -> f64 {
+    let last = points.len() - 1;
+    if last < 3 {
+        return exponent(points[1], points[last]).max(1.0) - 1.0;
+    }
+    let further = |index: usize| points.partition_point(|point| point.0 < FURTHER * points[index].0).clamp(2, last);
+    let far = further(1);
+    let change = |[a, b, c]: [usize; 3]| {
+        let [a, b, c] = [a, b, c].map(|index| points[index]);
+        (exponent(a, b) - exponent(b, c)).abs() / (0.5 * (c.0 / a.0).ln()).min(1.0)
+    };
+    let pairs = [[1, 2, 3], [1, far, further(far)], [1, 2, far], [1, 2, further(far)]];
+    pairs.into_iter().filter(|[a, b, c]| a < b && b < c).map(change).fold(0.0, f64::max)
+}
+
+/// The gaps between points (d, int X dy) whose exponent at the first one errs by so much.
+fn gaps(points: &[(f64, f64)], exponent_error: f64) -> Vec<CurveGap> {
+    let mut radii = open_slopes(points, 0);
+    radii[0] = OF_EXPONENT * exponent_error * points[1].1 / points[1].0;
+    radii[1] = radii[1].max(radii[0]);
+    points.windows(2).zip(radii).map(|(pair, radius)| CurveGap { low: pair[0].0, high: pair[1].0, radius }).collect()
 }
 
 impl Curve {
@@ -134,19 +187,24 @@ impl Curve {
             }
             knots.push((high, after));
         }
-        let mut before = Knot { level: 0.0, radius: if power > 1.0 { 0.0 } else { knots[0].1 }, load: 0.0 };
+        let mut before = CurveKnot { level: 0.0, radius: if power > 1.0 { 0.0 } else { knots[0].1 }, load: 0.0 };
         let mut all = vec![before];
         for (level, radius) in knots {
             let radius = radius.max(before.radius);
             if level > before.level {
                 let depth = level - before.level;
                 let load = if all.len() == 1 { first.1 } else { before.load + 0.5 * depth * (before.radius + radius) };
-                before = Knot { level, radius, load };
+                before = CurveKnot { level, radius, load };
                 all.push(before);
             }
         }
-        let mut curve =
-            Curve { knots: all, exponent: power - 1.0, tree: MomentTree::new(std::iter::empty()), errors: Vec::new() };
+        let mut curve = Curve {
+            knots: all,
+            exponent: power - 1.0,
+            tree: MomentTree::new(std::iter::empty()),
+            gaps: Vec::new(),
+            exponent_error: 0.0,
+        };
         let leaves: Vec<(Moments, f64)> = (0..curve.knots.len() - 1)
             .map(|index| {
                 let (low, high) = (curve.knots[index].level, curve.knots[index + 1].level);
@@ -155,28 +213,6 @@ impl Curve {
             .collect();
         curve.tree = MomentTree::new(leaves.into_iter());
         curve
-    }
-
-    /// Upper bounds of the errors of int X dy, by leaving out points.
-    fn errors_of(&self, points: &[(f64, f64)]) -> Vec<(f64, f64)> {
-        let last = points.len() - 1;
-        let thinned = [0, 1].map(|parity| {
-            let kept = |index: &usize| index % 2 == parity || [0, last].contains(index);
-            let kept: Vec<_> = (0..=last).filter(kept).map(|index| points[index]).collect();
-            Curve::through(&kept)
-        });
-        let mut sums = [0.0; 2];
-        let mut errors = Vec::with_capacity(points.len());
-        for pair in points.windows(2) {
-            Panel::coarse(pair[1].0 - pair[0].0).visit(|below, weight| {
-                let level = DoubleDouble::from(pair[1].0 - below);
-                for (sum, other) in sums.iter_mut().zip(&thinned) {
-                    *sum += weight * (self.radius(level) - other.radius(level)).abs();
-                }
-            });
-            errors.push((self.radius(pair[1].0.into()), sums[0].max(sums[1])));
-        }
-        errors
     }
 
     /// The piece that holds a level; beyond the end the last.
@@ -215,7 +251,7 @@ impl Curve {
         if share < THIN {
             let inner = self.radius(low.into());
             let mut sums = Moments { width: inner * (q * (depth / low).ln_1p()).exp_m1(), ..Moments::default() };
-            Panel::fine(depth).visit(|below, weight| {
+            QuadraturePanel::fine(depth).visit(|below, weight| {
                 let gained = inner * (q * ((depth - below) / low).ln_1p()).exp_m1();
                 sums.first += weight * gained;
                 sums.second += 2.0 * weight * below * gained;
@@ -297,9 +333,21 @@ impl CurveFamily for LoadCurve {
     }
 
     fn curve_error(&self, radius: f64) -> InterpolationError {
-        let errors = &self.0.errors;
-        let index = errors.partition_point(|(end, _)| *end <= radius);
-        let load = errors.get(index).or(errors.last()).map_or(0.0, |(_, load)| *load);
-        InterpolationError { load, kernel: 0.0 }
+        let (curve, level) = (&*self.0, self.level_of(radius));
+        let first = curve.knots[1];
+        let (load, error) = if level < first.level {
+            let power = curve.exponent + 1.0;
+            let (share, above) = (level / first.level, (first.level / level).ln());
+            let load = first.load * share.powf(power) * (curve.exponent_error * above).min(1.0);
+            let scale = first.load / first.level * share.powf(curve.exponent);
+            (load, scale * (1.0 + power * above) * curve.exponent_error)
+        } else {
+            let index = curve.gaps.partition_point(|gap| gap.high < level).min(curve.gaps.len() - 1);
+            let gap = curve.gaps[index];
+            (OF_LOAD * gap.radius * (level.min(gap.high) - gap.low), OF_RADIUS * gap.radius)
+        };
+        // Where X hardly rises, a radius says little of the level.
+        let level = if error > 0.0 { (error / self.rate(level)).min(level) } else { 0.0 };
+        InterpolationError { load: if load > 0.0 { load } else { 0.0 }, level, kernel: 0.0 }
     }
 }

@@ -1,19 +1,18 @@
 //! The shape of the indenter, as the few functions that the solver needs.
 //!
-//! By the method of dimensionality reduction a profile z = f(r) is known through g(x) = x int_0^x f'(r)/sqrt(x^2 - r^2) dr.
-//! A *level* y is a value of g, a *radius* x its inverse X(y); a level beyond the last radius (a vertical edge) keeps that
-//! radius. Normal contact, slip history and stresses read a profile through rings between two levels, so no other module
-//! depends on the family.
+//! By the method of dimensionality reduction a profile z = f(r) is known through g(x) = x int_0^x f'(r)/sqrt(x^2 - r^2)
+//! dr. A *level* y is a value of g, a *radius* x its inverse X(y); a level beyond the last radius (a vertical edge)
+//! keeps that radius. Normal contact, slip history and stresses read a profile through rings between two levels, so no
+//! other module depends on the family.
 //!
 //! A family is a struct with a checked constructor and its `shape::Shape`, and an entry of
-//! [`for_each_family!`](crate::for_each_family), from which the JSON documents and their checks follow. `ARCHITECTURE.md`
-//! has the recipe for another one. Contacts that are known by their load curve alone have `curve_family::CurveFamily` instead.
+//! [`for_each_family!`](crate::for_each_family), from which the JSON documents and their checks follow.
+//! `ARCHITECTURE.md` has the recipe for another one. Contacts that are known by their load curve alone have
+//! `curve_family::CurveFamily` instead.
 
-mod angle;
 mod asperities;
 #[cfg(test)]
 pub(crate) mod call_count;
-mod cluster_tree;
 mod cone;
 mod curve_family;
 mod distant_rings;
@@ -21,20 +20,16 @@ mod ellipsoid;
 mod exact_sphere;
 #[macro_use]
 mod families;
-mod far_field;
 mod flat_punch;
-pub(super) mod gauss;
 mod kernel_sums;
 mod load_curve;
-mod logarithm;
 mod moment_tree;
-mod multipole;
+mod open_gaps;
 mod polynomial;
 mod power_law;
 mod power_series;
 mod ring;
 pub(super) mod ring_quadrature;
-mod roots;
 mod rounded_cone;
 mod rounded_punch;
 mod series_kernel;
@@ -60,9 +55,9 @@ pub use ring::{Moments, Point, Ring, StressRadius};
 pub use sum::Sum;
 pub use tabulated::{InterpolationError, Tabulated};
 
-use super::double_double::DoubleDouble;
 use super::error::Error;
 use super::range;
+use crate::numerics::double_double::DoubleDouble;
 use asperities::Count;
 use power_series::{KinkSeries, Place, Series};
 use shape::{End, Shape};
@@ -92,7 +87,8 @@ macro_rules! profile {
         #[derive(Clone, Debug, PartialEq)]
         pub enum Profile {
             $($(#[$about])* $Family($Family),)+
-            /// A measured profile, through whose points a smooth curve is drawn that keeps their monotony and convexity.
+            /// A measured profile, through whose points a smooth curve is drawn that keeps their monotony and
+            /// convexity.
             Tabulated(Tabulated),
             /// Several profiles added up, z = Σ zᵢ.
             Sum(Sum),
@@ -125,8 +121,9 @@ for_each_family!(profile $);
 mod ring_integrals;
 
 impl Profile {
-    /// Whether the contact has a surface that stresses are known on. Without one it is known by its load curve alone: the
-    /// kernels, slopes and stresses of such a profile are those of a body of revolution with the same curve, or NaN.
+    /// Whether the contact has a surface that stresses are known on. Without one it is known by its load curve alone:
+    /// the kernels, slopes and stresses of such a profile are those of a body of revolution with the same curve, or
+    /// NaN.
     #[must_use]
     pub fn has_stress_field(&self) -> bool {
         self.check_stress_field().is_ok()
@@ -185,8 +182,8 @@ impl Profile {
         Shape::indentation_for(self, load)
     }
 
-    /// The radius, m, that every contact must stay below: where the exact sphere is vertical, where a table ends or its g falls.
-    /// A punch's edge is no such limit.
+    /// The radius, m, that every contact must stay below: where the exact sphere is vertical, where a table ends or its
+    /// g falls. A punch's edge is no such limit.
     #[must_use]
     pub fn limit_radius(&self) -> Option<f64> {
         Shape::limit(self).map(|end| end.radius)
@@ -195,7 +192,7 @@ impl Profile {
     /// The radius, m, of a vertical edge, which the contact keeps under every higher load.
     #[must_use]
     pub fn rim_radius(&self) -> Option<f64> {
-        Shape::rim(self).map(|(radius, _)| radius)
+        Shape::rim_radius(self)
     }
 
     /// Checks a contact radius and returns it.
@@ -213,7 +210,8 @@ impl Profile {
         }
     }
 
-    /// How many times larger than g at the radius `x`, m, the parts are that it is the sum of: what their rounding grows by.
+    /// How many times larger than g at the radius `x`, m, the parts are that it is the sum of: what their rounding
+    /// grows by.
     #[must_use]
     pub fn cancellation(&self, x: f64) -> f64 {
         Shape::cancellation(self, x)
@@ -239,8 +237,8 @@ impl Profile {
         Shape::curvature_radius(self)
     }
 
-    /// Whether the kernel up to any radius falls with r, so that pressure does too. It lets the search for the peaks of the
-    /// shear stress skip intervals without any; `false` is always safe.
+    /// Whether the kernel up to any radius falls with r, so that pressure does too. It lets the search for the peaks of
+    /// the shear stress skip intervals without any; `false` is always safe.
     ///
     /// K(r, c) = int g'(x)/x dv, v = sqrt(x^2 - r^2), over 0 to sqrt(c^2 - r^2): it falls wherever g'/x does not rise.
     #[must_use]
@@ -248,23 +246,24 @@ impl Profile {
         Shape::kernel_falls(self)
     }
 
-    /// A lower bound, 1/m, of -2 v dK(r, c)/d(r^2) for all r from `inner` up to c = `outer`, m, v = sqrt(c^2 - r^2): above zero the
-    /// kernel up to `outer` falls there. With q = g'/x as a function of x^2 it is q(c^2) - 2 v int q'(r^2 + t^2) dt over t up to v. Minus
-    /// infinity where nothing is known.
+    /// A lower bound, 1/m, of -2 v dK(r, c)/d(r^2) for all r from `inner` up to c = `outer`, m, v = sqrt(c^2 - r^2):
+    /// above zero the kernel up to `outer` falls there. With q = g'/x as a function of x^2 it is q(c^2) - 2 v int
+    /// q'(r^2 + t^2) dt over t up to v. Minus infinity where nothing is known.
     pub(super) fn least_fall(&self, inner: f64, outer: f64) -> f64 {
         Shape::least_fall(self, inner, outer)
     }
 
-    /// Whether q = g'/x, as a function of x^2, neither falls nor bends upward from the radius `inner`, m, on; `false` is always safe.
+    /// Whether q = g'/x, as a function of x^2, neither falls nor bends upward from the radius `inner`, m, on; `false`
+    /// is always safe.
     ///
-    /// Then dK(r, c)/d(r^2) = int q'(r^2 + t^2) dt - q(c^2)/(2 v) over t up to v = sqrt(c^2 - r^2) falls all the way from r = `inner` to c,
-    /// since its derivative with respect to r^2 is int q'' dt - q'(c^2)/(2 v) - q(c^2)/(4 v^3).
+    /// Then dK(r, c)/d(r^2) = int q'(r^2 + t^2) dt - q(c^2)/(2 v) over t up to v = sqrt(c^2 - r^2) falls all the way
+    /// from r = `inner` to c, since its derivative with respect to r^2 is int q'' dt - q'(c^2)/(2 v) - q(c^2)/(4 v^3).
     pub(super) fn rises_concavely(&self, inner: f64) -> bool {
         Shape::rises_concavely(self, inner)
     }
 
-    /// The radii, m, increasing, at which pressure and shear are infinite once the contact has grown over them: the tip of a
-    /// cone, a rim where the slope jumps. The vertical edge of a punch is not among them.
+    /// The radii, m, increasing, at which pressure and shear are infinite once the contact has grown over them: the tip
+    /// of a cone, a rim where the slope jumps. The vertical edge of a punch is not among them.
     ///
     /// ```
     /// use stickslip_mechanics::profile::{Profile, TruncatedCone};
@@ -278,8 +277,8 @@ impl Profile {
         Shape::singular_radii(self)
     }
 
-    /// The radii, m, above zero and below `radius` at which g is not analytic, increasing: ends of a flat, knots of a table.
-    /// Stresses are log-infinite there, or their derivatives are.
+    /// The radii, m, above zero and below `radius` at which g is not analytic, increasing: ends of a flat, knots of a
+    /// table. Stresses are log-infinite there, or their derivatives are.
     #[must_use]
     pub fn knots_below(&self, radius: f64) -> Vec<f64> {
         let below = |knot: f64| Some(Shape::kink_below(self, knot)).filter(|&next| next > 0.0 && next < knot);
@@ -300,8 +299,8 @@ impl Profile {
         Shape::interpolation_error(self, radius)
     }
 
-    /// An estimate of the noise of g, m, that a table's heights bring to a contact of this radius, m, and how many times their
-    /// own noise that is; the noisiest part of a sum. `None` without a table.
+    /// An estimate of the noise of g, m, that a table's heights bring to a contact of this radius, m, and how many
+    /// times their own noise that is; the noisiest part of a sum. `None` without a table.
     #[must_use]
     pub fn noise(&self, radius: f64) -> Option<(f64, f64)> {
         Shape::noise(self, radius)
@@ -327,6 +326,7 @@ dispatch! {
     indentation_for(load: f64) -> f64;
     rise(span: &Span) -> f64;
     rim() -> Option<(f64, f64)>;
+    rim_radius() -> Option<f64>;
     kink_below(radius: f64) -> f64;
     analytic_tip() -> bool;
     ceiling() -> f64;

@@ -1,16 +1,17 @@
 //! A g that is a polynomial in x without a negative coefficient: a sum of parabolas, cones and whole powers.
 //!
-//! Differences are taken by divided differences, sums of positive terms. g is convex, so that Newton's steps from above come down on X(y);
-//! the rule of eight points integrates h^2 exactly, up to a degree of seven for g.
+//! Differences are taken by divided differences, sums of positive terms. g is convex, so that Newton's steps from above
+//! come down on X(y); the rule of eight points integrates h^2 exactly, up to a degree of seven for g.
 
-use super::gauss::{EIGHT_POINTS, first_and_second};
-use super::roots::descend;
 use super::shape::Shape;
 use super::{Moments, Profile, Ring, Span};
+use crate::numerics::gauss::{EIGHT_POINTS, first_and_second};
+use crate::numerics::roots::descend;
 
 /// The largest degree.
 const MOST: usize = 7;
-/// Differences of squares above this, over the outer one, are those of the levels to round-off; and what two steps of Newton's make so.
+/// Differences of squares above this, over the outer one, are those of the levels to round-off; and what two steps of
+/// Newton's make so.
 const PLAIN: f64 = 0.2;
 const NEARLY: f64 = 1e-6;
 

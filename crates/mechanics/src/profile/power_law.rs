@@ -1,19 +1,23 @@
-//! Power law f = c r^n: g = B x^n with B = kappa c, kappa = sqrt(pi) Gamma(n/2 + 1)/Gamma((n + 1)/2), int x dg = n B x^(n+1)/(n + 1).
+//! Power law f = c r^n: g = B x^n with B = kappa c, kappa = sqrt(pi) Gamma(n/2 + 1)/Gamma((n + 1)/2), int x dg = n B
+//! x^(n+1)/(n + 1).
 //!
-//! K(r, c) = n B I_(n-1) with I_m = int x^m dx/sqrt(x^2 - r^2): for whole n by a recursion ([`slope_series`](super::slope_series)) of
-//! positive terms (Galin 1946; Sneddon 1965); else over x = r cosh s; from 1e8 r on, where x^2 - r^2 is x^2 to round-off, in closed form.
+//! K(r, c) = n B I_(n-1) with I_m = int x^m dx/sqrt(x^2 - r^2): for whole n by a recursion
+//! ([`slope_series`](super::slope_series)) of positive terms (Galin 1946; Sneddon 1965); else over x = r cosh s; from
+//! 1e8 r on, where x^2 - r^2 is x^2 to round-off, in closed form.
 
-use super::gauss::{EIGHT_POINTS, Singular, first_and_second};
 use super::power_series::{Place, Series};
 use super::shape::Shape;
 use super::smooth_coordinate::{self, SmoothCoordinate};
 use super::{DoubleDouble, Error, Moments, Ring, Span, StressRadius, range, series_kernel};
+use crate::numerics::gauss::{EIGHT_POINTS, Singular, first_and_second};
 
 /// The largest exponent for which the recursion is quicker than a quadrature.
 const MOST_TERMS: u16 = 24;
-/// The largest exponent n of which eight points of Gauss integrate the square of a rise, a polynomial of degree 2 n, exactly.
+/// The largest exponent n of which eight points of Gauss integrate the square of a rise, a polynomial of degree 2 n,
+/// exactly.
 const MOST_FOR_EIGHT: u16 = 7;
-/// Where exponents get a square with twice the digits, differences of squares over that of the edge are good down to this.
+/// Where exponents get a square with twice the digits, differences of squares over that of the edge are good down to
+/// this.
 const RESOLVED: f64 = 1e-12;
 /// The width over the outer radius up to which the moments are summed as binomial series, and times the exponent.
 const SERIES: (f64, f64) = (0.3, 1.5);
@@ -77,7 +81,8 @@ impl PowerLaw {
         sum
     }
 
-    /// int h dx and int h^2 dx over x_outer y and x_outer y^2, y the outer level, of a whole n up to [`MOST_FOR_EIGHT`].
+    /// int h dx and int h^2 dx over x_outer y and x_outer y^2, y the outer level, of a whole n up to
+    /// [`MOST_FOR_EIGHT`].
     fn whole_moments(order: u16, share: f64) -> (f64, f64) {
         let (below, mut chords) = (EIGHT_POINTS.map(|(u, _)| share * u), [1.0; EIGHT_POINTS.len()]);
         for _ in 1..order {
@@ -90,8 +95,8 @@ impl PowerLaw {
         (share * first, share * second)
     }
 
-    /// The same of any n from one on, by the series of 1 - (1 - b)^n in b; its square is twice it less that of 2 n. The terms alternate
-    /// at first, up to e^(2 n share) of the sum.
+    /// The same of any n from one on, by the series of 1 - (1 - b)^n in b; its square is twice it less that of 2 n. The
+    /// terms alternate at first, up to e^(2 n share) of the sum.
     fn series_moments(n: f64, share: f64) -> (f64, f64) {
         let (mut once, mut twice) = (n * share, 2.0 * n * share);
         let (mut first, mut second) = (0.5 * once, 0.0);
@@ -176,7 +181,8 @@ fn kappa(exponent: f64) -> f64 {
         share = share * DoubleDouble::from(n + 1.0).over(DoubleDouble::from(n + 2.0));
         n += 2.0;
     }
-    // Gamma(z + 1/2)/Gamma(z), z = (n + 1)/2, by Tricomi and Erdelyi's series (1951) in w = z - 1/4, which holds even powers alone.
+    // Gamma(z + 1/2)/Gamma(z), z = (n + 1)/2, by Tricomi and Erdelyi's series (1951) in w = z - 1/4, which holds even
+    // powers alone.
     let w = 0.5 * n + 0.25;
     let u = 1.0 / (w * w);
     let series =

@@ -1,7 +1,8 @@
-//! Short power series in Y, -1 <= Y <= 1, of functions of x^2 = X + h Y: what a family says about g'/x for [`super::smooth_pieces`].
+//! Short power series in Y, -1 <= Y <= 1, of functions of x^2 = X + h Y: what a family says about g'/x for
+//! [`super::smooth_pieces`].
 //!
-//! They follow from their differential equations, each coefficient from those before it. Of the two solutions of each the one that grows
-//! faster is wanted, so that errors of rounding do not grow.
+//! They follow from their differential equations, each coefficient from those before it. Of the two solutions of each
+//! the one that grows faster is wanted, so that errors of rounding do not grow.
 
 use super::DoubleDouble;
 
@@ -94,7 +95,8 @@ impl Place {
         Some(BeyondKink { place: self, b, x, t, inverse })
     }
 
-    /// The series of this constant term, of which each next one, k + 1, is `next` of k and the two terms before it, over k + 1.
+    /// The series of this constant term, of which each next one, k + 1, is `next` of k and the two terms before it,
+    /// over k + 1.
     fn by(&self, first: f64, next: impl Fn(f64, [f64; 2]) -> f64) -> Series {
         let mut series = Series { coefficients: [0.0; TERMS] };
         let (mut last, mut before) = (first, 0.0);
@@ -143,7 +145,8 @@ impl Series {
     }
 }
 
-/// gamma = dg/dt beside a kink, as a power series in t: the coefficients of even and of odd powers, each times that power of the largest t.
+/// gamma = dg/dt beside a kink, as a power series in t: the coefficients of even and of odd powers, each times that
+/// power of the largest t.
 #[derive(Clone, Copy, Default)]
 pub(super) struct KinkSeries {
     pub(super) even: [f64; KINK_TERMS],

@@ -1,5 +1,5 @@
-//! The integrals over rings of a profile: what moves, stresses and displacements are sums of. What a ring crosses at a vertical edge is
-//! added here, to what a family says of the face.
+//! The integrals over rings of a profile: what moves, stresses and displacements are sums of. What a ring crosses at a
+//! vertical edge is added here, to what a family says of the face.
 
 #[cfg(test)]
 use super::call_count;
@@ -33,15 +33,15 @@ impl Profile {
         each!(self, shape => shape.span(ring).edge)
     }
 
-    /// The nodes of a quadrature over the radii of a ring, for integrands with roots of the depth h below its outer level and
-    /// of `total` - h, and with waves in the angle whose cosine is 1 - 2 h/total, up to cos(`turns` th).
+    /// The nodes of a quadrature over the radii of a ring, for integrands with roots of the depth h below its outer
+    /// level and of `total` - h, and with waves in the angle whose cosine is 1 - 2 h/total, up to cos(`turns` th).
     pub(crate) fn ring_nodes(&self, ring: &Ring, total: f64, turns: usize) -> RingNodes {
         each!(self, shape => shape.ring_nodes(ring, total, turns))
     }
 
-    /// int dy / sqrt(X(y)^2 - r^2) over the levels of the ring whose radius is above r (pure number): the ring's share of a
-    /// stress. For a smooth profile this is K(r, x_outer) - K(r, max(r, x_inner)), K(r, c) = int_r^c g'(x)/sqrt(x^2 - r^2) dx.
-    /// Infinite at the tip of a cone, where f' jumps, and at a vertical edge; never NaN.
+    /// int dy / sqrt(X(y)^2 - r^2) over the levels of the ring whose radius is above r (pure number): the ring's share
+    /// of a stress. For a smooth profile this is K(r, x_outer) - K(r, max(r, x_inner)), K(r, c) = int_r^c
+    /// g'(x)/sqrt(x^2 - r^2) dx. Infinite at the tip of a cone, where f' jumps, and at a vertical edge; never NaN.
     #[must_use]
     pub fn kernel(&self, at: &StressRadius, ring: &Ring) -> f64 {
         #[cfg(test)]
@@ -53,7 +53,8 @@ impl Profile {
         })
     }
 
-    /// The derivative of [`Profile::kernel`] with respect to r^2, 1/m^2, taken from the right where r is the inner radius.
+    /// The derivative of [`Profile::kernel`] with respect to r^2, 1/m^2, taken from the right where r is the inner
+    /// radius.
     #[must_use]
     pub fn kernel_slope(&self, at: &StressRadius, ring: &Ring) -> f64 {
         #[cfg(test)]
@@ -65,8 +66,8 @@ impl Profile {
         })
     }
 
-    /// int (y_outer - g(x)) dx / sqrt(r^2 - x^2) over the radii x of the ring below r, m: the ring's share of the displacement
-    /// of the surface at r.
+    /// int (y_outer - g(x)) dx / sqrt(r^2 - x^2) over the radii x of the ring below r, m: the ring's share of the
+    /// displacement of the surface at r.
     #[must_use]
     pub fn displacement_integral(&self, at: &StressRadius, ring: &Ring) -> f64 {
         #[cfg(test)]
@@ -78,9 +79,9 @@ impl Profile {
         })
     }
 
-    /// (2/pi) int v dx/sqrt(r^2 - x^2) over the radii x of the contact below r, m, at each of `radii`, at once: v, m, is straight in g over
-    /// rings that adjoin each other from the centre to the edge, each with its dv/dg, and `ends` are its values at the centre and at the edge.
-    /// `None` where ring by ring is no slower.
+    /// (2/pi) int v dx/sqrt(r^2 - x^2) over the radii x of the contact below r, m, at each of `radii`, at once: v, m,
+    /// is straight in g over rings that adjoin each other from the centre to the edge, each with its dv/dg, and `ends`
+    /// are its values at the centre and at the edge. `None` where ring by ring is no slower.
     pub(crate) fn displacements(
         &self,
         rings: &[(Ring, f64)],
@@ -90,8 +91,8 @@ impl Profile {
         Shape::displacements(self, rings, ends, radii)
     }
 
-    /// int dx / sqrt(r^2 - x^2) over the radii x of the ring below r (pure number). What lies inside X(0), a flat core, belongs
-    /// to no ring: there it is asin(min(1, X(0)/r)).
+    /// int dx / sqrt(r^2 - x^2) over the radii x of the ring below r (pure number). What lies inside X(0), a flat core,
+    /// belongs to no ring: there it is asin(min(1, X(0)/r)).
     #[must_use]
     pub fn arc(&self, at: &StressRadius, ring: &Ring) -> f64 {
         each!(self, shape => shape.span(ring).arc(at))

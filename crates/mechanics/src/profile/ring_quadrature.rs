@@ -1,21 +1,21 @@
 //! Nodes of a quadrature over a ring for integrands with a square root of the depth at both of its ends.
 //!
-//! An integrand of the depth h below the ring's outer level, with roots of h and of S - h, S no less than the ring's depth,
-//! is analytic over the angle phi with t = t_outer - (t_outer - t_inner) sin^2(phi/2), t the coordinate of
+//! An integrand of the depth h below the ring's outer level, with roots of h and of S - h, S no less than the ring's
+//! depth, is analytic over the angle phi with t = t_outer - (t_outer - t_inner) sin^2(phi/2), t the coordinate of
 //! [`SmoothInterval`]. What is left are the roots that lie outside the ring, the tip and the next kink: panels shrink
 //! towards an end by the distance of these.
 
 use std::f64::consts::PI;
 
-use super::gauss::Panel;
 use super::shape::Shape;
 use super::smooth_interval::{Node, SmoothInterval};
 use super::{Ring, Span};
+use crate::numerics::gauss::QuadraturePanel;
 
 /// The share of a panel that must lie between it and a singularity for a rule of twenty points: rho = 2.6.
 const CLEARANCE: f64 = 0.56;
-/// How many times its width an interval must lie away from the roots for a rule of twelve points and no angle, and so the
-/// sum of the distances of its ends from its singularity.
+/// How many times its width an interval must lie away from the roots for a rule of twelve points and no angle, and so
+/// the sum of the distances of its ends from its singularity.
 const FAR: f64 = 2.0;
 const CLEAR_FOCI: f64 = 2.4;
 /// What is left of the angle next to a singularity contributes its cube.
@@ -25,8 +25,8 @@ const ROUND_OFF: f64 = 1e-15;
 /// The turn of a wave that a panel of twenty points follows, and one of eight, rad.
 const FINE_TURN: f64 = 13.0;
 const COARSE_TURN: f64 = 1.6;
-/// More kinks than this are not resolved one by one, but by so many panels as there are, of half the width for the second
-/// result. Very many, counted from the tip, are those of a fine table, which are weak.
+/// More kinks than this are not resolved one by one, but by so many panels as there are, of half the width for the
+/// second result. Very many, counted from the tip, are those of a fine table, which are weak.
 const MOST_KINKS: usize = 24;
 const PANELS: f64 = 32.0;
 const VERY_MANY_KINKS: usize = 128;
@@ -69,11 +69,11 @@ pub(super) fn nodes(shape: &(impl Shape + ?Sized), ring: &Ring, total: f64, turn
         let SmoothInterval { low, high, drop, singular, power, .. } = interval;
         let foci = low.hypot(singular.below) + high.hypot(singular.below);
         if above.min(left) > FAR * power * depth && foci > CLEAR_FOCI * drop {
-            Panel::middling(drop).nodes().map(|(dt, share)| interval.node(dt, share)).for_each(&mut add);
+            QuadraturePanel::middling(drop).nodes().map(|(dt, share)| interval.node(dt, share)).for_each(&mut add);
         } else {
             let mut ends = panels(shape, &interval, [above, depth, left], inner.is_none());
             split(&mut ends, FINE_TURN / (turns as f64 * power.max(1.0).sqrt()));
-            angular_nodes(&interval, &ends, Panel::fine).for_each(&mut add);
+            angular_nodes(&interval, &ends, QuadraturePanel::fine).for_each(&mut add);
         }
         above += depth;
         rest = inner;
@@ -88,7 +88,7 @@ fn across(shape: &(impl Shape + ?Sized), span: &Span, total: f64, widest: f64) -
     let mut ends = panels(shape, &interval, [span.edge, depth, total - span.edge - depth], true);
     split(&mut ends, widest);
     let nodes = |ends: &[f64]| {
-        let nodes: Vec<(Node, f64)> = angular_nodes(&interval, ends, Panel::coarse).collect();
+        let nodes: Vec<(Node, f64)> = angular_nodes(&interval, ends, QuadraturePanel::coarse).collect();
         let below: Vec<f64> = nodes.iter().map(|(node, _)| node.dt).collect();
         let node = |((_, weight), rise): (&(Node, f64), f64)| DepthNode { weight: *weight, depth: span.edge + rise };
         nodes.iter().zip(shape.rises(span, &below)).map(node).collect()
@@ -104,7 +104,7 @@ fn across(shape: &(impl Shape + ?Sized), span: &Span, total: f64, widest: f64) -
 fn angular_nodes<'a>(
     interval: &'a SmoothInterval,
     ends: &'a [f64],
-    rule: fn(f64) -> Panel,
+    rule: fn(f64) -> QuadraturePanel,
 ) -> impl Iterator<Item = (Node, f64)> + 'a {
     ends.windows(2).flat_map(move |pair| {
         rule(pair[1] - pair[0]).nodes().map(move |(offset, share)| {
@@ -114,8 +114,8 @@ fn angular_nodes<'a>(
     })
 }
 
-/// The ends of the panels of the angle from zero, the outer end, to pi. `levels` are the depth above the interval, that of
-/// the interval, and what `total` has left below it.
+/// The ends of the panels of the angle from zero, the outer end, to pi. `levels` are the depth above the interval, that
+/// of the interval, and what `total` has left below it.
 fn panels(shape: &(impl Shape + ?Sized), interval: &SmoothInterval, levels: [f64; 3], innermost: bool) -> Vec<f64> {
     let [above, depth, left] = levels;
     let SmoothInterval { base, high, drop, singular, power, low, .. } = *interval;
@@ -156,7 +156,8 @@ pub(crate) fn split(ends: &mut Vec<f64>, widest: f64) {
     }
 }
 
-/// Adds ends of panels that shrink to a quarter of each other towards `place`, down to a singularity at `distance` from it.
+/// Adds ends of panels that shrink to a quarter of each other towards `place`, down to a singularity at `distance` from
+/// it.
 pub(crate) fn approach(ends: &mut Vec<f64>, place: f64, distance: f64) {
     let mut width = PI;
     while CLEARANCE * width > distance && width > LEAST_PANEL {

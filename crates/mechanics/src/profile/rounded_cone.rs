@@ -4,13 +4,13 @@
 //! There gamma = dg/dt = T (t/x) Q, Q = 2b/(x + t) + phi, and int x dg = (T/2)(x^2 phi + (4/3) b x^2/(x + t) + b t/3)
 //! (Ciavarella 1999; Popov & Hess 2015). f' bends but does not jump at b, so all stresses are finite.
 
-use super::angle::tangent_less_angle;
 use super::power_series::{KinkSeries, Place, Series};
-use super::roots::descend;
 use super::shape::Shape;
 use super::smooth_coordinate::{self, SmoothCoordinate};
 use super::sphere::Sphere;
 use super::{DoubleDouble, Error, Moments, Ring, Span, StressRadius, range};
+use crate::numerics::angle::tangent_less_angle;
+use crate::numerics::roots::descend;
 
 /// A cone whose tip is a paraboloid.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -83,7 +83,8 @@ impl SmoothCoordinate for Flank {
         let dx = dt * (t + top) / (x + x_top);
         let (both, ends) = (b * b + t * top, (x + t) * (x_top + top));
         let u = b * dt / both;
-        // A(top) - A(t), of second order in t where each of its terms is of first: the tangents' part is combined before.
+        // A(top) - A(t), of second order in t where each of its terms is of first: the tangents' part is combined
+        // before.
         let turn = if u < 1.0 {
             let product = (b * b * (t * t + top * top) + t * t * top * top) / (x * x_top + b * b);
             b * (dt * (product + x * top + t * x_top) / both - dx) / ends - tangent_less_angle(u)

@@ -1,12 +1,13 @@
-//! Flat punch with a rounded edge, f = (r - b)^2/(2R) for r > b: g = (x/R)(t - b phi), phi = atan(t/b), t = sqrt(x^2 - b^2).
+//! Flat punch with a rounded edge, f = (r - b)^2/(2R) for r > b: g = (x/R)(t - b phi), phi = atan(t/b), t = sqrt(x^2 -
+//! b^2).
 //!
-//! gamma = dg/dt = (t/(R x))(2t - b phi), int x dg = (3 x^2 (t - b phi) + t^3)/(6R) (Schubert 1942; Ciavarella 1999). All stays
-//! positive through t - b phi = b (u - atan u), u = t/b.
+//! gamma = dg/dt = (t/(R x))(2t - b phi), int x dg = (3 x^2 (t - b phi) + t^3)/(6R) (Schubert 1942; Ciavarella 1999).
+//! All stays positive through t - b phi = b (u - atan u), u = t/b.
 
-use super::angle::{angles, tangent_less_angle};
 use super::power_series::{BeyondKink, KinkSeries, Place, Series};
 use super::smooth_coordinate::{self, Nodes, SmoothCoordinate, flat_core};
 use super::{DoubleDouble, Error, Moments, Ring, Span, StressRadius, range};
+use crate::numerics::angle::{angles, tangent_less_angle};
 
 /// A flat punch with a rounded edge.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -127,14 +128,16 @@ flat_core!(RoundedPunch {
         if low <= 0.0 {
             return f64::NEG_INFINITY;
         }
-        // dq/dt = (t gamma' - gamma)/t^2 <= 1/(R x), and the int dt/sqrt(t^2 - t_r^2) that goes with it is arcosh(t/t_r).
+        // dq/dt = (t gamma' - gamma)/t^2 <= 1/(R x), and the int dt/sqrt(t^2 - t_r^2) that goes with it is
+        // arcosh(t/t_r).
         let width = ((outer - inner) * (outer + inner)).sqrt();
         let rise = width * ((width + high) / low).ln() / (self.edge_radius * inner);
         self.slope(outer) / outer - rise
     }
 
     fn rises_concavely(&self, inner: f64) -> bool {
-        // With u = t/b, R dq/d(u^2) = (1 + u phi)/(2 u (1 + u^2)^(3/2)) > 0, whose logarithm has the slope (phi + u/(1 + u^2))/(1 + u phi)
+        // With u = t/b, R dq/d(u^2) = (1 + u phi)/(2 u (1 + u^2)^(3/2)) > 0, whose logarithm has the slope (phi + u/(1
+        // + u^2))/(1 + u phi)
         // - 1/u - 3 u/(1 + u^2) < 0, since u phi + u^2/(1 + u^2) < 1 + u phi.
         inner >= self.flat_radius
     }

@@ -1,12 +1,14 @@
-//! The kernel of one ring of a profile whose g' is a short power series in x, and its slope, by the recursion of [`super::slope_series`].
+//! The kernel of one ring of a profile whose g' is a short power series in x, and its slope, by the recursion of
+//! [`super::slope_series`].
 
 use super::{Span, StressRadius};
 
 /// Below this rho^2 the terms of a cone are left to the limit.
 const LEAST: f64 = 1e-200;
 
-/// One parity of the series: its polynomial in xi^2 at the outer end and the divided difference to the inner one; their derivatives
-/// with respect to rho^2; and what the recursion leaves over for the power below the last, with its derivative.
+/// One parity of the series: its polynomial in xi^2 at the outer end and the divided difference to the inner one; their
+/// derivatives with respect to rho^2; and what the recursion leaves over for the power below the last, with its
+/// derivative.
 #[derive(Default)]
 struct Parity {
     value: f64,
@@ -36,8 +38,8 @@ impl Parity {
     }
 }
 
-/// The kernel of a span, and its derivative with respect to r^2, 1/m^2, from the right. The series is in units of the span's outer
-/// radius. `None` where it is infinite or nearly so: at the tip of a cone or of a cubic body.
+/// The kernel of a span, and its derivative with respect to r^2, 1/m^2, from the right. The series is in units of the
+/// span's outer radius. `None` where it is infinite or nearly so: at the tip of a cone or of a cubic body.
 pub(super) fn kernel_and_slope(series: &[f64], at: &StressRadius, span: &Span) -> Option<(f64, f64)> {
     let (inner, outer) = span.excess(at.square);
     if outer <= 0.0 {

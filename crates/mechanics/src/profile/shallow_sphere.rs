@@ -1,13 +1,14 @@
-//! The exact sphere well below its equator: with s = (x/R)^2, g = R s P(s), and P = sum of s^k/(2k + 1) is a short series.
+//! The exact sphere well below its equator: with s = (x/R)^2, g = R s P(s), and P = sum of s^k/(2k + 1) is a short
+//! series.
 //!
-//! No term is negative, and differences are taken by P's divided difference, so that nothing cancels. The inverse is a series too,
-//! which converges far beyond [`LIMIT`]: s = z - z^2 C(z), z = g/R.
+//! No term is negative, and differences are taken by P's divided difference, so that nothing cancels. The inverse is a
+//! series too, which converges far beyond [`LIMIT`]: s = z - z^2 C(z), z = g/R.
 //!
-//! Of a very shallow ring the moments are closed: with v = (x_outer^2 - x^2)/R^2, h/R = sum of e_k v^k, whose terms fall like s^k, and
-//! int v^k dx is a polynomial of the ring's width.
+//! Of a very shallow ring the moments are closed: with v = (x_outer^2 - x^2)/R^2, h/R = sum of e_k v^k, whose terms
+//! fall like s^k, and int v^k dx is a polynomial of the ring's width.
 
-use super::gauss::Panel;
 use super::{DoubleDouble, Moments};
+use crate::numerics::gauss::QuadraturePanel;
 
 /// The s up to which the series are shorter than other ways.
 pub(super) const LIMIT: f64 = 0.09;
@@ -21,7 +22,8 @@ const SHARES: [f64; 20] = {
     }
     shares
 };
-/// The coefficients of C, by which s = z - z^2 C(z) inverts z = s P(s) (Lagrange): the twelfth is below 1e-18 of one at [`LIMIT`].
+/// The coefficients of C, by which s = z - z^2 C(z) inverts z = s P(s) (Lagrange): the twelfth is below 1e-18 of one at
+/// [`LIMIT`].
 const INVERSE: [f64; 11] = [
     1.0 / 3.0,
     -1.0 / 45.0,
@@ -44,7 +46,8 @@ const RULES: [f64; 2] = [1e-3, 1e-2];
 
 /// The terms of P that count at an s up to [`LIMIT`].
 fn terms(s: f64) -> &'static [f64] {
-    // s is below 2^-halvings, and so is the ratio of each term to the one before; one more for the difference, which begins later.
+    // s is below 2^-halvings, and so is the ratio of each term to the one before; one more for the difference, which
+    // begins later.
     let halvings = 1022_u64.saturating_sub(s.to_bits() >> 52).max(3);
     let count = usize::try_from(56 / halvings).map_or(SHARES.len(), |count| count + 2);
     &SHARES[..count.min(SHARES.len())]
@@ -82,14 +85,15 @@ pub(super) fn square_at(z: f64) -> f64 {
     z - z * shortfall(z)
 }
 
-/// x^2, m^2, of a level, m, of a sphere of this radius, m, with twice the digits: those of R y times z C, a small number, have one
-/// rounding.
+/// x^2, m^2, of a level, m, of a sphere of this radius, m, with twice the digits: those of R y times z C, a small
+/// number, have one rounding.
 pub(super) fn exact_square(radius: f64, level: DoubleDouble) -> DoubleDouble {
     let paraboloid = level * radius;
     paraboloid - paraboloid * shortfall(level.value() / radius)
 }
 
-/// How far below the level `z` = y/R the s is lower where the level is by `depth`, over R: by the divided difference of z^2 C.
+/// How far below the level `z` = y/R the s is lower where the level is by `depth`, over R: by the divided difference of
+/// z^2 C.
 pub(super) fn gap_of(z: f64, depth: f64) -> f64 {
     let inner = (z - depth).max(0.0);
     let (mut value, mut difference) = (0.0, 0.0);
@@ -111,11 +115,11 @@ pub(super) fn moments(outer: f64, width: f64) -> Moments {
         return closed_moments(outer, width);
     }
     let panel = if square <= RULES[0] {
-        Panel::coarse(width)
+        QuadraturePanel::coarse(width)
     } else if square <= RULES[1] {
-        Panel::middling(width)
+        QuadraturePanel::middling(width)
     } else {
-        Panel::fine(width)
+        QuadraturePanel::fine(width)
     };
     let (mut first, mut second) = (0.0, 0.0);
     panel.visit(|below, weight| {

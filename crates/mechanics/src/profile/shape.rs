@@ -2,9 +2,9 @@
 
 use super::power_series::{KinkSeries, Place, Series};
 use super::ring_quadrature::{self, RingNodes};
-use super::roots::increasing;
 use super::smooth_interval::{Node, SmoothInterval};
 use super::{DoubleDouble, InterpolationError, Moments, Ring, Span, StressRadius};
+use crate::numerics::roots::increasing;
 
 /// Where contacts end.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -50,6 +50,11 @@ pub(super) trait Shape {
         None
     }
 
+    /// The radius of [`Shape::rim`].
+    fn rim_radius(&self) -> Option<f64> {
+        self.rim().map(|(radius, _)| radius)
+    }
+
     /// The largest kink below `radius`; zero, the tip, if there is none.
     fn kink_below(&self, _radius: f64) -> f64 {
         0.0
@@ -72,18 +77,7 @@ pub(super) trait Shape {
 
     /// The span of a ring.
     fn span(&self, ring: &Ring) -> Span {
-        let (mut depth, mut edge) = (ring.depth, 0.0);
-        if let Some((_, top)) = self.rim() {
-            let top = DoubleDouble::from(top);
-            if ring.inner.level >= top {
-                (depth, edge) = (0.0, depth);
-            } else if ring.outer.level > top {
-                edge = (ring.outer.level - top).value();
-                depth = (top - ring.inner.level).value();
-            }
-        }
-        let gap = if depth > 0.0 { self.gap(ring, depth) } else { 0.0 };
-        Span::of(ring, gap, edge)
+        span(ring, self.rim().map(|(_, top)| top), |depth| self.gap(ring, depth))
     }
 
     /// The outermost interval of a span, and what is left inside it.
@@ -150,13 +144,14 @@ pub(super) trait Shape {
     /// Its derivative with respect to r^2, from the right.
     fn kernel_slope(&self, at: &StressRadius, span: &Span) -> f64;
 
-    /// The coefficients of g'(a xi) = sum of c_k xi^k, `a` being a radius, m, none of them negative; `None` where that is no series
-    /// of at most [`MOST_POWERS`](super::slope_series::MOST_POWERS).
+    /// The coefficients of g'(a xi) = sum of c_k xi^k, `a` being a radius, m, none of them negative; `None` where that
+    /// is no series of at most [`MOST_POWERS`](super::slope_series::MOST_POWERS).
     fn slope_series(&self, _a: f64) -> Option<Vec<f64>> {
         None
     }
 
-    /// g'/x, 1/m, as a power series of x^2 between two kinks, if [`smooth_pieces`](super::smooth_pieces) serve the family.
+    /// g'/x, 1/m, as a power series of x^2 between two kinks, if [`smooth_pieces`](super::smooth_pieces) serve the
+    /// family.
     fn slope_over_radius_series(&self, _place: &Place) -> Option<Series> {
         None
     }
@@ -166,7 +161,8 @@ pub(super) trait Shape {
         None
     }
 
-    /// The weighted sums of [`Profile::kernel`](super::Profile::kernel_sums), by a family that has a faster way than ring by ring.
+    /// The weighted sums of [`Profile::kernel`](super::Profile::kernel_sums), by a family that has a faster way than
+    /// ring by ring.
     fn kernel_sums(&self, _rings: &[(Ring, f64)], _radii: &[StressRadius]) -> Option<Vec<f64>> {
         None
     }
@@ -260,6 +256,21 @@ pub(super) fn under(top: &Span, interval: &SmoothInterval, node: Node) -> Span {
     Span { inner, inner_radius: inner.value().sqrt(), gap: (top.outer - inner).value(), edge: 0.0, ..*top }
 }
 
+/// The span of a ring of a profile that rises vertically from the level `top` on, if it does, by what [`Shape::gap`]
+/// gives.
+pub(super) fn span(ring: &Ring, top: Option<f64>, gap: impl Fn(f64) -> f64) -> Span {
+    let (mut depth, mut edge) = (ring.depth, 0.0);
+    if let Some(top) = top.map(DoubleDouble::from) {
+        if ring.inner.level >= top {
+            (depth, edge) = (0.0, depth);
+        } else if ring.outer.level > top {
+            edge = (ring.outer.level - top).value();
+            depth = (top - ring.inner.level).value();
+        }
+    }
+    Span::of(ring, if depth > 0.0 { gap(depth) } else { 0.0 }, edge)
+}
+
 /// [`Shape::gap`] by Newton's steps.
 pub(super) fn gap<S: Shape + ?Sized>(shape: &S, ring: &Ring, depth: f64) -> f64 {
     let outer = ring.outer;
@@ -331,7 +342,8 @@ mod tests {
                 }
             }
         }
-        // The six powers from two to four and the sphere; the punch and its sum with a cubic and a sphere from their flat on.
+        // The six powers from two to four and the sphere; the punch and its sum with a cubic and a sphere from their
+        // flat on.
         assert_eq!(claims, 7 * 4 + 2 * 2);
     }
 }

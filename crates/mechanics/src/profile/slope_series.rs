@@ -1,9 +1,10 @@
-//! The kernels of profiles whose g' is a short power series in x, weighted and summed over adjoining rings at many radii.
+//! The kernels of profiles whose g' is a short power series in x, weighted and summed over adjoining rings at many
+//! radii.
 //!
-//! In units of the edge, xi = x/a, rho = r/a, v = sqrt(xi^2 - rho^2) and g'(a xi) = sum of c_k xi^k. With I_k = int xi^k dxi/v,
-//! I_0 = ln(xi + v), I_1 = v and I_k = [xi^(k-1) v]/k + (1 - 1/k) rho^2 I_(k-2), so that the kernel is
-//! v A(xi^2) + xi v B(xi^2) + L ln(xi + v), whose polynomials depend on r alone. No c_k is negative, so nothing cancels in them, and
-//! between the ends of a ring differences are taken of each factor, not of the products.
+//! In units of the edge, xi = x/a, rho = r/a, v = sqrt(xi^2 - rho^2) and g'(a xi) = sum of c_k xi^k. With I_k = int
+//! xi^k dxi/v, I_0 = ln(xi + v), I_1 = v and I_k = [xi^(k-1) v]/k + (1 - 1/k) rho^2 I_(k-2), so that the kernel is
+//! v A(xi^2) + xi v B(xi^2) + L ln(xi + v), whose polynomials depend on r alone. No c_k is negative, so nothing cancels
+//! in them, and between the ends of a ring differences are taken of each factor, not of the products.
 //!
 //! Neighbouring rings share a root, and all runs over plain arrays, several radii at a time.
 
@@ -12,8 +13,8 @@ use std::ops::Range;
 #[cfg(test)]
 use super::call_count;
 use super::distant_rings::DistantRings;
-use super::logarithm::ln_1p;
 use super::{DoubleDouble, Ring, StressRadius};
+use crate::numerics::logarithm::ln_1p;
 
 /// Radii that are summed for side by side: roots and divisions take long, and one need not wait for another's.
 pub(super) const LANES: usize = 8;
@@ -32,38 +33,38 @@ pub(super) type Lanes = [f64; LANES];
 pub(super) struct SeriesRings<'a> {
     /// The coefficients c_k.
     series: &'a [f64],
-    edge: Point,
+    edge: SeriesPoint,
     /// 1/a^2, m^-2.
     unit: f64,
-    rings: Vec<Inward>,
+    rings: Vec<InwardSeries>,
 }
 
 /// An end of a ring: x^2, m^2, in both parts, and xi.
-struct Point {
+struct SeriesPoint {
     square: f64,
     rest: f64,
     xi: f64,
 }
 
-impl Point {
-    fn new(square: DoubleDouble, radius: f64, edge: f64) -> Point {
+impl SeriesPoint {
+    fn new(square: DoubleDouble, radius: f64, edge: f64) -> SeriesPoint {
         let (square, rest) = square.parts();
-        Point { square, rest, xi: radius / edge }
+        SeriesPoint { square, rest, xi: radius / edge }
     }
 }
 
 /// The squares of as many radii as there are lanes, in both parts, and the least and the greatest of them.
-struct Place {
+struct SeriesPlace {
     square: Lanes,
     rest: Lanes,
     least: f64,
     greatest: f64,
 }
 
-impl Place {
+impl SeriesPlace {
     /// Lanes left over repeat the first.
-    fn of(squares: impl Iterator<Item = DoubleDouble>) -> Place {
-        let mut place = Place { square: [0.0; LANES], rest: [0.0; LANES], least: f64::INFINITY, greatest: 0.0 };
+    fn of(squares: impl Iterator<Item = DoubleDouble>) -> SeriesPlace {
+        let mut place = SeriesPlace { square: [0.0; LANES], rest: [0.0; LANES], least: f64::INFINITY, greatest: 0.0 };
         let mut count = 0;
         for square in squares.take(LANES) {
             (place.square[count], place.rest[count]) = square.parts();
@@ -77,15 +78,16 @@ impl Place {
         place
     }
 
-    /// How far an end is beyond each of them. Squares that nearly agree cancel without a loss, and the rest is what rounding them has lost.
-    fn excess(&self, end: &Point, unit: f64) -> Lanes {
+    /// How far an end is beyond each of them. Squares that nearly agree cancel without a loss, and the rest is what
+    /// rounding them has lost.
+    fn excess(&self, end: &SeriesPoint, unit: f64) -> Lanes {
         std::array::from_fn(|lane| ((end.square - self.square[lane]) + (end.rest - self.rest[lane])) * unit)
     }
 }
 
 /// A ring by its inner end.
-struct Inward {
-    end: Point,
+struct InwardSeries {
+    end: SeriesPoint,
     /// Difference of xi^2 to its outer end.
     gap: f64,
     /// Whether that difference has digits that the squares of both ends have lost.
@@ -93,7 +95,8 @@ struct Inward {
     weight: f64,
 }
 
-/// The polynomials A and B by rising powers of xi^2, and L, at the radii of a chunk; empty or `None` where they are zero.
+/// The polynomials A and B by rising powers of xi^2, and L, at the radii of a chunk; empty or `None` where they are
+/// zero.
 struct Antiderivative {
     a: Vec<Lanes>,
     b: Vec<Lanes>,
@@ -146,8 +149,8 @@ fn at(coefficients: &[Lanes], square: f64, other: f64) -> (Lanes, Lanes) {
 }
 
 impl SeriesRings<'_> {
-    /// Rings and their weights, the outermost of which ends at the radius `edge`, m, that the series is in units of. `gap` is
-    /// the difference of the squares of the radii of a ring, m^2.
+    /// Rings and their weights, the outermost of which ends at the radius `edge`, m, that the series is in units of.
+    /// `gap` is the difference of the squares of the radii of a ring, m^2.
     pub(super) fn new<'a>(
         series: &'a [f64],
         edge: f64,
@@ -158,8 +161,8 @@ impl SeriesRings<'_> {
         let inward = |(ring, weight): &(Ring, f64)| {
             let plain = (ring.outer.square - ring.inner.square).value();
             let thin = plain <= THIN * ring.outer.square.value();
-            Inward {
-                end: Point::new(ring.inner.square, ring.inner.radius, edge),
+            InwardSeries {
+                end: SeriesPoint::new(ring.inner.square, ring.inner.radius, edge),
                 gap: unit * if thin { gap(ring) } else { plain },
                 thin,
                 weight: *weight,
@@ -168,7 +171,7 @@ impl SeriesRings<'_> {
         let outermost = rings.last().map_or(DoubleDouble::ZERO, |(ring, _)| ring.outer.square);
         SeriesRings {
             series,
-            edge: Point::new(outermost, edge, edge),
+            edge: SeriesPoint::new(outermost, edge, edge),
             unit,
             rings: rings.iter().rev().map(inward).collect(),
         }
@@ -185,7 +188,7 @@ impl SeriesRings<'_> {
         let mut sums = vec![0.0; radii.len()];
         let mut antiderivative = Antiderivative::of(self.series);
         for order in order.chunks(LANES) {
-            let place = Place::of(order.iter().map(|&index| radii[index].square));
+            let place = SeriesPlace::of(order.iter().map(|&index| radii[index].square));
             let mut lanes = [0.0; LANES];
             antiderivative.fill(self.series, &place.square.map(|square| square * self.unit));
             self.add(0..self.rings.len(), &place, &antiderivative, &mut lanes);
@@ -203,7 +206,7 @@ impl SeriesRings<'_> {
         let (order, mut sums) = (StressRadius::rising(radii), vec![0.0; radii.len()]);
         let mut antiderivative = Antiderivative::of(self.series);
         for order in order.chunks(LANES) {
-            let place = Place::of(order.iter().map(|&index| radii[index].square));
+            let place = SeriesPlace::of(order.iter().map(|&index| radii[index].square));
             let mut lanes = [0.0; LANES];
             antiderivative.fill(self.series, &place.square.map(|square| square * self.unit));
             let last = self.rings.partition_point(|ring| ring.end.square >= place.least);
@@ -223,12 +226,12 @@ impl SeriesRings<'_> {
     }
 
     /// Adds what the rings `run` say at as many radii as there are lanes.
-    fn add(&self, run: Range<usize>, place: &Place, antiderivative: &Antiderivative, sums: &mut Lanes) {
-        let Place { square, least, greatest, .. } = *place;
-        let excess = |end: &Point| place.excess(end, self.unit);
+    fn add(&self, run: Range<usize>, place: &SeriesPlace, antiderivative: &Antiderivative, sums: &mut Lanes) {
+        let SeriesPlace { square, least, greatest, .. } = *place;
+        let excess = |end: &SeriesPoint| place.excess(end, self.unit);
         let rho_square: Lanes = square.map(|square| square * self.unit);
         let edge = run.start.checked_sub(1).map_or(&self.edge, |outer| &self.rings[outer].end);
-        let (mut outer, mut reached): (&Point, Lanes) = (edge, excess(edge).map(root_of));
+        let (mut outer, mut reached): (&SeriesPoint, Lanes) = (edge, excess(edge).map(root_of));
         // Most rings lie clearly beyond all the radii of this chunk.
         let clear = greatest * (1.0 + 4.0 * f64::EPSILON);
         for ring in &self.rings[run] {
@@ -265,7 +268,7 @@ impl SeriesRings<'_> {
 
 impl Antiderivative {
     /// The kernels of a whole ring by the v at both its ends.
-    fn whole(&self, ring: &Inward, outer: &Point, v: &Lanes, v_outer: &Lanes) -> Lanes {
+    fn whole(&self, ring: &InwardSeries, outer: &SeriesPoint, v: &Lanes, v_outer: &Lanes) -> Lanes {
         let (xi, xi_outer) = (ring.end.xi, outer.xi);
         let width = ring.gap / (xi + xi_outer);
         let rise: Lanes = std::array::from_fn(|lane| ring.gap / (v[lane] + v_outer[lane]));
@@ -294,9 +297,9 @@ impl Antiderivative {
         sum
     }
 
-    /// The kernels of what lies beyond the radii of the lanes, up to the outer end of a ring that contains them; zero where that
-    /// end is inside them.
-    fn cut(&self, outer: &Point, rho_square: &Lanes, v_outer: &Lanes) -> Lanes {
+    /// The kernels of what lies beyond the radii of the lanes, up to the outer end of a ring that contains them; zero
+    /// where that end is inside them.
+    fn cut(&self, outer: &SeriesPoint, rho_square: &Lanes, v_outer: &Lanes) -> Lanes {
         let mut sum = [0.0; LANES];
         let square = outer.xi * outer.xi;
         for (terms, power) in [(&self.a, 1.0), (&self.b, outer.xi)].into_iter().filter(|(terms, _)| !terms.is_empty()) {

@@ -1,16 +1,16 @@
 //! Integrals of families with a kink at b, in the coordinate t = sqrt(x^2 - b^2) where they are smooth.
 //!
-//! A truncated cone or sphere, a rounded punch, the flank of a rounded cone: each is analytic in t but at t = +-ib, and its
-//! gamma(t) = dg/dt does not fall. With kappa = r^2 - b^2 and v = sqrt(x^2 - r^2), so t^2 - v^2 = kappa,
-//! K = int gamma dt/v = int gamma ds, where t + v = const e^s: t = tau cosh s for r > b, t = delta sinh s for r < b. In s the
-//! integrand is analytic for |Im s| < pi/2 and both root singularities are gone (the substitutions are elementary; for the
-//! profiles see Popov & Hess 2015, chapter 3).
+//! A truncated cone or sphere, a rounded punch, the flank of a rounded cone: each is analytic in t but at t = +-ib, and
+//! its gamma(t) = dg/dt does not fall. With kappa = r^2 - b^2 and v = sqrt(x^2 - r^2), so t^2 - v^2 = kappa,
+//! K = int gamma dt/v = int gamma ds, where t + v = const e^s: t = tau cosh s for r > b, t = delta sinh s for r < b. In
+//! s the integrand is analytic for |Im s| < pi/2 and both root singularities are gone (the substitutions are
+//! elementary; for the profiles see Popov & Hess 2015, chapter 3).
 
-use super::gauss::{EIGHT_POINTS, Panel, Singular, TWELVE_POINTS, TWENTY_POINTS};
-use super::roots::{descend, increasing};
 use super::smooth_interval::SmoothInterval;
 pub(super) use super::smooth_path::{kernel, kernel_slope};
 use super::{DoubleDouble, Moments, Ring, Span, StressRadius};
+use crate::numerics::gauss::{EIGHT_POINTS, QuadraturePanel, Singular, TWELVE_POINTS, TWENTY_POINTS};
+use crate::numerics::roots::{descend, increasing};
 
 /// A difference of two t^2 above this, over the larger one, is good to five digits.
 const NEARLY: f64 = 1e-10;
@@ -133,9 +133,11 @@ pub(super) fn solve<F: SmoothCoordinate + ?Sized>(family: &F, level: f64) -> f64
     descend(family.upper_bound(level), |t| (family.level_at(t) - level, family.slope_at(t)))
 }
 
-/// The root of an increasing function from a `guess` that is good to some thousandths: `f` gives value, slope and second derivative.
+/// The root of an increasing function from a `guess` that is good to some thousandths: `f` gives value, slope and
+/// second derivative.
 ///
-/// Halley's steps cube the error, so that what is left after one of 3e-6 is below round-off. `None` if four do not get there.
+/// Halley's steps cube the error, so that what is left after one of 3e-6 is below round-off. `None` if four do not get
+/// there.
 pub(super) fn near_root(guess: f64, f: impl Fn(f64) -> [f64; 3]) -> Option<f64> {
     let mut x = guess;
     for _ in 0..4 {
@@ -165,7 +167,8 @@ pub(super) fn slope(family: &impl SmoothCoordinate, radius: f64) -> f64 {
     } else if family.jumps() {
         f64::INFINITY
     } else {
-        // gamma is of the first order in t where a parabola turns into a slope, of the second where a flat turns into a parabola.
+        // gamma is of the first order in t where a parabola turns into a slope, of the second where a flat turns into a
+        // parabola.
         let t = 1e-9 * radius;
         family.slope_at(t) * radius / t
     }
@@ -236,7 +239,7 @@ pub(super) fn moments(family: &impl SmoothCoordinate, span: &Span) -> Moments {
     while done < drop {
         let (top, left) = (high - done, drop - done);
         // So low that any rule will do; `done` would soon stop growing.
-        let panel = if top <= 1e-14 * high { Panel::coarse(left) } else { singular.panel(top, left) };
+        let panel = if top <= 1e-14 * high { QuadraturePanel::coarse(left) } else { singular.panel(top, left) };
         let stretch = (high, done, panel.width);
         match panel.points() {
             8 => add_panel(family, stretch, &EIGHT_POINTS, &mut sum),
@@ -284,7 +287,8 @@ pub(super) fn displacement_integral(family: &impl SmoothCoordinate, at: &StressR
     interval.displacement_integral(span, at, 0.0, |node| family.rise_at(node.t, interval.high, node.dt))
 }
 
-/// Implements `Shape` for a family with a flat core through its [`SmoothCoordinate`]: all but its loads and the given methods.
+/// Implements `Shape` for a family with a flat core through its [`SmoothCoordinate`]: all but its loads and the given
+/// methods.
 macro_rules! flat_core {
     ($family:ty { $($methods:item)* }) => {
         impl $crate::profile::shape::Shape for $family {

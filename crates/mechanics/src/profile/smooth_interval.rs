@@ -1,13 +1,13 @@
 //! Integrals over an interval of radii without a kink inside.
 //!
-//! Beside a kink at k, g is smooth not in x but in t = sqrt(x^2 - k^2), so every integral here runs over t (k = 0: t = x).
-//! The one thing asked of a profile is its rise from a radius up to the interval's outer end, to round-off of itself: then
-//! h = y_outer - g is a sum of positive terms and nothing cancels, however thin the ring.
+//! Beside a kink at k, g is smooth not in x but in t = sqrt(x^2 - k^2), so every integral here runs over t (k = 0: t =
+//! x). The one thing asked of a profile is its rise from a radius up to the interval's outer end, to round-off of
+//! itself: then h = y_outer - g is a sum of positive terms and nothing cancels, however thin the ring.
 
 use std::f64::consts::FRAC_PI_2;
 
-use super::gauss::{Panel, Singular};
 use super::{DoubleDouble, Moments, Span, StressRadius};
+use crate::numerics::gauss::{QuadraturePanel, Singular};
 
 /// The power up to which no panel needs a longer rule than the singularities ask for.
 const PARABOLA: f64 = 2.0;
@@ -52,8 +52,8 @@ struct Change {
 }
 
 impl SmoothInterval {
-    /// `span` above a kink at `base`. `singularity` is the distance in t to the next singularity beneath the kink, along the
-    /// imaginary axis; g is analytic up to the radius `ceiling`.
+    /// `span` above a kink at `base`. `singularity` is the distance in t to the next singularity beneath the kink,
+    /// along the imaginary axis; g is analytic up to the radius `ceiling`.
     pub(super) fn new(span: &Span, base: f64, singularity: f64, ceiling: f64, power: f64) -> SmoothInterval {
         let (low, high) = span.excess(DoubleDouble::square_of(base));
         let (low, high) = (low.max(0.0).sqrt(), high.max(0.0).sqrt());
@@ -94,7 +94,7 @@ impl SmoothInterval {
             let (high, left) = (top - done, length - done);
             if high <= 1e-14 * top {
                 // So low that any rule will do; `done` would soon stop growing.
-                Panel::coarse(left).visit(|below, weight| visit(done + below, weight));
+                QuadraturePanel::coarse(left).visit(|below, weight| visit(done + below, weight));
                 break;
             }
             let mut panel = singular.panel(high, left);
@@ -107,7 +107,7 @@ impl SmoothInterval {
                     // advance.
                     let width = 10.0 / (steep + steep.hypot((10.0 * bend).sqrt()));
                     if width > 0.0 && width < panel.width {
-                        panel = Panel::fine(width);
+                        panel = QuadraturePanel::fine(width);
                     }
                 }
                 panel = panel.following(change.factors * self.power * panel.width * high.recip().max(change.least));
@@ -134,7 +134,8 @@ impl SmoothInterval {
         Moments { width: self.gap / self.radii, first, second }
     }
 
-    /// int (above + rise) dx / sqrt(r^2 - x^2) over the part of the interval below r, with t = tau sin(theta), tau^2 = r^2 - k^2.
+    /// int (above + rise) dx / sqrt(r^2 - x^2) over the part of the interval below r, with t = tau sin(theta), tau^2 =
+    /// r^2 - k^2.
     pub(super) fn displacement_integral(
         &self,
         span: &Span,

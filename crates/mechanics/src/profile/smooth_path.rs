@@ -1,11 +1,11 @@
 //! The kernels of families with a kink, over the path of [`smooth_coordinate`](super::smooth_coordinate).
 //!
-//! A short path, that of most rings of a slip history, takes one panel of Gauss's rule, as [`along_strip`] would give it, with all of its
-//! points side by side.
+//! A short path, that of most rings of a slip history, takes one panel of Gauss's rule, as [`along_strip`] would give
+//! it, with all of its points side by side.
 
-use super::gauss::{EIGHT_POINTS, TWELVE_POINTS, along_strip};
 use super::smooth_coordinate::{SmoothCoordinate, ends};
 use super::{DoubleDouble, Span, StressRadius};
+use crate::numerics::gauss::{EIGHT_POINTS, TWELVE_POINTS, along_strip};
 
 /// The lengths up to which the rules of eight and of twelve points serve.
 const SHORT: (f64, f64) = (0.6, 1.4);

@@ -1,18 +1,19 @@
-//! The kernels of adjoining rings, weighted and summed, at many radii, where g'/x is a power series between any two of its kinks.
+//! The kernels of adjoining rings, weighted and summed, at many radii, where g'/x is a power series between any two of
+//! its kinks.
 //!
-//! With v = sqrt(x^2 - r^2) a kernel is int q dv, q = g'/x. The rings are cut at the kinks b of g, and so that no piece of x^2 is wider than
-//! half its distance from the singularity beneath it. Over a piece X - h..X + h let q = sum of c_k Y^k, x^2 = X + h Y; it is of one of
-//! three forms for a radius:
+//! With v = sqrt(x^2 - r^2) a kernel is int q dv, q = g'/x. The rings are cut at the kinks b of g, and so that no piece
+//! of x^2 is wider than half its distance from the singularity beneath it. Over a piece X - h..X + h let q = sum of c_k
+//! Y^k, x^2 = X + h Y; it is of one of three forms for a radius:
 //!
-//! - Near: with s = (r^2 - X)/h and I_k = int Y^k dv it holds that (2k + 1) I_k = [Y^k v] + 2 k s I_(k-1), so that the antiderivative is
-//!   v A(Y), and by the even and the odd part of A the kernel is (v_1 - v_0) E + (v_1 + v_0) O: what a thin ring has is not lost.
-//!   |c_k| falls as the k-th power of h over the distance of X from the singularity, of which |s| is no more than the inverse: no term
-//!   is large.
-//! - Far, where D = X - r^2 >= 5 h: with z = h/D it is sum of binom(-1/2, k) m_k z^k over sqrt D, m_k = int Y^k dg. What lies beyond a
-//!   singularity is far from all that is inside it.
-//! - At a kink, which q begins at as a power of t = sqrt(x^2 - b^2): with gamma = t q = sum of g_k t^k and kappa = r^2 - b^2 it is
-//!   int gamma dt/sqrt(t^2 - kappa), by k J_k = [t^(k-1) v] + (k - 1) kappa J_(k-2); J_0 is a logarithm. t ends at a quarter of its
-//!   distance from the next singularity there, and what is inside that is far.
+//! - Near: with s = (r^2 - X)/h and I_k = int Y^k dv it holds that (2k + 1) I_k = [Y^k v] + 2 k s I_(k-1), so that the
+//!   antiderivative is v A(Y), and by the even and the odd part of A the kernel is (v_1 - v_0) E + (v_1 + v_0) O: what
+//!   a thin ring has is not lost. |c_k| falls as the k-th power of h over the distance of X from the singularity, of
+//!   which |s| is no more than the inverse: no term is large.
+//! - Far, where D = X - r^2 >= 5 h: with z = h/D it is sum of binom(-1/2, k) m_k z^k over sqrt D, m_k = int Y^k dg.
+//!   What lies beyond a singularity is far from all that is inside it.
+//! - At a kink, which q begins at as a power of t = sqrt(x^2 - b^2): with gamma = t q = sum of g_k t^k and kappa = r^2
+//!   - b^2 it is int gamma dt/sqrt(t^2 - kappa), by k J_k = [t^(k-1) v] + (k - 1) kappa J_(k-2); J_0 is a logarithm. t
+//!     ends at a quarter of its distance from the next singularity there, and what is inside that is far.
 //!
 //! All series end where their terms no longer count, so that the error is that of rounding.
 
@@ -51,7 +52,7 @@ const THIN: f64 = 1e-3;
 /// The pieces of a profile's rings, from the edge inward.
 pub(crate) struct SmoothPieces<'a> {
     profile: &'a Profile,
-    pieces: Vec<Piece>,
+    pieces: Vec<SmoothPiece>,
     /// The coefficients of all of them.
     terms: Vec<f64>,
     /// The radius, m, that the pieces reach down to, and what is left of rings inside it, with their weights.
@@ -61,7 +62,7 @@ pub(crate) struct SmoothPieces<'a> {
     unit: f64,
 }
 
-struct Piece {
+struct SmoothPiece {
     /// The squares of the radii of its ends, m^2, in two parts each.
     inner: (f64, f64),
     outer: (f64, f64),
@@ -84,15 +85,15 @@ enum Near {
 }
 
 /// Weighted sums of kernels, of their derivatives, and of the sizes of these.
-struct Sums<const N: usize> {
+struct PieceSums<const N: usize> {
     kernels: [f64; N],
     slopes: [f64; N],
     sizes: [f64; N],
 }
 
 impl<'a> SmoothPieces<'a> {
-    /// The pieces of rings and their weights best for radii of at least `least`, m; `None` if the profile has no such series, or
-    /// levels at a vertical edge.
+    /// The pieces of rings and their weights best for radii of at least `least`, m; `None` if the profile has no such
+    /// series, or levels at a vertical edge.
     pub(super) fn new(profile: &'a Profile, rings: &[(Ring, f64)], least: f64) -> Option<SmoothPieces<'a>> {
         let mut made = SmoothPieces::within(profile, rings.last()?.0.outer.radius, least, rings.len());
         rings.iter().rev().try_for_each(|(ring, weight)| made.add(ring, *weight))?;
@@ -173,7 +174,8 @@ impl<'a> SmoothPieces<'a> {
             let gap = if cuts > 1.0 { (outer - inner).value() } else { gap };
             let half = 0.5 * gap;
             let below = if above < f64::INFINITY { above + (inner - low).value() } else { above };
-            // Each term is smaller than the one before by this. Without a singularity q is a polynomial, whose terms end by themselves.
+            // Each term is smaller than the one before by this. Without a singularity q is a polynomial, whose terms
+            // end by themselves.
             let ratio = half / (half + below);
             let terms = if ratio > 0.0 { counting(ratio).min(TERMS) } else { TERMS };
             let place = Place { middle: outer - DoubleDouble::from(half), half, terms };
@@ -203,7 +205,7 @@ impl<'a> SmoothPieces<'a> {
     ) {
         let far = self.keep(&far, 1.0);
         let (inner, outer, gap) = (inner.parts(), outer.parts(), gap * self.unit);
-        self.pieces.push(Piece { inner, outer, gap, thin, weight, near, far });
+        self.pieces.push(SmoothPiece { inner, outer, gap, thin, weight, near, far });
     }
 
     /// The sums at each radius, unless the profile has a quicker way.
@@ -236,8 +238,8 @@ impl<'a> SmoothPieces<'a> {
         tip.map(|(span, weight)| weight * share(span)).sum()
     }
 
-    /// The derivatives of the sum with respect to r^2, 1/m^2, each with the sum of the sizes of what it adds up from. `goes_on` is told
-    /// of the pieces that follow; once it is false, derivatives are zero.
+    /// The derivatives of the sum with respect to r^2, 1/m^2, each with the sum of the sizes of what it adds up from.
+    /// `goes_on` is told of the pieces that follow; once it is false, derivatives are zero.
     pub(super) fn slopes(&self, radii: &[StressRadius], goes_on: impl Fn(usize) -> bool) -> Vec<(f64, f64)> {
         let mut found = Vec::with_capacity(radii.len());
         for chunk in radii.chunks(LANES) {
@@ -254,19 +256,19 @@ impl<'a> SmoothPieces<'a> {
     }
 
     /// The derivative in a lane and the sum of its sizes, 1/m^2, with those of the tip.
-    fn with_tip<const N: usize>(&self, at: &StressRadius, lane: usize, sums: &Sums<N>) -> (f64, f64) {
+    fn with_tip<const N: usize>(&self, at: &StressRadius, lane: usize, sums: &PieceSums<N>) -> (f64, f64) {
         let tip = self.in_tip(at, |span| Shape::kernel_slope(self.profile, at, span));
         (sums.slopes[lane] * self.unit + tip, sums.sizes[lane] * self.unit + tip.abs())
     }
 
-    fn lanes<const N: usize, const SLOPES: bool>(&self, squares: &[DoubleDouble; N]) -> Sums<N> {
+    fn lanes<const N: usize, const SLOPES: bool>(&self, squares: &[DoubleDouble; N]) -> PieceSums<N> {
         let (square, rest) = (squares.map(|square| square.parts().0), squares.map(|square| square.parts().1));
         let least = square.iter().copied().fold(f64::INFINITY, f64::min);
         // Squares that nearly agree cancel without a loss, and the rest is what rounding them has lost.
         let excess = |end: (f64, f64)| -> [f64; N] {
             std::array::from_fn(|lane| ((end.0 - square[lane]) + (end.1 - rest[lane])) * self.unit)
         };
-        let mut sums = Sums { kernels: [0.0; N], slopes: [0.0; N], sizes: [0.0; N] };
+        let mut sums = PieceSums { kernels: [0.0; N], slopes: [0.0; N], sizes: [0.0; N] };
         for piece in &self.pieces {
             if piece.outer.0 < least {
                 break;
@@ -315,7 +317,7 @@ impl<'a> SmoothPieces<'a> {
     }
 }
 
-impl Piece {
+impl SmoothPiece {
     /// x^2 - r^2 at the outer end, zero where that is inside r.
     fn above<const N: usize>(&self, below: &[f64; N], excess: impl Fn((f64, f64)) -> [f64; N]) -> [f64; N] {
         let plain = excess(self.outer);
@@ -335,8 +337,8 @@ fn larger(a: DoubleDouble, b: DoubleDouble) -> DoubleDouble {
     if a > b { a } else { b }
 }
 
-/// How many powers of a ratio below one count. The logarithm is taken from the bits: what a number has beyond a power of two is no more
-/// than 0.0861 below that of its own.
+/// How many powers of a ratio below one count. The logarithm is taken from the bits: what a number has beyond a power
+/// of two is no more than 0.0861 below that of its own.
 fn counting(ratio: f64) -> usize {
     let logarithm = ratio.to_bits() as f64 / (1_u64 << 52) as f64 - (1023.0 - 0.0861);
     (NEGLIGIBLE.log2() / logarithm) as usize + 2

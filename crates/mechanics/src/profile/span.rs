@@ -1,7 +1,8 @@
 //! A ring as an interval of radii, over which the families integrate.
 //!
-//! Differences of squares decide everything: x^2 - r^2 under the roots of the kernels, x^2 - b^2 beside a kink at b. So a span
-//! carries the squares with twice the digits and their difference on its own, since that comes from the depth of the ring.
+//! Differences of squares decide everything: x^2 - r^2 under the roots of the kernels, x^2 - b^2 beside a kink at b. So
+//! a span carries the squares with twice the digits and their difference on its own, since that comes from the depth of
+//! the ring.
 
 use super::{DoubleDouble, Moments, Ring, StressRadius};
 

@@ -1,23 +1,25 @@
 //! A profile made of several: g, its slope, its loads and its kernels add up, since g is linear in f.
 //!
-//! Only X(y) does not: it lies between the least of the parts' X(y/n) and the least of their X(y), and is found there by a
-//! bracketed method. A flat punch among the parts ends the sum in its vertical edge. The g of a table among them may fall where
-//! the others make up for it: X(y) then lies between the flat radius of the sum and where it ends or falls.
+//! Only X(y) does not: it lies between the least of the parts' X(y/n) and the least of their X(y), and is found there
+//! by a bracketed method. A flat punch among the parts ends the sum in its vertical edge. The g of a table among them
+//! may fall where the others make up for it: X(y) then lies between the flat radius of the sum and where it ends or
+//! falls.
 
 use super::polynomial::Polynomial;
 use super::power_series::{KINK_TERMS, KinkSeries, Place, Series};
-use super::roots::increasing;
 use super::shape::{self, End, Shape};
 use super::{
     DoubleDouble, Error, InterpolationError, Moments, Point, Profile, Ring, Span, StressRadius, Tabulated, range,
 };
+use crate::numerics::roots::increasing;
 
-/// How far beyond a kink, or below a vertical end, relative to its radius, a radius still lacks digits that a level has.
+/// How far beyond a kink, or below a vertical end, relative to its radius, a radius still lacks digits that a level
+/// has.
 const NEAR: f64 = 1e-2;
 /// Newton's steps for the level that carries a load there, each of which gains two digits at the least.
 const POLISH: usize = 5;
-/// How far, of itself, they may move an indentation; and to which part of itself the radius is searched, which is more where
-/// g is steep.
+/// How far, of itself, they may move an indentation; and to which part of itself the radius is searched, which is more
+/// where g is steep.
 const FARTHEST: f64 = 1e-3;
 const SEARCHED: f64 = 1e-14;
 
@@ -46,6 +48,14 @@ impl Sum {
     /// [`Error::OutOfRange`] by [`range::PARTS`], [`Error::NotConvexEnough`] if g falls before it has risen,
     /// [`Error::NoSurface`] for a part that is known by its load curve alone.
     pub fn new(parts: Vec<Profile>) -> Result<Sum, Error> {
+        Sum::new_while(parts, &|| true)
+    }
+
+    /// The same while `keep_going` returns true.
+    ///
+    /// # Errors
+    /// As [`Sum::new`], and [`Error::Interrupted`].
+    pub fn new_while(parts: Vec<Profile>, keep_going: &dyn Fn() -> bool) -> Result<Sum, Error> {
         let mut flat = Vec::with_capacity(parts.len());
         for part in parts {
             match part {
@@ -72,8 +82,8 @@ impl Sum {
             parts: flat,
             kinks,
         };
-        let rim = sum.parts.iter().filter_map(Shape::rim).map(|(radius, _)| radius).fold(f64::INFINITY, f64::min);
-        let falls = sum.first_fall(rim);
+        let rim = sum.parts.iter().filter_map(Shape::rim_radius).fold(f64::INFINITY, f64::min);
+        let falls = sum.first_fall(rim, keep_going)?;
         if let Some(radius) = falls {
             sum.limit = Some(End { radius, falls: true });
         }
@@ -92,7 +102,7 @@ impl Sum {
     }
 
     /// The first radius below `rim` at which the sum falls, where a part of it does, m.
-    fn first_fall(&self, rim: f64) -> Option<f64> {
+    fn first_fall(&self, rim: f64, keep_going: &dyn Fn() -> bool) -> Result<Option<f64>, Error> {
         let tables = self.parts.iter().filter(|part| part.falls_within()).filter_map(|part| match part {
             Profile::Tabulated(table) => Some(table),
             _ => None,
@@ -103,13 +113,17 @@ impl Sum {
         let sizes = |x: f64| self.total(|part| part.slope(x).abs());
         // Parts that cancel leave their rounding.
         let falls = |x: f64| Shape::slope(self, x) < -1e-12 * sizes(x);
-        let index = samples.iter().position(|&x| falls(x))?;
+        let found = samples.iter().position(|&x| !keep_going() || falls(x));
+        if !keep_going() {
+            return Err(Error::Interrupted);
+        }
+        let Some(index) = found else { return Ok(None) };
         let (mut low, mut high) = (index.checked_sub(1).map_or(0.0, |before| samples[before]), samples[index]);
         for _ in 0..60 {
             let middle = 0.5 * (low + high);
             if falls(middle) { high = middle } else { low = middle }
         }
-        Some(low)
+        Ok(Some(low))
     }
 
     /// The parts, none of them a sum.
@@ -118,8 +132,9 @@ impl Sum {
         &self.parts
     }
 
-    /// The radius from which what lies beyond it must be known on its own: the kink that a radius is little beyond, or, where the
-    /// radius is little below the end of a part that is vertical there, one some units in the last place below it.
+    /// The radius from which what lies beyond it must be known on its own: the kink that a radius is little beyond, or,
+    /// where the radius is little below the end of a part that is vertical there, one some units in the last place
+    /// below it.
     fn counted_from(&self, radius: f64) -> Option<f64> {
         if radius > (1.0 - NEAR) * self.ceiling {
             return Some(radius * (1.0 - 8.0 * f64::EPSILON));
@@ -341,7 +356,8 @@ impl Shape for Sum {
             let (sum, sizes) = self.parts.iter().map(f).fold((0.0, 0.0), |(a, b), part| (a + part, b + part.abs()));
             if sum > 0.0 { sizes / sum } else { 1.0 }
         };
-        growth(&|part| part.level(x)).max(growth(&|part| part.slope(x)))
+        // The terms that cancel are themselves good to some units in their last place.
+        2.0 * growth(&|part| part.level(x)).max(growth(&|part| part.slope(x)))
     }
 
     fn kernel_falls(&self) -> bool {

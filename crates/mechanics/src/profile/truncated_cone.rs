@@ -1,14 +1,14 @@
 //! Cone with a flat end, f' = T for r > b: g = T x phi, phi = arccos(b/x) = atan(t/b), t = sqrt(x^2 - b^2).
 //!
-//! gamma = dg/dt = T (phi t + b)/x, int x dg = (T/2)(x^2 phi + b t) (Shtaerman 1949; Popov & Hess 2015). f' jumps at b: pressure
-//! and shear are log-infinite there.
+//! gamma = dg/dt = T (phi t + b)/x, int x dg = (T/2)(x^2 phi + b t) (Shtaerman 1949; Popov & Hess 2015). f' jumps at b:
+//! pressure and shear are log-infinite there.
 
 use std::f64::consts::FRAC_PI_2;
 
-use super::angle::angles;
 use super::power_series::{BeyondKink, KinkSeries, Place, Series};
 use super::smooth_coordinate::{self, Nodes, SmoothCoordinate, flat_core};
 use super::{DoubleDouble, Error, Moments, Ring, Span, StressRadius, range};
+use crate::numerics::angle::angles;
 
 /// A truncated cone.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -99,7 +99,7 @@ flat_core!(TruncatedCone {
     fn slope_over_radius_series(&self, place: &Place) -> Option<Series> {
         // T (phi + b/t)/x.
         let (b, slope) = (self.flat_radius, self.slope);
-        let series = |beyond: BeyondKink<'_>| Series::sum(0.0, [(slope * b, &beyond.inverse), (slope, &beyond.angle())]);
+        let series = |at: BeyondKink<'_>| Series::sum(0.0, [(slope * b, &at.inverse), (slope, &at.angle())]);
         Some(place.beyond(b).map_or(place.constant(0.0), series))
     }
 

@@ -1,11 +1,12 @@
 //! Worn sphere, f' = r/R for r > b: g = x t/R, t = sqrt(x^2 - b^2).
 //!
-//! gamma = dg/dt = (b^2 + 2 t^2)/(R x), int x dg = t (3 b^2 + 2 t^2)/(3R), and X follows from a quadratic in t^2 (Ejike 1981;
-//! Popov & Hess 2015). f' jumps at b: pressure and shear are log-infinite there.
+//! gamma = dg/dt = (b^2 + 2 t^2)/(R x), int x dg = t (3 b^2 + 2 t^2)/(3R), and X follows from a quadratic in t^2 (Ejike
+//! 1981; Popov & Hess 2015). f' jumps at b: pressure and shear are log-infinite there.
 //!
-//! The moments are closed. With p = x + t, u = p/p_outer from r to one and e = (b/p_outer)^2: h = p_outer^2 (1 - u^2)(1 + e^2/u^2)/(4R) and
-//! dx = p_outer (1 - e/u^2) du/2. Split as 1 - e/u^2 = 2 t_inner/p_inner + e (u^2 - r^2)/(r u)^2, every integral is a power of 1 - r times a
-//! polynomial of r without a negative coefficient, so that nothing cancels.
+//! The moments are closed. With p = x + t, u = p/p_outer from r to one and e = (b/p_outer)^2:
+//! h = p_outer^2 (1 - u^2)(1 + e^2/u^2)/(4R) and dx = p_outer (1 - e/u^2) du/2. Split as
+//! 1 - e/u^2 = 2 t_inner/p_inner + e (u^2 - r^2)/(r u)^2, every integral is a power of 1 - r times a polynomial of r
+//! without a negative coefficient, so that nothing cancels.
 
 use super::power_series::{BeyondKink, KinkSeries, Place, Series};
 use super::smooth_coordinate::{self, SmoothCoordinate, flat_core};

@@ -46,8 +46,8 @@ pub fn lower_bound(contact: &Contact, reversals: usize) -> f64 {
     lower_bound_while(contact, reversals, || true).unwrap_or(0.0)
 }
 
-/// As [`lower_bound`], while `keep_going` returns true, which is asked at every step of the search for few reversals: on
-/// a profile whose stress is a quadrature it can take some tenths of a second. `None` if it returned false.
+/// As [`lower_bound`], while `keep_going` returns true, which is asked at every step of the search for few reversals:
+/// on a profile whose stress is a quadrature it can take some tenths of a second. `None` if it returned false.
 ///
 /// ```
 #[doc = include_str!("../example.txt")]

@@ -1,7 +1,8 @@
 //! A lower bound on the stress that a few reversals leave, by branch and bound over the radii of their kinks.
 //!
 //! After gross slip and N reversals the slip history is fixed by kinks a >= c_1 >= ... >= c_N. Fewer reversals are
-//! among these: two kinks at one radius cancel, and one at the innermost radius is none. The shear stress over G* m/pi is
+//! among these: two kinks at one radius cancel, and one at the innermost radius is none. The shear stress over G* m/pi
+//! is
 //!
 //! tau(r) = K(a, r) - 2 K(c_1, r) + 2 K(c_2, r) - ..., K(c, r) = int_r^c g'(x)/sqrt(x^2 - r^2) dx, zero for c <= r.
 //!

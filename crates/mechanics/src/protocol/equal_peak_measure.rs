@@ -4,7 +4,8 @@
 //! points reach round-off. Down to the tip the variable is ln x, octave by octave until nothing is added: for g ~ x^n
 //! with n near one, s comes from all of them.
 
-use super::super::profile::{Profile, gauss::Panel};
+use super::super::profile::Profile;
+use crate::numerics::gauss::QuadraturePanel;
 
 /// Tolerance of halving a panel, relative to the sum so far; the halves are then good to round-off.
 const TOLERANCE: f64 = 1e-12;
@@ -106,7 +107,7 @@ impl<'a> EqualPeakMeasure<'a> {
 
     fn area(&self, along: Along, low: f64, high: f64) -> f64 {
         let mut area = 0.0;
-        Panel::coarse(high - low).visit(|below, weight| area += weight * self.density(along, high - below));
+        QuadraturePanel::coarse(high - low).visit(|below, weight| area += weight * self.density(along, high - below));
         area
     }
 

@@ -56,13 +56,13 @@ pub(super) struct Problem<'a> {
 }
 
 /// The kinks from the edge inward, and the rings between them.
-struct Strokes<'a> {
+struct VirginStrokes<'a> {
     problem: &'a Problem<'a>,
     kinks: Vec<Point>,
     beyond: InwardSum<'a>,
 }
 
-impl Strokes<'_> {
+impl VirginStrokes<'_> {
     /// The innermost kink, the edge without any.
     fn last(&self) -> &Point {
         self.kinks.last().unwrap_or(&self.problem.edge)
@@ -101,13 +101,13 @@ impl Problem<'_> {
     }
 
     /// No kinks as yet.
-    fn edge_alone(&self) -> Strokes<'_> {
+    fn edge_alone(&self) -> VirginStrokes<'_> {
         let beyond = InwardSum::new(self.profile, self.edge.radius, self.reversals);
-        Strokes { problem: self, kinks: Vec::with_capacity(self.reversals), beyond }
+        VirginStrokes { problem: self, kinks: Vec::with_capacity(self.reversals), beyond }
     }
 
     /// The first level below the last kink where the stress meets `limit`, if there is one beyond the cut-off.
-    fn next(&self, strokes: &Strokes<'_>, limit: f64) -> Option<Point> {
+    fn next(&self, strokes: &VirginStrokes<'_>, limit: f64) -> Option<Point> {
         let (kinks, sign) = (strokes.kinks.as_slice(), strokes.sign());
         let top = strokes.last().level.value();
         let least = if self.cutoff > 0.0 { self.profile.level(self.cutoff) } else { 0.0 };
@@ -161,7 +161,7 @@ impl Problem<'_> {
     }
 
     /// The largest stress of the core, with the sign that the next kink would stop it at.
-    fn core(&self, strokes: &Strokes<'_>) -> f64 {
+    fn core(&self, strokes: &VirginStrokes<'_>) -> f64 {
         let sign = strokes.sign();
         let width = strokes.last().radius - self.cutoff;
         let looks = if self.profile.kernel_falls() { 1 } else { CORE };

@@ -14,8 +14,8 @@ pub struct ExecutionErrors {
     pub seed: u64,
 }
 
-/// The largest shear stress, Pa, that a path of displacements, m, leaves in each of `samples` trials, the smallest first.
-/// `make` gives the contact for a factor of the usual coefficient of friction. The same seed gives the
+/// The largest shear stress, Pa, that a path of displacements, m, leaves in each of `samples` trials, the smallest
+/// first. `make` gives the contact for a factor of the usual coefficient of friction. The same seed gives the
 /// same errors, whatever the path.
 ///
 /// # Errors

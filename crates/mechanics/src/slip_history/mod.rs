@@ -11,12 +11,13 @@
 //! The cost of a move is constant on average, whatever came before; nothing is discretised, and turning points are kept
 //! as absolute positions, so no error accumulates.
 
+mod instants;
 mod packed;
 mod piece;
 
-use super::double_double::DoubleDouble;
 use super::friction_work::{self, SlipRing};
 use super::profile::{Moments, Point, Profile, Ring};
+use crate::numerics::double_double::DoubleDouble;
 pub(super) use piece::{Line, Piece};
 use piece::{Sums, rise};
 

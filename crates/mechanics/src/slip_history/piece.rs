@@ -1,12 +1,13 @@
 //! One straight piece of the slip history, and the sums over the pieces.
 //!
-//! A piece keeps what a later move asks of it: the integrals over its ring, once they are known, and the value of its line at its inner end.
-//! It is popped with the ends that it has now, and both depend on these alone, so that they are the same to the last bit.
+//! A piece keeps what a later move asks of it: the integrals over its ring, once they are known, and the value of its
+//! line at its inner end. It is popped with the ends that it has now, and both depend on these alone, so that they are
+//! the same to the last bit.
 
 use std::fmt;
 
-use super::super::double_double::DoubleDouble;
 use super::super::profile::{Moments, Point, Profile, Ring};
+use crate::numerics::double_double::DoubleDouble;
 
 /// A straight part of w - W over y: `offset + slope * y`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

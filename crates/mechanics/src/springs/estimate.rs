@@ -1,10 +1,10 @@
 //! Error estimates of the spring foundation: fewer springs, the exact normal contact, and second differences.
 //!
-//! Each of these alone may miss an error by accident. A displacement u that is known at the springs, and bends by s in a
-//! cell dx, is off by no more than s dx^2/8 in its integral, and in a stress at r by that times the derivative of
+//! Each of these alone may miss an error by accident. A displacement u that is known at the springs, and bends by s in
+//! a cell dx, is off by no more than s dx^2/8 in its integral, and in a stress at r by that times the derivative of
 //! 1/sqrt(x^2 - r^2): the second differences between the springs bound both. Where more than a bend falls into a cell,
-//! springs of another number differ. With so few springs that every radius is near the centre or the edge, none of these
-//! says anything, and friction alone bounds the error.
+//! springs of another number differ. With so few springs that every radius is near the centre or the edge, none of
+//! these says anything, and friction alone bounds the error.
 
 use std::f64::consts::PI;
 
@@ -19,9 +19,9 @@ const NEAREST: f64 = 2.0;
 impl Springs {
     /// The errors by the discretisation: the largest of several estimates. The one of the stress is for radii some
     /// cells (of twice the largest contact radius over the number of springs) away from the kinks of the displacement,
-    /// the centre, the edge and whatever singular radius the profile has: nearer, a stress is smeared over a cell. Where
-    /// no radius is that far from the centre, the edge and the singular radii, it is a bound for all radii but the
-    /// nearest to a singular one.
+    /// the centre, the edge and whatever singular radius the profile has: nearer, a stress is smeared over a cell.
+    /// Where no radius is that far from the centre, the edge and the singular radii, it is a bound for all radii but
+    /// the nearest to a singular one.
     ///
     /// ```
     #[doc = include_str!("../example.txt")]

@@ -8,6 +8,8 @@ mod estimate;
 mod shear_evaluation;
 mod stress;
 
+use std::sync::Arc;
+
 pub use shear_evaluation::ShearEvaluation;
 
 use super::{
@@ -20,7 +22,7 @@ const ROUNDED: f64 = 8.0 * f64::EPSILON;
 /// A foundation of springs in contact.
 #[derive(Clone, Debug)]
 pub struct Springs {
-    profile: Profile,
+    profile: Arc<Profile>,
     virgin: Contact,
     /// The exact normal contact along the path; it is never moved sideways.
     normal: Contact,
@@ -63,7 +65,10 @@ struct Spring {
 /// assert!((radius - 0.2).abs() < 1e-15);
 /// # Ok::<(), Error>(())
 /// ```
-pub fn largest_contact_radius(setup: &Setup, moves: impl IntoIterator<Item = Move>) -> Result<f64, Error> {
+pub fn largest_contact_radius<P: Into<Arc<Profile>> + Clone>(
+    setup: &Setup<P>,
+    moves: impl IntoIterator<Item = Move>,
+) -> Result<f64, Error> {
     let mut contact = Contact::new(setup.clone())?;
     let mut reach = contact.contact_radius();
     for step in moves.into_iter().filter(|step| step.normal.is_some()) {
@@ -87,8 +92,9 @@ impl Springs {
     /// assert!((springs.normal_force() / contact.normal_force() - 1.0).abs() < 1e-5);
     /// # Ok::<(), Error>(())
     /// ```
-    pub fn new(setup: Setup, count: usize, reach: f64) -> Result<Springs, Error> {
+    pub fn new<P: Into<Arc<Profile>>>(setup: Setup<P>, count: usize, reach: f64) -> Result<Springs, Error> {
         range::SPRING_COUNT.check(count as f64)?;
+        let setup = setup.shared();
         setup.profile.check_stress_field()?;
         let mut fine = Springs::one_row(setup.clone(), count, reach)?;
         // Kinks fall elsewhere between the springs of each: one of them has a spring at the centre, the other has none.
@@ -100,7 +106,7 @@ impl Springs {
         Ok(fine)
     }
 
-    fn one_row(setup: Setup, count: usize, reach: f64) -> Result<Springs, Error> {
+    fn one_row(setup: Setup<Arc<Profile>>, count: usize, reach: f64) -> Result<Springs, Error> {
         let contact = Contact::new(setup.clone())?;
         let initial = contact.initial_summary();
         let Setup { profile, friction, .. } = setup;
@@ -281,6 +287,18 @@ impl Springs {
 
     fn in_contact(&self) -> impl Iterator<Item = &Spring> {
         self.springs.iter().take_while(|spring| spring.level < self.indentation)
+    }
+
+    /// Tangential displacement of the indenter, m.
+    #[must_use]
+    pub fn displacement(&self) -> f64 {
+        self.displacement
+    }
+
+    /// Displacement of gross slip on first loading, m, at the present load.
+    #[must_use]
+    pub fn gross_slip_displacement(&self) -> f64 {
+        self.scale() * self.indentation.max(0.0)
     }
 
     /// Contact radius a, m.

@@ -6,10 +6,11 @@
 //! difference and the integral as a sum, it is the direct discretisation of the formula.
 
 use std::f64::consts::PI;
+use std::sync::Arc;
 
 use super::super::DoubleDouble;
 use super::super::profile::Ring;
-use super::{Error, Setup, Springs, range};
+use super::{Error, Profile, Setup, Springs, range};
 
 /// The formula for the shear stress between the springs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -29,9 +30,13 @@ impl Springs {
     ///
     /// # Errors
     /// As [`Springs::new`].
-    pub fn without_error_estimate(setup: Setup, count: usize, reach: f64) -> Result<Springs, Error> {
+    pub fn without_error_estimate<P: Into<Arc<Profile>>>(
+        setup: Setup<P>,
+        count: usize,
+        reach: f64,
+    ) -> Result<Springs, Error> {
         range::SPRING_COUNT.check(count as f64)?;
-        Springs::one_row(setup, count, reach)
+        Springs::one_row(setup.shared(), count, reach)
     }
 
     /// Shear stress, Pa, at each of `radii`, m.

@@ -1,16 +1,17 @@
-//! What a unit of slope at one radius does to the stress at a point: ten functions of the point's distance from the axis and
-//! its depth.
+//! What a unit of slope at one radius does to the stress at a point: ten functions of the point's distance from the
+//! axis and its depth.
 //!
 //! A displacement u(t) of the reduced problem acts on the half-space like line sources at the imaginary depth i t. With
-//! zeta = z + i t, rho^2 = r^2 + zeta^2 and sigma = rho + zeta, the potentials 1/rho, ln sigma, zeta ln sigma - rho and so on,
-//! L0, L1, L2, are each the derivative of the next with respect to zeta. Put into the stresses of point forces on a
-//! half-space (Boussinesq 1885; Cerruti 1882) and integrated by parts, they leave -u'(t) dt times the imaginary part of
-//! derivatives of L0 to L3 in x and y. Written with D = (1/r) d/dr those need no division by r, so that the axis is no special place.
+//! zeta = z + i t, rho^2 = r^2 + zeta^2 and sigma = rho + zeta, the potentials 1/rho, ln sigma, zeta ln sigma - rho and
+//! so on, L0, L1, L2, are each the derivative of the next with respect to zeta. Put into the stresses of point forces
+//! on a half-space (Boussinesq 1885; Cerruti 1882) and integrated by parts, they leave -u'(t) dt times the imaginary
+//! part of derivatives of L0 to L3 in x and y. Written with D = (1/r) d/dr those need no division by r, so that the
+//! axis is no special place.
 
 use super::complex::Complex;
 
-/// The functions that give the stress under a normal load: xx = P0 + x^2 P1, yy = P0 + y^2 P1, zz = P2, xy = x y P1, xz = x P3,
-/// yz = y P3.
+/// The functions that give the stress under a normal load: xx = P0 + x^2 P1, yy = P0 + y^2 P1, zz = P2, xy = x y P1, xz
+/// = x P3, yz = y P3.
 pub(super) type Normal = [f64; 4];
 
 /// The functions that give it under a tangential load: xx = x (Q0 + 2 Q1 + x^2 Q2), yy = x (Q0 + y^2 Q2), zz = x Q3,
@@ -29,7 +30,8 @@ pub(super) struct Place {
 }
 
 impl Place {
-    /// zeta and rho for the source at t = r + `offset`, which is given by the offset to keep the digits of rho near the surface.
+    /// zeta and rho for the source at t = r + `offset`, which is given by the offset to keep the digits of rho near the
+    /// surface.
     pub(super) fn source(&self, offset: f64) -> (Complex, Complex) {
         let t = self.r + offset;
         let square = Complex::new(self.z * self.z - offset * (self.r + t), 2.0 * self.z * t);

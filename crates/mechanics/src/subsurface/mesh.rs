@@ -1,13 +1,14 @@
 //! The slopes of both load distributions over the radius, in panels that a Gauss rule integrates to round-off, and
 //! gathered in a tree so that a distant point sees many panels as one.
 //!
-//! The stress at a point is a sum of smooth functions of t against dy = g'(t) dt, with a branch point at t = r + i z. Panels
-//! are halved where the rule misses the rise of g, which is known, and again near the branch point: never is
-//! one longer than its distance from there. A panel touches the branch point only at the surface; there t - r = s^2 takes the root away.
-//! Over a tree's node that is half as long as its distance, 16 Chebyshev points stand for all below it: what
-//! they leave is 8^-16.
+//! The stress at a point is a sum of smooth functions of t against dy = g'(t) dt, with a branch point at t = r + i z.
+//! Panels are halved where the rule misses the rise of g, which is known, and again near the branch point: never is
+//! one longer than its distance from there. A panel touches the branch point only at the surface; there t - r = s^2
+//! takes the root away. Over a tree's node that is half as long as its distance, 16 Chebyshev points stand for all
+//! below it: what they leave is 8^-16.
 
-use crate::profile::{Profile, Ring, gauss};
+use crate::numerics::gauss;
+use crate::profile::{Profile, Ring};
 
 /// Points that stand for all panels of a node.
 const CHEBYSHEV: usize = 16;
@@ -32,7 +33,7 @@ pub(super) struct Source {
 
 /// A stretch of radii over which g is analytic and the shear has one slope, or many of them.
 #[derive(Clone, Debug)]
-struct Node {
+struct MeshNode {
     low: f64,
     high: f64,
     /// -dw/dy; only of a panel.
@@ -41,13 +42,13 @@ struct Node {
     rooted: bool,
     /// Empty where the panels below have fewer points.
     sources: Vec<Source>,
-    below: Option<Box<[Node; 2]>>,
+    below: Option<Box<[MeshNode; 2]>>,
 }
 
 /// Both distributions of a contact.
 #[derive(Clone, Debug)]
 pub(super) struct Mesh {
-    root: Option<Node>,
+    root: Option<MeshNode>,
     /// Levels at a vertical edge.
     edge: Option<Source>,
 }
@@ -66,8 +67,8 @@ fn distance(low: f64, high: f64, r: f64, z: f64) -> f64 {
 }
 
 impl Mesh {
-    /// The mesh of rings from the edge inward, each with its -dw/dy, for a contact of this radius, m, whose stresses are off by
-    /// this relative error.
+    /// The mesh of rings from the edge inward, each with its -dw/dy, for a contact of this radius, m, whose stresses
+    /// are off by this relative error.
     pub(super) fn new(profile: &Profile, rings: &[(Ring, f64)], radius: f64, stress_error: f64) -> Mesh {
         let slack = if stress_error > WORTHLESS { f64::INFINITY } else { 0.0 };
         let mut resolution = Resolution { profile, radius, slack, spare: SPARE, panels: Vec::new() };
@@ -82,7 +83,8 @@ impl Mesh {
         Mesh { root: gather(panels), edge: Some(edge).filter(|edge| edge.normal > 0.0) }
     }
 
-    /// Calls `visit(t - r, source)` for all that acts at the distance r from the axis and the depth z, over the contact radius.
+    /// Calls `visit(t - r, source)` for all that acts at the distance r from the axis and the depth z, over the contact
+    /// radius.
     pub(super) fn visit(
         &self,
         profile: &Profile,
@@ -108,7 +110,7 @@ struct Resolution<'a> {
     slack: f64,
     /// How often a panel may still be halved.
     spare: usize,
-    panels: Vec<Node>,
+    panels: Vec<MeshNode>,
 }
 
 impl Resolution<'_> {
@@ -138,10 +140,10 @@ impl Resolution<'_> {
     }
 
     /// A rise of g, m, at one radius, m.
-    fn at(&self, radius: f64, share: f64, rise: f64) -> Node {
+    fn at(&self, radius: f64, share: f64, rise: f64) -> MeshNode {
         let t = radius / self.radius;
         let sources = vec![Source { t, normal: rise, tangential: rise * share }];
-        Node { low: t, high: t, share, rooted: false, sources, below: None }
+        MeshNode { low: t, high: t, share, rooted: false, sources, below: None }
     }
 
     /// Appends the panels of a stretch of radii, m.
@@ -172,7 +174,7 @@ impl Resolution<'_> {
                         source.tangential *= rise / sum;
                     }
                 }
-                self.panels.push(Node { low: ends.0, high: ends.1, share, rooted, sources, below: None });
+                self.panels.push(MeshNode { low: ends.0, high: ends.1, share, rooted, sources, below: None });
                 return;
             }
         }
@@ -192,7 +194,7 @@ fn sources(profile: &Profile, radius: f64, (low, high): (f64, f64), rooted: bool
 }
 
 /// The tree over panels in order of their radii.
-fn gather(mut panels: Vec<Node>) -> Option<Node> {
+fn gather(mut panels: Vec<MeshNode>) -> Option<MeshNode> {
     if panels.len() <= 1 {
         return panels.pop();
     }
@@ -204,7 +206,7 @@ fn gather(mut panels: Vec<Node>) -> Option<Node> {
     outer.each_source(&mut |source| all.push(*source));
     let long = high - low > CLOSEST * high;
     let sources = if long && all.len() > CHEBYSHEV { condense(low, high, &all) } else { Vec::new() };
-    Some(Node { low, high, share: 0.0, rooted: false, sources, below: Some(Box::new([inner, outer])) })
+    Some(MeshNode { low, high, share: 0.0, rooted: false, sources, below: Some(Box::new([inner, outer])) })
 }
 
 /// The sources at Chebyshev's points that act like `all` on every polynomial of less than the 16th degree.
@@ -231,7 +233,7 @@ fn condense(low: f64, high: f64, all: &[Source]) -> Vec<Source> {
     points
 }
 
-impl Node {
+impl MeshNode {
     /// What stands for the node where it is far.
     fn each_source(&self, visit: &mut impl FnMut(&Source)) {
         if self.sources.is_empty() {
@@ -244,7 +246,7 @@ impl Node {
     }
 
     /// Visits what is far as condensed, and gives each panel that is near to `near`.
-    fn visit<V: FnMut(f64, &Source)>(&self, r: f64, z: f64, visit: &mut V, near: &mut impl FnMut(&Node, &mut V)) {
+    fn visit<V: FnMut(f64, &Source)>(&self, r: f64, z: f64, visit: &mut V, near: &mut impl FnMut(&MeshNode, &mut V)) {
         let away = distance(self.low, self.high, r, z);
         match &self.below {
             Some(_) if !self.sources.is_empty() && away >= 2.0 * (self.high - self.low) => {
@@ -262,7 +264,7 @@ impl Node {
 }
 
 /// Visits the sources of a panel too long for its distance from the branch point, in ever shorter parts.
-fn near(profile: &Profile, radius: f64, panel: &Node, (r, z): (f64, f64), visit: &mut impl FnMut(f64, &Source)) {
+fn near(profile: &Profile, radius: f64, panel: &MeshNode, (r, z): (f64, f64), visit: &mut impl FnMut(f64, &Source)) {
     let mut source = |offset: f64, weight: f64| {
         let t = r + offset;
         let normal = radius * weight * profile.slope(radius * t);

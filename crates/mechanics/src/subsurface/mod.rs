@@ -1,9 +1,9 @@
 //! The stress in the bodies below the contact, after any history.
 //!
-//! The axes of a body: x along the motion of the first body, which carries the profile, z into the body, the origin on the axis of the contact.
-//! Pressure and shear stress are known through the slopes of their displacements in the reduced problem, and each slope acts
-//! like a line source at an imaginary depth (see `kernel`). On a parabola the sum is closed (`sphere`), on every
-//! other profile it is integrated (`mesh`).
+//! The axes of a body: x along the motion of the first body, which carries the profile, z into the body, the origin on
+//! the axis of the contact. Pressure and shear stress are known through the slopes of their displacements in the
+//! reduced problem, and each slope acts like a line source at an imaginary depth (see `kernel`). On a parabola the sum
+//! is closed (`sphere`), on every other profile it is integrated (`mesh`).
 
 mod complex;
 mod kernel;
@@ -22,7 +22,8 @@ use mesh::{Mesh, Source};
 use sphere::Kinks;
 pub use tensor::Stress;
 
-/// Distance from the centre of the contact, in contact radii, from which the closed form of the parabola would lose digits.
+/// Distance from the centre of the contact, in contact radii, from which the closed form of the parabola would lose
+/// digits.
 const FAR: f64 = 8.0;
 /// What quadrature and closed form leave, over the unit pressure, as tests find it at the worst.
 const NUMERICAL: f64 = 4e-12;
@@ -72,6 +73,11 @@ impl Contact {
     /// # Ok::<(), Error>(())
     /// ```
     pub fn subsurface(&self, side: Side, poisson_ratio: f64) -> Result<Subsurface, Error> {
+        self.clone().into_subsurface(side, poisson_ratio)
+    }
+
+    /// As [`Contact::subsurface`], without a copy.
+    pub(super) fn into_subsurface(self, side: Side, poisson_ratio: f64) -> Result<Subsurface, Error> {
         let poisson = range::POISSON_RATIO.check(poisson_ratio)?;
         self.profile.check_stress_field()?;
         let radius = self.contact_radius();
@@ -80,7 +86,7 @@ impl Contact {
         let units = (pressed / (PI * radius), dragged / (PI * radius));
         let singular = self.profile.singular_radii().into_iter().chain([0.0, radius]).collect();
         let kinks = matches!(*self.profile, Profile::Sphere(_)).then(|| self.kinks());
-        Ok(Subsurface { contact: self.clone(), kinks, mesh: OnceLock::new(), poisson, units, singular })
+        Ok(Subsurface { contact: self, kinks, mesh: OnceLock::new(), poisson, units, singular })
     }
 
     /// The changes of the slopes at the kinks, from the edge inward, for g = t^2 over the contact radius.
@@ -99,6 +105,11 @@ impl Contact {
 }
 
 impl Subsurface {
+    /// The contact in the state of the field.
+    pub(super) fn contact(&self) -> &Contact {
+        &self.contact
+    }
+
     /// The stress at x, y, z, m, with z of at least zero; not finite where it is infinite.
     #[must_use]
     pub fn at(&self, [x, y, z]: [f64; 3]) -> Stress {
@@ -147,8 +158,9 @@ impl Subsurface {
         })
     }
 
-    /// Estimated error of any component, relative to [`ContactSummary::unit_pressure`](super::ContactSummary::unit_pressure): that
-    /// of the tractions, and of the quadrature.
+    /// Estimated error of any component, relative to
+    /// [`ContactSummary::unit_pressure`](super::ContactSummary::unit_pressure): that of the tractions, and of the
+    /// quadrature.
     #[must_use]
     pub fn error(&self) -> f64 {
         NUMERICAL + GAIN * self.contact.friction().max(1.0) * self.contact.accuracy().stress_error

@@ -1,9 +1,10 @@
 //! The ten functions for a parabola in closed form: two roots and one angle for each kink of the slip history.
 //!
-//! With g = x^2/R the slope between two kinks is 2 t/R, and int_0^a 2 t Im H dt = -2 a Re H' + 2 Im H'' where H' and H'' are the
-//! first and second integrals of H with respect to zeta, taken at z + i a. In sigma they are Laurent polynomials and a
-//! logarithm, since d zeta = (1 + r^2/sigma^2)/2 d sigma. Of the logarithm only the angle of sigma is left. So each function
-//! is linear in a few numbers of a kink, and the kinks of a history are summed before the functions are formed.
+//! With g = x^2/R the slope between two kinks is 2 t/R, and int_0^a 2 t Im H dt = -2 a Re H' + 2 Im H'' where H' and
+//! H'' are the first and second integrals of H with respect to zeta, taken at z + i a. In sigma they are Laurent
+//! polynomials and a logarithm, since d zeta = (1 + r^2/sigma^2)/2 d sigma. Of the logarithm only the angle of sigma is
+//! left. So each function is linear in a few numbers of a kink, and the kinks of a history are summed before the
+//! functions are formed.
 
 use super::kernel::{Normal, Place, Tangential};
 use super::mesh::Source;
@@ -53,7 +54,8 @@ impl Kinks {
     }
 }
 
-/// Of each kink at a radius a: the angle of sigma, Im rho, powers of s = 1/sigma as they are and times a, and those times z/rho.
+/// Of each kink at a radius a: the angle of sigma, Im rho, powers of s = 1/sigma as they are and times a, and those
+/// times z/rho.
 fn terms(place: &Place, radii: &[f64; LANES]) -> [[f64; LANES]; TERMS] {
     let Place { r, z, .. } = *place;
     let mut all = [[0.0; LANES]; TERMS];

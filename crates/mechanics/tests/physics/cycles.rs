@@ -278,7 +278,8 @@ proptest! {
     #![proptest_config(config(300))]
 
     #[test]
-    fn a_machine_takes_its_share_of_the_displacement(share in 1e-9..3.0_f64, compliance in -3.0..3.0_f64, index in 0..13_usize) {
+    fn a_machine_takes_its_share_of_the_displacement(share in 1e-9..3.0_f64, compliance in -3.0..3.0_f64,
+        index in 0..13_usize) {
         let (profile, depth) = shapes().swap_remove(index);
         let virgin = contact(profile, depth);
         let compliance = 10_f64.powf(compliance) / (2.0 * G_STAR * virgin.contact_radius());
@@ -295,7 +296,8 @@ proptest! {
             let middle = 0.5 * (low + high);
             if middle + compliance * force(middle) > amplitude { high = middle } else { low = middle }
         }
-        prop_assert!((cycle.displacement_amplitude() / high - 1.0).abs() < 1e-12, "{} {high}", cycle.displacement_amplitude());
+        prop_assert!((cycle.displacement_amplitude() / high - 1.0).abs() < 1e-12, "{} \
+            {high}", cycle.displacement_amplitude());
         prop_assert!((cycle.force_amplitude() / force(high) - 1.0).abs() < 1e-12);
         prop_assert!((cycle.machine_amplitude() / amplitude - 1.0).abs() < 1e-13);
     }
@@ -443,21 +445,17 @@ fn a_mass_on_the_contact_swings_as_time_integration_says() {
     let body = Resonator { mass: 0.1, drive_force: 0.25 * limit };
     let natural = body.natural_frequency(&virgin);
     for share in [0.3, 0.6, 1.2, 1.6] {
-        let found = body.respond(&virgin, &[share * natural], &|| true).unwrap();
+        let found = body.respond(&virgin, &[share * natural], 1e-6, &|| true).unwrap();
         assert_eq!(found.len(), 1, "{found:?}");
         let stepped = integrated(&virgin, body, share * natural, 300);
         // What the balance leaves out acts at three times the frequency.
         let allowed = 0.01 + found[0].third_harmonic;
         assert!((stepped / found[0].amplitude - 1.0).abs() < allowed, "{share}: {stepped:e}, {found:?}");
     }
-    // Where the curve leans over: the branch from rest is the lower one, or the only one.
-    let three: Vec<_> = (50..100)
-        .map(|percent| body.respond(&virgin, &[0.01 * f64::from(percent) * natural], &|| true).unwrap())
-        .filter(|found| found.len() == 3)
-        .collect();
-    for found in &three {
-        assert!(found[0].amplitude < found[1].amplitude && found[1].amplitude < found[2].amplitude);
-        assert!(found[0].phase < found[2].phase + PI);
+    // Where the curve leans over there is one, too: two motions on such a contact never draw apart.
+    for percent in 50..100 {
+        let found = body.respond(&virgin, &[0.01 * f64::from(percent) * natural], 1e-6, &|| true).unwrap();
+        assert_eq!(found.len(), 1, "{percent} %: {found:?}");
     }
-    assert!(body.respond(&virgin, &[natural], &|| false).is_none());
+    assert!(body.respond(&virgin, &[natural], 1e-6, &|| false).is_none());
 }

@@ -1,4 +1,5 @@
-//! The shear stress of a history of a thousand pieces and more, at many radii at once, against Masing's sum with twice the digits.
+//! The shear stress of a history of a thousand pieces and more, at many radii at once, against Masing's sum with twice
+//! the digits.
 
 use proptest::prelude::any;
 use stickslip_mechanics::{DoubleDouble, Move, Tangential};
@@ -17,8 +18,8 @@ fn turns(count: usize, decade: f64, random: &mut Random) -> Vec<f64> {
     turns
 }
 
-/// Masing (1926) on a sphere of radius, indentation and m of one: tau/(G*/pi) = s_n V(1) + sum of (s_(k-1) - s_k) V(y_k),
-/// V(y) = 2 sqrt(y - r^2), where slip of the sign s_k began at y_k = 1 - |U_k - U_(k-1)|/2, or 1 - |U_1|.
+/// Masing (1926) on a sphere of radius, indentation and m of one: tau/(G*/pi) = s_n V(1) + sum of (s_(k-1) - s_k)
+/// V(y_k), V(y) = 2 sqrt(y - r^2), where slip of the sign s_k began at y_k = 1 - |U_k - U_(k-1)|/2, or 1 - |U_1|.
 fn masing(turns: &[f64], r: f64) -> f64 {
     let square = DoubleDouble::square_of(r);
     let v = |level: DoubleDouble| (level - square).sqrt() * 2.0;

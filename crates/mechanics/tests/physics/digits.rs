@@ -1,4 +1,5 @@
-//! Single families at numbers where digits are easily lost: thin rings, tips, tiny flats, the smallest and the largest exponents.
+//! Single families at numbers where digits are easily lost: thin rings, tips, tiny flats, the smallest and the largest
+//! exponents.
 
 use stickslip_mechanics::DoubleDouble;
 use stickslip_mechanics::profile::{

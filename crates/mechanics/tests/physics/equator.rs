@@ -1,5 +1,5 @@
-//! The exact sphere pressed in up to within 1e-11 of its equator, alone and in a sum, against closed forms in the coordinate
-//! sigma, x = R tanh(sigma), in which nothing cancels.
+//! The exact sphere pressed in up to within 1e-11 of its equator, alone and in a sum, against closed forms in the
+//! coordinate sigma, x = R tanh(sigma), in which nothing cancels.
 
 use proptest::prelude::*;
 use stickslip_mechanics::profile::{ExactSphere, Sum};

@@ -1,4 +1,5 @@
-//! The extrema of the shear stress after falling reversals on shapes with a flat end and on powers, against a scan of the stress.
+//! The extrema of the shear stress after falling reversals on shapes with a flat end and on powers, against a scan of
+//! the stress.
 
 use std::cell::Cell;
 

@@ -1,5 +1,5 @@
-//! Every function of every family against values computed to 22 digits by other means (tests/data/profiles.py), and the laws
-//! that tie the functions together.
+//! Every function of every family against values computed to 22 digits by other means (tests/data/profiles.py), and the
+//! laws that tie the functions together.
 
 use proptest::prelude::*;
 use stickslip_mechanics::DoubleDouble;
@@ -56,8 +56,8 @@ fn evaluate(profile: &Profile, function: &str, a: &[f64]) -> f64 {
     }
 }
 
-/// What a relative change of one in the squares of the ring's radii would change, where r is near to one of them: x^2 is known
-/// no better than the parameters of the profile are, and the root of x^2 - r^2 depends on it.
+/// What a relative change of one in the squares of the ring's radii would change, where r is near to one of them: x^2
+/// is known no better than the parameters of the profile are, and the root of x^2 - r^2 depends on it.
 fn cusp(profile: &Profile, function: &str, a: &[f64]) -> f64 {
     let [y, depth, r] = *a else { return 0.0 };
     let ring = ring(profile, y, depth);
@@ -251,7 +251,9 @@ proptest! {
     }
 
     #[test]
-    fn adjacent_rings_add_up((profile, a) in any_profile(), low in 0.01..0.98f64, cut in 0.01..0.99f64, r in 0.0..1.3f64) {
+    fn adjacent_rings_add_up(
+        (profile, a) in any_profile(), low in 0.01..0.98f64, cut in 0.01..0.99f64, r in 0.0..1.3f64,
+    ) {
         let y = profile.level(a);
         let point = |share: f64| profile.point(DoubleDouble::from(y) * share);
         let (inner, middle, outer) = (point(low), point(low + cut * (1.0 - low)), point(1.0));
@@ -272,7 +274,8 @@ proptest! {
         if apart {
             let (one, two) = (profile.kernel(&at, &below) + profile.kernel(&at, &above), profile.kernel(&at, &whole));
             prop_assert!(close(one, two, tolerance), "{one} {two}");
-            let one = profile.displacement_integral(&at, &below) + profile.displacement_integral(&at, &above) + above.depth * profile.arc(&at, &below);
+            let one = profile.displacement_integral(&at, &below) + profile.displacement_integral(&at, &above) +
+                above.depth * profile.arc(&at, &below);
             prop_assert!(close(one, profile.displacement_integral(&at, &whole), tolerance), "{one}");
         }
     }
@@ -284,7 +287,8 @@ proptest! {
         let y = whole.level(a);
         let (one, two) = (ring(&whole, y, y * (1.0 - low)), ring(&sum, y, y * (1.0 - low)));
         let (m, n) = (whole.moments(&one), sum.moments(&two));
-        prop_assert!(close(m.width, n.width, 1e-12) && close(m.first, n.first, 1e-12) && close(m.second, n.second, 1e-12), "{m:?} {n:?}");
+        prop_assert!(close(m.width, n.width, 1e-12) && close(m.first, n.first, 1e-12) &&
+            close(m.second, n.second, 1e-12), "{m:?} {n:?}");
         let at = StressRadius::new(r * a);
         if (one.inner.radius / at.radius - 1.0).abs() > 1e-3 && r < 0.999 {
             prop_assert!(close(whole.kernel(&at, &one), sum.kernel(&at, &two), 1e-12));
@@ -294,7 +298,8 @@ proptest! {
 
     #[test]
     fn nothing_is_nan_however_odd_the_numbers(
-        profile in wild(), decade in -30.0..9.0f64, share in prop::sample::select(vec![1.0, 0.5, 1e-7, 1e-16]), r in 0.0..1.5f64,
+        profile in wild(), decade in -30.0..9.0f64, share in prop::sample::select(vec![1.0, 0.5, 1e-7, 1e-16]),
+        r in 0.0..1.5f64,
     ) {
         let y = 10f64.powf(decade);
         let ring = ring(&profile, y, share * y);
@@ -303,7 +308,9 @@ proptest! {
         }
         let m = profile.moments(&ring);
         prop_assert!(m.width >= 0.0 && m.first >= 0.0 && m.second >= 0.0, "{m:?}");
-        for at in [StressRadius::new(r * ring.outer.radius), StressRadius::new(0.0), StressRadius::of_point(&ring.inner), StressRadius::of_point(&ring.outer)] {
+        let anywhere = StressRadius::new(r * ring.outer.radius);
+        let ends = [StressRadius::of_point(&ring.inner), StressRadius::of_point(&ring.outer)];
+        for at in [anywhere, StressRadius::new(0.0), ends[0], ends[1]] {
             prop_assert!(profile.kernel(&at, &ring) >= 0.0, "{at:?}");
             prop_assert!(!profile.kernel_slope(&at, &ring).is_nan(), "{at:?} {ring:?}");
             prop_assert!(profile.displacement_integral(&at, &ring) >= 0.0 && profile.arc(&at, &ring) >= 0.0, "{at:?}");
@@ -319,7 +326,8 @@ proptest! {
         prop_assume!(profile.check_radius(profile.radius(d)).is_ok());
         // d load = X dd, and X lies between that at half the indentation and that at all of it.
         let ratio = load / d;
-        prop_assert!(ratio <= profile.radius(d) * (1.0 + 1e-12) && ratio >= 0.5 * profile.radius(0.5 * d) * (1.0 - 1e-12), "{ratio}");
+        prop_assert!(ratio <= profile.radius(d) * (1.0 + 1e-12) &&
+            ratio >= 0.5 * profile.radius(0.5 * d) * (1.0 - 1e-12), "{ratio}");
     }
 
     #[test]

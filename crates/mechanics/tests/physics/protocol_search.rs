@@ -1,5 +1,5 @@
-//! The best path of few strokes against an independent search: differential evolution over the displacements themselves,
-//! each path followed by the engine and its extrema taken.
+//! The best path of few strokes against an independent search: differential evolution over the displacements
+//! themselves, each path followed by the engine and its extrema taken.
 
 use crate::support::{config, follow, power, pressed, sphere};
 use fastrand::Rng;
@@ -66,8 +66,8 @@ fn shapes() -> Vec<Profile> {
 proptest! {
     #![proptest_config(config(24))]
 
-    /// From any history, and from any first displacement, evolution finds nothing that leaves less; and where the end is
-    /// free, no more is left than was there.
+    /// From any history, and from any first displacement, evolution finds nothing that leaves less; and where the end
+    /// is free, no more is left than was there.
     #[test]
     fn evolution_finds_no_path_of_few_strokes_that_leaves_less(
         shape in prop::sample::select(shapes()),

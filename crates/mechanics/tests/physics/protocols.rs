@@ -52,9 +52,9 @@ fn the_linear_fall_on_a_sphere_has_its_asymptotes() {
     }
 }
 
-/// Far from the edge and the centre the slip history is a square wave over (r/a)^2, and the stress its half-integral. With a
-/// distance of one between reversals that is, term by term of the wave's Fourier series, 2/pi sum sin(pi n t + pi/4) /
-/// n^(3/2) over the odd n.
+/// Far from the edge and the centre the slip history is a square wave over (r/a)^2, and the stress its half-integral.
+/// With a distance of one between reversals that is, term by term of the wave's Fourier series, 2/pi sum sin(pi n t +
+/// pi/4) / n^(3/2) over the odd n.
 #[test]
 fn the_mean_over_the_contact_after_a_linear_fall_is_that_of_a_half_integrated_square_wave() {
     const SAMPLES: usize = 2_000;

@@ -1,5 +1,5 @@
-//! Energies, surface displacement and slip under powers of the radius, against quadratures of their definitions that share
-//! nothing with the engine.
+//! Energies, surface displacement and slip under powers of the radius, against quadratures of their definitions that
+//! share nothing with the engine.
 
 use std::f64::consts::{FRAC_2_PI, FRAC_PI_2};
 
@@ -14,8 +14,8 @@ const E_STAR: f64 = 1e11;
 const G_STAR: f64 = 8e10;
 const FRICTION: f64 = 0.3;
 
-/// kappa of a multiple of one half: kappa(n + 2) = kappa(n) (n + 2)/(n + 1) from kappa(0) = 1, kappa(1/2), kappa(1) = pi/2 and
-/// kappa(3/2), kappa(n) = sqrt(pi) Gamma(n/2 + 1)/Gamma((n + 1)/2).
+/// kappa of a multiple of one half: kappa(n + 2) = kappa(n) (n + 2)/(n + 1) from kappa(0) = 1, kappa(1/2), kappa(1) =
+/// pi/2 and kappa(3/2), kappa(n) = sqrt(pi) Gamma(n/2 + 1)/Gamma((n + 1)/2).
 fn kappa(power: f64) -> f64 {
     let mut n = power % 2.0;
     let mut kappa = [1.0, 1.311_028_777_146_059_8, FRAC_PI_2, 1.797_210_352_103_388_4][(2.0 * n) as usize];
@@ -158,7 +158,8 @@ proptest! {
         let (radius, depth) = (10f64.powf(size), 10f64.powf(size - 2.0));
         let coefficient = depth / radius.powf(power);
         let curvature = sphere_share * depth / (radius * radius);
-        FirstLoading::new(power, coefficient, curvature, true, depth, slide * FirstLoading::ratio() * depth).energies_agree();
+        FirstLoading::new(power, coefficient, curvature, true, depth,
+            slide * FirstLoading::ratio() * depth).energies_agree();
     }
 
     #[test]
@@ -173,7 +174,8 @@ proptest! {
         let (radius, depth) = (10f64.powf(size), 10f64.powf(size - 2.0));
         let coefficient = depth / radius.powf(power);
         let curvature = sphere_share * depth / (radius * radius);
-        let loading = FirstLoading::new(power, coefficient, curvature, false, depth, slide * FirstLoading::ratio() * depth);
+        let loading = FirstLoading::new(power, coefficient, curvature, false, depth,
+            slide * FirstLoading::ratio() * depth);
         for place in places {
             loading.displacements_agree(place * loading.edge);
         }

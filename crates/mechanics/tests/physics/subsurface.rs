@@ -137,8 +137,8 @@ fn a_parabola_as_a_power_law_has_the_stress_of_the_sphere() {
     }
 }
 
-/// The stress of a unit force at the origin pressing along z (Boussinesq 1885) or pulling along x (Cerruti 1882), by Johnson
-/// (1985), section 3.
+/// The stress of a unit force at the origin pressing along z (Boussinesq 1885) or pulling along x (Cerruti 1882), by
+/// Johnson (1985), section 3.
 fn point_force(x: f64, y: f64, z: f64) -> ([f64; 6], [f64; 6]) {
     let (r2, rho) = (x * x + y * y, (x * x + y * y + z * z).sqrt());
     let (cube, fifth, sum) = (rho.powi(3), rho.powi(5), rho + z);
@@ -161,8 +161,8 @@ fn point_force(x: f64, y: f64, z: f64) -> ([f64; 6], [f64; 6]) {
     (pressed.map(|value| value / (2.0 * PI)), dragged.map(|value| value / (2.0 * PI)))
 }
 
-/// Nodes and weights over 0 to 1 by Takahasi and Mori's rule, which approaches both ends like an exponential of an exponential,
-/// so that an integrand may be infinite there.
+/// Nodes and weights over 0 to 1 by Takahasi and Mori's rule, which approaches both ends like an exponential of an
+/// exponential, so that an integrand may be infinite there.
 fn nodes(width: f64) -> impl Iterator<Item = (f64, f64)> {
     let steps = (3.1 / width) as i32;
     (-steps..=steps).map(move |step| {

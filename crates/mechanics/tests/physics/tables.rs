@@ -81,7 +81,8 @@ fn a_hollow_is_refused_where_g_falls() {
 
 #[test]
 fn the_interpolation_converges() {
-    // f = cosh r - 1; g to 17 digits by quadrature of f'(x sin q) at x = 1: sum over n of x^(2n) (2n)!!/(2n - 1)!!/(2n)!.
+    // f = cosh r - 1; g to 17 digits by quadrature of f'(x sin q) at x = 1: sum over n of x^(2n) (2n)!!/(2n -
+    // 1)!!/(2n)!.
     let exact: f64 = (1..12u32)
         .map(|n| {
             (1..=n).map(|k| f64::from(2 * k) / f64::from(2 * k - 1)).product::<f64>()

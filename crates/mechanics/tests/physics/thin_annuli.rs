@@ -1,5 +1,5 @@
-//! The largest pressure of a rounded punch, from contacts that hardly exceed its flat to contacts far beyond, against a search on
-//! the pressure by its definition.
+//! The largest pressure of a rounded punch, from contacts that hardly exceed its flat to contacts far beyond, against a
+//! search on the pressure by its definition.
 
 use std::f64::consts::PI;
 
@@ -36,8 +36,8 @@ fn level(flat: f64, edge: f64, u: f64) -> f64 {
     flat * (1.0 + u * u).sqrt() / edge * (flat * tangent_less_angle(u))
 }
 
-/// The largest pressure, Pa, of a contact up to x = b sqrt(1 + u^2): (E*/pi) int dg/sqrt(x^2 - r^2), over the arcosh of the ratio of
-/// sqrt(x^2 - b^2) to sqrt(r^2 - b^2), at a thousand radii beyond the flat.
+/// The largest pressure, Pa, of a contact up to x = b sqrt(1 + u^2): (E*/pi) int dg/sqrt(x^2 - r^2), over the arcosh of
+/// the ratio of sqrt(x^2 - b^2) to sqrt(r^2 - b^2), at a thousand radii beyond the flat.
 fn largest_pressure(flat: f64, edge: f64, u: f64) -> f64 {
     let slope = |u: f64| u * (u + tangent_less_angle(u)) / (1.0 + u * u).sqrt() * (flat / edge);
     let pressure = |share: f64| {

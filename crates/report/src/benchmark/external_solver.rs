@@ -1,7 +1,8 @@
-//! A solver by others on the same scene: a Python script that reads the scene as one line of JSON, then a resolution a line.
+//! A solver by others on the same scene: a Python script that reads the scene as one line of JSON, then a resolution a
+//! line.
 //!
-//! It replies to each line with forces, stresses and the processor time by its own clock, so that neither its start nor the
-//! exchange is counted.
+//! It replies to each line with forces, stresses and the processor time by its own clock, so that neither its start nor
+//! the exchange is counted.
 
 use std::io::{self, BufRead as _, BufReader, Write as _};
 use std::path::Path;

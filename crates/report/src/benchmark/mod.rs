@@ -1,8 +1,8 @@
 //! Speed against error: what each solver costs on a few scenes, and how wrong it is.
 //!
-//! Errors are measured against an independent solver in double-double arithmetic (`reference`). Times are processor times,
-//! and the exact solver runs just before each run of another, so that the ratio of the two holds on a busy machine too
-//! (`timing`). Solvers by others can be measured as well (`external_solver`).
+//! Errors are measured against an independent solver in double-double arithmetic (`reference`). Times are processor
+//! times, and the exact solver runs just before each run of another, so that the ratio of the two holds on a busy
+//! machine too (`timing`). Solvers by others can be measured as well (`external_solver`).
 
 mod external_solver;
 mod output;
@@ -96,7 +96,7 @@ pub struct Report {
     /// Processor, cores, system, compiler and optimisation.
     pub machine: String,
     /// The external solvers with their versions.
-    #[serde(rename = "peers")]
+    #[serde(rename = "external")]
     pub external_solvers: Vec<String>,
     /// How long it took, s.
     pub seconds: f64,
@@ -109,7 +109,8 @@ pub struct Report {
 /// Measures every solver on the scenes, and names each scene once it is measured.
 ///
 /// # Errors
-/// [`io::ErrorKind::InvalidInput`] for a scene that does not exist; an error of the mechanics as [`io::ErrorKind::Other`].
+/// [`io::ErrorKind::InvalidInput`] for a scene that does not exist; an error of the mechanics as
+/// [`io::ErrorKind::Other`].
 pub fn measure(options: &Options, mut measured: impl FnMut(&str)) -> io::Result<Report> {
     let begin = Instant::now();
     let mut report = Report {

@@ -12,9 +12,11 @@ use super::{Report, Row};
 /// Smaller errors are drawn as this one: a logarithmic axis has no zero.
 const SMALLEST_ERROR: f64 = 1e-17;
 /// The head of each table.
-const HEAD: &str = "| scene | solver | springs | × exact | force error | stress error | at kinks | median, s | quartiles, s | least, s | runs |\n|---|---|---|---|---|---|---|---|---|---|---|\n";
+const HEAD: &str = "| scene | solver | springs | × exact | force error | stress error | at kinks | median, s | \
+    quartiles, s | least, s | runs |\n|---|---|---|---|---|---|---|---|---|---|---|\n";
 
-/// Writes `report.md`, `report.csv`, `report.json` and two charts a scene into `dir`, which is created if it does not exist.
+/// Writes `report.md`, `report.csv`, `report.json` and two charts a scene into `dir`, which is created if it does not
+/// exist.
 ///
 /// # Errors
 /// An error of the file system; a chart that cannot be drawn is [`io::ErrorKind::Other`].
@@ -50,7 +52,11 @@ fn scenes(report: &Report) -> Vec<&str> {
 
 fn markdown(report: &Report) -> String {
     let mut page = format!(
-        "# Speed against error\n\n{} It took {:.0} s.\n\nTimes are processor times of one thread, so that other work on the machine is not counted. Ratios are medians over pairs, each of a run of a solver and a run of the exact solver just before it; quartiles in brackets. Errors are the largest: of the force over the path, relative to μ F_N; of the shear stress at 1000 random radii and at the kinks, relative to μ p_max (to μ times the mean pressure for the cone).\n\n",
+        "# Speed against error\n\n{} It took {:.0} s.\n\nTimes are processor times of one thread, so that other work \
+            on the machine is not counted. Ratios are medians over pairs, each of a run of a solver and a run of the \
+            exact solver just before it; quartiles in brackets. Errors are the largest: of the force over the path, \
+            relative to μ F_N; of the shear stress at 1000 random radii and at the kinks, relative to μ p_max (to μ \
+            times the mean pressure for the cone).\n\n",
         report.machine, report.seconds
     );
     if !report.external_solvers.is_empty() {
@@ -65,7 +71,9 @@ fn markdown(report: &Report) -> String {
             // Writing to a string cannot fail.
             let _ = writeln!(
                 page,
-                "| {scene} | {solver} | {springs} | **{ratio}** ({ratio_lower} to {ratio_upper}) | {force_error:.1e} | {stress_error:.1e} | {kink_error:.1e} | {median:.2e} | {lower:.2e} to {upper:.2e} | {least:.2e} | {runs} |"
+                "| {scene} | {solver} | {springs} | **{ratio}** ({ratio_lower} to {ratio_upper}) | {force_error:.1e} | \
+                    {stress_error:.1e} | {kink_error:.1e} | {median:.2e} | {lower:.2e} to {upper:.2e} | {least:.2e} | \
+                    {runs} |"
             );
         }
         let _ = writeln!(page);
@@ -91,7 +99,10 @@ fn short(value: f64) -> String {
 }
 
 fn csv(rows: &[Row]) -> String {
-    let mut csv = "scene,solver,springs,ratio,force_error,stress_error,kink_error,median,lower,upper,least,runs,ratio_lower,ratio_upper\n".to_owned();
+    let mut csv =
+        "scene,solver,springs,ratio,force_error,stress_error,kink_error,median,lower,upper,least,runs,ratio_lower,\
+                   ratio_upper\n"
+            .to_owned();
     for row in rows {
         let Row {
             scene, solver, ratio, force_error, stress_error, kink_error, median, lower, upper, least, runs, ..
@@ -99,7 +110,8 @@ fn csv(rows: &[Row]) -> String {
         let springs = row.springs.map(|count| count.to_string()).unwrap_or_default();
         let _ = writeln!(
             csv,
-            "{scene},{solver},{springs},{ratio},{force_error:e},{stress_error:e},{kink_error:e},{median:e},{lower:e},{upper:e},{least:e},{runs},{},{}",
+            "{scene},{solver},{springs},{ratio},{force_error:e},{stress_error:e},{kink_error:e},{median:e},{lower:e},\
+             {upper:e},{least:e},{runs},{},{}",
             row.ratio_lower, row.ratio_upper
         );
     }

@@ -1,10 +1,11 @@
 //! The reference that errors are measured against: the displacement as straight pieces, in double-double arithmetic.
 //!
 //! At a level y = g(x) the foundation has the displacement w(y) = u_x/m. A straight move that adds dW to the rigid
-//! displacement and ends at the indentation d changes it to w + dW, clamped to +-(d - y). Here that rule is applied to every
-//! piece at every move: all corners are shifted, those beyond the bound are moved onto it, and a corner is added where a
-//! piece crosses it. Nothing is shared with the engine but the arithmetic: no piece is skipped because theory says that it sticks, nothing is stored relative to anything, no sum is
-//! kept from one move to the next. Force and stress come from closed forms of [`Shape`], in 31 digits.
+//! displacement and ends at the indentation d changes it to w + dW, clamped to +-(d - y). Here that rule is applied to
+//! every piece at every move: all corners are shifted, those beyond the bound are moved onto it, and a corner is added
+//! where a piece crosses it. Nothing is shared with the engine but the arithmetic: no piece is skipped because theory
+//! says that it sticks, nothing is stored relative to anything, no sum is kept from one move to the next. Force and
+//! stress come from closed forms of [`Shape`], in 31 digits.
 
 use stickslip_mechanics::DoubleDouble;
 
@@ -57,7 +58,8 @@ impl<'a> Reference<'a> {
         let corner = |level| Corner { level, radius: self.shape.radius(level), w: DoubleDouble::ZERO, bound: 0 };
         let mut trial: Vec<Corner> = self.corners.iter().map(|at| Corner { w: at.w + shift, ..*at }).collect();
         if indentation > self.indentation {
-            // A point that comes into contact on the way is displaced by less the later that is, at the new edge by nothing.
+            // A point that comes into contact on the way is displaced by less the later that is, at the new edge by
+            // nothing.
             trial.push(corner(indentation));
         } else if indentation < self.indentation {
             let cut = trial.iter().position(|at| at.level >= indentation).unwrap_or(trial.len() - 1).max(1);

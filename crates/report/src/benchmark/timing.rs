@@ -1,4 +1,5 @@
-//! One scene: the errors of each solver against the reference, and its processor time as a ratio to that of the exact solver.
+//! One scene: the errors of each solver against the reference, and its processor time as a ratio to that of the exact
+//! solver.
 
 use std::collections::HashMap;
 use std::hint::black_box;
@@ -54,8 +55,8 @@ pub(super) struct SceneBenchmark<'a> {
     pub(super) last_seconds: HashMap<String, f64>,
 }
 
-/// Processor time of this thread, s: on a busy machine, wall-clock time grows for long runs and not for short ones, which fit
-/// between two interruptions.
+/// Processor time of this thread, s: on a busy machine, wall-clock time grows for long runs and not for short ones,
+/// which fit between two interruptions.
 pub(super) fn processor_time() -> f64 {
     let now = clock_gettime(ClockId::ThreadCPUTime);
     now.tv_sec as f64 + 1e-9 * now.tv_nsec as f64

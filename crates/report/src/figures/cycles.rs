@@ -1,4 +1,5 @@
-//! Figures 10 and 11: secant stiffness and loss factor of steady cycles on a cone, a ball and a worn ball of the same contact radius.
+//! Figures 10 and 11: secant stiffness and loss factor of steady cycles on a cone, a ball and a worn ball of the same
+//! contact radius.
 
 use super::POINTS;
 use super::protocols::{contact_of, sphere};

@@ -1,15 +1,16 @@
-//! Figures 12 and 13: Crossland's criterion below a ball that is moved back and forth, in partial slip and in gross slip.
+//! Figures 12 and 13: Crossland's criterion below a ball that is moved back and forth, in partial slip and in gross
+//! slip.
 
 use super::protocols::{contact_of, sphere};
-use crate::plot::{Axis, Section};
+use crate::plot::{Axis, ContactEdge, Peak, Section};
 use stickslip_mechanics::fatigue::{Criterion, Cycle};
 use stickslip_mechanics::subsurface::Side;
 use stickslip_mechanics::{Error, Move, Tangential};
 
 /// Amplitudes over that of gross slip.
 const AMPLITUDES: [(&str, f64); 2] = [
-    ("Figure 12: Crossland's criterion at 0.6 of gross slip, alpha = 0.3", 0.6),
-    ("Figure 13: Crossland's criterion at 1.2 of gross slip, alpha = 0.3", 1.2),
+    ("Figure 12: Crossland, alpha = 0.3, at 0.6 of gross slip", 0.6),
+    ("Figure 13: Crossland, alpha = 0.3, at 1.2 of gross slip", 1.2),
 ];
 const FRICTION: f64 = 0.5;
 const POISSON: f64 = 0.3;
@@ -20,6 +21,8 @@ const COLUMNS: usize = 121;
 const ROWS: usize = 41;
 /// Instants of each stroke.
 const INSTANTS: usize = 16;
+/// Values are the same to this.
+const ROUNDED: f64 = 1e-9;
 
 pub(super) fn sections() -> Result<[Section; 2], Error> {
     let [first, second] = AMPLITUDES.map(|(title, share)| section(title, share));
@@ -37,13 +40,18 @@ fn section(title: &str, share: f64) -> Result<Section, Error> {
     let places: Vec<[f64; 3]> = x.iter().flat_map(|x| z.iter().map(move |z| [a * x, 0.0, a * z])).collect();
     let paths = cycle.stress_paths(INSTANTS, (Side::Second, POISSON), &places, &|| true)?;
     let unit = contact.summary().unit_pressure();
-    let values = paths.iter().map(|path| Criterion::Crossland { alpha: 0.3 }.of(path).value / unit).collect();
+    let values: Vec<f64> = paths.iter().map(|path| Criterion::Crossland { alpha: 0.3 }.of(path).value / unit).collect();
+    let largest = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    // The cycle is symmetric, so that two places have the largest value, to round-off.
+    let worst = places.iter().zip(&values).filter(|(_, value)| **value > largest * (1.0 - ROUNDED));
     let axis = |name| Axis { name, unit: None };
     Ok(Section {
         title: title.to_owned(),
         x: (axis("x / a"), x),
         y: (axis("z / a"), z),
         downwards: true,
+        largest: Some(Peak { value: largest, places: worst.map(|(place, _)| (place[0] / a, place[2] / a)).collect() }),
+        edge: Some(ContactEdge { radius: 1.0, offset: Some(0.0), name: "edge of the contact" }),
         values: (axis("criterion / p_max"), values),
     })
 }

@@ -1,4 +1,5 @@
-//! Figure 15: how well a measured loop determines friction, stiffness and the compliance of the machine, over its amplitude.
+//! Figure 15: how well a measured loop determines friction, stiffness and the compliance of the machine, over its
+//! amplitude.
 
 use crate::plot::chart::{Chart, Series};
 use stickslip_measured::loops::{self, Known, Noise, Parameter, Record, Start, Task};

@@ -1,8 +1,9 @@
 //! Figures 1 to 5 of Kraft & Pohrt (2016), drawn from the exact solver, figures 6 to 9 about protocols, and figures 10
-//! and 11 about steady cycles, figures 12 and 13 about fretting fatigue, figure 14 about rough contacts, and figure 15 about measured loops: SVG, and CSV with the data.
+//! and 11 about steady cycles, figures 12 and 13 about fretting fatigue, figure 14 about rough contacts, and figure 15
+//! about measured loops: SVG, and CSV with the data.
 //!
-//! All are normalised — displacement by that of gross slip, force by mu F_N, stress by mu p_max, radius by a — so that they
-//! hold for every sphere, whatever the reference contact below is made of.
+//! All are normalised — displacement by that of gross slip, force by mu F_N, stress by mu p_max, radius by a — so
+//! that they hold for every sphere, whatever the reference contact below is made of.
 
 mod cycles;
 mod fretting;
@@ -99,9 +100,9 @@ impl NormalisedPath {
     }
 
     fn stress_unit(&self) -> f64 {
-        let figures = self.contact.summary();
+        let summary = self.contact.summary();
         // mu p_max with the largest pressure, that at the centre.
-        figures.gross_slip_force / figures.normal_force * self.contact.pressure(0.0)
+        summary.gross_slip_force / summary.normal_force * self.contact.pressure(0.0)
     }
 
     /// tau/(mu p_max) over r/a.
@@ -111,10 +112,10 @@ impl NormalisedPath {
 
     /// The friction bound mu p/(mu p_max) over r/a.
     fn bound(&self) -> Vec<(f64, f64)> {
-        let figures = self.contact.summary();
+        let summary = self.contact.summary();
         (0..=POINTS)
             .map(|index| index as f64 / POINTS as f64)
-            .map(|r| (r, self.contact.pressure(r * figures.contact_radius) / self.contact.pressure(0.0)))
+            .map(|r| (r, self.contact.pressure(r * summary.contact_radius) / self.contact.pressure(0.0)))
             .collect()
     }
 }
@@ -241,7 +242,8 @@ mod tests {
 
     use crate::plot::Picture as _;
 
-    /// All but those of protocols, which take long. `cargo run --release -- figures --out docs/figures` draws them anew.
+    /// All but those of protocols, which take long. `cargo run --release -- figures --out docs/figures` draws them
+    /// anew.
     #[test]
     fn the_figures_of_the_documentation_are_those_that_are_drawn() {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/figures");

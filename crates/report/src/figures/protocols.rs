@@ -37,8 +37,7 @@ fn power_law(exponent: f64) -> Result<Profile, Error> {
 
 /// mu p_max, Pa.
 fn unit(contact: &Contact) -> f64 {
-    let figures = contact.summary();
-    figures.unit_shear()
+    contact.summary().unit_shear()
 }
 
 fn designed(contact: &Contact, kind: AmplitudeLaw, reversals: usize) -> Result<Design, Error> {

@@ -6,7 +6,10 @@ use std::ops::Range;
 use plotters::coord::Shift;
 use plotters::prelude::*;
 
-use super::{Axis, Band, Colour, Panel, Picture, Plot, unit_prefix};
+use stickslip_mechanics::unit_prefix;
+
+use super::round_joins::RoundJoins;
+use super::{Axis, Band, Colour, Panel, Picture, Plot};
 
 /// Pixels of a plot. Twice the size shown on a page, so that curves and text are smooth.
 pub(super) const SIZE: (u32, u32) = (1520, 1000);
@@ -17,12 +20,15 @@ const MARGIN: f64 = 0.05;
 /// The part kept free above where there is a legend.
 const HEADROOM: f64 = 0.24;
 
+/// Radius of a measured point, pixels.
+const DOT: u32 = 4;
 /// Smaller extents are treated as zero.
 const SMALLEST: f64 = 1e-200;
 
-/// The divisor of the values of an axis, and its label.
+/// The divisor of the values of an axis, its unit with the prefix of that, and its label.
 pub(super) struct Scale {
     pub(super) unit: f64,
+    pub(super) symbol: String,
     pub(super) label: String,
 }
 
@@ -39,16 +45,18 @@ impl Colour {
 /// A picture as an SVG document.
 pub(super) fn svg(picture: &(impl Picture + ?Sized)) -> Result<Vec<u8>, Box<dyn Error>> {
     let mut text = String::new();
-    let area = SVGBackend::with_string(&mut text, SIZE).into_drawing_area();
+    let area = SVGBackend::with_string(&mut text, picture.size()).into_drawing_area();
     prepare(picture, &area)?;
     drop(area);
-    Ok(text.into_bytes())
+    // Else lines have mitres, which at a sharp corner are spikes.
+    Ok(text.replace("<polyline ", "<polyline stroke-linejoin=\"round\" ").into_bytes())
 }
 
 /// A picture as rows of pixels of three bytes.
 pub(super) fn pixels(picture: &(impl Picture + ?Sized)) -> Result<Vec<u8>, Box<dyn Error>> {
-    let mut pixels = vec![0; 3 * SIZE.0 as usize * SIZE.1 as usize];
-    let area = BitMapBackend::with_buffer(&mut pixels, SIZE).into_drawing_area();
+    let (width, height) = picture.size();
+    let mut pixels = vec![0; 3 * width as usize * height as usize];
+    let area = RoundJoins(BitMapBackend::with_buffer(&mut pixels, (width, height))).into_drawing_area();
     prepare(picture, &area)?;
     drop(area);
     Ok(pixels)
@@ -151,7 +159,9 @@ where
             .filter(|stretch| !stretch.is_empty())
         {
             let points = stretch.iter().map(|point| (point.0 / x.unit, point.1 / y.unit));
-            let drawn = if stretch.len() > 1 {
+            let drawn = if curve.dots {
+                axes.draw_series(points.map(|point| Circle::new(point, DOT, curve.colour.rgb().filled())))?
+            } else if stretch.len() > 1 {
                 axes.draw_series(LineSeries::new(points, style))?
             } else {
                 axes.draw_series(points.map(|point| Circle::new(point, 7, curve.colour.rgb().filled())))?
@@ -197,13 +207,49 @@ fn is_drawable(value: &f64) -> bool {
 }
 
 pub(super) fn scale(axis: &Axis, extent: &Range<f64>) -> Scale {
-    match axis.unit {
-        None => Scale { unit: 1.0, label: axis.name.to_owned() },
+    let largest = extent.start.abs().max(extent.end.abs());
+    let (divisor, symbol) = match axis.unit {
+        None => (1.0, String::new()),
+        // A prefix would be squared with its unit.
+        Some(unit) if unit.chars().nth(1) == Some('²') => {
+            let decade = if largest > SMALLEST { 3 * (largest.log10() / 3.0).floor() as i32 } else { 0 };
+            (
+                10_f64.powi(decade),
+                if decade == 0 { unit.to_owned() } else { format!("10{} {unit}", superscript(decade)) },
+            )
+        }
         Some(unit) => {
-            let (divisor, prefix) = unit_prefix(extent.start.abs().max(extent.end.abs()));
-            Scale { unit: divisor, label: format!("{} / {prefix}{unit}", axis.name) }
+            let (divisor, prefix) = unit_prefix(largest);
+            (divisor, format!("{prefix}{unit}"))
+        }
+    };
+    let label = match axis.unit {
+        None => axis.name.to_owned(),
+        Some(_) if symbol.contains(' ') => format!("{} / ({symbol})", axis.name),
+        Some(_) => format!("{} / {symbol}", axis.name),
+    };
+    Scale { unit: divisor, symbol, label }
+}
+
+impl Scale {
+    /// A value in SI units with four digits and the unit.
+    pub(super) fn shown(&self, value: f64) -> String {
+        let digits = format!("{:.3e}", value / self.unit).parse().unwrap_or(value);
+        match &self.symbol[..] {
+            "" => tick(&digits),
+            symbol if symbol.contains(' ') => format!("{} · {symbol}", tick(&digits)),
+            symbol => format!("{} {symbol}", tick(&digits)),
         }
     }
+}
+
+/// An exponent in raised digits.
+fn superscript(exponent: i32) -> String {
+    let raised = |digit: char| match digit.to_digit(10) {
+        Some(digit) => ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'][digit as usize],
+        None => '⁻',
+    };
+    exponent.to_string().chars().map(raised).collect()
 }
 
 /// A tick's label: a few digits, without a sign on zero.
@@ -216,5 +262,50 @@ pub(super) fn tick(value: &f64) -> String {
         rounded.trim_end_matches('0').trim_end_matches('.').to_owned()
     } else {
         format!("{value:.2e}")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Axis, Colour, Curve, Panel, Picture as _, Plot};
+    use super::SIZE;
+
+    /// Every second of many points is high, so that each corner is sharp.
+    fn comb(dots: bool) -> Plot {
+        let points = (0..400).map(|index| (f64::from(index), if index % 2 == 0 { -1.0 } else { 1.0 })).collect();
+        let curve = Curve { name: "", points, colour: Colour::Red, silent: true, dots };
+        let axis = || Axis { name: "x", unit: None };
+        Plot { title: "t".to_owned(), x: axis(), panels: vec![Panel { y: axis(), curves: vec![curve] }], bands: vec![] }
+    }
+
+    #[test]
+    fn nothing_is_drawn_beyond_the_data_at_a_sharp_corner() {
+        let file = comb(false).png().unwrap();
+        let mut reader = png::Decoder::new(std::io::Cursor::new(file)).read_info().unwrap();
+        let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
+        reader.next_frame(&mut pixels).unwrap();
+        let red = |pixel: &[u8]| pixel[0] > 150 && pixel[1] < 120 && pixel[2] < 120;
+        let rows: Vec<usize> = pixels
+            .chunks(3 * SIZE.0 as usize)
+            .enumerate()
+            .filter(|(_, row)| row.chunks(3).any(red))
+            .map(|(row, _)| row)
+            .collect();
+        let svg = String::from_utf8(comb(false).svg().unwrap()).unwrap();
+        let data = svg.split("<polyline").filter(|line| line.contains("#DC3220")).collect::<Vec<_>>();
+        assert!(data.len() == 1 && data[0].contains("stroke-linejoin=\"round\""), "{}", data.len());
+        let points = data[0].split("points=\"").nth(1).unwrap().split('"').next().unwrap();
+        let heights = points.split_whitespace().map(|point| point.split(',').nth(1).unwrap().parse::<usize>().unwrap());
+        let (top, bottom) = (heights.clone().min().unwrap(), heights.max().unwrap());
+        // Half the width of the line on both sides.
+        assert!(rows[0] + 3 >= top && *rows.last().unwrap() <= bottom + 3, "{} {top} {bottom}", rows[0]);
+    }
+
+    #[test]
+    fn measured_points_are_drawn_alone() {
+        let svg = String::from_utf8(comb(true).svg().unwrap()).unwrap();
+        assert_eq!(svg.matches("<circle").count(), 400);
+        let lines = svg.split("<polyline").skip(1).filter_map(|line| line.split('>').next());
+        assert_eq!(lines.filter(|line| line.contains("#DC3220")).count(), 0);
     }
 }

@@ -1,15 +1,19 @@
-//! Plots of a contact: panels of curves over one axis, with shaded bands, as SVG or PNG. The charts of figures and reports
-//! are in [`chart`].
+//! Plots of a contact: panels of curves over one axis, with shaded bands, as SVG or PNG. The charts of figures and
+//! reports are in [`chart`].
 //!
-//! Each axis is labelled with its quantity and unit; values are given in SI units and shown with a unit prefix that fits.
+//! Each axis is labelled with its quantity and unit; values are given in SI units and shown with a unit prefix that
+//! fits.
 
 pub mod chart;
+mod contour;
 mod draw;
 mod font;
 mod png;
+mod round_joins;
 mod section;
 
-pub use section::Section;
+pub use section::{ContactEdge, Peak, Section};
+pub use stickslip_mechanics::in_unit;
 
 use std::error::Error;
 
@@ -44,7 +48,7 @@ pub struct Panel {
     pub curves: Vec<Curve>,
 }
 
-/// A named line through points, in SI units; it is interrupted where a value is not finite.
+/// Named points in SI units, joined or alone; a line is interrupted where a value is not finite.
 pub struct Curve {
     /// Its name in the legend.
     pub name: &'static str,
@@ -54,6 +58,8 @@ pub struct Curve {
     pub colour: Colour,
     /// Not in the legend.
     pub silent: bool,
+    /// Points alone, as they were measured: between them nothing is known.
+    pub dots: bool,
 }
 
 /// A part of the abscissa with a shade behind it.
@@ -89,6 +95,11 @@ pub trait Picture {
     where
         DB::ErrorType: 'static;
 
+    /// Its width and height, pixels.
+    fn size(&self) -> (u32, u32) {
+        draw::SIZE
+    }
+
     /// It as an SVG document.
     ///
     /// # Errors
@@ -102,49 +113,39 @@ pub trait Picture {
     /// # Errors
     /// A sentence for the log, if the drawing fails.
     fn png(&self) -> Result<Vec<u8>, String> {
-        draw::pixels(self).and_then(|pixels| png::encode(&pixels, draw::SIZE)).map_err(|fault| fault.to_string())
+        draw::pixels(self).and_then(|pixels| png::encode(&pixels, self.size())).map_err(|fault| fault.to_string())
     }
 }
 
-/// A value in SI units as a reader would write it: at most six significant digits and a unit prefix that fits.
-///
-/// ```
-/// use stickslip_report::plot::in_unit;
-///
-/// assert_eq!(in_unit(1.6822578812860719e-9, "m"), "1.68226 nm");
-/// assert_eq!(in_unit(1.15e11, "Pa"), "115 GPa");
-/// assert_eq!(in_unit(0.0, "N"), "0 N");
-/// ```
-#[must_use]
-pub fn in_unit(value: f64, unit: &str) -> String {
-    let (factor, prefix) = unit_prefix(value.abs());
-    let digits: f64 = format!("{:.5e}", value / factor).parse().unwrap_or(value);
-    format!("{digits} {prefix}{unit}")
+/// One of the two kinds of pictures.
+pub enum Drawing {
+    /// Curves over one axis.
+    Plot(Plot),
+    /// A quantity over two coordinates.
+    Section(Section),
 }
 
-/// The power of a thousand to divide values by, and the prefix of the unit.
-fn unit_prefix(largest: f64) -> (f64, &'static str) {
-    const PREFIXES: [(i32, &str); 9] =
-        [(-12, "p"), (-9, "n"), (-6, "µ"), (-3, "m"), (0, ""), (3, "k"), (6, "M"), (9, "G"), (12, "T")];
-    let fits = |(exponent, _): &&(i32, &str)| largest >= 0.999_999 * 10_f64.powi(*exponent);
-    let (exponent, prefix) = if largest > 0.0 && largest.is_finite() {
-        PREFIXES.iter().rev().find(fits).copied().unwrap_or(PREFIXES[0])
-    } else {
-        (0, "")
-    };
-    (10_f64.powi(exponent), prefix)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::unit_prefix;
-
-    #[test]
-    fn a_unit_is_that_of_the_largest_value() {
-        for (largest, prefix) in
-            [(2.5e-5, "µ"), (1.0, ""), (0.999, "m"), (3.2e8, "M"), (1e3, "k"), (1e-15, "p"), (1e30, "T"), (0.0, "")]
-        {
-            assert_eq!(unit_prefix(largest).1, prefix, "{largest}");
+impl Picture for Drawing {
+    fn draw<DB: DrawingBackend>(&self, area: &DrawingArea<DB, Shift>) -> Result<(), Box<dyn Error>>
+    where
+        DB::ErrorType: 'static,
+    {
+        match self {
+            Drawing::Plot(plot) => plot.draw(area),
+            Drawing::Section(section) => section.draw(area),
         }
     }
+
+    fn size(&self) -> (u32, u32) {
+        match self {
+            Drawing::Plot(plot) => plot.size(),
+            Drawing::Section(section) => section.size(),
+        }
+    }
+}
+
+/// A value, in SI units, of an axis that shows these `values`, with four digits and the unit of that axis.
+#[must_use]
+pub fn on_axis(value: f64, axis: &Axis, values: impl Iterator<Item = f64>) -> String {
+    draw::scale(axis, &draw::extent(values)).shown(value)
 }

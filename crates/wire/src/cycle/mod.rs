@@ -17,26 +17,27 @@ use serde_with::{apply, skip_serializing_none};
 use utoipa::ToSchema;
 
 use stickslip_mechanics::{
-    Setup,
     cycle::{self, OscillatingLoad},
     range::{self, Range},
 };
 
-use crate::check::{Faults, JsonPath};
-use crate::definition::ContactDefinition;
+use crate::check::{Faults, JsonPath, Rejection};
+use crate::definition::{ContactDefinition, DefinedProfile, SharedSetup};
+use crate::document::Document;
 use crate::limits::{
     BEST_LOADS, CYCLE_AMPLITUDES, CYCLE_RADII, HARMONICS, Keywords, Limit, Numbers, ToleranceOr, limits,
 };
-use crate::parse::{Document, Rejection};
 use crate::path::NormalOscillation;
+use crate::prepare::Prepare;
 use crate::single_key::{not_null, single_key};
 use crate::stress::{Points, StressRequest};
 
-/// What cycles under a load that oscillates are held to if the request does not say: steps cost, and what is left falls
-/// with a low power of them.
+/// What cycles under a load that oscillates and oscillations of a mass are held to if the request does not say: steps
+/// cost, and what is left of the former falls with a low power of them.
 const DEFAULT_TOLERANCE: f64 = 1e-6;
 
-/// A contact that is moved back and forth for so long that every cycle is as the one before; the server keeps nothing of it.
+/// A contact that is moved back and forth for so long that every cycle is as the one before; the server keeps nothing
+/// of it.
 #[skip_serializing_none]
 #[apply(Option => #[serde(default, deserialize_with = "not_null")] #[schema(nullable = false)])]
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
@@ -55,18 +56,20 @@ pub struct CycleRequest {
     pub machine: Option<Machine>,
     /// Ask for the harmonics from the first to this one.
     pub harmonics: Option<usize>,
-    /// Ask for the friction work per area. Radii times amplitudes are at most 200 000. Not under a load that oscillates.
+    /// Ask for the friction work per area. Radii times amplitudes are at most 200 000. Not under a load that
+    /// oscillates.
     pub work_density: Option<WorkDensity>,
     /// The normal load oscillates too, about that of the contact.
     pub normal: Option<NormalOscillation>,
-    /// Tolerance of cycles under a load that oscillates, relative to μ F_N and to the work of that force, a pure number.
+    /// Tolerance of cycles under a load that oscillates, relative to μ F_N and to the work of that force, and of
+    /// `frequency_response`, relative to the amplitude; a pure number.
     pub tolerance: Option<f64>,
     /// Ask for the oscillations of a mass that hangs on the contact and is driven by a force.
     pub frequency_response: Option<FrequencyResponse>,
     /// Ask for the normal force under which each amplitude does most friction work; with at most 100 amplitudes.
     pub best_load: Option<BestLoadStudy>,
-    /// Repeat all amplitudes under many loads, whatever the preload of the contact: a fretting map. At constant load, with
-    /// `machine` alone. At most 100 000 cycles.
+    /// Repeat all amplitudes under many loads, whatever the preload of the contact: a fretting map. At constant load,
+    /// with `machine` alone. At most 100 000 cycles.
     pub map: Option<FrettingMap>,
 }
 limits!(CycleRequest { harmonics: HARMONICS, tolerance: ToleranceOr(DEFAULT_TOLERANCE) });
@@ -250,8 +253,8 @@ pub struct CycleTask {
     pub density: Option<Points>,
     /// A load that oscillates, with the tolerance.
     pub normal: Option<(OscillatingLoad, f64)>,
-    /// A mass on the contact.
-    pub response: Option<FrequencyResponse>,
+    /// A mass on the contact, with the tolerance.
+    pub response: Option<(FrequencyResponse, f64)>,
     /// The best load of each amplitude.
     pub best_load: Option<BestLoadStudy>,
     /// The loads of a fretting map.
@@ -334,13 +337,17 @@ impl CycleTask {
 }
 
 impl Document for CycleRequest {
-    type Checked = (ContactDefinition, Setup, CycleTask);
+    type Checked = (ContactDefinition, SharedSetup, CycleTask);
 
-    fn check(self) -> Result<Self::Checked, Rejection> {
+    fn profile(&self) -> Option<DefinedProfile<'_>> {
+        Some(self.contact.defined_profile("/contact/profile"))
+    }
+
+    fn check_with(self, profiles: &dyn Prepare) -> Result<Self::Checked, Rejection> {
         let mut faults = Faults::default();
         let CycleRequest { contact, drive, machine, harmonics, work_density, normal, tolerance, .. } = self;
         let (response, best_load, map) = (self.frequency_response, self.best_load, self.map);
-        let setup = contact.check(JsonPath::Root.member("contact"), &mut faults);
+        let setup = contact.check(JsonPath::Root.member("contact"), profiles, &mut faults);
         let stiffness = machine.map(|machine| machine.stiffness);
         let options = CycleOptions { drive, stiffness, harmonics, density: work_density };
         let task = options.check(CyclePlaces::BODY, &mut faults);
@@ -377,7 +384,9 @@ impl Document for CycleRequest {
         if task.as_ref().is_some_and(|task| task.radii() > 0) {
             faults.needs_stress_field(setup.as_ref(), at("work_density"));
         }
-        let normal = load.map(|load| (load, tolerance.unwrap_or(DEFAULT_TOLERANCE)));
+        let tolerance = tolerance.unwrap_or(DEFAULT_TOLERANCE);
+        let normal = load.map(|load| (load, tolerance));
+        let response = response.map(|response| (response, tolerance));
         let task = task.map(|task| CycleTask { normal, response, best_load, map, ..task });
         faults.done(setup.zip(task).map(|(setup, task)| (contact, setup, task)))
     }

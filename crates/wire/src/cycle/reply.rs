@@ -53,8 +53,8 @@ pub struct SteadyCycle {
     /// Dissipated energy over 2π times the largest elastic energy, a pure number; `null` where the indenter slides and
     /// nothing is stored, as without friction and without load.
     pub loss_factor: Option<f64>,
-    /// Displacement at zero force over the amplitude of the indenter, a pure number; `null` where it moves and there is no
-    /// force, as without friction and without load.
+    /// Displacement at zero force over the amplitude of the indenter, a pure number; `null` where it moves and there is
+    /// no force, as without friction and without load.
     pub sliding_ratio: Option<f64>,
     /// Radius of the part that never slips, m; zero in gross slip.
     pub stick_radius: f64,
@@ -82,8 +82,8 @@ pub struct Harmonic {
     pub order: usize,
     /// Amplitude of the cosine, in the unit of the answer.
     pub in_phase: f64,
-    /// Amplitude of the sine, in the unit of the answer: at the fundamental at most zero for a force, at least zero for a
-    /// displacement.
+    /// Amplitude of the sine, in the unit of the answer: at the fundamental at most zero for a force, at least zero for
+    /// a displacement.
     pub quadrature: f64,
 }
 

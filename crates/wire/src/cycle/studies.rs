@@ -46,7 +46,8 @@ limits!(BestLoadStudy { points: CURVE_POINTS });
 pub struct Resonance {
     /// Frequency of small oscillations, Hz.
     pub natural_frequency: f64,
-    /// All oscillations that harmonic balance finds, up to three at a frequency: by frequency, the smallest amplitude first.
+    /// The steady oscillation at each frequency, in the order of the frequencies. There is one only: the contact's
+    /// friction lets no two motions of a mass draw apart.
     pub points: Vec<ResonancePoint>,
 }
 
@@ -55,11 +56,19 @@ pub struct Resonance {
 pub struct ResonancePoint {
     /// Frequency, Hz.
     pub frequency: f64,
-    /// Amplitude of the displacement, m.
+    /// Amplitude of the first harmonic of the displacement, m.
     pub amplitude: f64,
-    /// By how much the displacement lags behind the force, degrees.
+    /// Estimated error of the amplitude, m; over the amplitude it is that of the phase in rad. `null` where the steady
+    /// oscillation was not found: all else is then what the first harmonic of the force alone would make of it, and may
+    /// be far off.
+    pub amplitude_error: Option<f64>,
+    /// By how much the first harmonic of the displacement lags behind the force, degrees.
     pub phase: f64,
-    /// Third harmonic of the contact's force over the first, a pure number: what harmonic balance leaves out.
+    /// Half the range of the displacement, m: more or less than the amplitude, by what the higher harmonics add.
+    pub peak: f64,
+    /// Estimated error of the peak, m; `null` likewise.
+    pub peak_error: Option<f64>,
+    /// Third harmonic of the contact's force over the first, a pure number.
     pub third_harmonic: f64,
 }
 

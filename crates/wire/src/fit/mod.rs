@@ -13,13 +13,13 @@ use serde_json::{Value, json};
 use serde_with::{apply, skip_serializing_none};
 use utoipa::ToSchema;
 
-use stickslip_mechanics::Setup;
 use stickslip_mechanics::range::{Quantity, Range};
 
-use crate::check::{Faults, JsonPath};
-use crate::definition::ContactDefinition;
+use crate::check::{Faults, JsonPath, Rejection};
+use crate::definition::{ContactDefinition, DefinedProfile, SharedSetup};
+use crate::document::Document;
 use crate::limits::{FIT_LOOPS, Items, Keywords, Limit, limits};
-use crate::parse::{Document, Rejection};
+use crate::prepare::Prepare;
 use crate::single_key::not_null;
 
 /// The standard deviation of a measured force.
@@ -87,7 +87,7 @@ pub struct FitTask {
     /// The contact as it was defined.
     pub definition: ContactDefinition,
     /// Its checked setup.
-    pub setup: Setup,
+    pub setup: SharedSetup,
     /// The loops.
     pub loops: Vec<LoopRecord>,
     /// What is to be determined.
@@ -111,9 +111,13 @@ impl FitTask {
 impl Document for FitRequest {
     type Checked = FitTask;
 
-    fn check(self) -> Result<FitTask, Rejection> {
+    fn profile(&self) -> Option<DefinedProfile<'_>> {
+        Some(self.contact.defined_profile("/contact/profile"))
+    }
+
+    fn check_with(self, profiles: &dyn Prepare) -> Result<FitTask, Rejection> {
         let (mut faults, root) = (Faults::default(), JsonPath::Root);
-        let setup = self.contact.check(root.member("contact"), &mut faults);
+        let setup = self.contact.check(root.member("contact"), profiles, &mut faults);
         self.check_members(root, &mut faults);
         let drifts = self.free.contains(&FitParameter::Drift);
         let units = self.units.unwrap_or_default();

@@ -82,7 +82,8 @@ parameters! {
     EStar e_star range::E_STAR, "Reduced modulus E*, Pa.";
     Radius radius range::RADIUS, "Radius of a sphere, m.";
     MachineCompliance machine_compliance COMPLIANCE, "Compliance of the machine in series with the contact, m/N.";
-    DisplacementOffset displacement_offset range::DISPLACEMENT, "Measured displacement at which the contact is not displaced, m.";
+    DisplacementOffset displacement_offset range::DISPLACEMENT, "Measured displacement at which the contact is not \
+        displaced, m.";
     ForceOffset force_offset range::FORCE, "Measured force at which there is none, N.";
     Drift drift DRIFT, "How fast the zero of the displacement wanders, m/s.";
 }

@@ -39,8 +39,8 @@ pub struct FitEstimate {
     pub value: f64,
     /// Its standard error, if the fit were linear, in the SI unit of the quantity; `null` where it is not determined.
     pub standard_error: Option<f64>,
-    /// Both ends of the interval that contains it with a probability of 95 %, by profile likelihood, in the SI unit of the
-    /// quantity; `null` where there is no end.
+    /// Both ends of the interval that contains it with a probability of 95 %, by profile likelihood, in the SI unit of
+    /// the quantity; `null` where there is no end.
     pub interval: [Option<f64>; 2],
     /// Whether the value is at the end of its range; left out if not.
     pub at_bound: bool,

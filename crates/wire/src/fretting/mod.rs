@@ -8,24 +8,28 @@ use serde::{Deserialize, Serialize};
 use serde_with::{apply, skip_serializing_none};
 use utoipa::ToSchema;
 
-use stickslip_mechanics::fatigue::Criterion;
+use stickslip_mechanics::fatigue::{self, Criterion, Measure};
 use stickslip_mechanics::range::{self, Quantity, Range};
-use stickslip_mechanics::{Setup, subsurface::Side};
+use stickslip_mechanics::subsurface::Side;
 
-use crate::check::{Faults, JsonPath};
-use crate::definition::ContactDefinition;
+use crate::check::{Faults, JsonPath, Rejection};
+use crate::definition::{BodyName, ContactDefinition, DefinedProfile, SharedSetup};
+use crate::document::Document;
 use crate::limits::{
     Counts, FRETTING_MOVES, Keywords, Limit, Limited, STRESS_PATHS, SUBSURFACE_POINTS, ToleranceOr, Triples, limits,
 };
-use crate::parse::{Document, Rejection};
 use crate::path::{PHASE, Path, Plan};
+use crate::prepare::Prepare;
 use crate::single_key::not_null;
-use crate::subsurface::{BodyName, Places, SubsurfaceLine, SubsurfacePlane, SubsurfaceRequest, SubsurfaceSurface};
+use crate::subsurface::{Places, SubsurfaceLine, SubsurfacePlane, SubsurfaceRequest, SubsurfaceSurface};
 
-/// Change of a criterion between two numbers of instants that is accepted if the request does not say.
+/// Error of a criterion that is accepted if the request does not say, at given places and in a search.
 const DEFAULT_TOLERANCE: f64 = 1e-4;
+const SEARCH_TOLERANCE: f64 = 1e-3;
 
-/// A contact, a path that closes, and the fatigue criteria that its steady cycle is rated by; the server keeps nothing of it.
+/// A contact, a path that closes, and the fatigue criteria that its steady cycle is rated by; the server keeps nothing
+/// of it. Without `points`, `line`, `plane` and `surface` the largest value of each criterion in the body is searched
+/// for.
 #[skip_serializing_none]
 #[apply(Option => #[serde(default, deserialize_with = "not_null")] #[schema(nullable = false)])]
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
@@ -54,14 +58,15 @@ pub struct FrettingRequest {
     pub plane: Option<SubsurfacePlane>,
     /// Where: a grid on the surface.
     pub surface: Option<SubsurfaceSurface>,
-    /// A normal stress of the body along x that goes with the cycle, mean + amplitude · cos(th + phase), where th grows from 0 to
-    /// 360 degrees, by as much in each move.
+    /// A normal stress of the body along x that goes with the cycle, mean + amplitude · cos(th + phase), where th
+    /// grows from 0 to 360 degrees, by as much in each move.
     pub bulk: Option<BulkCycle>,
     /// The criteria.
     pub criteria: Criteria,
     /// Indices of places whose stresses over the cycle are wanted too.
     pub stress_paths: Option<Vec<usize>>,
-    /// Change of a criterion, relative to its largest value, below which no more instants are taken; a pure number.
+    /// Error of a criterion, relative to its largest value, that is accepted; a pure number. In a search it is 1e-3 if
+    /// left out.
     pub tolerance: Option<f64>,
 }
 limits!(FrettingRequest {
@@ -208,10 +213,10 @@ pub struct FrettingTask {
     pub plan: Plan,
     /// The body and its Poisson's ratio.
     pub body: (Side, f64),
-    /// Where.
+    /// Where; none for a search.
     pub places: Places,
-    /// The bulk stress: mean and amplitude, Pa, and phase, rad.
-    pub bulk: Option<[f64; 3]>,
+    /// The bulk stress.
+    pub bulk: Option<fatigue::Bulk>,
     /// The criteria of stress that are asked for, in the order of the reply, with their limits.
     pub criteria: [Option<(Criterion, Option<f64>)>; 5],
     /// Ruiz's parameters, with the limit of the first.
@@ -220,27 +225,56 @@ pub struct FrettingTask {
     pub friction_work: Option<SurfaceCriterion>,
     /// Places whose stresses over the cycle are asked for.
     pub stress_paths: Vec<usize>,
-    /// The change that is accepted.
+    /// The error that is accepted.
     pub tolerance: f64,
 }
 
 impl FrettingTask {
-    /// Whether it is for one criterion over a grid in a plane, which can be drawn.
+    /// Whether the body is searched for the largest values.
     #[must_use]
-    pub fn is_section(&self) -> bool {
-        let surface = [self.ruiz.is_some(), self.friction_work.is_some()];
-        let asked = self.criteria.iter().map(Option::is_some).chain(surface);
-        asked.filter(|asked| *asked).count() == 1 && matches!(self.places, Places::Grid(_))
+    pub fn searches(&self) -> bool {
+        self.places.count() == 0
+    }
+
+    /// How many criteria search for a critical plane.
+    #[must_use]
+    pub fn planes(&self) -> usize {
+        let has_plane = |criterion: &Criterion| {
+            use Criterion::{FatemiSocie, Findley, SmithWatsonTopper};
+            matches!(criterion, Findley { .. } | SmithWatsonTopper { .. } | FatemiSocie { .. })
+        };
+        self.criteria.iter().flatten().filter(|(criterion, _)| has_plane(criterion)).count()
+    }
+
+    /// What is computed, with limits, by the order of the reply.
+    #[must_use]
+    pub fn measures(&self) -> [Option<(Measure, Option<f64>)>; 8] {
+        let stress = |index: usize| self.criteria[index].map(|(criterion, limit)| (Measure::Stress(criterion), limit));
+        let surface = |asked: Option<SurfaceCriterion>, measure| asked.map(|asked| (measure, asked.limit));
+        [
+            stress(0),
+            stress(1),
+            stress(2),
+            stress(3),
+            stress(4),
+            surface(self.ruiz, Measure::Ruiz),
+            self.ruiz.map(|_| (Measure::RuizTension, None)),
+            surface(self.friction_work, Measure::FrictionWork),
+        ]
     }
 }
 
 impl Document for FrettingRequest {
-    type Checked = (ContactDefinition, Setup, FrettingTask);
+    type Checked = (ContactDefinition, SharedSetup, FrettingTask);
 
-    fn check(self) -> Result<Self::Checked, Rejection> {
+    fn profile(&self) -> Option<DefinedProfile<'_>> {
+        Some(self.contact.defined_profile("/contact/profile"))
+    }
+
+    fn check_with(self, profiles: &dyn Prepare) -> Result<Self::Checked, Rejection> {
         let mut faults = Faults::default();
         let at = |name| JsonPath::Root.member(name);
-        let setup = self.contact.check(at("contact"), &mut faults);
+        let setup = self.contact.check(at("contact"), profiles, &mut faults);
         faults.needs_stress_field(setup.as_ref(), at("contact").member("profile"));
         let plan = self.path.check(at("path"), &mut faults);
         if let Some(plan) = &plan {
@@ -252,19 +286,25 @@ impl Document for FrettingRequest {
         Limit::check(&ToleranceOr(DEFAULT_TOLERANCE), &self.tolerance, at("tolerance"), &mut faults);
         let bulk = self.bulk.map(|bulk| {
             bulk.check_members(at("bulk"), &mut faults);
-            [bulk.mean, bulk.amplitude, bulk.phase.map(f64::to_radians)].map(|part| part.unwrap_or(0.0))
+            let [mean, amplitude, phase] = [bulk.mean, bulk.amplitude, bulk.phase].map(|part| part.unwrap_or(0.0));
+            fatigue::Bulk { mean, amplitude, phase: phase.to_radians() }
         });
+        let searches = self.points.is_none() && self.line.is_none() && self.plane.is_none() && self.surface.is_none();
         let places = SubsurfaceRequest {
             body: self.body,
             poisson_ratio: self.poisson_ratio,
-            points: self.points,
+            // Any place: a search has none.
+            points: if searches { Some(vec![[0.0; 3]]) } else { self.points },
             line: self.line,
             plane: self.plane,
             surface: self.surface,
             fields: None,
             bulk: None,
         };
-        let asked = places.at(&self.contact, JsonPath::Root, &mut faults);
+        let mut asked = places.at(&self.contact, JsonPath::Root, &mut faults);
+        if let Some(asked) = asked.as_mut().filter(|_| searches) {
+            asked.places = Places::Points(Vec::new());
+        }
         let youngs_modulus = self.contact.material.youngs_modulus(self.body);
         let poisson = asked.as_ref().map_or(0.0, |asked| asked.poisson_ratio);
         let criteria = self.criteria.check((youngs_modulus, poisson), at("criteria"), &mut faults);
@@ -273,7 +313,10 @@ impl Document for FrettingRequest {
         if let Some(asked) = &asked {
             self.criteria.check_surface(&asked.places, at("criteria"), &mut faults);
             for (index, place) in stress_paths.iter().enumerate() {
-                if *place >= asked.places.count() {
+                if searches {
+                    let detail = "a search finds its places itself: name them, or leave `stress_paths` out";
+                    faults.add(at("stress_paths").index(index), detail);
+                } else if *place >= asked.places.count() {
                     let most = asked.places.count().saturating_sub(1);
                     let detail = format_args!("there is no place {place}: the last is {most}");
                     faults.add(at("stress_paths").index(index), detail);
@@ -289,7 +332,7 @@ impl Document for FrettingRequest {
             ruiz: self.criteria.ruiz,
             friction_work: self.criteria.friction_work,
             stress_paths,
-            tolerance: self.tolerance.unwrap_or(DEFAULT_TOLERANCE),
+            tolerance: self.tolerance.unwrap_or(if searches { SEARCH_TOLERANCE } else { DEFAULT_TOLERANCE }),
         });
         faults.done(setup.zip(task).map(|(setup, task)| (self.contact, setup, task)))
     }
@@ -315,7 +358,7 @@ impl Criteria {
                     faults.add(place.member("youngs_modulus"), detail);
                 }
                 (None, None) => {
-                    let detail = "give the body's `youngs_modulus`: reduced moduli do not tell it";
+                    let detail = "give the body's `youngs_modulus`: this criterion needs the moduli of both bodies";
                     faults.add(place.member("youngs_modulus"), detail);
                 }
                 _ => {}

@@ -36,9 +36,9 @@ pub struct FrettingReply {
     pub friction_work: Option<Rating>,
     /// The stresses over the cycle at the places of `stress_paths`.
     pub stress_paths: Option<Vec<StressPath>>,
-    /// Instants of each move that the values are of.
+    /// Instants of the move that took most, at the places of the largest values.
     pub instants: usize,
-    /// Change of the largest values from half as many instants, relative to them, a pure number.
+    /// The largest of the errors of the largest values, relative to these, a pure number.
     pub change: f64,
     /// Solver, errors and time.
     pub accuracy: Accuracy,
@@ -50,11 +50,13 @@ pub struct FrettingReply {
 #[apply(Option => #[serde(default, skip_serializing_if = "Option::is_none")] #[schema(nullable = false)])]
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Rating {
-    /// Its values, place by place, in the unit of the criterion; `null` where a stress is infinite.
+    /// Its values, place by place, in the unit of the criterion; `null` where a stress is infinite, and below the
+    /// surface for a quantity of the surface.
     pub values: Vec<Option<f64>>,
-    /// The largest of them.
+    /// The largest of those that are not `null`; in a search left out if there is no largest value in the body.
     pub largest: Option<Largest>,
-    /// The limit over the largest value, a pure number, if a limit was given: below 1 the criterion foretells a crack.
+    /// The limit over the largest value, a pure number, if a limit was given: below 1 the criterion predicts crack
+    /// growth. Left out where the value is nowhere positive, and where it is infinite somewhere.
     pub margin: Option<f64>,
 }
 
@@ -64,6 +66,9 @@ pub struct Rating {
 pub struct Largest {
     /// The value, in the unit of the criterion.
     pub value: f64,
+    /// The estimated distance of the value from the largest over the cycle and, in a search, over the body, in the unit
+    /// of the criterion.
+    pub error: f64,
     /// Its place: x, y, z, m.
     pub point: [f64; 3],
     /// Unit normal of the critical plane along x, y and z, pure numbers, if the criterion has one.

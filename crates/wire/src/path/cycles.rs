@@ -30,9 +30,10 @@ const DEFAULT_POINTS: usize = 64;
 /// Phase of the oscillation of the load.
 pub(crate) const PHASE: Range = Range { quantity: Quantity::Number, unit: "degrees", min: -360.0, max: 360.0 };
 
-/// Equal cycles: exactly one of `displacement` and `force`, the amplitude. The path has 1 + n k moves, at most 100 000, for n
-/// cycles of k moves: the first from the present state to the first turn, then k each cycle, which ends at that turn again. Under
-/// a constant load the difference of the dissipated energies of two states k moves apart is the friction work of a cycle.
+/// Equal cycles: exactly one of `displacement` and `force`, the amplitude. The path has 1 + n k moves, at most 100 000,
+/// for n cycles of k moves: the first from the present state to the first turn, then k each cycle, which ends at that
+/// turn again. Under a constant load the difference of the dissipated energies of two states k moves apart is the
+/// friction work of a cycle.
 #[skip_serializing_none]
 #[apply(Option => #[serde(default, deserialize_with = "not_null")] #[schema(nullable = false)])]
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
@@ -48,8 +49,9 @@ pub struct CyclicPath {
     /// The first turn.
     #[serde(default)]
     pub start: FirstTurn,
-    /// Moves per cycle k, an even number: the points of mean + A cos(2π t), or mean - A cos(2π t) from the lower turn, at t = j/k.
-    /// Left out, under a constant load 2 (the turns; more points add recorded states between them), else 64.
+    /// Moves per cycle k, an even number: the points of mean + A cos(2π t), or mean - A cos(2π t) from the lower
+    /// turn, at t = j/k. Left out, under a constant load 2 (the turns; more points add recorded states between them),
+    /// else 64.
     pub points_per_cycle: Option<usize>,
     /// The value in the middle between both turns, m or N; left out, zero.
     pub mean: Option<f64>,
@@ -75,8 +77,9 @@ pub enum FirstTurn {
     Down,
 }
 
-/// An oscillation of the load: its value at the beginning + amplitude cos(2π t + phase), with the t of the cycles. Exactly one of `normal_force` and `indentation`, the amplitude. Moves in displacement and indentation are exact; those
-/// with a force are followed to the tolerance.
+/// An oscillation of the load: its value at the beginning + amplitude cos(2π t + phase), with the t of the cycles.
+/// Exactly one of `normal_force` and `indentation`, the amplitude. Moves in displacement and indentation are exact;
+/// those with a force are followed to the tolerance.
 #[skip_serializing_none]
 #[apply(Option => #[serde(default, deserialize_with = "not_null")] #[schema(nullable = false)])]
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
@@ -225,8 +228,8 @@ impl Cycles {
         Ok(moves)
     }
 
-    /// The time within its cycle at which a move ends, over that of the cycle, from -1/2 to 1/2: the same bits in each cycle, and
-    /// with the opposite sign at the same distance from the first turn.
+    /// The time within its cycle at which a move ends, over that of the cycle, from -1/2 to 1/2: the same bits in each
+    /// cycle, and with the opposite sign at the same distance from the first turn.
     fn turns(&self, index: usize) -> f64 {
         let period = self.moves_per_cycle as f64;
         let within = index as f64 % period;

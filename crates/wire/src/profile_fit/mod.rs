@@ -15,10 +15,11 @@ use utoipa::ToSchema;
 use stickslip_mechanics::range::{Quantity, Range};
 use stickslip_mechanics::{Elasticity, Preload as Load, range};
 
-use crate::check::{Faults, JsonPath};
+use crate::check::{Faults, JsonPath, Rejection};
 use crate::definition::{Material, Preload};
+use crate::document::Document;
 use crate::limits::{SCAN_KNOTS, limits};
-use crate::parse::{Document, Rejection};
+use crate::prepare::Prepare;
 use crate::single_key::{not_null, single_key};
 
 /// The noise of a height that a scan may be said to have.
@@ -228,7 +229,7 @@ pub struct ProfileFitTask {
 impl Document for ProfileFitRequest {
     type Checked = ProfileFitTask;
 
-    fn check(self) -> Result<ProfileFitTask, Rejection> {
+    fn check_with(self, _: &dyn Prepare) -> Result<ProfileFitTask, Rejection> {
         let (mut faults, root) = (Faults::default(), JsonPath::Root);
         let units = self.units.unwrap_or_default();
         let units = [units.lateral, units.height].map(|unit| unit.unwrap_or_default().metres());

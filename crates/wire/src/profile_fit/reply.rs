@@ -30,7 +30,8 @@ pub struct ProfileFitReply {
     pub left_out: ColumnPair,
     /// The profile that was fitted, as the table of `profile`.
     pub used: ColumnPair,
-    /// The least g′(x)/x over its mean, a pure number: 1 for a ball, 0 where g is about to fall or, at a flat end, constant.
+    /// The least g′(x)/x over its mean, a pure number: 1 for a ball, 0 where g is about to fall or, at a flat end,
+    /// constant.
     pub g_margin: f64,
     /// The contact under `load`.
     pub contact: Option<ContactEstimate>,

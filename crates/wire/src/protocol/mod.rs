@@ -8,15 +8,13 @@ use utoipa::ToSchema;
 use uuid::Uuid;
 
 use stickslip_mechanics::protocol::{AmplitudeLaw, PathEnd};
-use stickslip_mechanics::{
-    Setup,
-    range::{DISPLACEMENT, Quantity, Range},
-};
+use stickslip_mechanics::range::{DISPLACEMENT, Quantity, Range};
 
-use super::check::{Faults, JsonPath};
-use super::definition::ContactDefinition;
+use super::check::{Faults, JsonPath, Rejection};
+use super::definition::{ContactDefinition, DefinedProfile, SharedSetup};
+use super::document::Document;
 use super::limits::{PROTOCOL_REVERSALS, limits};
-use super::parse::{Document, Rejection};
+use super::prepare::Prepare;
 use super::simulate::Steps;
 use super::single_key::{not_null, single_key};
 
@@ -25,8 +23,8 @@ pub use reply::{
     RobustnessReply, StartReply,
 };
 
-/// A contact, and how it is to be moved so that little shear stress remains. The number of reversals is given, or follows
-/// from a target.
+/// A contact, and how it is to be moved so that little shear stress remains. The number of reversals is given, or
+/// follows from a target.
 #[skip_serializing_none]
 #[apply(Option => #[serde(default, deserialize_with = "not_null")] #[schema(nullable = false)])]
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
@@ -41,8 +39,8 @@ pub struct ProtocolRequest {
     pub contact: Option<ContactDefinition>,
     /// Number of reversals N_R; this or `target`.
     pub reversals: Option<usize>,
-    /// The largest |τ|/(μ p_max) that may remain, a pure number (over the mean pressure where the largest is infinite): the
-    /// smallest number of reversals that reaches it is found.
+    /// The largest |τ|/(μ p_max) that may remain, a pure number (over the mean pressure where the largest is
+    /// infinite): the smallest number of reversals that reaches it is found.
     pub target: Option<f64>,
     /// The law of the amplitudes.
     #[serde(default)]
@@ -65,8 +63,8 @@ pub struct ProtocolRequest {
 pub struct RelaxRequest {
     /// Number of reversals N_R, at the most; this or `target`. The path begins with a stroke more.
     pub reversals: Option<usize>,
-    /// The largest |τ|/(μ p_max) that may remain, a pure number (over the mean pressure where the largest is infinite): the
-    /// smallest number of reversals that reaches it is found.
+    /// The largest |τ|/(μ p_max) that may remain, a pure number (over the mean pressure where the largest is
+    /// infinite): the smallest number of reversals that reaches it is found.
     pub target: Option<f64>,
     /// The law of the amplitudes.
     #[serde(default)]
@@ -127,8 +125,8 @@ pub struct Robustness {
     /// Standard deviation of each displacement, relative to itself, a pure number; normally distributed.
     #[serde(default)]
     pub amplitude_error: f64,
-    /// The fraction that the coefficient of friction may be off either way, a pure number; evenly distributed. Not for a
-    /// start from a contact on the server, whose history belongs to its own coefficient.
+    /// The fraction that the coefficient of friction may be off either way, a pure number; evenly distributed. Not for
+    /// a start from a contact on the server, whose history belongs to its own coefficient.
     #[serde(default)]
     pub friction_error: f64,
     /// How many times it is tried.
@@ -209,7 +207,7 @@ pub struct ProtocolTask {
 #[derive(Clone, Debug)]
 pub enum ProtocolSubject {
     /// One that has never moved, and the displacement to begin with.
-    Virgin(Box<(ContactDefinition, Setup)>, Option<f64>),
+    Virgin(Box<(ContactDefinition, SharedSetup)>, Option<f64>),
     /// One on the server, with the definition in the request, if there is one.
     Living(Uuid, Option<Box<ContactDefinition>>),
 }
@@ -217,10 +215,14 @@ pub enum ProtocolSubject {
 impl Document for ProtocolRequest {
     type Checked = (ProtocolSubject, ProtocolTask);
 
-    fn check(self) -> Result<Self::Checked, Rejection> {
+    fn profile(&self) -> Option<DefinedProfile<'_>> {
+        self.contact.as_ref().map(|contact| contact.defined_profile("/contact/profile"))
+    }
+
+    fn check_with(self, profiles: &dyn Prepare) -> Result<Self::Checked, Rejection> {
         let mut faults = Faults::default();
         let at = |name| JsonPath::Root.member(name);
-        let setup = self.contact.as_ref().and_then(|contact| contact.check(at("contact"), &mut faults));
+        let setup = self.contact.as_ref().and_then(|contact| contact.check(at("contact"), profiles, &mut faults));
         // Protocols are judged by the stress that they leave.
         faults.needs_stress_field(setup.as_ref(), at("contact").member("profile"));
         let subject = match (self.start, self.contact, setup) {
@@ -266,7 +268,7 @@ pub struct Relaxation {
 impl Document for RelaxRequest {
     type Checked = Relaxation;
 
-    fn check(self) -> Result<Relaxation, Rejection> {
+    fn check_with(self, _: &dyn Prepare) -> Result<Relaxation, Rejection> {
         let mut faults = Faults::default();
         let aim = AimMembers { reversals: self.reversals, target: self.target }.check(&mut faults);
         let task = aim.map(|aim| ProtocolTask { aim, kind: self.kind, end: self.end, robustness: None });

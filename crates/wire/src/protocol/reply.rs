@@ -112,11 +112,11 @@ pub enum PressureUnit {
 /// How far a path may be from the optimum.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Gap {
-    /// By how much the smallest of the alternating extrema falls short of the largest, relative to it, a pure number; `null`
-    /// where they are not all meant to be equal: with a prescribed end, or a start from a history.
+    /// By how much the smallest of the alternating extrema falls short of the largest, relative to it, a pure number;
+    /// `null` where they are not all meant to be equal: with a prescribed end, or a start from a history.
     pub spread: Option<f64>,
-    /// What some point of the contact carries after gross slip and so many reversals, whatever they are, Pa: proven. `null` for
-    /// other starts, and at a vertical edge.
+    /// What some point of the contact carries after gross slip and so many reversals, whatever they are, Pa: proven.
+    /// `null` for other starts, and at a vertical edge.
     pub lower_bound: Option<f64>,
     /// 1 - `lower_bound`/`largest`, a pure number: the largest gap that is not ruled out by proof.
     pub proven: Option<f64>,
@@ -124,8 +124,8 @@ pub struct Gap {
     pub method: String,
 }
 
-/// What remains when a protocol is not followed exactly: of the largest stress over `judged.unit`, pure numbers. `null` where
-/// it is infinite.
+/// What remains when a protocol is not followed exactly: of the largest stress over `judged.unit`, pure numbers. `null`
+/// where it is infinite.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct RobustnessReply {
     /// How many times it was tried.

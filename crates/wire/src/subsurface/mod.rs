@@ -10,15 +10,17 @@ use utoipa::ToSchema;
 
 use stickslip_mechanics::{self as mechanics, range, subsurface::Side};
 
-use crate::check::{Faults, JsonPath};
-use crate::definition::{Body, ContactDefinition, Material};
+use crate::check::{Faults, JsonPath, Rejection};
+use crate::definition::{Body, BodyName, ContactDefinition};
+use crate::document::Document;
 use crate::limits::{SUBSURFACE_POINTS, Triples, limits};
-use crate::parse::{Document, Rejection};
+use crate::prepare::Prepare;
 use crate::reply::{Accuracy, Warning};
 use crate::single_key::not_null;
 
-/// The stress in one of the bodies, tension positive: x along the motion of the first body, which carries the profile, z into
-/// the body asked for, the origin on the axis of the contact. Exactly one of `points`, `line`, `plane` and `surface` says where.
+/// The stress in one of the bodies, tension positive: x along the motion of the first body, which carries the profile,
+/// z into the body asked for, the origin on the axis of the contact. Exactly one of `points`, `line`, `plane` and
+/// `surface` says where.
 #[skip_serializing_none]
 #[apply(Option => #[serde(default, deserialize_with = "not_null")] #[schema(nullable = false)])]
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
@@ -46,16 +48,6 @@ pub struct SubsurfaceRequest {
     pub bulk: Option<Bulk>,
 }
 limits!(SubsurfaceRequest { poisson_ratio: range::POISSON_RATIO, points: Triples(SUBSURFACE_POINTS, range::PLACE) });
-
-/// One of the two bodies in contact.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum BodyName {
-    /// The one with the profile, which moves along x: its surface feels −τ.
-    First,
-    /// The plane one: its surface feels +τ.
-    Second,
-}
 
 /// A quantity below the surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
@@ -150,29 +142,36 @@ pub struct SubsurfaceReply {
     pub warnings: Vec<Warning>,
 }
 
-/// The names of the columns of values, in order, with their units.
-pub const COLUMNS: [&str; 12] = [
-    "xx",
-    "yy",
-    "zz",
-    "xy",
-    "yz",
-    "xz",
-    "principal_1",
-    "principal_2",
-    "principal_3",
-    "von_mises",
-    "max_shear",
-    "hydrostatic",
-];
-
 impl Subsurface {
-    /// The columns that there are, by the order of [`COLUMNS`].
+    /// The columns of values, all in Pa, with their names; those that are not asked for are none.
     #[must_use]
-    pub fn columns(&self) -> [&Option<Vec<Option<f64>>>; 12] {
-        let Subsurface { xx, yy, zz, xy, yz, xz, principal_1, principal_2, principal_3, von_mises, max_shear, .. } =
-            self;
-        [xx, yy, zz, xy, yz, xz, principal_1, principal_2, principal_3, von_mises, max_shear, &self.hydrostatic]
+    pub fn columns(&self) -> [(&'static str, Option<&[Option<f64>]>); 12] {
+        [
+            ("xx", self.xx.as_deref()),
+            ("yy", self.yy.as_deref()),
+            ("zz", self.zz.as_deref()),
+            ("xy", self.xy.as_deref()),
+            ("yz", self.yz.as_deref()),
+            ("xz", self.xz.as_deref()),
+            ("principal_1", self.principal_1.as_deref()),
+            ("principal_2", self.principal_2.as_deref()),
+            ("principal_3", self.principal_3.as_deref()),
+            ("von_mises", self.von_mises.as_deref()),
+            ("max_shear", self.max_shear.as_deref()),
+            ("hydrostatic", self.hydrostatic.as_deref()),
+        ]
+    }
+}
+
+impl AsRef<Subsurface> for Subsurface {
+    fn as_ref(&self) -> &Subsurface {
+        self
+    }
+}
+
+impl AsRef<Subsurface> for SubsurfaceReply {
+    fn as_ref(&self) -> &Subsurface {
+        &self.stress
     }
 }
 
@@ -228,7 +227,7 @@ impl Document for SubsurfaceRequest {
     /// What can only be checked against a contact is checked by [`SubsurfaceRequest::of_contact`].
     type Checked = SubsurfaceRequest;
 
-    fn check(self) -> Result<SubsurfaceRequest, Rejection> {
+    fn check_with(self, _: &dyn Prepare) -> Result<SubsurfaceRequest, Rejection> {
         Ok(self)
     }
 }
@@ -280,9 +279,9 @@ impl SubsurfaceRequest {
     /// Poisson's ratio of the body, from the material or from the request.
     fn poisson(&self, contact: &ContactDefinition, at: JsonPath<'_>, faults: &mut Faults) -> Option<f64> {
         let index = usize::from(self.body == BodyName::Second);
-        let known = match &contact.material {
-            Material::Effective(_) => None,
-            Material::Bodies(bodies) => match bodies.get(index)? {
+        let known = match contact.material.bodies() {
+            None => None,
+            Some(bodies) => match bodies.get(index)? {
                 Body::Rigid(_) => {
                     faults.add(at.member("body"), "this body is rigid, and has no stress that its motion would give");
                     return None;
@@ -297,7 +296,7 @@ impl SubsurfaceRequest {
                 None
             }
             (None, None) => {
-                let detail = "give the body's `poisson_ratio`: reduced moduli do not tell it";
+                let detail = "give the body's `poisson_ratio`: reduced moduli do not determine it";
                 faults.add(at.member("poisson_ratio"), detail);
                 None
             }

@@ -23,7 +23,8 @@ limits!(SubsurfaceLine { from: Triple(range::PLACE), to: Triple(range::PLACE), c
 /// Points of a line: two ends at least.
 const LINE: std::ops::RangeInclusive<usize> = 2..=*SUBSURFACE_POINTS.end();
 
-/// A grid in a plane of constant x, y or z. Each of the other two coordinates is `[from, to, count]`, m, both ends included.
+/// A grid in a plane of constant x, y or z. Each of the other two coordinates is `[from, to, count]`, m, both ends
+/// included.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SubsurfacePlane {

@@ -1,13 +1,18 @@
-//! The kernel of one piece at several radii side by side, in the three forms of [`super`], and its derivative with respect to r^2.
+//! The kernel of one piece at several radii side by side, in the three forms of [`super`], and its derivative with
+//! respect to r^2.
 
-use super::super::logarithm::ln_1p;
 use super::moments::MEANS;
 use super::{FAR, counting};
+use crate::numerics::logarithm::ln_1p;
 
 /// Kernels, and their derivatives with respect to r^2 in units of the edge.
-pub(super) type Kernels<const N: usize> = ([f64; N], [f64; N]);
+pub(super) type KernelPair<const N: usize> = ([f64; N], [f64; N]);
 
-pub(super) fn far_kernels<const N: usize, const SLOPES: bool>(far: &[f64], half: f64, shares: &[f64; N]) -> Kernels<N> {
+pub(super) fn far_kernels<const N: usize, const SLOPES: bool>(
+    far: &[f64],
+    half: f64,
+    shares: &[f64; N],
+) -> KernelPair<N> {
     let largest = shares.iter().copied().fold(0.0, f64::max).clamp(f64::MIN_POSITIVE, FAR);
     // Even and odd powers, so that neither sum waits for the other.
     let (mut sums, mut slopes) = ([[0.0; N]; 2], [[0.0; N]; 2]);
@@ -43,7 +48,7 @@ pub(super) fn near_kernels<const N: usize, const SLOPES: bool>(
     gap: f64,
     below: &[f64; N],
     above: &[f64; N],
-) -> Kernels<N> {
+) -> KernelPair<N> {
     let half = 0.5 * gap;
     let s: [f64; N] = below.map(|below| (-1.0 - below / half).clamp(-1.0 - 1.0 / FAR, 1.0));
     // The parts of A whose index has the parity of the term, and of the one before; and what the recursion carries.
@@ -93,7 +98,7 @@ pub(super) fn kink_kernels<const N: usize, const SLOPES: bool>(
     square: f64,
     below: &[f64; N],
     above: &[f64; N],
-) -> Kernels<N> {
+) -> KernelPair<N> {
     let kappa: [f64; N] = below.map(|below| if below < -square { 1.0 } else { -below / square });
     let v: [f64; N] = above.map(|above| (above / square).sqrt());
     let low: [f64; N] = kappa.map(|kappa| kappa.abs().sqrt());
@@ -131,11 +136,11 @@ pub(super) fn kink_kernels<const N: usize, const SLOPES: bool>(
 /// What the recursion for J_k gives for one parity, each with its derivative with respect to kappa.
 struct Chain<const N: usize> {
     /// The polynomial at t = 1.
-    sum: Kernels<N>,
+    sum: KernelPair<N>,
     /// What is left for the power below the lowest.
-    carried: Kernels<N>,
+    carried: KernelPair<N>,
     /// The polynomial at t = 0.
-    first: Kernels<N>,
+    first: KernelPair<N>,
 }
 
 /// The chain of a series; `lowest` is the lowest k with a root, and an even series begins below it.

@@ -1,24 +1,55 @@
-//! Builds the panels of a table from f'.
+//! Builds the panels of a table from f', in a time that is proportional to the number of knots.
 //!
-//! g'(x) = int_0^x (r f')' dr/sqrt(x^2 - r^2), and (r f')' = A + 2 C r between knots, so each segment gives
-//! A (asin) + 2 C (sqrt) in closed form. Near segments are summed so; far ones as [`Multipole`]s, once for a block of panels.
+//! g'(x) = int_0^x (r f')' dr/sqrt(x^2 - r^2), and (r f')' = A + 2 C r in the segment between two knots. Segments are
+//! gathered in cells of a binary tree. What lies further below a cell than the cell is wide (in the square of the
+//! radius) is a Chebyshev series there, which its halves take over: far cells add to it as [`Multipole`]s, single
+//! segments in closed form. The rest, a few segments for each of the smallest cells, is summed for every panel. As a
+//! jump J of f'' at the knot k adds to g'
+//!
+//! J (2 w - k atan(w/k)) = J (w + k (u - atan u)), w = sqrt(x^2 - k^2), u = w/k,
+//!
+//! one root and a short series in u^2 a knot do, wherever jumps are not so large that their sum would cancel; else each
+//! segment gives A (asin) + 2 C (sqrt). With w = sqrt(x^2 - r^2) the angle between r1 and r2 is atan(T),
+//! T = x^2 (r2^2 - r1^2)/((r2 w1 + r1 w2) (w1 w2 + r1 r2)), where nothing cancels.
+//!
+//! A panel gets as many places as its series needs: few where f'' hardly jumps about it.
 
-use super::super::cluster_tree::{Cluster, ClusterTree};
-use super::super::far_field::Sampled;
-use super::super::multipole::Multipole;
-use super::DoubleDouble;
-use super::gauss::TWENTY_POINTS;
-use super::panel::{self, Panel};
-use super::spline::Knot;
+use std::ops::Range;
 
-/// Panels that share one far field.
-const BLOCK: usize = 4;
+use super::panel::KernelPanel;
+use super::spline::SplineKnot;
+use super::{DoubleDouble, Moments};
+use crate::numerics::angle::angles;
+use crate::numerics::chebyshev::{self, EIGHT, Points, SIXTEEN, TWELVE, TWENTY, TWENTY_FOUR};
+use crate::numerics::cluster_tree::ClusterTree;
+use crate::numerics::gauss::{EIGHT_POINTS, TWENTY_POINTS};
+use crate::numerics::multipole::Multipole;
+
+/// Segments in the smallest cells.
+const LEAF: usize = 8;
+/// The most that jumps of f'' may add to f' within a cell and what is near to it, over f' itself.
+const SMOOTH: f64 = 4.0;
+/// The u^2 up to which the series of u - atan u needs four, six, eight and twelve terms.
+const SHORT: [f64; 4] = [5e-4, 4e-3, 0.015, 0.05];
+/// One over 3, 5, 7 and so on.
+const ODD: [f64; 12] = {
+    let mut odd = [0.0; 12];
+    let mut index = 0;
+    while index < odd.len() {
+        odd[index] = 1.0 / (2 * index + 3) as f64;
+        index += 1;
+    }
+    odd
+};
 
 /// f' between two knots, f' = A + C r.
 struct Segment {
     start: f64,
+    end: f64,
     constant: f64,
     curvature: f64,
+    /// How much larger C is than in the segment below.
+    jump: f64,
 }
 
 /// A stretch of t still without its series.
@@ -31,166 +62,402 @@ struct Stretch {
     high: f64,
 }
 
-/// The panels from the first knot at which the surface leaves the plane, up to the last or, unless it is the `whole` curve that
-/// is wanted, to where g falls; and the first radius at which it falls, if it does.
-pub(super) fn panels(knots: &[Knot], whole: bool) -> (Vec<Panel>, Option<f64>) {
-    let segments: Vec<Segment> = knots
-        .windows(2)
-        .map(|pair| {
-            let curvature = (pair[1].slope - pair[0].slope) / (pair[1].radius - pair[0].radius);
-            Segment { start: pair[0].radius, constant: pair[0].slope - curvature * pair[0].radius, curvature }
-        })
-        .collect();
-    let far = sources(knots, &segments);
-    let stretches = stretches(knots, &segments);
-    let transform = panel::transform();
-    let (mut panels, mut falls_at) = (Vec::with_capacity(stretches.len()), None);
-    for block in stretches.chunks(BLOCK) {
-        let field = Field::new(block, &segments, &far);
-        for stretch in block {
-            let values =
-                |low, high| panel::places(low, high).map(|t| field.slope(&segments, stretch, t) / stretch.radius(t));
-            let make = |low, high| {
-                Panel::new((stretch.base, stretch.singularity), (low, high), &values(low, high), &transform)
-            };
-            let panel = make(stretch.low, stretch.high);
-            let Some(t) = first_fall(&panel) else {
-                panels.push(panel);
-                continue;
-            };
-            falls_at = falls_at.or(Some(stretch.radius(t)));
-            if whole {
-                panels.push(panel);
-                continue;
-            }
-            if t > stretch.low {
-                panels.push(make(stretch.low, t));
-            }
-            return (panels, falls_at);
-        }
+/// What was built.
+pub(super) struct Built {
+    /// From the first knot at which the surface leaves the plane, up to the last or, unless the whole curve is wanted,
+    /// to where g falls.
+    pub(super) panels: Vec<KernelPanel>,
+    /// The moments and the depth of each.
+    pub(super) totals: Vec<(Moments, f64)>,
+    /// Level and load at the end.
+    pub(super) level: f64,
+    pub(super) load: f64,
+    /// The first radius at which g falls, if it does.
+    pub(super) falls_at: Option<f64>,
+    /// Whether nothing stopped it before.
+    pub(super) complete: bool,
+}
+
+/// The panels through knots, while `keep_going` returns true, which is asked at every cell.
+pub(super) fn panels(knots: &[SplineKnot], whole: bool, keep_going: &dyn Fn() -> bool) -> Built {
+    let mut before = 0.0;
+    let segment = |pair: &[SplineKnot]| {
+        let curvature = (pair[1].slope - pair[0].slope) / (pair[1].radius - pair[0].radius);
+        let jump = curvature - before;
+        before = curvature;
+        let constant = pair[0].slope - curvature * pair[0].radius;
+        Segment { start: pair[0].radius, end: pair[1].radius, constant, curvature, jump }
+    };
+    let segments: Vec<Segment> = knots.windows(2).map(segment).collect();
+    let flat = segments.iter().take_while(|s| s.constant.abs() + s.curvature.abs() <= 0.0).count();
+    let cells = cells(&segments, keep_going);
+    let mut build = Build {
+        segments: &segments,
+        flat,
+        cells: &cells,
+        whole,
+        keep_going,
+        points: 24,
+        panels: Vec::with_capacity(segments.len()),
+        totals: Vec::with_capacity(segments.len()),
+        level: DoubleDouble::ZERO,
+        load: DoubleDouble::ZERO,
+        falls_at: None,
+        stopped: false,
+    };
+    if let Some(root) = cells.root() {
+        build.visit(root, None, &[]);
     }
-    (panels, falls_at)
+    let Build { panels, totals, level, load, falls_at, stopped, .. } = build;
+    Built { panels, totals, level: level.value(), load: load.value(), falls_at, complete: !stopped }
 }
 
 /// The sources (r f')' dr of segments over X = -r^2, so that the radii of g lie below them.
-fn sources(knots: &[Knot], segments: &[Segment]) -> ClusterTree<Multipole> {
-    ClusterTree::new(segments.len(), 1, |items, halves| {
-        let (start, end) = (knots[items.start].radius, knots[items.end].radius);
+fn cells(segments: &[Segment], keep_going: &dyn Fn() -> bool) -> ClusterTree<Multipole> {
+    ClusterTree::new(segments.len(), LEAF, |items, halves| {
+        let (start, end) = (segments[items.start].start, segments[items.end - 1].end);
         let mut sources = Multipole::empty((-end * end, -start * start));
+        let width = end - start;
         match halves {
             Some(halves) => halves.into_iter().for_each(|half: &Multipole| sources.add(half, 1.0)),
-            None => {
-                let Segment { constant, curvature, .. } = segments[items.start];
-                let nodes = TWENTY_POINTS.map(|(u, share)| (start + (end - start) * u, (end - start) * share));
-                let above = nodes.map(|(r, _)| (end - r) * (end + r));
-                sources.add_sources(&above, &nodes.map(|(r, weight)| weight * (constant + 2.0 * curvature * r)));
+            None if keep_going() => {
+                for segment in &segments[items.clone()] {
+                    // The polynomials of the cell are slow over a short part of it that is far from the axis.
+                    if segment.end - segment.start <= 0.25 * width.min(segment.start) {
+                        add_segment(&mut sources, segment, end, &EIGHT_POINTS);
+                    } else {
+                        add_segment(&mut sources, segment, end, &TWENTY_POINTS);
+                    }
+                }
             }
+            None => {}
         }
         sources
     })
 }
 
-impl Stretch {
-    fn radius(&self, t: f64) -> f64 {
-        (self.base * self.base + t * t).sqrt()
+fn add_segment<const N: usize>(sources: &mut Multipole, segment: &Segment, end: f64, rule: &[(f64, f64); N]) {
+    let width = segment.end - segment.start;
+    let nodes = rule.map(|(u, share)| (segment.start + width * u, width * share));
+    let above = nodes.map(|(r, _)| (end - r) * (end + r));
+    let weights = nodes.map(|(r, weight)| weight * (segment.constant + 2.0 * segment.curvature * r));
+    sources.add_sources(&above, &weights);
+}
+
+/// Several radii, whose squares lie this far above that of a radius at or below them.
+struct Places<const N: usize> {
+    base: f64,
+    above: [f64; N],
+}
+
+impl<const N: usize> Places<N> {
+    fn squares(&self) -> [f64; N] {
+        let (square, mut squares) = (self.base * self.base, self.above);
+        for above in &mut squares {
+            *above += square;
+        }
+        squares
+    }
+
+    /// How far their squares lie above that of r.
+    fn above(&self, r: f64) -> [f64; N] {
+        let (below, mut excess) = ((self.base - r) * (self.base + r), self.above);
+        for above in &mut excess {
+            *above = (below + *above).max(0.0);
+        }
+        excess
     }
 }
 
-/// Cuts the radii at the knots, and each piece where the knot below is too near for one series.
-fn stretches(knots: &[Knot], segments: &[Segment]) -> Vec<Stretch> {
-    let flat = segments.iter().take_while(|s| s.constant.abs() + s.curvature.abs() <= 0.0).count();
-    let mut all = Vec::with_capacity(segments.len());
-    for knot in flat..segments.len() {
-        let (base, end) = (knots[knot].radius, knots[knot + 1].radius);
-        let mut high = ((end - base) * (end + base)).sqrt();
-        let singularity = if knot > flat {
-            let next = knots[knot - 1].radius;
+impl Segment {
+    /// Adds to g' at places beyond the segment.
+    fn add<const N: usize>(&self, places: &Places<N>, sums: &mut [f64; N]) {
+        let (start, end) = (self.start, self.end);
+        let gap = (end - start) * (end + start);
+        let (squares, inner, outer) = (places.squares(), places.above(start), places.above(end));
+        let (mut tangents, mut drops) = ([0.0; N], [0.0; N]);
+        for lane in 0..N {
+            let (w1, w2) = (inner[lane].sqrt(), outer[lane].sqrt());
+            tangents[lane] = squares[lane] * gap / ((end * w1 + start * w2) * (w1 * w2 + start * end));
+            drops[lane] = gap / (w1 + w2);
+        }
+        let (turns, _) = angles(tangents);
+        for lane in 0..N {
+            sums[lane] += self.constant * turns[lane] + 2.0 * self.curvature * drops[lane];
+        }
+    }
+
+    /// Adds to g' what the segment would add if it had no end.
+    fn add_endless<const N: usize>(&self, places: &Places<N>, sums: &mut [f64; N]) {
+        let (roots, tangents) = self.tangents(&places.above(self.start));
+        let (turns, _) = angles(tangents);
+        for lane in 0..N {
+            sums[lane] += self.constant * turns[lane] + 2.0 * self.curvature * roots[lane];
+        }
+    }
+
+    /// The roots of how far squares lie above that of the start, and those over it.
+    fn tangents<const N: usize>(&self, above: &[f64; N]) -> ([f64; N], [f64; N]) {
+        let (mut roots, mut tangents) = ([0.0; N], [0.0; N]);
+        for lane in 0..N {
+            roots[lane] = above[lane].sqrt();
+            tangents[lane] = roots[lane] / self.start;
+        }
+        (roots, tangents)
+    }
+
+    /// Adds to g' what the jump of f'' at its start adds.
+    fn add_jump<const N: usize>(&self, places: &Places<N>, sums: &mut [f64; N]) {
+        let share = (self.start * self.start).recip();
+        let above = places.above(self.start);
+        let most = above.iter().fold(0.0_f64, |most, above| most.max(*above)) * share;
+        if most <= SHORT[0] {
+            self.add_short::<4, N>(share, &above, sums);
+        } else if most <= SHORT[1] {
+            self.add_short::<6, N>(share, &above, sums);
+        } else if most <= SHORT[2] {
+            self.add_short::<8, N>(share, &above, sums);
+        } else if most <= SHORT[3] {
+            self.add_short::<12, N>(share, &above, sums);
+        } else {
+            let (roots, tangents) = self.tangents(&above);
+            let (_, lacking) = angles(tangents);
+            // At the axis the angle counts for nothing.
+            let axis = self.start <= 0.0;
+            for lane in 0..N {
+                let rest = if axis { roots[lane] } else { self.start * lacking[lane] };
+                sums[lane] += self.jump * (roots[lane] + rest);
+            }
+        }
+    }
+
+    /// The same by so many terms of the series in u^2, which is `share` of the difference of the squares.
+    fn add_short<const TERMS: usize, const N: usize>(&self, share: f64, above: &[f64; N], sums: &mut [f64; N]) {
+        let (mut squares, mut series) = (*above, [0.0; N]);
+        for square in &mut squares {
+            *square *= share;
+        }
+        for odd in ODD[..TERMS].iter().rev() {
+            for lane in 0..N {
+                series[lane] = odd - squares[lane] * series[lane];
+            }
+        }
+        for lane in 0..N {
+            sums[lane] += self.jump * above[lane].sqrt() * (1.0 + squares[lane] * series[lane]);
+        }
+    }
+}
+
+/// What is far below a cell adds to g' there: a series over the squares of the radii.
+struct CellField {
+    low: f64,
+    high: f64,
+    series: Vec<f64>,
+}
+
+impl CellField {
+    fn add<const N: usize>(&self, squares: &[f64; N], sums: &mut [f64; N]) {
+        let (scale, mut places) = (1.0 / (self.high - self.low), *squares);
+        for x in &mut places {
+            *x = ((*x - self.low) - (self.high - *x)) * scale;
+        }
+        let values = chebyshev::values(&self.series, places);
+        sums.iter_mut().zip(values).for_each(|(sum, value)| *sum += value);
+    }
+}
+
+/// What is summed for the panels of one of the smallest cells.
+struct NearSources {
+    far: CellField,
+    /// The first of the near segments, or that of the jumps of f''.
+    first: usize,
+    by_jumps: bool,
+}
+
+struct Build<'a> {
+    segments: &'a [Segment],
+    /// The first segment that is not flat.
+    flat: usize,
+    cells: &'a ClusterTree<Multipole>,
+    whole: bool,
+    keep_going: &'a dyn Fn() -> bool,
+    /// How many places the next panel will likely need.
+    points: usize,
+    panels: Vec<KernelPanel>,
+    totals: Vec<(Moments, f64)>,
+    /// Level and load so far.
+    level: DoubleDouble,
+    load: DoubleDouble,
+    falls_at: Option<f64>,
+    /// Whether the caller has ended it.
+    stopped: bool,
+}
+
+impl Build<'_> {
+    /// Makes the panels of a cell, given what is far below a cell around it, and the cells nearer, from the centre
+    /// outward.
+    fn visit(&mut self, number: usize, around: Option<&CellField>, beside: &[usize]) {
+        let cell = self.cells.cluster(number);
+        self.stopped = self.stopped || !(self.keep_going)();
+        if cell.items.end <= self.flat || self.is_complete() || self.stopped {
+            return;
+        }
+        let (start, end) = (self.segments[cell.items.start].start, self.segments[cell.items.end - 1].end);
+        let (low, high) = (start * start, end * end);
+        let places = Places { base: start, above: TWENTY.places(0.0, (end - start) * (end + start)) };
+        let (squares, mut sums) = (places.squares(), [0.0; 20]);
+        if let Some(around) = around {
+            around.add(&squares, &mut sums);
+        }
+        let (mut near, mut open): (Vec<usize>, Vec<usize>) = (Vec::new(), beside.iter().rev().copied().collect());
+        let most = if cell.halves.is_none() { LEAF } else { cell.items.len() };
+        while let Some(number) = open.pop() {
+            let source = self.cells.cluster(number);
+            let is_beyond = low + source.sources.interval.0 >= high - low;
+            if is_beyond && source.sources.is_far(-low) {
+                add_far(&source.sources, &squares, &mut sums);
+            } else if let Some([inner, outer]) = source.halves.filter(|_| is_beyond || source.items.len() > most) {
+                open.extend([outer, inner]);
+            } else if is_beyond {
+                self.segments[source.items.clone()].iter().for_each(|segment| segment.add(&places, &mut sums));
+            } else {
+                near.push(number);
+            }
+        }
+        if let Some([inner, outer]) = cell.halves {
+            let field = CellField { low, high, series: TWENTY.series(&sums) };
+            self.visit(inner, Some(&field), &near);
+            near.push(inner);
+            self.visit(outer, Some(&field), &near);
+            return;
+        }
+        let first = near.first().map_or(cell.items.start, |&first| self.cells.cluster(first).items.start);
+        let mut first = first.max(self.flat);
+        let by_jumps = self.is_smooth(first..cell.items.end);
+        if by_jumps && first > self.flat {
+            // What is far and what the first of the near segments would add without end are smooth together.
+            self.segments[first].add_endless(&places, &mut sums);
+            first += 1;
+        }
+        let sources = NearSources { far: CellField { low, high, series: TWENTY.series(&sums) }, first, by_jumps };
+        for knot in cell.items.start.max(self.flat)..cell.items.end {
+            let Segment { start, end, .. } = self.segments[knot];
+            self.add_stretches(knot, ((end - start) * (end + start)).sqrt(), &sources);
+        }
+    }
+
+    /// Whether the jumps of f'' in these segments add no more to f' than can be summed up without loss.
+    fn is_smooth(&self, segments: Range<usize>) -> bool {
+        let (start, end) = (&self.segments[segments.start], &self.segments[segments.end - 1]);
+        let slope = |segment: &Segment, r: f64| (segment.constant + segment.curvature * r).abs();
+        let size = slope(start, start.start).max(slope(end, end.end));
+        let jumps = self.segments[segments].iter().skip(1).map(|segment| (segment.jump, segment.start));
+        let all = jumps.chain([(start.curvature, start.start)]);
+        all.map(|(jump, r)| jump.abs() * (end.end - r)).sum::<f64>() <= SMOOTH * size
+    }
+
+    /// Adds the panels above a knot up to the t `high`, cut where the knot below it is too near for one series.
+    fn add_stretches(&mut self, knot: usize, high: f64, sources: &NearSources) {
+        let base = self.segments[knot].start;
+        let singularity = if knot > self.flat {
+            let next = self.segments[knot - 1].start;
             ((base - next) * (base + next)).sqrt()
         } else if base > 0.0 {
             base
         } else {
             f64::INFINITY
         };
-        let from = all.len();
-        loop {
-            // Twenty-four terms suffice where the singularity is off the ellipse of half-axes that add up to four.
-            let fits = singularity + (high * high + singularity * singularity).sqrt() >= 2.2 * high;
-            let low = if fits { 0.0 } else { 0.4 * high };
-            all.push(Stretch { knot, base, singularity, low, high });
-            if fits {
-                break;
-            }
-            high = low;
+        // Twenty-four terms suffice where the singularity is off the ellipse of half-axes that add up to four.
+        let fits = singularity + (high * high + singularity * singularity).sqrt() >= 2.2 * high;
+        let low = if fits { 0.0 } else { 0.4 * high };
+        if !fits {
+            self.add_stretches(knot, low, sources);
         }
-        all[from..].reverse();
-    }
-    all
-}
-
-/// g' in a block of panels: the far field, and the segments that are near.
-struct Field {
-    near: Vec<usize>,
-    far: Sampled,
-}
-
-impl Field {
-    fn new(block: &[Stretch], segments: &[Segment], far: &ClusterTree<Multipole>) -> Field {
-        let (first, last) = (&block[0], &block[block.len() - 1]);
-        let low = first.base * first.base + first.low * first.low;
-        let high = last.base * last.base + last.high * last.high;
-        let (mut sources, mut near) = (Vec::new(), Vec::new());
-        far.visit(
-            0..first.knot,
-            &mut |Cluster { sources: cluster, .. }| {
-                let is_far = cluster.is_far(-low) && cluster.interval.0 + low >= high - low;
-                sources.extend(is_far.then_some(cluster));
-                is_far
-            },
-            &mut |items| near.extend(items),
-        );
-        near.extend(first.knot..segments.len().min(last.knot + 1));
-        let potential = |square: f64| sources.iter().map(|sources| sources.potentials([-square])[0]).sum();
-        Field { near, far: Sampled::new(low, high, potential) }
+        self.add_panel(&Stretch { knot, base, singularity, low, high }, sources);
     }
 
-    /// g' at t of a stretch.
-    fn slope(&self, segments: &[Segment], stretch: &Stretch, t: f64) -> f64 {
-        let x = stretch.radius(t);
-        let root = |r: f64| (((stretch.base - r) * (stretch.base + r)).max(0.0) + t * t).sqrt();
-        let mut sum = self.far.at(x * x);
-        let mut end: Option<(f64, f64, f64)> = None;
-        // From the centre outward, each segment ends where the next begins.
-        for (index, &item) in self.near.iter().enumerate() {
-            if item > stretch.knot {
-                break;
-            }
-            let segment = &segments[item];
-            let (w, angle) = match end {
-                Some((at, w, angle)) if at.to_bits() == segment.start.to_bits() => (w, angle),
-                _ => {
-                    let w = root(segment.start);
-                    (w, segment.start.atan2(w))
+    /// Whether g falls where the panels end.
+    fn is_complete(&self) -> bool {
+        self.falls_at.is_some() && !self.whole
+    }
+
+    /// Adds the panel of a stretch, up to where g falls unless the whole curve is wanted.
+    fn add_panel(&mut self, stretch: &Stretch, sources: &NearSources) {
+        if self.is_complete() {
+            return;
+        }
+        let mut panel = self.panel(stretch, sources);
+        if let Some(t) = first_fall(&panel) {
+            self.falls_at = self.falls_at.or(Some((stretch.base * stretch.base + t * t).sqrt()));
+            if !self.whole {
+                if t <= stretch.low {
+                    return;
                 }
-            };
-            let stop = if item == stretch.knot {
-                (x, 0.0, std::f64::consts::FRAC_PI_2)
-            } else {
-                let r = self.near.get(index + 1).filter(|&&next| next == item + 1);
-                let r = segments[r.copied().unwrap_or(item + 1)].start;
-                let w = root(r);
-                (r, w, r.atan2(w))
-            };
-            let turn = if item == stretch.knot { w.atan2(segment.start) } else { stop.2 - angle };
-            let fall = (stop.0 - segment.start) * (stop.0 + segment.start) / (w + stop.1);
-            sum += segment.constant * turn + 2.0 * segment.curvature * if item == stretch.knot { t } else { fall };
-            end = Some(stop);
+                panel = self.panel(&Stretch { high: t, ..*stretch }, sources);
+            }
         }
-        sum
+        let totals @ (moments, depth) = panel.totals();
+        (panel.level, panel.load) = (self.level.value(), self.load.value());
+        self.level = self.level + DoubleDouble::from(depth);
+        self.load = self.load + DoubleDouble::from(panel.radius * depth + moments.first);
+        self.panels.push(panel);
+        self.totals.push(totals);
+    }
+
+    fn panel(&mut self, stretch: &Stretch, sources: &NearSources) -> KernelPanel {
+        let series = loop {
+            let (series, resolved) = match self.points {
+                8 => self.series(stretch, sources, &EIGHT),
+                12 => self.series(stretch, sources, &TWELVE),
+                16 => self.series(stretch, sources, &SIXTEEN),
+                _ => self.series(stretch, sources, &TWENTY_FOUR),
+            };
+            if resolved || self.points == 24 {
+                break series;
+            }
+            self.points = if self.points < 16 { self.points + 4 } else { 24 };
+        };
+        // Room for one more term than this one had.
+        self.points = [8, 12, 16].into_iter().find(|points| series.len() + 3 <= *points).unwrap_or(24);
+        KernelPanel::new((stretch.base, stretch.singularity), (stretch.low, stretch.high), series)
+    }
+
+    /// The series of q = g'/x over a stretch, by its values at so many points, and whether they resolve it.
+    fn series<const N: usize>(&self, stretch: &Stretch, sources: &NearSources, points: &Points<N>) -> (Vec<f64>, bool) {
+        let mut places = Places { base: stretch.base, above: points.places(stretch.low, stretch.high) };
+        places.above.iter_mut().for_each(|t| *t *= *t);
+        let (squares, mut sums) = (places.squares(), [0.0; N]);
+        sources.far.add(&squares, &mut sums);
+        let below = self.segments[sources.first.min(stretch.knot)..=stretch.knot].iter();
+        if sources.by_jumps {
+            below.skip(sources.first.saturating_sub(stretch.knot)).for_each(|s| s.add_jump(&places, &mut sums));
+        } else {
+            let own = &self.segments[stretch.knot];
+            below.take(stretch.knot - sources.first).for_each(|segment| segment.add(&places, &mut sums));
+            own.add_endless(&places, &mut sums);
+        }
+        for lane in 0..N {
+            sums[lane] /= squares[lane].sqrt();
+        }
+        let series = points.series(&sums);
+        let resolved = Points::<N>::resolve(&series);
+        (series, resolved)
+    }
+}
+
+/// Adds to g' what sources do at squares of radii that are far from them.
+fn add_far(sources: &Multipole, squares: &[f64; 20], sums: &mut [f64; 20]) {
+    for (sums, squares) in sums.chunks_exact_mut(4).zip(squares.chunks_exact(4)) {
+        let below = [-squares[0], -squares[1], -squares[2], -squares[3]];
+        sums.iter_mut().zip(sources.potentials(below)).for_each(|(sum, value)| *sum += value);
     }
 }
 
 /// The first t at which q is below zero by more than rounding could make it.
-fn first_fall(panel: &Panel) -> Option<f64> {
+fn first_fall(panel: &KernelPanel) -> Option<f64> {
+    if panel.surely_rises() {
+        return None;
+    }
     let places = panel.slope_check_places();
     let values: Vec<f64> = places.iter().map(|&t| panel.slope_over_radius(t)).collect();
     let size = values.iter().fold(0.0f64, |size, value| size.max(value.abs()));
@@ -202,16 +469,4 @@ fn first_fall(panel: &Panel) -> Option<f64> {
         if panel.slope_over_radius(middle) < 0.0 { high = middle } else { low = middle }
     }
     Some(low)
-}
-
-/// Fills in levels and loads from panel to panel, and gives those at the end.
-pub(super) fn accumulate(panels: &mut [Panel]) -> (f64, f64) {
-    let (mut level, mut load) = (DoubleDouble::ZERO, DoubleDouble::ZERO);
-    for panel in panels {
-        panel.level = level.value();
-        panel.load = load.value();
-        level = level + DoubleDouble::from(panel.depth());
-        load = load + DoubleDouble::from(panel.load_to(panel.high));
-    }
-    (level.value(), load.value())
 }

@@ -1,20 +1,24 @@
-//! What is summed over the sources dg of a table: a kernel of their radius x and of r, whole clusters at once where they are far.
+//! What is summed over the sources dg of a table: a kernel of their radius x and of r, whole clusters at once where
+//! they are far.
 //!
-//! Of X = x^2 = c + h xi the angles T below r have the derivative -+h/(2 sqrt(X (r^2 - X))) by xi, which is singular at X = 0 and at r^2. An
-//! interval that is as far from both as it is wide counts as far: a polynomial through the derivative at twenty Gauss points misses it by
-//! 0.1716^20 = 5e-16 of itself and a small factor (Trefethen 2008). T is its value at the centre and the primitive of that polynomial, whose
-//! parts the moments of the sources weigh ([`Multipole`]). In a panel that is near, int T dg is T at the lower end times the rise,
-//! -+ int h dx/sqrt(r^2 - x^2), h = g at the upper end less g.
+//! Of X = x^2 = c + h xi the angles T below r have the derivative -+h/(2 sqrt(X (r^2 - X))) by xi, which is singular at
+//! X = 0 and at r^2. An interval that is as far from both as it is wide counts as far: a polynomial through the
+//! derivative at twenty Gauss points misses it by 0.1716^20 = 5e-16 of itself and a small factor (Trefethen 2008). T is
+//! its value at the centre and the primitive of that polynomial, whose parts the moments of the sources weigh
+//! ([`Multipole`]). In a panel that is near, int T dg is T at the lower end times the rise, -+ int h dx/sqrt(r^2 -
+//! x^2), h = g at the upper end less g.
 
 use std::ops::Range;
 use std::sync::LazyLock;
 
 #[cfg(test)]
 use super::super::call_count;
-use super::super::far_field::total;
-use super::super::multipole::{Multipole, ORDERS, add_polynomials};
-use super::panel::Panel;
-use super::{Span, StressRadius, gauss, near_kernel, smooth_coordinate};
+use super::super::smooth_coordinate;
+use super::panel::KernelPanel;
+use super::{Span, StressRadius, near_kernel};
+use crate::numerics::far_field::total;
+use crate::numerics::gauss;
+use crate::numerics::multipole::{Multipole, ORDERS, add_polynomials};
 
 /// A kernel.
 #[derive(Clone, Copy, PartialEq)]
@@ -56,7 +60,7 @@ impl Kernel {
     }
 
     /// The sum over a part of a panel.
-    pub(super) fn near(self, panel: &Panel, at: &StressRadius, span: &Span) -> f64 {
+    pub(super) fn near(self, panel: &KernelPanel, at: &StressRadius, span: &Span) -> f64 {
         match self {
             Kernel::Root => {
                 near_kernel::kernel(panel, at, span).unwrap_or_else(|| smooth_coordinate::kernel(panel, at, span))
@@ -105,19 +109,20 @@ impl Kernel {
     }
 }
 
-/// Gauss's points, and what turns moments into the weights there of a derivative: of each point and order, the part of P_k in the primitive
-/// from 0 on of the polynomial that is one at the point and zero at the others.
-struct Nodes {
+/// Gauss's points, and what turns moments into the weights there of a derivative: of each point and order, the part of
+/// P_k in the primitive from 0 on of the polynomial that is one at the point and zero at the others.
+struct GaussNodes {
     places: [f64; ORDERS],
     primitives: [[f64; ORDERS]; ORDERS],
 }
 
-static NODES: LazyLock<Nodes> = LazyLock::new(|| {
-    let mut nodes = Nodes { places: [0.0; ORDERS], primitives: [[0.0; ORDERS]; ORDERS] };
-    for (index, (below, share)) in gauss::Panel::fine(2.0).nodes().enumerate() {
+static NODES: LazyLock<GaussNodes> = LazyLock::new(|| {
+    let mut nodes = GaussNodes { places: [0.0; ORDERS], primitives: [[0.0; ORDERS]; ORDERS] };
+    for (index, (below, share)) in gauss::QuadraturePanel::fine(2.0).nodes().enumerate() {
         let place = 1.0 - below;
         nodes.places[index] = place;
-        // The polynomial is the sum of share (j + 1/2) P_j(place) P_j, and the primitive of P_j is (P_(j+1) - P_(j-1))/(2j + 1).
+        // The polynomial is the sum of share (j + 1/2) P_j(place) P_j, and the primitive of P_j is (P_(j+1) -
+        // P_(j-1))/(2j + 1).
         let (here, centre) = (polynomials(place), polynomials(0.0));
         let primitive = &mut nodes.primitives[index];
         for order in 0..ORDERS {

@@ -1,24 +1,25 @@
 //! One stretch of a table between two knots, as Chebyshev series in t = sqrt(x^2 - k^2), k the knot beneath.
 //!
-//! Stored are q = g'/x and its primitive P = int t q dt (Clenshaw 1955; Mason & Handscomb 2003): g' is analytic in t, though not
-//! in x, and q keeps gamma = dg/dt = t q exact as t goes to zero.
+//! Stored are q = g'/x and its primitive P = int t q dt: g' is analytic in t, though not in x, and q keeps
+//! gamma = dg/dt = t q exact as t goes to zero.
 
-use super::super::smooth_coordinate::SmoothCoordinate;
+use std::sync::OnceLock;
+
+use super::super::smooth_coordinate::{self, SmoothCoordinate};
 use super::panel_integrals::PanelIntegrals;
-use super::{DoubleDouble, Span, gauss, near_kernel};
+use super::{DoubleDouble, Moments, Span, near_kernel};
+use crate::numerics::chebyshev::{self, TWENTY_FOUR, divided_difference};
+use crate::numerics::gauss;
 
-/// Values that fix a series.
+/// The most terms of a series.
 pub(super) const POINTS: usize = 24;
 
 /// The part of P below which its terms do not count where an error is estimated that is larger.
 const NEGLIGIBLE: f64 = 1e-14;
 
-/// The part of q below which a last term of its series is the rounding of the values that fix it.
-const ROUNDED: f64 = 5e-16;
-
 /// A stretch of radii.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Panel {
+pub(super) struct KernelPanel {
     /// k, m.
     pub(super) base: f64,
     /// Distance in t, along the imaginary axis, at which g is singular, m.
@@ -35,63 +36,17 @@ pub(super) struct Panel {
     /// Coefficients of q and, for u from -1 on, of P.
     slope: Box<[f64]>,
     primitive: Box<[f64]>,
-    /// Coefficients of q in powers of t over its upper end, for the kernel; none if they do not serve.
-    pub(super) powers: Box<[f64]>,
-    /// Its integrals up to any place.
-    pub(super) integrals: PanelIntegrals,
+    /// Made when first asked for.
+    powers: OnceLock<Box<[f64]>>,
+    /// Made when a ring first ends here.
+    integrals: OnceLock<PanelIntegrals>,
     /// How many terms of P are more than [`NEGLIGIBLE`].
     terms: usize,
 }
 
-/// Where the values that fix a series on low..high must be taken.
-pub(super) fn places(low: f64, high: f64) -> [f64; POINTS] {
-    std::array::from_fn(|index| 0.5 * (low + high) + 0.5 * (high - low) * cosine(2 * index + 1))
-}
-
-/// cos(pi index/48).
-fn cosine(index: usize) -> f64 {
-    (std::f64::consts::PI * (index % (4 * POINTS)) as f64 / 48.0).cos()
-}
-
-/// What turns values at the places into the coefficients of a series: a row for each order.
-pub(super) type Transform = [[f64; POINTS]; POINTS];
-
-/// The series with these values; what rounding alone keeps from zero is cut off.
-pub(super) fn series(values: &[f64; POINTS], transform: &Transform) -> Vec<f64> {
-    let term = |row: &[f64; POINTS]| {
-        let mut sums = [0.0; 4];
-        for (row, values) in row.chunks_exact(4).zip(values.chunks_exact(4)) {
-            for lane in 0..4 {
-                sums[lane] += row[lane] * values[lane];
-            }
-        }
-        (sums[0] + sums[1]) + (sums[2] + sums[3])
-    };
-    let mut series: Vec<f64> = transform.iter().map(term).collect();
-    let size = series.iter().fold(0.0f64, |size, a| size.max(a.abs()));
-    while series.last().is_some_and(|a| a.abs() <= ROUNDED * size) {
-        series.pop();
-    }
-    series
-}
-
-/// The transform that all series need.
-pub(super) fn transform() -> Transform {
-    std::array::from_fn(|order| {
-        let share = if order == 0 { 1.0 / 24.0 } else { 1.0 / 12.0 };
-        std::array::from_fn(|index| share * cosine(order * (2 * index + 1)))
-    })
-}
-
-impl Panel {
-    /// The panel on low..high in t above the knot `base`, by the values of q at its [`places`].
-    pub(super) fn new(
-        (base, singularity): (f64, f64),
-        (low, high): (f64, f64),
-        values: &[f64; POINTS],
-        transform: &Transform,
-    ) -> Panel {
-        let slope = series(values, transform);
+impl KernelPanel {
+    /// The panel on low..high in t above the knot `base`, by the series of q there.
+    pub(super) fn new((base, singularity): (f64, f64), (low, high): (f64, f64), slope: Vec<f64>) -> KernelPanel {
         let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
         // t q in the same terms, t = middle + half u and 2 u T_k = T_(k+1) + T_(k-1), then its primitive.
         let term = |k: usize| slope.get(k).copied().unwrap_or(0.0);
@@ -100,17 +55,19 @@ impl Panel {
             1 => middle * term(1) + half * (term(0) + 0.5 * term(2)),
             _ => middle * term(k) + 0.5 * half * (term(k - 1) + term(k + 1)),
         };
-        let mut primitive = vec![0.0];
-        let mut order = 0.0;
+        let mut primitive = Vec::with_capacity(slope.len() + 2);
+        primitive.push(0.0);
+        let (mut order, mut before, mut this) = (0.0, 2.0 * product(0), product(1));
         for k in 1..=slope.len() + 1 {
             order += 1.0;
-            let before = if k == 1 { 2.0 * product(0) } else { product(k - 1) };
-            primitive.push(0.5 * half * (before - product(k + 1)) / order);
+            let next = product(k + 1);
+            primitive.push(0.5 * half * (before - next) / order);
+            (before, this) = (this, next);
         }
         let square = DoubleDouble::square_of(base) + DoubleDouble::square_of(low);
         let size = primitive.iter().fold(0.0_f64, |size, a| size.max(a.abs()));
         let terms = primitive.iter().rposition(|a| a.abs() > NEGLIGIBLE * size).map_or(0, |last| last + 1);
-        let mut panel = Panel {
+        KernelPanel {
             base,
             singularity,
             low,
@@ -119,14 +76,27 @@ impl Panel {
             square,
             level: 0.0,
             load: 0.0,
-            powers: near_kernel::powers(&slope, low, high),
+            powers: OnceLock::new(),
             slope: slope.into(),
             primitive: primitive.into(),
-            integrals: PanelIntegrals::default(),
+            integrals: OnceLock::new(),
             terms,
-        };
-        panel.integrals = PanelIntegrals::new(&panel, transform);
-        panel
+        }
+    }
+
+    /// Coefficients of q in powers of t over its upper end, for the kernel; none if they do not serve.
+    pub(super) fn powers(&self) -> &[f64] {
+        self.powers.get_or_init(|| near_kernel::powers(&self.slope, self.low, self.high))
+    }
+
+    /// Its integrals up to any place.
+    pub(super) fn integrals(&self) -> &PanelIntegrals {
+        self.integrals.get_or_init(|| PanelIntegrals::new(self))
+    }
+
+    /// Whether the terms of q beyond the first cannot make it fall below zero.
+    pub(super) fn surely_rises(&self) -> bool {
+        self.slope.split_first().is_some_and(|(first, rest)| rest.iter().map(|a| a.abs()).sum::<f64>() < *first)
     }
 
     /// t as a place from -1 to 1.
@@ -136,13 +106,45 @@ impl Panel {
 
     /// q at t.
     pub(super) fn slope_over_radius(&self, t: f64) -> f64 {
-        chebyshev(&self.slope, self.place(t))
+        let [value] = chebyshev::values(&self.slope, [self.place(t)]);
+        value
     }
 
     /// A bound of |dq/dt|: that of a Chebyshev polynomial of the order k is k^2 at most.
     pub(super) fn steepest(&self) -> f64 {
         let orders = self.slope.iter().enumerate().map(|(order, a)| (order * order) as f64 * a.abs());
         orders.sum::<f64>() * 2.0 / (self.high - self.low)
+    }
+
+    /// Its moments and its depth, m.
+    pub(super) fn totals(&self) -> (Moments, f64) {
+        let odd = self.primitive.iter().skip(1).step_by(2);
+        let depth = 2.0 * odd.sum::<f64>();
+        let singular = gauss::Singular { below: self.singularity, above: f64::INFINITY };
+        let rule = singular.panel(self.high, self.high - self.low);
+        let moments = match rule.points() {
+            _ if rule.width < self.high - self.low => smooth_coordinate::moments(self, &self.span(None)),
+            8 => self.moments_by(&gauss::EIGHT_POINTS),
+            12 => self.moments_by(&gauss::TWELVE_POINTS),
+            _ => self.moments_by(&gauss::TWENTY_POINTS),
+        };
+        (moments, depth)
+    }
+
+    /// The moments by a rule whose points all of it can be left to. The rises are differences of P, good to round-off
+    /// of the depth.
+    fn moments_by<const N: usize>(&self, rule: &[(f64, f64); N]) -> Moments {
+        let (width, top) = (self.high - self.low, self.primitive.iter().sum::<f64>());
+        let levels = chebyshev::values(&self.primitive, rule.map(|(share, _)| 1.0 - 2.0 * share));
+        let (mut first, mut second) = (0.0, 0.0);
+        for (&(share, weight), level) in rule.iter().zip(levels) {
+            let t = self.high - width * share;
+            let (rise, stretch) = (top - level, if self.base > 0.0 { t / self.radius_at(t) } else { 1.0 });
+            let area = width * weight * rise * stretch;
+            first += area;
+            second += area * rise;
+        }
+        Moments { width: width * (self.high + self.low) / (self.radius + self.end().1), first, second }
     }
 
     /// The square of the radius where it ends, and that radius.
@@ -156,9 +158,9 @@ impl Panel {
         self.rise_at(self.low, self.high, self.high - self.low)
     }
 
-    /// All of it, up to the very square where the next one begins, if there is one: its own end is rounded, and 1/sqrt(r^2 - x^2) would
-    /// turn a gap of one unit in the last place beneath r into 1e-8 of a displacement.
-    pub(super) fn span(&self, next: Option<&Panel>) -> Span {
+    /// All of it, up to the very square where the next one begins, if there is one: its own end is rounded, and
+    /// 1/sqrt(r^2 - x^2) would turn a gap of one unit in the last place beneath r into 1e-8 of a displacement.
+    pub(super) fn span(&self, next: Option<&KernelPanel>) -> Span {
         let (outer, outer_radius) = next.map_or_else(|| self.end(), |next| (next.square, next.radius));
         let gap = (outer - self.square).value();
         Span { inner: self.square, outer, inner_radius: self.radius, outer_radius, gap, edge: 0.0 }
@@ -177,7 +179,7 @@ impl Panel {
 
     /// Values of t, increasing, between which q cannot hide a fall.
     pub(super) fn slope_check_places(&self) -> Vec<f64> {
-        let mut checked = places(self.low, self.high).to_vec();
+        let mut checked = TWENTY_FOUR.places(self.low, self.high).to_vec();
         checked.extend([self.low, self.high]);
         checked.sort_by(f64::total_cmp);
         checked
@@ -186,16 +188,16 @@ impl Panel {
     /// int x dg from the beginning to t.
     pub(super) fn load_to(&self, t: f64) -> f64 {
         let mut load = 0.0;
-        gauss::Panel::fine(t - self.low).visit(|below, weight| {
+        gauss::QuadraturePanel::fine(t - self.low).visit(|below, weight| {
             let t = t - below;
             load += weight * self.slope_at(t) * self.radius_at(t);
         });
         load
     }
 
-    /// The t at which a rising function of t, given with its slope, is zero: Newton's steps inside a bracket. `share` is how
-    /// much of the function's rise over the panel lies below the root, and `power` how it begins where a table leaves the plane, where a
-    /// root can be as small as numbers are and no bisection would get there.
+    /// The t at which a rising function of t, given with its slope, is zero: Newton's steps inside a bracket. `share`
+    /// is how much of the function's rise over the panel lies below the root, and `power` how it begins where a table
+    /// leaves the plane, where a root can be as small as numbers are and no bisection would get there.
     pub(super) fn find(&self, share: f64, power: f64, f: impl Fn(f64) -> (f64, f64)) -> f64 {
         let (mut low, mut high) = (self.low, self.high);
         let share = if low > 0.0 { share } else { share.powf(power.recip()) };
@@ -219,7 +221,7 @@ impl Panel {
     }
 }
 
-impl SmoothCoordinate for Panel {
+impl SmoothCoordinate for KernelPanel {
     fn kink_radius(&self) -> f64 {
         self.base
     }
@@ -254,23 +256,4 @@ impl SmoothCoordinate for Panel {
     fn jumps(&self) -> bool {
         false
     }
-}
-
-/// The value of a Chebyshev series at u.
-fn chebyshev(series: &[f64], u: f64) -> f64 {
-    let (mut b1, mut b2) = (0.0, 0.0);
-    for &a in series.iter().skip(1).rev() {
-        (b1, b2) = ((a - b2) + 2.0 * u * b1, b1);
-    }
-    (series.first().copied().unwrap_or(0.0) - b2) + u * b1
-}
-
-/// (p(u) - p(v))/(u - v), also at u = v, by Clenshaw's recurrence carried for both.
-fn divided_difference(series: &[f64], u: f64, v: f64) -> f64 {
-    let (mut b1, mut b2, mut d1, mut d2) = (0.0, 0.0, 0.0, 0.0);
-    for &a in series.iter().skip(1).rev() {
-        (d1, d2) = (2.0 * (u * d1 + b1) - d2, d1);
-        (b1, b2) = (a + 2.0 * v * b1 - b2, b1);
-    }
-    u * d1 + b1 - d2
 }

@@ -1,18 +1,20 @@
 //! Integrals of g over a part of a panel by series that are made once, and the inverse of g.
 //!
-//! A = int g dx and B = int g^2 dx, g from the beginning of the panel on, are Chebyshev series in t, from values at the places of q;
-//! dx = t dt/x is analytic but at t = +-ik, further away than the singularity of g. A and B are good to a few units in the last place of W H and W H^2, W the width and H
-//! the depth of the panel, so that with the width w and the rise h of a part from the beginning on
+//! A = int g dx and B = int g^2 dx, g from the beginning of the panel on, are Chebyshev series in t, from values at the
+//! places of q; dx = t dt/x is analytic but at t = +-ik, further away than the singularity of g. A and B are good to a
+//! few units in the last place of W H and W H^2, W the width and H the depth of the panel, so that with the width w and
+//! the rise h of a part from the beginning on
 //!
 //! int (h - g) dx = h w - A, int (h - g)^2 dx = h (h w - 2 A) + B,
 //!
-//! and likewise from a place up to the end, to four such units. That is to round-off of a ring's moments where they are no less than W H and
-//! W H^2 ([`PanelIntegrals::resolve`]), as they are for a ring that holds a whole panel of this size beside the part. Thinner rings are
-//! integrated numerically.
+//! and likewise from a place up to the end, to four such units. That is to round-off of a ring's moments where they are
+//! no less than W H and W H^2 ([`PanelIntegrals::resolve`]), as they are for a ring that holds a whole panel of this
+//! size beside the part. Thinner rings are integrated numerically.
 
 use super::super::smooth_coordinate::SmoothCoordinate;
-use super::panel::{Panel, Transform, places, series};
+use super::panel::KernelPanel;
 use super::{Moments, near_kernel};
+use crate::numerics::chebyshev::{TWENTY_FOUR, primitive};
 
 /// The series of a panel and its integrals as a whole.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -27,14 +29,14 @@ pub(super) struct PanelIntegrals {
 }
 
 impl PanelIntegrals {
-    pub(super) fn new(panel: &Panel, transform: &Transform) -> PanelIntegrals {
+    pub(super) fn new(panel: &KernelPanel) -> PanelIntegrals {
         let (low, high) = (panel.low, panel.high);
         let stretch = |t: f64| if panel.base > 0.0 { t / (panel.base * panel.base + t * t).sqrt() } else { 1.0 };
-        let places = places(low, high);
+        let places = TWENTY_FOUR.places(low, high);
         let rises = places.map(|t| panel.rise_at(low, t, t - low));
         let area = std::array::from_fn(|index| rises[index] * stretch(places[index]));
         let square = std::array::from_fn(|index| rises[index] * area[index]);
-        let primitives = [area, square].map(|values| primitive(&series(&values, transform), 0.5 * (high - low)));
+        let primitives = [area, square].map(|values| from_beginning(&TWENTY_FOUR.series(&values), 0.5 * (high - low)));
         let length = primitives.each_ref().map(Vec::len).into_iter().max().unwrap_or(0);
         let term = |series: &Vec<f64>, index: usize| series.get(index).copied().unwrap_or(0.0);
         let areas: Box<[[f64; 2]]> =
@@ -77,17 +79,18 @@ impl PanelIntegrals {
     }
 }
 
-/// How much further, in the square of the radius, g has risen by `rise`, m; `None` without powers of q, and where that takes a search.
+/// How much further, in the square of the radius, g has risen by `rise`, m; `None` without powers of q, and where that
+/// takes a search.
 ///
-/// Newton's step with q/2 where g would be if it rose with x^2, and further steps with the same slope: the error of each is that of the
-/// one before times the relative change of q on the way, which the steps tell.
-pub(super) fn distance(panel: &Panel, rise: f64) -> Option<f64> {
-    if panel.powers.is_empty() {
+/// Newton's step with q/2 where g would be if it rose with x^2, and further steps with the same slope: the error of
+/// each is that of the one before times the relative change of q on the way, which the steps tell.
+pub(super) fn distance(panel: &KernelPanel, rise: f64) -> Option<f64> {
+    if panel.powers().is_empty() {
         return None;
     }
     let all = (panel.high - panel.low) * (panel.high + panel.low);
     let t = |s: f64| (panel.low * panel.low + s).sqrt();
-    let mut s = (all * (rise / panel.integrals.depth)).min(all);
+    let mut s = (all * (rise / panel.integrals().depth)).min(all);
     let slope = 0.5 * panel.slope_over_radius(t(s));
     let mut last = s;
     for _ in 0..8 {
@@ -107,13 +110,9 @@ pub(super) fn distance(panel: &Panel, rise: f64) -> Option<f64> {
 }
 
 /// The primitive, zero at u = -1, of a Chebyshev series in u, t = middle + half u.
-fn primitive(series: &[f64], half: f64) -> Vec<f64> {
-    let term = |order: usize| series.get(order).copied().unwrap_or(0.0);
-    let mut primitive = vec![0.0];
-    for order in 1..=series.len() {
-        let before = if order == 1 { 2.0 * term(0) } else { term(order - 1) };
-        primitive.push(half * (before - term(order + 1)) / (2.0 * order as f64));
-    }
+fn from_beginning(series: &[f64], half: f64) -> Vec<f64> {
+    let mut primitive = primitive(series);
+    primitive.iter_mut().for_each(|a| *a *= half);
     let alternating = primitive.iter().enumerate().map(|(order, a)| if order % 2 == 0 { *a } else { -a });
     primitive[0] = -alternating.sum::<f64>();
     primitive

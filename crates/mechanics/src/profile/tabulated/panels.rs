@@ -1,13 +1,228 @@
-//! The panels of a table that a span meets, and sums of kernels over them.
+//! The panels of a table up to some radius, with what is known of all runs of them, and the integrals of a profile by
+//! them.
 
 use std::ops::Range;
+use std::sync::OnceLock;
 
-use super::{Kernel, Span, StressRadius, Tabulated};
+use super::super::moment_tree::MomentTree;
+use super::super::shape;
+use super::super::smooth_coordinate::{self, SmoothCoordinate};
+use super::super::smooth_interval::{Node, SmoothInterval};
+use super::build::Built;
+use super::kernel::Kernel;
+use super::lookup::Lookup;
+use super::panel::KernelPanel;
+use super::{DoubleDouble, Moments, Point, Ring, Span, StressRadius, near_kernel, panel_integrals, weighted_panels};
+use crate::numerics::cluster_tree::ClusterTree;
+use crate::numerics::multipole::Multipole;
+
+/// A bound of int dt/sqrt(t^2 - s^2) over any panel, for any radius that is further from a knot than e^-36 of the
+/// panel's end: it is ln(2 t/s), or less.
+const LOGARITHM: f64 = 40.0;
 
 /// A stretch within the panel of this index.
-pub(super) type Piece = (usize, Span);
+pub(super) type PanelPart = (usize, Span);
 
-impl Tabulated {
+/// Where panels end: radius, m, level, m, and load, m^2.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Top {
+    pub(super) radius: f64,
+    pub(super) level: f64,
+    pub(super) load: f64,
+}
+
+/// Panels from the centre outward.
+#[derive(Debug)]
+pub(super) struct Panels {
+    pub(super) panels: Vec<KernelPanel>,
+    by_radius: Lookup,
+    by_level: Lookup,
+    /// Moments and depth of all runs of panels.
+    tree: MomentTree,
+    /// The kernel's sources, made when a stress is first asked for.
+    sources: OnceLock<ClusterTree<Multipole>>,
+    knots: Vec<f64>,
+    /// The sums of [`KernelPanel::steepest`] before each panel, made when first asked for.
+    steepest: OnceLock<Vec<f64>>,
+    pub(super) top: Top,
+}
+
+impl Panels {
+    pub(super) fn new(built: Built) -> Panels {
+        let Built { panels, totals, level, load, .. } = built;
+        let top = Top { radius: panels.last().map_or(0.0, |panel| panel.end().1), level, load };
+        let mut knots: Vec<f64> = panels.iter().map(|panel| panel.base).filter(|&base| base > 0.0).collect();
+        knots.dedup_by(|a, b| a.to_bits() == b.to_bits());
+        Panels {
+            by_radius: Lookup::new(panels.iter().map(|panel| panel.radius), top.radius),
+            by_level: Lookup::new(panels.iter().map(|panel| panel.level), top.level),
+            tree: MomentTree::new(totals.into_iter()),
+            sources: OnceLock::new(),
+            knots,
+            steepest: OnceLock::new(),
+            top,
+            panels,
+        }
+    }
+
+    /// The kernel's sources.
+    pub(super) fn sources(&self) -> &ClusterTree<Multipole> {
+        self.sources.get_or_init(|| weighted_panels::sources(&self.panels))
+    }
+
+    /// The span of a ring.
+    pub(super) fn span(&self, ring: &Ring) -> Span {
+        shape::span(ring, Some(self.top.level), |depth| self.gap(ring, depth))
+    }
+
+    pub(super) fn level(&self, radius: f64) -> f64 {
+        let panel = &self.panels[self.find(radius)];
+        panel.level_at(panel.t_of(DoubleDouble::square_of(radius)))
+    }
+
+    pub(super) fn slope(&self, radius: f64) -> f64 {
+        let panel = &self.panels[self.find(radius)];
+        if radius < panel.radius {
+            return 0.0;
+        }
+        panel.slope_over_radius(panel.t_of(DoubleDouble::square_of(radius))) * radius
+    }
+
+    /// X(y)^2.
+    pub(super) fn square(&self, level: DoubleDouble) -> DoubleDouble {
+        let y = level.value();
+        if y >= self.top.level {
+            return DoubleDouble::square_of(self.top.radius);
+        }
+        let index = self.by_level.holding(y);
+        let panel = &self.panels[index];
+        let rest = (level - DoubleDouble::from(panel.level)).value();
+        if rest <= 0.0 {
+            return panel.square;
+        }
+        if let Some(further) = panel_integrals::distance(panel, rest) {
+            return panel.square + DoubleDouble::from(further);
+        }
+        let whole = self.panels.get(index + 1).map_or(self.top.level, |next| next.level) - panel.level;
+        let t =
+            panel.find(rest / whole, 2.0, |t| (panel.rise_at(panel.low, t, t - panel.low) - rest, panel.slope_at(t)));
+        DoubleDouble::square_of(panel.base) + DoubleDouble::square_of(t)
+    }
+
+    pub(super) fn load(&self, radius: f64) -> f64 {
+        let panel = &self.panels[self.find(radius)];
+        panel.load + panel.load_to(panel.t_of(DoubleDouble::square_of(radius)))
+    }
+
+    pub(super) fn indentation_for(&self, load: f64) -> f64 {
+        if load <= 0.0 {
+            return 0.0;
+        }
+        let Top { radius, level, load: most } = self.top;
+        if load >= most {
+            return level + (load - most) / radius;
+        }
+        let index = self.panels.partition_point(|panel| panel.load <= load).saturating_sub(1);
+        let panel = &self.panels[index];
+        let rest = load - panel.load;
+        let whole = self.panels.get(index + 1).map_or(self.top.load, |next| next.load) - panel.load;
+        let t = panel.find(rest / whole, 3.0, |t| (panel.load_to(t) - rest, panel.radius_at(t) * panel.slope_at(t)));
+        panel.level_at(t)
+    }
+
+    pub(super) fn rise(&self, span: &Span) -> f64 {
+        let (low, whole, high) = self.parts(span);
+        let between = self.tree.run(whole.start, whole.end).1;
+        [low, high]
+            .into_iter()
+            .flatten()
+            .map(|(index, span)| smooth_coordinate::rise(&self.panels[index], &span))
+            .sum::<f64>()
+            + between
+    }
+
+    pub(super) fn rise_to(&self, outer: &Span, interval: &SmoothInterval, node: Node) -> f64 {
+        let index = self.by_radius.ending_at(outer.outer_radius);
+        let panel = &self.panels[index];
+        // The series knows no other knot than its own.
+        if panel.base.to_bits() == interval.base.to_bits() && node.t >= panel.low {
+            return panel.rise_at(node.t, interval.high, node.dt);
+        }
+        self.rise(&shape::under(outer, interval, node))
+    }
+
+    pub(super) fn rises(&self, span: &Span, below: &[f64]) -> Vec<f64> {
+        let (_, mut index) = self.ends(span);
+        let (mut above, mut high) = (0.0, self.panels[index].t_of(span.outer));
+        let rise = |&below: &f64| {
+            let square = span.outer - DoubleDouble::from(below * (2.0 * span.outer_radius - below));
+            let mut panel = &self.panels[index];
+            while index > 0 && panel.square > square {
+                let whole = high >= panel.high;
+                above += if whole { self.tree.leaf(index).1 } else { panel.rise_at(panel.low, high, high - panel.low) };
+                index -= 1;
+                panel = &self.panels[index];
+                high = panel.high;
+            }
+            let t = panel.t_of(square).min(high);
+            above + panel.rough_rise(t, high)
+        };
+        below.iter().map(rise).collect()
+    }
+
+    pub(super) fn gap(&self, ring: &Ring, depth: f64) -> f64 {
+        let square = DoubleDouble::square_of(self.top.radius);
+        let outer = if ring.outer.square > square {
+            Point { square, radius: self.top.radius, ..ring.outer }
+        } else {
+            ring.outer
+        };
+        let inside = Ring { outer, ..*ring };
+        let first = self.find(inside.inner.radius);
+        if self.panels.get(first + 1).is_some_and(|next| next.radius < outer.radius) {
+            // Across a knot: the squares have the distance to it on either side.
+            return (outer.square - inside.inner.square).value();
+        }
+        smooth_coordinate::gap(&self.panels[first], &inside, depth)
+    }
+
+    pub(super) fn kink_below(&self, radius: f64) -> f64 {
+        let above = self.knots.partition_point(|&knot| knot < radius);
+        above.checked_sub(1).map_or(0.0, |index| self.knots[index])
+    }
+
+    pub(super) fn moments(&self, span: &Span) -> Moments {
+        let (low, whole, high) = self.parts(span);
+        let mut sum = self.tree.run(whole.start, whole.end);
+        if let Some((index, span)) = low {
+            sum.0 = Moments::stack(smooth_coordinate::moments(&self.panels[index], &span), sum.0, sum.1);
+        }
+        if let Some((index, span)) = high {
+            let panel = &self.panels[index];
+            sum.0 =
+                Moments::stack(sum.0, smooth_coordinate::moments(panel, &span), smooth_coordinate::rise(panel, &span));
+        }
+        sum.0
+    }
+
+    pub(super) fn ring_moments(&self, ring: &Ring) -> Moments {
+        self.moments_across(ring).unwrap_or_else(|| {
+            let span = self.span(ring);
+            Moments::stack(self.moments(&span), Moments::default(), span.edge)
+        })
+    }
+
+    pub(super) fn least_fall(&self, inner: f64, outer: f64) -> f64 {
+        // 2 v int q' dt is v int (dq/dt) dt/sqrt(t^2 - s^2), s the t of r in the panel, summed over the panels.
+        let (first, last) = (self.find(inner), self.find(outer));
+        let sums = self.steepest.get_or_init(|| {
+            let next = |sum: &mut f64, panel: &KernelPanel| Some(std::mem::replace(sum, *sum + panel.steepest()));
+            self.panels.iter().scan(0.0, next).collect()
+        });
+        let steepest = sums[last] + self.panels[last].steepest() - sums[first];
+        self.slope(outer) / outer - ((outer - inner) * (outer + inner)).sqrt() * LOGARITHM * steepest
+    }
+
     /// The panel that holds a radius.
     pub(super) fn find(&self, radius: f64) -> usize {
         self.by_radius.holding(radius)
@@ -20,7 +235,7 @@ impl Tabulated {
     }
 
     /// The parts of a span in its innermost and its outermost panel, and the whole panels between.
-    pub(super) fn parts(&self, span: &Span) -> (Option<Piece>, Range<usize>, Option<Piece>) {
+    pub(super) fn parts(&self, span: &Span) -> (Option<PanelPart>, Range<usize>, Option<PanelPart>) {
         let (inner, outer) = self.ends(span);
         if inner == outer {
             return (None, outer..outer, Some((outer, *span)));
@@ -42,9 +257,9 @@ impl Tabulated {
     pub(super) fn sum(&self, kernel: Kernel, at: &StressRadius, span: &Span) -> f64 {
         let Some(span) = span.above(at.square, at.radius) else { return 0.0 };
         let (low, whole, high) = self.parts(&span);
-        let part = |(index, span): Piece| kernel.near(&self.panels[index], at, &span);
+        let part = |(index, span): PanelPart| kernel.near(&self.panels[index], at, &span);
         let (square, mut far, mut near) = (at.square.value(), 0.0, 0.0);
-        self.sources.visit(
+        self.sources().visit(
             whole,
             &mut |cluster| {
                 let is_far = kernel.is_far(&cluster.sources, square);
@@ -56,5 +271,31 @@ impl Tabulated {
             &mut |panels| near += panels.map(|index| part((index, self.span_of_panel(index)))).sum::<f64>(),
         );
         low.into_iter().chain(high).map(part).sum::<f64>() + near + far
+    }
+
+    /// The moments of a ring; `None` of one that lies in one panel or meets the end of the table, and where a part is
+    /// too thin for its series to resolve.
+    pub(super) fn moments_across(&self, ring: &Ring) -> Option<Moments> {
+        let (inner, outer) = (self.by_radius.holding(ring.inner.radius), self.by_radius.ending_at(ring.outer.radius));
+        if inner >= outer || ring.outer.level > DoubleDouble::from(self.top.level) {
+            return None;
+        }
+        let (bottom, next, top) = (&self.panels[inner], &self.panels[inner + 1], &self.panels[outer]);
+        if top.powers().is_empty() {
+            return None;
+        }
+        let part = ring.inner.radius > bottom.radius;
+        let (mut sum, between) = self.tree.run(if part { inner + 1 } else { inner }, outer);
+        if part {
+            let width = (next.square - ring.inner.square).value().max(0.0) / (next.radius + ring.inner.radius);
+            let below = bottom.integrals().above(bottom.place(bottom.t_of(ring.inner.square)), width);
+            sum = Moments::stack(below, sum, between);
+        }
+        let beyond = (ring.outer.square - top.square).value().max(0.0);
+        let t = top.t_of(ring.outer.square);
+        let rise = near_kernel::rise(top, t, beyond);
+        let above = top.integrals().below(top.place(t), beyond / (ring.outer.radius + top.radius), rise);
+        sum = Moments::stack(sum, above, rise);
+        (top.integrals().resolve(&sum) && (!part || bottom.integrals().resolve(&sum))).then_some(sum)
     }
 }

@@ -1,15 +1,16 @@
 //! A smooth curve through the points of a table: f' continuous and linear between knots, f'(0) = 0.
 //!
-//! Slopes at the points are those of the parabola through each and its neighbours; they lie between the chords on either side.
-//! Between two points one parabola seldom fits both slopes: a knot is put between, where Schumaker (1983) shows that two
-//! parabolas stay convex or rising as the data do. Where neighbouring chords are nearly the same (a worn flat, a straight
-//! flank) the slopes are drawn to them, so that no knot comes near a point: its place would be up to the round-off of the
-//! heights, and f' would jump there. So the curve depends on its data continuously. Two straight runs that meet leave no room
-//! for a smooth convex curve: then f' overshoots in the first interval after the corner, by an eighth of the bend.
+//! Slopes at the points are those of the parabola through each and its neighbours; they lie between the chords on
+//! either side. Between two points one parabola seldom fits both slopes: a knot is put between, where Schumaker (1983)
+//! shows that two parabolas stay convex or rising as the data do. Where neighbouring chords are nearly the same (a worn
+//! flat, a straight flank) the slopes are drawn to them, so that no knot comes near a point: its place would be up to
+//! the round-off of the heights, and f' would jump there. So the curve depends on its data continuously. Two straight
+//! runs that meet leave no room for a smooth convex curve: then f' overshoots in the first interval after the corner,
+//! by an eighth of the bend.
 
 /// A radius, m, and the slope f' there.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Knot {
+pub(super) struct SplineKnot {
     pub(super) radius: f64,
     pub(super) slope: f64,
 }
@@ -21,21 +22,21 @@ const MARGIN: f64 = 0.125;
 const RATIO: f64 = 7.0;
 
 /// The knots of the curve through points of strictly increasing radius, three at least and the first at zero.
-pub(super) fn knots(radii: &[f64], heights: &[f64]) -> Vec<Knot> {
+pub(super) fn knots(radii: &[f64], heights: &[f64]) -> Vec<SplineKnot> {
     let chords: Vec<f64> =
         radii.windows(2).zip(heights.windows(2)).map(|(r, z)| (z[1] - z[0]) / (r[1] - r[0])).collect();
     let mut slopes = slopes(radii, &chords);
     keep_shape(&mut slopes, &chords);
-    let mut knots = vec![Knot { radius: radii[0], slope: slopes[0] }];
+    let mut knots = vec![SplineKnot { radius: radii[0], slope: slopes[0] }];
     for (index, &chord) in chords.iter().enumerate() {
         let (start, end) = (radii[index], radii[index + 1]);
         let (left, right) = (slopes[index] - chord, slopes[index + 1] - chord);
         if let Some(share) = split(left, right, chord) {
             // The mean slope over the interval is the chord.
             let slope = chord - (left * share + right * (1.0 - share));
-            knots.push(Knot { radius: start + share * (end - start), slope });
+            knots.push(SplineKnot { radius: start + share * (end - start), slope });
         }
-        knots.push(Knot { radius: end, slope: slopes[index + 1] });
+        knots.push(SplineKnot { radius: end, slope: slopes[index + 1] });
     }
     // Between neighbouring doubles there is no room for a knot.
     knots.dedup_by(|next, knot| next.radius <= knot.radius);
@@ -56,8 +57,8 @@ fn slopes(radii: &[f64], chords: &[f64]) -> Vec<f64> {
     slopes
 }
 
-/// Draws slopes to a neighbouring chord where the curve would otherwise not rise, or not be convex, as its data are. Each
-/// stays between the chords on either side of its point.
+/// Draws slopes to a neighbouring chord where the curve would otherwise not rise, or not be convex, as its data are.
+/// Each stays between the chords on either side of its point.
 fn keep_shape(slopes: &mut [f64], chords: &[f64]) {
     let last = chords.len();
     for index in 1..last {
@@ -90,8 +91,8 @@ fn limited(offset: f64, other: f64) -> f64 {
     offset.clamp(-most, most)
 }
 
-/// Where to put the knot between two points, as a share of the interval; none if one parabola does. `left` and `right` are the
-/// slopes at the ends less the chord.
+/// Where to put the knot between two points, as a share of the interval; none if one parabola does. `left` and `right`
+/// are the slopes at the ends less the chord.
 fn split(left: f64, right: f64, chord: f64) -> Option<f64> {
     let size = left.abs() + right.abs();
     if (left + right).abs() <= 1e-12 * (size + chord.abs()) {
@@ -103,7 +104,7 @@ fn split(left: f64, right: f64, chord: f64) -> Option<f64> {
 
 #[cfg(test)]
 mod tests {
-    use super::{Knot, knots};
+    use super::{SplineKnot, knots};
 
     #[test]
     fn a_parabola_is_its_own_spline() {
@@ -126,7 +127,7 @@ mod tests {
     }
 
     /// Heights at the radii by integration over the knots.
-    fn heights_of(knots: &[Knot], radii: &[f64]) -> Vec<f64> {
+    fn heights_of(knots: &[SplineKnot], radii: &[f64]) -> Vec<f64> {
         let (mut height, mut found) = (0.0, vec![0.0]);
         for pair in knots.windows(2) {
             height += 0.5 * (pair[0].slope + pair[1].slope) * (pair[1].radius - pair[0].radius);
@@ -155,7 +156,7 @@ mod tests {
                 for nudge in [-1e-15, 1e-15] {
                     let mut nudged = heights;
                     nudged[index] += nudge;
-                    let slope = |knots: &[Knot], r: f64| {
+                    let slope = |knots: &[SplineKnot], r: f64| {
                         let index = knots.partition_point(|knot| knot.radius < r).max(1);
                         let (low, high) = (knots[index - 1], knots[index]);
                         low.slope + (high.slope - low.slope) * (r - low.radius) / (high.radius - low.radius)

@@ -1,19 +1,23 @@
 //! Sums of kernels over the panels of a table, weighted by the rings they lie in, at many radii.
 //!
-//! A panel that lies in one ring has that ring's weight, and so has a cluster of such panels: what it does from afar is that of the table
-//! times the weight. The few panels that rings cut are cut with them, and only the clusters that hold one, or panels of several rings, get
-//! moments of their own. So a state costs in proportion to the number of its rings and not to that of the panels.
+//! A panel that lies in one ring has that ring's weight, and so has a cluster of such panels: what it does from afar is
+//! that of the table times the weight. The few panels that rings cut are cut with them, and only the clusters that hold
+//! one, or panels of several rings, get moments of their own. So a state costs in proportion to the number of its rings
+//! and not to that of the panels.
 //!
-//! Radii go through the tree together, in such an order that a cluster is far from the first of them and near the last: at each cluster
-//! three runs part. Those from which it is far take its moments, side by side; those beyond it are done; the others go on to its halves.
+//! Radii go through the tree together, in such an order that a cluster is far from the first of them and near the last:
+//! at each cluster three runs part. Those from which it is far take its moments, side by side; those beyond it are
+//! done; the others go on to its halves.
 
 use std::ops::Range;
 
-use super::super::cluster_tree::{Cluster, ClusterTree};
-use super::super::multipole::Multipole;
 use super::kernel::Kernel;
-use super::panel::Panel;
-use super::{Ring, Shape, Span, StressRadius, Tabulated, gauss};
+use super::panel::KernelPanel;
+use super::panels::Panels;
+use super::{Ring, Span, StressRadius};
+use crate::numerics::cluster_tree::{Cluster, ClusterTree};
+use crate::numerics::gauss;
+use crate::numerics::multipole::Multipole;
 
 /// Radii side by side.
 const LANES: usize = 4;
@@ -23,7 +27,7 @@ type Part = (usize, Span, f64);
 
 /// The panels of a table by their weights.
 pub(crate) struct WeightedPanels<'a> {
-    table: &'a Tabulated,
+    table: &'a Panels,
     /// Runs of panels that lie in one ring, and its weight, from the centre outward.
     runs: Vec<(Range<usize>, f64)>,
     /// The parts of panels that rings cut, by their panels.
@@ -42,7 +46,7 @@ struct Held {
 pub(super) type SumAndSize = (f64, f64);
 
 /// The panels' sources g' dx over X = x^2.
-pub(super) fn sources(panels: &[Panel]) -> ClusterTree<Multipole> {
+pub(super) fn sources(panels: &[KernelPanel]) -> ClusterTree<Multipole> {
     ClusterTree::new(panels.len(), 1, |items, halves| {
         let last = &panels[items.end - 1];
         let end = last.span(panels.get(items.end)).outer;
@@ -56,7 +60,7 @@ pub(super) fn sources(panels: &[Panel]) -> ClusterTree<Multipole> {
 }
 
 /// Adds the sources of a panel from `low` to `high` in t.
-fn add_panel(sources: &mut Multipole, panel: &Panel, (low, high): (f64, f64), weight: f64) {
+fn add_panel(sources: &mut Multipole, panel: &KernelPanel, (low, high): (f64, f64), weight: f64) {
     let nodes = gauss::TWENTY_POINTS.map(|(u, share)| (high - (high - low) * u, weight * (high - low) * share));
     sources.add_sources(
         &nodes.map(|(t, _)| (t - panel.low) * (t + panel.low)),
@@ -66,7 +70,7 @@ fn add_panel(sources: &mut Multipole, panel: &Panel, (low, high): (f64, f64), we
 
 impl WeightedPanels<'_> {
     /// The panels of rings from the centre outward, each with its weight; `None` with levels at a vertical edge.
-    pub(in super::super) fn new<'a>(table: &'a Tabulated, rings: &[(Ring, f64)]) -> Option<WeightedPanels<'a>> {
+    pub(super) fn new<'a>(table: &'a Panels, rings: &[(Ring, f64)]) -> Option<WeightedPanels<'a>> {
         let (mut runs, mut parts) = (Vec::with_capacity(rings.len()), Vec::with_capacity(2 * rings.len()));
         for (ring, weight) in rings {
             let span = table.span(ring);
@@ -81,7 +85,7 @@ impl WeightedPanels<'_> {
             parts.extend(high.map(|(index, span)| (index, span, *weight)));
         }
         let mut panels = WeightedPanels { table, runs, parts, own: Vec::new() };
-        panels.gather(table.sources.root()?);
+        panels.gather(table.sources().root()?);
         Some(panels)
     }
 
@@ -105,9 +109,10 @@ impl WeightedPanels<'_> {
         &self.parts[first..first + count]
     }
 
-    /// The weight of a cluster's panels; where they do not weigh alike, lists the moments of the cluster after all that are needed below it.
+    /// The weight of a cluster's panels; where they do not weigh alike, lists the moments of the cluster after all that
+    /// are needed below it.
     fn gather(&mut self, number: usize) -> Option<f64> {
-        let cluster = self.table.sources.cluster(number);
+        let cluster = self.table.sources().cluster(number);
         let alike = self.weight(&cluster.items);
         if alike.is_some() {
             return alike;
@@ -118,7 +123,7 @@ impl WeightedPanels<'_> {
         for half in cluster.halves.into_iter().flatten() {
             let weight = self.gather(half);
             let part = match weight {
-                Some(_) => Some(&self.table.sources.cluster(half).sources),
+                Some(_) => Some(&self.table.sources().cluster(half).sources),
                 None => self.own.last().map(|(_, own)| own),
             };
             let factor = weight.unwrap_or(1.0);
@@ -135,7 +140,8 @@ impl WeightedPanels<'_> {
         None
     }
 
-    /// Adds the sources of the parts of a panel. All but the first make the most of the panel: the first counts as what is left by them.
+    /// Adds the sources of the parts of a panel. All but the first make the most of the panel: the first counts as what
+    /// is left by them.
     fn add_parts(&self, cluster: &Cluster<Multipole>, sources: &mut Multipole) {
         let index = cluster.items.start;
         let (panel, parts) = (&self.table.panels[index], self.parts_of(index));
@@ -165,16 +171,17 @@ impl WeightedPanels<'_> {
         let held = |&index: &usize| Held { at: radii[index], panel: self.table.find(radii[index].radius) };
         let held: Vec<Held> = order.iter().map(held).collect();
         let (mut ordered, mut sums) = (vec![(0.0, 0.0); radii.len()], vec![(0.0, 0.0); radii.len()]);
-        if let Some(root) = self.table.sources.root() {
+        if let Some(root) = self.table.sources().root() {
             self.visit(root, None, kernel, &held, &mut ordered);
         }
         order.into_iter().zip(ordered).for_each(|(index, sum)| sums[index] = sum);
         sums
     }
 
-    /// Adds what a cluster does, the weight of whose panels may be known, at radii in rising order, of an angle in falling order.
+    /// Adds what a cluster does, the weight of whose panels may be known, at radii in rising order, of an angle in
+    /// falling order.
     fn visit(&self, number: usize, known: Option<f64>, kernel: Kernel, radii: &[Held], sums: &mut [SumAndSize]) {
-        let cluster = self.table.sources.cluster(number);
+        let cluster = self.table.sources().cluster(number);
         let weight = known.or_else(|| self.weight(&cluster.items));
         let met = radii.partition_point(|held| kernel.meets(&cluster.items, held.panel));
         if met == 0 || weight.is_some_and(|weight| weight.abs() <= 0.0) {

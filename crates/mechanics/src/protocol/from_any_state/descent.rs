@@ -1,9 +1,9 @@
 //! The search among all sequences of a few strokes: from many of them, a descent to the nearest best one.
 //!
-//! The unknowns are the levels that the strokes slip down to, over that of the edge. The largest stress is the maximum of
-//! functions that are smooth in them, the stresses at sampled radii and at the unknowns themselves; a step minimises the
-//! maximum of their tangents within a distance that grows while the tangents are right (Madsen 1975), with a penalty on
-//! missing the end.
+//! The unknowns are the levels that the strokes slip down to, over that of the edge. The largest stress is the maximum
+//! of functions that are smooth in them, the stresses at sampled radii and at the unknowns themselves; a step minimises
+//! the maximum of their tangents within a distance that grows while the tangents are right (Madsen 1975), with a
+//! penalty on missing the end.
 
 use fastrand::Rng;
 

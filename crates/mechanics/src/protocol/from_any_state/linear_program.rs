@@ -23,8 +23,8 @@ impl Step {
     /// The best d, and the value there; `None` where it is not found.
     ///
     /// The dual asks for weights of all functions, not below zero, whose slopes cancel; those of the rows have the sum
-    /// one, those of a penalised function and its slack the sum `penalty`. A basis to begin with is the largest row, with
-    /// the bounds that cancel its slope, and the slacks.
+    /// one, those of a penalised function and its slack the sum `penalty`. A basis to begin with is the largest row,
+    /// with the bounds that cancel its slope, and the slacks.
     pub(super) fn solve(&self) -> Option<(Vec<f64>, f64)> {
         let unknowns = self.bounds.len();
         let size = unknowns + 1 + self.penalised.len();

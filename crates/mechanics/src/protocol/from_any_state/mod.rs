@@ -56,7 +56,7 @@ pub(super) struct FromAnyState<'a> {
 }
 
 /// A sequence of strokes, scaled by m, for a last stroke forwards.
-struct Strokes {
+struct LaterStrokes {
     kinks: Vec<Point>,
     cut: Point,
     /// Where the first stroke leads to.
@@ -199,7 +199,7 @@ impl<'a> FromAnyState<'a> {
             return Ok(StrokeOutcome::Tight);
         };
         let fits = self.worst(&outside, &kinks, &cut) <= limit * (1.0 + 1e-12);
-        Ok(if fits { StrokeOutcome::Fits(Strokes { kinks, cut, first }) } else { StrokeOutcome::Tight })
+        Ok(if fits { StrokeOutcome::Fits(LaterStrokes { kinks, cut, first }) } else { StrokeOutcome::Tight })
     }
 
     /// The cut that leaves least inside the last kink.
@@ -254,8 +254,8 @@ impl<'a> FromAnyState<'a> {
         Some((self.problem.profile.point(high), self.first_to(high)))
     }
 
-    /// The displacements, scaled by m, of the strokes that leave least, found in two ways; fewer where a way finds none,
-    /// or `keep_going` returned false.
+    /// The displacements, scaled by m, of the strokes that leave least, found in two ways; fewer where a way finds
+    /// none, or `keep_going` returned false.
     pub(super) fn solve(&self, keep_going: &dyn Fn() -> bool) -> Vec<Vec<f64>> {
         let marched = self.equal(keep_going);
         let searched =
@@ -264,7 +264,7 @@ impl<'a> FromAnyState<'a> {
     }
 
     /// The strokes of the smallest E; `None` if there are none, or `keep_going` returned false.
-    fn equal(&self, keep_going: &dyn Fn() -> bool) -> Option<Strokes> {
+    fn equal(&self, keep_going: &dyn Fn() -> bool) -> Option<LaterStrokes> {
         let problem = &self.problem;
         let middle = StressRadius::new(0.5 * (problem.cutoff + problem.edge.radius));
         let zero = problem.profile.point(DoubleDouble::ZERO);
@@ -318,7 +318,7 @@ impl<'a> FromAnyState<'a> {
         best
     }
 
-    fn positions(&self, strokes: &Strokes) -> Vec<f64> {
+    fn positions(&self, strokes: &LaterStrokes) -> Vec<f64> {
         let mut here = DoubleDouble::from(strokes.first);
         let mut positions = vec![here.value()];
         for (index, kink) in strokes.kinks.iter().enumerate().rev() {
@@ -366,7 +366,7 @@ fn samples(problem: &Problem<'_>, history: &[(Ring, Line)], last: f64) -> Vec<Sa
 /// Whether there are strokes with a largest stress E.
 enum StrokeOutcome {
     /// There are, and these are the strokes.
-    Fits(Strokes),
+    Fits(LaterStrokes),
     /// There are, with fewer strokes.
     Loose,
     /// There are none.

@@ -1,16 +1,17 @@
-//! The sequences of few strokes as the search sees them: their stresses, and how far they miss the end, with the slopes.
+//! The sequences of few strokes as the search sees them: their stresses, and how far they miss the end, with the
+//! slopes.
 
 use super::super::super::profile::{Point, Ring, StressRadius};
 use super::super::{DoubleDouble, PathEnd};
 use super::descent::{Trial, search};
-use super::{FromAnyState, Strokes};
+use super::{FromAnyState, LaterStrokes};
 
 /// The step of the difference that gives the slope of the stress at a kink by its own level, over that of the edge.
 const PROBE: f64 = 1e-6;
 
 impl FromAnyState<'_> {
     /// The best of all sequences of few strokes, where the first stroke slips in part and where it slips as a whole.
-    pub(super) fn searched(&self, known: Option<&Strokes>, keep_going: &dyn Fn() -> bool) -> Vec<Strokes> {
+    pub(super) fn searched(&self, known: Option<&LaterStrokes>, keep_going: &dyn Fn() -> bool) -> Vec<LaterStrokes> {
         let edge = self.problem.edge.level.value();
         let known = known.map(|known| {
             let levels =
@@ -29,7 +30,7 @@ impl FromAnyState<'_> {
                 PathEnd::Free => (cut, self.first_to(cut.level)),
                 _ => self.prescribed_cut(&kinks)?,
             };
-            Some(Strokes { kinks, cut, first })
+            Some(LaterStrokes { kinks, cut, first })
         });
         found.collect()
     }

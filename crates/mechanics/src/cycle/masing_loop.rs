@@ -1,0 +1,108 @@
+//! The force of a contact at constant load while it is moved back and forth: Masing's branches with wiping-out.
+//!
+//! With f(u) the first loading curve, a branch that begins at the turning point (U_r, F_r) is F = F_r +- 2 f(|U -
+//! U_r|/2). Where it meets the turning point before its own beginning it closes a loop, and goes on as the branch that
+//! this loop interrupted (Madelung); a branch from the only turning point ends at its mirror image, on the first
+//! loading curve.
+
+use crate::Contact;
+use crate::normal::load;
+use crate::numerics::double_double::DoubleDouble;
+use crate::profile::Ring;
+
+/// The first loading curve of a contact at its present load, whatever its history.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct FirstLoading<'a> {
+    contact: &'a Contact,
+    /// Displacement and force of gross slip, m and N.
+    gross_slip: f64,
+    limit: f64,
+}
+
+impl<'a> FirstLoading<'a> {
+    pub(super) fn new(contact: &'a Contact) -> FirstLoading<'a> {
+        let edge = contact.history.edge().level;
+        let held = edge.value() > 0.0 && contact.friction > 0.0;
+        FirstLoading {
+            contact,
+            gross_slip: if held { contact.unscaled(edge).value() } else { 0.0 },
+            limit: if held { contact.friction * contact.normal_force } else { 0.0 },
+        }
+    }
+
+    /// mu F_N, N.
+    pub(super) fn limit(&self) -> f64 {
+        self.limit
+    }
+
+    /// The force at a displacement from rest, N.
+    fn force(&self, displacement: f64) -> f64 {
+        if displacement >= self.gross_slip {
+            return self.limit;
+        }
+        if displacement <= 0.0 {
+            return 0.0;
+        }
+        let (profile, edge) = (&self.contact.profile, *self.contact.history.edge());
+        let inner = profile.point(edge.level - self.contact.scaled(DoubleDouble::from(displacement)));
+        self.contact.force_unit() * load(profile, &Ring::between(inner, edge))
+    }
+}
+
+/// What a contact remembers at constant load, as turning points of displacement, m, and force, N.
+#[derive(Clone, Debug)]
+pub(super) struct MasingLoop {
+    turns: Vec<(f64, f64)>,
+    /// 1 or -1: the direction of the present branch.
+    direction: f64,
+}
+
+impl MasingLoop {
+    /// On the first loading curve, moving up.
+    pub(super) fn virgin() -> MasingLoop {
+        MasingLoop { turns: Vec::new(), direction: 1.0 }
+    }
+
+    pub(super) fn direction(&self) -> f64 {
+        self.direction
+    }
+
+    /// The force on the present branch, N.
+    pub(super) fn force(&self, loading: &FirstLoading<'_>, displacement: f64) -> f64 {
+        match self.turns.last() {
+            None => self.direction * loading.force(self.direction * displacement),
+            Some((from, force)) => {
+                force + 2.0 * self.direction * loading.force(0.5 * self.direction * (displacement - from))
+            }
+        }
+    }
+
+    /// The displacement at which the whole contact begins to slide on this branch, m.
+    pub(super) fn slides_at(&self, loading: &FirstLoading<'_>) -> f64 {
+        match self.turns.last() {
+            None => self.direction * loading.gross_slip,
+            Some((from, _)) => from + 2.0 * self.direction * loading.gross_slip,
+        }
+    }
+
+    /// The displacement at which the present branch closes a loop, m; infinite on the first loading curve.
+    pub(super) fn closes_at(&self) -> f64 {
+        match self.turns[..] {
+            [] => self.direction * f64::INFINITY,
+            [only] => -only.0,
+            [.., before, _] => before.0,
+        }
+    }
+
+    /// Goes on as the branch that the closed loop interrupted.
+    pub(super) fn close(&mut self) {
+        self.turns.truncate(self.turns.len().saturating_sub(2));
+    }
+
+    /// Turns back at this displacement.
+    pub(super) fn turn(&mut self, loading: &FirstLoading<'_>, displacement: f64) {
+        let force = self.force(loading, displacement);
+        self.turns.push((displacement, force));
+        self.direction = -self.direction;
+    }
+}

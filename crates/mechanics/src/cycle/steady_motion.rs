@@ -1,0 +1,246 @@
+//! The steady motion of a driven mass on a contact.
+//!
+//! At its largest displacement A the mass is at rest, and the contact remembers nothing but A: the loops of the period
+//! before lie within. Amplitude and instant of that turning point are two unknowns, and half a period later the mass
+//! must be at rest at -A: two equations, solved by Broyden's method with motions that are followed roughly at first.
+//! Where a start does not lead to the root, the next is the motion of the mass after ever more periods, which draws
+//! near the steady one.
+
+use std::f64::consts::{PI, TAU};
+
+use super::Response;
+use super::mass_motion::{DrivenMass, Motion, Unfinished};
+
+/// Steps of Broyden's method for one start, and halvings of a step that does not bring the end nearer.
+const STEPS: usize = 24;
+const HALVINGS: usize = 3;
+/// A step that leaves more than this of what the end is off by asks for a new Jacobian.
+const SLOW: f64 = 0.3;
+/// The longest step, of the amplitude as a part of itself and of the instant, rad.
+const LONGEST: [f64; 2] = [0.3, 0.5];
+/// Differences for the Jacobian, and how far from where it was taken it still gives errors.
+const DIFFERENCE: f64 = 1e-4;
+const NEAR: f64 = 1e-2;
+/// The tolerance of a step of a rough motion, as part of the amplitude.
+const ROUGH: f64 = 1e-5;
+/// Periods that are followed between two starts double up to 2 to this power.
+const DOUBLINGS: i32 = 8;
+/// The tolerance of a step of a motion, as part of the tolerance asked for, and by what it is tightened, how often,
+/// where that does not suffice; and the least of all.
+const SHARE: f64 = 1e-1;
+const TIGHTER: f64 = 1e-2;
+const TIGHTENINGS: usize = 3;
+const LEAST: f64 = 1e-13;
+/// What the end of a motion that is not brought nearer by any step may be off by, in tolerances of a step.
+const LEFT: f64 = 1e3;
+
+/// What has been asked for and not interrupted: `None` where it was not found.
+type Attempt<T> = Result<Option<T>, Unfinished>;
+type Matrix = [[f64; 2]; 2];
+
+fn product(matrix: &Matrix, vector: [f64; 2]) -> [f64; 2] {
+    matrix.map(|row| row[0] * vector[0] + row[1] * vector[1])
+}
+
+/// The inverse of the Jacobian of what the end is off by, and the derivatives of the first harmonic, cosine and sine.
+#[derive(Clone, Copy)]
+struct Slopes {
+    taken_at: [f64; 2],
+    inverse: Matrix,
+    waves: Matrix,
+}
+
+/// A motion of half a period from a turning point, and what it is off by at the end, m: displacement and speed.
+struct Tried {
+    /// Amplitude, m, and angle of the turning point.
+    from: [f64; 2],
+    motion: Motion,
+    off: [f64; 2],
+}
+
+impl DrivenMass<'_> {
+    /// The steady oscillation to `tolerance`, of the amplitude, sought from an amplitude and a phase on.
+    pub(super) fn steady(&self, start: [f64; 2], tolerance: f64) -> Attempt<Response> {
+        let (mut best, mut from, mut share): (Option<Response>, _, _) = (None, start, SHARE);
+        for _ in 0..=TIGHTENINGS {
+            let step = (share * tolerance).max(LEAST);
+            let Some((tried, slopes)) = self.search(from, step)? else { break };
+            let found = self.response(&tried, &slopes);
+            if best.is_none_or(|best| found.amplitude_error < best.amplitude_error) {
+                best = Some(found);
+            }
+            if found.amplitude_error.max(found.peak_error) <= tolerance * found.amplitude || step <= LEAST {
+                break;
+            }
+            from = tried.from;
+            share *= TIGHTER;
+        }
+        Ok(best)
+    }
+
+    /// The same with motions of one tolerance of a step, as part of the amplitude.
+    fn search(&self, start: [f64; 2], step: f64) -> Attempt<(Tried, Slopes)> {
+        let mut from = start;
+        let mut moving = Motion::at_rest(self, start[0], start[1]);
+        for doubling in 0..=DOUBLINGS {
+            let found = unless_too_long(self.solve(from, step))?;
+            if found.is_some() {
+                return Ok(found);
+            }
+            for periods in [2_f64.powi(doubling), 1.0] {
+                moving.extremes = [None; 2];
+                let next = moving.angle + TAU * periods;
+                if unless_too_long(self.follow(&mut moving, next, ROUGH * start[0]).map(Some))?.is_none() {
+                    return Ok(None);
+                }
+            }
+            if let [Some((upper, angle)), Some((lower, _))] = moving.extremes {
+                from = [0.5 * (upper - lower), angle.rem_euclid(TAU)];
+            }
+        }
+        Ok(None)
+    }
+
+    /// The turning point from which the mass comes to its mirror image, near `start`.
+    fn solve(&self, start: [f64; 2], step: f64) -> Attempt<(Tried, Slopes)> {
+        let rough = ROUGH.max(step);
+        let here = self.tried(start, rough * start[0])?;
+        let Some(slopes) = self.slopes(&here, rough * start[0])? else { return Ok(None) };
+        let Some((here, slopes)) = self.approach(here, slopes, rough)? else { return Ok(None) };
+        let fine = self.tried(here.from, step * here.from[0])?;
+        let Some((found, slopes)) = self.approach(fine, slopes, step)? else { return Ok(None) };
+        // A motion that went farther than it began has begun at another of its turning points.
+        let farthest = found.motion.extremes.iter().flatten().fold(0.0_f64, |most, (place, _)| most.max(place.abs()));
+        let amplitude = found.from[0];
+        if amplitude <= 0.0 || farthest > (1.0 + LEFT * step) * amplitude {
+            return Ok(None);
+        }
+        let moved = [(amplitude / slopes.taken_at[0]).ln(), found.from[1] - slopes.taken_at[1]];
+        let slopes = if moved.iter().all(|change| change.abs() < NEAR) {
+            Some(slopes)
+        } else {
+            self.slopes(&self.tried(found.from, rough * amplitude)?, rough * amplitude)?
+        };
+        Ok(slopes.map(|slopes| (found, slopes)))
+    }
+
+    /// Broyden's method with motions of this tolerance of a step, as part of the amplitude.
+    fn approach(&self, mut here: Tried, mut slopes: Slopes, step: f64) -> Attempt<(Tried, Slopes)> {
+        let mut fresh = true;
+        for _ in 0..STEPS {
+            let tolerance = step * here.from[0];
+            if self.size(here.off) <= tolerance {
+                return Ok(Some((here, slopes)));
+            }
+            let renewed = |here: &Tried| {
+                self.slopes(&self.tried(here.from, ROUGH.max(step) * here.from[0])?, ROUGH.max(step) * here.from[0])
+            };
+            let full = product(&slopes.inverse, here.off).map(|change| -change);
+            let limits = [LONGEST[0] * here.from[0], LONGEST[1]];
+            let mut part = full.iter().zip(limits).fold(1.0_f64, |part, (change, most)| part.min(most / change.abs()));
+            let mut nearer = None;
+            for _ in 0..=if fresh { HALVINGS } else { 0 } {
+                let tried = self.tried([0, 1].map(|index| here.from[index] + part * full[index]), tolerance)?;
+                if self.size(tried.off) < (1.0 - 0.1 * part) * self.size(here.off) {
+                    nearer = Some(tried);
+                    break;
+                }
+                part *= 0.5;
+            }
+            let Some(tried) = nearer else {
+                if fresh {
+                    // What no step makes smaller is the rounding of the motions.
+                    return Ok((self.size(here.off) <= LEFT * tolerance).then_some((here, slopes)));
+                }
+                let Some(renewed) = renewed(&here)? else { return Ok(None) };
+                (slopes, fresh) = (renewed, true);
+                continue;
+            };
+            fresh = self.size(tried.off) > SLOW * self.size(here.off);
+            if fresh {
+                let Some(renewed) = renewed(&tried)? else { return Ok(None) };
+                slopes = renewed;
+            } else {
+                slopes.update(&here, &tried);
+            }
+            here = tried;
+        }
+        Ok(None)
+    }
+
+    /// Half a period from a turning point, each step to `tolerance`, m.
+    fn tried(&self, from: [f64; 2], tolerance: f64) -> Result<Tried, Unfinished> {
+        let mut motion = Motion::at_rest(self, from[0], from[1]);
+        self.follow(&mut motion, from[1] + PI, tolerance)?;
+        let off = [motion.displacement + from[0], motion.speed];
+        Ok(Tried { from, motion, off })
+    }
+
+    /// The size of what a motion is off by, m.
+    fn size(&self, off: [f64; 2]) -> f64 {
+        off[0].hypot(off[1] / self.fastest())
+    }
+
+    /// The derivatives beside a motion, of motions to the same `tolerance`, m.
+    fn slopes(&self, middle: &Tried, tolerance: f64) -> Attempt<Slopes> {
+        let steps = [DIFFERENCE * middle.from[0], DIFFERENCE];
+        let (mut slopes, mut waves) = ([[0.0; 2]; 2], [[0.0; 2]; 2]);
+        for (index, step) in steps.into_iter().enumerate() {
+            let mut beside = middle.from;
+            beside[index] += step;
+            let beside = self.tried(beside, tolerance)?;
+            for row in 0..2 {
+                slopes[row][index] = (beside.off[row] - middle.off[row]) / step;
+                waves[row][index] = (beside.motion.sums[row] - middle.motion.sums[row]) * 2.0 / (PI * step);
+            }
+        }
+        let [[a, b], [c, d]] = slopes;
+        let determinant = a * d - b * c;
+        let inverse = [[d, -b], [-c, a]].map(|row| row.map(|value| value / determinant));
+        let usable = inverse.iter().flatten().all(|value| value.is_finite());
+        Ok(usable.then_some(Slopes { taken_at: middle.from, inverse, waves }))
+    }
+
+    /// What has been found, with its error: that of the motion and what it is off by, through the derivatives.
+    fn response(&self, found: &Tried, slopes: &Slopes) -> Response {
+        let [cos, sin, force_cos, force_sin, third_cos, third_sin] = found.motion.sums.map(|sum| sum * 2.0 / PI);
+        let [displaced, sped] = found.motion.error.map(|error| 2.0 * error);
+        let off = [found.off[0].abs() + displaced, found.off[1].abs() + sped + displaced * self.fastest()];
+        let magnitudes = |matrix: &Matrix| matrix.map(|row| row.map(f64::abs));
+        let moved = product(&magnitudes(&slopes.inverse), off);
+        let [cos_error, sin_error] = product(&magnitudes(&slopes.waves), moved);
+        let first_force = force_cos.hypot(force_sin);
+        Response {
+            frequency: 0.0,
+            amplitude: cos.hypot(sin),
+            phase: sin.atan2(cos),
+            peak: found.from[0],
+            third_harmonic: if first_force > 0.0 { third_cos.hypot(third_sin) / first_force } else { 0.0 },
+            amplitude_error: cos_error.hypot(sin_error) + displaced,
+            peak_error: moved[0] + displaced,
+        }
+    }
+}
+
+impl Slopes {
+    /// Broyden's update of the inverse.
+    fn update(&mut self, before: &Tried, after: &Tried) {
+        let change = [0, 1].map(|index| after.from[index] - before.from[index]);
+        let expected = product(&self.inverse, [0, 1].map(|index| after.off[index] - before.off[index]));
+        let weights = [0, 1].map(|column| change[0] * self.inverse[0][column] + change[1] * self.inverse[1][column]);
+        let scale = change[0] * expected[0] + change[1] * expected[1];
+        for (row, entries) in self.inverse.iter_mut().enumerate() {
+            for (entry, weight) in entries.iter_mut().zip(weights) {
+                *entry += (change[row] - expected[row]) * weight / scale;
+            }
+        }
+    }
+}
+
+/// A motion that takes too many steps has not led to what was sought.
+fn unless_too_long<T>(found: Attempt<T>) -> Attempt<T> {
+    match found {
+        Err(Unfinished::TooManySteps) => Ok(None),
+        other => other,
+    }
+}

@@ -1,0 +1,363 @@
+//! A criterion at a place, over the curve that its stress follows in a cycle.
+//!
+//! Every criterion is made of largest values over the cycle of convex functions of the stress: distances from a centre,
+//! normal
+//! stresses, hydrostatic stress. So the instants that carry them are found one by one: where the curve is farthest
+//! from the centre of a ball, the ball grows, until it holds the whole curve (cutting planes). A critical plane is
+//! sought over
+//! the samples; the best ones are then climbed with the instants that matter on them.
+
+use std::f64::consts::{FRAC_1_SQRT_2 as SHEAR_SHARE, SQRT_2};
+
+use super::curve::{Allowance, Arc, CurvePeak, StressCurve, StressSample, stress};
+use super::planes::{Vector, climb, dot, peaks};
+use super::{
+    Ball, Criterion, deviator, enclosing_ball, from_deviator, resolved, shear_axes, strained, upward, weights,
+};
+use crate::Stress;
+
+/// The hydrostatic stress over the size of a stress, at the most.
+const HYDROSTATIC_SHARE: f64 = 0.577_350_269_189_625_8;
+/// A ball that leaves this share of its squared radius outside holds the curve.
+const HELD: f64 = 1e-11;
+/// More instants than a ball or a plane ever needs; a safeguard only.
+const MOST_ROUNDS: usize = 40;
+/// How much more than the stress the centre of a ball moves at many places: how much it may at one is found there.
+const CENTER_SHARE: f64 = 5.0;
+/// Points of a ball that many errors below its surface may come to carry it.
+const NEAR_SURFACE: f64 = 4.0;
+/// Such points closer than this part of the radius go together.
+const TOGETHER: f64 = 0.1;
+/// Planes are sought over samples that are apart by this part of the farthest two.
+const SEARCHED: f64 = 1.0 / 100.0;
+/// What the other samples may add to the value on a plane, over the range of the values on all.
+const UNSEEN: f64 = 0.06;
+/// Peaks over all planes that are climbed.
+const CLIMBED: usize = 6;
+/// Cosine of the angle below which two of them are one.
+const SAME_PEAK: f64 = 0.9999;
+/// The first step of such a climb, and the change over the value that ends it.
+const CLIMB_STEP: f64 = 0.02;
+const SETTLED: f64 = 1e-9;
+
+/// What is computed at a place.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Measure {
+    /// A criterion of stress.
+    Stress(Criterion),
+    /// Amplitude of the shear stress times that of the slip at the surface, N/m
+    /// ([`Ruiz::fretting_damage`](super::Ruiz)).
+    Ruiz,
+    /// That times the largest tension along x, N^2/m^3 ([`Ruiz::crack_initiation`](super::Ruiz)).
+    RuizTension,
+    /// Friction work per area and cycle at the surface, J/m^2.
+    FrictionWork,
+}
+
+/// An instant of a cycle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Instant {
+    /// The index of the move.
+    pub step: usize,
+    /// The part of it that has been made, above 0 and up to 1.
+    pub part: f64,
+}
+
+/// A measure at a place.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rated {
+    /// In the unit of the measure; infinite where a stress is, and no number below the surface if it is of the surface.
+    pub value: f64,
+    /// The estimated distance from what it is over the whole cycle.
+    pub error: f64,
+    /// As [`Value::plane`](super::Value::plane).
+    pub plane: Option<[f64; 3]>,
+    /// The critical instant, as [`Value::instant`](super::Value::instant).
+    pub at: Option<Instant>,
+}
+
+/// A value with the instant that it belongs to, before that is one of the move as prescribed.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Found {
+    pub(super) value: f64,
+    pub(super) error: f64,
+    pub(super) plane: Option<Vector>,
+    pub(super) at: Option<(usize, f64)>,
+}
+
+impl Found {
+    /// Where there is no such value.
+    pub(super) const NONE: Found = Found { value: f64::NAN, error: 0.0, plane: None, at: None };
+}
+
+impl Measure {
+    /// Whether it is of the surface alone.
+    #[must_use]
+    pub fn of_surface(&self) -> bool {
+        !matches!(self, Measure::Stress(_))
+    }
+
+    /// By how much the value may change, over the change of a stress, where stresses are up to `largest`, Pa.
+    pub(super) fn sensitivity(&self, largest: f64) -> f64 {
+        match *self {
+            Measure::Stress(Criterion::Crossland { alpha }) => SHEAR_SHARE + alpha * HYDROSTATIC_SHARE,
+            Measure::Stress(Criterion::DangVan { alpha }) => CENTER_SHARE * SHEAR_SHARE + alpha * HYDROSTATIC_SHARE,
+            Measure::Stress(Criterion::Findley { k }) => SHEAR_SHARE + k,
+            Measure::Stress(Criterion::SmithWatsonTopper { youngs_modulus, .. }) => 2.6 * largest / youngs_modulus,
+            Measure::Stress(Criterion::FatemiSocie { k, yield_stress, youngs_modulus, poisson }) => {
+                let shear_modulus = 0.5 * youngs_modulus / (1.0 + poisson);
+                (SHEAR_SHARE * (1.0 + k * largest / yield_stress) + SHEAR_SHARE * k * largest / yield_stress)
+                    / shear_modulus
+            }
+            Measure::Ruiz | Measure::RuizTension | Measure::FrictionWork => 0.0,
+        }
+    }
+
+    /// Its value over a curve, on planes `near` one if that is given.
+    pub(super) fn over(&self, curve: &StressCurve, friction: f64, near: Option<Vector>) -> Found {
+        let largest = curve.samples().map(|(_, sample)| size(sample)).fold(0.0, f64::max);
+        let off = self.sensitivity(largest) * curve.error.stress;
+        match self {
+            Measure::Stress(criterion @ (Criterion::Crossland { alpha } | Criterion::DangVan { alpha })) => {
+                let (ball, points, outside) = deviator_ball(curve);
+                if matches!(criterion, Criterion::Crossland { .. }) {
+                    let peak = peak_of(curve, |sample| stress(sample).hydrostatic());
+                    let value = ball.radius / SQRT_2 + alpha * peak.value;
+                    Found { value, error: off + outside, plane: None, at: Some(peak.at) }
+                } else {
+                    let peak = peak_of(curve, |sample| tresca(sample, &ball, *alpha));
+                    let allowed = curve.error.stress + outside;
+                    let error = (SHEAR_SHARE + alpha * HYDROSTATIC_SHARE) * allowed + wander(&ball, points, allowed);
+                    Found { value: peak.value, error, plane: None, at: Some(peak.at) }
+                }
+            }
+            Measure::Stress(criterion) => on_worst_plane(criterion, curve, off, near),
+            Measure::FrictionWork => {
+                let [work, error] = curve.work().map(|work| friction * work);
+                Found { value: work, error, plane: None, at: None }
+            }
+            Measure::Ruiz | Measure::RuizTension => {
+                let [shear, slip] = [(7, false), (8, true)].map(|(index, inside)| {
+                    let wanted = |arc: &Arc| arc.touched || !inside;
+                    let end = |sign: f64| {
+                        let peak = curve.peak(wanted, |sample| sign * sample[index]);
+                        peak.map_or(0.0, |peak| peak.value)
+                    };
+                    (0.5 * (end(1.0) + end(-1.0))).max(0.0)
+                });
+                let tension = curve.peak(|_| true, |sample| sample[0]).map_or(0.0, |peak| peak.value.max(0.0));
+                let Allowance { stress, slip: off } = curve.error;
+                let (value, error) = (shear * slip, shear * off + stress * slip);
+                if matches!(self, Measure::Ruiz) {
+                    Found { value, error, plane: None, at: None }
+                } else {
+                    Found { value: tension * value, error: tension * error + stress * value, plane: None, at: None }
+                }
+            }
+        }
+    }
+}
+
+/// The size of a stress, Pa, as [`Allowance::stress`] has it.
+pub(super) fn size(sample: &StressSample) -> f64 {
+    let Stress { xx, yy, zz, xy, yz, xz } = stress(sample);
+    (xx * xx + yy * yy + zz * zz + 2.0 * (xy * xy + yz * yz + xz * xz)).sqrt()
+}
+
+fn peak_of(curve: &StressCurve, value: impl FnMut(&StressSample) -> f64) -> CurvePeak {
+    let none = CurvePeak { value: 0.0, sample: [0.0; 9], at: (0, 1.0) };
+    curve.peak(|_| true, value).unwrap_or(none)
+}
+
+/// Tresca's shear stress about the centre of the ball, and the share of the hydrostatic stress.
+fn tresca(sample: &StressSample, ball: &Ball<5>, alpha: f64) -> f64 {
+    let stress = stress(sample);
+    (stress + from_deviator(&ball.center) * -1.0).max_shear() + alpha * stress.hydrostatic()
+}
+
+/// The smallest ball around the deviators of a curve, the points that it was found from, and what is outside of it, Pa.
+fn deviator_ball(curve: &StressCurve) -> (Ball<5>, Vec<[f64; 5]>, f64) {
+    let mut points: Vec<[f64; 5]> = curve.samples().map(|(_, sample)| deviator(&stress(sample))).collect();
+    let (ball, outside) = grown(&mut points, |center| {
+        let far = |sample: &StressSample| squared(&deviator(&stress(sample)), center);
+        let peak = peak_of(curve, far);
+        (deviator(&stress(&peak.sample)), peak.value)
+    });
+    (ball, points, outside)
+}
+
+/// How far Tresca's shear stress about the centre may be off, Pa, if the points are by `error`: the sum of what it is
+/// between the centre and those of balls for which one part of the points at the surface lies so much farther out.
+fn wander(ball: &Ball<5>, mut points: Vec<[f64; 5]>, error: f64) -> f64 {
+    if ball.radius <= error {
+        // No centre of the points as they are is farther away than the points may be.
+        return ball.radius + error;
+    }
+    let within = (ball.radius - NEAR_SURFACE * error).max(0.0);
+    points.retain(|point| squared(point, &ball.center) >= within * within);
+    let mut moved = vec![false; points.len()];
+    let mut sum = 0.0;
+    while let Some(first) = moved.iter().position(|moved| !moved) {
+        let from = points[first];
+        let mut farther = points.clone();
+        for (index, point) in points.iter().enumerate() {
+            if !moved[index] && squared(point, &from) <= (TOGETHER * ball.radius).powi(2) {
+                moved[index] = true;
+                let out = 1.0 + error / ball.radius;
+                farther[index] = std::array::from_fn(|i| ball.center[i] + out * (point[i] - ball.center[i]));
+            }
+        }
+        let center = enclosing_ball(&farther).center;
+        sum += from_deviator(&std::array::from_fn(|i| center[i] - ball.center[i])).max_shear();
+    }
+    sum
+}
+
+fn squared<const N: usize>(one: &[f64; N], other: &[f64; N]) -> f64 {
+    one.iter().zip(other).map(|(a, b)| (a - b) * (a - b)).sum()
+}
+
+/// The ball around some points and the farthest that a curve has from its centre, again and again; and how far it
+/// still leaves the curve outside.
+fn grown<const N: usize>(
+    points: &mut Vec<[f64; N]>,
+    farthest: impl Fn(&[f64; N]) -> ([f64; N], f64),
+) -> (Ball<N>, f64) {
+    let mut ball = enclosing_ball(points);
+    for _ in 0..MOST_ROUNDS {
+        let (point, square) = farthest(&ball.center);
+        let reach = ball.radius * ball.radius;
+        if square <= reach * (1.0 + HELD) {
+            return (ball, 0.0);
+        }
+        points.push(point);
+        let next = enclosing_ball(points);
+        if next.radius <= ball.radius {
+            break;
+        }
+        ball = next;
+    }
+    let outside = farthest(&ball.center).1.sqrt() - ball.radius;
+    (ball, outside.max(0.0))
+}
+
+/// The planes on which a criterion may be largest.
+fn candidates(criterion: &Criterion, curve: &StressCurve, shears: &mut Vec<[f64; 2]>) -> Vec<Vector> {
+    let opening = peak_of(curve, |sample| stress(sample).principal()[0]);
+    let mut few = vec![stress(&opening.sample)];
+    let apart = |one: &Stress, other: &Stress| {
+        let off = (*one + *other * -1.0).components();
+        off.iter().map(|part| part * part).sum::<f64>().sqrt()
+    };
+    let samples = || curve.samples().map(|(_, sample)| stress(sample));
+    let farthest = samples().map(|other| apart(&few[0], &other)).fold(0.0, f64::max);
+    for sample in samples() {
+        if apart(&few[few.len() - 1], &sample) > SEARCHED * farthest {
+            few.push(sample);
+        }
+    }
+    let mut range = [f64::INFINITY, f64::NEG_INFINITY];
+    let found = peaks(&criterion.starts(&few), |normal, bound| {
+        let value = criterion.on_plane(&few, normal, bound, shears).0;
+        range = [range[0].min(value), range[1].max(value)];
+        value
+    });
+    let least = found[0].0 - UNSEEN * (range[1] - range[0]);
+    // Searches from several planes end at one peak.
+    let mut normals: Vec<Vector> = Vec::with_capacity(CLIMBED);
+    for (_, normal) in found.into_iter().take_while(|peak| peak.0 >= least) {
+        if normals.len() < CLIMBED && normals.iter().all(|other| dot(other, &normal).abs() < SAME_PEAK) {
+            normals.push(normal);
+        }
+    }
+    normals
+}
+
+/// The largest value over all planes, or those near one.
+fn on_worst_plane(criterion: &Criterion, curve: &StressCurve, off: f64, near: Option<Vector>) -> Found {
+    let mut path: Vec<Stress> = curve.samples().map(|(_, sample)| stress(sample)).collect();
+    let mut shears = Vec::with_capacity(path.len());
+    let normals = near.map_or_else(|| candidates(criterion, curve, &mut shears), |normal| vec![normal]);
+    let mut best = Found { value: f64::NEG_INFINITY, error: off, plane: None, at: None };
+    for mut normal in normals {
+        let mut value = f64::NEG_INFINITY;
+        for round in 0..MOST_ROUNDS {
+            let at = witnesses(criterion, curve, &normal, &mut path, &mut shears);
+            let (here, _) = criterion.on_plane(&path, &normal, false, &mut shears);
+            if here > best.value {
+                best = Found { value: here, plane: Some(upward(normal)), at: Some(at), ..best };
+            }
+            if here - value <= SETTLED * here.abs() || round > 6 {
+                break;
+            }
+            value = here;
+            let step = if round == 0 { CLIMB_STEP } else { 0.1 * CLIMB_STEP };
+            normal = climb((here, normal), step, |normal| criterion.on_plane(&path, normal, false, &mut shears).0).1;
+        }
+    }
+    best
+}
+
+/// Adds the stresses that matter on a plane, and says when its normal stress is largest.
+fn witnesses(
+    criterion: &Criterion,
+    curve: &StressCurve,
+    normal: &Vector,
+    path: &mut Vec<Stress>,
+    shears: &mut Vec<[f64; 2]>,
+) -> (usize, f64) {
+    let along = weights(normal, normal);
+    let opening = peak_of(curve, |sample| resolved(&stress(sample), &along));
+    path.push(stress(&opening.sample));
+    if let Criterion::SmithWatsonTopper { poisson, .. } = criterion {
+        for sign in [1.0, -1.0] {
+            let strain = |sample: &StressSample| sign * strained(&stress(sample), &along, *poisson);
+            path.push(stress(&peak_of(curve, strain).sample));
+        }
+        return opening.at;
+    }
+    let axes = shear_axes(normal);
+    let shear = |stress: &Stress| axes.map(|axis| resolved(stress, &axis));
+    shears.clear();
+    shears.extend(path.iter().map(shear));
+    let found = std::cell::RefCell::new(Vec::new());
+    grown(shears, |center| {
+        let far = peak_of(curve, |sample| squared(&shear(&stress(sample)), center));
+        found.borrow_mut().push(stress(&far.sample));
+        (shear(&stress(&far.sample)), far.value)
+    });
+    path.extend(found.into_inner());
+    opening.at
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_center_moves_no_farther_than_it_is_said_to() {
+        let mut random = fastrand::Rng::with_seed(7);
+        let mut any = |size: f64| std::array::from_fn::<f64, 5, _>(|_| size * (2.0 * random.f64() - 1.0));
+        let mut most = 0.0_f64;
+        for case in 0..400 {
+            // Flat balls, which are carried by three to six points, and some inside.
+            let flat = [1.0, 0.1, 0.01][case % 3];
+            let points: Vec<[f64; 5]> =
+                (0..9).map(|_| any(1.0)).map(|[a, b, c, d, e]| [a, flat * b, flat * c, flat * d, flat * e]).collect();
+            let error = [1e-3, 1e-5, 1e-7][case % 7 % 3];
+            let ball = enclosing_ball(&points);
+            let said = SHEAR_SHARE * error + wander(&ball, points.clone(), error);
+            for _ in 0..8 {
+                let moved = points.iter().map(|point| {
+                    let off = any(error / 5f64.sqrt());
+                    std::array::from_fn(|i| point[i] + off[i])
+                });
+                let center = enclosing_ball(&moved.collect::<Vec<[f64; 5]>>()).center;
+                let off = from_deviator(&std::array::from_fn(|i| center[i] - ball.center[i])).max_shear();
+                most = most.max(off / error);
+                assert!(off <= 3.0 * said, "{case}: {off:e} {said:e}");
+            }
+        }
+        assert!(most > 3.0, "{most}");
+    }
+}

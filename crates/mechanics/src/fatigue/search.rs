@@ -1,0 +1,293 @@
+//! The largest value of a measure over a whole body.
+//!
+//! Over the surface the measures have ridges along the circles at which the edge of the contact or of a slip ends, and
+//! the
+//! largest stress may also lie some way below. So places on a net of such circles, of others between them, of angles
+//! and
+//! of depths are looked at over few instants; from the best of them a search along radius, angle and depth begins,
+//! over all instants. By symmetry one half of the body is enough.
+
+use std::f64::consts::PI;
+
+use super::planes::Vector;
+use super::rating::Found;
+use super::study::Study;
+use super::{Cycle, Measure, Rated};
+use crate::{Error, Profile};
+
+/// Depths of the net, in contact radii; the first ones, and not the others, on the circles where something ends.
+const DEPTHS: [f64; 12] = [0.0, 0.01, 0.03, 0.08, 0.15, 0.25, 0.35, 0.48, 0.65, 0.9, 1.2, 1.7];
+const SHALLOW: usize = 4;
+/// Angles of the net between the direction of motion and the one against it.
+const ANGLES: usize = 13;
+/// The largest step from circle to circle, in contact radii, and circles outside.
+const STEP: f64 = 0.125;
+const OUTSIDE: [f64; 4] = [1.1, 1.25, 1.5, 2.0];
+/// Circles nearer than this, in contact radii, are one; and the largest number at which something ends.
+const SAME_CIRCLE: f64 = 1e-3;
+const MOST_CIRCLES: usize = 32;
+/// A depth, in contact radii, at which the contact is hardly felt: where the bulk stress is all that there is.
+const FAR: f64 = 100.0;
+/// Of the angles, depths and circles, a search that only asks whether a larger value exists takes one in so many.
+const SPARSE: usize = 3;
+/// Starts of a search for each measure, and the value of one over the best.
+const STARTS: usize = 5;
+const WORTH: f64 = 0.75;
+/// Starts of a search that only asks whether a larger value exists.
+const SHORT: usize = 1;
+/// Nearer than this to a start, in contact radii, is no other start.
+const APART: f64 = 0.2;
+/// The first steps along radius, over the contact radius, angle and depth, and how far they fall, first and at the best
+/// place.
+const FIRST_STEPS: [f64; 3] = [0.06, 0.13, 0.06];
+const COARSE: f64 = 1.0 / 16.0;
+const FINE: f64 = 1.0 / 4096.0;
+/// How often a search may go on with another plane.
+const MOST_TURNS: usize = 3;
+/// What is gained in the last rounds of the search, times this, is what more rounds might gain.
+const LAST_GAINS: f64 = 2.0;
+
+/// A place of the largest value of a measure.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Worst {
+    /// The place, m.
+    pub place: [f64; 3],
+    /// The value, infinite if the measure has no largest one, and the estimated distance from the largest in the body.
+    pub rated: Rated,
+    /// Instants of the move that took most.
+    pub instants: usize,
+}
+
+/// Distance from the axis over the contact radius, angle, and depth over the contact radius.
+type Coordinates = [f64; 3];
+
+/// The value at a place of a search.
+#[derive(Clone, Copy)]
+struct Spot {
+    at: Coordinates,
+    found: Found,
+    instants: usize,
+}
+
+impl Study<'_> {
+    /// The place of the largest value of each measure in the body.
+    ///
+    /// # Errors
+    /// [`Error::Interrupted`].
+    pub fn worst(&mut self) -> Result<Vec<Worst>, Error> {
+        let starts = self.starts(1)?;
+        (0..self.measures.len()).map(|measure| self.worst_of(measure, &starts)).collect()
+    }
+
+    /// For each measure a place where it is larger than `known` by more than the errors, if a short search finds one.
+    ///
+    /// # Errors
+    /// [`Error::Interrupted`].
+    pub fn larger(&mut self, known: &[f64]) -> Result<Vec<Option<Worst>>, Error> {
+        let starts = self.starts(SPARSE)?;
+        let mut places = Vec::with_capacity(known.len());
+        for (measure, known) in known.iter().enumerate() {
+            let mut larger = self.unbounded(measure)?;
+            let mut tried = self.best_starts(measure, &starts).into_iter().take(SHORT);
+            while let (None, Some(start)) = (larger, tried.next()) {
+                let spot = self.climb(measure, start, (1.0, 1.0))?.0;
+                let margin = spot.found.error + self.tolerance * spot.found.value.abs();
+                larger = (spot.found.value - margin > *known).then(|| self.found_at(&spot));
+            }
+            places.push(larger);
+        }
+        Ok(places)
+    }
+
+    fn found_at(&self, spot: &Spot) -> Worst {
+        Worst { place: self.place(spot.at), rated: self.rated(&spot.found), instants: spot.instants }
+    }
+
+    /// The radii, in contact radii, at which edges of the contact and of slip end, and kinks of the history lie.
+    fn circles(&self) -> Vec<f64> {
+        let mut circles = self.cycle().ends();
+        circles.iter_mut().for_each(|circle| *circle /= self.radius);
+        circles.sort_by(|one, other| other.total_cmp(one));
+        circles.dedup_by(|one, other| (*one - *other).abs() < SAME_CIRCLE);
+        circles.truncate(MOST_CIRCLES);
+        circles
+    }
+
+    /// Places of the net, every so many, with their values over few instants.
+    fn starts(&mut self, every: usize) -> Result<Vec<(Coordinates, Vec<f64>)>, Error> {
+        let surface = self.measures.iter().all(Measure::of_surface);
+        let special = self.circles();
+        let between = (0..).map(|index| STEP * f64::from(index)).take_while(|circle| *circle < 1.0);
+        let between = between.chain(OUTSIDE).step_by(every).map(|circle| (circle, DEPTHS.len()));
+        let circles = special.iter().map(|circle| (*circle, SHALLOW)).chain(between);
+        let mut net: Vec<Coordinates> = Vec::new();
+        for (circle, depths) in circles {
+            for depth in DEPTHS[..if surface { 1 } else { depths }].iter().step_by(every) {
+                let angles = if circle > 0.0 { ANGLES } else { 1 };
+                let angle = |index: usize| PI * index as f64 / (ANGLES - 1) as f64;
+                net.extend((0..angles).step_by(every).map(|index| [circle, angle(index), *depth]));
+            }
+        }
+        if !surface {
+            net.push([0.0, 0.0, FAR]);
+        }
+        let mut starts = Vec::with_capacity(net.len());
+        for at in net {
+            let place = self.place(at);
+            starts.push((at, self.sample(&place, false)?));
+        }
+        Ok(starts)
+    }
+
+    /// The best places of the net for a measure, apart from each other, the best first.
+    fn best_starts(&self, measure: usize, starts: &[(Coordinates, Vec<f64>)]) -> Vec<Coordinates> {
+        let surface = self.measures[measure].of_surface();
+        let mut order: Vec<&(Coordinates, Vec<f64>)> =
+            starts.iter().filter(|(at, values)| values[measure].is_finite() && (!surface || at[2] <= 0.0)).collect();
+        order.sort_by(|one, other| other.1[measure].total_cmp(&one.1[measure]));
+        let Some(top) = order.first().map(|(_, values)| values[measure]) else { return Vec::new() };
+        let mut best: Vec<Coordinates> = Vec::new();
+        for (at, values) in order {
+            if best.len() == STARTS || values[measure] < top - (1.0 - WORTH) * top.abs() {
+                break;
+            }
+            let near = |other: &Coordinates| {
+                let [one, other] = [*at, *other].map(Self::unit_place);
+                one.iter().zip(other).map(|(one, other)| (one - other).powi(2)).sum::<f64>() < APART * APART
+            };
+            if !best.iter().any(near) {
+                best.push(*at);
+            }
+        }
+        best
+    }
+
+    fn worst_of(&mut self, measure: usize, starts: &[(Coordinates, Vec<f64>)]) -> Result<Worst, Error> {
+        if let Some(unbounded) = self.unbounded(measure)? {
+            return Ok(unbounded);
+        }
+        let mut best: Option<Spot> = None;
+        for start in self.best_starts(measure, starts) {
+            let spot = self.climb(measure, start, (1.0, COARSE))?.0;
+            if best.is_none_or(|best| spot.found.value > best.found.value) {
+                best = Some(spot);
+            }
+        }
+        let start = best.map_or([0.0; 3], |best| best.at);
+        let (spot, gained) = self.climb(measure, start, (COARSE, FINE))?;
+        let mut worst = self.found_at(&spot);
+        worst.rated.error += LAST_GAINS * gained;
+        Ok(worst)
+    }
+
+    /// A place of the surface at which the measure is infinite.
+    fn unbounded(&mut self, measure: usize) -> Result<Option<Worst>, Error> {
+        for radius in spikes(self.cycle().start().profile()) {
+            let place = [radius, 0.0, 0.0];
+            if self.rate_one(measure, &place, None)?.0.value == f64::INFINITY {
+                let rated = Rated { value: f64::INFINITY, error: f64::INFINITY, plane: None, at: None };
+                return Ok(Some(Worst { place, rated, instants: 1 }));
+            }
+        }
+        Ok(None)
+    }
+
+    fn unit_place([radius, angle, depth]: Coordinates) -> [f64; 3] {
+        // Along the motion y is zero to the last bit.
+        let (sin, cos) = if angle >= PI { (0.0, -1.0) } else { angle.sin_cos() };
+        [radius * cos, radius * sin, depth]
+    }
+
+    fn place(&self, at: Coordinates) -> [f64; 3] {
+        Self::unit_place(at).map(|part| self.radius * part)
+    }
+
+    fn spot(&mut self, measure: usize, at: Coordinates, near: Option<Vector>) -> Result<Spot, Error> {
+        let place = self.place(at);
+        let (found, instants) = self.rate_one(measure, &place, near)?;
+        Ok(Spot { at, found, instants })
+    }
+
+    /// Climbs along the coordinates in turn, in steps that are halved where none leads up, until they are so small: the
+    /// best
+    /// place, and what the last two rounds have gained.
+    fn climb(
+        &mut self,
+        measure: usize,
+        start: Coordinates,
+        (mut share, finest): (f64, f64),
+    ) -> Result<(Spot, f64), Error> {
+        let axes = if self.measures[measure].of_surface() { 2 } else { 3 };
+        let mut best = self.spot(measure, start, None)?;
+        let (mut gains, mut turns) = ([0.0; 2], 0);
+        while share >= finest {
+            let before = best.found.value;
+            for (axis, first_step) in FIRST_STEPS.into_iter().enumerate().take(axes) {
+                let middle = best;
+                let mut sides = [None; 2];
+                for (side, sign) in sides.iter_mut().zip([1.0, -1.0]) {
+                    *side = self.step(measure, &middle, axis, sign * share * first_step)?;
+                    if let Some(spot) = side.filter(|spot| spot.found.value > best.found.value) {
+                        best = spot;
+                    }
+                }
+                if let [Some(right), Some(left)] = sides {
+                    let (rise, fall) = (right.found.value - left.found.value, right.found.value + left.found.value);
+                    let bend = fall - 2.0 * middle.found.value;
+                    let vertex = if bend < 0.0 { -0.5 * rise / bend } else { 0.0 };
+                    if vertex.abs() > 0.02 && vertex.abs() < 1.0 {
+                        let length = vertex * share * first_step;
+                        let spot = self.step(measure, &middle, axis, length)?;
+                        best = spot.filter(|spot| spot.found.value > best.found.value).unwrap_or(best);
+                    }
+                }
+            }
+            let gain = best.found.value - before;
+            gains = [gains[1], gain];
+            if gain <= 0.05 * self.tolerance * best.found.value.abs() {
+                share *= 0.5;
+            }
+            if share < finest && best.found.plane.is_some() {
+                // Another plane may have overtaken the one that was followed.
+                let any = self.spot(measure, best.at, None)?;
+                if any.found.value > best.found.value * (1.0 + 0.05 * self.tolerance) && turns < MOST_TURNS {
+                    (share, turns) = (4.0 * finest, turns + 1);
+                }
+                best = any;
+            }
+        }
+        Ok((best, gains[0] + gains[1]))
+    }
+
+    /// The place a step along one coordinate away, unless it leaves the body or is the same.
+    fn step(&mut self, measure: usize, from: &Spot, axis: usize, length: f64) -> Result<Option<Spot>, Error> {
+        let mut at = from.at;
+        let most = if axis == 1 { PI } else { f64::INFINITY };
+        at[axis] = (at[axis] + length).clamp(0.0, most);
+        if (at[axis] - from.at[axis]).abs() <= 0.0 {
+            return Ok(None);
+        }
+        let spot = self.spot(measure, at, from.found.plane)?;
+        Ok(Some(spot).filter(|spot| spot.found.value.is_finite()))
+    }
+}
+
+impl Cycle {
+    /// The radii, m, at which an edge of the contact or of slip is at the end of a move, and a kink of the history.
+    fn ends(&self) -> Vec<f64> {
+        let mut ends = Vec::new();
+        for step in 0..self.moves() {
+            let state = self.state(step, 1.0).0;
+            let profile = state.profile();
+            ends.push(state.contact_radius());
+            ends.extend(state.history.kink_levels().map(|level| profile.radius(level)));
+        }
+        ends.retain(|radius| *radius > 0.0);
+        ends
+    }
+}
+
+/// The radii, m, at which stresses of a profile may be infinite on the surface.
+fn spikes(profile: &Profile) -> Vec<f64> {
+    profile.singular_radii().into_iter().chain(profile.rim_radius()).collect()
+}

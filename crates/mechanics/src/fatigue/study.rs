@@ -1,0 +1,393 @@
+//! Measures of a cycle at many places, each at the instants that matter there.
+
+use std::collections::HashMap;
+use std::f64::consts::TAU;
+use std::ops::Range;
+use std::rc::Rc;
+
+use super::curve::{Allowance, CurveStretch, StressCurve, StressSample, stress};
+use super::planes::Vector;
+use super::rating::Found;
+use super::{Cycle, Instant, Measure, Rated};
+use crate::subsurface::{Side, Subsurface};
+use crate::{Contact, Error, Profile, Stress};
+
+/// Error of a criterion, relative to its largest value, that is accepted unless the caller says otherwise.
+pub const DEFAULT_REFINEMENT: f64 = 1e-4;
+/// The part of the accepted error that the curve of a place may use.
+const CURVE_SHARE: f64 = 0.5;
+/// The part of it that slip and shear stress may each use in a product of both.
+const PRODUCT_SHARE: f64 = 0.2;
+/// A curve that was not fine enough is followed to this part of what it should have been, and at once to this part of
+/// what it was at the least.
+const FINER: f64 = 0.5;
+const FINEST: f64 = 1e-3;
+/// A criterion is resolved at the least to the tolerance times this share of what the largest stress would give.
+const LEAST: f64 = 1e-3;
+/// What rounding leaves of a stress, and what the chords of curved moves do, over the largest pressure.
+const ROUNDING: f64 = 1e-12;
+const CHORDS: f64 = 1e-6;
+/// Depth, in contact radii, below which the passing of an edge is as smooth as all else.
+const DEEP: f64 = 0.3;
+/// Instants closer than this, in parts of a move, are one.
+const SAME_INSTANT: f64 = 1e-12;
+/// Places at which the size of the criteria is found first.
+const SAMPLED_PLACES: usize = 48;
+/// Bytes of fields that are kept for other places, and of the panels that one has on a profile that is no parabola.
+pub const FIELD_BYTES: usize = 32 * 1024 * 1024;
+const PANEL_BYTES: usize = 256 * 1024;
+
+/// A normal stress of the body along x that goes with the cycle: mean + amplitude cos(th + phase), th growing from 0 to
+/// 2 pi over the moves, by as much in each.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bulk {
+    /// Its mean, Pa.
+    pub mean: f64,
+    /// Its amplitude, Pa.
+    pub amplitude: f64,
+    /// Its phase, rad.
+    pub phase: f64,
+}
+
+/// The largest value of a measure over some places.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Largest {
+    /// The index of the place.
+    pub place: usize,
+    /// The value there.
+    pub rated: Rated,
+}
+
+/// Measures at some places.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Ratings {
+    /// The values of each measure, place by place; infinite where a stress is.
+    pub values: Vec<Vec<f64>>,
+    /// The largest finite one of each measure.
+    pub largest: Vec<Option<Largest>>,
+    /// Instants of a move, of that which took most, at the places of the largest values.
+    pub instants: usize,
+}
+
+/// A field, and the part of the move as prescribed.
+type Field = Rc<(Subsurface, f64)>;
+
+/// What is asked of a cycle.
+pub struct Study<'a> {
+    cycle: &'a Cycle,
+    body: (Side, f64),
+    bulk: Option<Bulk>,
+    pub(super) measures: Vec<Measure>,
+    /// Of the largest value of each measure.
+    pub(super) tolerance: f64,
+    keep_going: &'a dyn Fn() -> bool,
+    /// The largest contact radius, m, and pressure that stresses are compared with, Pa, with the bulk stress.
+    pub(super) radius: f64,
+    stress: f64,
+    /// The largest displacement over the cycle less the smallest, m.
+    travel: f64,
+    friction: f64,
+    /// The largest value of each measure so far.
+    reference: Vec<f64>,
+    /// Fields at instants of all places, and at those of one radius.
+    shared: HashMap<(usize, u64), Field>,
+    near: HashMap<(usize, u64), Field>,
+    near_radius: f64,
+    /// How many are kept of each kind.
+    kept: usize,
+}
+
+impl<'a> Study<'a> {
+    /// Some measures in one of the bodies, with its Poisson's ratio, each to be within `tolerance` of its largest
+    /// value; while
+    /// `keep_going` returns true.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`] for Poisson's ratio, and those of [`Contact::subsurface`].
+    pub fn new(
+        cycle: &'a Cycle,
+        body: (Side, f64),
+        bulk: Option<Bulk>,
+        measures: Vec<Measure>,
+        tolerance: f64,
+        keep_going: &'a dyn Fn() -> bool,
+    ) -> Result<Study<'a>, Error> {
+        let ends: Vec<Contact> = (0..cycle.moves()).map(|step| cycle.state(step, 1.0).0).collect();
+        for end in &ends {
+            end.subsurface(body.0, body.1)?;
+        }
+        let most = |of: &dyn Fn(&Contact) -> f64| ends.iter().map(of).fold(0.0, f64::max);
+        let displacements = ends.iter().map(|end| end.state().displacement);
+        let (low, high) =
+            displacements.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), at| (low.min(at), high.max(at)));
+        let panels = if matches!(cycle.start().profile(), Profile::Sphere(_)) { 0 } else { PANEL_BYTES };
+        let largest = ends.iter().map(Contact::memory_bytes).max().unwrap_or(0);
+        let added = bulk.map_or(0.0, |bulk| bulk.mean.abs() + bulk.amplitude.abs());
+        Ok(Study {
+            cycle,
+            body,
+            bulk,
+            tolerance,
+            keep_going,
+            radius: most(&Contact::contact_radius),
+            stress: most(&|end| end.summary().unit_pressure()) + added,
+            travel: high - low,
+            friction: cycle.start().friction(),
+            reference: vec![0.0; measures.len()],
+            measures,
+            shared: HashMap::new(),
+            near: HashMap::new(),
+            near_radius: f64::NAN,
+            kept: FIELD_BYTES / 2 / (4 * largest + panels),
+        })
+    }
+
+    /// All measures at all places, m.
+    ///
+    /// # Errors
+    /// [`Error::Interrupted`].
+    pub fn rate_all(&mut self, places: &[[f64; 3]]) -> Result<Ratings, Error> {
+        let stride = places.len().div_ceil(SAMPLED_PLACES).max(1);
+        for place in places.iter().step_by(stride) {
+            self.sample(place, true)?;
+        }
+        let mut values = vec![Vec::with_capacity(places.len()); self.measures.len()];
+        let mut largest: Vec<Option<(usize, Found, usize)>> = vec![None; self.measures.len()];
+        for (index, place) in places.iter().enumerate() {
+            let (found, instants) = self.rate(place)?;
+            for ((found, column), largest) in found.into_iter().zip(&mut values).zip(&mut largest) {
+                column.push(found.value);
+                if found.value.is_finite() && largest.is_none_or(|(_, before, _)| found.value > before.value) {
+                    *largest = Some((index, found, instants));
+                }
+            }
+        }
+        let instants = largest.iter().flatten().map(|(_, _, instants)| *instants).max().unwrap_or(1);
+        let largest = largest
+            .into_iter()
+            .map(|found| found.map(|(place, found, _)| Largest { place, rated: self.rated(&found) }));
+        Ok(Ratings { largest: largest.collect(), values, instants })
+    }
+
+    /// The instants at which a place was looked at, with its stresses, Pa.
+    ///
+    /// # Errors
+    /// [`Error::Interrupted`].
+    pub fn path(&mut self, place: &[f64; 3]) -> Result<Vec<(Instant, Stress)>, Error> {
+        let curve = self.curve(place, self.allowance(0..self.measures.len()), true)?;
+        let mut path: Vec<(Instant, Stress)> = Vec::new();
+        let Some(curve) = curve else {
+            let infinite = Stress::from_components([f64::NEG_INFINITY; 6]);
+            return Ok((0..self.cycle.moves()).map(|step| (Instant { step, part: 1.0 }, infinite)).collect());
+        };
+        for ((step, part), sample) in curve.samples() {
+            let at = self.instant((step, part));
+            if part > 0.0 && path.last().is_none_or(|last| last.0 != at) {
+                path.push((at, stress(sample)));
+            }
+        }
+        Ok(path)
+    }
+
+    /// All measures at a place, and how many instants the move took that took most.
+    pub(super) fn rate(&mut self, place: &[f64; 3]) -> Result<(Vec<Found>, usize), Error> {
+        self.rate_some(0..self.measures.len(), place, None)
+    }
+
+    /// One measure at a place, likewise; its plane `near` one, if that is given, instead of any.
+    pub(super) fn rate_one(
+        &mut self,
+        measure: usize,
+        place: &[f64; 3],
+        near: Option<Vector>,
+    ) -> Result<(Found, usize), Error> {
+        self.rate_some(measure..measure + 1, place, near).map(|(found, instants)| (found[0], instants))
+    }
+
+    fn rate_some(
+        &mut self,
+        wanted: Range<usize>,
+        place: &[f64; 3],
+        near: Option<Vector>,
+    ) -> Result<(Vec<Found>, usize), Error> {
+        let mut allowed = self.allowance(wanted.clone());
+        loop {
+            let curve = self.curve(place, allowed, true)?;
+            let mut found = Vec::with_capacity(wanted.len());
+            let mut excess = 0.0_f64;
+            for index in wanted.clone() {
+                let measure = self.measures[index];
+                let one = match &curve {
+                    // Of the surface alone.
+                    _ if place[2] > 0.0 && measure.of_surface() => Found::NONE,
+                    Some(curve) => measure.over(curve, self.friction, near),
+                    None => self.cycle.infinite(&measure, place),
+                };
+                if one.value.is_finite() {
+                    self.reference[index] = self.reference[index].max(one.value - one.error);
+                }
+                if !measure.of_surface() {
+                    excess = excess.max(one.error / (self.tolerance * self.resolved(index)));
+                }
+                found.push(one);
+                if !(self.keep_going)() {
+                    return Err(Error::Interrupted);
+                }
+            }
+            let Some(curve) = curve else { return Ok((found, 1)) };
+            // The centre of a ball may be worse off than the stress is; what cannot be followed better is left.
+            let finer = (FINER / excess.max(1.0)).max(FINEST) * allowed.stress.min(curve.error.stress);
+            if excess <= 1.0 || finer < self.rounding() || curve.error.stress > allowed.stress {
+                return Ok((found, curve.instants()));
+            }
+            allowed.stress = finer;
+        }
+    }
+
+    /// The measures at a place over few instants, those that it has for itself left out unless `passes`: lower than
+    /// they are.
+    pub(super) fn sample(&mut self, place: &[f64; 3], passes: bool) -> Result<Vec<f64>, Error> {
+        let any = Allowance { stress: f64::INFINITY, slip: f64::INFINITY };
+        let Some(curve) = self.curve(place, any, passes)? else {
+            return Ok(vec![f64::INFINITY; self.measures.len()]);
+        };
+        let samples: Vec<Stress> = curve.samples().map(|(_, sample)| stress(sample)).collect();
+        let mut values = Vec::with_capacity(self.measures.len());
+        for (measure, reference) in self.measures.iter().zip(&mut self.reference) {
+            let value = match measure {
+                Measure::Stress(criterion) => criterion.roughly(&samples),
+                _ => measure.over(&curve, self.friction, None).value,
+            };
+            *reference = reference.max(value);
+            values.push(value);
+        }
+        Ok(values)
+    }
+
+    /// The largest contact radius over the cycle, m.
+    #[must_use]
+    pub fn contact_radius(&self) -> f64 {
+        self.radius
+    }
+
+    /// The cycle.
+    pub(super) fn cycle(&self) -> &'a Cycle {
+        self.cycle
+    }
+
+    /// A value with its instant as the move prescribes it.
+    pub(super) fn rated(&self, found: &Found) -> Rated {
+        let Found { value, error, plane, at } = *found;
+        Rated { value, error, plane, at: at.map(|at| self.instant(at)) }
+    }
+
+    fn instant(&self, (step, part): (usize, f64)) -> Instant {
+        if part > 0.0 {
+            Instant { step, part: self.cycle.state(step, part).1 }
+        } else {
+            Instant { step: step.checked_sub(1).unwrap_or(self.cycle.moves() - 1), part: 1.0 }
+        }
+    }
+
+    /// How far the samples of a place may be off.
+    fn allowance(&self, wanted: Range<usize>) -> Allowance {
+        let mut allowed = Allowance { stress: f64::INFINITY, slip: f64::INFINITY };
+        for index in wanted {
+            let (measure, reference) = (self.measures[index], self.reference[index]);
+            if measure.of_surface() {
+                let slip = PRODUCT_SHARE * self.tolerance * reference / (self.friction * self.stress);
+                let product = if matches!(measure, Measure::RuizTension) { slip / self.stress } else { slip };
+                allowed.slip = allowed.slip.min(product.max(LEAST * self.tolerance * self.travel));
+                allowed.stress = allowed.stress.min(PRODUCT_SHARE * self.tolerance * self.stress);
+            } else {
+                let most = self.resolved(index) / measure.sensitivity(self.stress);
+                allowed.stress = allowed.stress.min(CURVE_SHARE * self.tolerance * most);
+            }
+        }
+        Allowance { stress: allowed.stress.max(self.rounding()), ..allowed }
+    }
+
+    /// What a criterion is resolved to, by the tolerance.
+    fn resolved(&self, index: usize) -> f64 {
+        self.reference[index].max(LEAST * self.measures[index].sensitivity(self.stress) * self.stress)
+    }
+
+    /// The error of a stress, Pa, below which no curve is followed.
+    fn rounding(&self) -> f64 {
+        self.stress * if self.cycle.is_curved() { CHORDS } else { ROUNDING }
+    }
+
+    /// The curve of a place, m; `None` where a stress is infinite.
+    fn curve(&mut self, place: &[f64; 3], allowed: Allowance, passes: bool) -> Result<Option<StressCurve>, Error> {
+        let radius = place[0].hypot(place[1]);
+        if radius.to_bits() != self.near_radius.to_bits() {
+            self.near.clear();
+            self.near_radius = radius;
+        }
+        let near = passes && place[2] <= DEEP * self.radius;
+        let level = self.cycle.start().profile().level(radius);
+        let mut stretches = Vec::new();
+        for step in 0..self.cycle.moves() {
+            let turns = self.cycle.turns(step);
+            let passes = if near && level.is_finite() { self.cycle.passes(step, level) } else { Vec::new() };
+            let mut ends: Vec<(f64, bool)> = turns.iter().map(|part| (*part, true)).collect();
+            ends.extend(passes.iter().map(|part| (*part, false)));
+            ends.push((1.0, true));
+            ends.sort_by(|one, other| one.0.total_cmp(&other.0));
+            let mut from = (0.0, true);
+            for to in ends {
+                if to.0 - from.0 > SAME_INSTANT {
+                    stretches.push((CurveStretch { step, from: from.0, to: to.0 }, from.1 && to.1));
+                    from = to;
+                }
+            }
+        }
+        let surface = self.measures.iter().any(Measure::of_surface);
+        StressCurve::follow(&stretches, allowed, |step, part, shared| {
+            let field = self.field(step, part, shared)?;
+            Ok(self.looked_at(&field, step, (place, radius), surface))
+        })
+    }
+
+    /// The field at an instant.
+    fn field(&mut self, step: usize, part: f64, shared: bool) -> Result<Field, Error> {
+        let fields = if shared { &mut self.shared } else { &mut self.near };
+        if let Some(field) = fields.get(&(step, part.to_bits())) {
+            return Ok(field.clone());
+        }
+        if !(self.keep_going)() {
+            return Err(Error::Interrupted);
+        }
+        let (state, prescribed) = self.cycle.state(step, part);
+        let field = Rc::new((state.into_subsurface(self.body.0, self.body.1)?, prescribed));
+        if fields.len() < self.kept {
+            fields.insert((step, part.to_bits()), field.clone());
+        }
+        Ok(field)
+    }
+
+    /// What a place goes through at an instant, and whether it is in contact.
+    fn looked_at(
+        &self,
+        field: &Field,
+        step: usize,
+        (place, radius): (&[f64; 3], f64),
+        surface: bool,
+    ) -> (StressSample, bool) {
+        let (field, part) = (&field.0, field.1);
+        let Stress { mut xx, yy, zz, xy, yz, xz } = field.at(*place);
+        if let Some(Bulk { mean, amplitude, phase }) = self.bulk {
+            xx += mean + amplitude * (TAU * (step as f64 + part) / self.cycle.moves() as f64 + phase).cos();
+        }
+        let contact = field.contact();
+        let edge = contact.contact_radius();
+        let touched = contact.indentation() > 0.0 && radius <= edge * (1.0 + SAME_INSTANT);
+        let [mut pressure, mut shear, mut slip] = [0.0; 3];
+        if surface && touched {
+            pressure = contact.pressure(radius);
+            shear = contact.shear(radius);
+            slip = contact.slip(radius.min(edge)).unwrap_or(0.0);
+        }
+        ([xx, yy, zz, xy, yz, xz, pressure, shear, slip], touched)
+    }
+}

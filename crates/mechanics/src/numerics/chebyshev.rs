@@ -1,0 +1,125 @@
+//! Chebyshev series on an interval: from values at the Chebyshev points, their values, divided differences and
+//! primitives (Clenshaw 1955; Mason & Handscomb 2003).
+//!
+//! A series through n points of a function that is analytic within the ellipse of foci at the ends of the interval,
+//! whose half-axes add up to rho half-widths, errs like rho^-n; so do its last coefficients, by which
+//! [`Points::resolve`] tells whether the points suffice.
+
+use std::sync::LazyLock;
+
+/// The part of the largest coefficient below which a last one is the rounding of the values.
+const ROUNDED: f64 = 5e-16;
+
+/// The Chebyshev points of -1..1, and what turns values there into coefficients: a row for each order.
+pub(crate) struct Points<const N: usize> {
+    cosines: [f64; N],
+    transform: [[f64; N]; N],
+}
+
+/// So many points.
+pub(crate) static EIGHT: LazyLock<Points<8>> = LazyLock::new(Points::new);
+pub(crate) static TWELVE: LazyLock<Points<12>> = LazyLock::new(Points::new);
+pub(crate) static SIXTEEN: LazyLock<Points<16>> = LazyLock::new(Points::new);
+pub(crate) static TWENTY: LazyLock<Points<20>> = LazyLock::new(Points::new);
+pub(crate) static TWENTY_FOUR: LazyLock<Points<24>> = LazyLock::new(Points::new);
+
+impl<const N: usize> Points<N> {
+    fn new() -> Points<N> {
+        let cosine = |index: usize| (std::f64::consts::PI * (index % (4 * N)) as f64 / (2 * N) as f64).cos();
+        let share = |order: usize| if order == 0 { 1.0 } else { 2.0 } / N as f64;
+        Points {
+            cosines: std::array::from_fn(|index| cosine(2 * index + 1)),
+            transform: std::array::from_fn(|order| {
+                std::array::from_fn(|index| share(order) * cosine(order * (2 * index + 1)))
+            }),
+        }
+    }
+
+    /// The points of the interval low..high.
+    pub(crate) fn places(&self, low: f64, high: f64) -> [f64; N] {
+        let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
+        let mut places = self.cosines;
+        for place in &mut places {
+            *place = middle + half * *place;
+        }
+        places
+    }
+
+    /// The coefficients of the series with these values; what rounding alone keeps from zero is cut off.
+    pub(crate) fn series(&self, values: &[f64; N]) -> Vec<f64> {
+        let mut terms = [0.0; N];
+        for (term, row) in terms.iter_mut().zip(&self.transform) {
+            let mut sums = [0.0; 4];
+            for (row, values) in row.chunks_exact(4).zip(values.chunks_exact(4)) {
+                for lane in 0..4 {
+                    sums[lane] += row[lane] * values[lane];
+                }
+            }
+            *term = (sums[0] + sums[1]) + (sums[2] + sums[3]);
+        }
+        let size = terms.iter().fold(0.0f64, |size, a| size.max(a.abs()));
+        let last = terms.iter().rposition(|a| a.abs() > ROUNDED * size);
+        terms[..last.map_or(0, |last| last + 1)].to_vec()
+    }
+
+    /// Whether a series of these points has no terms beyond it: its last two are rounding.
+    pub(crate) fn resolve(series: &[f64]) -> bool {
+        series.len() + 2 <= N
+    }
+}
+
+/// The values of a series at places u from -1 to 1, side by side.
+pub(crate) fn values<const N: usize>(series: &[f64], u: [f64; N]) -> [f64; N] {
+    let (mut b1, mut b2) = ([0.0; N], [0.0; N]);
+    let (first, rest) = series.split_first().map_or((0.0, series), |(first, rest)| (*first, rest));
+    for &a in rest.iter().rev() {
+        for lane in 0..N {
+            (b1[lane], b2[lane]) = ((a - b2[lane]) + 2.0 * u[lane] * b1[lane], b1[lane]);
+        }
+    }
+    for lane in 0..N {
+        b1[lane] = (first - b2[lane]) + u[lane] * b1[lane];
+    }
+    b1
+}
+
+/// (p(u) - p(v))/(u - v), also at u = v, by Clenshaw's recurrence carried for both.
+pub(crate) fn divided_difference(series: &[f64], u: f64, v: f64) -> f64 {
+    let (mut b1, mut b2, mut d1, mut d2) = (0.0, 0.0, 0.0, 0.0);
+    for &a in series.get(1..).unwrap_or_default().iter().rev() {
+        (d1, d2) = (2.0 * (u * d1 + b1) - d2, d1);
+        (b1, b2) = (a + 2.0 * v * b1 - b2, b1);
+    }
+    u * d1 + b1 - d2
+}
+
+/// The primitive in u of a series, but for its constant.
+pub(crate) fn primitive(series: &[f64]) -> Vec<f64> {
+    let term = |order: usize| series.get(order).copied().unwrap_or(0.0);
+    let rise = |order: usize| {
+        let before = if order == 1 { 2.0 * term(0) } else { term(order - 1) };
+        (before - term(order + 1)) / (2 * order) as f64
+    };
+    let orders = (1..=series.len()).map(rise);
+    std::iter::once(0.0).chain(orders).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{EIGHT, Points, TWENTY_FOUR, divided_difference, primitive, values};
+
+    #[test]
+    fn a_series_and_its_primitive_follow_an_exponential() {
+        let points = &*TWENTY_FOUR;
+        let series = points.series(&points.places(-1.0, 1.0).map(f64::exp));
+        assert!(Points::<24>::resolve(&series));
+        let area = primitive(&series);
+        for (u, v) in [(-1.0, 1.0), (0.3, -0.8), (0.99, 1.0)] {
+            let [value] = values(&series, [u]);
+            assert!((value - f64::exp(u)).abs() < 2e-15);
+            let rise = (u - v) * divided_difference(&area, u, v);
+            assert!((rise / (u.exp() - v.exp()) - 1.0).abs() < 1e-14, "{u} {v}");
+        }
+        assert!(!Points::<8>::resolve(&EIGHT.series(&EIGHT.places(-1.0, 1.0).map(f64::exp))));
+    }
+}

@@ -1,0 +1,132 @@
+//! Roots of functions of one number.
+
+/// More steps than any of these functions takes; a safeguard only.
+const MOST_STEPS: usize = 200;
+
+/// The root of a convex increasing function that is not negative at `start`: Newton's steps then come down on it from
+/// above and cannot miss. `f` gives value and slope.
+pub(crate) fn descend(start: f64, f: impl Fn(f64) -> (f64, f64)) -> f64 {
+    let mut x = start;
+    for _ in 0..MOST_STEPS {
+        let (value, slope) = f(x);
+        let step = value / slope;
+        if !step.is_finite() {
+            break;
+        }
+        x -= step;
+        // Quadratic convergence: what is left after a step this small is below round-off.
+        if step <= 3e-9 * x {
+            break;
+        }
+    }
+    x.max(0.0)
+}
+
+/// The positive root of an increasing function: bracketed from `guess` by growing factors, then Newton's steps, and the
+/// geometric mean where one would leave the bracket or go far. `f` gives value and slope.
+pub(crate) fn increasing(guess: f64, f: impl Fn(f64) -> (f64, f64)) -> f64 {
+    let mut x = guess.clamp(f64::MIN_POSITIVE, f64::MAX.sqrt());
+    let (mut low, mut high) = (0.0f64, f64::INFINITY);
+    let mut factor = 2.0f64;
+    for count in 1..MOST_STEPS {
+        let (value, slope) = f(x);
+        if value > 0.0 {
+            high = x;
+        } else if value < 0.0 {
+            low = x;
+        } else {
+            return x;
+        }
+        let newton = x - value / slope;
+        let step = (newton - x).abs();
+        let bracketed = low > 0.0 && high < f64::INFINITY;
+        // Every eighth step uses the bracket alone: Newton's steps may be tiny.
+        let near = step <= if bracketed { 0.4 * x } else { 0.1 * x };
+        let next = if near && newton > low && newton < high && count % 8 > 0 {
+            newton
+        } else if bracketed {
+            low.sqrt() * high.sqrt()
+        } else {
+            factor *= factor;
+            if low > 0.0 { low * factor.min(1e100) } else { high / factor.min(1e100) }
+        };
+        if step <= 2e-16 * x || bracketed && high - low <= 4e-16 * high || !(next > 0.0 && next < f64::INFINITY) {
+            return x;
+        }
+        x = next;
+    }
+    x
+}
+
+/// The root of a function without a slope between two places where its signs differ, each given with its value: false
+/// position with the weights of Anderson & Björck (1973), which gains digits by a power of 1.7 a step. Ends where the
+/// bracket is no wider than `width` or the function is zero, with the end of the bracket at which the function is
+/// nearer to zero.
+pub(crate) fn between(ends: [(f64, f64); 2], width: f64, mut f: impl FnMut(f64) -> f64) -> f64 {
+    let [mut kept, mut last] = ends;
+    let [mut at_kept, mut at_last] = [kept.1, last.1];
+    for count in 1..MOST_STEPS {
+        if at_last.abs() <= 0.0 || (last.0 - kept.0).abs() <= width {
+            break;
+        }
+        // Every fourth step halves the bracket, because the weights alone may leave one end where it is.
+        let share = if count % 4 > 0 { at_last / (at_last - at_kept) } else { 0.5 };
+        // At least half the width from the last place, so that the bracket closes from both sides.
+        let step = (last.0 - kept.0).abs() * share.clamp(0.0, 1.0);
+        let step = step.max(0.5 * width).copysign(kept.0 - last.0);
+        let x = last.0 + step;
+        let value = f(x);
+        if (value > 0.0) == (last.1 > 0.0) {
+            let weight = 1.0 - value / at_last;
+            at_kept *= if weight > 0.0 { weight } else { 0.5 };
+        } else {
+            kept = last;
+            at_kept = at_last;
+        }
+        last = (x, value);
+        at_last = value;
+    }
+    if last.1.abs() <= kept.1.abs() { last.0 } else { kept.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{between, descend, increasing};
+
+    #[test]
+    fn a_bracketed_root_takes_few_steps_whatever_the_function() {
+        type Case = (fn(f64) -> f64, f64, f64, f64);
+        let functions: [Case; 5] = [
+            (|x| x * x * x - 2.0, 0.0, 10.0, 2f64.cbrt()),
+            (|x| x.cos() - x, 0.0, 1.0, 0.739_085_133_215_160_6),
+            (|x| (x - 0.3).powi(9), -1.0, 1.0, 0.3),
+            (|x| if x < 0.7 { -1e-9 } else { 1.0 }, 0.0, 1.0, 0.7),
+            (|x| 1e-300 * (x - 0.1), 1.0, -4.0, 0.1),
+        ];
+        for (index, (f, low, high, root)) in functions.into_iter().enumerate() {
+            let mut count = 0;
+            let found = between([(low, f(low)), (high, f(high))], 1e-14, |x| {
+                count += 1;
+                f(x)
+            });
+            let allowed = if index == 2 { 1e-2 } else { 1e-14 };
+            assert!((found - root).abs() <= allowed, "{index}: {found}");
+            assert!(count <= [20, 8, 160, 190, 3][index], "{index}: {count} evaluations");
+        }
+    }
+
+    #[test]
+    fn twenty_decades_from_one_guess() {
+        for decade in -60..60 {
+            let root = 10f64.powi(decade) * 1.37;
+            let found = increasing(1.0, |x| (x * x * x - root * root * root, 3.0 * x * x));
+            assert!((found / root - 1.0).abs() < 4e-16, "{root}: {found}");
+        }
+    }
+
+    #[test]
+    fn coming_down_on_a_cube_root() {
+        let found = descend(10.0, |x| (x * x * x - 2.0, 3.0 * x * x));
+        assert!((found - 2f64.cbrt()).abs() < 3e-16);
+    }
+}

@@ -1,0 +1,84 @@
+//! Pixels whose lines have round joins: the backend of plotters joins wide lines with mitres, which at a sharp corner
+//! are spikes far beyond the data.
+
+use plotters::prelude::{BitMapBackend, DrawingBackend};
+use plotters_backend::{BackendColor, BackendCoord, BackendStyle, BackendTextStyle, DrawingErrorKind};
+
+/// The backend of pixels, but for its lines.
+pub(super) struct RoundJoins<'a>(pub(super) BitMapBackend<'a>);
+
+type Drawn<'a> = Result<(), DrawingErrorKind<<BitMapBackend<'a> as DrawingBackend>::ErrorType>>;
+
+impl<'a> DrawingBackend for RoundJoins<'a> {
+    type ErrorType = <BitMapBackend<'a> as DrawingBackend>::ErrorType;
+
+    fn get_size(&self) -> (u32, u32) {
+        self.0.get_size()
+    }
+
+    fn ensure_prepared(&mut self) -> Drawn<'a> {
+        self.0.ensure_prepared()
+    }
+
+    fn present(&mut self) -> Drawn<'a> {
+        self.0.present()
+    }
+
+    fn draw_pixel(&mut self, point: BackendCoord, colour: BackendColor) -> Drawn<'a> {
+        self.0.draw_pixel(point, colour)
+    }
+
+    fn draw_line<S: BackendStyle>(&mut self, from: BackendCoord, to: BackendCoord, style: &S) -> Drawn<'a> {
+        self.0.draw_line(from, to, style)
+    }
+
+    fn draw_rect<S: BackendStyle>(
+        &mut self,
+        upper_left: BackendCoord,
+        bottom_right: BackendCoord,
+        style: &S,
+        fill: bool,
+    ) -> Drawn<'a> {
+        self.0.draw_rect(upper_left, bottom_right, style, fill)
+    }
+
+    fn draw_path<S: BackendStyle, I: IntoIterator<Item = BackendCoord>>(&mut self, path: I, style: &S) -> Drawn<'a> {
+        let width = style.stroke_width();
+        // What is thin has no joins that can be seen, and where colours mix each pixel may be drawn only once.
+        if width < 3 || style.color().alpha < 1.0 {
+            return self.0.draw_path(path, style);
+        }
+        let mut last: Option<BackendCoord> = None;
+        for point in path {
+            if last == Some(point) {
+                continue;
+            }
+            if let Some(from) = last {
+                self.0.draw_path([from, point], style)?;
+            }
+            self.0.draw_circle(point, width / 2, &style.color(), true)?;
+            last = Some(point);
+        }
+        Ok(())
+    }
+
+    fn draw_circle<S: BackendStyle>(&mut self, center: BackendCoord, radius: u32, style: &S, fill: bool) -> Drawn<'a> {
+        self.0.draw_circle(center, radius, style, fill)
+    }
+
+    fn fill_polygon<S: BackendStyle, I: IntoIterator<Item = BackendCoord>>(
+        &mut self,
+        vertices: I,
+        style: &S,
+    ) -> Drawn<'a> {
+        self.0.fill_polygon(vertices, style)
+    }
+
+    fn draw_text<T: BackendTextStyle>(&mut self, text: &str, style: &T, position: BackendCoord) -> Drawn<'a> {
+        self.0.draw_text(text, style, position)
+    }
+
+    fn blit_bitmap(&mut self, position: BackendCoord, size: (u32, u32), source: &[u8]) -> Drawn<'a> {
+        self.0.blit_bitmap(position, size, source)
+    }
+}

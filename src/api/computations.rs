@@ -1,0 +1,206 @@
+//! Every computation over HTTP: its route with admission and limits, its part of the OpenAPI document, and its reply on
+//! a stored contact.
+
+use std::marker::PhantomData;
+use std::sync::Arc;
+
+use axum::extract::State;
+use axum::http::{HeaderMap, header};
+use axum::response::Response;
+use axum::routing::{MethodRouter, post};
+use serde_json::{Map, Value, json};
+use utoipa::{PartialSchema, ToSchema};
+use uuid::Uuid;
+
+use crate::computations::{Computation, FromStored, OnContact, Outcome, Shown, Task, Visitor, each};
+use crate::formats::Format;
+use crate::otlp;
+
+use super::extract::{CheckedBody, HeldResources};
+use super::facts::{Facts, Routes};
+use super::parameters::{Formats, Kind as _, QueryReader, Words, described};
+use super::problem::Problem;
+use super::query::{CheckedQuery, QueryParams};
+use super::reply;
+use super::state::{App, TenantApp};
+
+/// Adds the route of every computation, and the schemas of its documents.
+pub fn add_routes(routes: &mut Routes) {
+    each(routes);
+}
+
+impl Routes {
+    fn add<C: Computation>(&mut self, facts: Facts, handler: MethodRouter<Arc<App>>) {
+        let Some(route) = C::ABOUT.route else { return };
+        let mut schemas = Vec::new();
+        add_schemas::<C::Request>(&mut schemas);
+        add_schemas::<<C::Outcome as Outcome>::Reply>(&mut schemas);
+        let formats = if C::ABOUT.formats.len() > 1 { C::ABOUT.formats } else { &[] };
+        self.facts.add("POST", route.path, facts.formats(formats));
+        self.router = std::mem::take(&mut self.router).route(route.path, handler);
+        self.router.get_openapi_mut().components.get_or_insert_default().schemas.extend(schemas);
+    }
+}
+
+impl Visitor for Routes {
+    fn visit<C: Computation>(&mut self) {
+        self.add::<C>(Facts::READS, post(answer::<C>));
+    }
+
+    fn visit_stored<C: FromStored>(&mut self) {
+        self.add::<C>(Facts::READS_STORED, post(answer_stored::<C>));
+    }
+}
+
+type Schemas = Vec<(String, utoipa::openapi::RefOr<utoipa::openapi::schema::Schema>)>;
+
+fn add_schemas<T: ToSchema>(schemas: &mut Schemas) {
+    schemas.push((T::name().into_owned(), <T as PartialSchema>::schema()));
+    T::schemas(schemas);
+}
+
+/// Writes the operation of every computation.
+pub fn write(document: &mut Value) {
+    each(&mut Operations(document));
+}
+
+struct Operations<'a>(&'a mut Value);
+
+impl Visitor for Operations<'_> {
+    fn visit<C: Computation>(&mut self) {
+        let about = C::ABOUT;
+        let Some(route) = about.route else { return };
+        let reference = |name: &str| json!({"$ref": format!("#/components/schemas/{name}")});
+        let examples = C::examples().into_iter();
+        let examples: Map<_, _> = examples
+            .map(|example| (example.name.to_owned(), json!({"summary": example.summary, "value": example.value})))
+            .collect();
+        let request = json!({"schema": reference(&C::Request::name()), "examples": examples});
+        let reply = json!({"schema": reference(&<C::Outcome as Outcome>::Reply::name())});
+        let mut operation = json!({
+            "tags": [route.tag],
+            "summary": about.title,
+            "description": about.description,
+            "operationId": route.operation,
+            "requestBody": {"content": {"application/json": request}, "required": true},
+            "responses": {"200": {"description": about.reply, "content": {"application/json": reply}}},
+        });
+        if about.formats.len() > 1 {
+            let format = format!(
+                "`columns` (this document), `rows` (a JSON array of flat objects), `csv`, `ndjson`, `arrow` (an Arrow \
+                 IPC stream), or a picture as `svg` or `png`. {} If it is left out, `Accept` decides.",
+                about.shows
+            );
+            let mut parameters = vec![described("format", format, &Formats(about.formats), None)];
+            parameters.extend(
+                about
+                    .choice
+                    .map(|choice| described(choice.name, choice.description.to_owned(), &Words(choice.words), None)),
+            );
+            operation["parameters"] = json!(parameters);
+        }
+        self.0["paths"][route.path]["post"] = operation;
+    }
+}
+
+/// How a client wants the reply of a computation, as its query says.
+struct ShownQuery<C> {
+    format: Option<Format>,
+    choice: Option<&'static str>,
+    of: PhantomData<fn() -> C>,
+}
+
+impl<C: Computation> QueryParams for ShownQuery<C> {
+    fn take(query: &mut QueryReader, _: &HeaderMap) -> Option<ShownQuery<C>> {
+        let format = Formats(C::ABOUT.formats).read("format", query);
+        let choice = C::ABOUT.choice.and_then(|choice| Words(choice.words).read(choice.name, query));
+        Some(ShownQuery { format, choice, of: PhantomData })
+    }
+}
+
+type AskedFor<C> = Result<CheckedQuery<ShownQuery<C>>, Problem>;
+
+fn shown<C: Computation>(query: AskedFor<C>, headers: &HeaderMap) -> Result<Shown, Problem> {
+    if C::ABOUT.formats.len() == 1 {
+        // It has no parameters, and never refused those that it does not have.
+        return Ok(Shown::in_format(Format::Columns));
+    }
+    let CheckedQuery(ShownQuery { format, choice, .. }) = query?;
+    Ok(Shown { choice, ..Shown::in_format(Format::chosen(format, headers, C::ABOUT.formats)?) })
+}
+
+fn written<C: Computation>(body: Vec<u8>, shown: &Shown) -> Response {
+    if C::ABOUT.formats.len() == 1 { reply::json(body) } else { shown.format.reply(body) }
+}
+
+/// Answers a request that defines its contact.
+async fn answer<C: Computation>(
+    State(app): State<Arc<App>>,
+    headers: HeaderMap,
+    query: AskedFor<C>,
+    request: CheckedBody<C::Request>,
+) -> Result<Response, Problem> {
+    let shown = shown::<C>(query, &headers)?;
+    run::<C>(&app, request.body, shown, request.held).await
+}
+
+/// Answers a request that may name a stored contact.
+async fn answer_stored<C: FromStored>(
+    TenantApp(app): TenantApp,
+    headers: HeaderMap,
+    query: AskedFor<C>,
+    request: CheckedBody<C::Request>,
+) -> Result<Response, Problem> {
+    let shown = shown::<C>(query, &headers)?;
+    match C::stored(request.body) {
+        Ok((id, said, task)) => {
+            let (_, body, memory) = app.sessions.compute_on(id, said, task, shown).await?;
+            Ok(reply::holding(written::<C>(body, &shown), memory))
+        }
+        Err(task) => run::<C>(&app, task, shown, request.held).await,
+    }
+}
+
+async fn run<C: Computation>(
+    app: &App,
+    task: Task<C>,
+    shown: Shown,
+    mut held: HeldResources,
+) -> Result<Response, Problem> {
+    C::check_shown(&task, &shown)?;
+    let (stop, _guard) = held.deadline(&app.pool);
+    held.resize(&app.pool, C::bytes(&task) + shown.bytes(C::rows(&task))).await?;
+    let cost = C::cost(&task).saturating_add(shown.format.cost());
+    let work = move || {
+        let outcome = otlp::part!("solve").in_scope(|| C::run(task, &stop))?;
+        Ok::<_, Problem>(shown.write(&outcome)?)
+    };
+    Ok(held.on(written::<C>(app.pool.run(cost, work).await??, &shown)))
+}
+
+/// The reply of a computation on a stored contact, in the format that the query names or `Accept` prefers, with the
+/// sequence of the contact as its version. A client that has that version gets 304 before anything is computed.
+pub async fn get_of_contact<T: OnContact>(
+    app: &App,
+    id: Uuid,
+    headers: &HeaderMap,
+    format: Option<Format>,
+    task: T,
+) -> Result<Response, Problem> {
+    let format = Format::chosen(format, headers, &Format::ALL)?;
+    if headers.contains_key(header::IF_NONE_MATCH) {
+        let tag = format.tag(&app.sessions.get(id).await?.sequence.to_string());
+        if reply::is_current(headers, &tag) {
+            return Ok(reply::not_modified(&tag));
+        }
+    }
+    of_contact(app, id, format, task).await
+}
+
+/// The reply of a computation on a stored contact, with the sequence of the contact as its version.
+pub async fn of_contact<T: OnContact>(app: &App, id: Uuid, format: Format, task: T) -> Result<Response, Problem> {
+    let shown = Shown::in_format(format);
+    task.check_shown(&shown)?;
+    let (sequence, body, memory) = app.sessions.compute_on(id, None, task, shown).await?;
+    Ok(reply::holding(reply::tagged(format.reply(body), &format.tag(&sequence.to_string())), memory))
+}

@@ -1,0 +1,150 @@
+//! What is known of a route beside its handler: what it needs, how it may be refused, and how it replies. The facts
+//! stand in the router, at the route (`api/mod.rs`).
+
+use std::sync::Arc;
+
+use utoipa_axum::router::{OpenApiRouter, UtoipaMethodRouter};
+
+use super::state::App;
+use crate::access::Role;
+use crate::formats::Format;
+
+/// What a request needs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Need {
+    /// Nothing.
+    Nothing,
+    /// A key with this role.
+    Key(Role),
+}
+
+/// A status, and why a route answers with it.
+pub type Refusal = (&'static str, &'static str);
+
+/// The facts of an operation.
+#[derive(Clone, Copy, Debug)]
+pub struct Facts {
+    /// What a request needs.
+    pub need: Need,
+    /// The refusals beyond those of its need and its body.
+    pub refusals: &'static [&'static [Refusal]],
+    /// The formats of the reply; none for one document.
+    pub formats: &'static [Format],
+    /// The schemas of the events that it sends.
+    pub events: &'static [&'static str],
+    /// Whether a client that has the current version gets 304.
+    pub conditional: bool,
+    /// Whether a reply says where the next page is.
+    pub paged: bool,
+    /// Whether the body may be left out.
+    pub optional_body: bool,
+}
+
+/// Of what is computed or stored.
+const LIMITED: &[Refusal] = &[
+    ("429", "The client has as much of something as it may; try again after Retry-After"),
+    ("422", "The request is invalid, or the mechanics has no answer to it"),
+    ("503", "The server is busy; try again after Retry-After"),
+];
+/// Of a stored contact.
+const EXPIRED: &[Refusal] = &[("410", "The contact was idle for so long that it has expired")];
+/// Of a change of a stored contact.
+const CHANGES: &[Refusal] = &[FORBIDDEN, ("412", "The contact is not at the sequence given in If-Match")];
+const FORBIDDEN: Refusal = ("409", "The state of the contact forbids this");
+/// Of a computation that may begin from a stored contact.
+const STORED: &[Refusal] = &[("404", "Not found"), FORBIDDEN];
+/// Of the result of a job.
+const UNFINISHED: &[Refusal] = &[("409", "The job has not ended, or has failed")];
+/// Of a store that is not ready.
+const NOT_READY: &[Refusal] =
+    &[("503", "The server is busy; try again after Retry-After"), ("507", "The storage has no room left")];
+
+impl Facts {
+    const fn of(need: Need, refusals: &'static [&'static [Refusal]]) -> Facts {
+        Facts { need, refusals, formats: &[], events: &[], conditional: false, paged: false, optional_body: false }
+    }
+
+    /// For everybody.
+    pub const OPEN: Facts = Facts::of(Need::Nothing, &[]);
+    /// Whether the service is ready.
+    pub const READY: Facts = Facts::of(Need::Nothing, &[NOT_READY]);
+    /// The metrics.
+    pub const METRICS: Facts = Facts::of(Need::Key(Role::Metrics), &[]);
+    /// Reads or computes something, and changes nothing.
+    pub const READS: Facts = Facts::of(Need::Key(Role::Read), &[LIMITED]);
+    /// Computes something that may begin from a stored contact.
+    pub const READS_STORED: Facts = Facts::of(Need::Key(Role::Read), &[LIMITED, STORED]);
+    /// Reads a contact.
+    pub const READS_CONTACT: Facts = Facts::of(Need::Key(Role::Read), &[LIMITED, EXPIRED]);
+    /// Reads the result of a job.
+    pub const READS_RESULT: Facts = Facts::of(Need::Key(Role::Read), &[LIMITED, UNFINISHED]);
+    /// Makes something new, or ends a job.
+    pub const WRITES: Facts = Facts::of(Need::Key(Role::Write), &[LIMITED]);
+    /// Copies a contact.
+    pub const COPIES_CONTACT: Facts = Facts::of(Need::Key(Role::Write), &[LIMITED, EXPIRED]);
+    /// Changes a contact.
+    pub const CHANGES_CONTACT: Facts = Facts::of(Need::Key(Role::Write), &[LIMITED, EXPIRED, CHANGES]);
+
+    /// The same with a choice of formats.
+    pub const fn formats(self, formats: &'static [Format]) -> Facts {
+        Facts { formats, ..self }
+    }
+
+    /// The same with events.
+    pub const fn events(self, events: &'static [&'static str]) -> Facts {
+        Facts { events, ..self }
+    }
+
+    /// The same with 304 for a client that has the current version.
+    pub const fn conditional(self) -> Facts {
+        Facts { conditional: true, ..self }
+    }
+
+    /// The same page by page.
+    pub const fn paged(self) -> Facts {
+        Facts { paged: true, ..self }
+    }
+
+    /// The same with a body that may be left out.
+    pub const fn optional_body(self) -> Facts {
+        Facts { optional_body: true, ..self }
+    }
+}
+
+/// The routes with their facts.
+pub struct Routes {
+    /// The routes, and what their handlers say of them.
+    pub router: OpenApiRouter<Arc<App>>,
+    /// The facts.
+    pub facts: FactsOfRoutes,
+}
+
+/// Method, path and facts of every operation.
+#[derive(Clone, Debug, Default)]
+pub struct FactsOfRoutes(Vec<(&'static str, String, Facts)>);
+
+impl FactsOfRoutes {
+    /// The facts of a method on a route; none of what is not listed.
+    pub fn get(&self, method: &str, path: &str) -> Option<&Facts> {
+        let method = if method == "HEAD" { "GET" } else { method };
+        let mut found = self.0.iter().filter(|(listed, at, _)| *listed == method && at == path);
+        found.next().map(|(.., facts)| facts)
+    }
+
+    /// Adds the facts of an operation.
+    pub fn add(&mut self, method: &'static str, path: &str, facts: Facts) {
+        self.0.push((method, path.to_owned(), facts));
+    }
+}
+
+impl Routes {
+    /// Adds operations with these facts.
+    pub fn with(mut self, facts: Facts, routes: UtoipaMethodRouter<Arc<App>>) -> Routes {
+        for (path, item) in &routes.1.paths {
+            let methods = [("GET", &item.get), ("POST", &item.post), ("PATCH", &item.patch), ("DELETE", &item.delete)];
+            let described = methods.into_iter().filter(|(_, operation)| operation.is_some());
+            described.for_each(|(method, _)| self.facts.add(method, path, facts));
+        }
+        Routes { router: self.router.routes(routes), ..self }
+    }
+}

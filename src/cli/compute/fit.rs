@@ -1,0 +1,158 @@
+//! `stickslip fit`: a measured loop in columns of text.
+
+use std::path::{Path, PathBuf};
+
+use clap::builder::PossibleValuesParser;
+use clap::{Args, Command};
+use stickslip_measured::import::{Force, Length, LoopHints, read_loop};
+use stickslip_wire::fit::{FitParameter, FitUnits, ForceUnit, KnownValue, KnownValues, LoopStart, MeasuredLoop};
+use stickslip_wire::profile_fit::LengthUnit;
+use stickslip_wire::{self as wire, ContactDefinition, FitRequest};
+
+use super::{Body, Flags, Only};
+use crate::cli::io::{json, problem, read, say};
+
+/// What is free if the command line does not say.
+const USUALLY_FREE: [FitParameter; 3] = [FitParameter::Friction, FitParameter::GStar, FitParameter::ForceOffset];
+
+/// What a file of columns leaves open.
+#[derive(Args)]
+pub struct FitFlags {
+    /// A file with the definition of the contact, for a file of columns.
+    #[arg(long)]
+    contact: Option<PathBuf>,
+    /// The column of displacements, by its number or its name in the header; without it the one that is called so, or
+    /// the first.
+    #[arg(long, value_name = "COLUMN")]
+    displacement: Option<String>,
+    /// The column of forces, likewise; the second.
+    #[arg(long, value_name = "COLUMN")]
+    force: Option<String>,
+    /// The column of times, s, if there is one.
+    #[arg(long, value_name = "COLUMN")]
+    time: Option<String>,
+    /// The unit of displacements; without it the one that the header names, or m.
+    #[arg(long, value_parser = PossibleValuesParser::new(LengthUnit::ALL.map(LengthUnit::symbol)))]
+    displacement_unit: Option<String>,
+    /// The unit of forces; without it the one that the header names, or N.
+    #[arg(long, value_parser = PossibleValuesParser::new(ForceUnit::ALL.map(ForceUnit::symbol)))]
+    force_unit: Option<String>,
+    /// The column of loads, if there is one; without it the one that is called so.
+    #[arg(long, value_name = "COLUMN")]
+    load: Option<String>,
+    /// The load, N, if it is neither that of the contact nor in the file.
+    #[arg(long)]
+    normal_force: Option<f64>,
+    /// How the record begins: `steady` in a cycle that has been repeated before, `virgin` with a contact that was never
+    /// moved.
+    #[arg(long, value_parser = PossibleValuesParser::new(["steady", "virgin"]))]
+    start: Option<String>,
+    /// What is to be determined, separated by commas: friction, g_star and force_offset if left out.
+    #[arg(
+        long,
+        value_delimiter = ',',
+        value_parser = PossibleValuesParser::new(FitParameter::ALL.map(FitParameter::name))
+    )]
+    free: Vec<String>,
+    /// What is known in SI units, such as machine_compliance=5e-8+-5e-9, separated by commas.
+    #[arg(long, value_delimiter = ',', value_parser = known)]
+    known: Vec<(FitParameter, KnownValue)>,
+    /// Print the fitted contact alone, for POST /contacts.
+    #[arg(long, conflicts_with = "format")]
+    only_contact: bool,
+}
+
+impl Flags for FitFlags {
+    fn add(command: Command) -> Command {
+        let help = "The file, or - for standard input: columns of displacement and force as text, or the body of POST \
+                    /fit";
+        Self::augment_args(command).mut_arg("file", |file| file.help(help))
+    }
+
+    fn body(&self, file: Option<&Path>) -> Result<Body, String> {
+        let file = file.unwrap_or(Path::new("-"));
+        let content = read(file)?;
+        let is_json = content.trim_ascii_start().starts_with(b"{");
+        let text = if is_json { content } else { json(&self.of_columns(&content, file)?).into_bytes() };
+        Ok(Body { text, format: None, only: self.only_contact.then_some(Only::Contact) })
+    }
+}
+
+impl FitFlags {
+    fn of_columns(&self, content: &[u8], file: &Path) -> Result<FitRequest, String> {
+        let contact =
+            self.contact.as_ref().ok_or("a file of columns needs --contact FILE, the definition of the contact")?;
+        let contact = wire::parse::<ContactDefinition>(&read(contact)?).map_err(problem)?;
+        let hints = LoopHints {
+            displacement: self.displacement.clone(),
+            force: self.force.clone(),
+            time: self.time.clone(),
+            load: self.load.clone(),
+            displacement_unit: named(&Length::ALL, &self.displacement_unit, Length::symbol),
+            force_unit: named(&Force::ALL, &self.force_unit, Force::symbol),
+        };
+        let found = read_loop(content, &hints).map_err(|error| format!("{}: {error}", file.display()))?;
+        say(file, &found.reading);
+        let start = self.start.as_deref();
+        let measured = MeasuredLoop {
+            displacement: found.displacement,
+            force: found.force,
+            time: found.time,
+            normal_force: self.normal_force.or(found.load),
+            start: start.map(|start| if start == "virgin" { LoopStart::Virgin } else { LoopStart::Steady }),
+            weight: None,
+        };
+        let parameter = |name: &String| FitParameter::ALL.into_iter().find(|one| one.name() == name);
+        let free: Vec<FitParameter> = self.free.iter().filter_map(parameter).collect();
+        let mut known = KnownValues::default();
+        for (parameter, value) in &self.known {
+            *known.entry(*parameter) = Some(*value);
+        }
+        Ok(FitRequest {
+            contact,
+            loops: vec![measured],
+            units: Some(FitUnits {
+                displacement: LengthUnit::ALL
+                    .into_iter()
+                    .find(|unit| unit.symbol() == found.displacement_unit.symbol()),
+                force: ForceUnit::ALL.into_iter().find(|unit| unit.symbol() == found.force_unit.symbol()),
+            }),
+            free: if free.is_empty() { USUALLY_FREE.to_vec() } else { free },
+            known: Some(known),
+            noise: None,
+        })
+    }
+}
+
+/// The unit of a symbol, if one was given.
+fn named<U: Copy>(all: &[U], symbol: &Option<String>, symbol_of: fn(U) -> &'static str) -> Option<U> {
+    all.iter().copied().find(|unit| Some(symbol_of(*unit)) == symbol.as_deref())
+}
+
+/// What `NAME=VALUE` or `NAME=VALUE+-ERROR` says.
+fn known(text: &str) -> Result<(FitParameter, KnownValue), String> {
+    let said = || format!("`{text}` is not NAME=VALUE or NAME=VALUE+-STANDARD_ERROR");
+    let (name, rest) = text.split_once('=').ok_or_else(said)?;
+    let parameter = FitParameter::ALL.into_iter().find(|one| one.name() == name.trim());
+    let parameter = parameter
+        .ok_or_else(|| format!("`{name}` is none of {}", FitParameter::ALL.map(FitParameter::name).join(", ")))?;
+    let number = |text: &str| text.trim().parse::<f64>().map_err(|_| said());
+    let (value, error) = rest.split_once("+-").map_or((rest, None), |(value, error)| (value, Some(error)));
+    Ok((parameter, KnownValue { value: number(value)?, standard_error: error.map(number).transpose()? }))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{FitParameter, known};
+
+    #[test]
+    fn what_is_known_has_a_value_and_perhaps_an_error() {
+        let (parameter, value) = known("machine_compliance=5e-8+-5e-9").unwrap();
+        assert_eq!(parameter, FitParameter::MachineCompliance);
+        assert_eq!((value.value.to_bits(), value.standard_error), (5e-8_f64.to_bits(), Some(5e-9)));
+        assert_eq!(known("friction=-1").unwrap().1.standard_error, None);
+        for (text, said) in [("friction", "is not NAME"), ("mu=1", "none of friction"), ("drift=1+-x", "is not NAME")] {
+            assert!(known(text).unwrap_err().contains(said), "{text}");
+        }
+    }
+}

@@ -1,0 +1,190 @@
+//! The commands of computations: `stickslip NAME FILE` with the formats and columns of HTTP. Some take flags beside,
+//! from which they make the body of their request.
+
+mod cycle;
+mod fit;
+mod profile;
+mod protocol;
+
+use std::io::{IsTerminal as _, stderr};
+use std::path::{Path, PathBuf};
+
+use clap::builder::PossibleValuesParser;
+use clap::error::{Error, ErrorKind};
+use clap::{Arg, ArgAction, ArgMatches, Args, Command, FromArgMatches, Subcommand};
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+use stickslip::admission::Stop;
+use stickslip::computations::{About, Computation, Shown, Visitor, compute, each};
+use stickslip::formats::Format;
+use stickslip_wire::{ContactDefinition, Profile};
+
+use super::io::{fault, json, print, read, write};
+
+/// A computation, and the flags that it is called with.
+pub struct Compute {
+    about: About,
+    matches: ArgMatches,
+}
+
+/// What flags make of a request.
+struct Body {
+    text: Vec<u8>,
+    /// The format if the command line does not name one.
+    format: Option<Format>,
+    /// The member of the reply that alone is printed.
+    only: Option<Only>,
+}
+
+/// A member of a reply, for another request.
+#[derive(Clone, Copy)]
+enum Only {
+    /// The fitted profile.
+    Profile,
+    /// The fitted contact.
+    Contact,
+}
+
+/// Flags of a computation beside those that all have.
+trait Flags: Args {
+    /// Adds them.
+    fn add(command: Command) -> Command {
+        Self::augment_args(command)
+    }
+
+    /// The body of the request.
+    fn body(&self, file: Option<&Path>) -> Result<Body, String>;
+}
+
+/// No flags: the file is the body.
+#[derive(Args)]
+struct NoFlags {}
+
+impl Flags for NoFlags {
+    fn body(&self, file: Option<&Path>) -> Result<Body, String> {
+        Ok(Body { text: read(file.unwrap_or(Path::new("-")))?, format: None, only: None })
+    }
+}
+
+/// How flags are added to a command, and read.
+type FlagsOf = (fn(Command) -> Command, fn(&ArgMatches, Option<&Path>) -> Result<Body, String>);
+
+fn flags(name: &str) -> FlagsOf {
+    fn of<F: Flags>() -> FlagsOf {
+        (F::add, |matches, file| F::from_arg_matches(matches).map_err(|error| error.to_string())?.body(file))
+    }
+    match name {
+        "cycle" => of::<cycle::CycleFlags>(),
+        "protocol" => of::<protocol::ProtocolFlags>(),
+        "profile" => of::<profile::ProfileFlags>(),
+        "fit" => of::<fit::FitFlags>(),
+        _ => of::<NoFlags>(),
+    }
+}
+
+/// What every computation says of itself.
+fn all() -> Vec<About> {
+    struct Abouts(Vec<About>);
+    impl Visitor for Abouts {
+        fn visit<C: Computation>(&mut self) {
+            self.0.push(C::ABOUT);
+        }
+    }
+    let mut abouts = Abouts(Vec::new());
+    each(&mut abouts);
+    abouts.0
+}
+
+fn command(about: &About) -> Command {
+    let formats = about.formats.iter().map(|format| format.name()).collect::<Vec<_>>();
+    let mut command = Command::new(about.name)
+        .arg(
+            Arg::new("file")
+                .value_name("FILE")
+                .value_parser(clap::value_parser!(PathBuf))
+                .required(true)
+                .help("The body of the request, or - for standard input"),
+        )
+        .arg(
+            Arg::new("format")
+                .long("format")
+                .value_parser(PossibleValuesParser::new(formats))
+                .help(format!("The format [default: {}]. {}", about.printed.name(), about.shows).trim_end().to_owned()),
+        )
+        .arg(
+            Arg::new("json")
+                .long("json")
+                .action(ArgAction::SetTrue)
+                .conflicts_with("format")
+                .help("Print the JSON document, and faults as JSON even on a terminal"),
+        );
+    if let Some(choice) = about.choice {
+        let words = PossibleValuesParser::new(choice.words.iter().copied());
+        command = command.arg(
+            Arg::new(choice.name).long(choice.name).value_name("NAME").value_parser(words).help(choice.description),
+        );
+    }
+    // After the flags, whose own description would take its place.
+    let long = format!("{}\n\n{}", about.title, about.description);
+    flags(about.name).0(command).about(about.title).long_about(long)
+}
+
+impl Subcommand for Compute {
+    fn augment_subcommands(parent: Command) -> Command {
+        parent.subcommands(all().iter().map(command))
+    }
+
+    fn augment_subcommands_for_update(parent: Command) -> Command {
+        Self::augment_subcommands(parent)
+    }
+
+    fn has_subcommand(name: &str) -> bool {
+        all().iter().any(|about| about.name == name)
+    }
+}
+
+impl FromArgMatches for Compute {
+    fn from_arg_matches(matches: &ArgMatches) -> Result<Compute, Error> {
+        let found = matches.subcommand().and_then(|(name, matches)| {
+            Some(Compute { about: all().into_iter().find(|about| about.name == name)?, matches: matches.clone() })
+        });
+        found.ok_or_else(|| Error::new(ErrorKind::MissingSubcommand))
+    }
+
+    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), Error> {
+        *self = Self::from_arg_matches(matches)?;
+        Ok(())
+    }
+}
+
+impl Compute {
+    /// Computes and prints the reply.
+    pub fn run(&self) -> Result<(), String> {
+        let Compute { about, matches } = self;
+        let wants_json = matches.get_flag("json");
+        let word = |name: &str| matches.get_one::<String>(name);
+        let body = flags(about.name).1(matches, matches.get_one::<PathBuf>("file").map(PathBuf::as_path))?;
+        let named = word("format").and_then(|name| Format::named(name, about.formats));
+        let format = if wants_json { Format::Columns } else { named.or(body.format).unwrap_or(about.printed) };
+        let choice = about.choice.and_then(|choice| {
+            let chosen = word(choice.name)?;
+            choice.words.iter().copied().find(|known| known == chosen)
+        });
+        let shown = Shown { format, choice, indented: true };
+        let reply = compute(about.name, &body.text, shown, &Stop::default())
+            .map_err(|error| fault(error, wants_json || !stderr().is_terminal()))?;
+        match (body.only, format) {
+            (Some(Only::Profile), _) => print(member::<Profile>(&reply, "profile")?),
+            (Some(Only::Contact), _) => print(member::<ContactDefinition>(&reply, "contact")?),
+            (None, Format::Columns) => print(String::from_utf8_lossy(&reply)),
+            (None, _) => write(|out| out.write_all(&reply)),
+        }
+    }
+}
+
+/// A member of a reply, as its document is written.
+fn member<T: Serialize + DeserializeOwned>(reply: &[u8], name: &str) -> Result<String, String> {
+    let mut reply = serde_json::from_slice::<serde_json::Value>(reply).map_err(|error| error.to_string())?;
+    let member: T = serde_json::from_value(reply[name].take()).map_err(|error| error.to_string())?;
+    Ok(json(&member))
+}

@@ -1,0 +1,83 @@
+//! `stickslip profile`: a scan in columns of text.
+
+use std::path::{Path, PathBuf};
+
+use clap::builder::PossibleValuesParser;
+use clap::{Args, Command};
+use stickslip_measured::import::{Length, Places, ScanHints, read_scan};
+use stickslip_wire::limits::SCAN_POINTS;
+use stickslip_wire::profile_fit::{
+    LengthUnit, LineScan, MapScan, PointScan, ScanData, ScanLoad, ScanOrientation, ScanUnits, Smoothing,
+};
+use stickslip_wire::{self as wire, ProfileFitRequest};
+
+use super::{Body, Flags, Only};
+use crate::cli::io::{json, problem, read, say};
+
+/// What a file of columns leaves open.
+#[derive(Args)]
+pub struct ProfileFlags {
+    /// The unit of places in a file of columns; without it the one that the header names, or m.
+    #[arg(long, value_parser = PossibleValuesParser::new(LengthUnit::ALL.map(LengthUnit::symbol)))]
+    lateral: Option<String>,
+    /// The unit of heights in a file of columns, likewise.
+    #[arg(long, value_parser = PossibleValuesParser::new(LengthUnit::ALL.map(LengthUnit::symbol)))]
+    height: Option<String>,
+    /// The distance of neighbours in a matrix of heights, in the unit of places.
+    #[arg(long)]
+    spacing: Option<f64>,
+    /// A file with the `material`, `friction` and `preload` under which to compute the contact of a file of columns.
+    #[arg(long)]
+    load: Option<PathBuf>,
+    /// Print the profile alone, for the definition of a contact.
+    #[arg(long, conflicts_with = "format")]
+    only_profile: bool,
+}
+
+impl Flags for ProfileFlags {
+    fn add(command: Command) -> Command {
+        let help = "The file, or - for standard input: two columns (x, z) or three (x, y, z) of text, a matrix of \
+                    heights, or the body of POST /profiles/fit";
+        Self::augment_args(command).mut_arg("file", |file| file.help(help))
+    }
+
+    fn body(&self, file: Option<&Path>) -> Result<Body, String> {
+        let file = file.unwrap_or(Path::new("-"));
+        let content = read(file)?;
+        let is_json = content.trim_ascii_start().starts_with(b"{");
+        let text = if is_json { content } else { json(&self.of_columns(&content, file)?).into_bytes() };
+        Ok(Body { text, format: None, only: self.only_profile.then_some(Only::Profile) })
+    }
+}
+
+impl ProfileFlags {
+    fn of_columns(&self, content: &[u8], file: &Path) -> Result<ProfileFitRequest, String> {
+        let length =
+            |symbol: &Option<String>| Length::ALL.into_iter().find(|unit| Some(unit.symbol()) == symbol.as_deref());
+        let hints = ScanHints {
+            lateral: length(&self.lateral),
+            height: length(&self.height),
+            spacing: self.spacing,
+            most: *SCAN_POINTS.end(),
+        };
+        let read_file = read_scan(content, &hints).map_err(|error| format!("{}: {error}", file.display()))?;
+        say(file, &read_file.reading);
+        let unit = |unit: Length| LengthUnit::ALL.into_iter().find(|one| one.symbol() == unit.symbol());
+        let units = ScanUnits { lateral: unit(read_file.lateral), height: unit(read_file.height) };
+        let scan = match read_file.places {
+            Places::Line { x, z } => ScanData::Line(LineScan { x, z }),
+            Places::Points { x, y, z } => ScanData::Points(PointScan { x, y, z }),
+            Places::Map { dx, dy, z } => ScanData::Map(MapScan { dx, dy, z }),
+        };
+        let load = self.load.as_ref().map(|file| wire::parse::<ScanLoad>(&read(file)?).map_err(problem)).transpose()?;
+        Ok(ProfileFitRequest {
+            scan,
+            units: Some(units),
+            orientation: Some(ScanOrientation::Auto),
+            centre: None,
+            level: None,
+            smoothing: Some(Smoothing::Auto),
+            load,
+        })
+    }
+}

@@ -1,0 +1,156 @@
+//! `protocol`: paths that leave little shear stress.
+
+use serde_json::json;
+use uuid::Uuid;
+
+use stickslip_mechanics::{Contact, Profile};
+use stickslip_wire::protocol::{Aim, ProtocolSubject, ProtocolTask};
+use stickslip_wire::{ContactDefinition, ProtocolReply, ProtocolRequest, limits};
+
+use super::{About, Computation, Example, FromStored, OnContact, Plain, Route, example};
+use crate::admission::{Nanoseconds, Stop};
+use crate::formats::Format;
+use crate::simulation::bytes::{MOVE_BYTES, RECORD_BYTES, STATE_BYTES, of_shape};
+use crate::simulation::cost::{MOVE_COST, Work, on_profile};
+use crate::simulation::{self, Failure, Subject};
+
+/// One pair of kinks of a protocol, over all evaluations and all three laws.
+const KINK_PAIR_COST: u64 = 15_000;
+/// The least that a protocol costs.
+const PROTOCOL_COST: u64 = 200_000;
+/// Reversals that a target is assumed to need.
+const ASSUMED_REVERSALS: usize = 100;
+/// One reversal of a protocol in a reply: its displacement, and a peak for each of three laws, as JSON in a text that
+/// grows by doubling.
+const REVERSAL_BYTES: usize = 1_024;
+/// One trial of a protocol with errors.
+const SAMPLE_BYTES: usize = 16;
+
+/// A path of few reversals that leaves little shear stress.
+pub struct FindProtocol;
+
+impl Computation for FindProtocol {
+    const ABOUT: About = About {
+        name: "protocol",
+        route: Some(Route { path: "/protocols", operation: "find_protocol", tag: "protocols" }),
+        title: "Find a protocol",
+        description: "Finds displacements that leave little shear stress, in a number of reversals or in as few as \
+                      reach a target, and says what remains, how far that may be from the optimum, and what the \
+                      other laws would leave. Nothing is stored or changed.",
+        reply: "The path, and what remains",
+        formats: &[Format::Columns],
+        printed: Format::Columns,
+        shows: "",
+        choice: None,
+    };
+
+    type Request = ProtocolRequest;
+    type Outcome = Plain<ProtocolReply>;
+
+    fn examples() -> Vec<Example> {
+        vec![
+            example(
+                "best",
+                "The least that 20 reversals can leave on a sphere",
+                json!({
+                    "contact": ContactDefinition::example(),
+                    "reversals": 20, "kind": "minimax", "end": "free"
+                }),
+            ),
+            example(
+                "target",
+                "The fewest reversals that leave a quarter, and how robust they are with a coarse actuator",
+                json!({
+                    "contact": {
+                        "profile": {"type": "power_law", "exponent": 3.0, "coefficient": 1e4},
+                        "material": {"effective": {"e_star": 1.2e11, "g_star": 9.6e10}},
+                        "friction": 0.3,
+                        "preload": {"normal_force": 10.0}
+                    },
+                    "target": 0.25, "kind": "equal_peaks",
+                    "robustness": {"amplitude_error": 0.01, "friction_error": 0.05, "samples": 100, "seed": 1}
+                }),
+            ),
+        ]
+    }
+
+    fn bytes((subject, task): &(ProtocolSubject, ProtocolTask)) -> usize {
+        let shape = match subject {
+            ProtocolSubject::Virgin(made, _) => of_shape(&made.0.profile),
+            ProtocolSubject::Living(..) => 0,
+        };
+        task.bytes() + shape
+    }
+
+    fn cost((subject, task): &(ProtocolSubject, ProtocolTask)) -> Nanoseconds {
+        match subject {
+            ProtocolSubject::Virgin(made, _) => task.cost(&made.1.profile, 0),
+            ProtocolSubject::Living(..) => 0,
+        }
+    }
+
+    fn run((subject, task): (ProtocolSubject, ProtocolTask), stop: &Stop) -> Result<Plain<ProtocolReply>, Failure> {
+        match subject {
+            ProtocolSubject::Virgin(made, first) => {
+                simulation::protocol_for(&made.1, first, &task, stop).map(Plain::of)
+            }
+            ProtocolSubject::Living(..) => Err(Failure::NeedsServer { pointer: "/start/contact_id" }),
+        }
+    }
+}
+
+impl FromStored for FindProtocol {
+    type OnContact = ProtocolTask;
+
+    fn stored(
+        (subject, task): (ProtocolSubject, ProtocolTask),
+    ) -> Result<(Uuid, Option<ContactDefinition>, ProtocolTask), (ProtocolSubject, ProtocolTask)> {
+        match subject {
+            ProtocolSubject::Living(id, definition) => Ok((id, definition.map(|definition| *definition), task)),
+            virgin @ ProtocolSubject::Virgin(..) => Err((virgin, task)),
+        }
+    }
+}
+
+impl OnContact for ProtocolTask {
+    type Outcome = Plain<ProtocolReply>;
+
+    /// With its reply and, on a contact, its moves.
+    fn bytes(&self) -> usize {
+        let most = reversals(self, *limits::PROTOCOL_REVERSALS.end());
+        let tried = self.robustness.map_or(0, |robustness| robustness.samples);
+        (most + 2) * (REVERSAL_BYTES + MOVE_BYTES + STATE_BYTES + RECORD_BYTES) + tried * SAMPLE_BYTES
+    }
+
+    fn cost(&self, profile: &Profile, depth: usize) -> Nanoseconds {
+        let reversals = reversals(self, ASSUMED_REVERSALS);
+        let tried = self.robustness.map_or(0, |robustness| robustness.samples as u64);
+        let once = Work { moves: reversals + 1, residual: true, ..Work::default() };
+        let once = MOVE_COST.saturating_mul(once.moves as u64).saturating_add(once.stresses());
+        let pairs = (reversals * (reversals + depth.min(ASSUMED_REVERSALS))) as u64;
+        on_profile(profile, PROTOCOL_COST + pairs * KINK_PAIR_COST + 3 * tried.saturating_mul(once), true)
+    }
+
+    fn run(self, contact: Contact, _: u64, stop: &Stop) -> Result<Plain<ProtocolReply>, Failure> {
+        find_from_state(&contact, &self, stop).map(Plain::of)
+    }
+}
+
+/// The protocol that begins from the present state of a contact.
+///
+/// # Errors
+/// [`Failure::Lifted`] if it does not touch, or as [`simulation::protocol`].
+pub fn find_from_state(contact: &Contact, task: &ProtocolTask, stop: &Stop) -> Result<ProtocolReply, Failure> {
+    if contact.contact_radius() <= 0.0 {
+        return Err(Failure::Lifted);
+    }
+    simulation::protocol(&Subject { contact, first: None, setup: None }, task, stop)
+}
+
+/// Reversals that a protocol has at the most.
+fn reversals(task: &ProtocolTask, sought: usize) -> usize {
+    match task.aim {
+        Aim::Reversals(reversals) => reversals,
+        Aim::Target(_) => sought,
+    }
+}

@@ -1,0 +1,129 @@
+//! The stresses in the present state of a contact.
+
+use uuid::Uuid;
+
+use stickslip_mechanics::{Contact, Profile, Regime};
+use stickslip_report::plot::{Axis, Band, Colour, Curve, Drawing, Panel, Plot};
+use stickslip_wire::{Field, Sampling, StressReply};
+
+use super::{OnContact, Outcome, Shown};
+use crate::admission::{Nanoseconds, Stop};
+use crate::formats::{Column, STRESS_ROW, Table};
+use crate::simulation::cost::Work;
+use crate::simulation::{self, Failure, bytes};
+
+/// Which stresses of which contact.
+pub struct StressTask {
+    /// The contact, for the title of a plot.
+    pub id: Uuid,
+    /// Where, and which fields.
+    pub sampling: Sampling,
+    /// Whether the extrema of the shear stress are asked for.
+    pub residual: bool,
+}
+
+/// Stresses, and the contact that has them.
+pub struct Stresses {
+    id: Uuid,
+    sequence: u64,
+    contact: Contact,
+    reply: StressReply,
+}
+
+impl OnContact for StressTask {
+    type Outcome = Stresses;
+
+    fn bytes(&self) -> usize {
+        bytes::of_stress(self.sampling.length())
+    }
+
+    fn rows(&self) -> (usize, usize) {
+        (self.sampling.length(), STRESS_ROW)
+    }
+
+    fn cost(&self, profile: &Profile, depth: usize) -> Nanoseconds {
+        let radii = self.sampling.length();
+        Work { depth, radii, residual: self.residual, ..Work::default() }.cost(profile)
+    }
+
+    fn run(self, contact: Contact, sequence: u64, stop: &Stop) -> Result<Stresses, Failure> {
+        let stress = simulation::stresses(&contact, &self.sampling, stop)?;
+        let reply = StressReply {
+            radius: stress.radius,
+            pressure: stress.pressure,
+            shear: stress.shear,
+            slip: stress.slip,
+            displacement: stress.displacement,
+            residual: self.residual.then(|| simulation::residual(&contact, stop)).transpose()?,
+        };
+        Ok(Stresses { id: self.id, sequence, contact, reply })
+    }
+}
+
+impl Outcome for Stresses {
+    type Reply = StressReply;
+
+    fn reply(&self) -> &StressReply {
+        &self.reply
+    }
+
+    fn table(&self) -> Option<Table<'_>> {
+        Some(table(&self.reply))
+    }
+
+    fn picture(&self, _: &Shown) -> Option<Drawing> {
+        Some(Drawing::Plot(plot(self.id, self.sequence, &self.contact, &self.reply)))
+    }
+}
+
+/// The stresses over the radius.
+fn table(reply: &StressReply) -> Table<'_> {
+    let mut columns = vec![Column::floats("radius", "m", |row| reply.radius[row])];
+    for field in Field::ALL {
+        let (unit, values) = match field {
+            Field::Pressure => ("Pa", &reply.pressure),
+            Field::Shear => ("Pa", &reply.shear),
+            Field::Slip => ("m", &reply.slip),
+            Field::Displacement => ("m", &reply.displacement),
+        };
+        if let Some(values) = values {
+            let value = |row: usize| values[row].unwrap_or(f64::NAN);
+            columns.push(Column::floats(field.name(), unit, value));
+        }
+    }
+    Table::flat(reply.radius.len(), columns)
+}
+
+/// Shear stress between the bounds of friction, with the regions that stuck and slipped in the last move.
+fn plot(id: Uuid, sequence: u64, contact: &Contact, reply: &StressReply) -> Plot {
+    let over = |values: &Option<Vec<Option<f64>>>, factor: f64| {
+        let values = values.iter().flatten().map(|value| factor * value.unwrap_or(f64::NAN));
+        reply.radius.iter().copied().zip(values).collect::<Vec<_>>()
+    };
+    let state = contact.state();
+    let friction = contact.friction();
+    let (stick, edge) = (state.stick_radius, state.contact_radius);
+    let mut bands = Vec::new();
+    if state.regime != Regime::Separated {
+        if stick > 0.0 {
+            bands.push(Band { name: "stick", from: 0.0, to: stick, colour: Colour::Blue });
+        }
+        if stick < edge {
+            bands.push(Band { name: "slip", from: stick, to: edge, colour: Colour::Red });
+        }
+    }
+    let curve = |name, points, colour, silent| Curve { name, points, colour, silent, dots: false };
+    Plot {
+        title: format!("Contact {id} after move {sequence}: shear stress"),
+        x: Axis { name: "radius r", unit: Some("m") },
+        panels: vec![Panel {
+            y: Axis { name: "stress", unit: Some("Pa") },
+            curves: vec![
+                curve("friction bound ±μp", over(&reply.pressure, friction), Colour::Grey, false),
+                curve("", over(&reply.pressure, -friction), Colour::Grey, true),
+                curve("shear stress τ", over(&reply.shear, 1.0), Colour::Blue, false),
+            ],
+        }],
+        bands,
+    }
+}

@@ -1,0 +1,160 @@
+//! The formats of tables and pictures: their names, and how each is written. Which one a request gets is decided by
+//! [`crate::api::formats`].
+
+mod table;
+
+use std::fmt::Display;
+
+use serde::Serialize;
+
+use crate::admission::{INLINE, Nanoseconds};
+use crate::otlp;
+use stickslip_report::plot::Picture;
+
+pub use table::{Block, Cells, Column, Table, TableStream};
+
+/// Bytes of a row of stresses in the longest of the formats.
+pub const STRESS_ROW: usize = 256;
+/// Bytes of a row of stresses below the surface, likewise.
+pub const SUBSURFACE_ROW: usize = 640;
+/// Bytes that a plot takes while it is drawn: its pixels, and the outlines of a rough field.
+const PLOT: usize = 32 * 1024 * 1024;
+
+/// How a table is written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    /// The JSON document of the endpoint.
+    Columns,
+    /// A JSON array of flat objects.
+    Rows,
+    /// Comma-separated values under a line of names; a missing value is an empty cell.
+    Csv,
+    /// One flat JSON object a line.
+    Ndjson,
+    /// A stream of Arrow's record batches: typed columns, read without parsing.
+    Arrow,
+    /// A vector plot.
+    Svg,
+    /// A bitmap plot.
+    Png,
+}
+
+impl Format {
+    /// All formats; the first is the default.
+    pub const ALL: [Format; 7] =
+        [Format::Columns, Format::Rows, Format::Csv, Format::Ndjson, Format::Arrow, Format::Svg, Format::Png];
+
+    /// The formats of a table that has no plot.
+    pub const TABLES: [Format; 5] = [Format::Columns, Format::Rows, Format::Csv, Format::Ndjson, Format::Arrow];
+
+    /// Its name in a query, and its media type.
+    const fn names(self) -> (&'static str, &'static str) {
+        match self {
+            Format::Columns => ("columns", "application/json"),
+            Format::Rows => ("rows", "application/vnd.stickslip.rows+json"),
+            Format::Csv => ("csv", "text/csv; charset=utf-8"),
+            Format::Ndjson => ("ndjson", "application/x-ndjson"),
+            Format::Arrow => ("arrow", "application/vnd.apache.arrow.stream"),
+            Format::Svg => ("svg", "image/svg+xml"),
+            Format::Png => ("png", "image/png"),
+        }
+    }
+
+    /// Its name in a query.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        self.names().0
+    }
+
+    /// The one of `formats` with this name.
+    #[must_use]
+    pub fn named(name: &str, formats: &[Format]) -> Option<Format> {
+        formats.iter().copied().find(|format| format.name() == name)
+    }
+
+    /// Its media type.
+    #[must_use]
+    pub const fn media_type(self) -> &'static str {
+        self.names().1
+    }
+
+    /// Whether it is a plot.
+    #[must_use]
+    pub fn is_plot(self) -> bool {
+        matches!(self, Format::Svg | Format::Png)
+    }
+
+    /// Whether it is a table that is read row by row, and can be sent piece by piece.
+    #[must_use]
+    pub fn is_stream(self) -> bool {
+        matches!(self, Format::Csv | Format::Ndjson | Format::Arrow)
+    }
+
+    /// Bytes that writing takes beyond the columns, for `rows` rows of `row` bytes each.
+    #[must_use]
+    pub fn bytes(self, rows: usize, row: usize) -> usize {
+        match self {
+            Format::Columns => 0,
+            Format::Svg | Format::Png => PLOT + rows * row,
+            Format::Rows | Format::Csv | Format::Ndjson | Format::Arrow => rows * row,
+        }
+    }
+
+    /// The cost of writing it, beyond the numbers: a plot needs a solver thread.
+    #[must_use]
+    pub fn cost(self) -> Nanoseconds {
+        if self.is_plot() { INLINE } else { 0 }
+    }
+
+    /// A page in this format; only the plot or table that it needs is made.
+    ///
+    /// # Errors
+    /// [`Unwritable`], which is a fault of the service.
+    pub fn write<'p, P: Picture>(
+        self,
+        page: &impl Serialize,
+        plot: impl FnOnce() -> P,
+        table: impl FnOnce() -> Table<'p>,
+    ) -> Result<Vec<u8>, Unwritable> {
+        let write = || match self {
+            Format::Columns => json(CAPACITY, page),
+            Format::Svg | Format::Png => self.draw(&plot()),
+            Format::Rows | Format::Csv | Format::Ndjson | Format::Arrow => table().write(self).map_err(Unwritable::new),
+        };
+        if self == Format::Columns { write() } else { otlp::part!("write").in_scope(write) }
+    }
+
+    /// A picture as a vector plot if this format is one, else as a bitmap.
+    ///
+    /// # Errors
+    /// [`Unwritable`], which is a fault of the service.
+    pub fn draw(self, picture: &impl Picture) -> Result<Vec<u8>, Unwritable> {
+        if self == Format::Svg { picture.svg() } else { picture.png() }.map_err(Unwritable::new)
+    }
+}
+
+/// Capacity, bytes, that a text begins with if its length is not known.
+pub const CAPACITY: usize = 128;
+
+/// A reply that cannot be written, which is a fault of the service.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("a reply cannot be written: {0}")]
+pub struct Unwritable(String);
+
+impl Unwritable {
+    /// By what the library says.
+    pub fn new(error: impl Display) -> Unwritable {
+        Unwritable(error.to_string())
+    }
+}
+
+/// A value as JSON, in a text of this capacity, bytes, from the start: one that grows is copied repeatedly.
+///
+/// # Errors
+/// [`Unwritable`], which is a fault of the service.
+pub fn json(capacity: usize, value: &impl Serialize) -> Result<Vec<u8>, Unwritable> {
+    let _span = otlp::part!("write").entered();
+    let mut text = Vec::with_capacity(capacity);
+    serde_json::to_writer(&mut text, value).map_err(Unwritable::new)?;
+    Ok(text)
+}

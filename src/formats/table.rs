@@ -1,0 +1,295 @@
+//! Tables of named columns, and how they are written in each format, whole or block by block.
+//!
+//! A cell is computed when it is written, so that the text of a large table is never in memory at once.
+
+use std::collections::HashMap;
+use std::fmt::{self, Write as _};
+use std::ops::Range;
+use std::sync::Arc;
+
+use arrow_array::{ArrayRef, Float64Array, RecordBatch, StringArray, TimestampNanosecondArray, UInt64Array};
+use arrow_ipc::writer::StreamWriter;
+use arrow_schema::{ArrowError, DataType, Field, Schema, TimeUnit};
+use jiff::Timestamp;
+use serde_json::{Number, Value};
+
+use super::Format;
+
+/// Rows of a block.
+const BLOCK: usize = 512;
+
+/// A table.
+pub struct Table<'a> {
+    rows: usize,
+    columns: Vec<Column<'a>>,
+    /// What surrounds the columns in [`Format::Columns`].
+    envelope: [String; 2],
+}
+
+/// A column of a table.
+pub struct Column<'a> {
+    name: String,
+    /// Its name as JSON, which is written with every row.
+    key: String,
+    unit: Option<&'static str>,
+    cells: Cells<'a>,
+}
+
+/// A piece of the written table.
+pub type Block = Result<Vec<u8>, ArrowError>;
+/// The pieces of a written table, in order.
+pub type Blocks<'a> = Box<dyn Iterator<Item = Block> + Send + 'a>;
+
+type ByRow<'a, T> = Box<dyn Fn(usize) -> T + Send + 'a>;
+
+/// The cells of a column by their row.
+pub enum Cells<'a> {
+    /// Numbers, where there is one.
+    Numbers(ByRow<'a, Option<Number>>),
+    /// Whole numbers.
+    Counts(ByRow<'a, u64>),
+    /// Whole numbers, where there is one.
+    SomeCounts(ByRow<'a, Option<u64>>),
+    /// Moments.
+    Times(ByRow<'a, Timestamp>),
+    /// Words without commas and quotes.
+    Words(ByRow<'a, &'static str>),
+    /// Names without commas and quotes, where there is one.
+    SomeNames(ByRow<'a, Option<&'a str>>),
+}
+
+impl<'a> Column<'a> {
+    /// A column; its unit is written in Arrow's metadata.
+    #[must_use]
+    pub fn new(name: &str, unit: Option<&'static str>, cells: Cells<'a>) -> Column<'a> {
+        Column { name: name.to_owned(), key: Value::from(name).to_string(), unit, cells }
+    }
+
+    /// A column of floats; a number that is not finite counts as missing.
+    #[must_use]
+    pub fn floats(name: &str, unit: &'static str, value: impl Fn(usize) -> f64 + Send + 'a) -> Column<'a> {
+        Column::new(name, Some(unit), Cells::Numbers(Box::new(move |row| Number::from_f64(value(row)))))
+    }
+
+    /// A column of whole numbers without a unit.
+    #[must_use]
+    pub fn counts(name: &str, value: impl Fn(usize) -> u64 + Send + 'a) -> Column<'a> {
+        Column::new(name, Some("1"), Cells::Counts(Box::new(value)))
+    }
+
+    fn write_cell(&self, row: usize, format: Format, text: &mut String) -> fmt::Result {
+        let (none, quote) = if format == Format::Csv { ("", "") } else { ("null", "\"") };
+        match &self.cells {
+            Cells::Numbers(at) => match at(row) {
+                Some(number) => write!(text, "{number}"),
+                None => text.write_str(none),
+            },
+            Cells::Counts(at) => write!(text, "{}", at(row)),
+            Cells::SomeCounts(at) => match at(row) {
+                Some(count) => write!(text, "{count}"),
+                None => text.write_str(none),
+            },
+            Cells::Times(at) => write!(text, "{quote}{}{quote}", at(row)),
+            Cells::Words(at) => write!(text, "{quote}{}{quote}", at(row)),
+            Cells::SomeNames(at) => match at(row) {
+                Some(name) => write!(text, "{quote}{name}{quote}"),
+                None => text.write_str(none),
+            },
+        }
+    }
+
+    fn field(&self) -> Field {
+        let (data_type, nullable) = match self.cells {
+            Cells::Numbers(_) => (DataType::Float64, true),
+            Cells::Counts(_) => (DataType::UInt64, false),
+            Cells::SomeCounts(_) => (DataType::UInt64, true),
+            Cells::Times(_) => (DataType::Timestamp(TimeUnit::Nanosecond, Some("UTC".into())), true),
+            Cells::Words(_) => (DataType::Utf8, false),
+            Cells::SomeNames(_) => (DataType::Utf8, true),
+        };
+        let unit = self.unit.map(|unit| ("unit".to_owned(), unit.to_owned()));
+        Field::new(&self.name, data_type, nullable).with_metadata(HashMap::from_iter(unit))
+    }
+
+    fn array(&self, rows: Range<usize>) -> ArrayRef {
+        match &self.cells {
+            Cells::Numbers(at) => {
+                Arc::new(rows.map(|row| at(row).and_then(|number| number.as_f64())).collect::<Float64Array>())
+            }
+            Cells::Counts(at) => Arc::new(rows.map(at).collect::<UInt64Array>()),
+            Cells::SomeCounts(at) => Arc::new(rows.map(at).collect::<UInt64Array>()),
+            Cells::Times(at) => {
+                let since = |row| i64::try_from(at(row).as_nanosecond()).ok();
+                Arc::new(rows.map(since).collect::<TimestampNanosecondArray>().with_timezone("UTC"))
+            }
+            Cells::Words(at) => Arc::new(rows.map(|row| Some(at(row))).collect::<StringArray>()),
+            Cells::SomeNames(at) => Arc::new(rows.map(at).collect::<StringArray>()),
+        }
+    }
+}
+
+impl<'a> Table<'a> {
+    /// A table of `rows` rows; `envelope` is the JSON before and after its columns.
+    #[must_use]
+    pub fn new(rows: usize, columns: Vec<Column<'a>>, envelope: [String; 2]) -> Table<'a> {
+        Table { rows, columns, envelope }
+    }
+
+    /// A table whose JSON document is not that of [`Format::Columns`].
+    #[must_use]
+    pub fn flat(rows: usize, columns: Vec<Column<'a>>) -> Table<'a> {
+        Table::new(rows, columns, ["{".to_owned(), "}".to_owned()])
+    }
+
+    /// All of the table in a format.
+    ///
+    /// # Errors
+    /// The error of the Arrow library; none for a table whose columns have different names.
+    pub fn write(self, format: Format) -> Result<Vec<u8>, ArrowError> {
+        let rows = self.rows.max(1);
+        self.in_blocks(format, rows).collect::<Result<Vec<_>, _>>().map(|blocks| blocks.concat())
+    }
+
+    /// The same block by block.
+    pub fn blocks(self, format: Format) -> Blocks<'a> {
+        self.in_blocks(format, BLOCK)
+    }
+
+    fn in_blocks(self, format: Format, size: usize) -> Blocks<'a> {
+        let (rows, blocks) = (self.rows, self.rows.div_ceil(size).max(1));
+        let range = move |block: usize| block * size..rows.min((block + 1) * size);
+        if format.is_stream() {
+            let mut stream = TableStream::new(format);
+            // Arrow alone has something to end with.
+            let pieces = blocks + usize::from(format == Format::Arrow);
+            return Box::new((0..pieces).map(move |block| {
+                if block < blocks { stream.push_rows(&self, range(block)) } else { stream.finish() }
+            }));
+        }
+        let pieces = if format == Format::Columns { blocks * self.columns.len() } else { blocks };
+        Box::new((0..pieces).map(move |piece| {
+            let mut text = String::new();
+            // Writing to a string cannot fail.
+            let _ = match format {
+                Format::Columns => self.write_column(piece / blocks, range(piece % blocks), &mut text),
+                _ => self.write_rows(range(piece), &mut text),
+            };
+            Ok(text.into_bytes())
+        }))
+    }
+
+    fn write_column(&self, index: usize, rows: Range<usize>, text: &mut String) -> fmt::Result {
+        let column = &self.columns[index];
+        if rows.start == 0 {
+            text.write_str(if index == 0 { &self.envelope[0] } else { "," })?;
+            write!(text, "{}:[", column.key)?;
+        }
+        let is_last = rows.end == self.rows;
+        for row in rows {
+            text.write_str(if row > 0 { "," } else { "" })?;
+            column.write_cell(row, Format::Columns, text)?;
+        }
+        if is_last {
+            text.push(']');
+            text.write_str(if index + 1 == self.columns.len() { &self.envelope[1] } else { "" })?;
+        }
+        Ok(())
+    }
+
+    fn write_rows(&self, rows: Range<usize>, text: &mut String) -> fmt::Result {
+        let is_last = rows.end == self.rows;
+        text.push_str(if rows.start == 0 { "[" } else { "" });
+        self.write_cells(rows, Format::Rows, text)?;
+        text.push_str(if is_last { "]" } else { "" });
+        Ok(())
+    }
+
+    fn csv_names(&self) -> String {
+        self.columns.iter().map(|column| csv_name(&column.name)).collect::<Vec<_>>().join(",") + "\n"
+    }
+
+    fn write_cells(&self, rows: Range<usize>, format: Format, text: &mut String) -> fmt::Result {
+        let (between, end) = match format {
+            Format::Csv => ("", "\n"),
+            Format::Rows => (",", "}"),
+            _ => ("", "}\n"),
+        };
+        for row in rows {
+            text.push_str(if row > 0 { between } else { "" });
+            for (index, column) in self.columns.iter().enumerate() {
+                text.push_str(if index > 0 { "," } else { "" });
+                if format != Format::Csv {
+                    text.push_str(if index == 0 { "{" } else { "" });
+                    write!(text, "{}:", column.key)?;
+                }
+                column.write_cell(row, format, text)?;
+            }
+            text.push_str(end);
+        }
+        Ok(())
+    }
+}
+
+/// A table that is written from several of the same columns, one after another: only the rows differ.
+pub struct TableStream {
+    format: Format,
+    begun: bool,
+    /// Schema and writer of [`Format::Arrow`], from the first rows on.
+    arrow: Option<(Arc<Schema>, StreamWriter<Vec<u8>>)>,
+}
+
+impl TableStream {
+    /// An empty one, in a format that [is read row by row](Format::is_stream).
+    #[must_use]
+    pub fn new(format: Format) -> TableStream {
+        TableStream { format, begun: false, arrow: None }
+    }
+
+    /// The next rows, after what the format begins with.
+    ///
+    /// # Errors
+    /// The error of the Arrow library; none for columns of different names.
+    pub fn push(&mut self, table: &Table<'_>) -> Block {
+        self.push_rows(table, 0..table.rows)
+    }
+
+    fn push_rows(&mut self, table: &Table<'_>, rows: Range<usize>) -> Block {
+        if self.format == Format::Arrow {
+            let (schema, writer) = match &mut self.arrow {
+                Some(begun) => begun,
+                none => {
+                    let schema = Arc::new(Schema::new(table.columns.iter().map(Column::field).collect::<Vec<_>>()));
+                    let writer = StreamWriter::try_new(Vec::new(), &schema)?;
+                    none.insert((schema, writer))
+                }
+            };
+            let arrays = table.columns.iter().map(|column| column.array(rows.clone()));
+            writer.write(&RecordBatch::try_new(Arc::clone(schema), arrays.collect())?)?;
+            return Ok(std::mem::take(writer.get_mut()));
+        }
+        let mut text = String::new();
+        if self.format == Format::Csv && !self.begun {
+            text = table.csv_names();
+        }
+        self.begun = true;
+        // Writing to a string cannot fail.
+        let _ = table.write_cells(rows, self.format, &mut text);
+        Ok(text.into_bytes())
+    }
+
+    /// What the format ends with.
+    ///
+    /// # Errors
+    /// As [`TableStream::push`].
+    pub fn finish(&mut self) -> Block {
+        let Some((_, writer)) = &mut self.arrow else { return Ok(Vec::new()) };
+        // A reader detects a truncated stream by the absence of this mark.
+        writer.finish()?;
+        Ok(std::mem::take(writer.get_mut()))
+    }
+}
+
+/// A name in the first line of comma-separated values.
+fn csv_name(name: &str) -> String {
+    if name.contains([',', '"', '\n', '\r']) { format!("\"{}\"", name.replace('"', "\"\"")) } else { name.to_owned() }
+}

@@ -1,0 +1,85 @@
+// The card that moves a contact: by displacement, force or load, to places of note, and back. On a phone it stays in reach.
+import { el, notice } from "./dom.js";
+import { confirmFar, isFar } from "./far_move.js";
+import { goBack } from "./go_back.js";
+import { moveControl } from "./move_controls.js";
+
+/** As the style sheet has it: windows in which the card stands at the lower edge, folded but for the displacement. */
+const NARROW = matchMedia("(max-width: 62rem)");
+
+/** The card, the choices of units, and a function that shows a state. */
+export function moveHands(model) {
+  const { figures } = model;
+  const displacement = moveControl({
+    name: "displacement",
+    label: "Displacement U",
+    unit: "m",
+    value: (state) => state.displacement,
+    limits: (state) => {
+      const reach = Math.max(model.reach(state), Math.abs(state.displacement));
+      return [-reach, reach];
+    },
+    send: async (wanted) => {
+      if (isFar(model, wanted) && !(await confirmFar(model, wanted))) throw new Error("Not sent.");
+      await model.move({ displacement: wanted });
+    },
+  });
+  const force = moveControl({
+    name: "force",
+    label: "Tangential force F",
+    unit: "N",
+    value: (state) => state.force,
+    limits: (state) => {
+      const limit = 0.999 * model.friction * state.normal_force || 1;
+      return [-limit, limit];
+    },
+    send: (wanted) => model.move({ force: wanted }),
+  });
+  const load = moveControl({
+    name: "load",
+    label: "Normal load F_N",
+    unit: "N",
+    value: (state) => state.normal_force,
+    limits: (state) => [0, Math.max(2 * figures.normal_force, state.normal_force) || 10],
+    send: (wanted) => model.move({ normal_force: wanted }),
+  });
+  const back = goBack(model);
+  const jump = (text, to) =>
+    el(
+      "button",
+      {
+        type: "button",
+        onclick: () => model.move({ displacement: to() }).catch((error) => notice(error.message, true)),
+      },
+      text,
+    );
+  const more = el(
+    "details",
+    { class: "more-moves", id: "more-moves", open: !NARROW.matches },
+    el("summary", {}, "Force, load, undo"),
+    force.element,
+    load.element,
+    el(
+      "div",
+      { class: "row" },
+      jump("← slip", () => -model.reach(model.state) / 1.5),
+      jump("U = 0", () => 0),
+      jump("slip →", () => model.reach(model.state) / 1.5),
+    ),
+    back.element,
+  );
+  const refold = () => (more.open = !NARROW.matches);
+  NARROW.addEventListener("change", refold, { signal: model.signal });
+  const element = el(
+    "section",
+    { class: "card hands", "aria-label": "Move it" },
+    el("h2", {}, "Move it"),
+    displacement.element,
+    more,
+  );
+  const controls = [displacement, force, load];
+  const show = (state) => {
+    for (const one of [...controls, back]) one.show(state);
+  };
+  return { element, show, units: controls.map((one) => one.unit) };
+}

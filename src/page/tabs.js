@@ -1,0 +1,43 @@
+// The tabs of a contact, one for each question. Each has an address of its own, so that reload, back and links lead to it.
+import { el } from "./dom.js";
+
+/** The tabs by the last part of their address, in their order. */
+export const TABS = {
+  live: "Live",
+  loop: "Measured loop",
+  crack: "Will it crack?",
+  damping: "Damping",
+  residual: "Residual stress",
+  accuracy: "Accuracy",
+};
+
+/** The contact, the tab and the query of an address; nothing where the address is of another view. */
+export function contactAddress(hash) {
+  const [, id, tab = "live", query = ""] = hash.match(/^#\/contacts\/([\w-]+)(?:\/(\w+))?(\?.*)?$/) ?? [];
+  return id && { id, tab: tab in TABS ? tab : "live", query };
+}
+
+/** The address of a tab, without its query. */
+export const addressOf = (id, tab) => `#/contacts/${id}${tab === "live" ? "" : `/${tab}`}`;
+
+/** The links of the tabs, and the function that shows the panel of one of them. `panels` are those of this contact, by tab. */
+export function tabBar(id, panels) {
+  const links = Object.keys(panels).map((tab) => [tab, el("a", { href: addressOf(id, tab), id: `to-${tab}` }, TABS[tab])]);
+  const open = (wanted) => {
+    const tab = wanted in panels ? wanted : "live";
+    for (const [name, link] of links) {
+      if (name === tab) link.setAttribute("aria-current", "page");
+      else link.removeAttribute("aria-current");
+      panels[name].hidden = name !== tab;
+    }
+    const current = links.find(([name]) => name === tab)[1];
+    // On a phone the bar is wider than the window.
+    current.parentElement?.scrollTo?.({ left: current.offsetLeft - 40 });
+    return tab;
+  };
+  return { element: el("nav", { class: "tabs", "aria-label": "Questions" }, ...links.map(([, link]) => link)), open };
+}
+
+/** Columns of cards, so that a tall card leaves no blank beside a short one. */
+export const columns = (...lists) =>
+  el("div", { class: "columns" }, ...lists.map((cards) => el("div", { class: "column" }, ...cards)));

@@ -1,0 +1,134 @@
+//! Prepared profiles, which contacts and requests share: found by a digest of their numbers, and kept in the cache of
+//! the contacts.
+
+use std::sync::Arc;
+
+use sha2::{Digest as _, Sha256};
+
+use crate::admission::{Nanoseconds, Stop};
+use crate::simulation::{self, Failure, bytes, cost_of_preparation};
+use stickslip_mechanics::{Elasticity, Profile};
+use stickslip_wire::profile::{SumProfile, TabulatedProfile};
+use stickslip_wire::{self as wire, DefinedProfile, Document, Prepare, Rejection};
+
+use super::cache::{KeptProfile, ProfileKey};
+use super::{Common, Sessions};
+
+/// The shared profiles, for work that ends when its flag is raised.
+#[derive(Clone)]
+pub struct Profiles {
+    common: Arc<Common>,
+    stop: Stop,
+}
+
+impl Sessions {
+    /// The shared profiles, for work that ends when this flag is raised.
+    #[must_use]
+    pub fn profiles(&self, stop: &Stop) -> Profiles {
+        Profiles { common: Arc::clone(&self.common), stop: stop.clone() }
+    }
+}
+
+impl Profiles {
+    /// The cost of preparing the profile of a document: none if it is ready.
+    ///
+    /// # Errors
+    /// [`Failure::Preparation`] if it cannot end in time.
+    pub fn cost<T: Document>(&self, document: &T) -> Result<Nanoseconds, Failure> {
+        document.profile().map_or(Ok(0), |defined| self.cost_of(&defined))
+    }
+
+    /// The same for a profile.
+    ///
+    /// # Errors
+    /// As [`Profiles::cost`].
+    pub fn cost_of(&self, defined: &DefinedProfile<'_>) -> Result<Nanoseconds, Failure> {
+        if defined.profile.points() == 0 {
+            return Ok(0);
+        }
+        let key = key_of(defined.profile, defined.material.elasticity().as_ref());
+        if self.common.cache.profile(&key).is_some() {
+            return Ok(0);
+        }
+        cost_of_preparation(defined, self.common.pool.capacity().deadline)
+    }
+
+    /// Checks a document, and has the flag count the time that it takes.
+    ///
+    /// # Errors
+    /// As [`simulation::check`].
+    pub fn check<T: Document>(&self, document: T) -> Result<Result<T::Checked, Rejection>, Failure> {
+        simulation::check(document, self, &self.stop)
+    }
+}
+
+impl Prepare for Profiles {
+    fn profile(
+        &self,
+        document: &wire::Profile,
+        bodies: Option<&Elasticity>,
+        prepare: &mut dyn FnMut() -> Option<Profile>,
+    ) -> Option<Arc<Profile>> {
+        if document.points() == 0 {
+            return prepare().map(Arc::new);
+        }
+        let key = key_of(document, bodies);
+        if let Some(ready) = self.common.cache.profile(&key) {
+            self.common.metrics.profiles_shared.inc();
+            return Some(ready);
+        }
+        let profile = Arc::new(prepare()?);
+        self.common.metrics.profiles_prepared.inc();
+        let kept = KeptProfile { profile, bytes: bytes::of_shape(document) };
+        Some(self.common.cache.keep_profile(key, kept))
+    }
+
+    fn keep_going(&self) -> bool {
+        self.stop.check().is_ok()
+    }
+}
+
+/// What tells profiles apart: all their numbers, and the moduli where they belong to bodies.
+fn key_of(profile: &wire::Profile, bodies: Option<&Elasticity>) -> ProfileKey {
+    let mut hash = Sha256::new();
+    add(profile, &mut hash);
+    if let Some(bodies) = bodies.filter(|_| profile.depends_on_bodies()) {
+        add_column("bodies", &[bodies.e_star(), bodies.g_star()], &mut hash);
+    }
+    hash.finalize().into()
+}
+
+fn add(profile: &wire::Profile, hash: &mut Sha256) {
+    match profile {
+        wire::Profile::Tabulated(TabulatedProfile { r, z, indentation_error, pressure_error }) => {
+            add_column("r", r, hash);
+            add_column("z", z, hash);
+            for (name, errors) in [("indentation_error", indentation_error), ("pressure_error", pressure_error)] {
+                errors.iter().for_each(|errors| add_column(name, errors, hash));
+            }
+        }
+        wire::Profile::Sum(SumProfile { parts }) => {
+            add_column("sum", &[parts.len() as f64], hash);
+            parts.iter().for_each(|part| add(part, hash));
+        }
+        wire::Profile::Asperities(asperities) => {
+            // Both, so that a profile that wrongly has both is no other one.
+            add_column("radii", asperities.radii.as_deref().unwrap_or_default(), hash);
+            add_column("radius", asperities.radius.as_slice(), hash);
+            add_column("gaps", &asperities.gaps, hash);
+        }
+        wire::Profile::LoadCurve(curve) => {
+            add_column("indentation", &curve.indentation, hash);
+            add_column("normal_force", &curve.normal_force, hash);
+        }
+        // A few numbers with their names.
+        other => hash.update(serde_json::to_vec(other).unwrap_or_default()),
+    }
+}
+
+/// Adds a name, which no other kind of profile begins with, and numbers with how many they are.
+fn add_column(name: &str, numbers: &[f64], hash: &mut Sha256) {
+    hash.update(name);
+    hash.update((numbers.len() as u64).to_le_bytes());
+    hash.update(numbers.iter().flat_map(|number| number.to_le_bytes()).collect::<Vec<u8>>());
+}

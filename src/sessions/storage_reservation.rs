@@ -1,0 +1,205 @@
+//! What each tenant takes in the store, against its quotas.
+//!
+//! What a tenant takes is counted by the store at the first change after the start, and again from time to time,
+//! because others on the same store change it too. In between, this process adds what it stores itself.
+
+use std::collections::HashMap;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::{Duration, Instant};
+
+use crate::admission::{Pool, PoolError, Quota};
+use crate::store::{Store, StoreError, Tenant, Usage};
+
+use super::SessionError;
+
+/// How long a count is taken to hold.
+const RECOUNT: Duration = Duration::from_secs(60);
+/// How old a count must at least be for another one, where a quota is full.
+const RECOUNT_FULL: Duration = Duration::from_secs(1);
+/// A count that takes long is repeated less often: it may take one part in so many of the time.
+const COUNTING_SHARE: u32 = 20;
+
+/// What the tenants take. Each has an entry from its first change on.
+#[derive(Default)]
+pub(super) struct UsageByTenant(Mutex<HashMap<Tenant, Arc<ClientUsage>>>);
+
+/// What a tenant takes.
+#[derive(Default)]
+struct ClientUsage {
+    // Held while the store counts, so that it counts once for all who wait.
+    counting: Arc<tokio::sync::Mutex<()>>,
+    // A std mutex: held for a moment, never across an await.
+    known: Mutex<Known>,
+}
+
+/// What is known of it.
+#[derive(Default)]
+struct Known {
+    /// As it was counted, with what has been stored since.
+    usage: Option<Usage>,
+    /// When it was counted, and how long that took.
+    counted: Option<(Instant, Duration)>,
+    /// When the store last failed to count, if it has not counted since.
+    failed: Option<Instant>,
+    /// What has been stored since a count began that has not ended.
+    meanwhile: Usage,
+    /// What changes under way will add at most.
+    pending: Usage,
+}
+
+/// What a change under way may add to the store, given back when dropped.
+pub(super) struct StorageReservation {
+    client: Arc<ClientUsage>,
+    reserved: Usage,
+}
+
+impl UsageByTenant {
+    /// Reserves what a change will add to what a tenant has stored.
+    ///
+    /// # Errors
+    /// [`PoolError::Quota`] if it would have more than it may, by a count that is a second old or little more; or a
+    /// failure of the store.
+    pub(super) async fn reserve(
+        &self,
+        store: &Arc<dyn Store>,
+        pool: &Pool,
+        tenant: &Tenant,
+        requested: Usage,
+    ) -> Result<StorageReservation, SessionError> {
+        let client =
+            Arc::clone(self.0.lock().unwrap_or_else(PoisonError::into_inner).entry(tenant.clone()).or_default());
+        match client.try_reserve(pool, requested) {
+            Some(Ok(reservation)) => {
+                if client.is_older_than(RECOUNT)
+                    && let Ok(counting) = Arc::clone(&client.counting).try_lock_owned()
+                {
+                    let (store, tenant) = (Arc::clone(store), tenant.clone());
+                    tokio::spawn(async move {
+                        let _counting = counting;
+                        if let Err(error) = client.count(&*store, &tenant).await {
+                            tracing::debug!(%error, "what a tenant has stored could not be counted");
+                        }
+                    });
+                }
+                return Ok(reservation);
+            }
+            Some(Err(quota)) if !client.is_older_than(RECOUNT_FULL) => {
+                return Err(PoolError::Quota(pool.quotas().exceeded(quota)).into());
+            }
+            _ => {}
+        }
+        // In a box, so that a change that is within its quota is not as large as one that waits for a count.
+        Box::pin(client.reserve_after_count(store, pool, tenant, requested)).await
+    }
+
+    /// A tenant has deleted so much.
+    pub(super) fn give_back(&self, tenant: &Tenant, deleted: Usage) {
+        let client = self.0.lock().unwrap_or_else(PoisonError::into_inner).get(tenant).cloned();
+        let Some(client) = client else { return };
+        // A count under way may know of it already, and the next one does.
+        let Ok(_counting) = client.counting.try_lock() else { return };
+        let mut known = client.known();
+        known.usage = known.usage.map(|usage| Usage {
+            contacts: usage.contacts.saturating_sub(deleted.contacts),
+            bytes: usage.bytes.saturating_sub(deleted.bytes),
+        });
+    }
+}
+
+impl ClientUsage {
+    fn known(&self) -> MutexGuard<'_, Known> {
+        self.known.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Whether the last count is older than this, or there is none. It counts as younger if counting takes long.
+    fn is_older_than(&self, age: Duration) -> bool {
+        self.known().counted.is_none_or(|(at, took)| at.elapsed() >= age.max(took * COUNTING_SHARE))
+    }
+
+    fn has_failed_since(&self, begin: Instant) -> bool {
+        self.known().failed.is_some_and(|at| at >= begin)
+    }
+
+    /// Reserves by the last count, or names the quota that is exceeded; nothing if there has been no count.
+    fn try_reserve(
+        self: &Arc<ClientUsage>,
+        pool: &Pool,
+        requested: Usage,
+    ) -> Option<Result<StorageReservation, Quota>> {
+        let limits = pool.quotas().limits();
+        let mut known = self.known();
+        let all = sum(sum(known.usage?, known.pending), requested);
+        let fits = |most: usize, all: u64, requested: u64| requested == 0 || all <= most as u64;
+        if !fits(limits.contacts, all.contacts, requested.contacts) {
+            return Some(Err(Quota::Contacts));
+        }
+        if !fits(limits.store_bytes, all.bytes, requested.bytes) {
+            return Some(Err(Quota::StoreBytes));
+        }
+        known.pending = sum(known.pending, requested);
+        Some(Ok(StorageReservation { client: Arc::clone(self), reserved: requested }))
+    }
+
+    /// Reserves by a count that is a second old or little more.
+    async fn reserve_after_count(
+        self: &Arc<ClientUsage>,
+        store: &Arc<dyn Store>,
+        pool: &Pool,
+        tenant: &Tenant,
+        requested: Usage,
+    ) -> Result<StorageReservation, SessionError> {
+        let begin = Instant::now();
+        let _counting = pool.wait(self.counting.lock()).await?;
+        // Whoever had the lock before may have counted, or may have waited in vain for a store that does not answer.
+        if self.has_failed_since(begin) {
+            return Err(StoreError::Unavailable("what the tenant has stored cannot be counted".to_owned()).into());
+        }
+        if self.is_older_than(RECOUNT_FULL) {
+            self.count(&**store, tenant).await?;
+        }
+        match self.try_reserve(pool, requested) {
+            Some(Ok(reservation)) => Ok(reservation),
+            Some(Err(quota)) => Err(PoolError::Quota(pool.quotas().exceeded(quota)).into()),
+            None => Err(SessionError::Broken("what a tenant has stored is not known".to_owned())),
+        }
+    }
+
+    async fn count(&self, store: &dyn Store, tenant: &Tenant) -> Result<(), SessionError> {
+        let begin = Instant::now();
+        self.known().meanwhile = Usage::default();
+        let counted = store.usage(tenant).await;
+        let mut known = self.known();
+        known.failed = counted.is_err().then(Instant::now);
+        let counted = counted?;
+        // The store may have counted some of it: rather too much than too little.
+        known.usage = Some(sum(counted, known.meanwhile));
+        known.counted = Some((begin, begin.elapsed()));
+        Ok(())
+    }
+}
+
+impl StorageReservation {
+    /// Bytes that are reserved.
+    pub(super) fn bytes(&self) -> u64 {
+        self.reserved.bytes
+    }
+
+    /// The change has been stored, and has added so much.
+    pub(super) fn used(self, added: Usage) {
+        let mut known = self.client.known();
+        known.usage = known.usage.map(|usage| sum(usage, added));
+        known.meanwhile = sum(known.meanwhile, added);
+    }
+}
+
+impl Drop for StorageReservation {
+    fn drop(&mut self) {
+        let mut known = self.client.known();
+        known.pending.contacts -= self.reserved.contacts;
+        known.pending.bytes -= self.reserved.bytes;
+    }
+}
+
+fn sum(one: Usage, other: Usage) -> Usage {
+    Usage { contacts: one.contacts.saturating_add(other.contacts), bytes: one.bytes.saturating_add(other.bytes) }
+}

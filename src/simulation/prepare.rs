@@ -1,0 +1,59 @@
+//! Checking a document as work: what prepares its profile is estimated, may end, and counts.
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use super::{Failure, Timer, cost};
+use crate::admission::{Nanoseconds, Stop};
+use stickslip_mechanics::{Elasticity, Profile};
+use stickslip_wire::{self as wire, DefinedProfile, Document, Prepare, Rejection};
+
+/// Every profile anew, until the flag is raised.
+impl Prepare for Stop {
+    fn profile(
+        &self,
+        _: &wire::Profile,
+        _: Option<&Elasticity>,
+        prepare: &mut dyn FnMut() -> Option<Profile>,
+    ) -> Option<Arc<Profile>> {
+        prepare().map(Arc::new)
+    }
+
+    fn keep_going(&self) -> bool {
+        self.check().is_ok()
+    }
+}
+
+/// The cost of preparing a profile, unless that cannot end in time.
+///
+/// # Errors
+/// [`Failure::Preparation`] with the estimate.
+pub fn cost_of_preparation(defined: &DefinedProfile<'_>, allowed: Duration) -> Result<Nanoseconds, Failure> {
+    let cost = cost::of_preparation(defined.profile);
+    let estimate = Duration::from_nanos(cost);
+    if estimate > allowed.saturating_mul(cost::MARGIN) {
+        return Err(Failure::Preparation { pointer: defined.pointer, estimate, allowed });
+    }
+    Ok(cost)
+}
+
+/// Checks a document, and has `stop` count the time that it takes.
+///
+/// # Errors
+/// [`Failure::TooLong`] or [`Failure::Stopped`] if `stop` has ended the preparation of its profile; within, as
+/// [`Document::check_with`].
+pub fn check<T: Document>(
+    document: T,
+    profiles: &dyn Prepare,
+    stop: &Stop,
+) -> Result<Result<T::Checked, Rejection>, Failure> {
+    let timer = Timer::start(stop);
+    let pointer = document.profile().map_or("", |defined| defined.pointer);
+    let checked = document.check_with(profiles);
+    if checked.is_err() {
+        stop.check().map_err(|interrupted| Failure::interrupted(interrupted, pointer))?;
+    }
+    let spent = timer.elapsed();
+    stop.count(spent.saturating_sub(stop.before()));
+    Ok(checked)
+}

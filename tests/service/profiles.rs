@@ -1,0 +1,289 @@
+//! Preparing profiles: work that is admitted, may end, is done once for all who need the same profile, and counts.
+
+use std::cell::Cell;
+use std::sync::Arc;
+use std::time::Duration;
+
+use crate::common::raw::{Service, post};
+use crate::common::{Server, ball, good, number, of, problem, with};
+use serde_json::{Value, json};
+use stickslip::admission::{Pool, Stop};
+use stickslip::sessions::{CAPACITY, Sessions};
+use stickslip::simulation;
+use stickslip::store::MemoryStore;
+use stickslip_mechanics::{Elasticity, Error, Profile};
+use stickslip_wire::{self as wire, CycleRequest, Document as _, Prepare, Rejection, SimulateRequest};
+
+const MIB: usize = 1024 * 1024;
+
+/// A ball with a table of so many points, each its own by `number`.
+fn table(points: usize, number: usize) -> Value {
+    let radius = 0.01 * (1.0 + 1e-3 * number as f64);
+    let radii: Vec<_> = (0..points).map(|index| 1e-3 * index as f64 / points as f64).collect();
+    let heights: Vec<_> = radii.iter().map(|r| r * r / (2.0 * radius)).collect();
+    with(ball(), "/profile", json!({"type": "tabulated", "r": radii, "z": heights}))
+}
+
+fn asperities(count: usize, number: usize) -> Value {
+    let gaps: Vec<_> = (0..count).map(|index| 1e-9 * ((index * 7_919) % count + number) as f64 / 7.0).collect();
+    with(ball(), "/profile", json!({"type": "asperities", "radius": 1e-4, "gaps": gaps}))
+}
+
+fn load_curve(points: usize) -> Value {
+    let depths: Vec<_> = (0..points).map(|index| 1e-6 * index as f64 / points as f64).collect();
+    let forces: Vec<_> = depths.iter().map(|depth: &f64| 1e10 * depth.powf(1.5)).collect();
+    let curve = json!({"type": "load_curve", "indentation": depths, "normal_force": forces});
+    with(with(ball(), "/profile", curve), "/preload", json!({"indentation": 5e-7}))
+}
+
+fn moved(contact: &Value) -> Value {
+    of(contact, &json!({"path": {"displacement": [1e-8]}}))
+}
+
+/// A metric without labels.
+async fn metric(server: &Server, name: &str) -> usize {
+    let page = server.get("/metrics").await.text().await.unwrap();
+    let line = page.lines().find_map(|line| line.strip_prefix(&format!("{name} ")));
+    line.unwrap_or_else(|| panic!("{name}: {page}")).parse::<f64>().unwrap() as usize
+}
+
+async fn prepared(server: &Server) -> usize {
+    metric(server, "stickslip_profiles_prepared_total").await
+}
+
+#[tokio::test]
+async fn requests_and_contacts_with_the_same_table_prepare_it_once() {
+    let store = Arc::new(MemoryStore::new());
+    let server = Server::with(store.clone(), CAPACITY).await;
+    let first = good(server.post("/simulate", &moved(&table(200, 1))).await).await;
+    let second = good(server.post("/simulate", &moved(&table(200, 1))).await).await;
+    assert_eq!(first["steps"], second["steps"]);
+    // Another friction, preload, material and question, and the same profile.
+    let other = with(with(table(200, 1), "/friction", json!(0.7)), "/preload/normal_force", json!(5.0));
+    let other = with(other, "/material", json!({"effective": {"e_star": 1e11, "g_star": 8e10}}));
+    let id = good(server.post("/contacts", &other).await).await["id"].as_str().unwrap().to_owned();
+    let drive = json!({"drive": {"displacement": 1e-8}});
+    good(server.post("/cycle", &of(&other, &drive)).await).await;
+    let axis = json!([{"pointer": "/contact/friction", "linear": {"from": 0.1, "to": 0.5, "count": 9}}]);
+    let sweep = json!({"base": moved(&table(200, 1)), "axes": axis, "outputs": ["/steps/0/force"]});
+    good(server.post("/sweep", &sweep).await).await;
+    assert_eq!(prepared(&server).await, 1);
+    assert_eq!(metric(&server, "stickslip_profiles_shared_total").await, 4);
+    // Another process, to whom the contact is new, prepares it for the first who needs it.
+    let restarted = Server::with(store, CAPACITY).await;
+    good(restarted.post("/simulate", &moved(&table(200, 1))).await).await;
+    good(restarted.get(&format!("/contacts/{id}")).await).await;
+    assert_eq!((prepared(&restarted).await, metric(&restarted, "stickslip_profiles_shared_total").await), (1, 1));
+    // One number apart, a shorter one, and one that begins as another ends.
+    good(server.post("/simulate", &moved(&with(table(200, 1), "/profile/z/7", json!(6.15e-8)))).await).await;
+    good(server.post("/simulate", &moved(&table(201, 1))).await).await;
+    assert_eq!(prepared(&server).await, 3);
+}
+
+#[tokio::test]
+async fn a_load_curve_is_shared_by_the_same_bodies_alone() {
+    let server = Server::start().await;
+    let soft = json!({"effective": {"e_star": 1e10, "g_star": 8e9}});
+    let soft = with(load_curve(100), "/material", soft);
+    let mut radii = Vec::new();
+    for contact in [&load_curve(100), &soft, &load_curve(100), &soft] {
+        radii.push(good(server.post("/simulate", &moved(contact)).await).await["contact"]["contact_radius"].clone());
+    }
+    assert_eq!(prepared(&server).await, 2);
+    assert_eq!((&radii[0], &radii[1]), (&radii[2], &radii[3]));
+    assert_ne!(radii[0], radii[1]);
+}
+
+#[tokio::test]
+async fn many_profiles_and_contacts_stay_within_the_bound_of_the_cache() {
+    let store = Arc::new(MemoryStore::new());
+    let server = Server::with(store.clone(), MIB).await;
+    let mut ids = Vec::new();
+    for number in 0..20 {
+        good(server.post("/simulate", &moved(&table(40, number))).await).await;
+        ids.push(good(server.post("/contacts", &table(40, 100 + number)).await).await["id"].clone());
+        let bytes = metric(&server, "stickslip_cache_bytes").await;
+        assert!((160 * 1024..=MIB).contains(&bytes), "{bytes}");
+    }
+    // The last are there, and the first are gone; to use one keeps it.
+    let before = prepared(&server).await;
+    assert_eq!(before, 40);
+    good(server.post("/simulate", &moved(&table(40, 19))).await).await;
+    assert_eq!(prepared(&server).await, before);
+    good(server.post("/simulate", &moved(&table(40, 0))).await).await;
+    assert_eq!(prepared(&server).await, before + 1);
+    let first = ids[0].as_str().unwrap();
+    good(server.post(&format!("/contacts/{first}/move"), &json!({"displacement": 1e-8})).await).await;
+    assert_eq!(prepared(&server).await, before + 2);
+    // Contacts that share one count it once: all of these fit, of which six would not.
+    let sharing = Server::with(store, MIB).await;
+    for _ in 0..50 {
+        good(sharing.post("/contacts", &table(40, 7)).await).await;
+    }
+    assert_eq!((prepared(&sharing).await, metric(&sharing, "stickslip_cache_contacts").await), (1, 50));
+    // Without a cache each request has its own.
+    let bare = Server::with(Arc::new(MemoryStore::new()), 0).await;
+    for _ in 0..2 {
+        good(bare.post("/simulate", &moved(&table(40, 1))).await).await;
+    }
+    assert_eq!((prepared(&bare).await, metric(&bare, "stickslip_cache_bytes").await), (2, 0));
+}
+
+#[tokio::test]
+async fn a_profile_is_prepared_with_a_turn_on_a_thread_of_the_solver() {
+    let (store, pool) = (Arc::new(MemoryStore::new()), Pool::with_defaults());
+    let server = Server::over(Sessions::new(store.clone(), pool.clone(), CAPACITY), pool.clone()).await;
+    let turns = |pool: &Pool| pool.meters().wait.get_sample_count();
+    // Few enough points that the body is parsed, and the simulation made, by whoever serves the connection.
+    let (small, body) = (table(12, 1), moved(&table(12, 2)));
+    assert!(body.to_string().len() < 1024);
+    let before = turns(&pool);
+    good(server.post("/simulate", &body).await).await;
+    assert_eq!((prepared(&server).await, turns(&pool) - before), (1, 1));
+    good(server.post("/simulate", &body).await).await;
+    assert_eq!((prepared(&server).await, turns(&pool) - before), (1, 1), "a profile that is ready is no work");
+    let id = good(server.post("/contacts", &small).await).await["id"].as_str().unwrap().to_owned();
+    assert_eq!((prepared(&server).await, turns(&pool) - before), (2, 2));
+    // So is that of a contact that is loaded from the store.
+    let pool = Pool::with_defaults();
+    let loading = Server::over(Sessions::new(store, pool.clone(), CAPACITY), pool.clone()).await;
+    good(loading.get(&format!("/contacts/{id}")).await).await;
+    assert_eq!((prepared(&loading).await, turns(&pool)), (1, 1));
+}
+
+/// A preparation that rests for so long.
+struct Slow(Duration);
+
+impl Prepare for Slow {
+    fn profile(
+        &self,
+        _: &wire::Profile,
+        _: Option<&Elasticity>,
+        prepare: &mut dyn FnMut() -> Option<Profile>,
+    ) -> Option<Arc<Profile>> {
+        std::thread::sleep(self.0);
+        prepare().map(Arc::new)
+    }
+
+    fn keep_going(&self) -> bool {
+        true
+    }
+}
+
+#[test]
+fn the_time_of_a_reply_has_the_preparation_of_its_profile_in_it() {
+    let rest = Duration::from_millis(20);
+    let stop = Stop::default();
+    let body: SimulateRequest = serde_json::from_value(moved(&table(10, 1))).unwrap();
+    let checked = simulation::check(body, &Slow(rest), &stop).unwrap().unwrap();
+    let reply = simulation::simulate(&checked, &stop).unwrap();
+    assert!(reply.accuracy.compute_time >= rest.as_secs_f64(), "{:?}", reply.accuracy);
+
+    let stop = Stop::default();
+    let body = of(&table(10, 1), &json!({"drive": {"displacement": 1e-8}}));
+    let body: CycleRequest = serde_json::from_value(body).unwrap();
+    let (_, setup, task) = simulation::check(body, &Slow(rest), &stop).unwrap().unwrap();
+    let (_, reply) = simulation::cycle_of(setup, &task, &stop).unwrap();
+    assert!(reply.accuracy.compute_time >= rest.as_secs_f64(), "{:?}", reply.accuracy);
+}
+
+/// Lets a preparation go on for so many questions.
+struct Patience(Cell<usize>);
+
+impl Prepare for Patience {
+    fn profile(
+        &self,
+        _: &wire::Profile,
+        _: Option<&Elasticity>,
+        prepare: &mut dyn FnMut() -> Option<Profile>,
+    ) -> Option<Arc<Profile>> {
+        prepare().map(Arc::new)
+    }
+
+    fn keep_going(&self) -> bool {
+        self.0.set(self.0.get().saturating_sub(1));
+        self.0.get() > 0
+    }
+}
+
+#[test]
+fn preparation_of_every_kind_can_be_ended_at_any_of_its_checks() {
+    let part = table(300, 1)["profile"].clone();
+    let falling = json!({"type": "tabulated", "r": part["r"],
+        "z": part["z"].as_array().unwrap().iter().map(|z| -0.5 * number(z)).collect::<Vec<_>>()});
+    let sum = json!({"type": "sum", "parts": [part, falling]});
+    // A table whose slope falls in the end; one whose slope never does is prepared where contacts reach.
+    let radii: Vec<f64> = (0..300).map(|index| 1e-6 * f64::from(index)).collect();
+    let heights: Vec<f64> = radii.iter().map(|r| 50.0 * r * r / (1.0 + (r / 4e-4).powi(2))).collect();
+    let dome = json!({"type": "tabulated", "r": radii, "z": heights});
+    // How often it is asked at the least: so often that some milliseconds pass between two questions.
+    let kinds = [
+        (asperities(5_000, 0), 5_000 / 16),
+        (load_curve(500), 1),
+        (with(ball(), "/profile", sum), 40),
+        (with(ball(), "/profile", dome), 20),
+    ];
+    for (contact, least) in kinds {
+        let request: SimulateRequest = serde_json::from_value(moved(&contact)).unwrap();
+        let patience = Patience(Cell::new(usize::MAX));
+        request.clone().check_with(&patience).unwrap();
+        let asked = usize::MAX - patience.0.get();
+        assert!(asked >= least, "{asked} {}", contact["profile"]["type"]);
+        for allowed in [0, 1, 2, asked / 2, asked - 1].into_iter().filter(|allowed| *allowed < asked) {
+            let ended = request.clone().check_with(&Patience(Cell::new(allowed))).unwrap_err();
+            let pointer = match &ended {
+                Rejection::Refused { pointer, error: Error::Interrupted } => pointer,
+                other => panic!("{other:?}"),
+            };
+            assert!(pointer.starts_with("/contact/profile"), "{pointer}");
+        }
+    }
+}
+
+#[tokio::test]
+async fn a_profile_that_cannot_be_ready_in_time_is_refused_at_once_and_a_contact_of_it_too() {
+    let service = Service::start(&["--deadline", "1s", "--log", "warn"]);
+    let column = |number: &dyn Fn(usize) -> String| (0..10_000).map(number).collect::<Vec<_>>().join(",");
+    let (r, z) = (column(&|index| format!("{index}e-7")), column(&|index| format!("{}e-9", index / 3)));
+    let parts = vec![format!(r#"{{"type":"tabulated","r":[{r}],"z":[{z}]}}"#); 16].join(",");
+    let profile = format!(r#"{{"type":"sum","parts":[{parts}]}}"#);
+    let rest =
+        r#""material":{"effective":{"e_star":1e11,"g_star":8e10}},"friction":0.3,"preload":{"normal_force":1.0}"#;
+    let contact = format!(r#"{{"profile":{profile},{rest}}}"#);
+    let simulation = format!(r#"{{"contact":{contact},"path":{{"displacement":[0.0]}}}}"#);
+    for (place, body, pointer) in
+        [("/simulate", simulation, "/contact/profile"), ("/contacts", contact.clone(), "/profile")]
+    {
+        let refused = service.ask("127.0.0.2", &post(place, &body)).await.unwrap();
+        assert_eq!(refused.statuses, [422], "{}", refused.text);
+        for part in ["too_much_work", &format!("\"pointer\":\"{pointer}\""), "preparing this profile is estimated at"] {
+            assert!(refused.text.contains(part), "{part}: {}", refused.text);
+        }
+    }
+}
+
+#[tokio::test]
+async fn what_is_wrong_with_a_table_is_refused_as_before() {
+    let server = Server::start().await;
+    let concave = with(table(50, 0), "/profile/z", json!((0..50).map(|i| -1e-6 * f64::from(i)).collect::<Vec<_>>()));
+    let short = with(table(50, 0), "/preload", json!({"contact_radius": 1.5e-3}));
+    let broken = with(table(50, 0), "/profile/r/7", json!(0.0));
+    for (contact, code, place) in [
+        (concave, "profile_not_convex_enough", "/profile"),
+        (short, "beyond_profile", "/preload/contact_radius"),
+        (broken, "invalid_input", "/profile/r/7"),
+    ] {
+        for (call, base, body) in [
+            ("/simulate", "/contact", moved(&contact)),
+            ("/accuracy", "/contact", moved(&contact)),
+            ("/cycle", "/contact", of(&contact, &json!({"drive": {"displacement": 1e-8}}))),
+            ("/protocols", "/contact", of(&contact, &json!({"reversals": 5}))),
+            ("/contacts", "", contact.clone()),
+        ] {
+            let found = problem(server.post(call, &body).await).await;
+            let expected = (422, code, format!("{base}{place}"));
+            assert_eq!((found.status, found.code.as_str(), found.errors[0].pointer.clone()), expected, "{call}");
+        }
+    }
+    assert_eq!(prepared(&server).await, 1, "the table that is sound was prepared, and no other");
+}
