@@ -204,7 +204,7 @@ fn a_file_of_an_instrument_is_read_as_it_is() {
     let fitted = |name: &str, bytes: &[u8]| -> (Value, String) {
         let file = folder.path().join(name);
         std::fs::write(&file, bytes).unwrap();
-        let output = run(&["profile", file.to_str().unwrap(), "--format", "json"]);
+        let output = run(&["profile", file.to_str().unwrap(), "--json"]);
         let said = String::from_utf8(output.stderr).unwrap();
         assert!(output.status.success(), "{said}");
         (serde_json::from_slice(&output.stdout).unwrap(), said)
