@@ -143,7 +143,8 @@ impl Sessions {
     /// Checks that the first `end` moves of a session are all stored.
     ///
     /// # Errors
-    /// [`SessionError::Store`] with [`StoreError::Damaged`](crate::store::StoreError::Damaged) if they are not, or a failure of the store.
+    /// [`SessionError::Store`] with [`StoreError::Damaged`](crate::store::StoreError::Damaged) if they are not, or a
+    /// failure of the store.
     pub async fn check_complete(&self, id: Uuid, end: u64) -> Result<(), SessionError> {
         let store = &self.common.store;
         if store.count_moves(id, end).await.map_err(|error| self.store_error(id, error))? == end {
