@@ -21,8 +21,8 @@ use crate::admission::Reservation;
 use crate::store::Tenant;
 use stickslip_mechanics::Profile;
 
-use super::group::WaitingMove;
 use super::loaded::LoadedSession;
+use super::waiting_move::WaitingMove;
 
 /// How many bytes of states are cached by default.
 pub const CAPACITY: usize = 256 * 1024 * 1024;

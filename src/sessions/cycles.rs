@@ -1,87 +1,28 @@
 //! The closed cycles of a session's past, from its recorded states alone.
 
-use std::cmp::Ordering;
-use std::collections::VecDeque;
 use std::sync::Arc;
 
 use uuid::Uuid;
 
-use crate::admission::{Interrupted, Nanoseconds, Stop};
+use crate::admission::{Interrupted, Stop};
 use crate::simulation::Failure;
 use crate::simulation::cost::Work;
-use crate::store::RECORD_BYTES;
 use stickslip_mechanics::cycle::SteadyCycle;
 use stickslip_mechanics::{Contact, Move, Normal};
 use stickslip_wire::reply::finite;
-use stickslip_wire::{Cycle, CyclePage, HistoryPage, State, limits};
+use stickslip_wire::{Cycle, CyclePage, HistoryPage, State};
 
-use super::cycle_scan::{Answer, ClosedCycle, CycleScan};
-use super::loaded::LoadedSession;
+use super::cycle_log::{CycleLog, STATE_COST};
+use super::cycle_scan::{Answer, ClosedCycle};
 use super::replay::{PAGE, damaged};
 use super::{SessionError, Sessions};
 
-/// Looking at one recorded state.
-pub(super) const STATE_COST: Nanoseconds = 50;
 /// Moves whose cost that of a steady cycle is like.
 const CYCLE_MOVES: usize = 4;
 /// JSON pointer to the number of cycles.
 const LAST: &str = "/last";
 /// JSON pointer to the choice of cycles in a history.
 const MARKED: &str = "/cycles";
-
-/// What has been found in the states of a session so far. It stays with the cached session, so that later requests read
-/// the new states alone.
-#[derive(Clone, Default)]
-pub(super) struct CycleLog {
-    scan: CycleScan,
-    /// The last state that has been looked at.
-    pub(super) sequence: u64,
-    /// As many as a reply can have.
-    pub(super) newest: VecDeque<ClosedCycle>,
-    /// The move that closed the last cycle that is no longer among them.
-    dropped: u64,
-}
-
-impl CycleLog {
-    fn new(virgin: &State) -> CycleLog {
-        let mut log = CycleLog::default();
-        log.push(0, virgin);
-        log
-    }
-
-    /// Looks at the next state; returns the outermost of the cycles that it closes.
-    pub(super) fn push(&mut self, sequence: u64, state: &State) -> Option<ClosedCycle> {
-        self.sequence = sequence;
-        let (newest, dropped) = (&mut self.newest, &mut self.dropped);
-        let mut outermost = None;
-        self.scan.push(sequence, state, |cycle| {
-            if newest.len() == *limits::CYCLES.end() {
-                *dropped = newest.pop_front().map_or(0, |oldest| oldest.to);
-            }
-            newest.push_back(cycle);
-            outermost = Some(cycle);
-        });
-        outermost
-    }
-
-    /// The outermost of the cycles that a move closed, if it is among the newest.
-    fn closed_by(&self, sequence: u64) -> Option<ClosedCycle> {
-        let end = self.newest.partition_point(|cycle| cycle.to <= sequence);
-        let last = end.checked_sub(1).map(|index| self.newest[index]);
-        last.filter(|cycle| cycle.to == sequence)
-    }
-
-    /// Bytes of memory.
-    pub(super) fn bytes(&self) -> usize {
-        size_of::<CycleLog>() + self.scan.heap_bytes() + self.newest.capacity() * size_of::<ClosedCycle>()
-    }
-
-    /// Bytes that it and so many records take while they are looked at.
-    pub(super) fn bytes_with(&self, records: usize) -> usize {
-        let newest = 2 * limits::CYCLES.end() * size_of::<ClosedCycle>();
-        self.scan.heap_bytes_after(records) + newest + records * RECORD_BYTES
-    }
-}
 
 impl Sessions {
     /// The `last` newest closed cycles of a session, and its sequence.
@@ -203,7 +144,7 @@ impl Sessions {
             };
             log = self.common.pool.run(STATE_COST * most as u64, look).await?;
         }
-        log.scan.shrink();
+        log.shrink();
         Ok((Arc::new(log), Ok(())))
     }
 
@@ -214,23 +155,6 @@ impl Sessions {
             live.keep_log(log);
         }
         Ok(())
-    }
-}
-
-impl LoadedSession {
-    /// The log that has come farthest of those that know every cycle that the moves after this one closed.
-    fn log_for(&self, after: u64) -> Option<Arc<CycleLog>> {
-        let logs = [&self.cycles, &self.past_cycles].into_iter().flatten().filter(|log| log.dropped <= after);
-        logs.max_by_key(|log| log.sequence).cloned()
-    }
-
-    pub(super) fn keep_log(&mut self, log: &Arc<CycleLog>) {
-        let newest = self.cycles.as_ref().map(|kept| kept.sequence);
-        match newest.cmp(&Some(log.sequence)) {
-            Ordering::Less => self.cycles = Some(Arc::clone(log)),
-            Ordering::Equal => {}
-            Ordering::Greater => self.past_cycles = Some(Arc::clone(log)),
-        }
     }
 }
 

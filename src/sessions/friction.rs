@@ -14,7 +14,8 @@ use stickslip_measured::loops::{Error, Known, LoopFit, Noise, Note, Parameter, R
 use stickslip_mechanics::Contact;
 use stickslip_wire::{FrictionEstimate, FrictionReply, limits};
 
-use super::cycles::CycleLog;
+use super::cycle_log::CycleLog;
+use super::loaded::Estimated;
 use super::replay::PAGE;
 use super::{SessionError, Sessions};
 
@@ -31,17 +32,6 @@ const POINT_COST: Nanoseconds = 10_000;
 const POINT_BYTES: usize = 256;
 /// Indentations are the same load if they agree to this part.
 const SAME_LOAD: f64 = 1e-12;
-
-/// What a cycle says about the friction.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Estimated {
-    /// The move after which it began.
-    from: u64,
-    /// The move that closed it.
-    to: u64,
-    /// Nothing if it was not measured, or does not determine the friction.
-    pub(super) friction: Option<FrictionEstimate>,
-}
 
 /// The measurements of a cycle, as far as they have been read.
 #[derive(Default)]
@@ -63,13 +53,11 @@ impl MeasuredCycle {
     }
 }
 
-impl CycleLog {
-    /// The newest cycle that is not a small one: the move after which it began, and the one that closed it.
-    fn newest_large(&self) -> Option<(u64, u64)> {
-        let long = || self.newest.iter().rev().filter(|cycle| cycle.to - cycle.from >= MOVES).take(COMPARED);
-        let largest = long().map(|cycle| cycle.displacement_amplitude).fold(0.0, f64::max);
-        long().find(|cycle| cycle.displacement_amplitude >= 0.5 * largest).map(|cycle| (cycle.from, cycle.to))
-    }
+/// The newest cycle that is not a small one: the move after which it began, and the one that closed it.
+fn newest_large(log: &CycleLog) -> Option<(u64, u64)> {
+    let long = || log.newest.iter().rev().filter(|cycle| cycle.to - cycle.from >= MOVES).take(COMPARED);
+    let largest = long().map(|cycle| cycle.displacement_amplitude).fold(0.0, f64::max);
+    long().find(|cycle| cycle.displacement_amplitude >= 0.5 * largest).map(|cycle| (cycle.from, cycle.to))
 }
 
 impl Sessions {
@@ -109,7 +97,7 @@ impl Sessions {
         new: &[store::Record],
         stop: &Stop,
     ) -> Result<Option<Estimated>, SessionError> {
-        let Some((from, to)) = log.newest_large() else { return Ok(None) };
+        let Some((from, to)) = newest_large(log) else { return Ok(None) };
         if let Some(earlier) = earlier.filter(|earlier| (earlier.from, earlier.to) == (from, to)) {
             return Ok(Some(earlier));
         }
@@ -194,7 +182,7 @@ mod tests {
             };
             let mut log = CycleLog::default();
             log.newest.extend(cycles.iter().map(cycle));
-            log.newest_large()
+            super::newest_large(&log)
         };
         assert_eq!(newest_large(&[]), None);
         // Of few moves, or small beside others.

@@ -19,33 +19,13 @@ use crate::store::{Record, Reply, StoreError, Usage};
 use stickslip_wire::session::Advance;
 use stickslip_wire::{Plan, limits};
 
-use super::apply::{Done, PIECES_OF_A_MOVE, attempt};
+use super::attempt::{Done, PIECES_OF_A_MOVE, attempt};
 use super::cache::{Guard, Waiting};
-use super::storage_reservation::StorageReservation;
+use super::waiting_move::{Outcome, WaitingMove};
 use super::{SessionError, Sessions};
 
 /// Moves that are made together at most.
 const GROUP: usize = 64;
-
-/// A move that may be made by whoever has the lock.
-pub(super) struct WaitingMove {
-    advance: Arc<Advance>,
-    /// The sequence that the client expects.
-    expected: Option<u64>,
-    /// The name of its key.
-    by: Option<Arc<str>>,
-    reservation: StorageReservation,
-    span: Span,
-    outcome: oneshot::Sender<Outcome>,
-}
-
-/// What a group has done of a move.
-enum Outcome {
-    /// It is stored, or the store has refused the group.
-    Answered(Result<Reply, SessionError>),
-    /// Nothing.
-    NotMade,
-}
 
 /// Who makes a move.
 pub(super) enum GroupResult {
@@ -148,17 +128,6 @@ impl Sessions {
 /// Whether the state is there, and no other process is likely to move the session first.
 fn is_groupable(guard: &Guard) -> bool {
     guard.live.as_ref().is_some_and(|live| !live.shared)
-}
-
-impl WaitingMove {
-    fn finish(self, answer: Result<Reply, SessionError>) {
-        // The client may have left.
-        let _ = self.outcome.send(Outcome::Answered(answer));
-    }
-
-    fn decline(self) {
-        let _ = self.outcome.send(Outcome::NotMade);
-    }
 }
 
 impl Group {

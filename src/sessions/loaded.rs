@@ -1,16 +1,16 @@
 //! A loaded session: its state, and the memory that it takes.
 
+use std::cmp::Ordering;
 use std::sync::Arc;
 
 use crate::simulation::{self, bytes, present_warnings};
 use crate::store::{CONTACT_BYTES, Reply, Session};
 use stickslip_mechanics::Contact;
 use stickslip_wire::definition::SharedSetup;
-use stickslip_wire::{ContactSummary, Faults, JsonPath, NewSession, Prepare, SessionReply, Warning};
+use stickslip_wire::{ContactSummary, Faults, FrictionEstimate, JsonPath, NewSession, Prepare, SessionReply, Warning};
 
-use super::cycles::CycleLog;
-use super::friction::Estimated;
-use super::snapshot::ReplayCost;
+use super::cycle_log::CycleLog;
+use super::replay_cost::ReplayCost;
 use super::{SessionError, written};
 
 /// Bytes of a session besides its pieces, its label and its tables: what is fixed, and the entry in the cache. The
@@ -37,6 +37,17 @@ pub(super) struct LoadedSession {
     pub(super) past_cycles: Option<Arc<CycleLog>>,
     /// The friction by its observations, once it has been estimated.
     pub(super) estimated: Option<Estimated>,
+}
+
+/// What a cycle says about the friction.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Estimated {
+    /// The move after which it began.
+    pub(super) from: u64,
+    /// The move that closed it.
+    pub(super) to: u64,
+    /// Nothing if it was not measured, or does not determine the friction.
+    pub(super) friction: Option<FrictionEstimate>,
 }
 
 /// Values that follow from the definition and never change.
@@ -109,5 +120,21 @@ impl LoadedSession {
             warnings: self.derived.warnings.clone(),
         };
         Ok(Reply { created: Some(*id), sequence: *sequence, body: written(&new)? })
+    }
+
+    /// The log that has come farthest of those that know every cycle that the moves after this one closed.
+    pub(super) fn log_for(&self, after: u64) -> Option<Arc<CycleLog>> {
+        let logs = [&self.cycles, &self.past_cycles].into_iter().flatten().filter(|log| log.dropped <= after);
+        logs.max_by_key(|log| log.sequence).cloned()
+    }
+
+    /// Keeps a log that has come farther than those kept, or the same up to an earlier move.
+    pub(super) fn keep_log(&mut self, log: &Arc<CycleLog>) {
+        let newest = self.cycles.as_ref().map(|kept| kept.sequence);
+        match newest.cmp(&Some(log.sequence)) {
+            Ordering::Less => self.cycles = Some(Arc::clone(log)),
+            Ordering::Equal => {}
+            Ordering::Greater => self.past_cycles = Some(Arc::clone(log)),
+        }
     }
 }

@@ -15,8 +15,10 @@
 //! locks have other keys, and the tenant of what comes from the store is checked before it is used.
 
 mod apply;
+mod attempt;
 mod cache;
 mod check;
+mod cycle_log;
 mod cycle_scan;
 mod cycles;
 mod error;
@@ -31,9 +33,11 @@ mod profiles;
 mod read;
 mod relax;
 mod replay;
+mod replay_cost;
 mod snapshot;
 mod storage_reservation;
 mod trace;
+mod waiting_move;
 
 use std::sync::Arc;
 

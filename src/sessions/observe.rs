@@ -9,7 +9,7 @@ use stickslip_report::plot::in_unit;
 use stickslip_wire::{Faults, JsonPath, Observation, ObservationsReply, ObservedMove, Rejection};
 
 use super::cache::Guard;
-use super::cycles::STATE_COST;
+use super::cycle_log::STATE_COST;
 use super::friction::TIME;
 use super::loaded::LoadedSession;
 use super::{SessionError, Sessions, written};

@@ -10,39 +10,13 @@ use crate::store::{Snapshot, StoreError};
 use stickslip_mechanics::Contact;
 
 use super::loaded::LoadedSession;
+use super::replay_cost::ReplayCost;
 use super::{SessionError, Sessions};
 
 /// Snapshots that are being stored at a time. A session for which there is no room tries again with its next move.
 pub(super) const AT_ONCE: usize = 2;
-/// No replay shorter than this is worth a snapshot.
-const LEAST: Duration = Duration::from_millis(20);
-/// Estimated cost of fetching a move from the store: 10 000 moves cost [`LEAST`].
-const FETCH: Duration = Duration::from_micros(2);
-/// Estimated cost of writing and reading a byte of a snapshot.
-const BYTE: Duration = Duration::from_nanos(3);
 /// Bytes of the checksum at the end.
 const CHECKSUM: usize = 4;
-
-/// The cost of a replay from the last snapshot.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct ReplayCost {
-    moves: u32,
-    work: Duration,
-}
-
-impl ReplayCost {
-    /// Adds moves and the time that computing them took.
-    pub(super) fn add(&mut self, moves: usize, work: Duration) {
-        self.moves = self.moves.saturating_add(u32::try_from(moves).unwrap_or(u32::MAX));
-        self.work = self.work.saturating_add(work);
-    }
-
-    /// Whether a snapshot of this many bytes costs less than the replay that it spares.
-    fn is_worth_snapshot(self, bytes: usize) -> bool {
-        let spared = self.work.saturating_add(FETCH.saturating_mul(self.moves));
-        spared >= LEAST.max(BYTE.saturating_mul(u32::try_from(bytes).unwrap_or(u32::MAX)))
-    }
-}
 
 impl Sessions {
     /// Stores a snapshot of a stored state in the background, if one is due.
@@ -128,24 +102,5 @@ pub(super) fn compare(state: &Contact, snapshot: &[u8]) -> SnapshotState {
         Some(packed) if !Contact::is_current_packing(packed) => SnapshotState::Foreign,
         Some(_) if snapshot == with_checksum(state) => SnapshotState::Sound,
         Some(_) => SnapshotState::Wrong,
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::ReplayCost;
-    use std::time::Duration;
-
-    #[test]
-    fn snapshots_are_rare_where_they_are_large_and_frequent_where_moves_are_dear() {
-        let after = |moves, micros| {
-            let mut cost = ReplayCost::default();
-            cost.add(moves, Duration::from_micros(micros));
-            cost
-        };
-        assert!(!after(5_000, 2_000).is_worth_snapshot(1_000));
-        assert!(after(10_000, 0).is_worth_snapshot(1_000));
-        assert!(after(10, 30_000).is_worth_snapshot(1_000) && !after(10, 30_000).is_worth_snapshot(20_000_000));
-        assert!(after(usize::MAX, u64::MAX).is_worth_snapshot(usize::MAX));
     }
 }

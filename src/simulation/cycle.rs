@@ -5,13 +5,11 @@ use std::f64::consts::TAU;
 use stickslip_mechanics::cycle::{self, OscillatingCycle, OscillatingLoad, Oscillation};
 use stickslip_mechanics::{Contact, Error, Move, Normal, Tangential};
 use stickslip_wire::cycle::CycleTask;
-use stickslip_wire::definition::SharedSetup;
 use stickslip_wire::reply::finite;
 use stickslip_wire::{CycleReply, FrictionWork, Harmonic, SteadyCycle};
 
-use super::cycle_map::map_of;
 use super::cycle_studies::{best_load, resonance};
-use super::run::{Timer, accuracy, contact};
+use super::stated_accuracy::{Timer, accuracy};
 use super::warnings::{excess_error, resonance_warning, warnings_at};
 use super::{Failure, needs_stress_field};
 use crate::admission::Stop;
@@ -22,20 +20,6 @@ const RADII_PER_CHECK: usize = 512;
 const REASON: &str = "a steady cycle at constant load follows from the load curve alone";
 const REASON_STEPPED: &str =
     "a cycle under a load that oscillates is stepped with the exact slip history, to the tolerance";
-
-/// The contact of a definition, and its steady cycles, under the loads of a map if one is asked for.
-///
-/// # Errors
-/// As [`cycle()`], and [`Failure::Refused`] for a preload that cannot be reached.
-pub fn cycle_of(setup: SharedSetup, task: &CycleTask, stop: &Stop) -> Result<(Contact, CycleReply), Failure> {
-    if let Some(map) = task.map {
-        return map_of(setup, task, map, stop);
-    }
-    let timer = Timer::start(stop);
-    let contact = contact(setup, "/contact")?;
-    let reply = cycle(&contact, task, timer, stop)?;
-    Ok((contact, reply))
-}
 
 /// The steady cycles of a contact at its present load, which has no history.
 ///

@@ -1,4 +1,4 @@
-//! A fretting map: the steady cycles of a contact under many loads.
+//! The steady cycles of a contact that is defined with them: at its preload, or under many loads, a fretting map.
 
 use stickslip_mechanics::Contact;
 use stickslip_wire::cycle::{CycleTask, FrettingMap};
@@ -7,14 +7,29 @@ use stickslip_wire::{Accuracy, CycleReply};
 
 use super::Failure;
 use super::cycle::cycle;
-use super::run::{Timer, contact};
+use super::run::contact;
+use super::stated_accuracy::Timer;
 use crate::admission::Stop;
+
+/// The contact of a definition, and its steady cycles, under the loads of a map if one is asked for.
+///
+/// # Errors
+/// As [`cycle()`], and [`Failure::Refused`] for a preload that cannot be reached.
+pub fn cycle_of(setup: SharedSetup, task: &CycleTask, stop: &Stop) -> Result<(Contact, CycleReply), Failure> {
+    if let Some(map) = task.map {
+        return map_of(setup, task, map, stop);
+    }
+    let timer = Timer::start(stop);
+    let contact = contact(setup, "/contact")?;
+    let reply = cycle(&contact, task, timer, stop)?;
+    Ok((contact, reply))
+}
 
 /// The contact of a definition, and its steady cycles under each load, the loads one after the other.
 ///
 /// # Errors
 /// As [`cycles_under`], and [`Failure::Refused`] for a preload that cannot be reached.
-pub fn map_of(
+fn map_of(
     setup: SharedSetup,
     task: &CycleTask,
     map: FrettingMap,

@@ -9,7 +9,8 @@ use stickslip_wire::{Accuracy, FrettingReply, Rating, StressPath};
 
 use super::Failure;
 use super::fretting_warnings::{Rated, fretting_warnings};
-use super::run::{Timer, accuracy, contact, cycle_moves};
+use super::run::{contact, cycle_moves};
+use super::stated_accuracy::{Timer, accuracy};
 use super::warnings::{beyond_model, bulk_warning, present_warnings};
 use crate::admission::Stop;
 

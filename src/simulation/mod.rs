@@ -19,6 +19,7 @@ mod protocol;
 mod reply_template;
 mod run;
 mod solver;
+mod stated_accuracy;
 mod subsurface;
 mod sweep;
 #[cfg(test)]
@@ -26,15 +27,16 @@ mod tests;
 mod warnings;
 
 pub use compare_solvers::compare_solvers;
-pub use cycle::{cycle, cycle_of};
-pub use cycle_map::cycles_under;
+pub use cycle::cycle;
+pub use cycle_map::{cycle_of, cycles_under};
 pub use fretting::fretting;
 pub use loop_fit::fit_loops;
 pub use prepare::{check, cost_of_preparation};
 pub use profile_fit::fit_profile;
 pub use protocol::{Subject, protocol, protocol_for};
-pub use run::{Timer, accuracy, contact, equal_peaks, follow, residual, simulate, stresses};
+pub use run::{contact, equal_peaks, follow, residual, simulate, stresses};
 pub use solver::Solver;
+pub use stated_accuracy::{Timer, accuracy};
 pub use subsurface::{subsurface, subsurface_reply};
 pub use sweep::{Sweep, SweepError, SweepResult};
 pub use warnings::{FarMove, excess_error, new_warnings, present_warnings};

@@ -14,7 +14,8 @@ use stickslip_wire::protocol::{
 use stickslip_wire::reply::finite;
 use stickslip_wire::{Residual, limits};
 
-use super::run::{Timer, accuracy, contact};
+use super::run::contact;
+use super::stated_accuracy::{Timer, accuracy};
 use super::{Failure, present_warnings};
 use crate::admission::Stop;
 

@@ -1,10 +1,8 @@
 //! From a checked request to a reply.
 
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
-use stickslip_mechanics::{
-    self as mechanics, Contact, ErrorEstimate, Preload, Profile, Springs, protocol, range::Quantity, springs,
-};
+use stickslip_mechanics::{self as mechanics, Contact, Preload, Profile, Springs, protocol, range::Quantity, springs};
 use stickslip_wire::definition::SharedSetup;
 use stickslip_wire::reply::{Accuracy, State, finite};
 use stickslip_wire::simulate::Simulation;
@@ -14,36 +12,14 @@ use stickslip_wire::{
 
 use super::{
     Failure, Solver, cost, needs_stress_field, quantity,
+    stated_accuracy::{Timer, accuracy_of},
     subsurface::subsurface,
-    warnings::{FarMove, Observed, assumption, bulk_warning, excess_error, stress_warning, warnings},
+    warnings::{FarMove, Observed, bulk_warning, excess_error, stress_warning, warnings},
 };
 use crate::admission::{LONGEST_WORK, Stop};
 
 /// Why the solver is the one that the request names.
 const AS_ASKED: &str = "as asked for";
-
-/// Measures the time spent computing for a request: with what its [`Stop`] has counted before, and without the time for
-/// which it has given way to others.
-#[derive(Clone, Copy, Debug)]
-pub struct Timer<'a> {
-    stop: &'a Stop,
-    begin: Instant,
-    waited: Duration,
-}
-
-impl Timer<'_> {
-    /// Starts now.
-    #[must_use]
-    pub fn start(stop: &Stop) -> Timer<'_> {
-        Timer { stop, begin: Instant::now(), waited: stop.waited() }
-    }
-
-    /// The time up to now.
-    #[must_use]
-    pub fn elapsed(&self) -> Duration {
-        self.stop.before() + (self.begin.elapsed() + self.waited).saturating_sub(self.stop.waited())
-    }
-}
 
 /// Runs a simulation.
 ///
@@ -330,22 +306,5 @@ pub fn residual<S: Solver>(solver: &S, stop: &Stop) -> Result<Residual, Failure>
     match solver.residual(&|| stop.check().is_ok()) {
         Some(residual) => Ok(Residual::new(residual, solver.unit_shear())),
         None => Err(stop.check().err().map_or(Failure::Stopped, Failure::from)),
-    }
-}
-
-/// Which solver answered, how well, and how long it took.
-pub fn accuracy<S: Solver>(solver: &S, timer: Timer<'_>, reason: &str) -> Accuracy {
-    accuracy_of(solver, &solver.accuracy(), timer, reason)
-}
-
-fn accuracy_of<S: Solver>(solver: &S, estimate: &ErrorEstimate, timer: Timer<'_>, reason: &str) -> Accuracy {
-    let assumed = assumption(solver.exact().profile()).map(|(_, assumed)| format!("; {assumed}"));
-    Accuracy {
-        solver: S::KIND,
-        reason: format!("{reason}{}", assumed.unwrap_or_default()),
-        force_error: estimate.force_error,
-        stress_error: estimate.stress_error,
-        subsurface_error: None,
-        compute_time: timer.elapsed().as_secs_f64(),
     }
 }

@@ -5,7 +5,7 @@ use stickslip_wire::reply::finite;
 use stickslip_wire::subsurface::SubsurfaceTask;
 use stickslip_wire::{Accuracy, Subsurface, SubsurfaceField, SubsurfaceReply};
 
-use super::run::{Timer, accuracy};
+use super::stated_accuracy::{Timer, accuracy};
 use super::warnings::{bulk_warning, present_warnings};
 use super::{Failure, needs_stress_field};
 use crate::admission::Stop;

@@ -9,8 +9,9 @@ use stickslip_mechanics::protocol::{EqualPeaks, equal_peaks};
 use stickslip_mechanics::{Contact, ContactSummary, Error, ErrorEstimate, Move, Residual, State};
 use stickslip_wire::{SimulateReply, SimulateRequest, SolverKind, read};
 
-use super::run::{Timer, contact, run};
+use super::run::{contact, run};
 use super::solver::Solver;
+use super::stated_accuracy::Timer;
 use crate::admission::Stop;
 
 /// Reversals of the path.

@@ -8,7 +8,7 @@
 //! - F_x straight in d: dF_x = 2 G* m x dW (no slip), so W1 - W0 = c (D/x1 + K) and int w dx = c x0 J, with
 //!   c = (dF_x/dd)/(2 G* m), J = int h/x^2 dx and K = int (D - h)/x^2 dx; J = D/x0 - D/x1 - K.
 
-use super::curved_move::{CurvedMove, NormalPath, PathPoint, TangentialPath};
+use super::curved_path::{CurvedMove, NormalPath, PathPoint, TangentialPath};
 use super::profile::{Ring, StressRadius};
 use super::{Contact, DoubleDouble};
 use crate::numerics::gauss::QuadraturePanel;

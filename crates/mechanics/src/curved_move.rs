@@ -9,6 +9,7 @@
 use std::ops::{Add, Mul, Sub};
 
 use super::curve_panel::PathPanel;
+use super::curved_path::{CurvedMove, NormalPath, PathPoint, TangentialPath};
 use super::{Contact, DoubleDouble, Error};
 
 /// Error of the tangential force, relative to mu F_N, that a move may have unless the caller prescribes another.
@@ -32,38 +33,6 @@ const SAME_TURN: f64 = 1e-6;
 /// Steps of a ternary search down to [`SAME_TURN`], and down to round-off.
 const TURN_STEPS: usize = 40;
 const LIMIT_STEPS: usize = 80;
-
-/// How the tangential target is reached: straight from one value to the other.
-#[derive(Clone, Copy, Debug)]
-pub(super) enum TangentialPath {
-    Displacement { from: DoubleDouble, to: DoubleDouble },
-    Force { from: f64, to: f64 },
-}
-
-/// How the normal target is reached.
-#[derive(Clone, Copy, Debug)]
-pub(super) enum NormalPath {
-    Indentation { from: DoubleDouble, to: DoubleDouble },
-    Force { from: f64, to: f64 },
-}
-
-/// A path straight in two quantities, over a parameter from 0 to 1.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct CurvedMove {
-    pub(super) tangential: TangentialPath,
-    pub(super) normal: NormalPath,
-}
-
-/// A point of the curve.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct PathPoint {
-    /// d, m.
-    pub(super) indentation: DoubleDouble,
-    /// F_N, N, that belongs to it.
-    pub(super) normal_force: f64,
-    /// U, m.
-    pub(super) displacement: DoubleDouble,
-}
 
 /// What a pair of chords leaves in the history, as long as it is not wiped out.
 struct Trace {

@@ -2,8 +2,8 @@
 
 use thiserror::Error as ThisError;
 
-use super::range::{Quantity, short};
-use super::unit_prefix::in_unit;
+use super::quantity::Quantity;
+use super::unit_prefix::{in_unit, short};
 
 /// What a move can do whose target is beyond the limit of friction.
 const WITHIN_LIMIT: &str = ": the largest tangential force that this move can meet is just below it";

@@ -41,8 +41,7 @@
 //! | [`elasticity`] | which two moduli do the bodies have together? |
 //! | [`profile`] | what does the shape of the indenter mean for a ring of the contact? |
 //! | `normal` | how do indentation, contact radius, normal force and pressure follow from each other? |
-//! | `slip_history` | what is left of the path, and what does a move change? |
-//! | `friction_work` | how much work does a move dissipate? |
+//! | `slip_history` | what is left of the path, what does a move change, and how much work does it dissipate? |
 //! | `contact`, `moves`, `state` | what is a contact made of, how does it move, what state is it in? |
 //! | `force_control` | which displacement gives a tangential force? |
 //! | `curved_move` | how is a move followed that is straight in a force? |
@@ -63,13 +62,13 @@ mod accuracy;
 mod contact;
 mod curve_panel;
 mod curved_move;
+mod curved_path;
 pub mod cycle;
 pub mod elasticity;
 mod error;
 mod extrema;
 pub mod fatigue;
 mod force_control;
-mod friction_work;
 mod moves;
 mod normal;
 mod numerics;

@@ -1,7 +1,7 @@
 //! The moves of a contact: straight ones in one step, curved ones through `curved_move`; and the first part of a move,
 //! so that its path can be drawn point by point.
 
-use super::curved_move::{CurvedMove, NormalPath, PathPoint, TangentialPath};
+use super::curved_path::{CurvedMove, NormalPath, PathPoint, TangentialPath};
 use super::{Contact, DEFAULT_TOLERANCE, DoubleDouble, Error, Move, Normal, Tangential, range};
 
 impl Contact {

@@ -6,7 +6,8 @@
 use std::cmp::Ordering;
 
 use super::profile::{Point, Ring, StressRadius};
-use super::range::{Quantity, short};
+use super::range::Quantity;
+use super::unit_prefix::short;
 use super::{DoubleDouble, Elasticity, Error, Profile};
 
 /// Radii of the first scan for the largest pressure.

@@ -4,6 +4,7 @@ use std::fmt;
 
 use super::error::Error;
 pub use super::quantity::Quantity;
+use super::unit_prefix::short;
 
 /// A quantity's name, unit and closed interval, bounds included.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -172,11 +173,4 @@ impl fmt::Display for Range {
         }
         Ok(())
     }
-}
-
-/// The number in decimal notation, with an exponent only for very large and very small magnitudes.
-pub(super) fn short(value: f64) -> String {
-    let magnitude = value.abs();
-    let plain = magnitude.to_bits() == 0 || (1e-2..1e5).contains(&magnitude);
-    if plain { value.to_string() } else { format!("{value:e}") }
 }

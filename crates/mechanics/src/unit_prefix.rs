@@ -30,6 +30,13 @@ pub fn unit_prefix(largest: f64) -> (f64, &'static str) {
     (10_f64.powi(exponent), prefix)
 }
 
+/// The number in decimal notation, with an exponent only for very large and very small magnitudes.
+pub(super) fn short(value: f64) -> String {
+    let magnitude = value.abs();
+    let plain = magnitude.to_bits() == 0 || (1e-2..1e5).contains(&magnitude);
+    if plain { value.to_string() } else { format!("{value:e}") }
+}
+
 #[cfg(test)]
 mod tests {
     use super::unit_prefix;

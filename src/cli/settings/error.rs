@@ -1,11 +1,11 @@
 //! What is wrong with the settings, in one line: the key, its value, and what is allowed.
 
 use std::error::Error as _;
+use std::path::Path;
 
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{Arg, Command};
 
-use super::file::ConfigValues;
 use super::masked;
 
 /// Why there is no command to run.
@@ -23,7 +23,7 @@ pub enum Origin<'a> {
     /// The environment.
     Environment,
     /// The file.
-    File(&'a ConfigValues),
+    File(&'a Path),
 }
 
 /// The error for an unknown setting: its name, how it was written, and the names that there are.
@@ -92,7 +92,7 @@ fn name_of(arg: &Arg, value: &str, origin: &Origin<'_>) -> String {
     match origin {
         Origin::Flag => format!("--{long} {value}"),
         Origin::Environment => format!("{}={value}", arg.get_env().unwrap_or_default().to_string_lossy()),
-        Origin::File(file) => format!("{}: {long} = {value}", file.path.display()),
+        Origin::File(file) => format!("{}: {long} = {value}", file.display()),
     }
 }
 

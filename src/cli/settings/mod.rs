@@ -65,7 +65,7 @@ pub fn read<T: CommandFactory + FromArgMatches>(arguments: Vec<OsString>) -> Res
                 Some(name) => command.mut_subcommand(name, |own| with_defaults(own, &values)),
                 None => with_defaults(command, &values),
             };
-            matches = parse(&command, Origin::File(&values))?;
+            matches = parse(&command, Origin::File(&values.path))?;
             file = Some(values);
         }
     }

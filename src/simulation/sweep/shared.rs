@@ -10,7 +10,8 @@ use stickslip_wire::sweep::AxisValues;
 use stickslip_wire::{SimulateReply, Solver};
 
 use crate::admission::Stop;
-use crate::simulation::run::{Timer, contact, simulate_on};
+use crate::simulation::run::{contact, simulate_on};
+use crate::simulation::stated_accuracy::Timer;
 use crate::simulation::{Failure, simulate};
 
 #[derive(Debug)]

@@ -152,8 +152,8 @@ fn inspect(path: &Path, file: &File) -> Result<(), String> {
         return Err("it is not an SQLite database, or is cut off".to_owned());
     }
     let log = beside(path, "-wal");
-    check_mark(field(&header, MARK as usize).cast_signed(), path, std::fs::symlink_metadata(&log).is_ok())?;
-    schema::known(field(&header, 60).cast_signed())?;
+    check_mark(wal_check::field(&header, MARK as usize).cast_signed(), path, std::fs::symlink_metadata(&log).is_ok())?;
+    schema::known(wal_check::field(&header, 60).cast_signed())?;
     wal_check::check(&header, length, &log)
 }
 
@@ -238,11 +238,6 @@ pub(super) fn beside(path: &Path, ending: &str) -> PathBuf {
     let mut name = OsString::from(path);
     name.push(ending);
     name.into()
-}
-
-/// A field of the header of an SQLite file.
-pub(super) fn field(header: &[u8], offset: usize) -> u32 {
-    header[offset..offset + 4].iter().fold(0, |value, byte| value << 8 | u32::from(*byte))
 }
 
 fn length(file: &File) -> Result<u64, String> {

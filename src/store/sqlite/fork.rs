@@ -4,16 +4,14 @@
 //! A copy belongs to no contact until it is whole, and then to its contact at once. What a crash leaves without a
 //! contact is removed after the next start.
 
-use std::sync::Arc;
-
 use rusqlite::{Connection, OptionalExtension as _, params};
 use uuid::Uuid;
 
 use crate::store::{Receipt, Session, StoreError};
 
-use super::change::{Done, Transaction, check_key, insert_receipt, insert_session, number_and_sequence};
 use super::columns::{MOVE_COLUMNS, to_integer};
 use super::fault::Fault;
+use super::statements::{check_key, insert_receipt, insert_session, number_and_sequence};
 
 /// Moves that are copied or removed in one step.
 const MOVES_AT_ONCE: i64 = 4_000;
@@ -40,26 +38,25 @@ pub(super) struct Copying {
     last: i64,
 }
 
-impl Transaction<'_> {
-    /// [`crate::store::Store::fork`]: checks, and makes a short fork at once; a long one begins.
-    pub(super) fn fork(&self, fork: &Arc<Fork>) -> Result<Done, Fault> {
-        check_key(self.database, fork.receipt.as_ref())?;
-        let (from, found) = number_and_sequence(self.database, fork.id)?;
-        if found < fork.copy.sequence {
+impl Fork {
+    /// Checks a fork and makes a short one, whose contact gets this number, at once; a long one begins, and
+    /// [`Fork::proceed`] goes on with what is returned.
+    pub(super) fn begin(&self, database: &Connection, number: i64) -> Result<Option<Copying>, Fault> {
+        check_key(database, self.receipt.as_ref())?;
+        let (from, found) = number_and_sequence(database, self.id)?;
+        if found < self.copy.sequence {
             return Err(StoreError::Stale { found }.into());
         }
-        let mut copying = Copying { from, to: self.number, copied: 0, last: to_integer(fork.copy.sequence)? };
+        let mut copying = Copying { from, to: number, copied: 0, last: to_integer(self.copy.sequence)? };
         if copying.last <= MOVES_AT_ONCE {
-            copying.step(self.database, fork.id)?;
-            fork.complete(self.database, copying)?;
-            return Ok(Done::Made(0));
+            copying.step(database, self.id)?;
+            self.complete(database, copying)?;
+            return Ok(None);
         }
-        self.database.prepare_cached("INSERT INTO unowned (contact, forming) VALUES (?1, 1)")?.execute([copying.to])?;
-        Ok(Done::Copying(Arc::clone(fork), copying))
+        database.prepare_cached("INSERT INTO unowned (contact, forming) VALUES (?1, 1)")?.execute([copying.to])?;
+        Ok(Some(copying))
     }
-}
 
-impl Fork {
     /// Goes on with a fork; returns whether it is complete. The original may have moved on meanwhile, which the copy
     /// does not see.
     pub(super) fn proceed(&self, database: &Connection, copying: &mut Copying) -> Result<bool, Fault> {

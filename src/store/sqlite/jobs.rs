@@ -13,9 +13,10 @@ use crate::store::rows::{self, RowReader as _};
 use crate::store::{Receipt, Result, StoreError, Tenant};
 
 use super::SqliteStore;
-use super::change::{Done, Transaction, check_key, insert_receipt};
+use super::change::{Done, Transaction};
 use super::columns::{clamped_nanoseconds, reader, to_integer, to_nanoseconds};
 use super::fault::Fault;
+use super::statements::{check_key, insert_receipt};
 
 impl Transaction<'_> {
     fn create_job(

@@ -16,6 +16,7 @@ mod open_files;
 mod read;
 mod readers;
 pub mod schema;
+mod statements;
 mod wal_check;
 mod writer;
 
@@ -244,7 +245,7 @@ impl Store for SqliteStore {
 
     async fn receipt(&self, key: &str) -> Result<Option<Receipt>> {
         let key = key.to_owned();
-        self.readers.read(move |database| read::receipt(database, &key, change::receipt_cutoff())).await
+        self.readers.read(move |database| read::receipt(database, &key, statements::receipt_cutoff())).await
     }
 
     async fn snapshot(&self, id: Uuid) -> Result<Option<Snapshot>> {

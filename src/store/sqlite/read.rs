@@ -10,9 +10,9 @@ use crate::store::{
 };
 use stickslip_wire::SessionSummary;
 
-use super::change::{missing, number_and_sequence};
 use super::columns::{CONTACTS, MOVE_COLUMNS, SUMMARY_COLUMNS, clamped_nanoseconds, reader, record, to_integer};
 use super::fault::Fault;
+use super::statements::{missing, number_and_sequence};
 
 /// Sessions that one search for idle ones examines.
 const IDLE_PAGE: i64 = 1_000;

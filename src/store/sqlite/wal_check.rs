@@ -8,8 +8,6 @@ use std::fs::File;
 use std::io::{self, BufReader, ErrorKind, Read as _};
 use std::path::Path;
 
-use super::file::field;
-
 /// Bytes at the beginning of a log, and of each frame in it.
 const LOG_HEADER: usize = 32;
 const FRAME_HEADER: usize = 24;
@@ -66,4 +64,9 @@ fn filled(log: &mut BufReader<File>, buffer: &mut [u8]) -> io::Result<bool> {
         Err(error) if error.kind() == ErrorKind::UnexpectedEof => Ok(false),
         Err(error) => Err(error),
     }
+}
+
+/// A field of the header of an SQLite file.
+pub(super) fn field(header: &[u8], offset: usize) -> u32 {
+    header[offset..offset + 4].iter().fold(0, |value, byte| value << 8 | u32::from(*byte))
 }

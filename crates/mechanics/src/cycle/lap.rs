@@ -1,11 +1,40 @@
-//! What is taken down while a cycle is stepped.
+//! What is taken down while a cycle is stepped, and the figures of the cycle that follow.
 
 use super::Harmonic;
-use super::oscillating::OscillatingCycle;
 use crate::{Regime, State};
 
 /// From the least that slips to the most.
 const REGIMES: [Regime; 4] = [Regime::Stick, Regime::PartialSlip, Regime::GrossSlip, Regime::Separated];
+
+/// A steady cycle that was stepped.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OscillatingCycle {
+    /// Half the range of the displacement of the indenter, m.
+    pub displacement_amplitude: f64,
+    /// Half the range of the tangential force, N.
+    pub force_amplitude: f64,
+    /// Half the range of the displacement at the machine, m.
+    pub machine_amplitude: f64,
+    /// Friction work of a cycle, J.
+    pub dissipated_energy: f64,
+    /// The largest elastic energy of the tangential deformation, J.
+    pub max_elastic_energy: f64,
+    /// 2 G* a where the drive is largest, N/m.
+    pub tangent_stiffness: f64,
+    /// Half the distance of the displacements at which the force changes its sign, over the amplitude; `None` if it
+    /// does not do so twice.
+    pub sliding_ratio: Option<f64>,
+    /// Radius of the part that never slips, m.
+    pub stick_radius: f64,
+    /// The most that slips at any time; separated if the bodies part.
+    pub regime: Regime,
+    /// As those of [`super::SteadyCycle::harmonics`], even ones too.
+    pub harmonics: Vec<Harmonic>,
+    /// Steps of the cycle.
+    pub steps: usize,
+    /// Error of the work over 4 mu F_N U0 and of the force over mu F_N, at the largest load: an estimate.
+    pub error: f64,
+}
 
 /// The range of a quantity over a cycle.
 #[derive(Clone, Copy, Debug)]

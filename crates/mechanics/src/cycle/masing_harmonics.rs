@@ -11,7 +11,7 @@
 use std::f64::consts::PI;
 
 use super::{SteadyCycle, sphere_harmonics};
-use crate::profile::ring_quadrature::{DepthNode, RingNodes};
+use crate::profile::ring_nodes::{DepthNode, RingNodes};
 
 /// Angles below which x - sin(x) is summed, of so many terms.
 const SMALL: f64 = 1.0;

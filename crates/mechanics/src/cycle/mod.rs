@@ -25,10 +25,11 @@ mod steady_motion;
 
 pub use best_load::{BestLoad, best_load};
 pub use harmonics::{Harmonic, Harmonics};
-pub use oscillating::{OscillatingCycle, OscillatingLoad, Oscillation};
+pub use lap::OscillatingCycle;
+pub use oscillating::{OscillatingLoad, Oscillation};
 pub use response::{Resonator, Response};
 
-use super::curved_move::PathPoint;
+use super::curved_path::PathPoint;
 use super::normal::{depth_for, load, whole};
 use super::profile::{Moments, Ring};
 use super::slip_history::SlipHistory;

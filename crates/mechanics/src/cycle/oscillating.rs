@@ -9,13 +9,14 @@
 
 use std::f64::consts::TAU;
 
-use super::lap::Lap;
-use super::{Drive, Harmonic};
-use crate::curved_move::PathPoint;
+use super::Drive;
+use super::lap::{Lap, OscillatingCycle};
+use crate::curved_path::PathPoint;
 use crate::numerics::double_double::DoubleDouble;
-use crate::range::{self, Quantity, short};
+use crate::range::{self, Quantity};
 use crate::slip_history::SlipHistory;
-use crate::{Contact, Error, Normal, Regime};
+use crate::unit_prefix::short;
+use crate::{Contact, Error, Normal};
 
 /// Steps of a cycle at first, and at most.
 const FEWEST: usize = 128;
@@ -37,36 +38,6 @@ pub struct OscillatingLoad {
     pub amplitude: Normal,
     /// The phase, rad.
     pub phase: f64,
-}
-
-/// A steady cycle that was stepped.
-#[derive(Clone, Debug, PartialEq)]
-pub struct OscillatingCycle {
-    /// Half the range of the displacement of the indenter, m.
-    pub displacement_amplitude: f64,
-    /// Half the range of the tangential force, N.
-    pub force_amplitude: f64,
-    /// Half the range of the displacement at the machine, m.
-    pub machine_amplitude: f64,
-    /// Friction work of a cycle, J.
-    pub dissipated_energy: f64,
-    /// The largest elastic energy of the tangential deformation, J.
-    pub max_elastic_energy: f64,
-    /// 2 G* a where the drive is largest, N/m.
-    pub tangent_stiffness: f64,
-    /// Half the distance of the displacements at which the force changes its sign, over the amplitude; `None` if it
-    /// does not do so twice.
-    pub sliding_ratio: Option<f64>,
-    /// Radius of the part that never slips, m.
-    pub stick_radius: f64,
-    /// The most that slips at any time; separated if the bodies part.
-    pub regime: Regime,
-    /// As those of [`super::SteadyCycle::harmonics`], even ones too.
-    pub harmonics: Vec<Harmonic>,
-    /// Steps of the cycle.
-    pub steps: usize,
-    /// Error of the work over 4 mu F_N U0 and of the force over mu F_N, at the largest load: an estimate.
-    pub error: f64,
 }
 
 /// What is prescribed in a cycle, and what stands between it and the contact.

@@ -1,6 +1,6 @@
 //! The steady cycle of a contact under a closed list of moves, held at instants.
 
-use crate::curved_move::PathPoint;
+use crate::curved_path::PathPoint;
 use crate::numerics::double_double::DoubleDouble;
 use crate::range::Quantity;
 use crate::subsurface::Side;

@@ -6,7 +6,7 @@
 //! what needs a surface: its kernels and slopes are NaN, and whoever asks for a stress checks
 //! [`Profile::check_stress_field`](super::Profile) first.
 
-use super::ring_quadrature::{DepthNode, RingNodes};
+use super::ring_nodes::{DepthNode, RingNodes};
 use super::shape::{End, Shape};
 use super::{DoubleDouble, InterpolationError, Moments, Point, Ring, Span, StressRadius};
 
@@ -105,9 +105,9 @@ impl<C: CurveFamily> Shape for C {
         self.moments_of(ring)
     }
 
-    fn ring_nodes(&self, ring: &Ring, _total: f64, turns: usize) -> RingNodes {
+    fn ring_nodes(&self, ring: &Ring, turns: usize) -> Option<RingNodes> {
         let panels = PANELS.max(PANELS_A_WAVE * turns);
-        RingNodes::Compared(self.nodes_at(ring, panels), self.nodes_at(ring, 2 * panels))
+        Some(RingNodes::Compared(self.nodes_at(ring, panels), self.nodes_at(ring, 2 * panels)))
     }
 
     fn kernel(&self, _at: &StressRadius, _span: &Span) -> f64 {

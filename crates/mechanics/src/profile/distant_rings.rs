@@ -7,7 +7,6 @@
 
 use std::ops::Range;
 
-use super::slope_series::{LANES, Lanes};
 use crate::numerics::cluster_tree::{Cluster, ClusterTree};
 use crate::numerics::multipole::{Multipole, ORDERS, add_polynomials};
 
@@ -35,14 +34,14 @@ impl DistantRings {
     /// Twice what the first `count` rings add to the sum of v_outer - v_inner times weights, where they are far from
     /// all places; `near` gets the runs of those that are not. `distance` is how far the inner end of a ring is beyond
     /// all the places, less its rounding, and `excess` how far it is beyond each.
-    pub(super) fn sum(
+    pub(super) fn sum<const N: usize>(
         &self,
         count: usize,
         distance: impl Fn(usize) -> f64,
-        excess: impl Fn(usize) -> Lanes,
+        excess: impl Fn(usize) -> [f64; N],
         mut near: impl FnMut(Range<usize>),
-    ) -> Lanes {
-        let mut sums = [0.0; LANES];
+    ) -> [f64; N] {
+        let mut sums = [0.0; N];
         let mut far = |cluster: &Cluster<Multipole>| {
             let innermost = cluster.items.end - 1;
             let is_far = cluster.sources.is_far(-distance(innermost));

@@ -29,6 +29,7 @@ mod polynomial;
 mod power_law;
 mod power_series;
 mod ring;
+pub(super) mod ring_nodes;
 pub(super) mod ring_quadrature;
 mod rounded_cone;
 mod rounded_punch;

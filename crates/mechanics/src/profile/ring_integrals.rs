@@ -3,7 +3,8 @@
 
 #[cfg(test)]
 use super::call_count;
-use super::ring_quadrature::RingNodes;
+use super::ring_nodes::RingNodes;
+use super::ring_quadrature;
 use super::shape::Shape;
 use super::{Asperities, Count, Ellipsoid, Moments, Profile, Ring, Span, StressRadius};
 
@@ -36,7 +37,9 @@ impl Profile {
     /// The nodes of a quadrature over the radii of a ring, for integrands with roots of the depth h below its outer
     /// level and of `total` - h, and with waves in the angle whose cosine is 1 - 2 h/total, up to cos(`turns` th).
     pub(crate) fn ring_nodes(&self, ring: &Ring, total: f64, turns: usize) -> RingNodes {
-        each!(self, shape => shape.ring_nodes(ring, total, turns))
+        each!(self, shape => {
+            shape.ring_nodes(ring, turns).unwrap_or_else(|| ring_quadrature::nodes(shape, ring, total, turns))
+        })
     }
 
     /// int dy / sqrt(X(y)^2 - r^2) over the levels of the ring whose radius is above r (pure number): the ring's share

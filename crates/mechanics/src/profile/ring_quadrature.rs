@@ -7,6 +7,7 @@
 
 use std::f64::consts::PI;
 
+use super::ring_nodes::{DepthNode, RingNodes};
 use super::shape::Shape;
 use super::smooth_interval::{Node, SmoothInterval};
 use super::{Ring, Span};
@@ -31,21 +32,6 @@ const MOST_KINKS: usize = 24;
 const PANELS: f64 = 32.0;
 const VERY_MANY_KINKS: usize = 128;
 const FEW_PANELS: f64 = 8.0;
-
-/// A node: its weight, m, and the depth h below the outer level, m.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct DepthNode {
-    pub(crate) weight: f64,
-    pub(crate) depth: f64,
-}
-
-/// The nodes of a ring, for integrals over its radii.
-pub(crate) enum RingNodes {
-    /// To round-off.
-    Resolved(Vec<DepthNode>),
-    /// Across many kinks: coarse ones, and finer ones.
-    Compared(Vec<DepthNode>, Vec<DepthNode>),
-}
 
 /// The nodes of a ring for roots of h and of `total` - h, and waves up to cos(`turns` th), cos(th) = 1 - 2 h/total.
 pub(super) fn nodes(shape: &(impl Shape + ?Sized), ring: &Ring, total: f64, turns: usize) -> RingNodes {

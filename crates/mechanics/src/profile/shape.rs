@@ -1,7 +1,7 @@
 //! The functions that a family must provide, and those that follow for all families.
 
 use super::power_series::{KinkSeries, Place, Series};
-use super::ring_quadrature::{self, RingNodes};
+use super::ring_nodes::RingNodes;
 use super::smooth_interval::{Node, SmoothInterval};
 use super::{DoubleDouble, InterpolationError, Moments, Ring, Span, StressRadius};
 use crate::numerics::roots::increasing;
@@ -109,9 +109,10 @@ pub(super) trait Shape {
         Moments::stack(self.moments(&span), Moments::default(), span.edge)
     }
 
-    /// The nodes of a quadrature over the radii of a ring: see [`Profile::ring_nodes`](super::Profile).
-    fn ring_nodes(&self, ring: &Ring, total: f64, turns: usize) -> RingNodes {
-        ring_quadrature::nodes(self, ring, total, turns)
+    /// The nodes of a quadrature over the radii of a ring for waves up to cos(`turns` th), by a family that has no g;
+    /// `None` where they follow from the intervals between kinks.
+    fn ring_nodes(&self, _ring: &Ring, _turns: usize) -> Option<RingNodes> {
+        None
     }
 
     /// The rise from a node of an interval up to the outer end of its span.

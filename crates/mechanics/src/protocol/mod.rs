@@ -22,7 +22,8 @@ pub use robustness::{ExecutionErrors, trials};
 use equal_peak_measure::EqualPeakMeasure;
 use minimax::Problem;
 
-use super::range::{Quantity, short};
+use super::range::Quantity;
+use super::unit_prefix::short;
 use super::{Contact, DoubleDouble, Error, Profile};
 
 /// The part of the way from the innermost radius, where s diverges, to the edge, at which equal peaks begin.

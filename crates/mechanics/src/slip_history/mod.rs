@@ -11,22 +11,16 @@
 //! The cost of a move is constant on average, whatever came before; nothing is discretised, and turning points are kept
 //! as absolute positions, so no error accumulates.
 
+mod friction_work;
 mod instants;
 mod packed;
 mod piece;
 
-use super::friction_work::{self, SlipRing};
 use super::profile::{Moments, Point, Profile, Ring};
 use crate::numerics::double_double::DoubleDouble;
+use friction_work::{SlipRing, Unloading};
 pub(super) use piece::{Line, Piece};
-use piece::{Sums, rise};
-
-/// A stuck core thinner than this, relative to the indentation, is gross slip, because the displacement of gross slip
-/// is itself rounded. w at the edge is rounded by as much.
-pub(super) const ROUND_OFF: f64 = 2.0 * f64::EPSILON;
-/// Two turning points closer than this, relative to their distance from the edge, are one: a level that is reached
-/// again differs in its last digits.
-pub(super) const SAME_TURNING_POINT: f64 = 1e-28;
+use piece::{ROUND_OFF, SAME_TURNING_POINT, Sums, rise};
 
 /// The largest share of a change of the load that may be rounding.
 const ROUNDED_SHARE: f64 = 1e-6;
@@ -122,6 +116,12 @@ impl SlipHistory {
         Ring::between(self.pieces[index].inner, outer)
     }
 
+    /// The friction work on what leaves the contact on the way to indentation `d1` and scaled displacement `w1`.
+    fn unloading_work(&self, profile: &Profile, d1: DoubleDouble, w1: DoubleDouble) -> f64 {
+        let (from, advance, shift) = (self.edge.level, w1 - self.position, self.shift());
+        Unloading { from, to: d1, advance, shift }.work(profile, self.rings(), self.pieces.first())
+    }
+
     /// Bytes held beyond the struct itself.
     pub(super) fn heap_bytes(&self) -> usize {
         self.pieces.capacity() * size_of::<Piece>()
@@ -142,7 +142,7 @@ impl SlipHistory {
             self.place(profile, DoubleDouble::ZERO, touching);
         }
         if d1.value() <= 0.0 {
-            let work = friction_work::unloading_work(self, profile, d1, w1);
+            let work = self.unloading_work(profile, d1, w1);
             self.place(profile, d1, w1);
             return work;
         }
@@ -199,7 +199,7 @@ impl SlipHistory {
         let mut work = 0.0;
         let (sign, mut excess);
         if dd.value() < 0.0 {
-            work += friction_work::unloading_work(self, profile, d1, w1);
+            work += self.unloading_work(profile, d1, w1);
             while self.pieces.last().is_some_and(|top| top.inner.level >= d1) {
                 self.pieces.pop();
             }

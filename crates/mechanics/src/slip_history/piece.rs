@@ -6,8 +6,15 @@
 
 use std::fmt;
 
-use super::super::profile::{Moments, Point, Profile, Ring};
 use crate::numerics::double_double::DoubleDouble;
+use crate::profile::{Moments, Point, Profile, Ring};
+
+/// A stuck core thinner than this, relative to the indentation, is gross slip, because the displacement of gross slip
+/// is itself rounded. w at the edge is rounded by as much.
+pub(super) const ROUND_OFF: f64 = 2.0 * f64::EPSILON;
+/// Two turning points closer than this, relative to their distance from the edge, are one: a level that is reached
+/// again differs in its last digits.
+pub(super) const SAME_TURNING_POINT: f64 = 1e-28;
 
 /// A straight part of w - W over y: `offset + slope * y`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

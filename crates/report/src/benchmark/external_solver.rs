@@ -11,13 +11,18 @@ use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 use serde::Deserialize;
 use serde_json::{Value, json};
 
-use super::timing::SolverRun;
-
 /// The scripts by their names.
 pub(super) const SCRIPTS: [(&str, &str); 2] = [
     ("numpy", include_str!("../../external/numpy_springs.py")),
     ("aspher", include_str!("../../external/aspher_grid.py")),
 ];
+
+/// One run of a solver: forces after each move, N, shear stresses at the end, Pa, and the processor time for both, s.
+pub(super) struct SolverRun {
+    pub(super) forces: Vec<f64>,
+    pub(super) shears: Vec<f64>,
+    pub(super) seconds: f64,
+}
 
 /// A running script that has read the scene.
 pub(super) struct ExternalSolver {

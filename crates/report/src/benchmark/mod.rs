@@ -18,10 +18,10 @@ use std::time::{Duration, Instant};
 
 use serde::Serialize;
 
-use external_solver::{ExternalSolver, SCRIPTS};
+use external_solver::{ExternalSolver, SCRIPTS, SolverRun};
 use reference::Reference;
 use scenes::{DEPTH, E_STAR, FRICTION, G_STAR, Scene};
-use timing::{SceneBenchmark, SolverRun};
+use timing::SceneBenchmark;
 
 pub use output::write;
 pub use scenes::NAMES;

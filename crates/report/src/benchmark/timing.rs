@@ -11,7 +11,7 @@ use rustix::time::{ClockId, clock_gettime};
 use stickslip_mechanics::springs::{self, ShearEvaluation};
 use stickslip_mechanics::{Contact, Error, Springs};
 
-use super::external_solver::ExternalSolver;
+use super::external_solver::{ExternalSolver, SolverRun};
 use super::scenes::Scene;
 use super::{Missing, RADII, Report, Row};
 
@@ -30,13 +30,6 @@ const KERNELS: [(&str, ShearEvaluation); 3] = [
     ("springs_level", ShearEvaluation::Level),
     ("recipe", ShearEvaluation::Differences),
 ];
-
-/// One run of a solver: forces after each move, N, shear stresses at the end, Pa, and the processor time for both, s.
-pub(super) struct SolverRun {
-    pub(super) forces: Vec<f64>,
-    pub(super) shears: Vec<f64>,
-    pub(super) seconds: f64,
-}
 
 /// The measurements of all solvers on one scene.
 pub(super) struct SceneBenchmark<'a> {

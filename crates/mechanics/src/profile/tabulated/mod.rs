@@ -18,6 +18,8 @@ mod near_kernel;
 mod noise;
 mod panel;
 mod panel_integrals;
+mod panel_powers;
+mod panel_sources;
 mod panels;
 mod spline;
 mod stated_error;

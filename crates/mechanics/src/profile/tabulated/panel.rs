@@ -7,12 +7,9 @@ use std::sync::OnceLock;
 
 use super::super::smooth_coordinate::{self, SmoothCoordinate};
 use super::panel_integrals::PanelIntegrals;
-use super::{DoubleDouble, Moments, Span, near_kernel};
+use super::{DoubleDouble, Moments, Span, panel_powers};
 use crate::numerics::chebyshev::{self, TWENTY_FOUR, divided_difference};
 use crate::numerics::gauss;
-
-/// The most terms of a series.
-pub(super) const POINTS: usize = 24;
 
 /// The part of P below which its terms do not count where an error is estimated that is larger.
 const NEGLIGIBLE: f64 = 1e-14;
@@ -86,12 +83,51 @@ impl KernelPanel {
 
     /// Coefficients of q in powers of t over its upper end, for the kernel; none if they do not serve.
     pub(super) fn powers(&self) -> &[f64] {
-        self.powers.get_or_init(|| near_kernel::powers(&self.slope, self.low, self.high))
+        self.powers.get_or_init(|| panel_powers::powers(&self.slope, self.low, self.high))
     }
 
     /// Its integrals up to any place.
     pub(super) fn integrals(&self) -> &PanelIntegrals {
-        self.integrals.get_or_init(|| PanelIntegrals::new(self))
+        self.integrals.get_or_init(|| {
+            let width = (self.high - self.low) * (self.high + self.low) / (self.radius + self.end().1);
+            let rise = |t| self.rise_at(self.low, t, t - self.low);
+            PanelIntegrals::new(self.base, (self.low, self.high), (width, self.depth()), rise)
+        })
+    }
+
+    /// The rise of g, m, from its beginning up to t, `s` further in the square of the radius, by the powers of q.
+    pub(super) fn rise_by_powers(&self, t: f64, s: f64) -> f64 {
+        panel_powers::rise(self.powers(), (self.low, self.high), t, s)
+    }
+
+    /// How much further, in the square of the radius, g has risen by `rise`, m; `None` without powers of q, and where that
+    /// takes a search.
+    ///
+    /// Newton's step with q/2 where g would be if it rose with x^2, and further steps with the same slope: the error of
+    /// each is that of the one before times the relative change of q on the way, which the steps tell.
+    pub(super) fn distance(&self, rise: f64) -> Option<f64> {
+        if self.powers().is_empty() {
+            return None;
+        }
+        let all = (self.high - self.low) * (self.high + self.low);
+        let t = |s: f64| (self.low * self.low + s).sqrt();
+        let mut s = (all * (rise / self.integrals().depth)).min(all);
+        let slope = 0.5 * self.slope_over_radius(t(s));
+        let mut last = s;
+        for _ in 0..8 {
+            let step = (rise - self.rise_by_powers(t(s), s)) / slope;
+            s += step;
+            let size = step.abs();
+            // Also where one of them is no number.
+            if !(s > 0.0 && s <= 1.000_001 * all && size <= 0.25 * last) {
+                return None;
+            }
+            if size * (size / last) <= 1e-17 * s || size <= 3e-16 * s {
+                return Some(s.min(all));
+            }
+            last = size;
+        }
+        None
     }
 
     /// Whether the terms of q beyond the first cannot make it fall below zero.

@@ -1,4 +1,4 @@
-//! Integrals of g over a part of a panel by series that are made once, and the inverse of g.
+//! Integrals of g over a part of a panel by series that are made once.
 //!
 //! A = int g dx and B = int g^2 dx, g from the beginning of the panel on, are Chebyshev series in t, from values at the
 //! places of q; dx = t dt/x is analytic but at t = +-ik, further away than the singularity of g. A and B are good to a
@@ -11,9 +11,7 @@
 //! no less than W H and W H^2 ([`PanelIntegrals::resolve`]), as they are for a ring that holds a whole panel of this
 //! size beside the part. Thinner rings are integrated numerically.
 
-use super::super::smooth_coordinate::SmoothCoordinate;
-use super::panel::KernelPanel;
-use super::{Moments, near_kernel};
+use super::Moments;
 use crate::numerics::chebyshev::{TWENTY_FOUR, primitive};
 
 /// The series of a panel and its integrals as a whole.
@@ -23,17 +21,23 @@ pub(super) struct PanelIntegrals {
     areas: Box<[[f64; 2]]>,
     /// W, m, and H, m.
     width: f64,
-    depth: f64,
+    pub(super) depth: f64,
     /// A and B of all of it.
     whole: [f64; 2],
 }
 
 impl PanelIntegrals {
-    pub(super) fn new(panel: &KernelPanel) -> PanelIntegrals {
-        let (low, high) = (panel.low, panel.high);
-        let stretch = |t: f64| if panel.base > 0.0 { t / (panel.base * panel.base + t * t).sqrt() } else { 1.0 };
+    /// Those of a panel on low..high in t above the knot `base`, m, of this width and depth, m, by how much g has risen
+    /// from its beginning up to t, m.
+    pub(super) fn new(
+        base: f64,
+        (low, high): (f64, f64),
+        (width, depth): (f64, f64),
+        rise: impl Fn(f64) -> f64,
+    ) -> PanelIntegrals {
+        let stretch = |t: f64| if base > 0.0 { t / (base * base + t * t).sqrt() } else { 1.0 };
         let places = TWENTY_FOUR.places(low, high);
-        let rises = places.map(|t| panel.rise_at(low, t, t - low));
+        let rises = places.map(rise);
         let area = std::array::from_fn(|index| rises[index] * stretch(places[index]));
         let square = std::array::from_fn(|index| rises[index] * area[index]);
         let primitives = [area, square].map(|values| from_beginning(&TWENTY_FOUR.series(&values), 0.5 * (high - low)));
@@ -42,8 +46,6 @@ impl PanelIntegrals {
         let areas: Box<[[f64; 2]]> =
             (0..length).map(|index| primitives.each_ref().map(|series| term(series, index))).collect();
         let whole = areas.iter().fold([0.0; 2], |sum, term| [sum[0] + term[0], sum[1] + term[1]]);
-        let depth = panel.depth();
-        let width = (high - low) * (high + low) / (panel.radius + panel.end().1);
         PanelIntegrals { areas, width, depth, whole }
     }
 
@@ -77,36 +79,6 @@ impl PanelIntegrals {
         let area = self.width * self.depth;
         ring.first >= area && ring.second >= area * self.depth
     }
-}
-
-/// How much further, in the square of the radius, g has risen by `rise`, m; `None` without powers of q, and where that
-/// takes a search.
-///
-/// Newton's step with q/2 where g would be if it rose with x^2, and further steps with the same slope: the error of
-/// each is that of the one before times the relative change of q on the way, which the steps tell.
-pub(super) fn distance(panel: &KernelPanel, rise: f64) -> Option<f64> {
-    if panel.powers().is_empty() {
-        return None;
-    }
-    let all = (panel.high - panel.low) * (panel.high + panel.low);
-    let t = |s: f64| (panel.low * panel.low + s).sqrt();
-    let mut s = (all * (rise / panel.integrals().depth)).min(all);
-    let slope = 0.5 * panel.slope_over_radius(t(s));
-    let mut last = s;
-    for _ in 0..8 {
-        let step = (rise - near_kernel::rise(panel, t(s), s)) / slope;
-        s += step;
-        let size = step.abs();
-        // Also where one of them is no number.
-        if !(s > 0.0 && s <= 1.000_001 * all && size <= 0.25 * last) {
-            return None;
-        }
-        if size * (size / last) <= 1e-17 * s || size <= 3e-16 * s {
-            return Some(s.min(all));
-        }
-        last = size;
-    }
-    None
 }
 
 /// The primitive, zero at u = -1, of a Chebyshev series in u, t = middle + half u.

@@ -12,7 +12,7 @@ use super::build::Built;
 use super::kernel::Kernel;
 use super::lookup::Lookup;
 use super::panel::KernelPanel;
-use super::{DoubleDouble, Moments, Point, Ring, Span, StressRadius, near_kernel, panel_integrals, weighted_panels};
+use super::{DoubleDouble, Moments, Point, Ring, Span, StressRadius, panel_sources};
 use crate::numerics::cluster_tree::ClusterTree;
 use crate::numerics::multipole::Multipole;
 
@@ -67,7 +67,7 @@ impl Panels {
 
     /// The kernel's sources.
     pub(super) fn sources(&self) -> &ClusterTree<Multipole> {
-        self.sources.get_or_init(|| weighted_panels::sources(&self.panels))
+        self.sources.get_or_init(|| panel_sources::sources(&self.panels))
     }
 
     /// The span of a ring.
@@ -100,7 +100,7 @@ impl Panels {
         if rest <= 0.0 {
             return panel.square;
         }
-        if let Some(further) = panel_integrals::distance(panel, rest) {
+        if let Some(further) = panel.distance(rest) {
             return panel.square + DoubleDouble::from(further);
         }
         let whole = self.panels.get(index + 1).map_or(self.top.level, |next| next.level) - panel.level;
@@ -293,7 +293,7 @@ impl Panels {
         }
         let beyond = (ring.outer.square - top.square).value().max(0.0);
         let t = top.t_of(ring.outer.square);
-        let rise = near_kernel::rise(top, t, beyond);
+        let rise = top.rise_by_powers(t, beyond);
         let above = top.integrals().below(top.place(t), beyond / (ring.outer.radius + top.radius), rise);
         sum = Moments::stack(sum, above, rise);
         (top.integrals().resolve(&sum) && (!part || bottom.integrals().resolve(&sum))).then_some(sum)

@@ -5,9 +5,9 @@
 //! mean of the bound at both ends, a quadratic in y; no instant is simulated. Every term is positive: nothing cancels
 //! however small the move. Works here are over 2 G* m^2, in m^3.
 
-use super::profile::{Moments, Point, Profile, Ring};
-use super::slip_history::{Line, Piece, ROUND_OFF, SAME_TURNING_POINT, SlipHistory};
+use super::piece::{Line, Piece, ROUND_OFF, SAME_TURNING_POINT};
 use crate::numerics::double_double::DoubleDouble;
+use crate::profile::{Moments, Point, Profile, Ring};
 
 /// The ring that slips at the end of a move: towards `sign`, with w = sign (indentation - y).
 pub(super) struct SlipRing {
@@ -84,55 +84,71 @@ impl SlipRing {
     }
 }
 
-/// Work on the ring that leaves the contact when the indentation falls to `d1` while the indenter moves to `w1`: each
-/// point slips back to w = 0 before it lifts off, whatever the sign of its displacement.
-pub(super) fn unloading_work(history: &SlipHistory, profile: &Profile, d1: DoubleDouble, w1: DoubleDouble) -> f64 {
-    let d0 = history.edge().level;
-    let (fall, advance) = (d0 - d1, w1 - history.position());
-    let lowest = if d1.value() > 0.0 { d1 } else { DoubleDouble::ZERO };
-    // What a point at y would carry at its lift-off: w - W, and where the indenter is by then.
-    let drift = advance.over(fall);
-    let shift = history.shift();
-    let carried = |line: &Line, level: DoubleDouble| line.at(level) + shift + drift * (d0 - level);
-    let (drift, fall) = (drift.value(), fall.value());
-    // The bound falls by `fall` while the slip gains `rate`: slip^2 fall/(2 rate) a point.
-    let share = |carried_sign: f64| {
-        let rate = carried_sign * drift + 1.0;
-        if rate > 0.0 { 0.5 / rate } else { 0.0 }
-    };
-    debug_assert!(fall > 0.0);
-    let mut work = 0.0;
-    for (ring, line) in history.rings() {
-        if ring.outer.level <= lowest {
-            break;
-        }
-        let inner = if ring.inner.level < lowest { profile.point(lowest) } else { ring.inner };
-        let (at_inner, at_outer) = (carried(line, inner.level), carried(line, ring.outer.level));
-        let steep = (at_outer - at_inner).value();
-        let parts = if at_inner.value() * at_outer.value() < 0.0 {
-            let fraction = at_inner.over(at_inner - at_outer);
-            let middle = profile.point(inner.level + (ring.outer.level - inner.level) * fraction);
-            [Some((Ring::between(inner, middle), 0.0)), Some((Ring::between(middle, ring.outer), at_outer.value()))]
-        } else {
-            [Some((Ring::between(inner, ring.outer), at_outer.value())), None]
+/// A fall of the indentation while the indenter moves.
+pub(super) struct Unloading {
+    /// Indentation at the start and at the end, m.
+    pub(super) from: DoubleDouble,
+    pub(super) to: DoubleDouble,
+    /// What the indenter advances meanwhile, scaled, m.
+    pub(super) advance: DoubleDouble,
+    /// Turns a stored w - W into w at the start.
+    pub(super) shift: DoubleDouble,
+}
+
+impl Unloading {
+    /// Work on the ring that leaves the contact: each point slips back to w = 0 before it lifts off, whatever the sign
+    /// of its displacement. `rings` come from the edge inward, `core` is the innermost piece.
+    pub(super) fn work<'a>(
+        &self,
+        profile: &Profile,
+        rings: impl Iterator<Item = (Ring, &'a Line)>,
+        core: Option<&Piece>,
+    ) -> f64 {
+        let fall = self.from - self.to;
+        let lowest = if self.to.value() > 0.0 { self.to } else { DoubleDouble::ZERO };
+        // What a point at y would carry at its lift-off: w - W, and where the indenter is by then.
+        let drift = self.advance.over(fall);
+        let carried = |line: &Line, level: DoubleDouble| line.at(level) + self.shift + drift * (self.from - level);
+        let (drift, fall) = (drift.value(), fall.value());
+        // The bound falls by `fall` while the slip gains `rate`: slip^2 fall/(2 rate) a point.
+        let share = |carried_sign: f64| {
+            let rate = carried_sign * drift + 1.0;
+            if rate > 0.0 { 0.5 / rate } else { 0.0 }
         };
-        let whole = (ring.outer.level - inner.level).value();
-        for (part, end) in parts.into_iter().flatten() {
-            if part.depth <= 0.0 {
-                continue;
+        debug_assert!(fall > 0.0);
+        let mut work = 0.0;
+        for (ring, line) in rings {
+            if ring.outer.level <= lowest {
+                break;
             }
-            let slope = steep / whole;
-            let middle = end - 0.5 * slope * part.depth;
-            let Moments { width, first, second } = profile.moments(&part);
-            let squares = end * end * width - 2.0 * end * slope * first + slope * slope * second;
-            work += share(middle.signum()) * squares.max(0.0);
+            let inner = if ring.inner.level < lowest { profile.point(lowest) } else { ring.inner };
+            let (at_inner, at_outer) = (carried(line, inner.level), carried(line, ring.outer.level));
+            let steep = (at_outer - at_inner).value();
+            let parts = if at_inner.value() * at_outer.value() < 0.0 {
+                let fraction = at_inner.over(at_inner - at_outer);
+                let middle = profile.point(inner.level + (ring.outer.level - inner.level) * fraction);
+                [Some((Ring::between(inner, middle), 0.0)), Some((Ring::between(middle, ring.outer), at_outer.value()))]
+            } else {
+                [Some((Ring::between(inner, ring.outer), at_outer.value())), None]
+            };
+            let whole = (ring.outer.level - inner.level).value();
+            for (part, end) in parts.into_iter().flatten() {
+                if part.depth <= 0.0 {
+                    continue;
+                }
+                let slope = steep / whole;
+                let middle = end - 0.5 * slope * part.depth;
+                let Moments { width, first, second } = profile.moments(&part);
+                let squares = end * end * width - 2.0 * end * slope * first + slope * slope * second;
+                work += share(middle.signum()) * squares.max(0.0);
+            }
         }
+        if self.to.value() <= 0.0
+            && let Some(core) = core
+        {
+            let held = carried(&core.line, DoubleDouble::ZERO).value();
+            work += core.inner.radius * share(held.signum()) * held * held;
+        }
+        work
     }
-    if d1.value() <= 0.0
-        && let Some(core) = history.pieces().first()
-    {
-        let held = carried(&core.line, DoubleDouble::ZERO).value();
-        work += core.inner.radius * share(held.signum()) * held * held;
-    }
-    work
 }

@@ -1,0 +1,35 @@
+//! A path straight in two quantities, of which a force makes it a curve in displacement and indentation.
+
+use super::DoubleDouble;
+
+/// How the tangential target is reached: straight from one value to the other.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum TangentialPath {
+    Displacement { from: DoubleDouble, to: DoubleDouble },
+    Force { from: f64, to: f64 },
+}
+
+/// How the normal target is reached.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum NormalPath {
+    Indentation { from: DoubleDouble, to: DoubleDouble },
+    Force { from: f64, to: f64 },
+}
+
+/// A path straight in two quantities, over a parameter from 0 to 1.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct CurvedMove {
+    pub(super) tangential: TangentialPath,
+    pub(super) normal: NormalPath,
+}
+
+/// A point of the curve.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct PathPoint {
+    /// d, m.
+    pub(super) indentation: DoubleDouble,
+    /// F_N, N, that belongs to it.
+    pub(super) normal_force: f64,
+    /// U, m.
+    pub(super) displacement: DoubleDouble,
+}
