@@ -210,7 +210,7 @@ impl<'a> SmoothPieces<'a> {
 
     /// The sums at each radius, unless the profile has a quicker way.
     pub(super) fn kernel_sums(&self, radii: &[StressRadius]) -> Option<Vec<f64>> {
-        Shape::slope_series(self.profile, 1.0).is_none().then(|| self.sums(radii))
+        Shape::slope_series(self.profile, self.unit.sqrt().recip()).is_none().then(|| self.sums(radii))
     }
 
     /// The sums at each radius.

@@ -30,6 +30,7 @@ mod protocol_search;
 mod protocols;
 mod relative_moves;
 mod resonance;
+mod scaling;
 mod slip_history;
 mod springs;
 mod springs_estimate;
