@@ -4,6 +4,7 @@ use std::net::{IpAddr, SocketAddr};
 use std::str::FromStr;
 
 use axum::http::HeaderMap;
+use ipnet::IpNet;
 
 /// The address of the client of a request.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -11,38 +12,22 @@ pub struct ClientAddress(pub IpAddr);
 
 /// The addresses of proxies: one, or all of a network such as `10.0.0.0/8`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Network {
-    address: IpAddr,
-    /// Leading bits that an address of the network shares with this one.
-    bits: u32,
-}
-
-impl Network {
-    fn contains(&self, address: IpAddr) -> bool {
-        match (self.address, address) {
-            (IpAddr::V4(own), IpAddr::V4(other)) => (own.to_bits() ^ other.to_bits()).leading_zeros() >= self.bits,
-            (IpAddr::V6(own), IpAddr::V6(other)) => (own.to_bits() ^ other.to_bits()).leading_zeros() >= self.bits,
-            _ => false,
-        }
-    }
-}
+pub struct Network(IpNet);
 
 impl FromStr for Network {
-    type Err = String;
+    type Err = &'static str;
 
-    fn from_str(text: &str) -> Result<Network, String> {
-        let refused = || "expected an address, or a network such as 10.0.0.0/8".to_owned();
-        let (address, bits) = text.split_once('/').map_or((text, None), |(address, bits)| (address, Some(bits)));
-        let address: IpAddr = address.parse().map_err(|_| refused())?;
-        let all = if address.is_ipv4() { 32 } else { 128 };
-        let bits = bits.map_or(Ok(all), str::parse).map_err(|_| refused())?;
-        if bits > all { Err(refused()) } else { Ok(Network { address, bits }) }
+    fn from_str(text: &str) -> Result<Network, &'static str> {
+        let one = text.parse::<IpAddr>().map(IpNet::from);
+        let network =
+            one.or_else(|_| text.parse()).map_err(|_| "expected an address, or a network such as 10.0.0.0/8")?;
+        Ok(Network(network))
     }
 }
 
 /// Whether the address is one of these.
 pub fn is_trusted(trusted: &[Network], address: IpAddr) -> bool {
-    trusted.iter().any(|network| network.contains(address))
+    trusted.iter().any(|network| network.0.contains(&address))
 }
 
 /// The client of a request that came from `peer`. A proxy appends to `X-Forwarded-For` the address that called it; the
