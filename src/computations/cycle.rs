@@ -209,8 +209,7 @@ fn table<'a>(reply: &'a CycleReply, task: &CycleTask) -> Table<'a> {
 }
 
 /// Loss factor and secant stiffness over the amplitude, or the loop if there is one amplitude at constant load, or the
-/// fretting map. `contact` is at the load of
-/// the cycles and has no history.
+/// fretting map. `contact` is at the load of the cycles and has no history.
 fn plot(contact: &Contact, reply: &CycleReply, task: &CycleTask) -> Plot {
     if task.map.is_some() {
         return fretting_map::plot(&reply.cycles, task.drives().len());

@@ -2,12 +2,9 @@
 //! takes more.
 //!
 //! At the surface a stress has the edge of the contact or of the slip pass like a root of the time, in the depth z like
-//! a
-//! root of time + i z. So the parts between such instants are graded towards both ends: over an angle t with
-//! part = from + (to - from) (1 - cos t)/2 those roots are smooth. There polynomials through Chebyshev's points
-//! converge
-//! fast; each is compared with the one through half of its points, and a stretch of t is halved where that does not
-//! help.
+//! a root of time + i z. So the parts between such instants are graded towards both ends: over an angle t with part =
+//! from + (to - from) (1 - cos t)/2 those roots are smooth. There polynomials through Chebyshev's points converge fast;
+//! each is compared with the one through half of its points, and a stretch of t is halved where that does not help.
 
 use std::cell::Cell;
 use std::f64::consts::PI;
@@ -133,8 +130,7 @@ impl Allowance {
 
 impl StressCurve {
     /// The curve over some stretches within an allowance, from what `sample` says of a move, a part of it and whether
-    /// the
-    /// instant belongs to many places: the components, and whether the place is in contact. `None` where one is
+    /// the instant belongs to many places: the components, and whether the place is in contact. `None` where one is
     /// infinite.
     pub(super) fn follow(
         stretches: &[(CurveStretch, bool)],

@@ -183,8 +183,7 @@ impl Cycle {
     }
 
     /// The contact after a part of a move, which is of the displacement or the indentation where the move is straight
-    /// in both,
-    /// and the part of what the move prescribes.
+    /// in both, and the part of what the move prescribes.
     pub(super) fn state(&self, step: usize, part: f64) -> (Contact, f64) {
         let first = self.chords.partition_point(|chord| chord.step < step);
         let index = first + self.chords[first..].partition_point(|chord| chord.step == step && chord.to < part);

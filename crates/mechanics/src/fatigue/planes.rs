@@ -45,10 +45,8 @@ static NORMALS: LazyLock<Vec<Vector>> = LazyLock::new(|| {
 });
 
 /// The largest peaks of a function that opposite normals share, and their normals, sought from the grid and from
-/// `more`;
-/// the largest of all comes first. The function takes whether a bound from above will do, which is to be cheaper: it
-/// spares
-/// low planes the exact value.
+/// `more`; the largest of all comes first. The function takes whether a bound from above will do, which is to be
+/// cheaper: it spares low planes the exact value.
 pub(super) fn peaks(more: &[Vector], mut value: impl FnMut(&Vector, bool) -> f64) -> Vec<(f64, Vector)> {
     let highest_first = |one: &(f64, Vector), other: &(f64, Vector)| other.0.total_cmp(&one.0);
     let mut bounds: Vec<(f64, Vector)> =
@@ -101,8 +99,7 @@ pub(super) fn highest(more: &[Vector], mut value: impl FnMut(&Vector) -> f64) ->
 }
 
 /// The peak next to a normal, from a distance of the first parabola on: parabolas through six values, and the best
-/// value seen
-/// where a parabola has no maximum.
+/// value seen where a parabola has no maximum.
 pub(super) fn climb(start: (f64, Vector), mut step: f64, mut value: impl FnMut(&Vector) -> f64) -> (f64, Vector) {
     let mut best = start;
     for _ in 0..MOST_STEPS {

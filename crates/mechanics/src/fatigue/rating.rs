@@ -1,11 +1,9 @@
 //! A criterion at a place, over the curve that its stress follows in a cycle.
 //!
 //! Every criterion is made of largest values over the cycle of convex functions of the stress: distances from a centre,
-//! normal
-//! stresses, hydrostatic stress. So the instants that carry them are found one by one: where the curve is farthest
-//! from the centre of a ball, the ball grows, until it holds the whole curve (cutting planes). A critical plane is
-//! sought over
-//! the samples; the best ones are then climbed with the instants that matter on them.
+//! normal stresses, hydrostatic stress. So the instants that carry them are found one by one: where the curve is
+//! farthest from the centre of a ball, the ball grows, until it holds the whole curve (cutting planes). A critical
+//! plane is sought over the samples; the best ones are then climbed with the instants that matter on them.
 
 use std::f64::consts::{FRAC_1_SQRT_2 as SHEAR_SHARE, SQRT_2};
 

@@ -1,11 +1,9 @@
 //! The largest value of a measure over a whole body.
 //!
 //! Over the surface the measures have ridges along the circles at which the edge of the contact or of a slip ends, and
-//! the
-//! largest stress may also lie some way below. So places on a net of such circles, of others between them, of angles
-//! and
-//! of depths are looked at over few instants; from the best of them a search along radius, angle and depth begins,
-//! over all instants. By symmetry one half of the body is enough.
+//! the largest stress may also lie some way below. So places on a net of such circles, of others between them, of
+//! angles and of depths are looked at over few instants; from the best of them a search along radius, angle and depth
+//! begins, over all instants. By symmetry one half of the body is enough.
 
 use std::f64::consts::PI;
 
@@ -209,8 +207,7 @@ impl Study<'_> {
     }
 
     /// Climbs along the coordinates in turn, in steps that are halved where none leads up, until they are so small: the
-    /// best
-    /// place, and what the last two rounds have gained.
+    /// best place, and what the last two rounds have gained.
     fn climb(
         &mut self,
         measure: usize,

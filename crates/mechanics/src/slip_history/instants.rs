@@ -14,8 +14,7 @@ const BEGINNING: f64 = 1e-12;
 
 impl SlipHistory {
     /// The parts of the straight move to (`d1`, `w1`), above 0 and below 1, after which the edge passes a level, m, or
-    /// slip
-    /// reaches it.
+    /// slip reaches it.
     pub(in super::super) fn passes(&self, (d1, w1): (DoubleDouble, DoubleDouble), level: f64) -> Vec<f64> {
         let (dd, dw) = ((d1 - self.edge.level).value(), (w1 - self.position).value());
         let depth = self.edge.level.value() - level;
