@@ -22,6 +22,9 @@ const OFF_PEAK: f64 = 0.03;
 /// The distance of the first parabola, and of the last. The error of a value is of the order of the latter's square.
 const FIRST_STEP: f64 = 0.5 * GRID;
 const LAST_STEP: f64 = 1e-5;
+/// Circles around the highest peak on which others are looked for, and planes on each.
+const CIRCLES: [f64; 2] = [0.5 * GRID, GRID];
+const AROUND: usize = 12;
 /// More parabolas than a search needs; a safeguard only.
 const MOST_STEPS: usize = 60;
 
@@ -83,8 +86,29 @@ pub(super) fn peaks(more: &[Vector], mut value: impl FnMut(&Vector, bool) -> f64
             found.push(peak);
         }
     }
+    found.extend(beside(&best.1, |normal| value(normal, false)));
     found.push(best);
     found.sort_by(highest_first);
+    found
+}
+
+/// Peaks so near to one that the grid does not tell them apart: climbed from the highest planes of circles around it.
+fn beside(normal: &Vector, mut value: impl FnMut(&Vector) -> f64) -> Vec<(f64, Vector)> {
+    let [one, two] = axes(normal);
+    let mut found = Vec::new();
+    for distance in CIRCLES {
+        let circle: [(f64, Vector); AROUND] = std::array::from_fn(|index| {
+            let (sin, cos) = (2.0 * PI * index as f64 / AROUND as f64).sin_cos();
+            let tilted = unit(&std::array::from_fn(|i| normal[i] + distance * (cos * one[i] + sin * two[i])));
+            (value(&tilted), tilted)
+        });
+        for index in 0..AROUND {
+            let (before, after) = (circle[(index + AROUND - 1) % AROUND].0, circle[(index + 1) % AROUND].0);
+            if circle[index].0 >= before && circle[index].0 > after {
+                found.push(climb(circle[index], 0.25 * distance, &mut value));
+            }
+        }
+    }
     found
 }
 

@@ -118,7 +118,7 @@ fn any_cycle(random: &mut Random) -> (Contact, Vec<Move>, [f64; 3]) {
 
 /// Random cycles that have several instants or planes of nearly the same value, of which one was once missed: the
 /// farthest from the centre of a ball on one arc (the first four), or a plane.
-const ALIKE: [u32; 8] = [135, 195, 332, 454, 564, 768, 1026, 1428];
+const ALIKE: [u32; 9] = [135, 195, 332, 454, 564, 768, 1026, 1428, 1710];
 
 #[test]
 fn errors_of_random_cycles_are_not_stated_too_small() {
@@ -126,7 +126,7 @@ fn errors_of_random_cycles_are_not_stated_too_small() {
     let measures = of_stress();
     let (mut beyond, mut worst, mut stated) = (0, 0.0_f64, Vec::new());
     let count = cases(100);
-    for case in 0..count.max(1 + ALIKE[7]) {
+    for case in 0..count.max(1 + ALIKE[8]) {
         let (contact, moves, place) = any_cycle(&mut random);
         if case >= count && !ALIKE.contains(&case) {
             continue;
@@ -147,14 +147,15 @@ fn errors_of_random_cycles_are_not_stated_too_small() {
             let sensitive = [unit, unit, unit, unit * unit / STEEL, unit / STEEL][index];
             // What the reference itself leaves.
             let mut off = ((found.value - truth).abs() - 3e-6 * sensitive).max(0.0);
-            if off > 3.0 * found.error && index < 2 {
-                // The centre of a ball is known to the root of what the reference leaves.
+            if off > 3.0 * found.error && (index < 2 || found.value > truth) {
+                // The centre of a ball is known to the root of what the reference leaves, and a largest value over
+                // instants is too low where the reference has missed one.
                 truth = criterion.of(&curve(&cycle, place, &moves, (1e-9 * unit, 0.05 * unit))).value;
                 off = ((found.value - truth).abs() - 3e-6 * sensitive).max(0.0);
             }
             if off > 3.0 * found.error {
                 beyond += 1;
-                println!("case {case} {criterion:?} at {place:?}: {found:?}, true {truth:e}");
+                println!("case {case} {criterion:?} at {place:?}: {found:?}, true {:?}", criterion.of(&path));
             }
             worst = worst.max(off / found.error.max(1e-300));
             stated.push(found.error / sensitive);
