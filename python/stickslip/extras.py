@@ -62,6 +62,6 @@ class Fretting(Result):
 class Swept(Result):
     """The table of a sweep."""
 
-    def _columns(self) -> dict[str, Floats]:
+    def _columns(self) -> dict[str, Any]:
         columns: dict[str, Floats] = self.columns  # type: ignore[attr-defined]
         return columns

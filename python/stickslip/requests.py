@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any, TypeAlias
 
 from .bodies import elastic_body
-from .documents import Document, to_document
+from .documents import Document, HasDocument
 from .extras import CRITERIA
 
 #: A number of points, or the document of a request for stresses.
@@ -40,11 +40,12 @@ def split_path(given: dict[str, Any]) -> Document:
 
 
 def definition(contact: Any) -> Document:
-    """The definition of a contact, of a definition, or a document."""
-    document: Document = (
-        contact.definition() if callable(getattr(contact, "definition", None)) else to_document(contact)
-    )
-    return document
+    """The definition of a contact or of a document, with units as they were given."""
+    if callable(getattr(contact, "definition", None)):
+        contact = contact.definition()
+    elif isinstance(contact, HasDocument):
+        contact = contact.document()
+    return dict(contact)
 
 
 def cycle(displacement: Any = None, force: Any = None, **rest: Any) -> Document:

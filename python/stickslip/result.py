@@ -63,10 +63,10 @@ class Result:
         given = {field.name: getattr(self, field.name) for field in dataclasses.fields(self)}
         return {name: value for name, value in given.items() if isinstance(value, int | float | str)}
 
-    def _columns(self) -> dict[str, Floats]:
-        """The arrays of equal length."""
+    def _columns(self) -> dict[str, Any]:
+        """The arrays, if they are of equal length."""
         given = {field.name: getattr(self, field.name) for field in dataclasses.fields(self)}
-        arrays = {name: value for name, value in given.items() if isinstance(value, np.ndarray)}
+        arrays = {name: value for name, value in given.items() if _is_column(value)}
         lengths = {len(value) for value in arrays.values()}
         return arrays if len(lengths) == 1 else {}
 
@@ -89,6 +89,12 @@ class Result:
         return f"<b>{type(self).__name__}</b>{html}"
 
 
+def _is_column(value: Any) -> bool:
+    return isinstance(value, np.ndarray) or (
+        isinstance(value, list) and bool(value) and isinstance(value[0], int | float)
+    )
+
+
 _HINTS: dict[type, dict[str, Any]] = {}
 
 
@@ -102,7 +108,7 @@ def _hints(kind: type[Result]) -> dict[str, Any]:
 def _parse(value: Any, hint: Any) -> Any:
     if value is None:
         return None
-    if hint is Floats:
+    if hint == Floats:
         return np.array(value, dtype=np.float64)
     if isinstance(hint, type) and issubclass(hint, Result):
         return parse(hint, value)
