@@ -6,7 +6,8 @@ use pyo3::types::PyBytes;
 use stickslip::admission::{SolverSlot, Stop};
 use stickslip::api::Problem;
 use stickslip::simulation::{self, Failure, SweepResult};
-use stickslip_wire::{self as wire, SweepRequest};
+use stickslip_wire::sweep::indices;
+use stickslip_wire::{self as wire, Axis, Output, SweepRequest};
 
 use super::compute::named;
 use super::interrupt::interruptible;
@@ -49,22 +50,35 @@ impl Sweep {
         Ok(PyBytes::new(py, &blocks.concat()))
     }
 
-    /// The results of the points from `first` up to `end`: their numbers as `f64`, a row for each point, and the
-    /// failures among them as JSON text.
+    /// The names of the columns: the axes, then the outputs.
+    #[getter]
+    fn columns(&self) -> Vec<String> {
+        let request = &self.plan.checked().request;
+        let (axes, outputs) = (request.axes.iter().map(Axis::column), request.outputs.iter().map(Output::column));
+        axes.chain(outputs).map(str::to_owned).collect()
+    }
+
+    /// The rows of the points from `first` up to `end`: their numbers as `f64`, a row for each point, how
+    /// many have no answer, and the first of these as JSON text.
     fn rows<'py>(
         &self,
         py: Python<'py>,
         first: usize,
         end: usize,
         threads: usize,
-    ) -> PyResult<(Bound<'py, PyBytes>, String)> {
+    ) -> PyResult<(Bound<'py, PyBytes>, u64, String)> {
         if first > end || end > self.plan.points() {
             return Err(PyIndexError::new_err(format!("this sweep has {} points", self.plan.points())));
         }
         let result = interruptible(py, |stop| self.compute(first..end, threads, stop))?.map_err(refused)?;
-        let bytes: Vec<u8> = result.values.iter().flat_map(|value| value.to_ne_bytes()).collect();
+        let (checked, outputs) = (self.plan.checked(), self.plan.checked().outputs.len().max(1));
+        let mut bytes = Vec::with_capacity(8 * (result.values.len() + (end - first) * checked.axes.len()));
+        for (row, values) in result.values.chunks(outputs).enumerate() {
+            let axes = indices(&checked.axes, first + row).map(|(axis, index)| axis.value(index));
+            bytes.extend(axes.chain(values.iter().copied()).flat_map(f64::to_ne_bytes));
+        }
         let failures = serde_json::to_string(&result.failures).unwrap_or_default();
-        Ok((PyBytes::new(py, &bytes), failures))
+        Ok((PyBytes::new(py, &bytes), result.failed, failures))
     }
 }
 

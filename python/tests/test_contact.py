@@ -115,8 +115,6 @@ def test_an_interrupt_stops_a_long_call() -> None:
     program = textwrap.dedent("""
         import stickslip as ss, warnings
         warnings.simplefilter("ignore")
-        x = [1e-6 * k for k in range(2000)]
-        table = ss.Tabulated(x, [50.0 * r * r + 1e-9 * ((37 * k) % 11) for k, r in enumerate(x)])
         print("begun", flush=True)
         try:
             while True:

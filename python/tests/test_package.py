@@ -34,7 +34,7 @@ def blocks(path: Path) -> str:
     return "\n".join(re.findall(r"^```python\n(.*?)^```", path.read_text(), re.MULTILINE | re.DOTALL))
 
 
-def test_lines_of_the_issue_run() -> None:
+def test_lines_of_the_readme_run() -> None:
     program = blocks(HERE / "README.md")
     assert 'crossland=dict(alpha=0.3, limit="300 MPa"))' in program
     names: dict[str, Any] = {}
