@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import itertools
 import subprocess
 import sys
@@ -12,6 +13,8 @@ import httpx
 import pytest
 
 import stickslip as ss
+from stickslip.aio import AsyncClient
+from stickslip.server import ServedClient
 
 
 def ball(api: ss.Client) -> ss.RemoteContact:
@@ -106,3 +109,22 @@ def test_a_server_ends_with_its_process() -> None:
     assert "KeyboardInterrupt" in done.stderr
     with pytest.raises(httpx.ConnectError):
         httpx.get(done.stdout.strip() + "/healthz")
+
+
+def test_the_same_names_are_awaited_in_asyncio(api: ServedClient) -> None:
+    async def work() -> list[float]:
+        async with AsyncClient(api.url) as client:
+            contact = await client.Contact(
+                client.Sphere(0.01), [client.Body(2.1e11, 0.3), client.RIGID], 0.3, normal_force=10.0
+            )
+            await contact.path([1e-8, 2e-8])
+            seen = []
+            async for event in contact.follow(after=0):
+                seen.append(event.state.displacement)
+                if len(seen) == 2:
+                    break
+            assert (await contact.state()).displacement == 2e-8
+            await contact.delete()
+            return seen
+
+    assert asyncio.run(work()) == [1e-8, 2e-8]
