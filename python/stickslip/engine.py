@@ -77,10 +77,14 @@ class Engine(ABC):
         return self._answer(results.AccuracyReply, "accuracy", document)
 
     def fit_loop(
-        self, contact: Any, loops: Any, *, free: Any = None, units: Any = None, **request: Any
+        self, contact: Any, loops: Any, *, free: Any = None, start: str | None = None, units: Any = None, **request: Any
     ) -> results.FitReply:
-        """Friction and stiffness of measured loops: files that were read, documents, or arrays of U and F."""
+        """Friction and stiffness of measured loops: files that were read, documents, or arrays of U and F.
+
+        `start` says how they begin: `steady` in a cycle that has been repeated before, or `virgin`.
+        """
         measured, found = requests.loops(loops, units)
+        measured = [loop if start is None else loop | {"start": start} for loop in measured]
         free = free or ["friction", "g_star", "force_offset"]
         document = {"contact": requests.definition(contact), "loops": measured, "units": found, "free": free} | request
         return self._answer(results.FitReply, "fit", document)
