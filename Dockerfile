@@ -6,6 +6,8 @@ COPY Cargo.toml Cargo.lock build.rs image ./
 COPY build ./build
 COPY .cargo ./.cargo
 COPY crates ./crates
+COPY python/Cargo.toml ./python/
+COPY python/src ./python/src
 COPY src ./src
 COPY openapi ./openapi
 # The commit that --version and /metrics show: --build-arg BUILD_COMMIT=$(git rev-parse --short=12 HEAD).

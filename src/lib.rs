@@ -2,8 +2,9 @@
 //! physics is in `stickslip-mechanics`, the JSON types are in `stickslip-wire`. A module imports only from those below
 //! it here.
 //!
-//! [`api`] is HTTP: routes, middleware, formats, problem documents, the OpenAPI document, the page. The binary adds the
-//! command line.
+//! [`cli`] is the command line, which the binary and the Python package call.
+//!
+//! [`api`] is HTTP: routes, middleware, formats, problem documents, the OpenAPI document, the page.
 //!
 //! [`server`] accepts connections: how many, how long a client may take, how much memory all of it may use.
 //!
@@ -33,6 +34,7 @@
 pub mod access;
 pub mod admission;
 pub mod api;
+pub mod cli;
 pub mod computations;
 pub mod formats;
 pub mod jobs;

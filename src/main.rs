@@ -1,6 +1,4 @@
-//! The binary: the command line in front of the library.
-
-mod cli;
+//! The binary: the command line of the library.
 
 use std::process::ExitCode;
 
@@ -9,5 +7,5 @@ use std::process::ExitCode;
 static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;
 
 fn main() -> ExitCode {
-    cli::run()
+    stickslip::cli::run(std::env::args_os().collect()).into()
 }

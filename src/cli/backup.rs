@@ -3,11 +3,11 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use stickslip::store;
 
 use super::io::print;
 use super::progress;
 use super::settings::ConfigFile;
+use crate::store;
 
 /// The store and the copy.
 #[derive(Args)]

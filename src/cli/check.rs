@@ -1,12 +1,12 @@
 //! `stickslip check`: verifies a store.
 
 use clap::Args;
-use stickslip::sessions::{self, CheckEvent};
-use stickslip::store;
 
 use super::io::print;
 use super::progress;
 use super::settings::ConfigFile;
+use crate::sessions::{self, CheckEvent};
+use crate::store;
 
 /// The store, and the allowed difference.
 #[derive(Args)]

@@ -5,10 +5,10 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use clap::Args;
-use stickslip::server::tls;
 use stickslip_wire::client::Client;
 
 use super::settings::ConfigFile;
+use crate::server::tls;
 
 /// How long a service may take to reply.
 const REPLY_TIMEOUT: Duration = Duration::from_secs(2);

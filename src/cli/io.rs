@@ -6,7 +6,8 @@ use std::io::{self, Read as _, Write};
 use std::path::Path;
 
 use serde_json::Value;
-use stickslip::api::Problem;
+
+use crate::api::Problem;
 
 /// The content of a file, or of standard input for `-`.
 pub fn read(file: &Path) -> Result<Vec<u8>, String> {

@@ -7,10 +7,10 @@ use std::path::{Path, PathBuf};
 
 use clap::Subcommand;
 use jiff::Timestamp;
-use stickslip::access::{Keys, Role, new_key, new_key_until};
 
 use super::io::print;
 use super::settings::masked;
+use crate::access::{Keys, Role, new_key, new_key_until};
 
 /// Distinguishes an entry from the path of a file.
 const ENTRY: &str = ":sha256:";

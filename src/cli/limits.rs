@@ -4,12 +4,13 @@ use std::time::Duration;
 
 use bytesize::ByteSize;
 use clap::Args;
-use stickslip::admission;
-use stickslip::admission::{BODY_SHARE, Capacity, QuotaLimits};
-use stickslip::api::limits::BODY_LIMIT;
-use stickslip::server::connections::DEFAULT_CONNECTIONS;
-use stickslip::server::fd_limit::room_for;
-use stickslip::server::{ConnectionLimits, Network};
+
+use crate::admission;
+use crate::admission::{BODY_SHARE, Capacity, QuotaLimits};
+use crate::api::limits::BODY_LIMIT;
+use crate::server::connections::DEFAULT_CONNECTIONS;
+use crate::server::fd_limit::room_for;
+use crate::server::{ConnectionLimits, Network};
 
 /// The range of the times that can be set.
 const SHORTEST_TIME: Duration = Duration::from_millis(10);

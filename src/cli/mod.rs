@@ -14,12 +14,13 @@ mod serve;
 mod settings;
 mod sweep;
 
+use std::ffi::OsString;
 use std::path::PathBuf;
-use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
-use stickslip::api;
 use stickslip_report::figures;
+
+use crate::api;
 
 use backup::Backup;
 use check::Check;
@@ -74,17 +75,24 @@ enum Command {
     },
 }
 
-/// The exit code of an invalid command line or setting.
+/// The exit code of a command that has failed, and of an invalid command line or setting.
+const FAILURE: u8 = 1;
 const USAGE_ERROR: u8 = 2;
 
-/// Runs the command that the command line names.
-pub fn run() -> ExitCode {
-    let (cli, settings) = match settings::read::<Cli>(std::env::args_os().collect()) {
+/// Runs the command that these arguments name, of which the first is the program itself, and returns the exit code of
+/// the process.
+#[must_use]
+pub fn run(arguments: Vec<OsString>) -> u8 {
+    let (cli, settings) = match settings::read::<Cli>(arguments) {
         Ok(read) => read,
-        Err(SettingsError::Help(help)) => help.exit(),
+        Err(SettingsError::Help(help)) => {
+            // A reader that closes the pipe early is no error.
+            help.print().ok();
+            return u8::try_from(help.exit_code()).unwrap_or(FAILURE);
+        }
         Err(SettingsError::Invalid(line)) => {
             eprintln!("{line}");
-            return ExitCode::from(USAGE_ERROR);
+            return USAGE_ERROR;
         }
     };
     let command = match cli.command {
@@ -92,16 +100,16 @@ pub fn run() -> ExitCode {
         None => {
             if let Err(line) = cli.serve.check_implied(&settings) {
                 eprintln!("{line}");
-                return ExitCode::from(USAGE_ERROR);
+                return USAGE_ERROR;
             }
             Command::Serve(cli.serve)
         }
     };
     match command.run(&settings) {
-        Ok(()) => ExitCode::SUCCESS,
+        Ok(()) => 0,
         Err(message) => {
             eprintln!("{message}");
-            ExitCode::FAILURE
+            FAILURE
         }
     }
 }

@@ -5,13 +5,13 @@ use std::path::PathBuf;
 
 use clap::Args;
 use clap::builder::PossibleValuesParser;
-use stickslip::admission::{SolverSlot, Stop};
-use stickslip::formats::Format;
-use stickslip::simulation::{Sweep as Plan, SweepResult};
 use stickslip_wire::{self as wire, SweepRequest};
 
 use super::io::{json, problem, read, write};
 use super::progress;
+use crate::admission::{SolverSlot, Stop};
+use crate::formats::Format;
+use crate::simulation::{Sweep as Plan, SweepResult};
 
 /// The sweep, and how to run it.
 #[derive(Args)]

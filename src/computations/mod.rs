@@ -1,7 +1,7 @@
 //! Computations: each takes a document and gives a document, and stores nothing. A computation is one file here and one
 //! line of [`each`]; its route, its part of the OpenAPI document, its command and [`compute`] follow from them.
 //!
-//! [`OnContact`] is the same on a contact in its present state.
+//! [`OnContact`] is the same on a contact in its present state, and [`make_moves`] changes that state.
 
 mod accuracy;
 mod cycle;
@@ -9,6 +9,7 @@ mod fretting;
 mod fretting_map;
 mod fretting_picture;
 mod loop_fit;
+mod moves;
 mod profile_fit;
 mod protocol;
 mod simulate;
@@ -32,6 +33,7 @@ use crate::simulation::{self, Failure};
 pub use cycle::Cycle;
 pub use fretting::Fretting;
 pub use loop_fit::FitLoops;
+pub use moves::{Moved, make_moves, rehearse_relax, shown_states};
 pub use protocol::find_from_state;
 pub use stress::StressTask;
 

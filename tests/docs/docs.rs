@@ -79,6 +79,7 @@ fn every_link_between_the_pages_leads_somewhere() {
         "measured-loops.md",
         "contacts.md",
         "clients.md",
+        "python.md",
         "dashboards.md",
         "access.md",
         "operation.md",
@@ -131,7 +132,8 @@ fn every_test_that_verification_names_exists() {
     for row in text.lines().filter(|line| line.starts_with('|')) {
         for (path, name) in row.split('`').filter_map(|cell| cell.split_once(" :: ")) {
             let source = std::fs::read_to_string(file(path)).unwrap_or_else(|error| panic!("{path}: {error}"));
-            assert!(source.contains(&format!("fn {name}(")), "{path} has no test {name}");
+            let keyword = if path.ends_with(".py") { "def" } else { "fn" };
+            assert!(source.contains(&format!("{keyword} {name}(")), "{path} has no test {name}");
             named += 1;
         }
     }

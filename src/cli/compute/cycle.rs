@@ -5,11 +5,11 @@ use std::str::FromStr;
 
 use clap::Args;
 use serde_json::{Value, json};
-use stickslip::formats::Format;
 use stickslip_wire::{Faults, FrettingMap, JsonPath, LoadSpan};
 
 use super::{Body, Flags};
 use crate::cli::io::{parsed, read};
+use crate::formats::Format;
 
 /// What to make of the body.
 #[derive(Args)]

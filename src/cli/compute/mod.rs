@@ -14,12 +14,12 @@ use clap::error::{Error, ErrorKind};
 use clap::{Arg, ArgAction, ArgMatches, Args, Command, FromArgMatches, Subcommand};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
-use stickslip::admission::Stop;
-use stickslip::computations::{About, Computation, Shown, Visitor, compute, each};
-use stickslip::formats::Format;
 use stickslip_wire::{ContactDefinition, Profile};
 
 use super::io::{fault, json, print, read, write};
+use crate::admission::Stop;
+use crate::computations::{About, Computation, Shown, Visitor, compute, each};
+use crate::formats::Format;
 
 /// A computation, and the flags that it is called with.
 pub struct Compute {

@@ -1,0 +1,31 @@
+"""From the file of a bench to the coefficient of friction, the stiffness and the compliance of the machine.
+
+python loop_to_friction.py [LOOP]
+"""
+
+import sys
+from pathlib import Path
+
+import pandas
+
+import stickslip as ss
+
+FILE = Path(__file__).parents[2] / "examples" / "data" / "ball_loop.csv"
+
+
+def main(file: str | Path = FILE) -> pandas.DataFrame:
+    """What was found, with the intervals at 95 %."""
+    steel = ss.Body("210 GPa", 0.3)
+    guess = ss.Definition(ss.Sphere("10 mm"), [steel, ss.RIGID], friction=0.3, normal_force="10 N")
+    loop = ss.read_loop(file)
+    free = ["friction", "g_star", "machine_compliance", "force_offset"]
+    fit = ss.fit_loop(guess, loop, free=free, start="steady")
+    rows = []
+    for name, one in fit.estimates.items():
+        low, high = (None, None) if one.interval is None else one.interval
+        rows.append({"name": name, "value": one.value, "low": low, "high": high})
+    return pandas.DataFrame(rows).set_index("name")
+
+
+if __name__ == "__main__":
+    print(main(*sys.argv[1:]).to_string(float_format="{:.6g}".format))

@@ -1,0 +1,219 @@
+//! Many contacts of one definition, moved together: the contact law of a program that has its own equations of motion.
+
+use std::panic::resume_unwind;
+use std::thread;
+
+use pyo3::exceptions::PyIndexError;
+use pyo3::prelude::*;
+use pyo3::types::PyByteArray;
+use serde_json::json;
+use stickslip::admission::Stop;
+use stickslip::api::Problem;
+use stickslip::api::problem::Code;
+use stickslip::simulation;
+use stickslip_mechanics::range::{self, Range};
+use stickslip_mechanics::{Contact, Error, Move, Normal, Tangential};
+use stickslip_wire::session::Creation;
+use stickslip_wire::{self as wire, CreateRequest, State};
+
+use super::interrupt::interruptible;
+use super::problem::refused;
+
+/// A displacement beyond which the part that still sticks is looked at, over that of gross slip.
+const PROBE: f64 = 1e-12;
+/// Contacts that are worth a thread of their own.
+const LEAST_SHARE: usize = 256;
+
+/// Two arrays of `f64` in the order of the contacts.
+type Pair<'py> = (Bound<'py, PyByteArray>, Bound<'py, PyByteArray>);
+
+/// Contacts that are stepped together.
+#[pyclass(module = "stickslip._native")]
+pub struct Contacts {
+    committed: Vec<Contact>,
+    trial: Vec<Contact>,
+    threads: usize,
+}
+
+#[pymethods]
+impl Contacts {
+    /// So many contacts of the JSON text of a definition.
+    #[new]
+    fn new(py: Python<'_>, count: usize, body: &[u8], threads: usize) -> PyResult<Contacts> {
+        let first = interruptible(py, |stop| first(body, stop))?.map_err(refused)?;
+        Ok(Contacts { committed: py.detach(|| vec![first; count]), trial: Vec::new(), threads: threads.max(1) })
+    }
+
+    fn __len__(&self) -> usize {
+        self.committed.len()
+    }
+
+    /// Moves every contact straight to its indentation and displacement, m; returns normal and tangential forces, N.
+    fn step<'py>(&mut self, py: Python<'py>, indentation: &[u8], displacement: &[u8]) -> PyResult<Pair<'py>> {
+        let targets = self.targets(indentation, displacement).map_err(refused)?;
+        self.trial.clear();
+        let threads = self.threads;
+        let contacts = &mut self.committed;
+        let forces = py.detach(|| move_all(contacts, &targets, threads));
+        Ok(pair(py, &forces.map_err(refused)?))
+    }
+
+    /// The forces that such a step would lead to, from the committed states; it is kept until `commit` or `revert`.
+    fn trial<'py>(&mut self, py: Python<'py>, indentation: &[u8], displacement: &[u8]) -> PyResult<Pair<'py>> {
+        let targets = self.targets(indentation, displacement).map_err(refused)?;
+        let (committed, mut trial, threads) = (&self.committed, std::mem::take(&mut self.trial), self.threads);
+        let (trial, forces) = py.detach(|| {
+            trial.clone_from(committed);
+            let forces = move_all(&mut trial, &targets, threads);
+            (trial, forces)
+        });
+        let forces = forces.map_err(refused)?;
+        self.trial = trial;
+        Ok(pair(py, &forces))
+    }
+
+    /// Makes the states of the last trial the committed ones; returns whether there was a trial.
+    fn commit(&mut self) -> bool {
+        let tried = !self.trial.is_empty();
+        if tried {
+            std::mem::swap(&mut self.committed, &mut self.trial);
+            self.trial.clear();
+        }
+        tried
+    }
+
+    /// Forgets the last trial.
+    fn revert(&mut self) {
+        self.trial.clear();
+    }
+
+    /// Normal and tangential forces, N, of the committed states.
+    fn forces<'py>(&self, py: Python<'py>) -> Pair<'py> {
+        pair(py, &self.committed.iter().map(|contact| [contact.normal_force(), contact.force()]).collect::<Vec<_>>())
+    }
+
+    /// Normal stiffness, and tangential stiffness of a displacement that goes on upwards or downwards, N/m, of the last
+    /// trial or else of the committed states.
+    fn stiffness<'py>(&self, py: Python<'py>, upwards: bool) -> PyResult<Pair<'py>> {
+        let contacts = if self.trial.is_empty() { &self.committed } else { &self.trial };
+        let direction = if upwards { 1.0 } else { -1.0 };
+        let all =
+            py.detach(|| contacts.iter().map(|contact| stiffness(contact, direction)).collect::<Result<Vec<_>, _>>());
+        let refusal = |error: Error| refused(Problem::new(Code::InvalidInput, error.to_string()));
+        Ok(pair(py, &all.map_err(refusal)?))
+    }
+
+    /// The committed state of one contact as JSON text.
+    fn state(&self, index: usize) -> PyResult<String> {
+        let contact = self.committed.get(index);
+        let contact = contact.ok_or_else(|| PyIndexError::new_err(format!("there are {}", self.committed.len())))?;
+        Ok(json!(State::from(contact.state())).to_string())
+    }
+
+    /// Bytes of memory that the committed states take.
+    fn memory(&self) -> usize {
+        self.committed.iter().map(Contact::memory_bytes).sum()
+    }
+}
+
+impl Contacts {
+    /// The targets of a step, all within their ranges: a step that is refused has moved no contact.
+    fn targets(&self, indentation: &[u8], displacement: &[u8]) -> Result<Vec<[f64; 2]>, Problem> {
+        let count = self.committed.len();
+        let indentation = numbers("/indentation", indentation, count, &range::INDENTATION)?;
+        let displacement = numbers("/displacement", displacement, count, &range::DISPLACEMENT)?;
+        // The radius grows with the indentation, so that the deepest contact alone can be beyond the profile.
+        let deepest = indentation.iter().enumerate().max_by(|one, other| one.1.total_cmp(other.1));
+        if let (Some((index, depth)), Some(contact)) =
+            (deepest.filter(|(_, depth)| **depth > 0.0), self.committed.first())
+        {
+            let profile = contact.profile();
+            let radius = profile.check_radius(profile.radius(*depth));
+            radius.and_then(|radius| range::CONTACT_RADIUS.check(radius)).map_err(|error| {
+                Problem::at(Code::BeyondProfile, format!("/indentation/{index}"), error.to_string())
+            })?;
+        }
+        Ok(indentation.into_iter().zip(displacement).map(|(depth, displacement)| [depth, displacement]).collect())
+    }
+}
+
+/// The first of the contacts.
+fn first(body: &[u8], stop: &Stop) -> Result<Contact, Problem> {
+    let Creation { setup, .. } = simulation::check(wire::parse::<CreateRequest>(body)?, stop, stop)??;
+    Ok(simulation::contact(setup, "")?)
+}
+
+/// The numbers of an array, one for each contact.
+fn numbers(pointer: &str, bytes: &[u8], count: usize, range: &Range) -> Result<Vec<f64>, Problem> {
+    let (chunks, rest) = bytes.as_chunks();
+    if !rest.is_empty() || chunks.len() != count {
+        let detail = format!("{} elements: allowed are exactly {count}", chunks.len());
+        return Err(Problem::at(Code::InvalidInput, pointer, detail));
+    }
+    let numbers: Vec<f64> = chunks.iter().map(|bytes| f64::from_ne_bytes(*bytes)).collect();
+    match numbers.iter().position(|number| !range.contains(*number)) {
+        None => Ok(numbers),
+        Some(index) => {
+            let detail = format!("{:?} is out of range: allowed is {range}", numbers[index]);
+            Err(Problem::at(Code::InvalidInput, format!("{pointer}/{index}"), detail))
+        }
+    }
+}
+
+/// Moves the contacts to their targets on so many threads.
+fn move_all(contacts: &mut [Contact], targets: &[[f64; 2]], threads: usize) -> Result<Vec<[f64; 2]>, Problem> {
+    let mut forces = vec![[0.0; 2]; contacts.len()];
+    let share = contacts.len().div_ceil(threads).max(LEAST_SHARE);
+    if contacts.len() <= share {
+        return move_share(contacts, targets, &mut forces).map(|()| forces).map_err(unexpected);
+    }
+    let parts = contacts.chunks_mut(share).zip(targets.chunks(share)).zip(forces.chunks_mut(share));
+    thread::scope(|scope| {
+        let spawn = |((contacts, targets), forces)| scope.spawn(move || move_share(contacts, targets, forces));
+        let threads: Vec<_> = parts.map(spawn).collect();
+        threads.into_iter().try_for_each(|thread| thread.join().unwrap_or_else(|panic| resume_unwind(panic)))
+    })
+    .map_err(unexpected)?;
+    Ok(forces)
+}
+
+fn move_share(contacts: &mut [Contact], targets: &[[f64; 2]], forces: &mut [[f64; 2]]) -> Result<(), Error> {
+    for ((contact, [depth, displacement]), forces) in contacts.iter_mut().zip(targets).zip(forces) {
+        contact.apply(&Move {
+            tangential: Some(Tangential::Displacement(*displacement)),
+            normal: Some(Normal::Indentation(*depth)),
+            relative: false,
+        })?;
+        *forces = [contact.normal_force(), contact.force()];
+    }
+    Ok(())
+}
+
+/// What the mechanics refuses although every target is in its range.
+fn unexpected(error: Error) -> Problem {
+    Problem::internal(error.to_string())
+}
+
+/// Normal and tangential stiffness, N/m: each spring that does not slip adds its own, so that the tangential one is
+/// that of a punch as large as the part that sticks.
+fn stiffness(contact: &Contact, direction: f64) -> Result<[f64; 2], Error> {
+    let elasticity = contact.elasticity();
+    let normal = 2.0 * elasticity.e_star() * contact.contact_radius();
+    let probe = direction * PROBE * contact.gross_slip_displacement();
+    if probe == 0.0 {
+        return Ok([normal, 0.0]);
+    }
+    let mut moved = contact.clone();
+    let tangential = Some(Tangential::Displacement(probe));
+    moved.apply(&Move { tangential, normal: None, relative: true })?;
+    Ok([normal, 2.0 * elasticity.g_star() * moved.state().stick_radius])
+}
+
+/// Pairs of numbers as two arrays.
+fn pair<'py>(py: Python<'py>, numbers: &[[f64; 2]]) -> Pair<'py> {
+    let column = |index: usize| {
+        let bytes: Vec<u8> = numbers.iter().flat_map(|pair| pair[index].to_ne_bytes()).collect();
+        PyByteArray::new(py, &bytes)
+    };
+    (column(0), column(1))
+}

@@ -1,0 +1,22 @@
+//! Refusals as exceptions with the problem document that the service would send.
+
+use pyo3::create_exception;
+use pyo3::exceptions::PyException;
+use pyo3::prelude::*;
+use stickslip::api;
+
+create_exception!(_native, Problem, PyException, "A refusal; its argument is the problem document as JSON text.");
+
+/// The request identifier of documents that no server has made.
+const REQUEST_ID: &str = "in process";
+
+/// The exception for a refusal.
+pub fn refused(error: impl Into<api::Problem>) -> PyErr {
+    let problem: api::Problem = error.into();
+    let cause = problem.cause().map(str::to_owned);
+    let mut document = problem.document(REQUEST_ID);
+    if let Some(cause) = cause {
+        document.detail = cause;
+    }
+    Problem::new_err(serde_json::to_string(&document).unwrap_or_else(|error| error.to_string()))
+}

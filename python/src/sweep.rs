@@ -1,0 +1,97 @@
+//! Sweeps, whole or in slices.
+
+use pyo3::exceptions::PyIndexError;
+use pyo3::prelude::*;
+use pyo3::types::PyBytes;
+use stickslip::admission::{SolverSlot, Stop};
+use stickslip::api::Problem;
+use stickslip::simulation::{self, Failure, SweepResult};
+use stickslip_wire::sweep::indices;
+use stickslip_wire::{self as wire, Axis, Output, SweepRequest};
+
+use super::compute::named;
+use super::interrupt::interruptible;
+use super::problem::refused;
+
+/// A sweep that has been checked and planned.
+#[pyclass(frozen, module = "stickslip._native")]
+pub struct Sweep {
+    plan: simulation::Sweep,
+}
+
+#[pymethods]
+impl Sweep {
+    /// Plans the sweep of the JSON text of a request.
+    #[new]
+    fn new(py: Python<'_>, body: &[u8]) -> PyResult<Sweep> {
+        let plan =
+            |stop: &Stop| wire::read::<SweepRequest>(body).and_then(|sweep| simulation::Sweep::plan(sweep, stop));
+        Ok(Sweep { plan: interruptible(py, plan)?.map_err(refused)? })
+    }
+
+    /// Number of points.
+    #[getter]
+    fn points(&self) -> usize {
+        self.plan.points()
+    }
+
+    /// Number of points in a chunk of about a second of work.
+    #[getter]
+    fn chunk(&self) -> usize {
+        self.plan.chunk()
+    }
+
+    /// All points on so many threads: the document that POST /sweep sends, or a table.
+    fn run<'py>(&self, py: Python<'py>, threads: usize, format: &str) -> PyResult<Bound<'py, PyBytes>> {
+        let format = named(format)?;
+        let result = interruptible(py, |stop| self.compute(0..self.plan.points(), threads, stop))?.map_err(refused)?;
+        let blocks = result.table(self.plan.checked()).blocks(format).collect::<Result<Vec<_>, _>>();
+        let blocks = blocks.map_err(|error| refused(Problem::internal(error.to_string())))?;
+        Ok(PyBytes::new(py, &blocks.concat()))
+    }
+
+    /// The names of the columns: the axes, then the outputs.
+    #[getter]
+    fn columns(&self) -> Vec<String> {
+        let request = &self.plan.checked().request;
+        let (axes, outputs) = (request.axes.iter().map(Axis::column), request.outputs.iter().map(Output::column));
+        axes.chain(outputs).map(str::to_owned).collect()
+    }
+
+    /// The rows of the points from `first` up to `end`: their numbers as `f64`, a row for each point, how
+    /// many have no answer, and the first of these as JSON text.
+    fn rows<'py>(
+        &self,
+        py: Python<'py>,
+        first: usize,
+        end: usize,
+        threads: usize,
+    ) -> PyResult<(Bound<'py, PyBytes>, u64, String)> {
+        if first > end || end > self.plan.points() {
+            return Err(PyIndexError::new_err(format!("this sweep has {} points", self.plan.points())));
+        }
+        let result = interruptible(py, |stop| self.compute(first..end, threads, stop))?.map_err(refused)?;
+        let (checked, outputs) = (self.plan.checked(), self.plan.checked().outputs.len().max(1));
+        let mut bytes = Vec::with_capacity(8 * (result.values.len() + (end - first) * checked.axes.len()));
+        for (row, values) in result.values.chunks(outputs).enumerate() {
+            let axes = indices(&checked.axes, first + row).map(|(axis, index)| axis.value(index));
+            bytes.extend(axes.chain(values.iter().copied()).flat_map(f64::to_ne_bytes));
+        }
+        let failures = serde_json::to_string(&result.failures).unwrap_or_default();
+        Ok((PyBytes::new(py, &bytes), result.failed, failures))
+    }
+}
+
+impl Sweep {
+    fn compute(&self, points: std::ops::Range<usize>, threads: usize, stop: &Stop) -> Result<SweepResult, Failure> {
+        let (mut result, outputs) = (SweepResult::default(), self.plan.numbers(1).max(1));
+        let mut next = points.start;
+        while next < points.end {
+            let slots = (0..threads.max(1)).map(|_| SolverSlot::alone()).collect();
+            let slice = self.plan.slice(next..points.end, slots, stop, None)?;
+            next += slice.values.len() / outputs;
+            result.append(slice);
+        }
+        Ok(result)
+    }
+}

@@ -1,0 +1,67 @@
+"""What some results have beside their fields."""
+
+from __future__ import annotations
+
+import dataclasses
+from typing import Any
+
+import numpy as np
+
+from .result import Floats, Result
+
+#: The criteria of a rating, by their names in the reply.
+CRITERIA = ("crossland", "dang_van", "findley", "swt", "fatemi_socie", "ruiz", "ruiz_tension", "friction_work")
+
+
+@dataclasses.dataclass(frozen=True, repr=False, eq=False)
+class Fretting(Result):
+    """Fatigue criteria over a steady cycle."""
+
+    @property
+    def ratings(self) -> dict[str, Any]:
+        """The criteria that were asked for."""
+        found = {name: getattr(self, name, None) for name in CRITERIA}
+        return {name: rating for name, rating in found.items() if rating is not None}
+
+    @property
+    def worst(self) -> str | None:
+        """The criterion with the smallest margin, or the first one if none has a limit."""
+        margins = {name: rating.margin for name, rating in self.ratings.items() if rating.margin is not None}
+        return min(margins, key=lambda name: margins[name]) if margins else next(iter(self.ratings), None)
+
+    @property
+    def margin(self) -> float | None:
+        """The limit over the largest value of the worst criterion: below 1 it predicts crack growth."""
+        margin: float | None = self.ratings[self.worst].margin if self.worst else None
+        return margin
+
+    @property
+    def place(self) -> tuple[float, float, float] | None:
+        """Where the worst criterion is largest: x, y, z, m."""
+        largest = self.ratings[self.worst].largest if self.worst else None
+        return None if largest is None else (*(float(part) for part in largest.point),)  # type: ignore[return-value]
+
+    def to_frame(self) -> Any:
+        """A row for each place, or, without places, for each criterion with its largest value."""
+        import pandas
+
+        x, y, z = (getattr(self, name) for name in "xyz")
+        if len(x) > 0:
+            return pandas.DataFrame({"x": x, "y": y, "z": z} | {name: one.values for name, one in self.ratings.items()})
+        rows = []
+        for name, rating in self.ratings.items():
+            place = [np.nan] * 3 if rating.largest is None else rating.largest.point
+            value = None if rating.largest is None else rating.largest.value
+            rows.append(
+                {"criterion": name, "largest": value, "margin": rating.margin} | dict(zip("xyz", place, strict=True))
+            )
+        return pandas.DataFrame(rows)
+
+
+@dataclasses.dataclass(frozen=True, repr=False, eq=False)
+class Swept(Result):
+    """The table of a sweep."""
+
+    def _columns(self) -> dict[str, Any]:
+        columns: dict[str, Floats] = self.columns  # type: ignore[attr-defined]
+        return columns

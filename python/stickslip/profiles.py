@@ -1,0 +1,211 @@
+"""Shapes of the indenter, one class for each profile of the API. Written by `tools/generate.py`."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, fields
+from typing import ClassVar
+
+from .documents import Document, Quantities, Quantity
+
+
+@dataclass(frozen=True, eq=False)
+class Profile:
+    """A shape of the indenter before it is loaded."""
+
+    TYPE: ClassVar[str] = ""
+
+    def document(self) -> Document:
+        """Its document, with units as they were given."""
+        given = {field.name: getattr(self, field.name) for field in fields(self)}
+        return {"type": self.TYPE} | {name: value for name, value in given.items() if value is not None}
+
+
+@dataclass(frozen=True, eq=False)
+class Asperities(Profile):
+    """Hertzian asperities between two rigid bodies, of which each is an elastic contact of its own."""
+
+    TYPE: ClassVar[str] = "asperities"
+
+    gaps: Quantities
+    """Distances of the tips from the flat before the load, m, in any order; an offset does not matter, because the
+    indentation counts from the first touch.
+    """
+    radii: Quantities | None = None
+    """Radii of curvature, m, one for each gap; or give one `radius` for all."""
+    radius: Quantity | None = None
+    """Radius of curvature of all asperities, m."""
+
+
+@dataclass(frozen=True, eq=False)
+class Cone(Profile):
+    """A cone."""
+
+    TYPE: ClassVar[str] = "cone"
+
+    slope: Quantity
+    """Slope dz/dr, a pure number."""
+
+
+@dataclass(frozen=True, eq=False)
+class Ellipsoid(Profile):
+    """A gap x²/(2 R_x) + y²/(2 R_y); `material` must name the bodies."""
+
+    TYPE: ClassVar[str] = "ellipsoid"
+
+    direction: str
+    """The axis along which the indenter moves."""
+    radii: Quantities
+    """The principal radii of curvature of the gap, R_x and R_y, m; their ratio is 10⁶ at the most."""
+
+
+@dataclass(frozen=True, eq=False)
+class ExactSphere(Profile):
+    """A sphere without approximation."""
+
+    TYPE: ClassVar[str] = "exact_sphere"
+
+    radius: Quantity
+    """Radius R, m; the contact radius stays below it."""
+
+
+@dataclass(frozen=True, eq=False)
+class FlatPunch(Profile):
+    """A flat punch."""
+
+    TYPE: ClassVar[str] = "flat_punch"
+
+    radius: Quantity
+    """Radius of the punch, m."""
+
+
+@dataclass(frozen=True, eq=False)
+class LoadCurve(Profile):
+    """A load curve from the first touch on. Its slope must not fall."""
+
+    TYPE: ClassVar[str] = "load_curve"
+
+    indentation: Quantities
+    """Indentations d, m: from 0 on, increasing. The indentation never exceeds the last."""
+    normal_force: Quantities
+    """The normal force F_N at each, N: from 0 on."""
+
+
+@dataclass(frozen=True, eq=False)
+class PowerLaw(Profile):
+    """A power law."""
+
+    TYPE: ClassVar[str] = "power_law"
+
+    coefficient: Quantity
+    """Coefficient, m^(1−n)."""
+    exponent: Quantity
+    """Exponent n, a pure number."""
+
+
+@dataclass(frozen=True, eq=False)
+class RoundedCone(Profile):
+    """A cone with a rounded tip."""
+
+    TYPE: ClassVar[str] = "rounded_cone"
+
+    slope: Quantity
+    """Slope dz/dr of the cone, a pure number."""
+    tip_radius: Quantity
+    """Radius up to which the tip is a parabola, m."""
+
+
+@dataclass(frozen=True, eq=False)
+class RoundedPunch(Profile):
+    """A flat punch with a rounded edge."""
+
+    TYPE: ClassVar[str] = "rounded_punch"
+
+    edge_radius: Quantity
+    """Radius of curvature of the edge, m."""
+    flat_radius: Quantity
+    """Radius of the flat end, m."""
+
+
+@dataclass(frozen=True, eq=False)
+class Sphere(Profile):
+    """A sphere in Hertz's approximation."""
+
+    TYPE: ClassVar[str] = "sphere"
+
+    radius: Quantity
+    """Radius of curvature R of the gap, m; for two spheres 1/R = 1/R₁ + 1/R₂."""
+
+
+@dataclass(frozen=True, eq=False)
+class Sum(Profile):
+    """A sum of profiles."""
+
+    TYPE: ClassVar[str] = "sum"
+
+    parts: Sequence[Profile]
+    """The profiles that are added up."""
+
+
+@dataclass(frozen=True, eq=False)
+class Tabulated(Profile):
+    """A table of heights over radii, of equal lengths."""
+
+    TYPE: ClassVar[str] = "tabulated"
+
+    r: Quantities
+    """Radii, m: from 0 on, increasing. The contact radius stays below the last."""
+    z: Quantities
+    """Heights z above the plane, m; an offset does not matter."""
+    indentation_error: Quantities | None = None
+    """Standard errors of the indentation at which a contact has each radius, m, as `POST /profiles/fit` gives them:
+    they take the place of what the heights say of their noise and of the shape between them. Of the length of `r`,
+    and together with `pressure_error`.
+    """
+    pressure_error: Quantities | None = None
+    """The largest standard error of the pressure in a contact of each radius, over E*, a pure number. Of the length of
+    `r`, and together with `indentation_error`.
+    """
+
+
+@dataclass(frozen=True, eq=False)
+class TruncatedCone(Profile):
+    """A truncated cone."""
+
+    TYPE: ClassVar[str] = "truncated_cone"
+
+    flat_radius: Quantity
+    """Radius of the flat end, m."""
+    slope: Quantity
+    """Slope dz/dr outside the flat, a pure number."""
+
+
+@dataclass(frozen=True, eq=False)
+class TruncatedSphere(Profile):
+    """A truncated sphere."""
+
+    TYPE: ClassVar[str] = "truncated_sphere"
+
+    flat_radius: Quantity
+    """Radius of the flat end, m."""
+    radius: Quantity
+    """Radius of curvature R, m."""
+
+
+__all__ = [
+    "Profile",
+    "Asperities",
+    "Cone",
+    "Ellipsoid",
+    "ExactSphere",
+    "FlatPunch",
+    "LoadCurve",
+    "PowerLaw",
+    "RoundedCone",
+    "RoundedPunch",
+    "Sphere",
+    "Sum",
+    "Tabulated",
+    "TruncatedCone",
+    "TruncatedSphere",
+]

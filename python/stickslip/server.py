@@ -1,0 +1,33 @@
+"""A server of this process."""
+
+from __future__ import annotations
+
+from . import _native
+from .client import Client
+
+
+class ServedClient(Client):
+    """A client of a server that ends with it."""
+
+    def __init__(self, server: _native.Server):
+        super().__init__(server.url)
+        self._server = server
+
+    @property
+    def url(self) -> str:
+        """Where the server listens."""
+        return self._server.url
+
+    def close(self) -> None:
+        """Closes the connections and ends the server."""
+        super().close()
+        self._server.stop()
+
+
+def serve(store: str = "memory:", port: int = 0) -> ServedClient:
+    """Starts a server on a loopback port, a free one if it is 0, and connects to it: `with serve() as api:`.
+
+    It runs in threads of this process, with a store of its own unless one is named, and ends with the process at the
+    latest.
+    """
+    return ServedClient(_native.Server(store, port))

@@ -1,0 +1,32 @@
+"""What the tests share: the document of the API, a contact, a server."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import matplotlib
+import pytest
+
+import stickslip as ss
+
+matplotlib.use("Agg")
+ROOT = Path(__file__).resolve().parents[2]
+
+
+@pytest.fixture(scope="session")
+def openapi() -> dict[str, Any]:
+    return json.loads((ROOT / "openapi" / "openapi.json").read_text())
+
+
+@pytest.fixture
+def ball() -> ss.Contact:
+    return ss.Contact(ss.Sphere("10 mm"), [ss.Body("210 GPa", 0.3), ss.RIGID], friction=0.3, normal_force="10 N")
+
+
+@pytest.fixture(scope="session")
+def api() -> Iterator[ss.Client]:
+    with ss.serve() as client:
+        yield client

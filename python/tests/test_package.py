@@ -1,0 +1,119 @@
+"""The lines that the package promises, its names and fields beside those of the API."""
+
+from __future__ import annotations
+
+import dataclasses
+import importlib.util
+import re
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import stickslip as ss
+from conftest import ROOT
+from stickslip import _native, client, profiles, results, units
+
+HERE = Path(__file__).resolve().parents[1]
+GENERATOR = HERE / "tools" / "generate.py"
+
+
+def generator() -> Any:
+    spec = importlib.util.spec_from_file_location("generate", GENERATOR)
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def blocks(path: Path) -> str:
+    """The Python of a page, as one program."""
+    return "\n".join(re.findall(r"^```python\n(.*?)^```", path.read_text(), re.MULTILINE | re.DOTALL))
+
+
+def test_lines_of_the_readme_run() -> None:
+    program = blocks(HERE / "README.md")
+    assert 'crossland=dict(alpha=0.3, limit="300 MPa"))' in program
+    names: dict[str, Any] = {}
+    exec(program, names)
+    assert len(names["frame"]) > 5
+    assert next(iter(names["y"]["displacement_amplitude"])) == pytest.approx(1e-9)
+    assert len(names["y"]) == 200
+    assert 0.1 < names["r"].margin < 10.0
+    assert len(names["r"].place) == 3
+
+
+def test_page_of_the_docs_runs() -> None:
+    names: dict[str, Any] = {}
+    exec(blocks(ROOT / "docs" / "python.md"), names)
+    frame = names["figure5"]
+    assert list(frame["reversals"]) == list(range(1, 41))
+    # Kraft & Pohrt (2016): the first reversal leaves most, and each pair of more leaves less.
+    assert frame["max"].is_monotonic_decreasing
+    assert frame["max"].iloc[0] == pytest.approx(0.71, abs=0.01)
+    assert frame["max"].iloc[19] == pytest.approx(0.17, abs=0.01)
+
+
+@pytest.mark.parametrize("name", ["results.py", "profiles.py"])
+def test_classes_are_those_of_the_document_of_the_api(name: str, openapi: dict[str, Any]) -> None:
+    assert generator().FILES[name](openapi) == (HERE / "stickslip" / name).read_text()
+
+
+def test_native_document_is_that_of_the_repository(openapi: dict[str, Any]) -> None:
+    import json
+
+    assert json.loads(_native.openapi()) == openapi
+
+
+def test_every_schema_of_a_reply_has_its_class_and_fields(openapi: dict[str, Any]) -> None:
+    module, schemas = generator(), openapi["components"]["schemas"]
+    for name in module.reply_schemas(openapi):
+        found = {field.name.rstrip("_") for field in dataclasses.fields(getattr(results, name))}
+        assert found == set(module.fields(schemas[name], schemas)[0]), name
+
+
+def test_every_profile_has_its_class(openapi: dict[str, Any]) -> None:
+    mapping = openapi["components"]["schemas"]["Profile"]["discriminator"]["mapping"]
+    kinds = {getattr(profiles, name).TYPE for name in profiles.__all__} - {""}
+    assert kinds == set(mapping)
+    assert set(profiles.__all__) <= set(ss.__all__)
+
+
+def test_every_computation_has_its_path_and_method(openapi: dict[str, Any]) -> None:
+    served = {name: path for name, path in _native.names() if path is not None}
+    assert served == client.PATHS
+    assert set(served.values()) < set(openapi["paths"])
+    for method in ("simulate", "cycle", "fretting", "protocols", "accuracy", "fit_loop", "fit_profile", "sweep"):
+        assert callable(getattr(ss, method))
+        assert callable(getattr(ss.Client, method))
+
+
+def test_units_of_members_are_those_that_the_document_states(openapi: dict[str, Any]) -> None:
+    schemas = openapi["components"]["schemas"]
+    stated = re.compile(r", (m|N|Pa|kg|Hz|s|N/m|degrees)(?=[.,;:]| [a-z]|$)")
+    for schema in schemas.values():
+        if schema.get("additionalProperties") is not False:
+            continue
+        for name, member in schema.get("properties", {}).items():
+            unit = units.MEMBERS.get(name)
+            found = stated.search(member.get("description", ""))
+            if unit and found and member.get("type") in ("number", "array"):
+                assert found[1].replace("degrees", "deg") == unit, name
+
+
+def test_import_is_quick_and_light() -> None:
+    program = "import sys, stickslip; print([n for n in ('pandas', 'matplotlib', 'httpx', 'pint') if n in sys.modules])"
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "[]"
+
+
+def test_command_is_that_of_the_service(tmp_path: Path) -> None:
+    def run(*arguments: str) -> subprocess.CompletedProcess[str]:
+        return subprocess.run([sys.executable, "-m", "stickslip", *arguments], capture_output=True, text=True)
+
+    assert run("--version").stdout.startswith("stickslip ")
+    assert run("openapi").stdout.strip() == (ROOT / "openapi" / "openapi.json").read_text().strip()
+    assert run("no-such-command").returncode == 2
