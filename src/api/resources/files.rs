@@ -5,7 +5,6 @@ use std::sync::Arc;
 use axum::extract::State;
 use axum::response::Response;
 use serde::Serialize;
-use serde_json::json;
 
 use stickslip_measured::import::{ImportError, LoopHints, ScanHints};
 use stickslip_mechanics::range::{Quantity, Range};
