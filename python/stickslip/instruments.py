@@ -42,7 +42,7 @@ def read_scan(source: str | os.PathLike[str] | bytes, **hints: Any) -> Scan:
     matrix, in the unit of places.
     """
     found = json.loads(guarded(lambda: _native.read_scan(_content(source), **hints)))
-    return Scan(found["scan"], found["units"], tuple(found["reading"]))
+    return Scan(found["scan"], found["units"], tuple(found["preview"]["reading"]))
 
 
 def read_loop(source: str | os.PathLike[str] | bytes, **hints: Any) -> Loop:
@@ -52,4 +52,4 @@ def read_loop(source: str | os.PathLike[str] | bytes, **hints: Any) -> Loop:
     `displacement_unit` and `force_unit` are units ("um", "mN").
     """
     found = json.loads(guarded(lambda: _native.read_loop(_content(source), **hints)))
-    return Loop(found["loop"], found["units"], tuple(found["reading"]))
+    return Loop(found["loop"], found["units"], tuple(found["preview"]["reading"]))

@@ -16,6 +16,7 @@ use sha2::{Digest as _, Sha256};
 use crate::admission::{
     INLINE, Nanoseconds, Pool, PoolError, Quota, RequestPermit, Reservation, Stop, StopOnDrop, UNCOUNTED,
 };
+use crate::computations::files;
 use crate::otlp;
 use crate::server::connections::SlowBody;
 use crate::server::limits::DISCARDED;
@@ -23,7 +24,7 @@ use crate::simulation::{bytes, cost};
 use crate::store::RequestKey;
 use stickslip_wire::{self as wire, Document};
 
-use super::limits::BODY_LIMIT;
+use super::limits::{BODY_LIMIT, FILE_LIMIT};
 use super::params::IdempotencyKey;
 use super::problem::{Code, Problem};
 use super::reply;
@@ -88,15 +89,9 @@ impl<T: Document + 'static, const OPTIONAL: bool> FromRequest<Arc<App>> for Chec
         if declared == Some(false) || (declared.is_none() && !OPTIONAL) {
             return Err(Problem::new(Code::UnsupportedMediaType, "Content-Type must be application/json"));
         }
-        if let Some(coding) =
-            parts.headers.get(header::CONTENT_ENCODING).filter(|coding| !is_identity(coding.as_bytes()))
-        {
-            let coding: String = String::from_utf8_lossy(coding.as_bytes()).chars().take(40).collect();
-            let detail = format!("Content-Encoding `{coding}` is not supported: send the body unencoded");
-            return Err(Problem::new(Code::UnsupportedMediaType, detail));
-        }
+        check_encoding(&parts)?;
         let expects = parts.headers.contains_key(header::EXPECT);
-        let (mut bytes, mut memory) = read(body, expects, &app.pool).await?;
+        let (mut bytes, mut memory) = read(body, expects, BODY_LIMIT, &app.pool).await?;
         // Only once the body has arrived, so that a slow client keeps no others waiting.
         let permit = app.pool.admit_request().await?;
         if OPTIONAL && bytes.is_empty() {
@@ -139,6 +134,36 @@ impl<T: Document + 'static, const OPTIONAL: bool> FromRequest<Arc<App>> for Chec
     }
 }
 
+/// The bytes of a file, with memory for what they become.
+pub struct FileBody {
+    /// The file.
+    pub bytes: Vec<u8>,
+    /// The resources that the request holds.
+    pub held: HeldResources,
+}
+
+/// The media types of a file.
+const FILE_TYPES: [&str; 3] = ["text/csv", "text/plain", "application/octet-stream"];
+
+impl FromRequest<Arc<App>> for FileBody {
+    type Rejection = Problem;
+
+    async fn from_request(request: Request, app: &Arc<App>) -> Result<Self, Problem> {
+        let (parts, body) = request.into_parts();
+        let declared = parts.headers.get(header::CONTENT_TYPE).map(|value| essence(value.as_bytes()));
+        if !declared.is_some_and(|is| FILE_TYPES.iter().any(|known| is.eq_ignore_ascii_case(known.as_bytes()))) {
+            let detail = format!("Content-Type must be one of {}", FILE_TYPES.join(", "));
+            return Err(Problem::new(Code::UnsupportedMediaType, detail));
+        }
+        check_encoding(&parts)?;
+        let expects = parts.headers.contains_key(header::EXPECT);
+        let (bytes, mut memory) = read(body, expects, FILE_LIMIT, &app.pool).await?;
+        let permit = app.pool.admit_request().await?;
+        app.pool.resize(&mut memory, bytes.len().saturating_mul(files::EXPANSION)).await?;
+        Ok(FileBody { bytes, held: HeldResources { memory, _permit: permit, spent: Duration::ZERO } })
+    }
+}
+
 /// Whether the header says that the body is not encoded.
 fn is_identity(coding: &[u8]) -> bool {
     coding.trim_ascii().is_empty() || coding.trim_ascii().eq_ignore_ascii_case(b"identity")
@@ -146,17 +171,31 @@ fn is_identity(coding: &[u8]) -> bool {
 
 /// `application/json`, with or without a charset.
 fn is_json(content_type: &[u8]) -> bool {
-    let essence = content_type.split(|byte| *byte == b';').next().unwrap_or_default();
-    essence.trim_ascii().eq_ignore_ascii_case(b"application/json")
+    essence(content_type).eq_ignore_ascii_case(b"application/json")
 }
 
-/// Reads a body. A client that `expects` to be asked for it is not asked for one that is too long.
-async fn read(body: Body, expects: bool, pool: &Pool) -> Result<(Vec<u8>, Reservation), Problem> {
+/// A media type without its parameters.
+fn essence(content_type: &[u8]) -> &[u8] {
+    content_type.split(|byte| *byte == b';').next().unwrap_or_default().trim_ascii()
+}
+
+/// Refuses a body that is compressed.
+fn check_encoding(parts: &Parts) -> Result<(), Problem> {
+    let coding = parts.headers.get(header::CONTENT_ENCODING).filter(|coding| !is_identity(coding.as_bytes()));
+    let Some(coding) = coding else { return Ok(()) };
+    let coding: String = String::from_utf8_lossy(coding.as_bytes()).chars().take(40).collect();
+    let detail = format!("Content-Encoding `{coding}` is not supported: send the body unencoded");
+    Err(Problem::new(Code::UnsupportedMediaType, detail))
+}
+
+/// Reads a body of at most so many bytes. A client that `expects` to be asked for it is not asked for one that is too
+/// long.
+async fn read(body: Body, expects: bool, limit: usize, pool: &Pool) -> Result<(Vec<u8>, Reservation), Problem> {
     let too_large = || {
-        let detail = format!("the body has more than the {BODY_LIMIT} bytes that are allowed");
+        let detail = format!("the body has more than the {limit} bytes that are allowed");
         Problem::new(Code::TooLarge, detail)
     };
-    if expects && body.size_hint().lower() > BODY_LIMIT as u64 {
+    if expects && body.size_hint().lower() > limit as u64 {
         return Err(too_large());
     }
     let declared = body.size_hint().upper().and_then(|length| usize::try_from(length).ok()).unwrap_or(usize::MAX);
@@ -168,10 +207,10 @@ async fn read(body: Body, expects: bool, pool: &Pool) -> Result<(Vec<u8>, Reserv
     while let Some(chunk) = stream.next().await {
         let chunk = chunk.map_err(broken)?;
         length = length.saturating_add(chunk.len());
-        if length <= BODY_LIMIT {
+        if length <= limit {
             // Reserved as it arrives: a length that is declared but not sent takes no memory from others.
             if length > bytes.capacity() {
-                let room = (2 * length).min(declared).min(BODY_LIMIT).max(length);
+                let room = (2 * length).min(declared).min(limit).max(length);
                 if room > UNCOUNTED {
                     share.resize(room).map_err(PoolError::Quota)?;
                 }
@@ -183,7 +222,7 @@ async fn read(body: Body, expects: bool, pool: &Pool) -> Result<(Vec<u8>, Reserv
             break;
         }
     }
-    if length > BODY_LIMIT {
+    if length > limit {
         return Err(too_large());
     }
     Ok((bytes, memory))

@@ -43,8 +43,8 @@ use middleware::{access_control, observe, security_headers};
 use request_metrics::RequestMetrics;
 use resources::meta::OpenApiText;
 use resources::{
-    contacts, cycle, cycles, events, history, hysteresis_loop, jobs, meta, metrics, moves, observations, page, stress,
-    subsurface, sweep,
+    contacts, cycle, cycles, events, files, history, hysteresis_loop, jobs, meta, metrics, moves, observations, page,
+    residual, stress, subsurface, sweep,
 };
 
 pub use facts::Need;
@@ -166,6 +166,8 @@ fn described(document: &'static str) -> Routes {
     let page = Facts::READS_CONTACT.formats(&Format::ALL).conditional();
     routes
         .with(Facts::WRITES.formats(&Format::TABLES), routes!(sweep::run_sweep))
+        .with(Facts::READS, routes!(files::read_scan_file))
+        .with(Facts::READS, routes!(files::read_loop_file))
         .with(Facts::READS, routes!(jobs::list_jobs))
         .with(Facts::READS, routes!(jobs::get_job))
         .with(Facts::WRITES, routes!(jobs::cancel_job))
@@ -184,6 +186,7 @@ fn described(document: &'static str) -> Routes {
         .with(Facts::CHANGES_CONTACT, routes!(observations::follow_bench))
         .with(Facts::READS_CONTACT, routes!(observations::get_friction))
         .with(page, routes!(stress::get_stress))
+        .with(page, routes!(residual::get_residual))
         .with(Facts::READS_CONTACT.formats(&Format::ALL), routes!(subsurface::compute_subsurface_stress))
         .with(page, routes!(cycle::get_steady_cycle))
         .with(page.paged(), routes!(history::get_history))

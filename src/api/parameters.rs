@@ -183,6 +183,11 @@ impl<V> Number<V> {
         Number { is_checked: false, ..self }
     }
 
+    /// The same, which is looked at when it is read.
+    pub fn checked(self) -> Number<V> {
+        Number { is_checked: true, ..self }
+    }
+
     /// The same with the value that is taken if the client gives none.
     pub fn suggesting(self, suggestion: V) -> Number<V> {
         Number { suggestion: Some(suggestion), ..self }

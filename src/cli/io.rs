@@ -2,7 +2,7 @@
 
 use std::fmt::Display;
 use std::fs::File;
-use std::io::{self, Read as _, Write};
+use std::io::{self, IsTerminal as _, Read as _, Write};
 use std::path::Path;
 
 use serde_json::Value;
@@ -25,9 +25,9 @@ pub fn json(value: &impl serde::Serialize) -> String {
     serde_json::to_string_pretty(value).unwrap_or_else(|error| error.to_string())
 }
 
-/// The problem document that the service would send, as the message of an error.
+/// A problem as the message of an error: two lines on a terminal, else the document that the service would send.
 pub fn problem(problem: impl Into<Problem>) -> String {
-    fault(problem, true)
+    fault(problem, !io::stderr().is_terminal())
 }
 
 /// Prints a line on standard output.

@@ -7,11 +7,13 @@ mod healthcheck;
 mod io;
 mod key;
 mod limits;
+mod manual;
 mod progress;
 mod reload;
 mod report;
 mod serve;
 mod settings;
+mod summary;
 mod sweep;
 
 use std::ffi::OsString;
@@ -28,6 +30,7 @@ use compute::Compute;
 use healthcheck::Healthcheck;
 use io::print;
 use key::Key;
+use manual::{Completions, Man};
 use report::Report;
 use serve::Serve;
 use settings::{Settings, SettingsError};
@@ -73,6 +76,10 @@ enum Command {
         #[arg(long)]
         out: PathBuf,
     },
+    /// Print the script with which a shell completes commands and flags.
+    Completions(Completions),
+    /// Write the manual pages of all commands.
+    Man(Man),
 }
 
 /// The exit code of a command that has failed, and of an invalid command line or setting.
@@ -127,6 +134,8 @@ impl Command {
             Command::Backup(backup) => backup.run(),
             Command::Check(check) => check.run(),
             Command::Report(report) => report.run(),
+            Command::Completions(completions) => completions.run(),
+            Command::Man(man) => man.run(),
             Command::Figures { out } => {
                 figures::write(&out).map_err(|error| format!("cannot write figures to {}: {error}", out.display()))
             }

@@ -295,6 +295,18 @@ fn filter(text: &str) -> Result<String, String> {
     EnvFilter::try_new(text).map(|_| text.to_owned()).map_err(|error| error.to_string())
 }
 
+/// Why an address cannot be had, with the remedy where there is one.
+fn cannot_listen(address: SocketAddr, error: &io::Error) -> String {
+    match error.kind() {
+        io::ErrorKind::AddrInUse => format!(
+            "cannot listen on {address}: another program does already. End it, or choose another address, such as \
+             --listen {}:0 for any port that is free",
+            if address.is_ipv6() { format!("[{}]", address.ip()) } else { address.ip().to_string() }
+        ),
+        _ => format!("cannot listen on {address}: {error}"),
+    }
+}
+
 async fn listen(
     options: &Serve,
     access: Access,
@@ -303,7 +315,7 @@ async fn listen(
     store: Arc<dyn Store>,
 ) -> Result<(), String> {
     let address = options.listen;
-    let listener = TcpListener::bind(address).await.map_err(|error| format!("cannot listen on {address}: {error}"))?;
+    let listener = TcpListener::bind(address).await.map_err(|error| cannot_listen(address, &error))?;
     let address = listener.local_addr().map_err(|error| format!("cannot listen on {address}: {error}"))?;
     let signals = [SignalKind::terminate(), SignalKind::interrupt(), SignalKind::hangup()].map(signal);
     let [Ok(mut terminate), Ok(mut interrupt), Ok(hangup)] = signals else {

@@ -81,6 +81,6 @@ impl Computation for CompareSolvers {
     }
 
     fn run(task: Comparison, stop: &Stop) -> Result<Plain<AccuracyReply>, Failure> {
-        simulation::compare_solvers(&task, stop).map(Plain::of)
+        simulation::compare_solvers(&task, stop).map(Plain)
     }
 }

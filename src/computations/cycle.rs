@@ -161,7 +161,7 @@ impl Outcome for SteadyCycles {
         &self.reply
     }
 
-    fn table(&self) -> Option<Table<'_>> {
+    fn table(&self, _: &Shown) -> Option<Table<'_>> {
         Some(table(&self.reply, &self.task))
     }
 

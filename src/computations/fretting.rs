@@ -155,7 +155,7 @@ impl Outcome for Rated {
         &self.reply
     }
 
-    fn table(&self) -> Option<Table<'_>> {
+    fn table(&self, _: &Shown) -> Option<Table<'_>> {
         Some(table(&self.reply))
     }
 

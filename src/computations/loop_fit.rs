@@ -89,7 +89,7 @@ impl Outcome for FitReply {
         self
     }
 
-    fn table(&self) -> Option<Table<'_>> {
+    fn table(&self, _: &Shown) -> Option<Table<'_>> {
         Some(table(self))
     }
 
@@ -124,6 +124,19 @@ fn table(reply: &FitReply) -> Table<'_> {
     Table::flat(reply.curve.iter().map(|curve| curve.force.len()).sum(), columns)
 }
 
+/// Points of a plot.
+pub(super) type Points = Vec<(f64, f64)>;
+
+/// Values up to `most` on both sides as they are and, apart, those beyond at `most`: short strokes along the frame.
+pub(super) fn clamped(points: Points, most: f64) -> (Points, Points) {
+    if most <= 0.0 {
+        return (points, Vec::new());
+    }
+    let (beyond, inside): (Vec<_>, Vec<_>) = points.into_iter().partition(|(_, value)| value.abs() > most);
+    let at_frame = |(x, value): (f64, f64)| [(x, most.copysign(value)), (f64::NAN, f64::NAN)];
+    (inside, beyond.into_iter().flat_map(at_frame).collect())
+}
+
 /// Measured loops and what was fitted to them, over the difference of both.
 fn plot(reply: &FitReply) -> Plot {
     // Loops are not joined with each other.
@@ -147,6 +160,17 @@ fn plot(reply: &FitReply) -> Plot {
     let residual: fn(&FittedLoop, usize) -> f64 = |curve, point| curve.measured[point] - curve.force[point];
     let left = outliers(measured);
     let silent = left.is_empty();
+    // A point that was left out may be so far off that nothing else could be seen.
+    let used = |curve: &FittedLoop| {
+        (0..curve.used.len()).filter(|point| curve.used[*point]).map(|at| residual(curve, at)).collect()
+    };
+    let most = reply
+        .curve
+        .iter()
+        .flat_map(|curve: &FittedLoop| -> Vec<f64> { used(curve) })
+        .fold(0.0, |most: f64, value| most.max(value.abs()));
+    let (off, beyond) = clamped(outliers(residual), 1.5 * most);
+    let all = clamped(over(residual), 1.5 * most).0;
     Plot {
         title: format!("Measured loop: residual {} rms", in_unit(reply.residual.rms, "N")),
         x: Axis { name: "measured displacement", unit: Some("m") },
@@ -162,8 +186,9 @@ fn plot(reply: &FitReply) -> Plot {
             Panel {
                 y: Axis { name: "measured less fitted", unit: Some("N") },
                 curves: vec![
-                    curve("", over(residual), Colour::Grey, true, true),
-                    curve("", outliers(residual), Colour::Red, true, true),
+                    curve("", all, Colour::Grey, true, true),
+                    curve("", off, Colour::Red, true, true),
+                    curve("beyond the frame", beyond.clone(), Colour::Red, beyond.is_empty(), false),
                 ],
             },
         ],

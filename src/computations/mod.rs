@@ -5,6 +5,7 @@
 
 mod accuracy;
 mod cycle;
+pub mod files;
 mod fretting;
 mod fretting_map;
 mod fretting_picture;
@@ -12,7 +13,9 @@ mod loop_fit;
 mod moves;
 mod profile_fit;
 mod protocol;
+mod residual;
 mod simulate;
+mod simulate_table;
 mod stress;
 mod subsurface;
 
@@ -35,6 +38,7 @@ pub use fretting::Fretting;
 pub use loop_fit::FitLoops;
 pub use moves::{Moved, make_moves, rehearse_relax, shown_states};
 pub use protocol::find_from_state;
+pub use residual::ResidualTask;
 pub use stress::StressTask;
 
 /// Calls `visitor` with every computation.
@@ -158,7 +162,7 @@ pub trait Outcome: Send + Sized {
     }
 
     /// Its table, if it has one.
-    fn table(&self) -> Option<Table<'_>> {
+    fn table(&self, _shown: &Shown) -> Option<Table<'_>> {
         None
     }
 
@@ -169,27 +173,13 @@ pub trait Outcome: Send + Sized {
 }
 
 /// A result without a table or a picture.
-pub struct Plain<R> {
-    reply: R,
-    /// About how long it is as JSON, bytes.
-    length: usize,
-}
-
-impl<R> Plain<R> {
-    fn of(reply: R) -> Plain<R> {
-        Plain { reply, length: CAPACITY }
-    }
-}
+pub struct Plain<R>(R);
 
 impl<R: Serialize + ToSchema + Send> Outcome for Plain<R> {
     type Reply = R;
 
     fn reply(&self) -> &R {
-        &self.reply
-    }
-
-    fn length(&self) -> usize {
-        self.length
+        &self.0
     }
 }
 
@@ -212,7 +202,7 @@ pub struct About {
     pub printed: Format,
     /// What the formats other than the document show.
     pub shows: &'static str,
-    /// What a picture shows, where there is a choice.
+    /// What a picture or a table shows, where there is a choice.
     pub choice: Option<Choice>,
 }
 
@@ -227,7 +217,7 @@ pub struct Route {
     pub tag: &'static str,
 }
 
-/// A choice of what a picture shows.
+/// A choice of what a picture or a table shows.
 #[derive(Clone, Copy, Debug)]
 pub struct Choice {
     /// Its name in the query, and as a flag.
@@ -258,7 +248,7 @@ fn example(name: &'static str, summary: &'static str, value: Value) -> Example {
 pub struct Shown {
     /// The format.
     pub format: Format,
-    /// What a picture shows, by one of the words of the [`Choice`].
+    /// What a picture or a table shows, by one of the words of the [`Choice`].
     pub choice: Option<&'static str>,
     /// Whether JSON is indented, for readers.
     pub indented: bool,
@@ -294,7 +284,7 @@ impl Shown {
         if self.format.is_plot() {
             self.format.draw(&outcome.picture(self).ok_or_else(none)?)
         } else {
-            outcome.table().ok_or_else(none)?.write(self.format).map_err(Unwritable::new)
+            outcome.table(self).ok_or_else(none)?.write(self.format).map_err(Unwritable::new)
         }
     }
 }

@@ -7,6 +7,7 @@ use stickslip_report::plot::{Axis, Colour, Curve, Drawing, Panel, Plot};
 use stickslip_wire::profile_fit::{ColumnPair, ProfileFitTask};
 use stickslip_wire::{ProfileFitReply, ProfileFitRequest};
 
+use super::loop_fit::clamped;
 use super::{About, Computation, Example, Outcome, Route, Shown, example};
 use crate::admission::{Nanoseconds, Stop};
 use crate::formats::{Cells, Column, Format, STRESS_ROW, Table};
@@ -86,7 +87,7 @@ impl Outcome for ProfileFitReply {
         self
     }
 
-    fn table(&self) -> Option<Table<'_>> {
+    fn table(&self, _: &Shown) -> Option<Table<'_>> {
         Some(table(self))
     }
 
@@ -139,6 +140,7 @@ fn plot(reply: &ProfileFitReply) -> Plot {
     let curve = |name, points, colour| Curve { name, points, colour, silent: false, dots: false };
     let measured = |points| Curve { dots: true, ..curve("scan", points, Colour::Grey) };
     let most = reply.residual.rms * LARGEST_RESIDUAL;
+    let beyond = clamped(residual(&reply.left_out), most).1;
     Plot {
         title: format!("Profile from a scan: residual {:.3e} m rms", reply.residual.rms),
         x: Axis { name: "radius r", unit: Some("m") },
@@ -160,6 +162,7 @@ fn plot(reply: &ProfileFitReply) -> Plot {
                         strokes(|z, f| [0.0, z - f]).into_iter().map(|(r, e)| (r, e.clamp(-most, most))).collect(),
                         Colour::Red,
                     ),
+                    Curve { silent: beyond.is_empty(), ..curve("beyond the frame", beyond, Colour::Red) },
                 ],
             },
         ],

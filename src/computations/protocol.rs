@@ -91,9 +91,7 @@ impl Computation for FindProtocol {
 
     fn run((subject, task): (ProtocolSubject, ProtocolTask), stop: &Stop) -> Result<Plain<ProtocolReply>, Failure> {
         match subject {
-            ProtocolSubject::Virgin(made, first) => {
-                simulation::protocol_for(&made.1, first, &task, stop).map(Plain::of)
-            }
+            ProtocolSubject::Virgin(made, first) => simulation::protocol_for(&made.1, first, &task, stop).map(Plain),
             ProtocolSubject::Living(..) => Err(Failure::NeedsServer { pointer: "/start/contact_id" }),
         }
     }
@@ -132,7 +130,7 @@ impl OnContact for ProtocolTask {
     }
 
     fn run(self, contact: Contact, _: u64, stop: &Stop) -> Result<Plain<ProtocolReply>, Failure> {
-        find_from_state(&contact, &self, stop).map(Plain::of)
+        find_from_state(&contact, &self, stop).map(Plain)
     }
 }
 

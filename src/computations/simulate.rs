@@ -2,12 +2,13 @@
 
 use serde_json::json;
 
+use stickslip_report::plot::Drawing;
 use stickslip_wire::simulate::Simulation;
-use stickslip_wire::{ContactDefinition, SimulateReply, SimulateRequest};
+use stickslip_wire::{ContactDefinition, Fault, Sampling, SimulateReply, SimulateRequest};
 
-use super::{About, Computation, Example, Plain, Route, example};
+use super::{About, Computation, Example, Outcome, Route, Shown, example, simulate_table};
 use crate::admission::{Nanoseconds, Stop};
-use crate::formats::Format;
+use crate::formats::{Format, Table};
 use crate::simulation::{self, Failure, bytes, cost};
 
 /// The states of a contact along a path, and the stresses at its end.
@@ -22,14 +23,16 @@ impl Computation for Simulate {
                       and their extrema at its end if asked for. Nothing is stored, so that a repeated request \
                       simply runs again.",
         reply: "States, and what else was asked for",
-        formats: &[Format::Columns],
+        formats: &Format::ALL,
         printed: Format::Columns,
-        shows: "",
-        choice: None,
+        shows: "All but `columns` show one part of the document: the residual stress if it is asked for, a row for \
+                each extremum; else the stresses over the radius; else the states along the path. `show` names \
+                another.",
+        choice: Some(simulate_table::SHOW),
     };
 
     type Request = SimulateRequest;
-    type Outcome = Plain<SimulateReply>;
+    type Outcome = Simulated;
 
     fn examples() -> Vec<Example> {
         vec![
@@ -72,15 +75,51 @@ impl Computation for Simulate {
         ]
     }
 
+    fn check_shown(task: &Simulation, shown: &Shown) -> Result<(), Fault> {
+        simulate_table::check(task, shown)
+    }
+
     fn bytes(task: &Simulation) -> usize {
         bytes::of_simulation(task)
+    }
+
+    fn rows(task: &Simulation) -> (usize, usize) {
+        let radii = task.stress.as_ref().map_or(0, Sampling::length);
+        ((2 * task.plan.length()).max(radii), bytes::STATE_BYTES)
     }
 
     fn cost(task: &Simulation) -> Nanoseconds {
         cost::of_simulation(task)
     }
 
-    fn run(task: Simulation, stop: &Stop) -> Result<Plain<SimulateReply>, Failure> {
-        Ok(Plain { reply: simulation::simulate(&task, stop)?, length: bytes::reply_length(&task) })
+    fn run(task: Simulation, stop: &Stop) -> Result<Simulated, Failure> {
+        Ok(Simulated { reply: simulation::simulate(&task, stop)?, length: bytes::reply_length(&task) })
+    }
+}
+
+/// The states and stresses.
+pub struct Simulated {
+    reply: SimulateReply,
+    /// About how long it is as JSON, bytes.
+    length: usize,
+}
+
+impl Outcome for Simulated {
+    type Reply = SimulateReply;
+
+    fn reply(&self) -> &SimulateReply {
+        &self.reply
+    }
+
+    fn length(&self) -> usize {
+        self.length
+    }
+
+    fn table(&self, shown: &Shown) -> Option<Table<'_>> {
+        simulate_table::table(&self.reply, shown)
+    }
+
+    fn picture(&self, shown: &Shown) -> Option<Drawing> {
+        simulate_table::plot(&self.reply, shown).map(Drawing::Plot)
     }
 }

@@ -67,8 +67,9 @@ impl Outcome for Stresses {
         &self.reply
     }
 
-    fn table(&self) -> Option<Table<'_>> {
-        Some(table(&self.reply))
+    fn table(&self, _: &Shown) -> Option<Table<'_>> {
+        let StressReply { pressure, shear, slip, displacement, .. } = &self.reply;
+        Some(table(&self.reply.radius, [pressure, shear, slip, displacement]))
     }
 
     fn picture(&self, _: &Shown) -> Option<Drawing> {
@@ -76,22 +77,26 @@ impl Outcome for Stresses {
     }
 }
 
-/// The stresses over the radius.
-fn table(reply: &StressReply) -> Table<'_> {
-    let mut columns = vec![Column::floats("radius", "m", |row| reply.radius[row])];
-    for field in Field::ALL {
-        let (unit, values) = match field {
-            Field::Pressure => ("Pa", &reply.pressure),
-            Field::Shear => ("Pa", &reply.shear),
-            Field::Slip => ("m", &reply.slip),
-            Field::Displacement => ("m", &reply.displacement),
-        };
+/// A field at some radii, if it was asked for.
+pub(super) type Values = Option<Vec<Option<f64>>>;
+
+/// The fields over the radius, in the order of [`Field::ALL`].
+pub(super) fn table<'a>(radius: &'a [f64], fields: [&'a Values; 4]) -> Table<'a> {
+    let mut columns = vec![Column::floats("radius", "m", |row| radius[row])];
+    for (field, values) in Field::ALL.into_iter().zip(fields) {
         if let Some(values) = values {
-            let value = |row: usize| values[row].unwrap_or(f64::NAN);
-            columns.push(Column::floats(field.name(), unit, value));
+            columns.push(Column::floats(field.name(), unit(field), |row| values[row].unwrap_or(f64::NAN)));
         }
     }
-    Table::flat(reply.radius.len(), columns)
+    Table::flat(radius.len(), columns)
+}
+
+/// The SI unit of a field.
+pub(super) fn unit(field: Field) -> &'static str {
+    match field {
+        Field::Pressure | Field::Shear => "Pa",
+        Field::Slip | Field::Displacement => "m",
+    }
 }
 
 /// Shear stress between the bounds of friction, with the regions that stuck and slipped in the last move.

@@ -124,7 +124,7 @@ impl<R: AsRef<Subsurface> + Serialize + ToSchema + Send> Outcome for Below<R> {
         &self.reply
     }
 
-    fn table(&self) -> Option<Table<'_>> {
+    fn table(&self, _: &Shown) -> Option<Table<'_>> {
         Some(table(self.reply.as_ref()))
     }
 

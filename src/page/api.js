@@ -50,8 +50,9 @@ async function send(method, path, { body, headers = {}, signal } = {}) {
     const key = sessionStorage.getItem(KEY);
     const all = { ...headers };
     if (key) all.authorization = `Bearer ${key}`;
-    if (body !== undefined) all["content-type"] = "application/json";
-    const text = body === undefined ? undefined : JSON.stringify(body);
+    const isFile = body instanceof Blob;
+    if (body !== undefined) all["content-type"] = isFile ? "application/octet-stream" : "application/json";
+    const text = body === undefined || isFile ? body : JSON.stringify(body);
     const response = await fetch(path.slice(1), { method, headers: all, body: text, signal, cache: "no-store" }).catch((error) => {
       throw signal?.aborted ? error : new Away();
     });

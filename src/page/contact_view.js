@@ -7,12 +7,14 @@ import { contactTitle } from "./contact_title.js";
 import { copyMenu } from "./copy_as_code.js";
 import { crackCard } from "./crack_search.js";
 import { figureList } from "./create_form.js";
+import { cycleStudyCard } from "./cycle_study.js";
 import { el, notice } from "./dom.js";
 import { fittedLoop } from "./loop_fit.js";
 import { loopOverlay } from "./loop_overlay.js";
 import { moveHands } from "./move_hands.js";
 import { pathCard } from "./path_run.js";
 import { protocolCard } from "./protocol_run.js";
+import { protocolSearchCard } from "./protocol_search.js";
 import { responseCard } from "./frequency_response.js";
 import { stateText } from "./state_text.js";
 import { steadyCard } from "./steady_cycle.js";
@@ -50,13 +52,14 @@ export function contactView(model, contact, changed) {
     "details",
     { class: "card preload" },
     el("summary", {}, "Figures at the preload"),
-    el("dl", { class: "figures" }, figureList(figures)),
+    el("dl", { class: "figures" }, figureList(figures, model.hasStress)),
   );
 
   /** What each tab has: `columns` of cards, the parts that follow the state, its plots, and the requests behind it. */
   const { loop, stress, top, work } = plots;
   const steady = steadyCard(model);
   const response = responseCard(model);
+  const study = cycleStudyCard(model);
   const map = mapCard(model);
   const fit = fittedLoop(model);
   const solvers = accuracyCard(model);
@@ -69,10 +72,10 @@ export function contactView(model, contact, changed) {
     },
     loop: { columns: [[fit.form], [fit.results]], parts: [], plots: fit.charts, calls: fit.calls },
     damping: {
-      columns: [[steady, map], [response]],
+      columns: [[steady, study, map], [response]],
       parts: [steady, map, response],
-      plots: [map.chart, ...response.charts],
-      calls: () => [steady, response, map].flatMap((one) => one.calls()),
+      plots: [map.chart, ...study.charts, ...response.charts],
+      calls: () => [steady, study, response, map].flatMap((one) => one.calls()),
     },
     accuracy: { columns: [[trust], [solvers]], parts: [], plots: [solvers.chart], calls: () => [...trust.calls(), ...solvers.calls()] },
   };
@@ -86,12 +89,13 @@ export function contactView(model, contact, changed) {
       calls: () => [...crack.calls(), ...below.calls()],
     };
     const protocol = protocolCard(model);
+    const search = protocolSearchCard(model);
     const residual = residualCard(model);
     views.residual = {
-      columns: [[protocol], [residual]],
+      columns: [[protocol, search], [residual]],
       parts: [],
       plots: [residual.chart],
-      calls: () => [...protocol.calls(), ...residual.calls()],
+      calls: () => [...protocol.calls(), ...search.calls(), ...residual.calls()],
     };
   }
   const panels = Object.fromEntries(

@@ -56,6 +56,7 @@ export function createForm(main, signal) {
   );
   const derive = latestOnly(async () => {
     try {
+      await form.settled();
       const contact = form.standingIn(definition);
       const drawn = !WITHOUT_STRESS.includes(contact.profile.type);
       const stress = drawn ? { stress: { points: 200, fields: ["pressure"] } } : {};
@@ -64,7 +65,7 @@ export function createForm(main, signal) {
       const isMistaken = form.check() !== undefined;
       derived.classList.toggle("stale", isMistaken);
       if (isMistaken) return;
-      figures.replaceChildren(...figureList(reply.contact));
+      figures.replaceChildren(...figureList(reply.contact, drawn));
       chart.element.hidden = !drawn;
       if (drawn) chart.draw(pressureData(reply, Number(friction.value)));
       showWarnings(warnings, reply.warnings);
@@ -76,6 +77,7 @@ export function createForm(main, signal) {
   });
   const submit = async (event) => {
     event.preventDefault();
+    await form.settled();
     const mistaken = form.check();
     if (mistaken) {
       mistaken.control.focus();
@@ -118,14 +120,14 @@ export function createForm(main, signal) {
   derive();
 }
 
-/** The figures of a contact, by name. */
-export function figureList(figures) {
+/** The figures of a contact, by name; one that is known by its load curve alone has no pressure. */
+export function figureList(figures, hasStress = true) {
   const entry = (text, value) => el("div", {}, el("dt", {}, withSubscripts(text)), el("dd", {}, value));
   return [
     entry("Normal force F_N", formatQuantity(figures.normal_force, "N")),
     entry("Indentation d", formatQuantity(figures.indentation, "m")),
     entry("Contact radius a", formatQuantity(figures.contact_radius, "m")),
-    entry("Largest pressure p_max", formatQuantity(figures.max_pressure, "Pa")),
+    ...(hasStress ? [entry("Largest pressure p_max", formatQuantity(figures.max_pressure, "Pa"))] : []),
     entry("Gross slip from u_max", formatQuantity(figures.gross_slip_displacement, "m")),
     entry("Gross slip at μ F_N", formatQuantity(figures.gross_slip_force, "N")),
     entry("Reduced modulus E*", formatQuantity(figures.e_star, "Pa")),

@@ -106,11 +106,22 @@ export class Choice extends Field {
 export class Fields {
   constructor() {
     this.all = new Set();
+    this.readings = [];
     this.rest = el("p", { class: "fault", role: "alert" });
   }
 
   add(field) {
     this.all.add(field);
+  }
+
+  /** Has the form wait for what `settled` promises: the service still reads a table. */
+  settle(settled) {
+    this.readings.push(settled);
+  }
+
+  /** Waits until all tables are read. */
+  settled() {
+    return Promise.all(this.readings.map((settled) => settled()));
   }
 
   /** Those that are in the document still. */

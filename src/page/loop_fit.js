@@ -2,9 +2,10 @@
 import { call } from "./api.js";
 import { Chart } from "./chart.js";
 import { el, notice } from "./dom.js";
+import { symbolOf } from "./file_source.js";
 import { Fields, NumberField } from "./form_fields.js";
 import { FORCE, LENGTH } from "./form_options.js";
-import { loopRecord, unitOf } from "./loop_record.js";
+import { loopRecord } from "./loop_record.js";
 import { formatQuantity } from "./units.js";
 import { showWarnings, warningList } from "./warning_list.js";
 
@@ -31,9 +32,6 @@ const SCALES = {
 const MOST_RECORDS = 16;
 /** Up to how many points of a record are drawn one by one. */
 const MOST_DOTS = 4000;
-
-/** The symbols of units in the API. */
-const symbol = (select) => select.selectedOptions[0].textContent.replace("µ", "u");
 
 /** A row for each quantity that was estimated. */
 function estimateRows(estimates) {
@@ -64,11 +62,10 @@ function knownFields(form, offered) {
 /** The form and its results as cards, the plots, and the request. */
 export function fittedLoop(model) {
   const form = new Fields();
-  const units = { displacement: unitOf("displacements", LENGTH, "µm"), force: unitOf("forces", FORCE, "N") };
   const records = [];
   const list = el("div", {});
   const add = () => {
-    const record = loopRecord(form, records.length, units);
+    const record = loopRecord(form, records.length);
     records.push(record);
     list.append(record.element);
     more.disabled = records.length === MOST_RECORDS;
@@ -97,11 +94,14 @@ export function fittedLoop(model) {
   ]);
   const request = () => {
     const given = known.filter(({ value }) => value.value !== undefined);
+    // All records are in the units of the first.
+    const [{ units }] = records;
+    const powers = { displacement: Number(units.displacement.value), force: Number(units.force.value) };
     const told = noises.filter(([, field]) => field.value !== undefined);
     return {
       contact: model.definition,
-      loops: records.map((record) => record.value()),
-      units: { displacement: symbol(units.displacement), force: symbol(units.force) },
+      loops: records.map((record) => record.value(powers)),
+      units: { displacement: symbolOf(units.displacement), force: symbolOf(units.force) },
       free: boxes.filter(([box]) => box.checked).map(([box]) => box.name),
       known: given.length
         ? Object.fromEntries(given.map(({ name, value, error }) => [name, { value: value.value, standard_error: error.value }]))
@@ -172,6 +172,7 @@ export function fittedLoop(model) {
     try {
       const first = form.check();
       if (first) return first.control.focus();
+      await Promise.all(records.map((record) => record.settled()));
       show(await call("POST", "/fit", request(), model.signal));
       form.clear();
     } catch (refusal) {

@@ -1,10 +1,7 @@
 // What is drawn over the loop of a contact: a loop that a bench has measured, from a file, and the loop of another contact.
 import { call, follow, pages } from "./api.js";
 import { debounce, el, notice } from "./dom.js";
-import { FORCE, LENGTH } from "./form_options.js";
-import { columnOf, unitOf } from "./loop_record.js";
-import { guessColumn, tableRows, textOf } from "./table_text.js";
-import { parseNumber } from "./units.js";
+import { fileSource, loopColumns, readingText } from "./file_source.js";
 
 /** Moves of the other contact, and contacts to choose from. */
 const [MOVES, CHOICES] = [1000, 200];
@@ -33,46 +30,37 @@ export function loopOverlay(model, loop, changed) {
   };
 }
 
-/** A file of two columns, chosen or dropped on the plot. It stays in the browser. */
+/** A file of a bench, chosen or dropped on the plot; the service reads it, and keeps nothing of it. */
 function measuredFile(loop, changed) {
   const one = { opened: () => {} };
-  const units = { displacement: unitOf("measured displacement", LENGTH, "µm"), force: unitOf("measured force", FORCE, "N") };
-  const columns = { displacement: columnOf("measured displacement", 1), force: columnOf("measured force", 2) };
+  const columns = loopColumns("measured ");
   const said = el("p", { class: "note", id: "overlay-said", "aria-live": "polite" });
-  let file = null;
+  let name = "";
   let points = [];
-  const read = () => {
-    if (!file) return;
-    const value = (row, name) => parseNumber(row[Number(columns[name].value) - 1] ?? "", Number(units[name].value));
-    const pairs = tableRows(file.text).map((row) => [value(row, "displacement"), value(row, "force")]);
-    const whole = pairs.filter((pair) => pair.every((number) => typeof number === "number"));
-    // A row that lacks a number is a gap of the line.
-    points = whole.length ? pairs.map((pair) => (whole.includes(pair) ? pair : [0, null])) : [];
-    said.textContent = whole.length
-      ? `${whole.length} points of ${file.name}.`
-      : `There are no numbers in columns ${columns.displacement.value} and ${columns.force.value} of ${file.name}.`;
+  let isChosen = false;
+  const taken = (reply, error) => {
+    if (reply && !isChosen) columns.show(reply);
+    const { displacement = [], force = [] } = reply?.loop ?? {};
+    const [u, f] = [10 ** columns.power("displacement"), 10 ** columns.power("force")];
+    points = displacement.map((value, index) => [value * u, force[index] * f]);
+    said.textContent = reply ? `${points.length} points of ${name}.` : `${name}: ${readingText(reply, error)}`;
     changed();
   };
-  const open = async (chosen) => {
+  const source = fileSource("loop", el("textarea", {}), () => (isChosen ? columns.query() : {}), taken, () => {});
+  const open = (chosen) => {
     if (!chosen) return;
-    file = { name: chosen.name, text: await textOf(chosen) };
-    for (const name of ["displacement", "force"]) {
-      const guess = guessColumn(file.text, name);
-      if (!guess) continue;
-      columns[name].value = String(guess.column);
-      const unit = [...units[name].options].find((option) => option.text.replace("µ", "u") === guess.unit);
-      if (unit) units[name].value = unit.value;
-    }
+    [name, isChosen] = [chosen.name, false];
     one.opened();
-    read();
+    source.open(chosen);
   };
   const input = el("input", { type: "file", id: "overlay-file", onchange: (event) => open(event.target.files[0]) });
   const clear = () => {
-    file = null;
-    points = [];
-    input.value = "";
-    said.textContent = "";
+    [name, points, input.value, said.textContent] = ["", [], "", ""];
     changed();
+  };
+  const chosen = () => {
+    isChosen = true;
+    if (name) source.read();
   };
   const mark = (is) => loop.element.classList.toggle("dropping", is);
   loop.element.addEventListener("dragover", (event) => {
@@ -87,15 +75,14 @@ function measuredFile(loop, changed) {
   });
   one.element = el(
     "fieldset",
-    { onchange: (event) => event.target !== input && read() },
+    {},
     el("legend", {}, "A measured loop, chosen or dropped on the plot"),
     el("label", {}, "File ", input),
-    el("div", { class: "row" }, el("label", {}, "Displacement: column ", columns.displacement), units.displacement),
-    el("div", { class: "row" }, el("label", {}, "Force: column ", columns.force), units.force),
+    el("div", { onchange: chosen }, ...columns.rows),
     el("button", { type: "button", class: "quiet", onclick: clear }, "Clear"),
     said,
   );
-  one.series = () => (points.length ? [{ name: `file ${file.name.slice(0, 40).replaceAll("_", " ")}`, kind: "file", points }] : []);
+  one.series = () => (points.length ? [{ name: `file ${name.slice(0, 40).replaceAll("_", " ")}`, kind: "file", points }] : []);
   return one;
 }
 

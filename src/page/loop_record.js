@@ -1,30 +1,17 @@
 // One record of a bench in the form of a fit: its text or file, which columns it has, and what else is known of it.
 import { el } from "./dom.js";
+import { fileSource, loopColumns, readingText } from "./file_source.js";
 import { Choice, NumberField, TextField } from "./form_fields.js";
-import { FORCE, LENGTH } from "./form_options.js";
-import { fileInput, guessColumn, headerOf, tableRows } from "./table_text.js";
-import { parseNumber } from "./units.js";
+import { FORCE } from "./form_options.js";
 
 const STARTS = {
   steady: "in a cycle that was repeated before",
   virgin: "with a contact that was never moved",
   unknown: "not known",
 };
-/** The columns that a record may have: how a header names them, and their number at first; none is 0. */
-const COLUMNS = { displacement: ["displacements", 1], force: ["forces", 2], time: ["times", 0] };
 
-/** A list of units. */
-export function unitOf(name, units, usual) {
-  const options = units.map(([text, power]) => el("option", { value: power, selected: text === usual }, text));
-  return el("select", { "aria-label": `Unit of ${name}` }, options);
-}
-
-/** A field for the number of a column; 0 where there is none. */
-export const columnOf = (name, number) =>
-  el("input", { type: "number", min: 0, max: 99, value: String(number), "aria-label": `Column of ${name}` });
-
-/** The record of this number in a form; `units` are the lists of units, which all records share. */
-export function loopRecord(form, index, units) {
+/** The record of this number in a form. */
+export function loopRecord(form, index) {
   const at = () => `/loops/${index}`;
   const text = new TextField(
     form,
@@ -32,52 +19,53 @@ export function loopRecord(form, index, units) {
     "Displacement and force, one point a line",
     el("textarea", { name: "loop", rows: 6, spellcheck: "false", value: "" }),
   );
-  const columns = Object.fromEntries(Object.entries(COLUMNS).map(([name, [plural, number]]) => [name, columnOf(plural, number)]));
+  const prefix = index ? `record ${index + 1}: ` : "";
+  const columns = loopColumns(prefix);
   const start = new Choice(form, () => `${at()}/start`, "The record begins", STARTS, "steady");
   const optional = (name, label, more) => new NumberField(form, () => `${at()}/${name}`, { label, optional: true, ...more });
   const load = optional("normal_force", "Load, if not that of the contact", { units: FORCE, unit: "N" });
   const weight = optional("weight", "Weight beside the other records");
   const said = el("p", { class: "note", "aria-live": "polite" });
-  /** Takes columns and units from the header, if there is one, and says so. */
-  const readHeader = () => {
-    const found = Object.keys(COLUMNS).map((name) => [name, guessColumn(text.value, name)]);
-    for (const [name, guess] of found) {
-      if (!guess) continue;
-      columns[name].value = String(guess.column);
-      const option = units[name] && [...units[name].options].find(({ text }) => text.replace("µ", "u") === guess.unit);
-      if (option) units[name].value = option.value;
-    }
-    const cells = headerOf(text.value);
-    const named = found.filter(([, guess]) => guess).map(([name, { column }]) => `“${cells[column - 1].trim()}” is the ${name}`);
-    said.textContent = named.length ? `From the header: ${named.join(", ")}.` : "";
+  let found = null;
+  // The header says what is what until somebody chooses otherwise.
+  let isChosen = false;
+  const taken = (reply, error) => {
+    found = reply;
+    said.textContent = readingText(reply, error);
+    if (reply && !isChosen) columns.show(reply);
   };
-  text.control.addEventListener("input", readHeader);
-  const labelled = (name, title) => el("label", {}, `${title}: column `, columns[name]);
+  const fresh = () => (isChosen = false);
+  const source = fileSource("loop", text.control, () => (isChosen ? columns.query() : {}), taken, fresh);
+  const chosen = () => {
+    isChosen = true;
+    source.read();
+  };
   const element = el(
     "fieldset",
     { class: "record" },
     el("legend", {}, `Record ${index + 1}`),
     text.element,
-    el("label", {}, "or a file ", fileInput(text.control)),
+    el("label", {}, "or a file ", source.input),
     said,
-    el("div", { class: "row" }, labelled("displacement", "Displacement"), index ? null : units.displacement),
-    el("div", { class: "row" }, labelled("force", "Force"), index ? null : units.force),
-    el("div", { class: "row" }, labelled("time", "Time in s, for a drift (0: none)")),
+    el("div", { onchange: chosen }, ...columns.rows, columns.time),
     start.element,
     el("details", {}, el("summary", {}, "Load and weight"), load.element, weight.element),
   );
-  const value = () => {
-    const rows = tableRows(text.value);
-    const names = Object.keys(columns).filter((name) => Number(columns[name].value) > 0);
-    const cells = rows.map((row) => names.map((name) => parseNumber(row[Number(columns[name].value) - 1] ?? "")));
-    // A row that lacks a number is a gap.
-    const whole = cells.filter((row) => row.every((cell) => cell !== undefined));
+  /** The record in units of these powers of ten. */
+  const value = (powers) => {
+    const { displacement = [], force = [], time, normal_force } = found?.loop ?? {};
+    const scaled = (name, values) => {
+      const factor = 10 ** (columns.power(name) - powers[name]);
+      return factor === 1 ? values : values.map((value) => value * factor);
+    };
     return {
-      ...Object.fromEntries(names.map((name, place) => [name, whole.map((row) => row[place])])),
+      displacement: scaled("displacement", displacement),
+      force: scaled("force", force),
+      time: Number(columns.columns.time.value) > 0 ? time : undefined,
       ...(start.value === "unknown" ? {} : { start: start.value }),
-      normal_force: load.value,
+      normal_force: load.value ?? normal_force,
       weight: weight.value,
     };
   };
-  return { element, value };
+  return { element, value, units: columns.units, settled: source.settled };
 }

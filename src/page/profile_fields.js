@@ -1,10 +1,10 @@
 // The part of the form for the shape of the indenter; a sum contains several shapes.
 import { el } from "./dom.js";
+import { chooseUnit, fileSource, readingText } from "./file_source.js";
 import { Choice, NumberField, TextField } from "./form_fields.js";
 import { COLUMNS, PROFILES, WITHOUT_STRESS } from "./form_options.js";
 import { scanFit } from "./scan_fit.js";
-import { guessColumn, tableRows } from "./table_text.js";
-import { parseNumber } from "./units.js";
+import { inPower } from "./units.js";
 
 /** An editor of a profile at the pointer that `at` gives; `changed` is called when its fields change. */
 export function profileFields(form, at, changed, nested = false) {
@@ -68,39 +68,71 @@ function columns(form, at, changed, body, type) {
   );
   const text = new TextField(form, at, label, el("textarea", { rows: 8, spellcheck: "false", value: "" }));
   text.control.value = example;
-  const rows = () => tableRows(text.value);
-  const column = (index, unit = units[index]) => rows().map((row) => parseNumber(row[index] ?? "", Number(unit.value)) ?? null);
-  const read = () => Object.fromEntries(described.map(([name], index) => [name, column(index)]));
-  /** The scan in the text: a line through the axis, or points of the surface where there are three columns. */
-  const scan = () =>
-    rows().some((row) => row.length > 2)
-      ? { points: { x: column(0), y: column(1, units[0]), z: column(2, units[1]) } }
-      : { line: { x: column(0), z: column(1) } };
-  // A header that names units chooses them.
-  const readUnits = () => {
-    for (const [index, name] of ["radius", "height"].entries()) {
-      const unit = guessColumn(text.value, name)?.unit;
-      const option = [...units[index].options].find(({ text }) => text.replace("µ", "u") === unit);
-      if (option) units[index].value = option.value;
-    }
+  const said = el("p", { class: "note", "aria-live": "polite" });
+  const isScan = type === "tabulated";
+  const spacing = el("input", { type: "number", min: 0, step: "any", "aria-label": "Distance of neighbours in a map" });
+  let found = null;
+  let isChosen = false;
+  const powers = () => units.map((unit) => Number(unit.value));
+  const symbols = () => units.map((unit) => unit.selectedOptions[0].text.replace("µ", "u"));
+  // Any other table is two columns of numbers, whatever they are of.
+  const query = () => {
+    if (!isScan) return { displacement: 1, force: 2 };
+    const [lateral, height] = symbols();
+    return { ...(isChosen ? { lateral, height } : {}), ...(Number(spacing.value) > 0 ? { spacing: spacing.value } : {}) };
   };
-  if (type === "tabulated") text.control.addEventListener("input", readUnits);
+  const taken = (reply, error) => {
+    found = reply;
+    const isAssumed = (name) => reply.preview.columns.some(({ quantity, assumed }) => quantity === name && assumed);
+    if (isScan && reply && !isChosen) {
+      if (!isAssumed("x")) chooseUnit(units[0], reply.units.lateral);
+      if (!isAssumed("z")) chooseUnit(units[1], reply.units.height);
+    }
+    said.textContent = error || isScan ? readingText(reply, error) : "";
+    changed();
+  };
+  const source = fileSource(isScan ? "scan" : "loop", text.control, query, taken, () => (isChosen = false));
+  const chosen = () => {
+    isChosen = true;
+    if (isScan) source.read();
+  };
+  /** The two columns as they were read; those of a scan of a surface are none. */
+  const pair = () => {
+    const { x, z } = found?.scan?.line ?? {};
+    return isScan ? [x ?? [], z ?? []] : [found?.loop.displacement ?? [], found?.loop.force ?? []];
+  };
+  // The power goes to the digits, so that 10 mm are 0.01 m to the last bit.
+  const inMetres = (value, power) => (value === null ? null : Number(inPower(value, -power, 17)));
+  const read = () => {
+    const values = pair();
+    return Object.fromEntries(described.map(([name], index) => [name, values[index].map((value) => inMetres(value, powers()[index]))]));
+  };
+  const scan = () => {
+    const [lateral, height] = symbols();
+    return { scan: found?.scan ?? { line: { x: [], z: [] } }, units: { lateral, height } };
+  };
   const write = ({ r, z }) => {
     const inUnit = (value, unit) => Number((value / 10 ** Number(unit.value)).toPrecision(12));
     text.control.value = r.map((radius, index) => `${inUnit(radius, units[0])}\t${inUnit(z[index], units[1])}`).join("\n");
-    changed();
+    text.control.dispatchEvent(new Event("input", { bubbles: true }));
   };
   const first = type === "tabulated" ? " The first radius is 0, unless it is a scan to be fitted." : "";
   body.append(
     text.element,
-    el("div", { class: "row" }, ...described.map(([, name], index) => el("label", {}, name, units[index]))),
+    said,
+    el("div", { class: "row", onchange: chosen }, ...described.map(([, name], index) => el("label", {}, name, units[index]))),
     el(
       "p",
       { class: "note" },
       `Paste two columns from a spreadsheet or a file; they are separated by tabs, blanks, commas or semicolons.${first}`,
     ),
   );
-  if (type === "tabulated") body.append(scanFit(text.control, scan, write));
+  if (isScan) {
+    const label = el("label", {}, "Distance of neighbours in a map, if its header does not say ", spacing);
+    body.append(el("p", { class: "row", onchange: chosen }, label), scanFit(source, scan, write));
+  }
+  form.settle(source.settled);
+  source.read();
   return read;
 }
 

@@ -2,11 +2,10 @@
 import { call } from "./api.js";
 import { Chart } from "./chart.js";
 import { el, notice } from "./dom.js";
-import { fileInput } from "./table_text.js";
 import { formatQuantity } from "./units.js";
 
-/** Controls below the text field `control` of a table. `read` gives the scan in m, `write` takes those of the profile. */
-export function scanFit(control, read, write) {
+/** Controls below a table that `source` reads. `scan` gives what it found, and `write` takes the profile. */
+export function scanFit(source, scan, write) {
   const chart = new Chart({
     name: "scan",
     title: "Scan and profile",
@@ -18,7 +17,8 @@ export function scanFit(control, read, write) {
   const said = el("p", { class: "note", id: "scan-said", "aria-live": "polite" });
   const fit = async () => {
     try {
-      const reply = await call("POST", "/profiles/fit", { scan: read() });
+      await source.settled();
+      const reply = await call("POST", "/profiles/fit", scan());
       const points = ({ radius, height }) => radius.map((r, index) => [r, height[index]]);
       chart.element.hidden = false;
       chart.draw({
@@ -36,7 +36,7 @@ export function scanFit(control, read, write) {
   return el(
     "div",
     {},
-    el("label", {}, "A scan through the axis, as a file ", fileInput(control)),
+    el("label", {}, "A scan: a line through the axis, points, or a map, as a file ", source.input),
     el("button", { type: "button", id: "fit-scan", onclick: fit }, "Fit a profile to the scan"),
     said,
     chart.element,

@@ -24,8 +24,8 @@ export function unitScale(value, unit) {
 export const powerOf = (value) => Math.round(Math.log10(unitScale(value, "").factor));
 
 /** A value in units of 10^power, as one would type it: by way of its digits, so that 0.3 µm are not 0.30000000000000004. */
-export function inPower(value, power) {
-  const [digits, own = 0] = value.toPrecision(6).split("e");
+export function inPower(value, power, precision = 6) {
+  const [digits, own = 0] = (precision > 16 ? String(value) : value.toPrecision(precision)).split("e");
   return String(Number(`${digits}e${Number(own) - power}`));
 }
 

@@ -31,6 +31,8 @@ const ENDPOINTS: &[(&str, &str, &str, u16, &[&str])] = &[
     ("POST", "/cycle", "cycle", 200, &["read", "write"]),
     ("POST", "/fretting", "fretting", 200, &["read", "write"]),
     ("POST", "/profiles/fit", "scan", 200, &["read", "write"]),
+    ("POST", "/files/scan", "file", 200, &["read", "write"]),
+    ("POST", "/files/loop", "file", 200, &["read", "write"]),
     ("POST", "/fit", "loop", 200, &["read", "write"]),
     ("POST", "/contacts", "ball", 201, &["write"]),
     ("GET", "/contacts", "", 200, &["read", "write"]),
@@ -44,6 +46,7 @@ const ENDPOINTS: &[(&str, &str, &str, u16, &[&str])] = &[
     ("POST", "/contacts/{id}/relax", "relax", 200, &["write"]),
     ("POST", "/contacts/{id}/observations", "observations", 200, &["write"]),
     ("GET", "/contacts/{id}/friction", "", 200, &["read", "write"]),
+    ("GET", "/contacts/{id}/residual", "", 200, &["read", "write"]),
     ("GET", "/contacts/{id}/stress", "", 200, &["read", "write"]),
     ("GET", "/contacts/{id}/cycle", "", 200, &["read", "write"]),
     ("POST", "/contacts/{id}/subsurface", "subsurface", 200, &["read", "write"]),
@@ -82,6 +85,7 @@ fn body(name: &str) -> Option<Value> {
         "observations" => Some(json!({"observations": [{"displacement": 1e-8, "force": 0.1}]})),
         "subsurface" => Some(json!({"body": "first", "points": [[0.0, 0.0, 1e-5]]})),
         "ball" => Some(ball()),
+        "file" => Some(json!("1;2\n3;4\n")),
         "label" => Some(json!({"label": "renamed"})),
         "move" => Some(json!({"displacement": 1e-8})),
         "sweep" => {
@@ -138,6 +142,9 @@ impl Guarded {
             call = call.header(*name, *value);
         }
         match body {
+            Some(Value::String(file)) => {
+                call.header("content-type", "text/csv").body(file.clone()).send().await.unwrap()
+            }
             Some(body) => call.json(body).send().await.unwrap(),
             None => call.send().await.unwrap(),
         }

@@ -1,4 +1,5 @@
-//! Random bodies of `POST /simulate`, `POST /cycle`, `POST /fretting` and `POST /fit`: each is answered with a reply
+//! Random bodies of `POST /simulate`, `POST /cycle`, `POST /fretting`, `POST /fit`
+//! and `POST /files`: each is answered with a reply
 //! that obeys the laws, or refused with the place of the fault. None panics.
 //!
 //! The number of cases is fixed, and case n is the same on every run and every machine. `STICKSLIP_LONG=1`, which
@@ -16,6 +17,10 @@ use crate::fretting_laws;
 use crate::harness::{Outcome, examine};
 use proptest::strategy::{Strategy, ValueTree as _};
 use proptest::test_runner::{Config, RngAlgorithm, TestCaseError, TestError, TestRng, TestRunner};
+use stickslip::computations::files;
+use stickslip_measured::import::{LoopHints, ScanHints};
+use stickslip_wire::LoopFileReply;
+use stickslip_wire::fit::MeasuredLoop;
 
 /// A case that takes longer is printed.
 const NOTABLE: Duration = Duration::from_secs(2);
@@ -148,6 +153,63 @@ fn cycles() {
 fn fretting() {
     let write = |request: &RandomFretting| request.to_json().to_string().into_bytes();
     fuzz([150, 800], crate::depth_requests::random_fretting(), write, fretting_laws::examine);
+}
+
+/// A file of words that instruments write, and of others.
+fn random_file() -> impl Strategy<Value = Vec<u8>> {
+    const WORDS: [&str; 28] = [
+        "1",
+        "-2.5e-9",
+        "0,5",
+        "1e999",
+        "nan",
+        "No Data",
+        "-",
+        "\u{2212}3",
+        ";",
+        ";",
+        "\t",
+        ",",
+        " ",
+        "\n",
+        "\n",
+        "\r\n",
+        "#",
+        "\"",
+        "x",
+        "X [um]",
+        "Force (mN)",
+        "Displacement",
+        "Zygo XYZ\n",
+        "Width: 3 um\n",
+        "Height: 2 nm\n",
+        "\u{feff}",
+        "\u{e9}",
+        "\u{0}",
+    ];
+    let words = proptest::collection::vec(proptest::sample::select(WORDS.to_vec()), 0..80);
+    let text = words.prop_map(|words| words.concat());
+    (text, 0..3_u8).prop_map(|(text, coding)| match coding {
+        0 => text.into_bytes(),
+        1 => text.encode_utf16().flat_map(u16::to_le_bytes).collect(),
+        _ => text.chars().map(|letter| u8::try_from(u32::from(letter)).unwrap_or(0xff)).collect(),
+    })
+}
+
+#[test]
+fn files_of_instruments() {
+    let examine = |bytes: &[u8]| {
+        let scan = files::scan(bytes, ScanHints { spacing: Some(1.0), ..ScanHints::default() });
+        let found = files::measured_loop(bytes, &LoopHints::default());
+        if let Ok(LoopFileReply { measured: MeasuredLoop { displacement, force, time, .. }, preview, .. }) = &found {
+            assert_eq!(displacement.len(), force.len());
+            assert!(time.as_ref().is_none_or(|time| time.len() == force.len()) && force.len() <= preview.rows);
+            assert!(displacement.iter().chain(force).all(|value| value.is_finite()));
+        }
+        if scan.is_ok() || found.is_ok() { Outcome::Answered } else { Outcome::Refused }
+    };
+    fuzz([20_000, 200_000], random_file(), Clone::clone, examine);
+    fuzz([20_000, 200_000], crate::damage::raw(), Clone::clone, examine);
 }
 
 #[test]

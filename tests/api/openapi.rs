@@ -126,7 +126,14 @@ async fn every_example_works_unchanged() {
     let server = Server::start().await;
     let mut sent = 0;
     for (path, method, operation) in operations(&document).filter(|(_, method, _)| *method == "post") {
-        let content = &operation["requestBody"]["content"]["application/json"];
+        let content = &operation["requestBody"]["content"];
+        if content["text/csv"].is_object() {
+            let text = content["text/csv"]["example"].as_str().unwrap_or_else(|| panic!("{path} has no example"));
+            sent_file(&server, path, text).await;
+            sent += 1;
+            continue;
+        }
+        let content = &content["application/json"];
         let mut examples: Vec<Value> = content["examples"]
             .as_object()
             .into_iter()
@@ -182,6 +189,14 @@ fn is_alike(one: &Value, other: &Value) -> bool {
     }
 }
 
+/// The reply to a file.
+async fn sent_file(server: &Server, path: &str, text: &str) -> Value {
+    let call = server.http.post(format!("{}{path}", server.base)).header("content-type", "text/csv");
+    let response = call.body(text.to_owned()).send().await.unwrap();
+    assert_eq!(response.status(), 200, "{path}");
+    response.json().await.unwrap()
+}
+
 /// The reply to the first example of an operation, by a server of its own.
 async fn shown_reply(document: &Value, method: &str, path: &str, operation: &Value) -> Value {
     let server = Server::start().await;
@@ -192,6 +207,9 @@ async fn shown_reply(document: &Value, method: &str, path: &str, operation: &Val
         assert!(response.status().is_success(), "{path}");
         body(&response.text().await.unwrap())
     };
+    if let Some(text) = operation["requestBody"]["content"]["text/csv"]["example"].as_str() {
+        return sent_file(&server, path, text).await;
+    }
     let schemas = &document["components"]["schemas"];
     let content = &operation["requestBody"]["content"]["application/json"];
     let named = content["examples"].as_object().and_then(|named| named.values().next());

@@ -46,7 +46,7 @@ async fn scan_a_file_of_an_instrument_becomes_the_contact_radius() {
     browser.until("document.querySelector('form select') !== null").await;
     browser.choose("Shape of the indenter", "tabulated").await;
     browser.upload("form input[type=file]", "examples/data/ball_scan.txt").await;
-    browser.until("document.querySelector('form textarea').value.includes('Lateral')").await;
+    browser.until("document.querySelector('form').innerText.includes('x is “Lateral')").await;
     browser.click("#fit-scan").await;
     browser.until("document.querySelector('#scan-said').textContent.includes('left out')").await;
     browser.picture("journey-scan").await;
@@ -70,7 +70,7 @@ async fn loop_a_file_of_a_bench_becomes_the_coefficient_of_friction() {
     open(&browser, "loop").await;
     browser.upload("#loop-card input[type=file]", "examples/data/ball_loop.csv").await;
     // Columns and units come from the header, the time too.
-    browser.until("document.querySelector('#loop-card').innerText.includes('“Force (N)” is the force')").await;
+    browser.until("document.querySelector('#loop-card').innerText.includes('The force is “Force (N)”, in N.')").await;
     browser.click("[name=machine_compliance]").await;
     browser.click("[name=drift]").await;
     browser.click("#fit-loop").await;

@@ -198,6 +198,52 @@ async fn the_frequency_response_is_drawn_with_its_backbone() {
 }
 
 #[tokio::test]
+async fn damping_and_residual_stress_have_what_the_service_can_do() {
+    let server = Binary::start(&[]);
+    let session = ball(&server).await;
+    let browser = Browser::start(1280, 900, false).await;
+    let http = reqwest::Client::new();
+    let asked = async |path: &str, body: &Value| -> Value {
+        http.post(format!("{}{path}", server.address)).json(body).send().await.unwrap().json().await.unwrap()
+    };
+    let mut contact = crate::common::ball();
+    contact["preload"] = json!({"indentation": session.contact.indentation});
+    opened(&browser, &server, &session, "/damping").await;
+    browser.click("#compute-study").await;
+    let said = "document.querySelector('#study-figures').innerText.replaceAll('\\n', ' ')";
+    let amplitude: f64 = format!("{:.2e}", 0.5 * session.contact.gross_slip_displacement).parse().unwrap();
+    let drive = json!({"displacement": amplitude});
+    let reply = asked("/cycle", &json!({"contact": contact, "drive": drive, "best_load": {}})).await;
+    let best = reply["cycles"][0]["best_load"]["normal_force"].as_f64().unwrap();
+    browser.until(&format!("{said}.includes({:?})", format!("Load that damps most {} N", four(best)))).await;
+    browser.until("document.querySelector('#plot-density .line.work') !== null").await;
+    browser.until("document.querySelector('#plot-best-load .line.work') !== null").await;
+    // Under a load that oscillates the loss is another.
+    browser.value("(document.querySelector('#study-card details').open = true) && null").await;
+    let load = "document.querySelectorAll('#study-card details input')[0]";
+    browser.value(&format!("({load}.value = '2') && null")).await;
+    browser.click("#compute-study").await;
+    browser.until("document.querySelector('#plot-density').hidden").await;
+    let body = json!({"contact": contact, "drive": drive, "normal": {"normal_force": 2.0}});
+    let loss = asked("/cycle", &body).await["cycles"][0]["loss_factor"].as_f64().unwrap();
+    browser.until(&format!("{said}.includes({:?})", format!("Loss factor {loss:.4}").trim_end_matches('0'))).await;
+    browser.picture("damping-study").await;
+
+    opened(&browser, &server, &session, "/residual").await;
+    browser.value("(document.querySelector('#search-card details').open = true) && null").await;
+    let error = "document.querySelectorAll('#search-card details input')[0]";
+    browser.value(&format!("({error}.value = '1') && null")).await;
+    browser.click("#find-protocol").await;
+    let found = "document.querySelector('#search-figures').innerText.replaceAll('\\n', ' ')";
+    let reply = asked("/protocols", &json!({"contact": contact, "target": 0.2})).await;
+    browser.until(&format!("{found}.includes('Reversals {} ')", reply["reversals"])).await;
+    browser.until(&format!("{found}.includes('In 95 of 100 trials at most')")).await;
+    browser.picture("residual-search").await;
+    browser.stayed_quiet_and_at(&server.address, &[]).await;
+    browser.close().await;
+}
+
+#[tokio::test]
 async fn a_contact_that_is_lifted_off_says_so() {
     let server = Binary::start(&[]);
     let session = ball(&server).await;

@@ -22,6 +22,7 @@ pub mod cycle;
 pub mod definition;
 pub mod document;
 pub mod event;
+pub mod files;
 pub mod fit;
 pub mod fretting;
 pub mod history;
@@ -56,6 +57,7 @@ pub use cycle::{
 pub use definition::{Body, BodyName, ContactDefinition, DefinedProfile, Effective, ElasticBody, Material, Preload};
 pub use document::{Document, read};
 pub use event::{EndEvent, EndReason, StateEvent};
+pub use files::{FileColumn, FilePreview, LoopFileReply, ScanFileReply};
 pub use fit::{FitReply, FitRequest};
 pub use fretting::{
     BulkCycle, Criteria, FatemiSocie, Findley, FrettingReply, FrettingRequest, Largest, Rating, StrainBased,

@@ -13,7 +13,7 @@ const OF_BODIES: &[Refusal] = &[
     ("400", "The body is not JSON"),
     ("408", "The body did not arrive in time"),
     ("413", "The body is too large"),
-    ("415", "The body is not declared as application/json"),
+    ("415", "The body is not declared as a media type that the operation takes"),
 ];
 
 /// Adds to every operation the refusals that it can meet, and the key that it needs.

@@ -2,10 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::computations::files;
 use clap::builder::PossibleValuesParser;
 use clap::{Args, Command};
-use stickslip_measured::import::{Force, Length, LoopHints, read_loop};
-use stickslip_wire::fit::{FitParameter, FitUnits, ForceUnit, KnownValue, KnownValues, LoopStart, MeasuredLoop};
+use stickslip_measured::import::LoopHints;
+use stickslip_wire::fit::{FitParameter, ForceUnit, KnownValue, KnownValues, LoopStart, MeasuredLoop};
 use stickslip_wire::profile_fit::LengthUnit;
 use stickslip_wire::{self as wire, ContactDefinition, FitRequest};
 
@@ -88,19 +89,16 @@ impl FitFlags {
             force: self.force.clone(),
             time: self.time.clone(),
             load: self.load.clone(),
-            displacement_unit: named(&Length::ALL, &self.displacement_unit, Length::symbol),
-            force_unit: named(&Force::ALL, &self.force_unit, Force::symbol),
+            displacement_unit: self.displacement_unit.as_deref().and_then(files::length),
+            force_unit: self.force_unit.as_deref().and_then(files::force),
         };
-        let found = read_loop(content, &hints).map_err(|error| format!("{}: {error}", file.display()))?;
-        say(file, &found.reading);
+        let found = files::measured_loop(content, &hints).map_err(|error| format!("{}: {error}", file.display()))?;
+        say(file, &found.preview.reading);
         let start = self.start.as_deref();
         let measured = MeasuredLoop {
-            displacement: found.displacement,
-            force: found.force,
-            time: found.time,
-            normal_force: self.normal_force.or(found.load),
+            normal_force: self.normal_force.or(found.measured.normal_force),
             start: start.map(|start| if start == "virgin" { LoopStart::Virgin } else { LoopStart::Steady }),
-            weight: None,
+            ..found.measured
         };
         let parameter = |name: &String| FitParameter::ALL.into_iter().find(|one| one.name() == name);
         let free: Vec<FitParameter> = self.free.iter().filter_map(parameter).collect();
@@ -111,22 +109,12 @@ impl FitFlags {
         Ok(FitRequest {
             contact,
             loops: vec![measured],
-            units: Some(FitUnits {
-                displacement: LengthUnit::ALL
-                    .into_iter()
-                    .find(|unit| unit.symbol() == found.displacement_unit.symbol()),
-                force: ForceUnit::ALL.into_iter().find(|unit| unit.symbol() == found.force_unit.symbol()),
-            }),
+            units: Some(found.units),
             free: if free.is_empty() { USUALLY_FREE.to_vec() } else { free },
             known: Some(known),
             noise: None,
         })
     }
-}
-
-/// The unit of a symbol, if one was given.
-fn named<U: Copy>(all: &[U], symbol: &Option<String>, symbol_of: fn(U) -> &'static str) -> Option<U> {
-    all.iter().copied().find(|unit| Some(symbol_of(*unit)) == symbol.as_deref())
 }
 
 /// What `NAME=VALUE` or `NAME=VALUE+-ERROR` says.

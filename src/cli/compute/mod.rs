@@ -6,7 +6,7 @@ mod fit;
 mod profile;
 mod protocol;
 
-use std::io::{IsTerminal as _, stderr};
+use std::io::{IsTerminal as _, stderr, stdout};
 use std::path::{Path, PathBuf};
 
 use clap::builder::PossibleValuesParser;
@@ -16,7 +16,8 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 use stickslip_wire::{ContactDefinition, Profile};
 
-use super::io::{fault, json, print, read, write};
+use super::io::{fault, json, parsed, print, read, write};
+use super::summary::summary;
 use crate::admission::Stop;
 use crate::computations::{About, Computation, Shown, Visitor, compute, each};
 use crate::formats::Format;
@@ -116,7 +117,7 @@ fn command(about: &About) -> Command {
                 .long("json")
                 .action(ArgAction::SetTrue)
                 .conflicts_with("format")
-                .help("Print the JSON document, and faults as JSON even on a terminal"),
+                .help("Print the JSON document in place of a summary, and faults as JSON, even on a terminal"),
         );
     if let Some(choice) = about.choice {
         let words = PossibleValuesParser::new(choice.words.iter().copied());
@@ -173,9 +174,12 @@ impl Compute {
         let shown = Shown { format, choice, indented: true };
         let reply = compute(about.name, &body.text, shown, &Stop::default())
             .map_err(|error| fault(error, wants_json || !stderr().is_terminal()))?;
+        // A document is a wall of numbers to somebody who reads it on a terminal and has not asked for it.
+        let is_read = !wants_json && named.is_none() && stdout().is_terminal();
         match (body.only, format) {
             (Some(Only::Profile), _) => print(member::<Profile>(&reply, "profile")?),
             (Some(Only::Contact), _) => print(member::<ContactDefinition>(&reply, "contact")?),
+            (None, Format::Columns) if is_read => print(summary(&parsed(&reply)?)),
             (None, Format::Columns) => print(String::from_utf8_lossy(&reply)),
             (None, _) => write(|out| out.write_all(&reply)),
         }

@@ -2,13 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::computations::files;
 use clap::builder::PossibleValuesParser;
 use clap::{Args, Command};
-use stickslip_measured::import::{Length, Places, ScanHints, read_scan};
-use stickslip_wire::limits::SCAN_POINTS;
-use stickslip_wire::profile_fit::{
-    LengthUnit, LineScan, MapScan, PointScan, ScanData, ScanLoad, ScanOrientation, ScanUnits, Smoothing,
-};
+use stickslip_measured::import::ScanHints;
+use stickslip_wire::profile_fit::{LengthUnit, ScanLoad, ScanOrientation, Smoothing};
 use stickslip_wire::{self as wire, ProfileFitRequest};
 
 use super::{Body, Flags, Only};
@@ -52,27 +50,15 @@ impl Flags for ProfileFlags {
 
 impl ProfileFlags {
     fn of_columns(&self, content: &[u8], file: &Path) -> Result<ProfileFitRequest, String> {
-        let length =
-            |symbol: &Option<String>| Length::ALL.into_iter().find(|unit| Some(unit.symbol()) == symbol.as_deref());
-        let hints = ScanHints {
-            lateral: length(&self.lateral),
-            height: length(&self.height),
-            spacing: self.spacing,
-            most: *SCAN_POINTS.end(),
-        };
-        let read_file = read_scan(content, &hints).map_err(|error| format!("{}: {error}", file.display()))?;
-        say(file, &read_file.reading);
-        let unit = |unit: Length| LengthUnit::ALL.into_iter().find(|one| one.symbol() == unit.symbol());
-        let units = ScanUnits { lateral: unit(read_file.lateral), height: unit(read_file.height) };
-        let scan = match read_file.places {
-            Places::Line { x, z } => ScanData::Line(LineScan { x, z }),
-            Places::Points { x, y, z } => ScanData::Points(PointScan { x, y, z }),
-            Places::Map { dx, dy, z } => ScanData::Map(MapScan { dx, dy, z }),
-        };
+        let unit = |symbol: &Option<String>| files::length(symbol.as_deref()?);
+        let hints =
+            ScanHints { lateral: unit(&self.lateral), height: unit(&self.height), spacing: self.spacing, most: 0 };
+        let found = files::scan(content, hints).map_err(|error| format!("{}: {error}", file.display()))?;
+        say(file, &found.preview.reading);
         let load = self.load.as_ref().map(|file| wire::parse::<ScanLoad>(&read(file)?).map_err(problem)).transpose()?;
         Ok(ProfileFitRequest {
-            scan,
-            units: Some(units),
+            scan: found.scan,
+            units: Some(found.units),
             orientation: Some(ScanOrientation::Auto),
             centre: None,
             level: None,

@@ -7,11 +7,13 @@
 
 mod encoding;
 mod loops;
+mod preview;
 mod scan;
 mod sheet;
 mod units;
 
 pub use loops::{ColumnName, LoopFile, LoopHints, read_loop};
+pub use preview::{ColumnUse, Preview};
 pub use scan::{Places, ScanFile, ScanHints, read_scan};
 pub use sheet::ImportError;
-pub use units::{Force, Length};
+pub use units::{Force, Length, Time};

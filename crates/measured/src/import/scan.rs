@@ -1,6 +1,7 @@
 //! A scan in a file: heights along a line, at points, or in a matrix.
 
 use super::encoding::decode;
+use super::preview::Preview;
 use super::sheet::{ImportError, Sheet};
 use super::units::Length;
 
@@ -16,7 +17,7 @@ pub struct ScanHints {
     pub height: Option<Length>,
     /// The distance of neighbours in a matrix, in the unit of places.
     pub spacing: Option<f64>,
-    /// The largest number of heights of a matrix; one with more is thinned. Zero: no bound.
+    /// The largest number of heights; a file with more is thinned. Zero: no bound.
     pub most: usize,
 }
 
@@ -59,8 +60,8 @@ pub struct ScanFile {
     pub lateral: Length,
     /// The unit of heights.
     pub height: Length,
-    /// What was taken for what, a sentence each.
-    pub reading: Vec<String>,
+    /// What was taken for what.
+    pub preview: Preview,
 }
 
 /// Reads a scan: two columns are x and z of a line, three are x, y and z, and more are a matrix, as Gwyddion exports
@@ -71,16 +72,14 @@ pub struct ScanFile {
 pub fn read_scan(bytes: &[u8], hints: &ScanHints) -> Result<ScanFile, ImportError> {
     let (text, encoding) = decode(bytes);
     let sheet = Sheet::parse(&text)?;
-    let mut file = match sheet.width() {
-        1 => return Err(ImportError::of_file("1 columns: give x and z of a line, or x, y and z")),
+    let preview = Preview::of(&sheet, encoding);
+    match sheet.width() {
         MOST_COLUMNS if sheet.header.first().is_some_and(|line| line.trim().starts_with("Zygo")) => {
-            zygo(&sheet, hints)?
+            zygo(&sheet, hints, preview)
         }
-        width if width <= MOST_COLUMNS => columns(&sheet, hints)?,
-        _ => matrix(&sheet, hints)?,
-    };
-    file.reading.insert(0, format!("{encoding}, {}.", sheet.format()));
-    Ok(file)
+        width if width <= MOST_COLUMNS => columns(&sheet, hints, preview),
+        _ => matrix(&sheet, hints, preview),
+    }
 }
 
 /// The unit of a column, and a sentence that says where it comes from.
@@ -96,56 +95,69 @@ fn unit_of(sheet: &Sheet, column: usize, name: &str, hint: Option<Length>) -> (L
     (unit, format!("{name} is {title}, in {}{why}.", unit.symbol()))
 }
 
-fn columns(sheet: &Sheet, hints: &ScanHints) -> Result<ScanFile, ImportError> {
+/// The rows of a list that are kept, and every how manyth that is.
+fn kept<'a>(sheet: &'a Sheet, hints: &ScanHints, preview: &mut Preview) -> Vec<(usize, &'a [Option<f64>])> {
+    let rows = sheet.lines.len();
+    let every = if hints.most == 0 { 1 } else { rows.div_ceil(hints.most).max(1) };
+    if every > 1 {
+        preview.thinned = every;
+        preview.reading.push(format!("Thinned {every} times, to {} of {rows} heights.", rows.div_ceil(every)));
+    }
+    sheet.numbered().step_by(every).collect()
+}
+
+fn place(line: usize, row: &[Option<f64>], column: usize) -> Result<f64, ImportError> {
+    row[column].ok_or_else(|| ImportError::at(line, column + 1, "a place is missing"))
+}
+
+fn columns(sheet: &Sheet, hints: &ScanHints, mut preview: Preview) -> Result<ScanFile, ImportError> {
     let last = sheet.width() - 1;
-    let place = |column: usize| {
-        let found = sheet
-            .rows
-            .iter()
-            .zip(&sheet.lines)
-            .map(|(row, line)| row[column].ok_or_else(|| ImportError::at(*line, column + 1, "a place is missing")));
-        found.collect::<Result<Vec<f64>, _>>()
-    };
-    let z = sheet.rows.iter().map(|row| row[last]).collect();
     let (lateral, of_x) = unit_of(sheet, 0, "x", hints.lateral);
     let (height, of_z) = unit_of(sheet, last, "z", hints.height);
-    let mut reading = vec![of_x, of_z];
-    let places = if last == 1 {
-        Places::Line { x: place(0)?, z }
-    } else {
+    let is_assumed = |column, hint: Option<Length>| hint.or(sheet.unit(column, Length::named)).is_none();
+    preview.take(0, "x", lateral.symbol(), is_assumed(0, hints.lateral));
+    preview.take(last, "z", height.symbol(), is_assumed(last, hints.height));
+    preview.reading.push(of_x);
+    if last == 2 {
         let (other, of_y) = unit_of(sheet, 1, "y", hints.lateral);
         if other != lateral {
             let units = format!("x is in {} and y in {}: give one unit of places", lateral.symbol(), other.symbol());
             return Err(ImportError::of_file(units));
         }
-        reading.insert(1, of_y);
-        Places::Points { x: place(0)?, y: place(1)?, z }
-    };
-    Ok(ScanFile { places, lateral, height, reading })
+        preview.take(1, "y", lateral.symbol(), is_assumed(1, hints.lateral));
+        preview.reading.push(of_y);
+    }
+    preview.reading.push(of_z);
+    let rows = kept(sheet, hints, &mut preview);
+    let axis = |column: usize| rows.iter().map(|(line, row)| place(*line, row, column)).collect::<Result<Vec<_>, _>>();
+    let z = rows.iter().map(|(_, row)| row[last]).collect();
+    let places =
+        if last == 1 { Places::Line { x: axis(0)?, z } } else { Places::Points { x: axis(0)?, y: axis(1)?, z } };
+    Ok(ScanFile { places, lateral, height, preview })
 }
 
 /// A text of Zygo's MetroPro: pixels and heights in micrometres; the seventh number of the eighth line is the size of a
 /// pixel in metres.
-fn zygo(sheet: &Sheet, hints: &ScanHints) -> Result<ScanFile, ImportError> {
+fn zygo(sheet: &Sheet, hints: &ScanHints, mut preview: Preview) -> Result<ScanFile, ImportError> {
     let size = sheet.header.get(7).and_then(|line| line.split_whitespace().nth(6)?.parse::<f64>().ok());
     let in_hint = hints.spacing.map(|spacing| spacing * hints.lateral.unwrap_or(Length::Metre).factor());
     let pixel = in_hint.or(size.filter(|size| *size > 0.0)).ok_or_else(|| {
         ImportError::of_file("the size of a pixel is not in the header of this export: give the distance of neighbours")
     })?;
-    let place = |column: usize| {
-        let found = sheet.rows.iter().zip(&sheet.lines).map(|(row, line)| {
-            let index = row[column].ok_or_else(|| ImportError::at(*line, column + 1, "a place is missing"))?;
-            Ok(pixel * index)
-        });
-        found.collect::<Result<Vec<f64>, ImportError>>()
-    };
-    let z = sheet.rows.iter().map(|row| row[2]).collect();
     let height = hints.height.unwrap_or(Length::Micrometre);
-    let reading = vec![
-        format!("Zygo's text format: x and y are pixels of {:.6} um.", pixel / Length::Micrometre.factor()),
-        format!("z is column 3, in {}.", height.symbol()),
-    ];
-    Ok(ScanFile { places: Places::Points { x: place(0)?, y: place(1)?, z }, lateral: Length::Metre, height, reading })
+    let micrometres = pixel / Length::Micrometre.factor();
+    preview.reading.push(format!("Zygo's text format: x and y are pixels of {micrometres:.6} um."));
+    preview.reading.push(format!("z is column 3, in {}.", height.symbol()));
+    for (column, quantity) in ["x", "y"].into_iter().enumerate() {
+        preview.take(column, quantity, "pixel", false);
+    }
+    preview.take(2, "z", height.symbol(), false);
+    let rows = kept(sheet, hints, &mut preview);
+    let axis = |column: usize| {
+        rows.iter().map(|(line, row)| Ok(pixel * place(*line, row, column)?)).collect::<Result<Vec<_>, ImportError>>()
+    };
+    let z = rows.iter().map(|(_, row)| row[2]).collect();
+    Ok(ScanFile { places: Places::Points { x: axis(0)?, y: axis(1)?, z }, lateral: Length::Metre, height, preview })
 }
 
 /// A number and a unit behind a name in the header, as in `Width: 10.0 um`.
@@ -157,8 +169,8 @@ fn measure(sheet: &Sheet, name: &str) -> Option<(f64, Length)> {
 }
 
 /// A matrix of heights: its size from the header, or the distance of neighbours from a hint.
-fn matrix(sheet: &Sheet, hints: &ScanHints) -> Result<ScanFile, ImportError> {
-    let (rows, width) = (sheet.rows.len(), sheet.width());
+fn matrix(sheet: &Sheet, hints: &ScanHints, mut preview: Preview) -> Result<ScanFile, ImportError> {
+    let (rows, width) = (sheet.lines.len(), sheet.width());
     let (lateral, dx, dy, why) = match (hints.spacing, measure(sheet, "Width"), measure(sheet, "Height")) {
         (Some(spacing), ..) => {
             let unit = hints.lateral.unwrap_or(Length::Metre);
@@ -177,16 +189,18 @@ fn matrix(sheet: &Sheet, hints: &ScanHints) -> Result<ScanFile, ImportError> {
     };
     let said = sheet.header.iter().find_map(|line| line.trim().strip_prefix("Value units"));
     let height = hints.height.or_else(|| Length::named(said?)).unwrap_or(Length::Metre);
-    let mut reading = vec![format!("A matrix of {width} x {rows} heights in {}.", height.symbol()), why];
+    preview.reading.push(format!("A matrix of {width} x {rows} heights in {}.", height.symbol()));
+    preview.reading.push(why);
     let every = thinning(width, rows, hints.most);
     let z: Vec<Vec<Option<f64>>> =
-        sheet.rows.iter().step_by(every).map(|row| row.iter().copied().step_by(every).collect()).collect();
+        sheet.rows().step_by(every).map(|row| row.iter().copied().step_by(every).collect()).collect();
     if every > 1 {
         let kept = format!("{} x {}", z[0].len(), z.len());
-        reading.push(format!("Thinned {every} times along both sides, to {kept} heights."));
+        preview.thinned = every;
+        preview.reading.push(format!("Thinned {every} times along both sides, to {kept} heights."));
     }
     let step = every as f64;
-    Ok(ScanFile { places: Places::Map { dx: step * dx, dy: step * dy, z }, lateral, height, reading })
+    Ok(ScanFile { places: Places::Map { dx: step * dx, dy: step * dy, z }, lateral, height, preview })
 }
 
 /// The smallest step with which a matrix has no more heights than that.
@@ -197,7 +211,7 @@ fn thinning(width: usize, rows: usize, most: usize) -> usize {
 
 #[cfg(test)]
 mod tests {
-    use super::{Length, Places, ScanFile, ScanHints, read_scan};
+    use super::{Length, Places, Preview, ScanFile, ScanHints, read_scan};
 
     fn read(text: &str) -> ScanFile {
         read_scan(text.as_bytes(), &ScanHints::default()).unwrap_or_else(|error| panic!("{text}: {error}"))
@@ -228,21 +242,25 @@ mod tests {
         }
         let commented = read("Line profile of 3 mm;Stylus of 2 mm\nX [um];Z [nm]\n1;2\n");
         assert_eq!((commented.lateral, commented.height), (Length::Micrometre, Length::Nanometre));
-        assert!(commented.reading.iter().any(|line| line.contains("`X [um]`")), "{:?}", commented.reading);
+        assert!(
+            commented.preview.reading.iter().any(|line| line.contains("`X [um]`")),
+            "{:?}",
+            commented.preview.reading
+        );
         let plain = read("1;2\n");
         assert_eq!((plain.lateral, plain.height), (Length::Metre, Length::Metre));
-        assert!(plain.reading[1].contains("because nothing names another unit"), "{:?}", plain.reading);
+        assert!(plain.preview.reading[1].contains("because nothing names another unit"), "{:?}", plain.preview.reading);
         let hints = ScanHints { height: Some(Length::Millimetre), ..ScanHints::default() };
         let hinted = read_scan(b"X [um];Z [nm]\n1;2\n", &hints).unwrap();
         assert_eq!((hinted.lateral, hinted.height), (Length::Micrometre, Length::Millimetre));
-        assert!(hinted.reading[2].contains("as was asked, and not in nm"), "{:?}", hinted.reading);
+        assert!(hinted.preview.reading[2].contains("as was asked, and not in nm"), "{:?}", hinted.preview.reading);
     }
 
     #[test]
     fn what_is_no_table_is_refused_by_line_and_column() {
         for (text, said) in [
             ("x,z\n1,2\n3,4,5\n", "line 3 has 3 columns, and the first 2"),
-            ("1;2\n3;four\n", "line 2 is not a row of numbers: column 2 has `four`"),
+            ("1;2\n3;four\n", "line 2, column 2: `four` is not a number"),
             ("a header\n", "no rows"),
             ("1\n2\n", "1 columns"),
             ("1,2\n,2\n", "line 2, column 1: a place is missing"),
@@ -268,9 +286,33 @@ mod tests {
         assert!((dx - 4.0).abs() < 1e-12 && (dy - 6.0).abs() < 1e-12 && (z.len(), z[0].len()) == (2, 4));
         assert_eq!(z[1][1], Some(4e-9));
         assert!(
-            thinned.reading.last().unwrap().contains("Thinned 2 times along both sides, to 4 x 2 heights"),
+            thinned.preview.reading.last().unwrap().contains("Thinned 2 times along both sides, to 4 x 2 heights"),
             "{:?}",
-            thinned.reading
+            thinned.preview.reading
+        );
+    }
+
+    #[test]
+    fn a_list_over_the_limit_is_thinned_and_says_so() {
+        let text: String = (0..10).map(|index| format!("{index};{index}\n")).collect();
+        let file = read_scan(text.as_bytes(), &ScanHints { most: 4, ..ScanHints::default() }).unwrap();
+        assert_eq!(
+            file.places,
+            Places::Line { x: vec![0.0, 3.0, 6.0, 9.0], z: [0.0, 3.0, 6.0, 9.0].map(Some).to_vec() }
+        );
+        assert_eq!(file.preview.thinned, 3);
+        assert_eq!(file.preview.reading.last().unwrap(), "Thinned 3 times, to 4 of 10 heights.");
+    }
+
+    #[test]
+    fn a_preview_says_how_the_file_is_written() {
+        let Preview { encoding, separator, has_decimal_commas, rows, header, columns, .. } =
+            read("Line 7\nX [um];Z [nm]\n12\n1,5;2\n3,5;No Data\n").preview;
+        assert_eq!((encoding, separator, has_decimal_commas, rows), ("UTF-8", "semicolon", true, 2));
+        assert_eq!(header, ["Line 7", "X [um];Z [nm]", "12"]);
+        assert_eq!(
+            columns.iter().map(|column| column.name.as_deref()).collect::<Vec<_>>(),
+            [Some("X [um]"), Some("Z [nm]")]
         );
     }
 

@@ -1,11 +1,23 @@
 //! Columns of numbers in a text, with the lines before them.
 
-use super::units::is_symbol;
+use std::borrow::Cow;
 use std::fmt;
+
+use super::units::is_symbol;
+
+/// Lines before the numbers; a text with more has none.
+const MOST_HEADER: usize = 10_000;
+/// Lines above the numbers that may name the columns.
+const NAMING: usize = 100;
 
 /// Marks of a missing number, in lower case.
 const MISSING: [&str; 13] =
     ["", "nan", "null", "bad", "---", "nodata", "n/a", "na", "#n/a", "*****", "missing", "void", "invalid"];
+
+/// The mark with a blank in it.
+const NO_DATA: &str = "no data";
+/// Why a single column is no scan and no loop.
+const ONE_COLUMN: &str = "1 columns: a scan has x and z or x, y and z, and a loop displacement and force";
 
 /// What is wrong with a file, and where.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -44,11 +56,13 @@ impl std::error::Error for ImportError {}
 pub(super) struct Sheet {
     /// The lines before the numbers, without the marks of a comment.
     pub(super) header: Vec<String>,
-    /// Rows of as many numbers each; `None` is a missing one.
-    pub(super) rows: Vec<Vec<Option<f64>>>,
+    /// The numbers row by row; `None` is a missing one.
+    cells: Vec<Option<f64>>,
+    /// How many columns there are.
+    width: usize,
     /// The line of each row, from 1 on.
     pub(super) lines: Vec<usize>,
-    /// How the first row separates its numbers, in words.
+    /// What separates the numbers of the first row: `semicolon`, `tab`, `white_space` or `comma`.
     pub(super) separator: &'static str,
     /// Whether numbers have decimal commas.
     pub(super) has_decimal_commas: bool,
@@ -57,53 +71,87 @@ pub(super) struct Sheet {
 impl Sheet {
     /// The table in a text.
     pub(super) fn parse(text: &str) -> Result<Sheet, ImportError> {
-        let (header, rows, lines) = (Vec::new(), Vec::new(), Vec::new());
-        let mut sheet = Sheet { header, rows, lines, separator: "", has_decimal_commas: false };
+        let mut sheet = Sheet {
+            header: Vec::new(),
+            cells: Vec::new(),
+            width: 0,
+            lines: Vec::new(),
+            separator: "",
+            has_decimal_commas: false,
+        };
+        let mut has_column = false;
         // What stands before a line with a number sign alone is a header, whatever numbers it has.
         let begin = text.lines().position(|line| line.trim() == "#").map_or(0, |index| index + 1);
         for (index, line) in text.lines().enumerate() {
             let line = line.trim_matches([' ', '\r', '\u{feff}']);
             let is_comment = line.starts_with(['#', '%']);
-            if line.trim().is_empty() || (is_comment && !sheet.rows.is_empty()) {
+            if line.trim().is_empty() || (is_comment && sheet.width > 0) {
                 continue;
             }
             let cells = Cells::of(line);
             let numbers = if is_comment || index < begin { Err(0) } else { cells.numbers() };
             match numbers {
-                Ok(row) if sheet.rows.is_empty() || row.len() == sheet.width() => {
-                    if sheet.rows.is_empty() {
-                        sheet.separator = cells.separator;
+                // Before the numbers, a number alone is a count or a size.
+                Ok(row) if row.len() > 1 && (sheet.width == 0 || row.len() == sheet.width) => {
+                    if sheet.width == 0 {
+                        (sheet.width, sheet.separator) = (row.len(), cells.separator);
                     }
                     sheet.has_decimal_commas |= cells.has_decimal_commas;
-                    sheet.rows.push(row);
+                    sheet.cells.extend(row);
                     sheet.lines.push(index + 1);
                 }
-                Ok(row) => {
-                    let fault = format!("has {} columns, and the first {}", row.len(), sheet.width());
+                Ok(row) if sheet.width > 0 => {
+                    let fault = format!("has {} columns, and the first {}", row.len(), sheet.width);
                     return Err(ImportError { line: Some(index + 1), column: None, fault });
                 }
-                Err(_) if sheet.rows.is_empty() => sheet.header.push(line.trim_start_matches(['#', '%']).to_owned()),
+                _ if sheet.width == 0 => {
+                    has_column |= numbers.is_ok();
+                    if sheet.header.len() == MOST_HEADER {
+                        break;
+                    }
+                    sheet.header.push(line.trim_start_matches(['#', '%']).to_owned());
+                }
                 // A mark of the end, after the numbers.
-                Err(_) if line == "#" => {}
+                _ if line == "#" => {}
+                Ok(_) => {}
                 Err(column) => {
-                    let cell = cells.fields.get(column).map_or("", String::as_str);
-                    let fault = format!("is not a row of numbers: column {} has `{cell:.40}`", column + 1);
-                    return Err(ImportError { line: Some(index + 1), column: None, fault });
+                    let cell = cells.fields.get(column).map_or("", Cow::as_ref);
+                    let fault = format!("`{cell:.40}` is not a number");
+                    return Err(ImportError::at(index + 1, column + 1, fault));
                 }
             }
         }
-        if sheet.rows.is_empty() { Err(ImportError::of_file("there are no rows of numbers")) } else { Ok(sheet) }
+        match sheet.width {
+            0 if has_column => Err(ImportError::of_file(ONE_COLUMN)),
+            0 => Err(ImportError::of_file("there are no rows of numbers")),
+            _ => Ok(sheet),
+        }
     }
 
     /// How many columns there are.
     pub(super) fn width(&self) -> usize {
-        self.rows.first().map_or(0, Vec::len)
+        self.width
+    }
+
+    /// The rows.
+    pub(super) fn rows(&self) -> impl Iterator<Item = &[Option<f64>]> {
+        self.cells.chunks_exact(self.width.max(1))
+    }
+
+    /// The rows, with the line of each.
+    pub(super) fn numbered(&self) -> impl Iterator<Item = (usize, &[Option<f64>])> {
+        self.lines.iter().copied().zip(self.rows())
     }
 
     /// The cells of each line of the header that has as many as there are columns, the line above the numbers first:
     /// what stands further up is more likely a comment.
     pub(super) fn names(&self) -> impl Iterator<Item = Vec<String>> {
-        self.header.iter().rev().map(|line| Cells::of_names(line)).filter(|names| names.len() == self.width())
+        self.header
+            .iter()
+            .rev()
+            .take(NAMING)
+            .map(|line| Cells::of_names(line))
+            .filter(|names| names.len() == self.width())
     }
 
     /// The name of a column in the header, as it stands there.
@@ -119,60 +167,69 @@ impl Sheet {
     /// How the numbers are written, in words.
     pub(super) fn format(&self) -> String {
         let point = if self.has_decimal_commas { "decimal commas" } else { "decimal points" };
-        format!("{} rows of {} columns, {}, {point}", self.rows.len(), self.width(), self.separator)
+        let separator = match self.separator {
+            "semicolon" => "semicolons",
+            "tab" => "tabulators",
+            "comma" => "commas",
+            _ => "white space",
+        };
+        format!("{} rows of {} columns, separated by {separator}, {point}", self.lines.len(), self.width)
     }
 }
 
 /// A line, split.
-struct Cells {
-    fields: Vec<String>,
+struct Cells<'a> {
+    fields: Vec<Cow<'a, str>>,
     separator: &'static str,
     has_decimal_commas: bool,
 }
 
-impl Cells {
+impl<'a> Cells<'a> {
     /// The cells of a line of numbers.
-    fn of(line: &str) -> Cells {
-        // The one mark of a missing number that has a blank in it.
-        let lower = line.to_ascii_lowercase();
-        let joined = if lower.contains("no data") { lower.replace("no data", "nodata") } else { line.to_owned() };
-        let words: Vec<&str> = joined.split_whitespace().collect();
-        let is_spaced = words.len() > 1 && words.iter().all(|word| !word.ends_with(',') && !word.starts_with(','));
-        let (fields, separator): (Vec<&str>, _) = if joined.contains(';') {
-            (joined.split(';').collect(), "separated by semicolons")
-        } else if joined.contains('\t') {
-            (joined.split('\t').collect(), "separated by tabulators")
-        } else if is_spaced {
-            (words, "separated by white space")
+    fn of(line: &'a str) -> Cells<'a> {
+        if let Some(joined) = without_blanks(line) {
+            let Cells { fields, separator, has_decimal_commas } = Cells::of(&joined);
+            let fields = fields.into_iter().map(|field| Cow::Owned(field.into_owned())).collect();
+            return Cells { fields, separator, has_decimal_commas };
+        }
+        let (fields, separator): (Vec<&str>, _) = if line.contains(';') {
+            (line.split(';').collect(), "semicolon")
+        } else if line.contains('\t') {
+            (line.split('\t').collect(), "tab")
         } else {
-            return Cells {
-                fields: joined.split(',').map(trimmed).collect(),
-                separator: "separated by commas",
-                has_decimal_commas: false,
-            };
+            let words: Vec<&str> = line.split_whitespace().collect();
+            if words.len() < 2 || words.iter().any(|word| word.ends_with(',') || word.starts_with(',')) {
+                let fields = line.split(',').map(|field| Cow::Borrowed(trimmed(field))).collect();
+                return Cells { fields, separator: "comma", has_decimal_commas: false };
+            }
+            (words, "white_space")
         };
         let has_decimal_commas = fields.iter().any(|field| field.contains(','));
-        let fields = fields.into_iter().map(|field| trimmed(field).replace(',', ".")).collect();
-        Cells { fields, separator, has_decimal_commas }
+        let pointed = |field: &'a str| match trimmed(field) {
+            field if field.contains(',') => Cow::Owned(field.replace(',', ".")),
+            field => Cow::Borrowed(field),
+        };
+        Cells { fields: fields.into_iter().map(pointed).collect(), separator, has_decimal_commas }
     }
 
     /// The cells of a line of names.
     fn of_names(line: &str) -> Vec<String> {
         let separator = [';', '\t', ','].into_iter().find(|separator| line.contains(*separator));
         match separator {
-            Some(separator) => line.split(separator).map(trimmed).collect(),
+            Some(separator) => line.split(separator).map(|name| trimmed(name).to_owned()).collect(),
             None => words_with_units(line),
         }
     }
 
     /// The numbers of the cells, or the index of the first that is none. A line of marks alone has none.
     fn numbers(&self) -> Result<Vec<Option<f64>>, usize> {
-        let value = |(index, field): (usize, &String)| {
-            if MISSING.contains(&field.to_lowercase().as_str()) {
-                return Ok(None);
-            }
-            let number = field.replace('−', "-").parse().ok().filter(|value: &f64| value.is_finite());
-            number.map(Some).ok_or(index)
+        let value = |(index, field): (usize, &Cow<'_, str>)| match field.parse::<f64>() {
+            Ok(value) if value.is_finite() => Ok(Some(value)),
+            _ if MISSING.contains(&field.to_lowercase().as_str()) => Ok(None),
+            _ => match field.replace('−', "-").parse::<f64>() {
+                Ok(value) if value.is_finite() => Ok(Some(value)),
+                _ => Err(index),
+            },
         };
         let row: Vec<Option<f64>> = self.fields.iter().enumerate().map(value).collect::<Result<_, _>>()?;
         if row.iter().any(Option::is_some) { Ok(row) } else { Err(0) }
@@ -191,6 +248,24 @@ fn words_with_units(line: &str) -> Vec<String> {
     names
 }
 
-fn trimmed(cell: &str) -> String {
-    cell.trim().trim_matches('"').to_owned()
+fn trimmed(cell: &str) -> &str {
+    cell.trim().trim_matches('"')
+}
+
+/// A line whose marks of missing numbers have no blank in them any more, if it has such marks, in whatever case.
+fn without_blanks(line: &str) -> Option<String> {
+    let find = |text: &str| {
+        let is_mark = |place: &usize| {
+            let mark = text.as_bytes().get(*place..*place + NO_DATA.len());
+            mark.is_some_and(|mark| mark.eq_ignore_ascii_case(NO_DATA.as_bytes()))
+        };
+        text.match_indices(['n', 'N']).map(|(place, _)| place).find(is_mark)
+    };
+    let (mut joined, mut rest) = (String::new(), line);
+    while let Some(place) = find(rest) {
+        joined.push_str(&rest[..place]);
+        joined.push_str("nodata");
+        rest = &rest[place + NO_DATA.len()..];
+    }
+    (!joined.is_empty()).then(|| joined + rest)
 }

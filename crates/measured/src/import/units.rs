@@ -59,10 +59,22 @@ unit! {
     }
 }
 
+unit! {
+    /// Units of time.
+    Time {
+        Second "s" 0 "s" | "sec" | "seconds",
+        Millisecond "ms" -3 "ms" | "msec" | "milliseconds",
+        Microsecond "us" -6 "us",
+        Nanosecond "ns" -9 "ns",
+    }
+}
+
 /// Whether a cell is the symbol of a unit and nothing else.
 pub(super) fn is_symbol(cell: &str) -> bool {
     let cell = cell.replace(['µ', 'μ'], "u");
-    Length::ALL.iter().any(|unit| unit.symbol() == cell) || Force::ALL.iter().any(|unit| unit.symbol() == cell)
+    Length::ALL.iter().any(|unit| unit.symbol() == cell)
+        || Force::ALL.iter().any(|unit| unit.symbol() == cell)
+        || Time::ALL.iter().any(|unit| unit.symbol() == cell)
 }
 
 #[cfg(test)]

@@ -1,0 +1,142 @@
+//! `/files`: what a file of an instrument has, for other computations. Nothing is stored.
+
+use std::sync::Arc;
+
+use axum::extract::State;
+use axum::response::Response;
+use serde::Serialize;
+
+use stickslip_measured::import::{ImportError, LoopHints, ScanHints};
+use stickslip_mechanics::range::{Quantity, Range};
+use stickslip_wire::limits::Characters;
+use stickslip_wire::{LoopFileReply, ScanFileReply};
+
+use crate::api::extract::FileBody;
+use crate::api::parameters::{Parameters as _, QueryReader, Text, Words, number, parameters};
+use crate::api::problem::{Code, Problem};
+use crate::api::query::{CheckedQuery, QueryParams};
+use crate::api::reply;
+use crate::api::state::App;
+use crate::computations::files;
+use crate::formats;
+
+/// The symbols of units of length and force.
+const LENGTHS: Words = Words(&["m", "mm", "um", "nm"]);
+const FORCES: Words = Words(&["N", "mN", "uN", "kN"]);
+/// A column by its name or number.
+const COLUMN: Text = Text(Characters(100));
+/// The distance of neighbours in a matrix, in its unit.
+const SPACING: Range = Range { quantity: Quantity::Place, unit: "", min: 1e-9, max: 1e9 };
+
+parameters! {
+    /// What is known of a scan beside its file.
+    pub struct ScanFileQuery {
+        /// The unit of places; without it the one that the header names, or m.
+        lateral: Option<&'static str> = LENGTHS;
+        /// The unit of heights, likewise.
+        height: Option<&'static str> = LENGTHS;
+        /// The distance of neighbours in a matrix of heights, in the unit of places; without it that of the header.
+        spacing: Option<f64> = number(&SPACING).checked();
+    }
+}
+
+parameters! {
+    /// What is known of a loop beside its file.
+    pub struct LoopFileQuery {
+        /// The column of displacements, by its number from 1 on or the beginning of its name in the header; without it
+        /// the one that is called so, or the first of two.
+        displacement: Option<String> = COLUMN;
+        /// The column of forces, likewise; the second of two.
+        force: Option<String> = COLUMN;
+        /// The column of times; without it the one that is called so, if its times rise.
+        time: Option<String> = COLUMN;
+        /// The column of loads, whose mean is the load if they are constant; without it the one that is called so.
+        load: Option<String> = COLUMN;
+        /// The unit of displacements; without it the one that the header names, or m.
+        displacement_unit: Option<&'static str> = LENGTHS;
+        /// The unit of forces; without it the one that the header names, or N.
+        force_unit: Option<&'static str> = FORCES;
+    }
+}
+
+impl QueryParams for ScanHints {
+    fn take(query: &mut QueryReader, _: &axum::http::HeaderMap) -> Option<ScanHints> {
+        let ScanFileQuery { lateral, height, spacing } = ScanFileQuery::read(query);
+        let [lateral, height] = [lateral, height].map(|symbol| files::length(symbol?));
+        Some(ScanHints { lateral, height, spacing, most: 0 })
+    }
+}
+
+impl QueryParams for LoopHints {
+    fn take(query: &mut QueryReader, _: &axum::http::HeaderMap) -> Option<LoopHints> {
+        let LoopFileQuery { displacement, force, time, load, displacement_unit, force_unit } =
+            LoopFileQuery::read(query);
+        Some(LoopHints {
+            displacement,
+            force,
+            time,
+            load,
+            displacement_unit: displacement_unit.and_then(files::length),
+            force_unit: force_unit.and_then(files::force),
+        })
+    }
+}
+
+/// Read a scan from a file
+///
+/// Takes a file of an instrument as it is, and replies with the members of the body of `POST /profiles/fit`, and with
+/// what was taken for what. Two columns are x and z of a line, three are x, y and z, and more are a matrix, as Gwyddion
+/// exports it; Zygo's text format is known by its first line. A file with more heights than a scan may have is thinned.
+#[utoipa::path(
+    post, path = "/files/scan", tag = "simulation", params(ScanFileQuery),
+    request_body(content(
+        (String = "text/csv", example = json!("X [um];Z [nm]\n-20;-20\n0;0\n20;-20\n")),
+        (String = "text/plain"), (String = "application/octet-stream"))),
+    responses((status = 200, description = "The scan, and how the file was read", body = ScanFileReply))
+)]
+pub async fn read_scan_file(
+    State(app): State<Arc<App>>,
+    query: Result<CheckedQuery<ScanHints>, Problem>,
+    body: FileBody,
+) -> Result<Response, Problem> {
+    let CheckedQuery(hints) = query?;
+    answer(&app, body, move |bytes| files::scan(bytes, hints)).await
+}
+
+/// Read a measured loop from a file
+///
+/// Takes a file of a bench as it is, with a row for each point, and replies with one of the `loops` of the body of
+/// `POST /fit`, its `units`, and what was taken for what. Columns and units are found by the header.
+#[utoipa::path(
+    post, path = "/files/loop", tag = "simulation", params(LoopFileQuery),
+    request_body(content(
+        (String = "text/csv", example = json!("Displacement (um);Force (mN)\n0;0\n0,5;120\n0;-80\n")),
+        (String = "text/plain"), (String = "application/octet-stream"))),
+    responses((status = 200, description = "The loop, and how the file was read", body = LoopFileReply))
+)]
+pub async fn read_loop_file(
+    State(app): State<Arc<App>>,
+    query: Result<CheckedQuery<LoopHints>, Problem>,
+    body: FileBody,
+) -> Result<Response, Problem> {
+    let CheckedQuery(hints) = query?;
+    answer(&app, body, move |bytes| files::measured_loop(bytes, &hints)).await
+}
+
+async fn answer<R: Serialize>(
+    app: &App,
+    FileBody { bytes, held }: FileBody,
+    read: impl FnOnce(&[u8]) -> Result<R, ImportError> + Send + 'static,
+) -> Result<Response, Problem> {
+    let cost = files::cost(bytes.len());
+    let work = move || Ok::<_, Problem>(formats::json(bytes.len(), &read(&bytes).map_err(problem)?)?);
+    let text = app.pool.run(cost, work).await??;
+    Ok(held.on(reply::json(text)))
+}
+
+/// What is wrong with a file, at its line and column from 1 on.
+fn problem(error: ImportError) -> Problem {
+    let place = |name: &str, number: Option<usize>| number.map_or_else(String::new, |at| format!("/{name}/{at}"));
+    let pointer = place("line", error.line) + &place("column", error.column);
+    Problem::at(Code::InvalidInput, pointer, error.to_string())
+}

@@ -1,0 +1,48 @@
+//! `/contacts/{id}/residual`: the extrema of the shear stress in the present state of a contact.
+
+use axum::http::HeaderMap;
+use axum::response::Response;
+
+use stickslip_wire::{Faults, Field, JsonPath, Residual, StressRequest};
+
+use crate::api::computations;
+use crate::api::formats::Format;
+use crate::api::parameters::{Formats, parameters};
+use crate::api::params::ContactPath;
+use crate::api::problem::Problem;
+use crate::api::query::CheckedQuery;
+use crate::api::state::TenantApp;
+use crate::computations::ResidualTask;
+
+/// Radii between which a plot has the shear stress.
+const PLOT_RADII: usize = 1_000;
+
+parameters! {
+    /// How the extrema are shown.
+    pub struct ResidualQuery {
+        /// `columns` (this document), or a row for each extremum with its radius, shear stress and kind (`maximum` or
+        /// `minimum`), as `rows` (a JSON array of flat objects), `csv`, `ndjson` or `arrow` (an Arrow IPC stream), or a
+        /// plot as `svg` or `png`. If it is left out, `Accept` decides.
+        format: Option<Format> = Formats(&Format::ALL);
+    }
+}
+
+/// Get the residual stress of a contact
+///
+/// All extrema of the shear stress in its present state, at their exact positions.
+#[utoipa::path(
+    get, path = "/contacts/{id}/residual", tag = "contacts", params(ContactPath, ResidualQuery),
+    responses((status = 200, description = "The extrema of the shear stress in its present state", body = Residual,
+        headers(("ETag" = String, description = "The sequence that they belong to, in quotes"))))
+)]
+pub async fn get_residual(
+    TenantApp(app): TenantApp,
+    ContactPath { id }: ContactPath,
+    headers: HeaderMap,
+    CheckedQuery(ResidualQuery { format }): CheckedQuery<ResidualQuery>,
+) -> Result<Response, Problem> {
+    let is_plot = Format::chosen(format, &headers, &Format::ALL)?.is_plot();
+    let request = StressRequest { points: Some(PLOT_RADII), radii: None, fields: Some(vec![Field::Shear]) };
+    let between = is_plot.then(|| request.check(JsonPath::Root, &mut Faults::default())).flatten();
+    computations::get_of_contact(&app, id, &headers, format, ResidualTask { id, between }).await
+}

@@ -1,0 +1,94 @@
+//! Files of instruments as the documents that other computations take.
+
+use stickslip_measured::import::{
+    ColumnUse, Force, ImportError, Length, LoopHints, Places, Preview, ScanHints, read_loop, read_scan,
+};
+use stickslip_wire::fit::{FitUnits, ForceUnit, MeasuredLoop};
+use stickslip_wire::profile_fit::{LengthUnit, LineScan, MapScan, PointScan, ScanData, ScanUnits};
+use stickslip_wire::{FileColumn, FilePreview, LoopFileReply, ScanFileReply, limits};
+
+use crate::admission::Nanoseconds;
+
+/// Bytes that a byte of a file may become: a short number with its separator, as a cell, in a column and as JSON, in
+/// texts and columns that grow by doubling.
+pub const EXPANSION: usize = 32;
+/// The time that a byte of a file takes.
+const BYTE_COST: Nanoseconds = 100;
+
+/// The time that reading so many bytes takes.
+#[must_use]
+pub fn cost(bytes: usize) -> Nanoseconds {
+    BYTE_COST.saturating_mul(bytes as u64)
+}
+
+/// The document of a scan, thinned to as many heights as one may have.
+///
+/// # Errors
+/// [`ImportError`], by line and column.
+pub fn scan(bytes: &[u8], hints: ScanHints) -> Result<ScanFileReply, ImportError> {
+    let found = read_scan(bytes, &ScanHints { most: *limits::SCAN_POINTS.end(), ..hints })?;
+    let scan = match found.places {
+        Places::Line { x, z } => ScanData::Line(LineScan { x, z }),
+        Places::Points { x, y, z } => ScanData::Points(PointScan { x, y, z }),
+        Places::Map { dx, dy, z } => ScanData::Map(MapScan { dx, dy, z }),
+    };
+    let units = ScanUnits { lateral: length_unit(found.lateral), height: length_unit(found.height) };
+    Ok(ScanFileReply { scan, units, preview: preview(found.preview) })
+}
+
+/// The document of a loop.
+///
+/// # Errors
+/// [`ImportError`], by line and column.
+pub fn measured_loop(bytes: &[u8], hints: &LoopHints) -> Result<LoopFileReply, ImportError> {
+    let found = read_loop(bytes, hints)?;
+    let measured = MeasuredLoop {
+        displacement: found.displacement,
+        force: found.force,
+        time: found.time,
+        normal_force: found.load,
+        start: None,
+        weight: None,
+    };
+    let units = FitUnits { displacement: length_unit(found.displacement_unit), force: force_unit(found.force_unit) };
+    Ok(LoopFileReply { measured, units, preview: preview(found.preview) })
+}
+
+/// The unit of length of this symbol.
+#[must_use]
+pub fn length(symbol: &str) -> Option<Length> {
+    Length::ALL.into_iter().find(|unit| unit.symbol() == symbol)
+}
+
+/// The unit of force of this symbol.
+#[must_use]
+pub fn force(symbol: &str) -> Option<Force> {
+    Force::ALL.into_iter().find(|unit| unit.symbol() == symbol)
+}
+
+fn length_unit(unit: Length) -> Option<LengthUnit> {
+    LengthUnit::ALL.into_iter().find(|one| one.symbol() == unit.symbol())
+}
+
+fn force_unit(unit: Force) -> Option<ForceUnit> {
+    ForceUnit::ALL.into_iter().find(|one| one.symbol() == unit.symbol())
+}
+
+fn preview(preview: Preview) -> FilePreview {
+    let column = |column: ColumnUse| FileColumn {
+        name: column.name,
+        quantity: column.quantity.map(str::to_owned),
+        unit: column.unit.map(str::to_owned),
+        assumed: column.is_assumed,
+    };
+    FilePreview {
+        encoding: preview.encoding.to_owned(),
+        separator: preview.separator.to_owned(),
+        decimal_mark: if preview.has_decimal_commas { "," } else { "." }.to_owned(),
+        rows: preview.rows,
+        header: preview.header,
+        columns: preview.columns.into_iter().map(column).collect(),
+        thinned: preview.thinned,
+        reading: preview.reading,
+    }
+}
