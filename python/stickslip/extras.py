@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 from typing import Any
 
 import numpy as np
@@ -13,7 +12,6 @@ from .result import Floats, Result
 CRITERIA = ("crossland", "dang_van", "findley", "swt", "fatemi_socie", "ruiz", "ruiz_tension", "friction_work")
 
 
-@dataclasses.dataclass(frozen=True, repr=False, eq=False)
 class Fretting(Result):
     """Fatigue criteria over a steady cycle."""
 
@@ -58,7 +56,6 @@ class Fretting(Result):
         return pandas.DataFrame(rows)
 
 
-@dataclasses.dataclass(frozen=True, repr=False, eq=False)
 class Swept(Result):
     """The table of a sweep."""
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import dataclasses
+import inspect
 import sys
 import typing
 from collections.abc import Mapping
@@ -23,9 +23,20 @@ T = TypeVar("T", bound="Result")
 _ROWS = ("rows", "cycles", "steps", "peaks", "items", "points", "failures", "loops")
 
 
-@dataclasses.dataclass(frozen=True, repr=False, eq=False)
 class Result:
-    """A reply. `document` is it as JSON, `to_frame` its table, `plot` its picture."""
+    """A reply. `document` is it as JSON, `to_frame` its table, `plot` its picture.
+
+    The fields are the annotations of its class, and do not change. Classes without generated methods, unlike data
+    classes, are made in no time when the package is imported.
+    """
+
+    @classmethod
+    def fields(cls) -> list[str]:
+        """The names of the fields."""
+        return [name for kind in reversed(cls.__mro__) for name in inspect.get_annotations(kind)]
+
+    def __setattr__(self, name: str, value: object) -> None:
+        raise AttributeError(f"{type(self).__name__} is a result: {name} cannot be set")
 
     @property
     def document(self) -> dict[str, Any]:
@@ -60,28 +71,28 @@ class Result:
 
     def scalars(self) -> dict[str, Any]:
         """The members that are single numbers or words."""
-        given = {field.name: getattr(self, field.name) for field in dataclasses.fields(self)}
+        given = {name: getattr(self, name) for name in self.fields()}
         return {name: value for name, value in given.items() if isinstance(value, int | float | str)}
 
     def _columns(self) -> dict[str, Any]:
         """The arrays, if they are of equal length."""
-        given = {field.name: getattr(self, field.name) for field in dataclasses.fields(self)}
+        given = {name: getattr(self, name) for name in self.fields()}
         arrays = {name: value for name, value in given.items() if _is_column(value)}
         lengths = {len(value) for value in arrays.values()}
         return arrays if len(lengths) == 1 else {}
 
     def __repr__(self) -> str:
         parts = []
-        for field in dataclasses.fields(self):
-            value = getattr(self, field.name)
+        for name in self.fields():
+            value = getattr(self, name)
             if value is None:
                 continue
             if isinstance(value, np.ndarray | list):
-                parts.append(f"{field.name}=[{len(value)}]")
+                parts.append(f"{name}=[{len(value)}]")
             elif isinstance(value, Result):
-                parts.append(f"{field.name}=…")
+                parts.append(f"{name}=…")
             else:
-                parts.append(f"{field.name}={value!r}")
+                parts.append(f"{name}={value!r}")
         return f"{type(self).__name__}({', '.join(parts)})"
 
     def _repr_html_(self) -> str:
@@ -125,15 +136,9 @@ def _parse(value: Any, hint: Any) -> Any:
 
 def parse(kind: type[T], document: dict[str, Any], **context: Any) -> T:
     """The result of a JSON document. Members that this version does not know stay in `document`."""
-    given = {}
+    result = kind.__new__(kind)
     for name, hint in _hints(kind).items():
-        value = document.get(name.rstrip("_"))
-        if value is not None:
-            given[name] = _parse(value, hint)
-        elif name.rstrip("_") in document:
-            given[name] = None
-    missing = [f.name for f in dataclasses.fields(kind) if f.name not in given and f.default is dataclasses.MISSING]
-    result = kind(**given, **dict.fromkeys(missing))
+        result.__dict__[name] = _parse(document.get(name.rstrip("_")), hint)
     result.__dict__["_document"] = document
     result.__dict__["_context"] = context
     return result

@@ -6,14 +6,12 @@ Written by `tools/generate.py`.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Any
 
 from .extras import Fretting, Swept
 from .result import Floats, Result
 
 
-@dataclass(frozen=True, repr=False, eq=False)
 class Accuracy(Result):
     """Which solver answered, and how accurate its answer is."""
 
@@ -44,7 +42,6 @@ class Accuracy(Result):
     """
 
 
-@dataclass(frozen=True, repr=False, eq=False)
 class AccuracyReply(Result):
     """The time and the error of each solver."""
 
@@ -55,7 +52,6 @@ class AccuracyReply(Result):
     """One row a solver."""
 
 
-@dataclass(frozen=True, repr=False, eq=False)
 class AccuracyRow(Result):
     """One solver on the path."""
 
@@ -89,7 +85,6 @@ class AccuracyRow(Result):
     """
 
 
-@dataclass(frozen=True, repr=False, eq=False)
 class Axis2(Result):
     """Two components in the plane of the scan; a line has no y."""
 
@@ -100,7 +95,6 @@ class Axis2(Result):
     """Along y, in the unit of the quantity."""
 
 
-@dataclass(frozen=True, repr=False, eq=False)
 class BestLoad(Result):
     """The load under which a drive does most friction work."""
 
@@ -114,7 +108,6 @@ class BestLoad(Result):
     """The work at other loads, if asked for."""
 
 
-@dataclass(frozen=True, repr=False, eq=False)
 class ColumnPair(Result):
     """Heights over radii."""
 
@@ -125,7 +118,6 @@ class ColumnPair(Result):
     """Radii, m, increasing."""
 
 
-@dataclass(frozen=True, repr=False, eq=False)
 class Comparison(Result):
     """The results of the other laws."""
 
@@ -139,7 +131,6 @@ class Comparison(Result):
     """Minimax."""
 
 
-@dataclass(frozen=True, repr=False, eq=False)
 class ContactEstimate(Result):
     """The contact as the scan alone determines it."""
 
@@ -156,7 +147,6 @@ class ContactEstimate(Result):
     """Normal force, N."""
 
 
-@dataclass(frozen=True, repr=False, eq=False)
 class Cycle(Result):
     """A closed cycle: the displacement went from one turning point to the opposite one and came back.
 
@@ -188,7 +178,6 @@ class Cycle(Result):
     """
 
 
-@dataclass(frozen=True, repr=False, eq=False)
 class CyclePage(Result):
     """The newest closed cycles of a contact, oldest first."""
 
@@ -196,7 +185,6 @@ class CyclePage(Result):
     """The cycles, in the order in which they closed; of those that one move closed the inner ones first."""
 
 
-@dataclass(frozen=True, repr=False, eq=False)
 class CycleReply(Result):
     """Steady cycles, one for each amplitude."""
 
@@ -216,7 +204,6 @@ class CycleReply(Result):
     """The oscillations of a mass on the contact, if asked for."""
 
 
-@dataclass(frozen=True, repr=False, eq=False)
 class DisplacementPath(Result):
     """A path of displacements."""
 
@@ -224,7 +211,6 @@ class DisplacementPath(Result):
     """Tangential displacements of the indenter, m, one move each."""
 
 
-@dataclass(frozen=True, repr=False, eq=False)
 class EndEvent(Result):
     """The data of the event `end`, the last one."""
 
@@ -232,7 +218,6 @@ class EndEvent(Result):
     """Why there are no more."""
 
 
-@dataclass(frozen=True, repr=False, eq=False)
 class Estimate(Result):
     """A value and its standard error, both in the unit of the quantity; `null` where it is not known."""
 
@@ -243,7 +228,6 @@ class Estimate(Result):
     """The value, in the unit of the quantity."""
 
 
-@dataclass(frozen=True, repr=False, eq=False)
 class Fault(Result):
     """One fault of a request."""
 
@@ -254,7 +238,6 @@ class Fault(Result):
     """JSON pointer (RFC 6901) into the body, or `/` and the name of a query parameter."""
 
 
-@dataclass(frozen=True, repr=False, eq=False)
 class Figures(Result):
     """What follows from the definition of a contact at its preload."""
 
@@ -286,7 +269,6 @@ class Figures(Result):
     """Semi-axes of the contact along x and y, m: of an ellipsoid."""
 
 
-@dataclass(frozen=True, repr=False, eq=False)
 class FitEstimate(Result):
     """A quantity as the loops determine it, in its SI unit."""
 
@@ -305,7 +287,6 @@ class FitEstimate(Result):
     """Its standard error, if the fit were linear, in the SI unit of the quantity; `null` where it is not determined."""
 
 
-@dataclass(frozen=True, repr=False, eq=False)
 class FitReply(Result):
     """What the loops say, and what they leave open."""
 
@@ -334,7 +315,6 @@ class FitReply(Result):
     """Warnings about the fit."""
 
 
-@dataclass(frozen=True, repr=False, eq=False)
 class FitResidual(Result):
     """What a fit leaves of the forces."""
 
@@ -351,7 +331,6 @@ class FitResidual(Result):
     """Whether it looks like noise."""
 
 
-@dataclass(frozen=True, repr=False, eq=False)
 class FittedLoop(Result):
     """A loop as it was fitted, point by point."""
 
@@ -368,7 +347,6 @@ class FittedLoop(Result):
     """Whether the point was used; if not, it is an outlier."""
 
 
-@dataclass(frozen=True, repr=False, eq=False)
 class FrettingReply(Fretting):
     """The criteria over the steady cycle, each with its values at all places."""
 
@@ -424,7 +402,6 @@ class FrettingReply(Fretting):
     """Smith, Watson and Topper's criterion, Pa."""
 
 
-@dataclass(frozen=True, repr=False, eq=False)
 class FrictionEstimate(Result):
     """A coefficient of friction from a measured cycle."""
 
@@ -441,7 +418,6 @@ class FrictionEstimate(Result):
     """Coefficient of friction μ, a pure number."""
 
 
-@dataclass(frozen=True, repr=False, eq=False)
 class FrictionReply(Result):
     """The coefficient of friction that the observations of a contact have last determined."""
 
@@ -455,7 +431,6 @@ class FrictionReply(Result):
     """The estimate; left out as long as the observations do not determine it."""
 
 
-@dataclass(frozen=True, repr=False, eq=False)
 class FrictionWork(Result):
     """Friction work of a cycle per area, along the radius."""
 
@@ -466,7 +441,6 @@ class FrictionWork(Result):
     """Radii, m."""
 
 
-@dataclass(frozen=True, repr=False, eq=False)
 class Gap(Result):
     """How far a path may be from the optimum."""
 
@@ -487,7 +461,6 @@ class Gap(Result):
     """
 
 
-@dataclass(frozen=True, repr=False, eq=False)
 class Harmonic(Result):
     """One harmonic of the answer to a drive that is a cosine."""
 
@@ -503,7 +476,6 @@ class Harmonic(Result):
     """
 
 
-@dataclass(frozen=True, repr=False, eq=False)
 class HistoryItem(Result):
     """A move that has been applied."""
 
@@ -530,7 +502,6 @@ class HistoryItem(Result):
     """What was measured there, if it is an observation."""
 
 
-@dataclass(frozen=True, repr=False, eq=False)
 class HistoryPage(Result):
     """A page of the history of a contact, oldest first."""
 
@@ -541,7 +512,6 @@ class HistoryPage(Result):
     """What to give as `after` for the next page; `null` on the last."""
 
 
-@dataclass(frozen=True, repr=False, eq=False)
 class Instant(Result):
     """An instant of the cycle."""
 
@@ -552,7 +522,6 @@ class Instant(Result):
     """The part of the move that has been made, a pure number above 0 and up to 1."""
 
 
-@dataclass(frozen=True, repr=False, eq=False)
 class JobEndEvent(Result):
     """The data of the event `end`, the last one before a job has ended itself."""
 
@@ -560,7 +529,6 @@ class JobEndEvent(Result):
     """Why there are no more."""
 
 
-@dataclass(frozen=True, repr=False, eq=False)
 class JobList(Result):
     """Jobs of a tenant."""
 
@@ -568,7 +536,6 @@ class JobList(Result):
     """The jobs, oldest first."""
 
 
-@dataclass(frozen=True, repr=False, eq=False)
 class JobProgress(Result):
     """The progress of a job."""
 
@@ -582,7 +549,6 @@ class JobProgress(Result):
     """Points in all."""
 
 
-@dataclass(frozen=True, repr=False, eq=False)
 class JobReply(Result):
     """A sweep that the server computes after its request has been answered."""
 
@@ -614,7 +580,6 @@ class JobReply(Result):
     """When it ended (ISO 8601, UTC)."""
 
 
-@dataclass(frozen=True, repr=False, eq=False)
 class JudgedReply(Result):
     """Where and in which unit the remaining stress is measured."""
 
@@ -636,7 +601,6 @@ class JudgedReply(Result):
     """μ times the pressure that stresses are compared with, Pa."""
 
 
-@dataclass(frozen=True, repr=False, eq=False)
 class Largest(Result):
     """The place where a criterion is largest."""
 
@@ -658,7 +622,6 @@ class Largest(Result):
     """Unit normal of the critical plane along x, y and z, pure numbers, if the criterion has one."""
 
 
-@dataclass(frozen=True, repr=False, eq=False)
 class LoadCurve(Result):
     """Friction work over the load."""
 
@@ -671,7 +634,6 @@ class LoadCurve(Result):
     """Normal forces, N."""
 
 
-@dataclass(frozen=True, repr=False, eq=False)
 class LoopPage(Result):
     """A page of the hysteresis loop of a contact, oldest first.
 
@@ -697,7 +659,6 @@ class LoopPage(Result):
     """Force that was measured at a point, N, `null` where none was; left out if there is none on the page."""
 
 
-@dataclass(frozen=True, repr=False, eq=False)
 class MoveReply(Result):
     """The result of a move."""
 
@@ -720,7 +681,6 @@ class MoveReply(Result):
     """Warnings about the results from this move on that earlier replies have not given."""
 
 
-@dataclass(frozen=True, repr=False, eq=False)
 class NewSession(Result):
     """A contact that has just been made."""
 
@@ -743,7 +703,6 @@ class NewSession(Result):
     """Its label, if it has one."""
 
 
-@dataclass(frozen=True, repr=False, eq=False)
 class NoiseLevels(Result):
     """Standard deviations of the noise."""
 
@@ -754,7 +713,6 @@ class NoiseLevels(Result):
     """Of a force, N."""
 
 
-@dataclass(frozen=True, repr=False, eq=False)
 class ObservationsReply(Result):
     """The result of observations."""
 
@@ -773,7 +731,6 @@ class ObservationsReply(Result):
     """
 
 
-@dataclass(frozen=True, repr=False, eq=False)
 class ObservedForce(Result):
     """What was measured at the displacement of a move."""
 
@@ -790,7 +747,6 @@ class ObservedForce(Result):
     """When it was measured, if that is known (ISO 8601, UTC)."""
 
 
-@dataclass(frozen=True, repr=False, eq=False)
 class ObservedMove(Result):
     """An observation beside what the contact predicts."""
 
@@ -807,7 +763,6 @@ class ObservedMove(Result):
     """Tangential force of the contact there, N, with the friction of its definition."""
 
 
-@dataclass(frozen=True, repr=False, eq=False)
 class Outcome(Result):
     """What a law leaves."""
 
@@ -836,7 +791,6 @@ class Outcome(Result):
     """What remains if it is not followed exactly, if asked for."""
 
 
-@dataclass(frozen=True, repr=False, eq=False)
 class PathReply(Result):
     """The result of a path."""
 
@@ -862,7 +816,6 @@ class PathReply(Result):
     """Warnings about the results from this path on that earlier replies have not given."""
 
 
-@dataclass(frozen=True, repr=False, eq=False)
 class Peak(Result):
     """A local extremum of the shear stress."""
 
@@ -873,7 +826,6 @@ class Peak(Result):
     """Shear stress there, Pa, positive as a positive displacement causes it; `null` where it is infinite."""
 
 
-@dataclass(frozen=True, repr=False, eq=False)
 class PointFailure(Result):
     """A point without an answer."""
 
@@ -890,7 +842,6 @@ class PointFailure(Result):
     """JSON pointer into the base, if a place is to blame."""
 
 
-@dataclass(frozen=True, repr=False, eq=False)
 class ProfileFitReply(Result):
     """A profile that was fitted to a scan, with what is left of the scan."""
 
@@ -933,7 +884,6 @@ class ProfileFitReply(Result):
     """The contact under `load`."""
 
 
-@dataclass(frozen=True, repr=False, eq=False)
 class Protocol(Result):
     """The path that the law of equal peaks has given."""
 
@@ -944,7 +894,6 @@ class Protocol(Result):
     """Displacements, m; usable as a path of their own."""
 
 
-@dataclass(frozen=True, repr=False, eq=False)
 class ProtocolReply(Result):
     """How to move so that little shear stress remains."""
 
@@ -1003,7 +952,6 @@ class ProtocolReply(Result):
     """What remains if it is not followed exactly, if asked for."""
 
 
-@dataclass(frozen=True, repr=False, eq=False)
 class Rating(Result):
     """A criterion at all places."""
 
@@ -1021,7 +969,6 @@ class Rating(Result):
     """
 
 
-@dataclass(frozen=True, repr=False, eq=False)
 class Reference(Result):
     """The solution that errors are measured from, with its own error."""
 
@@ -1054,7 +1001,6 @@ class Reference(Result):
     """
 
 
-@dataclass(frozen=True, repr=False, eq=False)
 class RelaxReply(Result):
     """The result of relaxing a contact, or of a dry run."""
 
@@ -1125,7 +1071,6 @@ class RelaxReply(Result):
     """The states along the path: all of them, or the last; if asked for."""
 
 
-@dataclass(frozen=True, repr=False, eq=False)
 class Residual(Result):
     """The extrema of the shear stress of a contact."""
 
@@ -1151,7 +1096,6 @@ class Residual(Result):
     """
 
 
-@dataclass(frozen=True, repr=False, eq=False)
 class Resonance(Result):
     """Steady oscillations of a mass on the contact."""
 
@@ -1164,7 +1108,6 @@ class Resonance(Result):
     """
 
 
-@dataclass(frozen=True, repr=False, eq=False)
 class ResonancePoint(Result):
     """One steady oscillation."""
 
@@ -1193,7 +1136,6 @@ class ResonancePoint(Result):
     """Estimated error of the peak, m; `null` likewise."""
 
 
-@dataclass(frozen=True, repr=False, eq=False)
 class RobustnessReply(Result):
     """What remains when a protocol is not followed exactly: of the largest stress over `judged.unit`, pure numbers.
 
@@ -1213,7 +1155,6 @@ class RobustnessReply(Result):
     """The standard error of the mean, a pure number."""
 
 
-@dataclass(frozen=True, repr=False, eq=False)
 class ScanResidual(Result):
     """What a profile leaves of a scan."""
 
@@ -1227,7 +1168,6 @@ class ScanResidual(Result):
     """Root mean square of the points that were fitted, m: noise and roughness."""
 
 
-@dataclass(frozen=True, repr=False, eq=False)
 class SessionPage(Result):
     """A page of contacts, oldest first."""
 
@@ -1238,7 +1178,6 @@ class SessionPage(Result):
     """What to give as `after` for the next page; `null` on the last."""
 
 
-@dataclass(frozen=True, repr=False, eq=False)
 class SessionReply(Result):
     """A contact."""
 
@@ -1264,7 +1203,6 @@ class SessionReply(Result):
     """Its label, if it has one."""
 
 
-@dataclass(frozen=True, repr=False, eq=False)
 class SessionSummary(Result):
     """A contact as an item of a list."""
 
@@ -1284,7 +1222,6 @@ class SessionSummary(Result):
     """Its label, if it has one."""
 
 
-@dataclass(frozen=True, repr=False, eq=False)
 class SignRuns(Result):
     """Stretches of one sign in a residual: few of them are a systematic deviation."""
 
@@ -1298,7 +1235,6 @@ class SignRuns(Result):
     """Whether the two agree."""
 
 
-@dataclass(frozen=True, repr=False, eq=False)
 class SimulateReply(Result):
     """The result of a simulation."""
 
@@ -1327,7 +1263,6 @@ class SimulateReply(Result):
     """The stress below the surface at the end, if asked for."""
 
 
-@dataclass(frozen=True, repr=False, eq=False)
 class StartReply(Result):
     """How a path begins."""
 
@@ -1338,7 +1273,6 @@ class StartReply(Result):
     """Which beginning was chosen."""
 
 
-@dataclass(frozen=True, repr=False, eq=False)
 class State(Result):
     """The state after a move."""
 
@@ -1373,7 +1307,6 @@ class State(Result):
     """Radius inside which the last move did not slip, m: the contact radius if nothing slipped, zero in gross slip."""
 
 
-@dataclass(frozen=True, repr=False, eq=False)
 class StateEvent(Result):
     """The data of an event `state`: a move that has been applied, with the state after it."""
 
@@ -1399,7 +1332,6 @@ class StateEvent(Result):
     """What was measured there, if it is an observation."""
 
 
-@dataclass(frozen=True, repr=False, eq=False)
 class SteadyCycle(Result):
     """One steady cycle."""
 
@@ -1458,7 +1390,6 @@ class SteadyCycle(Result):
     """
 
 
-@dataclass(frozen=True, repr=False, eq=False)
 class Stress(Result):
     """Stresses along the radius; an array that was not asked for is left out."""
 
@@ -1478,7 +1409,6 @@ class Stress(Result):
     """Slip U − u(r), the displacement of the indenter less that of the surface, m; `null` outside the contact."""
 
 
-@dataclass(frozen=True, repr=False, eq=False)
 class StressPath(Result):
     """The stresses at one place over the cycle, in columns, Pa, tension positive."""
 
@@ -1510,7 +1440,6 @@ class StressPath(Result):
     """Normal stress along z, Pa; tension is positive."""
 
 
-@dataclass(frozen=True, repr=False, eq=False)
 class StressReply(Result):
     """The stresses of a contact, and their extrema if asked for."""
 
@@ -1533,7 +1462,6 @@ class StressReply(Result):
     """Slip U − u(r), the displacement of the indenter less that of the surface, m; `null` outside the contact."""
 
 
-@dataclass(frozen=True, repr=False, eq=False)
 class Subsurface(Result):
     """Stresses below the surface, in columns; an array that was not asked for is left out, and `null` is where a
     stress is infinite.
@@ -1585,7 +1513,6 @@ class Subsurface(Result):
     """Normal stress along z, Pa; tension is positive."""
 
 
-@dataclass(frozen=True, repr=False, eq=False)
 class SubsurfaceReply(Result):
     """Stresses below the surface of a contact on the server."""
 
@@ -1641,7 +1568,6 @@ class SubsurfaceReply(Result):
     """Normal stress along z, Pa; tension is positive."""
 
 
-@dataclass(frozen=True, repr=False, eq=False)
 class SweepReply(Swept):
     """The table of a sweep: a row a point."""
 
@@ -1660,7 +1586,6 @@ class SweepReply(Swept):
     """How many points, and numbers in each column."""
 
 
-@dataclass(frozen=True, repr=False, eq=False)
 class Warning(Result):
     """A caveat about a result."""
 

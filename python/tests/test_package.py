@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 import importlib.util
 import re
 import subprocess
@@ -71,7 +70,7 @@ def test_native_document_is_that_of_the_repository(openapi: dict[str, Any]) -> N
 def test_every_schema_of_a_reply_has_its_class_and_fields(openapi: dict[str, Any]) -> None:
     module, schemas = generator(), openapi["components"]["schemas"]
     for name in module.reply_schemas(openapi):
-        found = {field.name.rstrip("_") for field in dataclasses.fields(getattr(results, name))}
+        found = {field.rstrip("_") for field in getattr(results, name).fields()}
         assert found == set(module.fields(schemas[name], schemas)[0]), name
 
 

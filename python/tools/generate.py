@@ -127,7 +127,6 @@ def results(api: Schema) -> str:
         "Units are SI. Arrays of numbers are NumPy arrays, in which NaN stands where a number is infinite or missing.\n"
         'Written by `tools/generate.py`.\n"""\n',
         "from __future__ import annotations\n",
-        "from dataclasses import dataclass",
         "from typing import Any\n",
         "from .extras import Fretting, Swept",
         "from .result import Floats, Result\n",
@@ -135,8 +134,7 @@ def results(api: Schema) -> str:
     for name in names:
         schema = schemas[name]
         members, required = fields(schema, schemas)
-        text.append("\n@dataclass(frozen=True, repr=False, eq=False)")
-        text.append(f"class {name}({BASES.get(name, 'Result')}):")
+        text.append(f"\nclass {name}({BASES.get(name, 'Result')}):")
         text.append(summary(schema.get("description", name)))
         order = sorted(members, key=lambda member: (member not in required, list(members).index(member)))
         for member in order:
