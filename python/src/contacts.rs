@@ -169,10 +169,9 @@ fn move_all(contacts: &mut [Contact], targets: &[[f64; 2]], threads: usize) -> R
     }
     let parts = contacts.chunks_mut(share).zip(targets.chunks(share)).zip(forces.chunks_mut(share));
     thread::scope(|scope| {
-        let work = |((contacts, targets), forces): ((&mut [Contact], &[[f64; 2]]), &mut [[f64; 2]])| {
-            move_share(contacts, targets, forces)
-        };
-        let threads: Vec<_> = parts.map(|part| scope.spawn(move || work(part))).collect();
+        let threads: Vec<_> = parts
+            .map(|((contacts, targets), forces)| scope.spawn(move || move_share(contacts, targets, forces)))
+            .collect();
         threads.into_iter().try_for_each(|thread| thread.join().unwrap_or_else(|panic| resume_unwind(panic)))
     })
     .map_err(unexpected)?;
