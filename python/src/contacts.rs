@@ -22,7 +22,7 @@ use super::problem::refused;
 /// A displacement beyond which the part that still sticks is looked at, over that of gross slip.
 const PROBE: f64 = 1e-12;
 /// Contacts that are worth a thread of their own.
-const LEAST_SHARE: usize = 256;
+const LEAST_SHARE: usize = 4_096;
 
 /// Two arrays of `f64` in the order of the contacts.
 type Pair<'py> = (Bound<'py, PyByteArray>, Bound<'py, PyByteArray>);
