@@ -155,7 +155,7 @@ impl Contact {
         PyBytes::new(py, document.to_string().as_bytes())
     }
 
-    /// The contact of what [`Contact::to_bytes`] returned.
+    /// The contact of what `to_bytes` returned.
     #[staticmethod]
     fn from_bytes(py: Python<'_>, bytes: &[u8]) -> PyResult<Contact> {
         interruptible(py, |stop| Contact::restore(bytes, stop))?.map_err(refused)

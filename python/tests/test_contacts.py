@@ -89,10 +89,10 @@ def test_a_contact_that_has_parted_has_lost_its_history() -> None:
 
 def test_threads_change_no_bit_and_paths_are_those_of_one_contact() -> None:
     generator = np.random.default_rng(7)
-    one, four = contacts(2000, 1), contacts(2000, 4)
+    one, four = contacts(20_000, 1), contacts(20_000, 4)
     single = ss.Contact(ss.Sphere(RADIUS), MODULI, FRICTION, indentation=0.0)
     for _ in range(12):
-        depth, displacement = generator.uniform(0.0, DEPTH, 2000), generator.uniform(-4e-7, 4e-7, 2000)
+        depth, displacement = generator.uniform(0.0, DEPTH, 20_000), generator.uniform(-4e-7, 4e-7, 20_000)
         steps = one.step(depth, displacement), four.step(depth, displacement)
         assert np.array_equal(*steps)
         single.move(displacement=float(displacement[5]), indentation=float(depth[5]))
