@@ -127,8 +127,10 @@ async fn every_example_works_unchanged() {
     let mut sent = 0;
     for (path, method, operation) in operations(&document).filter(|(_, method, _)| *method == "post") {
         let content = &operation["requestBody"]["content"];
-        if content["text/csv"].is_object() {
-            let text = content["text/csv"]["example"].as_str().unwrap_or_else(|| panic!("{path} has no example"));
+        if content["application/octet-stream"].is_object() {
+            let text = content["application/octet-stream"]["example"]
+                .as_str()
+                .unwrap_or_else(|| panic!("{path} has no example"));
             sent_file(&server, path, text).await;
             sent += 1;
             continue;
@@ -191,7 +193,7 @@ fn is_alike(one: &Value, other: &Value) -> bool {
 
 /// The reply to a file.
 async fn sent_file(server: &Server, path: &str, text: &str) -> Value {
-    let call = server.http.post(format!("{}{path}", server.base)).header("content-type", "text/csv");
+    let call = server.http.post(format!("{}{path}", server.base)).header("content-type", "application/octet-stream");
     let response = call.body(text.to_owned()).send().await.unwrap();
     assert_eq!(response.status(), 200, "{path}");
     response.json().await.unwrap()
@@ -207,7 +209,7 @@ async fn shown_reply(document: &Value, method: &str, path: &str, operation: &Val
         assert!(response.status().is_success(), "{path}");
         body(&response.text().await.unwrap())
     };
-    if let Some(text) = operation["requestBody"]["content"]["text/csv"]["example"].as_str() {
+    if let Some(text) = operation["requestBody"]["content"]["application/octet-stream"]["example"].as_str() {
         return sent_file(&server, path, text).await;
     }
     let schemas = &document["components"]["schemas"];

@@ -16,7 +16,7 @@ fn page(name: &str) -> String {
 async fn every_command_of_the_pages_runs_as_printed() {
     let server = Process::start("memory:").await;
     for (name, blocks) in [
-        ("simulate.md", 3),
+        ("simulate.md", 4),
         ("cycles.md", 3),
         ("fretting.md", 1),
         ("rough-contacts.md", 1),

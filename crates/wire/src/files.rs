@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
+use crate::check::{Faults, JsonPath, Rejection};
 use crate::fit::{FitUnits, MeasuredLoop};
 use crate::profile_fit::{ScanData, ScanUnits};
 
@@ -17,6 +18,18 @@ pub struct ScanFileReply {
     pub preview: FilePreview,
 }
 
+impl ScanFileReply {
+    /// Checks that `POST /profiles/fit` takes the scan.
+    ///
+    /// # Errors
+    /// [`Rejection::Invalid`] with every fault.
+    pub fn check(&self) -> Result<(), Rejection> {
+        let mut faults = Faults::default();
+        let scan = self.scan.clone().check([1.0; 2], JsonPath::Root.member("scan"), &mut faults);
+        faults.done(scan.map(drop))
+    }
+}
+
 /// A measured loop that was read from a file. `loop` is one of the `loops` of the body of `POST /fit`, and `units` its
 /// member.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
@@ -28,6 +41,18 @@ pub struct LoopFileReply {
     pub units: FitUnits,
     /// How the file was read.
     pub preview: FilePreview,
+}
+
+impl LoopFileReply {
+    /// Checks that `POST /fit` takes the loop.
+    ///
+    /// # Errors
+    /// [`Rejection::Invalid`] with every fault.
+    pub fn check(&self) -> Result<(), Rejection> {
+        let mut faults = Faults::default();
+        let record = self.measured.clone().check([1.0; 2], false, JsonPath::Root.member("loop"), &mut faults);
+        faults.done(record.map(drop))
+    }
 }
 
 /// How a file was read.

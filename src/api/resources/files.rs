@@ -28,6 +28,11 @@ const COLUMN: Text = Text(Characters(100));
 /// The distance of neighbours in a matrix, in its unit.
 const SPACING: Range = Range { quantity: Quantity::Place, unit: "", min: 1e-9, max: 1e9 };
 
+/// Files that work as they stand.
+const SCAN: &str = "X [um];Z [nm]\n-55;-152\n-45;-102\n-35;-62\n-25;-32\n-15;-12\n-5;-2\n5;-2\n15;-12\n25;-32\n35;-62\n45;-102\n55;-152\n";
+const LOOP: &str =
+    "Displacement (um);Force (mN)\n0;0\n0,5;120\n0,2;40\n-0,1;-35\n-0,5;-120\n-0,2;-40\n0,1;35\n0,5;120\n";
+
 parameters! {
     /// What is known of a scan beside its file.
     pub struct ScanFileQuery {
@@ -87,11 +92,11 @@ impl QueryParams for LoopHints {
 /// Takes a file of an instrument as it is, and replies with the members of the body of `POST /profiles/fit`, and with
 /// what was taken for what. Two columns are x and z of a line, three are x, y and z, and more are a matrix, as Gwyddion
 /// exports it; Zygo's text format is known by its first line. A file with more heights than a scan may have is thinned.
+/// The body may also be sent as `text/csv` or `text/plain`.
 #[utoipa::path(
     post, path = "/files/scan", tag = "simulation", params(ScanFileQuery),
-    request_body(content(
-        (String = "text/csv", example = json!("X [um];Z [nm]\n-20;-20\n0;0\n20;-20\n")),
-        (String = "text/plain"), (String = "application/octet-stream"))),
+    request_body(content = String, content_type = "application/octet-stream",
+        example = json!(SCAN)),
     responses((status = 200, description = "The scan, and how the file was read", body = ScanFileReply))
 )]
 pub async fn read_scan_file(
@@ -100,18 +105,23 @@ pub async fn read_scan_file(
     body: FileBody,
 ) -> Result<Response, Problem> {
     let CheckedQuery(hints) = query?;
-    answer(&app, body, move |bytes| files::scan(bytes, hints)).await
+    let read = move |bytes: &[u8]| {
+        let found = files::scan(bytes, hints).map_err(problem)?;
+        found.check()?;
+        Ok(found)
+    };
+    answer(&app, body, read).await
 }
 
 /// Read a measured loop from a file
 ///
 /// Takes a file of a bench as it is, with a row for each point, and replies with one of the `loops` of the body of
-/// `POST /fit`, its `units`, and what was taken for what. Columns and units are found by the header.
+/// `POST /fit`, its `units`, and what was taken for what. Columns and units are found by the header. The body may also be
+/// sent as `text/csv` or `text/plain`.
 #[utoipa::path(
     post, path = "/files/loop", tag = "simulation", params(LoopFileQuery),
-    request_body(content(
-        (String = "text/csv", example = json!("Displacement (um);Force (mN)\n0;0\n0,5;120\n0;-80\n")),
-        (String = "text/plain"), (String = "application/octet-stream"))),
+    request_body(content = String, content_type = "application/octet-stream",
+        example = json!(LOOP)),
     responses((status = 200, description = "The loop, and how the file was read", body = LoopFileReply))
 )]
 pub async fn read_loop_file(
@@ -120,16 +130,21 @@ pub async fn read_loop_file(
     body: FileBody,
 ) -> Result<Response, Problem> {
     let CheckedQuery(hints) = query?;
-    answer(&app, body, move |bytes| files::measured_loop(bytes, &hints)).await
+    let read = move |bytes: &[u8]| {
+        let found = files::measured_loop(bytes, &hints).map_err(problem)?;
+        found.check()?;
+        Ok(found)
+    };
+    answer(&app, body, read).await
 }
 
 async fn answer<R: Serialize>(
     app: &App,
     FileBody { bytes, held }: FileBody,
-    read: impl FnOnce(&[u8]) -> Result<R, ImportError> + Send + 'static,
+    read: impl FnOnce(&[u8]) -> Result<R, Problem> + Send + 'static,
 ) -> Result<Response, Problem> {
     let cost = files::cost(bytes.len());
-    let work = move || Ok::<_, Problem>(formats::json(bytes.len(), &read(&bytes).map_err(problem)?)?);
+    let work = move || Ok::<_, Problem>(formats::json(bytes.len(), &read(&bytes)?)?);
     let text = app.pool.run(cost, work).await??;
     Ok(held.on(reply::json(text)))
 }

@@ -26,9 +26,9 @@ const WEIGHT: Range = Range { quantity: Quantity::Number, unit: "", min: 1e-9, m
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MeasuredLoop {
-    /// Displacements.
+    /// Displacements, in the unit of `units.displacement`.
     pub displacement: Vec<f64>,
-    /// Tangential forces, as many.
+    /// Tangential forces, as many, in the unit of `units.force`.
     pub force: Vec<f64>,
     /// Times, s, rising, as many; only `drift` needs them.
     pub time: Option<Vec<f64>>,
@@ -143,7 +143,7 @@ pub struct LoopRecord {
 
 impl MeasuredLoop {
     /// The loop in SI units, `units` being those of displacement and force in m and N.
-    pub(super) fn check(
+    pub(crate) fn check(
         self,
         units: [f64; 2],
         drifts: bool,

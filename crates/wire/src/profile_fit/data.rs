@@ -32,9 +32,9 @@ single_key!(ScanData { "line" => Line, "map" => Map, "points" => Points });
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LineScan {
-    /// Places along the line.
+    /// Places along the line, in the unit of `units.lateral`.
     pub x: Vec<f64>,
-    /// Heights, as many.
+    /// Heights, as many, in the unit of `units.height`.
     pub z: Vec<Option<f64>>,
 }
 limits!(LineScan { x: Numbers(SCAN_POINTS, SCAN_NUMBER), z: Heights(SCAN_POINTS) });
@@ -43,11 +43,11 @@ limits!(LineScan { x: Numbers(SCAN_POINTS, SCAN_NUMBER), z: Heights(SCAN_POINTS)
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MapScan {
-    /// The distance of neighbours in a row, along x.
+    /// The distance of neighbours in a row, along x, in the unit of `units.lateral`.
     pub dx: f64,
-    /// The distance of rows, along y.
+    /// The distance of rows, along y, in the unit of `units.lateral`.
     pub dy: f64,
-    /// The rows of heights, each as long.
+    /// The rows of heights, each as long, in the unit of `units.height`.
     pub z: Vec<Vec<Option<f64>>>,
 }
 limits!(MapScan { dx: SCAN_STEP, dy: SCAN_STEP, z: Rows });
@@ -56,11 +56,11 @@ limits!(MapScan { dx: SCAN_STEP, dy: SCAN_STEP, z: Rows });
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PointScan {
-    /// Places along x.
+    /// Places along x, in the unit of `units.lateral`.
     pub x: Vec<f64>,
-    /// Places along y, as many.
+    /// Places along y, as many, in the unit of `units.lateral`.
     pub y: Vec<f64>,
-    /// Heights, as many.
+    /// Heights, as many, in the unit of `units.height`.
     pub z: Vec<Option<f64>>,
 }
 limits!(PointScan {
@@ -123,7 +123,7 @@ impl ScanData {
     }
 
     /// Places and heights in m, `units` being those of the two; a missing height is NaN.
-    pub(super) fn check(self, units: [f64; 2], at: JsonPath<'_>, faults: &mut Faults) -> Option<Vec<[f64; 3]>> {
+    pub(crate) fn check(self, units: [f64; 2], at: JsonPath<'_>, faults: &mut Faults) -> Option<Vec<[f64; 3]>> {
         let [lateral, height] = units;
         let point = |x: f64, y: f64, z: Option<f64>| [x * lateral, y * lateral, z.map_or(f64::NAN, |z| z * height)];
         faults.part(|faults| match self {
