@@ -239,7 +239,7 @@ fn a_file_of_an_instrument_is_read_as_it_is() {
     let refused = run(&["profile", file.to_str().unwrap()]);
     let said = String::from_utf8(refused.stderr).unwrap();
     assert!(
-        !refused.status.success() && said.contains("line 3 is not a row of numbers: column 2 has `four`"),
+        !refused.status.success() && said.contains("line 3, column 2: `four` is not a number"),
         "{said}"
     );
 }
