@@ -238,8 +238,5 @@ fn a_file_of_an_instrument_is_read_as_it_is() {
     std::fs::write(&file, "X [um];Z [nm]\n1;2\n3;four\n").unwrap();
     let refused = run(&["profile", file.to_str().unwrap()]);
     let said = String::from_utf8(refused.stderr).unwrap();
-    assert!(
-        !refused.status.success() && said.contains("line 3, column 2: `four` is not a number"),
-        "{said}"
-    );
+    assert!(!refused.status.success() && said.contains("line 3, column 2: `four` is not a number"), "{said}");
 }
