@@ -85,7 +85,7 @@ fn body(name: &str) -> Option<Value> {
         "observations" => Some(json!({"observations": [{"displacement": 1e-8, "force": 0.1}]})),
         "subsurface" => Some(json!({"body": "first", "points": [[0.0, 0.0, 1e-5]]})),
         "ball" => Some(ball()),
-        "file" => Some(json!("1;2\n3;4\n")),
+        "file" => Some(json!((0..12).map(|row| format!("{row};{row}\n")).collect::<String>())),
         "label" => Some(json!({"label": "renamed"})),
         "move" => Some(json!({"displacement": 1e-8})),
         "sweep" => {
