@@ -1,4 +1,5 @@
-//! `POST /files/scan` and `POST /files/loop`: a file of an instrument becomes the document that other computations take.
+//! `POST /files/scan` and `POST /files/loop`: a file of an instrument becomes the document that other computations
+//! take.
 
 use crate::common;
 
@@ -67,7 +68,8 @@ async fn a_loop_is_read_by_the_names_of_its_columns_and_fitted() {
     assert_eq!(uses, [json!("time"), json!("displacement"), json!("force")]);
     let contact = std::fs::read("examples/data/ball_contact.json").unwrap();
     let body = json!({
-        "contact": serde_json::from_slice::<Value>(&contact).unwrap(), "loops": [found["loop"]], "units": found["units"],
+        "contact": serde_json::from_slice::<Value>(&contact).unwrap(), "loops": [found["loop"]],
+        "units": found["units"],
         "free": ["friction", "g_star", "machine_compliance", "force_offset"]
     });
     let fitted = good(server.post("/fit", &body).await).await;

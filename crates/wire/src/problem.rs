@@ -97,10 +97,10 @@ codes! {
     StaleSequence = 412 "stale_sequence": "The contact has moved on",
         "it is not where `If-Match` says: look, then decide";
     /// The body is too large.
-    TooLarge = 413 "too_large": "The body is too large", "bodies have at most 8 MiB";
+    TooLarge = 413 "too_large": "The body is too large", "bodies have at most 8 MiB, files of instruments 16 MiB";
     /// The body is not declared as JSON.
     UnsupportedMediaType = 415 "unsupported_media_type": "The body must be application/json",
-        "send `Content-Type: application/json`, uncompressed";
+        "send `Content-Type: application/json`, uncompressed; a file of an instrument as `application/octet-stream`";
     /// Something in the request is missing, unknown, of the wrong type or out of range, whatever the state of the
     /// server. Each fault comes with a pointer to its place.
     InvalidInput = 422 "invalid_input": "The request is invalid", "`errors` names each fault and what is allowed";

@@ -29,7 +29,8 @@ const COLUMN: Text = Text(Characters(100));
 const SPACING: Range = Range { quantity: Quantity::Place, unit: "", min: 1e-9, max: 1e9 };
 
 /// Files that work as they stand.
-const SCAN: &str = "X [um];Z [nm]\n-55;-152\n-45;-102\n-35;-62\n-25;-32\n-15;-12\n-5;-2\n5;-2\n15;-12\n25;-32\n35;-62\n45;-102\n55;-152\n";
+const SCAN: &str = "X [um];Z [nm]\n-55;-152\n-45;-102\n-35;-62\n-25;-32\n-15;-12\n-5;-2\n\
+                    5;-2\n15;-12\n25;-32\n35;-62\n45;-102\n55;-152\n";
 const LOOP: &str =
     "Displacement (um);Force (mN)\n0;0\n0,5;120\n0,2;40\n-0,1;-35\n-0,5;-120\n-0,2;-40\n0,1;35\n0,5;120\n";
 
@@ -116,8 +117,8 @@ pub async fn read_scan_file(
 /// Read a measured loop from a file
 ///
 /// Takes a file of a bench as it is, with a row for each point, and replies with one of the `loops` of the body of
-/// `POST /fit`, its `units`, and what was taken for what. Columns and units are found by the header. The body may also be
-/// sent as `text/csv` or `text/plain`.
+/// `POST /fit`, its `units`, and what was taken for what. Columns and units are found by the header. The body may also
+/// be sent as `text/csv` or `text/plain`.
 #[utoipa::path(
     post, path = "/files/loop", tag = "simulation", params(LoopFileQuery),
     request_body(content = String, content_type = "application/octet-stream",

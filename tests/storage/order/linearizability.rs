@@ -2,9 +2,9 @@
 //! instant between its call and its return, so that one after the other they give the replies that were recorded.
 //!
 //! The search is that of Wing & Gong (1993): of the operations that no other must precede one is tried after the other.
-//! It remembers which operations have led to which state (Lowe 2017), so that no way is gone twice: checkers that do not
-//! take too long where many outcomes are unknown. An operation of
-//! unknown outcome may have happened at any time after its call, or not at all.
+//! It remembers which operations have led to which state (Lowe 2017), so that no way is gone twice: checkers that do
+//! not take too long where many outcomes are unknown. An operation of unknown outcome may have happened at any time
+//! after its call, or not at all.
 
 use std::collections::HashSet;
 use std::hash::Hash;

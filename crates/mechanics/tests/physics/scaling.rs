@@ -1,6 +1,6 @@
-//! A scene whose lengths are all multiplied by a power of two has the same answer, to the last bit but for the scale: no
-//! choice of a method depends on a length in metres. Only where r is raised to a power that is neither whole nor half is
-//! there no such equality, since the power itself is rounded.
+//! A scene whose lengths are all multiplied by a power of two has the same answer, to the last bit but for the scale:
+//! no choice of a method depends on a length in metres. Only where r is raised to a power that is neither whole nor
+//! half is there no such equality, since the power itself is rounded.
 
 use crate::support::{displace, oblique, push, shapes};
 use stickslip_mechanics::profile::{
@@ -9,8 +9,8 @@ use stickslip_mechanics::profile::{
 };
 use stickslip_mechanics::{Contact, Elasticity, Move, Normal, Preload, Profile, Setup, Sphere, Tangential};
 
-/// Powers of two by which lengths of some micrometres to millimetres are multiplied: the radii and forces that are accepted allow
-/// no more. Each is even, and a tenth of it is whole, so that r^1.5 and r^2.7 are scaled exactly, too.
+/// Powers of two by which lengths of some micrometres to millimetres are multiplied: the radii and forces that are
+/// accepted allow no more. Each is even, and a tenth of it is whole, so that r^1.5 and r^2.7 are scaled exactly, too.
 const POWERS: [i32; 4] = [-30, -10, 10, 20];
 
 /// Where r^2.7 is among the families.

@@ -100,8 +100,8 @@ impl KernelPanel {
         panel_powers::rise(self.powers(), (self.low, self.high), t, s)
     }
 
-    /// How much further, in the square of the radius, g has risen by `rise`, m; `None` without powers of q, and where that
-    /// takes a search.
+    /// How much further, in the square of the radius, g has risen by `rise`, m; `None` without powers of q, and where
+    /// that takes a search.
     ///
     /// Newton's step with q/2 where g would be if it rose with x^2, and further steps with the same slope: the error of
     /// each is that of the one before times the relative change of q on the way, which the steps tell.

@@ -1,7 +1,7 @@
 //! A Chebyshev series in powers of t, and the rise of g by them.
 //!
-//! The sum of what a coefficient is added up from is at most [`CONDITION`] times the series, so that rounding stays that
-//! of the series.
+//! The sum of what a coefficient is added up from is at most [`CONDITION`] times the series, so that rounding stays
+//! that of the series.
 
 use std::sync::LazyLock;
 
@@ -74,9 +74,9 @@ fn polynomials(scale: f64, offset: f64) -> [[f64; POINTS]; POINTS] {
 /// Those of a panel that begins at its knot.
 static FROM_KNOT: LazyLock<[[f64; POINTS]; POINTS]> = LazyLock::new(|| polynomials(2.0, -1.0));
 
-/// The rise of g, m, from where a panel begins up to t, `s` further in the square of the radius, by the powers of its
-/// q on low..high: s times a mean of q/2. With l the t where it begins, int t^(n+1) dt is s E_n/(n + 2), E_n = t^2 E_(n-2) + l^n,
-/// and no term is a difference.
+/// The rise of g, m, from where a panel begins up to t, `s` further in the square of the radius, by the powers of its q
+/// on low..high: s times a mean of q/2. With l the t where it begins, int t^(n+1) dt is s E_n/(n + 2), E_n = t^2
+/// E_(n-2) + l^n, and no term is a difference.
 pub(super) fn rise(powers: &[f64], (low, high): (f64, f64), t: f64, s: f64) -> f64 {
     let (t, low) = (t / high, low / high);
     let square = t * t;
