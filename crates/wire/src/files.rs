@@ -3,7 +3,6 @@
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-use crate::check::{Faults, JsonPath, Rejection};
 use crate::fit::{FitUnits, MeasuredLoop};
 use crate::profile_fit::{ScanData, ScanUnits};
 
@@ -11,23 +10,12 @@ use crate::profile_fit::{ScanData, ScanUnits};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct ScanFileReply {
     /// The heights, with their places.
+    #[schema(value_type = ScanInFile)]
     pub scan: ScanData,
     /// The units of the scan.
     pub units: ScanUnits,
     /// How the file was read.
     pub preview: FilePreview,
-}
-
-impl ScanFileReply {
-    /// Checks that `POST /profiles/fit` takes the scan.
-    ///
-    /// # Errors
-    /// [`Rejection::Invalid`] with every fault.
-    pub fn check(&self) -> Result<(), Rejection> {
-        let mut faults = Faults::default();
-        let scan = self.scan.clone().check([1.0; 2], JsonPath::Root.member("scan"), &mut faults);
-        faults.done(scan.map(drop))
-    }
 }
 
 /// A measured loop that was read from a file. `loop` is one of the `loops` of the body of `POST /fit`, and `units` its
@@ -36,6 +24,7 @@ impl ScanFileReply {
 pub struct LoopFileReply {
     /// Displacement and force, with the time and the mean load if the file has them.
     #[serde(rename = "loop")]
+    #[schema(value_type = LoopInFile)]
     pub measured: MeasuredLoop,
     /// The units of the loop.
     pub units: FitUnits,
@@ -43,16 +32,62 @@ pub struct LoopFileReply {
     pub preview: FilePreview,
 }
 
-impl LoopFileReply {
-    /// Checks that `POST /fit` takes the loop.
-    ///
-    /// # Errors
-    /// [`Rejection::Invalid`] with every fault.
-    pub fn check(&self) -> Result<(), Rejection> {
-        let mut faults = Faults::default();
-        let record = self.measured.clone().check([1.0; 2], false, JsonPath::Root.member("loop"), &mut faults);
-        faults.done(record.map(drop))
-    }
+/// A scan as a file has it: that of `POST /profiles/fit`, with however few or many points.
+#[derive(Serialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum ScanInFile {
+    /// A profile along a line.
+    Line(LineInFile),
+    /// Heights on a grid.
+    Map(MapInFile),
+    /// Heights anywhere.
+    Points(PointsInFile),
+}
+
+/// A profile along a line.
+#[derive(Serialize, ToSchema)]
+pub struct LineInFile {
+    /// Places along the line, in the unit of `units.lateral`.
+    pub x: Vec<f64>,
+    /// Heights, as many, in the unit of `units.height`.
+    pub z: Vec<Option<f64>>,
+}
+
+/// Heights on a grid.
+#[derive(Serialize, ToSchema)]
+pub struct MapInFile {
+    /// The distance of neighbours in a row, along x, in the unit of `units.lateral`.
+    pub dx: f64,
+    /// The distance of rows, along y, in the unit of `units.lateral`.
+    pub dy: f64,
+    /// The rows of heights, in the unit of `units.height`.
+    pub z: Vec<Vec<Option<f64>>>,
+}
+
+/// Heights anywhere.
+#[derive(Serialize, ToSchema)]
+pub struct PointsInFile {
+    /// Places along x, in the unit of `units.lateral`.
+    pub x: Vec<f64>,
+    /// Places along y, as many, in the unit of `units.lateral`.
+    pub y: Vec<f64>,
+    /// Heights, as many, in the unit of `units.height`.
+    pub z: Vec<Option<f64>>,
+}
+
+/// A loop as a file has it: one of those of `POST /fit`, with however few or many points.
+#[derive(Serialize, ToSchema)]
+pub struct LoopInFile {
+    /// Displacements, in the unit of `units.displacement`.
+    pub displacement: Vec<f64>,
+    /// Tangential forces, as many, in the unit of `units.force`.
+    pub force: Vec<f64>,
+    /// Times, s, as many, if the file has them.
+    #[schema(nullable = false)]
+    pub time: Option<Vec<f64>>,
+    /// The mean load, N, if the file has one.
+    #[schema(nullable = false)]
+    pub normal_force: Option<f64>,
 }
 
 /// How a file was read.

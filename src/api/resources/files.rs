@@ -106,12 +106,7 @@ pub async fn read_scan_file(
     body: FileBody,
 ) -> Result<Response, Problem> {
     let CheckedQuery(hints) = query?;
-    let read = move |bytes: &[u8]| {
-        let found = files::scan(bytes, hints).map_err(problem)?;
-        found.check()?;
-        Ok(found)
-    };
-    answer(&app, body, read).await
+    answer(&app, body, move |bytes| files::scan(bytes, hints)).await
 }
 
 /// Read a measured loop from a file
@@ -131,21 +126,16 @@ pub async fn read_loop_file(
     body: FileBody,
 ) -> Result<Response, Problem> {
     let CheckedQuery(hints) = query?;
-    let read = move |bytes: &[u8]| {
-        let found = files::measured_loop(bytes, &hints).map_err(problem)?;
-        found.check()?;
-        Ok(found)
-    };
-    answer(&app, body, read).await
+    answer(&app, body, move |bytes| files::measured_loop(bytes, &hints)).await
 }
 
 async fn answer<R: Serialize>(
     app: &App,
     FileBody { bytes, held }: FileBody,
-    read: impl FnOnce(&[u8]) -> Result<R, Problem> + Send + 'static,
+    read: impl FnOnce(&[u8]) -> Result<R, ImportError> + Send + 'static,
 ) -> Result<Response, Problem> {
     let cost = files::cost(bytes.len());
-    let work = move || Ok::<_, Problem>(formats::json(bytes.len(), &read(&bytes)?)?);
+    let work = move || Ok::<_, Problem>(formats::json(bytes.len(), &read(&bytes).map_err(problem)?)?);
     let text = app.pool.run(cost, work).await??;
     Ok(held.on(reply::json(text)))
 }

@@ -143,7 +143,7 @@ pub struct LoopRecord {
 
 impl MeasuredLoop {
     /// The loop in SI units, `units` being those of displacement and force in m and N.
-    pub(crate) fn check(
+    pub(super) fn check(
         self,
         units: [f64; 2],
         drifts: bool,

@@ -123,7 +123,7 @@ impl ScanData {
     }
 
     /// Places and heights in m, `units` being those of the two; a missing height is NaN.
-    pub(crate) fn check(self, units: [f64; 2], at: JsonPath<'_>, faults: &mut Faults) -> Option<Vec<[f64; 3]>> {
+    pub(super) fn check(self, units: [f64; 2], at: JsonPath<'_>, faults: &mut Faults) -> Option<Vec<[f64; 3]>> {
         let [lateral, height] = units;
         let point = |x: f64, y: f64, z: Option<f64>| [x * lateral, y * lateral, z.map_or(f64::NAN, |z| z * height)];
         faults.part(|faults| match self {
