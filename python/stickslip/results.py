@@ -269,6 +269,52 @@ class Figures(Result):
     """Semi-axes of the contact along x and y, m: of an ellipsoid."""
 
 
+class FileColumn(Result):
+    """A column of a file."""
+
+    assumed: bool
+    """Whether neither the file nor the query names that unit."""
+
+    name: str | None = None
+    """Its name in the header, if it has one."""
+
+    quantity: str | None = None
+    """What it was taken for: `x`, `y`, `z`, `displacement`, `force`, `time` or `normal_force`; `null` if it was not
+    used.
+    """
+
+    unit: str | None = None
+    """The symbol of its unit; `null` if it was not used."""
+
+
+class FilePreview(Result):
+    """How a file was read."""
+
+    columns: list[FileColumn]
+    """The columns in order; none of a matrix of heights."""
+
+    decimal_mark: str
+    """What separates whole numbers from decimals: `.` or `,`."""
+
+    encoding: str
+    """The encoding, such as `UTF-8` or `UTF-16LE`."""
+
+    header: list[str]
+    """The first lines before the numbers."""
+
+    reading: list[str]
+    """What was taken for what, in sentences."""
+
+    rows: int
+    """Number of rows of numbers."""
+
+    separator: str
+    """What separates the columns: `semicolon`, `tab`, `white_space` or `comma`."""
+
+    thinned: int
+    """Every how manyth row, and column of a matrix, is in the reply; 1 if all are."""
+
+
 class FitEstimate(Result):
     """A quantity as the loops determine it, in its SI unit."""
 
@@ -622,6 +668,16 @@ class Largest(Result):
     """Unit normal of the critical plane along x, y and z, pure numbers, if the criterion has one."""
 
 
+class LineInFile(Result):
+    """A profile along a line."""
+
+    x: Floats
+    """Places along the line, in the unit of `units.lateral`."""
+
+    z: Floats
+    """Heights, as many, in the unit of `units.height`."""
+
+
 class LoadCurve(Result):
     """Friction work over the load."""
 
@@ -632,6 +688,38 @@ class LoadCurve(Result):
 
     normal_force: Floats
     """Normal forces, N."""
+
+
+class LoopFileReply(Result):
+    """A measured loop that was read from a file.
+
+    `loop` is one of the `loops` of the body of `POST /fit`, and `units` its member.
+    """
+
+    loop: LoopInFile
+    """Displacement and force, with the time and the mean load if the file has them."""
+
+    preview: FilePreview
+    """How the file was read."""
+
+    units: Any
+    """The units of the loop."""
+
+
+class LoopInFile(Result):
+    """A loop as a file has it: one of those of `POST /fit`, with however few or many points."""
+
+    displacement: Floats
+    """Displacements, in the unit of `units.displacement`."""
+
+    force: Floats
+    """Tangential forces, as many, in the unit of `units.force`."""
+
+    normal_force: float | None = None
+    """The mean load, N, if the file has one."""
+
+    time: Floats | None = None
+    """Times, s, as many, if the file has them."""
 
 
 class LoopPage(Result):
@@ -657,6 +745,19 @@ class LoopPage(Result):
 
     observed_force: Floats | None = None
     """Force that was measured at a point, N, `null` where none was; left out if there is none on the page."""
+
+
+class MapInFile(Result):
+    """Heights on a grid."""
+
+    dx: float
+    """The distance of neighbours in a row, along x, in the unit of `units.lateral`."""
+
+    dy: float
+    """The distance of rows, along y, in the unit of `units.lateral`."""
+
+    z: list[Floats]
+    """The rows of heights, in the unit of `units.height`."""
 
 
 class MoveReply(Result):
@@ -840,6 +941,19 @@ class PointFailure(Result):
 
     pointer: str | None = None
     """JSON pointer into the base, if a place is to blame."""
+
+
+class PointsInFile(Result):
+    """Heights anywhere."""
+
+    x: Floats
+    """Places along x, in the unit of `units.lateral`."""
+
+    y: Floats
+    """Places along y, as many, in the unit of `units.lateral`."""
+
+    z: Floats
+    """Heights, as many, in the unit of `units.height`."""
 
 
 class ProfileFitReply(Result):
@@ -1153,6 +1267,19 @@ class RobustnessReply(Result):
 
     standard_error: float | None = None
     """The standard error of the mean, a pure number."""
+
+
+class ScanFileReply(Result):
+    """A scan that was read from a file. `scan` and `units` are members of the body of `POST /profiles/fit`."""
+
+    preview: FilePreview
+    """How the file was read."""
+
+    scan: Any
+    """The heights, with their places."""
+
+    units: Any
+    """The units of the scan."""
 
 
 class ScanResidual(Result):
@@ -1617,6 +1744,8 @@ NAMES = [
     "Estimate",
     "Fault",
     "Figures",
+    "FileColumn",
+    "FilePreview",
     "FitEstimate",
     "FitReply",
     "FitResidual",
@@ -1636,8 +1765,12 @@ NAMES = [
     "JobReply",
     "JudgedReply",
     "Largest",
+    "LineInFile",
     "LoadCurve",
+    "LoopFileReply",
+    "LoopInFile",
     "LoopPage",
+    "MapInFile",
     "MoveReply",
     "NewSession",
     "NoiseLevels",
@@ -1648,6 +1781,7 @@ NAMES = [
     "PathReply",
     "Peak",
     "PointFailure",
+    "PointsInFile",
     "ProfileFitReply",
     "Protocol",
     "ProtocolReply",
@@ -1658,6 +1792,7 @@ NAMES = [
     "Resonance",
     "ResonancePoint",
     "RobustnessReply",
+    "ScanFileReply",
     "ScanResidual",
     "SessionPage",
     "SessionReply",
