@@ -1,24 +1,13 @@
 //! Checking a document as work: what prepares its profile is estimated, may end, and counts.
 
-use std::sync::Arc;
 use std::time::Duration;
 
 use super::{Failure, Timer, cost};
 use crate::admission::{Nanoseconds, Stop};
-use stickslip_mechanics::{Elasticity, Profile};
-use stickslip_wire::{self as wire, DefinedProfile, Document, Prepare, Rejection};
+use stickslip_wire::{DefinedProfile, Document, Prepare, Rejection};
 
 /// Every profile anew, until the flag is raised.
 impl Prepare for Stop {
-    fn profile(
-        &self,
-        _: &wire::Profile,
-        _: Option<&Elasticity>,
-        prepare: &mut dyn FnMut() -> Option<Profile>,
-    ) -> Option<Arc<Profile>> {
-        prepare().map(Arc::new)
-    }
-
     fn keep_going(&self) -> bool {
         self.check().is_ok()
     }

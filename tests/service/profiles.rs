@@ -191,15 +191,6 @@ fn the_time_of_a_reply_has_the_preparation_of_its_profile_in_it() {
 struct Patience(Cell<usize>);
 
 impl Prepare for Patience {
-    fn profile(
-        &self,
-        _: &wire::Profile,
-        _: Option<&Elasticity>,
-        prepare: &mut dyn FnMut() -> Option<Profile>,
-    ) -> Option<Arc<Profile>> {
-        prepare().map(Arc::new)
-    }
-
     fn keep_going(&self) -> bool {
         self.0.set(self.0.get().saturating_sub(1));
         self.0.get() > 0

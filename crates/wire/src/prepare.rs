@@ -12,13 +12,15 @@ use super::profile::Profile;
 /// Makes the profiles of documents ready for the mechanics: anew, or shared with other documents.
 pub trait Prepare {
     /// The profile of a document for these bodies: one that is ready, or else what `prepare` makes, if the document is
-    /// without fault.
+    /// without fault. Anew each time, unless an implementation shares them.
     fn profile(
         &self,
-        document: &Profile,
-        bodies: Option<&Elasticity>,
+        _document: &Profile,
+        _bodies: Option<&Elasticity>,
         prepare: &mut dyn FnMut() -> Option<Shape>,
-    ) -> Option<Arc<Shape>>;
+    ) -> Option<Arc<Shape>> {
+        prepare().map(Arc::new)
+    }
 
     /// Asked every few milliseconds of preparation, which ends once this has returned false.
     fn keep_going(&self) -> bool;
@@ -29,15 +31,6 @@ pub trait Prepare {
 pub struct PrepareAnew;
 
 impl Prepare for PrepareAnew {
-    fn profile(
-        &self,
-        _: &Profile,
-        _: Option<&Elasticity>,
-        prepare: &mut dyn FnMut() -> Option<Shape>,
-    ) -> Option<Arc<Shape>> {
-        prepare().map(Arc::new)
-    }
-
     fn keep_going(&self) -> bool {
         true
     }
