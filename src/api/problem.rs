@@ -15,6 +15,7 @@ use crate::jobs::JobError;
 use crate::sessions::SessionError;
 use crate::simulation::{Failure, SweepError};
 use crate::store::StoreError;
+use stickslip_measured::import::ImportError;
 use stickslip_wire::{Fault, ProblemDocument, Rejection};
 
 use crate::api::limits;
@@ -116,6 +117,15 @@ impl From<Rejection> for Problem {
 impl From<Fault> for Problem {
     fn from(Fault { pointer, detail }: Fault) -> Self {
         Problem::at(Code::InvalidInput, pointer, detail)
+    }
+}
+
+impl From<ImportError> for Problem {
+    /// At the line and column of the file, from 1 on.
+    fn from(error: ImportError) -> Self {
+        let place = |name: &str, number: Option<usize>| number.map_or_else(String::new, |at| format!("/{name}/{at}"));
+        let pointer = place("line", error.line) + &place("column", error.column);
+        Problem::at(Code::InvalidInput, pointer, error.to_string())
     }
 }
 

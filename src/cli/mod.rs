@@ -9,6 +9,7 @@ mod key;
 mod limits;
 mod manual;
 mod progress;
+mod refusal;
 mod reload;
 mod report;
 mod serve;

@@ -9,8 +9,8 @@ const NAMES: usize = 34;
 /// Powers of ten and their prefixes.
 const PREFIXES: [(i32, &str); 9] =
     [(12, "T"), (9, "G"), (6, "M"), (3, "k"), (0, ""), (-3, "m"), (-6, "u"), (-9, "n"), (-12, "p")];
-/// Units by the last words of a name; the first that fits.
-const UNITS: [(&str, &str); 18] = [
+/// Units by the last words of a name after that of the object around it; the first that fits.
+const UNITS: [(&str, &str); 22] = [
     ("_error", ""),
     ("sliding_ratio", ""),
     ("loss_factor", ""),
@@ -26,6 +26,10 @@ const UNITS: [(&str, &str); 18] = [
     ("indentation", "m"),
     ("pressure", "Pa"),
     ("shear", "Pa"),
+    ("residual_centre", "Pa"),
+    ("residual_max", "Pa"),
+    ("residual_mean", "Pa"),
+    ("residual_min", "Pa"),
     ("e_star", "Pa"),
     ("g_star", "Pa"),
     ("compute_time", "s"),
@@ -34,19 +38,19 @@ const UNITS: [(&str, &str); 18] = [
 /// The document of a reply as lines: numbers with six digits, columns by their number and range, warnings in full.
 pub fn summary(reply: &Value) -> String {
     let mut lines = Vec::new();
-    members(reply, 0, &mut lines);
+    members("", reply, 0, &mut lines);
     lines.push("--json prints the document.".to_owned());
     lines.join("\n")
 }
 
-fn members(node: &Value, depth: usize, lines: &mut Vec<String>) {
+fn members(around: &str, node: &Value, depth: usize, lines: &mut Vec<String>) {
     for (name, value) in node.as_object().into_iter().flatten() {
         let indent = " ".repeat(depth * INDENT);
         let title = name.replace('_', " ");
         match value {
             Value::Object(_) => {
                 lines.push(format!("{indent}{title}"));
-                members(value, depth + 1, lines);
+                members(name, value, depth + 1, lines);
             }
             Value::Array(rows) if name == "warnings" => {
                 let message = |row: &Value| format!("{indent}warning: {}", row["message"].as_str().unwrap_or_default());
@@ -54,11 +58,11 @@ fn members(node: &Value, depth: usize, lines: &mut Vec<String>) {
             }
             Value::Array(rows) if rows.len() == 1 && rows[0].is_object() => {
                 lines.push(format!("{indent}{title}"));
-                members(&rows[0], depth + 1, lines);
+                members(name, &rows[0], depth + 1, lines);
             }
             _ => {
                 let width = NAMES.saturating_sub(indent.len());
-                lines.push(format!("{indent}{title:width$} {}", said(name, value)));
+                lines.push(format!("{indent}{title:width$} {}", said(&format!("{around}_{name}"), value)));
             }
         }
     }
@@ -120,7 +124,7 @@ mod tests {
             "contact": {"contact_radius": 9.324_437_98e-5, "e_star": 2.307_692e11},
             "steps": [{"force": -1.5, "regime": "partial_slip", "memory_depth": 3}],
             "stress": {"radius": [0.0, 1e-5, 9e-5]},
-            "residual": {"peaks": [{"radius": 1e-6}, {"radius": 2e-6}], "max": null},
+            "residual": {"peaks": [{"radius": 1e-6}, {"radius": 2e-6}], "max": null, "mean": -2.5e7},
             "accuracy": {"force_error": 1.234_567_89e-16},
             "warnings": [{"code": "rigid", "message": "one body is rigid"}],
         });
@@ -134,6 +138,7 @@ mod tests {
             "  radius                           3 values, 0 m to 90 um",
             "  peaks                            2 rows",
             "  max                              none",
+            "  mean                             -25 MPa",
             "  force error                      1.23457e-16",
             "warning: one body is rigid",
         ] {

@@ -7,9 +7,11 @@ use clap::Args;
 use clap::builder::PossibleValuesParser;
 use stickslip_wire::{self as wire, SweepRequest};
 
-use super::io::{json, problem, read, write};
+use super::io::{json, read, write};
 use super::progress;
+use super::refusal::Refusal;
 use crate::admission::{SolverSlot, Stop};
+use crate::api::Problem;
 use crate::formats::Format;
 use crate::simulation::{Sweep as Plan, SweepResult};
 
@@ -21,6 +23,9 @@ pub struct Sweep {
     /// Format of the table.
     #[arg(long, value_parser = PossibleValuesParser::new(Format::TABLES.map(Format::name)), default_value = "csv")]
     format: String,
+    /// Print the JSON document in place of the table, and faults as JSON.
+    #[arg(long, conflicts_with = "format")]
+    json: bool,
     /// Number of threads [default: the number of cores].
     #[arg(long)]
     threads: Option<usize>,
@@ -29,8 +34,12 @@ pub struct Sweep {
 impl Sweep {
     /// Computes and prints the table, with progress on a terminal.
     pub fn run(&self) -> Result<(), String> {
+        self.printed().map_err(|refusal| refusal.message(self.json))
+    }
+
+    fn printed(&self) -> Result<(), Refusal> {
         let plan = wire::read::<SweepRequest>(&read(&self.file)?).and_then(|sweep| Plan::plan(sweep, &Stop::default()));
-        let plan = plan.map_err(problem)?;
+        let plan = plan.map_err(Problem::from)?;
         let cores = std::thread::available_parallelism().map_or(1, usize::from);
         let threads = self.threads.unwrap_or(cores).max(1);
         let (points, outputs) = (plan.points(), plan.numbers(1));
@@ -39,7 +48,7 @@ impl Sweep {
         while done < points {
             let slots = (0..threads).map(|_| SolverSlot::alone()).collect();
             let slice = plan.slice(done..points, slots, &Stop::default(), None);
-            result.append(slice.map_err(problem)?);
+            result.append(slice.map_err(Problem::from)?);
             done = result.values.len() / outputs;
             bar.set_position(done as u64);
         }
@@ -47,8 +56,9 @@ impl Sweep {
         if result.failed > 0 {
             eprintln!("{} of {points} points failed; the first: {}", result.failed, json(&result.failures[0]));
         }
-        let format = Format::named(&self.format, &Format::TABLES).unwrap_or(Format::Csv);
+        let format = if self.json { "columns" } else { &self.format };
+        let format = Format::named(format, &Format::TABLES).unwrap_or(Format::Csv);
         let mut blocks = result.table(plan.checked()).blocks(format);
-        write(|out| blocks.try_for_each(|block| out.write_all(&block.map_err(io::Error::other)?)))
+        Ok(write(|out| blocks.try_for_each(|block| out.write_all(&block.map_err(io::Error::other)?)))?)
     }
 }

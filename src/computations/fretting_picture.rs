@@ -66,15 +66,16 @@ pub fn criterion(task: &FrettingTask, shown: &Shown) -> Result<Option<usize>, Fa
 #[must_use]
 pub fn plot(reply: &FrettingReply, task: &FrettingTask, index: usize) -> Drawing {
     let found = reply.ratings().find(|(name, ..)| *name == NAMES[index]);
-    let (name, unit, values, largest) = match &found {
-        Some((name, unit, rating)) => (*name, *unit, &rating.values[..], rating.largest.as_ref()),
+    let (unit, values, largest) = match &found {
+        Some((_, unit, rating)) => (*unit, &rating.values[..], rating.largest.as_ref()),
         None => Default::default(),
     };
     let body = match task.body.0 {
         Side::First => "first",
         Side::Second => "second",
     };
-    let title = format!("{}, {body} body", TITLES[index]);
+    let name = TITLES[index];
+    let title = format!("{name}, {body} body");
     let radius = reply.contact.contact_radius;
     match &task.places {
         Places::Line(line) => Drawing::Plot(over_line(title, (name, unit), values, largest, (line, radius))),

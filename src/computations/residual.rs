@@ -99,12 +99,14 @@ fn kind(residual: &Residual, row: usize) -> &'static str {
     if is_maximum { "maximum" } else { "minimum" }
 }
 
-/// The extrema as dots over the shear stress.
-pub(super) fn plot(title: String, residual: &Residual, between: Vec<(f64, f64)>) -> Plot {
+/// The extrema as dots over the shear stress, which leads through them however few the points between them are.
+pub(super) fn plot(title: String, residual: &Residual, mut between: Vec<(f64, f64)>) -> Plot {
     let dots = |peak: &Peak| (peak.radius, peak.shear.unwrap_or(f64::NAN));
-    let dots = residual.peaks.iter().map(dots).collect();
+    let dots: Vec<_> = residual.peaks.iter().map(dots).collect();
     let mut curves = Vec::new();
     if !between.is_empty() {
+        between.extend(&dots);
+        between.sort_by(|one, two| one.0.total_cmp(&two.0));
         curves.push(Curve {
             name: "shear stress τ",
             points: between,

@@ -6,6 +6,8 @@ import { formatNumber, formatQuantity } from "./units.js";
 const SHADES = 24;
 /** How far beyond the surface a section with a mark reaches, so that one on the surface is seen whole; a part of its depth. */
 const RIM = 0.06;
+/** How far a name stays from a mark, pixels. */
+const CLEAR = 32;
 
 /** The points of a reply over a grid, `[x, z, value]`, from left to right and then down. */
 export function gridPoints({ x, z }, values, rows) {
@@ -41,7 +43,7 @@ export function sectionPlot({ name, title, note }) {
       range: { x: [points[0][0], points.at(-1)[0]], y: [points.at(-1)[1], worst ? -RIM * points.at(-1)[1] : 0] },
       marks: [{ x, y: z, class: "turn worst" }],
       layer: (plot, group) =>
-        group.append(...shades(plot, points, columns, scale), ...edges(plot, radius), ...shadeScale(plot, scale)),
+        group.append(...shades(plot, points, columns, scale), ...edges(plot, radius, [plot.x.at(x), plot.y.at(z)]), ...shadeScale(plot, scale)),
       table: () => ({ columns: ["x_m", "depth_m", unit === "Pa" ? `${field}_pa` : field], rows: points }),
     });
     return { low, high, infinite: points.find((point) => point[2] === null) };
@@ -99,13 +101,15 @@ function shades(plot, points, columns, scale) {
   return paths.map((path, index) => svg("path", { class: "shade", d: path.join(""), fill: colour(index, scale) }));
 }
 
-/** The edge of the contact on both sides. */
-function edges(plot, radius) {
+/** The edge of the contact on both sides, with names that keep clear of the mark. */
+function edges(plot, radius, mark) {
   return [-radius, radius].flatMap((edge) => {
     const x = plot.x.at(edge);
+    const top = plot.box.top + 14;
+    const y = Math.hypot(mark[0] - x, mark[1] - top) > CLEAR ? top : (plot.box.top + plot.box.bottom) / 2;
     return [
       svg("line", { class: "contact-edge", x1: x, x2: x, y1: plot.box.top, y2: plot.box.bottom }),
-      svg("text", { class: "small over", x: x + 4, y: plot.box.top + 14 }, edge < 0 ? "−a" : "a"),
+      svg("text", { class: "small over", x: x + 4, y }, edge < 0 ? "−a" : "a"),
     ];
   });
 }

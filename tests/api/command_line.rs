@@ -3,7 +3,10 @@
 use std::collections::BTreeSet;
 use std::net::TcpListener;
 
-use crate::common::run;
+use serde_json::{Value, json};
+use stickslip_wire::ProblemDocument;
+
+use crate::common::{ball, run};
 
 fn printed(arguments: &[&str]) -> String {
     let output = run(arguments);
@@ -42,6 +45,72 @@ fn every_command_has_a_manual_page() {
         assert!(page.contains(".SH NAME") && page.contains(&command.replace('-', "\\-")), "{command}: {page}");
     }
     assert!(std::fs::read_to_string(pages.join("stickslip.1")).unwrap().contains("stickslip\\-simulate"));
+}
+
+/// The document that a refused command prints.
+fn refused(arguments: &[&str]) -> ProblemDocument {
+    let output = run(arguments);
+    let text = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(!output.status.success() && output.stdout.is_empty(), "{arguments:?}: {text}");
+    serde_json::from_str(&text).unwrap_or_else(|error| panic!("{arguments:?}: {error} in {text}"))
+}
+
+#[test]
+fn with_json_every_fault_is_a_problem_document() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = |name: &str, text: &str| {
+        let path = folder.path().join(name);
+        std::fs::write(&path, text).unwrap();
+        path.to_str().unwrap().to_owned()
+    };
+    let cell = file("cell.csv", "X [um];Z [nm]\n1;2\n3;four\n");
+    let sound = file("sound.csv", "X [um];Z [nm]\n-2;-4\n-1;-1\n0;0\n1;-1\n2;-4\n");
+    let contact = file("contact.json", r#"{"profile": {"type": "sphere", "radius": true}}"#);
+    let load = file("load.json", r#"{"friction": "much"}"#);
+    let sweep = file("sweep.json", r#"{"base": {}, "axes": []}"#);
+    let array = file("array.json", "[1]");
+    let absent = folder.path().join("absent.json");
+    let absent = absent.to_str().unwrap();
+    for (arguments, code, pointer) in [
+        (&["profile", &cell] as &[&str], "invalid_input", Some("/line/3/column/2")),
+        (&["fit", &cell, "--contact", "examples/data/ball_contact.json"], "invalid_input", Some("/line/3/column/2")),
+        (&["fit", &sound], "invalid_input", None),
+        (&["fit", &sound, "--contact", &contact], "invalid_input", Some("/profile/radius")),
+        (&["fit", &sound, "--contact", absent], "invalid_input", None),
+        (&["fit", &sound, "--contact", &cell], "not_json", None),
+        (&["profile", &sound, "--load", &load], "invalid_input", Some("/friction")),
+        (&["profile", &sound, "--load", absent], "invalid_input", None),
+        (&["simulate", absent], "invalid_input", None),
+        (&["cycle", &array, "--map", "1:2:3"], "invalid_input", None),
+        (&["protocol", "--contact", &cell], "invalid_input", None),
+        (&["sweep", absent], "invalid_input", None),
+        (&["sweep", &cell], "not_json", None),
+        (&["sweep", &sweep], "invalid_input", Some("/outputs")),
+    ] {
+        let problem = refused(&[arguments, &["--json"]].concat());
+        assert_eq!(problem.code, code, "{arguments:?}: {problem:?}");
+        assert!(!problem.detail.is_empty());
+        let found = problem.errors.first().map(|fault| fault.pointer.as_str());
+        assert_eq!(found, pointer, "{arguments:?}: {problem:?}");
+    }
+}
+
+#[test]
+fn a_sweep_prints_its_document_with_json() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("sweep.json");
+    let body = json!({
+        "base": {"contact": ball(), "path": {"displacement": [1e-8]}},
+        "axes": [{"pointer": "/contact/friction", "values": [0.1, 0.2]}], "outputs": ["/steps/0/force"]
+    });
+    std::fs::write(&file, body.to_string()).unwrap();
+    let file = file.to_str().unwrap();
+    let document: Value = serde_json::from_str(&printed(&["sweep", file, "--json"])).unwrap();
+    assert_eq!((&document["points"], &document["columns"]["/contact/friction"]), (&json!(2), &json!([0.1, 0.2])));
+    // The same numbers as in the table.
+    let table = printed(&["sweep", file]);
+    let force = &document["columns"]["/steps/0/force"][0];
+    assert_eq!(table.lines().nth(1).unwrap(), format!("0.1,{force}"));
 }
 
 #[test]

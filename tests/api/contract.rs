@@ -8,6 +8,7 @@ use std::process::{Command, Stdio};
 use common::{PATIENCE, Server, ball, create, until};
 use serde_json::{Value, json};
 use stickslip_wire::client::{Client, Options, Swept};
+use stickslip_wire::profile_fit::{LengthUnit, ScanUnits};
 use stickslip_wire::{
     FallingAmplitude, Field, ForkRequest, JobState, Move, Path, PathRequest, Regime, SimulateRequest, SolverKind,
     Steps, StressRequest, SweepRequest,
@@ -86,7 +87,19 @@ async fn every_endpoint_answers_the_client() {
     let wanted = StressRequest { radii: Some(vec![0.0, 1e-5]), fields: Some(vec![Field::Shear]), points: None };
     let stress = client.stress(contact.id, &wanted, true).await.unwrap();
     assert_eq!(stress.radius, [0.0, 1e-5]);
-    assert!(stress.pressure.is_none() && stress.shear.unwrap().len() == 2 && stress.residual.is_some());
+    assert!(stress.pressure.is_none() && stress.shear.unwrap().len() == 2);
+
+    assert_eq!(client.residual(contact.id).await.unwrap(), stress.residual.unwrap());
+
+    let scan = "x;z\n-1;-1\n0;0\n1;-1\n".to_owned().into_bytes();
+    let units = ScanUnits { lateral: Some(LengthUnit::Millimetre), height: Some(LengthUnit::Micrometre) };
+    let read = client.read_scan(scan, Some(units)).await.unwrap();
+    assert_eq!((read.units, read.preview.rows), (units, 3));
+    let text = "Force (N);Displacement (um)\n0;0\n1;2\n".to_owned().into_bytes();
+    let read = client.read_loop(text, None).await.unwrap();
+    assert_eq!((read.measured.displacement, read.measured.force), (vec![0.0, 2.0], vec![0.0, 1.0]));
+    let refused = client.read_loop(b"a;b".to_vec(), None).await.unwrap_err();
+    assert_eq!(refused.problem().unwrap().code, "invalid_input");
 
     let history = client.history(contact.id, Some(1), Some(2)).await.unwrap();
     assert_eq!(history.items.iter().map(|item| item.sequence).collect::<Vec<_>>(), [2, 3]);

@@ -193,7 +193,7 @@ async fn cycles_are_the_same_in_every_format() {
     hold(&server, &path, &names, &rows).await;
     hold(&server, &format!("{path}?last=1"), &names, &rows[1..]).await;
     let svg = server.get(&format!("{path}?format=svg")).await.text().await.unwrap();
-    for word in ["move", "displacement amplitude / nm", "secant stiffness / MN/m", "<polyline"] {
+    for word in ["move", "amplitude U₀ / nm", "secant stiffness / MN/m", "<polyline"] {
         assert!(svg.contains(word), "{word}");
     }
     assert_eq!(header(&server.get(&format!("{path}?format=png")).await, "content-type"), "image/png");

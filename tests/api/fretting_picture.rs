@@ -65,7 +65,7 @@ async fn a_picture_shows_the_criterion_that_is_named_in_its_own_unit() {
         assert!(heading.contains(unit), "{heading}");
         let scale = shown_unit.trim_start_matches("· ");
         assert!(
-            text.contains(&format!("{name} / {scale}")) || text.contains(&format!("{name} / ({scale})")),
+            text.contains(&format!("{title} / {scale}")) || text.contains(&format!("{title} / ({scale})")),
             "{scale}"
         );
         // A ring in the legend, and one with its halo at the worst place.

@@ -48,6 +48,8 @@ struct Request {
     target: String,
     headers: Vec<(&'static str, String)>,
     body: Option<String>,
+    /// The media type of the body.
+    kind: &'static str,
     /// Whether only the body can be at fault, and is JSON.
     body_alone: bool,
 }
@@ -102,13 +104,21 @@ fn request(schemas: &Schemas, contacts: &[String], random: &mut Random) -> Reque
         garble(text, random);
         body_alone = false;
     }
+    let mut kind = "application/json";
+    if let Some(file) = operation["requestBody"]["content"]["application/octet-stream"]["example"].as_str() {
+        let mut bytes = file.as_bytes().to_vec();
+        for _ in 0..random.below(4) {
+            damage_bytes(&mut bytes, random);
+        }
+        (kind, body, body_alone) = ("text/csv", Some(String::from_utf8_lossy(&bytes).into_owned()), false);
+    }
     let mut method = method.clone();
     if random.below(20) == 0 {
         method =
             pick(&["GET", "POST", "PUT", "DELETE", "PATCH", "HEAD", "OPTIONS", "TRACE", "FROB"], random).to_string();
         body_alone = false;
     }
-    Request { method, target, headers, body, body_alone }
+    Request { method, target, headers, body, kind, body_alone }
 }
 
 /// Checks a reply; the request is for the message.
@@ -183,7 +193,7 @@ async fn requests_by_the_schemas() {
             call = call.header(*name, value);
         }
         if let Some(body) = &request.body {
-            call = call.header("content-type", "application/json").body(body.clone());
+            call = call.header("content-type", request.kind).body(body.clone());
         }
         // The server closes a connection whose request it did not read to the end, perhaps as the next one is sent on
         // it.

@@ -49,6 +49,7 @@ mod newest_moves;
 mod observations;
 mod openapi;
 mod otlp;
+mod pictures;
 mod profile_fit;
 mod profiles;
 mod protocols;

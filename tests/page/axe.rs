@@ -48,3 +48,19 @@ pub async fn serious(browser: &Browser) -> Vec<String> {
     };
     found["violations"].as_array().unwrap().iter().filter(severe).map(line).collect()
 }
+
+/// Asserts that the page with its results has no serious fault and fits the window, on a phone in the dark and on a
+/// desk, which is the window afterwards; saves a picture of each.
+pub async fn assert_readable(browser: &Browser, name: &str) {
+    for (look, width, height, dark) in [("narrow-dark-", 400, 850, true), ("", 1280, 900, false)] {
+        browser.look(width, height, dark).await;
+        browser.until("document.documentElement.scrollWidth <= innerWidth").await;
+        // Results of before are pale until those of now are there.
+        browser.until("document.querySelector('.stale') === null").await;
+        assert_eq!(serious(browser).await, [""; 0], "{look}{name}");
+        let whole = browser.value("document.documentElement.scrollHeight").await.as_u64().unwrap();
+        browser.look(width, u32::try_from(whole).unwrap(), dark).await;
+        browser.picture(&format!("{look}{name}")).await;
+        browser.look(width, height, dark).await;
+    }
+}

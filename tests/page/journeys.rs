@@ -5,6 +5,7 @@ use serde_json::{Value, json};
 use stickslip_wire::client::Options;
 use stickslip_wire::{CreateRequest, NewSession, Observation, ObservationsRequest};
 
+use crate::axe;
 use crate::browser::Browser;
 use crate::common::Binary;
 use crate::{four, three};
@@ -49,7 +50,7 @@ async fn scan_a_file_of_an_instrument_becomes_the_contact_radius() {
     browser.until("document.querySelector('form').innerText.includes('x is “Lateral')").await;
     browser.click("#fit-scan").await;
     browser.until("document.querySelector('#scan-said').textContent.includes('left out')").await;
-    browser.picture("journey-scan").await;
+    axe::assert_readable(&browser, "journey-scan").await;
     browser.click("#create").await;
     browser.until("document.querySelector('.badge.on') !== null").await;
     let said = "document.querySelector('.state-text').innerText";
@@ -82,7 +83,7 @@ async fn loop_a_file_of_a_bench_becomes_the_coefficient_of_friction() {
     let interval = drift.split('(').nth(1).unwrap().split(')').next().unwrap();
     let (low, high) = interval.split_once(" to ").unwrap();
     assert!(low.starts_with('−') && !high.starts_with('−'), "{said}");
-    browser.picture("journey-loop").await;
+    axe::assert_readable(&browser, "journey-loop").await;
     end(&server, browser, &[]).await;
 }
 
@@ -109,6 +110,7 @@ async fn crack_a_file_of_a_contact_becomes_the_margin_of_a_criterion() {
     assert!(margin > 1.0 && margin < 10.0, "{margin}");
     let text = format!("Margin {}: the criterion does not predict crack growth.", three(margin));
     assert_eq!(said, text);
+    axe::assert_readable(&browser, "journey-crack").await;
     end(&server, browser, &[]).await;
 }
 
@@ -128,7 +130,7 @@ async fn damping_a_file_of_a_contact_becomes_its_loss_factor() {
     let phase = "Number(document.querySelector('#response-figures').innerText.match(/Phase \
         there\\s+([\\d.]+)°/)?.[1])";
     browser.until(&format!("Math.abs({phase} - 90) < 5")).await;
-    browser.picture("journey-damping").await;
+    axe::assert_readable(&browser, "journey-damping").await;
     end(&server, browser, &[]).await;
 }
 
@@ -145,7 +147,7 @@ async fn residual_a_file_of_a_contact_becomes_what_twenty_reversals_leave() {
     let said = browser.value(status).await;
     assert!(said.as_str().unwrap().contains("Now: up to"), "{said}");
     assert!(said.as_str().unwrap().contains(&format!("({left:.1} % of")), "{said} instead of {left}");
-    browser.picture("journey-residual").await;
+    axe::assert_readable(&browser, "journey-residual").await;
     end(&server, browser, &[]).await;
 }
 
@@ -169,7 +171,7 @@ async fn dashboard_a_file_of_a_bench_becomes_the_friction_that_is_shown_live() {
     let said = "document.querySelector('.state-text').innerText";
     browser.until(&format!("{said}.includes('Measured friction μ') && {said}.includes({:?})", short(friction))).await;
     browser.until("document.querySelectorAll('#plot-loop .dot.measured').length > 500").await;
-    browser.picture("journey-dashboard").await;
+    axe::assert_readable(&browser, "journey-dashboard").await;
     end(&server, browser, &[]).await;
 }
 

@@ -265,7 +265,7 @@ async fn a_protocol_run_reduces_the_stress_and_shows_how_much() {
     browser.press("#plot-residual svg", "\u{e014}").await;
     let two = browser.value("document.querySelector('#plot-residual .said').textContent").await;
     assert!(two.as_str().unwrap().contains("largest 0.5303"), "{two}");
-    browser.picture("run").await;
+    axe::assert_readable(&browser, "run").await;
     browser.stayed_quiet_and_at(&server.address, &[]).await;
     browser.close().await;
 }
@@ -330,7 +330,7 @@ async fn the_best_run_keeps_its_promise_and_solvers_are_compared() {
                boxes.slice(index + 1).every((two) => one.right < two.left || two.right < one.left || one.bottom - 2 < \
                two.top || two.bottom - 2 < one.top)); })()";
     assert_eq!(browser.value(lie).await, true);
-    browser.picture("accuracy").await;
+    axe::assert_readable(&browser, "accuracy").await;
     browser.stayed_quiet_and_at(&server.address, &[]).await;
     browser.close().await;
 }
@@ -362,7 +362,7 @@ async fn the_steady_cycle_follows_the_slider() {
     let stiffness = four(1e-6 * (1.0 - 0.1_f64.powf(1.5)) * force / (0.9 * displacement));
     browser.until(&format!("{card}.includes({:?})", format!("{stiffness} MN/m"))).await;
     browser.value("document.querySelector('#steady-card').scrollIntoView()").await;
-    browser.picture("steady").await;
+    axe::assert_readable(&browser, "steady").await;
     // Dragged to the end and back to the middle, it ends with what belongs there.
     browser.drag("#slide-displacement", 0.2, 0.99).await;
     browser.until(&format!("{card}.includes('slides in each stroke')")).await;
@@ -445,7 +445,7 @@ async fn the_mark_of_a_fretting_map_is_where_its_lines_say() {
         browser.until(&off).await;
     }
     browser.value("document.querySelector('#plot-map').scrollIntoView()").await;
-    browser.picture("map").await;
+    axe::assert_readable(&browser, "map").await;
     browser.stayed_quiet_and_at(&server.address, &[]).await;
     browser.close().await;
 }
@@ -754,7 +754,7 @@ async fn a_pasted_loop_becomes_friction_and_a_contact() {
     browser.until("document.querySelector('#loop-estimates').innerText.includes('friction μ')").await;
     browser.until("document.querySelectorAll('#plot-fit path.line').length === 2").await;
     assert_eq!(browser.value("document.querySelector('#loop-warnings').children.length").await, 0);
-    browser.picture("loop-fit").await;
+    axe::assert_readable(&browser, "loop-fit").await;
     browser.click("#create-fitted").await;
     browser.until(&format!("!location.hash.includes('{}')", session.id)).await;
     let hash = browser.value("location.hash").await;

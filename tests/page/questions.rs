@@ -6,6 +6,7 @@ use serde_json::{Value, json};
 use stickslip_wire::client::Options;
 use stickslip_wire::{Move, MoveRequest, NewSession};
 
+use crate::axe;
 use crate::browser::Browser;
 use crate::common::{Binary, create, until};
 use crate::{TABS, ball, four, moved, three};
@@ -154,13 +155,19 @@ async fn the_worst_place_is_found_without_a_grid_judged_and_marked() {
     let half = (2.0 * number(&reply["contact"]["contact_radius"])).max(1.2 * number(&largest["point"][0]).abs());
     let expected = 0.5 + 0.5 * number(&largest["point"][0]) / half;
     assert!((place[0] - expected).abs() < 1e-3 && place[1] > 4.0, "{place:?} instead of {expected}");
+    // No name is drawn over it.
+    let clear = "(() => { const ring = document.querySelector('#plot-crack .worst').getBoundingClientRect(); \
+                 return [...document.querySelectorAll('#plot-crack text.over')].every((text) => { \
+                 const box = text.getBoundingClientRect(); return box.right < ring.left || box.left > ring.right || \
+                 box.bottom < ring.top || box.top > ring.bottom; }); })()";
+    assert_eq!(browser.value(clear).await, true);
     // The colours are smooth: their borders are no steps along the grid, but for the whole cells inside.
     let slanted = "[...document.querySelectorAll('#plot-crack .shade')].some((path) => \
                    path.getAttribute('d').split('Z').some((part) => part.slice(1).split('L').map((p) => \
                    p.split(',').map(Number)).some((p, index, all) => index > 0 && Math.abs(p[0] - all[index - 1][0]) > \
                    0.5 && Math.abs(p[1] - all[index - 1][1]) > 0.5)))";
     assert_eq!(browser.value(slanted).await, true);
-    browser.picture("crack-found").await;
+    axe::assert_readable(&browser, "crack-found").await;
     browser.stayed_quiet_and_at(&server.address, &[]).await;
     browser.close().await;
 }
@@ -192,7 +199,7 @@ async fn the_frequency_response_is_drawn_with_its_backbone() {
             browser.value(&format!("document.querySelector({series:?}).getAttribute('d').split('L').length")).await;
         assert!(points.as_u64().unwrap() > 10, "{series}");
     }
-    browser.picture("damping-found").await;
+    axe::assert_readable(&browser, "damping-found").await;
     browser.stayed_quiet_and_at(&server.address, &[]).await;
     browser.close().await;
 }
@@ -227,7 +234,7 @@ async fn damping_and_residual_stress_have_what_the_service_can_do() {
     let body = json!({"contact": contact, "drive": drive, "normal": {"normal_force": 2.0}});
     let loss = asked("/cycle", &body).await["cycles"][0]["loss_factor"].as_f64().unwrap();
     browser.until(&format!("{said}.includes({:?})", format!("Loss factor {loss:.4}").trim_end_matches('0'))).await;
-    browser.picture("damping-study").await;
+    axe::assert_readable(&browser, "damping-study").await;
 
     opened(&browser, &server, &session, "/residual").await;
     browser.value("(document.querySelector('#search-card details').open = true) && null").await;
@@ -238,7 +245,7 @@ async fn damping_and_residual_stress_have_what_the_service_can_do() {
     let reply = asked("/protocols", &json!({"contact": contact, "target": 0.2})).await;
     browser.until(&format!("{found}.includes('Reversals {} ')", reply["reversals"])).await;
     browser.until(&format!("{found}.includes('In 95 of 100 trials at most')")).await;
-    browser.picture("residual-search").await;
+    axe::assert_readable(&browser, "residual-search").await;
     browser.stayed_quiet_and_at(&server.address, &[]).await;
     browser.close().await;
 }

@@ -3,20 +3,22 @@
 
 use eventsource_stream::{EventStreamError, Eventsource as _};
 use futures::{Stream, StreamExt as _};
-use reqwest::header::{AUTHORIZATION, HeaderValue};
+use reqwest::header::{AUTHORIZATION, CONTENT_TYPE, HeaderValue};
 use reqwest::{Method, RequestBuilder, StatusCode};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use uuid::Uuid;
 
+use crate::fit::FitUnits;
+use crate::profile_fit::ScanUnits;
 use crate::{
     AccuracyReply, AccuracyRequest, ContactDefinition, CreateRequest, CycleDrive, CyclePage, CycleReply, CycleRequest,
     EndEvent, EndReason, FitReply, FitRequest, ForkRequest, FrettingReply, FrettingRequest, FrictionReply, HistoryPage,
-    JobList, JobReply, JobState, LoopPage, Machine, MoveReply, MoveRequest, NewSession, ObservationsReply,
-    ObservationsRequest, PathReply, PathRequest, ProblemDocument, ProfileFitReply, ProfileFitRequest, ProtocolReply,
-    ProtocolRequest, RelaxReply, RelaxRequest, RenameRequest, SessionPage, SessionReply, SimulateReply,
-    SimulateRequest, StateEvent, StressReply, StressRequest, SubsurfaceReply, SubsurfaceRequest, SweepReply,
-    SweepRequest, WorkDensity,
+    JobList, JobReply, JobState, LoopFileReply, LoopPage, Machine, MoveReply, MoveRequest, NewSession,
+    ObservationsReply, ObservationsRequest, PathReply, PathRequest, ProblemDocument, ProfileFitReply,
+    ProfileFitRequest, ProtocolReply, ProtocolRequest, RelaxReply, RelaxRequest, RenameRequest, Residual,
+    ScanFileReply, SessionPage, SessionReply, SimulateReply, SimulateRequest, StateEvent, StressReply, StressRequest,
+    SubsurfaceReply, SubsurfaceRequest, SweepReply, SweepRequest, WorkDensity,
 };
 
 /// A handle on a service; clones share its connections. Every call fails with an [`Error`], and so may a stream of
@@ -210,6 +212,28 @@ impl Client {
         json(self.call(Method::POST, "/fit").json(request)).await
     }
 
+    /// `POST /files/scan`, with the units if the file does not name them.
+    pub async fn read_scan(&self, file: Vec<u8>, units: Option<ScanUnits>) -> Result<ScanFileReply, Error> {
+        let ScanUnits { lateral, height } = units.unwrap_or_default();
+        let [lateral, height] = [lateral, height].map(|unit| Some(unit?.symbol()));
+        let call = self.call(Method::POST, "/files/scan").query(&[("lateral", lateral), ("height", height)]);
+        json(call.header(CONTENT_TYPE, "application/octet-stream").body(file)).await
+    }
+
+    /// `POST /files/loop`, likewise.
+    pub async fn read_loop(&self, file: Vec<u8>, units: Option<FitUnits>) -> Result<LoopFileReply, Error> {
+        let FitUnits { displacement, force } = units.unwrap_or_default();
+        let displacement = displacement.map(|unit| unit.symbol());
+        let call = self.call(Method::POST, "/files/loop").query(&[("displacement_unit", displacement)]);
+        let call = call.query(&[("force_unit", force.map(|unit| unit.symbol()))]);
+        json(call.header(CONTENT_TYPE, "application/octet-stream").body(file)).await
+    }
+
+    /// `GET /contacts/{id}/residual`.
+    pub async fn residual(&self, id: Uuid) -> Result<Residual, Error> {
+        json(self.call(Method::GET, &format!("/contacts/{id}/residual"))).await
+    }
+
     /// `POST /contacts/{id}/subsurface`.
     pub async fn subsurface(&self, id: Uuid, request: &SubsurfaceRequest) -> Result<SubsurfaceReply, Error> {
         json(self.call(Method::POST, &format!("/contacts/{id}/subsurface")).json(request)).await
@@ -327,6 +351,7 @@ impl Client {
     pub async fn delete_job(&self, id: Uuid) -> Result<(), Error> {
         sent(self.call(Method::DELETE, &format!("/jobs/{id}"))).await.map(drop)
     }
+
     /// `GET /openapi.json`.
     pub async fn openapi(&self) -> Result<serde_json::Value, Error> {
         json(self.call(Method::GET, "/openapi.json")).await

@@ -71,11 +71,11 @@ pub fn cycles(id: Uuid, page: &CyclePage) -> Plot {
         }],
     };
     Plot {
-        title: format!("Contact {id}: closed cycles"),
+        title: format!("Contact {id}: {}closed cycles", if page.items.is_empty() { "no " } else { "" }),
         x: Axis { name: "move", unit: None },
         panels: vec![
-            panel("displacement amplitude", "m", Colour::Blue, |cycle| cycle.displacement_amplitude),
-            panel("force amplitude", "N", Colour::Blue, |cycle| cycle.force_amplitude),
+            panel("amplitude U₀", "m", Colour::Blue, |cycle| cycle.displacement_amplitude),
+            panel("amplitude F₀", "N", Colour::Blue, |cycle| cycle.force_amplitude),
             panel("friction work", "J", Colour::Red, |cycle| cycle.dissipated_energy),
             panel("secant stiffness", "N/m", Colour::Blue, |cycle| cycle.secant_stiffness.unwrap_or(f64::NAN)),
         ],

@@ -13,7 +13,7 @@ use stickslip_wire::{LoopFileReply, ScanFileReply};
 
 use crate::api::extract::FileBody;
 use crate::api::parameters::{Parameters as _, QueryReader, Text, Words, number, parameters};
-use crate::api::problem::{Code, Problem};
+use crate::api::problem::Problem;
 use crate::api::query::{CheckedQuery, QueryParams};
 use crate::api::reply;
 use crate::api::state::App;
@@ -135,14 +135,7 @@ async fn answer<R: Serialize>(
     read: impl FnOnce(&[u8]) -> Result<R, ImportError> + Send + 'static,
 ) -> Result<Response, Problem> {
     let cost = files::cost(bytes.len());
-    let work = move || Ok::<_, Problem>(formats::json(bytes.len(), &read(&bytes).map_err(problem)?)?);
+    let work = move || Ok::<_, Problem>(formats::json(bytes.len(), &read(&bytes)?)?);
     let text = app.pool.run(cost, work).await??;
     Ok(held.on(reply::json(text)))
-}
-
-/// What is wrong with a file, at its line and column from 1 on.
-fn problem(error: ImportError) -> Problem {
-    let place = |name: &str, number: Option<usize>| number.map_or_else(String::new, |at| format!("/{name}/{at}"));
-    let pointer = place("line", error.line) + &place("column", error.column);
-    Problem::at(Code::InvalidInput, pointer, error.to_string())
 }

@@ -9,6 +9,7 @@ use stickslip_wire::{Faults, FrettingMap, JsonPath, LoadSpan};
 
 use super::{Body, Flags};
 use crate::cli::io::{parsed, read};
+use crate::cli::refusal::Refusal;
 use crate::formats::Format;
 
 /// What to make of the body.
@@ -44,11 +45,11 @@ impl FromStr for Loads {
 }
 
 impl Flags for CycleFlags {
-    fn body(&self, file: Option<&Path>) -> Result<Body, String> {
+    fn body(&self, file: Option<&Path>) -> Result<Body, Refusal> {
         let text = read(file.unwrap_or(Path::new("-")))?;
-        let Some(Loads(map)) = self.map else { return Ok(Body { text, format: None, only: None }) };
+        let Some(Loads(map)) = self.map else { return Ok(Body { text, ..Body::default() }) };
         let mut body: Value = parsed(&text)?;
         body.as_object_mut().ok_or("the body is not an object")?.insert("map".to_owned(), json!(map));
-        Ok(Body { text: body.to_string().into_bytes(), format: Some(Format::Csv), only: None })
+        Ok(Body { text: body.to_string().into_bytes(), format: Some(Format::Csv), ..Body::default() })
     }
 }

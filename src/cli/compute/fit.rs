@@ -11,7 +11,8 @@ use stickslip_wire::profile_fit::LengthUnit;
 use stickslip_wire::{self as wire, ContactDefinition, FitRequest};
 
 use super::{Body, Flags, Only};
-use crate::cli::io::{json, problem, read, say};
+use crate::cli::io::{json, read};
+use crate::cli::refusal::Refusal;
 
 /// What is free if the command line does not say.
 const USUALLY_FREE: [FitParameter; 3] = [FitParameter::Friction, FitParameter::GStar, FitParameter::ForceOffset];
@@ -70,20 +71,24 @@ impl Flags for FitFlags {
         Self::augment_args(command).mut_arg("file", |file| file.help(help))
     }
 
-    fn body(&self, file: Option<&Path>) -> Result<Body, String> {
+    fn body(&self, file: Option<&Path>) -> Result<Body, Refusal> {
         let file = file.unwrap_or(Path::new("-"));
         let content = read(file)?;
         let is_json = content.trim_ascii_start().starts_with(b"{");
-        let text = if is_json { content } else { json(&self.of_columns(&content, file)?).into_bytes() };
-        Ok(Body { text, format: None, only: self.only_contact.then_some(Only::Contact) })
+        let only = self.only_contact.then_some(Only::Contact);
+        if is_json {
+            return Ok(Body { text: content, only, ..Body::default() });
+        }
+        let (request, reading) = self.of_columns(&content, file)?;
+        Ok(Body { text: json(&request).into_bytes(), only, reading, ..Body::default() })
     }
 }
 
 impl FitFlags {
-    fn of_columns(&self, content: &[u8], file: &Path) -> Result<FitRequest, String> {
+    fn of_columns(&self, content: &[u8], file: &Path) -> Result<(FitRequest, Vec<String>), Refusal> {
         let contact =
             self.contact.as_ref().ok_or("a file of columns needs --contact FILE, the definition of the contact")?;
-        let contact = wire::parse::<ContactDefinition>(&read(contact)?).map_err(problem)?;
+        let contact = wire::parse::<ContactDefinition>(&read(contact)?)?;
         let hints = LoopHints {
             displacement: self.displacement.clone(),
             force: self.force.clone(),
@@ -92,8 +97,7 @@ impl FitFlags {
             displacement_unit: self.displacement_unit.as_deref().and_then(files::length),
             force_unit: self.force_unit.as_deref().and_then(files::force),
         };
-        let found = files::measured_loop(content, &hints).map_err(|error| format!("{}: {error}", file.display()))?;
-        say(file, &found.preview.reading);
+        let found = files::measured_loop(content, &hints).map_err(|error| Refusal::of_file(file, error))?;
         let start = self.start.as_deref();
         let measured = MeasuredLoop {
             normal_force: self.normal_force.or(found.measured.normal_force),
@@ -106,14 +110,15 @@ impl FitFlags {
         for (parameter, value) in &self.known {
             *known.entry(*parameter) = Some(*value);
         }
-        Ok(FitRequest {
+        let request = FitRequest {
             contact,
             loops: vec![measured],
             units: Some(found.units),
             free: if free.is_empty() { USUALLY_FREE.to_vec() } else { free },
             known: Some(known),
             noise: None,
-        })
+        };
+        Ok((request, found.preview.reading))
     }
 }
 

@@ -6,7 +6,7 @@ mod fit;
 mod profile;
 mod protocol;
 
-use std::io::{IsTerminal as _, stderr, stdout};
+use std::io::{IsTerminal as _, stdout};
 use std::path::{Path, PathBuf};
 
 use clap::builder::PossibleValuesParser;
@@ -16,9 +16,11 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 use stickslip_wire::{ContactDefinition, Profile};
 
-use super::io::{fault, json, parsed, print, read, write};
+use super::io::{json, parsed, print, read, say, write};
+use super::refusal::Refusal;
 use super::summary::summary;
 use crate::admission::Stop;
+use crate::api::Problem;
 use crate::computations::{About, Computation, Shown, Visitor, compute, each};
 use crate::formats::Format;
 
@@ -29,12 +31,15 @@ pub struct Compute {
 }
 
 /// What flags make of a request.
+#[derive(Default)]
 struct Body {
     text: Vec<u8>,
     /// The format if the command line does not name one.
     format: Option<Format>,
     /// The member of the reply that alone is printed.
     only: Option<Only>,
+    /// What was taken for what in a measured file.
+    reading: Vec<String>,
 }
 
 /// A member of a reply, for another request.
@@ -54,7 +59,7 @@ trait Flags: Args {
     }
 
     /// The body of the request.
-    fn body(&self, file: Option<&Path>) -> Result<Body, String>;
+    fn body(&self, file: Option<&Path>) -> Result<Body, Refusal>;
 }
 
 /// No flags: the file is the body.
@@ -62,13 +67,13 @@ trait Flags: Args {
 struct NoFlags {}
 
 impl Flags for NoFlags {
-    fn body(&self, file: Option<&Path>) -> Result<Body, String> {
-        Ok(Body { text: read(file.unwrap_or(Path::new("-")))?, format: None, only: None })
+    fn body(&self, file: Option<&Path>) -> Result<Body, Refusal> {
+        Ok(Body { text: read(file.unwrap_or(Path::new("-")))?, ..Body::default() })
     }
 }
 
 /// How flags are added to a command, and read.
-type FlagsOf = (fn(Command) -> Command, fn(&ArgMatches, Option<&Path>) -> Result<Body, String>);
+type FlagsOf = (fn(Command) -> Command, fn(&ArgMatches, Option<&Path>) -> Result<Body, Refusal>);
 
 fn flags(name: &str) -> FlagsOf {
     fn of<F: Flags>() -> FlagsOf {
@@ -164,7 +169,8 @@ impl Compute {
         let Compute { about, matches } = self;
         let wants_json = matches.get_flag("json");
         let word = |name: &str| matches.get_one::<String>(name);
-        let body = flags(about.name).1(matches, matches.get_one::<PathBuf>("file").map(PathBuf::as_path))?;
+        let file = matches.get_one::<PathBuf>("file").map(PathBuf::as_path);
+        let body = flags(about.name).1(matches, file).map_err(|refusal| refusal.message(wants_json))?;
         let named = word("format").and_then(|name| Format::named(name, about.formats));
         let format = if wants_json { Format::Columns } else { named.or(body.format).unwrap_or(about.printed) };
         let choice = about.choice.and_then(|choice| {
@@ -172,8 +178,12 @@ impl Compute {
             choice.words.iter().copied().find(|known| known == chosen)
         });
         let shown = Shown { format, choice, indented: true };
-        let reply = compute(about.name, &body.text, shown, &Stop::default())
-            .map_err(|error| fault(error, wants_json || !stderr().is_terminal()))?;
+        let reply = compute(about.name, &body.text, shown, &Stop::default());
+        // A program that asked for JSON gets the problem document of a fault alone.
+        if reply.is_ok() || !wants_json {
+            say(file.unwrap_or(Path::new("-")), &body.reading);
+        }
+        let reply = reply.map_err(|error| Refusal::from(Problem::from(error)).message(wants_json))?;
         // A document is a wall of numbers to somebody who reads it on a terminal and has not asked for it.
         let is_read = !wants_json && named.is_none() && stdout().is_terminal();
         match (body.only, format) {

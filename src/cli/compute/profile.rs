@@ -10,7 +10,8 @@ use stickslip_wire::profile_fit::{LengthUnit, ScanLoad, ScanOrientation, Smoothi
 use stickslip_wire::{self as wire, ProfileFitRequest};
 
 use super::{Body, Flags, Only};
-use crate::cli::io::{json, problem, read, say};
+use crate::cli::io::{json, read};
+use crate::cli::refusal::Refusal;
 
 /// What a file of columns leaves open.
 #[derive(Args)]
@@ -39,24 +40,28 @@ impl Flags for ProfileFlags {
         Self::augment_args(command).mut_arg("file", |file| file.help(help))
     }
 
-    fn body(&self, file: Option<&Path>) -> Result<Body, String> {
+    fn body(&self, file: Option<&Path>) -> Result<Body, Refusal> {
         let file = file.unwrap_or(Path::new("-"));
         let content = read(file)?;
         let is_json = content.trim_ascii_start().starts_with(b"{");
-        let text = if is_json { content } else { json(&self.of_columns(&content, file)?).into_bytes() };
-        Ok(Body { text, format: None, only: self.only_profile.then_some(Only::Profile) })
+        let only = self.only_profile.then_some(Only::Profile);
+        if is_json {
+            return Ok(Body { text: content, only, ..Body::default() });
+        }
+        let (request, reading) = self.of_columns(&content, file)?;
+        Ok(Body { text: json(&request).into_bytes(), only, reading, ..Body::default() })
     }
 }
 
 impl ProfileFlags {
-    fn of_columns(&self, content: &[u8], file: &Path) -> Result<ProfileFitRequest, String> {
+    fn of_columns(&self, content: &[u8], file: &Path) -> Result<(ProfileFitRequest, Vec<String>), Refusal> {
         let unit = |symbol: &Option<String>| files::length(symbol.as_deref()?);
         let hints =
             ScanHints { lateral: unit(&self.lateral), height: unit(&self.height), spacing: self.spacing, most: 0 };
-        let found = files::scan(content, hints).map_err(|error| format!("{}: {error}", file.display()))?;
-        say(file, &found.preview.reading);
-        let load = self.load.as_ref().map(|file| wire::parse::<ScanLoad>(&read(file)?).map_err(problem)).transpose()?;
-        Ok(ProfileFitRequest {
+        let found = files::scan(content, hints).map_err(|error| Refusal::of_file(file, error))?;
+        let load = |file: &PathBuf| Ok::<_, Refusal>(wire::parse::<ScanLoad>(&read(file)?)?);
+        let load = self.load.as_ref().map(load).transpose()?;
+        let request = ProfileFitRequest {
             scan: found.scan,
             units: Some(found.units),
             orientation: Some(ScanOrientation::Auto),
@@ -64,6 +69,7 @@ impl ProfileFlags {
             level: None,
             smoothing: Some(Smoothing::Auto),
             load,
-        })
+        };
+        Ok((request, found.preview.reading))
     }
 }

@@ -8,6 +8,7 @@ use serde_json::{Map, Value, json};
 
 use super::{Body, Flags};
 use crate::cli::io::{parsed, read};
+use crate::cli::refusal::Refusal;
 
 /// Names of the API, which may be written with hyphens.
 fn names(names: &[&'static str]) -> PossibleValuesParser {
@@ -48,8 +49,8 @@ impl Flags for ProtocolFlags {
         Self::augment_args(command).mut_arg("file", |file| file.required(false).required_unless_present("contact"))
     }
 
-    fn body(&self, file: Option<&Path>) -> Result<Body, String> {
-        Ok(Body { text: self.text(file)?, format: None, only: None })
+    fn body(&self, file: Option<&Path>) -> Result<Body, Refusal> {
+        Ok(Body { text: self.text(file)?, ..Body::default() })
     }
 }
 

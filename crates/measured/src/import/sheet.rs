@@ -80,6 +80,8 @@ impl Sheet {
             has_decimal_commas: false,
         };
         let mut has_column = false;
+        // What keeps the first line that begins with a number from being a row of them.
+        let mut spoilt = None;
         // What stands before a line with a number sign alone is a header, whatever numbers it has.
         let begin = text.lines().position(|line| line.trim() == "#").map_or(0, |index| index + 1);
         for (index, line) in text.lines().enumerate() {
@@ -106,6 +108,9 @@ impl Sheet {
                 }
                 _ if sheet.width == 0 => {
                     has_column |= numbers.is_ok();
+                    if let (None, Err(column @ 1..)) = (&spoilt, &numbers) {
+                        spoilt = Some(cells.fault(index + 1, *column));
+                    }
                     if sheet.header.len() == MOST_HEADER {
                         break;
                     }
@@ -114,16 +119,13 @@ impl Sheet {
                 // A mark of the end, after the numbers.
                 _ if line == "#" => {}
                 Ok(_) => {}
-                Err(column) => {
-                    let cell = cells.fields.get(column).map_or("", Cow::as_ref);
-                    let fault = format!("`{cell:.40}` is not a number");
-                    return Err(ImportError::at(index + 1, column + 1, fault));
-                }
+                Err(column) => return Err(cells.fault(index + 1, column)),
             }
         }
-        match sheet.width {
-            0 if has_column => Err(ImportError::of_file(ONE_COLUMN)),
-            0 => Err(ImportError::of_file("there are no rows of numbers")),
+        match (sheet.width, spoilt) {
+            (0, Some(error)) => Err(error),
+            (0, None) if has_column => Err(ImportError::of_file(ONE_COLUMN)),
+            (0, None) => Err(ImportError::of_file("there are no rows of numbers")),
             _ => Ok(sheet),
         }
     }
@@ -219,6 +221,12 @@ impl<'a> Cells<'a> {
             Some(separator) => line.split(separator).map(|name| trimmed(name).to_owned()).collect(),
             None => words_with_units(line),
         }
+    }
+
+    /// What is wrong with the cell of this index, in this line from 1 on.
+    fn fault(&self, line: usize, column: usize) -> ImportError {
+        let cell = self.fields.get(column).map_or("", Cow::as_ref);
+        ImportError::at(line, column + 1, format!("`{cell:.40}` is not a number"))
     }
 
     /// The numbers of the cells, or the index of the first that is none. A line of marks alone has none.

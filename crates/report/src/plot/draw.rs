@@ -13,6 +13,8 @@ use super::{Axis, Band, Colour, Panel, Picture, Plot};
 
 /// Pixels of a plot. Twice the size shown on a page, so that curves and text are smooth.
 pub(super) const SIZE: (u32, u32) = (1520, 1000);
+/// Height that a panel has at least, pixels, so that the name of its ordinate fits beside it.
+const PANEL: u32 = 333;
 /// Width of the margin left of the axes, pixels: the same in all panels, so that the axes align.
 const LEFT: u32 = 132;
 /// The part of the height that is kept free above and below the curves.
@@ -78,6 +80,10 @@ where
 }
 
 impl Picture for Plot {
+    fn size(&self) -> (u32, u32) {
+        (SIZE.0, SIZE.1.max(PANEL * u32::try_from(self.panels.len()).unwrap_or(1)))
+    }
+
     fn draw<DB: DrawingBackend>(&self, area: &DrawingArea<DB, Shift>) -> Result<(), Box<dyn Error>>
     where
         DB::ErrorType: 'static,

@@ -1,0 +1,163 @@
+//! Every picture of the service beside one that a person has looked at, kept in `pictures/`. `UPDATE=1` writes those
+//! anew, to be looked at again.
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::io::Cursor;
+use std::path::Path;
+
+use png::{ColorType, Decoder};
+use serde_json::{Value, json};
+
+use crate::common::Server;
+
+const FOLDER: &str = "tests/api/pictures";
+/// How far a line of a vector plot may be from its reference, pixels: coordinates are rounded to whole ones.
+const SHIFT: f64 = 1.0;
+/// How far a channel of a pixel may be from its reference, of 255, before the pixel counts as another one.
+const SHADE: u8 = 64;
+/// One of so many pixels may be another one.
+const OTHERS: usize = 2000;
+/// Rows of pixels that hold the title, where the identifier of a contact stands.
+const TITLE: usize = 72;
+
+/// Examples of the document: the name of the file, the path, the example and the query.
+const EXAMPLES: [(&str, &str, &str, &str); 11] = [
+    ("simulate-steps", "/simulate", "back and forth", "show=steps"),
+    ("simulate-stress", "/simulate", "back and forth", "show=stress"),
+    ("simulate-residual", "/simulate", "back and forth", "show=residual"),
+    ("cycle-amplitudes", "/cycle", "amplitudes", ""),
+    ("cycle-machine", "/cycle", "machine", ""),
+    ("cycle-map", "/cycle", "map", ""),
+    ("fretting-section", "/fretting", "section", ""),
+    ("fretting-surface", "/fretting", "surface", "criterion=findley"),
+    ("fretting-work", "/fretting", "surface", "criterion=friction_work"),
+    ("fit", "/fit", "steady", ""),
+    ("profile", "/profiles/fit", "line", ""),
+];
+
+/// What is shown of a contact after some moves: the name of the file, the path, and the query or the example.
+const OF_CONTACT: [(&str, &str, &str); 8] = [
+    ("contact-stress", "/stress", ""),
+    ("contact-loop", "/loop", "points_per_move=20"),
+    ("contact-history", "/history", ""),
+    ("contact-cycles", "/cycles", ""),
+    ("contact-residual", "/residual", ""),
+    ("contact-cycle", "/cycle", "displacement=1e-7"),
+    ("contact-dissipation", "/cycle", "displacement=1e-8,3e-8,1e-7,3e-7"),
+    ("contact-section", "/subsurface", "section"),
+];
+
+/// A text in pieces: numbers, and what lies between.
+fn pieces(text: &str) -> Vec<&str> {
+    let is_number = |letter: char| letter.is_ascii_digit() || letter == '.';
+    let (mut pieces, mut rest) = (Vec::new(), text);
+    while let Some(first) = rest.chars().next() {
+        let end = rest.find(|letter| is_number(letter) != is_number(first)).unwrap_or(rest.len());
+        let (piece, after) = rest.split_at(end);
+        pieces.push(piece);
+        rest = after;
+    }
+    pieces
+}
+
+/// What keeps a vector plot from being its reference.
+fn other_lines(found: &str, reference: &str) -> Option<String> {
+    let (found, reference): (Vec<_>, Vec<_>) =
+        (found.split_inclusive('>').collect(), reference.split_inclusive('>').collect());
+    if found.len() != reference.len() {
+        return Some(format!("{} parts, {} in the reference", found.len(), reference.len()));
+    }
+    let other = |(found, reference): &(&str, &str)| {
+        // Outside a tag stand the words of the plot, with its numbers.
+        let [(words, tag), (own, of)] = [found, reference].map(|part| part.rsplit_once('<').unwrap_or((part, "")));
+        let (tag, of) = (pieces(tag), pieces(of));
+        let same = |(one, two): (&&str, &&str)| match (one.parse::<f64>(), two.parse::<f64>()) {
+            (Ok(one), Ok(two)) => (one - two).abs() <= SHIFT,
+            _ => one == two,
+        };
+        words != own || tag.len() != of.len() || !tag.iter().zip(&of).all(same)
+    };
+    let first = found.into_iter().zip(reference).find(other);
+    first.map(|(found, reference)| format!("{found:.300}\nin place of\n{reference:.300}"))
+}
+
+/// Rows of pixels, three bytes each.
+fn pixels(file: &[u8]) -> ((u32, u32), Vec<u8>) {
+    let mut reader = Decoder::new(Cursor::new(file)).read_info().unwrap();
+    let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
+    let info = reader.next_frame(&mut pixels).unwrap();
+    assert_eq!(info.color_type, ColorType::Rgb);
+    ((info.width, info.height), pixels)
+}
+
+/// What keeps a bitmap from being its reference, below its first rows.
+fn other_pixels(found: &[u8], reference: &[u8], rows: usize) -> Option<String> {
+    let ((size, found), (wanted, reference)) = (pixels(found), pixels(reference));
+    if size != wanted {
+        return Some(format!("{size:?} pixels, {wanted:?} in the reference"));
+    }
+    let above = 3 * rows * size.0 as usize;
+    let pairs = found[above..].chunks(3).zip(reference[above..].chunks(3));
+    let other = pairs.filter(|(one, two)| one.iter().zip(*two).any(|(one, two)| one.abs_diff(*two) > SHADE)).count();
+    (other > found.len() / 3 / OTHERS).then(|| format!("{other} other pixels"))
+}
+
+/// Compares the two pictures of a scene with their references, or writes these; `id` is of the contact in the title.
+async fn hold(server: &Server, name: &str, path: &str, query: &str, body: Option<&Value>, id: Option<&str>) {
+    for format in ["svg", "png"] {
+        let path = format!("{path}?{query}{}format={format}", if query.is_empty() { "" } else { "&" });
+        let response = match body {
+            Some(body) => server.post(&path, body).await,
+            None => server.get(&path).await,
+        };
+        let (status, mut found) = (response.status(), response.bytes().await.unwrap().to_vec());
+        assert!(status.is_success(), "{path}: {}", String::from_utf8_lossy(&found));
+        if let ("svg", Some(id)) = (format, id) {
+            found = String::from_utf8(found).unwrap().replace(id, "ID").into_bytes();
+        }
+        let file = Path::new(FOLDER).join(format!("{name}.{format}"));
+        if std::env::var_os("UPDATE").is_some() {
+            fs::create_dir_all(FOLDER).unwrap();
+            fs::write(&file, &found).unwrap();
+        }
+        let reference = fs::read(&file).unwrap();
+        let other = match format {
+            "svg" => other_lines(&String::from_utf8_lossy(&found), &String::from_utf8_lossy(&reference)),
+            _ => other_pixels(&found, &reference, if id.is_some() { TITLE } else { 0 }),
+        };
+        assert!(other.is_none(), "{} is another picture: {}", file.display(), other.unwrap_or_default());
+    }
+}
+
+#[tokio::test]
+async fn each_picture_is_the_one_that_was_looked_at() {
+    let server = Server::start().await;
+    let document: Value = server.get("/openapi.json").await.json().await.unwrap();
+    let example = |path: &str, name: &str| {
+        let operation = &document["paths"][path]["post"];
+        operation["requestBody"]["content"]["application/json"]["examples"][name]["value"].clone()
+    };
+    for (name, path, scene, query) in EXAMPLES {
+        hold(&server, name, path, query, Some(&example(path, scene)), None).await;
+    }
+    let id = server.contact().await.to_string();
+    let moves =
+        json!({"path": {"displacement": [1.5e-7, -1.4e-7, 1.4e-7, -1.4e-7, 1.2e-7, -1.2e-7, 1e-7, -5e-8, 2e-8]}});
+    assert!(server.post(&format!("/contacts/{id}/path"), &moves).await.status().is_success());
+    for (name, path, query) in OF_CONTACT {
+        let of = format!("/contacts/{id}{path}");
+        let body = (path == "/subsurface").then(|| example("/contacts/{id}/subsurface", query));
+        let query = if body.is_some() { "" } else { query };
+        hold(&server, name, &of, query, body.as_ref(), Some(&id)).await;
+    }
+    // Whatever the service draws is among them.
+    let drawn = document["paths"].as_object().unwrap().iter().filter(|(_, operations)| {
+        let mut replies = operations.as_object().unwrap().values().map(|operation| &operation["responses"]["200"]);
+        replies.any(|reply| reply["content"]["image/svg+xml"].is_object())
+    });
+    let drawn: BTreeSet<String> = drawn.map(|(path, _)| path.clone()).collect();
+    let held = EXAMPLES.iter().map(|(_, path, ..)| (*path).to_owned());
+    let held = held.chain(OF_CONTACT.iter().map(|(_, path, _)| format!("/contacts/{{id}}{path}")));
+    assert_eq!(drawn, held.collect::<BTreeSet<_>>());
+}
