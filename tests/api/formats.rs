@@ -444,8 +444,8 @@ async fn a_loop_follows_moves_that_are_straight_in_two_forces() {
     assert!((straight(4) - (1.0 - 2.0 / 3.0)).abs() < 1e-9 && (straight(5) + 1.0 / 3.0).abs() < 1e-9);
 }
 
-/// Rows of pixels of a PNG file, three bytes each.
-fn pixels(file: &[u8]) -> (usize, Vec<u8>) {
+/// The width of a PNG file and its rows of pixels, three bytes each.
+pub fn pixels(file: &[u8]) -> (usize, Vec<u8>) {
     let mut reader = png::Decoder::new(std::io::Cursor::new(file)).read_info().unwrap();
     let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
     let info = reader.next_frame(&mut pixels).unwrap();

@@ -3,13 +3,12 @@
 
 use std::collections::BTreeSet;
 use std::fs;
-use std::io::Cursor;
 use std::path::Path;
 
-use png::{ColorType, Decoder};
 use serde_json::{Value, json};
 
 use crate::common::{Server, run};
+use crate::formats::pixels;
 
 const FOLDER: &str = "tests/api/pictures";
 /// How far a line of a vector plot may be from its reference, pixels: coordinates are rounded to whole ones.
@@ -82,22 +81,14 @@ fn other_lines(found: &str, reference: &str) -> Option<String> {
     first.map(|(found, reference)| format!("{found:.300}\nin place of\n{reference:.300}"))
 }
 
-/// Rows of pixels, three bytes each.
-fn pixels(file: &[u8]) -> ((u32, u32), Vec<u8>) {
-    let mut reader = Decoder::new(Cursor::new(file)).read_info().unwrap();
-    let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
-    let info = reader.next_frame(&mut pixels).unwrap();
-    assert_eq!(info.color_type, ColorType::Rgb);
-    ((info.width, info.height), pixels)
-}
-
 /// What keeps a bitmap from being its reference, below its first rows.
 fn other_pixels(found: &[u8], reference: &[u8], rows: usize) -> Option<String> {
-    let ((size, found), (wanted, reference)) = (pixels(found), pixels(reference));
-    if size != wanted {
-        return Some(format!("{size:?} pixels, {wanted:?} in the reference"));
+    let ((width, found), (wanted, reference)) = (pixels(found), pixels(reference));
+    if (width, found.len()) != (wanted, reference.len()) {
+        let [high, other] = [found.len() / width, reference.len() / wanted].map(|row| row / 3);
+        return Some(format!("{width} x {high} pixels, {wanted} x {other} in the reference"));
     }
-    let above = 3 * rows * size.0 as usize;
+    let above = 3 * rows * width;
     let pairs = found[above..].chunks(3).zip(reference[above..].chunks(3));
     let other = pairs.filter(|(one, two)| one.iter().zip(*two).any(|(one, two)| one.abs_diff(*two) > SHADE)).count();
     (other > found.len() / 3 / OTHERS).then(|| format!("{other} other pixels"))
