@@ -212,7 +212,7 @@ impl Client {
         json(self.call(Method::POST, "/fit").json(request)).await
     }
 
-    /// `POST /files/scan`, with the units if the file does not name them.
+    /// `POST /files/scan`; units that are given go before those that the file names.
     pub async fn read_scan(&self, file: Vec<u8>, units: Option<ScanUnits>) -> Result<ScanFileReply, Error> {
         let ScanUnits { lateral, height } = units.unwrap_or_default();
         let [lateral, height] = [lateral, height].map(|unit| Some(unit?.symbol()));
