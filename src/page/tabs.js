@@ -23,6 +23,11 @@ export const addressOf = (id, tab) => `#/contacts/${id}${tab === "live" ? "" : `
 /** The links of the tabs, and the function that shows the panel of one of them. `panels` are those of this contact, by tab. */
 export function tabBar(id, panels) {
   const links = Object.keys(panels).map((tab) => [tab, el("a", { href: addressOf(id, tab), id: `to-${tab}` }, TABS[tab])]);
+  const element = el("nav", { class: "tabs", "aria-label": "Questions" }, ...links.map(([, link]) => link));
+  let current = links[0][1];
+  // On a phone the bar is wider than the window.
+  const bringIntoView = () => element.scrollTo({ left: current.offsetLeft - 40 });
+  new ResizeObserver(bringIntoView).observe(element);
   const open = (wanted) => {
     const tab = wanted in panels ? wanted : "live";
     for (const [name, link] of links) {
@@ -30,12 +35,11 @@ export function tabBar(id, panels) {
       else link.removeAttribute("aria-current");
       panels[name].hidden = name !== tab;
     }
-    const current = links.find(([name]) => name === tab)[1];
-    // On a phone the bar is wider than the window.
-    current.parentElement?.scrollTo?.({ left: current.offsetLeft - 40 });
+    current = links.find(([name]) => name === tab)[1];
+    bringIntoView();
     return tab;
   };
-  return { element: el("nav", { class: "tabs", "aria-label": "Questions" }, ...links.map(([, link]) => link)), open };
+  return { element, open };
 }
 
 /** Columns of cards, so that a tall card leaves no blank beside a short one. */

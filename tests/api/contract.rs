@@ -8,7 +8,9 @@ use std::process::{Command, Stdio};
 use common::{PATIENCE, Server, ball, create, until};
 use serde_json::{Value, json};
 use stickslip_wire::client::{Client, Options, Swept};
-use stickslip_wire::profile_fit::{LengthUnit, ScanUnits};
+use stickslip_wire::files::{LoopFileHints, ScanFileHints};
+use stickslip_wire::fit::ForceUnit;
+use stickslip_wire::profile_fit::{LengthUnit, ScanData, ScanUnits};
 use stickslip_wire::{
     FallingAmplitude, Field, ForkRequest, JobState, Move, Path, PathRequest, Regime, SimulateRequest, SolverKind,
     Steps, StressRequest, SweepRequest,
@@ -91,14 +93,19 @@ async fn every_endpoint_answers_the_client() {
 
     assert_eq!(client.residual(contact.id).await.unwrap(), stress.residual.unwrap());
 
-    let scan = "x;z\n-1;-1\n0;0\n1;-1\n".to_owned().into_bytes();
-    let units = ScanUnits { lateral: Some(LengthUnit::Millimetre), height: Some(LengthUnit::Micrometre) };
-    let read = client.read_scan(scan, Some(units)).await.unwrap();
-    assert_eq!((read.units, read.preview.rows), (units, 3));
-    let text = "Force (N);Displacement (um)\n0;0\n1;2\n".to_owned().into_bytes();
-    let read = client.read_loop(text, None).await.unwrap();
+    let matrix = b"1 2 3 4\n5 6 7 8\n2 4 6 8\n1 3 5 7\n".to_vec();
+    let [lateral, height] = [LengthUnit::Millimetre, LengthUnit::Micrometre].map(Some);
+    let read = client.read_scan(matrix, &ScanFileHints { lateral, height, spacing: Some(0.5) }).await.unwrap();
+    assert_eq!((read.units, read.preview.rows), (ScanUnits { lateral, height }, 4));
+    assert!(matches!(read.scan, ScanData::Map(map) if (map.dx, map.dy) == (0.5, 0.5)));
+    let text = "Force (N);Displacement (um);Other\n0;0;3\n1;2;5\n".to_owned().into_bytes();
+    let read = client.read_loop(text.clone(), &LoopFileHints::default()).await.unwrap();
     assert_eq!((read.measured.displacement, read.measured.force), (vec![0.0, 2.0], vec![0.0, 1.0]));
-    let refused = client.read_loop(b"a;b".to_vec(), None).await.unwrap_err();
+    let other =
+        LoopFileHints { force: Some("3".into()), force_unit: Some(ForceUnit::Kilonewton), ..Default::default() };
+    let read = client.read_loop(text, &other).await.unwrap();
+    assert_eq!((read.measured.force, read.units.force), (vec![3.0, 5.0], other.force_unit));
+    let refused = client.read_loop(b"a;b".to_vec(), &LoopFileHints::default()).await.unwrap_err();
     assert_eq!(refused.problem().unwrap().code, "invalid_input");
 
     let history = client.history(contact.id, Some(1), Some(2)).await.unwrap();

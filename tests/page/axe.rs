@@ -6,7 +6,7 @@ use std::sync::OnceLock;
 
 use serde_json::Value;
 
-use crate::browser::Browser;
+use crate::browser::{self, Browser};
 
 const LOCK: &str = include_str!("axe/package-lock.json");
 
@@ -49,17 +49,31 @@ pub async fn serious(browser: &Browser) -> Vec<String> {
     found["violations"].as_array().unwrap().iter().filter(severe).map(line).collect()
 }
 
-/// Asserts that the page with its results has no serious fault and fits the window, on a phone in the dark and on a
-/// desk, which is the window afterwards; saves a picture of each.
+/// Asserts that the page with its results has no serious fault and fits the window, on a phone in the dark, a tablet and
+/// a desk, which is the window afterwards; saves a picture of each, and of each in the other colours.
 pub async fn assert_readable(browser: &Browser, name: &str) {
-    for (look, width, height, dark) in [("narrow-dark-", 400, 850, true), ("", 1280, 900, false)] {
+    for (look, width, height, dark) in
+        [("narrow-dark-", 390, 844, true), ("tablet-", 768, 1024, false), ("", 1440, 900, false)]
+    {
         browser.look(width, height, dark).await;
         browser.until("document.documentElement.scrollWidth <= innerWidth").await;
         // Results of before are pale until those of now are there.
         browser.until("document.querySelector('.stale') === null").await;
+        let tab = "document.querySelector('.tabs [aria-current]')";
+        let strip = "document.querySelector('.tabs')";
+        let within = |side: &str, order: &str| {
+            format!("{tab}.getBoundingClientRect().{side} {order} {strip}.getBoundingClientRect().{side}")
+        };
+        let shown = format!("{tab} === null || ({} && {})", within("left", ">="), within("right", "<="));
+        browser.until(&shown).await;
         assert_eq!(serious(browser).await, [""; 0], "{look}{name}");
         let whole = browser.value("document.documentElement.scrollHeight").await.as_u64().unwrap();
-        browser.look(width, u32::try_from(whole).unwrap(), dark).await;
+        let whole = u32::try_from(whole).unwrap();
+        if browser::takes_pictures() {
+            browser.look(width, whole, !dark).await;
+            browser.picture(&format!("other-{look}{name}")).await;
+        }
+        browser.look(width, whole, dark).await;
         browser.picture(&format!("{look}{name}")).await;
         browser.look(width, height, dark).await;
     }

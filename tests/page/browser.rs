@@ -17,6 +17,11 @@ const SCREENSHOTS: &str = "PAGE_SCREENSHOTS";
 /// How long to wait for something to appear: only a hang takes longer.
 pub const PATIENCE: Duration = Duration::from_secs(30);
 
+/// Whether pictures of the page are saved.
+pub fn takes_pictures() -> bool {
+    std::env::var_os(SCREENSHOTS).is_some()
+}
+
 /// A browser; it ends when it is dropped.
 pub struct Browser {
     driver: Child,

@@ -9,8 +9,7 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 use uuid::Uuid;
 
-use crate::fit::FitUnits;
-use crate::profile_fit::ScanUnits;
+use crate::files::{LoopFileHints, ScanFileHints};
 use crate::{
     AccuracyReply, AccuracyRequest, ContactDefinition, CreateRequest, CycleDrive, CyclePage, CycleReply, CycleRequest,
     EndEvent, EndReason, FitReply, FitRequest, ForkRequest, FrettingReply, FrettingRequest, FrictionReply, HistoryPage,
@@ -212,20 +211,15 @@ impl Client {
         json(self.call(Method::POST, "/fit").json(request)).await
     }
 
-    /// `POST /files/scan`; units that are given go before those that the file names.
-    pub async fn read_scan(&self, file: Vec<u8>, units: Option<ScanUnits>) -> Result<ScanFileReply, Error> {
-        let ScanUnits { lateral, height } = units.unwrap_or_default();
-        let [lateral, height] = [lateral, height].map(|unit| Some(unit?.symbol()));
-        let call = self.call(Method::POST, "/files/scan").query(&[("lateral", lateral), ("height", height)]);
+    /// `POST /files/scan`.
+    pub async fn read_scan(&self, file: Vec<u8>, hints: &ScanFileHints) -> Result<ScanFileReply, Error> {
+        let call = self.call(Method::POST, "/files/scan").query(hints);
         json(call.header(CONTENT_TYPE, "application/octet-stream").body(file)).await
     }
 
-    /// `POST /files/loop`, likewise.
-    pub async fn read_loop(&self, file: Vec<u8>, units: Option<FitUnits>) -> Result<LoopFileReply, Error> {
-        let FitUnits { displacement, force } = units.unwrap_or_default();
-        let displacement = displacement.map(|unit| unit.symbol());
-        let call = self.call(Method::POST, "/files/loop").query(&[("displacement_unit", displacement)]);
-        let call = call.query(&[("force_unit", force.map(|unit| unit.symbol()))]);
+    /// `POST /files/loop`.
+    pub async fn read_loop(&self, file: Vec<u8>, hints: &LoopFileHints) -> Result<LoopFileReply, Error> {
+        let call = self.call(Method::POST, "/files/loop").query(hints);
         json(call.header(CONTENT_TYPE, "application/octet-stream").body(file)).await
     }
 

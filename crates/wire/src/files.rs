@@ -1,10 +1,39 @@
-//! The replies of `POST /files/scan` and `POST /files/loop`: what a file of an instrument has.
+//! What `POST /files/scan` and `POST /files/loop` are told of a file of an instrument, and what they find in it.
 
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-use crate::fit::{FitUnits, MeasuredLoop};
-use crate::profile_fit::{ScanData, ScanUnits};
+use crate::fit::{FitUnits, ForceUnit, MeasuredLoop};
+use crate::profile_fit::{LengthUnit, ScanData, ScanUnits};
+
+/// What is known of a scan beside its file: the query of `POST /files/scan`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct ScanFileHints {
+    /// The unit of places, in place of the one that the file names.
+    pub lateral: Option<LengthUnit>,
+    /// The unit of heights, likewise.
+    pub height: Option<LengthUnit>,
+    /// The distance of neighbours in a matrix of heights, in the unit of places, in place of that of the header.
+    pub spacing: Option<f64>,
+}
+
+/// What is known of a loop beside its file: the query of `POST /files/loop`. A column is its number, from 1 on, or the
+/// beginning of its name in the header.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct LoopFileHints {
+    /// The column of displacements.
+    pub displacement: Option<String>,
+    /// The column of forces.
+    pub force: Option<String>,
+    /// The column of times.
+    pub time: Option<String>,
+    /// The column of loads.
+    pub load: Option<String>,
+    /// The unit of displacements, in place of the one that the header names.
+    pub displacement_unit: Option<LengthUnit>,
+    /// The unit of forces, likewise.
+    pub force_unit: Option<ForceUnit>,
+}
 
 /// A scan that was read from a file. `scan` and `units` are members of the body of `POST /profiles/fit`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
