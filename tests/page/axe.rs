@@ -49,8 +49,8 @@ pub async fn serious(browser: &Browser) -> Vec<String> {
     found["violations"].as_array().unwrap().iter().filter(severe).map(line).collect()
 }
 
-/// Asserts that the page with its results has no serious fault and fits the window, on a phone in the dark, a tablet and
-/// a desk, which is the window afterwards; saves a picture of each, and of each in the other colours.
+/// Asserts that the page with its results has no serious fault, fits the window and shows the chosen tab, on a phone in
+/// the dark, a tablet and a desk, which is the window afterwards; saves a picture of each in both colour schemes.
 pub async fn assert_readable(browser: &Browser, name: &str) {
     for (look, width, height, dark) in
         [("narrow-dark-", 390, 844, true), ("tablet-", 768, 1024, false), ("", 1440, 900, false)]
