@@ -341,9 +341,9 @@ async fn listen(
     }
     let capacity = usize::try_from(options.cache_bytes.as_u64()).unwrap_or(usize::MAX);
     let jobs = Jobs::new(Arc::clone(&store), pool.clone());
-    let sessions = Sessions::new(store, pool.clone(), capacity);
+    let sessions = Sessions::new(Arc::clone(&store), pool.clone(), capacity);
     let working = tokio::spawn(jobs.clone().work(options.job_lease));
-    tokio::spawn(sessions.clone().run_expiry_loop(options.expire_after));
+    tokio::spawn(sessions::run_expiry_loop(store, options.expire_after));
     tokio::spawn(reload_on_change(files, hangup, reload));
     let scheme = if tls.is_some() { "https" } else { "http" };
     tracing::info!(%address, threads = pool.meters().threads, memory_bound, "listening");

@@ -1,4 +1,4 @@
-//! Applying moves to a session: the one place where it changes.
+//! Applying moves to a session: the one place where its state changes.
 
 use std::sync::Arc;
 
@@ -6,43 +6,54 @@ use tracing::Instrument as _;
 use uuid::Uuid;
 
 use crate::admission::{Reservation, Stop};
-use crate::computations::OnContact as _;
+use crate::computations::{OnContact as _, rehearse_relax};
 use crate::otlp;
 use crate::simulation::bytes::{RECORD_BYTES, of_moves, of_stress};
 use crate::simulation::cost::Work;
 use crate::store::{IdempotentRequest, Reply, RequestKey, StoreError, Usage};
+use stickslip_wire::protocol::Relaxation;
 use stickslip_wire::session::Advance;
-use stickslip_wire::{Plan, limits};
+use stickslip_wire::{Plan, RelaxReply, limits};
 
 use super::attempt::{Done, PIECES_OF_A_MOVE, attempt};
 use super::cache::Guard;
-use super::group::{GroupResult, may_join};
+use super::changes::unless_answered;
+use super::group::{GroupResult, lock_or_join, may_join};
 use super::loaded::LoadedSession;
-use super::{ATTEMPTS, SessionError, Sessions, unless_answered};
+use super::observations::Observations;
+use super::replay::Replay;
+use super::{ATTEMPTS, SessionError, written};
 
-impl Sessions {
-    /// Bytes that moves take, with their records and the reply; rather too many than too few.
-    #[must_use]
-    pub fn bytes_of_moves(advance: &Advance) -> usize {
-        let radii = advance.stress.as_ref().map_or(0, |stress| stress.length());
-        advance.relax.map_or(0, |relax| relax.task.bytes())
-            + of_moves(&advance.plan, advance.steps)
-            + advance.plan.length() * RECORD_BYTES
-            + of_stress(radii)
-    }
+/// Bytes that moves take, with their records and the reply; rather too many than too few.
+#[must_use]
+pub fn bytes_of_moves(advance: &Advance) -> usize {
+    let radii = advance.stress.as_ref().map_or(0, |stress| stress.length());
+    advance.relax.map_or(0, |relax| relax.task.bytes())
+        + of_moves(&advance.plan, advance.steps)
+        + advance.plan.length() * RECORD_BYTES
+        + of_stress(radii)
+}
 
+/// Moves of the sessions of a tenant, for requests that come with the key of the name `by`.
+#[derive(Clone)]
+pub struct Mover {
+    pub(super) replay: Replay,
+    pub(super) by: Option<Arc<str>>,
+}
+
+impl Mover {
     /// Applies moves to a session, all or none of them, if it is at the sequence that the client expects.
     ///
     /// # Errors
     /// [`SessionError`]; nothing has changed then.
-    pub async fn apply_moves(
+    pub async fn apply(
         &self,
         id: Uuid,
         advance: Advance,
         expected: Option<u64>,
         key: Option<RequestKey>,
     ) -> Result<Reply, SessionError> {
-        let request = self.request(key);
+        let request = self.replay.request(key);
         // Before anything else: a retry gets its reply even if the session has been deleted or has moved on.
         if let Some(reply) = request.earlier_reply().await? {
             return Ok(reply);
@@ -60,17 +71,17 @@ impl Sessions {
     ) -> Result<Reply, SessionError> {
         // A client that hangs up in the queue leaves it.
         let mut guard = if !request.has_key() && may_join(&advance) {
-            match self.lock_or_join(id, &advance, expected).await? {
+            match lock_or_join(&self.replay, self.by.as_ref(), id, &advance, expected).await? {
                 GroupResult::Locked(guard) => guard,
                 GroupResult::Answered(answer) => return answer,
             }
         } else {
-            self.lock(id).await?
+            self.replay.lock(id).await?
         };
-        let (stop, _raised_at_the_end) = self.common.pool.deadline();
-        let move_bytes = self.common.store.move_bytes();
+        let (stop, _raised_at_the_end) = self.replay.common.pool.deadline();
+        let move_bytes = self.replay.common.store.move_bytes();
         let mut reservation =
-            self.reserve_storage(Usage::of(0, advance.plan.length() as u64 * move_bytes, None)).await?;
+            self.replay.reserve_storage(Usage::of(0, advance.plan.length() as u64 * move_bytes, None)).await?;
         // A cached state may be behind the store. A refusal counts only once the state has caught up.
         let mut caught_up = guard.live.is_none();
         let mut found = 0;
@@ -79,7 +90,8 @@ impl Sessions {
             if let Some(reply) = request.earlier_reply().await? {
                 return Ok(reply);
             }
-            let live = if caught_up { self.current(&mut guard).await? } else { self.cached(&mut guard).await? };
+            let live =
+                if caught_up { self.replay.current(&mut guard).await? } else { self.replay.cached(&mut guard).await? };
             let sequence = live.session.sequence;
             if let Some(expected) = expected.filter(|expected| *expected != sequence) {
                 if !caught_up {
@@ -92,7 +104,7 @@ impl Sessions {
             let (mut live, Done { records, mut reply }) = match self.compute(&advance, &mut guard, &stop).await {
                 Ok(done) => done,
                 Err(SessionError::Failure(_) | SessionError::Rejected(_))
-                    if !caught_up && Box::pin(self.catch_up(&mut guard, u64::MAX)).await? =>
+                    if !caught_up && Box::pin(self.replay.catch_up(&mut guard, u64::MAX)).await? =>
                 {
                     caught_up = true;
                     continue;
@@ -100,7 +112,8 @@ impl Sessions {
                 Err(error) => return Err(error),
             };
             if let Plan::Observations(_) = advance.plan {
-                reply.body = Box::pin(self.observed(&mut guard, &mut live, &records, &stop)).await?;
+                reply.body =
+                    Box::pin(Observations::of(&self.replay).observed(&mut guard, &mut live, &records, &stop)).await?;
             }
             // Until the store has answered the new state is in doubt. What the guard holds meanwhile is the state
             // before, or nothing: if the store fails or the client hangs up, the next request asks the store.
@@ -109,28 +122,55 @@ impl Sessions {
             let added = Usage::of(0, moves * move_bytes, receipt.as_ref());
             if added.bytes > reservation.bytes() {
                 drop(reservation);
-                reservation = self.reserve_storage(added).await?;
+                reservation = self.replay.reserve_storage(added).await?;
             }
-            let stored = self.common.store.append(guard.id(), sequence, records, receipt);
+            let stored = self.replay.common.store.append(guard.id(), sequence, records, receipt);
             match stored.instrument(otlp::part!("store")).await {
                 Ok(()) => {
-                    self.common.metrics.moves.inc_by(moves);
+                    self.replay.common.metrics.moves.inc_by(moves);
                     reservation.used(added);
-                    self.offer_snapshot(&mut live);
+                    self.replay.common.snapshots.offer(&mut live);
                     guard.live = Some(live);
                     return Ok(reply);
                 }
                 Err(error @ (StoreError::NotFound | StoreError::Expired(_))) => {
-                    return Err(self.store_failure(&mut guard, error));
+                    return Err(self.replay.store_failure(&mut guard, error));
                 }
                 Err(StoreError::Stale { found: moved }) => {
                     (caught_up, found) = (true, moved);
-                    self.current(&mut guard).await?.shared = true;
+                    self.replay.current(&mut guard).await?.shared = true;
                 }
                 Err(other) => return Err(other.into()),
             }
         }
         Err(SessionError::Overtaken { found })
+    }
+
+    /// What [`Mover::apply`] would do to relax a session at the sequence that the client expects; nothing
+    /// changes.
+    ///
+    /// # Errors
+    /// [`SessionError`].
+    pub async fn dry_run_relax(
+        &self,
+        id: Uuid,
+        relaxation: Relaxation,
+        expected: Option<u64>,
+    ) -> Result<(u64, Vec<u8>, Reservation), SessionError> {
+        let task = relaxation.task;
+        let (stop, _raised_at_the_end) = self.replay.common.pool.deadline();
+        let held = self.replay.common.pool.reserve(task.bytes()).await?;
+        let (contact, sequence, state) = self.replay.copy(id, None, &stop).await?;
+        if let Some(expected) = expected.filter(|expected| *expected != sequence) {
+            return Err(SessionError::Stale { expected, found: sequence });
+        }
+        let cost = task.cost(contact.profile(), contact.memory_depth());
+        let work = move || {
+            let _state = state;
+            let (steps, protocol) = rehearse_relax(contact, &relaxation, &stop)?;
+            written(&RelaxReply { id, sequence, dry_run: true, steps, protocol })
+        };
+        Ok((sequence, self.replay.common.pool.run(cost, work).await??, held))
     }
 
     /// Computes the moves. The guard keeps the state before them, or, if it has been used up, nothing.
@@ -150,7 +190,7 @@ impl Sessions {
             && guard.live.as_ref().is_some_and(|live| !live.shared);
         // A copy can be large, and many requests may be under way.
         let copied = guard.live.as_ref().filter(|_| !in_place).map_or(0, |live| live.contact.memory_bytes());
-        let _held = if copied > 0 { self.reserve_copy(guard, copied).await? } else { Reservation::default() };
+        let _held = if copied > 0 { self.replay.reserve_copy(guard, copied).await? } else { Reservation::default() };
         let live = if in_place { guard.live.take() } else { guard.live.clone() };
         let live = live.ok_or(SessionError::NotFound(guard.id()))?;
         let radii = advance.stress.as_ref().map_or(0, |stress| stress.length());
@@ -161,7 +201,8 @@ impl Sessions {
         let cost = work.cost(profile).saturating_add(sought);
         let (advance, stop) = (Arc::clone(advance), stop.clone());
         let by = self.by.clone();
-        let (live, result) = self.common.pool.run(cost, move || attempt(live, &advance, by.as_ref(), &stop)).await?;
+        let (live, result) =
+            self.replay.common.pool.run(cost, move || attempt(live, &advance, by.as_ref(), &stop)).await?;
         match result {
             Ok(done) => Ok((live, done)),
             Err(error) => {

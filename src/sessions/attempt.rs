@@ -12,7 +12,7 @@ use stickslip_wire::session::Advance;
 use stickslip_wire::{MoveReply, Observation, PathReply, Plan, RelaxReply, State, Steps};
 
 use super::loaded::LoadedSession;
-use super::observe::check_plausible;
+use super::observations::check_plausible;
 use super::{SessionError, written};
 
 /// The results of a computation that are to be stored.

@@ -12,10 +12,10 @@ use stickslip_mechanics::{Contact, Move, Normal};
 use stickslip_wire::reply::finite;
 use stickslip_wire::{Cycle, CyclePage, HistoryPage, State};
 
+use super::SessionError;
 use super::cycle_log::{CycleLog, STATE_COST};
 use super::cycle_scan::{Answer, ClosedCycle};
-use super::replay::{PAGE, damaged};
-use super::{SessionError, Sessions};
+use super::replay::{PAGE, Replay, damaged};
 
 /// Moves whose cost that of a steady cycle is like.
 const CYCLE_MOVES: usize = 4;
@@ -24,18 +24,24 @@ const LAST: &str = "/last";
 /// JSON pointer to the choice of cycles in a history.
 const MARKED: &str = "/cycles";
 
-impl Sessions {
+/// The closed cycles of the sessions of a tenant.
+#[derive(Clone)]
+pub struct ClosedCycles {
+    pub(super) replay: Replay,
+}
+
+impl ClosedCycles {
     /// The `last` newest closed cycles of a session, and its sequence.
     ///
     /// # Errors
     /// [`SessionError::NotFound`] or [`SessionError::Expired`], a failure of the store or of the pool, or
     /// [`SessionError::Failure`] if it takes too long.
-    pub async fn cycles(&self, id: Uuid, last: usize) -> Result<(u64, CyclePage), SessionError> {
-        let (stop, _guard) = self.common.pool.deadline();
+    pub async fn newest(&self, id: Uuid, last: usize) -> Result<(u64, CyclePage), SessionError> {
+        let (stop, _guard) = self.replay.common.pool.deadline();
         // The lock is held for copies alone, so that the session can move on meanwhile.
         let (virgin, sequence, known) = {
-            let mut guard = self.lock(id).await?;
-            let live = self.current(&mut guard).await?;
+            let mut guard = self.replay.lock(id).await?;
+            let live = self.replay.current(&mut guard).await?;
             (live.contact.virgin(), live.session.sequence, live.cycles.clone())
         };
         let log = match known {
@@ -53,27 +59,27 @@ impl Sessions {
             let newest = log.newest.range(log.newest.len().saturating_sub(last)..);
             newest.map(|cycle| answered(cycle, &virgin, (&stop, LAST))).collect::<Result<_, _>>()
         };
-        let items = self.common.pool.run(cost, answers).await??;
+        let items = self.replay.common.pool.run(cost, answers).await??;
         Ok((sequence, CyclePage { items }))
     }
 
     /// Adds to the moves of a page the cycles that they closed.
     ///
     /// # Errors
-    /// As [`Sessions::cycles`].
+    /// As [`ClosedCycles::newest`].
     pub async fn mark(&self, id: Uuid, page: &mut HistoryPage) -> Result<(), SessionError> {
         let Some(after) = page.items.first().map(|item| item.sequence - 1) else { return Ok(()) };
-        let (stop, _guard) = self.common.pool.deadline();
+        let (stop, _guard) = self.replay.common.pool.deadline();
         let (virgin, known) = {
-            let mut guard = self.lock(id).await?;
-            let live = self.current(&mut guard).await?;
+            let mut guard = self.replay.lock(id).await?;
+            let live = self.replay.current(&mut guard).await?;
             (live.contact.virgin(), live.log_for(after))
         };
         let mut log = match known {
             Some(known) if known.sequence >= after => known,
             known => self.look_on(id, after, known, &virgin, (&stop, MARKED)).await?,
         };
-        let _held = self.common.pool.reserve(log.bytes_with(PAGE)).await?;
+        let _held = self.replay.common.pool.reserve(log.bytes_with(PAGE)).await?;
         let states: Vec<(u64, State)> = page.items.iter().map(|item| (item.sequence, item.state)).collect();
         let cost = Work { moves: CYCLE_MOVES * states.len(), ..Work::default() }.cost(virgin.profile());
         let look = move || {
@@ -86,7 +92,7 @@ impl Sessions {
             let cycles = states.into_iter().map(&mut answer).collect::<Result<Vec<_>, _>>()?;
             Ok::<_, SessionError>((log, cycles))
         };
-        let (log, cycles) = self.common.pool.run(cost, look).await??;
+        let (log, cycles) = self.replay.common.pool.run(cost, look).await??;
         page.items.iter_mut().zip(cycles).for_each(|(item, cycle)| item.cycle = cycle);
         self.keep(id, &log).await
     }
@@ -123,16 +129,16 @@ impl Sessions {
             known => known,
         };
         let bytes = known.as_ref().map_or_else(|| CycleLog::default().bytes_with(PAGE), |known| known.bytes_with(PAGE));
-        let mut held = self.common.pool.reserve(bytes).await?;
+        let mut held = self.replay.common.pool.reserve(bytes).await?;
         let mut log = known.map_or_else(|| CycleLog::new(&virgin.state().into()), Arc::unwrap_or_clone);
         while log.sequence < sequence {
             if let Err(interrupted) = stop.check() {
                 return Ok((Arc::new(log), Err(interrupted)));
             }
-            self.common.pool.resize(&mut held, log.bytes_with(PAGE)).await?;
+            self.replay.common.pool.resize(&mut held, log.bytes_with(PAGE)).await?;
             let most = usize::try_from(sequence - log.sequence).unwrap_or(PAGE).min(PAGE);
-            let records = self.common.store.history(id, log.sequence, most).await;
-            let records = records.map_err(|error| self.store_error(id, error))?;
+            let records = self.replay.common.store.history(id, log.sequence, most).await;
+            let records = records.map_err(|error| self.replay.store_error(id, error))?;
             if records.is_empty() {
                 return Err(damaged(id, &format_args!("move {} is missing", log.sequence + 1)));
             }
@@ -142,7 +148,7 @@ impl Sessions {
                 }
                 log
             };
-            log = self.common.pool.run(STATE_COST * most as u64, look).await?;
+            log = self.replay.common.pool.run(STATE_COST * most as u64, look).await?;
         }
         log.shrink();
         Ok((Arc::new(log), Ok(())))
@@ -150,7 +156,7 @@ impl Sessions {
 
     /// Leaves what has been found with the session if that has come as far.
     async fn keep(&self, id: Uuid, log: &Arc<CycleLog>) -> Result<(), SessionError> {
-        let mut guard = self.lock(id).await?;
+        let mut guard = self.replay.lock(id).await?;
         if let Some(live) = guard.live.as_mut().filter(|live| live.session.sequence >= log.sequence) {
             live.keep_log(log);
         }

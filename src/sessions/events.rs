@@ -14,6 +14,8 @@ use crate::admission::{Quota, Share};
 use crate::store::{Listener, StoreError, StreamEvent};
 use stickslip_wire::{EndReason, HistoryPage, StateEvent};
 
+use super::cycles::ClosedCycles;
+use super::history::History;
 use super::{SessionError, Sessions};
 
 /// Clients that may listen at a time.
@@ -25,7 +27,8 @@ const RETRY_DELAY: Duration = Duration::from_secs(1);
 
 /// A client that follows a session.
 struct Follower {
-    sessions: Sessions,
+    history: History,
+    cycles: ClosedCycles,
     id: Uuid,
     /// The sequence of the last move that has been read.
     seen: u64,
@@ -35,52 +38,45 @@ struct Follower {
     ended: bool,
 }
 
-impl Sessions {
-    /// The states of a session: after each move with a sequence greater than `after`, or, without it, the present state
-    /// and then each new one. It ends when the session is gone or [`Sessions::end_events`] is called.
-    ///
-    /// # Errors
-    /// [`SessionError::NotFound`], [`SessionError::Expired`], [`SessionError::Ahead`],
-    /// [`SessionError::TooManyStreams`], or a failure of the store.
-    pub async fn events(
-        &self,
-        id: Uuid,
-        after: Option<u64>,
-    ) -> Result<impl Stream<Item = StreamEvent<StateEvent>> + Send + use<>, SessionError> {
-        let share = self.common.pool.share_of(Quota::Streams)?;
-        // Every later change wakes the listener, so that none can fall between the first read and the first wait.
-        let listener = self.common.listeners.listen(self.common.store.changes(), id);
-        let listener = listener.ok_or(SessionError::TooManyStreams)?;
-        let session = self.get(id).await?;
-        let found = session.sequence;
-        let mut ready = VecDeque::new();
-        let seen = match after {
-            Some(after) if after > found => return Err(SessionError::Ahead { after, found }),
-            Some(after) => after,
-            // The present state is that of the last move, if there has been one.
-            None if found > 0 => found - 1,
-            None => {
-                let (state, at) = (session.state, session.created_at);
-                ready.push_back(StateEvent { id, sequence: 0, step: None, state, cycle: None, observation: None, at });
-                0
-            }
-        };
-        let sessions = self.clone();
-        let follower = Follower { sessions, id, seen, ready, listener, _share: share, ended: false };
-        Ok(futures::stream::unfold(follower, Follower::next))
-    }
-
-    /// Ends all events, present and future: the process is about to stop.
-    pub fn end_events(&self) {
-        self.common.listeners.end();
-    }
+/// The states of a session: after each move with a sequence greater than `after`, or, without it, the present state
+/// and then each new one. It ends when the session is gone or [`Sessions::end_events`] is called.
+///
+/// # Errors
+/// [`SessionError::NotFound`], [`SessionError::Expired`], [`SessionError::Ahead`],
+/// [`SessionError::TooManyStreams`], or a failure of the store.
+pub async fn events(
+    sessions: &Sessions,
+    id: Uuid,
+    after: Option<u64>,
+) -> Result<impl Stream<Item = StreamEvent<StateEvent>> + Send + use<>, SessionError> {
+    let share = sessions.replay.common.pool.share_of(Quota::Streams)?;
+    // Every later change wakes the listener, so that none can fall between the first read and the first wait.
+    let listener = sessions.replay.common.listeners.listen(sessions.replay.common.store.changes(), id);
+    let listener = listener.ok_or(SessionError::TooManyStreams)?;
+    let session = sessions.get(id).await?;
+    let found = session.sequence;
+    let mut ready = VecDeque::new();
+    let seen = match after {
+        Some(after) if after > found => return Err(SessionError::Ahead { after, found }),
+        Some(after) => after,
+        // The present state is that of the last move, if there has been one.
+        None if found > 0 => found - 1,
+        None => {
+            let (state, at) = (session.state, session.created_at);
+            ready.push_back(StateEvent { id, sequence: 0, step: None, state, cycle: None, observation: None, at });
+            0
+        }
+    };
+    let (history, cycles) = (sessions.history(), sessions.cycles());
+    let follower = Follower { history, cycles, id, seen, ready, listener, _share: share, ended: false };
+    Ok(futures::stream::unfold(follower, Follower::next))
 }
 
 impl Follower {
     /// The moves beyond those that have been read.
     async fn page(&self) -> Result<HistoryPage, SessionError> {
-        let mut page = self.sessions.history_page(self.id, self.seen, PAGE).await?;
-        self.sessions.mark(self.id, &mut page).await?;
+        let mut page = self.history.own_page(self.id, self.seen, PAGE).await?;
+        self.cycles.mark(self.id, &mut page).await?;
         Ok(page)
     }
 

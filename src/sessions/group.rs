@@ -19,10 +19,11 @@ use crate::store::{Record, Reply, StoreError, Usage};
 use stickslip_wire::session::Advance;
 use stickslip_wire::{Plan, limits};
 
+use super::SessionError;
 use super::attempt::{Done, PIECES_OF_A_MOVE, attempt};
 use super::cache::{Guard, Waiting};
+use super::replay::Replay;
 use super::waiting_move::{Outcome, WaitingMove};
-use super::{SessionError, Sessions};
 
 /// Moves that are made together at most.
 const GROUP: usize = 64;
@@ -37,7 +38,7 @@ pub(super) enum GroupResult {
 
 /// Moves under way together.
 struct Group {
-    sessions: Sessions,
+    replay: Replay,
     guard: Guard,
     moves: Vec<WaitingMove>,
 }
@@ -49,79 +50,79 @@ pub(super) fn may_join(advance: &Advance) -> bool {
         && advance.relax.is_none()
 }
 
-impl Sessions {
-    /// Waits until the session is free for this move, or until another one has made it.
-    ///
-    /// # Errors
-    /// [`SessionError`]; nothing has changed then.
-    pub(super) async fn lock_or_join(
-        &self,
-        id: Uuid,
-        advance: &Arc<Advance>,
-        expected: Option<u64>,
-    ) -> Result<GroupResult, SessionError> {
-        match self.common.cache.try_lock(&self.tenant, id) {
-            Ok(guard) => Ok(GroupResult::Locked(guard)),
-            // In a box, so that a move that need not wait is not as large as one that does.
-            Err(waiting) => Box::pin(self.join_queue(waiting, advance, expected)).await,
+/// Waits until the session is free for this move, or until another one has made it.
+///
+/// # Errors
+/// [`SessionError`]; nothing has changed then.
+pub(super) async fn lock_or_join(
+    replay: &Replay,
+    by: Option<&Arc<str>>,
+    id: Uuid,
+    advance: &Arc<Advance>,
+    expected: Option<u64>,
+) -> Result<GroupResult, SessionError> {
+    match replay.common.cache.try_lock(&replay.tenant, id) {
+        Ok(guard) => Ok(GroupResult::Locked(guard)),
+        // In a box, so that a move that need not wait is not as large as one that does.
+        Err(waiting) => Box::pin(join_queue(replay, by, waiting, advance, expected)).await,
+    }
+}
+
+async fn join_queue(
+    replay: &Replay,
+    by: Option<&Arc<str>>,
+    waiting: Waiting,
+    advance: &Arc<Advance>,
+    expected: Option<u64>,
+) -> Result<GroupResult, SessionError> {
+    let id = waiting.id();
+    let reservation = replay.reserve_storage(Usage::of(0, replay.common.store.move_bytes(), None)).await?;
+    let (outcome, mut answer) = oneshot::channel();
+    let (advance, by) = (Arc::clone(advance), by.cloned());
+    let position =
+        waiting.enqueue(Some(WaitingMove { advance, expected, by, reservation, span: Span::current(), outcome }));
+    let lock = waiting.awaited().lock_owned();
+    let wait = async {
+        tokio::select! {
+            biased;
+            done = &mut answer => Err(done),
+            lock = lock => Ok(lock),
+        }
+    };
+    let waited = replay.common.pool.wait(wait).await;
+    match (waited, position.leave()) {
+        (Ok(Ok(lock)), Some(waiting_move)) => {
+            let guard = waiting.guard(lock);
+            let others = if is_groupable(&guard) { guard.take_moves(GROUP - 1) } else { Vec::new() };
+            if others.is_empty() {
+                return Ok(GroupResult::Locked(guard));
+            }
+            let moves = std::iter::once(waiting_move).chain(others).collect();
+            let group = Group { replay: replay.clone(), guard, moves };
+            // In a task of its own: whose client leaves does not take the others with it.
+            tokio::spawn(Client::current().serve(group.make().in_current_span()));
+            resolve(replay, id, answer.await).await
+        }
+        (Err(busy), Some(_)) => Err(busy.into()),
+        (Ok(Err(done)), _) => resolve(replay, id, done).await,
+        // Another one has taken it: from then on nothing else says what has become of it.
+        (waited, None) => {
+            // With the lock in hand it could not wait for the lock again.
+            drop(waited);
+            resolve(replay, id, answer.await).await
         }
     }
+}
 
-    async fn join_queue(
-        &self,
-        waiting: Waiting,
-        advance: &Arc<Advance>,
-        expected: Option<u64>,
-    ) -> Result<GroupResult, SessionError> {
-        let id = waiting.id();
-        let reservation = self.reserve_storage(Usage::of(0, self.common.store.move_bytes(), None)).await?;
-        let (outcome, mut answer) = oneshot::channel();
-        let (advance, by) = (Arc::clone(advance), self.by.clone());
-        let position =
-            waiting.enqueue(Some(WaitingMove { advance, expected, by, reservation, span: Span::current(), outcome }));
-        let lock = waiting.awaited().lock_owned();
-        let wait = async {
-            tokio::select! {
-                biased;
-                done = &mut answer => Err(done),
-                lock = lock => Ok(lock),
-            }
-        };
-        let waited = self.common.pool.wait(wait).await;
-        match (waited, position.leave()) {
-            (Ok(Ok(lock)), Some(waiting_move)) => {
-                let guard = waiting.guard(lock);
-                let others = if is_groupable(&guard) { guard.take_moves(GROUP - 1) } else { Vec::new() };
-                if others.is_empty() {
-                    return Ok(GroupResult::Locked(guard));
-                }
-                let moves = std::iter::once(waiting_move).chain(others).collect();
-                let group = Group { sessions: self.clone(), guard, moves };
-                // In a task of its own: whose client leaves does not take the others with it.
-                tokio::spawn(Client::current().serve(group.make().in_current_span()));
-                self.outcome(id, answer.await).await
-            }
-            (Err(busy), Some(_)) => Err(busy.into()),
-            (Ok(Err(done)), _) => self.outcome(id, done).await,
-            // Another one has taken it: from then on nothing else says what has become of it.
-            (waited, None) => {
-                // With the lock in hand it could not wait for the lock again.
-                drop(waited);
-                self.outcome(id, answer.await).await
-            }
-        }
-    }
-
-    async fn outcome(
-        &self,
-        id: Uuid,
-        done: Result<Outcome, oneshot::error::RecvError>,
-    ) -> Result<GroupResult, SessionError> {
-        match done {
-            Ok(Outcome::Answered(answer)) => Ok(GroupResult::Answered(answer)),
-            Ok(Outcome::NotMade) => Ok(GroupResult::Locked(self.lock(id).await?)),
-            Err(_) => Err(StoreError::Unavailable("the move was given up with others".to_owned()).into()),
-        }
+async fn resolve(
+    replay: &Replay,
+    id: Uuid,
+    done: Result<Outcome, oneshot::error::RecvError>,
+) -> Result<GroupResult, SessionError> {
+    match done {
+        Ok(Outcome::Answered(answer)) => Ok(GroupResult::Answered(answer)),
+        Ok(Outcome::NotMade) => Ok(GroupResult::Locked(replay.lock(id).await?)),
+        Err(_) => Err(StoreError::Unavailable("the move was given up with others".to_owned()).into()),
     }
 }
 
@@ -140,7 +141,7 @@ impl Group {
         if records.is_empty() {
             return;
         }
-        let common = &self.sessions.common;
+        let common = &self.replay.common;
         // Until the store has answered the new state is in doubt, as for a move that is made alone.
         let live = self.guard.live.take();
         let moves = records.len() as u64;
@@ -149,7 +150,7 @@ impl Group {
             Ok(()) => {
                 common.metrics.moves.inc_by(moves);
                 self.guard.live = live.map(|mut live| {
-                    self.sessions.offer_snapshot(&mut live);
+                    self.replay.common.snapshots.offer(&mut live);
                     live
                 });
                 let added = Usage::of(0, common.store.move_bytes(), None);
@@ -170,7 +171,7 @@ impl Group {
     /// Makes the moves one after the other. The guard has the state after them, or, if one of them has spoiled it,
     /// nothing; nothing is to be stored then, and every waiting move has been told to go on alone.
     async fn compute(&mut self) -> Result<(Vec<(WaitingMove, Reply)>, Vec<Record>), ()> {
-        let (stop, _raised_at_the_end) = self.sessions.common.pool.deadline();
+        let (stop, _raised_at_the_end) = self.replay.common.pool.deadline();
         let (mut made, mut records) = (Vec::with_capacity(self.moves.len()), Vec::with_capacity(self.moves.len()));
         let mut moves = std::mem::take(&mut self.moves).into_iter();
         while let Some(waiting_move) = moves.next() {
@@ -190,7 +191,7 @@ impl Group {
             let (advance, by, stop, span) =
                 (Arc::clone(&waiting_move.advance), waiting_move.by.clone(), stop.clone(), waiting_move.span.clone());
             let solve = move || span.in_scope(|| attempt(live, &advance, by.as_ref(), &stop));
-            match self.sessions.common.pool.run(cost, solve).await {
+            match self.replay.common.pool.run(cost, solve).await {
                 Ok((live, Ok(Done { records: more, reply }))) => {
                     self.guard.live = Some(live);
                     records.extend(more);

@@ -5,8 +5,6 @@ use prometheus::{Histogram, IntCounter, Opts};
 use crate::metrics::{SECONDS, counter, histogram};
 use crate::store::Commits;
 
-use super::Sessions;
-
 /// Metrics that are counted as events happen.
 pub struct SessionMetrics {
     /// Moves that have been made and stored.
@@ -55,20 +53,4 @@ pub struct Readings<'a> {
     pub streams: usize,
     /// What the store has committed, if it commits.
     pub commits: Option<&'a Commits>,
-}
-
-impl Sessions {
-    /// The metrics of the sessions.
-    #[must_use]
-    pub fn readings(&self) -> Readings<'_> {
-        let (bytes, cached) = self.common.cache.held();
-        Readings {
-            counted: &self.common.metrics,
-            cached,
-            bytes,
-            capacity: self.common.cache.capacity(),
-            streams: self.common.listeners.count(),
-            commits: self.common.store.commits(),
-        }
-    }
 }

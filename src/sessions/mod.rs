@@ -17,6 +17,7 @@
 mod apply;
 mod attempt;
 mod cache;
+mod changes;
 mod check;
 mod cycle_log;
 mod cycle_scan;
@@ -24,14 +25,12 @@ mod cycles;
 mod error;
 mod events;
 mod expiry;
-mod friction;
 mod group;
+mod history;
 mod loaded;
 mod metrics;
-mod observe;
+mod observations;
 mod profiles;
-mod read;
-mod relax;
 mod replay;
 mod replay_cost;
 mod snapshot;
@@ -41,29 +40,34 @@ mod waiting_move;
 
 use std::sync::Arc;
 
-use jiff::Timestamp;
-use tokio::sync::Semaphore;
-use tracing::Instrument as _;
 use uuid::Uuid;
 
-use crate::admission::Pool;
+use crate::admission::{Pool, Reservation, Stop};
+use crate::computations::{OnContact, Shown};
 use crate::formats;
 use crate::otlp;
-use crate::store::{
-    CONTACT_BYTES, IdempotentRequest, Listeners, Reply, RequestKey, Session, Store, StoreError, Tenant, Usage,
-};
-use stickslip_wire::session::Creation;
-use stickslip_wire::{ForkRequest, SessionReply};
+use crate::simulation::{bytes, cost};
+use crate::store::{Listeners, Store, Tenant};
+use stickslip_wire::subsurface::SubsurfaceTask;
+use stickslip_wire::{ContactDefinition, SessionPage, SessionReply, SubsurfaceRequest};
 
+pub use apply::{Mover, bytes_of_moves};
 pub use cache::CAPACITY;
-use cache::{Cache, Guard};
+use cache::Cache;
+pub use changes::Changes;
 pub use check::{CheckEvent, Checked, Finding, check, count_moves};
+pub use cycles::ClosedCycles;
 pub use error::SessionError;
-pub use events::STREAMS;
-use loaded::LoadedSession;
+pub use events::{STREAMS, events};
+pub use expiry::{purge_expired, run_expiry_loop};
+pub use history::History;
 pub use metrics::{Readings, SessionMetrics};
+pub use observations::Observations;
 pub use profiles::Profiles;
-use storage_reservation::{StorageReservation, UsageByTenant};
+use replay::Replay;
+use snapshot::Snapshots;
+use storage_reservation::UsageByTenant;
+pub use trace::{bytes_of_trace, trace};
 
 /// How often a change is tried if other processes move the contact first. Each time, one of them has made progress.
 const ATTEMPTS: usize = 100;
@@ -71,10 +75,9 @@ const ATTEMPTS: usize = 100;
 /// The sessions of a tenant. Clones, and those of other tenants, are handles on the same.
 #[derive(Clone)]
 pub struct Sessions {
-    tenant: Tenant,
+    replay: Replay,
     /// The name of the key that the requests come with, where keys are in use.
     by: Option<Arc<str>>,
-    common: Arc<Common>,
 }
 
 /// The state that the handles share.
@@ -82,8 +85,7 @@ struct Common {
     store: Arc<dyn Store>,
     pool: Pool,
     cache: Arc<Cache>,
-    // A permit for each snapshot that is being stored.
-    snapshots: Arc<Semaphore>,
+    snapshots: Snapshots,
     listeners: Listeners,
     metrics: SessionMetrics,
     usage: UsageByTenant,
@@ -96,21 +98,62 @@ impl Sessions {
     pub fn new(store: Arc<dyn Store>, pool: Pool, capacity: usize) -> Sessions {
         let metrics = SessionMetrics::default();
         let common = Common {
+            snapshots: Snapshots::new(Arc::clone(&store), pool.clone()),
+            cache: Arc::new(Cache::new(capacity, metrics.hits.clone())),
             store,
             pool,
-            cache: Arc::new(Cache::new(capacity, metrics.hits.clone())),
-            snapshots: Arc::new(Semaphore::new(snapshot::AT_ONCE)),
             listeners: Listeners::new(STREAMS),
             metrics,
             usage: UsageByTenant::default(),
         };
-        Sessions { tenant: Tenant::default(), by: None, common: Arc::new(common) }
+        Sessions { replay: Replay { tenant: Tenant::default(), common: Arc::new(common) }, by: None }
     }
 
     /// The sessions of another tenant, for requests that come with the key of this name.
     #[must_use]
     pub fn for_tenant(&self, tenant: Tenant, key: Arc<str>) -> Sessions {
-        Sessions { tenant, by: Some(key), common: Arc::clone(&self.common) }
+        Sessions { replay: Replay { tenant, common: Arc::clone(&self.replay.common) }, by: Some(key) }
+    }
+
+    /// Making, copying, naming and deleting them.
+    #[must_use]
+    pub fn changes(&self) -> Changes {
+        Changes { replay: self.replay.clone() }
+    }
+
+    /// Their moves to come.
+    #[must_use]
+    pub fn moves(&self) -> Mover {
+        Mover { replay: self.replay.clone(), by: self.by.clone() }
+    }
+
+    /// Their moves of the past.
+    #[must_use]
+    pub fn history(&self) -> History {
+        History { replay: self.replay.clone(), names_makers: self.names_makers() }
+    }
+
+    /// The cycles that they have closed.
+    #[must_use]
+    pub fn cycles(&self) -> ClosedCycles {
+        ClosedCycles { replay: self.replay.clone() }
+    }
+
+    /// What a bench has measured beside their moves.
+    #[must_use]
+    pub fn observations(&self) -> Observations {
+        Observations::of(&self.replay)
+    }
+
+    /// The shared profiles, for work that ends when this flag is raised.
+    #[must_use]
+    pub fn profiles(&self, stop: &Stop) -> Profiles {
+        Profiles::new(&self.replay.common, stop)
+    }
+
+    /// Ends all events, present and future: the process is about to stop.
+    pub fn end_events(&self) {
+        self.replay.common.listeners.end();
     }
 
     /// Whether requests come with keys, by whose names the history says who made a move.
@@ -124,214 +167,108 @@ impl Sessions {
     /// # Errors
     /// [`SessionError::Store`] if it cannot.
     pub async fn ready(&self) -> Result<(), SessionError> {
-        Ok(self.common.store.ready().await?)
+        Ok(self.replay.common.store.ready().await?)
     }
 
     /// Bytes of the cached states, and how many sessions they are.
     #[must_use]
     pub fn held(&self) -> (usize, usize) {
-        self.common.cache.held()
+        self.replay.common.cache.held()
     }
 
-    /// A request that may have been answered before.
-    fn request(&self, key: Option<RequestKey>) -> IdempotentRequest<'_> {
-        IdempotentRequest::new(&*self.common.store, &self.tenant, key)
-    }
-
-    /// Reserves space in the store for what a change will add, within the quotas of the tenant.
-    async fn reserve_storage(&self, requested: Usage) -> Result<StorageReservation, SessionError> {
-        self.common.usage.reserve(&self.common.store, &self.common.pool, &self.tenant, requested).await
-    }
-
-    /// Exclusive use of a session: waits for earlier requests, as long as the pool permits.
-    async fn lock(&self, id: Uuid) -> Result<Guard, SessionError> {
-        match self.common.cache.try_lock(&self.tenant, id) {
-            Ok(guard) => Ok(guard),
-            Err(waiting) => Ok(Box::pin(self.common.pool.wait(waiting.lock())).await?),
-        }
-    }
-
-    /// Makes a session.
+    /// A session with its state.
     ///
     /// # Errors
-    /// [`SessionError`]; nothing has been made then.
-    pub async fn create(&self, creation: Creation, key: Option<RequestKey>) -> Result<Reply, SessionError> {
-        let request = self.request(key);
-        if let Some(reply) = request.earlier_reply().await? {
-            return Ok(reply);
-        }
-        let now = Timestamp::now();
-        let session = Session {
-            id: Uuid::now_v7(),
-            tenant: self.tenant.clone(),
-            label: creation.label,
-            definition: Arc::new(creation.definition),
-            sequence: 0,
-            created_at: now,
-            updated_at: now,
-        };
-        let live = LoadedSession::start(session, creation.setup)?;
-        let reply = live.created_reply()?;
-        let receipt = request.receipt(&reply);
-        let added = Usage::of(1, live.stored_bytes(), receipt.as_ref());
-        let reservation = self.reserve_storage(added).await?;
-        // A request that finds the new session in the store waits until it is cached.
-        let mut guard = self.common.cache.lock(&self.tenant, live.session.id).await;
-        let stored = self.common.store.create(live.session.clone(), receipt);
-        if let Err(error) = stored.instrument(otlp::part!("store")).await {
-            return Ok(request.after_refusal(error).await?);
-        }
-        reservation.used(added);
-        guard.live = Some(Box::new(live));
-        Ok(reply)
+    /// [`SessionError::NotFound`] or [`SessionError::Expired`], or a failure of the store.
+    pub async fn get(&self, id: Uuid) -> Result<SessionReply, SessionError> {
+        let mut guard = self.replay.lock(id).await?;
+        Ok(self.replay.current(&mut guard).await?.reply())
     }
 
-    /// Makes a session with the same moves, or with the first of them.
+    /// The definition of a session as it was sent, as JSON, and the memory that it takes.
     ///
     /// # Errors
-    /// [`SessionError`]; nothing has been made then.
-    pub async fn fork(&self, id: Uuid, asked: ForkRequest, key: Option<RequestKey>) -> Result<Reply, SessionError> {
-        let request = self.request(key);
-        if let Some(reply) = request.earlier_reply().await? {
-            return Ok(reply);
-        }
-        let forked = self.fork_anew(id, asked, &request).await;
-        unless_answered(&request, forked).await
-    }
-
-    async fn fork_anew(
-        &self,
-        id: Uuid,
-        asked: ForkRequest,
-        request: &IdempotentRequest<'_>,
-    ) -> Result<Reply, SessionError> {
-        // A tenant at its quota is refused before its past is read.
-        drop(self.reserve_storage(Usage::of(1, CONTACT_BYTES, None)).await?);
-        let mut guard = self.lock(id).await?;
-        let (mut copy, _held) = self.after(&mut guard, asked.sequence).await?;
-        let now = Timestamp::now();
-        copy.session = Session {
-            id: Uuid::now_v7(),
-            label: asked.label.or(copy.session.label),
-            created_at: now,
-            updated_at: now,
-            ..copy.session
-        };
-        let reply = copy.created_reply()?;
-        let receipt = request.receipt(&reply);
-        let extent = self.common.store.extent(id).await.map_err(|error| self.store_failure(&mut guard, error))?;
-        let moves = copy.session.sequence * self.common.store.move_bytes();
-        let added = Usage::of(1, copy.stored_bytes() + moves + extent.snapshot, receipt.as_ref());
-        let reservation = self.reserve_storage(added).await?;
-        let mut new = self.common.cache.lock(&self.tenant, copy.session.id).await;
-        // The original may have moved on meanwhile in another process: its past stays what it was.
-        let stored = self.common.store.fork(id, copy.session.clone(), receipt);
-        match stored.instrument(otlp::part!("store")).await {
-            Ok(()) => {
-                reservation.used(added);
-                new.live = Some(copy);
-                Ok(reply)
+    /// [`SessionError::NotFound`] or [`SessionError::Expired`], or a failure of the store or of the pool.
+    pub async fn definition(&self, id: Uuid) -> Result<(Vec<u8>, Reservation), SessionError> {
+        let definition = {
+            let mut guard = self.replay.lock(id).await?;
+            // It does not depend on the state, which is not loaded for it.
+            match guard.live {
+                Some(_) => Arc::clone(&self.replay.current(&mut guard).await?.session.definition),
+                None => self.replay.find_own(id).await?.definition,
             }
-            Err(error @ (StoreError::NotFound | StoreError::Expired(_))) => Err(self.store_failure(&mut guard, error)),
-            Err(StoreError::Stale { found }) => Err(SessionError::Overtaken { found }),
-            Err(error) => Err(error.into()),
-        }
+        };
+        let points = definition.profile.points();
+        let held = self.replay.common.pool.reserve(points * bytes::WRITTEN_POINT_BYTES).await?;
+        let work = move || written(&*definition);
+        Ok((self.replay.common.pool.run(cost::writing_table(points), work).await??, held))
     }
 
-    /// Gives a session another label, or none, if it is at the sequence that the client expects, where it stays.
+    /// The reply of a computation on a session, which `said` to have this definition, with the sequence that it belongs
+    /// to and the memory that it takes.
     ///
     /// # Errors
-    /// [`SessionError`]; its label stays then.
-    pub async fn rename(
+    /// [`SessionError`], among them [`SessionError::OtherDefinition`].
+    pub async fn compute_on<T: OnContact>(
         &self,
         id: Uuid,
+        said: Option<ContactDefinition>,
+        task: T,
+        shown: Shown,
+    ) -> Result<(u64, Vec<u8>, Reservation), SessionError> {
+        let (stop, _guard) = self.replay.common.pool.deadline();
+        let held = self.replay.common.pool.reserve(task.bytes() + shown.bytes(task.rows())).await?;
+        let (contact, sequence, state) = self.replay.copy(id, said, &stop).await?;
+        let cost = task.cost(contact.profile(), contact.memory_depth()).saturating_add(shown.format.cost());
+        let work = move || {
+            let _state = state;
+            let outcome = otlp::part!("solve").in_scope(|| task.run(contact, sequence, &stop))?;
+            Ok::<_, SessionError>(shown.write(&outcome)?)
+        };
+        Ok((sequence, self.replay.common.pool.run(cost, work).await??, held))
+    }
+
+    /// The stresses below the surface that a request asks for, checked against the definition of the session.
+    ///
+    /// # Errors
+    /// [`SessionError::NotFound`] or [`SessionError::Expired`], a request that does not fit the definition, or a
+    /// failure of the store.
+    pub async fn subsurface_task(&self, id: Uuid, request: SubsurfaceRequest) -> Result<SubsurfaceTask, SessionError> {
+        let mut guard = self.replay.lock(id).await?;
+        Ok(request.of_contact(&self.replay.current(&mut guard).await?.session.definition)?)
+    }
+
+    /// A page of sessions, oldest first; of those alone whose label contains `label`.
+    ///
+    /// # Errors
+    /// A failure of the store.
+    pub async fn list(
+        &self,
         label: Option<String>,
-        expected: Option<u64>,
-        key: Option<RequestKey>,
-    ) -> Result<Reply, SessionError> {
-        let request = self.request(key);
-        if let Some(reply) = request.earlier_reply().await? {
-            return Ok(reply);
-        }
-        let renamed = self.rename_anew(id, label, expected, &request).await;
-        unless_answered(&request, renamed).await
+        after: Option<Uuid>,
+        limit: usize,
+    ) -> Result<SessionPage, SessionError> {
+        // One more than requested shows whether there is a next page.
+        let mut found =
+            self.replay.common.store.list(Some(self.replay.tenant.clone()), label, after, limit + 1).await?;
+        let more = found.len() > limit;
+        found.truncate(limit);
+        let next = found.last().filter(|_| more).map(|session| session.id);
+        Ok(SessionPage { items: found, next })
     }
 
-    async fn rename_anew(
-        &self,
-        id: Uuid,
-        label: Option<String>,
-        expected: Option<u64>,
-        request: &IdempotentRequest<'_>,
-    ) -> Result<Reply, SessionError> {
-        let mut guard = self.lock(id).await?;
-        let mut overtaken = 0;
-        for _ in 0..ATTEMPTS {
-            let now = self.current(&mut guard).await?.reply();
-            if let Some(expected) = expected.filter(|expected| *expected != now.sequence) {
-                return Err(SessionError::Stale { expected, found: now.sequence });
-            }
-            let renamed = SessionReply { label: label.clone(), ..now };
-            let reply = Reply { created: None, sequence: renamed.sequence, body: written(&renamed)? };
-            let receipt = request.receipt(&reply);
-            let added = Usage::of(0, 0, receipt.as_ref());
-            let reservation = self.reserve_storage(added).await?;
-            // The reply shows the sequence, and the client may expect one: both hold only as long as no other process
-            // moves it.
-            let stored = self.common.store.rename(id, label.clone(), reply.sequence, receipt);
-            match stored.instrument(otlp::part!("store")).await {
-                Ok(()) => {
-                    reservation.used(added);
-                    return Ok(reply);
-                }
-                Err(StoreError::Stale { found }) => overtaken = found,
-                Err(error) => return Err(self.store_failure(&mut guard, error)),
-            }
+    /// The metrics of the sessions.
+    #[must_use]
+    pub fn readings(&self) -> Readings<'_> {
+        let (bytes, cached) = self.replay.common.cache.held();
+        Readings {
+            counted: &self.replay.common.metrics,
+            cached,
+            bytes,
+            capacity: self.replay.common.cache.capacity(),
+            streams: self.replay.common.listeners.count(),
+            commits: self.replay.common.store.commits(),
         }
-        Err(SessionError::Overtaken { found: overtaken })
-    }
-
-    /// Deletes a session, if it is at the sequence that the client expects.
-    ///
-    /// # Errors
-    /// [`SessionError`]; it is still there then.
-    pub async fn delete(&self, id: Uuid, expected: Option<u64>) -> Result<(), SessionError> {
-        let mut guard = self.lock(id).await?;
-        let found = match &guard.live {
-            Some(live) => live.session.sequence,
-            None => self.find_own(id).await?.sequence,
-        };
-        let mut at = expected.unwrap_or(found);
-        for _ in 0..ATTEMPTS {
-            let deleted = self.common.store.delete(id, at).instrument(otlp::part!("store"));
-            match (deleted.await, expected) {
-                (Ok(()), _) => {
-                    guard.live = None;
-                    let bytes = CONTACT_BYTES + at * self.common.store.move_bytes();
-                    self.common.usage.give_back(&self.tenant, Usage::of(1, bytes, None));
-                    return Ok(());
-                }
-                (Err(StoreError::Stale { found }), Some(expected)) => {
-                    return Err(SessionError::Stale { expected, found });
-                }
-                (Err(StoreError::Stale { found }), None) => at = found,
-                (Err(error), _) => return Err(self.store_failure(&mut guard, error)),
-            }
-        }
-        Err(SessionError::Overtaken { found: at })
-    }
-}
-
-/// What a request is answered that was not answered before. One that is refused may be refused for what the same
-/// request, sent twice, has changed elsewhere meanwhile: then it gets the reply to that one.
-async fn unless_answered(
-    request: &IdempotentRequest<'_>,
-    done: Result<Reply, SessionError>,
-) -> Result<Reply, SessionError> {
-    match done {
-        Err(SessionError::Store(error)) => Ok(request.after_refusal(error).await?),
-        Err(refusal) => request.earlier_reply().await?.ok_or(refusal),
-        done => done,
     }
 }
 

@@ -11,8 +11,8 @@ use stickslip_mechanics::{Elasticity, Profile};
 use stickslip_wire::profile::{SumProfile, TabulatedProfile};
 use stickslip_wire::{self as wire, DefinedProfile, Document, Prepare, Rejection};
 
+use super::Common;
 use super::cache::{KeptProfile, ProfileKey};
-use super::{Common, Sessions};
 
 /// The shared profiles, for work that ends when its flag is raised.
 #[derive(Clone)]
@@ -21,15 +21,11 @@ pub struct Profiles {
     stop: Stop,
 }
 
-impl Sessions {
-    /// The shared profiles, for work that ends when this flag is raised.
-    #[must_use]
-    pub fn profiles(&self, stop: &Stop) -> Profiles {
-        Profiles { common: Arc::clone(&self.common), stop: stop.clone() }
-    }
-}
-
 impl Profiles {
+    pub(super) fn new(common: &Arc<Common>, stop: &Stop) -> Profiles {
+        Profiles { common: Arc::clone(common), stop: stop.clone() }
+    }
+
     /// The cost of preparing the profile of a document: none if it is ready.
     ///
     /// # Errors

@@ -1,20 +1,26 @@
-//! From what is stored to a state: the newest snapshot, and the moves after it.
+//! The lock of a session, and its state: as it is cached, or by its newest snapshot and the moves after it.
 
+use std::sync::Arc;
 use std::time::Instant;
 
 use jiff::Timestamp;
 use uuid::Uuid;
 
-use crate::admission::Reservation;
+use crate::admission::{Reservation, Stop};
 use crate::simulation::bytes::EXPANSION;
 use crate::simulation::cost::Work;
 use crate::simulation::{Failure, Timer};
-use crate::store::{Extent, RECORD_BYTES, Record, Session, StoreError, Whole};
-use stickslip_wire::limits;
+use crate::store::{
+    Extent, IdempotentRequest, RECORD_BYTES, Record, RequestKey, Session, StoreError, Tenant, Usage, Whole,
+};
+use stickslip_mechanics::Contact;
+use stickslip_wire::{ContactDefinition, limits};
 
 use super::cache::Guard;
 use super::loaded::LoadedSession;
-use super::{SessionError, Sessions};
+use super::profiles::Profiles;
+use super::storage_reservation::StorageReservation;
+use super::{Common, SessionError};
 
 /// Moves that are fetched from the store at a time.
 pub(super) const PAGE: usize = 10_000;
@@ -30,7 +36,32 @@ const SHORT_DEFINITION: u64 = 1_024;
 /// request.
 const SMALL_HISTORY: u64 = 64;
 
-impl Sessions {
+/// The sessions of a tenant as they are stored. Clones are handles on the same.
+#[derive(Clone)]
+pub(super) struct Replay {
+    pub(super) tenant: Tenant,
+    pub(super) common: Arc<Common>,
+}
+
+impl Replay {
+    /// A request that may have been answered before.
+    pub(super) fn request(&self, key: Option<RequestKey>) -> IdempotentRequest<'_> {
+        IdempotentRequest::new(&*self.common.store, &self.tenant, key)
+    }
+
+    /// Reserves space in the store for what a change will add, within the quotas of the tenant.
+    pub(super) async fn reserve_storage(&self, requested: Usage) -> Result<StorageReservation, SessionError> {
+        self.common.usage.reserve(&self.common.store, &self.common.pool, &self.tenant, requested).await
+    }
+
+    /// Exclusive use of a session: waits for earlier requests, as long as the pool permits.
+    pub(super) async fn lock(&self, id: Uuid) -> Result<Guard, SessionError> {
+        match self.common.cache.try_lock(&self.tenant, id) {
+            Ok(guard) => Ok(guard),
+            Err(waiting) => Ok(Box::pin(self.common.pool.wait(waiting.lock())).await?),
+        }
+    }
+
     /// The session as it is cached, or else as it is stored. Other processes may have moved or deleted it since: the
     /// result is to be checked against the store.
     pub(super) async fn cached<'a>(&self, guard: &'a mut Guard) -> Result<&'a mut LoadedSession, SessionError> {
@@ -84,7 +115,7 @@ impl Sessions {
         }
         if let Some(live) = guard.live.as_mut().filter(|_| moved) {
             live.shared = true;
-            self.offer_snapshot(live);
+            self.common.snapshots.offer(live);
         }
         Ok(moved)
     }
@@ -150,7 +181,7 @@ impl Sessions {
         }
         let mut live = self.first_state(guard, session).await?;
         (live.contact, live.session.sequence) =
-            self.load_snapshot(&mut guard.loading, snapshot, live.contact, last.0).await?;
+            self.common.snapshots.load(&mut guard.loading, snapshot, live.contact, last.0).await?;
         guard.live = Some(live);
         self.catch_up(guard, last.0).await?;
         Ok(last)
@@ -160,7 +191,7 @@ impl Sessions {
     /// for it.
     ///
     /// # Errors
-    /// [`SessionError::NoSuchMove`] if it has made fewer, and as [`Sessions::current`]; but what is damaged after the
+    /// [`SessionError::NoSuchMove`] if it has made fewer, and as [`Replay::current`]; but what is damaged after the
     /// last of so many moves is none.
     pub(super) async fn after(
         &self,
@@ -189,7 +220,7 @@ impl Sessions {
         let snapshot = self.common.store.snapshot(id).await;
         let mut live = self.first_state(guard, session).await?;
         (live.contact, live.session.sequence) =
-            self.load_snapshot(&mut guard.loading, snapshot, live.contact, wanted).await?;
+            self.common.snapshots.load(&mut guard.loading, snapshot, live.contact, wanted).await?;
         while live.session.sequence < wanted {
             let reached = live.session.sequence;
             let limit = usize::try_from(wanted - reached).map_or(PAGE, |left| left.min(PAGE));
@@ -207,7 +238,7 @@ impl Sessions {
     async fn first_state(&self, guard: &mut Guard, session: Session) -> Result<Box<LoadedSession>, SessionError> {
         let id = session.id;
         let (stop, _raised_at_the_end) = self.common.pool.deadline();
-        let profiles = self.profiles(&stop);
+        let profiles = Profiles::new(&self.common, &stop);
         let cost = profiles.cost_of(&session.definition.defined_profile(""))?;
         let work = move || {
             let timer = Timer::start(&stop);
@@ -248,6 +279,36 @@ impl Sessions {
         })?;
         guard.loading += work;
         Ok(live)
+    }
+
+    /// A copy of the contact, which `said` to have this definition, with its sequence and memory for it; `stop` counts
+    /// what loading it takes. The lock is held for the copy alone, so that the session can move on meanwhile.
+    pub(super) async fn copy(
+        &self,
+        id: Uuid,
+        said: Option<ContactDefinition>,
+        stop: &Stop,
+    ) -> Result<(Contact, u64, Reservation), SessionError> {
+        let mut guard = self.lock(id).await?;
+        let live = self.current(&mut guard).await?;
+        if said.is_some_and(|said| said != *live.session.definition) {
+            return Err(SessionError::OtherDefinition(id));
+        }
+        let (contact, sequence) = (live.contact.memory_bytes(), live.session.sequence);
+        let mut held = self.reserve_copy(&mut guard, contact).await?;
+        held.shrink(contact);
+        stop.count(guard.loading);
+        let live = guard.live.as_ref().ok_or(SessionError::NotFound(id))?;
+        Ok((live.contact.clone(), sequence, held))
+    }
+
+    /// Memory for a copy of the state in a guard: that of a state which was brought from the store has it already, so
+    /// that nobody waits for memory while he holds some.
+    pub(super) async fn reserve_copy(&self, guard: &mut Guard, bytes: usize) -> Result<Reservation, SessionError> {
+        if guard.held.is_counted() {
+            return Ok(std::mem::take(&mut guard.held));
+        }
+        Ok(self.common.pool.reserve_states(bytes).await?)
     }
 
     /// The session as it is stored, if it belongs to the tenant.

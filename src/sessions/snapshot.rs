@@ -4,29 +4,45 @@
 //! the session replayed from its beginning. It is due once what it spares a replay outweighs what it costs to write and
 //! read, which bounds both the time to open a session and the bytes written for a move.
 
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use crate::store::{Snapshot, StoreError};
+use tokio::sync::Semaphore;
+
+use crate::admission::Pool;
+use crate::store::{Snapshot, Store, StoreError};
 use stickslip_mechanics::Contact;
 
+use super::SessionError;
 use super::loaded::LoadedSession;
 use super::replay_cost::ReplayCost;
-use super::{SessionError, Sessions};
 
 /// Snapshots that are being stored at a time. A session for which there is no room tries again with its next move.
-pub(super) const AT_ONCE: usize = 2;
+const AT_ONCE: usize = 2;
 /// Bytes of the checksum at the end.
 const CHECKSUM: usize = 4;
 
-impl Sessions {
+/// The snapshots of a store.
+pub(super) struct Snapshots {
+    store: Arc<dyn Store>,
+    pool: Pool,
+    // A permit for each snapshot that is being stored.
+    permits: Arc<Semaphore>,
+}
+
+impl Snapshots {
+    pub(super) fn new(store: Arc<dyn Store>, pool: Pool) -> Snapshots {
+        Snapshots { store, pool, permits: Arc::new(Semaphore::new(AT_ONCE)) }
+    }
+
     /// Stores a snapshot of a stored state in the background, if one is due.
-    pub(super) fn offer_snapshot(&self, live: &mut LoadedSession) {
+    pub(super) fn offer(&self, live: &mut LoadedSession) {
         if !live.replay_cost.is_worth_snapshot(live.contact.packed_length()) {
             return;
         }
-        let Ok(permit) = self.common.snapshots.clone().try_acquire_owned() else { return };
+        let Ok(permit) = self.permits.clone().try_acquire_owned() else { return };
         live.replay_cost = ReplayCost::default();
-        let (store, contact) = (self.common.store.clone(), live.contact.clone());
+        let (store, contact) = (self.store.clone(), live.contact.clone());
         let (id, sequence) = (live.session.id, live.session.sequence);
         tokio::spawn(async move {
             let _permit = permit;
@@ -40,7 +56,7 @@ impl Sessions {
 
     /// The contact after some stored move and the number of that move; `initial` and 0 if there is no snapshot to read.
     /// `loading` is increased by the time that it takes.
-    pub(super) async fn load_snapshot(
+    pub(super) async fn load(
         &self,
         loading: &mut Duration,
         snapshot: Result<Option<Snapshot>, StoreError>,
@@ -57,7 +73,7 @@ impl Sessions {
         };
         // Reading a byte is below a nanosecond.
         let cost = snapshot.state.len() as u64;
-        let read = self.common.pool.run(cost, move || {
+        let read = self.pool.run(cost, move || {
             let begin = Instant::now();
             let read = match checked(&snapshot.state).and_then(|state| initial.unpack(state)) {
                 Some(contact) => (contact, snapshot.sequence),

@@ -11,81 +11,80 @@ use crate::store::Record;
 use stickslip_mechanics::Contact;
 use stickslip_wire::{HistoryItem, LoopPage, limits};
 
+use super::SessionError;
+use super::history::History;
 use super::replay::{PAGE, PIECE_BYTES, damaged};
-use super::{SessionError, Sessions};
 
 /// Bytes of a point in the longest of the formats, with the room that growing texts and columns take.
 const POINT: usize = 512;
 /// JSON pointer to the number of points.
 const POINTS: &str = "/points_per_move";
 
-impl Sessions {
-    /// The loop through the earlier moves `past`, of which the first follows the move `after`, with `points` points per
-    /// move.
-    ///
-    /// # Errors
-    /// [`SessionError::NotFound`] or [`SessionError::Expired`], a failure of the store or of the pool, or
-    /// [`SessionError::Failure`] if it takes too long.
-    pub async fn trace(
-        &self,
-        id: Uuid,
-        after: u64,
-        past: &[HistoryItem],
-        points: usize,
-    ) -> Result<LoopPage, SessionError> {
-        let mut page = LoopPage::after(after);
-        let (Some(last), true) = (past.last().map(|item| item.sequence), points > 1) else {
-            for item in past {
-                page.push_end(item.sequence, &item.state, item.observation.map(|observation| observation.force));
-            }
-            return Ok(page);
-        };
-        let (stop, _guard) = self.common.pool.deadline();
-        // A move is assumed to leave one piece of slip history.
-        let pieces = usize::try_from(after).unwrap_or(usize::MAX).min(limits::MEMORY_DEPTH);
-        let _held = self.common.pool.reserve(2 * PIECE_BYTES * pieces).await?;
-        let initial = {
-            let mut guard = self.lock(id).await?;
-            self.current(&mut guard).await?.contact.virgin()
-        };
-        let snapshot = self.common.store.snapshot(id).await;
-        // A trace does not say how long it took.
-        let loading = &mut Duration::default();
-        let (mut contact, mut at) = self.load_snapshot(loading, snapshot, initial, after).await?;
-        while at < last {
-            let most = usize::try_from(last - at).unwrap_or(PAGE).min(PAGE);
-            let records = self.common.store.history(id, at, most).await.map_err(|error| self.store_error(id, error))?;
-            let Some(end) = records.last().map(|record| record.sequence) else {
-                return Err(damaged(id, &format_args!("move {} is missing", at + 1)));
-            };
-            let drawn = records.iter().filter(|record| record.sequence > after).count();
-            let curved = records.iter().filter(|record| record.step.is_curved()).count();
-            let steps = records.len() + drawn * points;
-            let depth = contact.memory_depth();
-            let drawing = Work { moves: steps, curved: curved * points, depth, ..Work::default() };
-            let price = drawing.cost(contact.profile());
-            let stop = stop.clone();
-            let work = move || {
-                for record in &records {
-                    let wanted = if record.sequence > after { points } else { 1 };
-                    trace_move((&mut contact, id), record, wanted, &stop, &mut page)?;
-                    if record.sequence > after {
-                        page.push_end(record.sequence, &record.state, record.measured.map(|measured| measured.force));
-                    }
-                }
-                Ok::<_, SessionError>((contact, page))
-            };
-            (contact, page) = self.common.pool.run(price, work).await??;
-            at = end;
+/// The loop through the earlier moves `past`, of which the first follows the move `after`, with `points` points per
+/// move.
+///
+/// # Errors
+/// [`SessionError::NotFound`] or [`SessionError::Expired`], a failure of the store or of the pool, or
+/// [`SessionError::Failure`] if it takes too long.
+pub async fn trace(
+    History { replay, .. }: &History,
+    id: Uuid,
+    after: u64,
+    past: &[HistoryItem],
+    points: usize,
+) -> Result<LoopPage, SessionError> {
+    let mut page = LoopPage::after(after);
+    let (Some(last), true) = (past.last().map(|item| item.sequence), points > 1) else {
+        for item in past {
+            page.push_end(item.sequence, &item.state, item.observation.map(|observation| observation.force));
         }
-        Ok(page)
+        return Ok(page);
+    };
+    let (stop, _guard) = replay.common.pool.deadline();
+    // A move is assumed to leave one piece of slip history.
+    let pieces = usize::try_from(after).unwrap_or(usize::MAX).min(limits::MEMORY_DEPTH);
+    let _held = replay.common.pool.reserve(2 * PIECE_BYTES * pieces).await?;
+    let initial = {
+        let mut guard = replay.lock(id).await?;
+        replay.current(&mut guard).await?.contact.virgin()
+    };
+    let snapshot = replay.common.store.snapshot(id).await;
+    // A trace does not say how long it took.
+    let loading = &mut Duration::default();
+    let (mut contact, mut at) = replay.common.snapshots.load(loading, snapshot, initial, after).await?;
+    while at < last {
+        let most = usize::try_from(last - at).unwrap_or(PAGE).min(PAGE);
+        let records = replay.common.store.history(id, at, most).await.map_err(|error| replay.store_error(id, error))?;
+        let Some(end) = records.last().map(|record| record.sequence) else {
+            return Err(damaged(id, &format_args!("move {} is missing", at + 1)));
+        };
+        let drawn = records.iter().filter(|record| record.sequence > after).count();
+        let curved = records.iter().filter(|record| record.step.is_curved()).count();
+        let steps = records.len() + drawn * points;
+        let depth = contact.memory_depth();
+        let drawing = Work { moves: steps, curved: curved * points, depth, ..Work::default() };
+        let price = drawing.cost(contact.profile());
+        let stop = stop.clone();
+        let work = move || {
+            for record in &records {
+                let wanted = if record.sequence > after { points } else { 1 };
+                trace_move((&mut contact, id), record, wanted, &stop, &mut page)?;
+                if record.sequence > after {
+                    page.push_end(record.sequence, &record.state, record.measured.map(|measured| measured.force));
+                }
+            }
+            Ok::<_, SessionError>((contact, page))
+        };
+        (contact, page) = replay.common.pool.run(price, work).await??;
+        at = end;
     }
+    Ok(page)
+}
 
-    /// Bytes that a loop of this many points takes.
-    #[must_use]
-    pub fn bytes_of_trace(points: usize) -> usize {
-        points * POINT
-    }
+/// Bytes that a loop of this many points takes.
+#[must_use]
+pub fn bytes_of_trace(points: usize) -> usize {
+    points * POINT
 }
 
 /// Applies an earlier move, after adding the points on its way to the page.

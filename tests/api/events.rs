@@ -13,7 +13,7 @@ use futures::{Stream, StreamExt as _};
 use reqwest::Method;
 use serde_json::{Value, json};
 use stickslip::admission::Pool;
-use stickslip::sessions::{CAPACITY, STREAMS, Sessions};
+use stickslip::sessions::{CAPACITY, STREAMS, Sessions, events};
 use stickslip::store::MemoryStore;
 use stickslip_wire::client::{Client, Error, Event, Options};
 use stickslip_wire::{EndReason, Move, Path, PathRequest, StateEvent, Steps};
@@ -186,7 +186,7 @@ async fn the_number_of_listeners_is_limited() {
     let id = server.client.create(&create(), &Options::default()).await.unwrap().id;
     let mut listeners = Vec::new();
     for _ in 0..STREAMS {
-        listeners.push(sessions.events(id, None).await.unwrap());
+        listeners.push(events(&sessions, id, None).await.unwrap());
     }
     let refused = server.get(&format!("/contacts/{id}/events")).await;
     assert_eq!(refused.headers()["retry-after"], "1");

@@ -25,11 +25,11 @@ fn sessions(file: &std::path::Path) -> (Sessions, Arc<SqliteStore>) {
 }
 
 async fn made(sessions: &Sessions) -> Uuid {
-    sessions.create(create().check().unwrap(), None).await.unwrap().created.unwrap()
+    sessions.changes().create(create().check().unwrap(), None).await.unwrap().created.unwrap()
 }
 
 async fn moved(sessions: &Sessions, id: Uuid, step: Move, expected: Option<u64>) -> Result<Reply, SessionError> {
-    sessions.apply_moves(id, MoveRequest::from(step).check().unwrap(), expected, None).await
+    sessions.moves().apply(id, MoveRequest::from(step).check().unwrap(), expected, None).await
 }
 
 fn commits(store: &SqliteStore) -> u64 {
@@ -96,8 +96,9 @@ async fn a_path_that_waits_between_moves_keeps_its_place() {
     let moves =
         |numbers: std::ops::Range<usize>| join_all(numbers.map(|number| moved(&sessions, id, step(number), None)));
     let before = commits(&store);
+    let mover = sessions.moves();
     let (first, between, last, read) =
-        futures::join!(moves(0..4), sessions.apply_moves(id, path, None, None), moves(4..80), sessions.get(id));
+        futures::join!(moves(0..4), mover.apply(id, path, None, None), moves(4..80), sessions.get(id));
     let sequences = |replies: Vec<Result<Reply, SessionError>>| -> Vec<u64> {
         replies.into_iter().map(|reply| reply.unwrap().sequence).collect()
     };

@@ -34,7 +34,7 @@ pub async fn create_contact(
     TenantApp(app): TenantApp,
     request: CheckedBody<CreateRequest>,
 ) -> Result<Response, Problem> {
-    Ok(reply::of_change(app.sessions.create(request.body, request.key).await?))
+    Ok(reply::of_change(app.sessions.changes().create(request.body, request.key).await?))
 }
 
 parameters! {
@@ -110,7 +110,7 @@ pub async fn rename_contact(
     IfMatch { sequence }: IfMatch,
     request: CheckedBody<RenameRequest>,
 ) -> Result<Response, Problem> {
-    Ok(reply::of_change(app.sessions.rename(id, request.body.label, sequence, request.key).await?))
+    Ok(reply::of_change(app.sessions.changes().rename(id, request.body.label, sequence, request.key).await?))
 }
 
 /// Delete a contact
@@ -125,7 +125,7 @@ pub async fn delete_contact(
     ContactPath { id }: ContactPath,
     IfMatch { sequence }: IfMatch,
 ) -> Result<StatusCode, Problem> {
-    app.sessions.delete(id, sequence).await?;
+    app.sessions.changes().delete(id, sequence).await?;
     Ok(StatusCode::NO_CONTENT)
 }
 
@@ -163,5 +163,5 @@ pub async fn fork_contact(
     ContactPath { id }: ContactPath,
     request: OptionalBody<ForkRequest>,
 ) -> Result<Response, Problem> {
-    Ok(reply::of_change(app.sessions.fork(id, request.body, request.key).await?))
+    Ok(reply::of_change(app.sessions.changes().fork(id, request.body, request.key).await?))
 }

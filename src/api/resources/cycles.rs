@@ -51,7 +51,7 @@ pub async fn get_cycles(
         }
     }
     let memory = app.pool.reserve(last * CYCLE_BYTES + format.bytes(0, 0)).await?;
-    let (sequence, page) = app.sessions.cycles(id, last).await?;
+    let (sequence, page) = app.sessions.cycles().newest(id, last).await?;
     let write = move || format.write(&page, || plots::cycles(id, &page), || tables::cycles(&page));
     let body = app.pool.run(format.cost(), write).await??;
     let tag = format.tag(&sequence.to_string());

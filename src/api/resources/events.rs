@@ -9,6 +9,7 @@ use crate::api::params::{ContactPath, LastEventId};
 use crate::api::problem::Problem;
 use crate::api::query::{CheckedQuery, PAGE};
 use crate::api::state::TenantApp;
+use crate::sessions;
 use crate::store::StreamEvent;
 use stickslip_wire::{EndEvent, StateEvent};
 
@@ -37,7 +38,7 @@ pub async fn watch_contact(
     LastEventId { sequence }: LastEventId,
     CheckedQuery(query): CheckedQuery<EventsQuery>,
 ) -> Result<Sse<impl Stream<Item = Result<Event, axum::Error>>>, Problem> {
-    let events = app.sessions.events(id, sequence).await?.map(|happening| match happening {
+    let events = sessions::events(&app.sessions, id, sequence).await?.map(|happening| match happening {
         StreamEvent::State(state) => Event::default().id(state.sequence.to_string()).event("state").json_data(state),
         // Without an identifier, so that a client that reconnects continues where it was.
         StreamEvent::End(reason) => Event::default().event("end").json_data(EndEvent { reason }),

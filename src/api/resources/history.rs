@@ -68,13 +68,13 @@ pub async fn get_history(
         }
     };
     let memory = app.pool.reserve(limit * ITEM_BYTES + format.bytes(0, 0)).await?;
-    let mut page = app.sessions.history(id, after, limit).await?;
+    let mut page = app.sessions.history().page(id, after, limit).await?;
     let tag = format.tag(&(version(&page, after) + unmarked));
     if reply::is_current(&headers, &tag) {
         return Ok(reply::not_modified(&tag));
     }
     if cycles && !format.is_plot() {
-        app.sessions.mark(id, &mut page).await?;
+        app.sessions.cycles().mark(id, &mut page).await?;
     }
     let next = page.next;
     let names_makers = app.sessions.names_makers();
@@ -88,7 +88,7 @@ pub async fn get_history(
 
 /// The move after which the newest moves begin, so many of them.
 pub(super) async fn newest(app: &App, id: Uuid, limit: usize) -> Result<u64, Problem> {
-    Ok(app.sessions.sequence(id).await?.saturating_sub(limit as u64))
+    Ok(app.sessions.history().sequence(id).await?.saturating_sub(limit as u64))
 }
 
 async fn write_page(
@@ -98,9 +98,9 @@ async fn write_page(
     cycles: bool,
     mut table: TableStream,
 ) -> Result<(TableStream, Vec<u8>), Problem> {
-    let mut page = app.sessions.history(id, after, limit).await?;
+    let mut page = app.sessions.history().page(id, after, limit).await?;
     if cycles {
-        app.sessions.mark(id, &mut page).await?;
+        app.sessions.cycles().mark(id, &mut page).await?;
     }
     let block = table.push(&tables::history(&page, app.sessions.names_makers())).map_err(Unwritable::new)?;
     Ok((table, block))

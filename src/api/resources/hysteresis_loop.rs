@@ -6,7 +6,7 @@ use axum::http::HeaderMap;
 use axum::response::Response;
 use uuid::Uuid;
 
-use crate::sessions::Sessions;
+use crate::sessions::{bytes_of_trace, trace};
 use stickslip_wire::{LoopPage, limits};
 
 use super::history::{ITEM_BYTES, newest, version, with_next};
@@ -48,7 +48,7 @@ pub async fn get_loop(
 ) -> Result<Response, Problem> {
     let LoopQuery { points_per_move: points, format } = query;
     let format = Format::chosen(format, &headers, &Format::ALL)?;
-    let bytes = |moves: usize| moves * ITEM_BYTES + Sessions::bytes_of_trace(moves * points) + format.bytes(0, 0);
+    let bytes = |moves: usize| moves * ITEM_BYTES + bytes_of_trace(moves * points) + format.bytes(0, 0);
     let (after, limit) = match moves.of(format) {
         Moves::Page(after, limit) => (after, limit),
         Moves::Newest(limit) => (newest(&app, id, limit).await?, limit),
@@ -59,13 +59,13 @@ pub async fn get_loop(
         }
     };
     let memory = app.pool.reserve(bytes(limit)).await?;
-    let past = app.sessions.history(id, after, limit).await?;
+    let past = app.sessions.history().page(id, after, limit).await?;
     let tag = format.tag(&version(&past, after));
     if reply::is_current(&headers, &tag) {
         return Ok(reply::not_modified(&tag));
     }
     let next = past.next;
-    let page = LoopPage { next, ..app.sessions.trace(id, after, &past.items, points).await? };
+    let page = LoopPage { next, ..trace(&app.sessions.history(), id, after, &past.items, points).await? };
     let write = move || format.write(&page, || plots::hysteresis_loop(id, &page), || tables::hysteresis_loop(&page));
     let response = reply::tagged(format.reply(app.pool.run(format.cost(), write).await??), &tag);
     let next = next.map(|next| {
@@ -82,8 +82,8 @@ async fn write_page(
     points: usize,
     mut table: TableStream,
 ) -> Result<(TableStream, Vec<u8>), Problem> {
-    let past = app.sessions.history(id, after, limit).await?;
-    let page = app.sessions.trace(id, after, &past.items, points).await?;
+    let past = app.sessions.history().page(id, after, limit).await?;
+    let page = trace(&app.sessions.history(), id, after, &past.items, points).await?;
     let block = table.push(&tables::hysteresis_loop(&page)).map_err(Unwritable::new)?;
     Ok((table, block))
 }

@@ -8,7 +8,7 @@ use crate::api::params::{ContactPath, IdempotencyKey, IfMatch};
 use crate::api::problem::Problem;
 use crate::api::reply;
 use crate::api::state::{App, TenantApp};
-use crate::sessions::Sessions;
+use crate::sessions::bytes_of_moves;
 use stickslip_wire::session::Advance;
 use stickslip_wire::{Document, MoveReply, MoveRequest, PathReply, PathRequest, RelaxReply, RelaxRequest};
 
@@ -86,12 +86,12 @@ pub async fn relax_contact(
 ) -> Result<Response, Problem> {
     let CheckedBody { body, key, mut held } = request;
     if body.dry_run {
-        let (sequence, body, memory) = app.sessions.dry_run_relax(id, body, sequence).await?;
+        let (sequence, body, memory) = app.sessions.moves().dry_run_relax(id, body, sequence).await?;
         return Ok(reply::holding(reply::at_sequence(sequence, body), memory));
     }
     let advance = Advance::from(body);
-    held.resize(&app.pool, Sessions::bytes_of_moves(&advance)).await?;
-    Ok(held.on(reply::of_change(app.sessions.apply_moves(id, advance, sequence, key).await?)))
+    held.resize(&app.pool, bytes_of_moves(&advance)).await?;
+    Ok(held.on(reply::of_change(app.sessions.moves().apply(id, advance, sequence, key).await?)))
 }
 
 /// Moves a contact by a checked body.
@@ -101,6 +101,6 @@ pub(super) async fn advance<T: Document<Checked = Advance>>(
     sequence: Option<u64>,
     CheckedBody { body, key, mut held }: CheckedBody<T>,
 ) -> Result<Response, Problem> {
-    held.resize(&app.pool, Sessions::bytes_of_moves(&body)).await?;
-    Ok(held.on(reply::of_change(app.sessions.apply_moves(id, body, sequence, key).await?)))
+    held.resize(&app.pool, bytes_of_moves(&body)).await?;
+    Ok(held.on(reply::of_change(app.sessions.moves().apply(id, body, sequence, key).await?)))
 }

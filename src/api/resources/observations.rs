@@ -55,7 +55,7 @@ pub async fn get_friction(
     headers: HeaderMap,
     _: CheckedQuery<()>,
 ) -> Result<Response, Problem> {
-    let friction = app.sessions.friction(id).await?;
+    let friction = app.sessions.observations().friction(id).await?;
     let tag = Format::Columns.tag(&friction.sequence.to_string());
     if reply::is_current(&headers, &tag) {
         return Ok(reply::not_modified(&tag));

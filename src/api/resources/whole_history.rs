@@ -30,12 +30,12 @@ pub(super) async fn reply<F>(
 where
     F: Future<Output = Result<(TableStream, Vec<u8>), Problem>> + Send + 'static,
 {
-    let end = app.sessions.sequence(id).await?;
+    let end = app.sessions.history().sequence(id).await?;
     let tag = format.tag(&format!("{end}-all{marking}"));
     if reply::is_current(headers, &tag) {
         return Ok(reply::not_modified(&tag));
     }
-    app.sessions.check_complete(id, end).await?;
+    app.sessions.history().check_complete(id, end).await?;
     let memory = app.pool.reserve(bytes).await?;
     // Before the reply begins, which cannot be taken back.
     let first = write(TableStream::new(format), 0, length_of_page(0, end)).await?;

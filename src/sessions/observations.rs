@@ -1,9 +1,11 @@
-//! The friction of a contact by its observations: the newest measured cycle, beside the model with another friction.
+//! Observations: a contact follows a bench, and the reply has what it predicts beside what was measured. Its friction
+//! is that with which the model is nearest to the newest measured cycle.
 //!
 //! The estimate follows from what is stored, and is kept with the cached session until the next such cycle closes. A
 //! cycle counts if all of its moves are observations under one load. Noise closes cycles too: those with few moves are
 //! passed over, and so are those that are small beside others.
 
+use std::sync::Arc;
 use std::time::Duration;
 
 use uuid::Uuid;
@@ -11,23 +13,30 @@ use uuid::Uuid;
 use crate::admission::{Nanoseconds, Stop};
 use crate::store;
 use stickslip_measured::loops::{Error, Known, LoopFit, Noise, Note, Parameter, Record, Start, Task, fit};
-use stickslip_mechanics::Contact;
-use stickslip_wire::{FrictionEstimate, FrictionReply, limits};
+use stickslip_mechanics::{Contact, range};
+use stickslip_report::plot::in_unit;
+use stickslip_wire::{
+    Faults, FrictionEstimate, FrictionReply, JsonPath, Observation, ObservationsReply, ObservedMove, Rejection, limits,
+};
 
-use super::cycle_log::CycleLog;
-use super::loaded::Estimated;
-use super::replay::PAGE;
-use super::{SessionError, Sessions};
+use super::cache::Guard;
+use super::cycle_log::{CycleLog, STATE_COST};
+use super::cycles::ClosedCycles;
+use super::loaded::{Estimated, LoadedSession};
+use super::replay::{PAGE, Replay};
+use super::{SessionError, written};
 
 /// Moves that a cycle must have.
 const MOVES: u64 = 8;
 /// Newest cycles of so many moves that are compared; of less than half the largest amplitude are small ones.
 const COMPARED: usize = 100;
 /// How long an estimate may take.
-pub(super) const TIME: Duration = Duration::from_secs(5);
+const TIME: Duration = Duration::from_secs(5);
 /// Time of a fit to a cycle, and for each of its points.
 const FIT_COST: Nanoseconds = 500_000;
 const POINT_COST: Nanoseconds = 10_000;
+/// Time to write one observation as JSON.
+const WRITING_COST: Nanoseconds = 240;
 /// Bytes of a fit for each of its points.
 const POINT_BYTES: usize = 256;
 /// Indentations are the same load if they agree to this part.
@@ -60,25 +69,52 @@ fn newest_large(log: &CycleLog) -> Option<(u64, u64)> {
     long().find(|cycle| cycle.displacement_amplitude >= 0.5 * largest).map(|cycle| (cycle.from, cycle.to))
 }
 
-impl Sessions {
+/// Refuses forces that no coefficient of friction explains at this normal force, N: they are in another unit.
+pub(super) fn check_plausible(observations: &[Observation], normal_force: f64) -> Result<(), Rejection> {
+    let most = range::FRICTION.max;
+    let mut faults = Faults::default();
+    let at = JsonPath::Root.member("observations");
+    for (index, Observation { force, .. }) in observations.iter().enumerate() {
+        // Without load any force is noise of the bench.
+        if normal_force > 0.0 && force.abs() > most * normal_force {
+            let [force, normal_force] = [*force, normal_force].map(|force| in_unit(force, "N"));
+            faults.add(
+                at.index(index).member("force"),
+                format_args!("{force} is more than {most} times the normal force of {normal_force}: is it in N?"),
+            );
+        }
+    }
+    faults.done(Some(()))
+}
+
+/// The observations of the sessions of a tenant.
+pub struct Observations {
+    pub(super) cycles: ClosedCycles,
+}
+
+impl Observations {
+    pub(super) fn of(replay: &Replay) -> Observations {
+        Observations { cycles: ClosedCycles { replay: replay.clone() } }
+    }
+
     /// The friction of a session by its observations.
     ///
     /// # Errors
     /// [`SessionError::NotFound`] or [`SessionError::Expired`], or a failure of the store or of the pool.
     pub async fn friction(&self, id: Uuid) -> Result<FrictionReply, SessionError> {
-        let (stop, _raised_at_the_end) = self.common.pool.deadline();
+        let (stop, _raised_at_the_end) = self.cycles.replay.common.pool.deadline();
         let stop = stop.child_deadline(Some(TIME));
         // The lock is held for copies alone, so that the session can move on meanwhile.
         let (virgin, sequence, known, mut estimated) = {
-            let mut guard = self.lock(id).await?;
-            let live = self.current(&mut guard).await?;
+            let mut guard = self.cycles.replay.lock(id).await?;
+            let live = self.cycles.replay.current(&mut guard).await?;
             (live.contact.virgin(), live.session.sequence, live.cycles.clone(), live.estimated)
         };
-        let (log, seen) = self.read_states(id, sequence, known, &virgin, &stop).await?;
+        let (log, seen) = self.cycles.read_states(id, sequence, known, &virgin, &stop).await?;
         if seen.is_ok() {
             estimated = self.estimate(id, &log, &virgin, estimated, &[], &stop).await?;
         }
-        let mut guard = self.lock(id).await?;
+        let mut guard = self.cycles.replay.lock(id).await?;
         if let Some(live) = guard.live.as_mut().filter(|live| live.session.sequence == sequence) {
             live.keep_log(&log);
             live.estimated = estimated;
@@ -88,7 +124,7 @@ impl Sessions {
 
     /// What the newest cycle of a log says that is not a small one; `earlier` if it is the same cycle, or if this takes
     /// too long. `new` are the last moves of the log, which the store does not have yet.
-    pub(super) async fn estimate(
+    async fn estimate(
         &self,
         id: Uuid,
         log: &CycleLog,
@@ -106,14 +142,14 @@ impl Sessions {
         if moves >= *limits::PATH_MOVES.end() {
             return Ok(unknown);
         }
-        let _held = self.common.pool.reserve(moves * POINT_BYTES + PAGE * store::RECORD_BYTES).await?;
+        let _held = self.cycles.replay.common.pool.reserve(moves * POINT_BYTES + PAGE * store::RECORD_BYTES).await?;
         let mut cycle = MeasuredCycle::default();
         let stored = to.min(log.sequence - new.len() as u64);
         let mut read = from.saturating_sub(1);
         while read < stored {
             let most = usize::try_from(stored - read).unwrap_or(PAGE).min(PAGE);
-            let page = self.common.store.history(id, read, most).await;
-            let page = page.map_err(|error| self.store_error(id, error))?;
+            let page = self.cycles.replay.common.store.history(id, read, most).await;
+            let page = page.map_err(|error| self.cycles.replay.store_error(id, error))?;
             if page.is_empty() || !page.iter().all(|record| cycle.push(record)) {
                 return Ok(unknown);
             }
@@ -125,7 +161,7 @@ impl Sessions {
         }
         let (virgin, stop) = (virgin.clone(), stop.clone());
         let fit = move || fitted(virgin, cycle, &stop);
-        let friction = self.common.pool.run(FIT_COST + POINT_COST * moves as u64, fit).await?;
+        let friction = self.cycles.replay.common.pool.run(FIT_COST + POINT_COST * moves as u64, fit).await?;
         Ok(match friction {
             Some(friction) => {
                 let friction = friction.map(|(value, interval)| FrictionEstimate { value, interval, from, to });
@@ -133,6 +169,51 @@ impl Sessions {
             }
             None => earlier,
         })
+    }
+
+    /// The reply to observations that have led to `live` and are not stored yet. The guard has the state before them.
+    /// If the estimate of the friction takes too long, it is the one before.
+    pub(super) async fn observed(
+        &self,
+        guard: &mut Guard,
+        live: &mut LoadedSession,
+        records: &[store::Record],
+        stop: &Stop,
+    ) -> Result<Vec<u8>, SessionError> {
+        let id = guard.id();
+        let (virgin, before) = (live.contact.virgin(), live.session.sequence - records.len() as u64);
+        let stop = stop.child_deadline(Some(TIME));
+        let (mut log, seen) = self.cycles.read_states(id, before, live.cycles.take(), &virgin, &stop).await?;
+        // It is not read again if these observations are overtaken.
+        if let Some(live) = &mut guard.live {
+            live.keep_log(&log);
+        }
+        if seen.is_ok() {
+            let _held = self.cycles.replay.common.pool.reserve(log.bytes_with(records.len())).await?;
+            let states: Vec<_> = records.iter().map(|record| (record.sequence, record.state)).collect();
+            let look = move || {
+                let own = Arc::make_mut(&mut log);
+                for (sequence, state) in states {
+                    own.push(sequence, &state);
+                }
+                log
+            };
+            log = self.cycles.replay.common.pool.run(STATE_COST * records.len() as u64, look).await?;
+            live.estimated = self.estimate(id, &log, &virgin, live.estimated, records, &stop).await?;
+        }
+        live.keep_log(&log);
+        let items = records.iter().filter_map(|record| {
+            let observed = record.observation()?;
+            Some(ObservedMove {
+                displacement: record.state.displacement,
+                force: observed.force,
+                predicted: observed.predicted,
+                innovation: observed.innovation,
+            })
+        });
+        let friction = live.estimated.and_then(|estimated| estimated.friction);
+        let reply = ObservationsReply { id, sequence: live.session.sequence, items: items.collect(), friction };
+        self.cycles.replay.common.pool.run(WRITING_COST * records.len() as u64, move || written(&reply)).await?
     }
 }
 

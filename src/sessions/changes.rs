@@ -1,0 +1,209 @@
+//! Making, copying, naming and deleting sessions.
+
+use std::sync::Arc;
+
+use jiff::Timestamp;
+use tracing::Instrument as _;
+use uuid::Uuid;
+
+use crate::otlp;
+use crate::store::{CONTACT_BYTES, IdempotentRequest, Reply, RequestKey, Session, StoreError, Usage};
+use stickslip_wire::session::Creation;
+use stickslip_wire::{ForkRequest, SessionReply};
+
+use super::loaded::LoadedSession;
+use super::replay::Replay;
+use super::{ATTEMPTS, SessionError, written};
+
+/// Changes of the sessions of a tenant, but for their moves.
+pub struct Changes {
+    pub(super) replay: Replay,
+}
+
+impl Changes {
+    /// Makes a session.
+    ///
+    /// # Errors
+    /// [`SessionError`]; nothing has been made then.
+    pub async fn create(&self, creation: Creation, key: Option<RequestKey>) -> Result<Reply, SessionError> {
+        let request = self.replay.request(key);
+        if let Some(reply) = request.earlier_reply().await? {
+            return Ok(reply);
+        }
+        let now = Timestamp::now();
+        let session = Session {
+            id: Uuid::now_v7(),
+            tenant: self.replay.tenant.clone(),
+            label: creation.label,
+            definition: Arc::new(creation.definition),
+            sequence: 0,
+            created_at: now,
+            updated_at: now,
+        };
+        let live = LoadedSession::start(session, creation.setup)?;
+        let reply = live.created_reply()?;
+        let receipt = request.receipt(&reply);
+        let added = Usage::of(1, live.stored_bytes(), receipt.as_ref());
+        let reservation = self.replay.reserve_storage(added).await?;
+        // A request that finds the new session in the store waits until it is cached.
+        let mut guard = self.replay.common.cache.lock(&self.replay.tenant, live.session.id).await;
+        let stored = self.replay.common.store.create(live.session.clone(), receipt);
+        if let Err(error) = stored.instrument(otlp::part!("store")).await {
+            return Ok(request.after_refusal(error).await?);
+        }
+        reservation.used(added);
+        guard.live = Some(Box::new(live));
+        Ok(reply)
+    }
+
+    /// Makes a session with the same moves, or with the first of them.
+    ///
+    /// # Errors
+    /// [`SessionError`]; nothing has been made then.
+    pub async fn fork(&self, id: Uuid, asked: ForkRequest, key: Option<RequestKey>) -> Result<Reply, SessionError> {
+        let request = self.replay.request(key);
+        if let Some(reply) = request.earlier_reply().await? {
+            return Ok(reply);
+        }
+        let forked = self.fork_anew(id, asked, &request).await;
+        unless_answered(&request, forked).await
+    }
+
+    async fn fork_anew(
+        &self,
+        id: Uuid,
+        asked: ForkRequest,
+        request: &IdempotentRequest<'_>,
+    ) -> Result<Reply, SessionError> {
+        // A tenant at its quota is refused before its past is read.
+        drop(self.replay.reserve_storage(Usage::of(1, CONTACT_BYTES, None)).await?);
+        let mut guard = self.replay.lock(id).await?;
+        let (mut copy, _held) = self.replay.after(&mut guard, asked.sequence).await?;
+        let now = Timestamp::now();
+        copy.session = Session {
+            id: Uuid::now_v7(),
+            label: asked.label.or(copy.session.label),
+            created_at: now,
+            updated_at: now,
+            ..copy.session
+        };
+        let reply = copy.created_reply()?;
+        let receipt = request.receipt(&reply);
+        let extent =
+            self.replay.common.store.extent(id).await.map_err(|error| self.replay.store_failure(&mut guard, error))?;
+        let moves = copy.session.sequence * self.replay.common.store.move_bytes();
+        let added = Usage::of(1, copy.stored_bytes() + moves + extent.snapshot, receipt.as_ref());
+        let reservation = self.replay.reserve_storage(added).await?;
+        let mut new = self.replay.common.cache.lock(&self.replay.tenant, copy.session.id).await;
+        // The original may have moved on meanwhile in another process: its past stays what it was.
+        let stored = self.replay.common.store.fork(id, copy.session.clone(), receipt);
+        match stored.instrument(otlp::part!("store")).await {
+            Ok(()) => {
+                reservation.used(added);
+                new.live = Some(copy);
+                Ok(reply)
+            }
+            Err(error @ (StoreError::NotFound | StoreError::Expired(_))) => {
+                Err(self.replay.store_failure(&mut guard, error))
+            }
+            Err(StoreError::Stale { found }) => Err(SessionError::Overtaken { found }),
+            Err(error) => Err(error.into()),
+        }
+    }
+
+    /// Gives a session another label, or none, if it is at the sequence that the client expects, where it stays.
+    ///
+    /// # Errors
+    /// [`SessionError`]; its label stays then.
+    pub async fn rename(
+        &self,
+        id: Uuid,
+        label: Option<String>,
+        expected: Option<u64>,
+        key: Option<RequestKey>,
+    ) -> Result<Reply, SessionError> {
+        let request = self.replay.request(key);
+        if let Some(reply) = request.earlier_reply().await? {
+            return Ok(reply);
+        }
+        let renamed = self.rename_anew(id, label, expected, &request).await;
+        unless_answered(&request, renamed).await
+    }
+
+    async fn rename_anew(
+        &self,
+        id: Uuid,
+        label: Option<String>,
+        expected: Option<u64>,
+        request: &IdempotentRequest<'_>,
+    ) -> Result<Reply, SessionError> {
+        let mut guard = self.replay.lock(id).await?;
+        let mut overtaken = 0;
+        for _ in 0..ATTEMPTS {
+            let now = self.replay.current(&mut guard).await?.reply();
+            if let Some(expected) = expected.filter(|expected| *expected != now.sequence) {
+                return Err(SessionError::Stale { expected, found: now.sequence });
+            }
+            let renamed = SessionReply { label: label.clone(), ..now };
+            let reply = Reply { created: None, sequence: renamed.sequence, body: written(&renamed)? };
+            let receipt = request.receipt(&reply);
+            let added = Usage::of(0, 0, receipt.as_ref());
+            let reservation = self.replay.reserve_storage(added).await?;
+            // The reply shows the sequence, and the client may expect one: both hold only as long as no other process
+            // moves it.
+            let stored = self.replay.common.store.rename(id, label.clone(), reply.sequence, receipt);
+            match stored.instrument(otlp::part!("store")).await {
+                Ok(()) => {
+                    reservation.used(added);
+                    return Ok(reply);
+                }
+                Err(StoreError::Stale { found }) => overtaken = found,
+                Err(error) => return Err(self.replay.store_failure(&mut guard, error)),
+            }
+        }
+        Err(SessionError::Overtaken { found: overtaken })
+    }
+
+    /// Deletes a session, if it is at the sequence that the client expects.
+    ///
+    /// # Errors
+    /// [`SessionError`]; it is still there then.
+    pub async fn delete(&self, id: Uuid, expected: Option<u64>) -> Result<(), SessionError> {
+        let mut guard = self.replay.lock(id).await?;
+        let found = match &guard.live {
+            Some(live) => live.session.sequence,
+            None => self.replay.find_own(id).await?.sequence,
+        };
+        let mut at = expected.unwrap_or(found);
+        for _ in 0..ATTEMPTS {
+            let deleted = self.replay.common.store.delete(id, at).instrument(otlp::part!("store"));
+            match (deleted.await, expected) {
+                (Ok(()), _) => {
+                    guard.live = None;
+                    let bytes = CONTACT_BYTES + at * self.replay.common.store.move_bytes();
+                    self.replay.common.usage.give_back(&self.replay.tenant, Usage::of(1, bytes, None));
+                    return Ok(());
+                }
+                (Err(StoreError::Stale { found }), Some(expected)) => {
+                    return Err(SessionError::Stale { expected, found });
+                }
+                (Err(StoreError::Stale { found }), None) => at = found,
+                (Err(error), _) => return Err(self.replay.store_failure(&mut guard, error)),
+            }
+        }
+        Err(SessionError::Overtaken { found: at })
+    }
+}
+
+/// What a request is answered that was not answered before. One that is refused may be refused for what the same
+/// request, sent twice, has changed elsewhere meanwhile: then it gets the reply to that one.
+pub(super) async fn unless_answered(
+    request: &IdempotentRequest<'_>,
+    done: Result<Reply, SessionError>,
+) -> Result<Reply, SessionError> {
+    match done {
+        Err(SessionError::Store(error)) => Ok(request.after_refusal(error).await?),
+        Err(refusal) => request.earlier_reply().await?.ok_or(refusal),
+        done => done,
+    }
+}

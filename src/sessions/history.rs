@@ -1,0 +1,81 @@
+//! The moves of sessions as they are stored.
+
+use tracing::Instrument as _;
+use uuid::Uuid;
+
+use crate::otlp;
+use stickslip_wire::{HistoryItem, HistoryPage};
+
+use super::SessionError;
+use super::replay::{PAGE, Replay, damaged};
+
+/// The recorded moves of the sessions of a tenant.
+#[derive(Clone)]
+pub struct History {
+    pub(super) replay: Replay,
+    pub(super) names_makers: bool,
+}
+
+impl History {
+    /// The number of moves of a session.
+    ///
+    /// # Errors
+    /// [`SessionError::NotFound`] or [`SessionError::Expired`], or a failure of the store.
+    pub async fn sequence(&self, id: Uuid) -> Result<u64, SessionError> {
+        if !self.replay.common.cache.holds(&self.replay.tenant, id) {
+            return Ok(self.replay.find_own(id).await?.sequence);
+        }
+        let heading = self.replay.common.store.heading(id).await;
+        heading.map(|heading| heading.sequence).map_err(|error| self.replay.store_error(id, error))
+    }
+
+    /// Checks that the first `end` moves of a session are all stored.
+    ///
+    /// # Errors
+    /// [`SessionError::Store`] with [`StoreError::Damaged`](crate::store::StoreError::Damaged) if they are not, or a
+    /// failure of the store.
+    pub async fn check_complete(&self, id: Uuid, end: u64) -> Result<(), SessionError> {
+        let store = &self.replay.common.store;
+        if store.count_moves(id, end).await.map_err(|error| self.replay.store_error(id, error))? == end {
+            return Ok(());
+        }
+        // Which one is missing is found by reading them.
+        let mut at = 0;
+        while at < end {
+            let page = store.history(id, at, PAGE).await.map_err(|error| self.replay.store_error(id, error))?;
+            let Some(last) = page.last() else { break };
+            at = last.sequence;
+        }
+        Err(damaged(id, &format_args!("of its {end} moves some are missing")))
+    }
+
+    /// A page of a session's moves, oldest first.
+    ///
+    /// # Errors
+    /// [`SessionError::NotFound`] or [`SessionError::Expired`], or a failure of the store.
+    pub async fn page(&self, id: Uuid, after: u64, limit: usize) -> Result<HistoryPage, SessionError> {
+        if !self.replay.common.cache.holds(&self.replay.tenant, id) {
+            self.replay.find_own(id).await?;
+        }
+        self.own_page(id, after, limit).await
+    }
+
+    /// The same of a session that is known to belong to the tenant.
+    pub(super) async fn own_page(&self, id: Uuid, after: u64, limit: usize) -> Result<HistoryPage, SessionError> {
+        let found = self.replay.common.store.history(id, after, limit + 1).instrument(otlp::part!("store")).await;
+        let mut found = found.map_err(|error| self.replay.store_error(id, error))?;
+        let more = found.len() > limit;
+        found.truncate(limit);
+        let next = found.last().filter(|_| more).map(|record| record.sequence);
+        let items = found.into_iter().map(|record| HistoryItem {
+            sequence: record.sequence,
+            step: record.step,
+            state: record.state,
+            cycle: None,
+            observation: record.observation(),
+            by: record.by.filter(|_| self.names_makers).as_deref().map(str::to_owned),
+            at: record.at,
+        });
+        Ok(HistoryPage { items: items.collect(), next })
+    }
+}
