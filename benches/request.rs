@@ -2,7 +2,8 @@
 //!
 //! `POST /simulate` of 20 reversals with the stress at 200 radii, at 8 connections, against two baseline handlers in
 //! another process: one parses the same body and writes the same reply, computed once; one returns finished bytes. All
-//! take turns in every round. Then, without HTTP, the cost of parsing, solving and writing, and of writing a number.
+//! take turns in every round, and so does the build whose path is in `STICKSLIP_OTHER`. Then, without HTTP, the cost of
+//! parsing, solving and writing, and of writing a number.
 
 mod load;
 
@@ -13,7 +14,7 @@ use std::time::{Duration, Instant};
 use axum::Router;
 use axum::body::Bytes;
 use axum::routing::post;
-use load::{Connection, Process, baseline, join, median, serve};
+use load::{Connection, Process, baseline, join, median, serve, serve_other};
 use stickslip::admission::Stop;
 use stickslip::simulation::simulate;
 use stickslip_wire::{SimulateReply, SimulateRequest, read};
@@ -74,13 +75,15 @@ async fn round(process: &Process, path: &'static str) -> (f64, f64) {
 }
 
 async fn whole_requests() {
-    let (other, service) = (Process::start(baseline()), Process::start(serve("memory:")));
-    let targets = [
-        ("parses and writes", &other, "/both"),
-        ("finished bytes", &other, "/finished"),
+    let (baselines, service) = (Process::start(baseline()), Process::start(serve("memory:")));
+    let other_build = serve_other("memory:").map(Process::start);
+    let mut targets = vec![
+        ("parses and writes", &baselines, "/both"),
+        ("finished bytes", &baselines, "/finished"),
         ("stickslip", &service, "/simulate"),
     ];
-    let (mut rates, mut costs) = ([const { Vec::new() }; 3], [const { Vec::new() }; 3]);
+    targets.extend(other_build.as_ref().map(|process| ("stickslip, other build", process, "/simulate")));
+    let (mut rates, mut costs) = (vec![Vec::new(); targets.len()], vec![Vec::new(); targets.len()]);
     for _ in 0..ROUNDS {
         for (place, (_, process, path)) in targets.iter().enumerate() {
             let (rate, cost) = round(process, path).await;

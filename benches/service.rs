@@ -3,7 +3,7 @@
 //! `POST /contacts/{id}/move` at 32 connections over 256 contacts, by each store, as a ratio to the baseline: an axum
 //! handler in its own process that parses the same body and writes a reply of the same shape. All take turns in every
 //! round, so that a busy machine slows them alike. The load comes from plain sockets, because it shares the processors
-//! with the service.
+//! with the service. Another build, whose path is in `STICKSLIP_OTHER`, takes its turns too.
 
 #[allow(dead_code, reason = "the benchmark uses a part of it")]
 #[path = "../tests/common/postgres.rs"]
@@ -17,7 +17,7 @@ use std::time::{Duration, Instant};
 use axum::extract::Path;
 use axum::routing::post;
 use axum::{Json, Router};
-use load::{CONTACT, Connection, Process, baseline, join, median, serve};
+use load::{CONTACT, Connection, Process, baseline, join, median, serve, serve_other};
 use stickslip_wire::{MoveReply, MoveRequest};
 use tokio::net::TcpListener;
 use uuid::Uuid;
@@ -112,6 +112,12 @@ async fn compare() {
         Service::start("sqlite", serve(&file)).await,
         Service::start("postgres", serve(&cluster.database().await)).await,
     ];
+    let other_file = format!("sqlite:{}", folder.join("other.db").display());
+    for (name, store) in [("memory, other build", "memory:"), ("sqlite, other build", &other_file)] {
+        if let Some(command) = serve_other(store) {
+            services.push(Service::start(name, command).await);
+        }
+    }
     for _ in 0..ROUNDS {
         for service in &mut services {
             service.round().await;

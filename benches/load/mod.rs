@@ -70,7 +70,16 @@ pub fn resident(process: &str) -> i64 {
 
 /// The command that serves with a store and logs warnings alone.
 pub fn serve(store: &str) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_stickslip"));
+    served_by(env!("CARGO_BIN_EXE_stickslip").as_ref(), store)
+}
+
+/// The same with the build of the service that the variable `STICKSLIP_OTHER` names, to be measured in the same run.
+pub fn serve_other(store: &str) -> Option<Command> {
+    Some(served_by(&std::env::var_os("STICKSLIP_OTHER")?, store))
+}
+
+fn served_by(program: &std::ffi::OsStr, store: &str) -> Command {
+    let mut command = Command::new(program);
     command.args(["serve", "--listen", "127.0.0.1:0", "--log", "warn", "--store", store]);
     command
 }
