@@ -7,6 +7,7 @@ use std::path::Path;
 
 use serde_json::{Value, json};
 
+use crate::common::pictures::other_lines;
 use crate::common::{Server, run};
 use crate::formats::pixels;
 
@@ -47,40 +48,6 @@ const OF_CONTACT: [(&str, &str, &str); 8] = [
     ("contact-section", "/subsurface", "section"),
 ];
 
-/// A text in pieces: numbers, and what lies between.
-fn pieces(text: &str) -> Vec<&str> {
-    let is_number = |letter: char| letter.is_ascii_digit() || letter == '.';
-    let (mut pieces, mut rest) = (Vec::new(), text);
-    while let Some(first) = rest.chars().next() {
-        let end = rest.find(|letter| is_number(letter) != is_number(first)).unwrap_or(rest.len());
-        let (piece, after) = rest.split_at(end);
-        pieces.push(piece);
-        rest = after;
-    }
-    pieces
-}
-
-/// What keeps a vector plot from being its reference.
-fn other_lines(found: &str, reference: &str) -> Option<String> {
-    let (found, reference): (Vec<_>, Vec<_>) =
-        (found.split_inclusive('>').collect(), reference.split_inclusive('>').collect());
-    if found.len() != reference.len() {
-        return Some(format!("{} parts, {} in the reference", found.len(), reference.len()));
-    }
-    let other = |(found, reference): &(&str, &str)| {
-        // Outside a tag stand the words of the plot, with its numbers.
-        let [(words, tag), (own, of)] = [found, reference].map(|part| part.rsplit_once('<').unwrap_or((part, "")));
-        let (tag, of) = (pieces(tag), pieces(of));
-        let same = |(one, two): (&&str, &&str)| match (one.parse::<f64>(), two.parse::<f64>()) {
-            (Ok(one), Ok(two)) => (one - two).abs() <= SHIFT,
-            _ => one == two,
-        };
-        words != own || tag.len() != of.len() || !tag.iter().zip(&of).all(same)
-    };
-    let first = found.into_iter().zip(reference).find(other);
-    first.map(|(found, reference)| format!("{found:.300}\nin place of\n{reference:.300}"))
-}
-
 /// What keeps a bitmap from being its reference, below its first rows.
 fn other_pixels(found: &[u8], reference: &[u8], rows: usize) -> Option<String> {
     let ((width, found), (wanted, reference)) = (pixels(found), pixels(reference));
@@ -114,7 +81,7 @@ async fn hold(server: &Server, name: &str, path: &str, query: &str, body: Option
         }
         let reference = fs::read(&file).unwrap();
         let other = match format {
-            "svg" => other_lines(&String::from_utf8_lossy(&found), &String::from_utf8_lossy(&reference)),
+            "svg" => other_lines(&String::from_utf8_lossy(&found), &String::from_utf8_lossy(&reference), SHIFT),
             _ => other_pixels(&found, &reference, if id.is_some() { TITLE } else { 0 }),
         };
         assert!(other.is_none(), "{} is another picture: {}", file.display(), other.unwrap_or_default());
@@ -164,7 +131,7 @@ fn the_figures_of_the_documentation_are_those_that_the_command_draws() {
     for file in drawn {
         let reference = Path::new("docs/figures").join(file.file_name().unwrap());
         let [found, reference] = [&file, &reference].map(|file| fs::read_to_string(file).unwrap());
-        let other = other_lines(&found, &reference);
+        let other = other_lines(&found, &reference, SHIFT);
         assert!(other.is_none(), "{} is another picture: {}", file.display(), other.unwrap_or_default());
     }
 }

@@ -3,6 +3,7 @@
 #![allow(dead_code, reason = "each test binary uses a part of it")]
 
 pub mod kill;
+pub mod pictures;
 pub mod postgres;
 pub mod process;
 pub mod prometheus;

@@ -7,6 +7,7 @@ use std::sync::OnceLock;
 use serde_json::Value;
 
 use crate::browser::{self, Browser};
+use crate::plots;
 
 const LOCK: &str = include_str!("axe/package-lock.json");
 
@@ -50,7 +51,8 @@ pub async fn serious(browser: &Browser) -> Vec<String> {
 }
 
 /// Asserts that the page with its results has no serious fault, fits the window and shows the chosen tab, on a phone in
-/// the dark, a tablet and a desk, which is the window afterwards; saves a picture of each in both colour schemes.
+/// the dark, a tablet and a desk, which is the window afterwards, and that its plots are those that were looked at;
+/// saves a picture of each in both colour schemes.
 pub async fn assert_readable(browser: &Browser, name: &str) {
     for (look, width, height, dark) in
         [("narrow-dark-", 390, 844, true), ("tablet-", 768, 1024, false), ("", 1440, 900, false)]
@@ -77,4 +79,5 @@ pub async fn assert_readable(browser: &Browser, name: &str) {
         browser.picture(&format!("{look}{name}")).await;
         browser.look(width, height, dark).await;
     }
+    plots::assert_looked_at(browser, name).await;
 }

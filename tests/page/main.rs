@@ -7,6 +7,7 @@ mod common;
 mod comparing;
 mod journeys;
 mod moving;
+mod plots;
 mod questions;
 
 use std::f64::consts::PI;
