@@ -2,7 +2,7 @@
 //!
 //! `POST /simulate` of 20 reversals with the stress at 200 radii, at 8 connections, against two baseline handlers in
 //! another process: one parses the same body and writes the same reply, computed once; one returns finished bytes. All
-//! take turns in every round, and so does the build whose path is in `STICKSLIP_OTHER`. Then, without HTTP, the cost of
+//! take turns in every round, and so does the build whose path is in `OTHER_BUILD`. Then, without HTTP, the cost of
 //! parsing, solving and writing, and of writing a number.
 
 mod load;

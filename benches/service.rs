@@ -3,7 +3,7 @@
 //! `POST /contacts/{id}/move` at 32 connections over 256 contacts, by each store, as a ratio to the baseline: an axum
 //! handler in its own process that parses the same body and writes a reply of the same shape. All take turns in every
 //! round, so that a busy machine slows them alike. The load comes from plain sockets, because it shares the processors
-//! with the service. Another build, whose path is in `STICKSLIP_OTHER`, takes its turns too.
+//! with the service. Another build, whose path is in `OTHER_BUILD`, takes its turns too.
 
 #[allow(dead_code, reason = "the benchmark uses a part of it")]
 #[path = "../tests/common/postgres.rs"]

@@ -73,9 +73,9 @@ pub fn serve(store: &str) -> Command {
     served_by(env!("CARGO_BIN_EXE_stickslip").as_ref(), store)
 }
 
-/// The same with the build of the service that the variable `STICKSLIP_OTHER` names, to be measured in the same run.
+/// The same with the build of the service that the variable `OTHER_BUILD` names, to be measured in the same run.
 pub fn serve_other(store: &str) -> Option<Command> {
-    Some(served_by(&std::env::var_os("STICKSLIP_OTHER")?, store))
+    Some(served_by(&std::env::var_os("OTHER_BUILD")?, store))
 }
 
 fn served_by(program: &std::ffi::OsStr, store: &str) -> Command {
