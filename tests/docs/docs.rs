@@ -82,6 +82,7 @@ fn every_link_between_the_pages_leads_somewhere() {
         "contacts.md",
         "clients.md",
         "python.md",
+        "equations.md",
         "dashboards.md",
         "access.md",
         "operation.md",
