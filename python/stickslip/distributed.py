@@ -1,4 +1,4 @@
-"""Sweeps beyond one machine, on Dask: chunks as pure tasks, the table as a Parquet dataset."""
+"""Sweeps beyond one machine, on Dask or Ray: chunks as pure tasks, the table as a Parquet dataset."""
 
 from __future__ import annotations
 
@@ -21,6 +21,9 @@ if TYPE_CHECKING:
 MOST_POINTS = 1_000_000
 #: Work of a task, s, as far as it can be estimated.
 SECONDS = 5
+
+#: The request, the first point, the one after the last, and the folder.
+Task = tuple[bytes, int, int, str]
 
 
 @dataclass(frozen=True)
@@ -45,10 +48,11 @@ class SweepDataset:
 def sweep(
     base: Mapping[str, Any], axes: Any, outputs: Any, *, on: Any, to: str, points_per_task: int | None = None
 ) -> SweepDataset:
-    """Computes a sweep on the cluster of a Dask client into the folder `to`, any URL that fsspec writes to.
+    """Computes a sweep on a cluster into the folder `to`, any URL that fsspec writes to and the workers reach.
 
-    The rows are those of `stickslip.sweep` to the last bit. Chunks that exist are skipped, so that a sweep that was
-    broken off goes on when it is called again; a folder of another sweep is refused.
+    `on` is a client of Dask, or the module `ray`. The rows are those of `stickslip.sweep` to the last bit. A chunk whose
+    worker dies is computed by another. Chunks that exist are skipped, so that a sweep that was broken off goes on if it
+    is called again; a folder of another sweep is refused. An exception or an interrupt cancels the tasks.
     """
     base = dict(base)
     if "contact" in base:
@@ -58,8 +62,30 @@ def sweep(
     size = points_per_task or min(SECONDS * plan.chunk, MOST_POINTS)
     _claim(to, request, size)
     spans = [(first, min(first + size, plan.points)) for first in range(0, plan.points, size)]
-    tasks = [on.submit(compute_chunk, request, first, end, to, pure=True) for first, end in spans]
-    return SweepDataset(to, plan.points, sum(on.gather(tasks)))
+    tasks = [(request, first, end, to) for first, end in spans]
+    return SweepDataset(to, plan.points, sum(_dask(on, tasks) if hasattr(on, "submit") else _ray(on, tasks)))
+
+
+def _dask(client: Any, tasks: list[Task]) -> list[int]:
+    futures = [client.submit(compute_chunk, *task, pure=True) for task in tasks]
+    try:
+        failed: list[int] = client.gather(futures)
+    except BaseException:
+        client.cancel(futures)
+        raise
+    return failed
+
+
+def _ray(ray: Any, tasks: list[Task]) -> list[int]:
+    remote = ray.remote(compute_chunk)
+    futures = [remote.remote(*task) for task in tasks]
+    try:
+        failed: list[int] = ray.get(futures)
+    except BaseException:
+        for future in futures:
+            ray.cancel(future, force=True)
+        raise
+    return failed
 
 
 def compute_chunk(request: bytes, first: int, end: int, to: str) -> int:
