@@ -10,11 +10,9 @@ import numpy as np
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from .result import Result
 
-
-def draw(result: Result, ax: Axes | None, **options: Any) -> Axes:
-    """Draws a result in `ax`, or in a new figure."""
+def draw(result: Any, ax: Axes | None, **options: Any) -> Axes:
+    """Draws a `Result` in `ax`, or in a new figure."""
     painter = _PAINTERS.get(type(result).__name__)
     if painter is None:
         raise TypeError(f"{type(result).__name__} has no picture: use to_frame()")
