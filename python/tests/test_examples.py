@@ -58,3 +58,15 @@ def test_an_oblique_impact_is_that_of_maw_barber_and_fawcett() -> None:
     # Below, the surface comes back; one spring without partial slip gives another curve.
     assert (table["exact"].loc[1.0:4.5] < 0.0).all()
     assert np.abs(table["exact"] - table["incremental"]).max() > 0.3
+
+
+@pytest.mark.filterwarnings("ignore")
+def test_a_plan_of_bluesky_reads_the_first_loading_of_a_ball() -> None:
+    table = run("bluesky_device")
+    # Cattaneo (1938), Mindlin (1949).
+    share = np.array([0.1, 0.3, 0.5, 0.7, 0.9])
+    assert np.allclose(table["ball_force"], 3.0 * (1.0 - (1.0 - share) ** 1.5), rtol=1e-12, atol=0.0)
+    most = table["ball_displacement"].iloc[-1] / 0.9
+    radius = table["ball_stick_radius"].iloc[0] / np.sqrt(0.9)
+    assert np.allclose(table["ball_displacement"], share * most, rtol=1e-12)
+    assert np.allclose(table["ball_stick_radius"], radius * np.sqrt(1.0 - share), rtol=1e-12)
