@@ -20,6 +20,17 @@ const PARAMETERS = {
   e_star: ["modulus E*", "Pa", false, true],
   radius: ["radius", "m", false, true],
 };
+/** The symbols of what a combination is made of. */
+const SYMBOLS = { g_star: "G*", e_star: "E*", radius: "R" };
+
+/** The name of a parameter, or of a combination such as `g_star * (radius/e_star)^(1/3)`, as children. */
+function inWords(name) {
+  if (name in PARAMETERS) return [PARAMETERS[name][0]];
+  const symbols = name.replace(/[a-z_]+/g, (part) => SYMBOLS[part] ?? part).replaceAll(" * ", " · ");
+  const end = symbols.indexOf("^(");
+  return end < 0 ? [symbols] : [symbols.slice(0, end), el("sup", {}, symbols.slice(end + 2, -1))];
+}
+
 /** The units in which a known value may be given. */
 const SCALES = {
   "": undefined,
@@ -147,7 +158,8 @@ export function fittedLoop(model) {
     estimates.replaceChildren(...estimateRows(reply.estimates));
     const { rms, runs } = reply.residual;
     const like = runs.random ? "like noise" : "not like noise";
-    said.textContent = `Determined: ${reply.identifiable.join(", ")}. Residual ${formatQuantity(rms, "N", 3)} rms, ${like}.`;
+    const determined = reply.identifiable.flatMap((name, index) => [index ? ", " : "", ...inWords(name)]);
+    said.replaceChildren("Determined: ", ...determined, `. Residual ${formatQuantity(rms, "N", 3)} rms, ${like}.`);
     showWarnings(warnings, reply.warnings);
     const line = (name, kind, of, more) => ({
       name,

@@ -755,6 +755,10 @@ async fn a_pasted_loop_becomes_friction_and_a_contact() {
     browser.until("document.querySelector('#loop-estimates').innerText.includes('friction μ')").await;
     browser.until("document.querySelectorAll('#plot-fit path.line').length === 2").await;
     assert_eq!(browser.value("document.querySelector('#loop-warnings').children.length").await, 0);
+    let said = "document.querySelector('#loop-said')";
+    let determined = "Determined: friction μ, G* · (R/E*)1/3, compliance of the machine";
+    browser.until(&format!("{said}.innerText.includes('{determined}')")).await;
+    assert_eq!(browser.value(&format!("{said}.querySelector('sup').innerText")).await, "1/3");
     axe::assert_readable(&browser, "loop-fit").await;
     browser.click("#create-fitted").await;
     browser.until(&format!("!location.hash.includes('{}')", session.id)).await;
