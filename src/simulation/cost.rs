@@ -45,8 +45,10 @@ const TABLE_POINT_COST: u64 = 10_000;
 const CURVE_POINT_COST: u64 = 3_000;
 /// One asperity, likewise.
 const ASPERITY_COST: u64 = 1_500;
-/// One point of a table in each part of a sum, to see whether the sum falls there.
-const SUM_POINT_COST: u64 = 1_000;
+/// One point of a table in each part of a sum: whether the sum falls there, and its moments up to the next.
+const SUM_POINT_COST: u64 = 2_000;
+/// What a move on a sum with a table costs, over [`MOVE_COST`].
+const MOVE_ON_SUM: u64 = 13;
 
 /// The cost of preparing a profile.
 #[must_use]
@@ -169,7 +171,8 @@ fn relative_cost_of_stresses(profile: &Profile) -> u64 {
 fn relative_cost_of_moves(profile: &Profile) -> u64 {
     match profile {
         Profile::Tabulated(_) | Profile::Asperities(_) => 2,
-        Profile::Sum(sum) => sum.parts().iter().map(relative_cost_of_moves).sum(),
+        Profile::Sum(sum) if sum.parts().iter().any(|part| matches!(part, Profile::Tabulated(_))) => MOVE_ON_SUM,
+        Profile::Sum(sum) => sum.parts().len() as u64,
         _ => 1,
     }
 }

@@ -11,8 +11,8 @@ mod scenes;
 use std::hint::black_box;
 use std::time::{Duration, Instant};
 
-use scenes::{BALL, VALID, contact, elasticity, points, radii, reversed, shapes, slide, sphere};
-use stickslip_mechanics::profile::{Asperities, Direction, Ellipsoid, LoadCurve, Tabulated};
+use scenes::{BALL, VALID, contact, elasticity, points, radii, reversed, shapes, slide, sphere, table};
+use stickslip_mechanics::profile::{Asperities, Direction, Ellipsoid, LoadCurve, Sum, Tabulated};
 use stickslip_mechanics::protocol::minimax;
 use stickslip_mechanics::{Contact, Profile};
 
@@ -35,7 +35,7 @@ fn curves() -> Vec<(&'static str, Profile)> {
         let gaps: Vec<f64> = (0..count).map(|_| 1e-6 * random.f64()).collect();
         Profile::Asperities(Asperities::new(&[1e-4], &gaps).expect(VALID))
     };
-    let levels: Vec<f64> = (0..100).map(|index| 1e-8 * f64::from(index)).collect();
+    let levels: Vec<f64> = (0..100).map(|index| 2e-8 * f64::from(index)).collect();
     let forces: Vec<f64> = levels.iter().map(|level| 1e10 * level.powf(1.5)).collect();
     vec![
         ("100 asperities", asperities(100)),
@@ -165,6 +165,22 @@ fn main() {
     println!("|---|---|---|");
     for (name, profile) in curves().into_iter().filter(|(name, _)| wanted(name)) {
         println!("| {name} | {} |", compared(moves, (&unit, &contact(profile)), MOVES, PAIRS));
+    }
+    if wanted("sum made ready") {
+        for count in [100, 1_000, 10_000] {
+            let table = table(count);
+            let made = || Sum::new(vec![sphere(), table.clone()]).expect(VALID);
+            made();
+            let times = (0..PAIRS).map(|_| {
+                let start = Instant::now();
+                black_box(made());
+                1e6 * start.elapsed().as_secs_f64()
+            });
+            println!(
+                "\nA sum of a sphere and a table of {count} points that is ready: {:.0} us",
+                median(times.collect())
+            );
+        }
     }
     if wanted("table made ready") {
         new_tables(&[true, false].map(|parabola| [100, 1_000, 10_000].map(|count| (parabola, count))).concat());

@@ -136,7 +136,7 @@ fn arc_to(point: &Point, at: &StressRadius) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::profile::Tabulated;
+    use super::super::profile::{Cone, Sphere, Sum, Tabulated};
     use super::super::{Contact, Elasticity, Move, Preload, Profile, Setup, Tangential};
     use proptest::prelude::*;
     use proptest::test_runner::RngSeed;
@@ -151,6 +151,7 @@ mod tests {
             steps in prop::collection::vec((0.05..1.0_f64, 0.2..1.0_f64), 3..60),
             turns in prop::collection::vec(-1.0..1.0_f64, 1..12),
             share in 0.2..0.95_f64,
+            part in 0..3,
         ) {
             // Uneven steps and slopes that rise by any amount, so that g does too.
             let (mut radii, mut heights, mut slope) = (vec![0.0], vec![0.0], 0.0);
@@ -160,7 +161,12 @@ mod tests {
                 radii.push(r + 1e-3 * step);
                 heights.push(z + 1e-6 * slope * step);
             }
-            let profile = Profile::Tabulated(Tabulated::new(&radii, &heights).unwrap());
+            let table = Profile::Tabulated(Tabulated::new(&radii, &heights).unwrap());
+            let profile = match part {
+                0 => table,
+                1 => Profile::Sum(Sum::new(vec![table, Profile::Cone(Cone::new(1e-3).unwrap())]).unwrap()),
+                _ => Profile::Sum(Sum::new(vec![Profile::Sphere(Sphere::new(1.0).unwrap()), table]).unwrap()),
+            };
             let edge = share * profile.limit_radius().unwrap();
             let elasticity = Elasticity::effective(1e11, 8e10).unwrap();
             let preload = Preload::ContactRadius(edge);

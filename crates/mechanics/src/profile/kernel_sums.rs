@@ -7,7 +7,8 @@
 use super::shape::Shape;
 use super::slope_series::SeriesRings;
 use super::smooth_pieces::SmoothPieces;
-use super::tabulated::WeightedPanels;
+use super::sum::SumFields;
+use super::tabulated::{Kernel, WeightedPanels};
 use super::{Profile, Ring, StressRadius};
 use crate::numerics::cluster_tree::ClusterTree;
 use crate::numerics::gauss::TWENTY_POINTS;
@@ -56,6 +57,7 @@ impl Profile {
         let pieces = SmoothPieces::new(self, rings, CORE * core).map(KernelSlopes::Pieces);
         pieces.or_else(|| match self {
             Profile::Tabulated(table) => table.weighted_panels(rings).map(KernelSlopes::Panels),
+            Profile::Sum(sum) => SumFields::new(sum, rings).map(KernelSlopes::Parts),
             _ => None,
         })
     }
@@ -74,6 +76,7 @@ impl Profile {
 pub(crate) enum KernelSlopes<'a> {
     Pieces(SmoothPieces<'a>),
     Panels(WeightedPanels<'a>),
+    Parts(SumFields<'a>),
 }
 
 impl KernelSlopes<'_> {
@@ -81,7 +84,7 @@ impl KernelSlopes<'_> {
     pub(crate) fn sums(&self, radii: &[StressRadius]) -> Option<Vec<f64>> {
         match self {
             KernelSlopes::Pieces(pieces) => pieces.kernel_sums(radii),
-            KernelSlopes::Panels(_) => None,
+            KernelSlopes::Panels(_) | KernelSlopes::Parts(_) => None,
         }
     }
 
@@ -90,8 +93,9 @@ impl KernelSlopes<'_> {
     pub(crate) fn at(&self, radii: &[StressRadius], goes_on: impl Fn(usize) -> bool) -> Vec<(f64, f64)> {
         match self {
             KernelSlopes::Pieces(pieces) => pieces.slopes(radii, goes_on),
-            KernelSlopes::Panels(panels) if goes_on(PANEL_TERMS * radii.len()) => panels.slopes(radii),
-            KernelSlopes::Panels(_) => vec![(0.0, 0.0); radii.len()],
+            _ if !goes_on(PANEL_TERMS * radii.len()) => vec![(0.0, 0.0); radii.len()],
+            KernelSlopes::Panels(panels) => panels.sums(Kernel::RootSlope, radii),
+            KernelSlopes::Parts(parts) => parts.sums(Kernel::RootSlope, radii),
         }
     }
 }

@@ -62,6 +62,7 @@ use crate::numerics::double_double::DoubleDouble;
 use asperities::Count;
 use power_series::{KinkSeries, Place, Series};
 use shape::{End, Shape};
+use smooth_interval::{Node, SmoothInterval};
 use span::Span;
 
 /// The enum of all families and `each!`, which evaluates an expression for whichever family a profile is of.
@@ -326,6 +327,7 @@ dispatch! {
     load(radius: f64) -> f64;
     indentation_for(load: f64) -> f64;
     rise(span: &Span) -> f64;
+    rise_to(outer: &Span, interval: &SmoothInterval, node: Node) -> f64;
     rim() -> Option<(f64, f64)>;
     rim_radius() -> Option<f64>;
     kink_below(radius: f64) -> f64;

@@ -299,7 +299,7 @@ pub(super) fn moments<S: Shape + ?Sized>(shape: &S, span: &Span) -> Moments {
     let mut rest = Some(*span);
     while let Some(span) = rest.filter(|span| span.gap > 0.0) {
         let (interval, outer, inner) = shape.outermost_interval(&span);
-        let part = interval.moments(|node| shape.rise(&under(&outer, &interval, node)));
+        let part = interval.moments(|node| shape.rise_to(&outer, &interval, node));
         sum = Moments::stack(part, sum, above);
         above += shape.rise(&outer);
         rest = inner;

@@ -5,13 +5,21 @@
 //! may fall where the others make up for it: X(y) then lies between the flat radius of the sum and where it ends or
 //! falls.
 
+mod fields;
+#[cfg(test)]
+mod tests;
+
+use super::moment_tree::MomentTree;
 use super::polynomial::Polynomial;
 use super::power_series::{KINK_TERMS, KinkSeries, Place, Series};
 use super::shape::{self, End, Shape};
+use super::smooth_interval::{Node, SmoothInterval};
+use super::tabulated::{self, Kernel};
 use super::{
     DoubleDouble, Error, InterpolationError, Moments, Point, Profile, Ring, Span, StressRadius, Tabulated, range,
 };
 use crate::numerics::roots::increasing;
+pub(crate) use fields::SumFields;
 
 /// How far beyond a kink, or below a vertical end, relative to its radius, a radius still lacks digits that a level
 /// has.
@@ -23,8 +31,11 @@ const POLISH: usize = 5;
 const FARTHEST: f64 = 1e-3;
 const SEARCHED: f64 = 1e-14;
 
+/// With fewer kinks than this no moments between them are kept.
+const FEW_KINKS: usize = 4;
+
 /// A sum of profiles, none of them a sum.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct Sum {
     parts: Vec<Profile>,
     /// Radii at which one of the parts is not smooth, increasing.
@@ -39,6 +50,15 @@ pub struct Sum {
     analytic_tip: bool,
     /// g, where it is one.
     polynomial: Option<Polynomial>,
+    /// The moments between each two of the kinks that a contact can reach, if there are many.
+    between_kinks: Option<MomentTree>,
+}
+
+impl PartialEq for Sum {
+    fn eq(&self, other: &Sum) -> bool {
+        // All else follows from them.
+        self.parts == other.parts
+    }
 }
 
 impl Sum {
@@ -79,6 +99,7 @@ impl Sum {
             power: flat.iter().map(Shape::power).fold(1.0, f64::max),
             analytic_tip: flat.iter().all(Shape::analytic_tip),
             polynomial: Polynomial::of(&flat),
+            between_kinks: None,
             parts: flat,
             kinks,
         };
@@ -98,7 +119,44 @@ impl Sum {
             }
             sum.bracket = Some((flat_radius, rim));
         }
+        sum.kinks.retain(|&kink| kink <= rim);
+        if sum.kinks.len() >= FEW_KINKS {
+            sum.between_kinks = Some(sum.moments_between_kinks(keep_going)?);
+        }
         Ok(sum)
+    }
+
+    fn moments_between_kinks(&self, keep_going: &dyn Fn() -> bool) -> Result<MomentTree, Error> {
+        let stretch = |pair: &[f64]| {
+            if !keep_going() {
+                return Err(Error::Interrupted);
+            }
+            let [inner, outer] = [pair[0], pair[1]].map(DoubleDouble::square_of);
+            let gap = (outer - inner).value();
+            let span = Span { inner, outer, inner_radius: pair[0], outer_radius: pair[1], gap, edge: 0.0 };
+            Ok((shape::moments(self, &span), self.rise(&span)))
+        };
+        let stretches: Vec<_> = self.kinks.windows(2).map(stretch).collect::<Result<_, Error>>()?;
+        Ok(MomentTree::new(stretches.into_iter()))
+    }
+
+    /// The moments of a span over a whole stretch between two kinks, or several, if they are kept.
+    fn moments_across(&self, span: &Span) -> Option<Moments> {
+        let (tree, square) = (self.between_kinks.as_ref()?, |kink: &f64| DoubleDouble::square_of(*kink));
+        let first = self.kinks.partition_point(|kink| square(kink) < span.inner);
+        let last = self.kinks.partition_point(|kink| square(kink) <= span.outer).checked_sub(1)?;
+        if first >= last {
+            return None;
+        }
+        let [low, high] = [first, last].map(|index| (square(&self.kinks[index]), self.kinks[index]));
+        let (mut sum, between) = tree.run(first, last);
+        if let Some(low) = span.below(low.0, low.1) {
+            sum = Moments::stack(shape::moments(self, &low), sum, between);
+        }
+        if let Some(high) = span.above(high.0, high.1) {
+            sum = Moments::stack(sum, shape::moments(self, &high), self.rise(&high));
+        }
+        Some(sum)
     }
 
     /// The first radius below `rim` at which the sum falls, where a part of it does, m.
@@ -271,12 +329,19 @@ impl Shape for Sum {
         self.polynomial.map_or_else(|| self.total(|part| part.rise(span)), |polynomial| polynomial.rise(span))
     }
 
+    fn rise_to(&self, outer: &Span, interval: &SmoothInterval, node: Node) -> f64 {
+        self.total(|part| part.rise_to(outer, interval, node))
+    }
+
     fn gap(&self, ring: &Ring, depth: f64) -> f64 {
         self.polynomial.map_or_else(|| shape::gap(self, ring, depth), |polynomial| polynomial.gap(ring, depth))
     }
 
     fn moments(&self, span: &Span) -> Moments {
-        self.polynomial.map_or_else(|| shape::moments(self, span), |polynomial| polynomial.moments(span))
+        match &self.polynomial {
+            Some(polynomial) => polynomial.moments(span),
+            None => self.moments_across(span).unwrap_or_else(|| shape::moments(self, span)),
+        }
     }
 
     fn rim(&self) -> Option<(f64, f64)> {
@@ -306,6 +371,20 @@ impl Shape for Sum {
 
     fn kernel_slope(&self, at: &StressRadius, span: &Span) -> f64 {
         self.total(|part| Shape::kernel_slope(part, at, span))
+    }
+
+    fn kernel_sums(&self, rings: &[(Ring, f64)], radii: &[StressRadius]) -> Option<Vec<f64>> {
+        if rings.len() * radii.len() <= tabulated::FEW {
+            return None;
+        }
+        let sums = SumFields::new(self, rings)?.sums(Kernel::Root, radii);
+        Some(sums.into_iter().map(|(sum, _)| sum).collect())
+    }
+
+    fn displacements(&self, rings: &[(Ring, f64)], ends: (f64, f64), radii: &[StressRadius]) -> Option<Vec<f64>> {
+        let fields = SumFields::new(self, rings)?;
+        let edge = &rings.last()?.0.outer;
+        Some(tabulated::displacements(edge, ends, radii, |angle, radii| fields.sums(angle, radii)))
     }
 
     fn slope_series(&self, a: f64) -> Option<Vec<f64>> {

@@ -8,26 +8,26 @@
 use std::f64::consts::FRAC_2_PI;
 
 use super::kernel::Kernel;
-use super::{Ring, StressRadius, WeightedPanels};
+use super::{Point, StressRadius, SumAndSize};
 
-/// u, m, at each radius, for rings from the centre to the edge with their dv/dg, and v at the centre and at the edge,
-/// m; `None` with levels at a vertical edge.
-pub(super) fn displacements(
-    panels: WeightedPanels<'_>,
-    rings: &[(Ring, f64)],
+/// u, m, at each radius, by the weighted sums of an angle over the rings up to `edge`, and v at the centre and at the
+/// edge, m.
+pub(in super::super) fn displacements(
+    edge: &Point,
     (centre, end): (f64, f64),
     radii: &[StressRadius],
-) -> Option<Vec<f64>> {
-    let edge = rings.last()?.0.outer;
+    sums: impl Fn(Kernel, &[StressRadius]) -> Vec<SumAndSize>,
+) -> Vec<f64> {
     let (inside, outside): (Vec<_>, Vec<_>) = radii.iter().copied().partition(|at| at.square <= edge.square);
-    let sums = |angle, radii: &[StressRadius]| panels.sums(angle, radii).into_iter().map(|(sum, _)| sum);
-    let (mut inside, mut outside) = (sums(Kernel::Arccos, &inside), sums(Kernel::Arcsin, &outside));
+    let of = |angle, radii: &[StressRadius]| sums(angle, radii).into_iter().map(|(sum, _)| sum);
+    let (mut inside, mut outside) = (of(Kernel::Arccos, &inside), of(Kernel::Arcsin, &outside));
     let displacement = |at: &StressRadius| {
         if at.square <= edge.square {
-            Some(centre + FRAC_2_PI * inside.next()?)
+            inside.next().map(|sum| centre + FRAC_2_PI * sum)
         } else {
-            Some(FRAC_2_PI * (end * edge.radius.atan2((at.square - edge.square).value().sqrt()) - outside.next()?))
+            let angle = edge.radius.atan2((at.square - edge.square).value().sqrt());
+            outside.next().map(|sum| FRAC_2_PI * (end * angle - sum))
         }
     };
-    radii.iter().map(displacement).collect()
+    radii.iter().filter_map(displacement).collect()
 }

@@ -13,16 +13,17 @@ use std::sync::LazyLock;
 
 #[cfg(test)]
 use super::super::call_count;
+use super::super::shape::Shape;
 use super::super::smooth_coordinate;
 use super::panel::KernelPanel;
-use super::{Span, StressRadius, near_kernel};
+use super::{Profile, Span, StressRadius, near_kernel};
 use crate::numerics::far_field::total;
 use crate::numerics::gauss;
 use crate::numerics::multipole::{Multipole, ORDERS, add_polynomials};
 
 /// A kernel.
 #[derive(Clone, Copy, PartialEq)]
-pub(super) enum Kernel {
+pub(in super::super) enum Kernel {
     /// 1/sqrt(x^2 - r^2), of x beyond r: that of the stress.
     Root,
     /// Its derivative with respect to r^2.
@@ -70,16 +71,31 @@ impl Kernel {
                 call_count::add(|calls| &mut calls.kernel_slope);
                 smooth_coordinate::kernel_slope(panel, at, span)
             }
+            Kernel::Arccos | Kernel::Arcsin => self.angle_sum(at, span, || {
+                (smooth_coordinate::rise(panel, span), smooth_coordinate::displacement_integral(panel, at, span))
+            }),
+        }
+    }
+
+    /// The sum over a part of any profile.
+    pub(in super::super) fn of_part(self, part: &Profile, at: &StressRadius, span: &Span) -> f64 {
+        match self {
+            Kernel::Root => Shape::kernel(part, at, span),
+            Kernel::RootSlope => Shape::kernel_slope(part, at, span),
             Kernel::Arccos | Kernel::Arcsin => {
-                let below = (at.square - span.inner).value();
-                if below <= 0.0 {
-                    return 0.0;
-                }
-                let rise = smooth_coordinate::rise(panel, span);
-                let integral = smooth_coordinate::displacement_integral(panel, at, span);
-                self.angle(span.inner_radius, below) * rise + self.sign() * integral
+                self.angle_sum(at, span, || (part.rise(span), Shape::displacement_integral(part, at, span)))
             }
         }
+    }
+
+    /// int T dg over a span, by its rise and its displacement integral.
+    fn angle_sum(self, at: &StressRadius, span: &Span, integrals: impl FnOnce() -> (f64, f64)) -> f64 {
+        let below = (at.square - span.inner).value();
+        if below <= 0.0 {
+            return 0.0;
+        }
+        let (rise, integral) = integrals();
+        self.angle(span.inner_radius, below) * rise + self.sign() * integral
     }
 
     /// The angle at x, where r^2 - x^2 is `beyond`.

@@ -33,16 +33,17 @@ use super::super::error::TableFault;
 use super::shape::{End, Shape};
 use super::smooth_coordinate::SmoothCoordinate;
 use super::smooth_interval::{Node, SmoothInterval};
-use super::{DoubleDouble, Error, Moments, Point, Ring, Span, StressRadius, range};
+use super::{DoubleDouble, Error, Moments, Point, Profile, Ring, Span, StressRadius, range};
 use curve::TableCurve;
+pub(super) use displacement::displacements;
 pub use interpolation_error::InterpolationError;
 use interpolation_error::TableGap;
-use kernel::Kernel;
+pub(super) use kernel::Kernel;
 use spline::SplineKnot;
-pub(super) use weighted_panels::WeightedPanels;
+pub(super) use weighted_panels::{SumAndSize, WeightedPanels, add_to};
 
 /// As many kernels, rings times radii, are summed sooner than panels are weighted for all of them.
-const FEW: usize = 128;
+pub(super) const FEW: usize = 128;
 
 /// A tabulated profile.
 #[derive(Clone, Debug)]
@@ -163,8 +164,14 @@ impl Tabulated {
 
     /// The kernels of rings from the centre outward, each with its weight; `None` with levels at a vertical edge.
     pub(super) fn weighted_panels(&self, rings: &[(Ring, f64)]) -> Option<WeightedPanels<'_>> {
-        let (outermost, _) = rings.last()?;
-        WeightedPanels::new(self.curve.up_to(outermost.outer.radius), rings)
+        let panels = self.curve.up_to(rings.last()?.0.outer.radius);
+        let spans: Vec<(Span, f64)> = rings.iter().map(|(ring, weight)| (panels.span(ring), *weight)).collect();
+        WeightedPanels::new(panels, &spans)
+    }
+
+    /// The same of spans.
+    pub(super) fn panels_over(&self, spans: &[(Span, f64)]) -> Option<WeightedPanels<'_>> {
+        WeightedPanels::new(self.curve.up_to(spans.last()?.0.outer_radius), spans)
     }
 }
 
@@ -250,7 +257,8 @@ impl Shape for Tabulated {
     }
 
     fn displacements(&self, rings: &[(Ring, f64)], ends: (f64, f64), radii: &[StressRadius]) -> Option<Vec<f64>> {
-        displacement::displacements(self.weighted_panels(rings)?, rings, ends, radii)
+        let panels = self.weighted_panels(rings)?;
+        Some(displacements(&rings.last()?.0.outer, ends, radii, |angle, radii| panels.sums(angle, radii)))
     }
 
     fn least_fall(&self, inner: f64, outer: f64) -> f64 {

@@ -14,7 +14,7 @@ use std::ops::Range;
 use super::kernel::Kernel;
 use super::panel_sources::add_panel;
 use super::panels::Panels;
-use super::{Ring, Span, StressRadius};
+use super::{Span, StressRadius};
 use crate::numerics::cluster_tree::Cluster;
 use crate::numerics::multipole::Multipole;
 
@@ -42,18 +42,17 @@ struct Held {
 }
 
 /// A sum and that of the sizes of its terms.
-pub(super) type SumAndSize = (f64, f64);
+pub(in super::super) type SumAndSize = (f64, f64);
 
 impl WeightedPanels<'_> {
-    /// The panels of rings from the centre outward, each with its weight; `None` with levels at a vertical edge.
-    pub(super) fn new<'a>(table: &'a Panels, rings: &[(Ring, f64)]) -> Option<WeightedPanels<'a>> {
-        let (mut runs, mut parts) = (Vec::with_capacity(rings.len()), Vec::with_capacity(2 * rings.len()));
-        for (ring, weight) in rings {
-            let span = table.span(ring);
+    /// The panels of spans from the centre outward, each with its weight; `None` with levels at a vertical edge.
+    pub(super) fn new<'a>(table: &'a Panels, spans: &[(Span, f64)]) -> Option<WeightedPanels<'a>> {
+        let (mut runs, mut parts) = (Vec::with_capacity(spans.len()), Vec::with_capacity(2 * spans.len()));
+        for (span, weight) in spans {
             if span.edge > 0.0 {
                 return None;
             }
-            let (low, whole, high) = table.parts(&span);
+            let (low, whole, high) = table.parts(span);
             parts.extend(low.map(|(index, span)| (index, span, *weight)));
             if !whole.is_empty() {
                 runs.push((whole, *weight));
@@ -133,13 +132,8 @@ impl WeightedPanels<'_> {
         }
     }
 
-    /// The derivatives with respect to r^2 of the sums of the stress, 1/m^2.
-    pub(in super::super) fn slopes(&self, radii: &[StressRadius]) -> Vec<SumAndSize> {
-        self.sums(Kernel::RootSlope, radii)
-    }
-
     /// The sums of a kernel at radii.
-    pub(super) fn sums(&self, kernel: Kernel, radii: &[StressRadius]) -> Vec<SumAndSize> {
+    pub(in super::super) fn sums(&self, kernel: Kernel, radii: &[StressRadius]) -> Vec<SumAndSize> {
         let mut order = StressRadius::rising(radii);
         if kernel.is_angle() {
             order.reverse();
@@ -209,6 +203,6 @@ fn add_far(kernel: Kernel, sources: &Multipole, weight: f64, radii: &[Held], sum
     }
 }
 
-fn add_to(sum: &mut SumAndSize, term: f64) {
+pub(in super::super) fn add_to(sum: &mut SumAndSize, term: f64) {
     *sum = (sum.0 + term, sum.1 + term.abs());
 }
