@@ -11,6 +11,7 @@ use std::ops::{Add, Mul, Sub};
 use super::curve_panel::PathPanel;
 use super::curved_path::{CurvedMove, NormalPath, PathPoint, TangentialPath};
 use super::{Contact, DoubleDouble, Error};
+use crate::numerics::roots::{largest, turning};
 
 /// Error of the tangential force, relative to mu F_N, that a move may have unless the caller prescribes another.
 pub const DEFAULT_TOLERANCE: f64 = 1e-10;
@@ -30,9 +31,9 @@ const QUADRATURE_SHARE: f64 = 1.0 / 1024.0;
 /// A turn this near an end of a stretch, relative to its length, is at that end. W - d is flat there, so that its
 /// extremum is right to the square of this.
 const SAME_TURN: f64 = 1e-6;
-/// Steps of a ternary search down to [`SAME_TURN`], and down to round-off.
-const TURN_STEPS: usize = 40;
-const LIMIT_STEPS: usize = 80;
+/// The parts of a stretch to which a turn, and the place nearest to the limit of friction, are narrowed down.
+const TURN: f64 = 1e-7;
+const LIMIT: f64 = 1e-14;
 
 /// What a pair of chords leaves in the history, as long as it is not wiped out.
 struct Trace {
@@ -134,7 +135,7 @@ impl Contact {
             let rise = point.indentation - self.history.edge().level;
             towards * (self.advance_to(&point) * sign - rise).value()
         };
-        let turn = lowest_of(&distance, done, next, TURN_STEPS);
+        let turn = largest([done, next], TURN, |part| -distance(part)).0;
         let margin = SAME_TURN * (next - done);
         (turn > done + margin && turn < next - margin).then_some(turn)
     }
@@ -153,13 +154,9 @@ impl Contact {
         let middle = if from * to < 0.0 { from / (from - to) } else { 1.0 };
         let curved = matches!(path.normal, NormalPath::Indentation { from, to } if from != to);
         for (low, high) in [(0.0, middle), (middle, 1.0)] {
-            let lowest = if curved { lowest_of(&room, low, high, LIMIT_STEPS) } else { high };
+            let lowest = if curved { largest([low, high], LIMIT, |part| -room(part)).0 } else { high };
             let Some(bad) = [lowest, high].into_iter().find(|&part| fails(part)) else { continue };
-            let (mut good, mut bad) = (low, bad);
-            for _ in 0..64 {
-                let half = 0.5 * (good + bad);
-                if fails(half) { bad = half } else { good = half }
-            }
+            let [_, bad] = turning([low, bad], fails);
             let limit = self.friction * self.normal_force_on(path, bad);
             return Err(Error::ForceExceedsFriction { target: to, limit, part: bad });
         }
@@ -196,13 +193,4 @@ impl Contact {
     pub(super) fn advance_to(&self, point: &PathPoint) -> DoubleDouble {
         self.scaled(point.displacement) - self.history.position()
     }
-}
-
-/// The minimum of a function with one minimum on an interval, by ternary search in so many steps.
-fn lowest_of(function: &impl Fn(f64) -> f64, mut low: f64, mut high: f64, steps: usize) -> f64 {
-    for _ in 0..steps {
-        let third = (high - low) / 3.0;
-        if function(low + third) <= function(high - third) { high -= third } else { low += third }
-    }
-    0.5 * (low + high)
 }

@@ -9,6 +9,7 @@ use super::profile::{Point, Ring, StressRadius};
 use super::range::Quantity;
 use super::unit_prefix::short;
 use super::{DoubleDouble, Elasticity, Error, Profile};
+use crate::numerics::roots::largest;
 
 /// Radii of the first scan for the largest pressure.
 const PRESSURE_SCAN: usize = 64;
@@ -186,7 +187,7 @@ pub(super) fn max_pressure(profile: &Profile, elasticity: &Elasticity, edge: &Po
     if profile.kernel_falls() || profile.least_fall(0.0, edge.radius) > 0.0 {
         return Some(at(0.0));
     }
-    // A scan, then a ternary search about its largest value: a profile that is steep outside has its maximum off the
+    // A scan, then a search about its largest value: a profile that is steep outside has its maximum off the
     // centre. Beside a flat end that hardly exceeds the contact it lies within the thin annulus beyond the flat, which
     // may be narrower than a unit in the last place of a radius: so radii at even steps of the level are scanned too,
     // and told apart by their squares.
@@ -205,13 +206,7 @@ pub(super) fn max_pressure(profile: &Profile, elasticity: &Elasticity, edge: &Po
     let best = (0..scan.len()).max_by(|&a, &b| scan[a].total_cmp(&scan[b])).unwrap_or(0);
     let (low, width) = (squares[best.saturating_sub(1)], squares[best + 1] - squares[best.saturating_sub(1)]);
     let at_share = |share: f64| pressure_at(low + width * share);
-    let (mut below, mut above) = (0.0, 1.0);
-    // At a maximum the pressure depends on half the digits of the radius alone.
-    for _ in 0..40 {
-        let third = (above - below) / 3.0;
-        if at_share(below + third) >= at_share(above - third) { above -= third } else { below += third }
-    }
-    Some(at_share(0.5 * (below + above)).max(scan[best]))
+    Some(largest([0.0, 1.0], 1e-7, at_share).1.max(scan[best]))
 }
 
 /// The depth below `outer` (or, if `upward`, above `inner`) of the part of a ring whose load int X dy is `load`, m.

@@ -5,14 +5,15 @@
 //! it. The work may have several maxima, so that loads of some decades are compared before the best of them is refined.
 
 use super::{Drive, SteadyCycle};
+use crate::numerics::roots::largest;
 use crate::{Contact, Error};
 
 /// Loads that are compared first, evenly spaced in their logarithm, and how far below the onset of gross slip and above
 /// it they reach.
 const LOADS: usize = 256;
 const DECADES: f64 = 3.0;
-/// Steps of the refinement; each takes off two fifths of the bracket.
-const STEPS: usize = 60;
+/// The part of the bracket about the best of them that the refinement leaves.
+const BRACKET: f64 = 1e-12;
 
 /// A load and the work of a cycle under it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -64,24 +65,8 @@ pub fn best_load(contact: &Contact, drive: Drive, compliance: f64) -> Result<Opt
             Err(_) => break,
         }
     }
-    let mut refined = None;
-    let (mut low, mut high) = (best.0.saturating_sub(1) as f64, (best.0 + 1).min(LOADS) as f64);
-    let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
-    for _ in 0..STEPS {
-        let inner = [high - golden * (high - low), low + golden * (high - low)];
-        let found = inner.map(|index| work(load(index)).unwrap_or(0.0));
-        if found[0] < found[1] {
-            low = inner[0]
-        } else {
-            high = inner[1]
-        }
-        for (index, found) in inner.into_iter().zip(found) {
-            if found > best.1 {
-                best.1 = found;
-                refined = Some(index);
-            }
-        }
-    }
-    Ok((best.1 > 0.0)
-        .then(|| BestLoad { normal_force: load(refined.unwrap_or(best.0 as f64)), dissipated_energy: best.1 }))
+    let beside = [best.0.saturating_sub(1) as f64, (best.0 + 1).min(LOADS) as f64];
+    let refined = largest(beside, BRACKET, |index| work(load(index)).unwrap_or(0.0));
+    let (index, dissipated_energy) = if refined.1 > best.1 { refined } else { (best.0 as f64, best.1) };
+    Ok((dissipated_energy > 0.0).then(|| BestLoad { normal_force: load(index), dissipated_energy }))
 }

@@ -13,6 +13,7 @@ use super::Drive;
 use super::lap::{Lap, OscillatingCycle};
 use crate::curved_path::PathPoint;
 use crate::numerics::double_double::DoubleDouble;
+use crate::numerics::roots::{between, turning};
 use crate::range::{self, Quantity};
 use crate::slip_history::SlipHistory;
 use crate::unit_prefix::short;
@@ -25,11 +26,8 @@ const MOST: usize = 1 << 14;
 const CYCLES: usize = 32;
 /// Two cycles are the same if their work and force agree to this part of mu F_N and of its work.
 const CLOSED: f64 = 1e-12;
-/// Halvings of a step down to where slip turns in it; closer than this part of it to an end, it turns there.
-const HALVINGS: usize = 50;
+/// Where slip turns closer than this part of a step to its end, it turns there.
 const SAME_TURN: f64 = 1e-9;
-/// Steps of the search for the force that a machine and the contact share.
-const SHARES: usize = 100;
 
 /// An amplitude of the load, and by how much it runs ahead of the drive.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -222,15 +220,11 @@ impl Oscillation {
         let scaled = self.displaced().map_or(0.0, |amplitude| contact.scaled(amplitude.into()).value());
         let turn = |&sign: &f64| {
             let rate = |angle: f64| -sign * scaled * angle.sin() - self.sinking(contact, angle);
-            let (mut low, mut high) = (from, to);
-            let rising = rate(low) > 0.0;
-            if rising == (rate(high) > 0.0) {
+            let rising = rate(from) > 0.0;
+            if rising == (rate(to) > 0.0) {
                 return None;
             }
-            for _ in 0..HALVINGS {
-                let middle = 0.5 * (low + high);
-                if (rate(middle) > 0.0) == rising { low = middle } else { high = middle }
-            }
+            let [low, high] = turning([from, to], |angle| (rate(angle) > 0.0) != rising);
             let margin = SAME_TURN * (to - from);
             (low > from + margin && high < to - margin).then_some(high)
         };
@@ -291,28 +285,11 @@ impl Oscillation {
         let missing = |force: f64| target - self.compliance * force - at(force).value();
         // Just inside the limit; beyond it the contact slides.
         let most = limit * (1.0 - f64::EPSILON);
-        let (mut low, mut high) = (-most, most);
-        let (mut at_low, mut at_high) = (missing(low), missing(high));
+        let (at_low, at_high) = (missing(-most), missing(most));
         if at_high >= 0.0 || at_low <= 0.0 {
             let force = if at_high >= 0.0 { limit } else { -limit };
             return DoubleDouble::from(target - self.compliance * force);
         }
-        // False position, with the halved weight of an end that stays.
-        for _ in 0..SHARES {
-            let middle = (low * at_high - high * at_low) / (at_high - at_low);
-            let found = missing(middle);
-            if found.abs() <= 0.0 || high - low <= 4.0 * f64::EPSILON * limit {
-                low = middle;
-                break;
-            }
-            if found > 0.0 {
-                (low, at_low) = (middle, found);
-                at_high *= 0.5;
-            } else {
-                (high, at_high) = (middle, found);
-                at_low *= 0.5;
-            }
-        }
-        at(low)
+        at(between([(-most, at_low), (most, at_high)], 4.0 * f64::EPSILON * limit, missing))
     }
 }

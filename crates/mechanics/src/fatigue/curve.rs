@@ -10,6 +10,7 @@ use std::cell::Cell;
 use std::f64::consts::PI;
 
 use super::chebyshev::{self, STEPS};
+use crate::numerics::roots::largest;
 use crate::{Error, Stress};
 
 /// Components xx, yy, zz, xy, yz, xz of the stress, Pa, then pressure, Pa, shear stress, Pa, and slip, m, of the
@@ -27,9 +28,8 @@ const DEPTH: u32 = 26;
 const SLOW: f64 = 0.3;
 /// What a finer polynomial leaves of what a coarser one did, at the least.
 const GAIN: f64 = 0.03;
-/// Steps of a search for a peak: the golden section brings each time 0.62 of the stretch.
-const GOLDEN_STEPS: usize = 44;
-const GOLDEN: f64 = 0.618_033_988_749_894_9;
+/// The part of the stretch about a peak to which its place is narrowed down.
+const BRACKET: f64 = 1e-9;
 
 /// A stretch of a move over which a place is in or out of the contact, and its effect is smooth.
 #[derive(Clone, Copy, Debug)]
@@ -295,7 +295,7 @@ impl Arc {
     fn summit(&self, index: usize, value: &mut impl FnMut(&StressSample) -> f64) -> CurvePeak {
         let n = self.samples.len() + self.between.len() - 1;
         let point = |index: usize| (PI * index as f64 / n as f64).cos();
-        let (mut low, mut high) = (point((index + 1).min(n)), point(index.saturating_sub(1)));
+        let (low, high) = (point((index + 1).min(n)), point(index.saturating_sub(1)));
         let mut best = CurvePeak { value: f64::NEG_INFINITY, sample: [0.0; 9], at: (0, 0.0) };
         let mut look = |x: f64| {
             let sample = self.at(x);
@@ -305,19 +305,7 @@ impl Arc {
             }
             found
         };
-        let (mut left, mut right) = (high - GOLDEN * (high - low), low + GOLDEN * (high - low));
-        let (mut at_left, mut at_right) = (look(left), look(right));
-        for _ in 0..GOLDEN_STEPS {
-            if at_left > at_right {
-                (high, right, at_right) = (right, left, at_left);
-                left = high - GOLDEN * (high - low);
-                at_left = look(left);
-            } else {
-                (low, left, at_left) = (left, right, at_right);
-                right = low + GOLDEN * (high - low);
-                at_right = look(right);
-            }
-        }
+        largest([low, high], BRACKET, &mut look);
         best
     }
 }

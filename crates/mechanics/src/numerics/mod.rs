@@ -3,7 +3,7 @@
 //! | module | question |
 //! |---|---|
 //! | `double_double` | how do small differences keep their digits? |
-//! | `roots` | where is a function zero? |
+//! | `roots` | where is a function zero, or largest? |
 //! | `chebyshev` | which series has these values, and its primitive? |
 //! | `gauss` | what is an integral, given where the integrand is singular? |
 //! | `angle`, `logarithm` | what are angles and logarithms of several numbers side by side, to round-off? |

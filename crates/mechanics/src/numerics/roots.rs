@@ -1,4 +1,4 @@
-//! Roots of functions of one number.
+//! Roots and maxima of functions of one number.
 
 /// More steps than any of these functions takes; a safeguard only.
 const MOST_STEPS: usize = 200;
@@ -58,6 +58,28 @@ pub(crate) fn increasing(guess: f64, f: impl Fn(f64) -> (f64, f64)) -> f64 {
     x
 }
 
+/// The root of an increasing function between two places, from one of them or between: Newton's steps, and the middle of
+/// what is left of the bracket where one would leave it. `f` gives value and slope.
+pub(crate) fn within([mut low, mut high]: [f64; 2], start: f64, f: impl Fn(f64) -> (f64, f64)) -> f64 {
+    let mut x = start.clamp(low, high);
+    for _ in 0..MOST_STEPS {
+        let (value, slope) = f(x);
+        if value > 0.0 {
+            high = x;
+        } else {
+            low = x;
+        }
+        let newton = x - value / slope;
+        let next = if newton >= low && newton <= high { newton } else { 0.5 * (low + high) };
+        let step = (next - x).abs();
+        x = next;
+        if step <= 3e-16 * x || high - low <= 3e-16 * high {
+            break;
+        }
+    }
+    x
+}
+
 /// The root of a function without a slope between two places where its signs differ, each given with its value: false
 /// position with the weights of Anderson & Björck (1973), which gains digits by a power of 1.7 a step. Ends where the
 /// bracket is no wider than `width` or the function is zero, with the end of the bracket at which the function is
@@ -89,9 +111,109 @@ pub(crate) fn between(ends: [(f64, f64); 2], width: f64, mut f: impl FnMut(f64) 
     if last.1.abs() <= kept.1.abs() { last.0 } else { kept.0 }
 }
 
+/// How far, in a quantity that has fallen by `drop`, m or m^2, lies below its upper end: Newton's steps for a concave
+/// fall, given at each distance with its slope, none of which goes below half of the distance or beyond `most`.
+pub(crate) fn distance_below(start: f64, most: f64, drop: f64, mut fall: impl FnMut(f64) -> (f64, f64)) -> f64 {
+    let mut distance = start;
+    for _ in 0..8 {
+        let (fallen, slope) = fall(distance);
+        let step = (drop - fallen) / slope;
+        distance = (distance + step).clamp(0.5 * distance, most);
+        // Quadratic convergence, as above.
+        if step.abs() <= 1e-9 * distance {
+            break;
+        }
+    }
+    distance
+}
+
+/// Where something turns from false at the first place to true at the second: two places as near to each other as
+/// numbers are, or nearer than the last digits of their distance at first.
+pub(crate) fn turning([mut low, mut high]: [f64; 2], holds: impl Fn(f64) -> bool) -> [f64; 2] {
+    for _ in 0..64 {
+        let middle = 0.5 * (low + high);
+        if middle <= low.min(high) || middle >= low.max(high) {
+            break;
+        }
+        if holds(middle) { high = middle } else { low = middle }
+    }
+    [low, high]
+}
+
+/// The largest value of a function with one maximum between two places, and where it is, first: golden sections until
+/// the bracket is no more than this `part` of what it was. At a maximum half the digits of the place suffice.
+pub(crate) fn largest([mut low, mut high]: [f64; 2], part: f64, mut f: impl FnMut(f64) -> f64) -> (f64, f64) {
+    let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
+    let width = part * (high - low);
+    let section = |low: f64, high: f64| [high - golden * (high - low), low + golden * (high - low)];
+    let [mut left, mut right] = section(low, high).map(|x| (x, f(x)));
+    let mut best = if left.1 >= right.1 { left } else { right };
+    while high - low > width {
+        // One of the two values serves the next section, too.
+        let tried = if left.1 >= right.1 {
+            (high, right) = (right.0, left);
+            let x = section(low, high)[0];
+            left = (x, f(x));
+            left
+        } else {
+            (low, left) = (left.0, right);
+            let x = section(low, high)[1];
+            right = (x, f(x));
+            right
+        };
+        if tried.1 > best.1 {
+            best = tried;
+        }
+        if tried.0 <= low || tried.0 >= high {
+            break;
+        }
+    }
+    best
+}
+
 #[cfg(test)]
 mod tests {
-    use super::{between, descend, increasing};
+    use super::{between, descend, distance_below, increasing, largest, turning, within};
+
+    #[test]
+    fn a_maximum_is_found_to_half_the_digits_of_its_place_and_all_of_its_value() {
+        let mut count = 0;
+        let (place, value) = largest([-1.0, 5.0], 1e-9, |x| {
+            count += 1;
+            3.0 - (x - 0.7) * (x - 0.7)
+        });
+        assert!((place - 0.7).abs() < 1e-7 && (value - 3.0).abs() < 1e-15 && count < 48, "{place} {value} {count}");
+        // Also at either end, in a bracket without width, and where nothing is comparable.
+        assert!((largest([0.0, 1.0], 1e-9, |x| x).1 - 1.0).abs() < 1e-8);
+        assert!(largest([0.0, 1.0], 1e-9, |x| -x).1.abs() < 1e-8);
+        assert!((largest([2.0, 2.0], 1e-9, |x| x).0 - 2.0).abs() < 1e-15);
+        assert!(largest([0.0, 1.0], 1e-9, |_| f64::NAN).1.is_nan());
+    }
+
+    #[test]
+    fn newtons_steps_do_not_leave_their_bracket() {
+        // From one end the first step would go far beyond the other.
+        for start in [0.0, 1e-9, 0.5, 1.0] {
+            let root = within([0.0, 1.0], start, |x| (x.powi(9) - 1e-3, 9.0 * x.powi(8)));
+            assert!((root - 1e-3_f64.powf(1.0 / 9.0)).abs() < 1e-15, "{start}: {root}");
+        }
+    }
+
+    #[test]
+    fn a_turn_is_between_two_neighbours() {
+        for (low, high) in [(0.0, 1.0), (1.0, 0.0), (-3.0, 7.0)] {
+            let at = |x: f64| if low < high { x > 0.3 } else { x < 0.3 };
+            let [before, after] = turning([low, high], at);
+            assert!(!at(before) && at(after) && (before - after).abs() < 1e-15, "{before} {after}");
+        }
+    }
+
+    #[test]
+    fn a_distance_below_the_end_of_a_parabola() {
+        // x^2 falls from one by 2 w - w^2 over a width w.
+        let width = distance_below(0.1, 1.0, 0.19, |w| (w * (2.0 - w), 2.0 * (1.0 - w)));
+        assert!((width - 0.1).abs() < 1e-15, "{width}");
+    }
 
     #[test]
     fn a_bracketed_root_takes_few_steps_whatever_the_function() {

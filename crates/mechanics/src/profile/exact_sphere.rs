@@ -13,7 +13,7 @@ use super::slope_series::MOST_POWERS;
 use super::smooth_coordinate::{self, SmoothCoordinate};
 use super::{DoubleDouble, Error, Moments, Ring, Span, StressRadius, range, series_kernel};
 use crate::numerics::gauss::{Singular, along_strip};
-use crate::numerics::roots::increasing;
+use crate::numerics::roots::{distance_below, increasing};
 
 /// A sphere, not its osculating paraboloid.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -224,14 +224,9 @@ impl Shape for ExactSphere {
         }
         let outer = self.place(ring.outer.radius, ring.outer.square);
         let steepness = |sigma: f64| self.radius * (sigma.tanh() + sigma / sigma.cosh().powi(2));
-        let mut turn = (depth / steepness(outer.sigma)).min(0.5 * outer.sigma);
-        for _ in 0..8 {
-            let step = (depth - self.below(outer, turn).1) / steepness(outer.sigma - turn);
-            turn = (turn + step).clamp(0.5 * turn, outer.sigma);
-            if step.abs() <= 1e-9 * turn {
-                break;
-            }
-        }
+        let start = (depth / steepness(outer.sigma)).min(0.5 * outer.sigma);
+        let fall = |turn: f64| (self.below(outer, turn).1, steepness(outer.sigma - turn));
+        let turn = distance_below(start, outer.sigma, depth, fall);
         let width = self.below(outer, turn).0;
         width * (2.0 * outer.x - width)
     }

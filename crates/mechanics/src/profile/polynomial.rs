@@ -6,7 +6,7 @@
 use super::shape::Shape;
 use super::{Moments, Profile, Ring, Span};
 use crate::numerics::gauss::{EIGHT_POINTS, first_and_second};
-use crate::numerics::roots::descend;
+use crate::numerics::roots::{descend, distance_below};
 
 /// The largest degree.
 const MOST: usize = 7;
@@ -93,14 +93,8 @@ impl Polynomial {
         }
         let near = plain > NEARLY * square;
         let start = if near { plain / (ring.inner.radius + outer) } else { depth / self.slope(outer) };
-        let mut width = start.min(0.5 * outer);
-        for _ in 0..8 {
-            let step = (depth - self.rises(outer, [width])[0]) / self.slope(outer - width);
-            width = (width + step).clamp(0.5 * width, outer);
-            if step.abs() <= 1e-9 * width {
-                break;
-            }
-        }
+        let fall = |width: f64| (self.rises(outer, [width])[0], self.slope(outer - width));
+        let width = distance_below(start.min(0.5 * outer), outer, depth, fall);
         width * (2.0 * outer - width)
     }
 

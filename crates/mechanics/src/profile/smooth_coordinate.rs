@@ -10,7 +10,7 @@ use super::smooth_interval::SmoothInterval;
 pub(super) use super::smooth_path::{kernel, kernel_slope};
 use super::{DoubleDouble, Moments, Ring, Span, StressRadius};
 use crate::numerics::gauss::{EIGHT_POINTS, QuadraturePanel, Singular, TWELVE_POINTS, TWENTY_POINTS};
-use crate::numerics::roots::{descend, increasing};
+use crate::numerics::roots::{descend, distance_below, increasing};
 
 /// A difference of two t^2 above this, over the larger one, is good to five digits.
 const NEARLY: f64 = 1e-10;
@@ -198,7 +198,7 @@ pub(super) fn gap(family: &impl SmoothCoordinate, ring: &Ring, depth: f64) -> f6
         return (ring.outer.square - if low > 0.0 { ring.inner.square } else { square }).value();
     }
     let top = high.sqrt();
-    let mut dt = if high - low > NEARLY * high {
+    let start = if high - low > NEARLY * high {
         // One step of Newton's does from here.
         (high - low) / (top + low.sqrt())
     } else {
@@ -209,19 +209,13 @@ pub(super) fn gap(family: &impl SmoothCoordinate, ring: &Ring, depth: f64) -> f6
         }
         (depth / steep).min(0.5 * top)
     };
-    for _ in 0..8 {
-        let t = top - dt;
-        let steep = family.slope_at(t);
-        if steep <= 0.0 {
-            return high - low;
-        }
-        let step = (depth - family.rise_at(t, top, dt)) / steep;
-        dt = (dt + step).clamp(0.5 * dt, top);
-        if step.abs() <= 1e-9 * dt {
-            break;
-        }
-    }
-    dt * (top + top - dt)
+    let mut flat = false;
+    let dt = distance_below(start, top, depth, |dt| {
+        let steep = family.slope_at(top - dt);
+        flat |= steep <= 0.0;
+        (family.rise_at(top - dt, top, dt), steep)
+    });
+    if flat { high - low } else { dt * (top + top - dt) }
 }
 
 /// The moments over a span above the core.

@@ -5,21 +5,21 @@
 //! may fall where the others make up for it: X(y) then lies between the flat radius of the sum and where it ends or
 //! falls.
 
+mod build;
 mod fields;
+mod kink_moments;
 #[cfg(test)]
 mod tests;
 
-use super::moment_tree::MomentTree;
 use super::polynomial::Polynomial;
 use super::power_series::{KINK_TERMS, KinkSeries, Place, Series};
 use super::shape::{self, End, Shape};
 use super::smooth_interval::{Node, SmoothInterval};
 use super::tabulated::{self, Kernel};
-use super::{
-    DoubleDouble, Error, InterpolationError, Moments, Point, Profile, Ring, Span, StressRadius, Tabulated, range,
-};
+use super::{DoubleDouble, InterpolationError, Moments, Point, Profile, Ring, Span, StressRadius};
 use crate::numerics::roots::increasing;
 pub(crate) use fields::SumFields;
+use kink_moments::KinkMoments;
 
 /// How far beyond a kink, or below a vertical end, relative to its radius, a radius still lacks digits that a level
 /// has.
@@ -30,9 +30,6 @@ const POLISH: usize = 5;
 /// where g is steep.
 const FARTHEST: f64 = 1e-3;
 const SEARCHED: f64 = 1e-14;
-
-/// With fewer kinks than this no moments between them are kept.
-const FEW_KINKS: usize = 4;
 
 /// A sum of profiles, none of them a sum.
 #[derive(Clone, Debug)]
@@ -50,8 +47,8 @@ pub struct Sum {
     analytic_tip: bool,
     /// g, where it is one.
     polynomial: Option<Polynomial>,
-    /// The moments between each two of the kinks that a contact can reach, if there are many.
-    between_kinks: Option<MomentTree>,
+    /// Of many kinks that a contact can reach.
+    kink_moments: Option<KinkMoments>,
 }
 
 impl PartialEq for Sum {
@@ -62,128 +59,6 @@ impl PartialEq for Sum {
 }
 
 impl Sum {
-    /// The sum of `parts`; sums among them are taken apart.
-    ///
-    /// # Errors
-    /// [`Error::OutOfRange`] by [`range::PARTS`], [`Error::NotConvexEnough`] if g falls before it has risen,
-    /// [`Error::NoSurface`] for a part that is known by its load curve alone.
-    pub fn new(parts: Vec<Profile>) -> Result<Sum, Error> {
-        Sum::new_while(parts, &|| true)
-    }
-
-    /// The same while `keep_going` returns true.
-    ///
-    /// # Errors
-    /// As [`Sum::new`], and [`Error::Interrupted`].
-    pub fn new_while(parts: Vec<Profile>, keep_going: &dyn Fn() -> bool) -> Result<Sum, Error> {
-        let mut flat = Vec::with_capacity(parts.len());
-        for part in parts {
-            match part {
-                Profile::Sum(sum) => flat.extend(sum.parts),
-                other => flat.push(other),
-            }
-        }
-        range::PARTS.check(flat.len() as f64)?;
-        if let Some(part) = flat.iter().position(|part| !part.has_stress_field()) {
-            return Err(Error::NoSurface { part });
-        }
-        let mut kinks: Vec<f64> = flat.iter().flat_map(|part| part.knots_below(f64::INFINITY)).collect();
-        kinks.sort_by(f64::total_cmp);
-        kinks.dedup_by(|a, b| a.to_bits() == b.to_bits());
-        let limit = flat.iter().filter_map(Shape::known_to).reduce(|a, b| if b.radius < a.radius { b } else { a });
-        let mut sum = Sum {
-            rim: None,
-            limit,
-            bracket: None,
-            ceiling: flat.iter().map(Shape::ceiling).fold(f64::INFINITY, f64::min),
-            power: flat.iter().map(Shape::power).fold(1.0, f64::max),
-            analytic_tip: flat.iter().all(Shape::analytic_tip),
-            polynomial: Polynomial::of(&flat),
-            between_kinks: None,
-            parts: flat,
-            kinks,
-        };
-        let rim = sum.parts.iter().filter_map(Shape::rim_radius).fold(f64::INFINITY, f64::min);
-        let falls = sum.first_fall(rim, keep_going)?;
-        if let Some(radius) = falls {
-            sum.limit = Some(End { radius, falls: true });
-        }
-        let rim = falls.unwrap_or(rim);
-        if rim < sum.ceiling {
-            sum.rim = Some((rim, sum.level(rim)));
-        }
-        if sum.parts.iter().any(Shape::falls_within) {
-            let flat_radius = sum.parts.iter().map(Shape::flat_radius).fold(rim, f64::min);
-            if !sum.rim.is_some_and(|(_, top)| top > 0.0) {
-                return Err(Error::NotConvexEnough { radius: flat_radius });
-            }
-            sum.bracket = Some((flat_radius, rim));
-        }
-        sum.kinks.retain(|&kink| kink <= rim);
-        if sum.kinks.len() >= FEW_KINKS {
-            sum.between_kinks = Some(sum.moments_between_kinks(keep_going)?);
-        }
-        Ok(sum)
-    }
-
-    fn moments_between_kinks(&self, keep_going: &dyn Fn() -> bool) -> Result<MomentTree, Error> {
-        let stretch = |pair: &[f64]| {
-            if !keep_going() {
-                return Err(Error::Interrupted);
-            }
-            let [inner, outer] = [pair[0], pair[1]].map(DoubleDouble::square_of);
-            let gap = (outer - inner).value();
-            let span = Span { inner, outer, inner_radius: pair[0], outer_radius: pair[1], gap, edge: 0.0 };
-            Ok((shape::moments(self, &span), self.rise(&span)))
-        };
-        let stretches: Vec<_> = self.kinks.windows(2).map(stretch).collect::<Result<_, Error>>()?;
-        Ok(MomentTree::new(stretches.into_iter()))
-    }
-
-    /// The moments of a span over a whole stretch between two kinks, or several, if they are kept.
-    fn moments_across(&self, span: &Span) -> Option<Moments> {
-        let (tree, square) = (self.between_kinks.as_ref()?, |kink: &f64| DoubleDouble::square_of(*kink));
-        let first = self.kinks.partition_point(|kink| square(kink) < span.inner);
-        let last = self.kinks.partition_point(|kink| square(kink) <= span.outer).checked_sub(1)?;
-        if first >= last {
-            return None;
-        }
-        let [low, high] = [first, last].map(|index| (square(&self.kinks[index]), self.kinks[index]));
-        let (mut sum, between) = tree.run(first, last);
-        if let Some(low) = span.below(low.0, low.1) {
-            sum = Moments::stack(shape::moments(self, &low), sum, between);
-        }
-        if let Some(high) = span.above(high.0, high.1) {
-            sum = Moments::stack(sum, shape::moments(self, &high), self.rise(&high));
-        }
-        Some(sum)
-    }
-
-    /// The first radius below `rim` at which the sum falls, where a part of it does, m.
-    fn first_fall(&self, rim: f64, keep_going: &dyn Fn() -> bool) -> Result<Option<f64>, Error> {
-        let tables = self.parts.iter().filter(|part| part.falls_within()).filter_map(|part| match part {
-            Profile::Tabulated(table) => Some(table),
-            _ => None,
-        });
-        let mut samples: Vec<f64> =
-            tables.flat_map(Tabulated::slope_check_radii).filter(|&radius| radius < rim).collect();
-        samples.sort_by(f64::total_cmp);
-        let sizes = |x: f64| self.total(|part| part.slope(x).abs());
-        // Parts that cancel leave their rounding.
-        let falls = |x: f64| Shape::slope(self, x) < -1e-12 * sizes(x);
-        let found = samples.iter().position(|&x| !keep_going() || falls(x));
-        if !keep_going() {
-            return Err(Error::Interrupted);
-        }
-        let Some(index) = found else { return Ok(None) };
-        let (mut low, mut high) = (index.checked_sub(1).map_or(0.0, |before| samples[before]), samples[index]);
-        for _ in 0..60 {
-            let middle = 0.5 * (low + high);
-            if falls(middle) { high = middle } else { low = middle }
-        }
-        Ok(Some(low))
-    }
-
     /// The parts, none of them a sum.
     #[must_use]
     pub fn parts(&self) -> &[Profile] {
@@ -340,7 +215,10 @@ impl Shape for Sum {
     fn moments(&self, span: &Span) -> Moments {
         match &self.polynomial {
             Some(polynomial) => polynomial.moments(span),
-            None => self.moments_across(span).unwrap_or_else(|| shape::moments(self, span)),
+            None => {
+                let kept = self.kink_moments.as_ref().and_then(|kept| kept.across(self, span));
+                kept.unwrap_or_else(|| shape::moments(self, span))
+            }
         }
     }
 

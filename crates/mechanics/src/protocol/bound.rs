@@ -21,11 +21,10 @@
 use std::f64::consts::PI;
 
 use super::{Contact, EvaluationRange, Profile, branch_and_bound};
+use crate::numerics::roots::turning;
 
 /// Steps of the search from the edge to the centre for the end of a piece.
 const STEPS: usize = 4_096;
-/// Halvings of the bracket of E.
-const HALVINGS: usize = 40;
 
 /// The shear stress, Pa, that some point of the evaluation range carries at least after gross slip and this many
 /// reversals, whatever their displacements; zero where nothing is known, as at a vertical edge.
@@ -64,15 +63,11 @@ pub fn lower_bound_while(contact: &Contact, reversals: usize, keep_going: impl F
     }
     let grid = Grid::new(profile, cutoff, edge);
     // One piece from the edge to the cut-off holds below this.
-    let mut high = (grid.levels[0] - grid.levels[STEPS]) / (edge * edge - cutoff * cutoff).sqrt();
+    let high = (grid.levels[0] - grid.levels[STEPS]) / (edge * edge - cutoff * cutoff).sqrt();
     if !(high > 0.0 && high.is_finite()) {
         return Some(0.0);
     }
-    let mut low = 0.0;
-    for _ in 0..HALVINGS {
-        let middle = 0.5 * (low + high);
-        if grid.reached(middle, reversals + 1) { high = middle } else { low = middle }
-    }
+    let [low, _] = turning([0.0, high], |limit| grid.reached(limit, reversals + 1));
     let unit = contact.elasticity.g_star() * contact.scale() / PI;
     let raised = branch_and_bound::raise(contact, cutoff, reversals, 0.5 * PI * low, &keep_going)?;
     Some(unit * raised)

@@ -16,6 +16,7 @@ use std::cell::OnceCell;
 
 use super::super::profile::{Point, Ring, StressRadius};
 use super::{Contact, DoubleDouble, Profile};
+use crate::numerics::roots::turning;
 
 /// The largest number of reversals: each more takes some eight times as many boxes.
 const MOST_REVERSALS: usize = 8;
@@ -36,8 +37,6 @@ const BOXES_OF_ONE: usize = 5_000;
 /// The factor by which E rises until it is too large, and the relative width of the bracket that is close enough.
 const RISE: f64 = 1.25;
 const CLOSE: f64 = 1e-3;
-/// Halvings of the bracket of a radius of the grid.
-const HALVINGS: usize = 30;
 /// What the result is lowered by for rounding, relative to itself.
 const MARGIN: f64 = 1e-7;
 
@@ -96,12 +95,8 @@ impl<'a> Kernels<'a> {
         };
         let flat = profile.radius(0.0);
         let node = |index: usize| {
-            let (mut low, mut high) = (cutoff, edge.radius);
-            for _ in 0..HALVINGS {
-                let middle = 0.5 * (low + high);
-                if share(middle) * (CELLS as f64) < index as f64 { low = middle } else { high = middle }
-            }
-            let radius = if index == 0 { cutoff } else { high };
+            let beyond = |radius: f64| share(radius) * CELLS as f64 >= index as f64;
+            let radius = if index == 0 { cutoff } else { turning([cutoff, edge.radius], beyond)[1] };
             let point = profile.point(DoubleDouble::from(profile.level(radius)));
             let at = if radius < flat { StressRadius::new(radius) } else { StressRadius::of_point(&point) };
             (point, at)

@@ -9,6 +9,7 @@ use super::super::normal::{load, whole};
 use super::super::profile::{Point, Ring};
 use super::minimax::{KinkSequence, Problem};
 use super::{DoubleDouble, PathEnd, alternating};
+use crate::numerics::roots::between;
 
 /// Up to this many kinks each is tried.
 pub(super) const FEW: usize = 8;
@@ -128,20 +129,13 @@ impl Equations<'_> {
         if at_high * at_low > 0.0 {
             return None;
         }
-        // False position with the weight of an end halved that stays (Illinois).
-        for _ in 0..MAX_EVALUATIONS {
-            let middle = (low * at_high - high * at_low) / (at_high - at_low);
-            let (value, kinks) = evaluate(middle)?;
-            if value.abs() <= TOLERANCE || high - low <= TOLERANCE {
-                return Some(kinks);
-            }
-            if value * at_high > 0.0 {
-                (high, at_high, at_low) = (middle, value, 0.5 * at_low);
-            } else {
-                (low, at_low, at_high) = (middle, value, 0.5 * at_high);
-            }
-        }
-        None
+        let mut last = None;
+        between([(low, at_low), (high, at_high)], TOLERANCE, |stress| {
+            last = evaluate(stress);
+            let missed = last.as_ref().map_or(0.0, |(missed, _)| *missed);
+            if missed.abs() <= TOLERANCE { 0.0 } else { missed }
+        });
+        last.map(|(_, kinks)| kinks)
     }
 }
 

@@ -6,6 +6,7 @@
 
 use super::super::profile::Profile;
 use crate::numerics::gauss::QuadraturePanel;
+use crate::numerics::roots::within;
 
 /// Tolerance of halving a panel, relative to the sum so far; the halves are then good to round-off.
 const TOLERANCE: f64 = 1e-12;
@@ -144,25 +145,8 @@ impl<'a> EqualPeakMeasure<'a> {
         let below = self.leaves.get(index + 1).map_or(self.sum, |next| next.above);
         let wanted = wanted - above;
         let share = if below > above { wanted / (below - above) } else { 0.0 };
-        // Newton's steps, kept between bounds that only close.
-        let (mut least, mut most) = (low, high);
-        let mut at = high - share.clamp(0.0, 1.0) * (high - low);
-        for _ in 0..HALVINGS {
-            let missing = wanted - self.area(along, at, high);
-            if missing > 0.0 {
-                most = at
-            } else {
-                least = at
-            }
-            let step = missing / self.density(along, at);
-            let next = at - step;
-            let next = if next > least && next < most { next } else { 0.5 * (least + most) };
-            let done = (next - at).abs() <= 4.0 * f64::EPSILON * (high - low).max(at.abs());
-            at = next;
-            if done {
-                break;
-            }
-        }
-        along.radius(at)
+        let start = high - share.clamp(0.0, 1.0) * (high - low);
+        let missing = |at: f64| (wanted - self.area(along, at, high), self.density(along, at));
+        along.radius(within([low, high], start, missing))
     }
 }

@@ -7,6 +7,7 @@
 
 use super::super::profile::{InwardSum, Point, Ring, StressRadius};
 use super::{DoubleDouble, Profile, alternating};
+use crate::numerics::roots::{between, largest};
 
 /// The largest number of evaluations of E, after it has been bracketed.
 const MAX_EVALUATIONS: usize = 80;
@@ -14,9 +15,8 @@ const MAX_EVALUATIONS: usize = 80;
 const STEPS: usize = 400;
 /// Radii at which the core is sampled where its stress need not fall outwards.
 const CORE: usize = 32;
-/// Sections of the stretch about the largest of these, and their ratio.
-const SECTIONS: usize = 22;
-const GOLDEN: f64 = 0.618_033_988_749_894_8;
+/// The part of the stretch about the largest of these to which the place of the maximum is narrowed down.
+const BRACKET: f64 = 3e-5;
 /// Relative tolerance of E.
 const TOLERANCE: f64 = 1e-13;
 /// Factor by which E is changed until it is bracketed.
@@ -139,25 +139,10 @@ impl Problem<'_> {
         if at_low > 0.0 || low <= 0.0 {
             return None;
         }
-        // False position with the weight of an end halved that stays (Illinois).
-        for _ in 0..STEPS {
-            let share = (at_high / (at_high - at_low)).clamp(0.0, 1.0);
-            let level = high + share * (low - high);
-            if level >= high || level <= low {
-                break;
-            }
-            let value = missing(level);
-            if value.abs() <= 1e-15 * limit || high - low <= 2.0 * f64::EPSILON * high {
-                low = level;
-                break;
-            }
-            if value > 0.0 {
-                (high, at_high, at_low) = (level, value, 0.5 * at_low);
-            } else {
-                (low, at_low, at_high) = (level, value, 0.5 * at_high);
-            }
-        }
-        Some(self.profile.point(DoubleDouble::from(low)))
+        // What is below the rounding of the stress is none.
+        let rounded = |level| Some(missing(level)).filter(|value| value.abs() > 1e-15 * limit).unwrap_or(0.0);
+        let level = between([(high, at_high), (low, at_low)], 2.0 * f64::EPSILON * high, rounded);
+        Some(self.profile.point(DoubleDouble::from(level)))
     }
 
     /// The largest stress of the core, with the sign that the next kink would stop it at.
@@ -167,19 +152,13 @@ impl Problem<'_> {
         let looks = if self.profile.kernel_falls() { 1 } else { CORE };
         let value = |part: f64| sign * strokes.shear(&StressRadius::new(self.cutoff + width * part));
         let looked = (0..looks).map(|index| index as f64 / CORE as f64).map(|part| (part, value(part)));
-        let (best, mut largest) = looked.fold((0.0, f64::NEG_INFINITY), |a, b| if b.1 > a.1 { b } else { a });
-        if looks > 1 {
-            // Between two samples it may be larger: golden sections about the largest.
-            let (mut low, mut high) = ((best - 1.0 / CORE as f64).max(0.0), (best + 1.0 / CORE as f64).min(1.0));
-            let inner = |low: f64, high: f64| [high - GOLDEN * (high - low), low + GOLDEN * (high - low)];
-            for _ in 0..SECTIONS {
-                let [left, right] = inner(low, high);
-                let (at_left, at_right) = (value(left), value(right));
-                largest = largest.max(at_left).max(at_right);
-                if at_left > at_right { high = right } else { low = left }
-            }
+        let (best, most) = looked.fold((0.0, f64::NEG_INFINITY), |a, b| if b.1 > a.1 { b } else { a });
+        if looks == 1 {
+            return most;
         }
-        largest
+        // Between two samples it may be larger.
+        let beside = [(best - 1.0 / CORE as f64).max(0.0), (best + 1.0 / CORE as f64).min(1.0)];
+        most.max(largest(beside, BRACKET, value).1)
     }
 
     pub(super) fn march(&self, limit: f64, keep_going: &dyn Fn() -> bool) -> Option<KinkSequence> {
@@ -210,35 +189,32 @@ impl Problem<'_> {
     /// Closes the bracket of an E that is too small and one that is not.
     fn close(
         &self,
-        mut low: f64,
-        mut under: Option<f64>,
+        low: f64,
+        under: Option<f64>,
         high: &mut f64,
         best: &mut KinkSequence,
         keep_going: &dyn Fn() -> bool,
     ) -> Option<()> {
-        let mut over = best.excess;
-        for evaluation in 0..MAX_EVALUATIONS {
-            if *high - low <= TOLERANCE * *high || best.excess.is_some_and(|excess| excess.abs() <= TOLERANCE) {
-                break;
+        // Where fewer kinks are enough, the core has no stress.
+        let excess = |excess: Option<f64>| excess.unwrap_or(-1.0);
+        let ends = [(low, excess(under)), (*high, excess(best.excess))];
+        let mut stopped = false;
+        between(ends, TOLERANCE * *high, |trial| match self.march(trial, keep_going) {
+            Some(marched) => {
+                let found = excess(marched.excess);
+                if found <= 0.0 && trial < *high {
+                    *high = trial;
+                    *best = marched;
+                }
+                // The one that fits is kept, so that a little too much stress goes on.
+                if (-TOLERANCE..=0.0).contains(&found) { 0.0 } else { found }
             }
-            // Every fifth evaluation halves, so that the bracket closes whatever the curve.
-            let share = match (under, over) {
-                (Some(above), Some(below)) if evaluation % 5 != 4 && above > below => above / (above - below),
-                _ => 0.5,
-            };
-            let trial = low + share.clamp(1e-3, 1.0 - 1e-3) * (*high - low);
-            let marched = self.march(trial, keep_going)?;
-            // The weight of an end that stays is halved (Illinois).
-            if marched.fits() {
-                (*high, over) = (trial, marched.excess);
-                *best = marched;
-                under = under.map(|excess| 0.5 * excess);
-            } else {
-                (low, under) = (trial, marched.excess);
-                over = over.map(|excess| 0.5 * excess);
+            None => {
+                stopped = true;
+                0.0
             }
-        }
-        Some(())
+        });
+        (!stopped).then_some(())
     }
 
     /// The smallest E, and its kinks; `None` if `keep_going` returned false, or there is no such E.

@@ -15,6 +15,7 @@ pub use shear_evaluation::ShearEvaluation;
 use super::{
     Contact, ContactSummary, Error, Move, Normal, Profile, Regime, Setup, State, Tangential, UnsupportedMove, range,
 };
+use crate::numerics::roots::turning;
 
 /// A slip up to this, relative to bound and move, is what the rounding of displacements leaves of none.
 const ROUNDED: f64 = 8.0 * f64::EPSILON;
@@ -275,14 +276,8 @@ impl Springs {
                 .sum()
         };
         let widest = 2.0 * scale * self.indentation;
-        let (mut low, mut high) = (-widest, widest);
-        loop {
-            let middle = 0.5 * (low + high);
-            if middle <= low || middle >= high {
-                return Ok(self.displacement + middle);
-            }
-            if force_at(middle) < target { low = middle } else { high = middle }
-        }
+        let [_, change] = turning([-widest, widest], |change| force_at(change) >= target);
+        Ok(self.displacement + change)
     }
 
     fn in_contact(&self) -> impl Iterator<Item = &Spring> {

@@ -46,7 +46,7 @@ proptest! {
     ) {
         let profile = Profile::Sum(Sum::new(vec![other(index), table(&steps)]).unwrap());
         let Profile::Sum(sum) = &profile else { panic!("a sum") };
-        prop_assert!(sum.between_kinks.is_some());
+        prop_assert!(sum.kink_moments.is_some());
         let limit = 0.95 * profile.limit_radius().unwrap();
         let mut levels: Vec<f64> = ends.iter().map(|share| profile.level(share * limit)).collect();
         levels.sort_by(f64::total_cmp);

@@ -24,6 +24,7 @@ use crate::numerics::chebyshev::{self, EIGHT, Points, SIXTEEN, TWELVE, TWENTY, T
 use crate::numerics::cluster_tree::ClusterTree;
 use crate::numerics::gauss::{EIGHT_POINTS, TWENTY_POINTS};
 use crate::numerics::multipole::Multipole;
+use crate::numerics::roots::turning;
 
 /// Segments in the smallest cells.
 const LEAF: usize = 8;
@@ -463,10 +464,5 @@ fn first_fall(panel: &KernelPanel) -> Option<f64> {
     let size = values.iter().fold(0.0f64, |size, value| size.max(value.abs()));
     let index = values.iter().position(|&value| value < -1e-12 * size)?;
     let Some(before) = index.checked_sub(1) else { return Some(panel.low) };
-    let (mut low, mut high) = (places[before], places[index]);
-    for _ in 0..60 {
-        let middle = 0.5 * (low + high);
-        if panel.slope_over_radius(middle) < 0.0 { high = middle } else { low = middle }
-    }
-    Some(low)
+    Some(turning([places[before], places[index]], |t| panel.slope_over_radius(t) < 0.0)[0])
 }

@@ -10,6 +10,7 @@ use super::panel_integrals::PanelIntegrals;
 use super::{DoubleDouble, Moments, Span, panel_powers};
 use crate::numerics::chebyshev::{self, TWENTY_FOUR, divided_difference};
 use crate::numerics::gauss;
+use crate::numerics::roots::within;
 
 /// The part of P below which its terms do not count where an error is estimated that is larger.
 const NEGLIGIBLE: f64 = 1e-14;
@@ -235,25 +236,8 @@ impl KernelPanel {
     /// is how much of the function's rise over the panel lies below the root, and `power` how it begins where a table
     /// leaves the plane, where a root can be as small as numbers are and no bisection would get there.
     pub(super) fn find(&self, share: f64, power: f64, f: impl Fn(f64) -> (f64, f64)) -> f64 {
-        let (mut low, mut high) = (self.low, self.high);
-        let share = if low > 0.0 { share } else { share.powf(power.recip()) };
-        let mut t = (low + (high - low) * share).clamp(low, high);
-        for _ in 0..100 {
-            let (value, slope) = f(t);
-            if value > 0.0 {
-                high = t
-            } else {
-                low = t
-            }
-            let newton = t - value / slope;
-            let next = if newton >= low && newton <= high { newton } else { 0.5 * (low + high) };
-            let step = (next - t).abs();
-            t = next;
-            if step <= 3e-16 * t || high - low <= 3e-16 * high {
-                break;
-            }
-        }
-        t
+        let share = if self.low > 0.0 { share } else { share.powf(power.recip()) };
+        within([self.low, self.high], self.low + (self.high - self.low) * share, f)
     }
 }
 

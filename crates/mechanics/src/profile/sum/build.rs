@@ -1,0 +1,93 @@
+//! A sum from its parts: where it ends, where it falls, and what is kept of it.
+
+use super::super::polynomial::Polynomial;
+use super::super::shape::{End, Shape};
+use super::super::{Error, Profile, Tabulated, range};
+use super::Sum;
+use super::kink_moments::KinkMoments;
+use crate::numerics::roots::turning;
+
+impl Sum {
+    /// The sum of `parts`; sums among them are taken apart.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`] by [`range::PARTS`], [`Error::NotConvexEnough`] if g falls before it has risen,
+    /// [`Error::NoSurface`] for a part that is known by its load curve alone.
+    pub fn new(parts: Vec<Profile>) -> Result<Sum, Error> {
+        Sum::new_while(parts, &|| true)
+    }
+
+    /// The same while `keep_going` returns true.
+    ///
+    /// # Errors
+    /// As [`Sum::new`], and [`Error::Interrupted`].
+    pub fn new_while(parts: Vec<Profile>, keep_going: &dyn Fn() -> bool) -> Result<Sum, Error> {
+        let mut flat = Vec::with_capacity(parts.len());
+        for part in parts {
+            match part {
+                Profile::Sum(sum) => flat.extend(sum.parts),
+                other => flat.push(other),
+            }
+        }
+        range::PARTS.check(flat.len() as f64)?;
+        if let Some(part) = flat.iter().position(|part| !part.has_stress_field()) {
+            return Err(Error::NoSurface { part });
+        }
+        let mut kinks: Vec<f64> = flat.iter().flat_map(|part| part.knots_below(f64::INFINITY)).collect();
+        kinks.sort_by(f64::total_cmp);
+        kinks.dedup_by(|a, b| a.to_bits() == b.to_bits());
+        let limit = flat.iter().filter_map(Shape::known_to).reduce(|a, b| if b.radius < a.radius { b } else { a });
+        let mut sum = Sum {
+            rim: None,
+            limit,
+            bracket: None,
+            ceiling: flat.iter().map(Shape::ceiling).fold(f64::INFINITY, f64::min),
+            power: flat.iter().map(Shape::power).fold(1.0, f64::max),
+            analytic_tip: flat.iter().all(Shape::analytic_tip),
+            polynomial: Polynomial::of(&flat),
+            kink_moments: None,
+            parts: flat,
+            kinks,
+        };
+        let rim = sum.parts.iter().filter_map(Shape::rim_radius).fold(f64::INFINITY, f64::min);
+        let falls = sum.first_fall(rim, keep_going)?;
+        if let Some(radius) = falls {
+            sum.limit = Some(End { radius, falls: true });
+        }
+        let rim = falls.unwrap_or(rim);
+        if rim < sum.ceiling {
+            sum.rim = Some((rim, sum.level(rim)));
+        }
+        if sum.parts.iter().any(Shape::falls_within) {
+            let flat_radius = sum.parts.iter().map(Shape::flat_radius).fold(rim, f64::min);
+            if !sum.rim.is_some_and(|(_, top)| top > 0.0) {
+                return Err(Error::NotConvexEnough { radius: flat_radius });
+            }
+            sum.bracket = Some((flat_radius, rim));
+        }
+        sum.kinks.retain(|&kink| kink <= rim);
+        sum.kink_moments = KinkMoments::of(&sum, keep_going)?;
+        Ok(sum)
+    }
+
+    /// The first radius below `rim` at which the sum falls, where a part of it does, m.
+    fn first_fall(&self, rim: f64, keep_going: &dyn Fn() -> bool) -> Result<Option<f64>, Error> {
+        let tables = self.parts.iter().filter(|part| part.falls_within()).filter_map(|part| match part {
+            Profile::Tabulated(table) => Some(table),
+            _ => None,
+        });
+        let mut samples: Vec<f64> =
+            tables.flat_map(Tabulated::slope_check_radii).filter(|&radius| radius < rim).collect();
+        samples.sort_by(f64::total_cmp);
+        let sizes = |x: f64| self.total(|part| part.slope(x).abs());
+        // Parts that cancel leave their rounding.
+        let falls = |x: f64| Shape::slope(self, x) < -1e-12 * sizes(x);
+        let found = samples.iter().position(|&x| !keep_going() || falls(x));
+        if !keep_going() {
+            return Err(Error::Interrupted);
+        }
+        let Some(index) = found else { return Ok(None) };
+        let before = index.checked_sub(1).map_or(0.0, |before| samples[before]);
+        Ok(Some(turning([before, samples[index]], falls)[0]))
+    }
+}
