@@ -58,7 +58,7 @@ pub(crate) fn increasing(guess: f64, f: impl Fn(f64) -> (f64, f64)) -> f64 {
     x
 }
 
-/// The root of an increasing function between two places, from one of them or between: Newton's steps, and the middle of
+/// The root of an increasing function between two places, from a start between them: Newton's steps, and the middle of
 /// what is left of the bracket where one would leave it. `f` gives value and slope.
 pub(crate) fn within([mut low, mut high]: [f64; 2], start: f64, f: impl Fn(f64) -> (f64, f64)) -> f64 {
     let mut x = start.clamp(low, high);
