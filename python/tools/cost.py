@@ -1,8 +1,11 @@
-"""Cost and error of contact laws over arrays: `python tools/cost.py [CONTACTS]` prints the table of docs/python.md.
+"""Cost and error of contact laws over arrays: `python tools/cost.py [CONTACTS [FIGURE]]`.
 
-The same path for each of the contacts: back and forth at a constant and then at a changing load. The exact law is the
-reference; springs are those of the method of dimensionality reduction in NumPy; the incremental law is "mindlin" as
-LAMMPS documents it, an elastic force 2 G* a xi, whose elongation xi is cut where the force exceeds friction.
+It prints the table of docs/python.md, and draws its figure as SVG if there is a path for it.
+
+The same path for each of the contacts: back and forth at a constant and then at a changing load. The exact law in steps
+a seventh as long is the reference, because a straight step leaves the same state however it is divided; springs are
+those of the method of dimensionality reduction in NumPy; the incremental law is "mindlin" as LAMMPS documents it, an
+elastic force 2 G* a xi, whose elongation xi is cut where the force exceeds friction.
 """
 
 from __future__ import annotations
@@ -10,6 +13,7 @@ from __future__ import annotations
 import sys
 import time
 from collections.abc import Callable
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,6 +28,39 @@ SCALE = FRICTION * E_STAR / G_STAR
 STEPS = 20
 Array = NDArray[np.float64]
 Law = Callable[[float, float], float]
+
+
+def divided(way: list[tuple[float, float]], parts: int) -> list[tuple[float, float]]:
+    """The same path, each of its steps in so many."""
+    ends = [np.array((DEPTH, 0.0)), *map(np.array, way)]
+    shares = np.arange(1, parts + 1) / parts
+    return [tuple(begin + share * (end - begin)) for begin, end in pairwise(ends) for share in shares]
+
+
+def draw(rows: list[tuple[str, float, float]], count: int, target: str) -> None:
+    """Errors over the times of a step, ms."""
+    import matplotlib
+
+    matplotlib.use("svg")
+    matplotlib.rcParams["svg.hashsalt"] = "stickslip"
+    from matplotlib import pyplot
+
+    figure, ax = pyplot.subplots(figsize=(6.4, 3.6), layout="constrained")
+    for name, milliseconds, error in rows:
+        (mark,) = ax.loglog(milliseconds, error, "o")
+        left = milliseconds > 30.0
+        ax.annotate(
+            name,
+            (milliseconds, error),
+            xytext=(-8 if left else 8, 0),
+            textcoords="offset points",
+            ha="right" if left else "left",
+            va="center",
+            color=mark.get_color(),
+        )
+    ax.set(xlabel=f"a step of {count} contacts, ms", ylabel="largest error of F$_x$ over µ F$_N$", ylim=(1e-17, 10.0))
+    ax.grid(which="major", alpha=0.3)
+    figure.savefig(target, metadata={"Date": None})
 
 
 def path(steps: int) -> list[tuple[float, float]]:
@@ -98,14 +135,18 @@ def main() -> int:
         ("incremental Mindlin, NumPy", Incremental(count)),
     ]
     limit = FRICTION * 4.0 / 3.0 * E_STAR * np.sqrt(RADIUS) * DEPTH**1.5
-    exact = measure(Exact(1, 1), way)[0]
+    exact = measure(Exact(1, 1), divided(way, 7))[0][6::7]
+    rows = []
     print(f"| law | {count} contacts, ms a step | error at a constant load | at a changing load |")
     print("|---|---|---|---|")
     for name, law in laws:
         forces, seconds = measure(law, way)
         error = np.abs(forces - exact) / limit
         constant, changing = error[: len(way) // 2].max(), error[len(way) // 2 :].max()
+        rows.append((name, 1e3 * seconds, float(max(constant, changing))))
         print(f"| {name} | {1e3 * seconds:.1f} | {constant:.2g} | {changing:.2g} |")
+    if len(sys.argv) > 2:
+        draw(rows, count, sys.argv[2])
     one = Exact(1, 1)
     seconds = measure(one, way * 50)[1]
     print(f"\nA step of one contact takes {1e6 * seconds:.1f} us.")
