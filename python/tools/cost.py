@@ -52,7 +52,7 @@ def draw(rows: list[tuple[str, float, float]], count: int, target: str) -> None:
         ax.annotate(
             name,
             (milliseconds, error),
-            xytext=(-8 if left else 8, 0),
+            xytext=(-8 if left else 8, 12 if name.endswith("1 thread") else 0),
             textcoords="offset points",
             ha="right" if left else "left",
             va="center",

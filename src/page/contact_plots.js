@@ -4,7 +4,7 @@ import { topView } from "./top_view.js";
 import { rememberedTurns } from "./turning_points.js";
 import { formatQuantity } from "./units.js";
 
-const TURNS = "Rings mark the turning points that the contact remembers. A move beyond one closes its loop and erases it.";
+const TURNS = "Rings on the curve mark the turning points that the contact remembers. A move beyond one closes its loop and erases it.";
 
 /** The plots, and a function that draws them from the model of a contact; `overlay` says what else the first two show. */
 export function contactPlots({ hasStress }) {
@@ -28,7 +28,7 @@ export function contactPlots({ hasStress }) {
     title: "Friction work and stored energy",
     x: { label: "Move" },
     y: { label: "Energy", unit: "J" },
-    note: "Friction work only grows; stored energy is released on unloading.",
+    note: "Friction work only grows; stored energy is released on unloading. Both are those at the ends of moves, joined by straight lines.",
   });
 
   // What is drawn over the loop has no moves of this contact.

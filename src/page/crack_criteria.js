@@ -79,6 +79,12 @@ function placeText([x, y, z]) {
   return `${depth}, x = ${formatQuantity(x, "m", 3)}${aside}`;
 }
 
+/** How far a move has come, where a turn is not told from its first or last thousandth. */
+function instantText({ part }) {
+  if (part < 1e-3) return "at the beginning of";
+  return part > 1 - 1e-3 ? "at the end of" : `after ${formatNumber(100 * part, 3)} % of`;
+}
+
 /** What a criterion says, as elements. */
 export function verdict(key, { largest, margin }, hasLimit) {
   const about = criterion(key);
@@ -97,8 +103,7 @@ export function verdict(key, { largest, margin }, hasLimit) {
     lines.push(el("p", { class: "note" }, `The critical plane has the normal (${normal}).`));
   }
   if (largest?.at) {
-    const part = formatNumber(100 * largest.at.part, 3);
-    lines.push(el("p", { class: "note" }, `It is reached in move ${largest.at.move + 1} of the cycle, after ${part} % of it.`));
+    lines.push(el("p", { class: "note" }, `It is reached ${instantText(largest.at)} move ${largest.at.move + 1} of the cycle.`));
   }
   return el("div", { class: "verdict", id: `verdict-${key}` }, el("h3", {}, about.name), ...lines);
 }

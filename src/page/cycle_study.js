@@ -115,7 +115,7 @@ export function cycleStudyCard(model) {
     "section",
     { class: "card", id: "study-card" },
     el("h2", {}, "Load, harmonics and wear"),
-    el("p", {}, "A cycle at the present load, or while the load oscillates with it: its harmonics, where it wears, and the load that damps most."),
+    el("p", {}, "A cycle at the present load, or while the load oscillates with it: its harmonics and, at a constant load, where it wears and which load damps most."),
     el(
       "form",
       { onsubmit: compute },

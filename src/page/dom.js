@@ -48,6 +48,11 @@ export function notice(text, fault = false) {
   }, 6000);
 }
 
+/** Hides the message, once what it said is no longer so. */
+export function withdrawNotice() {
+  document.getElementById("notice").hidden = true;
+}
+
 /** Runs `work` on each call, one run at a time; of the calls during a run only the last is kept. */
 export function latestOnly(work) {
   let busy = false;

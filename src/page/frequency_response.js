@@ -64,8 +64,8 @@ function plots() {
     title: "Stiffness and loss factor over the amplitude",
     height: 240,
     x: { label: "Amplitude U_0", unit: "m", log: true },
-    y: { label: "Loss factor, part of the stiffness" },
-    note: "Stiffness is force over displacement amplitude, as a part of that of small motions.",
+    y: { label: "Loss factor; stiffness of 1 when small" },
+    note: "Stiffness is force over displacement amplitude, as a part of that of small motions; the loss factor is the friction work of a cycle over 2π times the largest stored energy.",
   });
   const response = new Chart({
     name: "response",
@@ -74,7 +74,7 @@ function plots() {
     height: 320,
     x: { label: "Frequency", unit: "Hz", log: true },
     y: { label: "Displacement", unit: "m", log: true },
-    note: "The backbone is the resonance of a mass on the stiffness at each amplitude.",
+    note: "The amplitude is that of the first harmonic, the peak half the range of the displacement. The backbone is the resonance of the mass on the stiffness at each amplitude.",
   });
   response.more = ([, , phase], { name }) => [name, ...(phase === undefined ? [] : [`phase ${formatNumber(phase, 3)}°`])];
   for (const chart of [stiffness, response]) chart.element.hidden = true;
@@ -182,7 +182,7 @@ export function responseCard(model) {
     "section",
     { class: "card", id: "response-card" },
     el("h2", {}, "Frequency response"),
-    el("p", {}, "A mass hangs on the contact at the present load, and a force drives it: how far it swings, and what the contact takes out."),
+    el("p", {}, "A mass hangs on the contact at the present load, and a force drives it: how far it swings, and how far behind the force."),
     el(
       "form",
       { onsubmit: submit },

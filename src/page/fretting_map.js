@@ -59,7 +59,7 @@ export function frettingMap(model) {
     height: 340,
     x: { label: "Load F_N", unit: "N", log: true },
     y: { label: "Amplitude U_0", unit: "m", log: true },
-    note: "Grey: equal friction work of a cycle. Below the dashed line the middle sticks. The mark is the contact now.",
+    note: "Grey: equal friction work of a cycle. Below the dashed line the middle sticks, above it the whole contact slides. The mark is the contact now.",
   });
   chart.more = (_, series) => [series.name];
   let data = null;

@@ -21,7 +21,7 @@ export function goBack(model) {
   };
   const undo = el("button", { type: "button", id: "undo", onclick: () => to(sequence() - 1) }, "Undo");
   const box = el("input", { type: "number", id: "back-to", min: 0, value: "0", "aria-label": "Move to go back to" });
-  const go = el("button", { id: "go-back" }, "Back to");
+  const go = el("button", { id: "go-back" }, "Back to move");
   const begin = (event) => {
     event.preventDefault();
     to(Number(box.value));

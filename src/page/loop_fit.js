@@ -1,12 +1,12 @@
 // Loops that a bench has measured, as files or pasted: the service fits friction and stiffness to them.
 import { call } from "./api.js";
 import { Chart } from "./chart.js";
-import { el, notice } from "./dom.js";
+import { el, notice, withdrawNotice } from "./dom.js";
 import { symbolOf } from "./file_source.js";
 import { Fields, NumberField } from "./form_fields.js";
 import { FORCE, LENGTH } from "./form_options.js";
 import { loopRecord } from "./loop_record.js";
-import { formatQuantity } from "./units.js";
+import { formatInterval, formatQuantity } from "./units.js";
 import { showWarnings, warningList } from "./warning_list.js";
 
 /** What may be free: its name on the page, its unit, whether it is so at first, and whether only a sphere has it. */
@@ -46,10 +46,9 @@ const MOST_DOTS = 4000;
 
 /** A row for each quantity that was estimated. */
 function estimateRows(estimates) {
-  const end = (value, unit) => (value === null ? "open" : formatQuantity(value, unit));
   return Object.entries(estimates).map(([name, { value, interval, at_bound: bound }]) => {
     const [text, unit] = PARAMETERS[name] ?? [name, ""];
-    const between = `${end(interval[0], unit)} to ${end(interval[1], unit)}${bound ? ", at its bound" : ""}`;
+    const between = `95 %: ${formatInterval(interval, unit)}${bound ? ", at its bound" : ""}`;
     return el("div", {}, el("dt", {}, text), el("dd", {}, `${formatQuantity(value, unit)} (${between})`));
   });
 }
@@ -187,6 +186,7 @@ export function fittedLoop(model) {
       await Promise.all(records.map((record) => record.settled()));
       show(await call("POST", "/fit", request(), model.signal));
       form.clear();
+      withdrawNotice();
     } catch (refusal) {
       form.place(refusal);
       if (!model.signal.aborted) notice(refusal.message, true);

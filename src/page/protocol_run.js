@@ -66,7 +66,7 @@ export function protocolCard(model) {
     }
     const after = await remaining();
     status.replaceChildren(
-      ...withSubscripts(`${halt.signal.aborted ? "Stopped. " : ""}Before: ${amount(before)}. Now: ${amount(after)}.`),
+      ...withSubscripts(`${halt.signal.aborted ? "Stopped. " : ""}Before: ${amount(before)}. Now: ${amount(after)}.${before.max === 0 ? " There was nothing to reduce: the moves brought this stress." : ""}`),
     );
   };
   const begin = async (event) => {

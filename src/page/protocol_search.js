@@ -20,7 +20,7 @@ function figureRows({ reversals, relative, largest, gap, robustness, path }) {
     pair("Reversals", String(reversals)),
     pair("Remains, of μ p_max", percent(relative)),
     pair("Largest shear stress", formatQuantity(largest, "Pa")),
-    ...(gap?.lower_bound === null || gap?.lower_bound === undefined ? [] : [pair("No protocol leaves less than", formatQuantity(gap.lower_bound, "Pa"))]),
+    ...(gap?.lower_bound === null || gap?.lower_bound === undefined ? [] : [pair(`No ${reversals} reversals leave less than`, formatQuantity(gap.lower_bound, "Pa"))]),
     ...(robustness
       ? [pair("With these errors, on average", percent(robustness.mean)), pair("In 95 of 100 trials at most", percent(robustness.percentile_95))]
       : []),

@@ -34,7 +34,7 @@ export function sectionPlot({ name, title, note }) {
     const largest = -low[2] > high[2] ? low : high;
     const [from, to] = [Math.min(low[2], 0), Math.max(high[2], worst?.value ?? 0, 0)];
     const text = (value, digits) => (unit ? formatQuantity(value, unit, digits) : formatNumber(value, digits));
-    const scale = { from, to, step: (to - from) / SHADES || 1, full: Math.max(Math.abs(from), Math.abs(to)) || 1, text };
+    const scale = { from, to, step: (to - from) / SHADES || 1, full: Math.max(Math.abs(from), Math.abs(to)) || 1, text, name };
     const [x, z] = worst ? [worst.point[0], worst.point[2]] : largest;
     chart.more = ([, , value]) => [`${name} ${text(value)}`];
     chart.draw({
@@ -123,6 +123,6 @@ function shadeScale(plot, scale) {
     ...Array.from({ length: SHADES }, (_, index) =>
       svg("rect", { x: x + wide * index, y, width: wide, height: 8, fill: colour(index, scale), "shape-rendering": "crispEdges" }),
     ),
-    svg("text", { class: "small over", x, y: y - 4 }, ends.join(" to ")),
+    svg("text", { class: "small over", x, y: y - 4 }, `${scale.name}: ${ends.join(" to ")}`),
   ];
 }

@@ -4,6 +4,9 @@ import { formatNumber, formatQuantity } from "./units.js";
 
 const NAMES = { stick: "Stick", partial_slip: "Partial slip", gross_slip: "Gross slip", separated: "Lifted off" };
 
+/** The part of the contact radius from which on a stick radius would read as all of it. */
+const MOST_SHOWN = 0.995;
+
 /** The regime of a state; bodies without a load between them are apart, whatever the last move did. */
 export const regimeOf = ({ regime, normal_force: load }) => (load > 0 ? regime : "separated");
 
@@ -14,6 +17,8 @@ function sentence(state, moved) {
   if (!moved) return "Nothing has moved yet: pull the slider, and watch the ring that slips grow from the edge.";
   if (regime === "stick") return "The last move slipped nowhere: the whole contact stuck.";
   if (regime === "gross_slip") return "The last move slipped everywhere: the whole contact slid, and its history is erased.";
+  if (c > MOST_SHOWN * a)
+    return `The last move has just turned: all sticks but the outermost ${formatQuantity(a - c, "m", 2)} of the contact radius.`;
   return `Inside r = ${formatQuantity(c, "m", 3)} (${formatNumber((100 * c) / a, 2)} % of the contact radius) the surfaces stuck in the last move; the ring outside slipped.`;
 }
 

@@ -64,6 +64,7 @@ export function steadyCard(model) {
     el("h2", {}, "Steady cycle"),
     text,
     list,
+    el("p", { class: "note" }, "Loss factor: friction work of a cycle over 2π times the largest stored energy. Sliding ratio: displacement at zero force over the amplitude."),
   );
   return { element, show, calls: () => [{ method: "GET", path: path() }] };
 }

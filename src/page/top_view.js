@@ -1,7 +1,7 @@
 // The contact from above: the shear stress as colour, and the slip ring of the last move.
 import { Chart } from "./chart.js";
 import { svg } from "./dom.js";
-import { formatQuantity } from "./units.js";
+import { formatNumber, formatQuantity, unitScale } from "./units.js";
 
 const STOPS = 160;
 
@@ -15,7 +15,7 @@ export function topView() {
     height: 340,
     x: { label: "x, along the motion", unit: "m" },
     y: { label: "y", unit: "m" },
-    note: "Colour is the shear stress on the contact, green along the push and purple against it, on a scale up to the largest that is there; in the striped ring the last move slipped.",
+    note: "Colour is the shear stress on the contact, green towards +x and purple towards −x, on a scale up to the largest that is there; in the striped ring the last move slipped.",
   });
   let stress = null;
   let radius = 0;
@@ -130,12 +130,12 @@ function colourScale(plot, full) {
   const stops = Array.from({ length: 21 }, (_, index) =>
     svg("stop", { offset: index / 20, "stop-color": colour(index / 10 - 1) }),
   );
-  const text = (at, anchor, words) => svg("text", { class: "small over", x: at, y: y - 4, "text-anchor": anchor }, words);
+  const scale = unitScale(full, "Pa");
+  const most = formatNumber(full / scale.factor, 3);
   return [
     svg("defs", {}, svg("linearGradient", { id }, ...stops)),
     svg("rect", { x, y, width, height: 8, fill: `url(#${id})` }),
-    text(x, "start", formatQuantity(-full, "Pa", 3)),
-    text(x + width, "end", `+${formatQuantity(full, "Pa", 3)}`),
+    svg("text", { class: "small over", x, y: y - 4 }, `τ: −${most} to +${most} ${scale.unit}`),
   ];
 }
 

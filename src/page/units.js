@@ -51,6 +51,13 @@ export function formatQuantity(value, unit, digits = 4) {
   return `${formatNumber(value / scale.factor, digits)} ${scale.unit}`.trim();
 }
 
+/** The ends of an interval in one unit, `−0.2 to 3.1 nm`; an end that is not known is open. */
+export function formatInterval(ends, unit, digits = 4) {
+  const scale = unit ? unitScale(Math.max(...ends.map((end) => Math.abs(end ?? 0))), unit) : { factor: 1, unit: "" };
+  const [low, high] = ends.map((end) => (end === null ? "open" : formatNumber(end / scale.factor, digits)));
+  return `${low} to ${high} ${scale.unit}`.trim();
+}
+
 /** The text of a field in units of 10^power: a number in SI units, or the text itself for the service to refuse. */
 export function parseNumber(text, power = 0) {
   const trimmed = text.trim().replace("−", "-").replace(",", ".");

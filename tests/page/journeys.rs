@@ -80,7 +80,7 @@ async fn loop_a_file_of_a_bench_becomes_the_coefficient_of_friction() {
     // No drift is in the file: its interval has both signs.
     let said = browser.value(found).await;
     let drift = said.as_str().unwrap().split("drift of the displacement").nth(1).unwrap().to_owned();
-    let interval = drift.split('(').nth(1).unwrap().split(')').next().unwrap();
+    let interval = drift.split("(95 %: ").nth(1).unwrap().split(')').next().unwrap();
     let (low, high) = interval.split_once(" to ").unwrap();
     assert!(low.starts_with('−') && !high.starts_with('−'), "{said}");
     axe::assert_readable(&browser, "journey-loop").await;

@@ -624,7 +624,8 @@ async fn what_is_on_screen_can_be_taken_away() {
     let state = reqwest::get(format!("{}/contacts/{}/stress?points=2&residual=true", server.address, session.id)).await;
     let largest = state.unwrap().json::<Value>().await.unwrap()["residual"]["max"].as_f64().unwrap();
     let most = pascals(largest);
-    assert!(drawing.contains(&format!(">−{most}<")) && drawing.contains(&format!(">+{most}<")), "{most}");
+    let (number, unit) = most.split_once(' ').unwrap();
+    assert!(drawing.contains(&format!(">τ: −{number} to +{number} {unit}<")), "{most}");
     assert!(drawing.contains("<stop") && drawing.contains("rgb(") && !drawing.contains("oklab("));
     // The commands are those of this contact, and they work.
     browser.click(".copying button").await;
