@@ -56,12 +56,23 @@ class Result:
 
         columns = self._columns()
         if columns:
-            return pandas.DataFrame(columns)
+            return pandas.DataFrame(columns, copy=False)
         for name in _ROWS:
             rows = getattr(self, name, None)
             if isinstance(rows, list) and (not rows or isinstance(rows[0], Result)):
                 return pandas.DataFrame([row.scalars() for row in rows])
         return pandas.DataFrame([self.scalars()])
+
+    def to_arrow(self) -> Any:
+        """The same table for Arrow (`pip install pyarrow`): columns of floats are those of the result, not copies."""
+        import pyarrow
+
+        columns = self._columns()
+        return pyarrow.table(columns) if columns else pyarrow.Table.from_pandas(self.to_frame(), preserve_index=False)
+
+    def __arrow_c_stream__(self, requested_schema: object = None) -> object:
+        """The table for any library that takes Arrow, such as `polars.DataFrame(result)` or `duckdb`."""
+        return self.to_arrow().__arrow_c_stream__(requested_schema)
 
     def plot(self, ax: Axes | None = None, **options: Any) -> Axes:
         """The picture of the result, in `ax` or in a new figure."""

@@ -130,3 +130,15 @@ def test_an_interrupt_stops_a_long_call() -> None:
     process.send_signal(signal.SIGINT)
     assert process.communicate(timeout=60)[0] == "interrupted\n"
     assert process.returncode == 0
+
+
+def test_tables_of_arrow_share_the_numbers_of_their_results() -> None:
+    pyarrow = pytest.importorskip("pyarrow")
+    contact = ss.Contact(ss.Sphere("10 mm"), [ss.Body(2.1e11, 0.3), ss.RIGID], friction=0.3, normal_force=10.0)
+    stress = contact.stress(200)
+    table = stress.to_arrow()
+    assert np.shares_memory(table["radius"].chunk(0).to_numpy(), stress.radius)
+    assert pyarrow.table(stress).equals(table)
+    contact.move("50 nm")
+    peaks = contact.residual()
+    assert peaks.to_arrow().to_pandas().equals(peaks.to_frame())
