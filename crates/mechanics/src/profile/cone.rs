@@ -5,7 +5,7 @@
 use std::f64::consts::FRAC_PI_2;
 
 use super::power_series::{Place, Series};
-use super::shape::Shape;
+use super::shape::{Shape, ShapeFacts};
 use super::{DoubleDouble, Error, Moments, Ring, Span, StressRadius, range};
 
 /// A cone.
@@ -62,8 +62,8 @@ impl Shape for Cone {
         depth / self.rise * (ring.inner.radius + ring.outer.radius)
     }
 
-    fn power(&self) -> f64 {
-        1.0
+    fn facts(&self) -> ShapeFacts {
+        ShapeFacts { power: 1.0, kernel_falls: true, smooth_centre: false, smooth_tip: false, ..ShapeFacts::default() }
     }
 
     fn moments(&self, span: &Span) -> Moments {
@@ -116,19 +116,11 @@ impl Shape for Cone {
         self.slope
     }
 
-    fn kernel_falls(&self) -> bool {
-        true
-    }
-
     fn slope_series(&self, _a: f64) -> Option<Vec<f64>> {
         Some(vec![self.rise])
     }
 
     fn singular_radii(&self) -> Vec<f64> {
         vec![0.0]
-    }
-
-    fn smooth_centre(&self) -> bool {
-        false
     }
 }

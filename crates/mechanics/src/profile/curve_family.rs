@@ -7,7 +7,7 @@
 //! [`Profile::check_stress_field`](super::Profile) first.
 
 use super::ring_nodes::{DepthNode, RingNodes};
-use super::shape::{End, Shape};
+use super::shape::{End, Shape, ShapeFacts};
 use super::{DoubleDouble, InterpolationError, Moments, Point, Ring, Span, StressRadius};
 
 /// Panels of the angle for the sums over a ring, at the least, and for each wave.
@@ -122,8 +122,8 @@ impl<C: CurveFamily> Shape for C {
         f64::NAN
     }
 
-    fn known_to(&self) -> Option<End> {
-        self.end().map(|radius| End { radius, falls: false })
+    fn facts(&self) -> ShapeFacts {
+        ShapeFacts::default().ending(self.end().map(|radius| End { radius, falls: false }))
     }
 
     fn interpolation_error(&self, radius: f64) -> InterpolationError {

@@ -8,7 +8,7 @@
 
 use super::power_series::{self, Series};
 use super::shallow_sphere::{self, LIMIT};
-use super::shape::{End, Shape};
+use super::shape::{End, Shape, ShapeFacts};
 use super::slope_series::MOST_POWERS;
 use super::smooth_coordinate::{self, SmoothCoordinate};
 use super::{DoubleDouble, Error, Moments, Ring, Span, StressRadius, range, series_kernel};
@@ -231,8 +231,11 @@ impl Shape for ExactSphere {
         width * (2.0 * outer.x - width)
     }
 
-    fn ceiling(&self) -> f64 {
-        self.radius
+    fn facts(&self) -> ShapeFacts {
+        // Within 1e-12 of R, X no longer determines the level.
+        let end = End { radius: self.radius * (1.0 - 1e-12), falls: false };
+        let facts = ShapeFacts { ceiling: self.radius, curvature_radius: Some(self.radius), ..ShapeFacts::default() };
+        facts.ending(Some(end))
     }
 
     fn moments(&self, span: &Span) -> Moments {
@@ -330,14 +333,5 @@ impl Shape for ExactSphere {
 
     fn surface_slope(&self, r: f64) -> f64 {
         r / ((self.radius - r) * (self.radius + r)).max(0.0).sqrt()
-    }
-
-    fn curvature_radius(&self) -> Option<f64> {
-        Some(self.radius)
-    }
-
-    fn known_to(&self) -> Option<End> {
-        // Within 1e-12 of R, X no longer determines the level.
-        Some(End { radius: self.radius * (1.0 - 1e-12), falls: false })
     }
 }

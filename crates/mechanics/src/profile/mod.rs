@@ -61,7 +61,7 @@ use super::range;
 use crate::numerics::double_double::DoubleDouble;
 use asperities::Count;
 use power_series::{KinkSeries, Place, Series};
-use shape::{End, Shape};
+use shape::{End, Shape, ShapeFacts};
 use smooth_interval::{Node, SmoothInterval};
 use span::Span;
 
@@ -188,7 +188,7 @@ impl Profile {
     /// g falls. A punch's edge is no such limit.
     #[must_use]
     pub fn limit_radius(&self) -> Option<f64> {
-        Shape::limit(self).map(|end| end.radius)
+        self.facts().limit.map(|end| end.radius)
     }
 
     /// The radius, m, of a vertical edge, which the contact keeps under every higher load.
@@ -203,7 +203,7 @@ impl Profile {
     /// If it is not below [`Profile::limit_radius`]: [`Error::NotConvexEnough`] where g falls from there on,
     /// [`Error::BeyondProfile`] where the profile ends.
     pub fn check_radius(&self, radius: f64) -> Result<f64, Error> {
-        match Shape::limit(self) {
+        match self.facts().limit {
             Some(End { radius: limit, falls: true }) if radius >= limit => {
                 Err(Error::NotConvexEnough { radius: limit })
             }
@@ -236,7 +236,7 @@ impl Profile {
     /// The radius of curvature, m, where the shape is given by one: the smallest of a sum.
     #[must_use]
     pub fn curvature_radius(&self) -> Option<f64> {
-        Shape::curvature_radius(self)
+        self.facts().curvature_radius
     }
 
     /// Whether the kernel up to any radius falls with r, so that pressure does too. It lets the search for the peaks of
@@ -245,7 +245,7 @@ impl Profile {
     /// K(r, c) = int g'(x)/x dv, v = sqrt(x^2 - r^2), over 0 to sqrt(c^2 - r^2): it falls wherever g'/x does not rise.
     #[must_use]
     pub fn kernel_falls(&self) -> bool {
-        Shape::kernel_falls(self)
+        self.facts().kernel_falls
     }
 
     /// A lower bound, 1/m, of -2 v dK(r, c)/d(r^2) for all r from `inner` up to c = `outer`, m, v = sqrt(c^2 - r^2):
@@ -292,7 +292,7 @@ impl Profile {
     /// Whether stresses are analytic in r^2 at the centre if the surface slips there.
     #[must_use]
     pub fn smooth_centre(&self) -> bool {
-        Shape::smooth_centre(self)
+        self.facts().smooth_centre
     }
 
     /// The interpolation error of tables in a contact of this radius, m; zero for other profiles.
@@ -331,9 +331,7 @@ dispatch! {
     rim() -> Option<(f64, f64)>;
     rim_radius() -> Option<f64>;
     kink_below(radius: f64) -> f64;
-    analytic_tip() -> bool;
-    ceiling() -> f64;
-    power() -> f64;
+    facts() -> ShapeFacts;
     kernel(at: &StressRadius, span: &Span) -> f64;
     kernel_slope(at: &StressRadius, span: &Span) -> f64;
     slope_series(a: f64) -> Option<Vec<f64>>;
@@ -342,18 +340,10 @@ dispatch! {
     kernel_sums(rings: &[(Ring, f64)], radii: &[StressRadius]) -> Option<Vec<f64>>;
     displacements(rings: &[(Ring, f64)], ends: (f64, f64), radii: &[StressRadius]) -> Option<Vec<f64>>;
     surface_slope(r: f64) -> f64;
-    curvature_radius() -> Option<f64>;
-    limit() -> Option<End>;
-    known_to() -> Option<End>;
-    falls_within() -> bool;
-    flat_radius() -> f64;
     cancellation(x: f64) -> f64;
-    kernel_falls() -> bool;
     least_fall(inner: f64, outer: f64) -> f64;
     rises_concavely(inner: f64) -> bool;
     singular_radii() -> Vec<f64>;
-    smooth_centre() -> bool;
-    smooth_tip() -> bool;
     interpolation_error(radius: f64) -> InterpolationError;
     noise(radius: f64) -> Option<(f64, f64)>;
 }

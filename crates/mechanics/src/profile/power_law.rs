@@ -6,7 +6,7 @@
 //! 1e8 r on, where x^2 - r^2 is x^2 to round-off, in closed form.
 
 use super::power_series::{Place, Series};
-use super::shape::Shape;
+use super::shape::{Shape, ShapeFacts};
 use super::smooth_coordinate::{self, SmoothCoordinate};
 use super::{DoubleDouble, Error, Moments, Ring, Span, StressRadius, range, series_kernel};
 use crate::numerics::gauss::{EIGHT_POINTS, Singular, first_and_second};
@@ -300,12 +300,15 @@ impl Shape for PowerLaw {
         width * (2.0 * ring.outer.radius - width)
     }
 
-    fn analytic_tip(&self) -> bool {
-        self.order.is_some() || self.exponent >= 30.0
-    }
-
-    fn power(&self) -> f64 {
-        self.exponent
+    fn facts(&self) -> ShapeFacts {
+        ShapeFacts {
+            power: self.exponent,
+            kernel_falls: self.exponent <= 2.0,
+            analytic_tip: self.order.is_some() || self.exponent >= 30.0,
+            smooth_centre: self.exponent.to_bits() == 2f64.to_bits(),
+            smooth_tip: self.order.is_some_and(|order| order % 2 == 0),
+            ..ShapeFacts::default()
+        }
     }
 
     fn moments(&self, span: &Span) -> Moments {
@@ -371,10 +374,6 @@ impl Shape for PowerLaw {
         self.exponent * self.coefficient * r.powf(self.exponent - 1.0)
     }
 
-    fn kernel_falls(&self) -> bool {
-        self.exponent <= 2.0
-    }
-
     fn least_fall(&self, inner: f64, outer: f64) -> f64 {
         // q is a power of x^2, whose slope is largest at one end.
         let (power, share) = (0.5 * self.exponent - 1.0, inner / outer * (inner / outer));
@@ -390,13 +389,5 @@ impl Shape for PowerLaw {
 
     fn singular_radii(&self) -> Vec<f64> {
         if self.exponent <= 1.0 { vec![0.0] } else { Vec::new() }
-    }
-
-    fn smooth_centre(&self) -> bool {
-        self.exponent.to_bits() == 2f64.to_bits()
-    }
-
-    fn smooth_tip(&self) -> bool {
-        self.order.is_some_and(|order| order % 2 == 0)
     }
 }

@@ -8,7 +8,7 @@
 use std::f64::consts::PI;
 
 use super::ring_nodes::{DepthNode, RingNodes};
-use super::shape::Shape;
+use super::shape::{Shape, outermost_interval};
 use super::smooth_interval::{Node, SmoothInterval};
 use super::{Ring, Span};
 use crate::numerics::gauss::QuadraturePanel;
@@ -46,7 +46,7 @@ pub(super) fn nodes(shape: &(impl Shape + ?Sized), ring: &Ring, total: f64, turn
     let mut above = span.edge;
     let mut rest = Some(span);
     while let Some(span) = rest.filter(|span| span.gap > 0.0) {
-        let (interval, outer, inner) = shape.outermost_interval(&span);
+        let (interval, outer, inner) = outermost_interval(shape, &span);
         let depth = shape.rise(&outer);
         let left = if inner.is_none() { total - ring.depth } else { total - above - depth };
         let mut add = |(node, weight): (Node, f64)| {
@@ -69,7 +69,7 @@ pub(super) fn nodes(shape: &(impl Shape + ?Sized), ring: &Ring, total: f64, turn
 
 /// The nodes of a span as if it had no kinks, by panels no wider than `widest`, and by halves of them.
 fn across(shape: &(impl Shape + ?Sized), span: &Span, total: f64, widest: f64) -> RingNodes {
-    let interval = SmoothInterval::new(span, 0.0, f64::INFINITY, f64::INFINITY, shape.power());
+    let interval = SmoothInterval::new(span, 0.0, f64::INFINITY, f64::INFINITY, shape.facts().power);
     let depth = shape.rise(span);
     let mut ends = panels(shape, &interval, [span.edge, depth, total - span.edge - depth], true);
     split(&mut ends, widest);
@@ -120,7 +120,8 @@ fn panels(shape: &(impl Shape + ?Sized), interval: &SmoothInterval, levels: [f64
         bottom = 0.0;
     }
     // What a power of t adds this near to its tip is round-off.
-    let weak = if shape.analytic_tip() || base > 0.0 { 0.0 } else { drop * ROUND_OFF.powf((power + 1.0).recip()) };
+    let weak =
+        if shape.facts().analytic_tip || base > 0.0 { 0.0 } else { drop * ROUND_OFF.powf((power + 1.0).recip()) };
     let mut ends = vec![0.0, PI];
     approach(&mut ends, 0.0, angle(top));
     approach(&mut ends, PI, angle(bottom.max(weak)));

@@ -5,7 +5,7 @@
 //! (Ciavarella 1999; Popov & Hess 2015). f' bends but does not jump at b, so all stresses are finite.
 
 use super::power_series::{KinkSeries, Place, Series};
-use super::shape::Shape;
+use super::shape::{Shape, ShapeFacts};
 use super::smooth_coordinate::{self, SmoothCoordinate};
 use super::sphere::Sphere;
 use super::{DoubleDouble, Error, Moments, Ring, Span, StressRadius, range};
@@ -216,11 +216,11 @@ impl Shape for RoundedCone {
         Some(series)
     }
 
-    fn surface_slope(&self, r: f64) -> f64 {
-        self.flank.slope * (r / self.flank.tip_radius).min(1.0)
+    fn facts(&self) -> ShapeFacts {
+        ShapeFacts { kernel_falls: true, ..ShapeFacts::default() }
     }
 
-    fn kernel_falls(&self) -> bool {
-        true
+    fn surface_slope(&self, r: f64) -> f64 {
+        self.flank.slope * (r / self.flank.tip_radius).min(1.0)
     }
 }

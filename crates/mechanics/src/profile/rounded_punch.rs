@@ -5,6 +5,7 @@
 //! All stays positive through t - b phi = b (u - atan u), u = t/b.
 
 use super::power_series::{BeyondKink, KinkSeries, Place, Series};
+use super::shape::ShapeFacts;
 use super::smooth_coordinate::{self, Nodes, SmoothCoordinate, flat_core};
 use super::{DoubleDouble, Error, Moments, Ring, Span, StressRadius, range};
 use crate::numerics::angle::{angles, tangent_less_angle};
@@ -146,7 +147,7 @@ flat_core!(RoundedPunch {
         (r - self.flat_radius).max(0.0) / self.edge_radius
     }
 
-    fn curvature_radius(&self) -> Option<f64> {
-        Some(self.edge_radius)
+    fn facts(&self) -> ShapeFacts {
+        ShapeFacts { curvature_radius: Some(self.edge_radius), ..ShapeFacts::default() }
     }
 });

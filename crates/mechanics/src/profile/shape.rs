@@ -15,6 +15,57 @@ pub(super) struct End {
     pub(super) falls: bool,
 }
 
+/// What holds for all of a shape.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct ShapeFacts {
+    /// Where contacts end, if they do before a vertical edge.
+    pub(super) limit: Option<End>,
+    /// Up to where g is known, though it may fall before.
+    pub(super) known_to: Option<End>,
+    /// The radius at which g ceases to be analytic, never reached by a contact, m.
+    pub(super) ceiling: f64,
+    /// g changes no faster than x to this power.
+    pub(super) power: f64,
+    /// The radius of curvature, where the shape is given by one, m.
+    pub(super) curvature_radius: Option<f64>,
+    /// Whether g'(x)/x does not rise anywhere; `false` is always safe.
+    pub(super) kernel_falls: bool,
+    /// Whether g is analytic in x at the tip.
+    pub(super) analytic_tip: bool,
+    /// Whether stresses are analytic in r^2 at the centre.
+    pub(super) smooth_centre: bool,
+    /// Whether g'/x is a polynomial in x^2 below all kinks.
+    pub(super) smooth_tip: bool,
+}
+
+impl Default for ShapeFacts {
+    fn default() -> ShapeFacts {
+        ShapeFacts {
+            limit: None,
+            known_to: None,
+            ceiling: f64::INFINITY,
+            power: 2.0,
+            curvature_radius: None,
+            kernel_falls: false,
+            analytic_tip: true,
+            smooth_centre: true,
+            smooth_tip: true,
+        }
+    }
+}
+
+impl ShapeFacts {
+    /// The same of a shape that ends before a vertical edge.
+    pub(super) fn ending(self, end: Option<End>) -> ShapeFacts {
+        ShapeFacts { limit: end, known_to: end, ..self }
+    }
+
+    /// Whether g falls somewhere before the end.
+    pub(super) fn falls_within(&self) -> bool {
+        self.limit.zip(self.known_to).is_some_and(|(limit, end)| limit.radius < end.radius)
+    }
+}
+
 /// The functions of one family. Radii in m, levels in m; the caller adds what a span crosses at a vertical edge.
 pub(super) trait Shape {
     /// g(x).
@@ -45,6 +96,11 @@ pub(super) trait Shape {
         gap(self, ring, depth)
     }
 
+    /// What holds for all of it.
+    fn facts(&self) -> ShapeFacts {
+        ShapeFacts::default()
+    }
+
     /// Radius and level at which the profile ends in a vertical edge.
     fn rim(&self) -> Option<(f64, f64)> {
         None
@@ -60,42 +116,9 @@ pub(super) trait Shape {
         0.0
     }
 
-    /// Whether g is analytic in x at the tip.
-    fn analytic_tip(&self) -> bool {
-        true
-    }
-
-    /// The radius at which g ceases to be analytic, never reached by a contact.
-    fn ceiling(&self) -> f64 {
-        f64::INFINITY
-    }
-
-    /// g changes no faster than x to this power.
-    fn power(&self) -> f64 {
-        2.0
-    }
-
     /// The span of a ring.
     fn span(&self, ring: &Ring) -> Span {
         span(ring, self.rim().map(|(_, top)| top), |depth| self.gap(ring, depth))
-    }
-
-    /// The outermost interval of a span, and what is left inside it.
-    fn outermost_interval(&self, span: &Span) -> (SmoothInterval, Span, Option<Span>) {
-        let base = self.kink_below(span.outer_radius);
-        let square = DoubleDouble::square_of(base);
-        let (Some(outer), rest) = (span.above(square, base), span.below(square, base)) else {
-            return (SmoothInterval::new(span, 0.0, 0.0, self.ceiling(), self.power()), *span, None);
-        };
-        let singularity = if base > 0.0 {
-            let next = self.kink_below(base);
-            ((base - next) * (base + next)).sqrt()
-        } else if self.analytic_tip() {
-            f64::INFINITY
-        } else {
-            0.0
-        };
-        (SmoothInterval::new(&outer, base, singularity, self.ceiling(), self.power()), outer, rest)
     }
 
     /// The moments of h = g(x_outer) - g(x).
@@ -131,7 +154,7 @@ pub(super) trait Shape {
         let (mut sum, mut above) = (0.0, 0.0);
         let mut rest = Some(*span);
         while let Some(span) = rest.filter(|span| span.gap > 0.0) {
-            let (interval, outer, inner) = self.outermost_interval(&span);
+            let (interval, outer, inner) = outermost_interval(self, &span);
             sum += interval.displacement_integral(&outer, at, above, |node| self.rise(&under(&outer, &interval, node)));
             above += self.rise(&outer);
             rest = inner;
@@ -176,44 +199,14 @@ pub(super) trait Shape {
     /// f'(r), the slope of the undeformed surface.
     fn surface_slope(&self, r: f64) -> f64;
 
-    /// The radius of curvature, where the shape is given by one.
-    fn curvature_radius(&self) -> Option<f64> {
-        None
-    }
-
-    /// Where contacts end, if they do before a vertical edge.
-    fn limit(&self) -> Option<End> {
-        self.known_to()
-    }
-
-    /// Up to where g is known, though it may fall before.
-    fn known_to(&self) -> Option<End> {
-        None
-    }
-
-    /// Whether g falls somewhere before [`Shape::known_to`].
-    fn falls_within(&self) -> bool {
-        false
-    }
-
-    /// The radius of a flat core.
-    fn flat_radius(&self) -> f64 {
-        self.radius(0.0)
-    }
-
     /// How many times larger than g the parts are that it is the sum of.
     fn cancellation(&self, _x: f64) -> f64 {
         1.0
     }
 
-    /// Whether g'(x)/x does not rise anywhere; `false` is always safe.
-    fn kernel_falls(&self) -> bool {
-        false
-    }
-
     /// See [`Profile::least_fall`](super::Profile).
     fn least_fall(&self, _inner: f64, outer: f64) -> f64 {
-        if self.kernel_falls() { self.slope(outer) / outer } else { f64::NEG_INFINITY }
+        if self.facts().kernel_falls { self.slope(outer) / outer } else { f64::NEG_INFINITY }
     }
 
     /// See [`Profile::rises_concavely`](super::Profile).
@@ -226,16 +219,6 @@ pub(super) trait Shape {
         Vec::new()
     }
 
-    /// Whether stresses are analytic in r^2 at the centre.
-    fn smooth_centre(&self) -> bool {
-        true
-    }
-
-    /// Whether g'/x is a polynomial in x^2 below all kinks.
-    fn smooth_tip(&self) -> bool {
-        self.smooth_centre()
-    }
-
     /// The interpolation error in a contact of this radius.
     fn interpolation_error(&self, _radius: f64) -> InterpolationError {
         InterpolationError::default()
@@ -245,6 +228,25 @@ pub(super) trait Shape {
     fn noise(&self, _radius: f64) -> Option<(f64, f64)> {
         None
     }
+}
+
+/// The outermost interval of a span without a kink, as such and as a span, and what is left inside it.
+pub(super) fn outermost_interval<S: Shape + ?Sized>(shape: &S, span: &Span) -> (SmoothInterval, Span, Option<Span>) {
+    let ShapeFacts { ceiling, power, analytic_tip, .. } = shape.facts();
+    let base = shape.kink_below(span.outer_radius);
+    let square = DoubleDouble::square_of(base);
+    let (Some(outer), rest) = (span.above(square, base), span.below(square, base)) else {
+        return (SmoothInterval::new(span, 0.0, 0.0, ceiling, power), *span, None);
+    };
+    let singularity = if base > 0.0 {
+        let next = shape.kink_below(base);
+        ((base - next) * (base + next)).sqrt()
+    } else if analytic_tip {
+        f64::INFINITY
+    } else {
+        0.0
+    };
+    (SmoothInterval::new(&outer, base, singularity, ceiling, power), outer, rest)
 }
 
 /// The stretch from a node of an interval up to the interval's outer end.
@@ -298,7 +300,7 @@ pub(super) fn moments<S: Shape + ?Sized>(shape: &S, span: &Span) -> Moments {
     let (mut sum, mut above) = (Moments::default(), 0.0);
     let mut rest = Some(*span);
     while let Some(span) = rest.filter(|span| span.gap > 0.0) {
-        let (interval, outer, inner) = shape.outermost_interval(&span);
+        let (interval, outer, inner) = outermost_interval(shape, &span);
         let part = interval.moments(|node| shape.rise_to(&outer, &interval, node));
         sum = Moments::stack(part, sum, above);
         above += shape.rise(&outer);

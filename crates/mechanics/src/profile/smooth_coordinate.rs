@@ -69,8 +69,8 @@ pub(super) trait SmoothCoordinate {
         low < 0.8 * high
     }
 
-    /// The moments over a span above the kink, between `low` and `high` in t, `dt` = high - low, where they are closed.
-    fn moments_over(&self, _span: &Span, _ends: (f64, f64, f64)) -> Option<Moments> {
+    /// The moments over a span above the kink, where they are closed.
+    fn moments_over(&self, _span: &Span, _ends: &SpanEnds) -> Option<Moments> {
         None
     }
 
@@ -103,6 +103,15 @@ pub(super) trait SmoothCoordinate {
     fn jumps(&self) -> bool {
         self.slope_at(0.0) > 0.0
     }
+}
+
+/// A span in t, m.
+#[derive(Clone, Copy)]
+pub(super) struct SpanEnds {
+    pub(super) low: f64,
+    pub(super) high: f64,
+    /// The difference of the two, to round-off of itself.
+    pub(super) drop: f64,
 }
 
 /// Several places of one span.
@@ -174,19 +183,19 @@ pub(super) fn slope(family: &impl SmoothCoordinate, radius: f64) -> f64 {
     }
 }
 
-/// Both ends of a span in t, and their difference.
-pub(super) fn ends(family: &impl SmoothCoordinate, span: &Span) -> (f64, f64, f64) {
+/// Both ends of a span in t.
+pub(super) fn ends(family: &impl SmoothCoordinate, span: &Span) -> SpanEnds {
     let (low, high) = span.excess(DoubleDouble::square_of(family.kink_radius()));
     let (low, high) = (low.max(0.0).sqrt(), high.max(0.0).sqrt());
-    (low, high, if high > 0.0 { span.gap / (low + high) } else { 0.0 })
+    SpanEnds { low, high, drop: if high > 0.0 { span.gap / (low + high) } else { 0.0 } }
 }
 
 /// g over a span, to round-off of itself.
 pub(super) fn rise(family: &impl SmoothCoordinate, span: &Span) -> f64 {
     let square = DoubleDouble::square_of(family.kink_radius());
     let Some(span) = span.above(square, family.kink_radius()) else { return 0.0 };
-    let (low, high, dt) = ends(family, &span);
-    family.rise_at(low, high, dt)
+    let SpanEnds { low, high, drop } = ends(family, &span);
+    family.rise_at(low, high, drop)
 }
 
 /// Difference of the squares over a ring of this depth.
@@ -223,10 +232,11 @@ pub(super) fn moments(family: &impl SmoothCoordinate, span: &Span) -> Moments {
     if span.gap <= 0.0 {
         return Moments::default();
     }
-    let (low, high, drop) = ends(family, span);
-    if let Some(moments) = family.moments_over(span, (low, high, drop)) {
+    let ends = ends(family, span);
+    if let Some(moments) = family.moments_over(span, &ends) {
         return moments;
     }
+    let SpanEnds { high, drop, .. } = ends;
     let singular = Singular { below: family.singularity(), above: f64::INFINITY };
     let mut sum = [0.0; 2];
     let mut done = 0.0;

@@ -3,7 +3,7 @@
 //! A short path, that of most rings of a slip history, takes one panel of Gauss's rule, as [`along_strip`] would give
 //! it, with all of its points side by side.
 
-use super::smooth_coordinate::{SmoothCoordinate, ends};
+use super::smooth_coordinate::{SmoothCoordinate, SpanEnds, ends};
 use super::{DoubleDouble, Span, StressRadius};
 use crate::numerics::gauss::{EIGHT_POINTS, TWELVE_POINTS, along_strip};
 
@@ -39,7 +39,7 @@ impl Path {
         if outer <= 0.0 {
             return None;
         }
-        let (mut low, high, _) = ends(family, &span);
+        let SpanEnds { mut low, high, .. } = ends(family, &span);
         let kappa = (at.square - square).value();
         let (mut v_low, v_high) = (inner.max(0.0).sqrt(), outer.sqrt());
         let mut gap = span.gap;

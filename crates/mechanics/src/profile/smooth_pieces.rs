@@ -102,7 +102,7 @@ impl<'a> SmoothPieces<'a> {
 
     /// None as yet, of so many rings inside an edge at a radius, m.
     pub(super) fn within(profile: &'a Profile, edge: f64, least: f64, rings: usize) -> SmoothPieces<'a> {
-        let innermost = if profile.smooth_tip() { 0.0 } else { (CLEAR * least).max(INNERMOST * edge) };
+        let innermost = if profile.facts().smooth_tip { 0.0 } else { (CLEAR * least).max(INNERMOST * edge) };
         let (pieces, terms) = (Vec::with_capacity(2 * rings), Vec::with_capacity(2 * TERMS * rings));
         SmoothPieces { profile, pieces, terms, innermost, tip: Vec::new(), unit: 1.0 / (edge * edge) }
     }
@@ -141,7 +141,7 @@ impl<'a> SmoothPieces<'a> {
                 let near = Near::Kink { even: self.keep(even, 1.0), odd: self.keep(odd, 1.0) };
                 self.push((base, from), (top, thin && gap <= reach), weight, (near, far));
             } else {
-                let above = if kink > 0.0 || !profile.smooth_tip() { above } else { f64::INFINITY };
+                let above = if kink > 0.0 || !profile.facts().smooth_tip { above } else { f64::INFINITY };
                 self.smooth((low, outer), (gap, thin), (above, weight))?;
             }
             (outer, radius) = (low, kink);

@@ -4,7 +4,7 @@
 //! rounded radii (Hertz 1881; Popov & Hess 2015).
 
 use super::power_series::{Place, Series};
-use super::shape::Shape;
+use super::shape::{Shape, ShapeFacts};
 use super::{DoubleDouble, Error, Moments, Ring, Span, StressRadius, range};
 
 /// A paraboloid of revolution.
@@ -123,12 +123,9 @@ impl Shape for Sphere {
         r / self.curvature_radius
     }
 
-    fn curvature_radius(&self) -> Option<f64> {
-        Some(self.curvature_radius)
-    }
-
-    fn kernel_falls(&self) -> bool {
-        true
+    fn facts(&self) -> ShapeFacts {
+        let curvature_radius = Some(self.curvature_radius);
+        ShapeFacts { curvature_radius, kernel_falls: true, ..ShapeFacts::default() }
     }
 
     fn rises_concavely(&self, _inner: f64) -> bool {

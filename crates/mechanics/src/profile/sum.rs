@@ -13,7 +13,7 @@ mod tests;
 
 use super::polynomial::Polynomial;
 use super::power_series::{KINK_TERMS, KinkSeries, Place, Series};
-use super::shape::{self, End, Shape};
+use super::shape::{self, Shape, ShapeFacts};
 use super::smooth_interval::{Node, SmoothInterval};
 use super::tabulated::{self, Kernel};
 use super::{DoubleDouble, InterpolationError, Moments, Point, Profile, Ring, Span, StressRadius};
@@ -38,13 +38,9 @@ pub struct Sum {
     /// Radii at which one of the parts is not smooth, increasing.
     kinks: Vec<f64>,
     rim: Option<(f64, f64)>,
-    /// Where contacts end.
-    limit: Option<End>,
     /// Where X(y) is sought if a part's own inverse is of no help: from the flat radius of the sum to its rim, m.
     bracket: Option<(f64, f64)>,
-    ceiling: f64,
-    power: f64,
-    analytic_tip: bool,
+    facts: ShapeFacts,
     /// g, where it is one.
     polynomial: Option<Polynomial>,
     /// Of many kinks that a contact can reach.
@@ -69,7 +65,7 @@ impl Sum {
     /// where the radius is little below the end of a part that is vertical there, one some units in the last place
     /// below it.
     fn counted_from(&self, radius: f64) -> Option<f64> {
-        if radius > (1.0 - NEAR) * self.ceiling {
+        if radius > (1.0 - NEAR) * self.facts.ceiling {
             return Some(radius * (1.0 - 8.0 * f64::EPSILON));
         }
         let above = self.kinks.partition_point(|&kink| kink <= radius);
@@ -226,21 +222,13 @@ impl Shape for Sum {
         self.rim
     }
 
+    fn facts(&self) -> ShapeFacts {
+        self.facts
+    }
+
     fn kink_below(&self, radius: f64) -> f64 {
         let above = self.kinks.partition_point(|&kink| kink < radius);
         above.checked_sub(1).map_or(0.0, |index| self.kinks[index])
-    }
-
-    fn analytic_tip(&self) -> bool {
-        self.analytic_tip
-    }
-
-    fn ceiling(&self) -> f64 {
-        self.ceiling
-    }
-
-    fn power(&self) -> f64 {
-        self.power
     }
 
     fn kernel(&self, at: &StressRadius, span: &Span) -> f64 {
@@ -297,16 +285,8 @@ impl Shape for Sum {
         self.total(|part| part.surface_slope(r))
     }
 
-    fn curvature_radius(&self) -> Option<f64> {
-        self.parts.iter().filter_map(Profile::curvature_radius).reduce(f64::min)
-    }
-
-    fn known_to(&self) -> Option<End> {
-        self.limit
-    }
-
     fn cancellation(&self, x: f64) -> f64 {
-        if !self.parts.iter().any(Shape::falls_within) {
+        if !self.parts.iter().any(|part| part.facts().falls_within()) {
             return 1.0;
         }
         let growth = |f: &dyn Fn(&Profile) -> f64| {
@@ -315,10 +295,6 @@ impl Shape for Sum {
         };
         // The terms that cancel are themselves good to some units in their last place.
         2.0 * growth(&|part| part.level(x)).max(growth(&|part| part.slope(x)))
-    }
-
-    fn kernel_falls(&self) -> bool {
-        self.parts.iter().all(Profile::kernel_falls)
     }
 
     fn least_fall(&self, inner: f64, outer: f64) -> f64 {
@@ -334,14 +310,6 @@ impl Shape for Sum {
         radii.sort_by(f64::total_cmp);
         radii.dedup_by(|a, b| a.to_bits() == b.to_bits());
         radii
-    }
-
-    fn smooth_centre(&self) -> bool {
-        self.parts.iter().all(Profile::smooth_centre)
-    }
-
-    fn smooth_tip(&self) -> bool {
-        self.parts.iter().all(Shape::smooth_tip)
     }
 
     fn interpolation_error(&self, radius: f64) -> InterpolationError {

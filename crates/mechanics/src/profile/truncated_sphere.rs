@@ -9,7 +9,8 @@
 //! without a negative coefficient, so that nothing cancels.
 
 use super::power_series::{BeyondKink, KinkSeries, Place, Series};
-use super::smooth_coordinate::{self, SmoothCoordinate, flat_core};
+use super::shape::ShapeFacts;
+use super::smooth_coordinate::{self, SmoothCoordinate, SpanEnds, flat_core};
 use super::{DoubleDouble, Error, Moments, Ring, Span, StressRadius, range};
 
 /// Squares of t have twice the digits: their differences, over the larger one, are good down to this.
@@ -93,7 +94,7 @@ impl SmoothCoordinate for TruncatedSphere {
         high - low > RESOLVED * high
     }
 
-    fn moments_over(&self, span: &Span, (low, high, dt): (f64, f64, f64)) -> Option<Moments> {
+    fn moments_over(&self, span: &Span, &SpanEnds { low, high, drop: dt }: &SpanEnds) -> Option<Moments> {
         let (b, width, radii) = (self.flat_radius, span.width(), span.inner_radius + span.outer_radius);
         let both = high + low;
         let first = dt * dt / (3.0 * self.curvature_radius * radii)
@@ -138,7 +139,7 @@ flat_core!(TruncatedSphere {
         if r > self.flat_radius { r / self.curvature_radius } else { 0.0 }
     }
 
-    fn curvature_radius(&self) -> Option<f64> {
-        Some(self.curvature_radius)
+    fn facts(&self) -> ShapeFacts {
+        ShapeFacts { curvature_radius: Some(self.curvature_radius), ..ShapeFacts::default() }
     }
 });

@@ -12,15 +12,15 @@ use super::complex::Complex;
 
 /// The functions that give the stress under a normal load: xx = P0 + x^2 P1, yy = P0 + y^2 P1, zz = P2, xy = x y P1, xz
 /// = x P3, yz = y P3.
-pub(super) type Normal = [f64; 4];
+pub(super) type NormalKernels = [f64; 4];
 
 /// The functions that give it under a tangential load: xx = x (Q0 + 2 Q1 + x^2 Q2), yy = x (Q0 + y^2 Q2), zz = x Q3,
 /// xy = y (Q1 + x^2 Q2), xz = Q5 + x^2 Q4, yz = x y Q4.
-pub(super) type Tangential = [f64; 6];
+pub(super) type TangentialKernels = [f64; 6];
 
 /// A point below the surface, lengths over the contact radius.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Place {
+pub(super) struct DeepPlace {
     /// Distance from the axis.
     pub(super) r: f64,
     /// Depth, at least zero.
@@ -29,7 +29,7 @@ pub(super) struct Place {
     pub(super) poisson: f64,
 }
 
-impl Place {
+impl DeepPlace {
     /// zeta and rho for the source at t = r + `offset`, which is given by the offset to keep the digits of rho near the
     /// surface.
     pub(super) fn source(&self, offset: f64) -> (Complex, Complex) {
@@ -39,8 +39,8 @@ impl Place {
     }
 
     /// The functions for a unit of slope at t = r + `offset`.
-    pub(super) fn kernels(&self, offset: f64) -> (Normal, Tangential) {
-        let Place { r, z, poisson: nu } = *self;
+    pub(super) fn kernels(&self, offset: f64) -> (NormalKernels, TangentialKernels) {
+        let DeepPlace { r, z, poisson: nu } = *self;
         let (zeta, rho) = self.source(offset);
         let (one, s) = (rho.inverse(), (rho + zeta).inverse());
         let (both, cube) = (one * s, one * one * one);

@@ -17,7 +17,7 @@ use std::sync::OnceLock;
 use super::contact::Contact;
 use super::profile::{Profile, Ring};
 use super::{Error, range};
-use kernel::{Normal, Place, Tangential};
+use kernel::{DeepPlace, NormalKernels, TangentialKernels};
 use mesh::{Mesh, Source};
 use sphere::Kinks;
 pub use tensor::Stress;
@@ -119,7 +119,7 @@ impl Subsurface {
         }
         let r = x.hypot(y);
         let surface = z <= SURFACE * radius;
-        let place = Place { r: r / radius, z: if surface { 0.0 } else { z / radius }, poisson: self.poisson };
+        let place = DeepPlace { r: r / radius, z: if surface { 0.0 } else { z / radius }, poisson: self.poisson };
         let (normal, tangential) = match &self.kinks {
             Some(kinks) if place.r.hypot(place.z) < FAR => kinks.functions(&place),
             _ => self.integrated(&place),
@@ -135,7 +135,7 @@ impl Subsurface {
     }
 
     /// The ten functions by quadrature over the radius.
-    fn integrated(&self, place: &Place) -> (Normal, Tangential) {
+    fn integrated(&self, place: &DeepPlace) -> (NormalKernels, TangentialKernels) {
         let (mut normal, mut tangential) = ([0.0; 4], [0.0; 6]);
         let radius = self.contact.contact_radius();
         self.mesh().visit(self.contact.profile(), radius, (place.r, place.z), |offset, source| {

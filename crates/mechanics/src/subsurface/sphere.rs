@@ -6,7 +6,7 @@
 //! left. So each function is linear in a few numbers of a kink, and the kinks of a history are summed before the
 //! functions are formed.
 
-use super::kernel::{Normal, Place, Tangential};
+use super::kernel::{DeepPlace, NormalKernels, TangentialKernels};
 use super::mesh::Source;
 
 /// Kinks taken at once: the compiler turns loops over so many into instructions on vectors.
@@ -35,7 +35,7 @@ impl Kinks {
     }
 
     /// The functions for the parabola g = t^2, lengths over the contact radius.
-    pub(super) fn functions(&self, place: &Place) -> (Normal, Tangential) {
+    pub(super) fn functions(&self, place: &DeepPlace) -> (NormalKernels, TangentialKernels) {
         let mut edge = [0.0; TERMS];
         let mut sums = [[0.0; LANES]; TERMS];
         for (index, (radii, weights)) in self.tangential.iter().enumerate() {
@@ -56,8 +56,8 @@ impl Kinks {
 
 /// Of each kink at a radius a: the angle of sigma, Im rho, powers of s = 1/sigma as they are and times a, and those
 /// times z/rho.
-fn terms(place: &Place, radii: &[f64; LANES]) -> [[f64; LANES]; TERMS] {
-    let Place { r, z, .. } = *place;
+fn terms(place: &DeepPlace, radii: &[f64; LANES]) -> [[f64; LANES]; TERMS] {
+    let DeepPlace { r, z, .. } = *place;
     let mut all = [[0.0; LANES]; TERMS];
     let mut sigma = [[0.0; LANES]; 2];
     for lane in 0..LANES {
@@ -103,8 +103,8 @@ fn terms(place: &Place, radii: &[f64; LANES]) -> [[f64; LANES]; TERMS] {
 }
 
 /// The ten functions from the sums of the terms.
-fn functions(place: &Place, terms: &[f64; TERMS]) -> (Normal, Tangential) {
-    let Place { r, z, poisson: nu } = *place;
+fn functions(place: &DeepPlace, terms: &[f64; TERMS]) -> (NormalKernels, TangentialKernels) {
+    let DeepPlace { r, z, poisson: nu } = *place;
     let [angle, rho, a_s, s, a_s2, s2, a_s3, s3, s4, over, over_s, over_s2, over_s3] = *terms;
     let square = r * r;
     let l0 = 2.0 * (z * angle - rho);

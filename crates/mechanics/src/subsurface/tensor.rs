@@ -1,6 +1,6 @@
 //! The stress tensor and its invariants.
 
-use super::kernel::{Normal, Tangential};
+use super::kernel::{NormalKernels, TangentialKernels};
 
 /// A symmetric stress tensor, Pa, tension positive.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -21,7 +21,7 @@ pub struct Stress {
 
 impl Stress {
     /// From the ten functions at (x, y), lengths over the contact radius.
-    pub(super) fn of(x: f64, y: f64, p: &Normal, q: &Tangential) -> Stress {
+    pub(super) fn of(x: f64, y: f64, p: &NormalKernels, q: &TangentialKernels) -> Stress {
         Stress {
             xx: p[0] + x * x * p[1] + x * (q[0] + 2.0 * q[1] + x * x * q[2]),
             yy: p[0] + y * y * p[1] + x * (q[0] + y * y * q[2]),

@@ -1,11 +1,32 @@
 //! A sum from its parts: where it ends, where it falls, and what is kept of it.
 
 use super::super::polynomial::Polynomial;
-use super::super::shape::{End, Shape};
+use super::super::shape::{End, Shape, ShapeFacts};
 use super::super::{Error, Profile, Tabulated, range};
 use super::Sum;
 use super::kink_moments::KinkMoments;
 use crate::numerics::roots::turning;
+
+/// The radius of a flat core, m.
+fn flat_radius(part: &Profile) -> f64 {
+    if let Profile::Tabulated(table) = part { table.flat_radius() } else { part.radius(0.0) }
+}
+
+/// What holds for the sum because it does for its parts.
+fn facts_of(parts: &[Profile]) -> ShapeFacts {
+    let facts = || parts.iter().map(Shape::facts);
+    let sum = ShapeFacts {
+        ceiling: facts().map(|part| part.ceiling).fold(f64::INFINITY, f64::min),
+        power: facts().map(|part| part.power).fold(1.0, f64::max),
+        curvature_radius: facts().filter_map(|part| part.curvature_radius).reduce(f64::min),
+        kernel_falls: facts().all(|part| part.kernel_falls),
+        analytic_tip: facts().all(|part| part.analytic_tip),
+        smooth_centre: facts().all(|part| part.smooth_centre),
+        smooth_tip: facts().all(|part| part.smooth_tip),
+        ..ShapeFacts::default()
+    };
+    sum.ending(facts().filter_map(|part| part.known_to).reduce(|a, b| if b.radius < a.radius { b } else { a }))
+}
 
 impl Sum {
     /// The sum of `parts`; sums among them are taken apart.
@@ -36,14 +57,10 @@ impl Sum {
         let mut kinks: Vec<f64> = flat.iter().flat_map(|part| part.knots_below(f64::INFINITY)).collect();
         kinks.sort_by(f64::total_cmp);
         kinks.dedup_by(|a, b| a.to_bits() == b.to_bits());
-        let limit = flat.iter().filter_map(Shape::known_to).reduce(|a, b| if b.radius < a.radius { b } else { a });
         let mut sum = Sum {
             rim: None,
-            limit,
             bracket: None,
-            ceiling: flat.iter().map(Shape::ceiling).fold(f64::INFINITY, f64::min),
-            power: flat.iter().map(Shape::power).fold(1.0, f64::max),
-            analytic_tip: flat.iter().all(Shape::analytic_tip),
+            facts: facts_of(&flat),
             polynomial: Polynomial::of(&flat),
             kink_moments: None,
             parts: flat,
@@ -52,14 +69,14 @@ impl Sum {
         let rim = sum.parts.iter().filter_map(Shape::rim_radius).fold(f64::INFINITY, f64::min);
         let falls = sum.first_fall(rim, keep_going)?;
         if let Some(radius) = falls {
-            sum.limit = Some(End { radius, falls: true });
+            sum.facts = sum.facts.ending(Some(End { radius, falls: true }));
         }
         let rim = falls.unwrap_or(rim);
-        if rim < sum.ceiling {
+        if rim < sum.facts.ceiling {
             sum.rim = Some((rim, sum.level(rim)));
         }
-        if sum.parts.iter().any(Shape::falls_within) {
-            let flat_radius = sum.parts.iter().map(Shape::flat_radius).fold(rim, f64::min);
+        if sum.parts.iter().any(|part| part.facts().falls_within()) {
+            let flat_radius = sum.parts.iter().map(flat_radius).fold(rim, f64::min);
             if !sum.rim.is_some_and(|(_, top)| top > 0.0) {
                 return Err(Error::NotConvexEnough { radius: flat_radius });
             }
@@ -72,7 +89,7 @@ impl Sum {
 
     /// The first radius below `rim` at which the sum falls, where a part of it does, m.
     fn first_fall(&self, rim: f64, keep_going: &dyn Fn() -> bool) -> Result<Option<f64>, Error> {
-        let tables = self.parts.iter().filter(|part| part.falls_within()).filter_map(|part| match part {
+        let tables = self.parts.iter().filter(|part| part.facts().falls_within()).filter_map(|part| match part {
             Profile::Tabulated(table) => Some(table),
             _ => None,
         });

@@ -30,7 +30,7 @@ mod weighted_panels;
 use std::sync::Arc;
 
 use super::super::error::TableFault;
-use super::shape::{End, Shape};
+use super::shape::{End, Shape, ShapeFacts};
 use super::smooth_coordinate::SmoothCoordinate;
 use super::smooth_interval::{Node, SmoothInterval};
 use super::{DoubleDouble, Error, Moments, Point, Profile, Ring, Span, StressRadius, range};
@@ -156,6 +156,11 @@ impl Tabulated {
         })
     }
 
+    /// The radius of a flat core, m.
+    pub(super) fn flat_radius(&self) -> f64 {
+        self.curve.flat_radius()
+    }
+
     /// Radii, m, increasing, between which g' cannot hide a fall.
     pub(super) fn slope_check_radii(&self) -> impl Iterator<Item = f64> {
         let panels = &self.curve.up_to(self.end).panels;
@@ -270,20 +275,10 @@ impl Shape for Tabulated {
         (self.heights[index] - self.heights[index - 1]) / (self.radii[index] - self.radii[index - 1])
     }
 
-    fn limit(&self) -> Option<End> {
-        Some(End { radius: self.falls.unwrap_or(self.end), falls: self.falls.is_some() })
-    }
-
-    fn known_to(&self) -> Option<End> {
-        Some(End { radius: self.end, falls: self.falls.is_some_and(|radius| radius >= self.end) })
-    }
-
-    fn falls_within(&self) -> bool {
-        self.falls.is_some_and(|radius| radius < self.end)
-    }
-
-    fn flat_radius(&self) -> f64 {
-        self.curve.flat_radius()
+    fn facts(&self) -> ShapeFacts {
+        let end = End { radius: self.end, falls: self.falls.is_some_and(|radius| radius >= self.end) };
+        let limit = Some(End { radius: self.falls.unwrap_or(self.end), falls: self.falls.is_some() });
+        ShapeFacts { limit, known_to: Some(end), ..ShapeFacts::default() }
     }
 
     fn interpolation_error(&self, radius: f64) -> InterpolationError {

@@ -23,6 +23,16 @@ const LOGARITHM: f64 = 40.0;
 /// A stretch within the panel of this index.
 pub(super) type PanelPart = (usize, Span);
 
+/// A span by the panels that it lies in.
+pub(super) struct SpanParts {
+    /// What it has of its innermost panel, if that is not all.
+    pub(super) low: Option<PanelPart>,
+    /// The whole panels.
+    pub(super) whole: Range<usize>,
+    /// What it has of its outermost panel.
+    pub(super) high: Option<PanelPart>,
+}
+
 /// Where panels end: radius, m, level, m, and load, m^2.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Top {
@@ -131,7 +141,7 @@ impl Panels {
     }
 
     pub(super) fn rise(&self, span: &Span) -> f64 {
-        let (low, whole, high) = self.parts(span);
+        let SpanParts { low, whole, high } = self.parts(span);
         let between = self.tree.run(whole.start, whole.end).1;
         [low, high]
             .into_iter()
@@ -192,7 +202,7 @@ impl Panels {
     }
 
     pub(super) fn moments(&self, span: &Span) -> Moments {
-        let (low, whole, high) = self.parts(span);
+        let SpanParts { low, whole, high } = self.parts(span);
         let mut sum = self.tree.run(whole.start, whole.end);
         if let Some((index, span)) = low {
             sum.0 = Moments::stack(smooth_coordinate::moments(&self.panels[index], &span), sum.0, sum.1);
@@ -234,18 +244,18 @@ impl Panels {
         (self.find(span.inner_radius).min(outer), outer)
     }
 
-    /// The parts of a span in its innermost and its outermost panel, and the whole panels between.
-    pub(super) fn parts(&self, span: &Span) -> (Option<PanelPart>, Range<usize>, Option<PanelPart>) {
+    /// The parts of a span.
+    pub(super) fn parts(&self, span: &Span) -> SpanParts {
         let (inner, outer) = self.ends(span);
         if inner == outer {
-            return (None, outer..outer, Some((outer, *span)));
+            return SpanParts { low: None, whole: outer..outer, high: Some((outer, *span)) };
         }
         let (this, next) = (&self.panels[inner], &self.panels[inner + 1]);
         let whole = span.inner_radius <= this.radius;
         let low = if whole { None } else { span.below(next.square, next.radius).map(|span| (inner, span)) };
         let top = &self.panels[outer];
         let high = span.above(top.square, top.radius).map(|span| (outer, span));
-        (low, if whole { inner } else { inner + 1 }..outer, high)
+        SpanParts { low, whole: if whole { inner } else { inner + 1 }..outer, high }
     }
 
     /// A panel as a span, up to the very square where the next one begins.
@@ -256,7 +266,7 @@ impl Panels {
     /// The sum of a kernel of what lies beyond r over a span.
     pub(super) fn sum(&self, kernel: Kernel, at: &StressRadius, span: &Span) -> f64 {
         let Some(span) = span.above(at.square, at.radius) else { return 0.0 };
-        let (low, whole, high) = self.parts(&span);
+        let SpanParts { low, whole, high } = self.parts(&span);
         let part = |(index, span): PanelPart| kernel.near(&self.panels[index], at, &span);
         let (square, mut far, mut near) = (at.square.value(), 0.0, 0.0);
         self.sources().visit(

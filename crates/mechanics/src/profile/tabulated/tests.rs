@@ -2,7 +2,7 @@
 
 use super::super::{Profile, Ring, RoundedPunch, Sphere, StressRadius, Sum};
 use super::panel::KernelPanel;
-use super::panels::Panels;
+use super::panels::{Panels, SpanParts};
 use super::*;
 use crate::numerics::gauss;
 use proptest::prelude::*;
@@ -154,7 +154,7 @@ proptest! {
         let radii: Vec<StressRadius> = radii.iter().map(|share| StressRadius::new(share * table.end)).collect();
         let by_panels = |at: &StressRadius, ring: &Ring| {
             let panels = all(&table);
-            let (low, whole, high) = panels.parts(&panels.span(ring));
+            let SpanParts { low, whole, high } = panels.parts(&panels.span(ring));
             let whole = whole.map(|index| (index, panels.span_of_panel(index)));
             let kernel = |(index, span): (usize, Span)| graded_kernel(&panels.panels[index], at, &span);
             low.into_iter().chain(whole).chain(high).map(kernel).sum::<f64>()

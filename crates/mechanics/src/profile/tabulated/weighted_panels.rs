@@ -13,7 +13,7 @@ use std::ops::Range;
 
 use super::kernel::Kernel;
 use super::panel_sources::add_panel;
-use super::panels::Panels;
+use super::panels::{Panels, SpanParts};
 use super::{Span, StressRadius};
 use crate::numerics::cluster_tree::Cluster;
 use crate::numerics::multipole::Multipole;
@@ -52,7 +52,7 @@ impl WeightedPanels<'_> {
             if span.edge > 0.0 {
                 return None;
             }
-            let (low, whole, high) = table.parts(span);
+            let SpanParts { low, whole, high } = table.parts(span);
             parts.extend(low.map(|(index, span)| (index, span, *weight)));
             if !whole.is_empty() {
                 runs.push((whole, *weight));
