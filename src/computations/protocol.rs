@@ -14,8 +14,10 @@ use crate::simulation::bytes::{MOVE_BYTES, RECORD_BYTES, STATE_BYTES, of_shape};
 use crate::simulation::cost::{MOVE_COST, Work, on_profile};
 use crate::simulation::{self, Failure, Subject};
 
-/// One pair of kinks of a protocol, over all evaluations and all three laws.
-const KINK_PAIR_COST: u64 = 15_000;
+/// One pair of kinks of a protocol on a sphere, over all evaluations and all three laws.
+const KINK_PAIR_COST: u64 = 10_000;
+/// The same on a table, over that on a sphere; other shapes are within a half of it.
+const TABLE: u64 = 50;
 /// The least that a protocol costs.
 const PROTOCOL_COST: u64 = 200_000;
 /// Reversals that a target is assumed to need.
@@ -126,7 +128,8 @@ impl OnContact for ProtocolTask {
         let once = Work { moves: reversals + 1, residual: true, ..Work::default() };
         let once = MOVE_COST.saturating_mul(once.moves as u64).saturating_add(once.stresses());
         let pairs = (reversals * (reversals + depth.min(ASSUMED_REVERSALS))) as u64;
-        on_profile(profile, PROTOCOL_COST + pairs * KINK_PAIR_COST + 3 * tried.saturating_mul(once), true)
+        let searched = (pairs * KINK_PAIR_COST).saturating_mul(relative_cost(profile));
+        on_profile(profile, PROTOCOL_COST + 3 * tried.saturating_mul(once), true).saturating_add(searched)
     }
 
     fn run(self, contact: Contact, _: u64, stop: &Stop) -> Result<Plain<ProtocolReply>, Failure> {
@@ -143,6 +146,16 @@ pub fn find_from_state(contact: &Contact, task: &ProtocolTask, stop: &Stop) -> R
         return Err(Failure::Lifted);
     }
     simulation::protocol(&Subject { contact, first: None, setup: None }, task, stop)
+}
+
+/// What a search costs on a profile over that on a sphere.
+fn relative_cost(profile: &Profile) -> u64 {
+    match profile {
+        Profile::Tabulated(_) => TABLE,
+        Profile::Sum(sum) => sum.parts().iter().map(relative_cost).sum(),
+        Profile::Sphere(_) => 1,
+        _ => 2,
+    }
 }
 
 /// Reversals that a protocol has at the most.
