@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import signal
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -30,3 +31,8 @@ def ball() -> ss.Contact:
 def api() -> Iterator[ss.Client]:
     with ss.serve() as client:
         yield client
+
+
+def heed_interrupts() -> None:
+    """In a child: an interrupt reaches it, also where a shell runs the tests in its background and has them ignored."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)

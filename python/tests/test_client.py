@@ -13,6 +13,7 @@ import httpx
 import pytest
 
 import stickslip as ss
+from conftest import heed_interrupts
 from stickslip.aio import AsyncClient
 from stickslip.server import ServedClient
 
@@ -105,7 +106,8 @@ def test_a_server_ends_with_its_process() -> None:
             os.kill(os.getpid(), signal.SIGINT)
             import time; time.sleep(60)
     """)
-    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=60)
+    command = [sys.executable, "-c", program]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=60, preexec_fn=heed_interrupts)
     assert "KeyboardInterrupt" in done.stderr
     with pytest.raises(httpx.ConnectError):
         httpx.get(done.stdout.strip() + "/healthz")

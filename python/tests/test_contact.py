@@ -16,6 +16,7 @@ import numpy as np
 import pytest
 
 import stickslip as ss
+from conftest import heed_interrupts
 
 STEEL = ss.Body("210 GPa", 0.3)
 
@@ -123,7 +124,8 @@ def test_an_interrupt_stops_a_long_call() -> None:
         except KeyboardInterrupt:
             print("interrupted", flush=True)
     """)
-    process = subprocess.Popen([sys.executable, "-c", program], stdout=subprocess.PIPE, text=True)
+    command = [sys.executable, "-c", program]
+    process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True, preexec_fn=heed_interrupts)
     assert process.stdout is not None
     assert process.stdout.readline() == "begun\n"
     time.sleep(1.0)
