@@ -9,8 +9,8 @@ import { virginContact, PROTOCOLS } from "./protocol_run.js";
 /** Up to how many reversals the best protocol is searched for. */
 const MOST_SEARCHED = 10;
 const REVERSALS = [1, 2, 3, 4, 5, 7, 10, 14, 20, 30, 50, 70, 100, 140, 200];
-// Smaller errors are drawn as this one: a logarithmic axis has no zero.
-const SMALLEST_ERROR = 1e-17;
+// Smaller errors are drawn as this one, which is that of a rounded number: a logarithmic axis has no zero.
+const SMALLEST_ERROR = 1e-16;
 
 /** The card of the fretting map; `show` moves its mark. */
 export function mapCard(model) {
@@ -170,7 +170,7 @@ export function accuracyCard(model) {
     title: "Speed against error",
     chart,
     compute,
-    text: "The scene of 20 reversals on this contact by each solver: its time on this server, and its error.",
+    text: "The scene of 20 reversals on this contact by each solver: its time on this server, and its error, of which 10⁻¹⁶ is rounding.",
     calls: () => [{ method: "POST", path: "/accuracy", body: body() }],
   });
   made.element.hidden = true;
