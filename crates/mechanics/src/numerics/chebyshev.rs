@@ -10,7 +10,10 @@ use std::sync::LazyLock;
 /// The part of the largest coefficient below which a last one is the rounding of the values.
 const ROUNDED: f64 = 5e-16;
 
-/// The Chebyshev points of -1..1, and what turns values there into coefficients: a row for each order.
+/// The Chebyshev points of -1..1, and what turns values there into coefficients.
+///
+/// Mirrored points agree in the polynomials of even order and differ in sign in those of odd order: a row for each pair
+/// of points has first its shares in the even orders, then those in the odd ones.
 pub(crate) struct Points<const N: usize> {
     cosines: [f64; N],
     transform: [[f64; N]; N],
@@ -29,8 +32,11 @@ impl<const N: usize> Points<N> {
         let share = |order: usize| if order == 0 { 1.0 } else { 2.0 } / N as f64;
         Points {
             cosines: std::array::from_fn(|index| cosine(2 * index + 1)),
-            transform: std::array::from_fn(|order| {
-                std::array::from_fn(|index| share(order) * cosine(order * (2 * index + 1)))
+            transform: std::array::from_fn(|index| {
+                std::array::from_fn(|column| {
+                    let order = if column < N / 2 { 2 * column } else { 2 * (column - N / 2) + 1 };
+                    share(order) * cosine(order * (2 * index + 1))
+                })
             }),
         }
     }
@@ -45,27 +51,40 @@ impl<const N: usize> Points<N> {
         places
     }
 
-    /// The coefficients of the series with these values; what rounding alone keeps from zero is cut off.
-    pub(crate) fn series(&self, values: &[f64; N]) -> Vec<f64> {
-        let mut terms = [0.0; N];
-        for (term, row) in terms.iter_mut().zip(&self.transform) {
-            let mut sums = [0.0; 4];
-            for (row, values) in row.chunks_exact(4).zip(values.chunks_exact(4)) {
-                for lane in 0..4 {
-                    sums[lane] += row[lane] * values[lane];
-                }
+    /// The coefficients of the series with these values.
+    pub(crate) fn terms(&self, values: &[f64; N]) -> [f64; N] {
+        let mut sums = [0.0; N];
+        for (index, row) in self.transform[..N / 2].iter().enumerate() {
+            let (this, mirrored) = (values[index], values[N - 1 - index]);
+            let (sum, difference) = (this + mirrored, this - mirrored);
+            for column in 0..N / 2 {
+                sums[column] += sum * row[column];
+                sums[N / 2 + column] += difference * row[N / 2 + column];
             }
-            *term = (sums[0] + sums[1]) + (sums[2] + sums[3]);
         }
-        let size = terms.iter().fold(0.0f64, |size, a| size.max(a.abs()));
-        let last = terms.iter().rposition(|a| a.abs() > ROUNDED * size);
-        terms[..last.map_or(0, |last| last + 1)].to_vec()
+        let mut terms = [0.0; N];
+        for column in 0..N / 2 {
+            (terms[2 * column], terms[2 * column + 1]) = (sums[column], sums[N / 2 + column]);
+        }
+        terms
+    }
+
+    /// The same; what rounding alone keeps from zero is cut off.
+    pub(crate) fn series(&self, values: &[f64; N]) -> Vec<f64> {
+        counted(&self.terms(values)).to_vec()
     }
 
     /// Whether a series of these points has no terms beyond it: its last two are rounding.
     pub(crate) fn resolve(series: &[f64]) -> bool {
         series.len() + 2 <= N
     }
+}
+
+/// The terms of a series up to the last that is more than the rounding of its values.
+pub(crate) fn counted(terms: &[f64]) -> &[f64] {
+    let size = terms.iter().fold(0.0f64, |size, a| size.max(a.abs()));
+    let last = terms.iter().rposition(|a| a.abs() > ROUNDED * size);
+    &terms[..last.map_or(0, |last| last + 1)]
 }
 
 /// The values of a series at places u from -1 to 1, side by side.

@@ -1,5 +1,5 @@
-//! ln(1 + z) of several numbers side by side, without a branch, so that the compiler makes it one calculation of all of
-//! them.
+//! ln(1 + z) and e^s - 1 of several numbers side by side, without a branch, so that the compiler makes them one
+//! calculation of all of them.
 
 /// One over the odd numbers from 21 down to 3.
 const SHARES: [f64; 10] = [
@@ -43,9 +43,48 @@ pub(crate) fn ln_1p<const N: usize>(z: [f64; N]) -> [f64; N] {
     })
 }
 
+/// One over 14, 13, and so on down to 2: the next term of e^r is below 1e-18 for |r| up to ln(2)/2.
+const RECIPROCALS: [f64; 13] = {
+    let mut recips = [0.5; 13];
+    let mut index = 0;
+    while index < recips.len() {
+        recips[index] = 1.0 / (14 - index) as f64;
+        index += 1;
+    }
+    recips
+};
+/// Added to a number, this rounds it to a whole one.
+const ROUNDING: f64 = 6_755_399_441_055_744.0;
+
+/// e^s - 1, to round-off of itself, for s from -700 to 700.
+pub(crate) fn exp_m1<const N: usize>(s: [f64; N]) -> [f64; N] {
+    s.map(|s| {
+        // s = k ln 2 + r.
+        let shifted = s * std::f64::consts::LOG2_E + ROUNDING;
+        let whole = shifted - ROUNDING;
+        let r = (s - whole * LN2.0) - whole * LN2.1;
+        let growth = RECIPROCALS.iter().fold(1.0, |sum, recip| 1.0 + sum * r * recip);
+        let power = f64::from_bits(shifted.to_bits().wrapping_shl(52).wrapping_add(ONE));
+        power * r * growth + (power - 1.0)
+    })
+}
+
 #[cfg(test)]
 mod tests {
-    use super::ln_1p;
+    use super::{exp_m1, ln_1p};
+
+    #[test]
+    fn exponentials_agree_with_those_of_the_standard_library_on_either_side_of_zero() {
+        let mut s = 1e-300;
+        while s < 700.0 {
+            for s in [s, -s] {
+                let ([found], expected) = (exp_m1([s]), f64::exp_m1(s));
+                assert!((found - expected).abs() <= 4.0 * f64::EPSILON * expected.abs(), "{s}: {found} {expected}");
+            }
+            s *= 1.0173;
+        }
+        assert_eq!(exp_m1([0.0]), [0.0]);
+    }
 
     #[test]
     fn logarithms_agree_with_those_of_the_standard_library_from_the_least_to_the_largest_number() {

@@ -4,7 +4,6 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use super::power_series::{Place, Series};
 use super::shape::{Shape, ShapeFacts};
 use super::{DoubleDouble, Error, Moments, Ring, Span, StressRadius, range};
 
@@ -106,10 +105,6 @@ impl Shape for Cone {
         let (ends, starts) = (v * (span.outer_radius + v), v_low * (low + v_low));
         // The difference of the reciprocals, from that of v (x + v).
         self.rise * 0.5 * (dv * (span.outer_radius + v) + v_low * (dx + dv)) / (ends * starts)
-    }
-
-    fn slope_over_radius_series(&self, place: &Place) -> Option<Series> {
-        Some(place.power(self.slope(1.0), -0.5))
     }
 
     fn surface_slope(&self, _r: f64) -> f64 {

@@ -123,7 +123,8 @@ impl<C: CurveFamily> Shape for C {
     }
 
     fn facts(&self) -> ShapeFacts {
-        ShapeFacts::default().ending(self.end().map(|radius| End { radius, falls: false }))
+        ShapeFacts { by_series: false, ..ShapeFacts::default() }
+            .ending(self.end().map(|radius| End { radius, falls: false }))
     }
 
     fn interpolation_error(&self, radius: f64) -> InterpolationError {

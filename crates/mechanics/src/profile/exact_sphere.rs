@@ -6,7 +6,6 @@
 //! K = int (R/D + asinh(q)/(q cosh s)) ds, of which only the second term needs a quadrature, at any r and up to x = R.
 //! Well below the equator, short series serve: [`shallow_sphere`], [`slope_series`](super::slope_series).
 
-use super::power_series::{self, Series};
 use super::shallow_sphere::{self, LIMIT};
 use super::shape::{End, Shape, ShapeFacts};
 use super::slope_series::MOST_POWERS;
@@ -313,13 +312,6 @@ impl Shape for ExactSphere {
             power *= u * u;
         }
         Some(series)
-    }
-
-    fn slope_over_radius_series(&self, place: &power_series::Place) -> Option<Series> {
-        let square = place.middle.value() + place.half;
-        let top = square.sqrt();
-        let odd: Vec<f64> = self.slope_series(top)?.iter().skip(1).step_by(2).map(|c| c / top).collect();
-        Some(place.polynomial(&odd, square))
     }
 
     fn least_fall(&self, inner: f64, outer: f64) -> f64 {

@@ -27,7 +27,6 @@ mod moment_tree;
 mod open_gaps;
 mod polynomial;
 mod power_law;
-mod power_series;
 mod ring;
 pub(super) mod ring_nodes;
 pub(super) mod ring_quadrature;
@@ -60,7 +59,6 @@ use super::error::Error;
 use super::range;
 use crate::numerics::double_double::DoubleDouble;
 use asperities::Count;
-use power_series::{KinkSeries, Place, Series};
 use shape::{End, Shape, ShapeFacts};
 use smooth_interval::{Node, SmoothInterval};
 use span::Span;
@@ -313,6 +311,9 @@ impl Profile {
 macro_rules! dispatch {
     ($($method:ident($($argument:ident: $Type:ty),*) -> $Result:ty;)+) => {
         impl Shape for Profile {
+            fn slopes<const N: usize>(&self, base: f64, t: [f64; N]) -> [f64; N] {
+                each!(self, shape => Shape::slopes(shape, base, t))
+            }
             $(fn $method(&self, $($argument: $Type),*) -> $Result {
                 each!(self, shape => Shape::$method(shape, $($argument),*))
             })+
@@ -335,8 +336,6 @@ dispatch! {
     kernel(at: &StressRadius, span: &Span) -> f64;
     kernel_slope(at: &StressRadius, span: &Span) -> f64;
     slope_series(a: f64) -> Option<Vec<f64>>;
-    slope_over_radius_series(place: &Place) -> Option<Series>;
-    kink_series(b: f64, top: f64) -> Option<KinkSeries>;
     kernel_sums(rings: &[(Ring, f64)], radii: &[StressRadius]) -> Option<Vec<f64>>;
     displacements(rings: &[(Ring, f64)], ends: (f64, f64), radii: &[StressRadius]) -> Option<Vec<f64>>;
     surface_slope(r: f64) -> f64;

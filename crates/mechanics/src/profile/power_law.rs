@@ -5,11 +5,11 @@
 //! ([`slope_series`](super::slope_series)) of positive terms (Galin 1946; Sneddon 1965); else over x = r cosh s; from
 //! 1e8 r on, where x^2 - r^2 is x^2 to round-off, in closed form.
 
-use super::power_series::{Place, Series};
 use super::shape::{Shape, ShapeFacts};
 use super::smooth_coordinate::{self, SmoothCoordinate};
 use super::{DoubleDouble, Error, Moments, Ring, Span, StressRadius, range, series_kernel};
 use crate::numerics::gauss::{EIGHT_POINTS, Singular, first_and_second};
+use crate::numerics::logarithm::{exp_m1, ln_1p};
 
 /// The largest exponent for which the recursion is quicker than a quadrature.
 const MOST_TERMS: u16 = 24;
@@ -242,6 +242,16 @@ impl Shape for PowerLaw {
         self.exponent * self.scale * Self::raised(radius, self.exponent - 1.0, self.order.map(|order| order - 1))
     }
 
+    fn slopes<const N: usize>(&self, base: f64, t: [f64; N]) -> [f64; N] {
+        // By the powers of radii over the least of them, which a logarithm side by side is good for.
+        let x = if base > 0.0 { t.map(|t| (base * base + t * t).sqrt()) } else { t };
+        let least = x.iter().copied().fold(f64::INFINITY, f64::min).max(f64::MIN_POSITIVE);
+        let power = self.exponent - 1.0;
+        let growth = exp_m1(ln_1p(x.map(|x| (x - least) / least)).map(|logarithm| power * logarithm));
+        let slope = self.slope(least);
+        std::array::from_fn(|index| (slope + slope * growth[index]) * (t[index] / x[index]))
+    }
+
     fn radius(&self, level: f64) -> f64 {
         let power = level / self.scale;
         match self.order {
@@ -307,6 +317,7 @@ impl Shape for PowerLaw {
             analytic_tip: self.order.is_some() || self.exponent >= 30.0,
             smooth_centre: self.exponent.to_bits() == 2f64.to_bits(),
             smooth_tip: self.order.is_some_and(|order| order % 2 == 0),
+            by_series: self.exponent <= STEEPEST,
             ..ShapeFacts::default()
         }
     }
@@ -364,10 +375,6 @@ impl Shape for PowerLaw {
         let mut series = vec![0.0; usize::from(self.order?)];
         *series.last_mut()? = self.slope(a);
         Some(series)
-    }
-
-    fn slope_over_radius_series(&self, place: &Place) -> Option<Series> {
-        (self.exponent <= STEEPEST).then(|| place.power(self.exponent * self.scale, 0.5 * self.exponent - 1.0))
     }
 
     fn surface_slope(&self, r: f64) -> f64 {

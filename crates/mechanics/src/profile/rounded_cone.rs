@@ -4,12 +4,11 @@
 //! There gamma = dg/dt = T (t/x) Q, Q = 2b/(x + t) + phi, and int x dg = (T/2)(x^2 phi + (4/3) b x^2/(x + t) + b t/3)
 //! (Ciavarella 1999; Popov & Hess 2015). f' bends but does not jump at b, so all stresses are finite.
 
-use super::power_series::{KinkSeries, Place, Series};
 use super::shape::{Shape, ShapeFacts};
 use super::smooth_coordinate::{self, SmoothCoordinate};
 use super::sphere::Sphere;
 use super::{DoubleDouble, Error, Moments, Ring, Span, StressRadius, range};
-use crate::numerics::angle::tangent_less_angle;
+use crate::numerics::angle::{angles, tangent_less_angle};
 use crate::numerics::roots::descend;
 
 /// A cone whose tip is a paraboloid.
@@ -69,6 +68,15 @@ impl SmoothCoordinate for Flank {
         self.slope * (t / x) * (2.0 * b / (x + t) + (t / b).atan())
     }
 
+    fn slopes_at<const N: usize>(&self, t: [f64; N]) -> Option<[f64; N]> {
+        let b = self.tip_radius;
+        let (angle, _) = angles(t.map(|t| t / b));
+        Some(std::array::from_fn(|index| {
+            let (t, x) = (t[index], (b * b + t[index] * t[index]).sqrt());
+            self.slope * (t / x) * (2.0 * b / (x + t) + angle[index])
+        }))
+    }
+
     fn bend_at(&self, t: f64) -> f64 {
         // t gamma' - gamma = -T (t/x) ((t/x)^2 Q + b^3 t/(x (x + t))^2 x), from Q' = -b^3/(x^2 (x + t)^2).
         let (b, x) = (self.tip_radius, self.radius_at(t));
@@ -126,6 +134,14 @@ impl Shape for RoundedCone {
             self.tip.slope(radius)
         } else {
             smooth_coordinate::slope(&self.flank, radius)
+        }
+    }
+
+    fn slopes<const N: usize>(&self, base: f64, t: [f64; N]) -> [f64; N] {
+        if base < self.flank.tip_radius {
+            self.tip.slopes(base, t)
+        } else {
+            smooth_coordinate::slopes(&self.flank, base, t)
         }
     }
 
@@ -197,23 +213,6 @@ impl Shape for RoundedCone {
         let (tip, flank) = self.parts(span);
         tip.map_or(0.0, |span| self.tip.kernel_slope(at, &span))
             + flank.map_or(0.0, |span| smooth_coordinate::kernel_slope(&self.flank, at, &span))
-    }
-
-    fn slope_over_radius_series(&self, place: &Place) -> Option<Series> {
-        let Flank { slope, tip_radius: b, .. } = self.flank;
-        // T (2 b/(x + t) + phi)/x = T (2 (1 - t/x)/b + phi/x).
-        place.beyond(b).map_or_else(
-            || self.tip.slope_over_radius_series(place),
-            |beyond| Some(Series::sum(0.0, [(2.0 * slope / b, &beyond.lacking()), (slope, &beyond.angle())])),
-        )
-    }
-
-    fn kink_series(&self, b: f64, top: f64) -> Option<KinkSeries> {
-        // 2 b/(x + t) = 2 (x - t)/b.
-        let slope = self.flank.slope;
-        let mut series = KinkSeries::over_radius(b, top, 0.0, -2.0 * slope / b, slope);
-        series.odd[0] = 2.0 * slope * top / b;
-        Some(series)
     }
 
     fn facts(&self) -> ShapeFacts {

@@ -4,7 +4,6 @@
 //! gamma = dg/dt = (t/(R x))(2t - b phi), int x dg = (3 x^2 (t - b phi) + t^3)/(6R) (Schubert 1942; Ciavarella 1999).
 //! All stays positive through t - b phi = b (u - atan u), u = t/b.
 
-use super::power_series::{BeyondKink, KinkSeries, Place, Series};
 use super::shape::ShapeFacts;
 use super::smooth_coordinate::{self, Nodes, SmoothCoordinate, flat_core};
 use super::{DoubleDouble, Error, Moments, Ring, Span, StressRadius, range};
@@ -109,21 +108,6 @@ impl SmoothCoordinate for RoundedPunch {
 }
 
 flat_core!(RoundedPunch {
-    fn slope_over_radius_series(&self, place: &Place) -> Option<Series> {
-        // (2 t - b phi)/(R x).
-        let (b, curvature) = (self.flat_radius, self.edge_radius.recip());
-        let series = |beyond: BeyondKink<'_>| {
-            let parts = [(-2.0 * curvature, &beyond.lacking()), (-b * curvature, &beyond.angle())];
-            Series::sum(2.0 * curvature, parts)
-        };
-        Some(place.beyond(b).map_or(place.constant(0.0), series))
-    }
-
-    fn kink_series(&self, b: f64, top: f64) -> Option<KinkSeries> {
-        let curvature = self.edge_radius.recip();
-        Some(KinkSeries::over_radius(b, top, 0.0, 2.0 * curvature, -b * curvature))
-    }
-
     fn least_fall(&self, inner: f64, outer: f64) -> f64 {
         let (low, high) = (smooth_coordinate::t_of(self, inner), smooth_coordinate::t_of(self, outer));
         if low <= 0.0 {

@@ -1,6 +1,5 @@
 //! The functions that a family must provide, and those that follow for all families.
 
-use super::power_series::{KinkSeries, Place, Series};
 use super::ring_nodes::RingNodes;
 use super::smooth_interval::{Node, SmoothInterval};
 use super::{DoubleDouble, InterpolationError, Moments, Ring, Span, StressRadius};
@@ -36,6 +35,8 @@ pub(super) struct ShapeFacts {
     pub(super) smooth_centre: bool,
     /// Whether g'/x is a polynomial in x^2 below all kinks.
     pub(super) smooth_tip: bool,
+    /// Whether short series resolve g between few kinks.
+    pub(super) by_series: bool,
 }
 
 impl Default for ShapeFacts {
@@ -50,6 +51,7 @@ impl Default for ShapeFacts {
             analytic_tip: true,
             smooth_centre: true,
             smooth_tip: true,
+            by_series: true,
         }
     }
 }
@@ -73,6 +75,15 @@ pub(super) trait Shape {
 
     /// g'(x).
     fn slope(&self, radius: f64) -> f64;
+
+    /// dg/dt (pure number) at several t = sqrt(x^2 - b^2) side by side, m, above `base` = b, m: a kink of the family or
+    /// of a sum that it is part of, or zero.
+    fn slopes<const N: usize>(&self, base: f64, t: [f64; N]) -> [f64; N] {
+        t.map(|t| {
+            let x = if base > 0.0 { (base * base + t * t).sqrt() } else { t };
+            self.slope(x) * (t / x)
+        })
+    }
 
     /// X(y).
     fn radius(&self, level: f64) -> f64;
@@ -171,17 +182,6 @@ pub(super) trait Shape {
     /// The coefficients of g'(a xi) = sum of c_k xi^k, `a` being a radius, m, none of them negative; `None` where that
     /// is no series of at most [`MOST_POWERS`](super::slope_series::MOST_POWERS).
     fn slope_series(&self, _a: f64) -> Option<Vec<f64>> {
-        None
-    }
-
-    /// g'/x, 1/m, as a power series of x^2 between two kinks, if [`smooth_pieces`](super::smooth_pieces) serve the
-    /// family.
-    fn slope_over_radius_series(&self, _place: &Place) -> Option<Series> {
-        None
-    }
-
-    /// dg/dt (pure number) above the kink b, m, as a power series of t = sqrt(x^2 - b^2) up to `top`, m.
-    fn kink_series(&self, _b: f64, _top: f64) -> Option<KinkSeries> {
         None
     }
 

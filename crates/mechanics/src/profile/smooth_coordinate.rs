@@ -183,6 +183,22 @@ pub(super) fn slope(family: &impl SmoothCoordinate, radius: f64) -> f64 {
     }
 }
 
+/// dg/dt at several t above a kink, that of the family or another one, and zero of what lies below its own.
+pub(super) fn slopes<const N: usize>(family: &impl SmoothCoordinate, base: f64, t: [f64; N]) -> [f64; N] {
+    let own = |t: [f64; N]| family.slopes_at(t).unwrap_or_else(|| t.map(|t| family.slope_at(t)));
+    let b = family.kink_radius();
+    let further = (base - b) * (base + b);
+    if further < 0.0 {
+        return [0.0; N];
+    }
+    if further <= 0.0 {
+        return own(t);
+    }
+    let above = t.map(|t| (t * t + further).sqrt());
+    let slopes = own(above);
+    std::array::from_fn(|index| slopes[index] * (t[index] / above[index]))
+}
+
 /// Both ends of a span in t.
 pub(super) fn ends(family: &impl SmoothCoordinate, span: &Span) -> SpanEnds {
     let (low, high) = span.excess(DoubleDouble::square_of(family.kink_radius()));
@@ -301,6 +317,9 @@ macro_rules! flat_core {
             }
             fn slope(&self, radius: f64) -> f64 {
                 smooth_coordinate::slope(self, radius)
+            }
+            fn slopes<const N: usize>(&self, base: f64, t: [f64; N]) -> [f64; N] {
+                smooth_coordinate::slopes(self, base, t)
             }
             fn radius(&self, level: f64) -> f64 {
                 self.radius_at(self.solve(level))

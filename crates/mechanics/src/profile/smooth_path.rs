@@ -6,19 +6,10 @@
 use super::smooth_coordinate::{SmoothCoordinate, SpanEnds, ends};
 use super::{DoubleDouble, Span, StressRadius};
 use crate::numerics::gauss::{EIGHT_POINTS, TWELVE_POINTS, along_strip};
+use crate::numerics::logarithm::exp_m1;
 
 /// The lengths up to which the rules of eight and of twelve points serve.
 const SHORT: (f64, f64) = (0.6, 1.4);
-/// One over 2, 3 and so on: the last term of e^s is below 1e-17 of one at the larger of these lengths.
-const RECIPROCALS: [f64; 21] = {
-    let mut recips = [0.5; 21];
-    let mut index = 0;
-    while index < recips.len() {
-        recips[index] = 1.0 / (index + 2) as f64;
-        index += 1;
-    }
-    recips
-};
 
 /// The path of integration of a kernel: from its outer end inward.
 struct Path {
@@ -65,19 +56,10 @@ impl Path {
 
     fn by_rule<const N: usize>(&self, family: &impl SmoothCoordinate, rule: &[(f64, f64); N]) -> Option<f64> {
         let end = self.high + self.v_high;
-        // e^s - 1 by its series of positive terms.
-        let s = rule.map(|(u, _)| self.length * u);
-        let mut growth = [1.0; N];
-        for recip in RECIPROCALS.iter().rev() {
-            for lane in 0..N {
-                growth[lane] = 1.0 + growth[lane] * s[lane] * recip;
-            }
-        }
-        let t: [f64; N] = std::array::from_fn(|lane| {
-            let grown = 1.0 + s[lane] * growth[lane];
-            let here = end / grown;
+        let t = exp_m1(rule.map(|(u, _)| self.length * u)).map(|growth| {
+            let here = end / (1.0 + growth);
             let other = self.kappa / here;
-            let drop = 0.5 * s[lane] * growth[lane] / grown * (end - other);
+            let drop = 0.5 * growth / (1.0 + growth) * (end - other);
             let t = if drop < 0.5 * self.high { self.high - drop } else { 0.5 * (here + other) };
             t.max(self.low)
         });

@@ -19,21 +19,22 @@
 
 mod kernels;
 mod moments;
+mod sampled_series;
 
 use std::ops::Range;
 
 #[cfg(test)]
 use super::call_count;
-use super::power_series::{KinkSeries, Place, TERMS};
-use super::shape::Shape;
+use super::shape::{Shape, ShapeFacts};
 use super::{DoubleDouble, Profile, Ring, Span, StressRadius};
 use kernels::{far_kernels, kink_kernels, near_kernels};
-use moments::{kink_moments, moments};
+use moments::{FAR_TERMS, kink_moments, moments};
+use sampled_series::{TERMS, beside_kink, of_slope_over_radius};
 
 /// Radii that are summed for side by side.
 const LANES: usize = 4;
 /// From this h/D on a piece is near.
-const FAR: f64 = 0.2;
+const FAR: f64 = 1.0 / 3.0;
 /// A piece is no wider than this share of its distance from a singularity.
 const WIDEST: f64 = 0.5;
 /// The part of the distance to the next singularity, in squares, up to which the series in t of a kink is taken.
@@ -110,7 +111,8 @@ impl<'a> SmoothPieces<'a> {
     /// Adds the pieces of a ring, from its outer end inward.
     pub(super) fn add(&mut self, ring: &Ring, weight: f64) -> Option<()> {
         let profile = self.profile;
-        if profile.edge_depth(ring) > 0.0 {
+        let ShapeFacts { by_series, smooth_tip, ceiling, .. } = profile.facts();
+        if !by_series || profile.edge_depth(ring) > 0.0 {
             return None;
         }
         let plain = (ring.outer.square - ring.inner.square).value();
@@ -120,7 +122,11 @@ impl<'a> SmoothPieces<'a> {
         while outer > floor {
             let kink = profile.kink_below(radius);
             let base = DoubleDouble::square_of(kink);
+            let room = (ceiling - radius) * (ceiling + radius);
             let low = larger(floor, base);
+            // No wider than its distance from where g ceases to be analytic allows, either.
+            let least = outer - DoubleDouble::from(WIDEST * room.min(outer.value()));
+            let low = if WIDEST * room < (outer - low).value() { least } else { low };
             let gap = if thin && low == ring.inner.square && outer == ring.outer.square {
                 profile.gap_of(ring)
             } else {
@@ -133,18 +139,18 @@ impl<'a> SmoothPieces<'a> {
                 let top = if gap <= reach { gap } else { reach };
                 let from = if gap <= reach { outer } else { base + DoubleDouble::from(reach) };
                 if gap > reach {
-                    self.smooth((from, outer), (gap - reach, false), (reach, weight))?;
+                    self.smooth(kink, (from, outer), (gap - reach, false), [reach, room], weight)?;
                 }
-                let KinkSeries { even, odd } = profile.kink_series(kink, top.sqrt())?;
+                let [even, odd] = beside_kink(profile, kink, top.sqrt());
                 let (even, odd) = (counted(&even), counted(&odd));
                 let far = kink_moments(even, odd, (top * self.unit).sqrt());
                 let near = Near::Kink { even: self.keep(even, 1.0), odd: self.keep(odd, 1.0) };
                 self.push((base, from), (top, thin && gap <= reach), weight, (near, far));
             } else {
-                let above = if kink > 0.0 || !profile.facts().smooth_tip { above } else { f64::INFINITY };
-                self.smooth((low, outer), (gap, thin), (above, weight))?;
+                let above = if kink > 0.0 || !smooth_tip { above } else { f64::INFINITY };
+                self.smooth(kink, (low, outer), (gap, thin), [above, room], weight)?;
             }
-            (outer, radius) = (low, kink);
+            (outer, radius) = (low, if low == base { kink } else { low.value().sqrt() });
         }
         if outer > ring.inner.square {
             let left = Span::of(ring, profile.gap_of(ring), 0.0);
@@ -153,12 +159,15 @@ impl<'a> SmoothPieces<'a> {
         Some(())
     }
 
-    /// Adds pieces between two squares that differ by `gap`, and of which the inner is `above` a singularity.
+    /// Adds pieces above the kink `base` between two squares that differ by `gap`: the inner one is `above` a
+    /// singularity, and there is `room` beyond the outer one.
     fn smooth(
         &mut self,
+        base: f64,
         (low, high): (DoubleDouble, DoubleDouble),
         (gap, thin): (f64, bool),
-        (above, weight): (f64, f64),
+        [above, room]: [f64; 2],
+        weight: f64,
     ) -> Option<()> {
         let growth = gap / above;
         let steps = if growth <= WIDEST { 0.0 } else { growth.ln_1p() };
@@ -174,13 +183,11 @@ impl<'a> SmoothPieces<'a> {
             let gap = if cuts > 1.0 { (outer - inner).value() } else { gap };
             let half = 0.5 * gap;
             let below = if above < f64::INFINITY { above + (inner - low).value() } else { above };
-            // Each term is smaller than the one before by this. Without a singularity q is a polynomial, whose terms
-            // end by themselves.
-            let ratio = half / (half + below);
-            let terms = if ratio > 0.0 { counting(ratio).min(TERMS) } else { TERMS };
-            let place = Place { middle: outer - DoubleDouble::from(half), half, terms };
-            let series = self.profile.slope_over_radius_series(&place)?;
-            let (series, edge) = (counted(&series.coefficients), self.unit.sqrt().recip());
+            // Without a singularity q is a polynomial, of which the fewest points are enough.
+            let ratio = (half / (half + below)).max(half / (half + room));
+            let middle = outer - DoubleDouble::from(half);
+            let series = of_slope_over_radius(self.profile, base, (middle, half), ratio);
+            let (series, edge) = (counted(&series), self.unit.sqrt().recip());
             let far = moments(series, half * self.unit * edge);
             let near = Near::Smooth(self.keep(series, edge));
             self.push((inner, outer), (gap, thin && cuts <= 1.0), weight, (near, far));
@@ -201,7 +208,7 @@ impl<'a> SmoothPieces<'a> {
         (inner, outer): (DoubleDouble, DoubleDouble),
         (gap, thin): (f64, bool),
         weight: f64,
-        (near, far): (Near, [f64; TERMS]),
+        (near, far): (Near, [f64; FAR_TERMS]),
     ) {
         let far = self.keep(&far, 1.0);
         let (inner, outer, gap) = (inner.parts(), outer.parts(), gap * self.unit);

@@ -3,7 +3,6 @@
 //! Everything follows from one difference, x_outer^2 - x_inner^2 = R (y_outer - y_inner), which is never taken between
 //! rounded radii (Hertz 1881; Popov & Hess 2015).
 
-use super::power_series::{Place, Series};
 use super::shape::{Shape, ShapeFacts};
 use super::{DoubleDouble, Error, Moments, Ring, Span, StressRadius, range};
 
@@ -113,10 +112,6 @@ impl Shape for Sphere {
         } else {
             -1.0 / (self.curvature_radius * outer.sqrt())
         }
-    }
-
-    fn slope_over_radius_series(&self, place: &Place) -> Option<Series> {
-        Some(place.constant(2.0 / self.curvature_radius))
     }
 
     fn surface_slope(&self, r: f64) -> f64 {

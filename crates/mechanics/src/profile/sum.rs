@@ -12,7 +12,6 @@ mod kink_moments;
 mod tests;
 
 use super::polynomial::Polynomial;
-use super::power_series::{KINK_TERMS, KinkSeries, Place, Series};
 use super::shape::{self, Shape, ShapeFacts};
 use super::smooth_interval::{Node, SmoothInterval};
 use super::tabulated::{self, Kernel};
@@ -130,6 +129,13 @@ impl Shape for Sum {
             return polynomial.slope(radius);
         }
         self.total(|part| part.slope(radius))
+    }
+
+    fn slopes<const N: usize>(&self, base: f64, t: [f64; N]) -> [f64; N] {
+        self.parts.iter().fold([0.0; N], |mut sum, part| {
+            sum.iter_mut().zip(part.slopes(base, t)).for_each(|(sum, slope)| *sum += slope);
+            sum
+        })
     }
 
     fn radius(&self, level: f64) -> f64 {
@@ -259,25 +265,6 @@ impl Shape for Sum {
             sum.resize(sum.len().max(series.len()), 0.0);
             sum.iter_mut().zip(series).for_each(|(sum, c)| *sum += c);
             Some(sum)
-        })
-    }
-
-    fn slope_over_radius_series(&self, place: &Place) -> Option<Series> {
-        let mut parts = self.parts.iter().map(|part| part.slope_over_radius_series(place));
-        let first = parts.next()??;
-        parts.try_fold(first, |sum, part| Some(sum.plus(&part?)))
-    }
-
-    fn kink_series(&self, b: f64, top: f64) -> Option<KinkSeries> {
-        let place = Place { middle: DoubleDouble::square_of(b), half: top * top, terms: KINK_TERMS };
-        self.parts.iter().try_fold(KinkSeries::default(), |sum, part| {
-            let own = part.kink_below(b * (1.0 + f64::EPSILON)).to_bits() == b.to_bits();
-            let series = if own {
-                part.kink_series(b, top)?
-            } else {
-                KinkSeries::smooth(&part.slope_over_radius_series(&place)?, top)
-            };
-            Some(sum.plus(&series))
         })
     }
 

@@ -5,7 +5,6 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use super::power_series::{BeyondKink, KinkSeries, Place, Series};
 use super::smooth_coordinate::{self, Nodes, SmoothCoordinate, flat_core};
 use super::{DoubleDouble, Error, Moments, Ring, Span, StressRadius, range};
 use crate::numerics::angle::angles;
@@ -96,17 +95,6 @@ impl SmoothCoordinate for TruncatedCone {
 }
 
 flat_core!(TruncatedCone {
-    fn slope_over_radius_series(&self, place: &Place) -> Option<Series> {
-        // T (phi + b/t)/x.
-        let (b, slope) = (self.flat_radius, self.slope);
-        let series = |at: BeyondKink<'_>| Series::sum(0.0, [(slope * b, &at.inverse), (slope, &at.angle())]);
-        Some(place.beyond(b).map_or(place.constant(0.0), series))
-    }
-
-    fn kink_series(&self, b: f64, top: f64) -> Option<KinkSeries> {
-        Some(KinkSeries::over_radius(b, top, self.slope * b, 0.0, self.slope))
-    }
-
     fn least_fall(&self, inner: f64, outer: f64) -> f64 {
         // g'/x falls from the rim on.
         if inner >= self.flat_radius { self.slope(outer) / outer } else { f64::NEG_INFINITY }

@@ -8,7 +8,6 @@
 //! 1 - e/u^2 = 2 t_inner/p_inner + e (u^2 - r^2)/(r u)^2, every integral is a power of 1 - r times a polynomial of r
 //! without a negative coefficient, so that nothing cancels.
 
-use super::power_series::{BeyondKink, KinkSeries, Place, Series};
 use super::shape::ShapeFacts;
 use super::smooth_coordinate::{self, SmoothCoordinate, SpanEnds, flat_core};
 use super::{DoubleDouble, Error, Moments, Ring, Span, StressRadius, range};
@@ -115,21 +114,6 @@ impl SmoothCoordinate for TruncatedSphere {
 }
 
 flat_core!(TruncatedSphere {
-    fn slope_over_radius_series(&self, place: &Place) -> Option<Series> {
-        // (2 x^2 - b^2)/(R x t) = (2 t/x + b^2/(x t))/R.
-        let (b, curvature) = (self.flat_radius, self.curvature_radius.recip());
-        let series = |beyond: BeyondKink<'_>| {
-            let parts = [(-2.0 * curvature, &beyond.lacking()), (b * b * curvature, &beyond.inverse)];
-            Series::sum(2.0 * curvature, parts)
-        };
-        Some(place.beyond(b).map_or(place.constant(0.0), series))
-    }
-
-    fn kink_series(&self, b: f64, top: f64) -> Option<KinkSeries> {
-        let curvature = self.curvature_radius.recip();
-        Some(KinkSeries::over_radius(b, top, curvature * b * b, 2.0 * curvature, 0.0))
-    }
-
     fn least_fall(&self, inner: f64, outer: f64) -> f64 {
         // g'/x falls from the rim on.
         if inner >= self.flat_radius { self.slope(outer) / outer } else { f64::NEG_INFINITY }

@@ -23,6 +23,7 @@ fn facts_of(parts: &[Profile]) -> ShapeFacts {
         analytic_tip: facts().all(|part| part.analytic_tip),
         smooth_centre: facts().all(|part| part.smooth_centre),
         smooth_tip: facts().all(|part| part.smooth_tip),
+        by_series: facts().all(|part| part.by_series),
         ..ShapeFacts::default()
     };
     sum.ending(facts().filter_map(|part| part.known_to).reduce(|a, b| if b.radius < a.radius { b } else { a }))

@@ -278,7 +278,7 @@ impl Shape for Tabulated {
     fn facts(&self) -> ShapeFacts {
         let end = End { radius: self.end, falls: self.falls.is_some_and(|radius| radius >= self.end) };
         let limit = Some(End { radius: self.falls.unwrap_or(self.end), falls: self.falls.is_some() });
-        ShapeFacts { limit, known_to: Some(end), ..ShapeFacts::default() }
+        ShapeFacts { limit, known_to: Some(end), by_series: false, ..ShapeFacts::default() }
     }
 
     fn interpolation_error(&self, radius: f64) -> InterpolationError {
