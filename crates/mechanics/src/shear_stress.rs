@@ -142,7 +142,7 @@ impl Contact {
         let found = self.extrema(keep_going)?;
         radii.extend(found.places);
         // All at once, and by what the search has made: what the rings add up to from afar is found once.
-        let sums = found.slopes.and_then(|slopes| slopes.sums(&radii));
+        let sums = found.slopes.and_then(|slopes| slopes.sums(&self.profile, edge, &radii));
         let shears = sums.map_or_else(|| self.shears_at(&radii), |sums| self.shears_of(sums));
         let peak = |(place, &shear): (&StressRadius, &f64)| Peak { radius: place.radius, shear };
         let peaks = radii[others..].iter().zip(&shears[others..]).map(peak).collect();

@@ -57,10 +57,10 @@ impl Settled<'_> {
         let Outward { bends, slopes } = self.pieces[index];
         let profile = &self.contact.profile;
         let (outer, edge) = (self.contact.history.ring(index).outer.radius, self.contact.history.edge().radius);
-        let falls_to = |radius: f64| profile.least_fall(from, radius) > 0.0;
+        let falls_to = |radius: f64| profile.falls(from, radius).least > 0.0;
         if bends && falls_to(edge) || slopes && falls_to(outer) {
             Known::Sign
-        } else if (bends || slopes) && profile.rises_concavely(from) {
+        } else if (bends || slopes) && profile.falls(from, edge).concavely {
             Known::OneChange
         } else {
             Known::Nothing

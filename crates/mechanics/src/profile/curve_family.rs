@@ -7,7 +7,7 @@
 //! [`Profile::check_stress_field`](super::Profile) first.
 
 use super::ring_nodes::{DepthNode, RingNodes};
-use super::shape::{End, Shape, ShapeFacts};
+use super::shape::{End, KernelOrder, Shape, ShapeFacts};
 use super::{DoubleDouble, InterpolationError, Moments, Point, Ring, Span, StressRadius};
 
 /// Panels of the angle for the sums over a ring, at the least, and for each wave.
@@ -64,6 +64,12 @@ pub(super) trait CurveFamily {
         };
         (0..panels).map(node).collect()
     }
+
+    /// The nodes of a quadrature over the radii of a ring for waves up to cos(`turns` th).
+    fn ring_nodes(&self, ring: &Ring, turns: usize) -> RingNodes {
+        let panels = PANELS.max(PANELS_A_WAVE * turns);
+        RingNodes::Compared(self.nodes_at(ring, panels), self.nodes_at(ring, 2 * panels))
+    }
 }
 
 impl<C: CurveFamily> Shape for C {
@@ -73,10 +79,6 @@ impl<C: CurveFamily> Shape for C {
 
     fn slope(&self, radius: f64) -> f64 {
         self.rate(self.level_of(radius)).recip()
-    }
-
-    fn radius(&self, level: f64) -> f64 {
-        self.radius_at(level.into())
     }
 
     fn square(&self, level: DoubleDouble) -> DoubleDouble {
@@ -101,20 +103,7 @@ impl<C: CurveFamily> Shape for C {
         (ring.outer.square - ring.inner.square).value()
     }
 
-    fn ring_moments(&self, ring: &Ring) -> Moments {
-        self.moments_of(ring)
-    }
-
-    fn ring_nodes(&self, ring: &Ring, turns: usize) -> Option<RingNodes> {
-        let panels = PANELS.max(PANELS_A_WAVE * turns);
-        Some(RingNodes::Compared(self.nodes_at(ring, panels), self.nodes_at(ring, 2 * panels)))
-    }
-
-    fn kernel(&self, _at: &StressRadius, _span: &Span) -> f64 {
-        f64::NAN
-    }
-
-    fn kernel_slope(&self, _at: &StressRadius, _span: &Span) -> f64 {
+    fn kernel(&self, _order: KernelOrder, _at: &StressRadius, _span: &Span) -> f64 {
         f64::NAN
     }
 
@@ -125,9 +114,5 @@ impl<C: CurveFamily> Shape for C {
     fn facts(&self) -> ShapeFacts {
         ShapeFacts { by_series: false, ..ShapeFacts::default() }
             .ending(self.end().map(|radius| End { radius, falls: false }))
-    }
-
-    fn interpolation_error(&self, radius: f64) -> InterpolationError {
-        self.curve_error(radius)
     }
 }

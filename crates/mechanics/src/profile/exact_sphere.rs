@@ -7,7 +7,7 @@
 //! Well below the equator, short series serve: [`shallow_sphere`], [`slope_series`](super::slope_series).
 
 use super::shallow_sphere::{self, LIMIT};
-use super::shape::{End, Shape, ShapeFacts};
+use super::shape::{End, Falls, KernelOrder, Shape, ShapeFacts};
 use super::slope_series::MOST_POWERS;
 use super::smooth_coordinate::{self, SmoothCoordinate};
 use super::{DoubleDouble, Error, Moments, Ring, Span, StressRadius, range, series_kernel};
@@ -72,6 +72,21 @@ impl ExactSphere {
     fn by_series(&self, at: &StressRadius, span: &Span) -> Option<(f64, f64)> {
         self.shallow(span.outer.value())?;
         series_kernel::kernel_and_slope(&self.slope_series(span.outer_radius)?, at, span)
+    }
+
+    /// The coefficients of g'(a xi) in powers of xi; `None` where they are too many.
+    pub(super) fn slope_series(&self, a: f64) -> Option<Vec<f64>> {
+        let u = a / self.radius;
+        let (mut series, mut power) = (Vec::new(), u);
+        // By artanh(u) + u/(1 - u^2), up to a share of it that rounding loses.
+        while power > 0.02 * f64::EPSILON * u {
+            if series.len() >= MOST_POWERS {
+                return None;
+            }
+            series.extend([0.0, power + power / (series.len() + 1) as f64]);
+            power *= u * u;
+        }
+        Some(series)
     }
 
     fn place(&self, radius: f64, square: DoubleDouble) -> SpherePlace {
@@ -145,7 +160,7 @@ impl SmoothCoordinate for ExactSphere {
     }
 
     fn upper_bound(&self, level: f64) -> f64 {
-        self.radius(level)
+        self.square(level.into()).value().sqrt()
     }
 
     fn ceiling(&self) -> f64 {
@@ -161,13 +176,6 @@ impl Shape for ExactSphere {
     fn slope(&self, radius: f64) -> f64 {
         let rest = self.gap_to_equator(radius) / self.radius * (1.0 + radius / self.radius);
         self.sigma_at(radius) + self.share(radius) / rest
-    }
-
-    fn radius(&self, level: f64) -> f64 {
-        if level < LIMIT * self.radius {
-            return self.radius * shallow_sphere::square_at(level / self.radius).sqrt();
-        }
-        self.radius * self.sigma(level).tanh()
     }
 
     fn square(&self, level: DoubleDouble) -> DoubleDouble {
@@ -262,13 +270,19 @@ impl Shape for ExactSphere {
         Moments { width: span.width(), first, second }
     }
 
-    fn kernel(&self, at: &StressRadius, span: &Span) -> f64 {
+    fn kernel(&self, order: KernelOrder, at: &StressRadius, span: &Span) -> f64 {
         let (inner, outer) = span.excess(at.square);
         if outer <= 0.0 {
             return 0.0;
         }
-        if let Some((kernel, _)) = self.by_series(at, span) {
-            return kernel;
+        if let Some((kernel, slope)) = self.by_series(at, span) {
+            return if order == KernelOrder::Value { kernel } else { slope };
+        }
+        if order == KernelOrder::Slope {
+            // At the tip gamma/t is 2/R to the last digit below 1e-9 R.
+            let tip = StressRadius::new(1e-9 * span.outer_radius);
+            let at = if at.radius > 0.0 || span.inner_radius > 0.0 { at } else { &tip };
+            return smooth_coordinate::kernel(self, order, at, span);
         }
         let height = self.height_square(at.square).sqrt();
         let square_outer = self.height_square(span.outer);
@@ -289,38 +303,13 @@ impl Shape for ExactSphere {
         stretch * length + curved
     }
 
-    fn kernel_slope(&self, at: &StressRadius, span: &Span) -> f64 {
-        if let Some((_, slope)) = self.by_series(at, span) {
-            return slope;
-        }
-        if at.radius > 0.0 || span.inner_radius > 0.0 {
-            return smooth_coordinate::kernel_slope(self, at, span);
-        }
-        // At the tip gamma/t is 2/R to the last digit below 1e-9 R.
-        smooth_coordinate::kernel_slope(self, &StressRadius::new(1e-9 * span.outer_radius), span)
-    }
-
-    fn slope_series(&self, a: f64) -> Option<Vec<f64>> {
-        let u = a / self.radius;
-        let (mut series, mut power) = (Vec::new(), u);
-        // By artanh(u) + u/(1 - u^2), up to a share of it that rounding loses.
-        while power > 0.02 * f64::EPSILON * u {
-            if series.len() >= MOST_POWERS {
-                return None;
-            }
-            series.extend([0.0, power + power / (series.len() + 1) as f64]);
-            power *= u * u;
-        }
-        Some(series)
-    }
-
-    fn least_fall(&self, inner: f64, outer: f64) -> f64 {
+    fn falls(&self, inner: f64, outer: f64) -> Falls {
         // dq/d(x^2) = (x g'' - g')/(2 x^3) only grows.
         let (share, slope) = (self.share(outer), self.slope(outer));
         let rest = (1.0 - share) * (1.0 + share);
         let steepest = 2.0 * share / (rest * rest) - slope;
         let gap = (1.0 - inner / outer) * (1.0 + inner / outer);
-        (slope - gap * steepest) / outer
+        Falls { least: (slope - gap * steepest) / outer, concavely: false }
     }
 
     fn surface_slope(&self, r: f64) -> f64 {

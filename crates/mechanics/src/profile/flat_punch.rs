@@ -2,8 +2,8 @@
 //! edge, depth/sqrt(b^2 - r^2) (Boussinesq 1885). The edge itself is treated in `profile/ring_integrals.rs`; the face
 //! is treated here.
 
-use super::shape::Shape;
-use super::{Error, Moments, Span, StressRadius, range};
+use super::shape::{KernelOrder, Shape, ShapeFacts};
+use super::{DoubleDouble, Error, Moments, Span, StressRadius, range};
 
 /// A cylinder pressed in with its flat end.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,8 +30,8 @@ impl Shape for FlatPunch {
         0.0
     }
 
-    fn radius(&self, _level: f64) -> f64 {
-        self.radius
+    fn square(&self, _level: DoubleDouble) -> DoubleDouble {
+        DoubleDouble::square_of(self.radius)
     }
 
     fn load(&self, _radius: f64) -> f64 {
@@ -46,19 +46,15 @@ impl Shape for FlatPunch {
         0.0
     }
 
-    fn rim(&self) -> Option<(f64, f64)> {
-        Some((self.radius, 0.0))
+    fn facts(&self) -> ShapeFacts {
+        ShapeFacts { rim: Some(self.radius), ..ShapeFacts::default() }
     }
 
     fn moments(&self, _span: &Span) -> Moments {
         Moments::default()
     }
 
-    fn kernel(&self, _at: &StressRadius, _span: &Span) -> f64 {
-        0.0
-    }
-
-    fn kernel_slope(&self, _at: &StressRadius, _span: &Span) -> f64 {
+    fn kernel(&self, _order: KernelOrder, _at: &StressRadius, _span: &Span) -> f64 {
         0.0
     }
 

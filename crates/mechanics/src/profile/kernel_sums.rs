@@ -4,11 +4,11 @@
 //! ([`Multipole`]); only near rings are asked for their kernels. A rule counts as good where it finds the depth of its
 //! ring, which is known.
 
-use super::shape::Shape;
+use super::shape::span;
 use super::slope_series::SeriesRings;
 use super::smooth_pieces::SmoothPieces;
 use super::sum::SumFields;
-use super::tabulated::{Kernel, WeightedPanels};
+use super::tabulated::{self, Kernel, SumAndSize, WeightedPanels};
 use super::{Profile, Ring, StressRadius};
 use crate::numerics::cluster_tree::ClusterTree;
 use crate::numerics::gauss::TWENTY_POINTS;
@@ -37,16 +37,59 @@ impl Profile {
     /// [`Profile::kernel_sums`] at radii whose squares have all their digits.
     pub(crate) fn kernel_sums_at(&self, rings: &[(Ring, f64)], radii: &[StressRadius]) -> Vec<f64> {
         let edge = rings.last().map_or(0.0, |(ring, _)| ring.outer.radius);
-        if let Some(series) = Shape::slope_series(self, edge).filter(|_| edge > 0.0) {
-            return SeriesRings::new(&series, edge, rings, |ring| self.gap_of(ring)).sums(radii);
+        if let Some(series) = self.slope_series(edge).filter(|_| edge > 0.0) {
+            return SeriesRings::new(&series, edge, rings, |ring| self.span(ring).gap).sums(radii);
         }
         if let Some(sums) = self.sums_by_pieces(rings, radii) {
             return sums;
         }
-        Shape::kernel_sums(self, rings, radii).unwrap_or_else(|| {
-            let sources = Sources::new(self, rings, rings.len() * radii.len() > FEW);
-            radii.iter().map(|at| sources.sum(at)).collect()
-        })
+        let fields = if rings.len() * radii.len() > tabulated::FEW { self.table_fields(rings) } else { None };
+        if let Some(fields) = fields {
+            return fields.sums(Kernel::Root, radii).into_iter().map(|(sum, _)| sum).collect();
+        }
+        let sources = Sources::new(self, rings, rings.len() * radii.len() > FEW);
+        radii.iter().map(|at| sources.sum(at)).collect()
+    }
+
+    /// (2/pi) int v dx/sqrt(r^2 - x^2) over the radii x of the contact below r, m, at each of `radii`, at once: v, m,
+    /// is straight in g over rings that adjoin each other from the centre to the edge, each with its dv/dg, and `ends`
+    /// are its values at the centre and at the edge. `None` where ring by ring is no slower.
+    pub(crate) fn displacements(
+        &self,
+        rings: &[(Ring, f64)],
+        ends: (f64, f64),
+        radii: &[StressRadius],
+    ) -> Option<Vec<f64>> {
+        let fields = self.table_fields(rings)?;
+        let edge = &rings.last()?.0.outer;
+        Some(tabulated::displacements(edge, ends, radii, |angle, radii| fields.sums(angle, radii)))
+    }
+
+    /// What tables add to stresses and displacements over weighted rings, at once; `None` without a table.
+    fn table_fields(&self, rings: &[(Ring, f64)]) -> Option<TableFields<'_>> {
+        match self {
+            Profile::Tabulated(table) => table.weighted_panels(rings).map(TableFields::Panels),
+            Profile::Sum(sum) => SumFields::new(sum, rings).map(TableFields::Parts),
+            _ => None,
+        }
+    }
+
+    /// The coefficients of g'(a xi) = sum of c_k xi^k, `a` being a radius, m, none of them negative; `None` where that
+    /// is no series of at most [`MOST_POWERS`](super::slope_series::MOST_POWERS).
+    pub(super) fn slope_series(&self, a: f64) -> Option<Vec<f64>> {
+        match self {
+            Profile::Cone(_) => Some(vec![self.slope(a)]),
+            Profile::Sphere(_) => Some(vec![0.0, self.slope(a)]),
+            Profile::PowerLaw(power) => power.slope_series(a),
+            Profile::ExactSphere(sphere) => sphere.slope_series(a),
+            Profile::Sum(sum) => sum.parts().iter().try_fold(Vec::new(), |mut sum, part| {
+                let series = part.slope_series(a)?;
+                sum.resize(sum.len().max(series.len()), 0.0);
+                sum.iter_mut().zip(series).for_each(|(sum, c)| *sum += c);
+                Some(sum)
+            }),
+            _ => None,
+        }
     }
 }
 
@@ -54,12 +97,8 @@ impl Profile {
     /// The derivatives of the weighted sum of kernels, if there is a way that is quicker than ring by ring.
     pub(crate) fn kernel_slopes<'a>(&'a self, rings: &[(Ring, f64)]) -> Option<KernelSlopes<'a>> {
         let core = rings.first().map_or(0.0, |(ring, _)| ring.outer.radius);
-        let pieces = SmoothPieces::new(self, rings, CORE * core).map(KernelSlopes::Pieces);
-        pieces.or_else(|| match self {
-            Profile::Tabulated(table) => table.weighted_panels(rings).map(KernelSlopes::Panels),
-            Profile::Sum(sum) => SumFields::new(sum, rings).map(KernelSlopes::Parts),
-            _ => None,
-        })
+        let pieces = SmoothPieces::new(self, rings, CORE * core).map(SlopeSource::Pieces);
+        pieces.or_else(|| self.table_fields(rings).map(SlopeSource::Tables)).map(KernelSlopes)
     }
 
     /// The sums by [`SmoothPieces`].
@@ -72,30 +111,45 @@ impl Profile {
     }
 }
 
-/// The derivatives of a weighted sum of kernels with respect to r^2.
-pub(crate) enum KernelSlopes<'a> {
-    Pieces(SmoothPieces<'a>),
+/// Tables over weighted rings.
+enum TableFields<'a> {
     Panels(WeightedPanels<'a>),
     Parts(SumFields<'a>),
 }
 
+impl TableFields<'_> {
+    fn sums(&self, kernel: Kernel, radii: &[StressRadius]) -> Vec<SumAndSize> {
+        match self {
+            TableFields::Panels(panels) => panels.sums(kernel, radii),
+            TableFields::Parts(parts) => parts.sums(kernel, radii),
+        }
+    }
+}
+
+/// The derivatives of a weighted sum of kernels with respect to r^2.
+pub(crate) struct KernelSlopes<'a>(SlopeSource<'a>);
+
+enum SlopeSource<'a> {
+    Pieces(SmoothPieces<'a, Profile>),
+    Tables(TableFields<'a>),
+}
+
 impl KernelSlopes<'_> {
     /// The sums that [`Profile::kernel_sums`] gives, at each radius, where what they are made of is the same.
-    pub(crate) fn sums(&self, radii: &[StressRadius]) -> Option<Vec<f64>> {
-        match self {
-            KernelSlopes::Pieces(pieces) => pieces.kernel_sums(radii),
-            KernelSlopes::Panels(_) | KernelSlopes::Parts(_) => None,
+    pub(crate) fn sums(&self, profile: &Profile, edge: f64, radii: &[StressRadius]) -> Option<Vec<f64>> {
+        match &self.0 {
+            SlopeSource::Pieces(pieces) if profile.slope_series(edge).is_none() => Some(pieces.sums(radii)),
+            _ => None,
         }
     }
 
     /// The derivative, 1/m^2, at each radius, with the sum of the sizes of what it adds up from.
     /// `goes_on` is told how many terms follow; once it is false, derivatives are zero.
     pub(crate) fn at(&self, radii: &[StressRadius], goes_on: impl Fn(usize) -> bool) -> Vec<(f64, f64)> {
-        match self {
-            KernelSlopes::Pieces(pieces) => pieces.slopes(radii, goes_on),
-            _ if !goes_on(PANEL_TERMS * radii.len()) => vec![(0.0, 0.0); radii.len()],
-            KernelSlopes::Panels(panels) => panels.sums(Kernel::RootSlope, radii),
-            KernelSlopes::Parts(parts) => parts.sums(Kernel::RootSlope, radii),
+        match &self.0 {
+            SlopeSource::Pieces(pieces) => pieces.slopes(radii, goes_on),
+            SlopeSource::Tables(_) if !goes_on(PANEL_TERMS * radii.len()) => vec![(0.0, 0.0); radii.len()],
+            SlopeSource::Tables(fields) => fields.sums(Kernel::RootSlope, radii),
         }
     }
 }
@@ -105,21 +159,22 @@ pub(crate) struct InwardSum<'a> {
     profile: &'a Profile,
     rings: Vec<(Ring, f64)>,
     /// What is quicker than the rings, if anything.
-    pieces: Option<SmoothPieces<'a>>,
+    pieces: Option<SmoothPieces<'a, Profile>>,
 }
 
 impl<'a> InwardSum<'a> {
     /// No ring as yet, of about so many inside an edge at a radius, m.
     pub(crate) fn new(profile: &'a Profile, edge: f64, rings: usize) -> InwardSum<'a> {
         // The kernels of a cone and of a parabola are quicker still.
-        let quick = Shape::slope_series(profile, edge).is_some_and(|series| series.len() <= 2);
+        let quick = profile.slope_series(edge).is_some_and(|series| series.len() <= 2);
         let pieces = (!quick).then(|| SmoothPieces::within(profile, edge, 0.0, rings));
         InwardSum { profile, rings: Vec::with_capacity(rings), pieces }
     }
 
     /// Adds a ring that ends where the last begins.
     pub(crate) fn add(&mut self, ring: Ring, weight: f64) {
-        if self.pieces.as_mut().is_some_and(|pieces| pieces.add(&ring, weight).is_none()) {
+        let span = span(self.profile, &ring);
+        if self.pieces.as_mut().is_some_and(|pieces| pieces.add(&span, weight).is_none()) {
             self.pieces = None;
         }
         self.rings.push((ring, weight));

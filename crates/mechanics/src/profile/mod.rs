@@ -59,8 +59,7 @@ use super::error::Error;
 use super::range;
 use crate::numerics::double_double::DoubleDouble;
 use asperities::Count;
-use shape::{End, Shape, ShapeFacts};
-use smooth_interval::{Node, SmoothInterval};
+use shape::{End, Falls, KernelOrder, Shape, ShapeFacts};
 use span::Span;
 
 /// The enum of all families and `each!`, which evaluates an expression for whichever family a profile is of.
@@ -164,7 +163,7 @@ impl Profile {
     /// [`Profile::limit_radius`].
     #[must_use]
     pub fn radius(&self, level: f64) -> f64 {
-        Shape::radius(self, level)
+        Shape::square(self, level.into()).value().sqrt()
     }
 
     /// The level with its radius and that radius's square.
@@ -192,7 +191,7 @@ impl Profile {
     /// The radius, m, of a vertical edge, which the contact keeps under every higher load.
     #[must_use]
     pub fn rim_radius(&self) -> Option<f64> {
-        Shape::rim_radius(self)
+        self.facts().rim
     }
 
     /// Checks a contact radius and returns it.
@@ -214,7 +213,7 @@ impl Profile {
     /// grows by.
     #[must_use]
     pub fn cancellation(&self, x: f64) -> f64 {
-        Shape::cancellation(self, x)
+        if let Profile::Sum(sum) = self { sum.cancellation(x) } else { 1.0 }
     }
 
     /// dz/dr of the undeformed surface at the radius r, m (pure number); of a table, the slope of its chord there.
@@ -246,20 +245,14 @@ impl Profile {
         self.facts().kernel_falls
     }
 
-    /// A lower bound, 1/m, of -2 v dK(r, c)/d(r^2) for all r from `inner` up to c = `outer`, m, v = sqrt(c^2 - r^2):
-    /// above zero the kernel up to `outer` falls there. With q = g'/x as a function of x^2 it is q(c^2) - 2 v int
-    /// q'(r^2 + t^2) dt over t up to v. Minus infinity where nothing is known.
-    pub(super) fn least_fall(&self, inner: f64, outer: f64) -> f64 {
-        Shape::least_fall(self, inner, outer)
-    }
-
-    /// Whether q = g'/x, as a function of x^2, neither falls nor bends upward from the radius `inner`, m, on; `false`
-    /// is always safe.
+    /// What is known of the kernel up to c = `outer`, m, from r = `inner`, m, on. With q = g'/x as a function of x^2 and
+    /// v = sqrt(c^2 - r^2), -2 v dK/d(r^2) is q(c^2) - 2 v int q'(r^2 + t^2) dt over t up to v: above zero the kernel
+    /// falls there.
     ///
-    /// Then dK(r, c)/d(r^2) = int q'(r^2 + t^2) dt - q(c^2)/(2 v) over t up to v = sqrt(c^2 - r^2) falls all the way
-    /// from r = `inner` to c, since its derivative with respect to r^2 is int q'' dt - q'(c^2)/(2 v) - q(c^2)/(4 v^3).
-    pub(super) fn rises_concavely(&self, inner: f64) -> bool {
-        Shape::rises_concavely(self, inner)
+    /// Where q neither falls nor bends upward, dK/d(r^2) falls all the way from `inner` to c, since its derivative with
+    /// respect to r^2 is int q'' dt - q'(c^2)/(2 v) - q(c^2)/(4 v^3).
+    pub(super) fn falls(&self, inner: f64, outer: f64) -> Falls {
+        Shape::falls(self, inner, outer)
     }
 
     /// The radii, m, increasing, at which pressure and shear are infinite once the contact has grown over them: the tip
@@ -274,7 +267,11 @@ impl Profile {
     /// ```
     #[must_use]
     pub fn singular_radii(&self) -> Vec<f64> {
-        Shape::singular_radii(self)
+        let Profile::Sum(sum) = self else { return self.facts().singular.into_iter().collect() };
+        let mut radii: Vec<f64> = sum.parts().iter().flat_map(Profile::singular_radii).collect();
+        radii.sort_by(f64::total_cmp);
+        radii.dedup_by(|a, b| a.to_bits() == b.to_bits());
+        radii
     }
 
     /// The radii, m, above zero and below `radius` at which g is not analytic, increasing: ends of a flat, knots of a
@@ -296,14 +293,28 @@ impl Profile {
     /// The interpolation error of tables in a contact of this radius, m; zero for other profiles.
     #[must_use]
     pub fn interpolation_error(&self, radius: f64) -> InterpolationError {
-        Shape::interpolation_error(self, radius)
+        match self {
+            Profile::Tabulated(table) => table.interpolation_error(radius),
+            Profile::Sum(sum) => {
+                let errors = sum.parts().iter().map(|part| part.interpolation_error(radius));
+                errors.fold(InterpolationError::default(), InterpolationError::and)
+            }
+            _ => self.curve().map_or(InterpolationError::default(), |curve| curve.curve_error(radius)),
+        }
     }
 
     /// An estimate of the noise of g, m, that a table's heights bring to a contact of this radius, m, and how many
     /// times their own noise that is; the noisiest part of a sum. `None` without a table.
     #[must_use]
     pub fn noise(&self, radius: f64) -> Option<(f64, f64)> {
-        Shape::noise(self, radius)
+        match self {
+            Profile::Tabulated(table) => table.noise(radius),
+            Profile::Sum(sum) => {
+                let noises = sum.parts().iter().filter_map(|part| part.noise(radius));
+                noises.reduce(|one, other| if one.0 > other.0 { one } else { other })
+            }
+            _ => None,
+        }
     }
 }
 
@@ -323,26 +334,15 @@ macro_rules! dispatch {
 dispatch! {
     level(radius: f64) -> f64;
     slope(radius: f64) -> f64;
-    radius(level: f64) -> f64;
+    surface_slope(r: f64) -> f64;
+    facts() -> ShapeFacts;
+    kink_below(radius: f64) -> f64;
     square(level: DoubleDouble) -> DoubleDouble;
     load(radius: f64) -> f64;
     indentation_for(load: f64) -> f64;
     rise(span: &Span) -> f64;
-    rise_to(outer: &Span, interval: &SmoothInterval, node: Node) -> f64;
-    rim() -> Option<(f64, f64)>;
-    rim_radius() -> Option<f64>;
-    kink_below(radius: f64) -> f64;
-    facts() -> ShapeFacts;
-    kernel(at: &StressRadius, span: &Span) -> f64;
-    kernel_slope(at: &StressRadius, span: &Span) -> f64;
-    slope_series(a: f64) -> Option<Vec<f64>>;
-    kernel_sums(rings: &[(Ring, f64)], radii: &[StressRadius]) -> Option<Vec<f64>>;
-    displacements(rings: &[(Ring, f64)], ends: (f64, f64), radii: &[StressRadius]) -> Option<Vec<f64>>;
-    surface_slope(r: f64) -> f64;
-    cancellation(x: f64) -> f64;
-    least_fall(inner: f64, outer: f64) -> f64;
-    rises_concavely(inner: f64) -> bool;
-    singular_radii() -> Vec<f64>;
-    interpolation_error(radius: f64) -> InterpolationError;
-    noise(radius: f64) -> Option<(f64, f64)>;
+    gap(ring: &Ring, depth: f64) -> f64;
+    moments(span: &Span) -> Moments;
+    kernel(order: KernelOrder, at: &StressRadius, span: &Span) -> f64;
+    falls(inner: f64, outer: f64) -> Falls;
 }

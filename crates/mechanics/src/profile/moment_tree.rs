@@ -20,11 +20,6 @@ impl MomentTree {
         MomentTree(tree)
     }
 
-    /// One ring.
-    pub(super) fn leaf(&self, index: usize) -> (Moments, f64) {
-        self.0[self.0.len() / 2 + index]
-    }
-
     /// The rings first..last together.
     pub(super) fn run(&self, first: usize, last: usize) -> (Moments, f64) {
         let leaves = self.0.len() / 2;

@@ -3,7 +3,6 @@
 //! Differences are taken by divided differences, sums of positive terms. g is convex, so that Newton's steps from above
 //! come down on X(y); the rule of eight points integrates h^2 exactly, up to a degree of seven for g.
 
-use super::shape::Shape;
 use super::{Moments, Profile, Ring, Span};
 use crate::numerics::gauss::{EIGHT_POINTS, first_and_second};
 use crate::numerics::roots::{descend, distance_below};

@@ -5,7 +5,7 @@
 //! ([`slope_series`](super::slope_series)) of positive terms (Galin 1946; Sneddon 1965); else over x = r cosh s; from
 //! 1e8 r on, where x^2 - r^2 is x^2 to round-off, in closed form.
 
-use super::shape::{Shape, ShapeFacts};
+use super::shape::{Falls, KernelOrder, Shape, ShapeFacts};
 use super::smooth_coordinate::{self, SmoothCoordinate};
 use super::{DoubleDouble, Error, Moments, Ring, Span, StressRadius, range, series_kernel};
 use crate::numerics::gauss::{EIGHT_POINTS, Singular, first_and_second};
@@ -71,6 +71,18 @@ impl PowerLaw {
         power
     }
 
+    /// X, m, of a level, m.
+    fn radius(&self, level: f64) -> f64 {
+        let power = level / self.scale;
+        match self.order {
+            Some(1) => power,
+            Some(2) => power.sqrt(),
+            Some(3) => power.cbrt(),
+            Some(4) => power.sqrt().sqrt(),
+            _ => power.powf(self.exponent.recip()),
+        }
+    }
+
     /// (x_outer^n - x^n)/(x_outer - x) of a whole n: a sum of positive terms.
     fn chord(order: u16, outer: f64, x: f64) -> f64 {
         let (mut sum, mut power) = (1.0, 1.0);
@@ -115,43 +127,6 @@ impl PowerLaw {
         (share * first, share * second)
     }
 
-    /// The moments over a span, `y` the outer level and `levels` the inner level over it, if it is wanted.
-    fn moments_of(&self, span: &Span, y: f64, levels: impl FnOnce() -> f64) -> Moments {
-        let (n, x, width) = (self.exponent, span.outer_radius, span.width());
-        if width <= 0.0 {
-            return Moments::default();
-        }
-        let share = width / x;
-        let scaled =
-            |(first, second): (f64, f64)| Moments { width, first: x * y * first, second: x * y * (y * second) };
-        if let Some(order) = self.order.filter(|order| *order <= MOST_FOR_EIGHT) {
-            return scaled(Self::whole_moments(order, share));
-        }
-        if share <= SERIES.0 && n * share <= SERIES.1 && n >= 1.0 {
-            return scaled(Self::series_moments(n, share));
-        }
-        if share <= SERIES.0 && n * share <= 4.0 {
-            let (mut first, mut second) = (0.0, 0.0);
-            let singular = Singular { below: 0.0, above: f64::INFINITY };
-            singular.panel(1.0, share).visit(|below, weight| {
-                let h = -(n * (-below).ln_1p()).exp_m1();
-                first += weight * h;
-                second += weight * h * h;
-            });
-            return scaled((first, second));
-        }
-        let (q, q_level) = (1.0 - share, levels());
-        let (once, twice) = (1.0 - q * q_level, 1.0 - q * q_level * q_level);
-        scaled(if n < 1.0 {
-            // Over the levels, of which X is then a power above one.
-            let (depth, once, twice) = (1.0 - q_level, n / (n + 1.0) * once, n / (2.0 * n + 1.0) * twice);
-            (once - q * depth, 2.0 * (once - twice) - q * depth * depth)
-        } else {
-            let (once, twice) = (once / (n + 1.0), twice / (2.0 * n + 1.0));
-            (share - once, share - 2.0 * once + twice)
-        })
-    }
-
     /// ln(x_outer/x_inner) of a span.
     fn decades(span: &Span) -> f64 {
         let share = span.width() / span.outer_radius;
@@ -165,9 +140,32 @@ impl PowerLaw {
         self.slope(span.outer_radius) * share
     }
 
+    /// The coefficients of g'(a xi) in powers of xi, where n is whole.
+    pub(super) fn slope_series(&self, a: f64) -> Option<Vec<f64>> {
+        let mut series = vec![0.0; usize::from(self.order?)];
+        *series.last_mut()? = self.slope(a);
+        Some(series)
+    }
+
     /// The kernel and its slope by their closed form, where n is whole.
     fn by_series(&self, at: &StressRadius, span: &Span) -> Option<(f64, f64)> {
         series_kernel::kernel_and_slope(&self.slope_series(span.outer_radius)?, at, span)
+    }
+
+    /// The slope at r = 0 of the kernel up to a radius: (n/2) B x^(n-3)/(n - 3), where that integral exists.
+    fn kernel_slope_at_tip(&self, x: f64) -> f64 {
+        let n = self.exponent;
+        if x <= 0.0 {
+            0.0
+        } else if n > 3.0 {
+            0.5 * self.slope(x) / (x * x * (n - 3.0))
+        } else if self.order == Some(2) {
+            -0.5 * self.slope(x) / (x * x)
+        } else if n > 2.0 {
+            f64::INFINITY
+        } else {
+            f64::NEG_INFINITY
+        }
     }
 }
 
@@ -252,17 +250,6 @@ impl Shape for PowerLaw {
         std::array::from_fn(|index| (slope + slope * growth[index]) * (t[index] / x[index]))
     }
 
-    fn radius(&self, level: f64) -> f64 {
-        let power = level / self.scale;
-        match self.order {
-            Some(1) => power,
-            Some(2) => power.sqrt(),
-            Some(3) => power.cbrt(),
-            Some(4) => power.sqrt().sqrt(),
-            _ => power.powf(self.exponent.recip()),
-        }
-    }
-
     fn square(&self, level: DoubleDouble) -> DoubleDouble {
         let square = DoubleDouble::square_of(self.radius(level.value()));
         let Some(halves) = self.halves.filter(|_| square.value() > 0.0) else { return square };
@@ -312,6 +299,7 @@ impl Shape for PowerLaw {
 
     fn facts(&self) -> ShapeFacts {
         ShapeFacts {
+            singular: (self.exponent <= 1.0).then_some(0.0),
             power: self.exponent,
             kernel_falls: self.exponent <= 2.0,
             analytic_tip: self.order.is_some() || self.exponent >= 30.0,
@@ -323,78 +311,76 @@ impl Shape for PowerLaw {
     }
 
     fn moments(&self, span: &Span) -> Moments {
-        let levels = || (-self.exponent * Self::decades(span)).exp();
-        self.moments_of(span, self.level(span.outer_radius), levels)
+        let (n, x, width) = (self.exponent, span.outer_radius, span.width());
+        let y = self.level(x);
+        if width <= 0.0 {
+            return Moments::default();
+        }
+        let share = width / x;
+        let scaled =
+            |(first, second): (f64, f64)| Moments { width, first: x * y * first, second: x * y * (y * second) };
+        if let Some(order) = self.order.filter(|order| *order <= MOST_FOR_EIGHT) {
+            return scaled(Self::whole_moments(order, share));
+        }
+        if share <= SERIES.0 && n * share <= SERIES.1 && n >= 1.0 {
+            return scaled(Self::series_moments(n, share));
+        }
+        if share <= SERIES.0 && n * share <= 4.0 {
+            let (mut first, mut second) = (0.0, 0.0);
+            let singular = Singular { below: 0.0, above: f64::INFINITY };
+            singular.panel(1.0, share).visit(|below, weight| {
+                let h = -(n * (-below).ln_1p()).exp_m1();
+                first += weight * h;
+                second += weight * h * h;
+            });
+            return scaled((first, second));
+        }
+        let (q, q_level) = (1.0 - share, (-n * Self::decades(span)).exp());
+        let (once, twice) = (1.0 - q * q_level, 1.0 - q * q_level * q_level);
+        scaled(if n < 1.0 {
+            // Over the levels, of which X is then a power above one.
+            let (depth, once, twice) = (1.0 - q_level, n / (n + 1.0) * once, n / (2.0 * n + 1.0) * twice);
+            (once - q * depth, 2.0 * (once - twice) - q * depth * depth)
+        } else {
+            let (once, twice) = (once / (n + 1.0), twice / (2.0 * n + 1.0));
+            (share - once, share - 2.0 * once + twice)
+        })
     }
 
-    fn ring_moments(&self, ring: &Ring) -> Moments {
-        let (inner, outer) = (ring.inner.level.value(), ring.outer.level.value());
-        self.moments_of(&self.span(ring), outer, || inner / outer)
-    }
-
-    fn kernel(&self, at: &StressRadius, span: &Span) -> f64 {
+    fn kernel(&self, order: KernelOrder, at: &StressRadius, span: &Span) -> f64 {
         let (inner, outer) = span.excess(at.square);
         if outer <= 0.0 {
             return 0.0;
         }
-        if let Some((kernel, _)) = self.by_series(at, span) {
-            return kernel;
+        if order == KernelOrder::Slope && at.radius <= 0.0 && span.inner_radius <= 0.0 {
+            return self.kernel_slope_at_tip(span.outer_radius);
+        }
+        if let Some((kernel, slope)) = self.by_series(at, span) {
+            return if order == KernelOrder::Value { kernel } else { slope };
+        }
+        if order == KernelOrder::Slope {
+            return smooth_coordinate::kernel(self, order, at, span);
         }
         let far = FAR * at.radius;
         if (inner > 0.0 && span.inner_radius >= far) || at.square.value() <= 0.0 {
             return self.far(span);
         }
         let limit = DoubleDouble::square_of(far);
-        let near = span.below(limit, far).map_or(0.0, |span| smooth_coordinate::kernel(self, at, &span));
+        let near = span.below(limit, far).map_or(0.0, |span| smooth_coordinate::kernel(self, order, at, &span));
         near + span.above(limit, far).map_or(0.0, |span| self.far(&span))
-    }
-
-    fn kernel_slope(&self, at: &StressRadius, span: &Span) -> f64 {
-        if at.radius > 0.0 || span.inner_radius > 0.0 {
-            if let Some((_, slope)) = self.by_series(at, span) {
-                return slope;
-            }
-            return smooth_coordinate::kernel_slope(self, at, span);
-        }
-        // At the tip: (n/2) B x^(n-3)/(n - 3), where that integral exists.
-        let (n, x) = (self.exponent, span.outer_radius);
-        if x <= 0.0 {
-            0.0
-        } else if n > 3.0 {
-            0.5 * self.slope(x) / (x * x * (n - 3.0))
-        } else if self.order == Some(2) {
-            -0.5 * self.slope(x) / (x * x)
-        } else if n > 2.0 {
-            f64::INFINITY
-        } else {
-            f64::NEG_INFINITY
-        }
-    }
-
-    fn slope_series(&self, a: f64) -> Option<Vec<f64>> {
-        let mut series = vec![0.0; usize::from(self.order?)];
-        *series.last_mut()? = self.slope(a);
-        Some(series)
     }
 
     fn surface_slope(&self, r: f64) -> f64 {
         self.exponent * self.coefficient * r.powf(self.exponent - 1.0)
     }
 
-    fn least_fall(&self, inner: f64, outer: f64) -> f64 {
+    fn falls(&self, inner: f64, outer: f64) -> Falls {
         // q is a power of x^2, whose slope is largest at one end.
         let (power, share) = (0.5 * self.exponent - 1.0, inner / outer * (inner / outer));
         let steepest = if power < 1.0 { share.powf(power - 1.0) } else { 1.0 };
         let rise = if power > 0.0 { 2.0 * power * (1.0 - share) * steepest } else { 0.0 };
-        self.slope(outer) / outer * (1.0 - rise)
-    }
-
-    fn rises_concavely(&self, _inner: f64) -> bool {
-        // q is x^2 to the power n/2 - 1, which is from zero to one.
-        (2.0..=4.0).contains(&self.exponent)
-    }
-
-    fn singular_radii(&self) -> Vec<f64> {
-        if self.exponent <= 1.0 { vec![0.0] } else { Vec::new() }
+        // q bends downward where that power is from zero to one.
+        let concavely = (2.0..=4.0).contains(&self.exponent);
+        Falls { least: self.slope(outer) / outer * (1.0 - rise), concavely }
     }
 }

@@ -3,12 +3,22 @@
 
 #[cfg(test)]
 use super::call_count;
+use super::curve_family::CurveFamily;
 use super::ring_nodes::RingNodes;
 use super::ring_quadrature;
-use super::shape::Shape;
+use super::shape::{self, KernelOrder, Shape};
 use super::{Asperities, Count, Ellipsoid, Moments, Profile, Ring, Span, StressRadius};
 
 impl Profile {
+    /// The load curve by which alone the contact is known, if it is.
+    pub(super) fn curve(&self) -> Option<&dyn CurveFamily> {
+        match self {
+            Profile::Asperities(Asperities(Count::Many(curve))) => Some(curve),
+            Profile::LoadCurve(curve) => Some(curve),
+            _ => None,
+        }
+    }
+
     /// The integrals over a ring, each to round-off of itself however thin the ring is.
     #[must_use]
     #[inline]
@@ -21,25 +31,30 @@ impl Profile {
 
     #[inline(never)]
     fn moments_of_any(&self, ring: &Ring) -> Moments {
-        each!(self, shape => shape.ring_moments(ring))
+        if let Some(curve) = self.curve() {
+            return curve.moments_of(ring);
+        }
+        let span = self.span(ring);
+        Moments::stack(Shape::moments(self, &span), Moments::default(), span.edge)
     }
 
-    /// Difference of the squares of the radii of a ring, m^2, to round-off of itself.
-    pub(super) fn gap_of(&self, ring: &Ring) -> f64 {
-        each!(self, shape => shape.span(ring).gap)
+    /// The span of a ring.
+    pub(super) fn span(&self, ring: &Ring) -> Span {
+        each!(self, shape => shape::span(shape, ring))
     }
 
     /// The levels of a ring that lie on a vertical edge, m.
     pub(crate) fn edge_depth(&self, ring: &Ring) -> f64 {
-        each!(self, shape => shape.span(ring).edge)
+        self.span(ring).edge
     }
 
     /// The nodes of a quadrature over the radii of a ring, for integrands with roots of the depth h below its outer
     /// level and of `total` - h, and with waves in the angle whose cosine is 1 - 2 h/total, up to cos(`turns` th).
     pub(crate) fn ring_nodes(&self, ring: &Ring, total: f64, turns: usize) -> RingNodes {
-        each!(self, shape => {
-            shape.ring_nodes(ring, turns).unwrap_or_else(|| ring_quadrature::nodes(shape, ring, total, turns))
-        })
+        match self.curve() {
+            Some(curve) => curve.ring_nodes(ring, turns),
+            None => each!(self, shape => ring_quadrature::nodes(shape, ring, total, turns)),
+        }
     }
 
     /// int dy / sqrt(X(y)^2 - r^2) over the levels of the ring whose radius is above r (pure number): the ring's share
@@ -49,11 +64,9 @@ impl Profile {
     pub fn kernel(&self, at: &StressRadius, ring: &Ring) -> f64 {
         #[cfg(test)]
         call_count::add(|calls| &mut calls.kernel);
-        each!(self, shape => {
-            let span = shape.span(ring);
-            let face = shape.kernel(at, &span);
-            if span.edge > 0.0 { face + edge(at, &span) } else { face }
-        })
+        let span = self.span(ring);
+        let face = Shape::kernel(self, KernelOrder::Value, at, &span);
+        if span.edge > 0.0 { face + edge(at, &span) } else { face }
     }
 
     /// The derivative of [`Profile::kernel`] with respect to r^2, 1/m^2, taken from the right where r is the inner
@@ -62,11 +75,9 @@ impl Profile {
     pub fn kernel_slope(&self, at: &StressRadius, ring: &Ring) -> f64 {
         #[cfg(test)]
         call_count::add(|calls| &mut calls.kernel_slope);
-        each!(self, shape => {
-            let span = shape.span(ring);
-            let face = shape.kernel_slope(at, &span);
-            if span.edge > 0.0 { face + edge_slope(at, &span) } else { face }
-        })
+        let span = self.span(ring);
+        let face = Shape::kernel(self, KernelOrder::Slope, at, &span);
+        if span.edge > 0.0 { face + edge_slope(at, &span) } else { face }
     }
 
     /// int (y_outer - g(x)) dx / sqrt(r^2 - x^2) over the radii x of the ring below r, m: the ring's share of the
@@ -75,30 +86,16 @@ impl Profile {
     pub fn displacement_integral(&self, at: &StressRadius, ring: &Ring) -> f64 {
         #[cfg(test)]
         call_count::add(|calls| &mut calls.displacement_integral);
-        each!(self, shape => {
-            let span = shape.span(ring);
-            let face = shape.displacement_integral(at, &span);
-            if span.edge > 0.0 { face + span.edge * span.arc(at) } else { face }
-        })
-    }
-
-    /// (2/pi) int v dx/sqrt(r^2 - x^2) over the radii x of the contact below r, m, at each of `radii`, at once: v, m,
-    /// is straight in g over rings that adjoin each other from the centre to the edge, each with its dv/dg, and `ends`
-    /// are its values at the centre and at the edge. `None` where ring by ring is no slower.
-    pub(crate) fn displacements(
-        &self,
-        rings: &[(Ring, f64)],
-        ends: (f64, f64),
-        radii: &[StressRadius],
-    ) -> Option<Vec<f64>> {
-        Shape::displacements(self, rings, ends, radii)
+        let span = self.span(ring);
+        let face = each!(self, shape => shape::displacement_integral(shape, at, &span));
+        if span.edge > 0.0 { face + span.edge * span.arc(at) } else { face }
     }
 
     /// int dx / sqrt(r^2 - x^2) over the radii x of the ring below r (pure number). What lies inside X(0), a flat core,
     /// belongs to no ring: there it is asin(min(1, X(0)/r)).
     #[must_use]
     pub fn arc(&self, at: &StressRadius, ring: &Ring) -> f64 {
-        each!(self, shape => shape.span(ring).arc(at))
+        self.span(ring).arc(at)
     }
 }
 

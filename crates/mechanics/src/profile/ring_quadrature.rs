@@ -8,7 +8,7 @@
 use std::f64::consts::PI;
 
 use super::ring_nodes::{DepthNode, RingNodes};
-use super::shape::{Shape, outermost_interval};
+use super::shape::{Shape, outermost_interval, span, under};
 use super::smooth_interval::{Node, SmoothInterval};
 use super::{Ring, Span};
 use crate::numerics::gauss::QuadraturePanel;
@@ -34,8 +34,8 @@ const VERY_MANY_KINKS: usize = 128;
 const FEW_PANELS: f64 = 8.0;
 
 /// The nodes of a ring for roots of h and of `total` - h, and waves up to cos(`turns` th), cos(th) = 1 - 2 h/total.
-pub(super) fn nodes(shape: &(impl Shape + ?Sized), ring: &Ring, total: f64, turns: usize) -> RingNodes {
-    let span = shape.span(ring);
+pub(super) fn nodes(shape: &impl Shape, ring: &Ring, total: f64, turns: usize) -> RingNodes {
+    let span = span(shape, ring);
     let kink_below = |radius: f64| Some(shape.kink_below(radius)).filter(|kink| *kink > 0.0);
     let kinks = || std::iter::successors(kink_below(ring.outer.radius), |&kink| kink_below(kink));
     if kinks().take_while(|kink| *kink > ring.inner.radius).take(MOST_KINKS + 1).count() > MOST_KINKS {
@@ -50,7 +50,7 @@ pub(super) fn nodes(shape: &(impl Shape + ?Sized), ring: &Ring, total: f64, turn
         let depth = shape.rise(&outer);
         let left = if inner.is_none() { total - ring.depth } else { total - above - depth };
         let mut add = |(node, weight): (Node, f64)| {
-            nodes.push(DepthNode { weight, depth: above + shape.rise_to(&outer, &interval, node) });
+            nodes.push(DepthNode { weight, depth: above + shape.rise(&under(&outer, &interval, node)) });
         };
         let SmoothInterval { low, high, drop, singular, power, .. } = interval;
         let foci = low.hypot(singular.below) + high.hypot(singular.below);
@@ -68,16 +68,22 @@ pub(super) fn nodes(shape: &(impl Shape + ?Sized), ring: &Ring, total: f64, turn
 }
 
 /// The nodes of a span as if it had no kinks, by panels no wider than `widest`, and by halves of them.
-fn across(shape: &(impl Shape + ?Sized), span: &Span, total: f64, widest: f64) -> RingNodes {
+fn across(shape: &impl Shape, span: &Span, total: f64, widest: f64) -> RingNodes {
     let interval = SmoothInterval::new(span, 0.0, f64::INFINITY, f64::INFINITY, shape.facts().power);
     let depth = shape.rise(span);
     let mut ends = panels(shape, &interval, [span.edge, depth, total - span.edge - depth], true);
     split(&mut ends, widest);
     let nodes = |ends: &[f64]| {
-        let nodes: Vec<(Node, f64)> = angular_nodes(&interval, ends, QuadraturePanel::coarse).collect();
-        let below: Vec<f64> = nodes.iter().map(|(node, _)| node.dt).collect();
-        let node = |((_, weight), rise): (&(Node, f64), f64)| DepthNode { weight: *weight, depth: span.edge + rise };
-        nodes.iter().zip(shape.rises(span, &below)).map(node).collect()
+        let (mut above, mut outer) = (span.edge, *span);
+        let node = |(node, weight): (Node, f64)| {
+            // From node to node, each of which lies below the one before.
+            let here = Span::under(span.outer, span.outer_radius, node.dt * (2.0 * span.outer_radius - node.dt));
+            let step = Span { inner: here.inner, inner_radius: here.inner_radius, ..outer };
+            above += shape.rise(&Span { gap: (step.outer - step.inner).value(), edge: 0.0, ..step });
+            outer = Span { outer: here.inner, outer_radius: here.inner_radius, ..outer };
+            DepthNode { weight, depth: above }
+        };
+        angular_nodes(&interval, ends, QuadraturePanel::coarse).map(node).collect()
     };
     let coarse = nodes(&ends);
     let middles: Vec<f64> = ends.windows(2).map(|pair| 0.5 * (pair[0] + pair[1])).collect();
@@ -102,7 +108,7 @@ fn angular_nodes<'a>(
 
 /// The ends of the panels of the angle from zero, the outer end, to pi. `levels` are the depth above the interval, that
 /// of the interval, and what `total` has left below it.
-fn panels(shape: &(impl Shape + ?Sized), interval: &SmoothInterval, levels: [f64; 3], innermost: bool) -> Vec<f64> {
+fn panels(shape: &impl Shape, interval: &SmoothInterval, levels: [f64; 3], innermost: bool) -> Vec<f64> {
     let [above, depth, left] = levels;
     let SmoothInterval { base, high, drop, singular, power, low, .. } = *interval;
     let angle = |distance: f64| 2.0 * (distance.max(0.0) / drop).sqrt().asinh();

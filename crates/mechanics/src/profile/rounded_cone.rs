@@ -4,7 +4,7 @@
 //! There gamma = dg/dt = T (t/x) Q, Q = 2b/(x + t) + phi, and int x dg = (T/2)(x^2 phi + (4/3) b x^2/(x + t) + b t/3)
 //! (Ciavarella 1999; Popov & Hess 2015). f' bends but does not jump at b, so all stresses are finite.
 
-use super::shape::{Shape, ShapeFacts};
+use super::shape::{KernelOrder, Shape, ShapeFacts};
 use super::smooth_coordinate::{self, SmoothCoordinate};
 use super::sphere::Sphere;
 use super::{DoubleDouble, Error, Moments, Ring, Span, StressRadius, range};
@@ -145,10 +145,6 @@ impl Shape for RoundedCone {
         }
     }
 
-    fn radius(&self, level: f64) -> f64 {
-        self.square(level.into()).value().sqrt()
-    }
-
     fn square(&self, level: DoubleDouble) -> DoubleDouble {
         if level <= self.flank.tip_level {
             self.tip.square(level)
@@ -203,16 +199,10 @@ impl Shape for RoundedCone {
         Moments::stack(tip.map_or(Moments::default(), |span| self.tip.moments(&span)), outer, above)
     }
 
-    fn kernel(&self, at: &StressRadius, span: &Span) -> f64 {
+    fn kernel(&self, order: KernelOrder, at: &StressRadius, span: &Span) -> f64 {
         let (tip, flank) = self.parts(span);
-        tip.map_or(0.0, |span| self.tip.kernel(at, &span))
-            + flank.map_or(0.0, |span| smooth_coordinate::kernel(&self.flank, at, &span))
-    }
-
-    fn kernel_slope(&self, at: &StressRadius, span: &Span) -> f64 {
-        let (tip, flank) = self.parts(span);
-        tip.map_or(0.0, |span| self.tip.kernel_slope(at, &span))
-            + flank.map_or(0.0, |span| smooth_coordinate::kernel_slope(&self.flank, at, &span))
+        tip.map_or(0.0, |span| self.tip.kernel(order, at, &span))
+            + flank.map_or(0.0, |span| smooth_coordinate::kernel(&self.flank, order, at, &span))
     }
 
     fn facts(&self) -> ShapeFacts {

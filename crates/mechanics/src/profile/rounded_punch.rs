@@ -4,7 +4,7 @@
 //! gamma = dg/dt = (t/(R x))(2t - b phi), int x dg = (3 x^2 (t - b phi) + t^3)/(6R) (Schubert 1942; Ciavarella 1999).
 //! All stays positive through t - b phi = b (u - atan u), u = t/b.
 
-use super::shape::ShapeFacts;
+use super::shape::{Falls, KernelOrder, ShapeFacts};
 use super::smooth_coordinate::{self, Nodes, SmoothCoordinate, flat_core};
 use super::{DoubleDouble, Error, Moments, Ring, Span, StressRadius, range};
 use crate::numerics::angle::{angles, tangent_less_angle};
@@ -108,23 +108,17 @@ impl SmoothCoordinate for RoundedPunch {
 }
 
 flat_core!(RoundedPunch {
-    fn least_fall(&self, inner: f64, outer: f64) -> f64 {
+    fn falls(&self, inner: f64, outer: f64) -> Falls {
         let (low, high) = (smooth_coordinate::t_of(self, inner), smooth_coordinate::t_of(self, outer));
-        if low <= 0.0 {
-            return f64::NEG_INFINITY;
-        }
         // dq/dt = (t gamma' - gamma)/t^2 <= 1/(R x), and the int dt/sqrt(t^2 - t_r^2) that goes with it is
         // arcosh(t/t_r).
         let width = ((outer - inner) * (outer + inner)).sqrt();
         let rise = width * ((width + high) / low).ln() / (self.edge_radius * inner);
-        self.slope(outer) / outer - rise
-    }
-
-    fn rises_concavely(&self, inner: f64) -> bool {
+        let least = if low > 0.0 { self.slope(outer) / outer - rise } else { f64::NEG_INFINITY };
         // With u = t/b, R dq/d(u^2) = (1 + u phi)/(2 u (1 + u^2)^(3/2)) > 0, whose logarithm has the slope (phi + u/(1
         // + u^2))/(1 + u phi)
         // - 1/u - 3 u/(1 + u^2) < 0, since u phi + u^2/(1 + u^2) < 1 + u phi.
-        inner >= self.flat_radius
+        Falls { least, concavely: inner >= self.flat_radius }
     }
 
     fn surface_slope(&self, r: f64) -> f64 {

@@ -80,11 +80,6 @@ fn shortfall(z: f64) -> f64 {
     z * inverse_terms(z).iter().rev().fold(0.0, |sum, share| sum * z + share)
 }
 
-/// The s of a level y = g, `z` = y/R.
-pub(super) fn square_at(z: f64) -> f64 {
-    z - z * shortfall(z)
-}
-
 /// x^2, m^2, of a level, m, of a sphere of this radius, m, with twice the digits: those of R y times z C, a small
 /// number, have one rounding.
 pub(super) fn exact_square(radius: f64, level: DoubleDouble) -> DoubleDouble {

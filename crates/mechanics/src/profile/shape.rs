@@ -1,8 +1,8 @@
 //! The functions that a family must provide, and those that follow for all families.
 
-use super::ring_nodes::RingNodes;
 use super::smooth_interval::{Node, SmoothInterval};
-use super::{DoubleDouble, InterpolationError, Moments, Ring, Span, StressRadius};
+use super::smooth_pieces::SmoothPieces;
+use super::{DoubleDouble, Moments, Ring, Span, StressRadius};
 use crate::numerics::roots::increasing;
 
 /// Where contacts end.
@@ -23,6 +23,10 @@ pub(super) struct ShapeFacts {
     pub(super) known_to: Option<End>,
     /// The radius at which g ceases to be analytic, never reached by a contact, m.
     pub(super) ceiling: f64,
+    /// The radius of a vertical edge, which the contact keeps under every higher load, m.
+    pub(super) rim: Option<f64>,
+    /// Where f' jumps by a finite amount, so that stresses are log-infinite, m: of a sum, one of these radii.
+    pub(super) singular: Option<f64>,
     /// g changes no faster than x to this power.
     pub(super) power: f64,
     /// The radius of curvature, where the shape is given by one, m.
@@ -45,6 +49,8 @@ impl Default for ShapeFacts {
             limit: None,
             known_to: None,
             ceiling: f64::INFINITY,
+            rim: None,
+            singular: None,
             power: 2.0,
             curvature_radius: None,
             kernel_falls: false,
@@ -68,58 +74,38 @@ impl ShapeFacts {
     }
 }
 
-/// The functions of one family. Radii in m, levels in m; the caller adds what a span crosses at a vertical edge.
-pub(super) trait Shape {
+/// What is asked of a kernel.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) enum KernelOrder {
+    Value,
+    /// The derivative with respect to r^2, from the right.
+    Slope,
+}
+
+/// What is known of the sign of dK(r, c)/d(r^2), the kernel up to c: see [`Profile::falls`](super::Profile).
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Falls {
+    /// A lower bound, 1/m, of -2 v dK/d(r^2); minus infinity where nothing is known.
+    pub(crate) least: f64,
+    /// Whether q neither falls nor bends upward.
+    pub(crate) concavely: bool,
+}
+
+/// The functions of one family, of which the first three are its own. Radii in m, levels in m; the caller adds what a
+/// span crosses at a vertical edge. What is not closed follows from g and g' by quadratures, roots and series.
+pub(super) trait Shape: Sized {
     /// g(x).
     fn level(&self, radius: f64) -> f64;
 
     /// g'(x).
     fn slope(&self, radius: f64) -> f64;
 
-    /// dg/dt (pure number) at several t = sqrt(x^2 - b^2) side by side, m, above `base` = b, m: a kink of the family or
-    /// of a sum that it is part of, or zero.
-    fn slopes<const N: usize>(&self, base: f64, t: [f64; N]) -> [f64; N] {
-        t.map(|t| {
-            let x = if base > 0.0 { (base * base + t * t).sqrt() } else { t };
-            self.slope(x) * (t / x)
-        })
-    }
-
-    /// X(y).
-    fn radius(&self, level: f64) -> f64;
-
-    /// X(y)^2, as exact as can be.
-    fn square(&self, level: DoubleDouble) -> DoubleDouble {
-        DoubleDouble::square_of(self.radius(level.value()))
-    }
-
-    /// int_0^x t g'(t) dt = F_N/(2 E*), m^2.
-    fn load(&self, radius: f64) -> f64;
-
-    /// The level at which [`Shape::load`] has this value.
-    fn indentation_for(&self, load: f64) -> f64;
-
-    /// g(x_outer) - g(x_inner), to round-off of itself.
-    fn rise(&self, span: &Span) -> f64;
-
-    /// Difference of the squares of the radii of a ring of this depth. [`Shape::rise`] undone, by Newton's steps.
-    fn gap(&self, ring: &Ring, depth: f64) -> f64 {
-        gap(self, ring, depth)
-    }
+    /// f'(r), the slope of the undeformed surface.
+    fn surface_slope(&self, r: f64) -> f64;
 
     /// What holds for all of it.
     fn facts(&self) -> ShapeFacts {
         ShapeFacts::default()
-    }
-
-    /// Radius and level at which the profile ends in a vertical edge.
-    fn rim(&self) -> Option<(f64, f64)> {
-        None
-    }
-
-    /// The radius of [`Shape::rim`].
-    fn rim_radius(&self) -> Option<f64> {
-        self.rim().map(|(radius, _)| radius)
     }
 
     /// The largest kink below `radius`; zero, the tip, if there is none.
@@ -127,9 +113,44 @@ pub(super) trait Shape {
         0.0
     }
 
-    /// The span of a ring.
-    fn span(&self, ring: &Ring) -> Span {
-        span(ring, self.rim().map(|(_, top)| top), |depth| self.gap(ring, depth))
+    /// dg/dt (pure number) at several t = sqrt(x^2 - b^2) side by side, m, above `base` = b, m: a kink of the family or
+    /// of a sum that it is part of, or zero.
+    fn slopes<const N: usize>(&self, base: f64, t: [f64; N]) -> [f64; N] {
+        t.map(|t| {
+            let x = if base > 0.0 { (base * base + t * t).sqrt() } else { t };
+            if x > 0.0 { self.slope(x) * (t / x) } else { 0.0 }
+        })
+    }
+
+    /// X(y)^2, as exact as can be.
+    fn square(&self, level: DoubleDouble) -> DoubleDouble {
+        let y = level.value();
+        DoubleDouble::square_of(if y > 0.0 { increasing(y, |x| (self.level(x) - y, self.slope(x))) } else { 0.0 })
+    }
+
+    /// int_0^x t g'(t) dt = F_N/(2 E*), m^2.
+    fn load(&self, radius: f64) -> f64 {
+        let square = DoubleDouble::square_of(radius);
+        // By parts.
+        self.moments(&Span::under(square, radius, square.value())).first
+    }
+
+    /// The level at which [`Shape::load`] has this value.
+    fn indentation_for(&self, load: f64) -> f64 {
+        if load <= 0.0 {
+            return 0.0;
+        }
+        self.level(increasing(load.sqrt(), |x| (self.load(x) - load, x * self.slope(x))))
+    }
+
+    /// g(x_outer) - g(x_inner), to round-off of itself.
+    fn rise(&self, span: &Span) -> f64 {
+        rise(self, span)
+    }
+
+    /// Difference of the squares of the radii of a ring of this depth. [`Shape::rise`] undone, by Newton's steps.
+    fn gap(&self, ring: &Ring, depth: f64) -> f64 {
+        gap(self, ring, depth)
     }
 
     /// The moments of h = g(x_outer) - g(x).
@@ -137,101 +158,19 @@ pub(super) trait Shape {
         moments(self, span)
     }
 
-    /// The moments of a ring, with the levels that it crosses at a vertical edge.
-    fn ring_moments(&self, ring: &Ring) -> Moments {
-        let span = self.span(ring);
-        Moments::stack(self.moments(&span), Moments::default(), span.edge)
+    /// int g'(x) dx / sqrt(x^2 - r^2) over the radii of the span above r, or its slope.
+    fn kernel(&self, order: KernelOrder, at: &StressRadius, span: &Span) -> f64 {
+        kernel(self, order, at, span)
     }
 
-    /// The nodes of a quadrature over the radii of a ring for waves up to cos(`turns` th), by a family that has no g;
-    /// `None` where they follow from the intervals between kinks.
-    fn ring_nodes(&self, _ring: &Ring, _turns: usize) -> Option<RingNodes> {
-        None
-    }
-
-    /// The rise from a node of an interval up to the outer end of its span.
-    fn rise_to(&self, outer: &Span, interval: &SmoothInterval, node: Node) -> f64 {
-        self.rise(&under(outer, interval, node))
-    }
-
-    /// The rises up to the outer end of a span from radii that lie below it by these distances, which increase.
-    fn rises(&self, span: &Span, below: &[f64]) -> Vec<f64> {
-        let gap = |&below: &f64| below * (2.0 * span.outer_radius - below);
-        below.iter().map(|below| self.rise(&Span::under(span.outer, span.outer_radius, gap(below)))).collect()
-    }
-
-    /// int h dx / sqrt(r^2 - x^2) below r, with h = g(x_outer) - g(x).
-    fn displacement_integral(&self, at: &StressRadius, span: &Span) -> f64 {
-        let (mut sum, mut above) = (0.0, 0.0);
-        let mut rest = Some(*span);
-        while let Some(span) = rest.filter(|span| span.gap > 0.0) {
-            let (interval, outer, inner) = outermost_interval(self, &span);
-            sum += interval.displacement_integral(&outer, at, above, |node| self.rise(&under(&outer, &interval, node)));
-            above += self.rise(&outer);
-            rest = inner;
-        }
-        sum
-    }
-
-    /// int g'(x) dx / sqrt(x^2 - r^2) over the radii of the span above r.
-    fn kernel(&self, at: &StressRadius, span: &Span) -> f64;
-
-    /// Its derivative with respect to r^2, from the right.
-    fn kernel_slope(&self, at: &StressRadius, span: &Span) -> f64;
-
-    /// The coefficients of g'(a xi) = sum of c_k xi^k, `a` being a radius, m, none of them negative; `None` where that
-    /// is no series of at most [`MOST_POWERS`](super::slope_series::MOST_POWERS).
-    fn slope_series(&self, _a: f64) -> Option<Vec<f64>> {
-        None
-    }
-
-    /// The weighted sums of [`Profile::kernel`](super::Profile::kernel_sums), by a family that has a faster way than
-    /// ring by ring.
-    fn kernel_sums(&self, _rings: &[(Ring, f64)], _radii: &[StressRadius]) -> Option<Vec<f64>> {
-        None
-    }
-
-    /// See [`Profile::displacements`](super::Profile); `None` of a family that has no faster way than ring by ring.
-    fn displacements(&self, _rings: &[(Ring, f64)], _ends: (f64, f64), _radii: &[StressRadius]) -> Option<Vec<f64>> {
-        None
-    }
-
-    /// f'(r), the slope of the undeformed surface.
-    fn surface_slope(&self, r: f64) -> f64;
-
-    /// How many times larger than g the parts are that it is the sum of.
-    fn cancellation(&self, _x: f64) -> f64 {
-        1.0
-    }
-
-    /// See [`Profile::least_fall`](super::Profile).
-    fn least_fall(&self, _inner: f64, outer: f64) -> f64 {
-        if self.facts().kernel_falls { self.slope(outer) / outer } else { f64::NEG_INFINITY }
-    }
-
-    /// See [`Profile::rises_concavely`](super::Profile).
-    fn rises_concavely(&self, _inner: f64) -> bool {
-        false
-    }
-
-    /// Radii at which f' jumps by a finite amount, so that stresses are log-infinite, increasing.
-    fn singular_radii(&self) -> Vec<f64> {
-        Vec::new()
-    }
-
-    /// The interpolation error in a contact of this radius.
-    fn interpolation_error(&self, _radius: f64) -> InterpolationError {
-        InterpolationError::default()
-    }
-
-    /// Noise of g, and how many times that of the heights it is.
-    fn noise(&self, _radius: f64) -> Option<(f64, f64)> {
-        None
+    /// See [`Falls`].
+    fn falls(&self, _inner: f64, outer: f64) -> Falls {
+        let least = if self.facts().kernel_falls { self.slope(outer) / outer } else { f64::NEG_INFINITY };
+        Falls { least, concavely: false }
     }
 }
-
 /// The outermost interval of a span without a kink, as such and as a span, and what is left inside it.
-pub(super) fn outermost_interval<S: Shape + ?Sized>(shape: &S, span: &Span) -> (SmoothInterval, Span, Option<Span>) {
+pub(super) fn outermost_interval<S: Shape>(shape: &S, span: &Span) -> (SmoothInterval, Span, Option<Span>) {
     let ShapeFacts { ceiling, power, analytic_tip, .. } = shape.facts();
     let base = shape.kink_below(span.outer_radius);
     let square = DoubleDouble::square_of(base);
@@ -259,11 +198,11 @@ pub(super) fn under(top: &Span, interval: &SmoothInterval, node: Node) -> Span {
     Span { inner, inner_radius: inner.value().sqrt(), gap: (top.outer - inner).value(), edge: 0.0, ..*top }
 }
 
-/// The span of a ring of a profile that rises vertically from the level `top` on, if it does, by what [`Shape::gap`]
-/// gives.
-pub(super) fn span(ring: &Ring, top: Option<f64>, gap: impl Fn(f64) -> f64) -> Span {
+/// The span of a ring.
+pub(super) fn span<S: Shape>(shape: &S, ring: &Ring) -> Span {
     let (mut depth, mut edge) = (ring.depth, 0.0);
-    if let Some(top) = top.map(DoubleDouble::from) {
+    if let Some(rim) = shape.facts().rim.filter(|rim| ring.outer.radius >= *rim) {
+        let top = DoubleDouble::from(shape.level(rim));
         if ring.inner.level >= top {
             (depth, edge) = (0.0, depth);
         } else if ring.outer.level > top {
@@ -271,18 +210,52 @@ pub(super) fn span(ring: &Ring, top: Option<f64>, gap: impl Fn(f64) -> f64) -> S
             depth = (top - ring.inner.level).value();
         }
     }
-    Span::of(ring, if depth > 0.0 { gap(depth) } else { 0.0 }, edge)
+    Span::of(ring, if depth > 0.0 { shape.gap(ring, depth) } else { 0.0 }, edge)
+}
+
+/// [`Shape::rise`] by quadratures of dg/dt between kink and kink.
+fn rise<S: Shape>(shape: &S, span: &Span) -> f64 {
+    between_kinks(shape, span).map(|(interval, _)| interval.rise(|t| shape.slopes(interval.base, [t])[0])).sum()
+}
+
+/// The parts of a span without a kink, from its outer end inward, as such and as spans.
+fn between_kinks<S: Shape>(shape: &S, span: &Span) -> impl Iterator<Item = (SmoothInterval, Span)> {
+    let mut rest = Some(*span);
+    std::iter::from_fn(move || {
+        let (interval, outer, inner) = outermost_interval(shape, &rest.filter(|span| span.gap > 0.0)?);
+        rest = inner;
+        Some((interval, outer))
+    })
+}
+
+/// int h dx / sqrt(r^2 - x^2) below r, with h = g(x_outer) - g(x).
+pub(super) fn displacement_integral<S: Shape>(shape: &S, at: &StressRadius, span: &Span) -> f64 {
+    let (mut sum, mut above) = (0.0, 0.0);
+    for (interval, outer) in between_kinks(shape, span) {
+        sum += interval.displacement_integral(&outer, at, above, |node| shape.rise(&under(&outer, &interval, node)));
+        above += shape.rise(&outer);
+    }
+    sum
+}
+
+/// [`Shape::kernel`] by series.
+fn kernel<S: Shape>(shape: &S, order: KernelOrder, at: &StressRadius, span: &Span) -> f64 {
+    let Some(pieces) = SmoothPieces::of_span(shape, span, at.radius) else { return f64::NAN };
+    match order {
+        KernelOrder::Value => pieces.sum(at),
+        KernelOrder::Slope => pieces.slopes(&[*at], |_| true)[0].0,
+    }
 }
 
 /// [`Shape::gap`] by Newton's steps.
-pub(super) fn gap<S: Shape + ?Sized>(shape: &S, ring: &Ring, depth: f64) -> f64 {
+pub(super) fn gap<S: Shape>(shape: &S, ring: &Ring, depth: f64) -> f64 {
     let outer = ring.outer;
     let plain = (outer.square - ring.inner.square).value();
     if plain > 0.3 * outer.square.value() || ring.inner.level <= DoubleDouble::ZERO {
         return plain;
     }
     // No ring reaches into a flat core, where g is constant.
-    let square = (outer.square - DoubleDouble::square_of(shape.radius(0.0))).value();
+    let square = (outer.square - shape.square(DoubleDouble::ZERO)).value();
     let steepness = |radius: f64| shape.slope(radius) / (2.0 * radius);
     let start = depth / steepness(outer.radius);
     let start = if plain > 1e-6 * square { plain } else { start.min(0.5 * square) };
@@ -296,15 +269,12 @@ pub(super) fn gap<S: Shape + ?Sized>(shape: &S, ring: &Ring, depth: f64) -> f64 
 }
 
 /// [`Shape::moments`] between kink and kink.
-pub(super) fn moments<S: Shape + ?Sized>(shape: &S, span: &Span) -> Moments {
+pub(super) fn moments<S: Shape>(shape: &S, span: &Span) -> Moments {
     let (mut sum, mut above) = (Moments::default(), 0.0);
-    let mut rest = Some(*span);
-    while let Some(span) = rest.filter(|span| span.gap > 0.0) {
-        let (interval, outer, inner) = outermost_interval(shape, &span);
-        let part = interval.moments(|node| shape.rise_to(&outer, &interval, node));
+    for (interval, outer) in between_kinks(shape, span) {
+        let part = interval.moments(|node| shape.rise(&under(&outer, &interval, node)));
         sum = Moments::stack(part, sum, above);
         above += shape.rise(&outer);
-        rest = inner;
     }
     sum
 }
@@ -326,7 +296,7 @@ mod tests {
         let mut claims = 0;
         for profile in profiles {
             for inner in [0.0, 0.1, 0.2, 0.3] {
-                if !profile.rises_concavely(inner) {
+                if !profile.falls(inner, 1.0).concavely {
                     continue;
                 }
                 claims += 1;

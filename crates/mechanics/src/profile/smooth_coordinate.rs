@@ -7,7 +7,7 @@
 //! elementary; for the profiles see Popov & Hess 2015, chapter 3).
 
 use super::smooth_interval::SmoothInterval;
-pub(super) use super::smooth_path::{kernel, kernel_slope};
+pub(super) use super::smooth_path::kernel;
 use super::{DoubleDouble, Moments, Ring, Span, StressRadius};
 use crate::numerics::gauss::{EIGHT_POINTS, QuadraturePanel, Singular, TWELVE_POINTS, TWENTY_POINTS};
 use crate::numerics::roots::{descend, distance_below, increasing};
@@ -321,9 +321,6 @@ macro_rules! flat_core {
             fn slopes<const N: usize>(&self, base: f64, t: [f64; N]) -> [f64; N] {
                 smooth_coordinate::slopes(self, base, t)
             }
-            fn radius(&self, level: f64) -> f64 {
-                self.radius_at(self.solve(level))
-            }
             fn square(&self, level: DoubleDouble) -> DoubleDouble {
                 DoubleDouble::square_of(self.kink_radius()) + self.square_above(level)
             }
@@ -345,17 +342,8 @@ macro_rules! flat_core {
             fn moments(&self, span: &Span) -> Moments {
                 smooth_coordinate::moments(self, span)
             }
-            fn displacement_integral(&self, at: &StressRadius, span: &Span) -> f64 {
-                smooth_coordinate::displacement_integral(self, at, span)
-            }
-            fn kernel(&self, at: &StressRadius, span: &Span) -> f64 {
-                smooth_coordinate::kernel(self, at, span)
-            }
-            fn kernel_slope(&self, at: &StressRadius, span: &Span) -> f64 {
-                smooth_coordinate::kernel_slope(self, at, span)
-            }
-            fn singular_radii(&self) -> Vec<f64> {
-                if self.jumps() { vec![self.kink_radius()] } else { Vec::new() }
+            fn kernel(&self, order: KernelOrder, at: &StressRadius, span: &Span) -> f64 {
+                smooth_coordinate::kernel(self, order, at, span)
             }
             $($methods)*
         }

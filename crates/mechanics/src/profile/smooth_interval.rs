@@ -117,6 +117,16 @@ impl SmoothInterval {
         }
     }
 
+    /// int gamma dt.
+    pub(super) fn rise(&self, gamma: impl Fn(f64) -> f64) -> f64 {
+        let mut sum = 0.0;
+        let change = Change { rate: self.high.recip(), bend: 0.0, factors: 1.0, least: 0.0 };
+        self.sweep(self.singular, self.high, self.drop, change, |dt, weight| {
+            sum += weight * gamma((self.high - dt).max(0.0));
+        });
+        sum
+    }
+
     /// int dx, int h dx and int h^2 dx with h the rise from x to the top of the interval.
     pub(super) fn moments(&self, rise: impl Fn(Node) -> f64) -> Moments {
         if self.gap <= 0.0 {

@@ -3,6 +3,7 @@
 //! A short path, that of most rings of a slip history, takes one panel of Gauss's rule, as [`along_strip`] would give
 //! it, with all of its points side by side.
 
+use super::shape::KernelOrder;
 use super::smooth_coordinate::{SmoothCoordinate, SpanEnds, ends};
 use super::{DoubleDouble, Span, StressRadius};
 use crate::numerics::gauss::{EIGHT_POINTS, TWELVE_POINTS, along_strip};
@@ -86,9 +87,12 @@ impl Path {
     }
 }
 
-/// K over a span.
-pub(super) fn kernel(family: &impl SmoothCoordinate, at: &StressRadius, span: &Span) -> f64 {
+/// K over a span, or its slope.
+pub(super) fn kernel(family: &impl SmoothCoordinate, order: KernelOrder, at: &StressRadius, span: &Span) -> f64 {
     let Some(path) = Path::new(family, at, span) else { return 0.0 };
+    if order == KernelOrder::Slope {
+        return kernel_slope(family, &path);
+    }
     if path.low + path.v_low <= 0.0 && family.jumps() {
         return f64::INFINITY;
     }
@@ -98,9 +102,8 @@ pub(super) fn kernel(family: &impl SmoothCoordinate, at: &StressRadius, span: &S
     path.integrate(family.power(), family.ceiling(), |t, _, drop| family.slope_below(t, path.high, drop))
 }
 
-/// dK/d(r^2) over a span: (1/2) int gamma dt/v^3, by parts where v starts from zero or nearly so.
-pub(super) fn kernel_slope(family: &impl SmoothCoordinate, at: &StressRadius, span: &Span) -> f64 {
-    let Some(path) = Path::new(family, at, span) else { return 0.0 };
+/// dK/d(r^2) over a path: (1/2) int gamma dt/v^3, by parts where v starts from zero or nearly so.
+fn kernel_slope(family: &impl SmoothCoordinate, path: &Path) -> f64 {
     let (low, high, v_low, v_high) = (path.low, path.high, path.v_low, path.v_high);
     if v_low > 0.0 && (path.kappa <= 0.0 || v_high < 2.0 * v_low) {
         let integrand = |t, v, drop| family.slope_below(t, high, drop) / (v * v);

@@ -25,8 +25,8 @@ use std::ops::Range;
 
 #[cfg(test)]
 use super::call_count;
-use super::shape::{Shape, ShapeFacts};
-use super::{DoubleDouble, Profile, Ring, Span, StressRadius};
+use super::shape::{KernelOrder, Shape, ShapeFacts, span};
+use super::{DoubleDouble, Ring, Span, StressRadius};
 use kernels::{far_kernels, kink_kernels, near_kernels};
 use moments::{FAR_TERMS, kink_moments, moments};
 use sampled_series::{TERMS, beside_kink, of_slope_over_radius};
@@ -39,20 +39,24 @@ const FAR: f64 = 1.0 / 3.0;
 const WIDEST: f64 = 0.5;
 /// The part of the distance to the next singularity, in squares, up to which the series in t of a kink is taken.
 const KINK: f64 = 1.0 / 16.0;
+/// How often a piece may be halved.
+const HALVINGS: usize = 12;
 /// Terms whose size is below this share of the largest do not count.
 const NEGLIGIBLE: f64 = 1e-17;
 /// The smallest radius, over that of the edge, that pieces reach down to at a tip where q is not smooth.
 const INNERMOST: f64 = 1e-3;
 /// The pieces reach down to this share of the smallest radius, whose square has digits that it has lost itself.
 const CLEAR: f64 = 0.9;
+/// How near to a tip that is not smooth the pieces for one radius reach, over the outer radius.
+const TIP: f64 = 1e-12;
 /// With more pieces than this within a ring, others are quicker.
 const MOST_CUTS: f64 = 48.0;
 /// Squares of radii that differ by less, over that of the outer one, have lost digits that the depth of their ring has.
 const THIN: f64 = 1e-3;
 
 /// The pieces of a profile's rings, from the edge inward.
-pub(crate) struct SmoothPieces<'a> {
-    profile: &'a Profile,
+pub(super) struct SmoothPieces<'a, S> {
+    shape: &'a S,
     pieces: Vec<SmoothPiece>,
     /// The coefficients of all of them.
     terms: Vec<f64>,
@@ -61,6 +65,8 @@ pub(crate) struct SmoothPieces<'a> {
     tip: Vec<(Span, f64)>,
     /// 1/a^2, m^-2: lengths are in units of the edge.
     unit: f64,
+    /// With more pieces than this within a ring, there is none.
+    most_cuts: f64,
 }
 
 struct SmoothPiece {
@@ -75,6 +81,15 @@ struct SmoothPiece {
     near: Near,
     /// The coefficients of z^k for far radii.
     far: Range<usize>,
+}
+
+/// A piece to be: the kink beneath it, m, the squares of its ends and of its middle, m^2, and half their difference.
+struct PieceEnds {
+    base: f64,
+    inner: DoubleDouble,
+    outer: DoubleDouble,
+    middle: DoubleDouble,
+    half: f64,
 }
 
 /// What serves near radii, among the coefficients.
@@ -92,56 +107,72 @@ struct PieceSums<const N: usize> {
     sizes: [f64; N],
 }
 
-impl<'a> SmoothPieces<'a> {
+impl<'a, S: Shape> SmoothPieces<'a, S> {
     /// The pieces of rings and their weights best for radii of at least `least`, m; `None` if the profile has no such
     /// series, or levels at a vertical edge.
-    pub(super) fn new(profile: &'a Profile, rings: &[(Ring, f64)], least: f64) -> Option<SmoothPieces<'a>> {
-        let mut made = SmoothPieces::within(profile, rings.last()?.0.outer.radius, least, rings.len());
-        rings.iter().rev().try_for_each(|(ring, weight)| made.add(ring, *weight))?;
+    pub(super) fn new(shape: &'a S, rings: &[(Ring, f64)], least: f64) -> Option<SmoothPieces<'a, S>> {
+        let mut made = SmoothPieces::within(shape, rings.last()?.0.outer.radius, least, rings.len());
+        rings.iter().rev().try_for_each(|(ring, weight)| made.add(&span(shape, ring), *weight))?;
         Some(made)
     }
 
     /// None as yet, of so many rings inside an edge at a radius, m.
-    pub(super) fn within(profile: &'a Profile, edge: f64, least: f64, rings: usize) -> SmoothPieces<'a> {
-        let innermost = if profile.facts().smooth_tip { 0.0 } else { (CLEAR * least).max(INNERMOST * edge) };
+    pub(super) fn within(shape: &'a S, edge: f64, least: f64, rings: usize) -> SmoothPieces<'a, S> {
+        let innermost = if shape.facts().smooth_tip { 0.0 } else { (CLEAR * least).max(INNERMOST * edge) };
         let (pieces, terms) = (Vec::with_capacity(2 * rings), Vec::with_capacity(2 * TERMS * rings));
-        SmoothPieces { profile, pieces, terms, innermost, tip: Vec::new(), unit: 1.0 / (edge * edge) }
+        SmoothPieces {
+            shape,
+            pieces,
+            terms,
+            innermost,
+            tip: Vec::new(),
+            unit: 1.0 / (edge * edge),
+            most_cuts: MOST_CUTS,
+        }
     }
 
-    /// Adds the pieces of a ring, from its outer end inward.
-    pub(super) fn add(&mut self, ring: &Ring, weight: f64) -> Option<()> {
-        let profile = self.profile;
-        let ShapeFacts { by_series, smooth_tip, ceiling, .. } = profile.facts();
-        if !by_series || profile.edge_depth(ring) > 0.0 {
+    /// The pieces of a span, however many they are, for one radius. At a tip that is not smooth they end at
+    /// [`TIP`] of the outer radius.
+    pub(super) fn of_span(shape: &'a S, span: &Span, radius: f64) -> Option<SmoothPieces<'a, S>> {
+        let mut made = SmoothPieces::within(shape, span.outer_radius, radius, 1);
+        made.most_cuts = f64::INFINITY;
+        if made.innermost > 0.0 {
+            made.innermost = (CLEAR * radius).max(TIP * span.outer_radius);
+        }
+        made.add(&Span { edge: 0.0, ..*span }, 1.0)?;
+        made.tip.clear();
+        Some(made)
+    }
+
+    /// Adds the pieces of a ring by its span, from its outer end inward.
+    pub(super) fn add(&mut self, ring: &Span, weight: f64) -> Option<()> {
+        let shape = self.shape;
+        let ShapeFacts { by_series, smooth_tip, ceiling, .. } = shape.facts();
+        if !by_series || ring.edge > 0.0 {
             return None;
         }
-        let plain = (ring.outer.square - ring.inner.square).value();
-        let thin = plain <= THIN * ring.outer.square.value();
-        let (mut outer, mut radius) = (ring.outer.square, ring.outer.radius);
-        let floor = larger(ring.inner.square, DoubleDouble::square_of(self.innermost));
+        let thin = (ring.outer - ring.inner).value() <= THIN * ring.outer.value();
+        let (mut outer, mut radius) = (ring.outer, ring.outer_radius);
+        let floor = larger(ring.inner, DoubleDouble::square_of(self.innermost));
         while outer > floor {
-            let kink = profile.kink_below(radius);
+            let kink = shape.kink_below(radius);
             let base = DoubleDouble::square_of(kink);
             let room = (ceiling - radius) * (ceiling + radius);
             let low = larger(floor, base);
             // No wider than its distance from where g ceases to be analytic allows, either.
             let least = outer - DoubleDouble::from(WIDEST * room.min(outer.value()));
             let low = if WIDEST * room < (outer - low).value() { least } else { low };
-            let gap = if thin && low == ring.inner.square && outer == ring.outer.square {
-                profile.gap_of(ring)
-            } else {
-                (outer - low).value()
-            };
+            let gap = if thin && low == ring.inner && outer == ring.outer { ring.gap } else { (outer - low).value() };
             let above = (low - base).value();
             if kink > 0.0 && above <= 0.0 {
-                let next = DoubleDouble::square_of(profile.kink_below(kink));
+                let next = DoubleDouble::square_of(shape.kink_below(kink));
                 let reach = KINK * (base - next).value();
                 let top = if gap <= reach { gap } else { reach };
                 let from = if gap <= reach { outer } else { base + DoubleDouble::from(reach) };
                 if gap > reach {
                     self.smooth(kink, (from, outer), (gap - reach, false), [reach, room], weight)?;
                 }
-                let [even, odd] = beside_kink(profile, kink, top.sqrt());
+                let [even, odd] = beside_kink(shape, kink, top.sqrt());
                 let (even, odd) = (counted(&even), counted(&odd));
                 let far = kink_moments(even, odd, (top * self.unit).sqrt());
                 let near = Near::Kink { even: self.keep(even, 1.0), odd: self.keep(odd, 1.0) };
@@ -152,9 +183,8 @@ impl<'a> SmoothPieces<'a> {
             }
             (outer, radius) = (low, if low == base { kink } else { low.value().sqrt() });
         }
-        if outer > ring.inner.square {
-            let left = Span::of(ring, profile.gap_of(ring), 0.0);
-            self.tip.extend(left.below(outer, outer.value().sqrt()).map(|span| (span, weight)));
+        if outer > ring.inner {
+            self.tip.extend(ring.below(outer, outer.value().sqrt()).map(|span| (span, weight)));
         }
         Some(())
     }
@@ -172,7 +202,7 @@ impl<'a> SmoothPieces<'a> {
         let growth = gap / above;
         let steps = if growth <= WIDEST { 0.0 } else { growth.ln_1p() };
         let cuts = (steps / WIDEST.ln_1p()).ceil().max(1.0);
-        if growth.is_nan() || cuts > MOST_CUTS {
+        if growth.is_nan() || cuts > self.most_cuts {
             return None;
         }
         let step = steps / cuts;
@@ -186,14 +216,28 @@ impl<'a> SmoothPieces<'a> {
             // Without a singularity q is a polynomial, of which the fewest points are enough.
             let ratio = (half / (half + below)).max(half / (half + room));
             let middle = outer - DoubleDouble::from(half);
-            let series = of_slope_over_radius(self.profile, base, (middle, half), ratio);
-            let (series, edge) = (counted(&series), self.unit.sqrt().recip());
-            let far = moments(series, half * self.unit * edge);
-            let near = Near::Smooth(self.keep(series, edge));
-            self.push((inner, outer), (gap, thin && cuts <= 1.0), weight, (near, far));
+            let ends = PieceEnds { base, inner, outer, middle, half };
+            self.resolve(&ends, (gap, thin && cuts <= 1.0), weight, ratio, HALVINGS);
             outer = inner;
         }
         Some(())
+    }
+
+    /// Adds a piece, or its halves where the series does not end by itself.
+    fn resolve(&mut self, ends: &PieceEnds, gap: (f64, bool), weight: f64, ratio: f64, halvings: usize) {
+        let PieceEnds { base, inner, outer, middle, half } = *ends;
+        let Some(series) = of_slope_over_radius(self.shape, base, (middle, half), ratio, halvings > 0) else {
+            let half = 0.5 * half;
+            for (inner, outer) in [(middle, outer), (inner, middle)] {
+                let ends = PieceEnds { base, inner, outer, middle: outer - DoubleDouble::from(half), half };
+                self.resolve(&ends, (2.0 * half, false), weight, ratio, halvings - 1);
+            }
+            return;
+        };
+        let (series, edge) = (counted(&series), self.unit.sqrt().recip());
+        let far = moments(series, half * self.unit * edge);
+        let near = Near::Smooth(self.keep(series, edge));
+        self.push((inner, outer), gap, weight, (near, far));
     }
 
     /// Keeps coefficients, each times `unit`.
@@ -215,19 +259,13 @@ impl<'a> SmoothPieces<'a> {
         self.pieces.push(SmoothPiece { inner, outer, gap, thin, weight, near, far });
     }
 
-    /// The sums at each radius, unless the profile has a quicker way.
-    pub(super) fn kernel_sums(&self, radii: &[StressRadius]) -> Option<Vec<f64>> {
-        Shape::slope_series(self.profile, self.unit.sqrt().recip()).is_none().then(|| self.sums(radii))
-    }
-
     /// The sums at each radius.
     pub(super) fn sums(&self, radii: &[StressRadius]) -> Vec<f64> {
         let mut sums = vec![0.0; radii.len()];
         for chunk in StressRadius::rising(radii).chunks(LANES) {
             let found = self.lanes::<LANES, false>(&filled(chunk, |&index| radii[index].square));
             for (&index, kernel) in chunk.iter().zip(found.kernels) {
-                sums[index] =
-                    kernel + self.in_tip(&radii[index], |span| Shape::kernel(self.profile, &radii[index], span));
+                sums[index] = kernel + self.in_tip(&radii[index], KernelOrder::Value);
             }
         }
         sums
@@ -236,13 +274,13 @@ impl<'a> SmoothPieces<'a> {
     /// The sum at one radius.
     pub(super) fn sum(&self, at: &StressRadius) -> f64 {
         let [kernel] = self.lanes::<1, false>(&[at.square]).kernels;
-        kernel + self.in_tip(at, |span| Shape::kernel(self.profile, at, span))
+        kernel + self.in_tip(at, KernelOrder::Value)
     }
 
-    /// A share of what lies inside all pieces, for radii there.
-    fn in_tip(&self, at: &StressRadius, share: impl Fn(&Span) -> f64) -> f64 {
+    /// What lies inside all pieces, for radii there.
+    fn in_tip(&self, at: &StressRadius, order: KernelOrder) -> f64 {
         let tip = self.tip.iter().filter(|(_, weight)| at.radius < self.innermost && weight.abs() > 0.0);
-        tip.map(|(span, weight)| weight * share(span)).sum()
+        tip.map(|(span, weight)| weight * self.shape.kernel(order, at, span)).sum()
     }
 
     /// The derivatives of the sum with respect to r^2, 1/m^2, each with the sum of the sizes of what it adds up from.
@@ -264,7 +302,7 @@ impl<'a> SmoothPieces<'a> {
 
     /// The derivative in a lane and the sum of its sizes, 1/m^2, with those of the tip.
     fn with_tip<const N: usize>(&self, at: &StressRadius, lane: usize, sums: &PieceSums<N>) -> (f64, f64) {
-        let tip = self.in_tip(at, |span| Shape::kernel_slope(self.profile, at, span));
+        let tip = self.in_tip(at, KernelOrder::Slope);
         (sums.slopes[lane] * self.unit + tip, sums.sizes[lane] * self.unit + tip.abs())
     }
 

@@ -3,7 +3,7 @@
 //! Everything follows from one difference, x_outer^2 - x_inner^2 = R (y_outer - y_inner), which is never taken between
 //! rounded radii (Hertz 1881; Popov & Hess 2015).
 
-use super::shape::{Shape, ShapeFacts};
+use super::shape::{Falls, KernelOrder, Shape, ShapeFacts};
 use super::{DoubleDouble, Error, Moments, Ring, Span, StressRadius, range};
 
 /// A paraboloid of revolution.
@@ -62,10 +62,6 @@ impl Shape for Sphere {
         2.0 * radius / self.curvature_radius
     }
 
-    fn radius(&self, level: f64) -> f64 {
-        (level * self.curvature_radius).sqrt()
-    }
-
     fn square(&self, level: DoubleDouble) -> DoubleDouble {
         level * self.curvature_radius
     }
@@ -91,27 +87,19 @@ impl Shape for Sphere {
         self.moments_by_width(span.outer_radius, span.width())
     }
 
-    fn kernel(&self, at: &StressRadius, span: &Span) -> f64 {
+    fn kernel(&self, order: KernelOrder, at: &StressRadius, span: &Span) -> f64 {
         let (inner, outer) = span.excess(at.square);
         if outer <= 0.0 {
-            0.0
-        } else if inner > 0.0 {
-            2.0 * span.gap / ((outer.sqrt() + inner.sqrt()) * self.curvature_radius)
-        } else {
-            2.0 * outer.sqrt() / self.curvature_radius
+            return 0.0;
         }
-    }
-
-    fn kernel_slope(&self, at: &StressRadius, span: &Span) -> f64 {
-        let (inner, outer) = span.excess(at.square);
-        if outer <= 0.0 {
-            0.0
-        } else if inner > 0.0 {
-            let (outer, inner) = (outer.sqrt(), inner.sqrt());
-            span.gap / (outer * inner * (outer + inner) * self.curvature_radius)
-        } else {
-            -1.0 / (self.curvature_radius * outer.sqrt())
-        }
+        let outer = outer.sqrt();
+        let share = match (order, inner > 0.0) {
+            (KernelOrder::Value, true) => 2.0 * span.gap / (outer + inner.sqrt()),
+            (KernelOrder::Value, false) => 2.0 * outer,
+            (KernelOrder::Slope, true) => span.gap / (outer * inner.sqrt() * (outer + inner.sqrt())),
+            (KernelOrder::Slope, false) => -1.0 / outer,
+        };
+        share / self.curvature_radius
     }
 
     fn surface_slope(&self, r: f64) -> f64 {
@@ -123,11 +111,7 @@ impl Shape for Sphere {
         ShapeFacts { curvature_radius, kernel_falls: true, ..ShapeFacts::default() }
     }
 
-    fn rises_concavely(&self, _inner: f64) -> bool {
-        true
-    }
-
-    fn slope_series(&self, a: f64) -> Option<Vec<f64>> {
-        Some(vec![0.0, self.slope(a)])
+    fn falls(&self, _inner: f64, _outer: f64) -> Falls {
+        Falls { least: 2.0 / self.curvature_radius, concavely: true }
     }
 }

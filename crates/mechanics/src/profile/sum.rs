@@ -12,10 +12,8 @@ mod kink_moments;
 mod tests;
 
 use super::polynomial::Polynomial;
-use super::shape::{self, Shape, ShapeFacts};
-use super::smooth_interval::{Node, SmoothInterval};
-use super::tabulated::{self, Kernel};
-use super::{DoubleDouble, InterpolationError, Moments, Point, Profile, Ring, Span, StressRadius};
+use super::shape::{self, Falls, KernelOrder, Shape, ShapeFacts};
+use super::{DoubleDouble, Moments, Point, Profile, Ring, Span, StressRadius};
 use crate::numerics::roots::increasing;
 pub(crate) use fields::SumFields;
 use kink_moments::KinkMoments;
@@ -60,6 +58,19 @@ impl Sum {
         &self.parts
     }
 
+    /// How many times larger than g at the radius `x`, m, its parts are.
+    pub(super) fn cancellation(&self, x: f64) -> f64 {
+        if !self.parts.iter().any(|part| part.facts().falls_within()) {
+            return 1.0;
+        }
+        let growth = |f: &dyn Fn(&Profile) -> f64| {
+            let (sum, sizes) = self.parts.iter().map(f).fold((0.0, 0.0), |(a, b), part| (a + part, b + part.abs()));
+            if sum > 0.0 { sizes / sum } else { 1.0 }
+        };
+        // The terms that cancel are themselves good to some units in their last place.
+        2.0 * growth(&|part| part.level(x)).max(growth(&|part| part.slope(x)))
+    }
+
     /// The radius from which what lies beyond it must be known on its own: the kink that a radius is little beyond, or,
     /// where the radius is little below the end of a part that is vertical there, one some units in the last place
     /// below it.
@@ -82,6 +93,17 @@ impl Sum {
     /// The least of the radii at which a part alone has a level: not below that of the sum.
     fn least_radius(&self, level: f64) -> f64 {
         self.parts.iter().map(|part| part.radius(level)).fold(f64::INFINITY, f64::min)
+    }
+
+    /// X(y), m.
+    fn radius(&self, level: f64) -> f64 {
+        if let Some(polynomial) = self.polynomial.as_ref().filter(|_| level > 0.0) {
+            return polynomial.radius(level, self.least_radius(level));
+        }
+        match self.rim {
+            Some((rim, top)) if level >= top => rim,
+            _ => self.inverse(level, Profile::radius, Shape::level, |x| Shape::slope(self, x)),
+        }
     }
 
     fn total(&self, f: impl Fn(&Profile) -> f64) -> f64 {
@@ -138,16 +160,6 @@ impl Shape for Sum {
         })
     }
 
-    fn radius(&self, level: f64) -> f64 {
-        if let Some(polynomial) = self.polynomial.as_ref().filter(|_| level > 0.0) {
-            return polynomial.radius(level, self.least_radius(level));
-        }
-        match self.rim {
-            Some((rim, top)) if level >= top => rim,
-            _ => self.inverse(level, Shape::radius, Shape::level, |x| Shape::slope(self, x)),
-        }
-    }
-
     fn square(&self, level: DoubleDouble) -> DoubleDouble {
         let radius = self.radius(level.value());
         let plain = DoubleDouble::square_of(radius);
@@ -190,7 +202,7 @@ impl Shape for Sum {
             let mut polished = level;
             for _ in 0..POLISH {
                 let ring = Ring::between(point(0.0), point(polished));
-                let carried = core * polished + self.moments(&self.span(&ring)).first;
+                let carried = core * polished + self.moments(&shape::span(self, &ring)).first;
                 polished = (polished + (load - carried) / ring.outer.radius).max(0.0);
             }
             // Beyond the end of a part the search has gone as far as it can, and there is nothing to polish.
@@ -204,10 +216,6 @@ impl Shape for Sum {
 
     fn rise(&self, span: &Span) -> f64 {
         self.polynomial.map_or_else(|| self.total(|part| part.rise(span)), |polynomial| polynomial.rise(span))
-    }
-
-    fn rise_to(&self, outer: &Span, interval: &SmoothInterval, node: Node) -> f64 {
-        self.total(|part| part.rise_to(outer, interval, node))
     }
 
     fn gap(&self, ring: &Ring, depth: f64) -> f64 {
@@ -224,10 +232,6 @@ impl Shape for Sum {
         }
     }
 
-    fn rim(&self) -> Option<(f64, f64)> {
-        self.rim
-    }
-
     fn facts(&self) -> ShapeFacts {
         self.facts
     }
@@ -237,75 +241,19 @@ impl Shape for Sum {
         above.checked_sub(1).map_or(0.0, |index| self.kinks[index])
     }
 
-    fn kernel(&self, at: &StressRadius, span: &Span) -> f64 {
-        self.total(|part| Shape::kernel(part, at, span))
-    }
-
-    fn kernel_slope(&self, at: &StressRadius, span: &Span) -> f64 {
-        self.total(|part| Shape::kernel_slope(part, at, span))
-    }
-
-    fn kernel_sums(&self, rings: &[(Ring, f64)], radii: &[StressRadius]) -> Option<Vec<f64>> {
-        if rings.len() * radii.len() <= tabulated::FEW {
-            return None;
-        }
-        let sums = SumFields::new(self, rings)?.sums(Kernel::Root, radii);
-        Some(sums.into_iter().map(|(sum, _)| sum).collect())
-    }
-
-    fn displacements(&self, rings: &[(Ring, f64)], ends: (f64, f64), radii: &[StressRadius]) -> Option<Vec<f64>> {
-        let fields = SumFields::new(self, rings)?;
-        let edge = &rings.last()?.0.outer;
-        Some(tabulated::displacements(edge, ends, radii, |angle, radii| fields.sums(angle, radii)))
-    }
-
-    fn slope_series(&self, a: f64) -> Option<Vec<f64>> {
-        self.parts.iter().try_fold(Vec::new(), |mut sum, part| {
-            let series = part.slope_series(a)?;
-            sum.resize(sum.len().max(series.len()), 0.0);
-            sum.iter_mut().zip(series).for_each(|(sum, c)| *sum += c);
-            Some(sum)
-        })
+    fn kernel(&self, order: KernelOrder, at: &StressRadius, span: &Span) -> f64 {
+        self.total(|part| Shape::kernel(part, order, at, span))
     }
 
     fn surface_slope(&self, r: f64) -> f64 {
         self.total(|part| part.surface_slope(r))
     }
 
-    fn cancellation(&self, x: f64) -> f64 {
-        if !self.parts.iter().any(|part| part.facts().falls_within()) {
-            return 1.0;
-        }
-        let growth = |f: &dyn Fn(&Profile) -> f64| {
-            let (sum, sizes) = self.parts.iter().map(f).fold((0.0, 0.0), |(a, b), part| (a + part, b + part.abs()));
-            if sum > 0.0 { sizes / sum } else { 1.0 }
-        };
-        // The terms that cancel are themselves good to some units in their last place.
-        2.0 * growth(&|part| part.level(x)).max(growth(&|part| part.slope(x)))
-    }
-
-    fn least_fall(&self, inner: f64, outer: f64) -> f64 {
-        self.total(|part| part.least_fall(inner, outer))
-    }
-
-    fn rises_concavely(&self, inner: f64) -> bool {
-        self.parts.iter().all(|part| part.rises_concavely(inner))
-    }
-
-    fn singular_radii(&self) -> Vec<f64> {
-        let mut radii: Vec<f64> = self.parts.iter().flat_map(Profile::singular_radii).collect();
-        radii.sort_by(f64::total_cmp);
-        radii.dedup_by(|a, b| a.to_bits() == b.to_bits());
-        radii
-    }
-
-    fn interpolation_error(&self, radius: f64) -> InterpolationError {
-        let errors = self.parts.iter().map(|part| part.interpolation_error(radius));
-        errors.fold(InterpolationError::default(), InterpolationError::and)
-    }
-
-    fn noise(&self, radius: f64) -> Option<(f64, f64)> {
-        let noises = self.parts.iter().filter_map(|part| part.noise(radius));
-        noises.reduce(|one, other| if one.0 > other.0 { one } else { other })
+    fn falls(&self, inner: f64, outer: f64) -> Falls {
+        let none = Falls { least: 0.0, concavely: true };
+        self.parts
+            .iter()
+            .map(|part| part.falls(inner, outer))
+            .fold(none, |sum, part| Falls { least: sum.least + part.least, concavely: sum.concavely && part.concavely })
     }
 }

@@ -5,6 +5,7 @@
 
 use std::f64::consts::FRAC_PI_2;
 
+use super::shape::{Falls, KernelOrder, ShapeFacts};
 use super::smooth_coordinate::{self, Nodes, SmoothCoordinate, flat_core};
 use super::{DoubleDouble, Error, Moments, Ring, Span, StressRadius, range};
 use crate::numerics::angle::angles;
@@ -95,9 +96,14 @@ impl SmoothCoordinate for TruncatedCone {
 }
 
 flat_core!(TruncatedCone {
-    fn least_fall(&self, inner: f64, outer: f64) -> f64 {
+    fn falls(&self, inner: f64, outer: f64) -> Falls {
         // g'/x falls from the rim on.
-        if inner >= self.flat_radius { self.slope(outer) / outer } else { f64::NEG_INFINITY }
+        let least = if inner >= self.flat_radius { self.slope(outer) / outer } else { f64::NEG_INFINITY };
+        Falls { least, concavely: false }
+    }
+
+    fn facts(&self) -> ShapeFacts {
+        ShapeFacts { singular: Some(self.flat_radius), ..ShapeFacts::default() }
     }
 
     fn surface_slope(&self, r: f64) -> f64 {

@@ -8,7 +8,7 @@
 //! 1 - e/u^2 = 2 t_inner/p_inner + e (u^2 - r^2)/(r u)^2, every integral is a power of 1 - r times a polynomial of r
 //! without a negative coefficient, so that nothing cancels.
 
-use super::shape::ShapeFacts;
+use super::shape::{Falls, KernelOrder, ShapeFacts};
 use super::smooth_coordinate::{self, SmoothCoordinate, SpanEnds, flat_core};
 use super::{DoubleDouble, Error, Moments, Ring, Span, StressRadius, range};
 
@@ -114,9 +114,10 @@ impl SmoothCoordinate for TruncatedSphere {
 }
 
 flat_core!(TruncatedSphere {
-    fn least_fall(&self, inner: f64, outer: f64) -> f64 {
+    fn falls(&self, inner: f64, outer: f64) -> Falls {
         // g'/x falls from the rim on.
-        if inner >= self.flat_radius { self.slope(outer) / outer } else { f64::NEG_INFINITY }
+        let least = if inner >= self.flat_radius { self.slope(outer) / outer } else { f64::NEG_INFINITY };
+        Falls { least, concavely: false }
     }
 
     fn surface_slope(&self, r: f64) -> f64 {
@@ -124,6 +125,10 @@ flat_core!(TruncatedSphere {
     }
 
     fn facts(&self) -> ShapeFacts {
-        ShapeFacts { curvature_radius: Some(self.curvature_radius), ..ShapeFacts::default() }
+        ShapeFacts {
+            curvature_radius: Some(self.curvature_radius),
+            singular: Some(self.flat_radius),
+            ..ShapeFacts::default()
+        }
     }
 });

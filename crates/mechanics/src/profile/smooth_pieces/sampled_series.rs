@@ -7,8 +7,8 @@
 
 use std::sync::LazyLock;
 
+use super::super::DoubleDouble;
 use super::super::shape::Shape;
-use super::super::{DoubleDouble, Profile};
 use crate::numerics::chebyshev::{EIGHT, Points, SIXTEEN, TWELVE, counted};
 
 /// The most terms of a series.
@@ -18,6 +18,9 @@ pub(super) const KINK_TERMS: usize = 8;
 /// Half the width of a piece over the distance of its middle from a singularity, up to which eight and twelve points
 /// resolve it. Sixteen do up to a fifth, which no piece exceeds.
 const RATIOS: [f64; 2] = [0.02, 0.09];
+
+/// The last term over the first ones, of a series that ends.
+const LAST: f64 = 1e-14;
 
 /// Coefficients; those that do not count are zero.
 pub(super) type Series = [f64; TERMS];
@@ -50,46 +53,60 @@ impl<const N: usize> Sampling<N> {
         Sampling { points, polynomials: rows }
     }
 
-    fn series(&self, values: [f64; N]) -> Series {
+    /// The series of these values; `None` if it must end by itself and does not.
+    fn series(&self, values: [f64; N], must_end: bool) -> Option<Series> {
         let mut sum = [0.0; TERMS];
         let terms = self.points.terms(&values);
+        let size = terms[0].abs().max(terms[1].abs());
+        if must_end && terms[N - 1].abs() > LAST * size {
+            return None;
+        }
         for (a, row) in counted(&terms).iter().zip(&self.polynomials) {
             for power in 0..N {
                 sum[power] += a * row[power];
             }
         }
-        sum
+        Some(sum)
     }
 
     /// That of g'/x for t^2 between `low` and `high`, m^2, above the kink `base`, m.
-    fn slope_over_radius(&self, profile: &Profile, base: f64, low: f64, high: f64) -> Series {
+    fn slope_over_radius(
+        &self,
+        shape: &impl Shape,
+        base: f64,
+        [low, high]: [f64; 2],
+        must_end: bool,
+    ) -> Option<Series> {
         let t = self.points.places(low, high).map(f64::sqrt);
-        let gamma = profile.slopes(base, t);
-        self.series(std::array::from_fn(|index| gamma[index] / t[index]))
+        let gamma = shape.slopes(base, t);
+        self.series(std::array::from_fn(|index| gamma[index] / t[index]), must_end)
     }
 }
 
-/// The series of q, 1/m, about the square `middle`, m^2, over `half`, m^2, above the kink `base`, m. `ratio` is `half`
-/// over the distance of the middle from the next singularity.
+/// The series of q, 1/m, about the square `middle`, m^2, over `half`, m^2, above the kink `base`, m; `None` if it must
+/// end by itself and does not. `ratio` is `half` over the distance of the middle from the next singularity.
 pub(super) fn of_slope_over_radius(
-    profile: &Profile,
+    shape: &impl Shape,
     base: f64,
     (middle, half): (DoubleDouble, f64),
     ratio: f64,
-) -> Series {
+    must_end: bool,
+) -> Option<Series> {
     let above = (middle - DoubleDouble::square_of(base)).value();
-    let (low, high) = (above - half, above + half);
-    match RATIOS.iter().position(|most| ratio <= *most) {
-        Some(0) => SHORT.slope_over_radius(profile, base, low, high),
-        Some(_) => MIDDLING.slope_over_radius(profile, base, low, high),
-        None => LONG.slope_over_radius(profile, base, low, high),
-    }
+    let ends = [above - half, above + half];
+    let short = match RATIOS.iter().position(|most| ratio <= *most) {
+        Some(0) => SHORT.slope_over_radius(shape, base, ends, true),
+        Some(_) => MIDDLING.slope_over_radius(shape, base, ends, true),
+        None => None,
+    };
+    short.or_else(|| LONG.slope_over_radius(shape, base, ends, must_end))
 }
 
 /// The coefficients of even and of odd powers of t/`top` in gamma above the kink `base`, m, for t up to `top`, m.
-pub(super) fn beside_kink(profile: &Profile, base: f64, top: f64) -> [[f64; KINK_TERMS]; 2] {
-    let mut series = BESIDE_KINK.series(profile.slopes(base, BESIDE_KINK.points.places(0.0, top)));
+pub(super) fn beside_kink(shape: &impl Shape, base: f64, top: f64) -> [[f64; KINK_TERMS]; 2] {
+    let values = shape.slopes(base, BESIDE_KINK.points.places(0.0, top));
+    let mut series = BESIDE_KINK.series(values, false).unwrap_or([0.0; TERMS]);
     // Stresses are infinite at the kink unless this is zero, which it must then be without an error of rounding.
-    [series[0]] = profile.slopes(base, [0.0]);
+    [series[0]] = shape.slopes(base, [0.0]);
     [0, 1].map(|parity| std::array::from_fn(|index| series[2 * index + parity]))
 }

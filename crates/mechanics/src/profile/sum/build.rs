@@ -18,6 +18,7 @@ fn facts_of(parts: &[Profile]) -> ShapeFacts {
     let sum = ShapeFacts {
         ceiling: facts().map(|part| part.ceiling).fold(f64::INFINITY, f64::min),
         power: facts().map(|part| part.power).fold(1.0, f64::max),
+        singular: facts().find_map(|part| part.singular),
         curvature_radius: facts().filter_map(|part| part.curvature_radius).reduce(f64::min),
         kernel_falls: facts().all(|part| part.kernel_falls),
         analytic_tip: facts().all(|part| part.analytic_tip),
@@ -67,7 +68,7 @@ impl Sum {
             parts: flat,
             kinks,
         };
-        let rim = sum.parts.iter().filter_map(Shape::rim_radius).fold(f64::INFINITY, f64::min);
+        let rim = sum.parts.iter().filter_map(Profile::rim_radius).fold(f64::INFINITY, f64::min);
         let falls = sum.first_fall(rim, keep_going)?;
         if let Some(radius) = falls {
             sum.facts = sum.facts.ending(Some(End { radius, falls: true }));
@@ -75,6 +76,7 @@ impl Sum {
         let rim = falls.unwrap_or(rim);
         if rim < sum.facts.ceiling {
             sum.rim = Some((rim, sum.level(rim)));
+            sum.facts.rim = Some(rim);
         }
         if sum.parts.iter().any(|part| part.facts().falls_within()) {
             let flat_radius = sum.parts.iter().map(flat_radius).fold(rim, f64::min);

@@ -1,7 +1,7 @@
 //! Stresses and displacements of a sum with tables at many radii, since both are linear in g: each table goes through
 //! its panels once for all rings, and the kernels of the other parts are added ring by ring.
 
-use super::super::shape::Shape;
+use super::super::shape::span;
 use super::super::tabulated::{Kernel, SumAndSize, WeightedPanels, add_to};
 use super::super::{Profile, Ring, Span, StressRadius};
 use super::Sum;
@@ -18,7 +18,7 @@ impl SumFields<'_> {
     /// vertical edge.
     pub(in super::super) fn new<'a>(sum: &'a Sum, rings: &[(Ring, f64)]) -> Option<SumFields<'a>> {
         let (mut tables, mut others) = (Vec::new(), Vec::new());
-        let spans: Vec<(Span, f64)> = rings.iter().map(|(ring, weight)| (sum.span(ring), *weight)).collect();
+        let spans: Vec<(Span, f64)> = rings.iter().map(|(ring, weight)| (span(sum, ring), *weight)).collect();
         for part in &sum.parts {
             match part {
                 Profile::Tabulated(table) => tables.push(table.panels_over(&spans)?),

@@ -13,7 +13,7 @@ use std::sync::LazyLock;
 
 #[cfg(test)]
 use super::super::call_count;
-use super::super::shape::Shape;
+use super::super::shape::{self, KernelOrder, Shape};
 use super::super::smooth_coordinate;
 use super::panel::KernelPanel;
 use super::{Profile, Span, StressRadius, near_kernel};
@@ -63,13 +63,12 @@ impl Kernel {
     /// The sum over a part of a panel.
     pub(super) fn near(self, panel: &KernelPanel, at: &StressRadius, span: &Span) -> f64 {
         match self {
-            Kernel::Root => {
-                near_kernel::kernel(panel, at, span).unwrap_or_else(|| smooth_coordinate::kernel(panel, at, span))
-            }
+            Kernel::Root => near_kernel::kernel(panel, at, span)
+                .unwrap_or_else(|| smooth_coordinate::kernel(panel, KernelOrder::Value, at, span)),
             Kernel::RootSlope => {
                 #[cfg(test)]
                 call_count::add(|calls| &mut calls.kernel_slope);
-                smooth_coordinate::kernel_slope(panel, at, span)
+                smooth_coordinate::kernel(panel, KernelOrder::Slope, at, span)
             }
             Kernel::Arccos | Kernel::Arcsin => self.angle_sum(at, span, || {
                 (smooth_coordinate::rise(panel, span), smooth_coordinate::displacement_integral(panel, at, span))
@@ -80,10 +79,10 @@ impl Kernel {
     /// The sum over a part of any profile.
     pub(in super::super) fn of_part(self, part: &Profile, at: &StressRadius, span: &Span) -> f64 {
         match self {
-            Kernel::Root => Shape::kernel(part, at, span),
-            Kernel::RootSlope => Shape::kernel_slope(part, at, span),
+            Kernel::Root => Shape::kernel(part, KernelOrder::Value, at, span),
+            Kernel::RootSlope => Shape::kernel(part, KernelOrder::Slope, at, span),
             Kernel::Arccos | Kernel::Arcsin => {
-                self.angle_sum(at, span, || (part.rise(span), Shape::displacement_integral(part, at, span)))
+                self.angle_sum(at, span, || (part.rise(span), shape::displacement_integral(part, at, span)))
             }
         }
     }

@@ -30,9 +30,8 @@ mod weighted_panels;
 use std::sync::Arc;
 
 use super::super::error::TableFault;
-use super::shape::{End, Shape, ShapeFacts};
+use super::shape::{End, Falls, KernelOrder, Shape, ShapeFacts, span};
 use super::smooth_coordinate::SmoothCoordinate;
-use super::smooth_interval::{Node, SmoothInterval};
 use super::{DoubleDouble, Error, Moments, Point, Profile, Ring, Span, StressRadius, range};
 use curve::TableCurve;
 pub(super) use displacement::displacements;
@@ -161,6 +160,20 @@ impl Tabulated {
         self.curve.flat_radius()
     }
 
+    /// The interpolation error in a contact of this radius, m.
+    pub(super) fn interpolation_error(&self, radius: f64) -> InterpolationError {
+        self.stated_error(radius).unwrap_or_else(|| interpolation_error::at(&self.gaps, radius))
+    }
+
+    /// An estimate of the noise of g, m, in a contact of this radius, m, and how many times that of the heights it is.
+    pub(super) fn noise(&self, radius: f64) -> Option<(f64, f64)> {
+        if !self.stated_errors.is_empty() {
+            return None;
+        }
+        let amplification = self.noise_amplification(radius);
+        Some((self.noise * amplification, amplification))
+    }
+
     /// Radii, m, increasing, between which g' cannot hide a fall.
     pub(super) fn slope_check_radii(&self) -> impl Iterator<Item = f64> {
         let panels = &self.curve.up_to(self.end).panels;
@@ -170,7 +183,7 @@ impl Tabulated {
     /// The kernels of rings from the centre outward, each with its weight; `None` with levels at a vertical edge.
     pub(super) fn weighted_panels(&self, rings: &[(Ring, f64)]) -> Option<WeightedPanels<'_>> {
         let panels = self.curve.up_to(rings.last()?.0.outer.radius);
-        let spans: Vec<(Span, f64)> = rings.iter().map(|(ring, weight)| (panels.span(ring), *weight)).collect();
+        let spans: Vec<(Span, f64)> = rings.iter().map(|(ring, weight)| (span(self, ring), *weight)).collect();
         WeightedPanels::new(panels, &spans)
     }
 
@@ -189,10 +202,6 @@ impl Shape for Tabulated {
         self.curve.up_to(radius).slope(radius)
     }
 
-    fn radius(&self, level: f64) -> f64 {
-        self.square(level.into()).value().sqrt()
-    }
-
     fn square(&self, level: DoubleDouble) -> DoubleDouble {
         self.curve.up_to_level(level.value()).square(level)
     }
@@ -209,28 +218,8 @@ impl Shape for Tabulated {
         self.curve.up_to(span.outer_radius).rise(span)
     }
 
-    fn rise_to(&self, outer: &Span, interval: &SmoothInterval, node: Node) -> f64 {
-        self.curve.up_to(outer.outer_radius).rise_to(outer, interval, node)
-    }
-
-    fn rises(&self, span: &Span, below: &[f64]) -> Vec<f64> {
-        self.curve.up_to(span.outer_radius).rises(span, below)
-    }
-
     fn gap(&self, ring: &Ring, depth: f64) -> f64 {
         self.curve.up_to(ring.outer.radius).gap(ring, depth)
-    }
-
-    fn rim(&self) -> Option<(f64, f64)> {
-        Some((self.end, self.level(self.end)))
-    }
-
-    fn rim_radius(&self) -> Option<f64> {
-        Some(self.end)
-    }
-
-    fn span(&self, ring: &Ring) -> Span {
-        self.curve.up_to(ring.outer.radius).span(ring)
     }
 
     fn kink_below(&self, radius: f64) -> f64 {
@@ -241,33 +230,13 @@ impl Shape for Tabulated {
         self.curve.up_to(span.outer_radius).moments(span)
     }
 
-    fn ring_moments(&self, ring: &Ring) -> Moments {
-        self.curve.up_to(ring.outer.radius).ring_moments(ring)
+    fn kernel(&self, order: KernelOrder, at: &StressRadius, span: &Span) -> f64 {
+        let kernel = if order == KernelOrder::Value { Kernel::Root } else { Kernel::RootSlope };
+        self.curve.up_to(span.outer_radius).sum(kernel, at, span)
     }
 
-    fn kernel(&self, at: &StressRadius, span: &Span) -> f64 {
-        self.curve.up_to(span.outer_radius).sum(Kernel::Root, at, span)
-    }
-
-    fn kernel_slope(&self, at: &StressRadius, span: &Span) -> f64 {
-        self.curve.up_to(span.outer_radius).sum(Kernel::RootSlope, at, span)
-    }
-
-    fn kernel_sums(&self, rings: &[(Ring, f64)], radii: &[StressRadius]) -> Option<Vec<f64>> {
-        if rings.len() * radii.len() <= FEW {
-            return None;
-        }
-        let sums = self.weighted_panels(rings)?.sums(Kernel::Root, radii);
-        Some(sums.into_iter().map(|(sum, _)| sum).collect())
-    }
-
-    fn displacements(&self, rings: &[(Ring, f64)], ends: (f64, f64), radii: &[StressRadius]) -> Option<Vec<f64>> {
-        let panels = self.weighted_panels(rings)?;
-        Some(displacements(&rings.last()?.0.outer, ends, radii, |angle, radii| panels.sums(angle, radii)))
-    }
-
-    fn least_fall(&self, inner: f64, outer: f64) -> f64 {
-        self.curve.up_to(outer).least_fall(inner, outer)
+    fn falls(&self, inner: f64, outer: f64) -> Falls {
+        Falls { least: self.curve.up_to(outer).least_fall(inner, outer), concavely: false }
     }
 
     fn surface_slope(&self, r: f64) -> f64 {
@@ -278,18 +247,6 @@ impl Shape for Tabulated {
     fn facts(&self) -> ShapeFacts {
         let end = End { radius: self.end, falls: self.falls.is_some_and(|radius| radius >= self.end) };
         let limit = Some(End { radius: self.falls.unwrap_or(self.end), falls: self.falls.is_some() });
-        ShapeFacts { limit, known_to: Some(end), by_series: false, ..ShapeFacts::default() }
-    }
-
-    fn interpolation_error(&self, radius: f64) -> InterpolationError {
-        self.stated_error(radius).unwrap_or_else(|| interpolation_error::at(&self.gaps, radius))
-    }
-
-    fn noise(&self, radius: f64) -> Option<(f64, f64)> {
-        if !self.stated_errors.is_empty() {
-            return None;
-        }
-        let amplification = self.noise_amplification(radius);
-        Some((self.noise * amplification, amplification))
+        ShapeFacts { limit, known_to: Some(end), rim: Some(self.end), by_series: false, ..ShapeFacts::default() }
     }
 }

@@ -208,12 +208,6 @@ impl KernelPanel {
         (square - DoubleDouble::square_of(self.base)).value().max(0.0).sqrt().clamp(self.low, self.high)
     }
 
-    /// g from t to `top`, m, without the terms that do not count.
-    pub(super) fn rough_rise(&self, t: f64, top: f64) -> f64 {
-        let difference = divided_difference(&self.primitive[..self.terms], self.place(top), self.place(t));
-        (top - t) * difference * 2.0 / (self.high - self.low)
-    }
-
     /// Values of t, increasing, between which q cannot hide a fall.
     pub(super) fn slope_check_places(&self) -> Vec<f64> {
         let mut checked = TWENTY_FOUR.places(self.low, self.high).to_vec();

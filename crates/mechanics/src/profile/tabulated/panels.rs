@@ -5,9 +5,7 @@ use std::ops::Range;
 use std::sync::OnceLock;
 
 use super::super::moment_tree::MomentTree;
-use super::super::shape;
 use super::super::smooth_coordinate::{self, SmoothCoordinate};
-use super::super::smooth_interval::{Node, SmoothInterval};
 use super::build::Built;
 use super::kernel::Kernel;
 use super::lookup::Lookup;
@@ -80,12 +78,10 @@ impl Panels {
         self.sources.get_or_init(|| panel_sources::sources(&self.panels))
     }
 
-    /// The span of a ring.
-    pub(super) fn span(&self, ring: &Ring) -> Span {
-        shape::span(ring, Some(self.top.level), |depth| self.gap(ring, depth))
-    }
-
     pub(super) fn level(&self, radius: f64) -> f64 {
+        if radius >= self.top.radius {
+            return self.top.level;
+        }
         let panel = &self.panels[self.find(radius)];
         panel.level_at(panel.t_of(DoubleDouble::square_of(radius)))
     }
@@ -151,35 +147,6 @@ impl Panels {
             + between
     }
 
-    pub(super) fn rise_to(&self, outer: &Span, interval: &SmoothInterval, node: Node) -> f64 {
-        let index = self.by_radius.ending_at(outer.outer_radius);
-        let panel = &self.panels[index];
-        // The series knows no other knot than its own.
-        if panel.base.to_bits() == interval.base.to_bits() && node.t >= panel.low {
-            return panel.rise_at(node.t, interval.high, node.dt);
-        }
-        self.rise(&shape::under(outer, interval, node))
-    }
-
-    pub(super) fn rises(&self, span: &Span, below: &[f64]) -> Vec<f64> {
-        let (_, mut index) = self.ends(span);
-        let (mut above, mut high) = (0.0, self.panels[index].t_of(span.outer));
-        let rise = |&below: &f64| {
-            let square = span.outer - DoubleDouble::from(below * (2.0 * span.outer_radius - below));
-            let mut panel = &self.panels[index];
-            while index > 0 && panel.square > square {
-                let whole = high >= panel.high;
-                above += if whole { self.tree.leaf(index).1 } else { panel.rise_at(panel.low, high, high - panel.low) };
-                index -= 1;
-                panel = &self.panels[index];
-                high = panel.high;
-            }
-            let t = panel.t_of(square).min(high);
-            above + panel.rough_rise(t, high)
-        };
-        below.iter().map(rise).collect()
-    }
-
     pub(super) fn gap(&self, ring: &Ring, depth: f64) -> f64 {
         let square = DoubleDouble::square_of(self.top.radius);
         let outer = if ring.outer.square > square {
@@ -202,6 +169,10 @@ impl Panels {
     }
 
     pub(super) fn moments(&self, span: &Span) -> Moments {
+        self.moments_across(span).unwrap_or_else(|| self.moments_by_quadrature(span))
+    }
+
+    pub(super) fn moments_by_quadrature(&self, span: &Span) -> Moments {
         let SpanParts { low, whole, high } = self.parts(span);
         let mut sum = self.tree.run(whole.start, whole.end);
         if let Some((index, span)) = low {
@@ -213,13 +184,6 @@ impl Panels {
                 Moments::stack(sum.0, smooth_coordinate::moments(panel, &span), smooth_coordinate::rise(panel, &span));
         }
         sum.0
-    }
-
-    pub(super) fn ring_moments(&self, ring: &Ring) -> Moments {
-        self.moments_across(ring).unwrap_or_else(|| {
-            let span = self.span(ring);
-            Moments::stack(self.moments(&span), Moments::default(), span.edge)
-        })
     }
 
     pub(super) fn least_fall(&self, inner: f64, outer: f64) -> f64 {
@@ -285,26 +249,26 @@ impl Panels {
 
     /// The moments of a ring; `None` of one that lies in one panel or meets the end of the table, and where a part is
     /// too thin for its series to resolve.
-    pub(super) fn moments_across(&self, ring: &Ring) -> Option<Moments> {
-        let (inner, outer) = (self.by_radius.holding(ring.inner.radius), self.by_radius.ending_at(ring.outer.radius));
-        if inner >= outer || ring.outer.level > DoubleDouble::from(self.top.level) {
+    pub(super) fn moments_across(&self, span: &Span) -> Option<Moments> {
+        let (inner, outer) = (self.by_radius.holding(span.inner_radius), self.by_radius.ending_at(span.outer_radius));
+        if inner >= outer || span.edge > 0.0 {
             return None;
         }
         let (bottom, next, top) = (&self.panels[inner], &self.panels[inner + 1], &self.panels[outer]);
         if top.powers().is_empty() {
             return None;
         }
-        let part = ring.inner.radius > bottom.radius;
+        let part = span.inner_radius > bottom.radius;
         let (mut sum, between) = self.tree.run(if part { inner + 1 } else { inner }, outer);
         if part {
-            let width = (next.square - ring.inner.square).value().max(0.0) / (next.radius + ring.inner.radius);
-            let below = bottom.integrals().above(bottom.place(bottom.t_of(ring.inner.square)), width);
+            let width = (next.square - span.inner).value().max(0.0) / (next.radius + span.inner_radius);
+            let below = bottom.integrals().above(bottom.place(bottom.t_of(span.inner)), width);
             sum = Moments::stack(below, sum, between);
         }
-        let beyond = (ring.outer.square - top.square).value().max(0.0);
-        let t = top.t_of(ring.outer.square);
+        let beyond = (span.outer - top.square).value().max(0.0);
+        let t = top.t_of(span.outer);
         let rise = top.rise_by_powers(t, beyond);
-        let above = top.integrals().below(top.place(t), beyond / (ring.outer.radius + top.radius), rise);
+        let above = top.integrals().below(top.place(t), beyond / (span.outer_radius + top.radius), rise);
         sum = Moments::stack(sum, above, rise);
         (top.integrals().resolve(&sum) && (!part || bottom.integrals().resolve(&sum))).then_some(sum)
     }

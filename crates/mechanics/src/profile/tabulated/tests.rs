@@ -154,7 +154,7 @@ proptest! {
         let radii: Vec<StressRadius> = radii.iter().map(|share| StressRadius::new(share * table.end)).collect();
         let by_panels = |at: &StressRadius, ring: &Ring| {
             let panels = all(&table);
-            let SpanParts { low, whole, high } = panels.parts(&panels.span(ring));
+            let SpanParts { low, whole, high } = panels.parts(&span(&table, ring));
             let whole = whole.map(|index| (index, panels.span_of_panel(index)));
             let kernel = |(index, span): (usize, Span)| graded_kernel(&panels.panels[index], at, &span);
             low.into_iter().chain(whole).chain(high).map(kernel).sum::<f64>()
@@ -165,7 +165,7 @@ proptest! {
             let exact: f64 = rings.iter().map(|(ring, weight)| weight * by_panels(at, ring)).sum();
             prop_assert!((sum - exact).abs() <= 3e-14 * size, "{:e}: {sum:e} {exact:e}", at.radius);
             for (ring, _) in &rings {
-                let (kernel, exact) = (table.kernel(at, &table.span(ring)), by_panels(at, ring));
+                let (kernel, exact) = (table.kernel(KernelOrder::Value, at, &span(&table, ring)), by_panels(at, ring));
                 prop_assert!((kernel - exact).abs() <= 3e-14 * size, "{:e}: {kernel:e} {exact:e}", at.radius);
             }
         }
@@ -178,8 +178,9 @@ proptest! {
     ) {
         let table = uneven(&steps);
         for (ring, _) in rings(&table, &shares) {
-            let Some(ours) = all(&table).moments_across(&ring) else { continue };
-            let exact = Shape::moments(&table, &table.span(&ring));
+            let span = span(&table, &ring);
+            let Some(ours) = all(&table).moments_across(&span) else { continue };
+            let exact = all(&table).moments_by_quadrature(&span);
             let error = worst(&[(ours.width, exact.width), (ours.first, exact.first), (ours.second, exact.second)]);
             prop_assert!(error < 3e-14, "{:e} {:e}: {error:e}", ring.inner.radius, ring.outer.radius);
         }
