@@ -245,9 +245,12 @@ impl Shape for PowerLaw {
         let x = if base > 0.0 { t.map(|t| (base * base + t * t).sqrt()) } else { t };
         let least = x.iter().copied().fold(f64::INFINITY, f64::min).max(f64::MIN_POSITIVE);
         let power = self.exponent - 1.0;
-        let growth = exp_m1(ln_1p(x.map(|x| (x - least) / least)).map(|logarithm| power * logarithm));
+        let growth = exp_m1(ln_1p(x.map(|x| (x / least - 1.0).max(0.0))).map(|logarithm| power * logarithm));
         let slope = self.slope(least);
-        std::array::from_fn(|index| (slope + slope * growth[index]) * (t[index] / x[index]))
+        std::array::from_fn(|index| {
+            let share = if base > 0.0 { t[index] / x[index] } else { 1.0 };
+            (slope + slope * growth[index]) * share
+        })
     }
 
     fn square(&self, level: DoubleDouble) -> DoubleDouble {

@@ -36,6 +36,12 @@ impl Span {
         }
     }
 
+    /// All radii below one.
+    pub(super) fn from_centre(radius: f64) -> Span {
+        let (inner, outer) = (DoubleDouble::ZERO, DoubleDouble::square_of(radius));
+        Span { inner, outer, inner_radius: 0.0, outer_radius: radius, gap: outer.value(), edge: 0.0 }
+    }
+
     /// The span that ends at `outer` and whose square is smaller by `gap` at its inner end.
     pub(super) fn under(outer: DoubleDouble, outer_radius: f64, gap: f64) -> Span {
         let inner = outer - DoubleDouble::from(gap);
