@@ -4,6 +4,7 @@
 use super::super::super::profile::{Point, Ring, StressRadius};
 use super::super::{DoubleDouble, PathEnd};
 use super::descent::{Trial, search};
+use super::linear_program::Linear;
 use super::{FromAnyState, LaterStrokes};
 
 /// The step of the difference that gives the slope of the stress at a kink by its own level, over that of the edge.
@@ -78,7 +79,7 @@ impl FromAnyState<'_> {
                 stress +=
                     sample.below[whole] + kept.map_or(0.0, |ring| slope_inside * profile.kernel(&sample.at, &ring));
             }
-            stresses.push((stress, by_levels(sample.at.radius)));
+            stresses.push(Linear { value: stress, slope: by_levels(sample.at.radius) });
         }
         for (index, (point, _)) in unknowns.iter().enumerate() {
             if point.radius <= problem.cutoff {
@@ -93,22 +94,19 @@ impl FromAnyState<'_> {
             let further = problem.shear_down_to(inner, beyond, &StressRadius::of_point(&inner));
             slope[index..].fill(0.0);
             slope[index] = if probe > 0.0 { (stress - further) / probe } else { 0.0 };
-            stresses.push((stress, slope));
+            stresses.push(Linear { value: stress, slope });
         }
-        let miss = match self.end {
-            PathEnd::Free => (0.0, vec![0.0; levels.len()]),
-            PathEnd::DisplacementZero => {
-                let by_kinks = (0..kinks.len()).map(|index| -2.0 * sign(index) * self.first);
-                let by_cut = (!slides).then(|| -1.0 + self.first * slope_inside);
-                let miss = self.miss(&kinks, cut.level) / edge;
-                (if slides { miss.max(0.0) } else { miss }, by_kinks.chain(by_cut).collect())
-            }
-            PathEnd::ForceZero => {
-                let whole = problem.edge.radius * edge;
-                let slope = unknowns.iter().map(|(point, change)| self.first * change * point.radius * edge / whole);
-                (self.miss(&kinks, cut.level) / whole, slope.collect())
-            }
-        };
+        // Displacements are over the level of the edge, forces over its product with the radius.
+        let whole = if self.end == PathEnd::ForceZero { problem.edge.radius * edge } else { edge };
+        let value = self.miss(&kinks, cut.level) / whole;
+        let by_kinks = unknowns.iter().enumerate().map(|(index, (point, change))| match self.end {
+            PathEnd::Free => 0.0,
+            PathEnd::DisplacementZero if index < kinks.len() => self.first * change,
+            PathEnd::DisplacementZero => self.first * slope_inside - 1.0,
+            PathEnd::ForceZero => self.first * change * point.radius / problem.edge.radius,
+        });
+        let value = if slides { value.max(0.0) } else { value };
+        let miss = Linear { value, slope: by_kinks.collect() };
         Trial { levels, stresses, miss }
     }
 }
