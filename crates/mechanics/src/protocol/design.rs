@@ -4,12 +4,14 @@ use super::super::shear_stress::Residual;
 use super::super::state::{Move, Regime, Tangential};
 use super::from_any_state::FromAnyState;
 use super::{
-    Contact, DEFAULT_CUTOFF, DoubleDouble, EqualPeakMeasure, Error, Quantity, cutoff_of, end_constraint, equal_peaks,
-    evenly_spread, falling_amplitude, outermost_singular,
+    Contact, DEFAULT_CUTOFF, DoubleDouble, EqualPeakMeasure, Error, Quantity, cutoff_of, equal_peaks, evenly_spread,
+    falling_amplitude, outermost_singular,
 };
 
 /// A displacement below this share of that of gross slip is zero but for rounding.
 const ROUNDED: f64 = 1e-9;
+/// Up to this many reversals the strokes of a path with a prescribed end are sought in every way.
+const FEW: usize = 8;
 /// The present state of a deeper slip history is no candidate: the cost of its extrema grows with the square of the
 /// depth.
 const MAX_DEPTH: usize = 256;
@@ -291,7 +293,7 @@ impl DesignTask<'_> {
             let path = found.displacements.iter().map(|target| sign * target).collect::<Vec<f64>>();
             offer(self.judge(self.ended(path), first_move, gap(found)))?;
         }
-        if found.is_empty() || (self.end != PathEnd::Free && self.reversals <= end_constraint::FEW) {
+        if found.is_empty() || (self.end != PathEnd::Free && self.reversals <= FEW) {
             let begun = self.after(&[first])?;
             // The first of the strokes goes back.
             let last = if self.reversals.is_multiple_of(2) { sign } else { -sign };

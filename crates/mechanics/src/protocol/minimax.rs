@@ -162,22 +162,17 @@ impl Problem<'_> {
     }
 
     pub(super) fn march(&self, limit: f64, keep_going: &dyn Fn() -> bool) -> Option<KinkSequence> {
-        self.march_with(limit, (0, 1.0), keep_going)
+        self.march_with(limit, 1.0, keep_going)
     }
 
-    /// The same with a share of the limit for the extremum of this index, the outermost first.
-    pub(super) fn march_with(
-        &self,
-        limit: f64,
-        (index, share): (usize, f64),
-        keep_going: &dyn Fn() -> bool,
-    ) -> Option<KinkSequence> {
+    /// The same with a share of the limit for the outermost extremum.
+    pub(super) fn march_with(&self, limit: f64, share: f64, keep_going: &dyn Fn() -> bool) -> Option<KinkSequence> {
         let mut strokes = self.edge_alone();
         while strokes.kinks.len() < self.reversals {
             if !keep_going() {
                 return None;
             }
-            match self.next(&strokes, if strokes.kinks.len() == index { share * limit } else { limit }) {
+            match self.next(&strokes, if strokes.kinks.is_empty() { share * limit } else { limit }) {
                 Some(kink) => strokes.turn_at(kink),
                 None => return Some(KinkSequence { kinks: strokes.kinks, excess: None }),
             }
