@@ -123,14 +123,20 @@ impl Contact {
     /// ```
     #[must_use]
     pub fn virgin(&self) -> Contact {
+        self.clone().at_rest(DoubleDouble::from(self.initial.indentation), self.initial)
+    }
+
+    /// The contact before its first move, at an indentation, m, that has this summary.
+    fn at_rest(self, indentation: DoubleDouble, initial: ContactSummary) -> Contact {
         Contact {
-            history: SlipHistory::new(&self.profile, DoubleDouble::from(self.initial.indentation)),
+            history: SlipHistory::new(&self.profile, indentation),
             displacement: DoubleDouble::ZERO,
-            normal_force: self.initial.normal_force,
+            normal_force: initial.normal_force,
             dissipated: DoubleDouble::ZERO,
+            initial,
             path_error: 0.0,
             path_kernel: 0.0,
-            ..self.clone()
+            ..self
         }
     }
 
@@ -146,17 +152,8 @@ impl Contact {
     /// ```
     #[must_use]
     pub fn without_history(self) -> Contact {
-        let (initial, edge) = (self.summary(), self.history.edge().level);
-        Contact {
-            history: SlipHistory::new(&self.profile, edge),
-            displacement: DoubleDouble::ZERO,
-            dissipated: DoubleDouble::ZERO,
-            initial,
-            indentation_error: self.indentation_error,
-            path_error: 0.0,
-            path_kernel: 0.0,
-            ..self
-        }
+        let (initial, indentation) = (self.summary(), self.history.edge().level);
+        self.at_rest(indentation, initial)
     }
 
     /// The virgin contact of the same bodies under another normal force, N.
@@ -176,9 +173,9 @@ impl Contact {
         let indentation = self.indentation_for(normal_force);
         range::PRELOAD_INDENTATION.check(indentation.value())?;
         self.check_indentation(indentation.value())?;
-        let history = SlipHistory::new(&self.profile, indentation);
-        let initial = ContactSummary::of(&self.profile, &self.elasticity, self.friction, history.edge(), normal_force);
-        Ok(Contact { history, normal_force, initial, ..self.virgin() })
+        let edge = self.profile.point(indentation);
+        let initial = ContactSummary::of(&self.profile, &self.elasticity, self.friction, &edge, normal_force);
+        Ok(self.clone().at_rest(indentation, initial))
     }
 
     /// W = U/m, m.

@@ -32,7 +32,6 @@ pub use response::{Resonator, Response};
 use super::curved_path::PathPoint;
 use super::normal::{depth_for, load, whole};
 use super::profile::{Moments, Ring};
-use super::slip_history::SlipHistory;
 use super::{Contact, Error, Regime};
 use crate::numerics::double_double::DoubleDouble;
 
@@ -307,7 +306,7 @@ impl<'a> SteadyCycle<'a> {
             return vec![0.0; radii.len()];
         }
         let indentation = edge;
-        let mut turned = Contact { history: SlipHistory::new(&contact.profile, edge), ..contact.clone() };
+        let mut turned = contact.clone().without_history();
         let displacement = DoubleDouble::from(self.displacement);
         turned.advance(&PathPoint { indentation, normal_force: contact.normal_force, displacement });
         let work = |(slip, pressure): (Option<f64>, f64)| {
