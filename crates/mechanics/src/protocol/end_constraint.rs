@@ -6,7 +6,7 @@
 //! by Broyden's method from the free optimum. If it is the core, E alone is sought.
 
 use super::super::normal::{load, whole};
-use super::super::profile::{Point, Ring};
+use super::super::profile::Point;
 use super::minimax::{KinkSequence, Problem};
 use super::{DoubleDouble, PathEnd, alternating};
 use crate::numerics::roots::between;
@@ -136,22 +136,17 @@ impl Equations<'_> {
 
 /// The residual at the end: of the displacement over the indentation, or of the force over that of gross slip.
 fn miss(problem: &Problem<'_>, kinks: &[Point], first: f64, end: PathEnd) -> f64 {
-    let profile = problem.profile;
+    let (profile, edge) = (problem.profile, problem.edge);
     match end {
         PathEnd::Free => 0.0,
         PathEnd::DisplacementZero => {
-            let strokes = kinks.iter().rev().enumerate();
-            let way = strokes.map(|(index, kink)| alternating(index, 2.0 * (problem.edge.level - kink.level).value()));
-            (first - way.sum::<f64>()) / problem.edge.level.value()
+            // The stroke after the first goes back.
+            let way = alternating(kinks.len(), problem.way(edge.level, kinks));
+            (first + way) / edge.level.value()
         }
         PathEnd::ForceZero => {
             let zero = profile.point(DoubleDouble::ZERO);
-            let (mut outer, mut sum) = (problem.edge, 0.0);
-            for (index, inner) in kinks.iter().chain([&zero]).enumerate() {
-                sum += alternating(index, load(profile, &Ring::between(*inner, outer)));
-                outer = *inner;
-            }
-            sum / load(profile, &whole(profile, &problem.edge))
+            problem.sum_down_to(zero, kinks, |ring| load(profile, ring)) / load(profile, &whole(profile, &edge))
         }
     }
 }

@@ -38,10 +38,9 @@ impl KinkSequence {
     }
 }
 
-/// The levels that reversals begin to slip at, the outermost first, and the smallest of the alternating extrema over
-/// the largest.
+/// Where reversals begin to slip, the outermost first, and the smallest of the alternating extrema over the largest.
 pub(super) struct EqualExtrema {
-    pub(super) levels: Vec<f64>,
+    pub(super) kinks: Vec<Point>,
     pub(super) ratio: f64,
     /// The largest of them, over G* m/pi.
     pub(super) limit: f64,
@@ -87,17 +86,24 @@ impl VirginStrokes<'_> {
 }
 
 impl Problem<'_> {
+    /// A sum over the rings between the edge, the kinks and `least`, with the signs of their strokes but for the last's.
+    pub(super) fn sum_down_to(&self, least: Point, kinks: &[Point], part: impl Fn(&Ring) -> f64) -> f64 {
+        let mut outer = self.edge;
+        let ring = |inner: &Point| Ring::between(*inner, std::mem::replace(&mut outer, *inner));
+        kinks.iter().chain([&least]).map(ring).enumerate().map(|(index, ring)| alternating(index, part(&ring))).sum()
+    }
+
     /// The shear stress over G* m/pi after kinks, but for the sign of the last stroke, of the rings beyond `least`.
     pub(super) fn shear_down_to(&self, least: Point, kinks: &[Point], at: &StressRadius) -> f64 {
-        let (mut outer, mut sign, mut sum) = (self.edge, 1.0, 0.0);
-        for inner in kinks.iter().copied().chain([least]) {
-            if outer.radius < at.radius {
-                break;
-            }
-            sum += sign * self.profile.kernel(at, &Ring::between(inner, outer));
-            (outer, sign) = (inner, -sign);
-        }
-        sum
+        let beyond = kinks.partition_point(|kink| kink.radius >= at.radius);
+        let least = kinks.get(beyond).unwrap_or(&least);
+        self.sum_down_to(*least, &kinks[..beyond], |ring| self.profile.kernel(at, ring))
+    }
+
+    /// How far strokes lead that slip down to kinks, scaled by m, if the last of them goes forwards.
+    pub(super) fn way(&self, edge: DoubleDouble, kinks: &[Point]) -> f64 {
+        let stroke = |(index, kink): (usize, &Point)| alternating(index, 2.0 * (edge - kink.level).value());
+        kinks.iter().enumerate().map(stroke).sum()
     }
 
     /// No kinks as yet.
@@ -264,6 +270,6 @@ impl Problem<'_> {
         let mut strokes = self.edge_alone();
         best.kinks.iter().for_each(|kink| strokes.turn_at(*kink));
         let ratio = (self.core(&strokes) / high).clamp(0.0, 1.0);
-        Some(EqualExtrema { levels: best.kinks.iter().map(|kink| kink.level.value()).collect(), ratio, limit: high })
+        Some(EqualExtrema { kinks: best.kinks, ratio, limit: high })
     }
 }

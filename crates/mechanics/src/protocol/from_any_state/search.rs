@@ -1,8 +1,8 @@
 //! The sequences of few strokes as the search sees them: their stresses, and how far they miss the end, with the
 //! slopes.
 
-use super::super::super::profile::{Point, Ring, StressRadius};
-use super::super::{DoubleDouble, PathEnd};
+use super::super::super::profile::{Point, StressRadius};
+use super::super::{DoubleDouble, PathEnd, alternating};
 use super::descent::{Trial, search};
 use super::linear_program::Linear;
 use super::{FromAnyState, LaterStrokes};
@@ -51,17 +51,14 @@ impl FromAnyState<'_> {
         let (problem, edge) = (&self.problem, self.problem.edge.level.value());
         let profile = problem.profile;
         let (kinks, cut) = self.points(&levels, slides);
-        let sign = |index: usize| if index.is_multiple_of(2) { 1.0 } else { -1.0 };
-        let whole = self.history.partition_point(|(ring, _)| ring.inner.level < cut.level).saturating_sub(1);
-        let kept = self.history.get(whole).filter(|(ring, _)| ring.inner.level < cut.level);
-        let slope_inside = kept.map_or(0.0, |(_, line)| -self.last * line.slope.value());
-        let kept = kept.map(|(ring, _)| Ring::between(ring.inner, cut));
+        let inside = self.inside(&cut);
+        let slope_inside = inside.part.map_or(0.0, |(_, slope)| slope);
         // By how much the slope of w changes at an unknown, from its outside to its inside.
         let unknowns: Vec<(Point, f64)> = kinks
             .iter()
             .enumerate()
-            .map(|(index, kink)| (*kink, -2.0 * sign(index)))
-            .chain((!slides).then(|| (cut, slope_inside - sign(kinks.len()))))
+            .map(|(index, kink)| (*kink, alternating(index, -2.0)))
+            .chain((!slides).then(|| (cut, slope_inside - alternating(kinks.len(), 1.0))))
             .collect();
         let by_levels = |radius: f64| -> Vec<f64> {
             let slope = |(point, change): &(Point, f64)| {
@@ -74,11 +71,7 @@ impl FromAnyState<'_> {
         };
         let mut stresses = Vec::with_capacity(self.samples.len() + unknowns.len());
         for sample in &self.samples {
-            let mut stress = problem.shear_down_to(cut, &kinks, &sample.at);
-            if sample.at.radius <= cut.radius {
-                stress +=
-                    sample.below[whole] + kept.map_or(0.0, |ring| slope_inside * profile.kernel(&sample.at, &ring));
-            }
+            let stress = problem.shear_down_to(cut, &kinks, &sample.at) + inside.stress(profile, sample);
             stresses.push(Linear { value: stress, slope: by_levels(sample.at.radius) });
         }
         for (index, (point, _)) in unknowns.iter().enumerate() {
