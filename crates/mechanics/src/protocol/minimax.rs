@@ -10,7 +10,7 @@ use super::{DoubleDouble, Profile, alternating};
 use crate::numerics::roots::{between, largest};
 
 /// The largest number of evaluations of E, after it has been bracketed.
-const MAX_EVALUATIONS: usize = 80;
+const MAX_EVALUATIONS: i32 = 80;
 /// Steps of one search for a kink, and of its refinement, at the most.
 const STEPS: usize = 400;
 /// Radii at which the core is sampled where its stress need not fall outwards.
@@ -21,21 +21,14 @@ const BRACKET: f64 = 3e-5;
 const TOLERANCE: f64 = 1e-13;
 /// Factor by which E is changed until it is bracketed.
 const STRIDE: f64 = 1.25;
-/// How often, and by which part, a lower E is tried than the one found.
-const BELOW: usize = 8;
-const STEP_BELOW: f64 = 0.01;
+/// An E below this share of the first guess counts as zero.
+const LEAST: f64 = 1e-4;
 
 /// The kinks for one E, the outermost first.
 pub(super) struct KinkSequence {
     pub(super) kinks: Vec<Point>,
     /// The stress of the core over E, less one; `None` if fewer kinks than allowed were enough.
     pub(super) excess: Option<f64>,
-}
-
-impl KinkSequence {
-    fn fits(&self) -> bool {
-        self.excess.is_none_or(|excess| excess <= 0.0)
-    }
 }
 
 /// Where reversals begin to slip, the outermost first, and the smallest of the alternating extrema over the largest.
@@ -187,89 +180,77 @@ impl Problem<'_> {
         Some(KinkSequence { kinks: strokes.kinks, excess: Some(excess) })
     }
 
-    /// Closes the bracket of an E that is too small and one that is not.
-    fn close(
-        &self,
-        low: f64,
-        under: Option<f64>,
-        high: &mut f64,
-        best: &mut KinkSequence,
-        keep_going: &dyn Fn() -> bool,
-    ) -> Option<()> {
-        // Where fewer kinks are enough, the core has no stress.
-        let excess = |excess: Option<f64>| excess.unwrap_or(-1.0);
-        let ends = [(low, excess(under)), (*high, excess(best.excess))];
-        let mut stopped = false;
-        between(ends, TOLERANCE * *high, |trial| match self.march(trial, keep_going) {
-            Some(marched) => {
-                let found = excess(marched.excess);
-                if found <= 0.0 && trial < *high {
-                    *high = trial;
-                    *best = marched;
-                }
-                // The one that fits is kept, so that a little too much stress goes on.
-                if (-TOLERANCE..=0.0).contains(&found) { 0.0 } else { found }
-            }
-            None => {
-                stopped = true;
-                0.0
-            }
-        });
-        (!stopped).then_some(())
-    }
-
     /// The smallest E, and its kinks; `None` if `keep_going` returned false, or there is no such E.
     pub(super) fn solve(&self, keep_going: &dyn Fn() -> bool) -> Option<EqualExtrema> {
         let middle = StressRadius::new(0.5 * (self.cutoff + self.edge.radius));
         let guess = self.edge_alone().shear(&middle) / (self.reversals as f64).sqrt();
-        if !(guess > 0.0 && guess.is_finite()) {
-            return None;
-        }
-        let (mut low, mut high) = (guess, guess);
-        let mut best = self.march(high, keep_going)?;
-        let mut under = best.excess;
-        for _ in 0..MAX_EVALUATIONS {
-            if best.fits() {
-                break;
-            }
-            (low, under) = (high, best.excess);
-            high *= STRIDE;
-            best = self.march(high, keep_going)?;
-        }
-        for _ in 0..MAX_EVALUATIONS {
-            if low < high {
-                break;
-            }
-            let trial = self.march(low / STRIDE, keep_going)?;
-            low /= STRIDE;
-            if trial.fits() {
-                (high, low, best) = (low, low, trial);
-            } else {
-                under = trial.excess;
-            }
-        }
-        if !best.fits() || low >= high {
-            return None;
-        }
-        self.close(low, under, &mut high, &mut best, keep_going)?;
-        // The core need not fall all the way as E rises: a little lower there may be another one that fits.
-        for _ in 0..BELOW {
-            let trial = high * (1.0 - STEP_BELOW);
-            let marched = self.march(trial, keep_going)?;
-            if marched.excess.is_some_and(|excess| excess <= 0.0) {
-                let lower = trial * (1.0 - STEP_BELOW);
-                let under = self.march(lower, keep_going)?;
-                (high, best) = (trial, marched);
-                if !under.fits() {
-                    self.close(lower, under.excess, &mut high, &mut best, keep_going)?;
-                }
-            } else {
-                break;
-            }
-        }
+        let (limit, kinks) = smallest(guess, TOLERANCE, None, |limit| {
+            let KinkSequence { kinks, excess } = self.march(limit, keep_going)?;
+            // Where fewer kinks are enough, the core has no stress.
+            Some((excess.unwrap_or(-1.0), Some(kinks)))
+        })?;
         let mut strokes = self.edge_alone();
-        best.kinks.iter().for_each(|kink| strokes.turn_at(*kink));
-        let ratio = (self.core(&strokes) / high).clamp(0.0, 1.0);
-        Some(EqualExtrema { kinks: best.kinks, ratio, limit: high })
+        kinks.iter().for_each(|kink| strokes.turn_at(*kink));
+        let ratio = (self.core(&strokes) / limit).clamp(0.0, 1.0);
+        Some(EqualExtrema { kinks, ratio, limit })
     }
+}
+
+/// The smallest largest stress E that strokes keep to, and these strokes. `march` gives the strokes for an E, if there
+/// are any, and by how much what they leave exceeds it, over it: below zero where fewer strokes are enough. `None` if it
+/// was stopped, or no E fits.
+///
+/// Too large an E can be as wrong as too small a one if strokes are to end somewhere: with a `pace`, a factor, E is
+/// sought to both sides of the guess, in steps of that.
+pub(super) fn smallest<T>(
+    guess: f64,
+    tolerance: f64,
+    pace: Option<f64>,
+    mut march: impl FnMut(f64) -> Option<(f64, Option<T>)>,
+) -> Option<(f64, T)> {
+    if !(guess > 0.0 && guess.is_finite()) {
+        return None;
+    }
+    let (mut best, mut stopped) = (None::<(f64, T)>, false);
+    let mut excess = |limit: f64| {
+        let Some((excess, strokes)) = (if stopped { None } else { march(limit) }) else {
+            stopped = true;
+            return 0.0;
+        };
+        if excess <= 0.0 && best.as_ref().is_none_or(|(least, _)| limit < *least) {
+            best = strokes.map(|strokes| (limit, strokes)).or(best.take());
+        }
+        // The one that fits is kept, so that a little too much stress goes on.
+        if (-tolerance..=0.0).contains(&excess) { 0.0 } else { excess }
+    };
+    let start = (guess, excess(guess));
+    let (mut low, mut high) = (start, start);
+    let signs: &[i32] = if pace.is_some() { &[1, -1] } else { &[1] };
+    for power in (1..=MAX_EVALUATIONS).flat_map(|power| signs.iter().map(move |sign| sign * power)) {
+        if high.1 <= 0.0 {
+            break;
+        }
+        let limit = guess * pace.unwrap_or(STRIDE).powi(power);
+        let tried = (limit, excess(limit));
+        if tried.1 <= 0.0 {
+            high = tried;
+        } else if power > 0 {
+            low = tried;
+        }
+    }
+    if high.0 <= low.0 {
+        low = high;
+    }
+    for _ in 0..MAX_EVALUATIONS {
+        if low.1 > 0.0 || low.0 < LEAST * guess {
+            break;
+        }
+        high = low;
+        low = (high.0 / STRIDE, excess(high.0 / STRIDE));
+    }
+    if high.1 > 0.0 {
+        return None;
+    }
+    between([low, high], tolerance * high.0, &mut excess);
+    Some(best?).filter(|_| !stopped)
 }

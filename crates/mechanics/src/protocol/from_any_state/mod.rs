@@ -17,7 +17,7 @@ mod search;
 use super::super::normal::load;
 use super::super::profile::{Point, Ring, StressRadius};
 use super::super::slip_history::Line;
-use super::minimax::Problem;
+use super::minimax::{Problem, smallest};
 use super::{Contact, DoubleDouble, PathEnd, Profile, alternating, cutoff_of, outermost_singular, positions};
 use crate::numerics::roots::{largest, turning};
 
@@ -30,14 +30,10 @@ const CUTS: usize = 16;
 const SEARCHED: usize = 6;
 /// The part of the stretch about the best of these to which a cut is narrowed down.
 const BRACKET: f64 = 1e-6;
-/// The largest number of evaluations of E, and the factors that bracket it.
-const MAX_EVALUATIONS: usize = 48;
-const STRIDE: f64 = 1.6;
+/// The factor by which E is changed until it is bracketed.
 const PACE: f64 = 1.06;
 /// Relative tolerance of E.
 const TOLERANCE: f64 = 1e-8;
-/// An E below this share of the first guess counts as zero.
-const LEAST: f64 = 1e-4;
 
 /// Strokes from the state of a contact.
 pub(super) struct FromAnyState<'a> {
@@ -171,24 +167,23 @@ impl<'a> FromAnyState<'a> {
         inside.map(|sample| self.problem.shear_down_to(*last, beyond, &sample.at)).collect()
     }
 
-    /// The strokes of a largest stress E, if there are any; `Err` if `keep_going` returned false.
-    fn strokes(&self, limit: f64, keep_going: &dyn Fn() -> bool) -> Result<StrokeOutcome, ()> {
-        let marched = self.problem.march(limit, keep_going).ok_or(())?;
-        if marched.kinks.len() < self.problem.reversals {
-            return Ok(StrokeOutcome::Loose);
+    /// The strokes of a largest stress E, if there are any, and by how much they exceed it, over it; `None` if
+    /// `keep_going` returned false.
+    fn strokes(&self, limit: f64, keep_going: &dyn Fn() -> bool) -> Option<(f64, Option<LaterStrokes>)> {
+        let kinks = self.problem.march(limit, keep_going)?.kinks;
+        if kinks.len() < self.problem.reversals {
+            return Some((-1.0, None));
         }
-        let kinks = marched.kinks;
         let outside = self.outside(&kinks);
-        let Some((cut, first)) = (if self.end == PathEnd::Free {
+        let found = if self.end == PathEnd::Free {
             let cut = self.free_cut(&outside, &kinks);
             Some((cut, self.first_to(cut.level)))
         } else {
             self.prescribed_cut(&kinks)
-        }) else {
-            return Ok(StrokeOutcome::Tight);
         };
-        let fits = self.worst(&outside, &kinks, &cut) <= limit * (1.0 + 1e-12);
-        Ok(if fits { StrokeOutcome::Fits(LaterStrokes { kinks, cut, first }) } else { StrokeOutcome::Tight })
+        let Some((cut, first)) = found else { return Some((1.0, None)) };
+        let excess = self.worst(&outside, &kinks, &cut) / limit - 1.0;
+        Some((excess, Some(LaterStrokes { kinks, cut, first })))
     }
 
     /// The cut that leaves least inside the last kink.
@@ -246,53 +241,7 @@ impl<'a> FromAnyState<'a> {
         let middle = StressRadius::new(0.5 * (problem.cutoff + problem.edge.radius));
         let zero = problem.profile.point(DoubleDouble::ZERO);
         let guess = problem.shear_down_to(zero, &[], &middle) / (problem.reversals as f64 + 1.0).sqrt();
-        if !(guess > 0.0 && guess.is_finite()) {
-            return None;
-        }
-        let mut best = None;
-        let mut step = |limit: f64| -> Option<bool> {
-            Some(match self.strokes(limit, keep_going).ok()? {
-                StrokeOutcome::Fits(strokes) => {
-                    best = Some(strokes);
-                    true
-                }
-                StrokeOutcome::Loose => true,
-                StrokeOutcome::Tight => false,
-            })
-        };
-        let (mut high, pace, least) = if step(guess)? {
-            (guess, STRIDE, LEAST * guess)
-        } else {
-            // Where the end is prescribed, too large an E can be as wrong as too small a one: both sides are tried in
-            // small steps.
-            let found = (1..=MAX_EVALUATIONS).flat_map(|power| [power as i32, -(power as i32)]).find_map(|power| {
-                let limit = guess * PACE.powi(power);
-                match step(limit) {
-                    Some(false) => None,
-                    Some(true) => Some(Some(limit)),
-                    None => Some(None),
-                }
-            });
-            (found??, PACE, 0.0)
-        };
-        let mut low = high / pace;
-        for _ in 0..MAX_EVALUATIONS {
-            if !step(low)? {
-                break;
-            }
-            (high, low) = (low, low / pace);
-            if low < least {
-                break;
-            }
-        }
-        for _ in 0..MAX_EVALUATIONS {
-            if high - low <= TOLERANCE * high {
-                break;
-            }
-            let middle = 0.5 * (low + high);
-            if step(middle)? { high = middle } else { low = middle }
-        }
-        best
+        Some(smallest(guess, TOLERANCE, Some(PACE), |limit| self.strokes(limit, keep_going))?.1)
     }
 
     fn positions(&self, strokes: &LaterStrokes) -> Vec<f64> {
@@ -347,14 +296,4 @@ fn samples(problem: &Problem<'_>, history: &[(Ring, Line)], last: f64) -> Vec<Sa
         SampleRadius { at, below }
     };
     all.into_iter().map(sample).collect()
-}
-
-/// Whether there are strokes with a largest stress E.
-enum StrokeOutcome {
-    /// There are, and these are the strokes.
-    Fits(LaterStrokes),
-    /// There are, with fewer strokes.
-    Loose,
-    /// There are none.
-    Tight,
 }
