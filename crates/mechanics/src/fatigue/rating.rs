@@ -7,7 +7,7 @@
 
 use std::f64::consts::{FRAC_1_SQRT_2 as SHEAR_SHARE, SQRT_2};
 
-use super::curve::{Allowance, Arc, CurvePeak, StressCurve, StressSample, stress};
+use super::curve::{Allowance, Arc, CurvePeak, Instant, StressCurve, StressSample, stress};
 use super::planes::{Vector, climb, dot, peaks};
 use super::{
     Ball, Criterion, deviator, enclosing_ball, from_deviator, resolved, shear_axes, strained, upward, weights,
@@ -43,22 +43,13 @@ const SETTLED: f64 = 1e-9;
 pub enum Measure {
     /// A criterion of stress.
     Stress(Criterion),
-    /// Amplitude of the shear stress times that of the slip at the surface, N/m
-    /// ([`Ruiz::fretting_damage`](super::Ruiz)).
+    /// Amplitude of the shear stress times that of the slip at the surface, N/m (Ruiz, Boddington & Chen 1984). It has
+    /// no limit of its own: compare places and cycles by it.
     Ruiz,
-    /// That times the largest tension along x, N^2/m^3 ([`Ruiz::crack_initiation`](super::Ruiz)).
+    /// That times the largest tension along x, zero where there is none, N^2/m^3.
     RuizTension,
     /// Friction work per area and cycle at the surface, J/m^2.
     FrictionWork,
-}
-
-/// An instant of a cycle.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Instant {
-    /// The index of the move.
-    pub step: usize,
-    /// The part of it that has been made, above 0 and up to 1.
-    pub part: f64,
 }
 
 /// A measure at a place.
@@ -72,20 +63,6 @@ pub struct Rated {
     pub plane: Option<[f64; 3]>,
     /// The critical instant, as [`Value::instant`](super::Value::instant).
     pub at: Option<Instant>,
-}
-
-/// A value with the instant that it belongs to, before that is one of the move as prescribed.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Found {
-    pub(super) value: f64,
-    pub(super) error: f64,
-    pub(super) plane: Option<Vector>,
-    pub(super) at: Option<(usize, f64)>,
-}
-
-impl Found {
-    /// Where there is no such value.
-    pub(super) const NONE: Found = Found { value: f64::NAN, error: 0.0, plane: None, at: None };
 }
 
 impl Measure {
@@ -111,8 +88,8 @@ impl Measure {
         }
     }
 
-    /// Its value over a curve, on planes `near` one if that is given.
-    pub(super) fn over(&self, curve: &StressCurve, friction: f64, near: Option<Vector>) -> Found {
+    /// Its value over a curve, with an instant in the parts of that, on planes `near` one if that is given.
+    pub(super) fn over(&self, curve: &StressCurve, friction: f64, near: Option<Vector>) -> Rated {
         let largest = curve.samples().map(|(_, sample)| size(sample)).fold(0.0, f64::max);
         let off = self.sensitivity(largest) * curve.error.stress;
         match self {
@@ -121,18 +98,18 @@ impl Measure {
                 if matches!(criterion, Criterion::Crossland { .. }) {
                     let peak = peak_of(curve, |sample| stress(sample).hydrostatic());
                     let value = ball.radius / SQRT_2 + alpha * peak.value;
-                    Found { value, error: off + outside, plane: None, at: Some(peak.at) }
+                    Rated { value, error: off + outside, plane: None, at: Some(peak.at) }
                 } else {
                     let peak = peak_of(curve, |sample| tresca(sample, &ball, *alpha));
                     let allowed = curve.error.stress + outside;
                     let error = (SHEAR_SHARE + alpha * HYDROSTATIC_SHARE) * allowed + wander(&ball, points, allowed);
-                    Found { value: peak.value, error, plane: None, at: Some(peak.at) }
+                    Rated { value: peak.value, error, plane: None, at: Some(peak.at) }
                 }
             }
             Measure::Stress(criterion) => on_worst_plane(criterion, curve, off, near),
             Measure::FrictionWork => {
                 let [work, error] = curve.work().map(|work| friction * work);
-                Found { value: work, error, plane: None, at: None }
+                Rated { value: work, error, plane: None, at: None }
             }
             Measure::Ruiz | Measure::RuizTension => {
                 let [shear, slip] = [(7, false), (8, true)].map(|(index, inside)| {
@@ -147,9 +124,9 @@ impl Measure {
                 let Allowance { stress, slip: off } = curve.error;
                 let (value, error) = (shear * slip, shear * off + stress * slip);
                 if matches!(self, Measure::Ruiz) {
-                    Found { value, error, plane: None, at: None }
+                    Rated { value, error, plane: None, at: None }
                 } else {
-                    Found { value: tension * value, error: tension * error + stress * value, plane: None, at: None }
+                    Rated { value: tension * value, error: tension * error + stress * value, plane: None, at: None }
                 }
             }
         }
@@ -163,7 +140,7 @@ pub(super) fn size(sample: &StressSample) -> f64 {
 }
 
 fn peak_of(curve: &StressCurve, value: impl FnMut(&StressSample) -> f64) -> CurvePeak {
-    let none = CurvePeak { value: 0.0, sample: [0.0; 9], at: (0, 1.0) };
+    let none = CurvePeak { value: 0.0, sample: [0.0; 9], at: Instant { step: 0, part: 1.0 } };
     curve.peak(|_| true, value).unwrap_or(none)
 }
 
@@ -272,18 +249,18 @@ fn candidates(criterion: &Criterion, curve: &StressCurve, shears: &mut Vec<[f64;
 }
 
 /// The largest value over all planes, or those near one.
-fn on_worst_plane(criterion: &Criterion, curve: &StressCurve, off: f64, near: Option<Vector>) -> Found {
+fn on_worst_plane(criterion: &Criterion, curve: &StressCurve, off: f64, near: Option<Vector>) -> Rated {
     let mut path: Vec<Stress> = curve.samples().map(|(_, sample)| stress(sample)).collect();
     let mut shears = Vec::with_capacity(path.len());
     let normals = near.map_or_else(|| candidates(criterion, curve, &mut shears), |normal| vec![normal]);
-    let mut best = Found { value: f64::NEG_INFINITY, error: off, plane: None, at: None };
+    let mut best = Rated { value: f64::NEG_INFINITY, error: off, plane: None, at: None };
     for mut normal in normals {
         let mut value = f64::NEG_INFINITY;
         for round in 0..MOST_ROUNDS {
             let at = witnesses(criterion, curve, &normal, &mut path, &mut shears);
             let (here, _) = criterion.on_plane(&path, &normal, false, &mut shears);
             if here > best.value {
-                best = Found { value: here, plane: Some(upward(normal)), at: Some(at), ..best };
+                best = Rated { value: here, plane: Some(upward(normal)), at: Some(at), ..best };
             }
             if here - value <= SETTLED * here.abs() || round > 6 {
                 break;
@@ -303,7 +280,7 @@ fn witnesses(
     normal: &Vector,
     path: &mut Vec<Stress>,
     shears: &mut Vec<[f64; 2]>,
-) -> (usize, f64) {
+) -> Instant {
     let along = weights(normal, normal);
     let opening = peak_of(curve, |sample| resolved(&stress(sample), &along));
     path.push(stress(&opening.sample));
