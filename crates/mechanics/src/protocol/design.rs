@@ -224,7 +224,8 @@ impl DesignTask<'_> {
                 freed.apply(&Move { tangential: Some(Tangential::Force(0.0)), ..Move::default() })?;
                 freed.state().displacement
             }
-            PathEnd::DisplacementZero | PathEnd::Free => last,
+            PathEnd::DisplacementZero => 0.0,
+            PathEnd::Free => last,
         };
         path.push(target);
         contact.apply(&Move { tangential: Some(Tangential::Displacement(target)), ..Move::default() })?;
@@ -290,8 +291,8 @@ impl DesignTask<'_> {
             Vec::new()
         };
         for found in &found {
-            let path = found.displacements.iter().map(|target| sign * target).collect::<Vec<f64>>();
-            offer(self.judge(self.ended(path), first_move, gap(found)))?;
+            let path = found.displacements.iter().map(|target| sign * target);
+            offer(self.judge(path.collect(), first_move, gap(found)))?;
         }
         if found.is_empty() || (self.end != PathEnd::Free && self.reversals <= FEW) {
             let begun = self.after(&[first])?;
@@ -320,16 +321,6 @@ impl DesignTask<'_> {
         if (self.keep_going)() { best.ok_or(Error::Interrupted) } else { Err(Error::Interrupted) }
     }
 
-    /// The path with its last displacement set to zero if the end requires it and only rounding is in the way.
-    fn ended(&self, mut path: Vec<f64>) -> Vec<f64> {
-        if let (PathEnd::DisplacementZero, Some(last)) = (self.end, path.last_mut())
-            && last.abs() <= ROUNDED * self.contact.gross_slip_displacement()
-        {
-            *last = 0.0;
-        }
-        path
-    }
-
     /// Whether the present state meets the condition of the end.
     fn at_an_end(&self) -> bool {
         let state = self.contact.state();
@@ -340,18 +331,11 @@ impl DesignTask<'_> {
         }
     }
 
-    /// Strokes by [`FromAnyState`], m, that meet the condition of the end.
+    /// Strokes by [`FromAnyState`], m, to the end, but for what it misses.
     fn relieved(&self, from: &Contact, strokes: usize, last: f64) -> Vec<Vec<f64>> {
-        let Some(strokes) = FromAnyState::new(from, strokes, last, self.end) else { return Vec::new() };
-        let mut paths = strokes.solve(self.keep_going);
-        for position in paths.iter_mut().flatten() {
-            *position *= from.scale();
-        }
-        if self.end == PathEnd::DisplacementZero {
-            let near = ROUNDED * from.gross_slip_displacement();
-            paths.retain(|path| path.last().is_some_and(|end| end.abs() <= near));
-            paths.iter_mut().filter_map(|path| path.last_mut()).for_each(|end| *end = 0.0);
-        }
+        let found = FromAnyState::new(from, strokes, last, self.end);
+        let mut paths = found.map_or_else(Vec::new, |strokes| strokes.solve(self.keep_going));
+        paths.iter_mut().flatten().for_each(|position| *position *= from.scale());
         paths
     }
 }

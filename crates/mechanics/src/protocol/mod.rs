@@ -15,7 +15,7 @@ mod from_any_state;
 mod minimax;
 mod robustness;
 
-pub use bound::{lower_bound, lower_bound_while};
+pub use bound::lower_bound;
 pub use design::{AmplitudeLaw, Design, EvaluationRange, FirstMove, PathEnd, PathStart, design};
 pub use robustness::{ExecutionErrors, trials};
 
