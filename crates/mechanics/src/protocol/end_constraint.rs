@@ -9,6 +9,7 @@ use super::super::normal::{load, whole};
 use super::super::profile::Point;
 use super::minimax::{KinkSequence, Problem};
 use super::{DoubleDouble, PathEnd, alternating};
+use crate::numerics::broyden::{inverse, product, updated};
 use crate::numerics::roots::between;
 
 /// The largest number of evaluations of the kinks.
@@ -59,15 +60,12 @@ impl Equations<'_> {
         let (by_stress, _) = self.evaluate([1.0 + PROBE, 1.0])?;
         let (by_share, _) = self.evaluate([1.0, 1.0 - PROBE])?;
         let row = |row: usize| [(by_stress[row] - missed[row]) / PROBE, (missed[row] - by_share[row]) / PROBE];
-        let mut jacobian = [row(0), row(1)];
+        let mut slopes = inverse([row(0), row(1)])?;
         for _ in 0..MAX_EVALUATIONS {
             if missed.iter().all(|miss| miss.abs() <= TOLERANCE) {
                 return (at[1] <= 1.0 + TOLERANCE).then_some(marched.kinks);
             }
-            let [[a, b], [c, d]] = jacobian;
-            let determinant = a * d - b * c;
-            let mut step =
-                [(b * missed[1] - d * missed[0]) / determinant, (c * missed[0] - a * missed[1]) / determinant];
+            let mut step = product(&slopes, missed).map(|part| -part);
             // Limited, so that no kink is lost.
             let far = (step[0].abs() / 0.1).max(step[1].abs() / 0.25);
             if !far.is_finite() {
@@ -86,16 +84,7 @@ impl Equations<'_> {
                 step = step.map(|part| 0.5 * part);
             }
             let (now, tried) = found?;
-            let size = step[0] * step[0] + step[1] * step[1];
-            if size <= 0.0 {
-                return None;
-            }
-            for (row, was, is) in [(0, missed[0], now[0]), (1, missed[1], now[1])] {
-                let expected = jacobian[row][0] * step[0] + jacobian[row][1] * step[1];
-                let off = (is - was - expected) / size;
-                jacobian[row][0] += off * step[0];
-                jacobian[row][1] += off * step[1];
-            }
+            slopes = updated(&slopes, step, [now[0] - missed[0], now[1] - missed[1]]);
             at = [at[0] + step[0], at[1] + step[1]];
             (missed, marched) = (now, tried);
         }
