@@ -7,7 +7,7 @@
 
 use super::super::normal::{load, whole};
 use super::super::profile::Point;
-use super::minimax::{KinkSequence, Problem};
+use super::minimax::{Problem, VirginStrokes};
 use super::{DoubleDouble, PathEnd, alternating};
 use crate::numerics::broyden::{inverse, product, updated};
 use crate::numerics::roots::between;
@@ -47,7 +47,7 @@ struct Equations<'a> {
 
 impl Equations<'_> {
     /// The kinks of an E, relative to the free optimum, and of a share of it for the outermost, with the residuals.
-    fn evaluate(&self, [stress, share]: [f64; 2]) -> Option<([f64; 2], KinkSequence)> {
+    fn evaluate(&self, [stress, share]: [f64; 2]) -> Option<([f64; 2], VirginStrokes<'_>)> {
         let marched = self.problem.march_with(self.limit * stress, share, self.keep_going)?;
         Some(([miss(self.problem, &marched.kinks, self.first, self.end), marched.excess?], marched))
     }

@@ -24,13 +24,6 @@ const STRIDE: f64 = 1.25;
 /// An E below this share of the first guess counts as zero.
 const LEAST: f64 = 1e-4;
 
-/// The kinks for one E, the outermost first.
-pub(super) struct KinkSequence {
-    pub(super) kinks: Vec<Point>,
-    /// The stress of the core over E, less one; `None` if fewer kinks than allowed were enough.
-    pub(super) excess: Option<f64>,
-}
-
 /// Where reversals begin to slip, the outermost first, and the smallest of the alternating extrema over the largest.
 pub(super) struct EqualExtrema {
     pub(super) kinks: Vec<Point>,
@@ -48,15 +41,18 @@ pub(super) struct Problem<'a> {
 }
 
 /// The kinks from the edge inward, and the rings between them.
-struct VirginStrokes<'a> {
+pub(super) struct VirginStrokes<'a> {
     problem: &'a Problem<'a>,
-    kinks: Vec<Point>,
-    beyond: InwardSum<'a>,
+    pub(super) kinks: Vec<Point>,
+    /// The stress, over G* m/pi, up to the innermost kink, of the rings beyond it.
+    pub(super) beyond: InwardSum<'a>,
+    /// The stress of the core over E, less one; `None` if fewer kinks than allowed were enough.
+    pub(super) excess: Option<f64>,
 }
 
 impl VirginStrokes<'_> {
     /// The innermost kink, the edge without any.
-    fn last(&self) -> &Point {
+    pub(super) fn last(&self) -> &Point {
         self.kinks.last().unwrap_or(&self.problem.edge)
     }
 
@@ -102,7 +98,7 @@ impl Problem<'_> {
     /// No kinks as yet.
     fn edge_alone(&self) -> VirginStrokes<'_> {
         let beyond = InwardSum::new(self.profile, self.edge.radius, self.reversals);
-        VirginStrokes { problem: self, kinks: Vec::with_capacity(self.reversals), beyond }
+        VirginStrokes { problem: self, kinks: Vec::with_capacity(self.reversals), beyond, excess: None }
     }
 
     /// The first level below the last kink where the stress meets `limit`, if there is one beyond the cut-off.
@@ -160,12 +156,18 @@ impl Problem<'_> {
         most.max(largest(beside, BRACKET, value).1)
     }
 
-    pub(super) fn march(&self, limit: f64, keep_going: &dyn Fn() -> bool) -> Option<KinkSequence> {
+    /// The kinks for one E; `None` if `keep_going` returned false.
+    pub(super) fn march(&self, limit: f64, keep_going: &dyn Fn() -> bool) -> Option<VirginStrokes<'_>> {
         self.march_with(limit, 1.0, keep_going)
     }
 
     /// The same with a share of the limit for the outermost extremum.
-    pub(super) fn march_with(&self, limit: f64, share: f64, keep_going: &dyn Fn() -> bool) -> Option<KinkSequence> {
+    pub(super) fn march_with(
+        &self,
+        limit: f64,
+        share: f64,
+        keep_going: &dyn Fn() -> bool,
+    ) -> Option<VirginStrokes<'_>> {
         let mut strokes = self.edge_alone();
         while strokes.kinks.len() < self.reversals {
             if !keep_going() {
@@ -173,26 +175,24 @@ impl Problem<'_> {
             }
             match self.next(&strokes, if strokes.kinks.is_empty() { share * limit } else { limit }) {
                 Some(kink) => strokes.turn_at(kink),
-                None => return Some(KinkSequence { kinks: strokes.kinks, excess: None }),
+                None => return Some(strokes),
             }
         }
-        let excess = self.core(&strokes) / limit - 1.0;
-        Some(KinkSequence { kinks: strokes.kinks, excess: Some(excess) })
+        strokes.excess = Some(self.core(&strokes) / limit - 1.0);
+        Some(strokes)
     }
 
     /// The smallest E, and its kinks; `None` if `keep_going` returned false, or there is no such E.
     pub(super) fn solve(&self, keep_going: &dyn Fn() -> bool) -> Option<EqualExtrema> {
         let middle = StressRadius::new(0.5 * (self.cutoff + self.edge.radius));
         let guess = self.edge_alone().shear(&middle) / (self.reversals as f64).sqrt();
-        let (limit, kinks) = smallest(guess, TOLERANCE, None, |limit| {
-            let KinkSequence { kinks, excess } = self.march(limit, keep_going)?;
+        let (limit, strokes) = smallest(guess, TOLERANCE, None, |limit| {
+            let strokes = self.march(limit, keep_going)?;
             // Where fewer kinks are enough, the core has no stress.
-            Some((excess.unwrap_or(-1.0), Some(kinks)))
+            Some((strokes.excess.unwrap_or(-1.0), Some(strokes)))
         })?;
-        let mut strokes = self.edge_alone();
-        kinks.iter().for_each(|kink| strokes.turn_at(*kink));
         let ratio = (self.core(&strokes) / limit).clamp(0.0, 1.0);
-        Some(EqualExtrema { kinks, ratio, limit })
+        Some(EqualExtrema { kinks: strokes.kinks, ratio, limit })
     }
 }
 

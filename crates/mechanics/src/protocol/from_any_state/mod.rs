@@ -158,23 +158,16 @@ impl<'a> FromAnyState<'a> {
         worst
     }
 
-    /// The stress, at each sample inside the last kink, of the rings beyond it.
-    fn outside(&self, kinks: &[Point]) -> Vec<f64> {
-        let Some((last, beyond)) = kinks.split_last() else {
-            return vec![0.0; self.samples.len()];
-        };
-        let inside = self.samples.iter().take_while(|sample| sample.at.radius < last.radius);
-        inside.map(|sample| self.problem.shear_down_to(*last, beyond, &sample.at)).collect()
-    }
-
     /// The strokes of a largest stress E, if there are any, and by how much they exceed it, over it; `None` if
     /// `keep_going` returned false.
     fn strokes(&self, limit: f64, keep_going: &dyn Fn() -> bool) -> Option<(f64, Option<LaterStrokes>)> {
-        let kinks = self.problem.march(limit, keep_going)?.kinks;
-        if kinks.len() < self.problem.reversals {
+        let marched = self.problem.march(limit, keep_going)?;
+        if marched.excess.is_none() {
             return Some((-1.0, None));
         }
-        let outside = self.outside(&kinks);
+        let inside = self.samples.iter().take_while(|sample| sample.at.radius < marched.last().radius);
+        let outside: Vec<f64> = inside.map(|sample| marched.beyond.at(&sample.at)).collect();
+        let kinks = marched.kinks;
         let found = if self.end == PathEnd::Free {
             let cut = self.free_cut(&outside, &kinks);
             Some((cut, self.first_to(cut.level)))
