@@ -101,13 +101,10 @@ pub(super) fn stress(sample: &StressSample) -> Stress {
     Stress { xx, yy, zz, xy, yz, xz }
 }
 
-/// What lies between two samples: stresses, by the root of the sum of the squares of all nine components, and slip.
+/// What lies between two samples: stresses, by their norm, and slip.
 fn distance(one: &StressSample, other: &StressSample) -> Allowance {
     let off: StressSample = std::array::from_fn(|i| one[i] - other[i]);
-    let normal: f64 = off[..3].iter().map(|part| part * part).sum();
-    let shear: f64 = off[3..6].iter().map(|part| part * part).sum();
-    let tractions = off[6].abs().max(off[7].abs());
-    Allowance { stress: (normal + 2.0 * shear).sqrt().max(tractions), slip: off[8].abs() }
+    Allowance { stress: stress(&off).norm().max(off[6].abs()).max(off[7].abs()), slip: off[8].abs() }
 }
 
 fn combined(weights: &[f64], samples: &[StressSample]) -> StressSample {

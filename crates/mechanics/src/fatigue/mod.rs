@@ -30,10 +30,11 @@ mod study;
 use std::f64::consts::SQRT_2;
 
 use super::{Error, Stress, range};
+use ball::dot;
 pub use ball::{Ball, enclosing_ball};
 pub use curve::{Instant, MAX_INSTANTS};
 pub use cycle::{Cycle, MOST_BYTES};
-use planes::{Vector, axes, dot, highest, peaks, unit};
+use planes::{Vector, axes, highest, peaks, unit};
 pub use rating::{Measure, Rated};
 pub use search::Worst;
 pub use study::{Bulk, FIELD_BYTES, Largest, Ratings, Study};

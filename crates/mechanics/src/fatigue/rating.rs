@@ -7,10 +7,11 @@
 
 use std::f64::consts::{FRAC_1_SQRT_2 as SHEAR_SHARE, SQRT_2};
 
+use super::ball::squared_distance;
 use super::curve::{Allowance, Arc, CurvePeak, Instant, StressCurve, StressSample, stress};
-use super::planes::{Vector, climb, dot, peaks};
+use super::planes::{Vector, climb, peaks};
 use super::{
-    Ball, Criterion, deviator, enclosing_ball, from_deviator, resolved, shear_axes, strained, upward, weights,
+    Ball, Criterion, deviator, dot, enclosing_ball, from_deviator, resolved, shear_axes, strained, upward, weights,
 };
 use crate::Stress;
 
@@ -90,7 +91,7 @@ impl Measure {
 
     /// Its value over a curve, with an instant in the parts of that, on planes `near` one if that is given.
     pub(super) fn over(&self, curve: &StressCurve, friction: f64, near: Option<Vector>) -> Rated {
-        let largest = curve.samples().map(|(_, sample)| size(sample)).fold(0.0, f64::max);
+        let largest = curve.samples().map(|(_, sample)| stress(sample).norm()).fold(0.0, f64::max);
         let off = self.sensitivity(largest) * curve.error.stress;
         match self {
             Measure::Stress(criterion @ (Criterion::Crossland { alpha } | Criterion::DangVan { alpha })) => {
@@ -133,12 +134,6 @@ impl Measure {
     }
 }
 
-/// The size of a stress, Pa, as [`Allowance::stress`] has it.
-pub(super) fn size(sample: &StressSample) -> f64 {
-    let Stress { xx, yy, zz, xy, yz, xz } = stress(sample);
-    (xx * xx + yy * yy + zz * zz + 2.0 * (xy * xy + yz * yz + xz * xz)).sqrt()
-}
-
 fn peak_of(curve: &StressCurve, value: impl FnMut(&StressSample) -> f64) -> CurvePeak {
     let none = CurvePeak { value: 0.0, sample: [0.0; 9], at: Instant { step: 0, part: 1.0 } };
     curve.peak(|_| true, value).unwrap_or(none)
@@ -154,7 +149,7 @@ fn tresca(sample: &StressSample, ball: &Ball<5>, alpha: f64) -> f64 {
 fn deviator_ball(curve: &StressCurve) -> (Ball<5>, Vec<[f64; 5]>, f64) {
     let mut points: Vec<[f64; 5]> = curve.samples().map(|(_, sample)| deviator(&stress(sample))).collect();
     let (ball, outside) = grown(&mut points, |center| {
-        let far = |sample: &StressSample| squared(&deviator(&stress(sample)), center);
+        let far = |sample: &StressSample| squared_distance(&deviator(&stress(sample)), center);
         let peak = peak_of(curve, far);
         (deviator(&stress(&peak.sample)), peak.value)
     });
@@ -169,14 +164,14 @@ fn wander(ball: &Ball<5>, mut points: Vec<[f64; 5]>, error: f64) -> f64 {
         return ball.radius + error;
     }
     let within = (ball.radius - NEAR_SURFACE * error).max(0.0);
-    points.retain(|point| squared(point, &ball.center) >= within * within);
+    points.retain(|point| squared_distance(point, &ball.center) >= within * within);
     let mut moved = vec![false; points.len()];
     let mut sum = 0.0;
     while let Some(first) = moved.iter().position(|moved| !moved) {
         let from = points[first];
         let mut farther = points.clone();
         for (index, point) in points.iter().enumerate() {
-            if !moved[index] && squared(point, &from) <= (TOGETHER * ball.radius).powi(2) {
+            if !moved[index] && squared_distance(point, &from) <= (TOGETHER * ball.radius).powi(2) {
                 moved[index] = true;
                 let out = 1.0 + error / ball.radius;
                 farther[index] = std::array::from_fn(|i| ball.center[i] + out * (point[i] - ball.center[i]));
@@ -186,10 +181,6 @@ fn wander(ball: &Ball<5>, mut points: Vec<[f64; 5]>, error: f64) -> f64 {
         sum += from_deviator(&std::array::from_fn(|i| center[i] - ball.center[i])).max_shear();
     }
     sum
-}
-
-fn squared<const N: usize>(one: &[f64; N], other: &[f64; N]) -> f64 {
-    one.iter().zip(other).map(|(a, b)| (a - b) * (a - b)).sum()
 }
 
 /// The ball around some points and the farthest that a curve has from its centre, again and again; and how far it
@@ -220,10 +211,7 @@ fn grown<const N: usize>(
 fn candidates(criterion: &Criterion, curve: &StressCurve, shears: &mut Vec<[f64; 2]>) -> Vec<Vector> {
     let opening = peak_of(curve, |sample| stress(sample).principal()[0]);
     let mut few = vec![stress(&opening.sample)];
-    let apart = |one: &Stress, other: &Stress| {
-        let off = (*one + *other * -1.0).components();
-        off.iter().map(|part| part * part).sum::<f64>().sqrt()
-    };
+    let apart = |one: &Stress, other: &Stress| (*one + *other * -1.0).norm();
     let samples = || curve.samples().map(|(_, sample)| stress(sample));
     let farthest = samples().map(|other| apart(&few[0], &other)).fold(0.0, f64::max);
     for sample in samples() {
@@ -297,7 +285,7 @@ fn witnesses(
     shears.extend(path.iter().map(shear));
     let found = std::cell::RefCell::new(Vec::new());
     grown(shears, |center| {
-        let far = peak_of(curve, |sample| squared(&shear(&stress(sample)), center));
+        let far = peak_of(curve, |sample| squared_distance(&shear(&stress(sample)), center));
         found.borrow_mut().push(stress(&far.sample));
         (shear(&stress(&far.sample)), far.value)
     });
