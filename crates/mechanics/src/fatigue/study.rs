@@ -153,7 +153,7 @@ impl<'a> Study<'a> {
         let mut values = vec![Vec::with_capacity(places.len()); self.measures.len()];
         let mut largest: Vec<Option<(usize, Rated, usize)>> = vec![None; self.measures.len()];
         for (index, place) in places.iter().enumerate() {
-            let (found, instants) = self.rate(place)?;
+            let (found, instants) = self.rate_some(0..self.measures.len(), place, None)?;
             for ((found, column), largest) in found.into_iter().zip(&mut values).zip(&mut largest) {
                 column.push(found.value);
                 if found.value.is_finite() && largest.is_none_or(|(_, before, _)| found.value > before.value) {
@@ -188,12 +188,8 @@ impl<'a> Study<'a> {
         Ok(path)
     }
 
-    /// All measures at a place, and how many instants the move took that took most.
-    pub(super) fn rate(&mut self, place: &[f64; 3]) -> Result<(Vec<Rated>, usize), Error> {
-        self.rate_some(0..self.measures.len(), place, None)
-    }
-
-    /// One measure at a place, likewise; its plane `near` one, if that is given, instead of any.
+    /// One measure at a place, and how many instants the move took that took most; its plane `near` one, if that is
+    /// given, instead of any.
     pub(super) fn rate_one(
         &mut self,
         measure: usize,

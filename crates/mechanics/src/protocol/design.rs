@@ -4,7 +4,7 @@ use super::super::shear_stress::Residual;
 use super::super::state::{Move, Regime, Tangential};
 use super::from_any_state::FromAnyState;
 use super::{
-    Contact, DEFAULT_CUTOFF, DoubleDouble, EqualPeakMeasure, Error, Quantity, cutoff_of, equal_peaks, evenly_spread,
+    Contact, DEFAULT_CUTOFF, DoubleDouble, EqualPeakMeasure, Error, Quantity, cutoff_of, evenly_spread,
     falling_amplitude, outermost_singular,
 };
 
@@ -237,27 +237,19 @@ impl DesignTask<'_> {
     fn by_law(&self, kind: AmplitudeLaw, first: f64, first_move: FirstMove) -> Result<Design, Error> {
         let path = match kind {
             AmplitudeLaw::Linear => falling_amplitude(self.reversals, first).collect(),
-            AmplitudeLaw::EqualPeaks | AmplitudeLaw::Minimax => self.equal_from(first)?,
+            AmplitudeLaw::EqualPeaks | AmplitudeLaw::Minimax => self.equal_from(first),
         };
         self.judge(path, first_move, None)
     }
 
     /// The law of equal peaks from an amplitude on, which may be less than gross slip.
-    fn equal_from(&self, first: f64) -> Result<Vec<f64>, Error> {
-        let full = self.contact.gross_slip_displacement();
-        let sign = if first < 0.0 { -1.0 } else { 1.0 };
-        if first.abs() >= full {
-            let mut path = equal_peaks(self.contact, self.reversals, None)?.displacements;
-            path.iter_mut().for_each(|target| *target *= sign);
-            path[0] = first;
-            return Ok(path);
-        }
-        let profile = &*self.contact.profile;
-        let inner = profile.radius(self.contact.indentation() * (1.0 - first.abs() / full));
-        let from = inner.max(self.range.from);
+    fn equal_from(&self, first: f64) -> Vec<f64> {
+        let (profile, full) = (&*self.contact.profile, self.contact.gross_slip_displacement());
+        let stuck = (1.0 - first.abs() / full).max(0.0);
+        let from = profile.radius(self.contact.indentation() * stuck).max(self.range.from);
         let spread = EqualPeakMeasure::new(profile, from, self.contact.contact_radius());
         let path = evenly_spread(self.contact, spread.as_ref(), self.reversals, first.abs());
-        Ok(path.map(|target| sign * target).collect())
+        path.map(|target| first.signum() * target).collect()
     }
 
     /// The best of all candidates: equal alternating extrema, and the two laws, for where those do not exist.
