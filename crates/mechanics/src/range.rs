@@ -13,14 +13,18 @@ pub const MIN_POSITIVE_NORMAL_FORCE: f64 = 1e-250;
 /// The indentation that a preload may ask for.
 pub const PRELOAD_INDENTATION: Range = Range { quantity: Quantity::Indentation, unit: "m", min: 0.0, max: 1e9 };
 
+/// ```
+/// use stickslip_mechanics::range;
+///
+/// assert!(range::FRICTION.contains(0.0) && !range::FRICTION.contains(f64::NAN));
+/// assert_eq!(range::POISSON_RATIO.check(0.3), Ok(0.3));
+/// assert_eq!(
+///     range::POISSON_RATIO.check(0.6).unwrap_err().to_string(),
+///     "poisson_ratio = 0.6 is out of range: allowed is -0.99 to 0.5",
+/// );
+/// ```
 impl Range {
     /// Whether `value` lies inside, bounds included; never for a NaN.
-    ///
-    /// ```
-    /// use stickslip_mechanics::range::FRICTION;
-    ///
-    /// assert!(FRICTION.contains(0.0) && !FRICTION.contains(f64::NAN));
-    /// ```
     #[must_use]
     pub fn contains(&self, value: f64) -> bool {
         (self.min..=self.max).contains(&value)
@@ -30,16 +34,6 @@ impl Range {
     ///
     /// # Errors
     /// [`Error::OutOfRange`] if it lies outside or is not a number.
-    ///
-    /// ```
-    /// use stickslip_mechanics::range;
-    ///
-    /// assert_eq!(range::POISSON_RATIO.check(0.3), Ok(0.3));
-    /// assert_eq!(
-    ///     range::POISSON_RATIO.check(0.6).unwrap_err().to_string(),
-    ///     "poisson_ratio = 0.6 is out of range: allowed is -0.99 to 0.5",
-    /// );
-    /// ```
     pub fn check(&self, value: f64) -> Result<f64, Error> {
         if self.contains(value) {
             Ok(value)

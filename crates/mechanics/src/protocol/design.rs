@@ -88,18 +88,20 @@ pub struct EvaluationRange {
     pub vertical: bool,
 }
 
+/// ```
+#[doc = include_str!("../example.txt")]
+/// use stickslip_mechanics::protocol::EvaluationRange;
+///
+/// // On a sphere it is the whole contact.
+/// let range = EvaluationRange::of(&contact);
+/// assert_eq!((range.from, range.to), (0.0, contact.contact_radius()));
+/// contact.apply(&slide(1.0))?;
+/// let largest = range.largest(&contact, &contact.residual());
+/// assert!((largest / (0.5 * contact.pressure(0.0)) - 1.0).abs() < 1e-12);
+/// # Ok::<(), Error>(())
+/// ```
 impl EvaluationRange {
     /// The range of a contact at its present load.
-    ///
-    /// ```
-    #[doc = include_str!("../example.txt")]
-    /// use stickslip_mechanics::protocol::EvaluationRange;
-    ///
-    /// // On a sphere it is the whole contact.
-    /// let range = EvaluationRange::of(&contact);
-    /// assert_eq!((range.from, range.to), (0.0, contact.contact_radius()));
-    /// # Ok::<(), Error>(())
-    /// ```
     #[must_use]
     pub fn of(contact: &Contact) -> EvaluationRange {
         let edge = contact.contact_radius();
@@ -109,16 +111,6 @@ impl EvaluationRange {
     }
 
     /// The largest magnitude of the shear stress there, Pa; infinite if a vertical edge carries some.
-    ///
-    /// ```
-    #[doc = include_str!("../example.txt")]
-    /// use stickslip_mechanics::protocol::EvaluationRange;
-    ///
-    /// contact.apply(&slide(1.0))?;
-    /// let largest = EvaluationRange::of(&contact).largest(&contact, &contact.residual());
-    /// assert!((largest / (0.5 * contact.pressure(0.0)) - 1.0).abs() < 1e-12);
-    /// # Ok::<(), Error>(())
-    /// ```
     #[must_use]
     pub fn largest(&self, contact: &Contact, residual: &Residual) -> f64 {
         if self.vertical && edge_load(contact) > ROUNDED {
