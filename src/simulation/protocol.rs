@@ -1,8 +1,7 @@
 //! Protocols: the path of a law, the stress that it leaves, and what the other laws would leave.
 
 use stickslip_mechanics::protocol::{
-    AmplitudeLaw, Design, EvaluationRange, ExecutionErrors, FirstMove, PathEnd, PathStart, design, lower_bound_while,
-    trials,
+    AmplitudeLaw, Design, EvaluationRange, ExecutionErrors, FirstMove, PathEnd, PathStart, design, lower_bound, trials,
 };
 use stickslip_mechanics::range::{self, Quantity};
 use stickslip_mechanics::{Contact, Error, Setup};
@@ -138,7 +137,7 @@ pub fn protocol(subject: &Subject<'_>, task: &ProtocolTask, stop: &Stop) -> Resu
     };
     let full = contact.gross_slip_displacement();
     let slides = subject.first.is_some_and(|first| first.abs() >= full * (1.0 - 1e-12));
-    let bound = if slides { lower_bound_while(contact, reversals, || stop.check().is_ok()) } else { None };
+    let bound = if slides { lower_bound(contact, reversals, &|| stop.check().is_ok()) } else { None };
     stop.check().map_err(|interrupted| Failure::interrupted(interrupted, "/reversals"))?;
     let bound = bound.and_then(finite).filter(|bound| *bound > 0.0);
     let outcome = |kind: ProtocolKind, design: &Design| -> Result<Outcome, Failure> {

@@ -123,14 +123,20 @@ impl Contact {
     /// ```
     #[must_use]
     pub fn virgin(&self) -> Contact {
+        self.clone().at_rest(DoubleDouble::from(self.initial.indentation), self.initial)
+    }
+
+    /// The contact before its first move, at an indentation, m, that has this summary.
+    fn at_rest(self, indentation: DoubleDouble, initial: ContactSummary) -> Contact {
         Contact {
-            history: SlipHistory::new(&self.profile, DoubleDouble::from(self.initial.indentation)),
+            history: SlipHistory::new(&self.profile, indentation),
             displacement: DoubleDouble::ZERO,
-            normal_force: self.initial.normal_force,
+            normal_force: initial.normal_force,
             dissipated: DoubleDouble::ZERO,
+            initial,
             path_error: 0.0,
             path_kernel: 0.0,
-            ..self.clone()
+            ..self
         }
     }
 
@@ -146,17 +152,8 @@ impl Contact {
     /// ```
     #[must_use]
     pub fn without_history(self) -> Contact {
-        let (initial, edge) = (self.summary(), self.history.edge().level);
-        Contact {
-            history: SlipHistory::new(&self.profile, edge),
-            displacement: DoubleDouble::ZERO,
-            dissipated: DoubleDouble::ZERO,
-            initial,
-            indentation_error: self.indentation_error,
-            path_error: 0.0,
-            path_kernel: 0.0,
-            ..self
-        }
+        let (initial, indentation) = (self.summary(), self.history.edge().level);
+        self.at_rest(indentation, initial)
     }
 
     /// The virgin contact of the same bodies under another normal force, N.
@@ -176,11 +173,39 @@ impl Contact {
         let indentation = self.indentation_for(normal_force);
         range::PRELOAD_INDENTATION.check(indentation.value())?;
         self.check_indentation(indentation.value())?;
-        let history = SlipHistory::new(&self.profile, indentation);
-        let initial = ContactSummary::of(&self.profile, &self.elasticity, self.friction, history.edge(), normal_force);
-        Ok(Contact { history, normal_force, initial, ..self.virgin() })
+        let edge = self.profile.point(indentation);
+        let initial = ContactSummary::of(&self.profile, &self.elasticity, self.friction, &edge, normal_force);
+        Ok(self.clone().at_rest(indentation, initial))
     }
+}
 
+/// What the present state is. A straight move has no error of its path.
+///
+/// ```
+#[doc = include_str!("example.txt")]
+/// // Hertz: a^2 = R d, F_N = 4/3 E* a d and p(0) = 2 E* a/(pi R).
+/// assert!((contact.contact_radius().powi(2) - 0.01).abs() < 1e-15);
+/// assert!((contact.normal_force() / (4.0 / 3.0 * 3e6 * 0.1 * 0.01) - 1.0).abs() < 1e-14);
+/// assert!((contact.pressure(0.0) / (0.6e6 / std::f64::consts::PI) - 1.0).abs() < 1e-14);
+/// assert_eq!(contact.pressures(&[0.11, 0.05]), [0.0, contact.pressure(0.05)]);
+/// assert!((contact.gross_slip_displacement() - 0.0075).abs() < 1e-15);
+/// assert!((contact.summary().gross_slip_force - 2000.0).abs() < 1e-9);
+///
+/// contact.apply(&slide(0.001))?;
+/// // A stuck core and a ring that has slipped.
+/// assert_eq!((contact.displacement(), contact.memory_depth(), contact.path_error()), (0.001, 2, 0.0));
+/// assert!(contact.memory_bytes() > size_of::<Contact>());
+/// contact.apply(&slide(-1.0))?;
+/// // Gross slip backwards: -mu F_N.
+/// assert!((contact.force() + 2000.0).abs() < 1e-9);
+///
+/// contact.apply(&Move { normal: Some(Normal::Indentation(0.02)), ..Move::default() })?;
+/// assert_eq!((contact.initial_summary().indentation, contact.summary().indentation), (0.01, 0.02));
+/// contact.apply(&Move { normal: Some(Normal::Indentation(-0.001)), ..Move::default() })?;
+/// assert_eq!((contact.indentation(), contact.contact_radius()), (-0.001, 0.0));
+/// # Ok::<(), Error>(())
+/// ```
+impl Contact {
     /// W = U/m, m.
     pub(super) fn scaled(&self, displacement: DoubleDouble) -> DoubleDouble {
         displacement * self.inverse_scale
@@ -205,14 +230,6 @@ impl Contact {
     }
 
     /// Tangential force, N.
-    ///
-    /// ```
-    #[doc = include_str!("example.txt")]
-    /// contact.apply(&slide(-1.0))?;
-    /// // Gross slip backwards: -mu F_N.
-    /// assert!((contact.force() + 2000.0).abs() < 1e-9);
-    /// # Ok::<(), Error>(())
-    /// ```
     #[must_use]
     pub fn force(&self) -> f64 {
         2.0 * self.elasticity.g_star() * self.scale() * self.history.force()
@@ -224,39 +241,18 @@ impl Contact {
     }
 
     /// Normal force, N; to the bit the prescribed one, where one was prescribed.
-    ///
-    /// ```
-    #[doc = include_str!("example.txt")]
-    /// // Hertz: F_N = 4/3 E* a d.
-    /// assert!((contact.normal_force() / (4.0 / 3.0 * 3e6 * 0.1 * 0.01) - 1.0).abs() < 1e-14);
-    /// # Ok::<(), Error>(())
-    /// ```
     #[must_use]
     pub fn normal_force(&self) -> f64 {
         self.normal_force
     }
 
     /// Pressure, Pa, at a radius (m) of at least zero; zero outside the contact, infinite at a sharp edge.
-    ///
-    /// ```
-    #[doc = include_str!("example.txt")]
-    /// // Hertz: p(0) = 2 E* a/(pi R).
-    /// assert!((contact.pressure(0.0) / (0.6e6 / std::f64::consts::PI) - 1.0).abs() < 1e-14);
-    /// assert_eq!(contact.pressure(0.11), 0.0);
-    /// # Ok::<(), Error>(())
-    /// ```
     #[must_use]
     pub fn pressure(&self, radius: f64) -> f64 {
         normal::pressure(&self.profile, &self.elasticity, self.history.edge(), &StressRadius::new(radius))
     }
 
     /// [`Contact::pressure`] at each of `radii`, m: faster than one by one.
-    ///
-    /// ```
-    #[doc = include_str!("example.txt")]
-    /// assert_eq!(contact.pressures(&[0.0, 0.05])[1], contact.pressure(0.05));
-    /// # Ok::<(), Error>(())
-    /// ```
     #[must_use]
     pub fn pressures(&self, radii: &[f64]) -> Vec<f64> {
         normal::pressures(&self.profile, &self.elasticity, self.history.edge(), radii)
@@ -281,116 +277,54 @@ impl Contact {
     }
 
     /// The error that curved moves have left in the tangential force, relative to mu F_N: an estimate from above.
-    ///
-    /// ```
-    #[doc = include_str!("example.txt")]
-    /// contact.apply(&slide(0.001))?;
-    /// // A straight move has no such error.
-    /// assert_eq!(contact.path_error(), 0.0);
-    /// # Ok::<(), Error>(())
-    /// ```
     #[must_use]
     pub fn path_error(&self) -> f64 {
         self.path_error
     }
 
     /// Contact radius a, m; of a profile without a stress field X(d) = F_N'/(2 E*), which governs the stiffness.
-    ///
-    /// ```
-    #[doc = include_str!("example.txt")]
-    /// // Hertz: a^2 = R d.
-    /// assert!((contact.contact_radius().powi(2) - 0.01).abs() < 1e-15);
-    /// # Ok::<(), Error>(())
-    /// ```
     #[must_use]
     pub fn contact_radius(&self) -> f64 {
         self.history.edge().radius
     }
 
     /// Tangential displacement U of the indenter, m.
-    ///
-    /// ```
-    #[doc = include_str!("example.txt")]
-    /// contact.apply(&slide(0.001))?;
-    /// assert_eq!(contact.displacement(), 0.001);
-    /// # Ok::<(), Error>(())
-    /// ```
     #[must_use]
     pub fn displacement(&self) -> f64 {
         self.displacement.value()
     }
 
     /// Indentation d, m; below zero a gap.
-    ///
-    /// ```
-    #[doc = include_str!("example.txt")]
-    /// contact.apply(&Move { normal: Some(Normal::Indentation(-0.001)), ..Move::default() })?;
-    /// assert_eq!((contact.indentation(), contact.contact_radius()), (-0.001, 0.0));
-    /// # Ok::<(), Error>(())
-    /// ```
     #[must_use]
     pub fn indentation(&self) -> f64 {
         self.history.edge().level.value()
     }
 
     /// Displacement of gross slip on first loading, m, at the present load.
-    ///
-    /// ```
-    #[doc = include_str!("example.txt")]
-    /// assert!((contact.gross_slip_displacement() - 0.0075).abs() < 1e-15);
-    /// # Ok::<(), Error>(())
-    /// ```
     #[must_use]
     pub fn gross_slip_displacement(&self) -> f64 {
         self.scale() * self.indentation().max(0.0)
     }
 
     /// Number of straight pieces that the slip history consists of.
-    ///
-    /// ```
-    #[doc = include_str!("example.txt")]
-    /// contact.apply(&slide(0.001))?;
-    /// // A stuck core and a ring that has slipped.
-    /// assert_eq!(contact.memory_depth(), 2);
-    /// # Ok::<(), Error>(())
-    /// ```
     #[must_use]
     pub fn memory_depth(&self) -> usize {
         self.history.pieces().len()
     }
 
     /// Bytes of RAM that the contact takes, its slip history included.
-    ///
-    /// ```
-    #[doc = include_str!("example.txt")]
-    /// assert!(contact.memory_bytes() > size_of::<Contact>());
-    /// # Ok::<(), Error>(())
-    /// ```
     #[must_use]
     pub fn memory_bytes(&self) -> usize {
         size_of::<Contact>() + self.history.heap_bytes()
     }
 
     /// The summary at the present normal load.
-    ///
-    /// ```
-    #[doc = include_str!("example.txt")]
-    /// assert!((contact.summary().gross_slip_force - 2000.0).abs() < 1e-9);
-    /// # Ok::<(), Error>(())
-    /// ```
     #[must_use]
     pub fn summary(&self) -> ContactSummary {
         ContactSummary::of(&self.profile, &self.elasticity, self.friction, self.history.edge(), self.normal_force)
     }
 
     /// The summary at the preload of the definition.
-    ///
-    /// ```
-    #[doc = include_str!("example.txt")]
-    /// contact.apply(&Move { normal: Some(Normal::Indentation(0.02)), ..Move::default() })?;
-    /// assert_eq!((contact.initial_summary().indentation, contact.summary().indentation), (0.01, 0.02));
-    /// # Ok::<(), Error>(())
-    /// ```
     #[must_use]
     pub fn initial_summary(&self) -> ContactSummary {
         self.initial

@@ -1,6 +1,6 @@
 //! A path straight in two quantities, of which a force makes it a curve in displacement and indentation.
 
-use super::DoubleDouble;
+use super::{Contact, DoubleDouble};
 
 /// How the tangential target is reached: straight from one value to the other.
 #[derive(Clone, Copy, Debug)]
@@ -32,4 +32,12 @@ pub(super) struct PathPoint {
     pub(super) normal_force: f64,
     /// U, m.
     pub(super) displacement: DoubleDouble,
+}
+
+impl Contact {
+    /// Where the contact is.
+    pub(super) fn path_point(&self) -> PathPoint {
+        let indentation = self.history.edge().level;
+        PathPoint { indentation, normal_force: self.normal_force, displacement: self.displacement }
+    }
 }

@@ -54,19 +54,26 @@ pub struct Elasticity {
     bodies: [Option<Body>; 2],
 }
 
+/// ```
+/// use stickslip_mechanics::{Body, Elasticity};
+///
+/// let steel = Body::new(2.1e11, 0.3)?;
+/// let pair = Elasticity::of_bodies(steel, steel);
+/// // Mindlin (1949): E*/G* = (2 - nu)/(2 (1 - nu)) for equal bodies, which do not couple.
+/// assert!((pair.e_star() / pair.g_star() - 1.7 / 1.4).abs() < 1e-15);
+/// assert_eq!(pair.dundurs_beta(), Some(0.0));
+/// // Incompressible rubber does not couple normal and tangential contact: E* = E/(1 - nu^2).
+/// let rubber = Elasticity::against_rigid(Body::new(3e6, 0.5)?);
+/// assert_eq!((rubber.e_star(), rubber.dundurs_beta().map(f64::abs)), (4e6, Some(0.0)));
+///
+/// let ball = Elasticity::against_rigid(steel);
+/// let measured = ball.with_moduli(ball.e_star(), 1.7e11)?;
+/// assert_eq!((measured.g_star(), measured.largest_poisson_ratio()), (1.7e11, Some(0.3)));
+/// assert!((ball.along_ellipse(0.5)?.g_star() / ball.g_star() - 1.0).abs() < 1e-15);
+/// # Ok::<(), stickslip_mechanics::Error>(())
+/// ```
 impl Elasticity {
     /// Two elastic bodies.
-    ///
-    /// ```
-    /// use stickslip_mechanics::{Body, Elasticity};
-    ///
-    /// let steel = Body::new(2.1e11, 0.3)?;
-    /// let pair = Elasticity::of_bodies(steel, steel);
-    /// // Mindlin (1949): E*/G* = (2 - nu)/(2 (1 - nu)) for equal bodies, which do not couple.
-    /// assert!((pair.e_star() / pair.g_star() - 1.7 / 1.4).abs() < 1e-15);
-    /// assert_eq!(pair.dundurs_beta(), Some(0.0));
-    /// # Ok::<(), stickslip_mechanics::Error>(())
-    /// ```
     #[must_use]
     pub fn of_bodies(first: Body, second: Body) -> Elasticity {
         let (g1, g2) = (first.shear_modulus(), second.shear_modulus());
@@ -82,15 +89,6 @@ impl Elasticity {
     }
 
     /// An elastic body against a rigid one.
-    ///
-    /// ```
-    /// use stickslip_mechanics::{Body, Elasticity};
-    ///
-    /// // Incompressible rubber does not couple normal and tangential contact: E* = E/(1 - nu^2).
-    /// let rubber = Elasticity::against_rigid(Body::new(3e6, 0.5)?);
-    /// assert_eq!((rubber.e_star(), rubber.dundurs_beta().map(f64::abs)), (4e6, Some(0.0)));
-    /// # Ok::<(), stickslip_mechanics::Error>(())
-    /// ```
     #[must_use]
     pub fn against_rigid(body: Body) -> Elasticity {
         let nu = body.poisson_ratio;
@@ -122,15 +120,6 @@ impl Elasticity {
     ///
     /// # Errors
     /// [`Error::OutOfRange`] by [`range::E_STAR`] and [`range::G_STAR`].
-    ///
-    /// ```
-    /// use stickslip_mechanics::{Body, Elasticity};
-    ///
-    /// let steel = Elasticity::against_rigid(Body::new(2.1e11, 0.3)?);
-    /// let measured = steel.with_moduli(steel.e_star(), 1.7e11)?;
-    /// assert_eq!((measured.g_star(), measured.largest_poisson_ratio()), (1.7e11, Some(0.3)));
-    /// # Ok::<(), stickslip_mechanics::Error>(())
-    /// ```
     pub fn with_moduli(self, e_star: f64, g_star: f64) -> Result<Elasticity, Error> {
         let moduli = Elasticity::effective(e_star, g_star)?;
         Ok(Elasticity { e_star: moduli.e_star, g_star: moduli.g_star, ..self })
@@ -142,14 +131,6 @@ impl Elasticity {
     ///
     /// # Errors
     /// [`Error::BodiesNeeded`] where only the reduced moduli are known.
-    ///
-    /// ```
-    /// use stickslip_mechanics::{Body, Elasticity};
-    ///
-    /// let ball = Elasticity::against_rigid(Body::new(2.1e11, 0.3)?);
-    /// assert!((ball.along_ellipse(0.5)?.g_star() / ball.g_star() - 1.0).abs() < 1e-15);
-    /// # Ok::<(), stickslip_mechanics::Error>(())
-    /// ```
     pub fn along_ellipse(self, shear_share: f64) -> Result<Elasticity, Error> {
         let compliance = |body: Body| {
             let nu = body.poisson_ratio;

@@ -50,6 +50,13 @@ pub struct ContactSummary {
     pub gross_slip_force: f64,
 }
 
+/// ```
+#[doc = include_str!("example.txt")]
+/// let summary = contact.summary();
+/// assert_eq!(Some(summary.unit_pressure()), summary.max_pressure);
+/// assert_eq!(Some(summary.unit_shear()), summary.max_pressure.map(|pressure| 0.5 * pressure));
+/// # Ok::<(), Error>(())
+/// ```
 impl ContactSummary {
     /// What follows from an indentation and its normal force, N.
     pub(super) fn of(
@@ -77,13 +84,6 @@ impl ContactSummary {
     }
 
     /// The pressure that stresses are related to, Pa: the largest, or the mean where that is infinite.
-    ///
-    /// ```
-    #[doc = include_str!("example.txt")]
-    /// let summary = contact.summary();
-    /// assert_eq!(Some(summary.unit_pressure()), summary.max_pressure);
-    /// # Ok::<(), Error>(())
-    /// ```
     #[must_use]
     pub fn unit_pressure(&self) -> f64 {
         self.max_pressure.unwrap_or_else(|| mean_pressure(self.normal_force, self.contact_radius))
@@ -91,13 +91,6 @@ impl ContactSummary {
 
     /// mu times [`ContactSummary::unit_pressure`], Pa: what residual stresses are relative to. Not finite without a
     /// load.
-    ///
-    /// ```
-    #[doc = include_str!("example.txt")]
-    /// let summary = contact.summary();
-    /// assert_eq!(Some(summary.unit_shear()), summary.max_pressure.map(|pressure| 0.5 * pressure));
-    /// # Ok::<(), Error>(())
-    /// ```
     #[must_use]
     pub fn unit_shear(&self) -> f64 {
         self.gross_slip_force / self.normal_force * self.unit_pressure()

@@ -82,14 +82,22 @@ impl Reader<'_> {
     }
 }
 
+/// A state with its history as bytes.
+///
+/// ```
+#[doc = include_str!("example.txt")]
+/// contact.apply(&slide(0.001))?;
+/// let bytes = contact.pack();
+/// assert_eq!(contact.packed_length(), bytes.len());
+/// assert!(Contact::is_current_packing(&bytes) && !Contact::is_current_packing(&[0; 4]));
+/// let back = Contact::new(setup.clone())?.unpack(&bytes).unwrap();
+/// assert_eq!(back.force().to_bits(), contact.force().to_bits());
+/// let other = Contact::new(Setup { preload: Preload::Indentation(0.02), ..setup })?;
+/// assert!(other.unpack(&bytes).is_none());
+/// # Ok::<(), Error>(())
+/// ```
 impl Contact {
     /// How many bytes [`Contact::pack`] makes.
-    ///
-    /// ```
-    #[doc = include_str!("example.txt")]
-    /// assert_eq!(contact.packed_length(), contact.pack().len());
-    /// # Ok::<(), Error>(())
-    /// ```
     #[must_use]
     pub fn packed_length(&self) -> usize {
         2 * size_of::<u16>() + 11 * size_of::<f64>() + self.history.packed_length()
@@ -97,14 +105,6 @@ impl Contact {
 
     /// The state with its history as bytes. They are read by [`Contact::unpack`] of the same program alone: another
     /// version of the engine or of the layout refuses them.
-    ///
-    /// ```
-    #[doc = include_str!("example.txt")]
-    /// contact.apply(&slide(0.001))?;
-    /// let back = Contact::new(setup)?.unpack(&contact.pack()).unwrap();
-    /// assert_eq!(back.force().to_bits(), contact.force().to_bits());
-    /// # Ok::<(), Error>(())
-    /// ```
     #[must_use]
     pub fn pack(&self) -> Vec<u8> {
         let mut bytes = Vec::with_capacity(self.packed_length());
@@ -124,12 +124,6 @@ impl Contact {
     }
 
     /// Whether bytes are of this layout and engine, so that [`Contact::unpack`] reads them if they are undamaged.
-    ///
-    /// ```
-    #[doc = include_str!("example.txt")]
-    /// assert!(Contact::is_current_packing(&contact.pack()) && !Contact::is_current_packing(&[0; 4]));
-    /// # Ok::<(), Error>(())
-    /// ```
     #[must_use]
     pub fn is_current_packing(bytes: &[u8]) -> bool {
         Reader(bytes).is_current()
@@ -138,13 +132,6 @@ impl Contact {
     /// The contact in the packed state, equal to the last bit to the one that was packed. `self` is any state of a
     /// contact of the same definition, such as the virgin one. `None` for bytes that are cut short, of another version,
     /// of a contact with another preload, or of no valid state; damage that leaves valid numbers is not detected.
-    ///
-    /// ```
-    #[doc = include_str!("example.txt")]
-    /// let other = Contact::new(Setup { preload: Preload::Indentation(0.02), ..setup })?;
-    /// assert!(other.unpack(&contact.pack()).is_none());
-    /// # Ok::<(), Error>(())
-    /// ```
     #[must_use]
     pub fn unpack(&self, bytes: &[u8]) -> Option<Contact> {
         let mut reader = Reader(bytes);

@@ -1,15 +1,37 @@
-//! The quantities that the mechanics can find out of range, each with its public name.
+//! The quantities that the mechanics can find out of range, each with its public name and, where it accepts numbers of
+//! it, the range of these, for checks and documents alike.
 
 use std::fmt;
 
-/// Declares [`Quantity`] from one table: variant, public name, description.
+/// A quantity's name, unit and closed interval, bounds included.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Range {
+    /// What the number measures.
+    pub quantity: Quantity,
+    /// SI unit, empty for a pure number.
+    pub unit: &'static str,
+    /// The smallest value accepted.
+    pub min: f64,
+    /// The largest value accepted.
+    pub max: f64,
+}
+
+/// Declares [`Quantity`] and the [`Range`]s from one table: variant, public name, constant with its range and unit,
+/// description.
 macro_rules! quantities {
-    ($($variant:ident = $name:literal, $doc:literal;)*) => {
+    ($(
+        $variant:ident = $name:literal $(, $RANGE:ident: $min:literal to $max:literal $unit:literal)?, $doc:literal;
+    )*) => {
         /// What a number measures.
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
         pub enum Quantity {
             $(#[doc = $doc] $variant,)*
         }
+
+        $($(
+            #[doc = $doc]
+            pub const $RANGE: Range = Range { quantity: Quantity::$variant, unit: $unit, min: $min, max: $max };
+        )?)*
 
         impl Quantity {
             /// The name of the quantity in messages.
@@ -31,40 +53,53 @@ macro_rules! quantities {
 }
 
 quantities! {
-    Radius = "radius", "Radius of a body.";
-    FlatRadius = "flat_radius", "Radius of a flat end.";
-    EdgeRadius = "edge_radius", "Curvature radius of a rounded edge.";
-    TipRadius = "tip_radius", "Radius up to which the tip of a cone is rounded.";
-    Slope = "slope", "Slope dz/dr of a cone.";
-    Exponent = "exponent", "Exponent of a power law.";
-    Coefficient = "coefficient", "Coefficient of a power law.";
-    TablePoints = "points of the table", "Number of points of a tabulated profile.";
-    TableRadius = "r", "Radius in a table.";
-    TableHeight = "z", "Height in a table.";
-    IndentationError = "indentation_error", "Standard error of an indentation of a table.";
-    PressureError = "pressure_error", "Standard error of a pressure of a table, over E*.";
-    Asperities = "number of asperities", "Number of asperities in a set.";
-    Gap = "gap", "Gap of an asperity.";
-    CurvePoints = "points of the load curve", "Number of points of a load curve.";
-    RadiusRatio = "ratio of the radii", "Ratio of the radii of curvature of an ellipsoid.";
-    Parts = "number of parts", "Number of profiles in a sum.";
-    YoungsModulus = "youngs_modulus", "Young's modulus of a body.";
-    PoissonRatio = "poisson_ratio", "Poisson's ratio of a body.";
-    EStar = "e_star", "Reduced modulus E*.";
-    GStar = "g_star", "Reduced shear modulus G*.";
-    Friction = "friction", "Coulomb's coefficient of friction.";
-    NormalForce = "normal_force", "Normal force.";
-    ContactRadius = "contact_radius", "Contact radius.";
-    Indentation = "indentation", "Indentation.";
-    Displacement = "displacement", "Tangential displacement of the indenter.";
-    Force = "force", "Tangential force.";
-    Place = "place", "Coordinate of a place below the surface.";
-    BulkStress = "bulk stress", "Component of a uniform stress.";
-    MachineStiffness = "stiffness", "Stiffness of a machine in series with the contact.";
+    Radius = "radius", RADIUS: 1e-15 to 1e9 "m", "Any radius of a body or a contact.";
+    FlatRadius = "flat_radius", FLAT_RADIUS: 1e-15 to 1e9 "m", "Radius of a flat end.";
+    EdgeRadius = "edge_radius", EDGE_RADIUS: 1e-15 to 1e9 "m", "Curvature radius of a rounded edge.";
+    TipRadius = "tip_radius", TIP_RADIUS: 1e-15 to 1e9 "m", "Radius up to which the tip of a cone is rounded.";
+    Slope = "slope", SLOPE: 1e-9 to 1e9 "", "Slope dz/dr of a cone.";
+    Exponent = "exponent", EXPONENT: 0.1 to 1000.0 "", "Exponent of a power law.";
+    Coefficient = "coefficient", COEFFICIENT: 1e-280 to 1e280 "m^(1-n)",
+        "Coefficient of a power law; its unit, m^(1 - n), depends on the exponent.";
+    TablePoints = "points of the table", TABLE_POINTS: 3.0 to 10_000.0 "",
+        "How many points a tabulated profile may have.";
+    TableRadius = "r", TABLE_RADIUS: 0.0 to 1e9 "m", "A radius in a table.";
+    TableHeight = "z", TABLE_HEIGHT: -1e9 to 1e9 "m", "A height in a table.";
+    IndentationError = "indentation_error", INDENTATION_ERROR: 0.0 to 1e9 "m",
+        "The standard error of an indentation of a table.";
+    PressureError = "pressure_error", PRESSURE_ERROR: 0.0 to 1e9 "",
+        "The standard error of a pressure of a table, over E*.";
+    Asperities = "number of asperities", ASPERITIES: 1.0 to 1e6 "", "How many asperities a set may have.";
+    Gap = "gap", GAP: -1e9 to 1e9 "m", "The gap of an asperity above any plane.";
+    CurvePoints = "points of the load curve", CURVE_POINTS: 3.0 to 100_000.0 "",
+        "How many points a load curve may have.";
+    RadiusRatio = "ratio of the radii", RADIUS_RATIO: 1.0 to 1e6 "",
+        "The larger of the two radii of curvature of an ellipsoid over the smaller.";
+    Parts = "number of parts", PARTS: 1.0 to 16.0 "",
+        "How many profiles a sum may have, sums within it counted by their parts.";
+    YoungsModulus = "youngs_modulus", YOUNGS_MODULUS: 1e-3 to 1e18 "Pa", "Young's modulus of a body.";
+    PoissonRatio = "poisson_ratio", POISSON_RATIO: -0.99 to 0.5 "",
+        "Poisson's ratio of a body; auxetic bodies are allowed.";
+    EStar = "e_star", E_STAR: 1e-3 to 1e18 "Pa", "The reduced modulus E*.";
+    GStar = "g_star", G_STAR: 1e-3 to 1e18 "Pa", "The reduced shear modulus G*.";
+    Friction = "friction", FRICTION: 0.0 to 100.0 "",
+        "Coulomb's coefficient of friction; zero means no tangential force at all.";
+    NormalForce = "normal_force", NORMAL_FORCE: 0.0 to 1e18 "N", "A normal force that presses the bodies together.";
+    ContactRadius = "contact_radius", CONTACT_RADIUS: 0.0 to 1e9 "m",
+        "The contact radius, prescribed or as it follows from a load; zero is a contact just touching.";
+    Indentation = "indentation", INDENTATION: -1e9 to 1e9 "m",
+        "The indentation that a move may ask for; below zero the bodies are apart.";
+    Displacement = "displacement", DISPLACEMENT: -1e9 to 1e9 "m", "The tangential displacement of the indenter.";
+    Force = "force", FORCE: -1e20 to 1e20 "N", "A tangential force.";
+    Place = "place", PLACE: -1e9 to 1e9 "m", "A coordinate of a place below the surface.";
+    BulkStress = "bulk stress", BULK_STRESS: -1e20 to 1e20 "Pa", "A component of a uniform stress.";
+    MachineStiffness = "stiffness", MACHINE_STIFFNESS: 1e-9 to 1e30 "N/m",
+        "The stiffness of a machine in series with the contact.";
     Phase = "phase", "Phase of the normal load of a cycle.";
-    FatigueWeight = "weight", "Weight of a normal or hydrostatic stress in a fatigue criterion.";
-    YieldStress = "yield_stress", "Yield stress.";
-    SpringCount = "count", "Number of springs of the foundation.";
+    FatigueWeight = "weight", FATIGUE_WEIGHT: 0.0 to 100.0 "",
+        "The weight of a normal or hydrostatic stress in a fatigue criterion.";
+    YieldStress = "yield_stress", YIELD_STRESS: 1e-3 to 1e18 "Pa", "The yield stress of a fatigue criterion.";
+    SpringCount = "count", SPRING_COUNT: 2.0 to 1e6 "", "How many springs the foundation may have.";
     CutoffRadius = "cutoff_radius", "Radius from which on the peaks of a protocol are equal.";
     ProtocolTarget = "target", "Shear stress that a protocol may leave, relative to mu times the pressure.";
     AmplitudeError = "amplitude_error", "Relative error of the displacements of a protocol.";

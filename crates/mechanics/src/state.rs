@@ -56,10 +56,11 @@ pub enum Normal {
     NormalForce(f64),
 }
 
-/// Which parts of the contact slipped in the last move.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// Which parts of the contact slipped in the last move, from the least that slips to the most.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Regime {
     /// Nothing slipped.
+    #[default]
     Stick,
     /// An outer ring slipped.
     PartialSlip,

@@ -10,30 +10,28 @@ use std::f64::consts::FRAC_2_PI;
 use super::profile::{Point, StressRadius};
 use super::{Contact, DoubleDouble};
 
+/// The surface after a move.
+///
+/// ```
+#[doc = include_str!("example.txt")]
+/// contact.apply(&slide(0.001))?;
+/// // The stuck core moves with the indenter; far away the surface stays.
+/// assert!((contact.surface_displacement(0.0) - 0.001).abs() < 1e-17);
+/// assert!(contact.surface_displacement(10.0) < 1e-4);
+/// assert_eq!(contact.surface_displacements(&[0.05, 0.2])[1], contact.surface_displacement(0.2));
+/// assert_eq!(contact.slip(0.0), Some(0.0));
+/// assert!(contact.slip(0.099).unwrap() > 0.0 && contact.slip(0.2).is_none());
+/// assert_eq!(contact.slips(&[0.05, 0.2]), [contact.slip(0.05), None]);
+/// # Ok::<(), Error>(())
+/// ```
 impl Contact {
     /// Tangential displacement u(r) of the surface, m, at a radius (m) of at least zero, inside the contact or outside.
-    ///
-    /// ```
-    #[doc = include_str!("example.txt")]
-    /// contact.apply(&slide(0.001))?;
-    /// // The stuck core moves with the indenter; far away the surface stays.
-    /// assert!((contact.surface_displacement(0.0) - 0.001).abs() < 1e-17);
-    /// assert!(contact.surface_displacement(10.0) < 1e-4);
-    /// # Ok::<(), Error>(())
-    /// ```
     #[must_use]
     pub fn surface_displacement(&self, radius: f64) -> f64 {
         self.displacement_at(radius, self.relative_displacements(&[radius])[0])
     }
 
     /// [`Contact::surface_displacement`] at each of `radii`, m: faster than one by one.
-    ///
-    /// ```
-    #[doc = include_str!("example.txt")]
-    /// contact.apply(&slide(0.001))?;
-    /// assert_eq!(contact.surface_displacements(&[0.05, 0.2])[1], contact.surface_displacement(0.2));
-    /// # Ok::<(), Error>(())
-    /// ```
     #[must_use]
     pub fn surface_displacements(&self, radii: &[f64]) -> Vec<f64> {
         let carried = self.relative_displacements(radii);
@@ -53,27 +51,12 @@ impl Contact {
 
     /// Slip U - u(r), m, since the virgin contact; `None` outside the contact. Where the contact grew later, a ring's
     /// value includes what the indenter moved before it touched.
-    ///
-    /// ```
-    #[doc = include_str!("example.txt")]
-    /// contact.apply(&slide(0.001))?;
-    /// assert_eq!(contact.slip(0.0), Some(0.0));
-    /// assert!(contact.slip(0.099).unwrap() > 0.0 && contact.slip(0.2).is_none());
-    /// # Ok::<(), Error>(())
-    /// ```
     #[must_use]
     pub fn slip(&self, radius: f64) -> Option<f64> {
         self.slips(&[radius])[0]
     }
 
     /// [`Contact::slip`] at each of `radii`, m: faster than one by one.
-    ///
-    /// ```
-    #[doc = include_str!("example.txt")]
-    /// contact.apply(&slide(0.001))?;
-    /// assert_eq!(contact.slips(&[0.05, 0.2]), [contact.slip(0.05), None]);
-    /// # Ok::<(), Error>(())
-    /// ```
     #[must_use]
     pub fn slips(&self, radii: &[f64]) -> Vec<Option<f64>> {
         let edge = self.history.edge();

@@ -1,13 +1,10 @@
 //! What is taken down while a cycle is stepped, and the figures of the cycle that follow.
 
 use super::Harmonic;
-use crate::{Regime, State};
-
-/// From the least that slips to the most.
-const REGIMES: [Regime; 4] = [Regime::Stick, Regime::PartialSlip, Regime::GrossSlip, Regime::Separated];
+use crate::{Contact, Regime};
 
 /// A steady cycle that was stepped.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct OscillatingCycle {
     /// Half the range of the displacement of the indenter, m.
     pub displacement_amplitude: f64,
@@ -38,7 +35,7 @@ pub struct OscillatingCycle {
 
 /// The range of a quantity over a cycle.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Extent(f64, f64);
+struct Extent(f64, f64);
 
 impl Extent {
     const NONE: Extent = Extent(f64::INFINITY, f64::NEG_INFINITY);
@@ -47,7 +44,7 @@ impl Extent {
         *self = Extent(self.0.min(value), self.1.max(value));
     }
 
-    pub(super) fn half(self) -> f64 {
+    fn half(self) -> f64 {
         0.5 * (self.1 - self.0)
     }
 }
@@ -55,85 +52,75 @@ impl Extent {
 /// One stepped cycle.
 #[derive(Clone, Debug)]
 pub(super) struct Lap {
-    pub(super) displacement: Extent,
+    /// What has been found so far, but for the ranges.
+    cycle: OscillatingCycle,
+    displacement: Extent,
     force: Extent,
     machine: Extent,
-    /// Friction work, J.
-    pub(super) work: f64,
-    /// The force at the end, N.
-    pub(super) end: f64,
-    energy: f64,
-    stiffness: f64,
-    stick_radius: f64,
-    /// An index of [`REGIMES`].
-    regime: usize,
+    /// The last displacement, m, and force, N.
+    pub(super) last: [f64; 2],
     /// Displacements at which the force changes its sign, m.
     crossings: Vec<f64>,
-    sums: Vec<[f64; 2]>,
 }
 
 impl Lap {
-    pub(super) fn new(stiffness: f64, harmonics: usize) -> Lap {
-        Lap {
-            displacement: Extent::NONE,
-            force: Extent::NONE,
-            machine: Extent::NONE,
-            work: 0.0,
-            end: 0.0,
-            energy: 0.0,
-            stiffness,
+    /// From the present state of a contact, with harmonics up to the order `count`.
+    pub(super) fn new(contact: &Contact, count: usize) -> Lap {
+        let harmonic = |order| Harmonic { order, in_phase: 0.0, quadrature: 0.0 };
+        let cycle = OscillatingCycle {
+            tangent_stiffness: 2.0 * contact.elasticity.g_star() * contact.contact_radius(),
             stick_radius: f64::INFINITY,
-            regime: 0,
-            crossings: Vec::new(),
-            sums: vec![[0.0; 2]; harmonics],
-        }
+            harmonics: (1..=count).map(harmonic).collect(),
+            ..OscillatingCycle::default()
+        };
+        let last = [contact.displacement.value(), contact.force()];
+        let [displacement, force, machine] = [Extent::NONE; 3];
+        Lap { cycle, displacement, force, machine, last, crossings: Vec::new() }
     }
 
-    /// Takes down a state, which displacement and force `before` precede.
-    pub(super) fn include(&mut self, state: &State, before: (f64, f64), compliance: f64) {
-        let &State { displacement, force, .. } = state;
+    /// Takes down the state of a contact, through a machine of this compliance, m/N.
+    pub(super) fn include(&mut self, contact: &Contact, compliance: f64) {
+        let state = contact.state();
+        let [displacement, force] = [state.displacement, state.force];
         self.displacement.include(displacement);
         self.force.include(force);
         self.machine.include(displacement + compliance * force);
-        self.energy = self.energy.max(state.elastic_energy);
-        self.stick_radius = self.stick_radius.min(state.stick_radius);
-        self.regime = self.regime.max(REGIMES.iter().position(|regime| *regime == state.regime).unwrap_or(0));
-        if (before.1 > 0.0) != (force > 0.0) && (force - before.1).abs() > 0.0 {
-            self.crossings.push(before.0 - before.1 * (displacement - before.0) / (force - before.1));
+        let cycle = &mut self.cycle;
+        cycle.max_elastic_energy = cycle.max_elastic_energy.max(state.elastic_energy);
+        cycle.stick_radius = cycle.stick_radius.min(state.stick_radius);
+        cycle.regime = cycle.regime.max(state.regime);
+        let [before, carried] = self.last;
+        if (carried > 0.0) != (force > 0.0) && (force - carried).abs() > 0.0 {
+            self.crossings.push(before - carried * (displacement - before) / (force - carried));
         }
+        self.last = [displacement, force];
     }
 
     /// Adds one of so many equally spaced answers to the harmonics.
     pub(super) fn transform(&mut self, answer: f64, angle: f64, steps: usize) {
-        for (index, sum) in self.sums.iter_mut().enumerate() {
-            let (sin, cos) = ((index + 1) as f64 * angle).sin_cos();
+        for harmonic in &mut self.cycle.harmonics {
+            let (sin, cos) = (harmonic.order as f64 * angle).sin_cos();
             let share = 2.0 / steps as f64 * answer;
-            *sum = [sum[0] + share * cos, sum[1] + share * sin];
+            harmonic.in_phase += share * cos;
+            harmonic.quadrature += share * sin;
         }
     }
 
-    /// The cycle, which differs from the one before by `error`.
-    pub(super) fn finished(self, steps: usize, error: f64) -> OscillatingCycle {
+    /// The cycle, in which this friction work was done, J.
+    pub(super) fn finished(self, steps: usize, dissipated_energy: f64) -> OscillatingCycle {
         let displacement_amplitude = self.displacement.half();
         let sliding_ratio = match self.crossings[..] {
             [one, other] if displacement_amplitude > 0.0 => Some(0.5 * (one - other).abs() / displacement_amplitude),
             _ => None,
         };
-        let harmonic =
-            |(index, sum): (usize, [f64; 2])| Harmonic { order: index + 1, in_phase: sum[0], quadrature: sum[1] };
         OscillatingCycle {
             displacement_amplitude,
             force_amplitude: self.force.half(),
             machine_amplitude: self.machine.half(),
-            dissipated_energy: self.work,
-            max_elastic_energy: self.energy,
-            tangent_stiffness: self.stiffness,
+            dissipated_energy,
             sliding_ratio,
-            stick_radius: self.stick_radius,
-            regime: REGIMES[self.regime],
-            harmonics: self.sums.into_iter().enumerate().map(harmonic).collect(),
             steps,
-            error,
+            ..self.cycle
         }
     }
 }

@@ -22,7 +22,7 @@ type HarmonicSums = Vec<[f64; 2]>;
 
 /// int sin(n th) dR and int cos(n th) dR for odd n up to `count`, without the straight part unless the contact slides,
 /// and what they are off by as a part of the force amplitude.
-pub(super) fn integrals(cycle: &SteadyCycle<'_>, count: usize) -> (Vec<[f64; 2]>, f64) {
+pub(super) fn integrals(cycle: &SteadyCycle<'_>, count: usize) -> (HarmonicSums, f64) {
     let (contact, ring) = (cycle.contact, &cycle.ring);
     let orders = count.div_ceil(2);
     if ring.depth <= 0.0 {
@@ -44,7 +44,7 @@ pub(super) fn integrals(cycle: &SteadyCycle<'_>, count: usize) -> (Vec<[f64; 2]>
         } else {
             sums[0][0] += PI * cycle.moments.width;
         }
-        differences(&sums, unit)
+        sums.windows(2).map(|pair| [0, 1].map(|kind| unit * (pair[1][kind] - pair[0][kind]))).collect::<HarmonicSums>()
     };
     match contact.profile.ring_nodes(ring, total, count + 1) {
         RingNodes::Resolved(nodes) => (result(&nodes), 0.0),
@@ -55,10 +55,6 @@ pub(super) fn integrals(cycle: &SteadyCycle<'_>, count: usize) -> (Vec<[f64; 2]>
             (fine, error)
         }
     }
-}
-
-fn differences(sums: &HarmonicSums, unit: f64) -> Vec<[f64; 2]> {
-    sums.windows(2).map(|pair| [0, 1].map(|kind| unit * (pair[1][kind] - pair[0][kind]))).collect()
 }
 
 /// Adds e_m and q_m where the drive has fallen by `depth` of `total`, m from one on; both are zero at m = 0.

@@ -32,12 +32,9 @@ pub use response::{Resonator, Response};
 use super::curved_path::PathPoint;
 use super::normal::{depth_for, load, whole};
 use super::profile::{Moments, Ring};
-use super::slip_history::SlipHistory;
 use super::{Contact, Error, Regime};
 use crate::numerics::double_double::DoubleDouble;
-
-/// More steps than a machine spring ever takes; a safeguard only.
-const MOST_STEPS: usize = 200;
+use crate::numerics::roots::within;
 
 /// What is prescribed as a cosine over a cycle: at the machine, if there is one.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -169,18 +166,13 @@ impl<'a> SteadyCycle<'a> {
     fn taken(contact: &Contact, amplitude: f64, compliance: f64) -> DoubleDouble {
         let edge = *contact.history.edge();
         let (own, machine) = (contact.scale(), compliance * contact.force_unit());
-        // Concave: Newton's steps come up to the root from below and cannot miss.
-        let mut depth = amplitude / (own + machine * edge.radius);
-        for _ in 0..MOST_STEPS {
+        let beyond = |depth: f64| {
             let ring = Ring::between(contact.profile.point(edge.level - DoubleDouble::from(depth)), edge);
-            let missing = amplitude - own * depth - machine * load(&contact.profile, &ring);
-            let step = missing / (own + machine * ring.inner.radius);
-            depth = (depth + step).min(edge.level.value());
-            if step.is_nan() || step <= 2.0 * f64::EPSILON * depth {
-                break;
-            }
-        }
-        DoubleDouble::from(depth)
+            let moved = own * depth + machine * load(&contact.profile, &ring);
+            (moved - amplitude, own + machine * ring.inner.radius)
+        };
+        let start = amplitude / (own + machine * edge.radius);
+        DoubleDouble::from(within([0.0, edge.level.value()], start, beyond))
     }
 
     /// Amplitude of the displacement of the indenter, m.
@@ -307,7 +299,7 @@ impl<'a> SteadyCycle<'a> {
             return vec![0.0; radii.len()];
         }
         let indentation = edge;
-        let mut turned = Contact { history: SlipHistory::new(&contact.profile, edge), ..contact.clone() };
+        let mut turned = contact.clone().without_history();
         let displacement = DoubleDouble::from(self.displacement);
         turned.advance(&PathPoint { indentation, normal_force: contact.normal_force, displacement });
         let work = |(slip, pressure): (Option<f64>, f64)| {

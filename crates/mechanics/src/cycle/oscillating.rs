@@ -15,7 +15,6 @@ use crate::curved_path::PathPoint;
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::roots::{between, turning};
 use crate::range::{self, Quantity};
-use crate::slip_history::SlipHistory;
 use crate::unit_prefix::short;
 use crate::{Contact, Error, Normal};
 
@@ -146,33 +145,36 @@ impl Oscillation {
         keep_going: &dyn Fn() -> bool,
     ) -> Result<OscillatingCycle, Error> {
         self.check(contact)?;
-        let edge = contact.history.edge().level;
-        let history = SlipHistory::new(&contact.profile, edge);
-        let zero = DoubleDouble::ZERO;
-        let mut moving = Contact { history, displacement: zero, dissipated: zero, ..contact.clone() };
+        let mut moving = contact.clone().without_history();
         self.step_to(contact, &mut moving, 0.0, None)?;
         let unit = self.force_unit(contact);
-        let mut before = self.lap(contact, &mut moving, (steps, count))?;
-        let mut off = f64::INFINITY;
+        let (mut before, mut end) = self.lap(contact, &mut moving, steps, count)?;
         for _ in 1..CYCLES {
             if !keep_going() {
                 return Err(Error::Interrupted);
             }
-            let lap = self.lap(contact, &mut moving, (steps, count))?;
-            let work = (lap.work - before.work).abs() / (4.0 * unit * lap.displacement.half()).max(f64::MIN_POSITIVE);
-            off = work.max((lap.end - before.end).abs() / unit.max(f64::MIN_POSITIVE));
-            before = lap;
-            if off <= CLOSED {
+            let (mut lap, ends) = self.lap(contact, &mut moving, steps, count)?;
+            let most = (4.0 * unit * lap.displacement_amplitude).max(f64::MIN_POSITIVE);
+            let work = (lap.dissipated_energy - before.dissipated_energy).abs() / most;
+            lap.error = work.max((ends - end).abs() / unit.max(f64::MIN_POSITIVE));
+            (before, end) = (lap, ends);
+            if before.error <= CLOSED {
                 break;
             }
         }
-        Ok(before.finished(steps, off))
+        Ok(before)
     }
 
-    fn lap(&self, contact: &Contact, moving: &mut Contact, (steps, count): (usize, usize)) -> Result<Lap, Error> {
+    /// One cycle in so many steps, and the force at its end, N.
+    fn lap(
+        &self,
+        contact: &Contact,
+        moving: &mut Contact,
+        steps: usize,
+        count: usize,
+    ) -> Result<(OscillatingCycle, f64), Error> {
         let start = moving.dissipated;
-        let mut lap = Lap::new(2.0 * contact.elasticity.g_star() * moving.contact_radius(), count);
-        let mut before = (moving.displacement.value(), moving.force());
+        let mut lap = Lap::new(moving, count);
         for index in 1..=steps / 2 {
             let angle = |step: usize| TAU * step as f64 / steps as f64;
             let (from, to) = (angle(2 * index - 2), angle(2 * index));
@@ -182,15 +184,13 @@ impl Oscillation {
                 self.step_to(contact, moving, middle, self.elbow(contact, [here, middle, next]))?;
                 self.step_to(contact, moving, next, None)?;
                 here = next;
-                let state = moving.state();
-                lap.include(&state, before, self.compliance);
-                before = (state.displacement, state.force);
+                lap.include(moving, self.compliance);
             }
-            lap.transform(if matches!(self.drive, Drive::Force(_)) { before.0 } else { before.1 }, to, steps / 2);
+            let [displacement, force] = lap.last;
+            lap.transform(if matches!(self.drive, Drive::Force(_)) { displacement } else { force }, to, steps / 2);
         }
-        lap.work = (moving.dissipated - start).value();
-        lap.end = before.1;
-        Ok(lap)
+        let end = lap.last[1];
+        Ok((lap.finished(steps, (moving.dissipated - start).value()), end))
     }
 
     /// The amplitude of the displacement where that is given, m.

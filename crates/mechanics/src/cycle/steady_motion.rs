@@ -10,6 +10,7 @@ use std::f64::consts::{PI, TAU};
 
 use super::Response;
 use super::mass_motion::{DrivenMass, Motion, Unfinished};
+use crate::numerics::broyden::{Matrix, inverse, product, updated};
 
 /// Steps of Broyden's method for one start, and halvings of a step that does not bring the end nearer.
 const STEPS: usize = 24;
@@ -36,11 +37,6 @@ const LEFT: f64 = 1e3;
 
 /// What has been asked for and not interrupted: `None` where it was not found.
 type Attempt<T> = Result<Option<T>, Unfinished>;
-type Matrix = [[f64; 2]; 2];
-
-fn product(matrix: &Matrix, vector: [f64; 2]) -> [f64; 2] {
-    matrix.map(|row| row[0] * vector[0] + row[1] * vector[1])
-}
 
 /// The inverse of the Jacobian of what the end is off by, and the derivatives of the first harmonic, cosine and sine.
 #[derive(Clone, Copy)]
@@ -161,7 +157,9 @@ impl DrivenMass<'_> {
                 let Some(renewed) = renewed(&tried)? else { return Ok(None) };
                 slopes = renewed;
             } else {
-                slopes.update(&here, &tried);
+                let [step, change] = [(here.from, tried.from), (here.off, tried.off)]
+                    .map(|(before, after)| [after[0] - before[0], after[1] - before[1]]);
+                slopes.inverse = updated(&slopes.inverse, step, change);
             }
             here = tried;
         }
@@ -194,11 +192,7 @@ impl DrivenMass<'_> {
                 waves[row][index] = (beside.motion.sums[row] - middle.motion.sums[row]) * 2.0 / (PI * step);
             }
         }
-        let [[a, b], [c, d]] = slopes;
-        let determinant = a * d - b * c;
-        let inverse = [[d, -b], [-c, a]].map(|row| row.map(|value| value / determinant));
-        let usable = inverse.iter().flatten().all(|value| value.is_finite());
-        Ok(usable.then_some(Slopes { taken_at: middle.from, inverse, waves }))
+        Ok(inverse(slopes).map(|inverse| Slopes { taken_at: middle.from, inverse, waves }))
     }
 
     /// What has been found, with its error: that of the motion and what it is off by, through the derivatives.
@@ -218,21 +212,6 @@ impl DrivenMass<'_> {
             third_harmonic: if first_force > 0.0 { third_cos.hypot(third_sin) / first_force } else { 0.0 },
             amplitude_error: cos_error.hypot(sin_error) + displaced,
             peak_error: moved[0] + displaced,
-        }
-    }
-}
-
-impl Slopes {
-    /// Broyden's update of the inverse.
-    fn update(&mut self, before: &Tried, after: &Tried) {
-        let change = [0, 1].map(|index| after.from[index] - before.from[index]);
-        let expected = product(&self.inverse, [0, 1].map(|index| after.off[index] - before.off[index]));
-        let weights = [0, 1].map(|column| change[0] * self.inverse[0][column] + change[1] * self.inverse[1][column]);
-        let scale = change[0] * expected[0] + change[1] * expected[1];
-        for (row, entries) in self.inverse.iter_mut().enumerate() {
-            for (entry, weight) in entries.iter_mut().zip(weights) {
-                *entry += (change[row] - expected[row]) * weight / scale;
-            }
         }
     }
 }

@@ -58,11 +58,11 @@ fn minus<const N: usize>(one: &[f64; N], other: &[f64; N]) -> [f64; N] {
     std::array::from_fn(|i| one[i] - other[i])
 }
 
-fn dot<const N: usize>(one: &[f64; N], other: &[f64; N]) -> f64 {
+pub(super) fn dot<const N: usize>(one: &[f64; N], other: &[f64; N]) -> f64 {
     one.iter().zip(other).map(|(a, b)| a * b).sum()
 }
 
-fn squared_distance<const N: usize>(one: &[f64; N], other: &[f64; N]) -> f64 {
+pub(super) fn squared_distance<const N: usize>(one: &[f64; N], other: &[f64; N]) -> f64 {
     let between = minus(one, other);
     dot(&between, &between)
 }

@@ -3,8 +3,13 @@
 use std::f64::consts::PI;
 use std::sync::LazyLock;
 
+use crate::numerics::gauss::QuadraturePanel;
+
 /// The numbers of steps between the points: each has the points of the one before it.
 pub(super) const STEPS: [usize; 4] = [4, 8, 16, 32];
+
+/// Panels of twenty points that integrate the polynomials of twice the most steps to round-off.
+const PANELS: u32 = 8;
 
 /// The weights of the values at the points of `STEPS[level]`, one row for each of the points half a step between them.
 pub(super) fn between(level: usize) -> &'static [Vec<f64>] {
@@ -42,42 +47,25 @@ pub(super) fn weights(n: usize, x: f64) -> Vec<f64> {
 }
 
 fn work_weights(n: usize) -> Vec<Vec<f64>> {
-    // Clenshaw and Curtis's rule on twice the points is exact for the product.
-    let fine = 2 * n;
-    let rule: Vec<f64> = (0..=fine)
-        .map(|k| {
-            let ends = if k == 0 || k == fine { 0.5 } else { 1.0 };
-            let sum: f64 = (0..=n)
-                .map(|m| {
-                    let half = if m == 0 || m == n { 0.5 } else { 1.0 };
-                    half * 2.0 / (1.0 - 4.0 * (m * m) as f64) * (2.0 * PI * (m * k) as f64 / fine as f64).cos()
-                })
-                .sum();
-            2.0 / fine as f64 * ends * sum
-        })
-        .collect();
     let mut works = vec![vec![0.0; n + 1]; n + 1];
-    for (k, share) in rule.iter().enumerate() {
-        let at = weights(n, point(fine, k));
-        let slope = slopes(n, k as f64 * PI / fine as f64);
-        for (row, value) in works.iter_mut().zip(&at) {
-            for (entry, rise) in row.iter_mut().zip(&slope) {
-                *entry += share * value * rise;
+    for panel in 0..PANELS {
+        let width = 2.0 / f64::from(PANELS);
+        QuadraturePanel::fine(width).visit(|offset, share| {
+            let x = width * f64::from(panel) - 1.0 + offset;
+            let slope = slopes(n, x.acos());
+            for (row, value) in works.iter_mut().zip(weights(n, x)) {
+                row.iter_mut().zip(&slope).for_each(|(entry, rise)| *entry += share * value * rise);
             }
-        }
+        });
     }
     works
 }
 
-/// The weights of the values at the points in the derivative of the polynomial at x = cos(angle).
+/// The weights of the values at the points in the derivative of the polynomial at x = cos(angle), between the ends.
 fn slopes(n: usize, angle: f64) -> Vec<f64> {
     let half = |m: usize| if m == 0 || m == n { 0.5 } else { 1.0 };
     // dT_m/dx = m sin(m angle)/sin(angle).
-    let rise = |m: usize| {
-        let (order, sin) = (m as f64, angle.sin());
-        let at_end = if angle < 1.0 || m % 2 == 1 { order * order } else { -order * order };
-        if sin.abs() > 1e-9 { order * (order * angle).sin() / sin } else { at_end }
-    };
+    let rise = |m: usize| m as f64 * (m as f64 * angle).sin() / angle.sin();
     (0..=n)
         .map(|j| {
             let sum: f64 = (1..=n).map(|m| half(m) * (PI * (m * j) as f64 / n as f64).cos() * rise(m)).sum();

@@ -31,6 +31,15 @@ const GAIN: f64 = 0.03;
 /// The part of the stretch about a peak to which its place is narrowed down.
 const BRACKET: f64 = 1e-9;
 
+/// An instant of a cycle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Instant {
+    /// The index of the move.
+    pub step: usize,
+    /// The part of it that has been made, above 0 and up to 1.
+    pub part: f64,
+}
+
 /// A stretch of a move over which a place is in or out of the contact, and its effect is smooth.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct CurveStretch {
@@ -74,8 +83,7 @@ pub(super) struct StressCurve {
 pub(super) struct CurvePeak {
     pub(super) value: f64,
     pub(super) sample: StressSample,
-    /// The move, and the part of it.
-    pub(super) at: (usize, f64),
+    pub(super) at: Instant,
 }
 
 impl CurveStretch {
@@ -93,13 +101,10 @@ pub(super) fn stress(sample: &StressSample) -> Stress {
     Stress { xx, yy, zz, xy, yz, xz }
 }
 
-/// What lies between two samples: stresses, by the root of the sum of the squares of all nine components, and slip.
+/// What lies between two samples: stresses, by their norm, and slip.
 fn distance(one: &StressSample, other: &StressSample) -> Allowance {
     let off: StressSample = std::array::from_fn(|i| one[i] - other[i]);
-    let normal: f64 = off[..3].iter().map(|part| part * part).sum();
-    let shear: f64 = off[3..6].iter().map(|part| part * part).sum();
-    let tractions = off[6].abs().max(off[7].abs());
-    Allowance { stress: (normal + 2.0 * shear).sqrt().max(tractions), slip: off[8].abs() }
+    Allowance { stress: stress(&off).norm().max(off[6].abs()).max(off[7].abs()), slip: off[8].abs() }
 }
 
 fn combined(weights: &[f64], samples: &[StressSample]) -> StressSample {
@@ -209,8 +214,8 @@ impl StressCurve {
         (0..=last).map(of_move).max().unwrap_or(1).clamp(1, MAX_INSTANTS)
     }
 
-    /// All samples that were taken, with their instants: move and part.
-    pub(super) fn samples(&self) -> impl DoubleEndedIterator<Item = ((usize, f64), &StressSample)> {
+    /// All samples that were taken, with their instants.
+    pub(super) fn samples(&self) -> impl DoubleEndedIterator<Item = (Instant, &StressSample)> {
         self.arcs.iter().flat_map(|arc| {
             let n = arc.samples.len() - 1;
             arc.samples.iter().enumerate().rev().map(move |(j, sample)| (arc.instant(chebyshev::point(n, j)), sample))
@@ -281,10 +286,10 @@ impl Arc {
         if index.is_multiple_of(2) { &self.samples[index / 2] } else { &self.between[index / 2] }
     }
 
-    /// Move and part at a point of the interval from -1 to 1.
-    fn instant(&self, x: f64) -> (usize, f64) {
+    /// The instant of a point of the interval from -1 to 1.
+    fn instant(&self, x: f64) -> Instant {
         let [first, last] = self.angles;
-        (self.stretch.step, self.stretch.part(0.5 * ((first + last) + (last - first) * x)))
+        Instant { step: self.stretch.step, part: self.stretch.part(0.5 * ((first + last) + (last - first) * x)) }
     }
 
     fn at(&self, x: f64) -> StressSample {
@@ -296,7 +301,7 @@ impl Arc {
         let n = self.samples.len() + self.between.len() - 1;
         let point = |index: usize| (PI * index as f64 / n as f64).cos();
         let (low, high) = (point((index + 1).min(n)), point(index.saturating_sub(1)));
-        let mut best = CurvePeak { value: f64::NEG_INFINITY, sample: [0.0; 9], at: (0, 0.0) };
+        let mut best = CurvePeak { value: f64::NEG_INFINITY, sample: [0.0; 9], at: self.instant(0.0) };
         let mut look = |x: f64| {
             let sample = self.at(x);
             let found = value(&sample);

@@ -90,14 +90,9 @@ impl Cycle {
             here.apply_visited(target, DEFAULT_TOLERANCE, keep_going, &mut |to, contact| {
                 let history = &contact.history;
                 size = size.max(contact.memory_bytes());
-                let edge = history.edge().level;
-                let end = PathPoint {
-                    indentation: edge,
-                    normal_force: contact.normal_force,
-                    displacement: contact.displacement,
-                };
+                let end = contact.path_point();
                 let front = history.slip_from().map_or(f64::INFINITY, |start| start.level.value());
-                chords.push(Chord { step, from: done, to, end, edge: edge.value(), front });
+                chords.push(Chord { step, from: done, to, end, edge: end.indentation.value(), front });
                 done = to;
             })?;
         }
@@ -189,11 +184,7 @@ impl Cycle {
         let index = first + self.chords[first..].partition_point(|chord| chord.step == step && chord.to < part);
         let chord = self.chords[index.min(self.chords.len() - 1)];
         let mut here = self.before(index.min(self.chords.len() - 1));
-        let start = PathPoint {
-            indentation: here.history.edge().level,
-            normal_force: here.normal_force,
-            displacement: here.displacement,
-        };
+        let start = here.path_point();
         let share = if chord.to > chord.from { (part - chord.from) / (chord.to - chord.from) } else { 1.0 };
         if share < 1.0 {
             let to = |from: DoubleDouble, to: DoubleDouble| from + (to - from) * share;

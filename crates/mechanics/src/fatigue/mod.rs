@@ -15,8 +15,8 @@
 //! strain of a plane; tau_a is the radius of the smallest circle around the path of the shear stress in the plane.
 //! Strains are elastic (Hooke). Planes are searched for on a grid of five degrees and refined from its peaks to about
 //! 1e-9 of the value. Of random paths, one in ten thousand has a narrow peak between the planes of the grid that the
-//! search misses; the value is then too low, by 0.4 % at most of those seen. [`Cycle`] gives the stresses, [`Ruiz`]
-//! looks at the surface alone.
+//! search misses; the value is then too low, by 0.4 % at most of those seen. [`Cycle`] gives the stresses, [`Study`]
+//! each [`Measure`] of them at the instants that matter.
 
 mod ball;
 mod chebyshev;
@@ -24,23 +24,20 @@ mod curve;
 mod cycle;
 mod planes;
 mod rating;
-mod refined;
-mod ruiz;
 mod search;
 mod study;
 
 use std::f64::consts::SQRT_2;
 
 use super::{Error, Stress, range};
+use ball::dot;
 pub use ball::{Ball, enclosing_ball};
-pub use curve::MAX_INSTANTS;
+pub use curve::{Instant, MAX_INSTANTS};
 pub use cycle::{Cycle, MOST_BYTES};
-use planes::{Vector, axes, dot, highest, peaks, unit};
-pub use rating::{Instant, Measure, Rated};
-pub use refined::Refined;
-pub use ruiz::Ruiz;
+use planes::{Vector, axes, highest, peaks, unit};
+pub use rating::{Measure, Rated};
 pub use search::Worst;
-pub use study::{Bulk, DEFAULT_REFINEMENT, FIELD_BYTES, Largest, Ratings, Study};
+pub use study::{Bulk, FIELD_BYTES, Largest, Ratings, Study};
 
 /// sqrt(6).
 const SQRT_6: f64 = 2.449_489_742_783_178;

@@ -8,6 +8,8 @@
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::sync::LazyLock;
 
+use super::ball::dot;
+
 /// Angle between neighbours of the grid: five degrees.
 const GRID: f64 = PI / 36.0;
 /// Normals closer than this are neighbours: it reaches the next one on each side.
@@ -166,10 +168,6 @@ pub(super) fn axes(&[x, y, z]: &Vector) -> [Vector; 2] {
     let sign = 1.0_f64.copysign(z);
     let (a, b) = (-1.0 / (sign + z), -x * y / (sign + z));
     [[1.0 + sign * x * x * a, sign * b, -sign * x], [b, sign + y * y * a, -y]]
-}
-
-pub(super) fn dot(one: &Vector, other: &Vector) -> f64 {
-    one[0] * other[0] + one[1] * other[1] + one[2] * other[2]
 }
 
 /// The vector at the length one.

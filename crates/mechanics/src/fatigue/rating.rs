@@ -7,10 +7,11 @@
 
 use std::f64::consts::{FRAC_1_SQRT_2 as SHEAR_SHARE, SQRT_2};
 
-use super::curve::{Allowance, Arc, CurvePeak, StressCurve, StressSample, stress};
-use super::planes::{Vector, climb, dot, peaks};
+use super::ball::squared_distance;
+use super::curve::{Allowance, Arc, CurvePeak, Instant, StressCurve, StressSample, stress};
+use super::planes::{Vector, climb, peaks};
 use super::{
-    Ball, Criterion, deviator, enclosing_ball, from_deviator, resolved, shear_axes, strained, upward, weights,
+    Ball, Criterion, deviator, dot, enclosing_ball, from_deviator, resolved, shear_axes, strained, upward, weights,
 };
 use crate::Stress;
 
@@ -43,22 +44,13 @@ const SETTLED: f64 = 1e-9;
 pub enum Measure {
     /// A criterion of stress.
     Stress(Criterion),
-    /// Amplitude of the shear stress times that of the slip at the surface, N/m
-    /// ([`Ruiz::fretting_damage`](super::Ruiz)).
+    /// Amplitude of the shear stress times that of the slip at the surface, N/m (Ruiz, Boddington & Chen 1984). It has
+    /// no limit of its own: compare places and cycles by it.
     Ruiz,
-    /// That times the largest tension along x, N^2/m^3 ([`Ruiz::crack_initiation`](super::Ruiz)).
+    /// That times the largest tension along x, zero where there is none, N^2/m^3.
     RuizTension,
     /// Friction work per area and cycle at the surface, J/m^2.
     FrictionWork,
-}
-
-/// An instant of a cycle.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Instant {
-    /// The index of the move.
-    pub step: usize,
-    /// The part of it that has been made, above 0 and up to 1.
-    pub part: f64,
 }
 
 /// A measure at a place.
@@ -72,20 +64,6 @@ pub struct Rated {
     pub plane: Option<[f64; 3]>,
     /// The critical instant, as [`Value::instant`](super::Value::instant).
     pub at: Option<Instant>,
-}
-
-/// A value with the instant that it belongs to, before that is one of the move as prescribed.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Found {
-    pub(super) value: f64,
-    pub(super) error: f64,
-    pub(super) plane: Option<Vector>,
-    pub(super) at: Option<(usize, f64)>,
-}
-
-impl Found {
-    /// Where there is no such value.
-    pub(super) const NONE: Found = Found { value: f64::NAN, error: 0.0, plane: None, at: None };
 }
 
 impl Measure {
@@ -111,9 +89,9 @@ impl Measure {
         }
     }
 
-    /// Its value over a curve, on planes `near` one if that is given.
-    pub(super) fn over(&self, curve: &StressCurve, friction: f64, near: Option<Vector>) -> Found {
-        let largest = curve.samples().map(|(_, sample)| size(sample)).fold(0.0, f64::max);
+    /// Its value over a curve, with an instant in the parts of that, on planes `near` one if that is given.
+    pub(super) fn over(&self, curve: &StressCurve, friction: f64, near: Option<Vector>) -> Rated {
+        let largest = curve.samples().map(|(_, sample)| stress(sample).norm()).fold(0.0, f64::max);
         let off = self.sensitivity(largest) * curve.error.stress;
         match self {
             Measure::Stress(criterion @ (Criterion::Crossland { alpha } | Criterion::DangVan { alpha })) => {
@@ -121,18 +99,18 @@ impl Measure {
                 if matches!(criterion, Criterion::Crossland { .. }) {
                     let peak = peak_of(curve, |sample| stress(sample).hydrostatic());
                     let value = ball.radius / SQRT_2 + alpha * peak.value;
-                    Found { value, error: off + outside, plane: None, at: Some(peak.at) }
+                    Rated { value, error: off + outside, plane: None, at: Some(peak.at) }
                 } else {
                     let peak = peak_of(curve, |sample| tresca(sample, &ball, *alpha));
                     let allowed = curve.error.stress + outside;
                     let error = (SHEAR_SHARE + alpha * HYDROSTATIC_SHARE) * allowed + wander(&ball, points, allowed);
-                    Found { value: peak.value, error, plane: None, at: Some(peak.at) }
+                    Rated { value: peak.value, error, plane: None, at: Some(peak.at) }
                 }
             }
             Measure::Stress(criterion) => on_worst_plane(criterion, curve, off, near),
             Measure::FrictionWork => {
                 let [work, error] = curve.work().map(|work| friction * work);
-                Found { value: work, error, plane: None, at: None }
+                Rated { value: work, error, plane: None, at: None }
             }
             Measure::Ruiz | Measure::RuizTension => {
                 let [shear, slip] = [(7, false), (8, true)].map(|(index, inside)| {
@@ -147,23 +125,17 @@ impl Measure {
                 let Allowance { stress, slip: off } = curve.error;
                 let (value, error) = (shear * slip, shear * off + stress * slip);
                 if matches!(self, Measure::Ruiz) {
-                    Found { value, error, plane: None, at: None }
+                    Rated { value, error, plane: None, at: None }
                 } else {
-                    Found { value: tension * value, error: tension * error + stress * value, plane: None, at: None }
+                    Rated { value: tension * value, error: tension * error + stress * value, plane: None, at: None }
                 }
             }
         }
     }
 }
 
-/// The size of a stress, Pa, as [`Allowance::stress`] has it.
-pub(super) fn size(sample: &StressSample) -> f64 {
-    let Stress { xx, yy, zz, xy, yz, xz } = stress(sample);
-    (xx * xx + yy * yy + zz * zz + 2.0 * (xy * xy + yz * yz + xz * xz)).sqrt()
-}
-
 fn peak_of(curve: &StressCurve, value: impl FnMut(&StressSample) -> f64) -> CurvePeak {
-    let none = CurvePeak { value: 0.0, sample: [0.0; 9], at: (0, 1.0) };
+    let none = CurvePeak { value: 0.0, sample: [0.0; 9], at: Instant { step: 0, part: 1.0 } };
     curve.peak(|_| true, value).unwrap_or(none)
 }
 
@@ -177,7 +149,7 @@ fn tresca(sample: &StressSample, ball: &Ball<5>, alpha: f64) -> f64 {
 fn deviator_ball(curve: &StressCurve) -> (Ball<5>, Vec<[f64; 5]>, f64) {
     let mut points: Vec<[f64; 5]> = curve.samples().map(|(_, sample)| deviator(&stress(sample))).collect();
     let (ball, outside) = grown(&mut points, |center| {
-        let far = |sample: &StressSample| squared(&deviator(&stress(sample)), center);
+        let far = |sample: &StressSample| squared_distance(&deviator(&stress(sample)), center);
         let peak = peak_of(curve, far);
         (deviator(&stress(&peak.sample)), peak.value)
     });
@@ -192,14 +164,14 @@ fn wander(ball: &Ball<5>, mut points: Vec<[f64; 5]>, error: f64) -> f64 {
         return ball.radius + error;
     }
     let within = (ball.radius - NEAR_SURFACE * error).max(0.0);
-    points.retain(|point| squared(point, &ball.center) >= within * within);
+    points.retain(|point| squared_distance(point, &ball.center) >= within * within);
     let mut moved = vec![false; points.len()];
     let mut sum = 0.0;
     while let Some(first) = moved.iter().position(|moved| !moved) {
         let from = points[first];
         let mut farther = points.clone();
         for (index, point) in points.iter().enumerate() {
-            if !moved[index] && squared(point, &from) <= (TOGETHER * ball.radius).powi(2) {
+            if !moved[index] && squared_distance(point, &from) <= (TOGETHER * ball.radius).powi(2) {
                 moved[index] = true;
                 let out = 1.0 + error / ball.radius;
                 farther[index] = std::array::from_fn(|i| ball.center[i] + out * (point[i] - ball.center[i]));
@@ -209,10 +181,6 @@ fn wander(ball: &Ball<5>, mut points: Vec<[f64; 5]>, error: f64) -> f64 {
         sum += from_deviator(&std::array::from_fn(|i| center[i] - ball.center[i])).max_shear();
     }
     sum
-}
-
-fn squared<const N: usize>(one: &[f64; N], other: &[f64; N]) -> f64 {
-    one.iter().zip(other).map(|(a, b)| (a - b) * (a - b)).sum()
 }
 
 /// The ball around some points and the farthest that a curve has from its centre, again and again; and how far it
@@ -243,10 +211,7 @@ fn grown<const N: usize>(
 fn candidates(criterion: &Criterion, curve: &StressCurve, shears: &mut Vec<[f64; 2]>) -> Vec<Vector> {
     let opening = peak_of(curve, |sample| stress(sample).principal()[0]);
     let mut few = vec![stress(&opening.sample)];
-    let apart = |one: &Stress, other: &Stress| {
-        let off = (*one + *other * -1.0).components();
-        off.iter().map(|part| part * part).sum::<f64>().sqrt()
-    };
+    let apart = |one: &Stress, other: &Stress| (*one + *other * -1.0).norm();
     let samples = || curve.samples().map(|(_, sample)| stress(sample));
     let farthest = samples().map(|other| apart(&few[0], &other)).fold(0.0, f64::max);
     for sample in samples() {
@@ -272,18 +237,18 @@ fn candidates(criterion: &Criterion, curve: &StressCurve, shears: &mut Vec<[f64;
 }
 
 /// The largest value over all planes, or those near one.
-fn on_worst_plane(criterion: &Criterion, curve: &StressCurve, off: f64, near: Option<Vector>) -> Found {
+fn on_worst_plane(criterion: &Criterion, curve: &StressCurve, off: f64, near: Option<Vector>) -> Rated {
     let mut path: Vec<Stress> = curve.samples().map(|(_, sample)| stress(sample)).collect();
     let mut shears = Vec::with_capacity(path.len());
     let normals = near.map_or_else(|| candidates(criterion, curve, &mut shears), |normal| vec![normal]);
-    let mut best = Found { value: f64::NEG_INFINITY, error: off, plane: None, at: None };
+    let mut best = Rated { value: f64::NEG_INFINITY, error: off, plane: None, at: None };
     for mut normal in normals {
         let mut value = f64::NEG_INFINITY;
         for round in 0..MOST_ROUNDS {
             let at = witnesses(criterion, curve, &normal, &mut path, &mut shears);
             let (here, _) = criterion.on_plane(&path, &normal, false, &mut shears);
             if here > best.value {
-                best = Found { value: here, plane: Some(upward(normal)), at: Some(at), ..best };
+                best = Rated { value: here, plane: Some(upward(normal)), at: Some(at), ..best };
             }
             if here - value <= SETTLED * here.abs() || round > 6 {
                 break;
@@ -303,7 +268,7 @@ fn witnesses(
     normal: &Vector,
     path: &mut Vec<Stress>,
     shears: &mut Vec<[f64; 2]>,
-) -> (usize, f64) {
+) -> Instant {
     let along = weights(normal, normal);
     let opening = peak_of(curve, |sample| resolved(&stress(sample), &along));
     path.push(stress(&opening.sample));
@@ -320,7 +285,7 @@ fn witnesses(
     shears.extend(path.iter().map(shear));
     let found = std::cell::RefCell::new(Vec::new());
     grown(shears, |center| {
-        let far = peak_of(curve, |sample| squared(&shear(&stress(sample)), center));
+        let far = peak_of(curve, |sample| squared_distance(&shear(&stress(sample)), center));
         found.borrow_mut().push(stress(&far.sample));
         (shear(&stress(&far.sample)), far.value)
     });

@@ -8,7 +8,6 @@
 use std::f64::consts::PI;
 
 use super::planes::Vector;
-use super::rating::Found;
 use super::study::Study;
 use super::{Cycle, Measure, Rated};
 use crate::{Error, Profile};
@@ -63,7 +62,7 @@ type Coordinates = [f64; 3];
 #[derive(Clone, Copy)]
 struct Spot {
     at: Coordinates,
-    found: Found,
+    found: Rated,
     instants: usize,
 }
 

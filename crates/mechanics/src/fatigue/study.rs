@@ -7,13 +7,12 @@ use std::rc::Rc;
 
 use super::curve::{Allowance, CurveStretch, StressCurve, StressSample, stress};
 use super::planes::Vector;
-use super::rating::Found;
 use super::{Cycle, Instant, Measure, Rated};
 use crate::subsurface::{Side, Subsurface};
 use crate::{Contact, Error, Profile, Stress};
 
-/// Error of a criterion, relative to its largest value, that is accepted unless the caller says otherwise.
-pub const DEFAULT_REFINEMENT: f64 = 1e-4;
+/// A measure of the surface below it.
+const NO_VALUE: Rated = Rated { value: f64::NAN, error: 0.0, plane: None, at: None };
 /// The part of the accepted error that the curve of a place may use.
 const CURVE_SHARE: f64 = 0.5;
 /// The part of it that slip and shear stress may each use in a product of both.
@@ -152,9 +151,9 @@ impl<'a> Study<'a> {
             self.sample(place, true)?;
         }
         let mut values = vec![Vec::with_capacity(places.len()); self.measures.len()];
-        let mut largest: Vec<Option<(usize, Found, usize)>> = vec![None; self.measures.len()];
+        let mut largest: Vec<Option<(usize, Rated, usize)>> = vec![None; self.measures.len()];
         for (index, place) in places.iter().enumerate() {
-            let (found, instants) = self.rate(place)?;
+            let (found, instants) = self.rate_some(0..self.measures.len(), place, None)?;
             for ((found, column), largest) in found.into_iter().zip(&mut values).zip(&mut largest) {
                 column.push(found.value);
                 if found.value.is_finite() && largest.is_none_or(|(_, before, _)| found.value > before.value) {
@@ -180,27 +179,23 @@ impl<'a> Study<'a> {
             let infinite = Stress::from_components([f64::NEG_INFINITY; 6]);
             return Ok((0..self.cycle.moves()).map(|step| (Instant { step, part: 1.0 }, infinite)).collect());
         };
-        for ((step, part), sample) in curve.samples() {
-            let at = self.instant((step, part));
-            if part > 0.0 && path.last().is_none_or(|last| last.0 != at) {
+        for (instant, sample) in curve.samples() {
+            let at = self.prescribed(instant);
+            if instant.part > 0.0 && path.last().is_none_or(|last| last.0 != at) {
                 path.push((at, stress(sample)));
             }
         }
         Ok(path)
     }
 
-    /// All measures at a place, and how many instants the move took that took most.
-    pub(super) fn rate(&mut self, place: &[f64; 3]) -> Result<(Vec<Found>, usize), Error> {
-        self.rate_some(0..self.measures.len(), place, None)
-    }
-
-    /// One measure at a place, likewise; its plane `near` one, if that is given, instead of any.
+    /// One measure at a place, and how many instants the move took that took most; its plane `near` one, if that is
+    /// given, instead of any.
     pub(super) fn rate_one(
         &mut self,
         measure: usize,
         place: &[f64; 3],
         near: Option<Vector>,
-    ) -> Result<(Found, usize), Error> {
+    ) -> Result<(Rated, usize), Error> {
         self.rate_some(measure..measure + 1, place, near).map(|(found, instants)| (found[0], instants))
     }
 
@@ -209,7 +204,7 @@ impl<'a> Study<'a> {
         wanted: Range<usize>,
         place: &[f64; 3],
         near: Option<Vector>,
-    ) -> Result<(Vec<Found>, usize), Error> {
+    ) -> Result<(Vec<Rated>, usize), Error> {
         let mut allowed = self.allowance(wanted.clone());
         loop {
             let curve = self.curve(place, allowed, true)?;
@@ -219,9 +214,9 @@ impl<'a> Study<'a> {
                 let measure = self.measures[index];
                 let one = match &curve {
                     // Of the surface alone.
-                    _ if place[2] > 0.0 && measure.of_surface() => Found::NONE,
+                    _ if place[2] > 0.0 && measure.of_surface() => NO_VALUE,
                     Some(curve) => measure.over(curve, self.friction, near),
-                    None => self.cycle.infinite(&measure, place),
+                    None => self.infinite(&measure, place),
                 };
                 if one.value.is_finite() {
                     self.reference[index] = self.reference[index].max(one.value - one.error);
@@ -276,17 +271,26 @@ impl<'a> Study<'a> {
     }
 
     /// A value with its instant as the move prescribes it.
-    pub(super) fn rated(&self, found: &Found) -> Rated {
-        let Found { value, error, plane, at } = *found;
-        Rated { value, error, plane, at: at.map(|at| self.instant(at)) }
+    pub(super) fn rated(&self, found: &Rated) -> Rated {
+        Rated { at: found.at.map(|at| self.prescribed(at)), ..*found }
     }
 
-    fn instant(&self, (step, part): (usize, f64)) -> Instant {
+    fn prescribed(&self, Instant { step, part }: Instant) -> Instant {
         if part > 0.0 {
             Instant { step, part: self.cycle.state(step, part).1 }
         } else {
             Instant { step: step.checked_sub(1).unwrap_or(self.cycle.moves() - 1), part: 1.0 }
         }
+    }
+
+    /// A measure where the stress is infinite: infinite too, unless it needs slip and there is none.
+    fn infinite(&self, measure: &Measure, place: &[f64; 3]) -> Rated {
+        let radius = place[0].hypot(place[1]);
+        let slips = (0..self.cycle.moves()).filter_map(|step| self.cycle.state(step, 1.0).0.slip(radius));
+        let (low, high) =
+            slips.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), slip| (low.min(slip), high.max(slip)));
+        let value = if measure.of_surface() && high <= low { 0.0 } else { f64::INFINITY };
+        Rated { value, ..NO_VALUE }
     }
 
     /// How far the samples of a place may be off.

@@ -4,12 +4,14 @@
 //! |---|---|
 //! | `double_double` | how do small differences keep their digits? |
 //! | `roots` | where is a function zero, or largest? |
+//! | `broyden` | where are two functions of two numbers zero? |
 //! | `chebyshev` | which series has these values, and its primitive? |
 //! | `gauss` | what is an integral, given where the integrand is singular? |
 //! | `angle`, `logarithm` | what are angles and logarithms of several numbers side by side, to round-off? |
 //! | `cluster_tree`, `multipole`, `far_field` | what do many sources add up to, far away? |
 
 pub(crate) mod angle;
+pub(crate) mod broyden;
 pub(crate) mod chebyshev;
 pub(crate) mod cluster_tree;
 pub(crate) mod double_double;

@@ -27,35 +27,23 @@ use crate::numerics::roots::turning;
 const STEPS: usize = 4_096;
 
 /// The shear stress, Pa, that some point of the evaluation range carries at least after gross slip and this many
-/// reversals, whatever their displacements; zero where nothing is known, as at a vertical edge.
+/// reversals, whatever their displacements; zero where nothing is known, as at a vertical edge. `None` if `keep_going`
+/// returned false, which is asked at every step of the search for few reversals: on a profile whose stress is a
+/// quadrature it can take some tenths of a second.
 ///
 /// ```
 #[doc = include_str!("../example.txt")]
 /// use stickslip_mechanics::protocol::{lower_bound, minimax};
 ///
-/// let bound = lower_bound(&contact, 3);
+/// let bound = lower_bound(&contact, 3, &|| true).unwrap();
 /// for target in minimax(&contact, 3, &|| true).unwrap().displacements {
 ///     contact.apply(&slide(target))?;
 /// }
 /// assert!(bound > 0.0 && bound <= contact.residual().max.unwrap());
+/// assert!(lower_bound(&contact, 3, &|| false).is_none());
 /// # Ok::<(), Error>(())
 /// ```
-#[must_use]
-pub fn lower_bound(contact: &Contact, reversals: usize) -> f64 {
-    lower_bound_while(contact, reversals, || true).unwrap_or(0.0)
-}
-
-/// As [`lower_bound`], while `keep_going` returns true, which is asked at every step of the search for few reversals:
-/// on a profile whose stress is a quadrature it can take some tenths of a second. `None` if it returned false.
-///
-/// ```
-#[doc = include_str!("../example.txt")]
-/// use stickslip_mechanics::protocol::lower_bound_while;
-///
-/// assert!(lower_bound_while(&contact, 3, || false).is_none());
-/// # Ok::<(), Error>(())
-/// ```
-pub fn lower_bound_while(contact: &Contact, reversals: usize, keep_going: impl Fn() -> bool) -> Option<f64> {
+pub fn lower_bound(contact: &Contact, reversals: usize, keep_going: &dyn Fn() -> bool) -> Option<f64> {
     let (profile, edge) = (&*contact.profile, contact.contact_radius());
     let EvaluationRange { from: cutoff, vertical, .. } = EvaluationRange::of(contact);
     if vertical || edge <= 0.0 || contact.friction <= 0.0 {
@@ -69,7 +57,7 @@ pub fn lower_bound_while(contact: &Contact, reversals: usize, keep_going: impl F
     }
     let [low, _] = turning([0.0, high], |limit| grid.reached(limit, reversals + 1));
     let unit = contact.elasticity.g_star() * contact.scale() / PI;
-    let raised = branch_and_bound::raise(contact, cutoff, reversals, 0.5 * PI * low, &keep_going)?;
+    let raised = branch_and_bound::raise(contact, cutoff, reversals, 0.5 * PI * low, keep_going)?;
     Some(unit * raised)
 }
 

@@ -4,12 +4,14 @@ use super::super::shear_stress::Residual;
 use super::super::state::{Move, Regime, Tangential};
 use super::from_any_state::FromAnyState;
 use super::{
-    Contact, DEFAULT_CUTOFF, DoubleDouble, EqualPeakMeasure, Error, Quantity, cutoff_of, end_constraint, equal_peaks,
-    evenly_spread, falling_amplitude, outermost_singular,
+    Contact, DEFAULT_CUTOFF, DoubleDouble, EqualPeakMeasure, Error, Quantity, cutoff_of, evenly_spread,
+    falling_amplitude, outermost_singular,
 };
 
 /// A displacement below this share of that of gross slip is zero but for rounding.
 const ROUNDED: f64 = 1e-9;
+/// Up to this many reversals the strokes of a path with a prescribed end are sought in every way.
+const FEW: usize = 8;
 /// The present state of a deeper slip history is no candidate: the cost of its extrema grows with the square of the
 /// depth.
 const MAX_DEPTH: usize = 256;
@@ -86,18 +88,20 @@ pub struct EvaluationRange {
     pub vertical: bool,
 }
 
+/// ```
+#[doc = include_str!("../example.txt")]
+/// use stickslip_mechanics::protocol::EvaluationRange;
+///
+/// // On a sphere it is the whole contact.
+/// let range = EvaluationRange::of(&contact);
+/// assert_eq!((range.from, range.to), (0.0, contact.contact_radius()));
+/// contact.apply(&slide(1.0))?;
+/// let largest = range.largest(&contact, &contact.residual());
+/// assert!((largest / (0.5 * contact.pressure(0.0)) - 1.0).abs() < 1e-12);
+/// # Ok::<(), Error>(())
+/// ```
 impl EvaluationRange {
     /// The range of a contact at its present load.
-    ///
-    /// ```
-    #[doc = include_str!("../example.txt")]
-    /// use stickslip_mechanics::protocol::EvaluationRange;
-    ///
-    /// // On a sphere it is the whole contact.
-    /// let range = EvaluationRange::of(&contact);
-    /// assert_eq!((range.from, range.to), (0.0, contact.contact_radius()));
-    /// # Ok::<(), Error>(())
-    /// ```
     #[must_use]
     pub fn of(contact: &Contact) -> EvaluationRange {
         let edge = contact.contact_radius();
@@ -107,16 +111,6 @@ impl EvaluationRange {
     }
 
     /// The largest magnitude of the shear stress there, Pa; infinite if a vertical edge carries some.
-    ///
-    /// ```
-    #[doc = include_str!("../example.txt")]
-    /// use stickslip_mechanics::protocol::EvaluationRange;
-    ///
-    /// contact.apply(&slide(1.0))?;
-    /// let largest = EvaluationRange::of(&contact).largest(&contact, &contact.residual());
-    /// assert!((largest / (0.5 * contact.pressure(0.0)) - 1.0).abs() < 1e-12);
-    /// # Ok::<(), Error>(())
-    /// ```
     #[must_use]
     pub fn largest(&self, contact: &Contact, residual: &Residual) -> f64 {
         if self.vertical && edge_load(contact) > ROUNDED {
@@ -222,7 +216,8 @@ impl DesignTask<'_> {
                 freed.apply(&Move { tangential: Some(Tangential::Force(0.0)), ..Move::default() })?;
                 freed.state().displacement
             }
-            PathEnd::DisplacementZero | PathEnd::Free => last,
+            PathEnd::DisplacementZero => 0.0,
+            PathEnd::Free => last,
         };
         path.push(target);
         contact.apply(&Move { tangential: Some(Tangential::Displacement(target)), ..Move::default() })?;
@@ -234,27 +229,19 @@ impl DesignTask<'_> {
     fn by_law(&self, kind: AmplitudeLaw, first: f64, first_move: FirstMove) -> Result<Design, Error> {
         let path = match kind {
             AmplitudeLaw::Linear => falling_amplitude(self.reversals, first).collect(),
-            AmplitudeLaw::EqualPeaks | AmplitudeLaw::Minimax => self.equal_from(first)?,
+            AmplitudeLaw::EqualPeaks | AmplitudeLaw::Minimax => self.equal_from(first),
         };
         self.judge(path, first_move, None)
     }
 
     /// The law of equal peaks from an amplitude on, which may be less than gross slip.
-    fn equal_from(&self, first: f64) -> Result<Vec<f64>, Error> {
-        let full = self.contact.gross_slip_displacement();
-        let sign = if first < 0.0 { -1.0 } else { 1.0 };
-        if first.abs() >= full {
-            let mut path = equal_peaks(self.contact, self.reversals, None)?.displacements;
-            path.iter_mut().for_each(|target| *target *= sign);
-            path[0] = first;
-            return Ok(path);
-        }
-        let profile = &*self.contact.profile;
-        let inner = profile.radius(self.contact.indentation() * (1.0 - first.abs() / full));
-        let from = inner.max(self.range.from);
+    fn equal_from(&self, first: f64) -> Vec<f64> {
+        let (profile, full) = (&*self.contact.profile, self.contact.gross_slip_displacement());
+        let stuck = (1.0 - first.abs() / full).max(0.0);
+        let from = profile.radius(self.contact.indentation() * stuck).max(self.range.from);
         let spread = EqualPeakMeasure::new(profile, from, self.contact.contact_radius());
         let path = evenly_spread(self.contact, spread.as_ref(), self.reversals, first.abs());
-        Ok(path.map(|target| sign * target).collect())
+        path.map(|target| first.signum() * target).collect()
     }
 
     /// The best of all candidates: equal alternating extrema, and the two laws, for where those do not exist.
@@ -288,10 +275,10 @@ impl DesignTask<'_> {
             Vec::new()
         };
         for found in &found {
-            let path = found.displacements.iter().map(|target| sign * target).collect::<Vec<f64>>();
-            offer(self.judge(self.ended(path), first_move, gap(found)))?;
+            let path = found.displacements.iter().map(|target| sign * target);
+            offer(self.judge(path.collect(), first_move, gap(found)))?;
         }
-        if found.is_empty() || (self.end != PathEnd::Free && self.reversals <= end_constraint::FEW) {
+        if found.is_empty() || (self.end != PathEnd::Free && self.reversals <= FEW) {
             let begun = self.after(&[first])?;
             // The first of the strokes goes back.
             let last = if self.reversals.is_multiple_of(2) { sign } else { -sign };
@@ -318,16 +305,6 @@ impl DesignTask<'_> {
         if (self.keep_going)() { best.ok_or(Error::Interrupted) } else { Err(Error::Interrupted) }
     }
 
-    /// The path with its last displacement set to zero if the end requires it and only rounding is in the way.
-    fn ended(&self, mut path: Vec<f64>) -> Vec<f64> {
-        if let (PathEnd::DisplacementZero, Some(last)) = (self.end, path.last_mut())
-            && last.abs() <= ROUNDED * self.contact.gross_slip_displacement()
-        {
-            *last = 0.0;
-        }
-        path
-    }
-
     /// Whether the present state meets the condition of the end.
     fn at_an_end(&self) -> bool {
         let state = self.contact.state();
@@ -338,18 +315,11 @@ impl DesignTask<'_> {
         }
     }
 
-    /// Strokes by [`FromAnyState`], m, that meet the condition of the end.
+    /// Strokes by [`FromAnyState`], m, to the end, but for what it misses.
     fn relieved(&self, from: &Contact, strokes: usize, last: f64) -> Vec<Vec<f64>> {
-        let Some(strokes) = FromAnyState::new(from, strokes, last, self.end) else { return Vec::new() };
-        let mut paths = strokes.solve(self.keep_going);
-        for position in paths.iter_mut().flatten() {
-            *position *= from.scale();
-        }
-        if self.end == PathEnd::DisplacementZero {
-            let near = ROUNDED * from.gross_slip_displacement();
-            paths.retain(|path| path.last().is_some_and(|end| end.abs() <= near));
-            paths.iter_mut().filter_map(|path| path.last_mut()).for_each(|end| *end = 0.0);
-        }
+        let found = FromAnyState::new(from, strokes, last, self.end);
+        let mut paths = found.map_or_else(Vec::new, |strokes| strokes.solve(self.keep_going));
+        paths.iter_mut().flatten().for_each(|position| *position *= from.scale());
         paths
     }
 }

@@ -1,18 +1,17 @@
 //! Equal alternating extrema with a prescribed end of the path.
 //!
 //! The kinks of the smallest E determine where the path ends. For another end, one extremum must be smaller than the
-//! others. If it is one of the kinks, its share and E are the two unknowns of two equations, the end and the stress of
-//! the core, solved by Broyden's method from the free optimum. If it is the core, E alone is sought. Among few kinks
-//! each is tried, else the outermost: of many extrema it matters little which one stays below.
+//! others: of many extrema it matters little which, and few strokes are sought by `from_any_state` too. If it is that at
+//! the outermost kink, its share and E are the two unknowns of two equations, the end and the stress of the core, solved
+//! by Broyden's method from the free optimum. If it is the core, E alone is sought.
 
 use super::super::normal::{load, whole};
-use super::super::profile::{Point, Ring};
-use super::minimax::{KinkSequence, Problem};
+use super::super::profile::Point;
+use super::minimax::{Problem, VirginStrokes};
 use super::{DoubleDouble, PathEnd, alternating};
+use crate::numerics::broyden::{inverse, product, updated};
 use crate::numerics::roots::between;
 
-/// Up to this many kinks each is tried.
-pub(super) const FEW: usize = 8;
 /// The largest number of evaluations of the kinks.
 const MAX_EVALUATIONS: usize = 40;
 /// Tolerance of the residuals of the two equations, relative to the indentation and to E.
@@ -33,9 +32,8 @@ pub(super) fn kinks(
     end: PathEnd,
     keep_going: &dyn Fn() -> bool,
 ) -> Vec<Vec<Point>> {
-    let tried = if problem.reversals <= FEW { problem.reversals } else { 1 };
     let equations = Equations { problem, limit, first, end, keep_going };
-    (0..tried).filter_map(|index| equations.by_share(index)).chain(equations.by_core()).collect()
+    equations.by_share().into_iter().chain(equations.by_core()).collect()
 }
 
 /// The equations to be solved.
@@ -48,30 +46,26 @@ struct Equations<'a> {
 }
 
 impl Equations<'_> {
-    /// The kinks of an E, relative to the free optimum, and of a share for the extremum of this index, with the
-    /// residuals.
-    fn evaluate(&self, index: usize, [stress, share]: [f64; 2]) -> Option<([f64; 2], KinkSequence)> {
-        let marched = self.problem.march_with(self.limit * stress, (index, share), self.keep_going)?;
+    /// The kinks of an E, relative to the free optimum, and of a share of it for the outermost, with the residuals.
+    fn evaluate(&self, [stress, share]: [f64; 2]) -> Option<([f64; 2], VirginStrokes<'_>)> {
+        let marched = self.problem.march_with(self.limit * stress, share, self.keep_going)?;
         Some(([miss(self.problem, &marched.kinks, self.first, self.end), marched.excess?], marched))
     }
 
-    /// The kinks if the extremum of this index stays below the others.
-    fn by_share(&self, index: usize) -> Option<Vec<Point>> {
+    /// The kinks if the extremum at the outermost stays below the others.
+    fn by_share(&self) -> Option<Vec<Point>> {
         let mut at = [1.0, 1.0];
-        let (mut missed, mut marched) = self.evaluate(index, at)?;
+        let (mut missed, mut marched) = self.evaluate(at)?;
         // The Jacobian by differences once, then updated.
-        let (by_stress, _) = self.evaluate(index, [1.0 + PROBE, 1.0])?;
-        let (by_share, _) = self.evaluate(index, [1.0, 1.0 - PROBE])?;
+        let (by_stress, _) = self.evaluate([1.0 + PROBE, 1.0])?;
+        let (by_share, _) = self.evaluate([1.0, 1.0 - PROBE])?;
         let row = |row: usize| [(by_stress[row] - missed[row]) / PROBE, (missed[row] - by_share[row]) / PROBE];
-        let mut jacobian = [row(0), row(1)];
+        let mut slopes = inverse([row(0), row(1)])?;
         for _ in 0..MAX_EVALUATIONS {
             if missed.iter().all(|miss| miss.abs() <= TOLERANCE) {
                 return (at[1] <= 1.0 + TOLERANCE).then_some(marched.kinks);
             }
-            let [[a, b], [c, d]] = jacobian;
-            let determinant = a * d - b * c;
-            let mut step =
-                [(b * missed[1] - d * missed[0]) / determinant, (c * missed[0] - a * missed[1]) / determinant];
+            let mut step = product(&slopes, missed).map(|part| -part);
             // Limited, so that no kink is lost.
             let far = (step[0].abs() / 0.1).max(step[1].abs() / 0.25);
             if !far.is_finite() {
@@ -83,23 +77,14 @@ impl Equations<'_> {
             step[1] = step[1].max(LEAST - at[1]);
             let mut found = None;
             for _ in 0..RETRIES {
-                found = self.evaluate(index, [at[0] + step[0], at[1] + step[1]]);
+                found = self.evaluate([at[0] + step[0], at[1] + step[1]]);
                 if found.is_some() {
                     break;
                 }
                 step = step.map(|part| 0.5 * part);
             }
             let (now, tried) = found?;
-            let size = step[0] * step[0] + step[1] * step[1];
-            if size <= 0.0 {
-                return None;
-            }
-            for (row, was, is) in [(0, missed[0], now[0]), (1, missed[1], now[1])] {
-                let expected = jacobian[row][0] * step[0] + jacobian[row][1] * step[1];
-                let off = (is - was - expected) / size;
-                jacobian[row][0] += off * step[0];
-                jacobian[row][1] += off * step[1];
-            }
+            slopes = updated(&slopes, step, [now[0] - missed[0], now[1] - missed[1]]);
             at = [at[0] + step[0], at[1] + step[1]];
             (missed, marched) = (now, tried);
         }
@@ -108,8 +93,7 @@ impl Equations<'_> {
 
     /// The kinks of the smallest E above the free optimum that leads to the end by itself.
     fn by_core(&self) -> Option<Vec<Point>> {
-        let evaluate =
-            |stress: f64| self.evaluate(0, [stress, 1.0]).map(|(missed, marched)| (missed[0], marched.kinks));
+        let evaluate = |stress: f64| self.evaluate([stress, 1.0]).map(|(missed, marched)| (missed[0], marched.kinks));
         // At about 1 + 1/(2 N) the innermost kink is lost: it is the optimum of one reversal less.
         let mut step = PACE / self.problem.reversals as f64;
         let (mut low, mut at_low) = (1.0, evaluate(1.0)?.0);
@@ -141,22 +125,17 @@ impl Equations<'_> {
 
 /// The residual at the end: of the displacement over the indentation, or of the force over that of gross slip.
 fn miss(problem: &Problem<'_>, kinks: &[Point], first: f64, end: PathEnd) -> f64 {
-    let profile = problem.profile;
+    let (profile, edge) = (problem.profile, problem.edge);
     match end {
         PathEnd::Free => 0.0,
         PathEnd::DisplacementZero => {
-            let strokes = kinks.iter().rev().enumerate();
-            let way = strokes.map(|(index, kink)| alternating(index, 2.0 * (problem.edge.level - kink.level).value()));
-            (first - way.sum::<f64>()) / problem.edge.level.value()
+            // The stroke after the first goes back.
+            let way = alternating(kinks.len(), problem.way(edge.level, kinks));
+            (first + way) / edge.level.value()
         }
         PathEnd::ForceZero => {
             let zero = profile.point(DoubleDouble::ZERO);
-            let (mut outer, mut sum) = (problem.edge, 0.0);
-            for (index, inner) in kinks.iter().chain([&zero]).enumerate() {
-                sum += alternating(index, load(profile, &Ring::between(*inner, outer)));
-                outer = *inner;
-            }
-            sum / load(profile, &whole(profile, &problem.edge))
+            problem.sum_down_to(zero, kinks, |ring| load(profile, ring)) / load(profile, &whole(profile, &edge))
         }
     }
 }

@@ -10,7 +10,7 @@ use super::{DoubleDouble, Profile, alternating};
 use crate::numerics::roots::{between, largest};
 
 /// The largest number of evaluations of E, after it has been bracketed.
-const MAX_EVALUATIONS: usize = 80;
+const MAX_EVALUATIONS: i32 = 80;
 /// Steps of one search for a kink, and of its refinement, at the most.
 const STEPS: usize = 400;
 /// Radii at which the core is sampled where its stress need not fall outwards.
@@ -21,27 +21,12 @@ const BRACKET: f64 = 3e-5;
 const TOLERANCE: f64 = 1e-13;
 /// Factor by which E is changed until it is bracketed.
 const STRIDE: f64 = 1.25;
-/// How often, and by which part, a lower E is tried than the one found.
-const BELOW: usize = 8;
-const STEP_BELOW: f64 = 0.01;
+/// An E below this share of the first guess counts as zero.
+const LEAST: f64 = 1e-4;
 
-/// The kinks for one E, the outermost first.
-pub(super) struct KinkSequence {
-    pub(super) kinks: Vec<Point>,
-    /// The stress of the core over E, less one; `None` if fewer kinks than allowed were enough.
-    pub(super) excess: Option<f64>,
-}
-
-impl KinkSequence {
-    fn fits(&self) -> bool {
-        self.excess.is_none_or(|excess| excess <= 0.0)
-    }
-}
-
-/// The levels that reversals begin to slip at, the outermost first, and the smallest of the alternating extrema over
-/// the largest.
+/// Where reversals begin to slip, the outermost first, and the smallest of the alternating extrema over the largest.
 pub(super) struct EqualExtrema {
-    pub(super) levels: Vec<f64>,
+    pub(super) kinks: Vec<Point>,
     pub(super) ratio: f64,
     /// The largest of them, over G* m/pi.
     pub(super) limit: f64,
@@ -56,15 +41,18 @@ pub(super) struct Problem<'a> {
 }
 
 /// The kinks from the edge inward, and the rings between them.
-struct VirginStrokes<'a> {
+pub(super) struct VirginStrokes<'a> {
     problem: &'a Problem<'a>,
-    kinks: Vec<Point>,
-    beyond: InwardSum<'a>,
+    pub(super) kinks: Vec<Point>,
+    /// The stress, over G* m/pi, up to the innermost kink, of the rings beyond it.
+    pub(super) beyond: InwardSum<'a>,
+    /// The stress of the core over E, less one; `None` if fewer kinks than allowed were enough.
+    pub(super) excess: Option<f64>,
 }
 
 impl VirginStrokes<'_> {
     /// The innermost kink, the edge without any.
-    fn last(&self) -> &Point {
+    pub(super) fn last(&self) -> &Point {
         self.kinks.last().unwrap_or(&self.problem.edge)
     }
 
@@ -87,23 +75,30 @@ impl VirginStrokes<'_> {
 }
 
 impl Problem<'_> {
+    /// A sum over the rings between the edge, the kinks and `least`, with the signs of their strokes but for the last's.
+    pub(super) fn sum_down_to(&self, least: Point, kinks: &[Point], part: impl Fn(&Ring) -> f64) -> f64 {
+        let mut outer = self.edge;
+        let ring = |inner: &Point| Ring::between(*inner, std::mem::replace(&mut outer, *inner));
+        kinks.iter().chain([&least]).map(ring).enumerate().map(|(index, ring)| alternating(index, part(&ring))).sum()
+    }
+
     /// The shear stress over G* m/pi after kinks, but for the sign of the last stroke, of the rings beyond `least`.
     pub(super) fn shear_down_to(&self, least: Point, kinks: &[Point], at: &StressRadius) -> f64 {
-        let (mut outer, mut sign, mut sum) = (self.edge, 1.0, 0.0);
-        for inner in kinks.iter().copied().chain([least]) {
-            if outer.radius < at.radius {
-                break;
-            }
-            sum += sign * self.profile.kernel(at, &Ring::between(inner, outer));
-            (outer, sign) = (inner, -sign);
-        }
-        sum
+        let beyond = kinks.partition_point(|kink| kink.radius >= at.radius);
+        let least = kinks.get(beyond).unwrap_or(&least);
+        self.sum_down_to(*least, &kinks[..beyond], |ring| self.profile.kernel(at, ring))
+    }
+
+    /// How far strokes lead that slip down to kinks, scaled by m, if the last of them goes forwards.
+    pub(super) fn way(&self, edge: DoubleDouble, kinks: &[Point]) -> f64 {
+        let stroke = |(index, kink): (usize, &Point)| alternating(index, 2.0 * (edge - kink.level).value());
+        kinks.iter().enumerate().map(stroke).sum()
     }
 
     /// No kinks as yet.
     fn edge_alone(&self) -> VirginStrokes<'_> {
         let beyond = InwardSum::new(self.profile, self.edge.radius, self.reversals);
-        VirginStrokes { problem: self, kinks: Vec::with_capacity(self.reversals), beyond }
+        VirginStrokes { problem: self, kinks: Vec::with_capacity(self.reversals), beyond, excess: None }
     }
 
     /// The first level below the last kink where the stress meets `limit`, if there is one beyond the cut-off.
@@ -161,114 +156,101 @@ impl Problem<'_> {
         most.max(largest(beside, BRACKET, value).1)
     }
 
-    pub(super) fn march(&self, limit: f64, keep_going: &dyn Fn() -> bool) -> Option<KinkSequence> {
-        self.march_with(limit, (0, 1.0), keep_going)
+    /// The kinks for one E; `None` if `keep_going` returned false.
+    pub(super) fn march(&self, limit: f64, keep_going: &dyn Fn() -> bool) -> Option<VirginStrokes<'_>> {
+        self.march_with(limit, 1.0, keep_going)
     }
 
-    /// The same with a share of the limit for the extremum of this index, the outermost first.
+    /// The same with a share of the limit for the outermost extremum.
     pub(super) fn march_with(
         &self,
         limit: f64,
-        (index, share): (usize, f64),
+        share: f64,
         keep_going: &dyn Fn() -> bool,
-    ) -> Option<KinkSequence> {
+    ) -> Option<VirginStrokes<'_>> {
         let mut strokes = self.edge_alone();
         while strokes.kinks.len() < self.reversals {
             if !keep_going() {
                 return None;
             }
-            match self.next(&strokes, if strokes.kinks.len() == index { share * limit } else { limit }) {
+            match self.next(&strokes, if strokes.kinks.is_empty() { share * limit } else { limit }) {
                 Some(kink) => strokes.turn_at(kink),
-                None => return Some(KinkSequence { kinks: strokes.kinks, excess: None }),
+                None => return Some(strokes),
             }
         }
-        let excess = self.core(&strokes) / limit - 1.0;
-        Some(KinkSequence { kinks: strokes.kinks, excess: Some(excess) })
-    }
-
-    /// Closes the bracket of an E that is too small and one that is not.
-    fn close(
-        &self,
-        low: f64,
-        under: Option<f64>,
-        high: &mut f64,
-        best: &mut KinkSequence,
-        keep_going: &dyn Fn() -> bool,
-    ) -> Option<()> {
-        // Where fewer kinks are enough, the core has no stress.
-        let excess = |excess: Option<f64>| excess.unwrap_or(-1.0);
-        let ends = [(low, excess(under)), (*high, excess(best.excess))];
-        let mut stopped = false;
-        between(ends, TOLERANCE * *high, |trial| match self.march(trial, keep_going) {
-            Some(marched) => {
-                let found = excess(marched.excess);
-                if found <= 0.0 && trial < *high {
-                    *high = trial;
-                    *best = marched;
-                }
-                // The one that fits is kept, so that a little too much stress goes on.
-                if (-TOLERANCE..=0.0).contains(&found) { 0.0 } else { found }
-            }
-            None => {
-                stopped = true;
-                0.0
-            }
-        });
-        (!stopped).then_some(())
+        strokes.excess = Some(self.core(&strokes) / limit - 1.0);
+        Some(strokes)
     }
 
     /// The smallest E, and its kinks; `None` if `keep_going` returned false, or there is no such E.
     pub(super) fn solve(&self, keep_going: &dyn Fn() -> bool) -> Option<EqualExtrema> {
         let middle = StressRadius::new(0.5 * (self.cutoff + self.edge.radius));
         let guess = self.edge_alone().shear(&middle) / (self.reversals as f64).sqrt();
-        if !(guess > 0.0 && guess.is_finite()) {
-            return None;
-        }
-        let (mut low, mut high) = (guess, guess);
-        let mut best = self.march(high, keep_going)?;
-        let mut under = best.excess;
-        for _ in 0..MAX_EVALUATIONS {
-            if best.fits() {
-                break;
-            }
-            (low, under) = (high, best.excess);
-            high *= STRIDE;
-            best = self.march(high, keep_going)?;
-        }
-        for _ in 0..MAX_EVALUATIONS {
-            if low < high {
-                break;
-            }
-            let trial = self.march(low / STRIDE, keep_going)?;
-            low /= STRIDE;
-            if trial.fits() {
-                (high, low, best) = (low, low, trial);
-            } else {
-                under = trial.excess;
-            }
-        }
-        if !best.fits() || low >= high {
-            return None;
-        }
-        self.close(low, under, &mut high, &mut best, keep_going)?;
-        // The core need not fall all the way as E rises: a little lower there may be another one that fits.
-        for _ in 0..BELOW {
-            let trial = high * (1.0 - STEP_BELOW);
-            let marched = self.march(trial, keep_going)?;
-            if marched.excess.is_some_and(|excess| excess <= 0.0) {
-                let lower = trial * (1.0 - STEP_BELOW);
-                let under = self.march(lower, keep_going)?;
-                (high, best) = (trial, marched);
-                if !under.fits() {
-                    self.close(lower, under.excess, &mut high, &mut best, keep_going)?;
-                }
-            } else {
-                break;
-            }
-        }
-        let mut strokes = self.edge_alone();
-        best.kinks.iter().for_each(|kink| strokes.turn_at(*kink));
-        let ratio = (self.core(&strokes) / high).clamp(0.0, 1.0);
-        Some(EqualExtrema { levels: best.kinks.iter().map(|kink| kink.level.value()).collect(), ratio, limit: high })
+        let (limit, strokes) = smallest(guess, TOLERANCE, None, |limit| {
+            let strokes = self.march(limit, keep_going)?;
+            // Where fewer kinks are enough, the core has no stress.
+            Some((strokes.excess.unwrap_or(-1.0), Some(strokes)))
+        })?;
+        let ratio = (self.core(&strokes) / limit).clamp(0.0, 1.0);
+        Some(EqualExtrema { kinks: strokes.kinks, ratio, limit })
     }
+}
+
+/// The smallest largest stress E that strokes keep to, and these strokes. `march` gives the strokes for an E, if there
+/// are any, and by how much what they leave exceeds it, over it: below zero where fewer strokes are enough. `None` if it
+/// was stopped, or no E fits.
+///
+/// Too large an E can be as wrong as too small a one if strokes are to end somewhere: with a `pace`, a factor, E is
+/// sought to both sides of the guess, in steps of that.
+pub(super) fn smallest<T>(
+    guess: f64,
+    tolerance: f64,
+    pace: Option<f64>,
+    mut march: impl FnMut(f64) -> Option<(f64, Option<T>)>,
+) -> Option<(f64, T)> {
+    if !(guess > 0.0 && guess.is_finite()) {
+        return None;
+    }
+    let (mut best, mut stopped) = (None::<(f64, T)>, false);
+    let mut excess = |limit: f64| {
+        let Some((excess, strokes)) = (if stopped { None } else { march(limit) }) else {
+            stopped = true;
+            return 0.0;
+        };
+        if excess <= 0.0 && best.as_ref().is_none_or(|(least, _)| limit < *least) {
+            best = strokes.map(|strokes| (limit, strokes)).or(best.take());
+        }
+        // The one that fits is kept, so that a little too much stress goes on.
+        if (-tolerance..=0.0).contains(&excess) { 0.0 } else { excess }
+    };
+    let start = (guess, excess(guess));
+    let (mut low, mut high) = (start, start);
+    let signs: &[i32] = if pace.is_some() { &[1, -1] } else { &[1] };
+    for power in (1..=MAX_EVALUATIONS).flat_map(|power| signs.iter().map(move |sign| sign * power)) {
+        if high.1 <= 0.0 {
+            break;
+        }
+        let limit = guess * pace.unwrap_or(STRIDE).powi(power);
+        let tried = (limit, excess(limit));
+        if tried.1 <= 0.0 {
+            high = tried;
+        } else if power > 0 {
+            low = tried;
+        }
+    }
+    if high.0 <= low.0 {
+        low = high;
+    }
+    for _ in 0..MAX_EVALUATIONS {
+        if low.1 > 0.0 || low.0 < LEAST * guess {
+            break;
+        }
+        high = low;
+        low = (high.0 / STRIDE, excess(high.0 / STRIDE));
+    }
+    if high.1 > 0.0 {
+        return None;
+    }
+    between([low, high], tolerance * high.0, &mut excess);
+    Some(best?).filter(|_| !stopped)
 }

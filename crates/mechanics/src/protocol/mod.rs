@@ -15,13 +15,14 @@ mod from_any_state;
 mod minimax;
 mod robustness;
 
-pub use bound::{lower_bound, lower_bound_while};
+pub use bound::lower_bound;
 pub use design::{AmplitudeLaw, Design, EvaluationRange, FirstMove, PathEnd, PathStart, design};
 pub use robustness::{ExecutionErrors, trials};
 
 use equal_peak_measure::EqualPeakMeasure;
 use minimax::Problem;
 
+use super::profile::Point;
 use super::range::Quantity;
 use super::unit_prefix::short;
 use super::{Contact, DoubleDouble, Error, Profile};
@@ -179,22 +180,30 @@ fn minimax_to(
     }
     let problem = Problem { profile: &contact.profile, edge, cutoff: cutoff_radius, reversals };
     let Some(equal) = problem.solve(keep_going) else { return Vec::new() };
-    let levels: Vec<Vec<f64>> = if end == PathEnd::Free {
-        vec![equal.levels]
+    let found = if end == PathEnd::Free {
+        vec![equal.kinks]
     } else {
-        let found = end_constraint::kinks(&problem, equal.limit, first / contact.scale(), end, keep_going);
-        found.iter().map(|kinks| kinks.iter().map(|kink| kink.level.value()).collect()).collect()
+        end_constraint::kinks(&problem, equal.limit, first / contact.scale(), end, keep_going)
     };
-    let path = |levels: Vec<f64>| {
-        let mut displacements = vec![first];
-        let mut here = DoubleDouble::from(first);
-        for (index, level) in levels.iter().rev().enumerate() {
-            // A stroke slips from the level on where it is twice the bound there.
-            let stroke = DoubleDouble::from(2.0 * contact.scale()) * (edge.level - DoubleDouble::from(*level)).value();
-            here = if index.is_multiple_of(2) { here - stroke } else { here + stroke };
-            displacements.push(here.value());
-        }
+    let path = |kinks: Vec<Point>| {
+        // The stroke after the first goes back.
+        let scale = alternating(kinks.len(), contact.scale());
+        let mut displacements = positions(first / scale, edge.level, &kinks);
+        displacements.iter_mut().for_each(|displacement| *displacement *= scale);
+        displacements[0] = first;
         Minimax { displacements, cutoff_radius, gap: 1.0 - equal.ratio }
     };
-    levels.into_iter().map(path).collect()
+    found.into_iter().map(path).collect()
+}
+
+/// Where strokes from `first` on that slip down to kinks, the innermost first, lead to, scaled by m, if the last of them
+/// goes forwards: a stroke slips from the level on where it is twice the bound there.
+fn positions(first: f64, edge: DoubleDouble, kinks: &[Point]) -> Vec<f64> {
+    let mut here = DoubleDouble::from(first);
+    let mut positions = vec![first];
+    for (index, kink) in kinks.iter().enumerate().rev() {
+        here = here + ((edge - kink.level) * 2.0).signed(alternating(index, 1.0));
+        positions.push(here.value());
+    }
+    positions
 }

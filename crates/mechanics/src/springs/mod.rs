@@ -81,18 +81,20 @@ pub fn largest_contact_radius<P: Into<Arc<Profile>> + Clone>(
     Ok(reach)
 }
 
+/// ```
+#[doc = include_str!("../example.txt")]
+/// let mut springs = Springs::new(setup, 1000, 0.1)?;
+/// assert!((springs.normal_force() / contact.normal_force() - 1.0).abs() < 1e-5);
+/// springs.apply(&slide(0.00375))?;
+/// contact.apply(&slide(0.00375))?;
+/// assert!((springs.force() / contact.force() - 1.0).abs() < 1e-5);
+/// # Ok::<(), Error>(())
+/// ```
 impl Springs {
     /// A virgin contact on `count` springs over twice `reach`, m, the largest contact radius to come.
     ///
     /// # Errors
     /// Those of [`Contact::new`], and [`Error::OutOfRange`] by [`range::SPRING_COUNT`].
-    ///
-    /// ```
-    #[doc = include_str!("../example.txt")]
-    /// let springs = Springs::new(setup, 1000, 0.1)?;
-    /// assert!((springs.normal_force() / contact.normal_force() - 1.0).abs() < 1e-5);
-    /// # Ok::<(), Error>(())
-    /// ```
     pub fn new<P: Into<Arc<Profile>>>(setup: Setup<P>, count: usize, reach: f64) -> Result<Springs, Error> {
         range::SPRING_COUNT.check(count as f64)?;
         let setup = setup.shared();
@@ -161,15 +163,6 @@ impl Springs {
     ///
     /// # Errors
     /// As [`Contact::apply`].
-    ///
-    /// ```
-    #[doc = include_str!("../example.txt")]
-    /// let mut springs = Springs::new(setup, 1000, 0.1)?;
-    /// springs.apply(&slide(0.00375))?;
-    /// contact.apply(&slide(0.00375))?;
-    /// assert!((springs.force() / contact.force() - 1.0).abs() < 1e-5);
-    /// # Ok::<(), Error>(())
-    /// ```
     pub fn apply(&mut self, step: &Move) -> Result<(), Error> {
         match (step.normal, step.tangential) {
             (Some(Normal::NormalForce(_)), Some(_)) => {

@@ -6,6 +6,15 @@ use super::{Spring, Springs};
 /// The largest number of radii of the search for extrema.
 const SCAN: usize = 2000;
 
+/// ```
+#[doc = include_str!("../example.txt")]
+/// let mut springs = Springs::new(setup, 1000, 0.1)?;
+/// assert_eq!((springs.slip(0.05), springs.slip(0.2)), (Some(0.0), None));
+/// springs.apply(&slide(1.0))?;
+/// contact.apply(&slide(1.0))?;
+/// assert!((springs.shear(0.03) / contact.shear(0.03) - 1.0).abs() < 1e-3);
+/// # Ok::<(), Error>(())
+/// ```
 impl Springs {
     /// Pressure, Pa, at a radius, m.
     #[must_use]
@@ -14,15 +23,6 @@ impl Springs {
     }
 
     /// Shear stress, Pa, at a radius, m.
-    ///
-    /// ```
-    #[doc = include_str!("../example.txt")]
-    /// let mut springs = Springs::new(setup, 1000, 0.1)?;
-    /// springs.apply(&slide(1.0))?;
-    /// contact.apply(&slide(1.0))?;
-    /// assert!((springs.shear(0.03) / contact.shear(0.03) - 1.0).abs() < 1e-3);
-    /// # Ok::<(), Error>(())
-    /// ```
     #[must_use]
     pub fn shear(&self, radius: f64) -> f64 {
         let room = self.scale() * self.rim_depth();
@@ -80,13 +80,6 @@ impl Springs {
     }
 
     /// Slip under the indenter, m, at a radius, m; none outside the contact.
-    ///
-    /// ```
-    #[doc = include_str!("../example.txt")]
-    /// let springs = Springs::new(setup, 1000, 0.1)?;
-    /// assert_eq!((springs.slip(0.05), springs.slip(0.2)), (Some(0.0), None));
-    /// # Ok::<(), Error>(())
-    /// ```
     #[must_use]
     pub fn slip(&self, radius: f64) -> Option<f64> {
         let touched = self.indentation > 0.0 && radius <= self.contact_radius();

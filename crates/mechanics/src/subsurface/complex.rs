@@ -1,9 +1,9 @@
 //! The few operations on complex numbers that the potentials need.
 
-use std::ops::{Add, Div, Mul, Neg, Sub};
+use std::ops::{Add, Mul, Neg, Sub};
 
 /// A complex number.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug)]
 pub(super) struct Complex {
     /// The real part.
     pub(super) re: f64,
@@ -72,21 +72,5 @@ impl Mul<Complex> for f64 {
 
     fn mul(self, other: Complex) -> Complex {
         Complex::new(self * other.re, self * other.im)
-    }
-}
-
-impl Div<f64> for Complex {
-    type Output = Complex;
-
-    fn div(self, other: f64) -> Complex {
-        Complex::new(self.re / other, self.im / other)
-    }
-}
-
-impl Add<Complex> for f64 {
-    type Output = Complex;
-
-    fn add(self, other: Complex) -> Complex {
-        Complex::new(self + other.re, other.im)
     }
 }

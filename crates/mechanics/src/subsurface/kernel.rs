@@ -30,18 +30,12 @@ pub(super) struct DeepPlace {
 }
 
 impl DeepPlace {
-    /// zeta and rho for the source at t = r + `offset`, which is given by the offset to keep the digits of rho near the
-    /// surface.
-    pub(super) fn source(&self, offset: f64) -> (Complex, Complex) {
-        let t = self.r + offset;
-        let square = Complex::new(self.z * self.z - offset * (self.r + t), 2.0 * self.z * t);
-        (Complex::new(self.z, t), square.root())
-    }
-
-    /// The functions for a unit of slope at t = r + `offset`.
+    /// The functions for a unit of slope at t = r + `offset`, which is given by the offset to keep the digits of rho near
+    /// the surface.
     pub(super) fn kernels(&self, offset: f64) -> (NormalKernels, TangentialKernels) {
         let DeepPlace { r, z, poisson: nu } = *self;
-        let (zeta, rho) = self.source(offset);
+        let (zeta, square) = (Complex::new(z, r + offset), z * z - offset * (r + (r + offset)));
+        let rho = Complex::new(square, 2.0 * z * (r + offset)).root();
         let (one, s) = (rho.inverse(), (rho + zeta).inverse());
         let (both, cube) = (one * s, one * one * one);
         // D L1, D^2 L1; D L2, D^2 L2, D^3 L2; D^2 L3, D^3 L3.

@@ -7,6 +7,7 @@
 //! takes the root away. Over a tree's node that is half as long as its distance, 16 Chebyshev points stand for all
 //! below it: what they leave is 8^-16.
 
+use crate::numerics::cluster_tree::{Cluster, ClusterTree};
 use crate::numerics::gauss;
 use crate::profile::{Profile, Ring};
 
@@ -31,24 +32,29 @@ pub(super) struct Source {
     pub(super) tangential: f64,
 }
 
-/// A stretch of radii over which g is analytic and the shear has one slope, or many of them.
+/// A stretch of radii over which g is analytic and the shear has one slope.
 #[derive(Clone, Debug)]
-struct MeshNode {
-    low: f64,
-    high: f64,
-    /// -dw/dy; only of a panel.
+struct MeshPanel {
+    /// -dw/dy.
     share: f64,
     /// Whether g goes like the root of t - low at the lower end.
     rooted: bool,
-    /// Empty where the panels below have fewer points.
+    stretch: Stretch,
+}
+
+/// What stands for the panels of a stretch where it is far.
+#[derive(Clone, Debug)]
+struct Stretch {
+    low: f64,
+    high: f64,
     sources: Vec<Source>,
-    below: Option<Box<[MeshNode; 2]>>,
 }
 
 /// Both distributions of a contact.
 #[derive(Clone, Debug)]
 pub(super) struct Mesh {
-    root: Option<MeshNode>,
+    panels: Vec<MeshPanel>,
+    tree: ClusterTree<Stretch>,
     /// Levels at a vertical edge.
     edge: Option<Source>,
 }
@@ -80,7 +86,11 @@ impl Mesh {
         }
         let mut panels = resolution.panels;
         panels.reverse();
-        Mesh { root: gather(panels), edge: Some(edge).filter(|edge| edge.normal > 0.0) }
+        let tree = ClusterTree::new(panels.len(), 1, |items, halves| match halves {
+            Some(halves) => Stretch::of_both(halves),
+            None => panels[items.start].stretch.clone(),
+        });
+        Mesh { panels, tree, edge: Some(edge).filter(|edge| edge.normal > 0.0) }
     }
 
     /// Calls `visit(t - r, source)` for all that acts at the distance r from the axis and the depth z, over the contact
@@ -92,8 +102,21 @@ impl Mesh {
         (r, z): (f64, f64),
         mut visit: impl FnMut(f64, &Source),
     ) {
-        if let Some(root) = &self.root {
-            root.visit(r, z, &mut visit, &mut |panel, visit| near(profile, radius, panel, (r, z), visit));
+        let mut nears = Vec::with_capacity(4);
+        let mut far = |cluster: &Cluster<Stretch>| {
+            let Stretch { low, high, sources } = &cluster.sources;
+            let (length, away) = (high - low, distance(*low, *high, r, z));
+            let times = if cluster.halves.is_some() { 2.0 } else { 1.0 };
+            // A rise at one radius lies somewhere within the rounding of that radius, where it is no peak.
+            let (within, taken) = (length <= 0.0 && away <= 0.0, away >= times * length);
+            if taken && !within {
+                sources.iter().for_each(|source| visit(source.t - r, source));
+            }
+            taken
+        };
+        self.tree.visit(0..self.panels.len(), &mut far, &mut |items| nears.push(items.start));
+        for index in nears {
+            near(profile, radius, &self.panels[index], (r, z), &mut visit);
         }
         if let Some(edge) = &self.edge {
             visit(edge.t - r, edge);
@@ -110,7 +133,7 @@ struct Resolution<'a> {
     slack: f64,
     /// How often a panel may still be halved.
     spare: usize,
-    panels: Vec<MeshNode>,
+    panels: Vec<MeshPanel>,
 }
 
 impl Resolution<'_> {
@@ -140,10 +163,10 @@ impl Resolution<'_> {
     }
 
     /// A rise of g, m, at one radius, m.
-    fn at(&self, radius: f64, share: f64, rise: f64) -> MeshNode {
+    fn at(&self, radius: f64, share: f64, rise: f64) -> MeshPanel {
         let t = radius / self.radius;
         let sources = vec![Source { t, normal: rise, tangential: rise * share }];
-        MeshNode { low: t, high: t, share, rooted: false, sources, below: None }
+        MeshPanel { share, rooted: false, stretch: Stretch { low: t, high: t, sources } }
     }
 
     /// Appends the panels of a stretch of radii, m.
@@ -174,7 +197,8 @@ impl Resolution<'_> {
                         source.tangential *= rise / sum;
                     }
                 }
-                self.panels.push(MeshNode { low: ends.0, high: ends.1, share, rooted, sources, below: None });
+                let stretch = Stretch { low: ends.0, high: ends.1, sources };
+                self.panels.push(MeshPanel { share, rooted, stretch });
                 return;
             }
         }
@@ -193,20 +217,15 @@ fn sources(profile: &Profile, radius: f64, (low, high): (f64, f64), rooted: bool
         .collect()
 }
 
-/// The tree over panels in order of their radii.
-fn gather(mut panels: Vec<MeshNode>) -> Option<MeshNode> {
-    if panels.len() <= 1 {
-        return panels.pop();
+impl Stretch {
+    /// Two stretches, the inner one first.
+    fn of_both([inner, outer]: [&Stretch; 2]) -> Stretch {
+        let (low, high) = (inner.low, outer.high);
+        let all = [&inner.sources[..], &outer.sources[..]].concat();
+        let long = high - low > CLOSEST * high;
+        let sources = if long && all.len() > CHEBYSHEV { condense(low, high, &all) } else { all };
+        Stretch { low, high, sources }
     }
-    let outer = panels.split_off(panels.len() / 2);
-    let (inner, outer) = (gather(panels)?, gather(outer)?);
-    let (low, high) = (inner.low, outer.high);
-    let mut all = Vec::new();
-    inner.each_source(&mut |source| all.push(*source));
-    outer.each_source(&mut |source| all.push(*source));
-    let long = high - low > CLOSEST * high;
-    let sources = if long && all.len() > CHEBYSHEV { condense(low, high, &all) } else { Vec::new() };
-    Some(MeshNode { low, high, share: 0.0, rooted: false, sources, below: Some(Box::new([inner, outer])) })
 }
 
 /// The sources at Chebyshev's points that act like `all` on every polynomial of less than the 16th degree.
@@ -233,45 +252,15 @@ fn condense(low: f64, high: f64, all: &[Source]) -> Vec<Source> {
     points
 }
 
-impl MeshNode {
-    /// What stands for the node where it is far.
-    fn each_source(&self, visit: &mut impl FnMut(&Source)) {
-        if self.sources.is_empty() {
-            for node in self.below.iter().flat_map(|below| below.iter()) {
-                node.each_source(visit);
-            }
-        } else {
-            self.sources.iter().for_each(visit);
-        }
-    }
-
-    /// Visits what is far as condensed, and gives each panel that is near to `near`.
-    fn visit<V: FnMut(f64, &Source)>(&self, r: f64, z: f64, visit: &mut V, near: &mut impl FnMut(&MeshNode, &mut V)) {
-        let away = distance(self.low, self.high, r, z);
-        match &self.below {
-            Some(_) if !self.sources.is_empty() && away >= 2.0 * (self.high - self.low) => {
-                self.sources.iter().for_each(|source| visit(source.t - r, source));
-            }
-            Some(below) => below.iter().for_each(|node| node.visit(r, z, visit, near)),
-            // A rise at one radius lies somewhere within the rounding of that radius, where it is no peak.
-            None if self.high <= self.low && away <= 0.0 => {}
-            None if away >= self.high - self.low => {
-                self.sources.iter().for_each(|source| visit(source.t - r, source));
-            }
-            None => near(self, visit),
-        }
-    }
-}
-
 /// Visits the sources of a panel too long for its distance from the branch point, in ever shorter parts.
-fn near(profile: &Profile, radius: f64, panel: &MeshNode, (r, z): (f64, f64), visit: &mut impl FnMut(f64, &Source)) {
+fn near(profile: &Profile, radius: f64, panel: &MeshPanel, (r, z): (f64, f64), visit: &mut impl FnMut(f64, &Source)) {
     let mut source = |offset: f64, weight: f64| {
         let t = r + offset;
         let normal = radius * weight * profile.slope(radius * t);
         visit(offset, &Source { t, normal, tangential: normal * panel.share });
     };
     // Ends as offsets from r, which keep their digits near it.
-    let mut parts = vec![(panel.low - r, panel.high - r, panel.rooted)];
+    let mut parts = vec![(panel.stretch.low - r, panel.stretch.high - r, panel.rooted)];
     while let Some((low, high, rooted)) = parts.pop() {
         let length = high - low;
         let touches = z <= 0.0 && (low == 0.0 || (high == 0.0 && !rooted)) && (length <= r || r <= 0.0);

@@ -50,6 +50,12 @@ impl Stress {
         self.components().iter().all(|component| component.is_finite())
     }
 
+    /// The root of the sum of the squares of all nine components, Pa.
+    pub(crate) fn norm(&self) -> f64 {
+        let Stress { xx, yy, zz, xy, yz, xz } = *self;
+        (xx * xx + yy * yy + zz * zz + 2.0 * (xy * xy + yz * yz + xz * xz)).sqrt()
+    }
+
     /// Mean of the normal stresses, Pa.
     #[must_use]
     pub fn hydrostatic(&self) -> f64 {

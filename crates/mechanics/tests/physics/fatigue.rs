@@ -3,9 +3,7 @@
 use std::f64::consts::{PI, SQRT_2, TAU};
 
 use proptest::prelude::*;
-use stickslip_mechanics::fatigue::{
-    Ball, Criterion, Cycle, DEFAULT_REFINEMENT, MAX_INSTANTS, Ruiz, Value, enclosing_ball,
-};
+use stickslip_mechanics::fatigue::{Ball, Criterion, Cycle, MAX_INSTANTS, Measure, Study, Value, enclosing_ball};
 use stickslip_mechanics::protocol::falling_amplitude;
 use stickslip_mechanics::range::Quantity;
 use stickslip_mechanics::subsurface::Side;
@@ -421,10 +419,11 @@ fn the_published_figures_of_a_sphere_moved_to_and_fro() {
     let dang_van = Criterion::DangVan { alpha: 0.3 }.of(path).value;
     assert!((dang_van - 0.313_215_178_853).abs() < 1e-11, "{dang_van}");
     for criterion in [Criterion::DangVan { alpha: 0.3 }, Criterion::Findley { k: 0.3 }] {
-        let refined = cycle.refined(&criterion, BODY, PLACE, DEFAULT_REFINEMENT, &|| true).unwrap();
-        let full = criterion.of(path).value;
-        assert!((refined.value.value / full - 1.0).abs() < 2e-4, "{refined:?} {full}");
-        assert!(refined.change <= DEFAULT_REFINEMENT && refined.instants < MAX_INSTANTS);
+        let measures = vec![Measure::Stress(criterion)];
+        let found = Study::new(&cycle, BODY, None, measures, 1e-4, &|| true).unwrap().rate_all(&[PLACE]).unwrap();
+        let (rated, full) = (found.largest[0].unwrap().rated, criterion.of(path).value);
+        assert!((rated.value / full - 1.0).abs() < 2e-4, "{rated:?} {full}");
+        assert!(rated.error <= 1e-4 * rated.value && found.instants < MAX_INSTANTS);
     }
 }
 
@@ -494,13 +493,4 @@ fn a_cycle_can_be_interrupted() {
     let cycle = cycle(&moves).unwrap();
     assert!(matches!(cycle.states(4, &|| false), Err(Error::Interrupted)));
     assert_eq!(cycle.stress_paths(4, BODY, &[PLACE], &|| false), Err(Error::Interrupted));
-}
-
-#[test]
-fn ruiz_multiplies_half_ranges_by_the_largest_tension() {
-    let ruiz = Ruiz::of(&[3.0, -1.0], &[0.5, 0.0, -0.5], &[-4.0, 6.0]);
-    assert_eq!((ruiz.fretting_damage, ruiz.crack_initiation), (1.0, 6.0));
-    let pressed = Ruiz::of(&[3.0, -1.0], &[0.5, -0.5], &[-4.0, -6.0]);
-    assert_eq!((pressed.fretting_damage, pressed.crack_initiation), (1.0, 0.0));
-    assert_eq!(Ruiz::of(&[], &[], &[]), Ruiz { fretting_damage: 0.0, crack_initiation: 0.0 });
 }

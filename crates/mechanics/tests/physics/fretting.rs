@@ -40,6 +40,31 @@ fn rated(cycle: &Cycle, measures: Vec<Measure>, tolerance: f64, places: &[[f64; 
     Study::new(cycle, BODY, None, measures, tolerance, &|| true).unwrap().rate_all(places).unwrap()
 }
 
+#[test]
+fn ruiz_multiplies_half_ranges_by_the_largest_tension() {
+    let contact = steel(sphere(0.01), 0.5, 1e-4);
+    let slide = 0.7 * contact.gross_slip_displacement();
+    let cycle = Cycle::new(&contact, &[displace(slide), displace(-0.5 * slide)], &|| true).unwrap();
+    let states = cycle.states(1000, &|| true).unwrap();
+    let places = [[0.9e-4, 0.0, 0.0], [-0.97e-4, 0.0, 0.0], [0.0, 0.8e-4, 0.0], [1e-6, 0.0, 0.0]];
+    let found = rated(&cycle, vec![Measure::Ruiz, Measure::RuizTension], 1e-4, &places);
+    for (index, place) in places.into_iter().enumerate() {
+        let radius = place[0].hypot(place[1]);
+        let ends = |of: &dyn Fn(&Contact) -> f64| {
+            let values = states.iter().map(of);
+            values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| [low.min(value), high.max(value)])
+        };
+        let half = |[low, high]: [f64; 2]| 0.5 * (high - low);
+        let damage = half(ends(&|state| state.shear(radius))) * half(ends(&|state| state.slip(radius).unwrap()));
+        let tension = ends(&|state| state.subsurface(BODY.0, BODY.1).unwrap().at(place).xx)[1].max(0.0);
+        let (one, other) = (found.values[0][index], found.values[1][index]);
+        assert!((one - damage).abs() <= 2e-3 * damage, "{place:?}: {one:e} {damage:e}");
+        assert!((other - tension * damage).abs() <= 4e-3 * tension * damage, "{place:?}: {other:e}");
+    }
+    // Nothing slips at the centre, and before the contact the surface is drawn apart.
+    assert!(found.values[0][3] == 0.0 && found.values[1][..2].iter().any(|value| *value > 0.0));
+}
+
 /// The stresses of a place over a cycle of straight moves, at so many instants that the curve is within `sag` of the
 /// chords between them, and these shorter than `length`, Pa.
 fn curve(cycle: &Cycle, place: [f64; 3], moves: &[Move], (sag, length): (f64, f64)) -> Vec<Stress> {

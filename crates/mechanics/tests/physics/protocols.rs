@@ -5,11 +5,9 @@ use std::f64::consts::PI;
 use crate::support::{config, follow, power, pressed, sphere};
 use proptest::prelude::*;
 use stickslip_mechanics::profile::{Cone, ExactSphere, FlatPunch, RoundedCone, RoundedPunch, Sum, Tabulated};
-use stickslip_mechanics::protocol::{
-    AmplitudeLaw, Design, EvaluationRange, FirstMove, PathEnd, PathStart, design, lower_bound, lower_bound_while,
-};
+use stickslip_mechanics::protocol::{AmplitudeLaw, Design, EvaluationRange, FirstMove, PathEnd, PathStart, design};
 use stickslip_mechanics::range::Quantity;
-use stickslip_mechanics::{Contact, Error, Move, Normal, Profile, Tangential};
+use stickslip_mechanics::{Contact, Error, Move, Normal, Profile, Tangential, protocol};
 
 fn table() -> Profile {
     let radii: Vec<f64> = (0..=20).map(|index| 0.9 * f64::from(index) / 20.0).collect();
@@ -24,6 +22,10 @@ fn sum() -> Profile {
 /// The law from gross slip at its full amplitude.
 fn of(contact: &Contact, kind: AmplitudeLaw, reversals: usize, end: PathEnd) -> Design {
     design(contact, PathStart::Displacement(contact.gross_slip_displacement()), kind, reversals, end, &|| true).unwrap()
+}
+
+fn lower_bound(contact: &Contact, reversals: usize) -> f64 {
+    protocol::lower_bound(contact, reversals, &|| true).unwrap()
 }
 
 fn unit(contact: &Contact) -> f64 {
@@ -207,14 +209,14 @@ fn many_reversals_are_proven_to_leave_more_than_half_of_minimax() {
 #[test]
 fn the_search_for_a_bound_ends_when_it_is_stopped() {
     let contact = pressed(sphere(10.0));
-    assert_eq!(lower_bound_while(&contact, 3, || false), None);
+    assert_eq!(protocol::lower_bound(&contact, 3, &|| false), None);
     let left = std::cell::Cell::new(10);
     let some = || {
         left.set(left.get() - 1);
         left.get() > 0
     };
-    assert_eq!(lower_bound_while(&contact, 4, some), None);
-    assert_eq!(lower_bound_while(&contact, 4, || true), Some(lower_bound(&contact, 4)));
+    assert_eq!(protocol::lower_bound(&contact, 4, &some), None);
+    assert_eq!(protocol::lower_bound(&contact, 4, &|| true), Some(lower_bound(&contact, 4)));
 }
 
 proptest! {

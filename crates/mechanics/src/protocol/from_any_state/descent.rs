@@ -7,7 +7,7 @@
 
 use fastrand::Rng;
 
-use super::linear_program::Step;
+use super::linear_program::{Linear, lowest};
 
 /// Sequences that are tried at first, and those of them that a descent begins from.
 const TRIED: usize = 96;
@@ -27,39 +27,39 @@ pub(super) struct Trial {
     /// The unknowns, the outermost first: none is above the one before, or outside 0 to 1.
     pub(super) levels: Vec<f64>,
     /// The stresses.
-    pub(super) stresses: Vec<(f64, Vec<f64>)>,
+    pub(super) stresses: Vec<Linear>,
     /// By how much the end is missed.
-    pub(super) miss: (f64, Vec<f64>),
+    pub(super) miss: Linear,
 }
 
 impl Trial {
     fn largest(&self) -> f64 {
-        self.stresses.iter().map(|(stress, _)| stress.abs()).fold(0.0, f64::max)
+        self.stresses.iter().map(|stress| stress.value.abs()).fold(0.0, f64::max)
     }
 
     fn merit(&self, penalty: f64) -> f64 {
-        self.largest() + penalty * self.miss.0.abs()
+        self.largest() + penalty * self.miss.value.abs()
     }
 
     /// The step that the tangents promise most of within a distance, and the merit that they promise.
     fn step(&self, far: f64, penalty: f64) -> Option<(Vec<f64>, f64)> {
-        let count = self.levels.len();
-        let negative =
-            |(value, slope): &(f64, Vec<f64>)| (-value, slope.iter().map(|part| -part).collect::<Vec<f64>>());
-        let both = |function: &(f64, Vec<f64>)| [function.clone(), negative(function)];
-        let order = |index: usize| {
-            let mut slope = vec![0.0; count];
-            (slope[index], slope[index + 1]) = (-1.0, 1.0);
-            (self.levels[index + 1] - self.levels[index], slope)
+        let levels = &self.levels;
+        let penalties: &[f64] = if penalty > 0.0 { &[penalty, -penalty] } else { &[0.0] };
+        let signs = [1.0, -1.0].into_iter().flat_map(|sign| penalties.iter().map(move |penalty| (sign, *penalty)));
+        let rows = signs.flat_map(|(sign, penalty)| {
+            self.stresses.iter().map(move |stress| stress.combined(sign, &self.miss, penalty))
+        });
+        let limit = |value: f64, parts: &[(usize, f64)]| {
+            let mut slope = vec![0.0; levels.len()];
+            parts.iter().for_each(|(index, part)| slope[*index] = *part);
+            Linear { value, slope }
         };
-        let step = Step {
-            rows: self.stresses.iter().flat_map(both).collect(),
-            penalised: if penalty > 0.0 { both(&self.miss).to_vec() } else { Vec::new() },
-            penalty,
-            bounds: self.levels.iter().map(|level| ((-level).max(-far), (1.0 - level).min(far))).collect(),
-            limits: (1..count).map(|index| order(index - 1)).collect(),
-        };
-        step.solve()
+        let bounds = levels.iter().enumerate().flat_map(|(index, level)| {
+            [limit(-(1.0 - level).min(far), &[(index, 1.0)]), limit((-level).max(-far), &[(index, -1.0)])]
+        });
+        let order = |index: usize| limit(levels[index] - levels[index - 1], &[(index - 1, -1.0), (index, 1.0)]);
+        let limits: Vec<Linear> = bounds.chain((1..levels.len()).map(order)).collect();
+        lowest(&rows.collect::<Vec<Linear>>(), &limits)
     }
 }
 

@@ -17,8 +17,9 @@ mod search;
 use super::super::normal::load;
 use super::super::profile::{Point, Ring, StressRadius};
 use super::super::slip_history::Line;
-use super::minimax::Problem;
-use super::{Contact, DoubleDouble, PathEnd, alternating, cutoff_of, outermost_singular};
+use super::minimax::{Problem, smallest};
+use super::{Contact, DoubleDouble, PathEnd, Profile, alternating, cutoff_of, outermost_singular, positions};
+use crate::numerics::roots::{largest, turning};
 
 /// A slip history of more pieces is refused, because each piece is evaluated for every E.
 const MAX_DEPTH: usize = 256;
@@ -27,16 +28,12 @@ const GRID: usize = 64;
 const CUTS: usize = 16;
 /// Up to this many strokes all sequences are searched; from more the search would take longer than it gains.
 const SEARCHED: usize = 6;
-/// Halvings of a bracket.
-const HALVINGS: usize = 60;
-/// The largest number of evaluations of E, and the factors that bracket it.
-const MAX_EVALUATIONS: usize = 48;
-const STRIDE: f64 = 1.6;
+/// The part of the stretch about the best of these to which a cut is narrowed down.
+const BRACKET: f64 = 1e-6;
+/// The factor by which E is changed until it is bracketed.
 const PACE: f64 = 1.06;
 /// Relative tolerance of E.
 const TOLERANCE: f64 = 1e-8;
-/// An E below this share of the first guess counts as zero.
-const LEAST: f64 = 1e-4;
 
 /// Strokes from the state of a contact.
 pub(super) struct FromAnyState<'a> {
@@ -111,30 +108,25 @@ impl<'a> FromAnyState<'a> {
         self.first * (self.edge - level).value() - self.stuck(level)
     }
 
-    /// How far the strokes after the first lead.
-    fn way(&self, kinks: &[Point]) -> f64 {
-        let stroke = |(index, kink): (usize, &Point)| alternating(index, 2.0 * (self.edge - kink.level).value());
-        kinks.iter().enumerate().map(stroke).sum::<f64>() - self.rim
-    }
-
     /// int w dx at the end, m^2, for a cut at a point.
     fn carried(&self, kinks: &[Point], cut: &Point) -> f64 {
         let load = |ring: &Ring| load(self.problem.profile, ring);
-        let (mut outer, mut sign, mut sum) = (self.problem.edge, 1.0, 0.0);
-        for inner in kinks.iter().chain([cut]) {
-            sum += sign * load(&Ring::between(*inner, outer));
-            (outer, sign) = (*inner, -sign);
-        }
-        sum + self.inside(cut).map(|(ring, slope)| slope * load(&ring)).sum::<f64>()
+        let inside = self.inside(cut);
+        let whole = self.history[..inside.whole].iter().map(|(ring, line)| (*ring, self.pull(line)));
+        let kept: f64 = whole.chain(inside.part).map(|(ring, slope)| slope * load(&ring)).sum();
+        self.problem.sum_down_to(*cut, kinks, load) + kept
     }
 
-    /// The rings of the history inside a cut, with the sign of the stress that they make.
-    fn inside(&self, cut: &Point) -> impl Iterator<Item = (Ring, f64)> {
-        let kept = self.history.iter().filter(|(ring, _)| ring.inner.level < cut.level);
-        kept.map(|(ring, line)| {
-            let outer = if ring.outer.level < cut.level { ring.outer } else { *cut };
-            (Ring::between(ring.inner, outer), -self.last * line.slope.value())
-        })
+    /// The stress of a piece of the history over its kernel, for a last stroke forwards.
+    fn pull(&self, line: &Line) -> f64 {
+        -self.last * line.slope.value()
+    }
+
+    /// The history inside a cut.
+    fn inside(&self, cut: &Point) -> Inside {
+        let whole = self.history.partition_point(|(ring, _)| ring.inner.level < cut.level).saturating_sub(1);
+        let part = self.history.get(whole).filter(|(ring, _)| ring.inner.level < cut.level);
+        Inside { whole, part: part.map(|(ring, line)| (Ring::between(ring.inner, *cut), self.pull(line))) }
     }
 
     /// The residual of the end with a cut at a level, in the direction of the first stroke: it falls as the cut goes
@@ -142,7 +134,7 @@ impl<'a> FromAnyState<'a> {
     fn miss(&self, kinks: &[Point], level: DoubleDouble) -> f64 {
         let value = match self.end {
             PathEnd::Free => 0.0,
-            PathEnd::DisplacementZero => self.first_to(level) + self.way(kinks),
+            PathEnd::DisplacementZero => self.first_to(level) + self.problem.way(self.edge, kinks) - self.rim,
             PathEnd::ForceZero => self.carried(kinks, &self.problem.profile.point(level)),
         };
         self.first * value
@@ -151,20 +143,13 @@ impl<'a> FromAnyState<'a> {
     /// The largest stress inside the last kink, for a cut; `outside` is that of the rings beyond the kink, sample by
     /// sample.
     fn worst(&self, outside: &[f64], kinks: &[Point], cut: &Point) -> f64 {
-        let sign = if kinks.len().is_multiple_of(2) { 1.0 } else { -1.0 };
         let ring = Ring::between(*cut, *kinks.last().unwrap_or(&self.problem.edge));
         let profile = self.problem.profile;
-        let whole = self.history.partition_point(|(ring, _)| ring.inner.level < cut.level).saturating_sub(1);
-        let kept = self.history.get(whole).filter(|(ring, _)| ring.inner.level < cut.level);
-        let kept = kept.map(|(ring, line)| (Ring::between(ring.inner, *cut), -self.last * line.slope.value()));
+        let inside = self.inside(cut);
         let mut worst = 0.0_f64;
         for (sample, outside) in self.samples.iter().zip(outside) {
-            let mut stress = outside + sign * profile.kernel(&sample.at, &ring);
-            if sample.at.radius <= cut.radius {
-                let part = kept.map_or(0.0, |(ring, slope)| slope * profile.kernel(&sample.at, &ring));
-                stress += sample.below[whole] + part;
-            }
-            worst = worst.max(stress.abs());
+            let stress = outside + alternating(kinks.len(), profile.kernel(&sample.at, &ring));
+            worst = worst.max((stress + inside.stress(profile, sample)).abs());
         }
         if cut.radius > self.problem.cutoff {
             let at = StressRadius::of_point(cut);
@@ -173,85 +158,65 @@ impl<'a> FromAnyState<'a> {
         worst
     }
 
-    /// The stress, at each sample inside the last kink, of the rings beyond it.
-    fn outside(&self, kinks: &[Point]) -> Vec<f64> {
-        let Some((last, beyond)) = kinks.split_last() else {
-            return vec![0.0; self.samples.len()];
-        };
-        let inside = self.samples.iter().take_while(|sample| sample.at.radius < last.radius);
-        inside.map(|sample| self.problem.shear_down_to(*last, beyond, &sample.at)).collect()
-    }
-
-    /// The strokes of a largest stress E, if there are any; `Err` if `keep_going` returned false.
-    fn strokes(&self, limit: f64, keep_going: &dyn Fn() -> bool) -> Result<StrokeOutcome, ()> {
-        let marched = self.problem.march(limit, keep_going).ok_or(())?;
-        if marched.kinks.len() < self.problem.reversals {
-            return Ok(StrokeOutcome::Loose);
+    /// The strokes of a largest stress E, if there are any, and by how much they exceed it, over it; `None` if
+    /// `keep_going` returned false.
+    fn strokes(&self, limit: f64, keep_going: &dyn Fn() -> bool) -> Option<(f64, Option<LaterStrokes>)> {
+        let marched = self.problem.march(limit, keep_going)?;
+        if marched.excess.is_none() {
+            return Some((-1.0, None));
         }
+        let inside = self.samples.iter().take_while(|sample| sample.at.radius < marched.last().radius);
+        let outside: Vec<f64> = inside.map(|sample| marched.beyond.at(&sample.at)).collect();
         let kinks = marched.kinks;
-        let outside = self.outside(&kinks);
-        let Some((cut, first)) = (if self.end == PathEnd::Free {
-            let cut = self.free_cut(limit, &outside, &kinks, keep_going);
+        let found = if self.end == PathEnd::Free {
+            let cut = self.free_cut(&outside, &kinks);
             Some((cut, self.first_to(cut.level)))
         } else {
             self.prescribed_cut(&kinks)
-        }) else {
-            return Ok(StrokeOutcome::Tight);
         };
-        let fits = self.worst(&outside, &kinks, &cut) <= limit * (1.0 + 1e-12);
-        Ok(if fits { StrokeOutcome::Fits(LaterStrokes { kinks, cut, first }) } else { StrokeOutcome::Tight })
+        let Some((cut, first)) = found else { return Some((1.0, None)) };
+        let excess = self.worst(&outside, &kinks, &cut) / limit - 1.0;
+        Some((excess, Some(LaterStrokes { kinks, cut, first })))
     }
 
     /// The cut that leaves least inside the last kink.
-    fn free_cut(&self, limit: f64, outside: &[f64], kinks: &[Point], keep_going: &dyn Fn() -> bool) -> Point {
+    fn free_cut(&self, outside: &[f64], kinks: &[Point]) -> Point {
         let profile = self.problem.profile;
         let outermost = kinks.last().unwrap_or(&self.problem.edge);
         let cut = |radius: f64| profile.point(DoubleDouble::from(profile.level(radius).min(outermost.level.value())));
-        let worst = |radius: f64| self.worst(outside, kinks, &cut(radius));
+        let relief = |radius: f64| -self.worst(outside, kinks, &cut(radius));
         // Between the kinks of the history, each of which may be as near to the last as it likes, the stress is smooth.
         let bends = self.history.iter().map(|(ring, _)| ring.outer.radius).filter(|bend| *bend < outermost.radius);
         let bends: Vec<f64> = [0.0].into_iter().chain(bends).chain([outermost.radius]).collect();
         let parts = (CUTS / (bends.len() - 1)).max(2);
-        let mut tried = Vec::with_capacity(bends.len() * parts);
-        for pair in bends.windows(2) {
-            let radius = |index: usize| pair[0] + (pair[1] - pair[0]) * index as f64 / parts as f64;
-            tried.extend((0..parts).map(|index| (radius(index), worst(radius(index)))));
-        }
-        tried.push((outermost.radius, worst(outermost.radius)));
-        let best = (0..tried.len()).min_by(|a, b| tried[*a].1.total_cmp(&tried[*b].1)).unwrap_or(0);
-        let (mut radius, mut least) = tried[best];
-        let (low, high) = (tried[best.saturating_sub(1)].0, tried[(best + 1).min(tried.len() - 1)].0);
-        // Ever smaller steps to both sides of the best.
-        let mut step = 0.5 * (high - low);
-        while step > 1e-7 * outermost.radius && least > limit && keep_going() {
-            let sides =
-                [radius - step, radius + step].map(|side| side.clamp(low, high)).map(|side| (side, worst(side)));
-            match sides.into_iter().find(|(_, value)| *value < least) {
-                Some(side) => (radius, least) = side,
-                None => step *= 0.5,
-            }
-        }
-        cut(radius)
+        let between = |pair: &[f64]| {
+            let (low, width) = (pair[0], pair[1] - pair[0]);
+            (0..parts).map(move |index| low + width * index as f64 / parts as f64)
+        };
+        let tried: Vec<f64> = bends.windows(2).flat_map(between).chain([outermost.radius]).collect();
+        let found: Vec<f64> = tried.iter().map(|radius| relief(*radius)).collect();
+        let best = (0..tried.len()).max_by(|a, b| found[*a].total_cmp(&found[*b])).unwrap_or(0);
+        let beside = [tried[best.saturating_sub(1)], tried[(best + 1).min(tried.len() - 1)]];
+        let (radius, least) = largest(beside, BRACKET, relief);
+        cut(if least > found[best] { radius } else { tried[best] })
     }
 
     /// The cut that leads to the prescribed end, and where the first stroke leads to; `None` if no cut does.
     fn prescribed_cut(&self, kinks: &[Point]) -> Option<(Point, f64)> {
         let outermost = kinks.last().unwrap_or(&self.problem.edge).level;
-        let (mut low, mut high) = (DoubleDouble::ZERO, outermost);
-        if self.miss(kinks, high) > 0.0 {
+        let miss = |level: f64| self.miss(kinks, DoubleDouble::from(level));
+        if self.miss(kinks, outermost) > 0.0 {
             return None;
         }
-        let over = self.miss(kinks, low);
+        let over = miss(0.0);
         if over < 0.0 {
             // Sliding on as a whole changes nothing but where it ends.
-            let slides = self.end == PathEnd::DisplacementZero;
+            let (low, slides) = (DoubleDouble::ZERO, self.end == PathEnd::DisplacementZero);
             return slides.then(|| (self.problem.profile.point(low), self.first_to(low) - self.first * over));
         }
-        for _ in 0..HALVINGS {
-            let middle = low + (high - low) * 0.5;
-            if self.miss(kinks, middle) > 0.0 { low = middle } else { high = middle }
-        }
-        Some((self.problem.profile.point(high), self.first_to(high)))
+        let [_, level] = turning([0.0, outermost.value()], |level| miss(level) <= 0.0);
+        let level = DoubleDouble::from(level);
+        Some((self.problem.profile.point(level), self.first_to(level)))
     }
 
     /// The displacements, scaled by m, of the strokes that leave least, found in two ways; fewer where a way finds
@@ -269,67 +234,30 @@ impl<'a> FromAnyState<'a> {
         let middle = StressRadius::new(0.5 * (problem.cutoff + problem.edge.radius));
         let zero = problem.profile.point(DoubleDouble::ZERO);
         let guess = problem.shear_down_to(zero, &[], &middle) / (problem.reversals as f64 + 1.0).sqrt();
-        if !(guess > 0.0 && guess.is_finite()) {
-            return None;
-        }
-        let mut best = None;
-        let mut step = |limit: f64| -> Option<bool> {
-            Some(match self.strokes(limit, keep_going).ok()? {
-                StrokeOutcome::Fits(strokes) => {
-                    best = Some(strokes);
-                    true
-                }
-                StrokeOutcome::Loose => true,
-                StrokeOutcome::Tight => false,
-            })
-        };
-        let (mut high, pace, least) = if step(guess)? {
-            (guess, STRIDE, LEAST * guess)
-        } else {
-            // Where the end is prescribed, too large an E can be as wrong as too small a one: both sides are tried in
-            // small steps.
-            let found = (1..=MAX_EVALUATIONS).flat_map(|power| [power as i32, -(power as i32)]).find_map(|power| {
-                let limit = guess * PACE.powi(power);
-                match step(limit) {
-                    Some(false) => None,
-                    Some(true) => Some(Some(limit)),
-                    None => Some(None),
-                }
-            });
-            (found??, PACE, 0.0)
-        };
-        let mut low = high / pace;
-        for _ in 0..MAX_EVALUATIONS {
-            if !step(low)? {
-                break;
-            }
-            (high, low) = (low, low / pace);
-            if low < least {
-                break;
-            }
-        }
-        for _ in 0..MAX_EVALUATIONS {
-            if high - low <= TOLERANCE * high {
-                break;
-            }
-            let middle = 0.5 * (low + high);
-            if step(middle)? { high = middle } else { low = middle }
-        }
-        best
+        Some(smallest(guess, TOLERANCE, Some(PACE), |limit| self.strokes(limit, keep_going))?.1)
     }
 
     fn positions(&self, strokes: &LaterStrokes) -> Vec<f64> {
-        let mut here = DoubleDouble::from(strokes.first);
-        let mut positions = vec![here.value()];
-        for (index, kink) in strokes.kinks.iter().enumerate().rev() {
-            let stroke = (self.edge - kink.level) * 2.0;
-            here = if index.is_multiple_of(2) { here + stroke } else { here - stroke };
-            positions.push(here.value());
-        }
+        let mut positions = positions(strokes.first, self.edge, &strokes.kinks);
         if self.rim > 0.0 {
-            positions.push((here - DoubleDouble::from(self.rim)).value());
+            positions.extend(positions.last().map(|here| here - self.rim));
         }
         positions.into_iter().map(|position| self.last * position).collect()
+    }
+}
+
+/// The history inside a cut: its rings that are whole, and the one that the cut divides, with the stress of that over
+/// its kernel.
+struct Inside {
+    whole: usize,
+    part: Option<(Ring, f64)>,
+}
+
+impl Inside {
+    /// The stress of the history at a sample, over G* m/pi.
+    fn stress(&self, profile: &Profile, sample: &SampleRadius) -> f64 {
+        let part = self.part.as_ref().map_or(0.0, |(ring, slope)| slope * profile.kernel(&sample.at, ring));
+        sample.below[self.whole] + part
     }
 }
 
@@ -361,14 +289,4 @@ fn samples(problem: &Problem<'_>, history: &[(Ring, Line)], last: f64) -> Vec<Sa
         SampleRadius { at, below }
     };
     all.into_iter().map(sample).collect()
-}
-
-/// Whether there are strokes with a largest stress E.
-enum StrokeOutcome {
-    /// There are, and these are the strokes.
-    Fits(LaterStrokes),
-    /// There are, with fewer strokes.
-    Loose,
-    /// There are none.
-    Tight,
 }

@@ -1,9 +1,10 @@
 //! The sequences of few strokes as the search sees them: their stresses, and how far they miss the end, with the
 //! slopes.
 
-use super::super::super::profile::{Point, Ring, StressRadius};
-use super::super::{DoubleDouble, PathEnd};
+use super::super::super::profile::{Point, StressRadius};
+use super::super::{DoubleDouble, PathEnd, alternating};
 use super::descent::{Trial, search};
+use super::linear_program::Linear;
 use super::{FromAnyState, LaterStrokes};
 
 /// The step of the difference that gives the slope of the stress at a kink by its own level, over that of the edge.
@@ -50,17 +51,14 @@ impl FromAnyState<'_> {
         let (problem, edge) = (&self.problem, self.problem.edge.level.value());
         let profile = problem.profile;
         let (kinks, cut) = self.points(&levels, slides);
-        let sign = |index: usize| if index.is_multiple_of(2) { 1.0 } else { -1.0 };
-        let whole = self.history.partition_point(|(ring, _)| ring.inner.level < cut.level).saturating_sub(1);
-        let kept = self.history.get(whole).filter(|(ring, _)| ring.inner.level < cut.level);
-        let slope_inside = kept.map_or(0.0, |(_, line)| -self.last * line.slope.value());
-        let kept = kept.map(|(ring, _)| Ring::between(ring.inner, cut));
+        let inside = self.inside(&cut);
+        let slope_inside = inside.part.map_or(0.0, |(_, slope)| slope);
         // By how much the slope of w changes at an unknown, from its outside to its inside.
         let unknowns: Vec<(Point, f64)> = kinks
             .iter()
             .enumerate()
-            .map(|(index, kink)| (*kink, -2.0 * sign(index)))
-            .chain((!slides).then(|| (cut, slope_inside - sign(kinks.len()))))
+            .map(|(index, kink)| (*kink, alternating(index, -2.0)))
+            .chain((!slides).then(|| (cut, slope_inside - alternating(kinks.len(), 1.0))))
             .collect();
         let by_levels = |radius: f64| -> Vec<f64> {
             let slope = |(point, change): &(Point, f64)| {
@@ -73,12 +71,8 @@ impl FromAnyState<'_> {
         };
         let mut stresses = Vec::with_capacity(self.samples.len() + unknowns.len());
         for sample in &self.samples {
-            let mut stress = problem.shear_down_to(cut, &kinks, &sample.at);
-            if sample.at.radius <= cut.radius {
-                stress +=
-                    sample.below[whole] + kept.map_or(0.0, |ring| slope_inside * profile.kernel(&sample.at, &ring));
-            }
-            stresses.push((stress, by_levels(sample.at.radius)));
+            let stress = problem.shear_down_to(cut, &kinks, &sample.at) + inside.stress(profile, sample);
+            stresses.push(Linear { value: stress, slope: by_levels(sample.at.radius) });
         }
         for (index, (point, _)) in unknowns.iter().enumerate() {
             if point.radius <= problem.cutoff {
@@ -93,22 +87,19 @@ impl FromAnyState<'_> {
             let further = problem.shear_down_to(inner, beyond, &StressRadius::of_point(&inner));
             slope[index..].fill(0.0);
             slope[index] = if probe > 0.0 { (stress - further) / probe } else { 0.0 };
-            stresses.push((stress, slope));
+            stresses.push(Linear { value: stress, slope });
         }
-        let miss = match self.end {
-            PathEnd::Free => (0.0, vec![0.0; levels.len()]),
-            PathEnd::DisplacementZero => {
-                let by_kinks = (0..kinks.len()).map(|index| -2.0 * sign(index) * self.first);
-                let by_cut = (!slides).then(|| -1.0 + self.first * slope_inside);
-                let miss = self.miss(&kinks, cut.level) / edge;
-                (if slides { miss.max(0.0) } else { miss }, by_kinks.chain(by_cut).collect())
-            }
-            PathEnd::ForceZero => {
-                let whole = problem.edge.radius * edge;
-                let slope = unknowns.iter().map(|(point, change)| self.first * change * point.radius * edge / whole);
-                (self.miss(&kinks, cut.level) / whole, slope.collect())
-            }
-        };
+        // Displacements are over the level of the edge, forces over its product with the radius.
+        let whole = if self.end == PathEnd::ForceZero { problem.edge.radius * edge } else { edge };
+        let value = self.miss(&kinks, cut.level) / whole;
+        let by_kinks = unknowns.iter().enumerate().map(|(index, (point, change))| match self.end {
+            PathEnd::Free => 0.0,
+            PathEnd::DisplacementZero if index < kinks.len() => self.first * change,
+            PathEnd::DisplacementZero => self.first * slope_inside - 1.0,
+            PathEnd::ForceZero => self.first * change * point.radius / problem.edge.radius,
+        });
+        let value = if slides { value.max(0.0) } else { value };
+        let miss = Linear { value, slope: by_kinks.collect() };
         Trial { levels, stresses, miss }
     }
 }
