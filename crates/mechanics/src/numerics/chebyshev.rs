@@ -62,9 +62,30 @@ impl<const N: usize> Points<N> {
         terms[..last.map_or(0, |last| last + 1)].to_vec()
     }
 
+    /// The weights at the points of -1..1 that stand for sources with these sums of weighted polynomials: those of the
+    /// series of any values at the points.
+    pub(crate) fn weights(&self, sums: &[f64; N]) -> [f64; N] {
+        let mut weights = [0.0; N];
+        for (row, sum) in self.transform.iter().zip(sums) {
+            for (weight, share) in weights.iter_mut().zip(row) {
+                *weight += share * sum;
+            }
+        }
+        weights
+    }
+
     /// Whether a series of these points has no terms beyond it: its last two are rounding.
     pub(crate) fn resolve(series: &[f64]) -> bool {
         series.len() + 2 <= N
+    }
+}
+
+/// Adds to sums over sources, of their weights times the Chebyshev polynomials of each order, that of one at u.
+pub(crate) fn add_polynomials<const N: usize>(sums: &mut [f64; N], u: f64, weight: f64) {
+    let (mut this, mut before) = (weight, weight * u);
+    for sum in sums {
+        *sum += this;
+        (this, before) = (2.0 * u * this - before, this);
     }
 }
 
@@ -93,12 +114,12 @@ pub(crate) fn divided_difference(series: &[f64], u: f64, v: f64) -> f64 {
     u * d1 + b1 - d2
 }
 
-/// The primitive in u of a series, but for its constant.
-pub(crate) fn primitive(series: &[f64]) -> Vec<f64> {
+/// The primitive of a series over an interval of this half-width, but for its constant.
+pub(crate) fn primitive(series: &[f64], half: f64) -> Vec<f64> {
     let term = |order: usize| series.get(order).copied().unwrap_or(0.0);
     let rise = |order: usize| {
         let before = if order == 1 { 2.0 * term(0) } else { term(order - 1) };
-        (before - term(order + 1)) / (2 * order) as f64
+        half * (before - term(order + 1)) / (2 * order) as f64
     };
     let orders = (1..=series.len()).map(rise);
     std::iter::once(0.0).chain(orders).collect()
@@ -113,7 +134,7 @@ mod tests {
         let points = &*TWENTY_FOUR;
         let series = points.series(&points.places(-1.0, 1.0).map(f64::exp));
         assert!(Points::<24>::resolve(&series));
-        let area = primitive(&series);
+        let area = primitive(&series, 1.0);
         for (u, v) in [(-1.0, 1.0), (0.3, -0.8), (0.99, 1.0)] {
             let [value] = values(&series, [u]);
             assert!((value - f64::exp(u)).abs() < 2e-15);

@@ -56,8 +56,8 @@ impl Profile {
         let core = rings.first().map_or(0.0, |(ring, _)| ring.outer.radius);
         let pieces = SmoothPieces::new(self, rings, CORE * core).map(KernelSlopes::Pieces);
         pieces.or_else(|| match self {
-            Profile::Tabulated(table) => table.weighted_panels(rings).map(KernelSlopes::Panels),
-            Profile::Sum(sum) => SumFields::new(sum, rings).map(KernelSlopes::Parts),
+            Profile::Tabulated(table) => table.weighted_panels(rings, usize::MAX).map(KernelSlopes::Panels),
+            Profile::Sum(sum) => SumFields::new(sum, rings, usize::MAX).map(KernelSlopes::Parts),
             _ => None,
         })
     }

@@ -243,12 +243,12 @@ impl Shape for Sum {
         if rings.len() * radii.len() <= tabulated::FEW {
             return None;
         }
-        let sums = SumFields::new(self, rings)?.sums(Kernel::Root, radii);
+        let sums = SumFields::new(self, rings, radii.len())?.sums(Kernel::Root, radii);
         Some(sums.into_iter().map(|(sum, _)| sum).collect())
     }
 
     fn displacements(&self, rings: &[(Ring, f64)], ends: (f64, f64), radii: &[StressRadius]) -> Option<Vec<f64>> {
-        let fields = SumFields::new(self, rings)?;
+        let fields = SumFields::new(self, rings, radii.len())?;
         let edge = &rings.last()?.0.outer;
         Some(tabulated::displacements(edge, ends, radii, |angle, radii| fields.sums(angle, radii)))
     }

@@ -17,7 +17,6 @@ mod lookup;
 mod near_kernel;
 mod noise;
 mod panel;
-mod panel_integrals;
 mod panel_powers;
 mod panel_sources;
 mod panels;
@@ -46,7 +45,7 @@ pub(super) use weighted_panels::{SumAndSize, WeightedPanels, add_to};
 pub(super) const FEW: usize = 128;
 
 /// A tabulated profile.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Tabulated {
     radii: Vec<f64>,
     heights: Vec<f64>,
@@ -61,17 +60,6 @@ pub struct Tabulated {
     end: f64,
     /// The first radius at which g falls, if it does, m.
     falls: Option<f64>,
-}
-
-impl PartialEq for Tabulated {
-    fn eq(&self, other: &Tabulated) -> bool {
-        let parts = |table: &Tabulated| (table.end, table.falls);
-        self.radii == other.radii
-            && self.heights == other.heights
-            && self.stated_errors == other.stated_errors
-            && self.curve == other.curve
-            && parts(self) == parts(other)
-    }
 }
 
 impl Tabulated {
@@ -167,26 +155,43 @@ impl Tabulated {
         panels.iter().flat_map(|panel| panel.slope_check_places().into_iter().map(|t| panel.radius_at(t)))
     }
 
-    /// The kernels of rings from the centre outward, each with its weight; `None` with levels at a vertical edge.
-    pub(super) fn weighted_panels(&self, rings: &[(Ring, f64)]) -> Option<WeightedPanels<'_>> {
+    /// The kernels of rings from the centre outward, each with its weight, for sums at so many radii; `None` with levels
+    /// at a vertical edge.
+    pub(super) fn weighted_panels(&self, rings: &[(Ring, f64)], radii: usize) -> Option<WeightedPanels<'_>> {
         let panels = self.curve.up_to(rings.last()?.0.outer.radius);
         let spans: Vec<(Span, f64)> = rings.iter().map(|(ring, weight)| (panels.span(ring), *weight)).collect();
-        WeightedPanels::new(panels, &spans)
+        self.panels_over(&spans, radii)
     }
 
     /// The same of spans.
-    pub(super) fn panels_over(&self, spans: &[(Span, f64)]) -> Option<WeightedPanels<'_>> {
-        WeightedPanels::new(self.curve.up_to(spans.last()?.0.outer_radius), spans)
+    pub(super) fn panels_over(&self, spans: &[(Span, f64)], radii: usize) -> Option<WeightedPanels<'_>> {
+        WeightedPanels::new(self.curve.up_to(spans.last()?.0.outer_radius), spans, radii)
     }
 }
 
-impl Shape for Tabulated {
-    fn level(&self, radius: f64) -> f64 {
-        self.curve.up_to(radius).level(radius)
-    }
+/// Methods of [`Shape`] that the panels up to some radius have.
+macro_rules! by_panels {
+    ($($method:ident($($argument:ident: $Type:ty),*) -> $Result:ty, up to $radius:expr;)+) => {
+        $(fn $method(&self, $($argument: $Type),*) -> $Result {
+            self.curve.up_to($radius).$method($($argument),*)
+        })+
+    };
+}
 
-    fn slope(&self, radius: f64) -> f64 {
-        self.curve.up_to(radius).slope(radius)
+impl Shape for Tabulated {
+    by_panels! {
+        level(radius: f64) -> f64, up to radius;
+        slope(radius: f64) -> f64, up to radius;
+        load(radius: f64) -> f64, up to radius;
+        kink_below(radius: f64) -> f64, up to radius;
+        least_fall(inner: f64, outer: f64) -> f64, up to outer;
+        rise(span: &Span) -> f64, up to span.outer_radius;
+        rise_to(outer: &Span, interval: &SmoothInterval, node: Node) -> f64, up to outer.outer_radius;
+        rises(span: &Span, below: &[f64]) -> Vec<f64>, up to span.outer_radius;
+        moments(span: &Span) -> Moments, up to span.outer_radius;
+        gap(ring: &Ring, depth: f64) -> f64, up to ring.outer.radius;
+        span(ring: &Ring) -> Span, up to ring.outer.radius;
+        ring_moments(ring: &Ring) -> Moments, up to ring.outer.radius;
     }
 
     fn radius(&self, level: f64) -> f64 {
@@ -194,31 +199,14 @@ impl Shape for Tabulated {
     }
 
     fn square(&self, level: DoubleDouble) -> DoubleDouble {
+        if level.value() <= 0.0 {
+            return DoubleDouble::square_of(self.flat_radius());
+        }
         self.curve.up_to_level(level.value()).square(level)
-    }
-
-    fn load(&self, radius: f64) -> f64 {
-        self.curve.up_to(radius).load(radius)
     }
 
     fn indentation_for(&self, load: f64) -> f64 {
         self.curve.up_to_load(load).indentation_for(load)
-    }
-
-    fn rise(&self, span: &Span) -> f64 {
-        self.curve.up_to(span.outer_radius).rise(span)
-    }
-
-    fn rise_to(&self, outer: &Span, interval: &SmoothInterval, node: Node) -> f64 {
-        self.curve.up_to(outer.outer_radius).rise_to(outer, interval, node)
-    }
-
-    fn rises(&self, span: &Span, below: &[f64]) -> Vec<f64> {
-        self.curve.up_to(span.outer_radius).rises(span, below)
-    }
-
-    fn gap(&self, ring: &Ring, depth: f64) -> f64 {
-        self.curve.up_to(ring.outer.radius).gap(ring, depth)
     }
 
     fn rim(&self) -> Option<(f64, f64)> {
@@ -227,22 +215,6 @@ impl Shape for Tabulated {
 
     fn rim_radius(&self) -> Option<f64> {
         Some(self.end)
-    }
-
-    fn span(&self, ring: &Ring) -> Span {
-        self.curve.up_to(ring.outer.radius).span(ring)
-    }
-
-    fn kink_below(&self, radius: f64) -> f64 {
-        self.curve.up_to(radius).kink_below(radius)
-    }
-
-    fn moments(&self, span: &Span) -> Moments {
-        self.curve.up_to(span.outer_radius).moments(span)
-    }
-
-    fn ring_moments(&self, ring: &Ring) -> Moments {
-        self.curve.up_to(ring.outer.radius).ring_moments(ring)
     }
 
     fn kernel(&self, at: &StressRadius, span: &Span) -> f64 {
@@ -257,17 +229,13 @@ impl Shape for Tabulated {
         if rings.len() * radii.len() <= FEW {
             return None;
         }
-        let sums = self.weighted_panels(rings)?.sums(Kernel::Root, radii);
+        let sums = self.weighted_panels(rings, radii.len())?.sums(Kernel::Root, radii);
         Some(sums.into_iter().map(|(sum, _)| sum).collect())
     }
 
     fn displacements(&self, rings: &[(Ring, f64)], ends: (f64, f64), radii: &[StressRadius]) -> Option<Vec<f64>> {
-        let panels = self.weighted_panels(rings)?;
+        let panels = self.weighted_panels(rings, radii.len())?;
         Some(displacements(&rings.last()?.0.outer, ends, radii, |angle, radii| panels.sums(angle, radii)))
-    }
-
-    fn least_fall(&self, inner: f64, outer: f64) -> f64 {
-        self.curve.up_to(outer).least_fall(inner, outer)
     }
 
     fn surface_slope(&self, r: f64) -> f64 {
