@@ -114,11 +114,13 @@ impl Tabulated {
         }
         range::RADIUS.check(radii[1])?;
         let knots = spline::knots(radii, heights);
-        let mut table = Tabulated::from_knots(knots, whole, keep_going)?;
-        table.gaps = interpolation_error::gaps(radii, heights);
-        (table.radii, table.heights) = (radii.to_vec(), heights.to_vec());
-        table.noise = noise::of_heights(radii, heights);
-        Ok(table)
+        Ok(Tabulated {
+            radii: radii.to_vec(),
+            heights: heights.to_vec(),
+            noise: noise::of_heights(radii, heights),
+            gaps: interpolation_error::gaps(radii, heights),
+            ..Tabulated::from_knots(knots, whole, keep_going)?
+        })
     }
 
     /// The profile whose slope is linear between knots, as far as g rises or `whole`.

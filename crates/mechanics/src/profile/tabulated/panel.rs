@@ -173,7 +173,7 @@ impl KernelPanel {
         let below = if self.base > 0.0 { self.base } else { f64::INFINITY };
         let rule = gauss::Singular { below, above: f64::INFINITY }.panel(self.high, self.high - self.low);
         let terms = self.primitive.len();
-        let least = [(12, 8), (18, 12)].into_iter().find(|(most, _)| terms <= *most).map_or(20, |(_, points)| points);
+        let least = [(14, 8), (20, 12)].into_iter().find(|(most, _)| terms <= *most).map_or(20, |(_, points)| points);
         (rule.width >= self.high - self.low).then_some(rule.points().max(least))
     }
 
