@@ -1,17 +1,23 @@
 //! An angle against its tangent, where the two nearly agree.
 
-/// The coefficients of (u - atan(u))/u^3 as a polynomial of u^2 for u up to [`QUARTER`], from the highest on, in pairs,
-/// without the sign of every other one: by interpolation at Chebyshev's points, to 4e-18 of itself.
-const SHARES: [[f64; 2]; 6] = [
-    [0.034_570_561_981_427_744, 0.016_285_756_855_221_028],
-    [0.052_304_542_706_502_44, 0.045_515_932_206_265_49],
-    [0.066_664_248_857_382_55, 0.058_789_289_978_347_75],
-    [0.090_909_087_535_008_77, 0.076_922_963_750_321_43],
-    [0.142_857_142_856_598_28, 0.111_111_111_051_554_47],
-    [0.333_333_333_333_333_3, 0.199_999_999_999_998_04],
+/// The coefficients of (u - atan(u))/u^3 as a polynomial of u^2 for u up to [`QUARTER`], without the sign of every other
+/// one: by interpolation at Chebyshev's points, to 4e-18 of itself.
+pub(crate) const LACKING: [f64; 12] = [
+    0.333_333_333_333_333_3,
+    0.199_999_999_999_998_04,
+    0.142_857_142_856_598_28,
+    0.111_111_111_051_554_47,
+    0.090_909_087_535_008_77,
+    0.076_922_963_750_321_43,
+    0.066_664_248_857_382_55,
+    0.058_789_289_978_347_75,
+    0.052_304_542_706_502_44,
+    0.045_515_932_206_265_49,
+    0.034_570_561_981_427_744,
+    0.016_285_756_855_221_028,
 ];
 /// The tangent of a quarter of a right angle.
-const QUARTER: f64 = std::f64::consts::SQRT_2 - 1.0;
+pub(crate) const QUARTER: f64 = std::f64::consts::SQRT_2 - 1.0;
 
 /// u - atan(u), to round-off of itself, u >= 0.
 pub(crate) fn tangent_less_angle(u: f64) -> f64 {
@@ -32,43 +38,35 @@ fn series(u: f64) -> f64 {
     // Every other term on its own, so that neither sum waits for the other.
     let fourth = square * square;
     let (mut falling, mut rising) = (0.0, 0.0);
-    for [plus, minus] in SHARES {
+    for [plus, minus] in LACKING.as_chunks().0.iter().rev() {
         falling = falling * fourth + plus;
         rising = rising * fourth + minus;
     }
     u * square * (falling - square * rising)
 }
 
-/// The largest tangents for which none and one halving of the angle leave one up to [`QUARTER`].
-const HALVED: [f64; 2] = [QUARTER, 1.0];
-
 /// atan(u) and u - atan(u) of several u >= 0 side by side, each to round-off of itself.
 ///
 /// At most twice the tangent of half the angle leaves one where the polynomial holds; u - 2 w = u w^2 for the tangent w
 /// of half the angle, so that all terms are positive.
 pub(crate) fn angles<const N: usize>(u: [f64; N]) -> ([f64; N], [f64; N]) {
-    let largest = u.into_iter().fold(0.0, f64::max);
-    let halvings = HALVED.iter().filter(|limit| largest > **limit).count();
     let (mut angle, mut lacking) = ([0.0; N], [0.0; N]);
-    let mut tangents = [[0.0; N]; HALVED.len() + 1];
-    // Beyond 1e100 the angle is a right one, and its square would overflow.
-    tangents[0].iter_mut().zip(u).for_each(|(tangent, u)| *tangent = u.min(1e100));
-    for count in 0..halvings {
-        let whole = tangents[count];
-        for (half, u) in tangents[count + 1].iter_mut().zip(whole) {
+    if u.into_iter().fold(0.0, f64::max) > QUARTER {
+        let mut halves = u;
+        for half in &mut halves {
+            // Beyond 1e100 the angle is a right one, and its square would overflow.
+            let u = half.min(1e100);
             *half = u / (1.0 + (1.0 + u * u).sqrt());
         }
-    }
-    let turns = f64::from(1_u8 << halvings);
-    for lane in 0..N {
-        lacking[lane] = series(tangents[halvings][lane]);
-        angle[lane] = turns * (tangents[halvings][lane] - lacking[lane]);
-    }
-    for count in (0..halvings).rev() {
+        (angle, lacking) = angles(halves);
         for lane in 0..N {
-            let half = tangents[count + 1][lane];
-            let tangent = if count > 0 { tangents[count][lane] } else { u[lane] };
-            lacking[lane] = tangent * half * half + 2.0 * lacking[lane];
+            angle[lane] *= 2.0;
+            lacking[lane] = u[lane] * halves[lane] * halves[lane] + 2.0 * lacking[lane];
+        }
+    } else {
+        for lane in 0..N {
+            lacking[lane] = series(u[lane]);
+            angle[lane] = u[lane] - lacking[lane];
         }
     }
     (angle, lacking)

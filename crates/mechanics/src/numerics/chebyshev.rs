@@ -74,6 +74,18 @@ impl<const N: usize> Points<N> {
         counted(&self.terms(values)).to_vec()
     }
 
+    /// The weights at the points of -1..1 that stand for sources with these sums of weighted polynomials: those of the
+    /// series of any values at the points.
+    pub(crate) fn weights(&self, sums: &[f64; N]) -> [f64; N] {
+        let mut weights = [0.0; N];
+        for (index, row) in self.transform[..N / 2].iter().enumerate() {
+            let part = |first: usize| (0..N / 2).map(|k| row[first * N / 2 + k] * sums[2 * k + first]).sum::<f64>();
+            let (even, odd) = (part(0), part(1));
+            (weights[index], weights[N - 1 - index]) = (even + odd, even - odd);
+        }
+        weights
+    }
+
     /// Whether a series of these points has no terms beyond it: its last two are rounding.
     pub(crate) fn resolve(series: &[f64]) -> bool {
         series.len() + 2 <= N
@@ -85,6 +97,15 @@ pub(crate) fn counted(terms: &[f64]) -> &[f64] {
     let size = terms.iter().fold(0.0f64, |size, a| size.max(a.abs()));
     let last = terms.iter().rposition(|a| a.abs() > ROUNDED * size);
     &terms[..last.map_or(0, |last| last + 1)]
+}
+
+/// Adds to sums over sources, of their weights times the Chebyshev polynomials of each order, that of one at u.
+pub(crate) fn add_polynomials<const N: usize>(sums: &mut [f64; N], u: f64, weight: f64) {
+    let (mut this, mut before) = (weight, weight * u);
+    for sum in sums {
+        *sum += this;
+        (this, before) = (2.0 * u * this - before, this);
+    }
 }
 
 /// The values of a series at places u from -1 to 1, side by side.
@@ -112,12 +133,12 @@ pub(crate) fn divided_difference(series: &[f64], u: f64, v: f64) -> f64 {
     u * d1 + b1 - d2
 }
 
-/// The primitive in u of a series, but for its constant.
-pub(crate) fn primitive(series: &[f64]) -> Vec<f64> {
+/// The primitive of a series over an interval of this half-width, but for its constant.
+pub(crate) fn primitive(series: &[f64], half: f64) -> Vec<f64> {
     let term = |order: usize| series.get(order).copied().unwrap_or(0.0);
     let rise = |order: usize| {
         let before = if order == 1 { 2.0 * term(0) } else { term(order - 1) };
-        (before - term(order + 1)) / (2 * order) as f64
+        half * (before - term(order + 1)) / (2 * order) as f64
     };
     let orders = (1..=series.len()).map(rise);
     std::iter::once(0.0).chain(orders).collect()
@@ -132,7 +153,7 @@ mod tests {
         let points = &*TWENTY_FOUR;
         let series = points.series(&points.places(-1.0, 1.0).map(f64::exp));
         assert!(Points::<24>::resolve(&series));
-        let area = primitive(&series);
+        let area = primitive(&series, 1.0);
         for (u, v) in [(-1.0, 1.0), (0.3, -0.8), (0.99, 1.0)] {
             let [value] = values(&series, [u]);
             assert!((value - f64::exp(u)).abs() < 2e-15);

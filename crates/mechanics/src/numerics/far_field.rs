@@ -9,6 +9,7 @@
 
 use std::ops::Range;
 
+use super::chebyshev::{self, TWENTY};
 use super::cluster_tree::{Cluster, ClusterTree};
 
 /// Points that replace a cluster.
@@ -26,88 +27,26 @@ struct Proxies {
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct FarField(ClusterTree<Proxies>);
 
-/// The Chebyshev points of -1..1, cos(pi (k + 1/2)/20).
-const POINTS: [f64; PROXIES] = [
-    0.996_917_333_733_128,
-    0.972_369_920_397_676_6,
-    0.923_879_532_511_286_7,
-    0.852_640_164_354_092_2,
-    0.760_405_965_600_030_9,
-    0.649_448_048_330_183_7,
-    0.522_498_564_715_948_9,
-    0.382_683_432_365_089_8,
-    0.233_445_363_855_905_42,
-    0.078_459_095_727_844_94,
-    -0.078_459_095_727_844_94,
-    -0.233_445_363_855_905_42,
-    -0.382_683_432_365_089_8,
-    -0.522_498_564_715_948_9,
-    -0.649_448_048_330_183_7,
-    -0.760_405_965_600_030_9,
-    -0.852_640_164_354_092_2,
-    -0.923_879_532_511_286_7,
-    -0.972_369_920_397_676_6,
-    -0.996_917_333_733_128,
-];
-/// Their barycentric weights, (-1)^k sin(pi (k + 1/2)/20): half a turn on, a sine is a cosine.
-const WEIGHTS: [f64; PROXIES] = {
-    let mut weights = [0.0; PROXIES];
-    let mut index = 0;
-    while index < PROXIES {
-        let size = POINTS[(index + PROXIES / 2) % PROXIES].abs();
-        weights[index] = if index % 2 == 0 { size } else { -size };
-        index += 1;
-    }
-    weights
-};
-
-/// A Chebyshev point of an interval.
-fn place(low: f64, high: f64, index: usize) -> f64 {
-    0.5 * (low + high) + 0.5 * (high - low) * POINTS[index]
-}
-
-/// The values at `place` of the polynomials that are one at one Chebyshev point of the interval and zero at the others.
-fn shares(low: f64, high: f64, at: f64) -> [f64; PROXIES] {
-    let mut shares = [0.0; PROXIES];
-    if high <= low {
-        shares[0] = 1.0;
-        return shares;
-    }
-    // An interval of a few units in the last place has no centre of its own, and beyond its ends the shares grow fast.
-    let u = ((at - 0.5 * (low + high)) / (0.5 * (high - low))).clamp(-1.0, 1.0);
-    let distances = POINTS.map(|point| u - point);
-    if let Some(index) = distances.iter().position(|distance| distance.abs() < 1e-300) {
-        shares[index] = 1.0;
-        return shares;
-    }
-    for (share, (weight, distance)) in shares.iter_mut().zip(WEIGHTS.iter().zip(distances)) {
-        *share = weight / distance;
-    }
-    let scale = 1.0 / total(&shares);
-    shares.map(|share| share * scale)
-}
-
-/// The sum of terms, four by four.
-pub(crate) fn total(terms: &[f64; PROXIES]) -> f64 {
-    let mut sums = [0.0; 4];
-    for four in terms.chunks_exact(4) {
-        for (sum, term) in sums.iter_mut().zip(four) {
-            *sum += term;
-        }
-    }
-    (sums[0] + sums[1]) + (sums[2] + sums[3])
-}
-
 impl Proxies {
+    /// What replaces sources, places with weights, in an interval.
+    fn new(low: f64, high: f64, sources: impl Iterator<Item = (f64, f64)>) -> Proxies {
+        let mut sums = [0.0; PROXIES];
+        // An interval of a few units in the last place has no centre of its own, and one without width no place.
+        let half = (0.5 * (high - low)).max(f64::MIN_POSITIVE);
+        for (place, weight) in sources {
+            chebyshev::add_polynomials(&mut sums, ((place - low) / half - 1.0).clamp(-1.0, 1.0), weight);
+        }
+        Proxies { low, high, weights: TWENTY.weights(&sums) }
+    }
+
     /// The points that replace the sources.
     fn places(&self) -> [f64; PROXIES] {
-        std::array::from_fn(|index| place(self.low, self.high, index))
+        TWENTY.places(self.low, self.high)
     }
 
-    fn add(&mut self, at: f64, weight: f64) {
-        for (sum, share) in self.weights.iter_mut().zip(shares(self.low, self.high, at)) {
-            *sum += weight * share;
-        }
+    /// The points with their weights.
+    fn sources(&self) -> impl Iterator<Item = (f64, f64)> {
+        self.places().into_iter().zip(self.weights)
     }
 }
 
@@ -117,15 +56,13 @@ impl FarField {
     pub(crate) fn new(places: &[f64], weights: &[f64], leaf: usize, keep_going: &dyn Fn() -> bool) -> FarField {
         FarField(ClusterTree::new(places.len(), leaf, |items, halves| {
             let (low, high) = (places[items.start], places[items.end.min(places.len() - 1)]);
-            let mut proxies = Proxies { low, high, weights: [0.0; PROXIES] };
             match halves {
-                Some(halves) => halves.into_iter().for_each(|half: &Proxies| {
-                    half.places().into_iter().zip(half.weights).for_each(|(at, weight)| proxies.add(at, weight));
-                }),
-                None if keep_going() => items.clone().for_each(|item| proxies.add(places[item], weights[item])),
-                None => {}
+                Some(halves) => Proxies::new(low, high, halves.into_iter().flat_map(Proxies::sources)),
+                None => {
+                    let items = if keep_going() { items.clone() } else { 0..0 };
+                    Proxies::new(low, high, items.map(|item| (places[item], weights[item])))
+                }
             }
-            proxies
         }))
     }
 
@@ -159,7 +96,7 @@ pub(crate) struct Local {
     pub(crate) first_near: usize,
     /// The sources within the interval.
     pub(crate) items: Range<usize>,
-    series: [f64; PROXIES],
+    series: Vec<f64>,
 }
 
 impl Local {
@@ -167,15 +104,7 @@ impl Local {
     pub(crate) fn at<const N: usize>(&self, offsets: [f64; N]) -> [f64; N] {
         // Gaps that agree leave an interval without width, whose lower end is all of it.
         let half = (0.5 * (self.high - self.low)).max(f64::MIN_POSITIVE);
-        // Clenshaw's recurrence.
-        let twice = offsets.map(|offset| 2.0 * (offset / half - 1.0));
-        let (mut one, mut two) = ([0.0; N], [0.0; N]);
-        for &coefficient in self.series[1..].iter().rev() {
-            for lane in 0..N {
-                (one[lane], two[lane]) = (twice[lane] * one[lane] - two[lane] + coefficient, one[lane]);
-            }
-        }
-        std::array::from_fn(|lane| self.series[0] + 0.5 * twice[lane] * one[lane] - two[lane])
+        chebyshev::values(&self.series, offsets.map(|offset| offset / half - 1.0))
     }
 }
 
@@ -193,13 +122,8 @@ impl FarField {
         term: impl Fn(f64) -> f64,
         keep_going: &dyn Fn() -> bool,
     ) -> Vec<Local> {
-        let step = std::f64::consts::PI / (2 * PROXIES) as f64;
-        let transform: [[f64; PROXIES]; PROXIES] = std::array::from_fn(|order| {
-            let factor = if order == 0 { 1.0 } else { 2.0 } / PROXIES as f64;
-            std::array::from_fn(|point| factor * (step * (order * (2 * point + 1)) as f64).cos())
-        });
         let narrowed = |wide: Option<&Local>, (low, high): (f64, f64), items: Range<usize>, depth: usize| {
-            let offsets = POINTS.map(|point| 0.5 * (high - low) * (1.0 + point));
+            let offsets = TWENTY.places(0.0, high - low);
             let mut samples =
                 wide.map_or([0.0; PROXIES], |wide| wide.at(offsets.map(|offset| low - wide.low + offset)));
             let mut add = |(place, weight): (&f64, &f64)| {
@@ -213,8 +137,7 @@ impl FarField {
             let far = &mut |places: &[f64; _], weights: &[f64; _]| places.iter().zip(weights).for_each(&mut add);
             self.visit(added, (low, high), far, &mut |items| alone.extend(items));
             alone.into_iter().for_each(|item| add((&sources.0[item], &sources.1[item])));
-            let dot = |row: &[f64; PROXIES]| row.iter().zip(samples).map(|(share, sample)| share * sample).sum();
-            Local { low, high, first_near, items, series: transform.each_ref().map(dot) }
+            Local { low, high, first_near, items, series: TWENTY.series(&samples) }
         };
         let (mut locals, mut open) = (Vec::new(), Vec::new());
         let of = |wide: Option<&Local>, number: usize, depth: usize| {

@@ -209,9 +209,9 @@ impl Set {
         let high = DoubleDouble::from(self.ends[first]);
         let low = DoubleDouble::from(self.ends[last - 1]);
         let (head, tail) = ((high - inner).value(), (outer - low).value());
-        let (run, run_depth) = self.whole_cells.run(first + 1, last);
-        let inside = Moments::stack(self.moments_within(self.cells.get(first), inner, high, head), run, run_depth);
-        Moments::stack(inside, self.moments_within(self.cells.get(last), low, outer, tail), tail)
+        let inside = self.moments_within(self.cells.get(first), inner, high, head);
+        let outside = self.moments_within(self.cells.get(last), low, outer, tail);
+        self.whole_cells.across(first + 1..last, inside, (outside, tail))
     }
 
     /// The moments of all levels up to one.
@@ -221,8 +221,9 @@ impl Set {
             return self.moments_within(self.cells.first(), DoubleDouble::ZERO, level, level.value());
         };
         let low = DoubleDouble::from(self.ends[below]);
-        let (depth, (cells, _)) = ((level - low).value(), self.whole_cells.run(0, last));
-        Moments::stack(cells, self.moments_within(self.cells.get(last), low, level, depth), depth)
+        let depth = (level - low).value();
+        let outside = self.moments_within(self.cells.get(last), low, level, depth);
+        self.whole_cells.across(0..last, Moments::default(), (outside, depth))
     }
 
     /// X'(y).

@@ -11,6 +11,7 @@
 //! Ciavarella (1998) and Jaeger (1998), which is exact for a circle alone.
 
 use super::{Error, Sphere, range};
+use crate::numerics::roots::turning;
 
 /// The axis of the tangential motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -103,13 +104,5 @@ fn axis_ratio(radii: f64) -> f64 {
         ratio * ratio * kappa / (1.0 - kappa)
     };
     // It lies between the ratio of the radii, which is that of a flat ellipse but for a logarithm, and its root.
-    let (mut low, mut high) = (radii, radii.sqrt());
-    while high - low > f64::EPSILON * high {
-        let middle = 0.5 * (low + high);
-        if middle <= low || middle >= high {
-            break;
-        }
-        if of(middle) < radii { low = middle } else { high = middle }
-    }
-    high
+    turning([radii, radii.sqrt()], |ratio| of(ratio) >= radii)[1]
 }

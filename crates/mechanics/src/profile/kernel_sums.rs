@@ -43,7 +43,8 @@ impl Profile {
         if let Some(sums) = self.sums_by_pieces(rings, radii) {
             return sums;
         }
-        let fields = if rings.len() * radii.len() > tabulated::FEW { self.table_fields(rings) } else { None };
+        let fields =
+            if rings.len() * radii.len() > tabulated::FEW { self.table_fields(rings, radii.len()) } else { None };
         if let Some(fields) = fields {
             return fields.sums(Kernel::Root, radii).into_iter().map(|(sum, _)| sum).collect();
         }
@@ -60,16 +61,17 @@ impl Profile {
         ends: (f64, f64),
         radii: &[StressRadius],
     ) -> Option<Vec<f64>> {
-        let fields = self.table_fields(rings)?;
+        let fields = self.table_fields(rings, radii.len())?;
         let edge = &rings.last()?.0.outer;
         Some(tabulated::displacements(edge, ends, radii, |angle, radii| fields.sums(angle, radii)))
     }
 
-    /// What tables add to stresses and displacements over weighted rings, at once; `None` without a table.
-    fn table_fields(&self, rings: &[(Ring, f64)]) -> Option<TableFields<'_>> {
+    /// What tables add to stresses and displacements over weighted rings, for sums at so many radii; `None` without a
+    /// table.
+    fn table_fields(&self, rings: &[(Ring, f64)], radii: usize) -> Option<TableFields<'_>> {
         match self {
-            Profile::Tabulated(table) => table.weighted_panels(rings).map(TableFields::Panels),
-            Profile::Sum(sum) => SumFields::new(sum, rings).map(TableFields::Parts),
+            Profile::Tabulated(table) => table.weighted_panels(rings, radii).map(TableFields::Panels),
+            Profile::Sum(sum) => SumFields::new(sum, rings, radii).map(TableFields::Parts),
             _ => None,
         }
     }
@@ -98,7 +100,7 @@ impl Profile {
     pub(crate) fn kernel_slopes<'a>(&'a self, rings: &[(Ring, f64)]) -> Option<KernelSlopes<'a>> {
         let core = rings.first().map_or(0.0, |(ring, _)| ring.outer.radius);
         let pieces = SmoothPieces::new(self, rings, CORE * core).map(SlopeSource::Pieces);
-        pieces.or_else(|| self.table_fields(rings).map(SlopeSource::Tables)).map(KernelSlopes)
+        pieces.or_else(|| self.table_fields(rings, usize::MAX).map(SlopeSource::Tables)).map(KernelSlopes)
     }
 
     /// The sums by [`SmoothPieces`].

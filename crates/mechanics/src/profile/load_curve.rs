@@ -312,9 +312,8 @@ impl CurveFamily for LoadCurve {
         }
         let [end, start] = [inner + 1, outer].map(|index| DoubleDouble::from(curve.knots[index].level));
         let [below, above] = [(end - low).value(), (high - start).value()];
-        let (whole, depth) = curve.tree.run(inner + 1, outer);
-        let inside = Moments::stack(part(inner, low, end, below), whole, depth);
-        Moments::stack(inside, part(outer, start, high, above), above)
+        let (inside, outside) = (part(inner, low, end, below), part(outer, start, high, above));
+        curve.tree.across(inner + 1..outer, inside, (outside, above))
     }
 
     fn indentation_of(&self, load: f64) -> f64 {

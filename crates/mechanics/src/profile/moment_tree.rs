@@ -1,5 +1,7 @@
 //! Moments of adjoining rings: those of any run of them, from a few sums that are known already.
 
+use std::ops::Range;
+
 use super::Moments;
 
 /// Moments and depth, m, of all runs of rings, as a binary tree with the leaves in its second half.
@@ -37,6 +39,11 @@ impl MomentTree {
             (low, high) = (low / 2, high / 2);
         }
         join(inner, outer)
+    }
+
+    /// The moments of the rings `run` with those of what lies inside them and of what lies outside, of a depth, m.
+    pub(super) fn across(&self, run: Range<usize>, inside: Moments, (outside, depth): (Moments, f64)) -> Moments {
+        join((inside, 0.0), join(self.run(run.start, run.end), (outside, depth))).0
     }
 }
 

@@ -14,14 +14,14 @@ pub(crate) struct SumFields<'a> {
 }
 
 impl SumFields<'_> {
-    /// The parts over rings from the centre outward, each with its weight; `None` without a table, and with levels at a
-    /// vertical edge.
-    pub(in super::super) fn new<'a>(sum: &'a Sum, rings: &[(Ring, f64)]) -> Option<SumFields<'a>> {
+    /// The parts over rings from the centre outward, each with its weight, for sums at so many radii; `None` without a
+    /// table, and with levels at a vertical edge.
+    pub(in super::super) fn new<'a>(sum: &'a Sum, rings: &[(Ring, f64)], radii: usize) -> Option<SumFields<'a>> {
         let (mut tables, mut others) = (Vec::new(), Vec::new());
         let spans: Vec<(Span, f64)> = rings.iter().map(|(ring, weight)| (span(sum, ring), *weight)).collect();
         for part in &sum.parts {
             match part {
-                Profile::Tabulated(table) => tables.push(table.panels_over(&spans)?),
+                Profile::Tabulated(table) => tables.push(table.panels_over(&spans, radii)?),
                 other => others.push(other),
             }
         }

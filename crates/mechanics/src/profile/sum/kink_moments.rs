@@ -43,13 +43,8 @@ impl KinkMoments {
             return None;
         }
         let [low, high] = [first, last].map(|index| sum.kinks[index]);
-        let (mut moments, between) = self.0.run(first, last);
-        if let Some(below) = span.below(square(&low), low) {
-            moments = Moments::stack(shape::moments(sum, &below), moments, between);
-        }
-        if let Some(above) = span.above(square(&high), high) {
-            moments = Moments::stack(moments, shape::moments(sum, &above), sum.rise(&above));
-        }
-        Some(moments)
+        let inside = span.below(square(&low), low).map(|below| shape::moments(sum, &below));
+        let outside = span.above(square(&high), high).map(|above| (shape::moments(sum, &above), sum.rise(&above)));
+        Some(self.0.across(first..last, inside.unwrap_or_default(), outside.unwrap_or_default()))
     }
 }

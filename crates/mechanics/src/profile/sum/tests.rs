@@ -69,7 +69,7 @@ proptest! {
         let radii: Vec<StressRadius> =
             (1..40).map(|index| StressRadius::new(limit * (f64::from(index) - 0.3) / 40.0)).collect();
         if rings.len() + 1 == points.len() {
-            let found = SumFields::new(sum, &rings).unwrap().sums(Kernel::Root, &radii);
+            let found = SumFields::new(sum, &rings, radii.len()).unwrap().sums(Kernel::Root, &radii);
             for (at, (found, _)) in radii.iter().zip(found) {
                 let terms = rings.iter().map(|(ring, weight)| weight * profile.kernel(at, ring));
                 let (expected, size) = terms.fold((0.0, 0.0), |(sum, size), term| (sum + term, size + term.abs()));

@@ -6,10 +6,10 @@
 //! segments in closed form. The rest, a few segments for each of the smallest cells, is summed for every panel. As a
 //! jump J of f'' at the knot k adds to g'
 //!
-//! J (2 w - k atan(w/k)) = J (w + k (u - atan u)), w = sqrt(x^2 - k^2), u = w/k,
+//! J (2 w - k theta), w = sqrt(x^2 - k^2), theta = atan(w/k) = 2 atan(w/(k + x)),
 //!
-//! one root and a short series in u^2 a knot do, wherever jumps are not so large that their sum would cancel; else each
-//! segment gives A (asin) + 2 C (sqrt). With w = sqrt(x^2 - r^2) the angle between r1 and r2 is atan(T),
+//! one root and a short series in (w/k)^2 a knot do, wherever jumps are not so large that their sum would cancel; else
+//! each segment gives A (asin) + 2 C (sqrt). With w = sqrt(x^2 - r^2) the angle between r1 and r2 is atan(T),
 //! T = x^2 (r2^2 - r1^2)/((r2 w1 + r1 w2) (w1 w2 + r1 r2)), where nothing cancels.
 //!
 //! A panel gets as many places as its series needs: few where f'' hardly jumps about it.
@@ -19,7 +19,7 @@ use std::ops::Range;
 use super::panel::KernelPanel;
 use super::spline::SplineKnot;
 use super::{DoubleDouble, Moments};
-use crate::numerics::angle::angles;
+use crate::numerics::angle::{self, angles};
 use crate::numerics::chebyshev::{self, EIGHT, Points, SIXTEEN, TWELVE, TWENTY, TWENTY_FOUR};
 use crate::numerics::cluster_tree::ClusterTree;
 use crate::numerics::gauss::{EIGHT_POINTS, TWENTY_POINTS};
@@ -30,18 +30,18 @@ use crate::numerics::roots::turning;
 const LEAF: usize = 8;
 /// The most that jumps of f'' may add to f' within a cell and what is near to it, over f' itself.
 const SMOOTH: f64 = 4.0;
-/// The u^2 up to which the series of u - atan u needs four, six, eight and twelve terms.
-const SHORT: [f64; 4] = [5e-4, 4e-3, 0.015, 0.05];
+/// What may be left out of g' for a jump of f'', over f'.
+const NEGLIGIBLE: f64 = 1e-17;
 /// One over 3, 5, 7 and so on.
-const ODD: [f64; 12] = {
-    let mut odd = [0.0; 12];
+const fn odd<const T: usize>() -> [f64; T] {
+    let mut odd = [0.0; T];
     let mut index = 0;
-    while index < odd.len() {
+    while index < T {
         odd[index] = 1.0 / (2 * index + 3) as f64;
         index += 1;
     }
     odd
-};
+}
 
 /// f' between two knots, f' = A + C r.
 struct Segment {
@@ -64,19 +64,21 @@ struct Stretch {
 }
 
 /// What was built.
+#[derive(Default)]
 pub(super) struct Built {
     /// From the first knot at which the surface leaves the plane, up to the last or, unless the whole curve is wanted,
     /// to where g falls.
     pub(super) panels: Vec<KernelPanel>,
     /// The moments and the depth of each.
     pub(super) totals: Vec<(Moments, f64)>,
-    /// Level and load at the end.
-    pub(super) level: f64,
-    pub(super) load: f64,
+    /// Level, load and the kernel at the centre at the end.
+    pub(super) level: DoubleDouble,
+    pub(super) load: DoubleDouble,
+    pub(super) centre: f64,
     /// The first radius at which g falls, if it does.
     pub(super) falls_at: Option<f64>,
-    /// Whether nothing stopped it before.
-    pub(super) complete: bool,
+    /// Whether the caller has ended it.
+    pub(super) stopped: bool,
 }
 
 /// The panels through knots, while `keep_going` returns true, which is asked at every cell.
@@ -99,18 +101,16 @@ pub(super) fn panels(knots: &[SplineKnot], whole: bool, keep_going: &dyn Fn() ->
         whole,
         keep_going,
         points: 24,
-        panels: Vec::with_capacity(segments.len()),
-        totals: Vec::with_capacity(segments.len()),
-        level: DoubleDouble::ZERO,
-        load: DoubleDouble::ZERO,
-        falls_at: None,
-        stopped: false,
+        built: Built {
+            panels: Vec::with_capacity(segments.len()),
+            totals: Vec::with_capacity(segments.len()),
+            ..Built::default()
+        },
     };
     if let Some(root) = cells.root() {
         build.visit(root, None, &[]);
     }
-    let Build { panels, totals, level, load, falls_at, stopped, .. } = build;
-    Built { panels, totals, level: level.value(), load: load.value(), falls_at, complete: !stopped }
+    build.built
 }
 
 /// The sources (r f')' dr of segments over X = -r^2, so that the radii of g lie below them.
@@ -145,28 +145,39 @@ fn add_segment<const N: usize>(sources: &mut Multipole, segment: &Segment, end: 
     sources.add_sources(&above, &weights);
 }
 
-/// Several radii, whose squares lie this far above that of a radius at or below them.
+/// Several radii, the largest first, by how far their squares lie above that of a radius at or below them.
 struct Places<const N: usize> {
     base: f64,
     above: [f64; N],
+    squares: [f64; N],
+    radii: [f64; N],
 }
 
 impl<const N: usize> Places<N> {
-    fn squares(&self) -> [f64; N] {
-        let (square, mut squares) = (self.base * self.base, self.above);
-        for above in &mut squares {
-            *above += square;
-        }
-        squares
+    fn new(base: f64, above: [f64; N]) -> Places<N> {
+        let squares = above.map(|above| base * base + above);
+        Places { base, above, squares, radii: squares.map(f64::sqrt) }
     }
 
     /// How far their squares lie above that of r.
     fn above(&self, r: f64) -> [f64; N] {
         let (below, mut excess) = ((self.base - r) * (self.base + r), self.above);
         for above in &mut excess {
-            *above = (below + *above).max(0.0);
+            let sum = below + *above;
+            *above = if sum > 0.0 { sum } else { 0.0 };
         }
         excess
+    }
+
+    /// The roots w of how far their squares lie above that of r, and theta = atan(w/r).
+    fn angles(&self, r: f64) -> ([f64; N], [f64; N]) {
+        let (mut roots, mut halves) = (self.above(r), [0.0; N]);
+        for lane in 0..N {
+            roots[lane] = roots[lane].sqrt();
+            halves[lane] = roots[lane] / (r + self.radii[lane]);
+        }
+        let (angles, _) = angles(halves);
+        (roots, angles.map(|half| 2.0 * half))
     }
 }
 
@@ -175,11 +186,11 @@ impl Segment {
     fn add<const N: usize>(&self, places: &Places<N>, sums: &mut [f64; N]) {
         let (start, end) = (self.start, self.end);
         let gap = (end - start) * (end + start);
-        let (squares, inner, outer) = (places.squares(), places.above(start), places.above(end));
+        let (inner, outer) = (places.above(start), places.above(end));
         let (mut tangents, mut drops) = ([0.0; N], [0.0; N]);
         for lane in 0..N {
             let (w1, w2) = (inner[lane].sqrt(), outer[lane].sqrt());
-            tangents[lane] = squares[lane] * gap / ((end * w1 + start * w2) * (w1 * w2 + start * end));
+            tangents[lane] = places.squares[lane] * gap / ((end * w1 + start * w2) * (w1 * w2 + start * end));
             drops[lane] = gap / (w1 + w2);
         }
         let (turns, _) = angles(tangents);
@@ -190,61 +201,62 @@ impl Segment {
 
     /// Adds to g' what the segment would add if it had no end.
     fn add_endless<const N: usize>(&self, places: &Places<N>, sums: &mut [f64; N]) {
-        let (roots, tangents) = self.tangents(&places.above(self.start));
-        let (turns, _) = angles(tangents);
+        let (roots, turns) = places.angles(self.start);
         for lane in 0..N {
             sums[lane] += self.constant * turns[lane] + 2.0 * self.curvature * roots[lane];
         }
     }
 
-    /// The roots of how far squares lie above that of the start, and those over it.
-    fn tangents<const N: usize>(&self, above: &[f64; N]) -> ([f64; N], [f64; N]) {
-        let (mut roots, mut tangents) = ([0.0; N], [0.0; N]);
-        for lane in 0..N {
-            roots[lane] = above[lane].sqrt();
-            tangents[lane] = roots[lane] / self.start;
-        }
-        (roots, tangents)
-    }
-
-    /// Adds to g' what the jump of f'' at its start adds.
-    fn add_jump<const N: usize>(&self, places: &Places<N>, sums: &mut [f64; N]) {
+    /// Adds to g' what the jump of f'' at its start adds, to `least`.
+    fn add_jump<const N: usize>(&self, least: f64, places: &Places<N>, sums: &mut [f64; N]) {
         let share = (self.start * self.start).recip();
-        let above = places.above(self.start);
-        let most = above.iter().fold(0.0_f64, |most, above| most.max(*above)) * share;
-        if most <= SHORT[0] {
-            self.add_short::<4, N>(share, &above, sums);
-        } else if most <= SHORT[1] {
-            self.add_short::<6, N>(share, &above, sums);
-        } else if most <= SHORT[2] {
-            self.add_short::<8, N>(share, &above, sums);
-        } else if most <= SHORT[3] {
-            self.add_short::<12, N>(share, &above, sums);
+        let above = (places.base - self.start) * (places.base + self.start) + places.above[0];
+        let (size, square) = (self.jump.abs() * above.sqrt(), above * share);
+        let fourth = square * square;
+        if size <= least {
+            return;
+        }
+        // What so many terms of the series of atan leave is no more than the next one.
+        if size * square <= 3.0 * least {
+            self.add_short(odd::<0>(), share, places, sums);
+        } else if size * fourth <= 5.0 * least {
+            self.add_short(odd::<1>(), share, places, sums);
+        } else if size * fourth * fourth <= 9.0 * least {
+            self.add_short(odd::<3>(), share, places, sums);
+        } else if size * fourth * fourth * fourth <= 13.0 * least {
+            self.add_short(odd::<5>(), share, places, sums);
+        } else if size * fourth * fourth * fourth * fourth <= 17.0 * least {
+            self.add_short(odd::<7>(), share, places, sums);
+        } else if square <= angle::QUARTER * angle::QUARTER {
+            self.add_short(angle::LACKING, share, places, sums);
         } else {
-            let (roots, tangents) = self.tangents(&above);
-            let (_, lacking) = angles(tangents);
-            // At the axis the angle counts for nothing.
-            let axis = self.start <= 0.0;
+            let (roots, turns) = places.angles(self.start);
             for lane in 0..N {
-                let rest = if axis { roots[lane] } else { self.start * lacking[lane] };
-                sums[lane] += self.jump * (roots[lane] + rest);
+                sums[lane] += self.jump * (2.0 * roots[lane] - self.start * turns[lane]);
             }
         }
     }
 
-    /// The same by so many terms of the series in u^2, which is `share` of the difference of the squares.
-    fn add_short<const TERMS: usize, const N: usize>(&self, share: f64, above: &[f64; N], sums: &mut [f64; N]) {
-        let (mut squares, mut series) = (*above, [0.0; N]);
-        for square in &mut squares {
-            *square *= share;
-        }
-        for odd in ODD[..TERMS].iter().rev() {
-            for lane in 0..N {
-                series[lane] = odd - squares[lane] * series[lane];
+    /// The same by a series in (w/k)^2, which is `share` of the difference of the squares.
+    fn add_short<const T: usize, const N: usize>(
+        &self,
+        terms: [f64; T],
+        share: f64,
+        places: &Places<N>,
+        sums: &mut [f64; N],
+    ) {
+        let above = places.above(self.start);
+        // Four side by side.
+        for (above, sums) in above.as_chunks::<4>().0.iter().zip(sums.as_chunks_mut::<4>().0) {
+            let (squares, mut series) = (above.map(|above| above * share), [0.0; 4]);
+            for term in terms.iter().rev() {
+                for lane in 0..4 {
+                    series[lane] = term - squares[lane] * series[lane];
+                }
             }
-        }
-        for lane in 0..N {
-            sums[lane] += self.jump * above[lane].sqrt() * (1.0 + squares[lane] * series[lane]);
+            for lane in 0..4 {
+                sums[lane] += self.jump * above[lane].sqrt() * (1.0 + squares[lane] * series[lane]);
+            }
         }
     }
 }
@@ -272,7 +284,8 @@ struct NearSources {
     far: CellField,
     /// The first of the near segments, or that of the jumps of f''.
     first: usize,
-    by_jumps: bool,
+    /// What may be left out for a jump, m; `None` where segments are summed instead of jumps.
+    least: Option<f64>,
 }
 
 struct Build<'a> {
@@ -284,14 +297,7 @@ struct Build<'a> {
     keep_going: &'a dyn Fn() -> bool,
     /// How many places the next panel will likely need.
     points: usize,
-    panels: Vec<KernelPanel>,
-    totals: Vec<(Moments, f64)>,
-    /// Level and load so far.
-    level: DoubleDouble,
-    load: DoubleDouble,
-    falls_at: Option<f64>,
-    /// Whether the caller has ended it.
-    stopped: bool,
+    built: Built,
 }
 
 impl Build<'_> {
@@ -299,16 +305,16 @@ impl Build<'_> {
     /// outward.
     fn visit(&mut self, number: usize, around: Option<&CellField>, beside: &[usize]) {
         let cell = self.cells.cluster(number);
-        self.stopped = self.stopped || !(self.keep_going)();
-        if cell.items.end <= self.flat || self.is_complete() || self.stopped {
+        self.built.stopped |= !(self.keep_going)();
+        if cell.items.end <= self.flat || self.is_complete() || self.built.stopped {
             return;
         }
         let (start, end) = (self.segments[cell.items.start].start, self.segments[cell.items.end - 1].end);
         let (low, high) = (start * start, end * end);
-        let places = Places { base: start, above: TWENTY.places(0.0, (end - start) * (end + start)) };
-        let (squares, mut sums) = (places.squares(), [0.0; 20]);
+        let places = Places::new(start, TWENTY.places(0.0, (end - start) * (end + start)));
+        let mut sums = [0.0; 20];
         if let Some(around) = around {
-            around.add(&squares, &mut sums);
+            around.add(&places.squares, &mut sums);
         }
         let (mut near, mut open): (Vec<usize>, Vec<usize>) = (Vec::new(), beside.iter().rev().copied().collect());
         let most = if cell.halves.is_none() { LEAF } else { cell.items.len() };
@@ -316,7 +322,7 @@ impl Build<'_> {
             let source = self.cells.cluster(number);
             let is_beyond = low + source.sources.interval.0 >= high - low;
             if is_beyond && source.sources.is_far(-low) {
-                add_far(&source.sources, &squares, &mut sums);
+                add_far(&source.sources, &places.squares, &mut sums);
             } else if let Some([inner, outer]) = source.halves.filter(|_| is_beyond || source.items.len() > most) {
                 open.extend([outer, inner]);
             } else if is_beyond {
@@ -334,27 +340,27 @@ impl Build<'_> {
         }
         let first = near.first().map_or(cell.items.start, |&first| self.cells.cluster(first).items.start);
         let mut first = first.max(self.flat);
-        let by_jumps = self.is_smooth(first..cell.items.end);
-        if by_jumps && first > self.flat {
+        let least = self.smooth_slope(first..cell.items.end).map(|slope| NEGLIGIBLE * slope);
+        if least.is_some() && first > self.flat {
             // What is far and what the first of the near segments would add without end are smooth together.
             self.segments[first].add_endless(&places, &mut sums);
             first += 1;
         }
-        let sources = NearSources { far: CellField { low, high, series: TWENTY.series(&sums) }, first, by_jumps };
+        let sources = NearSources { far: CellField { low, high, series: TWENTY.series(&sums) }, first, least };
         for knot in cell.items.start.max(self.flat)..cell.items.end {
             let Segment { start, end, .. } = self.segments[knot];
             self.add_stretches(knot, ((end - start) * (end + start)).sqrt(), &sources);
         }
     }
 
-    /// Whether the jumps of f'' in these segments add no more to f' than can be summed up without loss.
-    fn is_smooth(&self, segments: Range<usize>) -> bool {
+    /// The size of f' in these segments, if the jumps of f'' add no more to it than can be summed up without loss.
+    fn smooth_slope(&self, segments: Range<usize>) -> Option<f64> {
         let (start, end) = (&self.segments[segments.start], &self.segments[segments.end - 1]);
         let slope = |segment: &Segment, r: f64| (segment.constant + segment.curvature * r).abs();
         let size = slope(start, start.start).max(slope(end, end.end));
         let jumps = self.segments[segments].iter().skip(1).map(|segment| (segment.jump, segment.start));
         let all = jumps.chain([(start.curvature, start.start)]);
-        all.map(|(jump, r)| jump.abs() * (end.end - r)).sum::<f64>() <= SMOOTH * size
+        (all.map(|(jump, r)| jump.abs() * (end.end - r)).sum::<f64>() <= SMOOTH * size).then_some(size)
     }
 
     /// Adds the panels above a knot up to the t `high`, cut where the knot below it is too near for one series.
@@ -379,7 +385,7 @@ impl Build<'_> {
 
     /// Whether g falls where the panels end.
     fn is_complete(&self) -> bool {
-        self.falls_at.is_some() && !self.whole
+        self.built.falls_at.is_some() && !self.whole
     }
 
     /// Adds the panel of a stretch, up to where g falls unless the whole curve is wanted.
@@ -389,7 +395,7 @@ impl Build<'_> {
         }
         let mut panel = self.panel(stretch, sources);
         if let Some(t) = first_fall(&panel) {
-            self.falls_at = self.falls_at.or(Some((stretch.base * stretch.base + t * t).sqrt()));
+            self.built.falls_at.get_or_insert((stretch.base * stretch.base + t * t).sqrt());
             if !self.whole {
                 if t <= stretch.low {
                     return;
@@ -397,12 +403,14 @@ impl Build<'_> {
                 panel = self.panel(&Stretch { high: t, ..*stretch }, sources);
             }
         }
-        let totals @ (moments, depth) = panel.totals();
-        (panel.level, panel.load) = (self.level.value(), self.load.value());
-        self.level = self.level + DoubleDouble::from(depth);
-        self.load = self.load + DoubleDouble::from(panel.radius * depth + moments.first);
-        self.panels.push(panel);
-        self.totals.push(totals);
+        let ((moments, centre), depth) = (panel.totals(), panel.depth);
+        let built = &mut self.built;
+        (panel.level, panel.load, panel.centre) = (built.level.value(), built.load.value(), built.centre);
+        built.level = built.level + DoubleDouble::from(depth);
+        built.load = built.load + DoubleDouble::from(panel.radius * depth + moments.first);
+        built.centre += centre;
+        built.panels.push(panel);
+        built.totals.push((moments, depth));
     }
 
     fn panel(&mut self, stretch: &Stretch, sources: &NearSources) -> KernelPanel {
@@ -425,21 +433,18 @@ impl Build<'_> {
 
     /// The series of q = g'/x over a stretch, by its values at so many points, and whether they resolve it.
     fn series<const N: usize>(&self, stretch: &Stretch, sources: &NearSources, points: &Points<N>) -> (Vec<f64>, bool) {
-        let mut places = Places { base: stretch.base, above: points.places(stretch.low, stretch.high) };
-        places.above.iter_mut().for_each(|t| *t *= *t);
-        let (squares, mut sums) = (places.squares(), [0.0; N]);
-        sources.far.add(&squares, &mut sums);
+        let places = Places::new(stretch.base, points.places(stretch.low, stretch.high).map(|t| t * t));
+        let mut sums = [0.0; N];
+        sources.far.add(&places.squares, &mut sums);
         let below = self.segments[sources.first.min(stretch.knot)..=stretch.knot].iter();
-        if sources.by_jumps {
-            below.skip(sources.first.saturating_sub(stretch.knot)).for_each(|s| s.add_jump(&places, &mut sums));
+        if let Some(least) = sources.least {
+            below.skip(sources.first.saturating_sub(stretch.knot)).for_each(|s| s.add_jump(least, &places, &mut sums));
         } else {
             let own = &self.segments[stretch.knot];
             below.take(stretch.knot - sources.first).for_each(|segment| segment.add(&places, &mut sums));
             own.add_endless(&places, &mut sums);
         }
-        for lane in 0..N {
-            sums[lane] /= squares[lane].sqrt();
-        }
+        sums.iter_mut().zip(places.radii).for_each(|(sum, radius)| *sum /= radius);
         let series = points.series(&sums);
         let resolved = Points::<N>::resolve(&series);
         (series, resolved)

@@ -74,7 +74,7 @@ impl TableCurve {
             return Ok((TableCurve { flat, knots, stages }, None));
         }
         let built = build::panels(&knots, whole, keep_going);
-        if !built.complete {
+        if built.stopped {
             return Err(Error::Interrupted);
         }
         let falls = built.falls_at;

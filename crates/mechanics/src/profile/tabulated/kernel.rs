@@ -17,7 +17,6 @@ use super::super::shape::{self, KernelOrder, Shape};
 use super::super::smooth_coordinate;
 use super::panel::KernelPanel;
 use super::{Profile, Span, StressRadius, near_kernel};
-use crate::numerics::far_field::total;
 use crate::numerics::gauss;
 use crate::numerics::multipole::{Multipole, ORDERS, add_polynomials};
 
@@ -160,4 +159,15 @@ fn polynomials(place: f64) -> [f64; ORDERS] {
     let mut values = [0.0; ORDERS];
     add_polynomials(&mut values, &[place], &[1.0]);
     values
+}
+
+/// The sum of terms, four by four.
+fn total(terms: &[f64; ORDERS]) -> f64 {
+    let mut sums = [0.0; 4];
+    for four in terms.chunks_exact(4) {
+        for (sum, term) in sums.iter_mut().zip(four) {
+            *sum += term;
+        }
+    }
+    (sums[0] + sums[1]) + (sums[2] + sums[3])
 }

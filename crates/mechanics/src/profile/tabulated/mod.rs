@@ -17,7 +17,6 @@ mod lookup;
 mod near_kernel;
 mod noise;
 mod panel;
-mod panel_integrals;
 mod panel_powers;
 mod panel_sources;
 mod panels;
@@ -45,7 +44,7 @@ pub(super) use weighted_panels::{SumAndSize, WeightedPanels, add_to};
 pub(super) const FEW: usize = 128;
 
 /// A tabulated profile.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Tabulated {
     radii: Vec<f64>,
     heights: Vec<f64>,
@@ -60,17 +59,6 @@ pub struct Tabulated {
     end: f64,
     /// The first radius at which g falls, if it does, m.
     falls: Option<f64>,
-}
-
-impl PartialEq for Tabulated {
-    fn eq(&self, other: &Tabulated) -> bool {
-        let parts = |table: &Tabulated| (table.end, table.falls);
-        self.radii == other.radii
-            && self.heights == other.heights
-            && self.stated_errors == other.stated_errors
-            && self.curve == other.curve
-            && parts(self) == parts(other)
-    }
 }
 
 impl Tabulated {
@@ -125,11 +113,13 @@ impl Tabulated {
         }
         range::RADIUS.check(radii[1])?;
         let knots = spline::knots(radii, heights);
-        let mut table = Tabulated::from_knots(knots, whole, keep_going)?;
-        table.gaps = interpolation_error::gaps(radii, heights);
-        (table.radii, table.heights) = (radii.to_vec(), heights.to_vec());
-        table.noise = noise::of_heights(radii, heights);
-        Ok(table)
+        Ok(Tabulated {
+            radii: radii.to_vec(),
+            heights: heights.to_vec(),
+            noise: noise::of_heights(radii, heights),
+            gaps: interpolation_error::gaps(radii, heights),
+            ..Tabulated::from_knots(knots, whole, keep_going)?
+        })
     }
 
     /// The profile whose slope is linear between knots, as far as g rises or `whole`.
@@ -180,54 +170,48 @@ impl Tabulated {
         panels.iter().flat_map(|panel| panel.slope_check_places().into_iter().map(|t| panel.radius_at(t)))
     }
 
-    /// The kernels of rings from the centre outward, each with its weight; `None` with levels at a vertical edge.
-    pub(super) fn weighted_panels(&self, rings: &[(Ring, f64)]) -> Option<WeightedPanels<'_>> {
-        let panels = self.curve.up_to(rings.last()?.0.outer.radius);
+    /// The kernels of rings from the centre outward, each with its weight, for sums at so many radii; `None` with levels
+    /// at a vertical edge.
+    pub(super) fn weighted_panels(&self, rings: &[(Ring, f64)], radii: usize) -> Option<WeightedPanels<'_>> {
         let spans: Vec<(Span, f64)> = rings.iter().map(|(ring, weight)| (span(self, ring), *weight)).collect();
-        WeightedPanels::new(panels, &spans)
+        self.panels_over(&spans, radii)
     }
 
     /// The same of spans.
-    pub(super) fn panels_over(&self, spans: &[(Span, f64)]) -> Option<WeightedPanels<'_>> {
-        WeightedPanels::new(self.curve.up_to(spans.last()?.0.outer_radius), spans)
+    pub(super) fn panels_over(&self, spans: &[(Span, f64)], radii: usize) -> Option<WeightedPanels<'_>> {
+        WeightedPanels::new(self.curve.up_to(spans.last()?.0.outer_radius), spans, radii)
     }
 }
 
-impl Shape for Tabulated {
-    fn level(&self, radius: f64) -> f64 {
-        self.curve.up_to(radius).level(radius)
-    }
+/// Methods of [`Shape`] that the panels up to some radius have.
+macro_rules! by_panels {
+    ($($method:ident($($argument:ident: $Type:ty),*) -> $Result:ty, up to $radius:expr;)+) => {
+        $(fn $method(&self, $($argument: $Type),*) -> $Result {
+            self.curve.up_to($radius).$method($($argument),*)
+        })+
+    };
+}
 
-    fn slope(&self, radius: f64) -> f64 {
-        self.curve.up_to(radius).slope(radius)
+impl Shape for Tabulated {
+    by_panels! {
+        level(radius: f64) -> f64, up to radius;
+        slope(radius: f64) -> f64, up to radius;
+        load(radius: f64) -> f64, up to radius;
+        kink_below(radius: f64) -> f64, up to radius;
+        rise(span: &Span) -> f64, up to span.outer_radius;
+        moments(span: &Span) -> Moments, up to span.outer_radius;
+        gap(ring: &Ring, depth: f64) -> f64, up to ring.outer.radius;
     }
 
     fn square(&self, level: DoubleDouble) -> DoubleDouble {
+        if level.value() <= 0.0 {
+            return DoubleDouble::square_of(self.flat_radius());
+        }
         self.curve.up_to_level(level.value()).square(level)
-    }
-
-    fn load(&self, radius: f64) -> f64 {
-        self.curve.up_to(radius).load(radius)
     }
 
     fn indentation_for(&self, load: f64) -> f64 {
         self.curve.up_to_load(load).indentation_for(load)
-    }
-
-    fn rise(&self, span: &Span) -> f64 {
-        self.curve.up_to(span.outer_radius).rise(span)
-    }
-
-    fn gap(&self, ring: &Ring, depth: f64) -> f64 {
-        self.curve.up_to(ring.outer.radius).gap(ring, depth)
-    }
-
-    fn kink_below(&self, radius: f64) -> f64 {
-        self.curve.up_to(radius).kink_below(radius)
-    }
-
-    fn moments(&self, span: &Span) -> Moments {
-        self.curve.up_to(span.outer_radius).moments(span)
     }
 
     fn kernel(&self, order: KernelOrder, at: &StressRadius, span: &Span) -> f64 {

@@ -5,15 +5,12 @@
 
 use std::sync::OnceLock;
 
+use super::super::shape::KernelOrder;
 use super::super::smooth_coordinate::{self, SmoothCoordinate};
-use super::panel_integrals::PanelIntegrals;
-use super::{DoubleDouble, Moments, Span, panel_powers};
+use super::{DoubleDouble, Moments, Span, StressRadius, panel_powers};
 use crate::numerics::chebyshev::{self, TWENTY_FOUR, divided_difference};
-use crate::numerics::gauss;
+use crate::numerics::gauss::{self, EIGHT_POINTS, TWELVE_POINTS, TWENTY_POINTS};
 use crate::numerics::roots::within;
-
-/// The part of P below which its terms do not count where an error is estimated that is larger.
-const NEGLIGIBLE: f64 = 1e-14;
 
 /// A stretch of radii.
 #[derive(Clone, Debug, PartialEq)]
@@ -28,18 +25,18 @@ pub(super) struct KernelPanel {
     /// x where it begins and x^2.
     pub(super) radius: f64,
     pub(super) square: DoubleDouble,
-    /// g and int x dg where it begins.
+    /// W, how much its radius grows, and H, how much g does, m.
+    width: f64,
+    pub(super) depth: f64,
+    /// g, int x dg and the kernel at the centre, int dg/x, where it begins.
     pub(super) level: f64,
     pub(super) load: f64,
+    pub(super) centre: f64,
     /// Coefficients of q and, for u from -1 on, of P.
     slope: Box<[f64]>,
     primitive: Box<[f64]>,
     /// Made when first asked for.
     powers: OnceLock<Box<[f64]>>,
-    /// Made when a ring first ends here.
-    integrals: OnceLock<PanelIntegrals>,
-    /// How many terms of P are more than [`NEGLIGIBLE`].
-    terms: usize,
 }
 
 impl KernelPanel {
@@ -53,47 +50,33 @@ impl KernelPanel {
             1 => middle * term(1) + half * (term(0) + 0.5 * term(2)),
             _ => middle * term(k) + 0.5 * half * (term(k - 1) + term(k + 1)),
         };
-        let mut primitive = Vec::with_capacity(slope.len() + 2);
-        primitive.push(0.0);
-        let (mut order, mut before, mut this) = (0.0, 2.0 * product(0), product(1));
-        for k in 1..=slope.len() + 1 {
-            order += 1.0;
-            let next = product(k + 1);
-            primitive.push(0.5 * half * (before - next) / order);
-            (before, this) = (this, next);
-        }
+        let product: Vec<f64> = (0..=slope.len()).map(product).collect();
+        let primitive = chebyshev::primitive(&product, half);
         let square = DoubleDouble::square_of(base) + DoubleDouble::square_of(low);
-        let size = primitive.iter().fold(0.0_f64, |size, a| size.max(a.abs()));
-        let terms = primitive.iter().rposition(|a| a.abs() > NEGLIGIBLE * size).map_or(0, |last| last + 1);
+        let odd = primitive.iter().skip(1).step_by(2);
+        let radius = square.value().sqrt();
+        let end = (DoubleDouble::square_of(base) + DoubleDouble::square_of(high)).value().sqrt();
         KernelPanel {
             base,
             singularity,
             low,
             high,
-            radius: square.value().sqrt(),
+            radius,
             square,
+            width: (high - low) * (high + low) / (radius + end),
+            depth: 2.0 * odd.sum::<f64>(),
             level: 0.0,
             load: 0.0,
+            centre: 0.0,
             powers: OnceLock::new(),
             slope: slope.into(),
             primitive: primitive.into(),
-            integrals: OnceLock::new(),
-            terms,
         }
     }
 
     /// Coefficients of q in powers of t over its upper end, for the kernel; none if they do not serve.
     pub(super) fn powers(&self) -> &[f64] {
         self.powers.get_or_init(|| panel_powers::powers(&self.slope, self.low, self.high))
-    }
-
-    /// Its integrals up to any place.
-    pub(super) fn integrals(&self) -> &PanelIntegrals {
-        self.integrals.get_or_init(|| {
-            let width = (self.high - self.low) * (self.high + self.low) / (self.radius + self.end().1);
-            let rise = |t| self.rise_at(self.low, t, t - self.low);
-            PanelIntegrals::new(self.base, (self.low, self.high), (width, self.depth()), rise)
-        })
     }
 
     /// The rise of g, m, from its beginning up to t, `s` further in the square of the radius, by the powers of q.
@@ -112,7 +95,7 @@ impl KernelPanel {
         }
         let all = (self.high - self.low) * (self.high + self.low);
         let t = |s: f64| (self.low * self.low + s).sqrt();
-        let mut s = (all * (rise / self.integrals().depth)).min(all);
+        let mut s = (all * (rise / self.depth)).min(all);
         let slope = 0.5 * self.slope_over_radius(t(s));
         let mut last = s;
         for _ in 0..8 {
@@ -153,46 +136,81 @@ impl KernelPanel {
         orders.sum::<f64>() * 2.0 / (self.high - self.low)
     }
 
-    /// Its moments and its depth, m.
+    /// Its moments, and what it adds to the kernel at the centre, int q dx.
     pub(super) fn totals(&self) -> (Moments, f64) {
-        let odd = self.primitive.iter().skip(1).step_by(2);
-        let depth = 2.0 * odd.sum::<f64>();
-        let singular = gauss::Singular { below: self.singularity, above: f64::INFINITY };
-        let rule = singular.panel(self.high, self.high - self.low);
-        let moments = match rule.points() {
-            _ if rule.width < self.high - self.low => smooth_coordinate::moments(self, &self.span(None)),
-            8 => self.moments_by(&gauss::EIGHT_POINTS),
-            12 => self.moments_by(&gauss::TWELVE_POINTS),
-            _ => self.moments_by(&gauss::TWENTY_POINTS),
+        let span = self.span(None);
+        let moments = self.moments_between(self.low, self.high, self.width);
+        let centre = match self.points() {
+            Some(8) => self.centre_by(&EIGHT_POINTS),
+            Some(12) => self.centre_by(&TWELVE_POINTS),
+            Some(_) => self.centre_by(&TWENTY_POINTS),
+            None => smooth_coordinate::kernel(self, KernelOrder::Value, &StressRadius::new(0.0), &span),
         };
-        (moments, depth)
+        (moments.unwrap_or_else(|| smooth_coordinate::moments(self, &span)), centre)
+    }
+
+    /// The moments between two places of t, `width` apart in the radius, m; `None` without a rule for the panel.
+    ///
+    /// They err by a few units in the last place of W H and W H^2: see [`KernelPanel::resolves`].
+    pub(super) fn moments_between(&self, low: f64, high: f64, width: f64) -> Option<Moments> {
+        let ends = (low, high);
+        Some(match self.points()? {
+            8 => self.moments_by(&EIGHT_POINTS, ends, width),
+            12 => self.moments_by(&TWELVE_POINTS, ends, width),
+            _ => self.moments_by(&TWENTY_POINTS, ends, width),
+        })
+    }
+
+    /// Whether the errors of the moments of a part are round-off of those of a ring, as they are for one that holds a
+    /// whole panel of this size beside it.
+    pub(super) fn resolves(&self, ring: &Moments) -> bool {
+        let area = self.width * self.depth;
+        ring.first >= area && ring.second >= area * self.depth
+    }
+
+    /// How many points of Gauss's rule do for an integral over the panel; `None` where none does.
+    fn points(&self) -> Option<usize> {
+        // t/x is singular at t = +-ik, and q has the terms it has.
+        let below = if self.base > 0.0 { self.base } else { f64::INFINITY };
+        let rule = gauss::Singular { below, above: f64::INFINITY }.panel(self.high, self.high - self.low);
+        let terms = self.primitive.len();
+        let least = [(14, 8), (20, 12)].into_iter().find(|(most, _)| terms <= *most).map_or(20, |(_, points)| points);
+        (rule.width >= self.high - self.low).then_some(rule.points().max(least))
+    }
+
+    /// t/x.
+    fn stretch(&self, t: f64) -> f64 {
+        if self.base > 0.0 { t / self.radius_at(t) } else { 1.0 }
     }
 
     /// The moments by a rule whose points all of it can be left to. The rises are differences of P, good to round-off
     /// of the depth.
-    fn moments_by<const N: usize>(&self, rule: &[(f64, f64); N]) -> Moments {
-        let (width, top) = (self.high - self.low, self.primitive.iter().sum::<f64>());
-        let levels = chebyshev::values(&self.primitive, rule.map(|(share, _)| 1.0 - 2.0 * share));
+    fn moments_by<const N: usize>(&self, rule: &[(f64, f64); N], (low, high): (f64, f64), width: f64) -> Moments {
+        let place = self.place(high);
+        let (step, top) = ((high - low) * 2.0 / (self.high - self.low), chebyshev::values(&self.primitive, [place])[0]);
+        let levels = chebyshev::values(&self.primitive, rule.map(|(share, _)| place - step * share));
         let (mut first, mut second) = (0.0, 0.0);
         for (&(share, weight), level) in rule.iter().zip(levels) {
-            let t = self.high - width * share;
-            let (rise, stretch) = (top - level, if self.base > 0.0 { t / self.radius_at(t) } else { 1.0 });
-            let area = width * weight * rise * stretch;
+            let rise = top - level;
+            let area = (high - low) * weight * rise * self.stretch(high - (high - low) * share);
             first += area;
             second += area * rise;
         }
-        Moments { width: width * (self.high + self.low) / (self.radius + self.end().1), first, second }
+        Moments { width, first, second }
+    }
+
+    /// int q dx by such a rule.
+    fn centre_by<const N: usize>(&self, rule: &[(f64, f64); N]) -> f64 {
+        let width = self.high - self.low;
+        let slopes = chebyshev::values(&self.slope, rule.map(|(share, _)| 1.0 - 2.0 * share));
+        let terms = rule.iter().zip(slopes).map(|((u, weight), q)| weight * q * self.stretch(self.high - width * u));
+        width * terms.sum::<f64>()
     }
 
     /// The square of the radius where it ends, and that radius.
     pub(super) fn end(&self) -> (DoubleDouble, f64) {
         let square = DoubleDouble::square_of(self.base) + DoubleDouble::square_of(self.high);
         (square, square.value().sqrt())
-    }
-
-    /// g from the beginning to the end.
-    pub(super) fn depth(&self) -> f64 {
-        self.rise_at(self.low, self.high, self.high - self.low)
     }
 
     /// All of it, up to the very square where the next one begins, if there is one: its own end is rounded, and

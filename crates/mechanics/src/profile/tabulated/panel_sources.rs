@@ -23,7 +23,7 @@ pub(super) fn sources(panels: &[KernelPanel]) -> ClusterTree<Multipole> {
 pub(super) fn add_panel(sources: &mut Multipole, panel: &KernelPanel, (low, high): (f64, f64), weight: f64) {
     let nodes = gauss::TWENTY_POINTS.map(|(u, share)| (high - (high - low) * u, weight * (high - low) * share));
     sources.add_sources(
-        &nodes.map(|(t, _)| (t - panel.low) * (t + panel.low)),
+        &nodes.map(|(t, _)| panel.square.value() - sources.interval.0 + (t - panel.low) * (t + panel.low)),
         &nodes.map(|(t, share)| share * t * panel.slope_over_radius(t)),
     );
 }

@@ -31,12 +31,13 @@ pub(super) struct SpanParts {
     pub(super) high: Option<PanelPart>,
 }
 
-/// Where panels end: radius, m, level, m, and load, m^2.
+/// Where panels end: radius, m, level, m, load, m^2, and the kernel at the centre.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Top {
     pub(super) radius: f64,
     pub(super) level: f64,
     pub(super) load: f64,
+    centre: f64,
 }
 
 /// Panels from the centre outward.
@@ -57,8 +58,9 @@ pub(super) struct Panels {
 
 impl Panels {
     pub(super) fn new(built: Built) -> Panels {
-        let Built { panels, totals, level, load, .. } = built;
-        let top = Top { radius: panels.last().map_or(0.0, |panel| panel.end().1), level, load };
+        let Built { panels, totals, level, load, centre, .. } = built;
+        let (level, load) = (level.value(), load.value());
+        let top = Top { radius: panels.last().map_or(0.0, |panel| panel.end().1), level, load, centre };
         let mut knots: Vec<f64> = panels.iter().map(|panel| panel.base).filter(|&base| base > 0.0).collect();
         knots.dedup_by(|a, b| a.to_bits() == b.to_bits());
         Panels {
@@ -124,7 +126,7 @@ impl Panels {
         if load <= 0.0 {
             return 0.0;
         }
-        let Top { radius, level, load: most } = self.top;
+        let Top { radius, level, load: most, .. } = self.top;
         if load >= most {
             return level + (load - most) / radius;
         }
@@ -174,16 +176,11 @@ impl Panels {
 
     pub(super) fn moments_by_quadrature(&self, span: &Span) -> Moments {
         let SpanParts { low, whole, high } = self.parts(span);
-        let mut sum = self.tree.run(whole.start, whole.end);
-        if let Some((index, span)) = low {
-            sum.0 = Moments::stack(smooth_coordinate::moments(&self.panels[index], &span), sum.0, sum.1);
-        }
-        if let Some((index, span)) = high {
+        let part = |(index, span): PanelPart| {
             let panel = &self.panels[index];
-            sum.0 =
-                Moments::stack(sum.0, smooth_coordinate::moments(panel, &span), smooth_coordinate::rise(panel, &span));
-        }
-        sum.0
+            (smooth_coordinate::moments(panel, &span), smooth_coordinate::rise(panel, &span))
+        };
+        self.tree.across(whole, low.map(part).unwrap_or_default().0, high.map(part).unwrap_or_default())
     }
 
     pub(super) fn least_fall(&self, inner: f64, outer: f64) -> f64 {
@@ -232,23 +229,30 @@ impl Panels {
         let Some(span) = span.above(at.square, at.radius) else { return 0.0 };
         let SpanParts { low, whole, high } = self.parts(&span);
         let part = |(index, span): PanelPart| kernel.near(&self.panels[index], at, &span);
-        let (square, mut far, mut near) = (at.square.value(), 0.0, 0.0);
-        self.sources().visit(
-            whole,
-            &mut |cluster| {
-                let is_far = kernel.is_far(&cluster.sources, square);
-                if is_far {
-                    far += kernel.far(&cluster.sources, [square])[0];
-                }
-                is_far
-            },
-            &mut |panels| near += panels.map(|index| part((index, self.span_of_panel(index)))).sum::<f64>(),
-        );
-        low.into_iter().chain(high).map(part).sum::<f64>() + near + far
+        let between = if kernel == Kernel::Root && at.radius <= 0.0 && whole.start == 0 {
+            self.panels.get(whole.end).map_or(self.top.centre, |panel| panel.centre)
+        } else if whole.is_empty() {
+            0.0
+        } else {
+            let (square, mut far, mut near) = (at.square.value(), 0.0, 0.0);
+            self.sources().visit(
+                whole,
+                &mut |cluster| {
+                    let is_far = kernel.is_far(&cluster.sources, square);
+                    if is_far {
+                        far += kernel.far(&cluster.sources, [square])[0];
+                    }
+                    is_far
+                },
+                &mut |panels| near += panels.map(|index| part((index, self.span_of_panel(index)))).sum::<f64>(),
+            );
+            near + far
+        };
+        low.into_iter().chain(high).map(part).sum::<f64>() + between
     }
 
     /// The moments of a ring; `None` of one that lies in one panel or meets the end of the table, and where a part is
-    /// too thin for its series to resolve.
+    /// too thin to be resolved.
     pub(super) fn moments_across(&self, span: &Span) -> Option<Moments> {
         let (inner, outer) = (self.by_radius.holding(span.inner_radius), self.by_radius.ending_at(span.outer_radius));
         if inner >= outer || span.edge > 0.0 {
@@ -259,17 +263,17 @@ impl Panels {
             return None;
         }
         let part = span.inner_radius > bottom.radius;
-        let (mut sum, between) = self.tree.run(if part { inner + 1 } else { inner }, outer);
-        if part {
+        let inside = if part {
             let width = (next.square - span.inner).value().max(0.0) / (next.radius + span.inner_radius);
-            let below = bottom.integrals().above(bottom.place(bottom.t_of(span.inner)), width);
-            sum = Moments::stack(below, sum, between);
-        }
+            bottom.moments_between(bottom.t_of(span.inner), bottom.high, width)?
+        } else {
+            Moments::default()
+        };
         let beyond = (span.outer - top.square).value().max(0.0);
         let t = top.t_of(span.outer);
-        let rise = top.rise_by_powers(t, beyond);
-        let above = top.integrals().below(top.place(t), beyond / (span.outer_radius + top.radius), rise);
-        sum = Moments::stack(sum, above, rise);
-        (top.integrals().resolve(&sum) && (!part || bottom.integrals().resolve(&sum))).then_some(sum)
+        let outside = top.moments_between(top.low, t, beyond / (span.outer_radius + top.radius))?;
+        let first = if part { inner + 1 } else { inner };
+        let sum = self.tree.across(first..outer, inside, (outside, top.rise_by_powers(t, beyond)));
+        (top.resolves(&sum) && (!part || bottom.resolves(&sum))).then_some(sum)
     }
 }

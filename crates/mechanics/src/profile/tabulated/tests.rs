@@ -160,7 +160,7 @@ proptest! {
             low.into_iter().chain(whole).chain(high).map(kernel).sum::<f64>()
         };
         let size: f64 = rings.iter().map(|(ring, _)| by_panels(&StressRadius::new(0.0), ring)).sum();
-        let sums = table.weighted_panels(&rings).unwrap().sums(Kernel::Root, &radii);
+        let sums = table.weighted_panels(&rings, radii.len()).unwrap().sums(Kernel::Root, &radii);
         for (at, (sum, _)) in radii.iter().zip(sums) {
             let exact: f64 = rings.iter().map(|(ring, weight)| weight * by_panels(at, ring)).sum();
             prop_assert!((sum - exact).abs() <= 3e-14 * size, "{:e}: {sum:e} {exact:e}", at.radius);

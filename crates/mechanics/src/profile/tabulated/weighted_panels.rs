@@ -2,8 +2,8 @@
 //!
 //! A panel that lies in one ring has that ring's weight, and so has a cluster of such panels: what it does from afar is
 //! that of the table times the weight. The few panels that rings cut are cut with them, and only the clusters that hold
-//! one, or panels of several rings, get moments of their own. So a state costs in proportion to the number of its rings
-//! and not to that of the panels.
+//! one, or panels of several rings, get moments of their own; for a few radii only the small ones among them. So a state
+//! costs in proportion to the number of its rings and not to that of the panels.
 //!
 //! Radii go through the tree together, in such an order that a cluster is far from the first of them and near the last:
 //! at each cluster three runs part. Those from which it is far take its moments, side by side; those beyond it are
@@ -20,6 +20,12 @@ use crate::numerics::multipole::Multipole;
 
 /// Radii side by side.
 const LANES: usize = 4;
+
+/// For fewer radii than this, larger clusters than the next are summed half by half.
+const MANY: usize = 64;
+
+/// The moments of a cluster of so many panels are made of what is in it at once, not half by half.
+const FEW_PANELS: usize = 8;
 
 /// A stretch within the panel of this index, and its weight.
 type Part = (usize, Span, f64);
@@ -45,8 +51,9 @@ struct Held {
 pub(in super::super) type SumAndSize = (f64, f64);
 
 impl WeightedPanels<'_> {
-    /// The panels of spans from the centre outward, each with its weight; `None` with levels at a vertical edge.
-    pub(super) fn new<'a>(table: &'a Panels, spans: &[(Span, f64)]) -> Option<WeightedPanels<'a>> {
+    /// The panels of spans from the centre outward, each with its weight, for sums at so many radii; `None` with levels
+    /// at a vertical edge.
+    pub(super) fn new<'a>(table: &'a Panels, spans: &[(Span, f64)], radii: usize) -> Option<WeightedPanels<'a>> {
         let (mut runs, mut parts) = (Vec::with_capacity(spans.len()), Vec::with_capacity(2 * spans.len()));
         for (span, weight) in spans {
             if span.edge > 0.0 {
@@ -60,7 +67,7 @@ impl WeightedPanels<'_> {
             parts.extend(high.map(|(index, span)| (index, span, *weight)));
         }
         let mut panels = WeightedPanels { table, runs, parts, own: Vec::new() };
-        panels.gather(table.sources().root()?);
+        panels.gather(table.sources().root()?, radii >= MANY);
         Some(panels)
     }
 
@@ -84,35 +91,40 @@ impl WeightedPanels<'_> {
         &self.parts[first..first + count]
     }
 
-    /// The weight of a cluster's panels; where they do not weigh alike, lists the moments of the cluster after all that
-    /// are needed below it.
-    fn gather(&mut self, number: usize) -> Option<f64> {
+    /// Lists the moments of a cluster whose panels do not weigh alike, if it is small or `all` are wanted, after those
+    /// below it.
+    fn gather(&mut self, number: usize, all: bool) {
         let cluster = self.table.sources().cluster(number);
-        let alike = self.weight(&cluster.items);
-        if alike.is_some() {
-            return alike;
+        if self.weight(&cluster.items).is_some() {
+            return;
         }
-        let mut sources = Multipole::empty(cluster.sources.interval);
+        let is_small = cluster.items.len() <= FEW_PANELS;
+        if let Some(halves) = cluster.halves.filter(|_| !is_small) {
+            halves.into_iter().for_each(|half| self.gather(half, all));
+        }
         // Wider than it is far from the centre, it is far from no radius, and neither is a cluster that holds it.
-        let wanted = cluster.sources.is_far(0.0);
-        for half in cluster.halves.into_iter().flatten() {
-            let weight = self.gather(half);
-            let part = match weight {
-                Some(_) => Some(&self.table.sources().cluster(half).sources),
-                None => self.own.last().map(|(_, own)| own),
-            };
-            let factor = weight.unwrap_or(1.0);
-            if let Some(part) = part.filter(|_| wanted && factor.abs() > 0.0) {
-                sources.add(part, factor);
-            }
-        }
-        if wanted && cluster.halves.is_none() {
-            self.add_parts(cluster, &mut sources);
-        }
-        if wanted {
+        if (all || is_small) && cluster.sources.is_far(0.0) {
+            let mut sources = Multipole::empty(cluster.sources.interval);
+            self.add_cluster(number, &mut sources);
             self.own.push((number, sources));
         }
-        None
+    }
+
+    /// The moments that a cluster has of its own.
+    fn own(&self, number: usize) -> Option<&Multipole> {
+        self.own.binary_search_by_key(&number, |own| own.0).ok().map(|index| &self.own[index].1)
+    }
+
+    /// Adds the weighted sources of a cluster.
+    fn add_cluster(&self, number: usize, sources: &mut Multipole) {
+        let cluster = self.table.sources().cluster(number);
+        match (self.weight(&cluster.items), self.own(number), cluster.halves) {
+            (Some(weight), _, _) if weight.abs() > 0.0 => sources.add(&cluster.sources, weight),
+            (Some(_), _, _) => {}
+            (None, Some(own), _) => sources.add(own, 1.0),
+            (None, None, Some(halves)) => halves.into_iter().for_each(|half| self.add_cluster(half, sources)),
+            (None, None, None) => self.add_parts(cluster, sources),
+        }
     }
 
     /// Adds the sources of the parts of a panel. All but the first make the most of the panel: the first counts as what
@@ -124,7 +136,9 @@ impl WeightedPanels<'_> {
             && parts.first().is_some_and(|(_, span, _)| span.inner <= panel.square)
             && parts.last().is_some_and(|(_, span, _)| span.outer >= self.table.span_of_panel(index).outer);
         let base = if covered { parts[0].2 } else { 0.0 };
-        sources.moments.iter_mut().zip(&cluster.sources.moments).for_each(|(moment, whole)| *moment += base * whole);
+        if base.abs() > 0.0 {
+            sources.add(&cluster.sources, base);
+        }
         for (_, span, weight) in parts {
             if (weight - base).abs() > 0.0 {
                 add_panel(sources, panel, (panel.t_of(span.inner), panel.t_of(span.outer)), weight - base);
@@ -160,7 +174,7 @@ impl WeightedPanels<'_> {
         let (radii, sums) = (&radii[..met], &mut sums[..met]);
         let sources = match weight {
             Some(_) => Some(&cluster.sources),
-            None => self.own.binary_search_by_key(&number, |own| own.0).ok().map(|index| &self.own[index].1),
+            None => self.own(number),
         };
         let far = sources.map_or(0, |sources| {
             let far = radii.partition_point(|held| kernel.is_far(sources, held.at.square.value()));
