@@ -13,9 +13,10 @@ use clap::{ArgAction, Args, ValueEnum};
 use tokio::net::TcpListener;
 use tokio::signal::unix::{SignalKind, signal};
 use tokio::sync::watch;
+use tracing_subscriber::filter::{LevelFilter, ParseError, Targets};
 use tracing_subscriber::layer::SubscriberExt as _;
 use tracing_subscriber::util::SubscriberInitExt as _;
-use tracing_subscriber::{EnvFilter, Layer as _, fmt};
+use tracing_subscriber::{Layer as _, fmt};
 
 use super::io::print;
 use super::key;
@@ -99,9 +100,9 @@ pub struct Serve {
     job_lease: Duration,
     #[command(flatten)]
     limits: Limits,
-    /// What to log, as a filter: `info`, `warn`, `stickslip=debug`.
+    /// What to log, as a filter with levels from `error` to `trace`: `info`, `warn`, `stickslip=debug`.
     #[arg(long, env = "STICKSLIP_LOG", default_value = "info", value_parser = filter)]
-    log: String,
+    log: Targets,
     /// Format of the log.
     #[arg(long, env = "STICKSLIP_LOG_FORMAT", value_enum, default_value_t = LogFormat::Text)]
     log_format: LogFormat,
@@ -136,9 +137,8 @@ impl Serve {
 
 /// Serves until a signal stops it.
 pub fn serve(mut options: Serve) -> Result<(), String> {
-    let filter = EnvFilter::try_new(&options.log).map_err(|error| format!("--log {}: {error}", options.log))?;
     // Spans go to a collector alone, and are not even made where there is none.
-    let filter = filter.add_directive(format!("{}=off", otlp::SPANS).parse().map_err(|error| format!("{error}"))?);
+    let filter = options.log.clone().with_target(otlp::SPANS, LevelFilter::OFF);
     // Work that gives way to other work keeps its thread, and must leave some to the work that it gives way to.
     let threads = SPARE_THREADS + options.limits.capacity().requests.min(MOST_THREADS);
     let runtime = tokio::runtime::Builder::new_multi_thread().max_blocking_threads(threads).enable_all().build();
@@ -291,8 +291,11 @@ fn time(text: &str) -> Result<Duration, String> {
     if time < SHORTEST_TIME { Err(format!("at least {SHORTEST_TIME:?}")) } else { Ok(time) }
 }
 
-fn filter(text: &str) -> Result<String, String> {
-    EnvFilter::try_new(text).map(|_| text.to_owned()).map_err(|error| error.to_string())
+/// A filter of the log. The library takes an empty part for all that there is.
+fn filter(text: &str) -> Result<Targets, String> {
+    let parts: Vec<&str> = text.split(',').map(str::trim).filter(|part| !part.is_empty()).collect();
+    let text = if parts.is_empty() { "error".to_owned() } else { parts.join(",") };
+    text.parse().map_err(|error: ParseError| error.to_string())
 }
 
 /// Why an address cannot be had, with the remedy where there is one.
