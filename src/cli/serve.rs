@@ -6,8 +6,8 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
 
-use axum::http::Uri;
 use axum::http::uri::Authority;
+use axum::http::{HeaderValue, Uri};
 use bytesize::ByteSize;
 use clap::{ArgAction, Args, ValueEnum};
 use tokio::net::TcpListener;
@@ -25,7 +25,7 @@ use super::reload::reload_on_change;
 use super::settings::{ConfigFile, Settings};
 use crate::access::Keys;
 use crate::admission::Pool;
-use crate::api::middleware::security_headers::Origin;
+use crate::api::middleware::security_headers::origin;
 use crate::api::{self, Access, App};
 use crate::jobs::{self, Jobs};
 use crate::otlp;
@@ -82,8 +82,8 @@ pub struct Serve {
     #[arg(long, env = "STICKSLIP_ALLOWED_HOSTS", value_delimiter = ',')]
     allowed_hosts: Vec<Authority>,
     /// Origins of web pages that may call the service (CORS), such as https://lab.example, separated by commas.
-    #[arg(long, env = "STICKSLIP_CORS_ORIGINS", value_delimiter = ',')]
-    cors_origins: Vec<Origin>,
+    #[arg(long, env = "STICKSLIP_CORS_ORIGINS", value_delimiter = ',', value_parser = origin)]
+    cors_origins: Vec<HeaderValue>,
     /// Store of the contacts: `sqlite:PATH` for a file, `postgres://…` for a database that several processes can
     /// share, `memory:` for this process until it ends.
     #[arg(long, env = "STICKSLIP_STORE", default_value = DEFAULT_STORE)]
@@ -242,7 +242,7 @@ fn access(options: &Serve) -> Result<(Access, Option<KeysInForce>), String> {
                 proxy reach this address");
         }
     }
-    let origins: Arc<[_]> = options.cors_origins.iter().map(|Origin(origin)| origin.clone()).collect();
+    let origins: Arc<[_]> = options.cors_origins.as_slice().into();
     // A page that has no key can do nothing where there are keys.
     let own_hosts =
         || OwnHosts { listen, names: options.allowed_hosts.as_slice().into(), origins: Arc::clone(&origins) };
@@ -331,9 +331,10 @@ async fn listen(
         }
     };
     let pool = Pool::new(options.limits.capacity());
-    let limiter = ConnectionLimiter::new(options.limits.connections(), options.limits.trusted_proxies().into());
-    let memory_bound = memory_budget::memory(limiter.limits(), pool.capacity(), options.cache_bytes.as_u64());
-    let memory_bound = memory_bound.saturating_add(tls.as_ref().map_or(0, |_| memory_budget::tls(limiter.limits())));
+    let limiter =
+        ConnectionLimiter::new(options.limits.connections(), options.limits.trusted_proxies.as_slice().into());
+    let memory_bound = memory_budget::memory(&limiter.limits, pool.capacity(), options.cache_bytes.as_u64());
+    let memory_bound = memory_bound.saturating_add(tls.as_ref().map_or(0, |_| memory_budget::tls(&limiter.limits)));
     if let Some(memory) = machine_memory::available().filter(|memory| memory_bound > *memory) {
         tracing::warn!(
             memory_bound = %ByteSize::b(memory_bound),
