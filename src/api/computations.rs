@@ -18,7 +18,7 @@ use crate::otlp;
 
 use super::extract::{CheckedBody, HeldResources};
 use super::facts::{Facts, Routes};
-use super::parameters::{Formats, Kind as _, QueryReader, Words, described};
+use super::parameters::{Kind as _, QueryReader, described, formats, words};
 use super::problem::Problem;
 use super::query::{CheckedQuery, QueryParams};
 use super::reply;
@@ -36,7 +36,7 @@ impl Routes {
         add_schemas::<C::Request>(&mut schemas);
         add_schemas::<<C::Outcome as Outcome>::Reply>(&mut schemas);
         let formats = if C::ABOUT.formats.len() > 1 { C::ABOUT.formats } else { &[] };
-        self.facts.add("POST", route.path, facts.formats(formats));
+        self.facts.add("POST", route.path, Facts { formats, ..facts });
         self.router = std::mem::take(&mut self.router).route(route.path, handler);
         self.router.get_openapi_mut().components.get_or_insert_default().schemas.extend(schemas);
     }
@@ -91,12 +91,10 @@ impl Visitor for Operations<'_> {
                  IPC stream), or a picture as `svg` or `png`. {} If it is left out, `Accept` decides.",
                 about.shows
             );
-            let mut parameters = vec![described("format", format, &Formats(about.formats), None)];
-            parameters.extend(
-                about
-                    .choice
-                    .map(|choice| described(choice.name, choice.description.to_owned(), &Words(choice.words), None)),
-            );
+            let mut parameters = vec![described("format", format, &formats(about.formats), None)];
+            parameters.extend(about.choice.map(|choice| {
+                described(choice.name, choice.description.to_owned(), &words(choice.words, |word| word), None)
+            }));
             operation["parameters"] = json!(parameters);
         }
         self.0["paths"][route.path]["post"] = operation;
@@ -112,8 +110,8 @@ struct ShownQuery<C> {
 
 impl<C: Computation> QueryParams for ShownQuery<C> {
     fn take(query: &mut QueryReader, _: &HeaderMap) -> Option<ShownQuery<C>> {
-        let format = Formats(C::ABOUT.formats).read("format", query);
-        let choice = C::ABOUT.choice.and_then(|choice| Words(choice.words).read(choice.name, query));
+        let format = formats(C::ABOUT.formats).read("format", query);
+        let choice = C::ABOUT.choice.and_then(|choice| words(choice.words, |word| word).read(choice.name, query));
         Some(ShownQuery { format, choice, of: PhantomData })
     }
 }
@@ -179,7 +177,7 @@ async fn run<C: Computation>(
 }
 
 /// The reply of a computation on a stored contact, in the format that the query names or `Accept` prefers, with the
-/// sequence of the contact as its version. A client that has that version gets 304 before anything is computed.
+/// sequence of the contact as its version.
 pub async fn get_of_contact<T: OnContact>(
     app: &App,
     id: Uuid,
@@ -188,13 +186,19 @@ pub async fn get_of_contact<T: OnContact>(
     task: T,
 ) -> Result<Response, Problem> {
     let format = Format::chosen(format, headers, &Format::ALL)?;
-    if headers.contains_key(header::IF_NONE_MATCH) {
-        let tag = format.tag(&app.sessions.get(id).await?.sequence.to_string());
-        if reply::is_current(headers, &tag) {
-            return Ok(reply::not_modified(&tag));
-        }
+    match unchanged(app, id, headers, format).await? {
+        Some(unchanged) => Ok(unchanged),
+        None => of_contact(app, id, format, task).await,
     }
-    of_contact(app, id, format, task).await
+}
+
+/// 304 if the client has the present version of what is derived from a contact, before anything is computed.
+pub async fn unchanged(app: &App, id: Uuid, headers: &HeaderMap, format: Format) -> Result<Option<Response>, Problem> {
+    if !headers.contains_key(header::IF_NONE_MATCH) {
+        return Ok(None);
+    }
+    let tag = format.tag(&app.sessions.get(id).await?.sequence.to_string());
+    Ok(reply::is_current(headers, &tag).then(|| reply::not_modified(&tag)))
 }
 
 /// The reply of a computation on a stored contact, with the sequence of the contact as its version.

@@ -1,24 +1,24 @@
 //! The body of a request: read within limits, checked, and counted against the memory of the server.
 
-use std::error::Error as _;
 use std::sync::Arc;
 use std::time::Duration;
 
-use axum::body::Body;
+use axum::body::{BodyDataStream, Bytes};
 use axum::extract::{FromRequest, Request};
-use axum::http::header;
 use axum::http::request::Parts;
+use axum::http::{HeaderMap, header};
 use axum::response::Response;
 use futures::StreamExt as _;
 use http_body::Body as _;
 use sha2::{Digest as _, Sha256};
+use tokio::time::{Instant, timeout};
 
 use crate::admission::{
     INLINE, Nanoseconds, Pool, PoolError, Quota, RequestPermit, Reservation, Stop, StopOnDrop, UNCOUNTED,
 };
 use crate::computations::files;
 use crate::otlp;
-use crate::server::connections::SlowBody;
+use crate::server::RequestClient;
 use crate::server::limits::DISCARDED;
 use crate::simulation::{bytes, cost};
 use crate::store::RequestKey;
@@ -84,20 +84,17 @@ impl<T: Document + 'static, const OPTIONAL: bool> FromRequest<Arc<App>> for Chec
     type Rejection = Problem;
 
     async fn from_request(request: Request, app: &Arc<App>) -> Result<Self, Problem> {
-        let (parts, body) = request.into_parts();
-        let declared = parts.headers.get(header::CONTENT_TYPE).map(|value| is_json(value.as_bytes()));
-        if declared == Some(false) || (declared.is_none() && !OPTIONAL) {
-            return Err(Problem::new(Code::UnsupportedMediaType, "Content-Type must be application/json"));
+        let unsupported = || Problem::new(Code::UnsupportedMediaType, "Content-Type must be application/json");
+        // With or without a charset.
+        let declared = essence(request.headers()).map(|essence| essence.eq_ignore_ascii_case(b"application/json"));
+        if !declared.unwrap_or(OPTIONAL) {
+            return Err(unsupported());
         }
-        check_encoding(&parts)?;
-        let expects = parts.headers.contains_key(header::EXPECT);
-        let (mut bytes, mut memory) = read(body, expects, BODY_LIMIT, &app.pool).await?;
-        // Only once the body has arrived, so that a slow client keeps no others waiting.
-        let permit = app.pool.admit_request().await?;
+        let (parts, mut bytes, mut memory, permit) = receive(request, BODY_LIMIT, &app.pool).await?;
         if OPTIONAL && bytes.is_empty() {
             bytes.extend_from_slice(b"{}");
         } else if declared.is_none() {
-            return Err(Problem::new(Code::UnsupportedMediaType, "Content-Type must be application/json"));
+            return Err(unsupported());
         }
         let IdempotencyKey { key } = IdempotencyKey::read(&parts.headers)?;
         let length = bytes.len();
@@ -149,63 +146,58 @@ impl FromRequest<Arc<App>> for FileBody {
     type Rejection = Problem;
 
     async fn from_request(request: Request, app: &Arc<App>) -> Result<Self, Problem> {
-        let (parts, body) = request.into_parts();
-        let declared = parts.headers.get(header::CONTENT_TYPE).map(|value| essence(value.as_bytes()));
+        let declared = essence(request.headers());
         if !declared.is_some_and(|is| FILE_TYPES.iter().any(|known| is.eq_ignore_ascii_case(known.as_bytes()))) {
             let detail = format!("Content-Type must be one of {}", FILE_TYPES.join(", "));
             return Err(Problem::new(Code::UnsupportedMediaType, detail));
         }
-        check_encoding(&parts)?;
-        let expects = parts.headers.contains_key(header::EXPECT);
-        let (bytes, mut memory) = read(body, expects, FILE_LIMIT, &app.pool).await?;
-        let permit = app.pool.admit_request().await?;
+        let (_, bytes, mut memory, permit) = receive(request, FILE_LIMIT, &app.pool).await?;
         app.pool.resize(&mut memory, bytes.len().saturating_mul(files::EXPANSION)).await?;
         Ok(FileBody { bytes, held: HeldResources { memory, _permit: permit, spent: Duration::ZERO } })
     }
 }
 
-/// Whether the header says that the body is not encoded.
-fn is_identity(coding: &[u8]) -> bool {
-    coding.trim_ascii().is_empty() || coding.trim_ascii().eq_ignore_ascii_case(b"identity")
-}
-
-/// `application/json`, with or without a charset.
-fn is_json(content_type: &[u8]) -> bool {
-    essence(content_type).eq_ignore_ascii_case(b"application/json")
-}
-
-/// A media type without its parameters.
-fn essence(content_type: &[u8]) -> &[u8] {
-    content_type.split(|byte| *byte == b';').next().unwrap_or_default().trim_ascii()
+/// The declared media type without its parameters.
+fn essence(headers: &HeaderMap) -> Option<&[u8]> {
+    let declared = headers.get(header::CONTENT_TYPE)?.as_bytes();
+    Some(declared.split(|byte| *byte == b';').next().unwrap_or_default().trim_ascii())
 }
 
 /// Refuses a body that is compressed.
-fn check_encoding(parts: &Parts) -> Result<(), Problem> {
-    let coding = parts.headers.get(header::CONTENT_ENCODING).filter(|coding| !is_identity(coding.as_bytes()));
-    let Some(coding) = coding else { return Ok(()) };
-    let coding: String = String::from_utf8_lossy(coding.as_bytes()).chars().take(40).collect();
+fn check_encoding(headers: &HeaderMap) -> Result<(), Problem> {
+    let coding = headers.get(header::CONTENT_ENCODING).map_or(&b""[..], |coding| coding.as_bytes().trim_ascii());
+    if coding.is_empty() || coding.eq_ignore_ascii_case(b"identity") {
+        return Ok(());
+    }
+    let coding: String = String::from_utf8_lossy(coding).chars().take(40).collect();
     let detail = format!("Content-Encoding `{coding}` is not supported: send the body unencoded");
     Err(Problem::new(Code::UnsupportedMediaType, detail))
 }
 
-/// Reads a body of at most so many bytes. A client that `expects` to be asked for it is not asked for one that is too
-/// long.
-async fn read(body: Body, expects: bool, limit: usize, pool: &Pool) -> Result<(Vec<u8>, Reservation), Problem> {
+/// Reads a body of at most so many bytes, and then acquires a permit for its request: a slow client keeps no others
+/// waiting. A client that expects to be asked for its body is not asked for one that is too long.
+async fn receive(
+    request: Request,
+    limit: usize,
+    pool: &Pool,
+) -> Result<(Parts, Vec<u8>, Reservation, RequestPermit), Problem> {
+    let (parts, body) = request.into_parts();
+    check_encoding(&parts.headers)?;
     let too_large = || {
         let detail = format!("the body has more than the {limit} bytes that are allowed");
         Problem::new(Code::TooLarge, detail)
     };
-    if expects && body.size_hint().lower() > limit as u64 {
+    if parts.headers.contains_key(header::EXPECT) && body.size_hint().lower() > limit as u64 {
         return Err(too_large());
     }
     let declared = body.size_hint().upper().and_then(|length| usize::try_from(length).ok()).unwrap_or(usize::MAX);
-    let mut stream = body.into_data_stream();
+    let time = parts.extensions.get::<RequestClient>().map_or(Duration::MAX, |client| client.body_time);
+    let mut arriving = ArrivingBody { stream: body.into_data_stream(), left: time };
     let (mut bytes, mut length) = (Vec::new(), 0_usize);
     let mut memory = Reservation::default();
     // Until the body has arrived: however slowly it does, others have room for theirs.
     let mut share = pool.quotas().no_share(Quota::BodyBytes);
-    while let Some(chunk) = stream.next().await {
-        let chunk = chunk.map_err(broken)?;
+    while let Some(chunk) = arriving.next().await? {
         length = length.saturating_add(chunk.len());
         if length <= limit {
             // Reserved as it arrives: a length that is declared but not sent takes no memory from others.
@@ -225,14 +217,27 @@ async fn read(body: Body, expects: bool, limit: usize, pool: &Pool) -> Result<(V
     if length > limit {
         return Err(too_large());
     }
-    Ok((bytes, memory))
+    drop(share);
+    let permit = pool.admit_request().await?;
+    Ok((parts, bytes, memory, permit))
 }
 
-fn broken(error: axum::Error) -> Problem {
-    if error.source().is_some_and(|source| source.is::<SlowBody>()) {
-        Problem::new(Code::RequestTimeout, "the body did not arrive in time")
-    } else {
-        Problem::new(Code::NotJson, "the connection ended before the body was complete")
+/// The body of a request while it arrives.
+struct ArrivingBody {
+    stream: BodyDataStream,
+    /// What is left of the time in which all of it must arrive. Only waits for the client count, and not what the
+    /// server itself does between them.
+    left: Duration,
+}
+
+impl ArrivingBody {
+    async fn next(&mut self) -> Result<Option<Bytes>, Problem> {
+        let since = Instant::now();
+        let next = timeout(self.left, self.stream.next()).await;
+        self.left = self.left.saturating_sub(since.elapsed());
+        let next = next.map_err(|_| Problem::new(Code::RequestTimeout, "the body did not arrive in time"))?;
+        let broken = |_| Problem::new(Code::NotJson, "the connection ended before the body was complete");
+        next.transpose().map_err(broken)
     }
 }
 
@@ -245,4 +250,31 @@ fn fingerprint(parts: &Parts, body: &[u8]) -> [u8; 32] {
     }
     hash.update(body);
     hash.finalize().into()
+}
+
+#[cfg(test)]
+mod tests {
+    use std::convert::Infallible;
+    use std::time::Duration;
+
+    use axum::body::Body;
+    use futures::{StreamExt as _, stream};
+    use tokio::task::yield_now;
+    use tokio::time::sleep;
+
+    use super::ArrivingBody;
+
+    #[tokio::test]
+    async fn what_the_server_holds_up_itself_is_no_fault_of_the_client() {
+        // Every byte has arrived as soon as it has been waited for once.
+        let chunks = stream::repeat("a").then(|chunk| async move {
+            yield_now().await;
+            Ok::<_, Infallible>(chunk)
+        });
+        let time = Duration::from_millis(500);
+        let mut body = ArrivingBody { stream: Body::from_stream(chunks).into_data_stream(), left: time };
+        assert!(body.next().await.unwrap().is_some());
+        sleep(2 * time).await;
+        assert!(body.next().await.unwrap().is_some());
+    }
 }

@@ -84,31 +84,6 @@ impl Facts {
     pub const COPIES_CONTACT: Facts = Facts::of(Need::Key(Role::Write), &[LIMITED, EXPIRED]);
     /// Changes a contact.
     pub const CHANGES_CONTACT: Facts = Facts::of(Need::Key(Role::Write), &[LIMITED, EXPIRED, CHANGES]);
-
-    /// The same with a choice of formats.
-    pub const fn formats(self, formats: &'static [Format]) -> Facts {
-        Facts { formats, ..self }
-    }
-
-    /// The same with events.
-    pub const fn events(self, events: &'static [&'static str]) -> Facts {
-        Facts { events, ..self }
-    }
-
-    /// The same with 304 for a client that has the current version.
-    pub const fn conditional(self) -> Facts {
-        Facts { conditional: true, ..self }
-    }
-
-    /// The same page by page.
-    pub const fn paged(self) -> Facts {
-        Facts { paged: true, ..self }
-    }
-
-    /// The same with a body that may be left out.
-    pub const fn optional_body(self) -> Facts {
-        Facts { optional_body: true, ..self }
-    }
 }
 
 /// The routes with their facts.

@@ -33,13 +33,12 @@ use utoipa_axum::router::{OpenApiRouter, UtoipaMethodRouterExt as _};
 use utoipa_axum::routes;
 use utoipa_swagger_ui::{Config, SwaggerUi};
 
-use crate::admission::Pool;
 use crate::formats::Format;
 use crate::server::tls::Tls;
 use crate::server::{self, ConnectionLimiter, ConnectionLimits, Service};
 
 use facts::{Facts, FactsOfRoutes, Routes};
-use middleware::{access_control, observe, security_headers};
+use middleware::{Observed, access_control, observe, security_headers};
 use request_metrics::RequestMetrics;
 use resources::meta::OpenApiText;
 use resources::{
@@ -78,15 +77,16 @@ pub async fn serve_within(
     let metrics = Arc::new(RequestMetrics::of(&serde_json::from_str(document()).unwrap_or_default()));
     let hosts = app.access.hosts.clone();
     let (stopping, stops) = watch::channel(false);
-    let (router, refusals) = (router(app, Arc::clone(&metrics), stops.clone()), refusals(metrics, pool.clone(), stops));
+    let observed = (metrics, pool.clone(), stops);
     let service = Service {
-        router,
-        refusals,
+        router: router(app, observed.clone()),
+        // The answer to requests that are not admitted.
+        refusals: with_middleware(Router::new().fallback(meta::refused), Access::default(), observed),
         pool,
         by_address,
-        body_time: limiter.limits().body,
+        body_time: limiter.limits.body,
         hosts,
-        proxies: Arc::clone(limiter.proxies()),
+        proxies: Arc::clone(&limiter.proxies),
         stopping,
     };
     server::serve(limiter, listener, tls, service, stop, || {
@@ -98,33 +98,21 @@ pub async fn serve_within(
 }
 
 /// All routes.
-fn router(app: App, metrics: Arc<RequestMetrics>, stops: watch::Receiver<bool>) -> Router {
+fn router(app: App, observed: Observed) -> Router {
     let (api, _) = described(document()).router.split_for_parts();
     let docs = SwaggerUi::new("/docs").config(Config::from("/openapi.json").validator_url("none"));
     let access = app.access.clone();
-    let pool = app.pool.clone();
     let routes = api.with_state(Arc::new(app)).merge(docs).merge(page::routes()).fallback(meta::not_found);
-    with_middleware(routes, access, metrics, pool, stops)
-}
-
-/// The answer to requests that are not admitted to [`router`].
-fn refusals(metrics: Arc<RequestMetrics>, pool: Pool, stops: watch::Receiver<bool>) -> Router {
-    with_middleware(Router::new().fallback(meta::refused), Access::default(), metrics, pool, stops)
+    with_middleware(routes, access, observed)
 }
 
 /// Adds the middleware, from the outermost layer to the innermost.
-fn with_middleware(
-    routes: Router,
-    access: Access,
-    metrics: Arc<RequestMetrics>,
-    pool: Pool,
-    stops: watch::Receiver<bool>,
-) -> Router {
+fn with_middleware(routes: Router, access: Access, observed: Observed) -> Router {
     let origins = (!access.origins.is_empty()).then(|| security_headers::cross_origin(&access.origins));
-    let keys = access.keys.map(|keys| from_fn_with_state((keys, pool.clone(), facts()), access_control::admit));
+    let keys = access.keys.map(|keys| from_fn_with_state((keys, observed.1.clone(), facts()), access_control::admit));
     let layers = ServiceBuilder::new()
         .layer(SetSensitiveRequestHeadersLayer::new([AUTHORIZATION]))
-        .layer(from_fn_with_state((metrics, pool, stops), observe))
+        .layer(from_fn_with_state(observed, observe))
         .layer(CatchPanicLayer::custom(meta::panicked))
         // Before keys are asked for: a browser asks whether it may send one.
         .option_layer(origins)
@@ -163,23 +151,23 @@ fn described(document: &'static str) -> Routes {
     let router = OpenApiRouter::with_openapi(openapi::base());
     let mut routes = Routes { router, facts: FactsOfRoutes::default() };
     computations::add_routes(&mut routes);
-    let page = Facts::READS_CONTACT.formats(&Format::ALL).conditional();
+    let page = Facts { formats: &Format::ALL, conditional: true, ..Facts::READS_CONTACT };
     routes
-        .with(Facts::WRITES.formats(&Format::TABLES), routes!(sweep::run_sweep))
+        .with(Facts { formats: &Format::TABLES, ..Facts::WRITES }, routes!(sweep::run_sweep))
         .with(Facts::READS, routes!(files::read_scan_file))
         .with(Facts::READS, routes!(files::read_loop_file))
         .with(Facts::READS, routes!(jobs::list_jobs))
         .with(Facts::READS, routes!(jobs::get_job))
         .with(Facts::WRITES, routes!(jobs::cancel_job))
-        .with(Facts::READS_RESULT.formats(&Format::TABLES), routes!(jobs::get_job_result))
-        .with(Facts::READS.events(&["JobReply", "JobEndEvent"]), routes!(jobs::watch_job))
+        .with(Facts { formats: &Format::TABLES, ..Facts::READS_RESULT }, routes!(jobs::get_job_result))
+        .with(Facts { events: &["JobReply", "JobEndEvent"], ..Facts::READS }, routes!(jobs::watch_job))
         .with(Facts::WRITES, routes!(contacts::create_contact))
         .with(Facts::READS, routes!(contacts::list_contacts))
-        .with(Facts::READS_CONTACT.conditional(), routes!(contacts::get_contact))
+        .with(Facts { conditional: true, ..Facts::READS_CONTACT }, routes!(contacts::get_contact))
         .with(Facts::CHANGES_CONTACT, routes!(contacts::rename_contact))
         .with(Facts::CHANGES_CONTACT, routes!(contacts::delete_contact))
         .with(Facts::READS_CONTACT, routes!(contacts::get_definition))
-        .with(Facts::COPIES_CONTACT.optional_body(), routes!(contacts::fork_contact))
+        .with(Facts { optional_body: true, ..Facts::COPIES_CONTACT }, routes!(contacts::fork_contact))
         .with(Facts::CHANGES_CONTACT, routes!(moves::move_contact))
         .with(Facts::CHANGES_CONTACT, routes!(moves::follow_path))
         .with(Facts::CHANGES_CONTACT, routes!(moves::relax_contact))
@@ -187,12 +175,12 @@ fn described(document: &'static str) -> Routes {
         .with(Facts::READS_CONTACT, routes!(observations::get_friction))
         .with(page, routes!(stress::get_stress))
         .with(page, routes!(residual::get_residual))
-        .with(Facts::READS_CONTACT.formats(&Format::ALL), routes!(subsurface::compute_subsurface_stress))
+        .with(Facts { formats: &Format::ALL, ..Facts::READS_CONTACT }, routes!(subsurface::compute_subsurface_stress))
         .with(page, routes!(cycle::get_steady_cycle))
-        .with(page.paged(), routes!(history::get_history))
-        .with(page.paged(), routes!(hysteresis_loop::get_loop))
+        .with(Facts { paged: true, ..page }, routes!(history::get_history))
+        .with(Facts { paged: true, ..page }, routes!(hysteresis_loop::get_loop))
         .with(page, routes!(cycles::get_cycles))
-        .with(Facts::READS_CONTACT.events(&["StateEvent", "EndEvent"]), routes!(events::watch_contact))
+        .with(Facts { events: &["StateEvent", "EndEvent"], ..Facts::READS_CONTACT }, routes!(events::watch_contact))
         .with(Facts::OPEN, routes!(meta::get_openapi).layer(Extension(OpenApiText(document))))
         .with(Facts::OPEN, routes!(meta::get_problem))
         .with(Facts::OPEN, routes!(meta::check_health))

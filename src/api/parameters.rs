@@ -158,12 +158,16 @@ pub fn described<V>(name: &'static str, description: String, kind: &impl Kind<V>
 
 /// A number within limits.
 pub struct Number<V: 'static> {
-    expected: &'static str,
-    limit: &'static dyn Limit<V>,
-    /// Whether the limits are checked when the parameter is read, and not with others.
-    is_checked: bool,
-    suggestion: Option<V>,
-    example: Option<V>,
+    /// What it is, for the text of a refusal.
+    pub expected: &'static str,
+    /// Its limit.
+    pub limit: &'static dyn Limit<V>,
+    /// Whether the limits are checked when the parameter is read, and not by the check of the request.
+    pub is_checked: bool,
+    /// The value that is taken if the client gives none.
+    pub suggestion: Option<V>,
+    /// An example for the document.
+    pub example: Option<V>,
 }
 
 /// A count within limits.
@@ -175,28 +179,6 @@ pub fn count(limit: &'static RangeInclusive<usize>) -> Number<usize> {
 /// A number within the range of a quantity, which the check of the request looks at.
 pub fn number(range: &'static Range) -> Number<f64> {
     Number { expected: "a number", limit: range, is_checked: false, suggestion: None, example: None }
-}
-
-impl<V> Number<V> {
-    /// The same, which the check of the request looks at.
-    pub fn checked_later(self) -> Number<V> {
-        Number { is_checked: false, ..self }
-    }
-
-    /// The same, which is looked at when it is read.
-    pub fn checked(self) -> Number<V> {
-        Number { is_checked: true, ..self }
-    }
-
-    /// The same with the value that is taken if the client gives none.
-    pub fn suggesting(self, suggestion: V) -> Number<V> {
-        Number { suggestion: Some(suggestion), ..self }
-    }
-
-    /// The same with an example.
-    pub fn such_as(self, example: V) -> Number<V> {
-        Number { example: Some(example), ..self }
-    }
 }
 
 impl<V: FromStr + serde::Serialize> Kind<V> for Number<V> {
@@ -262,37 +244,44 @@ impl Kind<Vec<Field>> for Fields {
     }
 }
 
+/// One of some values, by their names.
+pub struct Choice<V: 'static> {
+    values: &'static [V],
+    name: fn(V) -> &'static str,
+    schema: fn(Vec<&'static str>) -> Value,
+}
+
 /// One of some formats.
-pub struct Formats(pub &'static [Format]);
+pub const fn formats(values: &'static [Format]) -> Choice<Format> {
+    let schema = |names| json!({"type": "string", "enum": names, "default": Format::Columns.name()});
+    Choice { values, name: Format::name, schema }
+}
 
-impl Kind<Format> for Formats {
-    fn read(&self, name: &'static str, query: &mut QueryReader) -> Option<Format> {
-        let names: Vec<_> = self.0.iter().map(|format| format.name()).collect();
-        Format::named(one_of(&names, name, query)?, self.0)
-    }
+/// One of some values that are known by words.
+pub const fn words<V>(values: &'static [V], name: fn(V) -> &'static str) -> Choice<V> {
+    let schema = |words: Vec<_>| json!({"type": "string", "pattern": format!("^({})$", words.join("|"))});
+    Choice { values, name, schema }
+}
 
-    fn schema(&self) -> Value {
-        let names: Vec<_> = self.0.iter().map(|format| format.name()).collect();
-        json!({"type": "string", "enum": names, "default": Format::Columns.name()})
+/// The state of a job.
+pub const JOB_STATE: Choice<JobState> =
+    Choice { values: &JobState::ALL, name: JobState::name, schema: |names| json!({"type": "string", "enum": names}) };
+
+impl<V: Copy> Choice<V> {
+    fn names(&self) -> Vec<&'static str> {
+        self.values.iter().map(|value| (self.name)(*value)).collect()
     }
 }
 
-/// One of some words.
-pub struct Words(pub &'static [&'static str]);
-
-impl Kind<&'static str> for Words {
-    fn read(&self, name: &'static str, query: &mut QueryReader) -> Option<&'static str> {
-        one_of(self.0, name, query)
+impl<V: Copy> Kind<V> for Choice<V> {
+    fn read(&self, name: &'static str, query: &mut QueryReader) -> Option<V> {
+        let expected = format!("one of `{}`", self.names().join("`, `"));
+        query.take(name, &expected, |text| self.values.iter().copied().find(|value| (self.name)(*value) == text))
     }
 
     fn schema(&self) -> Value {
-        json!({"type": "string", "pattern": format!("^({})$", self.0.join("|"))})
+        (self.schema)(self.names())
     }
-}
-
-fn one_of(words: &[&'static str], name: &'static str, query: &mut QueryReader) -> Option<&'static str> {
-    let expected = format!("one of `{}`", words.join("`, `"));
-    query.take(name, &expected, |text| words.iter().copied().find(|word| *word == text))
 }
 
 /// A text within limits.
@@ -335,13 +324,6 @@ pub const IDENTIFIER: Plain<Uuid> = Plain {
     expected: "the identifier of a contact",
     schema: || json!({"type": "string", "format": "uuid"}),
     parse: |text| text.parse().ok(),
-};
-
-/// The state of a job.
-pub const JOB_STATE: Plain<JobState> = Plain {
-    expected: "one of `running`, `done`, `failed`",
-    schema: || json!({"type": "string", "enum": JobState::ALL.map(JobState::name)}),
-    parse: |text| JobState::ALL.into_iter().find(|state| state.name() == text),
 };
 
 impl<V> Kind<V> for Plain<V> {

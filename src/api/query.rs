@@ -11,7 +11,7 @@ use axum::http::request::Parts;
 use stickslip_wire::{Fault, JsonPath, Rejection};
 
 use super::formats::Format;
-use super::parameters::{MOVE_NUMBER, Parameters, QueryReader, count, parameters};
+use super::parameters::{MOVE_NUMBER, Number, Parameters, QueryReader, count, parameters};
 use super::problem::Problem;
 use super::state::App;
 
@@ -32,7 +32,7 @@ parameters! {
         /// The `next` of the previous page.
         after: Option<u64> = MOVE_NUMBER;
         /// How many moves at most. Without `after`, `limit` and `last`, `csv`, `ndjson` and `arrow` are of all moves.
-        limit: Option<usize> = count(&PAGE).suggesting(DEFAULT_PAGE);
+        limit: Option<usize> = Number { suggestion: Some(DEFAULT_PAGE), ..count(&PAGE) };
         /// The newest moves, so many; in place of `after` and `limit`. A plot shows the newest unless `after` is given.
         last: Option<usize> = count(&PAGE);
     }

@@ -44,6 +44,17 @@ pub fn is_current(headers: &HeaderMap, tag: &str) -> bool {
     known.any(|known| known == "*" || known.strip_prefix("W/").unwrap_or(known) == tag)
 }
 
+/// 200 with a document as JSON and its version, or 304 if the client already has that.
+///
+/// # Errors
+/// As [`written`].
+pub fn versioned(headers: &HeaderMap, tag: &str, document: &impl serde::Serialize) -> Result<Response, Problem> {
+    if is_current(headers, tag) {
+        return Ok(not_modified(tag));
+    }
+    Ok(tagged(json(written(document)?), tag))
+}
+
 /// 304: the client already has this version.
 pub fn not_modified(tag: &str) -> Response {
     let mut response = StatusCode::NOT_MODIFIED.into_response();

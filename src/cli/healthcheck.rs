@@ -5,7 +5,6 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use clap::Args;
-use stickslip_wire::client::Client;
 
 use super::settings::ConfigFile;
 use crate::server::tls;
@@ -39,13 +38,8 @@ pub fn healthcheck(options: &Healthcheck) -> Result<(), String> {
     }
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
     let runtime = runtime.map_err(|error| format!("cannot start: {error}"))?;
-    let check = async {
-        match options.tls_cert.as_ref().or(options.tls_key.as_ref()) {
-            Some(_) => tls::healthz(address).await,
-            None => Client::new(format!("http://{address}")).healthz().await.map_err(|error| error.to_string()),
-        }
-    };
-    let answer = runtime.block_on(async { tokio::time::timeout(REPLY_TIMEOUT, check).await });
+    let with_tls = options.tls_cert.is_some() || options.tls_key.is_some();
+    let answer = runtime.block_on(async { tokio::time::timeout(REPLY_TIMEOUT, tls::healthz(address, with_tls)).await });
     match answer {
         Ok(Ok(())) => Ok(()),
         Ok(Err(error)) => Err(format!("{address} is not healthy: {error}")),

@@ -4,13 +4,14 @@ use std::time::Duration;
 
 use bytesize::ByteSize;
 use clap::Args;
+use ipnet::IpNet;
 
 use crate::admission;
 use crate::admission::{BODY_SHARE, Capacity, QuotaLimits};
 use crate::api::limits::BODY_LIMIT;
 use crate::server::connections::DEFAULT_CONNECTIONS;
 use crate::server::fd_limit::room_for;
-use crate::server::{ConnectionLimits, Network};
+use crate::server::{ConnectionLimits, network};
 
 /// The range of the times that can be set.
 const SHORTEST_TIME: Duration = Duration::from_millis(10);
@@ -26,8 +27,8 @@ pub struct Limits {
     #[arg(long, env = "STICKSLIP_MAX_CONNECTIONS_PER_CLIENT", value_parser = at_least_one)]
     max_connections_per_client: Option<usize>,
     /// Proxies whose X-Forwarded-For is believed, as addresses or networks such as 10.0.0.0/8, separated by commas.
-    #[arg(long, env = "STICKSLIP_TRUSTED_PROXIES", value_delimiter = ',')]
-    trusted_proxies: Vec<Network>,
+    #[arg(long, env = "STICKSLIP_TRUSTED_PROXIES", value_delimiter = ',', value_parser = network)]
+    pub trusted_proxies: Vec<IpNet>,
     /// Most requests processed at a time; more wait.
     #[arg(long, env = "STICKSLIP_MAX_REQUESTS", default_value_t = admission::REQUESTS, value_parser = at_least_one)]
     max_requests: usize,
@@ -85,11 +86,6 @@ pub struct Limits {
 }
 
 impl Limits {
-    /// The proxies that are trusted.
-    pub fn trusted_proxies(&self) -> &[Network] {
-        &self.trusted_proxies
-    }
-
     /// The limits of the solvers.
     pub fn capacity(&self) -> Capacity {
         Capacity {

@@ -6,16 +6,17 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
 
-use axum::http::Uri;
 use axum::http::uri::Authority;
+use axum::http::{HeaderValue, Uri};
 use bytesize::ByteSize;
 use clap::{ArgAction, Args, ValueEnum};
 use tokio::net::TcpListener;
 use tokio::signal::unix::{SignalKind, signal};
 use tokio::sync::watch;
+use tracing_subscriber::filter::{LevelFilter, ParseError, Targets};
 use tracing_subscriber::layer::SubscriberExt as _;
 use tracing_subscriber::util::SubscriberInitExt as _;
-use tracing_subscriber::{EnvFilter, Layer as _, fmt};
+use tracing_subscriber::{Layer as _, fmt};
 
 use super::io::print;
 use super::key;
@@ -24,7 +25,7 @@ use super::reload::reload_on_change;
 use super::settings::{ConfigFile, Settings};
 use crate::access::Keys;
 use crate::admission::Pool;
-use crate::api::middleware::security_headers::Origin;
+use crate::api::middleware::security_headers::origin;
 use crate::api::{self, Access, App};
 use crate::jobs::{self, Jobs};
 use crate::otlp;
@@ -81,8 +82,8 @@ pub struct Serve {
     #[arg(long, env = "STICKSLIP_ALLOWED_HOSTS", value_delimiter = ',')]
     allowed_hosts: Vec<Authority>,
     /// Origins of web pages that may call the service (CORS), such as https://lab.example, separated by commas.
-    #[arg(long, env = "STICKSLIP_CORS_ORIGINS", value_delimiter = ',')]
-    cors_origins: Vec<Origin>,
+    #[arg(long, env = "STICKSLIP_CORS_ORIGINS", value_delimiter = ',', value_parser = origin)]
+    cors_origins: Vec<HeaderValue>,
     /// Store of the contacts: `sqlite:PATH` for a file, `postgres://…` for a database that several processes can
     /// share, `memory:` for this process until it ends.
     #[arg(long, env = "STICKSLIP_STORE", default_value = DEFAULT_STORE)]
@@ -99,9 +100,9 @@ pub struct Serve {
     job_lease: Duration,
     #[command(flatten)]
     limits: Limits,
-    /// What to log, as a filter: `info`, `warn`, `stickslip=debug`.
+    /// What to log, as a filter with levels from `error` to `trace`: `info`, `warn`, `stickslip=debug`.
     #[arg(long, env = "STICKSLIP_LOG", default_value = "info", value_parser = filter)]
-    log: String,
+    log: Targets,
     /// Format of the log.
     #[arg(long, env = "STICKSLIP_LOG_FORMAT", value_enum, default_value_t = LogFormat::Text)]
     log_format: LogFormat,
@@ -136,9 +137,8 @@ impl Serve {
 
 /// Serves until a signal stops it.
 pub fn serve(mut options: Serve) -> Result<(), String> {
-    let filter = EnvFilter::try_new(&options.log).map_err(|error| format!("--log {}: {error}", options.log))?;
     // Spans go to a collector alone, and are not even made where there is none.
-    let filter = filter.add_directive(format!("{}=off", otlp::SPANS).parse().map_err(|error| format!("{error}"))?);
+    let filter = options.log.clone().with_target(otlp::SPANS, LevelFilter::OFF);
     // Work that gives way to other work keeps its thread, and must leave some to the work that it gives way to.
     let threads = SPARE_THREADS + options.limits.capacity().requests.min(MOST_THREADS);
     let runtime = tokio::runtime::Builder::new_multi_thread().max_blocking_threads(threads).enable_all().build();
@@ -242,7 +242,7 @@ fn access(options: &Serve) -> Result<(Access, Option<KeysInForce>), String> {
                 proxy reach this address");
         }
     }
-    let origins: Arc<[_]> = options.cors_origins.iter().map(|Origin(origin)| origin.clone()).collect();
+    let origins: Arc<[_]> = options.cors_origins.as_slice().into();
     // A page that has no key can do nothing where there are keys.
     let own_hosts =
         || OwnHosts { listen, names: options.allowed_hosts.as_slice().into(), origins: Arc::clone(&origins) };
@@ -291,8 +291,11 @@ fn time(text: &str) -> Result<Duration, String> {
     if time < SHORTEST_TIME { Err(format!("at least {SHORTEST_TIME:?}")) } else { Ok(time) }
 }
 
-fn filter(text: &str) -> Result<String, String> {
-    EnvFilter::try_new(text).map(|_| text.to_owned()).map_err(|error| error.to_string())
+/// A filter of the log. The library takes an empty part for all that there is.
+fn filter(text: &str) -> Result<Targets, String> {
+    let parts: Vec<&str> = text.split(',').map(str::trim).filter(|part| !part.is_empty()).collect();
+    let text = if parts.is_empty() { "error".to_owned() } else { parts.join(",") };
+    text.parse().map_err(|error: ParseError| error.to_string())
 }
 
 /// Why an address cannot be had, with the remedy where there is one.
@@ -328,9 +331,10 @@ async fn listen(
         }
     };
     let pool = Pool::new(options.limits.capacity());
-    let limiter = ConnectionLimiter::new(options.limits.connections(), options.limits.trusted_proxies().into());
-    let memory_bound = memory_budget::memory(limiter.limits(), pool.capacity(), options.cache_bytes.as_u64());
-    let memory_bound = memory_bound.saturating_add(tls.as_ref().map_or(0, |_| memory_budget::tls(limiter.limits())));
+    let limiter =
+        ConnectionLimiter::new(options.limits.connections(), options.limits.trusted_proxies.as_slice().into());
+    let memory_bound = memory_budget::memory(&limiter.limits, pool.capacity(), options.cache_bytes.as_u64());
+    let memory_bound = memory_bound.saturating_add(tls.as_ref().map_or(0, |_| memory_budget::tls(&limiter.limits)));
     if let Some(memory) = machine_memory::available().filter(|memory| memory_bound > *memory) {
         tracing::warn!(
             memory_bound = %ByteSize::b(memory_bound),

@@ -79,23 +79,15 @@ impl<'a> Column<'a> {
 
     fn write_cell(&self, row: usize, format: Format, text: &mut String) -> fmt::Result {
         let (none, quote) = if format == Format::Csv { ("", "") } else { ("null", "\"") };
-        match &self.cells {
-            Cells::Numbers(at) => match at(row) {
-                Some(number) => write!(text, "{number}"),
-                None => text.write_str(none),
-            },
-            Cells::Counts(at) => write!(text, "{}", at(row)),
-            Cells::SomeCounts(at) => match at(row) {
-                Some(count) => write!(text, "{count}"),
-                None => text.write_str(none),
-            },
-            Cells::Times(at) => write!(text, "{quote}{}{quote}", at(row)),
-            Cells::Words(at) => write!(text, "{quote}{}{quote}", at(row)),
-            Cells::SomeNames(at) => match at(row) {
-                Some(name) => write!(text, "{quote}{name}{quote}"),
-                None => text.write_str(none),
-            },
-        }
+        let written = match &self.cells {
+            Cells::Numbers(at) => at(row).map(|number| write!(text, "{number}")),
+            Cells::Counts(at) => Some(write!(text, "{}", at(row))),
+            Cells::SomeCounts(at) => at(row).map(|count| write!(text, "{count}")),
+            Cells::Times(at) => Some(write!(text, "{quote}{}{quote}", at(row))),
+            Cells::Words(at) => Some(write!(text, "{quote}{}{quote}", at(row))),
+            Cells::SomeNames(at) => at(row).map(|name| write!(text, "{quote}{name}{quote}")),
+        };
+        written.unwrap_or_else(|| text.write_str(none))
     }
 
     fn field(&self) -> Field {

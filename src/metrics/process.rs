@@ -2,39 +2,29 @@
 
 use std::fs;
 
-/// Ticks in a second of processor time, as Linux shows it to all programs.
-const TICKS: f64 = 100.0;
+use rustix::time::{ClockId, clock_gettime};
 
-/// The resources in use. What the system does not report is left out.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Process {
-    /// Bytes of memory in use.
-    pub resident_bytes: Option<u64>,
-    /// Threads.
-    pub threads: Option<u64>,
-    /// Processor time since the start, s.
-    pub processor_seconds: Option<f64>,
-    /// Files and sockets that are open.
-    pub open_files: Option<u64>,
-    /// How many may be open.
-    pub most_open_files: Option<u64>,
+/// Processor time since the start, s.
+#[must_use]
+pub fn processor_seconds() -> f64 {
+    let time = clock_gettime(ClockId::ProcessCPUTime);
+    time.tv_sec as f64 + 1e-9 * time.tv_nsec as f64
 }
 
-impl Process {
-    /// Reads the present values.
-    #[must_use]
-    pub fn now() -> Process {
-        let read = |name: &str| fs::read_to_string(format!("/proc/self/{name}")).unwrap_or_default();
-        let (status, limits, stat) = (read("status"), read("limits"), read("stat"));
-        Process {
-            resident_bytes: number(&status, "VmRSS:").map(|kilobytes| kilobytes * 1024),
-            threads: number(&status, "Threads:"),
-            processor_seconds: processor_seconds(&stat),
-            // The folder is itself open while it is read.
-            open_files: fs::read_dir("/proc/self/fd").ok().map(|all| all.count().saturating_sub(1) as u64),
-            most_open_files: number(&limits, "Max open files"),
-        }
-    }
+/// What is in use, by the names and descriptions of metrics. What the system does not report is left out.
+pub fn gauges() -> impl Iterator<Item = (&'static str, &'static str, u64)> {
+    let read = |name: &str| fs::read_to_string(format!("/proc/self/{name}")).unwrap_or_default();
+    let (status, limits) = (read("status"), read("limits"));
+    let resident_bytes = number(&status, "VmRSS:").map(|kilobytes| kilobytes * 1024);
+    // The folder is itself open while it is read.
+    let open = fs::read_dir("/proc/self/fd").ok().map(|all| all.count().saturating_sub(1) as u64);
+    let gauges = [
+        ("process_resident_memory_bytes", "Memory in use.", resident_bytes),
+        ("process_threads", "Threads.", number(&status, "Threads:")),
+        ("process_open_fds", "Open files and sockets.", open),
+        ("process_max_fds", "How many may be open.", number(&limits, "Max open files")),
+    ];
+    gauges.into_iter().filter_map(|(name, help, value)| Some((name, help, value?)))
 }
 
 /// The first number behind a name at the beginning of a line.
@@ -42,27 +32,16 @@ fn number(text: &str, name: &str) -> Option<u64> {
     text.lines().find_map(|line| line.strip_prefix(name))?.split_whitespace().next()?.parse().ok()
 }
 
-/// The fields of `/proc/self/stat` are counted from behind the program's name, which is in parentheses.
-fn processor_seconds(stat: &str) -> Option<f64> {
-    let mut fields = stat.rsplit_once(')')?.1.split_whitespace().skip(11);
-    let (user, system) = (fields.next()?.parse::<f64>().ok()?, fields.next()?.parse::<f64>().ok()?);
-    Some((user + system) / TICKS)
-}
-
 #[cfg(test)]
 mod tests {
-    use super::{Process, processor_seconds};
-
     #[test]
     fn a_process_sees_itself() {
-        let now = Process::now();
-        assert!(now.resident_bytes.is_some_and(|bytes| (1 << 20..1 << 40).contains(&bytes)), "{now:?}");
-        assert!(
-            now.open_files.zip(now.most_open_files).is_some_and(|(open, most)| 3 <= open && open <= most),
-            "{now:?}"
-        );
-        assert!(now.threads.is_some_and(|threads| threads >= 1), "{now:?}");
-        let stat = "1 (a ) b) S 0 1 1 0 -1 4194560 1 2 3 4 250 150 0 0 20 0 1 0 5 6 7";
-        assert_eq!(processor_seconds(stat).map(f64::to_bits), Some(4.0_f64.to_bits()));
+        let [(.., memory), (.., threads), (.., open), (.., most)] = super::gauges().collect::<Vec<_>>()[..] else {
+            panic!("all are reported here");
+        };
+        assert!((1 << 20..1 << 40).contains(&memory) && threads >= 1, "{memory} {threads}");
+        assert!(3 <= open && open <= most, "{open} {most}");
+        let used = super::processor_seconds();
+        assert!(used > 0.0 && used < 1e5, "{used}");
     }
 }

@@ -26,7 +26,7 @@ use connections::{ConnectionCounts, ConnectionPermit, Socket};
 use limits::{BUFFER, GRACE, HEAD, PIECE, SPARE_TIME};
 use tls::Tls;
 
-pub use connections::{ClientAddress, ConnectionLimiter, ConnectionLimits, Network, OwnHosts, Service};
+pub use connections::{ConnectionLimiter, ConnectionLimits, OwnHosts, RequestClient, Service, network};
 
 /// How long to wait after a failure to accept a connection, most often because too many files are open.
 const ACCEPT_RETRY_DELAY: Duration = Duration::from_millis(50);
@@ -80,7 +80,7 @@ pub async fn serve(
             (logged, logged_at) = (counts, Some(Instant::now()));
         }
     }
-    let drain = limiter.limits().drain;
+    let drain = limiter.limits.drain;
     tracing::info!(drain_ms = drain.as_millis() as u64, "stopping");
     drop(listener);
     end_streams();
@@ -116,7 +116,7 @@ fn accept(
     if let Err(error) = stream.set_nodelay(true) {
         tracing::debug!(%error, "TCP_NODELAY was refused");
     }
-    let limits = *limiter.limits();
+    let limits = limiter.limits;
     let limits = if permit.is_spare() { ConnectionLimits { head: SPARE_TIME, ..limits } } else { limits };
     let number = permit.number;
     let (service, mut closing, peer) = (Arc::clone(service), closing.subscribe(), address.ip());

@@ -9,7 +9,7 @@ use rustls::ServerConfig;
 use rustls::crypto::ring;
 use rustls::pki_types::pem::PemObject as _;
 use rustls::pki_types::{CertificateDer, PrivateKeyDer};
-use tokio::io::{AsyncReadExt as _, AsyncWriteExt as _};
+use tokio::io::{AsyncRead, AsyncReadExt as _, AsyncWrite, AsyncWriteExt as _};
 use tokio::net::TcpStream;
 use tokio_rustls::{TlsAcceptor, TlsConnector};
 
@@ -73,23 +73,31 @@ fn read(TlsFiles { certificate, key }: &TlsFiles) -> Result<TlsAcceptor, String>
     Ok(TlsAcceptor::from(Arc::new(config)))
 }
 
-/// Calls `/healthz` of a service with TLS on this machine, whatever its certificate is.
+/// Calls `/healthz` of a service on this machine, with TLS whatever its certificate is.
 ///
 /// # Errors
 /// Why it is not healthy.
-pub async fn healthz(address: SocketAddr) -> Result<(), String> {
+pub async fn healthz(address: SocketAddr, with_tls: bool) -> Result<(), String> {
     let config = Arc::new(unverified_tls::config()?);
     let call = async {
         let stream = TcpStream::connect(address).await?;
-        let mut stream = TlsConnector::from(config).connect(address.ip().into(), stream).await?;
-        stream.write_all(b"GET /healthz HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n").await?;
-        let mut status = [0; b"HTTP/1.1 200".len()];
-        stream.read_exact(&mut status).await?;
-        Ok::<_, io::Error>(String::from_utf8_lossy(&status).into_owned())
+        if with_tls {
+            status(TlsConnector::from(config).connect(address.ip().into(), stream).await?).await
+        } else {
+            status(stream).await
+        }
     };
     match call.await {
         Ok(status) if status == "HTTP/1.1 200" => Ok(()),
         Ok(status) => Err(status),
         Err(error) => Err(error.to_string()),
     }
+}
+
+/// The version and the status that `/healthz` answers with.
+async fn status(mut stream: impl AsyncRead + AsyncWrite + Unpin) -> io::Result<String> {
+    stream.write_all(b"GET /healthz HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n").await?;
+    let mut status = [0; b"HTTP/1.1 200".len()];
+    stream.read_exact(&mut status).await?;
+    Ok(String::from_utf8_lossy(&status).into_owned())
 }

@@ -15,6 +15,7 @@
 
 pub mod accuracy;
 pub mod check;
+#[cfg(feature = "client")]
 pub mod client;
 pub mod closed_cycle;
 pub mod curve_profiles;

@@ -8,15 +8,9 @@ use stickslip_wire::{Cycle, CyclePage, HistoryPage, LoopPage, State};
 /// Displacement, force and friction work over the moves.
 #[must_use]
 pub fn history(id: Uuid, page: &HistoryPage) -> Plot {
-    let panel = |name, unit, colour, of: fn(&State) -> f64| Panel {
-        y: Axis { name, unit: Some(unit) },
-        curves: vec![Curve {
-            name: "",
-            points: page.items.iter().map(|item| (item.sequence as f64, of(&item.state))).collect(),
-            colour,
-            silent: true,
-            dots: false,
-        }],
+    let panel = |name, unit, colour, of: fn(&State) -> f64| {
+        let points = page.items.iter().map(|item| (item.sequence as f64, of(&item.state)));
+        curve(name, unit, colour, points)
     };
     Plot {
         title: format!("Contact {id}: history{}", shown(page.items.iter().map(|item| item.sequence))),
@@ -33,19 +27,22 @@ pub fn history(id: Uuid, page: &HistoryPage) -> Plot {
 /// Force over displacement.
 #[must_use]
 pub fn hysteresis_loop(id: Uuid, page: &LoopPage) -> Plot {
-    let points = page.displacement.iter().copied().zip(page.force.iter().copied()).collect();
+    let points = page.displacement.iter().copied().zip(page.force.iter().copied());
     Plot {
         title: format!(
             "Contact {id}: hysteresis loop{}",
             shown(page.sequence.iter().copied().filter(|number| *number > 0))
         ),
         x: Axis { name: "displacement U", unit: Some("m") },
-        panels: vec![Panel {
-            y: Axis { name: "tangential force F", unit: Some("N") },
-            curves: vec![Curve { name: "", points, colour: Colour::Blue, silent: true, dots: false }],
-        }],
+        panels: vec![curve("tangential force F", "N", Colour::Blue, points)],
         bands: Vec::new(),
     }
+}
+
+/// A panel with one curve.
+fn curve(name: &'static str, unit: &'static str, colour: Colour, points: impl Iterator<Item = (f64, f64)>) -> Panel {
+    let curve = Curve { name: "", points: points.collect(), colour, silent: true, dots: false };
+    Panel { y: Axis { name, unit: Some(unit) }, curves: vec![curve] }
 }
 
 /// Which moves a plot shows, for its title.
@@ -60,15 +57,8 @@ fn shown(mut moves: impl DoubleEndedIterator<Item = u64>) -> String {
 /// Amplitudes, friction work and stiffness of the cycles over the moves that closed them.
 #[must_use]
 pub fn cycles(id: Uuid, page: &CyclePage) -> Plot {
-    let panel = |name, unit, colour, of: fn(&Cycle) -> f64| Panel {
-        y: Axis { name, unit: Some(unit) },
-        curves: vec![Curve {
-            name: "",
-            points: page.items.iter().map(|cycle| (cycle.to as f64, of(cycle))).collect(),
-            colour,
-            silent: true,
-            dots: false,
-        }],
+    let panel = |name, unit, colour, of: fn(&Cycle) -> f64| {
+        curve(name, unit, colour, page.items.iter().map(|cycle| (cycle.to as f64, of(cycle))))
     };
     Plot {
         title: format!("Contact {id}: {}closed cycles", if page.items.is_empty() { "no " } else { "" }),

@@ -16,13 +16,12 @@ use tokio::sync::watch;
 use crate::admission::Pool;
 use crate::api::request_metrics::RequestMetrics;
 
+/// What all requests share: their metrics, the pool, and whether those that are not done are refused.
+pub type Observed = (Arc<RequestMetrics>, Pool, watch::Receiver<bool>);
+
 /// Logs a request and compresses its reply: one layer, because each such layer puts the request and its answer into a
 /// box.
-pub async fn observe(
-    State((metrics, pool, stops)): State<(Arc<RequestMetrics>, Pool, watch::Receiver<bool>)>,
-    mut request: Request,
-    next: Next,
-) -> Response {
+pub async fn observe(State((metrics, pool, stops)): State<Observed>, mut request: Request, next: Next) -> Response {
     let client = compression::Client::of(&mut request);
     let response = request_log::log_request(&metrics, stops, request, next).await;
     compression::compress(response, client, &pool).await

@@ -1,6 +1,7 @@
 //! Around every request: one line in the log, one count, one span, and the document of a problem. The line of a change
 //! says who made it.
 
+use std::net::IpAddr;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -24,7 +25,7 @@ use crate::api::request_metrics::{ABANDONED, Endpoint, RequestMetrics};
 use crate::api::routes;
 use crate::metrics::Counted;
 use crate::otlp;
-use crate::server::ClientAddress;
+use crate::server::RequestClient;
 
 /// A request under way. If it is dropped before it is answered, its client has left.
 struct RequestGuard<'a> {
@@ -34,7 +35,7 @@ struct RequestGuard<'a> {
     traceparent: Option<&'a str>,
     method: &'a Method,
     route: Option<&'a str>,
-    client: Option<ClientAddress>,
+    client: Option<IpAddr>,
     caller: Caller,
     /// The contact that it would change.
     contact: Option<Uuid>,
@@ -66,7 +67,7 @@ pub async fn log_request(
     let _in_flight = Counted::by(&endpoint.in_flight);
     let traceparent = traceparent.as_ref().and_then(|value| value.to_str().ok());
     let span = span(&request, route.unwrap_or(NO_ROUTE), id);
-    let client = request.extensions().get::<ClientAddress>().copied();
+    let client = request.extensions().get::<RequestClient>().map(|client| client.address);
     let caller = Caller::default();
     request.extensions_mut().insert(Caller::clone(&caller));
     let changes = !matches!(method, Method::GET | Method::HEAD | Method::OPTIONS);
@@ -152,7 +153,7 @@ macro_rules! line {
     ($level:ident, $guard:ident, $status:ident, $time:ident, $($more:ident,)* $message:literal) => {{
         let RequestGuard { id: request_id, traceparent, method, client, contact, .. } = *$guard;
         let (route, duration_ms) = ($guard.route.unwrap_or(NO_ROUTE), $time.as_secs_f64() * 1e3);
-        let (client, contact) = (client.map(|ClientAddress(client)| display(client)), contact.map(display));
+        let (client, contact) = (client.map(display), contact.map(display));
         let (key, tenant) = $guard.caller.get().map(|holder| (&*holder.name, holder.tenant.name())).unzip();
         let status = $status;
         tracing::$level!(

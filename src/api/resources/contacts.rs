@@ -1,17 +1,8 @@
 //! `/contacts`: contacts are created, listed, read, forked and deleted.
 
-use axum::http::{HeaderMap, StatusCode};
-use axum::response::Response;
-use uuid::Uuid;
-
-use crate::api::extract::{CheckedBody, OptionalBody};
-use crate::api::formats::Format;
-use crate::api::parameters::{IDENTIFIER, Text, count, parameters};
-use crate::api::params::{ContactPath, IdempotencyKey, IfMatch};
-use crate::api::problem::Problem;
-use crate::api::query::{CheckedQuery, DEFAULT_PAGE, PAGE};
-use crate::api::reply;
-use crate::api::state::TenantApp;
+use super::prelude::*;
+use crate::api::extract::OptionalBody;
+use crate::api::parameters::{IDENTIFIER, Text};
 use stickslip_wire::session::LABEL;
 use stickslip_wire::{
     ContactDefinition, CreateRequest, ForkRequest, NewSession, RenameRequest, SessionPage, SessionReply,
@@ -81,11 +72,7 @@ pub async fn get_contact(
     _: CheckedQuery<()>,
 ) -> Result<Response, Problem> {
     let session = app.sessions.get(id).await?;
-    let tag = tag(&session);
-    if reply::is_current(&headers, &tag) {
-        return Ok(reply::not_modified(&tag));
-    }
-    Ok(reply::tagged(reply::json(reply::written(&session)?), &tag))
+    reply::versioned(&headers, &tag(&session), &session)
 }
 
 /// The version of a contact: its sequence, and a checksum of its label if it has one, which changes without a move.

@@ -1,21 +1,13 @@
 //! `/contacts/{id}/cycle`: the steady cycles of a contact at its present load; nothing changes.
 
-use axum::http::HeaderMap;
-use axum::response::Response;
-
 use stickslip_mechanics::range::{self, Range};
 use stickslip_wire::cycle::{CycleOptions, CyclePlaces, CycleTask};
 use stickslip_wire::limits::{self, Numbers};
 use stickslip_wire::{Amplitudes, CycleDrive, CycleReply, JsonPath, WorkDensity};
 
+use super::prelude::*;
 use super::stress::QUERY_RADII;
-use crate::api::computations;
-use crate::api::formats::Format;
-use crate::api::parameters::{Formats, List, Parameters as _, QueryReader, count, number, parameters};
-use crate::api::params::ContactPath;
-use crate::api::problem::Problem;
-use crate::api::query::{CheckedQuery, QueryParams};
-use crate::api::state::TenantApp;
+use crate::api::parameters::{List, number};
 
 parameters! {
     /// Which cycles are asked for.
@@ -31,13 +23,13 @@ parameters! {
         /// The stiffness of a machine in series with the contact, N/m.
         machine_stiffness: Option<f64> = number(&range::MACHINE_STIFFNESS);
         /// The number of harmonics.
-        harmonics: Option<usize> = count(&limits::HARMONICS).checked_later();
+        harmonics: Option<usize> = Number { is_checked: false, ..count(&limits::HARMONICS) };
         /// Number of radii for the friction work per area, evenly spaced from the centre to the edge, both included.
-        points: Option<usize> = count(&limits::STRESS_POINTS).checked_later();
+        points: Option<usize> = Number { is_checked: false, ..count(&limits::STRESS_POINTS) };
         /// `columns` (this document), `rows` (a JSON array of flat objects), `csv`, `ndjson`, `arrow` (an Arrow IPC
         /// stream), or a plot as `svg` or `png`. The friction work per area is in `columns` alone. If it is left out,
         /// `Accept` decides.
-        format: Option<Format> = Formats(&Format::ALL);
+        format: Option<Format> = formats(&Format::ALL);
     }
 }
 

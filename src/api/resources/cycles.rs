@@ -1,17 +1,9 @@
 //! `/contacts/{id}/cycles`: the closed cycles of a contact's past.
 
-use axum::http::{HeaderMap, header};
-use axum::response::Response;
-
 use stickslip_wire::{CyclePage, limits};
 
-use crate::api::formats::{Format, plots, tables};
-use crate::api::parameters::{Formats, count, parameters};
-use crate::api::params::ContactPath;
-use crate::api::problem::Problem;
-use crate::api::query::{CheckedQuery, DEFAULT_PAGE};
-use crate::api::reply;
-use crate::api::state::TenantApp;
+use super::prelude::*;
+use crate::api::formats::{plots, tables};
 
 /// Bytes of a cycle in the longest of the formats.
 const CYCLE_BYTES: usize = 1_024;
@@ -23,7 +15,7 @@ parameters! {
         last: usize = count(&limits::CYCLES), or DEFAULT_PAGE;
         /// `columns` (this document), `rows` (a JSON array of flat objects), `csv`, `ndjson`, `arrow` (an Arrow IPC
         /// stream), or a plot as `svg` or `png`. If it is left out, `Accept` decides.
-        format: Option<Format> = Formats(&Format::ALL);
+        format: Option<Format> = formats(&Format::ALL);
     }
 }
 
@@ -43,12 +35,8 @@ pub async fn get_cycles(
 ) -> Result<Response, Problem> {
     let CyclesQuery { last, format } = query;
     let format = Format::chosen(format, &headers, &Format::ALL)?;
-    if headers.contains_key(header::IF_NONE_MATCH) {
-        // Before anything is read.
-        let tag = format.tag(&app.sessions.get(id).await?.sequence.to_string());
-        if reply::is_current(&headers, &tag) {
-            return Ok(reply::not_modified(&tag));
-        }
+    if let Some(unchanged) = computations::unchanged(&app, id, &headers, format).await? {
+        return Ok(unchanged);
     }
     let memory = app.pool.reserve(last * CYCLE_BYTES + format.bytes(0, 0)).await?;
     let (sequence, page) = app.sessions.cycles().newest(id, last).await?;

@@ -3,12 +3,9 @@
 use axum::response::sse::{Event, KeepAlive, Sse};
 use futures::{Stream, StreamExt as _};
 
+use super::prelude::*;
 use crate::api::limits::KEEP_ALIVE;
-use crate::api::parameters::{count, parameters};
-use crate::api::params::{ContactPath, LastEventId};
-use crate::api::problem::Problem;
-use crate::api::query::{CheckedQuery, PAGE};
-use crate::api::state::TenantApp;
+use crate::api::params::LastEventId;
 use crate::sessions;
 use crate::store::StreamEvent;
 use stickslip_wire::{EndEvent, StateEvent};

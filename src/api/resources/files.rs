@@ -3,26 +3,23 @@
 use std::sync::Arc;
 
 use axum::extract::State;
-use axum::response::Response;
 use serde::Serialize;
 
-use stickslip_measured::import::{ImportError, LoopHints, ScanHints};
+use stickslip_measured::import::{Force, ImportError, Length, LoopHints, ScanHints};
 use stickslip_mechanics::range::{Quantity, Range};
 use stickslip_wire::limits::Characters;
 use stickslip_wire::{LoopFileReply, ScanFileReply};
 
+use super::prelude::*;
 use crate::api::extract::FileBody;
-use crate::api::parameters::{Parameters as _, QueryReader, Text, Words, number, parameters};
-use crate::api::problem::Problem;
-use crate::api::query::{CheckedQuery, QueryParams};
-use crate::api::reply;
-use crate::api::state::App;
+use crate::api::parameters::{Choice, Text, number, words};
 use crate::computations::files;
 use crate::formats;
 
-/// The symbols of units of length and force.
-const LENGTHS: Words = Words(&["m", "mm", "um", "nm"]);
-const FORCES: Words = Words(&["N", "mN", "uN", "kN"]);
+/// Units by their symbols.
+const LENGTH: Choice<Length> = words(&Length::ALL, Length::symbol);
+const FORCE: Choice<Force> =
+    words(&[Force::Newton, Force::Millinewton, Force::Micronewton, Force::Kilonewton], Force::symbol);
 /// A column by its name or number.
 const COLUMN: Text = Text(Characters(100));
 /// The distance of neighbours in a matrix, in its unit.
@@ -38,11 +35,11 @@ parameters! {
     /// What is known of a scan beside its file.
     pub struct ScanFileQuery {
         /// The unit of places; without it the one that the header names, or m.
-        lateral: Option<&'static str> = LENGTHS;
+        lateral: Option<Length> = LENGTH;
         /// The unit of heights, likewise.
-        height: Option<&'static str> = LENGTHS;
+        height: Option<Length> = LENGTH;
         /// The distance of neighbours in a matrix of heights, in the unit of places; without it that of the header.
-        spacing: Option<f64> = number(&SPACING).checked();
+        spacing: Option<f64> = Number { is_checked: true, ..number(&SPACING) };
     }
 }
 
@@ -59,16 +56,15 @@ parameters! {
         /// The column of loads, whose mean is the load if they are constant; without it the one that is called so.
         load: Option<String> = COLUMN;
         /// The unit of displacements; without it the one that the header names, or m.
-        displacement_unit: Option<&'static str> = LENGTHS;
+        displacement_unit: Option<Length> = LENGTH;
         /// The unit of forces; without it the one that the header names, or N.
-        force_unit: Option<&'static str> = FORCES;
+        force_unit: Option<Force> = FORCE;
     }
 }
 
 impl QueryParams for ScanHints {
     fn take(query: &mut QueryReader, _: &axum::http::HeaderMap) -> Option<ScanHints> {
         let ScanFileQuery { lateral, height, spacing } = ScanFileQuery::read(query);
-        let [lateral, height] = [lateral, height].map(|symbol| files::length(symbol?));
         Some(ScanHints { lateral, height, spacing, most: 0 })
     }
 }
@@ -77,14 +73,7 @@ impl QueryParams for LoopHints {
     fn take(query: &mut QueryReader, _: &axum::http::HeaderMap) -> Option<LoopHints> {
         let LoopFileQuery { displacement, force, time, load, displacement_unit, force_unit } =
             LoopFileQuery::read(query);
-        Some(LoopHints {
-            displacement,
-            force,
-            time,
-            load,
-            displacement_unit: displacement_unit.and_then(files::length),
-            force_unit: force_unit.and_then(files::force),
-        })
+        Some(LoopHints { displacement, force, time, load, displacement_unit, force_unit })
     }
 }
 

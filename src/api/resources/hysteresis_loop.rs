@@ -1,24 +1,14 @@
 //! `/contacts/{id}/loop`: the tangential force over the displacement along the moves of a contact.
 
-use std::sync::Arc;
+use stickslip_report::plot::Plot;
+use stickslip_wire::{HistoryPage, LoopPage, limits};
 
-use axum::http::HeaderMap;
-use axum::response::Response;
-use uuid::Uuid;
-
+use super::move_series::{self, ITEM_BYTES, MoveSeries};
+use super::prelude::*;
+use crate::api::formats::{plots, tables};
+use crate::api::query::MovesQuery;
+use crate::formats::Table;
 use crate::sessions::{bytes_of_trace, trace};
-use stickslip_wire::{LoopPage, limits};
-
-use super::history::{ITEM_BYTES, newest, version, with_next};
-use super::whole_history;
-use crate::api::formats::{Format, TableStream, plots, tables};
-use crate::api::parameters::{Formats, count, parameters};
-use crate::api::params::ContactPath;
-use crate::api::problem::Problem;
-use crate::api::query::{CheckedQuery, Moves, MovesQuery};
-use crate::api::reply;
-use crate::api::state::{App, TenantApp};
-use crate::formats::Unwritable;
 
 parameters! {
     /// How a loop is traced.
@@ -28,7 +18,7 @@ parameters! {
         points_per_move: usize = count(&limits::LOOP_POINTS), or 1;
         /// `columns` (this document), `rows` (a JSON array of flat objects), `csv`, `ndjson`, `arrow` (an Arrow IPC
         /// stream), or a plot as `svg` or `png`. If it is left out, `Accept` decides.
-        format: Option<Format> = Formats(&Format::ALL);
+        format: Option<Format> = formats(&Format::ALL);
     }
 }
 
@@ -46,44 +36,43 @@ pub async fn get_loop(
     headers: HeaderMap,
     CheckedQuery((moves, query)): CheckedQuery<(MovesQuery, LoopQuery)>,
 ) -> Result<Response, Problem> {
-    let LoopQuery { points_per_move: points, format } = query;
-    let format = Format::chosen(format, &headers, &Format::ALL)?;
-    let bytes = |moves: usize| moves * ITEM_BYTES + bytes_of_trace(moves * points) + format.bytes(0, 0);
-    let (after, limit) = match moves.of(format) {
-        Moves::Page(after, limit) => (after, limit),
-        Moves::Newest(limit) => (newest(&app, id, limit).await?, limit),
-        Moves::All => {
-            let owned = Arc::clone(&app);
-            let write = move |table, after, limit| write_page(Arc::clone(&owned), id, (after, limit), points, table);
-            return whole_history::reply(&app, id, &headers, (format, ""), bytes(whole_history::PAGE), write).await;
-        }
-    };
-    let memory = app.pool.reserve(bytes(limit)).await?;
-    let past = app.sessions.history().page(id, after, limit).await?;
-    let tag = format.tag(&version(&past, after));
-    if reply::is_current(&headers, &tag) {
-        return Ok(reply::not_modified(&tag));
-    }
-    let next = past.next;
-    let page = LoopPage { next, ..trace(&app.sessions.history(), id, after, &past.items, points).await? };
-    let write = move || format.write(&page, || plots::hysteresis_loop(id, &page), || tables::hysteresis_loop(&page));
-    let response = reply::tagged(format.reply(app.pool.run(format.cost(), write).await??), &tag);
-    let next = next.map(|next| {
-        let query = format!("after={next}&limit={limit}&points_per_move={points}&format={}", format.name());
-        format!("/contacts/{id}/loop?{query}")
-    });
-    Ok(reply::holding(with_next(response, next), memory))
+    let LoopQuery { points_per_move, format } = query;
+    move_series::reply(app, id, &headers, moves, format, Loop { points_per_move }).await
 }
 
-async fn write_page(
-    app: Arc<App>,
-    id: Uuid,
-    (after, limit): (u64, usize),
-    points: usize,
-    mut table: TableStream,
-) -> Result<(TableStream, Vec<u8>), Problem> {
-    let past = app.sessions.history().page(id, after, limit).await?;
-    let page = trace(&app.sessions.history(), id, after, &past.items, points).await?;
-    let block = table.push(&tables::hysteresis_loop(&page)).map_err(Unwritable::new)?;
-    Ok((table, block))
+/// Force and displacement along moves.
+#[derive(Clone)]
+struct Loop {
+    points_per_move: usize,
+}
+
+impl MoveSeries for Loop {
+    type Page = LoopPage;
+
+    const NAME: &'static str = "loop";
+
+    fn bytes(&self, moves: usize) -> usize {
+        moves * ITEM_BYTES + bytes_of_trace(moves * self.points_per_move)
+    }
+
+    fn marking(&self) -> &'static str {
+        ""
+    }
+
+    fn parameters(&self) -> String {
+        format!("&points_per_move={}", self.points_per_move)
+    }
+
+    async fn page(&self, app: &App, id: Uuid, after: u64, moves: HistoryPage, _: Format) -> Result<LoopPage, Problem> {
+        let page = trace(&app.sessions.history(), id, after, &moves.items, self.points_per_move).await?;
+        Ok(LoopPage { next: moves.next, ..page })
+    }
+
+    fn plot(id: Uuid, page: &LoopPage) -> Plot {
+        plots::hysteresis_loop(id, page)
+    }
+
+    fn table<'a>(&self, page: &'a LoopPage) -> Table<'a> {
+        tables::hysteresis_loop(page)
+    }
 }

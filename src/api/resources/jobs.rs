@@ -1,20 +1,13 @@
 //! `/jobs`: sweeps that continue after their request has been answered.
 
 use axum::body::Body;
-use axum::http::{HeaderMap, StatusCode};
 use axum::response::sse::{Event, KeepAlive, Sse};
-use axum::response::{IntoResponse as _, Response};
 use futures::StreamExt as _;
-use uuid::Uuid;
 
-use crate::api::formats::Format;
+use super::prelude::*;
 use crate::api::limits::KEEP_ALIVE;
-use crate::api::parameters::{Formats, JOB_STATE, parameters};
+use crate::api::parameters::JOB_STATE;
 use crate::api::params::JobPath;
-use crate::api::problem::Problem;
-use crate::api::query::CheckedQuery;
-use crate::api::reply;
-use crate::api::state::{App, TenantApp};
 use crate::store::StreamEvent;
 use stickslip_wire::{JobEndEvent, JobList, JobReply, JobState, SweepReply};
 
@@ -23,7 +16,7 @@ parameters! {
     pub struct TableQuery {
         /// `columns` (this document), `rows` (a JSON array of flat objects), `csv`, `ndjson` or `arrow` (an Arrow IPC
         /// stream). If it is left out, `Accept` decides.
-        format: Option<Format> = Formats(&Format::TABLES);
+        format: Option<Format> = formats(&Format::TABLES);
     }
 }
 

@@ -7,13 +7,11 @@ use std::sync::Arc;
 use axum::Extension;
 use axum::extract::{Path, State};
 use axum::http::Uri;
-use axum::response::{IntoResponse, Response};
+use axum::response::IntoResponse;
 use serde_json::json;
 
+use super::prelude::*;
 use crate::admission::PoolError;
-use crate::api::problem::{Code, Problem};
-use crate::api::reply;
-use crate::api::state::App;
 use crate::server::connections::Refusal;
 use crate::sessions::SessionError;
 use crate::store::StoreError;

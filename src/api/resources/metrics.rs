@@ -5,21 +5,14 @@ use std::time::UNIX_EPOCH;
 
 use axum::Extension;
 use axum::extract::State;
-use axum::http::header;
-use axum::response::{IntoResponse as _, Response};
-use prometheus::core::Collector;
 use prometheus::{Counter, Gauge, IntCounter, Opts, Registry, TextEncoder};
 use stickslip_mechanics::ENGINE;
 
-use crate::admission::PoolMeters;
-use crate::jobs::JobMeters;
-use crate::metrics::process::Process;
+use super::prelude::*;
+use crate::metrics::process;
 use crate::sessions::Readings;
-use crate::store::Commits;
 
-use crate::api::problem::Problem;
 use crate::api::request_metrics::RequestMetrics;
-use crate::api::state::App;
 
 /// The text format of Prometheus that the library writes.
 const MEDIA_TYPE: &str = "text/plain; version=0.0.4; charset=utf-8";
@@ -40,6 +33,11 @@ pub async fn metrics(
     Ok(([(header::CONTENT_TYPE, MEDIA_TYPE)], text).into_response())
 }
 
+/// Puts metrics on a page.
+macro_rules! show {
+    ($page:expr, $($metric:expr),+) => {{ $($page.register(Box::new($metric.clone()))?;)+ }};
+}
+
 /// The current page: the registered counters, and gauges that are read at this request.
 fn page(app: &App, traffic: &RequestMetrics) -> prometheus::Result<String> {
     let page = Registry::new();
@@ -48,36 +46,33 @@ fn page(app: &App, traffic: &RequestMetrics) -> prometheus::Result<String> {
     }
     let readings = app.sessions.readings();
     sessions(&page, &readings)?;
-    solver(&page, app.pool.meters())?;
-    show(&page, app.pool.quotas().refused())?;
-    jobs(&page, app.jobs.meters())?;
-    if let Some(store) = readings.commits {
-        commits(&page, store)?;
+    let meters = app.pool.meters();
+    gauge(&page, Opts::new("stickslip_solver_threads", "Threads for long work."), meters.threads as f64)?;
+    show!(page, meters.work, meters.running, meters.waiting, meters.wait, meters.refused);
+    show!(page, app.pool.quotas().refused());
+    let jobs = app.jobs.meters();
+    show!(page, jobs.points, jobs.chunks, jobs.returned, jobs.running, jobs.failed);
+    if let Some(commits) = readings.commits {
+        show!(page, commits.time, commits.size, commits.failed, commits.pending);
     }
-    process(&page, traffic)?;
+    this_process(&page, traffic)?;
     TextEncoder::new().encode_to_string(&page.gather())
-}
-
-fn show(page: &Registry, metric: &(impl Collector + Clone + 'static)) -> prometheus::Result<()> {
-    page.register(Box::new(metric.clone()))
 }
 
 fn gauge(page: &Registry, options: Opts, value: f64) -> prometheus::Result<()> {
     let gauge = Gauge::with_opts(options)?;
     gauge.set(value);
-    show(page, &gauge)
+    show!(page, gauge);
+    Ok(())
 }
 
 fn sessions(page: &Registry, readings: &Readings<'_>) -> prometheus::Result<()> {
-    show(page, &readings.counted.moves)?;
-    show(page, &readings.counted.hits)?;
-    show(page, &readings.counted.profiles_prepared)?;
-    show(page, &readings.counted.profiles_shared)?;
+    let counted = readings.counted;
+    show!(page, counted.moves, counted.hits, counted.profiles_prepared, counted.profiles_shared, counted.open);
     let misses =
         IntCounter::new("stickslip_cache_misses_total", "Times that it was not, and was brought from the store.")?;
-    misses.inc_by(readings.counted.open.get_sample_count());
-    show(page, &misses)?;
-    show(page, &readings.counted.open)?;
+    misses.inc_by(counted.open.get_sample_count());
+    show!(page, misses);
     for (name, help, value) in [
         ("stickslip_cache_contacts", "Contacts in memory that nobody works on.", readings.cached),
         ("stickslip_cache_bytes", "Bytes of their states, and of profiles that are ready.", readings.bytes),
@@ -93,55 +88,21 @@ fn sessions(page: &Registry, readings: &Readings<'_>) -> prometheus::Result<()> 
     Ok(())
 }
 
-fn solver(page: &Registry, meters: &PoolMeters) -> prometheus::Result<()> {
-    gauge(page, Opts::new("stickslip_solver_threads", "Threads for long work."), meters.threads as f64)?;
-    show(page, &meters.work)?;
-    show(page, &meters.running)?;
-    show(page, &meters.waiting)?;
-    show(page, &meters.wait)?;
-    show(page, &meters.refused)
-}
-
-fn jobs(page: &Registry, meters: &JobMeters) -> prometheus::Result<()> {
-    show(page, &meters.points)?;
-    show(page, &meters.chunks)?;
-    show(page, &meters.returned)?;
-    show(page, &meters.running)?;
-    show(page, &meters.failed)
-}
-
-fn commits(page: &Registry, commits: &Commits) -> prometheus::Result<()> {
-    show(page, &commits.time)?;
-    show(page, &commits.size)?;
-    show(page, &commits.failed)?;
-    show(page, &commits.pending)
-}
-
-fn process(page: &Registry, traffic: &RequestMetrics) -> prometheus::Result<()> {
+fn this_process(page: &Registry, traffic: &RequestMetrics) -> prometheus::Result<()> {
     let build = Opts::new("stickslip_build_info", "1, with what this program was built from.")
         .const_label("version", env!("CARGO_PKG_VERSION"))
         .const_label("engine", ENGINE.to_string())
         .const_label("rustc", env!("BUILD_COMPILER"))
         .const_label("commit", env!("BUILD_COMMIT"));
     gauge(page, build, 1.0)?;
-    let now = Process::now();
-    if let Some(seconds) = now.processor_seconds {
-        let counter = Counter::new("process_cpu_seconds_total", "Processor time used.")?;
-        counter.inc_by(seconds);
-        show(page, &counter)?;
-    }
+    let seconds = Counter::new("process_cpu_seconds_total", "Processor time used.")?;
+    seconds.inc_by(process::processor_seconds());
+    show!(page, seconds);
     let since = traffic.since.duration_since(UNIX_EPOCH).unwrap_or_default().as_secs_f64();
-    let count = |value: Option<u64>| value.map(|value| value as f64);
-    for (name, help, value) in [
-        ("process_start_time_seconds", "Start of the service, in seconds since 1970.", Some(since)),
-        ("process_resident_memory_bytes", "Memory in use.", count(now.resident_bytes)),
-        ("process_threads", "Threads.", count(now.threads)),
-        ("process_open_fds", "Open files and sockets.", count(now.open_files)),
-        ("process_max_fds", "How many may be open.", count(now.most_open_files)),
-    ] {
-        if let Some(value) = value {
-            gauge(page, Opts::new(name, help), value)?;
-        }
+    let start = Opts::new("process_start_time_seconds", "Start of the service, in seconds since 1970.");
+    gauge(page, start, since)?;
+    for (name, help, value) in process::gauges() {
+        gauge(page, Opts::new(name, help), value as f64)?;
     }
     Ok(())
 }

@@ -1,13 +1,6 @@
 //! `/contacts/{id}/move`, `/contacts/{id}/path` and `/contacts/{id}/relax`: contacts are moved.
 
-use axum::response::Response;
-use uuid::Uuid;
-
-use crate::api::extract::CheckedBody;
-use crate::api::params::{ContactPath, IdempotencyKey, IfMatch};
-use crate::api::problem::Problem;
-use crate::api::reply;
-use crate::api::state::{App, TenantApp};
+use super::prelude::*;
 use crate::sessions::bytes_of_moves;
 use stickslip_wire::session::Advance;
 use stickslip_wire::{Document, MoveReply, MoveRequest, PathReply, PathRequest, RelaxReply, RelaxRequest};

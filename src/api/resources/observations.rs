@@ -1,18 +1,9 @@
 //! `/contacts/{id}/observations` and `/contacts/{id}/friction`: a contact follows a bench.
 
-use axum::http::HeaderMap;
-use axum::response::Response;
-
-use crate::api::extract::CheckedBody;
-use crate::api::formats::Format;
-use crate::api::params::{ContactPath, IdempotencyKey, IfMatch};
-use crate::api::problem::Problem;
-use crate::api::query::CheckedQuery;
-use crate::api::reply;
-use crate::api::state::TenantApp;
 use stickslip_wire::{FrictionReply, ObservationsReply, ObservationsRequest};
 
 use super::moves::advance;
+use super::prelude::*;
 
 /// Follow a bench
 ///
@@ -56,9 +47,5 @@ pub async fn get_friction(
     _: CheckedQuery<()>,
 ) -> Result<Response, Problem> {
     let friction = app.sessions.observations().friction(id).await?;
-    let tag = Format::Columns.tag(&friction.sequence.to_string());
-    if reply::is_current(&headers, &tag) {
-        return Ok(reply::not_modified(&tag));
-    }
-    Ok(reply::at_sequence(friction.sequence, reply::written(&friction)?))
+    reply::versioned(&headers, &Format::Columns.tag(&friction.sequence.to_string()), &friction)
 }

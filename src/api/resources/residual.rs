@@ -1,17 +1,8 @@
 //! `/contacts/{id}/residual`: the extrema of the shear stress in the present state of a contact.
 
-use axum::http::HeaderMap;
-use axum::response::Response;
-
 use stickslip_wire::{Faults, Field, JsonPath, Residual, StressRequest};
 
-use crate::api::computations;
-use crate::api::formats::Format;
-use crate::api::parameters::{Formats, parameters};
-use crate::api::params::ContactPath;
-use crate::api::problem::Problem;
-use crate::api::query::CheckedQuery;
-use crate::api::state::TenantApp;
+use super::prelude::*;
 use crate::computations::ResidualTask;
 
 /// Radii between which a plot has the shear stress.
@@ -23,7 +14,7 @@ parameters! {
         /// `columns` (this document), or a row for each extremum with its radius, shear stress and kind (`maximum` or
         /// `minimum`), as `rows` (a JSON array of flat objects), `csv`, `ndjson` or `arrow` (an Arrow IPC stream), or a
         /// plot as `svg` or `png`. If it is left out, `Accept` decides.
-        format: Option<Format> = Formats(&Format::ALL);
+        format: Option<Format> = formats(&Format::ALL);
     }
 }
 

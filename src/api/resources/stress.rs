@@ -2,20 +2,12 @@
 
 use std::ops::RangeInclusive;
 
-use axum::http::HeaderMap;
-use axum::response::Response;
-
 use stickslip_mechanics::range;
 use stickslip_wire::limits::{self, Numbers};
 use stickslip_wire::{Field, JsonPath, Sampling, StressReply, StressRequest};
 
-use crate::api::computations;
-use crate::api::formats::Format;
-use crate::api::parameters::{FLAG, Fields, Formats, List, Parameters as _, QueryReader, count, parameters};
-use crate::api::params::ContactPath;
-use crate::api::problem::{Code, Problem};
-use crate::api::query::{CheckedQuery, QueryParams};
-use crate::api::state::TenantApp;
+use super::prelude::*;
+use crate::api::parameters::{FLAG, Fields, List};
 use crate::computations::StressTask;
 
 /// Radii in a query: with all digits, they fit into the head of a request.
@@ -28,7 +20,7 @@ parameters! {
     pub struct StressQuery {
         /// Number of radii, evenly spaced from the centre to the edge, both included. Give this or `radii`, unless you
         /// ask for a plot.
-        points: Option<usize> = count(&limits::STRESS_POINTS).checked_later().such_as(100);
+        points: Option<usize> = Number { is_checked: false, example: Some(100), ..count(&limits::STRESS_POINTS) };
         /// Radii, m, separated by commas or given one by one.
         radii: Option<Vec<f64>> = List(Numbers(QUERY_RADII, range::CONTACT_RADIUS));
         /// Which fields, separated by commas, out of `pressure`, `shear`, `slip` and `displacement`. If it is left out,
@@ -38,7 +30,7 @@ parameters! {
         residual: bool = FLAG, or false;
         /// `columns` (this document), `rows` (a JSON array of flat objects), `csv`, `ndjson`, `arrow` (an Arrow IPC
         /// stream), or a plot as `svg` or `png`. If it is left out, `Accept` decides.
-        format: Option<Format> = Formats(&Format::ALL);
+        format: Option<Format> = formats(&Format::ALL);
     }
 }
 

@@ -1,18 +1,8 @@
 //! `/contacts/{id}/subsurface`: the stress below the surface in the present state of a contact.
 
-use axum::http::HeaderMap;
-use axum::response::Response;
-
 use stickslip_wire::{SubsurfaceReply, SubsurfaceRequest};
 
-use crate::api::computations;
-use crate::api::extract::CheckedBody;
-use crate::api::formats::Format;
-use crate::api::parameters::{Formats, parameters};
-use crate::api::params::ContactPath;
-use crate::api::problem::Problem;
-use crate::api::query::CheckedQuery;
-use crate::api::state::TenantApp;
+use super::prelude::*;
 
 parameters! {
     /// How the stresses are written.
@@ -20,7 +10,7 @@ parameters! {
         /// `columns` (this document), `rows` (a JSON array of flat objects), `csv`, `ndjson`, `arrow` (an Arrow IPC
         /// stream), or a picture as `svg` or `png`: of one field in a plane or on the surface. If it is left out,
         /// `Accept` decides.
-        format: Option<Format> = Formats(&Format::ALL);
+        format: Option<Format> = formats(&Format::ALL);
     }
 }
 

@@ -3,18 +3,10 @@
 use std::sync::Arc;
 
 use axum::body::Body;
-use axum::http::{HeaderMap, HeaderValue, StatusCode, header};
-use axum::response::{IntoResponse as _, Response};
-use uuid::Uuid;
 
 use super::jobs::{self, TableQuery};
-use crate::api::extract::CheckedBody;
-use crate::api::formats::Format;
-use crate::api::params::{IdempotencyKey, Prefer, accepts_events};
-use crate::api::problem::Problem;
-use crate::api::query::CheckedQuery;
-use crate::api::reply;
-use crate::api::state::TenantApp;
+use super::prelude::*;
+use crate::api::params::{Prefer, accepts_events};
 use crate::jobs::AT_ONCE;
 use crate::simulation::{Failure, Sweep};
 use stickslip_wire::{JobReply, SweepReply, SweepRequest};

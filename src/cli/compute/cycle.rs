@@ -1,7 +1,6 @@
 //! `stickslip cycle --map`: a fretting map of the body in the file.
 
 use std::path::Path;
-use std::str::FromStr;
 
 use clap::Args;
 use serde_json::{Value, json};
@@ -17,37 +16,30 @@ use crate::formats::Format;
 pub struct CycleFlags {
     /// A fretting map: a row for each amplitude under each of these normal forces, N, as `from:to:count`, evenly spaced
     /// in their logarithm. It is printed as `csv` unless the format is named.
-    #[arg(long, value_name = "FROM:TO:COUNT")]
-    map: Option<Loads>,
+    #[arg(long, value_name = "FROM:TO:COUNT", value_parser = loads)]
+    map: Option<FrettingMap>,
 }
 
 /// The loads of a map as the command line has them.
-#[derive(Clone, Copy)]
-struct Loads(FrettingMap);
-
-impl FromStr for Loads {
-    type Err = &'static str;
-
-    fn from_str(text: &str) -> Result<Loads, &'static str> {
-        let parts: Vec<&str> = text.split(':').collect();
-        let read = || {
-            let [from, to, count] = parts[..] else { return None };
-            Some(LoadSpan { from: from.parse().ok()?, to: to.parse().ok()?, count: count.parse().ok()? })
-        };
-        let sound = |map: &FrettingMap| {
-            let mut faults = Faults::default();
-            map.check(1, JsonPath::Root, &mut faults);
-            faults.is_empty()
-        };
-        let map = read().map(|normal_force| FrettingMap { normal_force }).filter(sound);
-        map.map(Loads).ok_or("from:to:count is needed, with 0 < from < to in N and 2 to 1000 loads")
-    }
+fn loads(text: &str) -> Result<FrettingMap, &'static str> {
+    let parts: Vec<&str> = text.split(':').collect();
+    let read = || {
+        let [from, to, count] = parts[..] else { return None };
+        let normal_force = LoadSpan { from: from.parse().ok()?, to: to.parse().ok()?, count: count.parse().ok()? };
+        Some(FrettingMap { normal_force })
+    };
+    let sound = |map: &FrettingMap| {
+        let mut faults = Faults::default();
+        map.check(1, JsonPath::Root, &mut faults);
+        faults.is_empty()
+    };
+    read().filter(sound).ok_or("from:to:count is needed, with 0 < from < to in N and 2 to 1000 loads")
 }
 
 impl Flags for CycleFlags {
     fn body(&self, file: Option<&Path>) -> Result<Body, Refusal> {
         let text = read(file.unwrap_or(Path::new("-")))?;
-        let Some(Loads(map)) = self.map else { return Ok(Body { text, ..Body::default() }) };
+        let Some(map) = &self.map else { return Ok(Body { text, ..Body::default() }) };
         let mut body: Value = parsed(&text)?;
         body.as_object_mut().ok_or("the body is not an object")?.insert("map".to_owned(), json!(map));
         Ok(Body { text: body.to_string().into_bytes(), format: Some(Format::Csv), ..Body::default() })

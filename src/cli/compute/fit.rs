@@ -3,15 +3,13 @@
 use std::path::{Path, PathBuf};
 
 use crate::computations::files;
-use clap::builder::PossibleValuesParser;
 use clap::{Args, Command};
-use stickslip_measured::import::LoopHints;
-use stickslip_wire::fit::{FitParameter, ForceUnit, KnownValue, KnownValues, LoopStart, MeasuredLoop};
-use stickslip_wire::profile_fit::LengthUnit;
+use stickslip_measured::import::{Force, Length, LoopHints};
+use stickslip_wire::fit::{FitParameter, KnownValue, KnownValues, LoopStart, MeasuredLoop};
 use stickslip_wire::{self as wire, ContactDefinition, FitRequest};
 
-use super::{Body, Flags, Only};
-use crate::cli::io::{json, read};
+use super::{Body, Flags, member, one_of};
+use crate::cli::io::read;
 use crate::cli::refusal::Refusal;
 
 /// What is free if the command line does not say.
@@ -34,11 +32,11 @@ pub struct FitFlags {
     #[arg(long, value_name = "COLUMN")]
     time: Option<String>,
     /// The unit of displacements; without it the one that the header names, or m.
-    #[arg(long, value_parser = PossibleValuesParser::new(LengthUnit::ALL.map(LengthUnit::symbol)))]
-    displacement_unit: Option<String>,
+    #[arg(long, value_parser = one_of(&Length::ALL, Length::symbol))]
+    displacement_unit: Option<Length>,
     /// The unit of forces; without it the one that the header names, or N.
-    #[arg(long, value_parser = PossibleValuesParser::new(ForceUnit::ALL.map(ForceUnit::symbol)))]
-    force_unit: Option<String>,
+    #[arg(long, value_parser = one_of(&Force::ALL, Force::symbol))]
+    force_unit: Option<Force>,
     /// The column of loads, if there is one; without it the one that is called so.
     #[arg(long, value_name = "COLUMN")]
     load: Option<String>,
@@ -47,15 +45,11 @@ pub struct FitFlags {
     normal_force: Option<f64>,
     /// How the record begins: `steady` in a cycle that has been repeated before, `virgin` with a contact that was never
     /// moved.
-    #[arg(long, value_parser = PossibleValuesParser::new(["steady", "virgin"]))]
-    start: Option<String>,
+    #[arg(long, value_parser = one_of(&[LoopStart::Steady, LoopStart::Virgin], start))]
+    start: Option<LoopStart>,
     /// What is to be determined, separated by commas: friction, g_star and force_offset if left out.
-    #[arg(
-        long,
-        value_delimiter = ',',
-        value_parser = PossibleValuesParser::new(FitParameter::ALL.map(FitParameter::name))
-    )]
-    free: Vec<String>,
+    #[arg(long, value_delimiter = ',', value_parser = one_of(&FitParameter::ALL, FitParameter::name))]
+    free: Vec<FitParameter>,
     /// What is known in SI units, such as machine_compliance=5e-8+-5e-9, separated by commas.
     #[arg(long, value_delimiter = ',', value_parser = known)]
     known: Vec<(FitParameter, KnownValue)>,
@@ -72,15 +66,8 @@ impl Flags for FitFlags {
     }
 
     fn body(&self, file: Option<&Path>) -> Result<Body, Refusal> {
-        let file = file.unwrap_or(Path::new("-"));
-        let content = read(file)?;
-        let is_json = content.trim_ascii_start().starts_with(b"{");
-        let only = self.only_contact.then_some(Only::Contact);
-        if is_json {
-            return Ok(Body { text: content, only, ..Body::default() });
-        }
-        let (request, reading) = self.of_columns(&content, file)?;
-        Ok(Body { text: json(&request).into_bytes(), only, reading, ..Body::default() })
+        let body = Body::of_file(file, |content, file| self.of_columns(content, file))?;
+        Ok(Body { only: self.only_contact.then_some(|reply| member::<ContactDefinition>(reply, "contact")), ..body })
     }
 }
 
@@ -94,18 +81,12 @@ impl FitFlags {
             force: self.force.clone(),
             time: self.time.clone(),
             load: self.load.clone(),
-            displacement_unit: self.displacement_unit.as_deref().and_then(files::length),
-            force_unit: self.force_unit.as_deref().and_then(files::force),
+            displacement_unit: self.displacement_unit,
+            force_unit: self.force_unit,
         };
         let found = files::measured_loop(content, &hints).map_err(|error| Refusal::of_file(file, error))?;
-        let start = self.start.as_deref();
-        let measured = MeasuredLoop {
-            normal_force: self.normal_force.or(found.measured.normal_force),
-            start: start.map(|start| if start == "virgin" { LoopStart::Virgin } else { LoopStart::Steady }),
-            ..found.measured
-        };
-        let parameter = |name: &String| FitParameter::ALL.into_iter().find(|one| one.name() == name);
-        let free: Vec<FitParameter> = self.free.iter().filter_map(parameter).collect();
+        let normal_force = self.normal_force.or(found.measured.normal_force);
+        let measured = MeasuredLoop { normal_force, start: self.start, ..found.measured };
         let mut known = KnownValues::default();
         for (parameter, value) in &self.known {
             *known.entry(*parameter) = Some(*value);
@@ -114,11 +95,18 @@ impl FitFlags {
             contact,
             loops: vec![measured],
             units: Some(found.units),
-            free: if free.is_empty() { USUALLY_FREE.to_vec() } else { free },
+            free: if self.free.is_empty() { USUALLY_FREE.to_vec() } else { self.free.clone() },
             known: Some(known),
             noise: None,
         };
         Ok((request, found.preview.reading))
+    }
+}
+
+fn start(start: LoopStart) -> &'static str {
+    match start {
+        LoopStart::Steady => "steady",
+        LoopStart::Virgin => "virgin",
     }
 }
 

@@ -9,12 +9,11 @@ mod protocol;
 use std::io::{IsTerminal as _, stdout};
 use std::path::{Path, PathBuf};
 
-use clap::builder::PossibleValuesParser;
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::error::{Error, ErrorKind};
 use clap::{Arg, ArgAction, ArgMatches, Args, Command, FromArgMatches, Subcommand};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
-use stickslip_wire::{ContactDefinition, Profile};
 
 use super::io::{json, parsed, print, read, say, write};
 use super::refusal::Refusal;
@@ -36,19 +35,36 @@ struct Body {
     text: Vec<u8>,
     /// The format if the command line does not name one.
     format: Option<Format>,
-    /// The member of the reply that alone is printed.
-    only: Option<Only>,
+    /// Takes out of the reply what alone is printed.
+    only: Option<fn(&[u8]) -> Result<String, String>>,
     /// What was taken for what in a measured file.
     reading: Vec<String>,
 }
 
-/// A member of a reply, for another request.
-#[derive(Clone, Copy)]
-enum Only {
-    /// The fitted profile.
-    Profile,
-    /// The fitted contact.
-    Contact,
+impl Body {
+    /// A file that is a body, or else one that `made` makes a body of, with what it took for what.
+    fn of_file<R: Serialize>(
+        file: Option<&Path>,
+        made: impl FnOnce(&[u8], &Path) -> Result<(R, Vec<String>), Refusal>,
+    ) -> Result<Body, Refusal> {
+        let file = file.unwrap_or(Path::new("-"));
+        let text = read(file)?;
+        if text.trim_ascii_start().starts_with(b"{") {
+            return Ok(Body { text, ..Body::default() });
+        }
+        let (request, reading) = made(&text, file)?;
+        Ok(Body { text: json(&request).into_bytes(), reading, ..Body::default() })
+    }
+}
+
+/// Parses one of some values, by their names.
+fn one_of<V: Clone + Send + Sync>(
+    values: &'static [V],
+    name: fn(V) -> &'static str,
+) -> impl TypedValueParser<Value = V> {
+    let names = values.iter().cloned().map(name);
+    let found = move |chosen: String| values.iter().find(|value| name((*value).clone()) == chosen).cloned();
+    PossibleValuesParser::new(names).try_map(move |chosen| found(chosen).ok_or("not possible"))
 }
 
 /// Flags of a computation beside those that all have.
@@ -187,8 +203,7 @@ impl Compute {
         // A document is a wall of numbers to somebody who reads it on a terminal and has not asked for it.
         let is_read = !wants_json && named.is_none() && stdout().is_terminal();
         match (body.only, format) {
-            (Some(Only::Profile), _) => print(member::<Profile>(&reply, "profile")?),
-            (Some(Only::Contact), _) => print(member::<ContactDefinition>(&reply, "contact")?),
+            (Some(only), _) => print(only(&reply)?),
             (None, Format::Columns) if is_read => print(summary(&parsed(&reply)?)),
             (None, Format::Columns) => print(String::from_utf8_lossy(&reply)),
             (None, _) => write(|out| out.write_all(&reply)),

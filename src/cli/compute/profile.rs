@@ -3,25 +3,24 @@
 use std::path::{Path, PathBuf};
 
 use crate::computations::files;
-use clap::builder::PossibleValuesParser;
 use clap::{Args, Command};
-use stickslip_measured::import::ScanHints;
-use stickslip_wire::profile_fit::{LengthUnit, ScanLoad, ScanOrientation, Smoothing};
-use stickslip_wire::{self as wire, ProfileFitRequest};
+use stickslip_measured::import::{Length, ScanHints};
+use stickslip_wire::profile_fit::{ScanLoad, ScanOrientation, Smoothing};
+use stickslip_wire::{self as wire, Profile, ProfileFitRequest};
 
-use super::{Body, Flags, Only};
-use crate::cli::io::{json, read};
+use super::{Body, Flags, member, one_of};
+use crate::cli::io::read;
 use crate::cli::refusal::Refusal;
 
 /// What a file of columns leaves open.
 #[derive(Args)]
 pub struct ProfileFlags {
     /// The unit of places in a file of columns; without it the one that the header names, or m.
-    #[arg(long, value_parser = PossibleValuesParser::new(LengthUnit::ALL.map(LengthUnit::symbol)))]
-    lateral: Option<String>,
+    #[arg(long, value_parser = one_of(&Length::ALL, Length::symbol))]
+    lateral: Option<Length>,
     /// The unit of heights in a file of columns, likewise.
-    #[arg(long, value_parser = PossibleValuesParser::new(LengthUnit::ALL.map(LengthUnit::symbol)))]
-    height: Option<String>,
+    #[arg(long, value_parser = one_of(&Length::ALL, Length::symbol))]
+    height: Option<Length>,
     /// The distance of neighbours in a matrix of heights, in the unit of places.
     #[arg(long)]
     spacing: Option<f64>,
@@ -41,23 +40,14 @@ impl Flags for ProfileFlags {
     }
 
     fn body(&self, file: Option<&Path>) -> Result<Body, Refusal> {
-        let file = file.unwrap_or(Path::new("-"));
-        let content = read(file)?;
-        let is_json = content.trim_ascii_start().starts_with(b"{");
-        let only = self.only_profile.then_some(Only::Profile);
-        if is_json {
-            return Ok(Body { text: content, only, ..Body::default() });
-        }
-        let (request, reading) = self.of_columns(&content, file)?;
-        Ok(Body { text: json(&request).into_bytes(), only, reading, ..Body::default() })
+        let body = Body::of_file(file, |content, file| self.of_columns(content, file))?;
+        Ok(Body { only: self.only_profile.then_some(|reply| member::<Profile>(reply, "profile")), ..body })
     }
 }
 
 impl ProfileFlags {
     fn of_columns(&self, content: &[u8], file: &Path) -> Result<(ProfileFitRequest, Vec<String>), Refusal> {
-        let unit = |symbol: &Option<String>| files::length(symbol.as_deref()?);
-        let hints =
-            ScanHints { lateral: unit(&self.lateral), height: unit(&self.height), spacing: self.spacing, most: 0 };
+        let hints = ScanHints { lateral: self.lateral, height: self.height, spacing: self.spacing, most: 0 };
         let found = files::scan(content, hints).map_err(|error| Refusal::of_file(file, error))?;
         let load = |file: &PathBuf| Ok::<_, Refusal>(wire::parse::<ScanLoad>(&read(file)?)?);
         let load = self.load.as_ref().map(load).transpose()?;

@@ -50,47 +50,39 @@ impl Flags for ProtocolFlags {
     }
 
     fn body(&self, file: Option<&Path>) -> Result<Body, Refusal> {
-        Ok(Body { text: self.text(file)?, ..Body::default() })
+        let word = |word: &Option<String>| json!(word.as_ref().map(|word| word.replace('-', "_")));
+        let contact = self.contact.as_ref().map(|contact| parsed(&read(contact)?)).transpose()?;
+        let flags = given([
+            ("contact", json!(contact)),
+            ("reversals", json!(self.reversals)),
+            ("target", json!(self.target)),
+            ("kind", word(&self.kind)),
+            ("end", word(&self.end)),
+            ("start", self.start.map_or(Value::Null, |start| json!({"displacement": start}))),
+        ]);
+        let errors =
+            given([("amplitude_error", json!(self.amplitude_error)), ("friction_error", json!(self.friction_error))]);
+        let mut body = match file.map(read).transpose()? {
+            // Unchanged, so that a fault is reported at its place.
+            Some(text) if flags.is_empty() && errors.is_empty() => return Ok(Body { text, ..Body::default() }),
+            Some(text) => parsed(&text)?,
+            None => json!({}),
+        };
+        let members = body.as_object_mut().ok_or("the body is not an object")?;
+        if flags.contains_key("reversals") || flags.contains_key("target") {
+            members.retain(|name, _| name != "reversals" && name != "target");
+        }
+        if !errors.is_empty()
+            && let Value::Object(robustness) = members.entry("robustness").or_insert_with(|| json!({}))
+        {
+            robustness.extend(errors);
+        }
+        members.extend(flags);
+        Ok(Body { text: body.to_string().into_bytes(), ..Body::default() })
     }
 }
 
-impl ProtocolFlags {
-    /// The body: the file, with the members that flags replace.
-    fn text(&self, file: Option<&Path>) -> Result<Vec<u8>, String> {
-        let name = |value: &String| json!(value.replace('-', "_"));
-        let flags = [
-            ("reversals", self.reversals.map(|value| json!(value))),
-            ("target", self.target.map(|value| json!(value))),
-            ("kind", self.kind.as_ref().map(name)),
-            ("end", self.end.as_ref().map(name)),
-            ("start", self.start.map(|value| json!({"displacement": value}))),
-        ];
-        let errors = [("amplitude_error", self.amplitude_error), ("friction_error", self.friction_error)];
-        let has_flags = self.contact.is_some()
-            || flags.iter().any(|(_, value)| value.is_some())
-            || errors.iter().any(|(_, value)| value.is_some());
-        let file = file.map(read).transpose()?;
-        let mut body = match file {
-            // Unchanged, so that a fault is reported at its place.
-            Some(file) if !has_flags => return Ok(file),
-            Some(file) => parsed(&file)?,
-            None => Value::Object(Map::new()),
-        };
-        if let Some(contact) = &self.contact {
-            body["contact"] = parsed(&read(contact)?)?;
-        }
-        let members = body.as_object_mut().ok_or("the body is not an object")?;
-        if self.reversals.is_some() || self.target.is_some() {
-            members.retain(|name, _| name != "reversals" && name != "target");
-        }
-        let mut robustness = members.get("robustness").cloned().unwrap_or_else(|| json!({}));
-        for (name, value) in errors {
-            if let Some(value) = value {
-                robustness[name] = json!(value);
-                members.insert("robustness".to_owned(), robustness.clone());
-            }
-        }
-        members.extend(flags.into_iter().filter_map(|(name, value)| Some((name.to_owned(), value?))));
-        serde_json::to_vec(&body).map_err(|error| error.to_string())
-    }
+/// The members of the body that flags give.
+fn given<const N: usize>(flags: [(&str, Value); N]) -> Map<String, Value> {
+    flags.into_iter().filter(|(_, value)| !value.is_null()).map(|(name, value)| (name.to_owned(), value)).collect()
 }

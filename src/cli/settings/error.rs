@@ -5,6 +5,7 @@ use std::path::Path;
 
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{Arg, Command};
+use strsim::levenshtein;
 
 use super::masked;
 
@@ -31,26 +32,12 @@ pub fn unknown_setting<'a>(name: &str, written: &str, known: impl Iterator<Item 
     let mut known: Vec<&str> = known.collect();
     known.sort_unstable();
     known.dedup();
-    let near = known.iter().map(|known| (distance(name, known), known)).min();
+    let near = known.iter().map(|known| (levenshtein(name, known), known)).min();
     let advice = match near.filter(|(distance, _)| *distance <= name.len() / 3) {
         Some((_, near)) => format!("is it {near}?"),
         None => format!("expected one of {}", known.join(", ")),
     };
     SettingsError::Invalid(format!("{written}: there is no such setting, {advice}"))
-}
-
-/// How many letters must be added, left out or replaced to make one word of the other (Levenshtein).
-fn distance(one: &str, other: &str) -> usize {
-    let mut row: Vec<usize> = (0..=other.len()).collect();
-    for (index, letter) in one.bytes().enumerate() {
-        let mut diagonal = std::mem::replace(&mut row[0], index + 1);
-        for (place, own) in other.bytes().enumerate() {
-            let replaced = diagonal + usize::from(letter != own);
-            diagonal = row[place + 1];
-            row[place + 1] = replaced.min(diagonal + 1).min(row[place] + 1);
-        }
-    }
-    row[other.len()]
 }
 
 /// The error of the parser of arguments. `invoked` is the command that they name.

@@ -6,13 +6,16 @@ const MASK: &str = "***";
 const LONGEST: usize = 200;
 /// The prefix of an API key, and the fewest characters after it.
 const KEY: (&str, usize) = ("stickslip_", 32);
+/// The prefix of a hash, which is no secret, but of no use in the output.
+const HASH: &str = "sha256:";
 /// Parameters of a URL whose values are printed.
 const PUBLIC_PARAMETERS: [&str; 6] =
     ["sslmode", "sslrootcert", "application_name", "connect_timeout", "target_session_attrs", "options"];
 
 /// A value without the passwords and keys in it. In doubt, a part is masked.
 pub fn masked(value: &str) -> String {
-    let masked = without_hashes(&without_keys(&without_parameters(&without_password(value))));
+    let masked = without_secrets(&without_parameters(&without_password(value)), KEY.0, KEY.1);
+    let masked = without_secrets(&masked, HASH, 0);
     let short = masked.chars().take(LONGEST);
     short.map(|letter| if letter.is_control() { ' ' } else { letter }).collect()
 }
@@ -41,27 +44,14 @@ fn without_parameters(value: &str) -> String {
     format!("{before}?{}", parameters.collect::<Vec<_>>().join("&"))
 }
 
-fn without_keys(value: &str) -> String {
-    let (prefix, least) = KEY;
+/// Masks the letters and digits after each `prefix`, where there are at least so many.
+fn without_secrets(value: &str, prefix: &str, least: usize) -> String {
     let mut parts = value.split(prefix);
     let mut masked = parts.next().unwrap_or_default().to_owned();
     for part in parts {
-        let key = part.find(|letter: char| !letter.is_ascii_alphanumeric()).unwrap_or(part.len());
-        masked.push_str(prefix);
-        masked.push_str(if key >= least { MASK } else { &part[..key] });
-        masked.push_str(&part[key..]);
-    }
-    masked
-}
-
-/// A hash is no secret, but of no use in the output.
-fn without_hashes(value: &str) -> String {
-    let mut parts = value.split("sha256:");
-    let mut masked = parts.next().unwrap_or_default().to_owned();
-    for part in parts {
-        masked.push_str("sha256:");
-        masked.push_str(MASK);
-        masked.push_str(part.trim_start_matches(|letter: char| letter.is_ascii_alphanumeric()));
+        let end = part.find(|letter: char| !letter.is_ascii_alphanumeric()).unwrap_or(part.len());
+        let shown = if end >= least { MASK } else { &part[..end] };
+        masked.extend([prefix, shown, &part[end..]]);
     }
     masked
 }

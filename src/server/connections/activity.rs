@@ -1,8 +1,6 @@
 //! What a connection is doing and since when, as its timers and the connection limiter need it.
 
-use std::sync::OnceLock;
-use std::sync::atomic::{AtomicU64, Ordering};
-use std::time::Duration;
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use tokio::time::Instant;
 
@@ -22,149 +20,119 @@ enum Phase {
     Closing,
 }
 
-/// Written by the socket and the service of a connection, read by its timer and by the limiter. No other memory is
-/// published through it, so relaxed ordering suffices.
+/// Written by the socket and the service of a connection, read by its timer and by the limiter.
 #[derive(Debug)]
 pub struct ConnectionActivity {
-    opened: Instant,
-    /// The phase in the lowest two bits, the milliseconds after `opened` at which it began in the others.
-    state: AtomicU64,
-    /// Milliseconds after `opened` at which writing to the client began to block, plus one; zero if it does not block.
-    blocked_since: AtomicU64,
+    // A std mutex: held for a moment, and never across an await.
+    state: Mutex<State>,
+}
+
+#[derive(Debug)]
+struct State {
+    phase: Phase,
+    /// When the phase began.
+    since: Instant,
+    /// When writing to the client began to block, if it does.
+    blocked_since: Option<Instant>,
     /// Bytes written since then.
-    written: AtomicU64,
-    fault: OnceLock<&'static str>,
+    written: usize,
+    fault: Option<&'static str>,
 }
 
 impl ConnectionActivity {
     /// The activity of a connection that has just been opened.
     pub fn new() -> ConnectionActivity {
-        let state = AtomicU64::new(packed(Phase::Head, 0));
-        let (blocked_since, written) = (AtomicU64::new(0), AtomicU64::new(0));
-        ConnectionActivity { opened: Instant::now(), state, blocked_since, written, fault: OnceLock::new() }
+        let (phase, since) = (Phase::Head, Instant::now());
+        ConnectionActivity { state: Mutex::new(State { phase, since, blocked_since: None, written: 0, fault: None }) }
     }
 
-    fn elapsed_ms(&self) -> u64 {
-        self.opened.elapsed().as_millis() as u64
-    }
-
-    fn state(&self) -> (Phase, u64) {
-        unpacked(self.state.load(Ordering::Relaxed))
+    fn state(&self) -> MutexGuard<'_, State> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// Records that bytes of a head were received.
     pub fn received_head(&self) {
-        let state = self.state.load(Ordering::Relaxed);
-        if unpacked(state).0 == Phase::Idle {
-            let head = packed(Phase::Head, self.elapsed_ms());
-            // Unless it is being closed.
-            let _ = self.state.compare_exchange(state, head, Ordering::Relaxed, Ordering::Relaxed);
+        let mut state = self.state();
+        if state.phase == Phase::Idle {
+            (state.phase, state.since) = (Phase::Head, Instant::now());
         }
     }
 
     /// Whether the last reply has been handed to the socket, and nothing of another request to the HTTP library.
     pub fn is_idle(&self) -> bool {
-        self.state().0 == Phase::Idle
+        self.state().phase == Phase::Idle
     }
 
     /// Marks the head that is being received as one that must not be served.
     pub fn reject_head(&self, fault: &'static str) {
-        // The first fault is as good as any.
-        let _ = self.fault.set(fault);
+        self.state().fault = Some(fault);
     }
 
     /// Why the received head must not be served, if so. No other request follows on this connection then.
     pub fn head_fault(&self) -> Option<&'static str> {
-        self.fault.get().copied()
+        self.state().fault
     }
 
     /// Records the start of a request. False if the connection is being closed already.
     pub fn begin_request(&self) -> bool {
-        unpacked(self.state.swap(packed(Phase::Busy, 0), Ordering::Relaxed)).0 != Phase::Closing
+        std::mem::replace(&mut self.state().phase, Phase::Busy) != Phase::Closing
     }
 
     /// Records that the reply has been handed to the socket.
     pub fn end_request(&self) {
-        self.state.store(packed(Phase::Idle, self.elapsed_ms()), Ordering::Relaxed);
+        let mut state = self.state();
+        (state.phase, state.since) = (Phase::Idle, Instant::now());
     }
 
     /// Records that a write blocked: the client reads nothing.
     pub fn write_blocked(&self) {
-        if self.blocked_since.load(Ordering::Relaxed) == 0 {
-            self.written.store(0, Ordering::Relaxed);
-            self.blocked_since.store(self.elapsed_ms() + 1, Ordering::Relaxed);
+        let mut state = self.state();
+        if state.blocked_since.is_none() {
+            (state.blocked_since, state.written) = (Some(Instant::now()), 0);
         }
     }
 
     /// Records bytes that the client has accepted.
     pub fn wrote(&self, bytes: usize) {
-        if self.blocked_since.load(Ordering::Relaxed) != 0 {
-            self.written.fetch_add(bytes as u64, Ordering::Relaxed);
-        }
+        self.state().written += bytes;
     }
 
     /// Records that everything has been written.
     pub fn flushed(&self) {
-        if self.blocked_since.load(Ordering::Relaxed) != 0 {
-            self.blocked_since.store(0, Ordering::Relaxed);
-        }
+        self.state().blocked_since = None;
     }
 
     /// When to check the client next; none if it has taken too long. The HTTP library times idle connections itself.
     pub fn next_check(&self, limits: &ConnectionLimits) -> Option<Instant> {
-        let now = self.elapsed_ms();
-        let after = |since: u64, allowed: Duration| since + allowed.as_millis() as u64;
+        let (mut state, now) = (self.state(), Instant::now());
         // The next phase may have a shorter limit.
-        let soon = after(now, limits.shortest());
-        let blocked = self.blocked_since.load(Ordering::Relaxed);
-        let due = if blocked != 0 {
-            if now >= after(blocked - 1, limits.stall)
-                && self.written.swap(0, Ordering::Relaxed) >= LEAST_PROGRESS as u64
-            {
-                self.blocked_since.store(now + 1, Ordering::Relaxed);
-                after(now, limits.stall)
-            } else {
-                after(blocked - 1, limits.stall)
+        let soon = now + limits.shortest();
+        let due = match (state.blocked_since, state.phase) {
+            (Some(since), _) if now >= since + limits.stall && state.written >= LEAST_PROGRESS => {
+                (state.blocked_since, state.written) = (Some(now), 0);
+                now + limits.stall
             }
-        } else {
-            match self.state() {
-                (Phase::Head, since) => after(since, limits.head),
-                (Phase::Idle | Phase::Busy, _) => soon,
-                (Phase::Closing, _) => 0,
-            }
+            (Some(since), _) => since + limits.stall,
+            (None, Phase::Head) => state.since + limits.head,
+            (None, Phase::Idle | Phase::Busy) => soon,
+            (None, Phase::Closing) => now,
         };
-        (due > now).then(|| self.opened + Duration::from_millis(due.min(soon)))
+        (due > now).then(|| due.min(soon))
     }
 
     /// Since when the connection has waited for its client; none while a request is being served.
     pub fn waiting_since(&self) -> Option<Instant> {
-        match self.state() {
-            (Phase::Head | Phase::Idle, since) => Some(self.opened + Duration::from_millis(since)),
-            (Phase::Busy | Phase::Closing, _) => None,
-        }
+        let state = self.state();
+        matches!(state.phase, Phase::Head | Phase::Idle).then_some(state.since)
     }
 
     /// Marks the connection as closing unless a request has begun meanwhile, and returns whether it did.
     pub fn try_close(&self) -> bool {
-        let state = self.state.load(Ordering::Relaxed);
-        matches!(unpacked(state).0, Phase::Head | Phase::Idle)
-            && self
-                .state
-                .compare_exchange(state, packed(Phase::Closing, 0), Ordering::Relaxed, Ordering::Relaxed)
-                .is_ok()
+        let mut state = self.state();
+        let waits = matches!(state.phase, Phase::Head | Phase::Idle);
+        if waits {
+            state.phase = Phase::Closing;
+        }
+        waits
     }
-}
-
-fn packed(phase: Phase, since: u64) -> u64 {
-    since << 2 | phase as u64
-}
-
-fn unpacked(state: u64) -> (Phase, u64) {
-    let phase = match state & 3 {
-        0 => Phase::Head,
-        1 => Phase::Idle,
-        2 => Phase::Busy,
-        _ => Phase::Closing,
-    };
-    (phase, state >> 2)
 }

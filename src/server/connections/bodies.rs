@@ -1,73 +1,19 @@
-//! Bodies of requests with a deadline, and bodies of replies that hold the resources of their request until they are
-//! sent.
+//! Bodies of requests, whose rest is discarded, and bodies of replies that hold the resources of their request until
+//! they are sent.
 
 use std::future::poll_fn;
 use std::pin::Pin;
 use std::sync::Arc;
 use std::task::{Context, Poll};
-use std::time::Duration;
 
 use axum::body::{Body, Bytes};
 use http_body::{Frame, SizeHint};
 use tokio::sync::oneshot;
-use tokio::time::{Instant, Sleep, sleep, timeout};
+use tokio::time::timeout;
 
 use super::ConnectionActivity;
 use crate::admission::{Client, RequestPermit, Reservation};
 use crate::server::limits::{DISCARD_TIME, DISCARDED, PIECE};
-
-/// The body of a request did not arrive in time.
-#[derive(Debug, thiserror::Error)]
-#[error("the body did not arrive in time")]
-pub struct SlowBody;
-
-/// The body of a request, which must arrive completely within a time limit. Only waits for the client count, and not
-/// what the server itself does between them.
-pub struct DeadlineBody<B> {
-    body: B,
-    /// What is left of the time.
-    left: Duration,
-    /// The present wait, with its beginning.
-    wait: Option<(Instant, Pin<Box<Sleep>>)>,
-}
-
-impl<B> DeadlineBody<B> {
-    /// A body that the client has so much time for.
-    pub fn new(body: B, time: Duration) -> DeadlineBody<B> {
-        DeadlineBody { body, left: time, wait: None }
-    }
-}
-
-impl<B> http_body::Body for DeadlineBody<B>
-where
-    B: http_body::Body<Data = Bytes, Error: Into<axum::BoxError>> + Unpin,
-{
-    type Data = Bytes;
-    type Error = axum::BoxError;
-
-    fn poll_frame(
-        mut self: Pin<&mut Self>,
-        cx: &mut Context<'_>,
-    ) -> Poll<Option<Result<Frame<Bytes>, axum::BoxError>>> {
-        if let Poll::Ready(frame) = Pin::new(&mut self.body).poll_frame(cx) {
-            if let Some((since, _)) = self.wait.take() {
-                self.left = self.left.saturating_sub(since.elapsed());
-            }
-            return Poll::Ready(frame.map(|frame| frame.map_err(Into::into)));
-        }
-        let left = self.left;
-        let (_, deadline) = self.wait.get_or_insert_with(|| (Instant::now(), Box::pin(sleep(left))));
-        deadline.as_mut().poll(cx).map(|()| Some(Err(SlowBody.into())))
-    }
-
-    fn is_end_stream(&self) -> bool {
-        self.body.is_end_stream()
-    }
-
-    fn size_hint(&self) -> SizeHint {
-        self.body.size_hint()
-    }
-}
 
 /// The body of a request, of which the service gets back what a handler has not read.
 pub struct ReturnedBody<B: Unpin> {
@@ -146,27 +92,16 @@ impl Drop for RequestInProgress {
 /// The body of a reply, sent in pieces that own their memory: when the last piece has been handed to the socket, the
 /// resources of the request are free, and no more than that piece is still in flight.
 pub struct TrackedBody {
-    body: Body,
-    // On whose behalf what it streams is computed.
-    client: Client,
-    rest: Bytes,
-    _request: RequestInProgress,
-    _permit: Option<RequestPermit>,
-    _memory: Option<Arc<Reservation>>,
+    pub(super) body: Body,
+    /// On whose behalf what it streams is computed.
+    pub(super) client: Client,
+    /// What is left of a piece.
+    pub(super) rest: Bytes,
+    /// Released when the body is dropped.
+    pub(super) _held: (RequestInProgress, Option<RequestPermit>, Option<Arc<Reservation>>),
 }
 
 impl TrackedBody {
-    /// A body that releases `request`, `permit` and `memory` when it is dropped.
-    pub fn new(
-        body: Body,
-        client: Client,
-        request: RequestInProgress,
-        permit: Option<RequestPermit>,
-        memory: Option<Arc<Reservation>>,
-    ) -> TrackedBody {
-        TrackedBody { body, client, rest: Bytes::new(), _request: request, _permit: permit, _memory: memory }
-    }
-
     fn next_piece(&mut self) -> Bytes {
         let piece = self.rest.split_to(self.rest.len().min(PIECE));
         Bytes::copy_from_slice(&piece)
@@ -208,51 +143,5 @@ impl http_body::Body for TrackedBody {
             }
         }
         hint
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use std::convert::Infallible;
-    use std::pin::Pin;
-    use std::task::{Context, Poll};
-    use std::time::Duration;
-
-    use axum::body::Bytes;
-    use http_body::{Body, Frame};
-    use http_body_util::BodyExt as _;
-    use tokio::time::sleep;
-
-    use super::DeadlineBody;
-
-    /// A client whose every byte has arrived as soon as it has been waited for once.
-    struct Prompt {
-        asked: bool,
-    }
-
-    impl Body for Prompt {
-        type Data = Bytes;
-        type Error = Infallible;
-
-        fn poll_frame(
-            mut self: Pin<&mut Self>,
-            cx: &mut Context<'_>,
-        ) -> Poll<Option<Result<Frame<Bytes>, Infallible>>> {
-            self.asked = !self.asked;
-            if self.asked {
-                cx.waker().wake_by_ref();
-                return Poll::Pending;
-            }
-            Poll::Ready(Some(Ok(Frame::data(Bytes::from_static(b"a")))))
-        }
-    }
-
-    #[tokio::test]
-    async fn what_the_server_holds_up_itself_is_no_fault_of_the_client() {
-        let time = Duration::from_millis(500);
-        let mut body = DeadlineBody::new(Prompt { asked: false }, time);
-        assert!(body.frame().await.unwrap().is_ok());
-        sleep(2 * time).await;
-        assert!(body.frame().await.unwrap().is_ok());
     }
 }

@@ -6,10 +6,11 @@ use std::net::IpAddr;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
+use ipnet::IpNet;
 use tokio::task::AbortHandle;
 use tokio::time::Instant;
 
-use super::{ConnectionActivity, ConnectionLimits, Network, is_trusted};
+use super::{ConnectionActivity, ConnectionLimits, is_trusted};
 use crate::admission::Client;
 use crate::server::limits::{LEAST_WAIT, SPARE_CONNECTIONS};
 
@@ -21,9 +22,10 @@ const SEARCH_PAUSE: Duration = Duration::from_millis(100);
 /// All connections of the server. Clones share it.
 #[derive(Clone, Debug)]
 pub struct ConnectionLimiter {
-    limits: ConnectionLimits,
-    /// Their clients are many: the bound of one does not hold for them.
-    proxies: Arc<[Network]>,
+    /// What connections are held to.
+    pub limits: ConnectionLimits,
+    /// The proxies that are trusted. Their clients are many: the bound of one does not hold for them.
+    pub proxies: Arc<[IpNet]>,
     // A std mutex: held for a moment when a connection opens or closes, and never across an await.
     table: Arc<Mutex<Table>>,
 }
@@ -74,20 +76,8 @@ pub struct ConnectionPermit {
 impl ConnectionLimiter {
     /// A limiter without connections. The bound of a client does not hold for `proxies`.
     #[must_use]
-    pub fn new(limits: ConnectionLimits, proxies: Arc<[Network]>) -> ConnectionLimiter {
+    pub fn new(limits: ConnectionLimits, proxies: Arc<[IpNet]>) -> ConnectionLimiter {
         ConnectionLimiter { limits, proxies, table: Arc::default() }
-    }
-
-    /// The proxies that are trusted.
-    #[must_use]
-    pub fn proxies(&self) -> &Arc<[Network]> {
-        &self.proxies
-    }
-
-    /// What connections are held to.
-    #[must_use]
-    pub fn limits(&self) -> &ConnectionLimits {
-        &self.limits
     }
 
     /// Counts of connections.

@@ -19,13 +19,12 @@ mod socket;
 use std::time::Duration;
 
 pub(crate) use activity::ConnectionActivity;
-pub use bodies::SlowBody;
 pub(crate) use limiter::ConnectionPermit;
 pub use limiter::{ConnectionCounts, ConnectionLimiter};
 pub use own_hosts::OwnHosts;
 pub(crate) use proxies::is_trusted;
-pub use proxies::{ClientAddress, Network};
-pub use service::{Refusal, Service};
+pub use proxies::network;
+pub use service::{Refusal, RequestClient, Service};
 pub(crate) use socket::Socket;
 
 /// Connections at a time by default.

@@ -1,38 +1,27 @@
 //! The address of the client behind proxies, as those that are trusted state it.
 
 use std::net::{IpAddr, SocketAddr};
-use std::str::FromStr;
 
 use axum::http::HeaderMap;
 use ipnet::IpNet;
 
-/// The address of the client of a request.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct ClientAddress(pub IpAddr);
-
 /// The addresses of proxies: one, or all of a network such as `10.0.0.0/8`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Network(IpNet);
-
-impl FromStr for Network {
-    type Err = &'static str;
-
-    fn from_str(text: &str) -> Result<Network, &'static str> {
-        let one = text.parse::<IpAddr>().map(IpNet::from);
-        let network =
-            one.or_else(|_| text.parse()).map_err(|_| "expected an address, or a network such as 10.0.0.0/8")?;
-        Ok(Network(network))
-    }
+///
+/// # Errors
+/// What is expected, if the text is neither.
+pub fn network(text: &str) -> Result<IpNet, &'static str> {
+    let one = text.parse::<IpAddr>().map(IpNet::from);
+    one.or_else(|_| text.parse()).map_err(|_| "expected an address, or a network such as 10.0.0.0/8")
 }
 
 /// Whether the address is one of these.
-pub fn is_trusted(trusted: &[Network], address: IpAddr) -> bool {
-    trusted.iter().any(|network| network.0.contains(&address))
+pub fn is_trusted(trusted: &[IpNet], address: IpAddr) -> bool {
+    trusted.iter().any(|network| network.contains(&address))
 }
 
 /// The client of a request that came from `peer`. A proxy appends to `X-Forwarded-For` the address that called it; the
 /// last address that is not one of `trusted` is the client. What stands before it could be made up.
-pub fn client(peer: IpAddr, headers: &HeaderMap, trusted: &[Network]) -> IpAddr {
+pub fn client(peer: IpAddr, headers: &HeaderMap, trusted: &[IpNet]) -> IpAddr {
     let mut client = peer.to_canonical();
     if !is_trusted(trusted, client) {
         return client;
@@ -60,12 +49,11 @@ fn address(stated: &str) -> Option<IpAddr> {
 mod tests {
     use axum::http::{HeaderMap, HeaderValue};
 
-    use super::{Network, client};
+    use super::{client, network};
 
     #[test]
     fn only_what_trusted_proxies_say_is_believed() {
-        let trusted: Vec<Network> =
-            ["127.0.0.1", "10.0.0.0/8", "fd00::/64"].iter().map(|text| text.parse().unwrap()).collect();
+        let trusted = ["127.0.0.1", "10.0.0.0/8", "fd00::/64"].map(|text| network(text).unwrap());
         for (peer, lines, expected) in [
             ("192.0.2.1", &["198.51.100.7"][..], "192.0.2.1"),
             ("127.0.0.1", &[], "127.0.0.1"),
@@ -94,7 +82,7 @@ mod tests {
     #[test]
     fn a_network_is_an_address_with_the_bits_that_count() {
         for bad in ["", "10.0.0.0/33", "10.0.0/8", "fd00::/129", "10.0.0.0/", "10.0.0.0/-1", "proxy"] {
-            assert!(bad.parse::<Network>().is_err(), "{bad}");
+            assert!(network(bad).is_err(), "{bad}");
         }
     }
 }

@@ -5,14 +5,15 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use axum::Router;
-use axum::body::{Body, HttpBody as _};
-use axum::http::{HeaderValue, Method, Request, Response, Version, header};
+use axum::body::{Body, Bytes, HttpBody as _};
+use axum::http::{HeaderValue, Method, Request, Response, StatusCode, Version, header};
 use hyper::body::Incoming;
+use ipnet::IpNet;
 use tokio::sync::watch;
 use tower_service::Service as _;
 
-use super::bodies::{DeadlineBody, RequestInProgress, ReturnedBody, TrackedBody, discard};
-use super::proxies::{self, ClientAddress, Network};
+use super::bodies::{RequestInProgress, ReturnedBody, TrackedBody, discard};
+use super::proxies;
 use super::{ConnectionActivity, OwnHosts};
 use crate::admission::{Client, Pool, PoolError, Quota, Reservation};
 
@@ -23,6 +24,15 @@ const ALWAYS_ANSWERED: [&str; 3] = ["/healthz", "/readyz", "/metrics"];
 #[derive(Debug, thiserror::Error)]
 #[error("closed to make room")]
 pub struct Closed;
+
+/// From whom a request comes.
+#[derive(Clone, Copy, Debug)]
+pub struct RequestClient {
+    /// The address of the client.
+    pub address: IpAddr,
+    /// How long the body may take to arrive.
+    pub body_time: Duration,
+}
 
 /// Why a request is refused before it reaches a handler.
 #[derive(Clone, Copy, Debug)]
@@ -52,7 +62,7 @@ pub struct Service {
     /// By which names it may be called; any if none.
     pub hosts: Option<OwnHosts>,
     /// The proxies that are believed who their client is.
-    pub proxies: Arc<[Network]>,
+    pub proxies: Arc<[IpNet]>,
     /// True once requests that are not done are refused: the server has no more time.
     pub stopping: watch::Sender<bool>,
 }
@@ -71,10 +81,10 @@ impl Service {
         }
         let in_progress = RequestInProgress(activity);
         let (head, body) = request.into_parts();
-        let (body, mut unread) = ReturnedBody::new(DeadlineBody::new(body, self.body_time));
+        let (body, mut unread) = ReturnedBody::new(body);
         let mut request = Request::from_parts(head, Body::new(body));
         let address = proxies::client(peer, request.headers(), &self.proxies);
-        request.extensions_mut().insert(ClientAddress(address));
+        request.extensions_mut().insert(RequestClient { address, body_time: self.body_time });
         let client = Client::of_address(address);
         let fault = in_progress.0.head_fault().or_else(|| ambiguity(&request));
         // Only the HTTP library knows where chunks end, and what follows them has not been inspected.
@@ -114,6 +124,8 @@ impl Service {
             }
         };
         let Ok(mut reply) = reply;
+        // A body that took too long is not waited for again.
+        let readable = readable && reply.status() != StatusCode::REQUEST_TIMEOUT;
         // The next request of the connection begins after the body.
         if let Ok(rest) = unread.try_recv()
             && !rest.is_end_stream()
@@ -128,23 +140,22 @@ impl Service {
         let memory = reply.extensions_mut().remove::<Arc<Reservation>>();
         // An endless stream has a limit of its own and occupies no solver. A compressed reply ends, but has no length.
         let ends = reply.body().size_hint().exact().is_some() || reply.headers().contains_key(header::CONTENT_ENCODING);
-        let permit = permit.filter(|_| ends);
-        Ok(reply.map(|body| TrackedBody::new(body, client, in_progress, permit, memory)))
+        let held = (in_progress, permit.filter(|_| ends), memory);
+        Ok(reply.map(|body| TrackedBody { body, client, rest: Bytes::new(), _held: held }))
     }
 }
 
 /// What can be understood in more than one way in a head that can be read in one, if anything.
 fn ambiguity<B>(request: &Request<B>) -> Option<&'static str> {
-    let twice = |name: &str| request.headers().get_all(name).iter().nth(1).is_some();
     if request.version() == Version::HTTP_11 && !request.headers().contains_key(header::HOST) {
-        Some("the head names no host")
-    } else if twice("content-type") {
-        Some("the head has more than one Content-Type")
-    } else if twice("idempotency-key") {
-        Some("the head has more than one Idempotency-Key")
-    } else if twice("origin") {
-        Some("the head has more than one Origin")
-    } else {
-        None
+        return Some("the head names no host");
     }
+    let faults = [
+        ("host", "the head names more than one host"),
+        ("content-type", "the head has more than one Content-Type"),
+        ("idempotency-key", "the head has more than one Idempotency-Key"),
+        ("origin", "the head has more than one Origin"),
+    ];
+    let is_repeated = |name: &str| request.headers().get_all(name).iter().nth(1).is_some();
+    faults.into_iter().find(|(name, _)| is_repeated(name)).map(|(_, fault)| fault)
 }

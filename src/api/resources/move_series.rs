@@ -1,0 +1,159 @@
+//! What is shown of the moves of a contact: a page of them, or all of them as one table, which is read page by page
+//! while it is sent.
+
+use std::io;
+use std::sync::Arc;
+
+use axum::body::Body;
+use futures::{StreamExt as _, stream};
+use serde::Serialize;
+use stickslip_report::plot::Plot;
+use stickslip_wire::HistoryPage;
+
+use super::prelude::*;
+use crate::api::formats::TableStream;
+use crate::api::query::{Moves, MovesQuery};
+use crate::formats::{Table, Unwritable};
+
+/// Moves that are read at once.
+const PAGE: usize = 500;
+/// Bytes of an item of a history.
+pub(super) const ITEM_BYTES: usize = 2_048;
+
+/// What is shown of moves.
+pub(super) trait MoveSeries: Clone + Send + Sync + 'static {
+    /// The document of a page.
+    type Page: Serialize + Send + 'static;
+
+    /// The last part of the path.
+    const NAME: &'static str;
+
+    /// Bytes that so many moves take.
+    fn bytes(&self, moves: usize) -> usize;
+
+    /// What distinguishes it from others of the same moves, in its version.
+    fn marking(&self) -> &'static str;
+
+    /// Its own part of the query of the next page.
+    fn parameters(&self) -> String;
+
+    /// The document of these moves, which come after another one, for a reply in this format.
+    fn page(
+        &self,
+        app: &App,
+        id: Uuid,
+        after: u64,
+        moves: HistoryPage,
+        format: Format,
+    ) -> impl Future<Output = Result<Self::Page, Problem>> + Send;
+
+    /// The plot of a page.
+    fn plot(id: Uuid, page: &Self::Page) -> Plot;
+
+    /// The table of a page.
+    fn table<'a>(&self, page: &'a Self::Page) -> Table<'a>;
+}
+
+/// The reply with the moves that the query asks for.
+pub(super) async fn reply<T: MoveSeries>(
+    app: Arc<App>,
+    id: Uuid,
+    headers: &HeaderMap,
+    moves: MovesQuery,
+    format: Option<Format>,
+    shown: T,
+) -> Result<Response, Problem> {
+    let format = Format::chosen(format, headers, &Format::ALL)?;
+    let history = app.sessions.history();
+    let (after, limit) = match moves.of(format) {
+        Moves::Page(after, limit) => (after, limit),
+        Moves::Newest(limit) => (history.sequence(id).await?.saturating_sub(limit as u64), limit),
+        Moves::All => return all(app, id, headers, format, shown).await,
+    };
+    let memory = app.pool.reserve(shown.bytes(limit) + format.bytes(0, 0)).await?;
+    let moves = history.page(id, after, limit).await?;
+    let tag = format.tag(&(version(&moves, after) + shown.marking()));
+    if reply::is_current(headers, &tag) {
+        return Ok(reply::not_modified(&tag));
+    }
+    let next = moves.next.and_then(|next| {
+        let query = format!("after={next}&limit={limit}{}&format={}", shown.parameters(), format.name());
+        HeaderValue::from_str(&format!("</contacts/{id}/{}?{query}>; rel=\"next\"", T::NAME)).ok()
+    });
+    let page = shown.page(&app, id, after, moves, format).await?;
+    let write = move || format.write(&page, || T::plot(id, &page), || shown.table(&page));
+    let mut response = reply::tagged(format.reply(app.pool.run(format.cost(), write).await??), &tag);
+    response.headers_mut().extend(next.map(|next| (header::LINK, next)));
+    Ok(reply::holding(response, memory))
+}
+
+/// The version of a page. Moves never change, so that the last one and whether more follow determine a page.
+fn version(page: &HistoryPage, after: u64) -> String {
+    let last = page.items.last().map_or(after, |item| item.sequence);
+    let more = if page.next.is_some() { "-more" } else { "" };
+    format!("{last}{more}")
+}
+
+/// The reply with all moves of a contact as one table.
+async fn all<T: MoveSeries>(
+    app: Arc<App>,
+    id: Uuid,
+    headers: &HeaderMap,
+    format: Format,
+    shown: T,
+) -> Result<Response, Problem> {
+    let end = app.sessions.history().sequence(id).await?;
+    let tag = format.tag(&format!("{end}-all{}", shown.marking()));
+    if reply::is_current(headers, &tag) {
+        return Ok(reply::not_modified(&tag));
+    }
+    app.sessions.history().check_complete(id, end).await?;
+    let memory = app.pool.reserve(shown.bytes(PAGE)).await?;
+    let mut table =
+        WholeTable { app, id, shown, format, stream: TableStream::new(format), end, after: 0, is_done: false };
+    // Before the reply begins, which cannot be taken back.
+    let first = table.next().await?;
+    let rest = stream::try_unfold(table, async |mut table| {
+        if table.is_done {
+            return Ok::<_, io::Error>(None);
+        }
+        let block = table.next().await.map_err(broken_off)?;
+        Ok(Some((block, table)))
+    });
+    let body = Body::from_stream(stream::iter([Ok(first)]).chain(rest));
+    Ok(reply::holding(reply::tagged(format.reply(body), &tag), memory))
+}
+
+/// The table of the moves 1 to `end`, while it is written.
+struct WholeTable<T> {
+    app: Arc<App>,
+    id: Uuid,
+    shown: T,
+    format: Format,
+    stream: TableStream,
+    end: u64,
+    /// The last move that has been written.
+    after: u64,
+    is_done: bool,
+}
+
+impl<T: MoveSeries> WholeTable<T> {
+    async fn next(&mut self) -> Result<Vec<u8>, Problem> {
+        let limit = PAGE.min(usize::try_from(self.end - self.after).unwrap_or(PAGE));
+        let moves = self.app.sessions.history().page(self.id, self.after, limit).await?;
+        let page = self.shown.page(&self.app, self.id, self.after, moves, self.format).await?;
+        let mut block = self.stream.push(&self.shown.table(&page)).map_err(Unwritable::new)?;
+        self.after += limit as u64;
+        self.is_done = self.after >= self.end;
+        if self.is_done {
+            block.extend(self.stream.finish().map_err(Unwritable::new)?);
+        }
+        Ok(block)
+    }
+}
+
+/// The reply has begun, and can only be cut off: without its last chunk the client knows that something is missing.
+fn broken_off(problem: Problem) -> io::Error {
+    tracing::warn!(code = problem.code().as_str(), cause = problem.cause(), "a history is cut off while it is sent");
+    io::Error::other("a history cannot be read on")
+}
