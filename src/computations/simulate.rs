@@ -6,9 +6,9 @@ use stickslip_report::plot::Drawing;
 use stickslip_wire::simulate::Simulation;
 use stickslip_wire::{ContactDefinition, Fault, Sampling, SimulateReply, SimulateRequest};
 
-use super::{About, Computation, Example, Outcome, Route, Shown, example, simulate_table};
+use super::{About, Computation, Example, Outcome, Route, Shown, example, example_contact, simulate_table};
 use crate::admission::{Nanoseconds, Stop};
-use crate::formats::{Format, Table};
+use crate::formats::Table;
 use crate::simulation::{self, Failure, bytes, cost};
 
 /// The states of a contact along a path, and the stresses at its end.
@@ -23,12 +23,11 @@ impl Computation for Simulate {
                       and their extrema at its end if asked for. Nothing is stored, so that a repeated request \
                       simply runs again.",
         reply: "States, and what else was asked for",
-        formats: &Format::ALL,
-        printed: Format::Columns,
         shows: "All but `columns` show one part of the document: the residual stress if it is asked for, a row for \
                 each extremum; else the stresses over the radius; else the states along the path. `show` names \
                 another.",
         choice: Some(simulate_table::SHOW),
+        ..About::TABLE
     };
 
     type Request = SimulateRequest;
@@ -49,12 +48,7 @@ impl Computation for Simulate {
                 "by force",
                 "A cycle of the tangential force, the last state alone",
                 json!({
-                    "contact": {
-                        "profile": {"type": "sphere", "radius": 0.01},
-                        "material": {"effective": {"e_star": 1.2e11, "g_star": 9.6e10}},
-                        "friction": 0.3,
-                        "preload": {"indentation": 1e-6}
-                    },
+                    "contact": example_contact(json!({"type": "sphere", "radius": 0.01}), json!({"indentation": 1e-6})),
                     "path": {"force": [0.5, -0.5, 0.5]}, "steps": "last", "solver": "exact"
                 }),
             ),
@@ -62,12 +56,7 @@ impl Computation for Simulate {
                 "springs",
                 "The same contact on the paper's spring foundation",
                 json!({
-                    "contact": {
-                        "profile": {"type": "sphere", "radius": 0.01},
-                        "material": {"effective": {"e_star": 1.2e11, "g_star": 9.6e10}},
-                        "friction": 0.3,
-                        "preload": {"contact_radius": 1e-4}
-                    },
+                    "contact": example_contact(json!({"type": "sphere", "radius": 0.01}), json!({"contact_radius": 1e-4})),
                     "path": {"moves": [{"displacement": 1e-7}, {"indentation": 8e-7, "displacement": 0.0}]},
                     "solver": {"springs": {"count": 1000}}
                 }),

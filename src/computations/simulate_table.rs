@@ -5,7 +5,7 @@ use stickslip_wire::simulate::Simulation;
 use stickslip_wire::{Fault, Field, SimulateReply, State, Stress};
 
 use super::{Choice, Shown, residual, stress};
-use crate::formats::{Cells, Column, Table};
+use crate::formats::{Column, Table};
 
 /// Which part is shown.
 pub const SHOW: Choice = Choice {
@@ -52,22 +52,26 @@ fn fields(stress: &Stress) -> [&stress::Values; 4] {
     [&stress.pressure, &stress.shear, &stress.slip, &stress.displacement]
 }
 
-/// A row for each state, with the columns of a history.
+/// A row for each state.
 fn states(steps: &[State]) -> Table<'_> {
-    let state = |name, unit, of: fn(&State) -> f64| Column::floats(name, unit, move |row| of(&steps[row]));
-    let columns = vec![
-        state("displacement", "m", |state| state.displacement),
-        state("force", "N", |state| state.force),
-        state("indentation", "m", |state| state.indentation),
-        state("normal_force", "N", |state| state.normal_force),
-        state("contact_radius", "m", |state| state.contact_radius),
-        state("stick_radius", "m", |state| state.stick_radius),
-        Column::new("regime", Some(""), Cells::Words(Box::new(|row| steps[row].regime.name()))),
-        state("dissipated_energy", "J", |state| state.dissipated_energy),
-        state("elastic_energy", "J", |state| state.elastic_energy),
-        Column::counts("memory_depth", |row| steps[row].memory_depth as u64),
-    ];
-    Table::flat(steps.len(), columns)
+    Table::flat(steps.len(), state_columns(|row| &steps[row]).into())
+}
+
+/// The columns of a state by its row.
+pub fn state_columns<'a>(state: impl Fn(usize) -> &'a State + Copy + Send + 'a) -> [Column<'a>; 10] {
+    let floats = |name, unit, of: fn(&State) -> f64| Column::floats(name, unit, move |row| of(state(row)));
+    [
+        floats("displacement", "m", |state| state.displacement),
+        floats("force", "N", |state| state.force),
+        floats("indentation", "m", |state| state.indentation),
+        floats("normal_force", "N", |state| state.normal_force),
+        floats("contact_radius", "m", |state| state.contact_radius),
+        floats("stick_radius", "m", |state| state.stick_radius),
+        Column::words("regime", move |row| state(row).regime.name()),
+        floats("dissipated_energy", "J", |state| state.dissipated_energy),
+        floats("elastic_energy", "J", |state| state.elastic_energy),
+        Column::counts("memory_depth", move |row| state(row).memory_depth as u64),
+    ]
 }
 
 /// Force over displacement, the stresses over the radius, or the extrema.
@@ -93,36 +97,19 @@ fn stresses(stress: &Stress) -> Plot {
     let panel = |name, unit| {
         let colours = [Colour::Grey, Colour::Blue, Colour::Red, Colour::Blue];
         let drawn = Field::ALL.into_iter().zip(fields(stress)).zip(colours);
-        let curves: Vec<Curve> = drawn
-            .filter(|((field, values), _)| stress::unit(*field) == unit && values.is_some())
-            .map(|((field, values), colour)| Curve {
-                name: field.name(),
-                points: points(stress, values),
-                colour,
-                silent: false,
-                dots: false,
-            })
+        let of_unit = drawn.filter(|((field, values), _)| stress::unit(*field) == unit && values.is_some());
+        let curves: Vec<_> = of_unit
+            .map(|((field, values), colour)| Curve::line(field.name(), colour, points(stress, values)))
             .collect();
-        (!curves.is_empty()).then_some(Panel { y: Axis { name, unit: Some(unit) }, curves })
+        (!curves.is_empty()).then_some(Panel { y: Axis::of(name, unit), curves })
     };
-    Plot {
-        title: "Stresses at the end of the path".to_owned(),
-        x: Axis { name: "radius r", unit: Some("m") },
-        panels: [panel("stress", "Pa"), panel("displacement", "m")].into_iter().flatten().collect(),
-        bands: Vec::new(),
-    }
+    let panels = [panel("stress", "Pa"), panel("displacement", "m")].into_iter().flatten().collect();
+    Plot::new("Stresses at the end of the path", Axis::of("radius r", "m"), panels)
 }
 
 fn loop_of(steps: &[State]) -> Plot {
-    let points: Vec<_> = steps.iter().map(|state| (state.displacement, state.force)).collect();
-    let curve = |dots| Curve { name: "", points: points.clone(), colour: Colour::Blue, silent: true, dots };
-    Plot {
-        title: "States along the path".to_owned(),
-        x: Axis { name: "displacement U", unit: Some("m") },
-        panels: vec![Panel {
-            y: Axis { name: "tangential force F", unit: Some("N") },
-            curves: vec![curve(false), curve(true)],
-        }],
-        bands: Vec::new(),
-    }
+    let points = || steps.iter().map(|state| (state.displacement, state.force));
+    let curves = vec![Curve::line("", Colour::Blue, points()), Curve::dots("", Colour::Blue, points())];
+    let panel = Panel { y: Axis::of("tangential force F", "N"), curves };
+    Plot::new("States along the path", Axis::of("displacement U", "m"), vec![panel])
 }

@@ -9,43 +9,30 @@ use stickslip_wire::{Cycle, CyclePage, HistoryPage, LoopPage, State};
 #[must_use]
 pub fn history(id: Uuid, page: &HistoryPage) -> Plot {
     let panel = |name, unit, colour, of: fn(&State) -> f64| Panel {
-        y: Axis { name, unit: Some(unit) },
-        curves: vec![Curve {
-            name: "",
-            points: page.items.iter().map(|item| (item.sequence as f64, of(&item.state))).collect(),
-            colour,
-            silent: true,
-            dots: false,
-        }],
+        y: Axis::of(name, unit),
+        curves: vec![Curve::line("", colour, page.items.iter().map(|item| (item.sequence as f64, of(&item.state))))],
     };
-    Plot {
-        title: format!("Contact {id}: history{}", shown(page.items.iter().map(|item| item.sequence))),
-        x: Axis { name: "move", unit: None },
-        panels: vec![
+    Plot::new(
+        format!("Contact {id}: history{}", shown(page.items.iter().map(|item| item.sequence))),
+        Axis { name: "move", unit: None },
+        vec![
             panel("displacement", "m", Colour::Blue, |state| state.displacement),
             panel("force", "N", Colour::Blue, |state| state.force),
             panel("friction work", "J", Colour::Red, |state| state.dissipated_energy),
         ],
-        bands: Vec::new(),
-    }
+    )
 }
 
 /// Force over displacement.
 #[must_use]
 pub fn hysteresis_loop(id: Uuid, page: &LoopPage) -> Plot {
-    let points = page.displacement.iter().copied().zip(page.force.iter().copied()).collect();
-    Plot {
-        title: format!(
-            "Contact {id}: hysteresis loop{}",
-            shown(page.sequence.iter().copied().filter(|number| *number > 0))
-        ),
-        x: Axis { name: "displacement U", unit: Some("m") },
-        panels: vec![Panel {
-            y: Axis { name: "tangential force F", unit: Some("N") },
-            curves: vec![Curve { name: "", points, colour: Colour::Blue, silent: true, dots: false }],
-        }],
-        bands: Vec::new(),
-    }
+    let points = page.displacement.iter().copied().zip(page.force.iter().copied());
+    let moves = shown(page.sequence.iter().copied().filter(|number| *number > 0));
+    Plot::new(
+        format!("Contact {id}: hysteresis loop{moves}"),
+        Axis::of("displacement U", "m"),
+        vec![Panel { y: Axis::of("tangential force F", "N"), curves: vec![Curve::line("", Colour::Blue, points)] }],
+    )
 }
 
 /// Which moves a plot shows, for its title.
@@ -61,24 +48,17 @@ fn shown(mut moves: impl DoubleEndedIterator<Item = u64>) -> String {
 #[must_use]
 pub fn cycles(id: Uuid, page: &CyclePage) -> Plot {
     let panel = |name, unit, colour, of: fn(&Cycle) -> f64| Panel {
-        y: Axis { name, unit: Some(unit) },
-        curves: vec![Curve {
-            name: "",
-            points: page.items.iter().map(|cycle| (cycle.to as f64, of(cycle))).collect(),
-            colour,
-            silent: true,
-            dots: false,
-        }],
+        y: Axis::of(name, unit),
+        curves: vec![Curve::line("", colour, page.items.iter().map(|cycle| (cycle.to as f64, of(cycle))))],
     };
-    Plot {
-        title: format!("Contact {id}: {}closed cycles", if page.items.is_empty() { "no " } else { "" }),
-        x: Axis { name: "move", unit: None },
-        panels: vec![
+    Plot::new(
+        format!("Contact {id}: {}closed cycles", if page.items.is_empty() { "no " } else { "" }),
+        Axis { name: "move", unit: None },
+        vec![
             panel("amplitude U₀", "m", Colour::Blue, |cycle| cycle.displacement_amplitude),
             panel("amplitude F₀", "N", Colour::Blue, |cycle| cycle.force_amplitude),
             panel("friction work", "J", Colour::Red, |cycle| cycle.dissipated_energy),
             panel("secant stiffness", "N/m", Colour::Blue, |cycle| cycle.secant_stiffness.unwrap_or(f64::NAN)),
         ],
-        bands: Vec::new(),
-    }
+    )
 }
