@@ -9,7 +9,7 @@ use stickslip::admission::Stop;
 use stickslip::api::Problem;
 use stickslip::api::problem::Code;
 use stickslip::computations::{
-    Computation as _, Cycle, OnContact, Shown, StressTask, make_moves, dry_run_relax, shown_states,
+    Computation as _, Cycle, OnContact, Shown, StressTask, dry_run_relax, make_moves, shown_states,
 };
 use stickslip::formats::Format;
 use stickslip::simulation::{self, present_warnings};

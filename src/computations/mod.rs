@@ -13,7 +13,6 @@ mod profile_fit;
 mod protocol;
 mod residual;
 mod simulate;
-mod simulate_table;
 mod stress;
 mod subsurface;
 
@@ -37,7 +36,7 @@ pub use loop_fit::FitLoops;
 pub use moves::{Moved, dry_run_relax, make_moves, shown_states};
 pub use protocol::find_from_state;
 pub use residual::ResidualTask;
-pub use simulate_table::state_columns;
+pub use simulate::state_columns;
 pub use stress::StressTask;
 
 /// Calls `visitor` with every computation.

@@ -1,8 +1,8 @@
-//! From a checked request to a reply, by way of the mechanics.
+//! What computations and stored contacts share: a solver follows a path, stresses, warnings, sweeps, and why a request
+//! has no result.
 //!
-//! The same functions serve `stickslip simulate`, `POST /simulate` and the sessions, independent of HTTP and
-//! storage. Long loops check a [`Stop`](crate::admission::Stop) between moves and between radii. [`cost`] estimates the
-//! work.
+//! Nothing here depends on HTTP or storage. Long loops check a [`Stop`] between moves and between radii. [`cost`] and
+//! [`bytes`] estimate the work.
 
 pub mod bytes;
 pub mod cost;
@@ -134,12 +134,12 @@ impl Failure {
         }
     }
 
-    /// The failure of what the mechanics has refused, or has been interrupted in by `stop`, at the member at `pointer`.
+    /// This failure, unless `stop` has ended the work that the member at `pointer` requested.
     #[must_use]
-    pub fn unless_interrupted(stop: &Stop, pointer: &str, cause: impl Into<Cause>) -> Failure {
+    pub fn unless_interrupted(self, stop: &Stop, pointer: &str) -> Failure {
         match stop.check() {
             Err(interrupted) => Failure::interrupted(interrupted, pointer),
-            Ok(()) => Failure::at(pointer, cause),
+            Ok(()) => self,
         }
     }
 

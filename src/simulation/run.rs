@@ -227,11 +227,10 @@ pub fn follow<S: Solver>(
     mut each: impl FnMut(Move, &S),
 ) -> Result<(), Failure> {
     for (index, step) in moves(plan, solver.exact(), protocol)?.enumerate() {
-        let ended = |interrupted| Failure::interrupted(interrupted, &plan.place_of(index, None));
-        stop.check().map_err(ended)?;
-        solver.apply(&step.step(), tolerance, &|| stop.check().is_ok()).map_err(|error| match stop.check() {
-            Err(interrupted) => ended(interrupted),
-            Ok(()) => Failure::at(place(plan, index, Some(&step), &error), error),
+        stop.check().map_err(|interrupted| Failure::interrupted(interrupted, &plan.place_of(index, None)))?;
+        solver.apply(&step.step(), tolerance, &|| stop.check().is_ok()).map_err(|error| {
+            let refused = Failure::at(place(plan, index, Some(&step), &error), error);
+            refused.unless_interrupted(stop, &plan.place_of(index, None))
         })?;
         let depth = solver.depth();
         if depth > limits::MEMORY_DEPTH {
@@ -297,6 +296,6 @@ pub fn residual<S: Solver>(solver: &S, stop: &Stop) -> Result<Residual, Failure>
     check_search(solver.exact().profile(), solver.depth(), stop)?;
     match solver.residual(&|| stop.check().is_ok()) {
         Some(residual) => Ok(Residual::new(residual, solver.unit_shear())),
-        None => Err(Failure::unless_interrupted(stop, "", Cause::Stopped)),
+        None => Err(Failure::at("", Cause::Stopped).unless_interrupted(stop, "")),
     }
 }

@@ -43,9 +43,9 @@ pub fn steady_cycles(
         let row = if let Some((load, tolerance)) = task.normal {
             let swing = Oscillation { drive, load, compliance };
             let found = swing.steady(contact, tolerance, task.harmonics, &|| stop.check().is_ok());
-            let found = found.map_err(|error| match stop.check() {
-                Err(interrupted) => Failure::interrupted(interrupted, &task.place_of(index)),
-                Ok(()) => Failure::at(place_of_refused(&error, &load, task, index), error),
+            let found = found.map_err(|error| {
+                let place = place_of_refused(&error, &load, task, index);
+                Failure::at(place, error).unless_interrupted(stop, &task.place_of(index))
             })?;
             error = error.max(found.error);
             stepped(found, task)

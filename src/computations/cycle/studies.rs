@@ -51,7 +51,7 @@ pub fn resonance(
         (0..FREQUENCIES).map(at).filter(|frequency| *frequency > 0.0).collect()
     });
     let found = body.respond(contact, &frequencies, tolerance, &|| stop.check().is_ok());
-    let found = found.ok_or_else(|| Failure::unless_interrupted(stop, "", Cause::Stopped))?;
+    let found = found.ok_or_else(|| Failure::at("", Cause::Stopped).unless_interrupted(stop, ""))?;
     let point = |found: stickslip_mechanics::cycle::Response| ResonancePoint {
         frequency: found.frequency,
         amplitude: found.amplitude,

@@ -108,7 +108,7 @@ fn relative(error: f64, value: f64) -> f64 {
 
 fn refused(error: Error, stop: &Stop) -> Failure {
     let cause = if error == Error::CycleTooLarge { Cause::CycleTooLarge } else { error.into() };
-    Failure::unless_interrupted(stop, "/path", cause)
+    Failure::at("/path", cause).unless_interrupted(stop, "/path")
 }
 
 /// The stresses of a place over the cycle, as columns.

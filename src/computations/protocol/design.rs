@@ -47,10 +47,7 @@ impl Subject<'_> {
 
     fn design(&self, kind: AmplitudeLaw, reversals: usize, end: PathEnd, stop: &Stop) -> Result<Design, Failure> {
         let found = design(self.contact, self.start(), kind, reversals, end, &|| stop.check().is_ok());
-        found.map_err(|error| match stop.check() {
-            Err(interrupted) => Failure::interrupted(interrupted, "/reversals"),
-            Ok(()) => Failure::at(self.place(&error), error),
-        })
+        found.map_err(|error| Failure::at(self.place(&error), error).unless_interrupted(stop, "/reversals"))
     }
 
     /// The design of the fewest reversals that leave no more than `largest`, Pa.
@@ -237,10 +234,8 @@ fn robustness(
         _ => Ok(subject.contact.clone()),
     };
     let found = trials(&make, path, &ExecutionErrors { amplitude, friction, seed }, samples, &|| stop.check().is_ok());
-    let found = found.map_err(|error| match stop.check() {
-        Err(interrupted) => Failure::interrupted(interrupted, "/robustness/samples"),
-        Ok(()) => Failure::at("/robustness", error),
-    })?;
+    let refused = |error| Failure::at("/robustness", error).unless_interrupted(stop, "/robustness/samples");
+    let found = found.map_err(refused)?;
     let count = found.len() as f64;
     let mean = found.iter().sum::<f64>() / count;
     let variance = found.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / (count - 1.0).max(1.0);
