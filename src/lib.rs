@@ -18,7 +18,7 @@
 //! [`computations`] are what takes a document and gives one without storing anything, each with its name, cost, table
 //! and picture, in one list.
 //!
-//! [`simulation`] computes the reply to a checked request, and estimates what that costs.
+//! [`simulation`] is what they share with stored contacts: solvers on their paths, stresses, warnings, sweeps, costs.
 //!
 //! [`formats`] writes tables and pictures.
 //!

@@ -4,7 +4,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 use stickslip::api;
-use stickslip::computations::{self, Computation, Shown, Visitor};
+use stickslip::computations::{self, Shown};
 use stickslip::formats::Format;
 
 use super::interrupt::interruptible;
@@ -28,15 +28,8 @@ pub fn named(format: &str) -> PyResult<Format> {
 /// The name of every computation, and the path of its POST, if it has one.
 #[pyfunction]
 pub fn names() -> Vec<(&'static str, Option<&'static str>)> {
-    struct Names(Vec<(&'static str, Option<&'static str>)>);
-    impl Visitor for Names {
-        fn visit<C: Computation>(&mut self) {
-            self.0.push((C::ABOUT.name, C::ABOUT.route.map(|route| route.path)));
-        }
-    }
-    let mut names = Names(Vec::new());
-    computations::each(&mut names);
-    names.0
+    let abouts = computations::entries().into_iter().map(|entry| entry.about);
+    abouts.map(|about| (about.name, about.route.map(|route| route.path))).collect()
 }
 
 /// The OpenAPI document.

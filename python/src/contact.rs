@@ -9,7 +9,7 @@ use stickslip::admission::Stop;
 use stickslip::api::Problem;
 use stickslip::api::problem::Code;
 use stickslip::computations::{
-    Computation as _, Cycle, OnContact, Shown, StressTask, make_moves, rehearse_relax, shown_states,
+    Computation as _, Cycle, OnContact, Shown, StressTask, dry_run_relax, make_moves, shown_states,
 };
 use stickslip::formats::Format;
 use stickslip::simulation::{self, present_warnings};
@@ -248,7 +248,7 @@ impl Contact {
         if !relaxation.dry_run {
             return self.follow(&relaxation.into(), stop);
         }
-        let (steps, protocol) = rehearse_relax(self.state.clone(), &relaxation, stop)?;
+        let (steps, protocol) = dry_run_relax(self.state.clone(), &relaxation, stop)?;
         let (id, sequence) = (self.id, self.made.len() as u64);
         json_bytes(&RelaxReply { id, sequence, dry_run: true, steps, protocol })
     }
@@ -289,7 +289,7 @@ fn replay(mut contact: mechanics::Contact, moves: &[(Move, f64)], stop: &Stop) -
     for (step, tolerance) in moves {
         stop.check().map_err(simulation::Failure::from)?;
         let made = contact.apply_while(&step.step(), *tolerance, &|| stop.check().is_ok());
-        made.map_err(|error| simulation::Failure::Refused { pointer: "/moves".to_owned(), error })?;
+        made.map_err(|error| simulation::Failure::at("/moves", error))?;
     }
     Ok(contact)
 }

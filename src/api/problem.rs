@@ -13,7 +13,7 @@ use crate::computations::ComputeError;
 use crate::formats::Unwritable;
 use crate::jobs::JobError;
 use crate::sessions::SessionError;
-use crate::simulation::{Failure, SweepError};
+use crate::simulation::{Cause, Failure, SweepError};
 use crate::store::StoreError;
 use stickslip_measured::import::ImportError;
 use stickslip_wire::{Fault, ProblemDocument, Rejection};
@@ -109,7 +109,7 @@ impl From<Rejection> for Problem {
         match rejection {
             Rejection::NotJson(_) => Problem::new(Code::NotJson, detail),
             Rejection::Invalid(errors) => Problem { errors, ..Problem::new(Code::InvalidInput, detail) },
-            Rejection::Refused { pointer, error } => Failure::Refused { pointer, error }.into(),
+            Rejection::Refused { pointer, error } => Failure::at(pointer, error).into(),
         }
     }
 }
@@ -148,18 +148,10 @@ impl From<ComputeError> for Problem {
 
 impl From<Failure> for Problem {
     fn from(failure: Failure) -> Self {
-        let (code, detail) = (failure.code(), failure.to_string());
-        match failure {
-            Failure::Refused { pointer, error } => Problem::at(code, pointer, error.to_string()),
-            Failure::Scan { pointer, error } => Problem::at(code, pointer, error.to_string()),
-            Failure::Loops { pointer, error } => Problem::at(code, pointer, error.to_string()),
-            Failure::MemoryFull { pointer, .. }
-            | Failure::TooLong { pointer, .. }
-            | Failure::Search { pointer, .. }
-            | Failure::CycleTooLarge { pointer } => Problem::at(code, pointer, detail),
-            Failure::Preparation { pointer, .. } => Problem::at(code, pointer, detail),
-            Failure::NeedsServer { pointer } => Problem::at(code, pointer, detail),
-            Failure::Stopped | Failure::Lifted => Problem::new(code, detail),
+        let (code, detail) = (failure.code(), failure.cause.to_string());
+        match failure.cause {
+            Cause::Stopped | Cause::Lifted => Problem::new(code, detail),
+            _ => Problem::at(code, failure.pointer, detail),
         }
     }
 }

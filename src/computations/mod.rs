@@ -7,20 +7,17 @@ mod accuracy;
 mod cycle;
 pub mod files;
 mod fretting;
-mod fretting_map;
-mod fretting_picture;
 mod loop_fit;
 mod moves;
 mod profile_fit;
 mod protocol;
 mod residual;
 mod simulate;
-mod simulate_table;
 mod stress;
 mod subsurface;
 
 use serde::Serialize;
-use serde_json::Value;
+use serde_json::{Value, json};
 use utoipa::ToSchema;
 use uuid::Uuid;
 
@@ -36,9 +33,10 @@ use crate::simulation::{self, Failure};
 pub use cycle::Cycle;
 pub use fretting::Fretting;
 pub use loop_fit::FitLoops;
-pub use moves::{Moved, make_moves, rehearse_relax, shown_states};
+pub use moves::{Moved, dry_run_relax, make_moves, shown_states};
 pub use protocol::find_from_state;
 pub use residual::ResidualTask;
+pub use simulate::state_columns;
 pub use stress::StressTask;
 
 /// Calls `visitor` with every computation.
@@ -206,6 +204,23 @@ pub struct About {
     pub choice: Option<Choice>,
 }
 
+impl About {
+    /// A document without a table or a picture.
+    const DOCUMENT: About = About {
+        name: "",
+        route: None,
+        title: "",
+        description: "",
+        reply: "",
+        formats: &[Format::Columns],
+        printed: Format::Columns,
+        shows: "",
+        choice: None,
+    };
+    /// A document that is also a table and a picture.
+    const TABLE: About = About { formats: &Format::ALL, ..About::DOCUMENT };
+}
+
 /// Where a computation is served.
 #[derive(Clone, Copy, Debug)]
 pub struct Route {
@@ -241,6 +256,12 @@ pub struct Example {
 
 fn example(name: &'static str, summary: &'static str, value: Value) -> Example {
     Example { name, summary, value }
+}
+
+/// A contact of bodies with effective moduli, for an example.
+fn example_contact(profile: Value, preload: Value) -> Value {
+    let material = json!({"effective": {"e_star": 1.2e11, "g_star": 9.6e10}});
+    json!({"profile": profile, "material": material, "friction": 0.3, "preload": preload})
 }
 
 /// How a result is shown.
@@ -306,28 +327,38 @@ pub enum ComputeError {
     Unwritable(#[from] Unwritable),
 }
 
+/// A computation without its types: what users read of it, and its reply to the JSON text of a request.
+#[derive(Clone, Copy, Debug)]
+pub struct Entry {
+    /// What users read of it.
+    pub about: About,
+    compute: Compute,
+}
+
+type Compute = fn(&[u8], Shown, &Stop) -> Result<Vec<u8>, ComputeError>;
+
+/// All computations.
+#[must_use]
+pub fn entries() -> Vec<Entry> {
+    struct Entries(Vec<Entry>);
+    impl Visitor for Entries {
+        fn visit<C: Computation>(&mut self) {
+            self.0.push(Entry { about: C::ABOUT, compute: compute_by::<C> });
+        }
+    }
+    let mut entries = Entries(Vec::new());
+    each(&mut entries);
+    entries.0
+}
+
 /// The reply of the computation of this name to the JSON text of a request.
 ///
 /// # Errors
 /// [`ComputeError`].
 pub fn compute(name: &str, body: &[u8], shown: Shown, stop: &Stop) -> Result<Vec<u8>, ComputeError> {
-    struct Call<'a> {
-        name: &'a str,
-        body: &'a [u8],
-        shown: Shown,
-        stop: &'a Stop,
-        reply: Option<Result<Vec<u8>, ComputeError>>,
-    }
-    impl Visitor for Call<'_> {
-        fn visit<C: Computation>(&mut self) {
-            if C::ABOUT.name == self.name {
-                self.reply = Some(compute_by::<C>(self.body, self.shown, self.stop));
-            }
-        }
-    }
-    let mut call = Call { name, body, shown, stop, reply: None };
-    each(&mut call);
-    call.reply.unwrap_or_else(|| Err(ComputeError::Unknown(name.to_owned())))
+    let entry = entries().into_iter().find(|entry| entry.about.name == name);
+    let entry = entry.ok_or_else(|| ComputeError::Unknown(name.to_owned()))?;
+    (entry.compute)(body, shown, stop)
 }
 
 /// The reply of a computation to the JSON text of a request.

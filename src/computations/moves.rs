@@ -9,7 +9,9 @@ use stickslip_wire::{Accuracy, Move, Plan, Protocol, ProtocolReply, State, Steps
 
 use super::find_from_state;
 use crate::admission::Stop;
-use crate::simulation::{Failure, FarMove, Timer, accuracy, equal_peaks, excess_error, follow, new_warnings, stresses};
+use crate::simulation::{
+    Cause, Failure, FarMove, Timer, accuracy, equal_peaks, excess_error, follow, new_warnings, stresses,
+};
 
 /// Why the exact solver answers for a contact with a history.
 const REASON: &str = "stored contacts use the exact solver";
@@ -48,14 +50,13 @@ pub fn make_moves(
     let protocol = equal_peaks(plan, contact)?;
     let (before, error_before) = (contact.contact_radius(), contact.path_error());
     let (mut largest, mut error) = (before, 0.0f64);
-    let mut far = FarMove::from(contact.displacement());
+    let mut far = FarMove::from(contact);
     let begin = Instant::now();
     let followed = follow(contact, plan, protocol.as_ref(), tolerance, stop, |step, contact| {
         largest = largest.max(contact.contact_radius());
         error = error.max(contact.path_error() - error_before);
-        let state: State = contact.state().into();
-        far.reach(state.displacement, contact.gross_slip_displacement(), contact.profile(), state.contact_radius);
-        each(step, state);
+        far.reach(contact);
+        each(step, contact.state().into());
     });
     followed.map_err(|failure| if advance.relax.is_some() { without_step(failure) } else { failure })?;
     let followed_in = begin.elapsed();
@@ -80,7 +81,7 @@ pub fn shown_states(steps: Steps, all: impl Iterator<Item = State>, end: State) 
 ///
 /// # Errors
 /// [`Failure`] if there is no such protocol, or the work was ended.
-pub fn rehearse_relax(
+pub fn dry_run_relax(
     mut contact: Contact,
     relaxation: &Relaxation,
     stop: &Stop,
@@ -96,18 +97,6 @@ pub fn rehearse_relax(
 
 /// The failure of a move that the client did not send itself.
 fn without_step(failure: Failure) -> Failure {
-    match failure {
-        Failure::Refused { error, .. } => Failure::Refused { pointer: String::new(), error },
-        Failure::MemoryFull { depth, .. } => Failure::MemoryFull { pointer: String::new(), depth },
-        Failure::TooLong { allowed, .. } => Failure::TooLong { pointer: "/reversals".to_owned(), allowed },
-        // A contact that moves has its profile, no cycle to be rated, no scan and no measured loop.
-        Failure::Stopped
-        | Failure::Search { .. }
-        | Failure::Lifted
-        | Failure::NeedsServer { .. }
-        | Failure::CycleTooLarge { .. }
-        | Failure::Preparation { .. }
-        | Failure::Scan { .. }
-        | Failure::Loops { .. } => failure,
-    }
+    let pointer = if matches!(failure.cause, Cause::TooLong { .. }) { "/reversals" } else { "" };
+    Failure::at(pointer, failure.cause)
 }

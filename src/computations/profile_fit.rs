@@ -2,16 +2,20 @@
 
 use serde_json::json;
 
-use stickslip_measured::scan::DRAWN_POINTS;
+use stickslip_measured::scan::{self, DRAWN_POINTS, Error, Options, Orientation, Scan, ScanFit};
 use stickslip_report::plot::{Axis, Colour, Curve, Drawing, Panel, Plot};
-use stickslip_wire::profile_fit::{ColumnPair, ProfileFitTask};
-use stickslip_wire::{ProfileFitReply, ProfileFitRequest};
+use stickslip_wire::profile::TabulatedProfile;
+use stickslip_wire::profile_fit::{
+    Axis2, ColumnPair, ContactEstimate, Estimate, ProfileFitTask, ScanOrientation, ScanResidual, Smoothing,
+};
+use stickslip_wire::reply::finite;
+use stickslip_wire::{ContactDefinition, Profile, ProfileFitReply, ProfileFitRequest, Warning};
 
-use super::loop_fit::clamped;
+use super::loop_fit::{Points, clamped};
 use super::{About, Computation, Example, Outcome, Route, Shown, example};
 use crate::admission::{Nanoseconds, Stop};
-use crate::formats::{Cells, Column, Format, STRESS_ROW, Table};
-use crate::simulation::{self, Failure};
+use crate::formats::{Column, STRESS_ROW, Table};
+use crate::simulation::{Failure, HUGE_TABLE_RADIUS, quantity};
 
 /// Time of a fit, and for each of its points.
 const SCAN_COST: Nanoseconds = 100_000_000;
@@ -21,6 +25,14 @@ const SCAN_BYTES: usize = 4 * 1024 * 1024;
 const SCAN_POINT_BYTES: usize = 256;
 /// How far the strokes of outliers reach at most, in standard deviations of the residual.
 const LARGEST_RESIDUAL: f64 = 10.0;
+/// Rows of the table, at most.
+const ROWS: usize = 3 * DRAWN_POINTS;
+/// Radius of curvature, m, below which the units are probably wrong.
+const TINY_RADIUS: f64 = 1e-9;
+/// The share of outliers beyond which a scan is called doubtful.
+const MANY_OUTLIERS: f64 = 0.05;
+/// The share of the scan beyond which a contact is near its edge.
+const NEAR_EDGE: f64 = 0.9;
 
 /// A profile from a scan.
 pub struct FitProfile;
@@ -34,10 +46,8 @@ impl Computation for FitProfile {
                       smoothest profile that its noise allows and whose contact is a full circle; with `load`, says \
                       what the scan means for the contact, with standard errors. Nothing is stored.",
         reply: "The profile, and what is left of the scan",
-        formats: &Format::ALL,
-        printed: Format::Columns,
         shows: "The table has the points, each `fitted`, `left_out` or of the `profile`; a picture shows them.",
-        choice: None,
+        ..About::TABLE
     };
 
     type Request = ProfileFitRequest;
@@ -68,7 +78,7 @@ impl Computation for FitProfile {
     }
 
     fn rows(_: &ProfileFitTask) -> (usize, usize) {
-        (SCAN_ROWS, STRESS_ROW)
+        (ROWS, STRESS_ROW)
     }
 
     fn cost(task: &ProfileFitTask) -> Nanoseconds {
@@ -76,7 +86,39 @@ impl Computation for FitProfile {
     }
 
     fn run(task: ProfileFitTask, stop: &Stop) -> Result<ProfileFitReply, Failure> {
-        simulation::fit_profile(task, stop)
+        let ProfileFitTask { points, line, pointer, orientation, centre, level, smoothing, load } = task;
+        let scan = if line { Scan::line(points.into_iter().map(|[x, _, z]| [x, z])) } else { Scan::area(points) };
+        let orientation = match orientation {
+            ScanOrientation::Auto => None,
+            ScanOrientation::PeakUp => Some(Orientation::PeakUp),
+            ScanOrientation::PeakDown => Some(Orientation::PeakDown),
+        };
+        let smoothing = match smoothing {
+            Smoothing::Auto => scan::Smoothing::Auto,
+            Smoothing::Noise(noise) => scan::Smoothing::Noise(noise),
+            Smoothing::Knots(knots) => scan::Smoothing::Knots(knots),
+        };
+        let failed = |error: Error| match (&error, stop.check()) {
+            (Error::Interrupted, Err(interrupted)) => Failure::interrupted(interrupted, "/scan"),
+            (Error::AxisOutside { .. }, _) => Failure::at("/centre", error),
+            (Error::Rough, _) => Failure::at("/smoothing", error),
+            (Error::TooShort { .. }, _) => Failure::at("/load/preload", error),
+            _ => Failure::at(pointer, error),
+        };
+        let options = Options { orientation, centre, level, smoothing };
+        let fit = ScanFit::new(&scan, &options, &|| stop.check().is_ok()).map_err(failed)?;
+        let under_load = |(elasticity, friction, preload)| {
+            fit.contact(elasticity, friction, preload).map_err(|error| match error {
+                Error::Refused(error) => {
+                    let place =
+                        quantity(&error).map_or("/preload", |quantity| ContactDefinition::place_of(quantity, &preload));
+                    Failure::at(format!("/load{place}"), error)
+                }
+                error => failed(error),
+            })
+        };
+        let contact = load.map(under_load).transpose()?;
+        Ok(reply(fit, contact, line))
     }
 }
 
@@ -87,91 +129,129 @@ impl Outcome for ProfileFitReply {
         self
     }
 
+    /// The points of a scan and of the profile that was fitted to it.
     fn table(&self, _: &Shown) -> Option<Table<'_>> {
-        Some(table(self))
-    }
-
-    fn picture(&self, _: &Shown) -> Option<Drawing> {
-        Some(Drawing::Plot(plot(self)))
-    }
-}
-
-/// Rows of a fitted scan, at most.
-const SCAN_ROWS: usize = 3 * DRAWN_POINTS;
-
-/// The points of a scan and of the profile that was fitted to it.
-fn table(reply: &ProfileFitReply) -> Table<'_> {
-    let parts = [("fitted", &reply.raw), ("left_out", &reply.left_out), ("profile", &reply.used)];
-    let of = move |mut row: usize| {
-        for (name, columns) in parts {
-            if row < columns.radius.len() {
-                return (name, columns.radius[row], columns.height[row]);
+        let parts = [("fitted", &self.raw), ("left_out", &self.left_out), ("profile", &self.used)];
+        let of = move |mut row: usize| {
+            for (name, columns) in parts {
+                if row < columns.radius.len() {
+                    return (name, columns.radius[row], columns.height[row]);
+                }
+                row -= columns.radius.len();
             }
-            row -= columns.radius.len();
-        }
-        ("", f64::NAN, f64::NAN)
-    };
-    let columns = vec![
-        Column::new("part", Some(""), Cells::Words(Box::new(move |row| of(row).0))),
-        Column::floats("radius", "m", move |row| of(row).1),
-        Column::floats("height", "m", move |row| of(row).2),
-    ];
-    Table::flat(parts.iter().map(|(_, columns)| columns.radius.len()).sum(), columns)
-}
+            ("", f64::NAN, f64::NAN)
+        };
+        let columns = vec![
+            Column::words("part", move |row| of(row).0),
+            Column::floats("radius", "m", move |row| of(row).1),
+            Column::floats("height", "m", move |row| of(row).2),
+        ];
+        Some(Table::flat(parts.iter().map(|(_, columns)| columns.radius.len()).sum(), columns))
+    }
 
-/// A scan and the profile that was fitted to it, over the difference of both.
-fn plot(reply: &ProfileFitReply) -> Plot {
-    let used = &reply.used;
-    let fitted = |radius: f64| {
-        let above = used.radius.partition_point(|&r| r < radius).clamp(1, used.radius.len() - 1);
-        let (low, high) = (used.radius[above - 1], used.radius[above]);
-        let share = (radius - low) / (high - low);
-        used.height[above - 1] + share * (used.height[above] - used.height[above - 1])
-    };
-    let pairs = |columns: &ColumnPair| -> Vec<(f64, f64)> {
-        columns.radius.iter().copied().zip(columns.height.iter().copied()).collect()
-    };
-    let residual = |columns: &ColumnPair| pairs(columns).into_iter().map(|(r, z)| (r, z - fitted(r))).collect();
-    // A point that was left out has no neighbours to be joined with: a short stroke to the profile marks it.
-    let strokes = |to: fn(f64, f64) -> [f64; 2]| -> Vec<(f64, f64)> {
-        let each = pairs(&reply.left_out).into_iter();
-        each.flat_map(|(r, z)| to(z, fitted(r)).map(|end| (r, end)).into_iter().chain([(r, f64::NAN)])).collect()
-    };
-    let curve = |name, points, colour| Curve { name, points, colour, silent: false, dots: false };
-    let measured = |points| Curve { dots: true, ..curve("scan", points, Colour::Grey) };
-    let most = reply.residual.rms * LARGEST_RESIDUAL;
-    let beyond = clamped(residual(&reply.left_out), most).1;
-    Plot {
-        title: format!("Profile from a scan: residual {:.3e} m rms", reply.residual.rms),
-        x: Axis { name: "radius r", unit: Some("m") },
-        panels: vec![
-            Panel {
-                y: Axis { name: "height of the gap", unit: Some("m") },
-                curves: vec![
-                    measured(pairs(&reply.raw)),
-                    curve("left out", clipped(strokes(|z, f| [f, z]), used), Colour::Red),
-                    curve("profile", pairs(used), Colour::Blue),
-                ],
-            },
-            Panel {
-                y: Axis { name: "scan less profile", unit: Some("m") },
-                curves: vec![
-                    measured(residual(&reply.raw)),
-                    curve(
-                        "left out",
-                        strokes(|z, f| [0.0, z - f]).into_iter().map(|(r, e)| (r, e.clamp(-most, most))).collect(),
-                        Colour::Red,
-                    ),
-                    Curve { silent: beyond.is_empty(), ..curve("beyond the frame", beyond, Colour::Red) },
-                ],
-            },
-        ],
-        bands: Vec::new(),
+    /// A scan and the profile that was fitted to it, over the difference of both.
+    fn picture(&self, _: &Shown) -> Option<Drawing> {
+        let used = &self.used;
+        let fitted = |radius: f64| {
+            let above = used.radius.partition_point(|&r| r < radius).clamp(1, used.radius.len() - 1);
+            let (low, high) = (used.radius[above - 1], used.radius[above]);
+            let share = (radius - low) / (high - low);
+            used.height[above - 1] + share * (used.height[above] - used.height[above - 1])
+        };
+        let pairs = |columns: &ColumnPair| -> Points {
+            columns.radius.iter().copied().zip(columns.height.iter().copied()).collect()
+        };
+        let residual =
+            |columns: &ColumnPair| -> Points { pairs(columns).into_iter().map(|(r, z)| (r, z - fitted(r))).collect() };
+        // A point that was left out has no neighbours to be joined with: a short stroke to the profile marks it.
+        let strokes = |to: fn(f64, f64) -> [f64; 2]| -> Points {
+            let each = pairs(&self.left_out).into_iter();
+            each.flat_map(|(r, z)| to(z, fitted(r)).map(|end| (r, end)).into_iter().chain([(r, f64::NAN)])).collect()
+        };
+        let most = self.residual.rms * LARGEST_RESIDUAL;
+        let beyond = clamped(residual(&self.left_out), most).1;
+        let named = if beyond.is_empty() { "" } else { "beyond the frame" };
+        let off = strokes(|z, f| [0.0, z - f]).into_iter().map(|(r, e)| (r, e.clamp(-most, most)));
+        // An outlier may be far off: strokes end half the height of the profile beyond it.
+        let top = used.height.last().copied().unwrap_or(0.0);
+        let left = strokes(|z, f| [f, z]).into_iter().map(|(r, z)| (r, z.clamp(-0.5 * top, 1.5 * top)));
+        let plot = Plot::new(
+            format!("Profile from a scan: residual {:.3e} m rms", self.residual.rms),
+            Axis::of("radius r", "m"),
+            vec![
+                Panel {
+                    y: Axis::of("height of the gap", "m"),
+                    curves: vec![
+                        Curve::dots("scan", Colour::Grey, pairs(&self.raw)),
+                        Curve::line("left out", Colour::Red, left),
+                        Curve::line("profile", Colour::Blue, pairs(used)),
+                    ],
+                },
+                Panel {
+                    y: Axis::of("scan less profile", "m"),
+                    curves: vec![
+                        Curve::dots("scan", Colour::Grey, residual(&self.raw)),
+                        Curve::line("left out", Colour::Red, off),
+                        Curve::line(named, Colour::Red, beyond),
+                    ],
+                },
+            ],
+        );
+        Some(Drawing::Plot(plot))
     }
 }
 
-/// Strokes within half the height of a profile about it: an outlier may be far off.
-fn clipped(strokes: Vec<(f64, f64)>, used: &ColumnPair) -> Vec<(f64, f64)> {
-    let top = used.height.last().copied().unwrap_or(0.0);
-    strokes.into_iter().map(|(r, z)| (r, z.clamp(-0.5 * top, 1.5 * top))).collect()
+fn reply(fit: ScanFit, contact: Option<scan::ContactEstimate>, line: bool) -> ProfileFitReply {
+    let estimate = |of: scan::Estimate| Estimate { value: finite(of.value), standard_error: finite(of.standard_error) };
+    let pair = |[x, y]: [f64; 2]| Axis2 { x, y: (!line).then_some(y) };
+    let columns = |of: &scan::Column| ColumnPair { radius: of.radius.clone(), height: of.height.clone() };
+    let unknown = Estimate { value: None, standard_error: None };
+    ProfileFitReply {
+        profile: Profile::Tabulated(TabulatedProfile {
+            r: fit.table.radius.clone(),
+            z: fit.table.height.clone(),
+            indentation_error: Some(fit.standard_errors.indentation.clone()),
+            pressure_error: Some(fit.standard_errors.pressure.clone()),
+        }),
+        radius_of_curvature: fit.radius_of_curvature.map_or(unknown, estimate),
+        centre: pair(fit.centre),
+        tilt: pair(fit.tilt),
+        orientation: match fit.orientation {
+            Orientation::PeakUp => ScanOrientation::PeakUp,
+            Orientation::PeakDown => ScanOrientation::PeakDown,
+        },
+        residual: ScanResidual { rms: fit.rms, correlation_length: fit.correlation_length, outliers: fit.outliers },
+        raw: columns(&fit.raw),
+        left_out: columns(&fit.left_out),
+        used: columns(&fit.table),
+        g_margin: fit.g_margin,
+        contact: contact.map(|contact| ContactEstimate {
+            indentation: estimate(contact.indentation),
+            contact_radius: estimate(contact.contact_radius),
+            normal_force: estimate(contact.normal_force),
+            max_pressure: estimate(contact.max_pressure),
+        }),
+        warnings: warnings(&fit, contact.as_ref()),
+    }
+}
+
+fn warnings(fit: &ScanFit, contact: Option<&scan::ContactEstimate>) -> Vec<Warning> {
+    let mut warnings = Vec::new();
+    let mut warn = |code: &str, message: String| warnings.push(Warning::new(code, message));
+    let reach = fit.table.radius[fit.table.radius.len() - 1];
+    let rise = fit.table.height[fit.table.height.len() - 1];
+    let radius = 0.5 * reach * reach / rise;
+    if !(TINY_RADIUS..HUGE_TABLE_RADIUS).contains(&radius) {
+        warn("units", format!("a radius of curvature of about {radius:.3} m: are `units` those of the scan?"));
+    }
+    let share = fit.outliers as f64 / fit.used as f64;
+    if share > MANY_OUTLIERS {
+        let message = format!("{:.1} % of the points were left out as outliers: look at the residual", 100.0 * share);
+        warn("many_outliers", message);
+    }
+    if let Some(contact) = contact.filter(|contact| contact.contact_radius.value > NEAR_EDGE * reach) {
+        let part = 100.0 * contact.contact_radius.value / reach;
+        warn("short_scan", format!("the contact takes {part:.0} % of the scan's radius: its edge is poorly known"));
+    }
+    warnings
 }

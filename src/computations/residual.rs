@@ -8,7 +8,7 @@ use stickslip_wire::{Peak, Residual, Sampling};
 
 use super::{OnContact, Outcome, Shown};
 use crate::admission::{Nanoseconds, Stop};
-use crate::formats::{Cells, Column, STRESS_ROW, Table};
+use crate::formats::{Column, STRESS_ROW, Table};
 use crate::simulation::cost::Work;
 use crate::simulation::{self, Failure, bytes};
 
@@ -79,8 +79,8 @@ pub(super) fn table(residual: &Residual) -> Table<'_> {
     let peaks = &residual.peaks;
     let columns = vec![
         Column::floats("radius", "m", |row| peaks[row].radius),
-        Column::floats("shear", "Pa", |row| peaks[row].shear.unwrap_or(f64::NAN)),
-        Column::new("kind", Some(""), Cells::Words(Box::new(|row| kind(residual, row)))),
+        Column::floats("shear", "Pa", |row| peaks[row].shear),
+        Column::words("kind", |row| kind(residual, row)),
     ];
     Table::flat(peaks.len(), columns)
 }
@@ -107,21 +107,10 @@ pub(super) fn plot(title: String, residual: &Residual, mut between: Vec<(f64, f6
     if !between.is_empty() {
         between.extend(&dots);
         between.sort_by(|one, two| one.0.total_cmp(&two.0));
-        curves.push(Curve {
-            name: "shear stress τ",
-            points: between,
-            colour: Colour::Blue,
-            silent: false,
-            dots: false,
-        });
+        curves.push(Curve::line("shear stress τ", Colour::Blue, between));
     }
-    curves.push(Curve { name: "extrema", points: dots, colour: Colour::Red, silent: false, dots: true });
-    Plot {
-        title,
-        x: Axis { name: "radius r", unit: Some("m") },
-        panels: vec![Panel { y: Axis { name: "shear stress", unit: Some("Pa") }, curves }],
-        bands: Vec::new(),
-    }
+    curves.push(Curve::dots("extrema", Colour::Red, dots));
+    Plot::new(title, Axis::of("radius r", "m"), vec![Panel { y: Axis::of("shear stress", "Pa"), curves }])
 }
 
 #[cfg(test)]

@@ -72,8 +72,33 @@ impl Outcome for Stresses {
         Some(table(&self.reply.radius, [pressure, shear, slip, displacement]))
     }
 
+    /// Shear stress between the bounds of friction, with the regions that stuck and slipped in the last move.
     fn picture(&self, _: &Shown) -> Option<Drawing> {
-        Some(Drawing::Plot(plot(self.id, self.sequence, &self.contact, &self.reply)))
+        let Stresses { id, sequence, contact, reply } = self;
+        let over = |values: &Option<Vec<Option<f64>>>, factor: f64| {
+            let values = values.iter().flatten().map(|value| factor * value.unwrap_or(f64::NAN));
+            reply.radius.iter().copied().zip(values).collect::<Vec<_>>()
+        };
+        let state = contact.state();
+        let friction = contact.friction();
+        let (stick, edge) = (state.stick_radius, state.contact_radius);
+        let mut bands = Vec::new();
+        if state.regime != Regime::Separated {
+            if stick > 0.0 {
+                bands.push(Band { name: "stick", from: 0.0, to: stick, colour: Colour::Blue });
+            }
+            if stick < edge {
+                bands.push(Band { name: "slip", from: stick, to: edge, colour: Colour::Red });
+            }
+        }
+        let curves = vec![
+            Curve::line("friction bound ±μp", Colour::Grey, over(&reply.pressure, friction)),
+            Curve::line("", Colour::Grey, over(&reply.pressure, -friction)),
+            Curve::line("shear stress τ", Colour::Blue, over(&reply.shear, 1.0)),
+        ];
+        let title = format!("Contact {id} after move {sequence}: shear stress");
+        let panels = vec![Panel { y: Axis::of("stress", "Pa"), curves }];
+        Some(Drawing::Plot(Plot { bands, ..Plot::new(title, Axis::of("radius r", "m"), panels) }))
     }
 }
 
@@ -85,7 +110,7 @@ pub(super) fn table<'a>(radius: &'a [f64], fields: [&'a Values; 4]) -> Table<'a>
     let mut columns = vec![Column::floats("radius", "m", |row| radius[row])];
     for (field, values) in Field::ALL.into_iter().zip(fields) {
         if let Some(values) = values {
-            columns.push(Column::floats(field.name(), unit(field), |row| values[row].unwrap_or(f64::NAN)));
+            columns.push(Column::floats(field.name(), unit(field), |row| values[row]));
         }
     }
     Table::flat(radius.len(), columns)
@@ -96,39 +121,5 @@ pub(super) fn unit(field: Field) -> &'static str {
     match field {
         Field::Pressure | Field::Shear => "Pa",
         Field::Slip | Field::Displacement => "m",
-    }
-}
-
-/// Shear stress between the bounds of friction, with the regions that stuck and slipped in the last move.
-fn plot(id: Uuid, sequence: u64, contact: &Contact, reply: &StressReply) -> Plot {
-    let over = |values: &Option<Vec<Option<f64>>>, factor: f64| {
-        let values = values.iter().flatten().map(|value| factor * value.unwrap_or(f64::NAN));
-        reply.radius.iter().copied().zip(values).collect::<Vec<_>>()
-    };
-    let state = contact.state();
-    let friction = contact.friction();
-    let (stick, edge) = (state.stick_radius, state.contact_radius);
-    let mut bands = Vec::new();
-    if state.regime != Regime::Separated {
-        if stick > 0.0 {
-            bands.push(Band { name: "stick", from: 0.0, to: stick, colour: Colour::Blue });
-        }
-        if stick < edge {
-            bands.push(Band { name: "slip", from: stick, to: edge, colour: Colour::Red });
-        }
-    }
-    let curve = |name, points, colour, silent| Curve { name, points, colour, silent, dots: false };
-    Plot {
-        title: format!("Contact {id} after move {sequence}: shear stress"),
-        x: Axis { name: "radius r", unit: Some("m") },
-        panels: vec![Panel {
-            y: Axis { name: "stress", unit: Some("Pa") },
-            curves: vec![
-                curve("friction bound ±μp", over(&reply.pressure, friction), Colour::Grey, false),
-                curve("", over(&reply.pressure, -friction), Colour::Grey, true),
-                curve("shear stress τ", over(&reply.shear, 1.0), Colour::Blue, false),
-            ],
-        }],
-        bands,
     }
 }

@@ -8,13 +8,16 @@ use stickslip_mechanics::{Contact, Profile};
 use stickslip_report::plot::{Axis, Drawing, Peak, Section};
 use stickslip_wire::simulate::Simulation;
 use stickslip_wire::subsurface::{Places, SubsurfaceTask};
-use stickslip_wire::{ContactDefinition, Fault, SimulateRequest, Steps, Subsurface, SubsurfaceReply};
+use stickslip_wire::{Accuracy, ContactDefinition, Fault, SimulateRequest, Steps, Subsurface, SubsurfaceReply};
 
 use super::{About, Computation, Example, OnContact, Outcome, Shown, example};
 use crate::admission::{Nanoseconds, Stop};
 use crate::formats::{Column, Format, SUBSURFACE_ROW, Table};
-use crate::simulation::{self, Failure, bytes, cost};
+use crate::simulation::{
+    self, Failure, Timer, accuracy, bulk_warning, bytes, cost, needs_stress_field, present_warnings,
+};
 
+const REASON: &str = "the stress below the surface follows from the slip history without a mesh";
 /// Why some stresses below the surface have no picture.
 const NO_SECTION: &str =
     "a picture is of one of `von_mises`, `max_shear` and `hydrostatic` over a `plane` or the `surface`";
@@ -31,14 +34,12 @@ pub struct Below<R> {
 impl Computation for SubsurfaceOfPath {
     const ABOUT: About = About {
         name: "subsurface",
-        route: None,
         title: "Run the body of POST /simulate and print the stress below the surface that it asks for",
         description: "The stress tensor and its invariants in one of the two bodies, at the end of a path.",
         reply: "The stresses at the end of the path",
-        formats: &Format::ALL,
         printed: Format::Csv,
         shows: "A picture is of one of `von_mises`, `max_shear` and `hydrostatic` over a `plane` or the `surface`.",
-        choice: None,
+        ..About::TABLE
     };
 
     type Request = SimulateRequest;
@@ -108,7 +109,12 @@ impl OnContact for SubsurfaceTask {
     }
 
     fn run(self, contact: Contact, _: u64, stop: &Stop) -> Result<Below<SubsurfaceReply>, Failure> {
-        Ok(Below { reply: simulation::subsurface_reply(&contact, &self, stop)?, task: Some(self) })
+        let timer = Timer::start(stop);
+        needs_stress_field(&contact, "")?;
+        let (stress, error) = simulation::subsurface(&contact, &self, stop)?;
+        let accuracy = Accuracy { subsurface_error: Some(error), ..accuracy(&contact, timer, REASON) };
+        let warnings = present_warnings(&contact).into_iter().chain(bulk_warning(self.bulk.is_some())).collect();
+        Ok(Below { reply: SubsurfaceReply { stress, accuracy, warnings }, task: Some(self) })
     }
 }
 
@@ -125,66 +131,60 @@ impl<R: AsRef<Subsurface> + Serialize + ToSchema + Send> Outcome for Below<R> {
     }
 
     fn table(&self, _: &Shown) -> Option<Table<'_>> {
-        Some(table(self.reply.as_ref()))
+        let stress = self.reply.as_ref();
+        let columns = stress.columns().into_iter().filter_map(|(name, values)| Some((name, "Pa", values?)));
+        Some(column_table([&stress.x, &stress.y, &stress.z], columns))
     }
 
+    /// One field below the surface over a plane.
     fn picture(&self, _: &Shown) -> Option<Drawing> {
-        Some(Drawing::Section(section(self.reply.as_ref(), self.task.as_ref()?)))
+        let (stress, task) = (self.reply.as_ref(), self.task.as_ref()?);
+        let fields = [
+            ("von Mises stress", &stress.von_mises),
+            ("largest shear stress", &stress.max_shear),
+            ("mean stress", &stress.hydrostatic),
+        ];
+        let (name, values) =
+            fields.into_iter().find_map(|(name, values)| Some((name, values.as_deref()?))).unwrap_or_default();
+        let title = format!("{name} in the {} body", task.body_name());
+        let section = over_plane(title, Axis::of(name, "Pa"), values, &task.places);
+        let known = values.iter().enumerate().filter_map(|(index, value)| Some((index, (*value)?)));
+        let largest = known.max_by(|one, other| one.1.total_cmp(&other.1));
+        let rows = section.y.1.len();
+        let place = |index: usize| (section.x.1[index / rows], section.y.1[index % rows]);
+        let largest = largest.map(|(index, value)| Peak { value, places: vec![place(index)] });
+        Some(Drawing::Section(Section { largest, ..section }))
     }
 }
 
-/// The stress below the surface: a row for each place.
-fn table(reply: &Subsurface) -> Table<'_> {
-    let mut columns = vec![
-        Column::floats("x", "m", |row| reply.x[row]),
-        Column::floats("y", "m", |row| reply.y[row]),
-        Column::floats("z", "m", |row| reply.z[row]),
-    ];
-    for (name, values) in reply.columns() {
-        if let Some(values) = values {
-            columns.push(Column::floats(name, "Pa", |row| values[row].unwrap_or(f64::NAN)));
-        }
+/// Columns of values over their places, m: a row for each place.
+pub(super) fn column_table<'a>(
+    [x, y, z]: [&'a [f64]; 3],
+    columns: impl Iterator<Item = (&'static str, &'static str, &'a [Option<f64>])>,
+) -> Table<'a> {
+    let places = [("x", x), ("y", y), ("z", z)].map(|(name, along)| Column::floats(name, "m", |row| along[row]));
+    let values = columns.map(|(name, unit, values)| Column::floats(name, unit, |row| values[row]));
+    Table::flat(x.len(), places.into_iter().chain(values).collect())
+}
+
+/// What pictures call the coordinates.
+pub(super) const COORDINATES: [&str; 3] = ["x, along the motion", "y, across the motion", "z, the depth"];
+
+/// The two coordinates of a picture over a grid of places along these axes, and the one that is constant.
+pub(super) fn shown_axes([_, y, z]: &[Vec<f64>; 3]) -> [usize; 3] {
+    match (y.len(), z.len()) {
+        (1, _) => [0, 2, 1],
+        (_, 1) => [0, 1, 2],
+        _ => [1, 2, 0],
     }
-    Table::flat(reply.x.len(), columns)
 }
 
-/// One field below the surface over a plane.
-fn section(stress: &Subsurface, task: &SubsurfaceTask) -> Section {
-    let fields = [
-        ("von Mises stress", &stress.von_mises),
-        ("largest shear stress", &stress.max_shear),
-        ("mean stress", &stress.hydrostatic),
-    ];
-    let (name, values) =
-        fields.into_iter().find_map(|(name, values)| Some((name, values.as_deref()?))).unwrap_or_default();
-    let title = format!("{name} in the {} body", task.body_name());
-    let section = over_plane(title, (name, "Pa"), values, &task.places);
-    let known = values.iter().enumerate().filter_map(|(index, value)| Some((index, (*value)?)));
-    let largest = known.max_by(|one, other| one.1.total_cmp(&other.1));
-    let rows = section.y.1.len();
-    let place = |index: usize| (section.x.1[index / rows], section.y.1[index % rows]);
-    Section { largest: largest.map(|(index, value)| Peak { value, places: vec![place(index)] }), ..section }
-}
-
-/// Values over a grid of places, which are in order of its axes.
-pub(super) fn over_plane(
-    title: String,
-    (name, unit): (&'static str, &'static str),
-    values: &[Option<f64>],
-    places: &Places,
-) -> Section {
-    let [x, y, z] = places.axes().unwrap_or_default();
+/// Values over a grid of places, which runs along x, y and z in turn, and is a single value along one of them.
+pub(super) fn over_plane(title: String, quantity: Axis, values: &[Option<f64>], places: &Places) -> Section {
+    let mut axes = places.axes().unwrap_or_default();
+    let [first, second, _] = shown_axes(&axes);
+    let mut axis = |index: usize| (Axis::of(COORDINATES[index], "m"), std::mem::take(&mut axes[index]));
     let values = values.iter().map(|value| value.unwrap_or(f64::NAN)).collect();
-    let axis = |name| Axis { name, unit: Some("m") };
-    let (across, along, depth) = (axis("x, along the motion"), axis("y, across the motion"), axis("z, the depth"));
-    // The grid runs along x, y and z in turn, and is a single value along one of them.
-    let (first, second, downwards) = if y.len() == 1 {
-        ((across, x), (depth, z), true)
-    } else if z.len() == 1 {
-        ((across, x), (along, y), false)
-    } else {
-        ((along, y), (depth, z), true)
-    };
-    let unit = Axis { name, unit: Some(unit).filter(|unit| *unit != "1") };
-    Section { title, x: first, y: second, downwards, values: (unit, values), largest: None, edge: None }
+    let (x, y) = (axis(first), axis(second));
+    Section { title, x, y, downwards: second == 2, values: (quantity, values), largest: None, edge: None }
 }

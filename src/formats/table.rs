@@ -67,8 +67,19 @@ impl<'a> Column<'a> {
 
     /// A column of floats; a number that is not finite counts as missing.
     #[must_use]
-    pub fn floats(name: &str, unit: &'static str, value: impl Fn(usize) -> f64 + Send + 'a) -> Column<'a> {
-        Column::new(name, Some(unit), Cells::Numbers(Box::new(move |row| Number::from_f64(value(row)))))
+    pub fn floats<T: Into<Option<f64>>>(
+        name: &str,
+        unit: &'static str,
+        value: impl Fn(usize) -> T + Send + 'a,
+    ) -> Column<'a> {
+        let number = move |row| value(row).into().and_then(Number::from_f64);
+        Column::new(name, Some(unit), Cells::Numbers(Box::new(number)))
+    }
+
+    /// A column of words without commas and quotes.
+    #[must_use]
+    pub fn words(name: &str, value: impl Fn(usize) -> &'static str + Send + 'a) -> Column<'a> {
+        Column::new(name, Some(""), Cells::Words(Box::new(value)))
     }
 
     /// A column of whole numbers without a unit.

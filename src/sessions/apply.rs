@@ -6,7 +6,7 @@ use tracing::Instrument as _;
 use uuid::Uuid;
 
 use crate::admission::{Reservation, Stop};
-use crate::computations::{OnContact as _, rehearse_relax};
+use crate::computations::{OnContact as _, dry_run_relax};
 use crate::otlp;
 use crate::simulation::bytes::{RECORD_BYTES, of_moves, of_stress};
 use crate::simulation::cost::Work;
@@ -167,7 +167,7 @@ impl Mover {
         let cost = task.cost(contact.profile(), contact.memory_depth());
         let work = move || {
             let _state = state;
-            let (steps, protocol) = rehearse_relax(contact, &relaxation, &stop)?;
+            let (steps, protocol) = dry_run_relax(contact, &relaxation, &stop)?;
             written(&RelaxReply { id, sequence, dry_run: true, steps, protocol })
         };
         Ok((sequence, self.replay.common.pool.run(cost, work).await??, held))

@@ -30,8 +30,6 @@ pub(crate) const SPRING_BYTES: usize = 64;
 pub(crate) const NUMBER_LENGTH: usize = 24;
 /// A state as JSON.
 pub(crate) const STATE_LENGTH: usize = 512;
-/// The rest of a reply.
-const REPLY_LENGTH: usize = 2_048;
 
 /// Bytes that stresses at this many radii take, as numbers and as JSON.
 #[must_use]
@@ -72,16 +70,7 @@ pub fn of_simulation(simulation: &Simulation) -> usize {
         + springs
 }
 
-/// Bytes of the reply to a simulation, rounded up.
-#[must_use]
-pub fn reply_length(simulation: &Simulation) -> usize {
-    let states = if simulation.steps == Steps::All { simulation.plan.length() } else { 1 };
-    let numbers = simulation.stress.as_ref().map_or(0, |stress| stress.length() * (1 + stress.fields.count()));
-    let below = simulation.subsurface.as_ref().map_or(0, |task| task.places.count() * task.columns());
-    REPLY_LENGTH + states * STATE_LENGTH + (numbers + below) * NUMBER_LENGTH
-}
-
-/// Bytes that they take, with their reply.
+/// Bytes that stresses below the surface take, with their reply.
 #[must_use]
 pub fn of_subsurface(task: &SubsurfaceTask) -> usize {
     task.places.count() * task.columns() * (size_of::<Option<f64>>() + 2 * NUMBER_LENGTH)

@@ -1,22 +1,12 @@
-//! From a checked request to a reply, by way of the mechanics.
+//! What computations and stored contacts share: a solver follows a path, stresses, warnings, sweeps, and why a request
+//! has no result.
 //!
-//! The same functions serve `stickslip simulate`, `POST /simulate` and the sessions, independent of HTTP and
-//! storage. Long loops check a [`Stop`](crate::admission::Stop) between moves and between radii. [`cost`] estimates the
-//! work.
+//! Nothing here depends on HTTP or storage. Long loops check a [`Stop`] between moves and between radii. [`cost`] and
+//! [`bytes`] estimate the work.
 
 pub mod bytes;
-mod compare_solvers;
 pub mod cost;
-mod cycle;
-mod cycle_map;
-mod cycle_studies;
-mod fretting;
-mod fretting_warnings;
-mod loop_fit;
 mod prepare;
-mod profile_fit;
-mod protocol;
-mod reply_template;
 mod run;
 mod solver;
 mod stated_accuracy;
@@ -26,20 +16,15 @@ mod sweep;
 mod tests;
 mod warnings;
 
-pub use compare_solvers::compare_solvers;
-pub use cycle::cycle;
-pub use cycle_map::{cycle_of, cycles_under};
-pub use fretting::fretting;
-pub use loop_fit::fit_loops;
 pub use prepare::{check, cost_of_preparation};
-pub use profile_fit::fit_profile;
-pub use protocol::{Subject, protocol, protocol_for};
-pub use run::{contact, equal_peaks, follow, residual, simulate, stresses};
+pub use run::{contact, cycle_moves, equal_peaks, follow, refused_at, residual, simulate, spring_foundation, stresses};
 pub use solver::Solver;
 pub use stated_accuracy::{Timer, accuracy};
-pub use subsurface::{subsurface, subsurface_reply};
+pub use subsurface::subsurface;
 pub use sweep::{Sweep, SweepError, SweepResult};
-pub use warnings::{FarMove, excess_error, new_warnings, present_warnings};
+pub use warnings::{
+    FarMove, HUGE_TABLE_RADIUS, MAX_SLOPE, bulk_warning, excess_error, new_warnings, present_warnings, warnings_at,
+};
 
 use std::time::Duration;
 
@@ -47,40 +32,33 @@ use stickslip_measured::{loops, scan};
 use stickslip_mechanics::{self as mechanics, range::Quantity};
 use stickslip_wire::{Code, limits};
 
-use crate::admission::Interrupted;
+use crate::admission::{Interrupted, Stop};
 
-/// Why a run has no result.
+/// Why a request has no result.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum Failure {
-    /// The mechanics has no answer to the request.
-    #[error("{}: {error}", if pointer.is_empty() { "the request" } else { pointer.as_str() })]
-    Refused {
-        /// JSON pointer to the member that it refuses.
-        pointer: String,
-        /// Why.
-        error: mechanics::Error,
-    },
+#[error("{}: {cause}", if pointer.is_empty() { "the request" } else { pointer.as_str() })]
+pub struct Failure {
+    /// JSON pointer to the member that asks for what has no answer; empty for the request as a whole.
+    pub pointer: String,
+    /// What is wrong with it.
+    pub cause: Cause,
+}
+
+/// What is wrong with a request that has no result.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum Cause {
+    /// The mechanics has no answer to it.
+    #[error(transparent)]
+    Refused(#[from] mechanics::Error),
     /// The scan yields no profile, or none that reaches the edge of the contact.
-    #[error("{pointer}: {error}")]
-    Scan {
-        /// JSON pointer to what is at fault.
-        pointer: &'static str,
-        /// Why.
-        error: scan::Error,
-    },
+    #[error(transparent)]
+    Scan(#[from] scan::Error),
     /// The loops determine nothing, or not what is free.
-    #[error("{pointer}: {error}")]
-    Loops {
-        /// JSON pointer to what is at fault.
-        pointer: String,
-        /// Why.
-        error: loops::Error,
-    },
+    #[error(transparent)]
+    Loops(#[from] loops::Error),
     /// The slip history would exceed its limit.
     #[error("the slip history of the contact would have {depth} pieces: allowed are {}", limits::MEMORY_DEPTH)]
     MemoryFull {
-        /// JSON pointer to the move that would be too much.
-        pointer: String,
         /// The pieces that it would have.
         depth: usize,
     },
@@ -89,15 +67,10 @@ pub enum Failure {
         "the states of this cycle take too much memory: make it of fewer moves, or straight in displacement and \
             indentation"
     )]
-    CycleTooLarge {
-        /// JSON pointer to the path.
-        pointer: String,
-    },
+    CycleTooLarge,
     /// The work exceeds the time limit of one request.
     #[error("this takes longer than the {} s that are allowed", allowed.as_secs_f64())]
     TooLong {
-        /// JSON pointer to the member that requests the work, if there is one.
-        pointer: String,
         /// How long work may take.
         allowed: Duration,
     },
@@ -107,8 +80,6 @@ pub enum Failure {
         estimate.as_secs_f64(), allowed.as_secs_f64()
     )]
     Preparation {
-        /// JSON pointer to it.
-        pointer: &'static str,
         /// The estimate.
         estimate: Duration,
         /// How long work may take.
@@ -121,8 +92,6 @@ pub enum Failure {
         allowed.as_secs_f64()
     )]
     Search {
-        /// JSON pointer to the member that requests them.
-        pointer: String,
         /// The estimate, s.
         estimate: u64,
         /// Pieces of slip history.
@@ -137,10 +106,7 @@ pub enum Failure {
     Lifted,
     /// The request names a stored contact, and only a server has any.
     #[error("needs a running service")]
-    NeedsServer {
-        /// JSON pointer to its name.
-        pointer: &'static str,
-    },
+    NeedsServer,
     /// The client no longer waits for the result.
     #[error("stopped: the client no longer waits for the result")]
     Stopped,
@@ -153,20 +119,35 @@ impl From<Interrupted> for Failure {
 }
 
 impl Failure {
+    /// The failure of what the member at `pointer` asks for.
+    #[must_use]
+    pub fn at(pointer: impl Into<String>, cause: impl Into<Cause>) -> Failure {
+        Failure { pointer: pointer.into(), cause: cause.into() }
+    }
+
     /// The failure for interrupted work that the member at `pointer` requested.
     #[must_use]
     pub fn interrupted(interrupted: Interrupted, pointer: &str) -> Failure {
         match interrupted {
-            Interrupted::Abandoned => Failure::Stopped,
-            Interrupted::TimeLimit(allowed) => Failure::TooLong { pointer: pointer.to_owned(), allowed },
+            Interrupted::Abandoned => Failure::at("", Cause::Stopped),
+            Interrupted::TimeLimit(allowed) => Failure::at(pointer, Cause::TooLong { allowed }),
+        }
+    }
+
+    /// This failure, unless `stop` has ended the work that the member at `pointer` requested.
+    #[must_use]
+    pub fn unless_interrupted(self, stop: &Stop, pointer: &str) -> Failure {
+        match stop.check() {
+            Err(interrupted) => Failure::interrupted(interrupted, pointer),
+            Ok(()) => self,
         }
     }
 
     /// The code with which `POST /simulate` refuses it.
     #[must_use]
     pub fn code(&self) -> Code {
-        match self {
-            Failure::Refused { error, .. } => match error {
+        match &self.cause {
+            Cause::Refused(error) => match error {
                 mechanics::Error::OutOfRange { .. }
                 | mechanics::Error::Table { .. }
                 | mechanics::Error::Curve { .. }
@@ -180,14 +161,13 @@ impl Failure {
                 mechanics::Error::Interrupted | mechanics::Error::CycleTooLarge => Code::TooMuchWork,
                 mechanics::Error::Unsupported { .. } => Code::UnsupportedMove,
             },
-            Failure::Scan { error: scan::Error::TooShort { .. }, .. } => Code::BeyondProfile,
-            Failure::Scan { .. } | Failure::Loops { .. } | Failure::NeedsServer { .. } => Code::InvalidInput,
-            Failure::MemoryFull { .. } | Failure::Lifted => Code::Conflict,
-            Failure::TooLong { .. }
-            | Failure::Preparation { .. }
-            | Failure::Search { .. }
-            | Failure::CycleTooLarge { .. } => Code::TooMuchWork,
-            Failure::Stopped => Code::Overloaded,
+            Cause::Scan(scan::Error::TooShort { .. }) => Code::BeyondProfile,
+            Cause::Scan(_) | Cause::Loops(_) | Cause::NeedsServer => Code::InvalidInput,
+            Cause::MemoryFull { .. } | Cause::Lifted => Code::Conflict,
+            Cause::TooLong { .. } | Cause::Preparation { .. } | Cause::Search { .. } | Cause::CycleTooLarge => {
+                Code::TooMuchWork
+            }
+            Cause::Stopped => Code::Overloaded,
         }
     }
 }
@@ -196,13 +176,14 @@ impl Failure {
 /// alone.
 ///
 /// # Errors
-/// [`Failure::Refused`] with [`Error::NoStressField`](mechanics::Error::NoStressField).
+/// [`Cause::Refused`] with [`Error::NoStressField`](mechanics::Error::NoStressField).
 pub fn needs_stress_field(contact: &mechanics::Contact, pointer: &str) -> Result<(), Failure> {
-    contact.profile().check_stress_field().map_err(|error| Failure::Refused { pointer: pointer.to_owned(), error })
+    contact.profile().check_stress_field().map_err(|error| Failure::at(pointer, error))
 }
 
 /// The quantity that an error is about, if it is about one.
-fn quantity(error: &mechanics::Error) -> Option<Quantity> {
+#[must_use]
+pub fn quantity(error: &mechanics::Error) -> Option<Quantity> {
     match error {
         mechanics::Error::OutOfRange { quantity, .. } => Some(*quantity),
         _ => None,

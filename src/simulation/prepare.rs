@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use super::{Failure, Timer, cost};
+use super::{Cause, Failure, Timer, cost};
 use crate::admission::{Nanoseconds, Stop};
 use stickslip_wire::{DefinedProfile, Document, Prepare, Rejection};
 
@@ -16,12 +16,12 @@ impl Prepare for Stop {
 /// The cost of preparing a profile, unless that cannot end in time.
 ///
 /// # Errors
-/// [`Failure::Preparation`] with the estimate.
+/// [`Cause::Preparation`] with the estimate.
 pub fn cost_of_preparation(defined: &DefinedProfile<'_>, allowed: Duration) -> Result<Nanoseconds, Failure> {
     let cost = cost::of_preparation(defined.profile);
     let estimate = Duration::from_nanos(cost);
     if estimate > allowed.saturating_mul(cost::MARGIN) {
-        return Err(Failure::Preparation { pointer: defined.pointer, estimate, allowed });
+        return Err(Failure::at(defined.pointer, Cause::Preparation { estimate, allowed }));
     }
     Ok(cost)
 }
@@ -29,7 +29,7 @@ pub fn cost_of_preparation(defined: &DefinedProfile<'_>, allowed: Duration) -> R
 /// Checks a document, and has `stop` count the time that it takes.
 ///
 /// # Errors
-/// [`Failure::TooLong`] or [`Failure::Stopped`] if `stop` has ended the preparation of its profile; within, as
+/// [`Cause::TooLong`] or [`Cause::Stopped`] if `stop` has ended the preparation of its profile; within, as
 /// [`Document::check_with`].
 pub fn check<T: Document>(
     document: T,

@@ -7,14 +7,15 @@ use stickslip_wire::definition::SharedSetup;
 use stickslip_wire::reply::{Accuracy, State, finite};
 use stickslip_wire::simulate::Simulation;
 use stickslip_wire::{
-    self as wire, ContactDefinition, Move, Plan, Protocol, Residual, Sampling, SimulateReply, Steps, Stress, limits,
+    self as wire, ContactDefinition, Field, Move, Plan, Protocol, Residual, Sampling, SimulateReply, SolverKind, Steps,
+    Stress, limits,
 };
 
 use super::{
-    Failure, Solver, cost, needs_stress_field, quantity,
-    stated_accuracy::{Timer, accuracy_of},
+    Cause, Failure, Solver, cost, needs_stress_field, quantity,
+    stated_accuracy::{Timer, accuracy},
     subsurface::subsurface,
-    warnings::{FarMove, Observed, bulk_warning, excess_error, stress_warning, warnings},
+    warnings::{FarMove, bulk_warning, excess_error, stress_warning, warnings_at},
 };
 use crate::admission::{LONGEST_WORK, Stop};
 
@@ -67,11 +68,10 @@ pub(super) fn run<S: Solver>(
     let mut steps: Vec<State> = Vec::with_capacity(if all { simulation.plan.length() } else { 1 });
     // Gross slip erases the error of a curved path, but not that of the states before it.
     let (curved, mut path_error) = (simulation.plan.curved(), 0.0f64);
-    let mut far = FarMove::from(solver.displacement());
+    let mut far = FarMove::from(&solver);
     follow(&mut solver, &simulation.plan, protocol.as_ref(), simulation.tolerance, stop, |_, solver| {
         largest = largest.max(solver.contact_radius());
-        let (displacement, gross_slip) = (solver.displacement(), solver.gross_slip_displacement());
-        far.reach(displacement, gross_slip, solver.exact().profile(), solver.contact_radius());
+        far.reach(solver);
         if curved > 0 && all {
             path_error = path_error.max(solver.path_error());
         }
@@ -87,22 +87,15 @@ pub(super) fn run<S: Solver>(
     }
     let stress = simulation.stress.as_ref().map(|sampling| stresses(&solver, sampling, stop)).transpose()?;
     let residual = simulation.residual.then(|| residual(&solver, stop)).transpose()?;
-    let below = simulation.subsurface.as_ref().zip(solver.in_depth());
-    let below = below.map(|(task, contact)| subsurface(contact, task, stop)).transpose()?;
+    let below = simulation.subsurface.as_ref().filter(|_| S::KIND == SolverKind::Exact);
+    let below = below.map(|task| subsurface(solver.exact(), task, stop)).transpose()?;
     let (subsurface, subsurface_error) = below.unzip();
-    let mut estimate = solver.accuracy();
-    let path_error = path_error.max(estimate.path_error);
-    estimate.force_error += path_error - estimate.path_error;
-    let accuracy = Accuracy { subsurface_error, ..accuracy_of(&solver, &estimate, timer, reason) };
-    let (profile, elasticity) = (solver.exact().profile(), solver.exact().elasticity());
-    let observed = Observed {
-        contact_radius: largest,
-        e_star: summary.e_star,
-        // Only tables have noise, and a table has no vertical edge.
-        indentation: summary.indentation.max(profile.level(largest)),
-        noise: profile.noise(largest),
-        excess_error: excess_error(path_error, simulation.tolerance, curved),
-    };
+    let mut accuracy = Accuracy { subsurface_error, ..accuracy(&solver, timer, reason) };
+    let path_error = path_error.max(solver.path_error());
+    accuracy.force_error += path_error - solver.path_error();
+    // A table, which may have noise, has no vertical edge.
+    let indentation = summary.indentation.max(solver.exact().profile().level(largest));
+    let excess = excess_error(path_error, simulation.tolerance, curved);
     Ok(SimulateReply {
         contact: summary.into(),
         steps,
@@ -110,9 +103,9 @@ pub(super) fn run<S: Solver>(
         residual,
         subsurface,
         protocol,
-        warnings: warnings(profile, &elasticity, &observed)
+        warnings: warnings_at(solver.exact(), largest, indentation, excess)
             .into_iter()
-            .chain(stress_warning(simulation.stress.is_some() || simulation.residual, estimate.stress_error))
+            .chain(stress_warning(simulation.stress.is_some() || simulation.residual, accuracy.stress_error))
             .chain(bulk_warning(simulation.subsurface.as_ref().is_some_and(|task| task.bulk.is_some())))
             .chain(far.warning())
             .collect(),
@@ -123,7 +116,7 @@ pub(super) fn run<S: Solver>(
 /// The exact contact of a definition, which is at the JSON pointer `base` of the body.
 ///
 /// # Errors
-/// [`Failure::Refused`] if the preload cannot be reached.
+/// [`Cause::Refused`] if the preload cannot be reached.
 pub fn contact(setup: SharedSetup, base: &str) -> Result<Contact, Failure> {
     let refused = refused_at(base, setup.preload);
     Contact::new(setup).map_err(refused)
@@ -133,7 +126,7 @@ pub fn contact(setup: SharedSetup, base: &str) -> Result<Contact, Failure> {
 ///
 /// # Errors
 /// As [`contact()`], for a definition at `/contact`.
-pub(super) fn spring_foundation(setup: &SharedSetup, plan: &Plan, count: usize) -> Result<Springs, Failure> {
+pub fn spring_foundation(setup: &SharedSetup, plan: &Plan, count: usize) -> Result<Springs, Failure> {
     let start = contact(setup.clone(), "/contact")?;
     // Only what has a normal target reaches further, and the law of equal peaks has none.
     let moves = moves(plan, &start, None)?.map(|step| step.step());
@@ -143,7 +136,7 @@ pub(super) fn spring_foundation(setup: &SharedSetup, plan: &Plan, count: usize) 
 }
 
 /// What the mechanics refuses of a definition at the JSON pointer `base`, whose preload this is.
-pub(super) fn refused_at(base: &str, preload: Preload) -> impl Fn(mechanics::Error) -> Failure {
+pub fn refused_at(base: &str, preload: Preload) -> impl Fn(mechanics::Error) -> Failure {
     move |error| {
         let place_of = |quantity| ContactDefinition::place_of(quantity, &preload);
         let place = match error {
@@ -151,26 +144,26 @@ pub(super) fn refused_at(base: &str, preload: Preload) -> impl Fn(mechanics::Err
             mechanics::Error::BeyondProfile { .. } => place_of(Quantity::ContactRadius),
             _ => quantity(&error).map_or("", place_of),
         };
-        Failure::Refused { pointer: format!("{base}{place}"), error }
+        Failure::at(format!("{base}{place}"), error)
     }
 }
 
 /// The displacements of a plan that follows the law of equal peaks, for the contact in its present state.
 ///
 /// # Errors
-/// [`Failure::Refused`] for a cut-off radius that the contact does not allow.
+/// [`Cause::Refused`] for a cut-off radius that the contact does not allow.
 pub fn equal_peaks<S: Solver>(plan: &Plan, solver: &S) -> Result<Option<Protocol>, Failure> {
     let Plan::EqualPeaks(peaks) = plan else { return Ok(None) };
     let protocol::EqualPeaks { displacements, cutoff_radius } = solver
         .equal_peaks(peaks.reversals, peaks.cutoff_radius)
-        .map_err(|error| Failure::Refused { pointer: plan.place_of(0, quantity(&error)), error })?;
+        .map_err(|error| Failure::at(plan.place_of(0, quantity(&error)), error))?;
     Ok(Some(Protocol { displacement: displacements, cutoff_radius }))
 }
 
 /// The moves of a plan for this contact at their beginning; `protocol` is the result of [`equal_peaks`] for it.
 ///
 /// # Errors
-/// [`Failure::Refused`] if the load would fall below zero.
+/// [`Cause::Refused`] if the load would fall below zero.
 fn moves<'a>(
     plan: &'a Plan,
     contact: &Contact,
@@ -190,7 +183,7 @@ fn moves<'a>(
         }
         Plan::Cycles(cycles) => {
             let moves = cycles.moves(contact.indentation(), contact.normal_force());
-            Box::new(moves.map_err(|error| Failure::Refused { pointer: place(plan, 0, None, &error), error })?)
+            Box::new(moves.map_err(|error| Failure::at(place(plan, 0, None, &error), error))?)
         }
         Plan::Single(step) => Box::new(std::iter::once(*step)),
         Plan::Observations(observations) => {
@@ -202,8 +195,8 @@ fn moves<'a>(
 /// The moves of a path as one cycle, from the contact as it is.
 ///
 /// # Errors
-/// [`Failure::Refused`] for a cut-off radius that the contact does not allow, or a load that would fall below zero.
-pub(super) fn cycle_moves(plan: &Plan, contact: &Contact) -> Result<Vec<mechanics::Move>, Failure> {
+/// [`Cause::Refused`] for a cut-off radius that the contact does not allow, or a load that would fall below zero.
+pub fn cycle_moves(plan: &Plan, contact: &Contact) -> Result<Vec<mechanics::Move>, Failure> {
     let protocol = equal_peaks(plan, contact)?;
     Ok(moves(plan, contact, protocol.as_ref())?.map(|step| step.step()).collect())
 }
@@ -234,15 +227,14 @@ pub fn follow<S: Solver>(
     mut each: impl FnMut(Move, &S),
 ) -> Result<(), Failure> {
     for (index, step) in moves(plan, solver.exact(), protocol)?.enumerate() {
-        let ended = |interrupted| Failure::interrupted(interrupted, &plan.place_of(index, None));
-        stop.check().map_err(ended)?;
-        solver.apply(&step.step(), tolerance, &|| stop.check().is_ok()).map_err(|error| match stop.check() {
-            Err(interrupted) => ended(interrupted),
-            Ok(()) => Failure::Refused { pointer: place(plan, index, Some(&step), &error), error },
+        stop.check().map_err(|interrupted| Failure::interrupted(interrupted, &plan.place_of(index, None)))?;
+        solver.apply(&step.step(), tolerance, &|| stop.check().is_ok()).map_err(|error| {
+            let refused = Failure::at(place(plan, index, Some(&step), &error), error);
+            refused.unless_interrupted(stop, &plan.place_of(index, None))
         })?;
         let depth = solver.depth();
         if depth > limits::MEMORY_DEPTH {
-            return Err(Failure::MemoryFull { pointer: plan.place_of(index, None), depth });
+            return Err(Failure::at(plan.place_of(index, None), Cause::MemoryFull { depth }));
         }
         each(step, solver);
     }
@@ -257,43 +249,42 @@ const RADII_PER_CHECK: (usize, usize) = (64, 512);
 /// The requested stresses.
 ///
 /// # Errors
-/// [`Failure::Refused`] without a stress field, [`Failure::Stopped`] if the client hung up.
+/// [`Cause::Refused`] without a stress field, [`Cause::Stopped`] if the client hung up.
 pub fn stresses<S: Solver>(solver: &S, sampling: &Sampling, stop: &Stop) -> Result<Stress, Failure> {
     needs_stress_field(solver.exact(), "/stress")?;
     let radius = sampling.radii(solver.state().contact_radius);
     let (least, most) = RADII_PER_CHECK;
     // Springs have no pieces, and each radius costs as many terms as there are springs.
     let at_once = TERMS_PER_CHECK.checked_div(solver.depth()).map_or(least, |radii| radii.clamp(least, most));
-    let along = |field: &dyn Fn(&[f64]) -> Vec<f64>| -> Result<Vec<Option<f64>>, Failure> {
+    let along = |field: Field, asked: bool| -> Result<Option<Vec<Option<f64>>>, Failure> {
+        if !asked {
+            return Ok(None);
+        }
         let mut all = Vec::with_capacity(radius.len());
         for radii in radius.chunks(at_once) {
             stop.check()?;
-            all.extend(field(radii).into_iter().map(finite));
+            all.extend(solver.field(field, radii).into_iter().map(finite));
         }
-        Ok(all)
+        Ok(Some(all))
     };
-    let pressure = sampling.fields.pressure.then(|| along(&|radii| solver.pressures(radii))).transpose()?;
-    let shear = sampling.fields.shear.then(|| along(&|radii| solver.shears(radii))).transpose()?;
-    let slip =
-        |radii: &[f64]| -> Vec<f64> { solver.slips(radii).into_iter().map(|slip| slip.unwrap_or(f64::NAN)).collect() };
-    let slip = sampling.fields.slip.then(|| along(&slip)).transpose()?;
-    let displacement = |radii: &[f64]| solver.surface_displacements(radii);
-    let displacement = sampling.fields.displacement.then(|| along(&displacement)).transpose()?;
+    let fields = sampling.fields;
+    let (pressure, shear) = (along(Field::Pressure, fields.pressure)?, along(Field::Shear, fields.shear)?);
+    let (slip, displacement) = (along(Field::Slip, fields.slip)?, along(Field::Displacement, fields.displacement)?);
     Ok(Stress { radius, pressure, shear, slip, displacement })
 }
 
 /// Refuses a search for extrema that cannot end in time.
 ///
 /// # Errors
-/// [`Failure::Search`] with the estimate, and what would fit.
-pub fn check_search(profile: &Profile, depth: usize, stop: &Stop) -> Result<(), Failure> {
+/// [`Cause::Search`] with the estimate, and what would fit.
+fn check_search(profile: &Profile, depth: usize, stop: &Stop) -> Result<(), Failure> {
     let (estimate, allowed) =
         (Duration::from_nanos(cost::of_search(profile, depth)), stop.time_limit().unwrap_or(LONGEST_WORK));
     if estimate <= allowed.saturating_mul(cost::MARGIN) {
         return Ok(());
     }
     let (estimate, fits) = (estimate.as_secs(), cost::longest_search(profile, allowed));
-    Err(Failure::Search { pointer: "/residual".to_owned(), estimate, depth, fits, allowed })
+    Err(Failure::at("/residual", Cause::Search { estimate, depth, fits, allowed }))
 }
 
 /// The extrema of the shear stress.
@@ -305,6 +296,6 @@ pub fn residual<S: Solver>(solver: &S, stop: &Stop) -> Result<Residual, Failure>
     check_search(solver.exact().profile(), solver.depth(), stop)?;
     match solver.residual(&|| stop.check().is_ok()) {
         Some(residual) => Ok(Residual::new(residual, solver.unit_shear())),
-        None => Err(stop.check().err().map_or(Failure::Stopped, Failure::from)),
+        None => Err(Failure::at("", Cause::Stopped).unless_interrupted(stop, "")),
     }
 }

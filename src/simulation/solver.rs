@@ -2,134 +2,107 @@
 
 use stickslip_mechanics::protocol::{self, EqualPeaks};
 use stickslip_mechanics::{Contact, ContactSummary, Error, ErrorEstimate, Move, Residual, Springs, State};
-use stickslip_wire::SolverKind;
+use stickslip_wire::{Field, SolverKind};
 
-/// A contact that can be moved and whose fields can be read.
+/// A contact that can be moved and whose fields can be read. What a solver does not define is that of its exact
+/// contact.
 pub trait Solver {
     /// Its name in replies.
-    const KIND: SolverKind;
+    const KIND: SolverKind = SolverKind::Exact;
 
-    /// The summary of the definition.
-    fn summary(&self) -> ContactSummary;
+    /// The exact contact, on which the moves of a path may depend; springs have it as it was before their first move.
+    fn exact(&self) -> &Contact;
+
     /// Makes a move, unless `go_on` ends it; a refused one changes nothing. The tolerance holds where no exact solution
     /// exists.
     ///
     /// # Errors
     /// What the mechanics has no answer to, and [`Error::Interrupted`].
     fn apply(&mut self, step: &Move, tolerance: f64, go_on: &dyn Fn() -> bool) -> Result<(), Error>;
+
+    /// The summary of the definition.
+    fn summary(&self) -> ContactSummary {
+        self.exact().initial_summary()
+    }
+
     /// The state after the last move.
-    fn state(&self) -> State;
+    fn state(&self) -> State {
+        self.exact().state()
+    }
+
     /// Pieces of the slip history.
-    fn depth(&self) -> usize;
-    /// Normal pressure at each of the radii (m), Pa.
-    fn pressures(&self, radii: &[f64]) -> Vec<f64>;
-    /// Shear stress at each of the radii (m), Pa.
-    fn shears(&self, radii: &[f64]) -> Vec<f64>;
-    /// Slip under the indenter at each of the radii (m), m; none outside the contact.
-    fn slips(&self, radii: &[f64]) -> Vec<Option<f64>>;
-    /// Tangential displacement of the surface at each of the radii (m), m.
-    fn surface_displacements(&self, radii: &[f64]) -> Vec<f64>;
-    /// The exact contact, on which the moves of a path may depend; springs have it as it was before their first move.
-    fn exact(&self) -> &Contact;
+    fn depth(&self) -> usize {
+        self.exact().memory_depth()
+    }
+
+    /// A field at each of the radii, m: a stress, Pa, or a displacement, m. Not a number for the slip outside the
+    /// contact.
+    fn field(&self, field: Field, radii: &[f64]) -> Vec<f64> {
+        let contact = self.exact();
+        match field {
+            Field::Pressure => contact.pressures(radii),
+            Field::Shear => contact.shears(radii),
+            Field::Slip => contact.slips(radii).into_iter().map(|slip| slip.unwrap_or(f64::NAN)).collect(),
+            Field::Displacement => contact.surface_displacements(radii),
+        }
+    }
+
     /// The path of equal peaks for the exact contact; an error for a cut-off radius that it does not allow.
     fn equal_peaks(&self, reversals: usize, cutoff_radius: Option<f64>) -> Result<EqualPeaks, Error> {
         protocol::equal_peaks(self.exact(), reversals, cutoff_radius)
     }
+
     /// Contact radius a, m.
-    fn contact_radius(&self) -> f64;
+    fn contact_radius(&self) -> f64 {
+        self.exact().contact_radius()
+    }
+
     /// Tangential displacement of the indenter, m.
-    fn displacement(&self) -> f64;
+    fn displacement(&self) -> f64 {
+        self.exact().displacement()
+    }
+
     /// Displacement of gross slip on first loading, m, at the present load.
-    fn gross_slip_displacement(&self) -> f64;
+    fn gross_slip_displacement(&self) -> f64 {
+        self.exact().gross_slip_displacement()
+    }
+
     /// The extrema of the shear stress, if `go_on` has not ended the search for them.
-    fn residual(&self, go_on: &dyn Fn() -> bool) -> Option<Residual>;
+    fn residual(&self, go_on: &dyn Fn() -> bool) -> Option<Residual> {
+        self.exact().residual_while(go_on)
+    }
+
     /// mu p_max at the present load, Pa, or mu times the mean pressure where p_max is infinite.
-    fn unit_shear(&self) -> f64;
+    fn unit_shear(&self) -> f64 {
+        self.exact().summary().unit_shear()
+    }
+
     /// Estimated errors of force and stress, relative to μ F_N and μ p_max.
-    fn accuracy(&self) -> ErrorEstimate;
+    fn accuracy(&self) -> ErrorEstimate {
+        self.exact().accuracy()
+    }
+
     /// Error that curved moves have left in the force, relative to μ F_N.
-    fn path_error(&self) -> f64;
-    /// The contact whose stress below the surface is known.
-    fn in_depth(&self) -> Option<&Contact>;
+    fn path_error(&self) -> f64 {
+        self.exact().path_error()
+    }
 }
 
 impl Solver for Contact {
-    const KIND: SolverKind = SolverKind::Exact;
-
-    fn summary(&self) -> ContactSummary {
-        self.initial_summary()
-    }
-
-    fn apply(&mut self, step: &Move, tolerance: f64, go_on: &dyn Fn() -> bool) -> Result<(), Error> {
-        self.apply_while(step, tolerance, go_on)
-    }
-
-    fn state(&self) -> State {
-        self.state()
-    }
-
-    fn depth(&self) -> usize {
-        self.memory_depth()
-    }
-
-    fn pressures(&self, radii: &[f64]) -> Vec<f64> {
-        self.pressures(radii)
-    }
-
-    fn shears(&self, radii: &[f64]) -> Vec<f64> {
-        self.shears(radii)
-    }
-
-    fn slips(&self, radii: &[f64]) -> Vec<Option<f64>> {
-        self.slips(radii)
-    }
-
-    fn surface_displacements(&self, radii: &[f64]) -> Vec<f64> {
-        self.surface_displacements(radii)
-    }
-
     fn exact(&self) -> &Contact {
         self
     }
 
-    fn contact_radius(&self) -> f64 {
-        self.contact_radius()
-    }
-
-    fn displacement(&self) -> f64 {
-        self.displacement()
-    }
-
-    fn gross_slip_displacement(&self) -> f64 {
-        self.gross_slip_displacement()
-    }
-
-    fn residual(&self, go_on: &dyn Fn() -> bool) -> Option<Residual> {
-        self.residual_while(go_on)
-    }
-
-    fn unit_shear(&self) -> f64 {
-        Contact::summary(self).unit_shear()
-    }
-
-    fn accuracy(&self) -> ErrorEstimate {
-        self.accuracy()
-    }
-
-    fn path_error(&self) -> f64 {
-        self.path_error()
-    }
-
-    fn in_depth(&self) -> Option<&Contact> {
-        Some(self)
+    fn apply(&mut self, step: &Move, tolerance: f64, go_on: &dyn Fn() -> bool) -> Result<(), Error> {
+        self.apply_while(step, tolerance, go_on)
     }
 }
 
 impl Solver for Springs {
     const KIND: SolverKind = SolverKind::Springs;
 
-    fn summary(&self) -> ContactSummary {
-        self.initial_summary()
+    fn exact(&self) -> &Contact {
+        self.virgin()
     }
 
     fn apply(&mut self, step: &Move, _tolerance: f64, _go_on: &dyn Fn() -> bool) -> Result<(), Error> {
@@ -144,24 +117,14 @@ impl Solver for Springs {
         0
     }
 
-    fn pressures(&self, radii: &[f64]) -> Vec<f64> {
-        radii.iter().map(|&radius| self.pressure(radius)).collect()
-    }
-
-    fn shears(&self, radii: &[f64]) -> Vec<f64> {
-        radii.iter().map(|&radius| self.shear(radius)).collect()
-    }
-
-    fn slips(&self, radii: &[f64]) -> Vec<Option<f64>> {
-        radii.iter().map(|&radius| self.slip(radius)).collect()
-    }
-
-    fn surface_displacements(&self, radii: &[f64]) -> Vec<f64> {
-        radii.iter().map(|&radius| self.surface_displacement(radius)).collect()
-    }
-
-    fn exact(&self) -> &Contact {
-        self.virgin()
+    fn field(&self, field: Field, radii: &[f64]) -> Vec<f64> {
+        let at = |&radius: &f64| match field {
+            Field::Pressure => self.pressure(radius),
+            Field::Shear => self.shear(radius),
+            Field::Slip => self.slip(radius).unwrap_or(f64::NAN),
+            Field::Displacement => self.surface_displacement(radius),
+        };
+        radii.iter().map(at).collect()
     }
 
     fn contact_radius(&self) -> f64 {
@@ -180,11 +143,6 @@ impl Solver for Springs {
         go_on().then(|| self.residual())
     }
 
-    fn unit_shear(&self) -> f64 {
-        // Their load does not change.
-        self.initial_summary().unit_shear()
-    }
-
     fn accuracy(&self) -> ErrorEstimate {
         self.accuracy()
     }
@@ -192,9 +150,5 @@ impl Solver for Springs {
     fn path_error(&self) -> f64 {
         // No move of theirs is curved.
         0.0
-    }
-
-    fn in_depth(&self) -> Option<&Contact> {
-        None
     }
 }

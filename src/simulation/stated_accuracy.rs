@@ -2,7 +2,6 @@
 
 use std::time::{Duration, Instant};
 
-use stickslip_mechanics::ErrorEstimate;
 use stickslip_wire::reply::Accuracy;
 
 use super::Solver;
@@ -34,11 +33,7 @@ impl Timer<'_> {
 
 /// Which solver answered, how well, and how long it took.
 pub fn accuracy<S: Solver>(solver: &S, timer: Timer<'_>, reason: &str) -> Accuracy {
-    accuracy_of(solver, &solver.accuracy(), timer, reason)
-}
-
-/// The same by an estimate that is known.
-pub(super) fn accuracy_of<S: Solver>(solver: &S, estimate: &ErrorEstimate, timer: Timer<'_>, reason: &str) -> Accuracy {
+    let estimate = solver.accuracy();
     let assumed = assumption(solver.exact().profile()).map(|(_, assumed)| format!("; {assumed}"));
     Accuracy {
         solver: S::KIND,

@@ -6,8 +6,8 @@ use std::cell::Cell;
 
 use serde_json::{Value, json};
 use stickslip_mechanics::protocol::{EqualPeaks, equal_peaks};
-use stickslip_mechanics::{Contact, ContactSummary, Error, ErrorEstimate, Move, Residual, State};
-use stickslip_wire::{SimulateReply, SimulateRequest, SolverKind, read};
+use stickslip_mechanics::{Contact, Error, Move, Residual, State};
+use stickslip_wire::{Field, SimulateReply, SimulateRequest, read};
 
 use super::run::{contact, run};
 use super::solver::Solver;
@@ -47,10 +47,8 @@ impl Counting<'_> {
 }
 
 impl Solver for Counting<'_> {
-    const KIND: SolverKind = SolverKind::Exact;
-
-    fn summary(&self) -> ContactSummary {
-        Solver::summary(&self.contact)
+    fn exact(&self) -> &Contact {
+        &self.contact
     }
 
     fn apply(&mut self, step: &Move, tolerance: f64, go_on: &dyn Fn() -> bool) -> Result<(), Error> {
@@ -63,32 +61,17 @@ impl Solver for Counting<'_> {
         self.contact.state()
     }
 
-    fn depth(&self) -> usize {
-        self.contact.memory_depth()
-    }
-
-    fn pressures(&self, radii: &[f64]) -> Vec<f64> {
-        self.count(|calls| &mut calls.pressures, radii.len());
-        self.contact.pressures(radii)
-    }
-
-    fn shears(&self, radii: &[f64]) -> Vec<f64> {
-        self.count(|calls| &mut calls.shears, radii.len());
-        self.contact.shears(radii)
-    }
-
-    fn slips(&self, radii: &[f64]) -> Vec<Option<f64>> {
-        self.count(|calls| &mut calls.slips, radii.len());
-        self.contact.slips(radii)
-    }
-
-    fn surface_displacements(&self, radii: &[f64]) -> Vec<f64> {
-        self.count(|calls| &mut calls.displacements, radii.len());
-        self.contact.surface_displacements(radii)
-    }
-
-    fn exact(&self) -> &Contact {
-        &self.contact
+    fn field(&self, field: Field, radii: &[f64]) -> Vec<f64> {
+        self.count(
+            |calls| match field {
+                Field::Pressure => &mut calls.pressures,
+                Field::Shear => &mut calls.shears,
+                Field::Slip => &mut calls.slips,
+                Field::Displacement => &mut calls.displacements,
+            },
+            radii.len(),
+        );
+        self.contact.field(field, radii)
     }
 
     fn equal_peaks(&self, reversals: usize, cutoff_radius: Option<f64>) -> Result<EqualPeaks, Error> {
@@ -96,37 +79,9 @@ impl Solver for Counting<'_> {
         equal_peaks(&self.contact, reversals, cutoff_radius)
     }
 
-    fn contact_radius(&self) -> f64 {
-        self.contact.contact_radius()
-    }
-
-    fn displacement(&self) -> f64 {
-        self.contact.displacement()
-    }
-
-    fn gross_slip_displacement(&self) -> f64 {
-        self.contact.gross_slip_displacement()
-    }
-
     fn residual(&self, go_on: &dyn Fn() -> bool) -> Option<Residual> {
         self.count(|calls| &mut calls.residuals, 1);
         self.contact.residual_while(go_on)
-    }
-
-    fn unit_shear(&self) -> f64 {
-        self.contact.summary().unit_shear()
-    }
-
-    fn accuracy(&self) -> ErrorEstimate {
-        self.contact.accuracy()
-    }
-
-    fn path_error(&self) -> f64 {
-        self.contact.path_error()
-    }
-
-    fn in_depth(&self) -> Option<&Contact> {
-        Some(&self.contact)
     }
 }
 

@@ -3,8 +3,7 @@
 use std::f64::consts::PI;
 
 use stickslip::admission::{Nanoseconds, Stop};
-use stickslip::computations::{Computation as _, Cycle};
-use stickslip::simulation::cycle_of;
+use stickslip::computations::{Computation as _, Cycle, Outcome as _};
 use stickslip_mechanics::cycle::Drive;
 use stickslip_wire::cycle::{CycleRequest, CycleTask};
 use stickslip_wire::{CycleReply, Document as _, SteadyCycle, parse};
@@ -34,10 +33,10 @@ pub fn examine(body: &[u8]) -> Outcome {
     if Cycle::cost(&checked) > MAX_COST {
         return Outcome::TooExpensive;
     }
-    let (_, setup, task) = checked;
-    match cycle_of(setup, &task, &Stop::default()) {
-        Ok((_, reply)) => {
-            laws(&task, &reply);
+    let (.., task) = checked.clone();
+    match Cycle::run(checked, &Stop::default()) {
+        Ok(found) => {
+            laws(&task, found.reply());
             Outcome::Answered
         }
         Err(failure) => refused(body, failure.into()),

@@ -5,7 +5,6 @@ use proptest::sample::{select, subsequence};
 use serde_json::{Value, json};
 use stickslip::admission::{Nanoseconds, Stop};
 use stickslip::computations::{Computation as _, FitLoops};
-use stickslip::simulation::fit_loops;
 use stickslip_wire::fit::{FitParameter, FitRequest};
 use stickslip_wire::{CreateRequest, Document as _, FitReply, parse};
 
@@ -97,7 +96,7 @@ pub fn examine(body: &[u8]) -> Outcome {
     if FitLoops::cost(&task) > MAX_COST {
         return Outcome::TooExpensive;
     }
-    match fit_loops(task, &Stop::default()) {
+    match FitLoops::run(task, &Stop::default()) {
         Ok(reply) => {
             laws(&reply);
             Outcome::Answered

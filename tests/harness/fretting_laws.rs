@@ -1,8 +1,7 @@
 //! What must hold for any body of `POST /fretting`.
 
 use stickslip::admission::{Nanoseconds, Stop};
-use stickslip::computations::{Computation as _, Fretting};
-use stickslip::simulation::fretting;
+use stickslip::computations::{Computation as _, Fretting, Outcome as _};
 use stickslip_mechanics::fatigue::MAX_INSTANTS;
 use stickslip_wire::fretting::{FrettingRequest, FrettingTask};
 use stickslip_wire::{Document as _, FrettingReply, parse};
@@ -28,11 +27,11 @@ pub fn examine(body: &[u8]) -> Outcome {
     if Fretting::cost(&checked) > MAX_COST {
         return Outcome::TooExpensive;
     }
-    let (_, setup, task) = checked;
+    let (_, setup, task) = checked.clone();
     let spiked = setup.profile.rim_radius().is_some() || !setup.profile.singular_radii().is_empty();
-    match fretting(setup, &task, &Stop::default()) {
-        Ok(reply) => {
-            laws(&task, &reply, spiked);
+    match Fretting::run(checked, &Stop::default()) {
+        Ok(found) => {
+            laws(&task, found.reply(), spiked);
             Outcome::Answered
         }
         Err(failure) => refused(body, failure.into()),

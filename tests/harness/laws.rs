@@ -1,7 +1,8 @@
 //! Laws that the reply for every contact and path obeys, whatever the profile.
 
 use serde_json::Value;
-use stickslip::simulation::Failure;
+use stickslip::simulation::{Cause, Failure};
+use stickslip_mechanics::Error;
 use stickslip_wire::simulate::Simulation;
 use stickslip_wire::{
     Document as _, Move, Path, Plan, Profile, Regime, SimulateReply, SimulateRequest, SolverKind, State, Steps,
@@ -366,10 +367,9 @@ fn repeat_last_move(request: &SimulateRequest, reply: &SimulateReply) {
     let longer = match run(&request) {
         Ok(longer) => longer,
         // In gross slip a force is at its limit to round-off, on either side of it.
-        Err(Refusal::Failed(Failure::Refused {
-            error: stickslip_mechanics::Error::ForceExceedsFriction { .. },
-            ..
-        })) if last.relative && last.force.is_some() => {
+        Err(Refusal::Failed(Failure { cause: Cause::Refused(Error::ForceExceedsFriction { .. }), .. }))
+            if last.relative && last.force.is_some() =>
+        {
             return;
         }
         Err(refusal) => panic!("the last move again: {refusal:?}"),

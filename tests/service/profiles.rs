@@ -8,6 +8,7 @@ use crate::common::raw::{Service, post};
 use crate::common::{Server, ball, good, number, of, problem, with};
 use serde_json::{Value, json};
 use stickslip::admission::{Pool, Stop};
+use stickslip::computations::{Computation as _, Cycle, Outcome as _};
 use stickslip::sessions::{CAPACITY, Sessions};
 use stickslip::simulation;
 use stickslip::store::MemoryStore;
@@ -182,8 +183,9 @@ fn the_time_of_a_reply_has_the_preparation_of_its_profile_in_it() {
     let stop = Stop::default();
     let body = of(&table(10, 1), &json!({"drive": {"displacement": 1e-8}}));
     let body: CycleRequest = serde_json::from_value(body).unwrap();
-    let (_, setup, task) = simulation::check(body, &Slow(rest), &stop).unwrap().unwrap();
-    let (_, reply) = simulation::cycle_of(setup, &task, &stop).unwrap();
+    let checked = simulation::check(body, &Slow(rest), &stop).unwrap().unwrap();
+    let found = Cycle::run(checked, &stop).unwrap();
+    let reply = found.reply();
     assert!(reply.accuracy.compute_time >= rest.as_secs_f64(), "{:?}", reply.accuracy);
 }
 

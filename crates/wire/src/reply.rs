@@ -6,7 +6,7 @@ use utoipa::ToSchema;
 use stickslip_mechanics as mechanics;
 
 /// What follows from the definition of a contact at its preload.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 #[schema(as = Figures)]
 pub struct ContactSummary {
     /// Reduced modulus E*, Pa.
@@ -32,7 +32,7 @@ pub struct ContactSummary {
 }
 
 /// The state after a move.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct State {
     /// Tangential displacement U of the indenter, m; positive along x.
     pub displacement: f64,
@@ -57,10 +57,11 @@ pub struct State {
 }
 
 /// How much of the contact slipped in the last move.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Regime {
     /// Nothing slipped.
+    #[default]
     Stick,
     /// An outer ring slipped.
     PartialSlip,
@@ -84,7 +85,7 @@ impl Regime {
 }
 
 /// The extrema of the shear stress of a contact.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Residual {
     /// Shear stress in the centre, Pa, positive as a positive displacement causes it; `null` where it is infinite.
     pub centre: Option<f64>,
@@ -102,7 +103,7 @@ pub struct Residual {
 }
 
 /// A local extremum of the shear stress.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Peak {
     /// Where, m.
     pub radius: f64,
@@ -111,7 +112,7 @@ pub struct Peak {
 }
 
 /// Which solver answered, and how accurate its answer is.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Accuracy {
     /// The solver that answered.
     pub solver: SolverKind,
@@ -134,10 +135,11 @@ pub struct Accuracy {
 }
 
 /// The two solvers.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum SolverKind {
     /// The exact solver, which stores turning points of the path.
+    #[default]
     Exact,
     /// The spring foundation of the paper.
     Springs,
@@ -163,6 +165,13 @@ pub struct Warning {
     pub code: String,
     /// An explanation for people.
     pub message: String,
+}
+
+impl Warning {
+    /// A warning with this code.
+    pub fn new(code: &str, message: impl Into<String>) -> Warning {
+        Warning { code: code.to_owned(), message: message.into() }
+    }
 }
 
 /// The number, or none where JSON has no number for it.

@@ -1,33 +1,25 @@
 //! The tables of the pages of a contact: its history, loop and closed cycles.
 
+use crate::computations::state_columns;
 use crate::formats::{Cells, Column, Table};
-use stickslip_wire::{Cycle, CyclePage, HistoryPage, LoopPage, ObservedForce, State};
+use stickslip_wire::{Cycle, CyclePage, HistoryPage, LoopPage, ObservedForce};
 
 /// A page of a history: the states with their numbers and times, and who made them if `names_makers`.
 #[must_use]
 pub fn history(page: &HistoryPage, names_makers: bool) -> Table<'_> {
     let items = &page.items;
-    let state = |name, unit, of: fn(&State) -> f64| Column::floats(name, unit, move |row| of(&items[row].state));
     let cycle = |name, unit, of: fn(&Cycle) -> Option<f64>| {
-        let value = move |row: usize| items[row].cycle.as_ref().and_then(of).unwrap_or(f64::NAN);
-        Column::floats(name, unit, value)
+        Column::floats(name, unit, move |row| items[row].cycle.as_ref().and_then(of))
     };
     let observed = |name, of: fn(&ObservedForce) -> f64| {
-        Column::floats(name, "N", move |row| items[row].observation.as_ref().map_or(f64::NAN, of))
+        Column::floats(name, "N", move |row| items[row].observation.as_ref().map(of))
     };
     let mut columns = vec![
         Column::counts("sequence", |row| items[row].sequence),
         Column::new("at", Some("UTC"), Cells::Times(Box::new(|row| items[row].at))),
-        state("displacement", "m", |state| state.displacement),
-        state("force", "N", |state| state.force),
-        state("indentation", "m", |state| state.indentation),
-        state("normal_force", "N", |state| state.normal_force),
-        state("contact_radius", "m", |state| state.contact_radius),
-        state("stick_radius", "m", |state| state.stick_radius),
-        Column::new("regime", Some(""), Cells::Words(Box::new(|row| items[row].state.regime.name()))),
-        state("dissipated_energy", "J", |state| state.dissipated_energy),
-        state("elastic_energy", "J", |state| state.elastic_energy),
-        Column::counts("memory_depth", |row| items[row].state.memory_depth as u64),
+    ];
+    columns.extend(state_columns(|row| &items[row].state));
+    columns.extend([
         Column::new(
             "cycle_from",
             Some("1"),
@@ -41,7 +33,7 @@ pub fn history(page: &HistoryPage, names_makers: bool) -> Table<'_> {
         observed("observed_force", |observed| observed.force),
         observed("predicted_force", |observed| observed.predicted),
         observed("innovation", |observed| observed.innovation),
-    ];
+    ]);
     if names_makers {
         columns.push(Column::new("by", Some(""), Cells::SomeNames(Box::new(|row| items[row].by.as_deref()))));
     }
@@ -53,7 +45,7 @@ pub fn history(page: &HistoryPage, names_makers: bool) -> Table<'_> {
 pub fn hysteresis_loop(page: &LoopPage) -> Table<'_> {
     let observed = |name, of: fn(&ObservedForce) -> f64| {
         let at = |row: usize| page.observed_force(row).map(|force| ObservedForce::new(force, page.force[row], None));
-        Column::floats(name, "N", move |row| at(row).as_ref().map_or(f64::NAN, of))
+        Column::floats(name, "N", move |row| at(row).as_ref().map(of))
     };
     let columns = vec![
         Column::counts("sequence", |row| page.sequence[row]),

@@ -20,7 +20,7 @@ use super::refusal::Refusal;
 use super::summary::summary;
 use crate::admission::Stop;
 use crate::api::Problem;
-use crate::computations::{About, Computation, Shown, Visitor, compute, each};
+use crate::computations::{About, Shown, compute, entries};
 use crate::formats::Format;
 
 /// A computation, and the flags that it is called with.
@@ -104,19 +104,6 @@ fn flags(name: &str) -> FlagsOf {
     }
 }
 
-/// What every computation says of itself.
-fn all() -> Vec<About> {
-    struct Abouts(Vec<About>);
-    impl Visitor for Abouts {
-        fn visit<C: Computation>(&mut self) {
-            self.0.push(C::ABOUT);
-        }
-    }
-    let mut abouts = Abouts(Vec::new());
-    each(&mut abouts);
-    abouts.0
-}
-
 fn command(about: &About) -> Command {
     let formats = about.formats.iter().map(|format| format.name()).collect::<Vec<_>>();
     let mut command = Command::new(about.name)
@@ -153,7 +140,7 @@ fn command(about: &About) -> Command {
 
 impl Subcommand for Compute {
     fn augment_subcommands(parent: Command) -> Command {
-        parent.subcommands(all().iter().map(command))
+        parent.subcommands(entries().iter().map(|entry| command(&entry.about)))
     }
 
     fn augment_subcommands_for_update(parent: Command) -> Command {
@@ -161,14 +148,15 @@ impl Subcommand for Compute {
     }
 
     fn has_subcommand(name: &str) -> bool {
-        all().iter().any(|about| about.name == name)
+        entries().iter().any(|entry| entry.about.name == name)
     }
 }
 
 impl FromArgMatches for Compute {
     fn from_arg_matches(matches: &ArgMatches) -> Result<Compute, Error> {
         let found = matches.subcommand().and_then(|(name, matches)| {
-            Some(Compute { about: all().into_iter().find(|about| about.name == name)?, matches: matches.clone() })
+            let entry = entries().into_iter().find(|entry| entry.about.name == name)?;
+            Some(Compute { about: entry.about, matches: matches.clone() })
         });
         found.ok_or_else(|| Error::new(ErrorKind::MissingSubcommand))
     }

@@ -12,7 +12,7 @@ use serde_json::Value;
 
 use super::{Sweep, SweepError, SweepResult};
 use crate::admission::{Kind, Nanoseconds, Pool, SolverSlot, Stop};
-use crate::simulation::{Failure, check, simulate};
+use crate::simulation::{Cause, Failure, check, simulate};
 use stickslip_wire::check::Fault;
 use stickslip_wire::pointer_lookup::{Lookup, lookup};
 use stickslip_wire::{Code, PointFailure, Rejection, SimulateReply, SimulateRequest};
@@ -91,7 +91,7 @@ impl Sweep {
             done.flatten().collect::<Vec<_>>()
         });
         if done.is_empty() {
-            return Err(Failure::Stopped);
+            return Err(Failure::at("", Cause::Stopped));
         }
         done.sort_by_key(|(first, _)| *first);
         done.into_iter().try_fold(SweepResult::default(), |mut result, (_, next)| {
@@ -146,7 +146,7 @@ impl Sweep {
 
 fn of_rejection(rejection: Rejection) -> PointFailure {
     match rejection {
-        Rejection::Refused { pointer, error } => of_failure(Failure::Refused { pointer, error }),
+        Rejection::Refused { pointer, error } => of_failure(Failure::at(pointer, error)),
         Rejection::NotJson(detail) => failure(Code::InvalidInput, String::new(), detail),
         Rejection::Invalid(faults) => {
             let first = faults.into_iter().next().unwrap_or(Fault { pointer: String::new(), detail: String::new() });
@@ -156,19 +156,7 @@ fn of_rejection(rejection: Rejection) -> PointFailure {
 }
 
 fn of_failure(refusal: Failure) -> PointFailure {
-    let (code, detail) = (refusal.code(), refusal.to_string());
-    match refusal {
-        Failure::Refused { pointer, error } => failure(code, pointer, error.to_string()),
-        Failure::MemoryFull { pointer, .. }
-        | Failure::TooLong { pointer, .. }
-        | Failure::Search { pointer, .. }
-        | Failure::CycleTooLarge { pointer }
-        | Failure::Loops { pointer, .. } => failure(code, pointer, detail),
-        Failure::Scan { pointer, .. } | Failure::Preparation { pointer, .. } => {
-            failure(code, pointer.to_owned(), detail)
-        }
-        Failure::Stopped | Failure::Lifted | Failure::NeedsServer { .. } => failure(code, String::new(), detail),
-    }
+    failure(refusal.code(), refusal.pointer, refusal.cause.to_string())
 }
 
 fn failure(code: Code, pointer: String, detail: String) -> PointFailure {

@@ -5,14 +5,16 @@ use serde_json::Value;
 use super::Sweep;
 use super::shared::{self, Shared};
 use crate::admission::{INLINE, Nanoseconds};
-use crate::simulation::reply_template::reply_template;
 use crate::simulation::{bytes, cost};
 use stickslip_wire::check::{Fault, Faults, JsonPath};
 use stickslip_wire::json_value::{Pointer, index};
 use stickslip_wire::pointer_lookup::{Lookup, lookup};
 use stickslip_wire::simulate::Simulation;
 use stickslip_wire::sweep::CheckedSweep;
-use stickslip_wire::{Document as _, Prepare, PrepareOnce, Rejection, SimulateRequest, parse_value};
+use stickslip_wire::{
+    Accuracy, ContactSummary, Document as _, Peak, Plan, Prepare, PrepareOnce, Protocol, Rejection, Residual, Sampling,
+    SimulateReply, SimulateRequest, State, Steps, Stress, parse_value,
+};
 
 /// Bytes that a value in a body takes once it is parsed, for each byte that it is written with; twice, as it is turned
 /// into a request.
@@ -137,5 +139,36 @@ fn first_peak(output: &Pointer) -> Pointer {
             Pointer::parse(&first).unwrap_or_else(|| output.clone())
         }
         _ => output.clone(),
+    }
+}
+
+/// A reply with a zero or none for each number that the simulation will compute, and one peak in place of however many
+/// there will be.
+fn reply_template(simulation: &Simulation) -> SimulateReply {
+    let moves = simulation.plan.length();
+    let residual = || Residual { peaks: vec![Peak::default()], ..Residual::default() };
+    let protocol = || Protocol { displacement: vec![0.0; moves], cutoff_radius: 0.0 };
+    SimulateReply {
+        contact: ContactSummary::default(),
+        steps: vec![State::default(); if simulation.steps == Steps::All { moves } else { 1 }],
+        stress: simulation.stress.as_ref().map(stress_template),
+        residual: simulation.residual.then(residual),
+        // No output of a sweep.
+        subsurface: None,
+        protocol: matches!(simulation.plan, Plan::EqualPeaks(_)).then(protocol),
+        accuracy: Accuracy::default(),
+        warnings: Vec::new(),
+    }
+}
+
+fn stress_template(sampling: &Sampling) -> Stress {
+    let (length, fields) = (sampling.length(), &sampling.fields);
+    let column = |asked: bool| asked.then(|| vec![None; length]);
+    Stress {
+        radius: vec![0.0; length],
+        pressure: column(fields.pressure),
+        shear: column(fields.shear),
+        slip: column(fields.slip),
+        displacement: column(fields.displacement),
     }
 }

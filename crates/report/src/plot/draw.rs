@@ -127,7 +127,7 @@ where
     let y_range = extent(values);
     let y = scale(&panel.y, &y_range);
     let span = (y_range.end - y_range.start) / y.unit;
-    let legend = !bands.is_empty() || panel.curves.iter().any(|curve| !curve.silent);
+    let legend = !bands.is_empty() || panel.curves.iter().any(|curve| !curve.name.is_empty());
     let above = if legend { HEADROOM } else { MARGIN };
     let (low, high) = (y_range.start / y.unit - MARGIN * span, y_range.end / y.unit + above * span);
     let mut axes = ChartBuilder::on(area)
@@ -158,7 +158,7 @@ where
     mesh.draw()?;
     for curve in &panel.curves {
         let style = curve.colour.rgb().stroke_width(4);
-        let mut named = curve.silent;
+        let mut named = curve.name.is_empty();
         for stretch in curve
             .points
             .split(|point| !is_drawable(&point.0) || !is_drawable(&point.1))
@@ -279,9 +279,9 @@ mod tests {
     /// Every second of many points is high, so that each corner is sharp.
     fn comb(dots: bool) -> Plot {
         let points = (0..400).map(|index| (f64::from(index), if index % 2 == 0 { -1.0 } else { 1.0 })).collect();
-        let curve = Curve { name: "", points, colour: Colour::Red, silent: true, dots };
+        let curve = Curve { name: "", points, colour: Colour::Red, dots };
         let axis = || Axis { name: "x", unit: None };
-        Plot { title: "t".to_owned(), x: axis(), panels: vec![Panel { y: axis(), curves: vec![curve] }], bands: vec![] }
+        Plot::new("t", axis(), vec![Panel { y: axis(), curves: vec![curve] }])
     }
 
     #[test]

@@ -32,12 +32,28 @@ pub struct Plot {
     pub bands: Vec<Band>,
 }
 
+impl Plot {
+    /// A plot without bands.
+    #[must_use]
+    pub fn new(title: impl Into<String>, x: Axis, panels: Vec<Panel>) -> Plot {
+        Plot { title: title.into(), x, panels, bands: Vec::new() }
+    }
+}
+
 /// A quantity and its unit; a count has none.
 pub struct Axis {
     /// The quantity.
     pub name: &'static str,
     /// SI unit.
     pub unit: Option<&'static str>,
+}
+
+impl Axis {
+    /// A quantity in an SI unit; a pure number has the unit 1.
+    #[must_use]
+    pub fn of(name: &'static str, unit: &'static str) -> Axis {
+        Axis { name, unit: Some(unit).filter(|unit| *unit != "1") }
+    }
 }
 
 /// Curves over one ordinate.
@@ -48,18 +64,30 @@ pub struct Panel {
     pub curves: Vec<Curve>,
 }
 
-/// Named points in SI units, joined or alone; a line is interrupted where a value is not finite.
+/// Points in SI units, joined or alone; a line is interrupted where a value is not finite.
 pub struct Curve {
-    /// Its name in the legend.
+    /// Its name in the legend; one without a name is not there.
     pub name: &'static str,
     /// Abscissa and ordinate.
     pub points: Vec<(f64, f64)>,
     /// Its colour.
     pub colour: Colour,
-    /// Not in the legend.
-    pub silent: bool,
     /// Points alone, as they were measured: between them nothing is known.
     pub dots: bool,
+}
+
+impl Curve {
+    /// Joined points.
+    #[must_use]
+    pub fn line(name: &'static str, colour: Colour, points: impl IntoIterator<Item = (f64, f64)>) -> Curve {
+        Curve { name, points: points.into_iter().collect(), colour, dots: false }
+    }
+
+    /// Points alone.
+    #[must_use]
+    pub fn dots(name: &'static str, colour: Colour, points: impl IntoIterator<Item = (f64, f64)>) -> Curve {
+        Curve { name, points: points.into_iter().collect(), colour, dots: true }
+    }
 }
 
 /// A part of the abscissa with a shade behind it.

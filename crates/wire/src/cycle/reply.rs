@@ -24,7 +24,7 @@ pub struct CycleReply {
 }
 
 /// One steady cycle.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct SteadyCycle {
     /// Normal force, N; in a map alone.
     #[serde(default, skip_serializing_if = "Option::is_none")]

@@ -1,9 +1,9 @@
-//! Protocols: the path of a law, the stress that it leaves, and what the other laws would leave.
+//! The path of a law, the stress that it leaves, and what the other laws would leave.
 
 use stickslip_mechanics::protocol::{
     AmplitudeLaw, Design, EvaluationRange, ExecutionErrors, FirstMove, PathEnd, PathStart, design, lower_bound, trials,
 };
-use stickslip_mechanics::range::{self, Quantity};
+use stickslip_mechanics::range::Quantity;
 use stickslip_mechanics::{Contact, Error, Setup};
 use stickslip_wire::definition::SharedSetup;
 use stickslip_wire::protocol::{
@@ -13,10 +13,11 @@ use stickslip_wire::protocol::{
 use stickslip_wire::reply::finite;
 use stickslip_wire::{Residual, limits};
 
-use super::run::contact;
-use super::stated_accuracy::{Timer, accuracy};
-use super::{Failure, present_warnings};
 use crate::admission::Stop;
+use crate::simulation::{Failure, Timer, accuracy, present_warnings};
+
+/// How many smaller numbers of reversals are checked after bisection.
+const FEWER: usize = 3;
 
 /// A contact for which a protocol is designed, and the start of the reversals.
 pub struct Subject<'a> {
@@ -45,10 +46,7 @@ impl Subject<'_> {
 
     fn design(&self, kind: AmplitudeLaw, reversals: usize, end: PathEnd, stop: &Stop) -> Result<Design, Failure> {
         let found = design(self.contact, self.start(), kind, reversals, end, &|| stop.check().is_ok());
-        found.map_err(|error| match stop.check() {
-            Err(interrupted) => Failure::interrupted(interrupted, "/reversals"),
-            Ok(()) => Failure::Refused { pointer: self.place(&error).to_owned(), error },
-        })
+        found.map_err(|error| Failure::at(self.place(&error), error).unless_interrupted(stop, "/reversals"))
     }
 
     /// The design of the fewest reversals that leave no more than `largest`, Pa.
@@ -74,7 +72,7 @@ impl Subject<'_> {
                     value: target,
                     allowed: format!("what {most} reversals reach, {:.3e}, or more", target * design.largest / largest),
                 };
-                return Err(Failure::Refused { pointer: "/target".to_owned(), error });
+                return Err(Failure::at("/target", error));
             }
             (low, high) = (high, (2 * high).min(most));
         };
@@ -97,29 +95,6 @@ impl Subject<'_> {
         Ok((high, found))
     }
 }
-
-/// The protocol for a contact that has never moved, from a displacement, m, or from that of gross slip.
-///
-/// # Errors
-/// As [`protocol`], and if the preload cannot be reached.
-pub fn protocol_for(
-    setup: &SharedSetup,
-    first: Option<f64>,
-    task: &ProtocolTask,
-    stop: &Stop,
-) -> Result<ProtocolReply, Failure> {
-    let contact = contact(setup.clone(), "/contact")?;
-    let full = contact.gross_slip_displacement();
-    if first.is_none() {
-        // What the request does not have cannot be at fault: the contact is.
-        let checked = range::DISPLACEMENT.check(full);
-        checked.map_err(|error| Failure::Refused { pointer: "/contact".to_owned(), error })?;
-    }
-    protocol(&Subject { contact: &contact, first: first.or(Some(full)), setup: Some(setup) }, task, stop)
-}
-
-/// How many smaller numbers of reversals are checked after bisection.
-const FEWER: usize = 3;
 
 /// The requested protocol, with the stress that it leaves and what the other laws would leave.
 ///
@@ -258,10 +233,8 @@ fn robustness(
         _ => Ok(subject.contact.clone()),
     };
     let found = trials(&make, path, &ExecutionErrors { amplitude, friction, seed }, samples, &|| stop.check().is_ok());
-    let found = found.map_err(|error| match stop.check() {
-        Err(interrupted) => Failure::interrupted(interrupted, "/robustness/samples"),
-        Ok(()) => Failure::Refused { pointer: "/robustness".to_owned(), error },
-    })?;
+    let refused = |error| Failure::at("/robustness", error).unless_interrupted(stop, "/robustness/samples");
+    let found = found.map_err(refused)?;
     let count = found.len() as f64;
     let mean = found.iter().sum::<f64>() / count;
     let variance = found.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / (count - 1.0).max(1.0);

@@ -3,13 +3,13 @@
 use stickslip_mechanics::Contact;
 use stickslip_mechanics::cycle::{Drive, Resonator, SteadyCycle, best_load as best_of};
 use stickslip_wire::reply::finite;
-use stickslip_wire::{BestLoad, BestLoadStudy, FrequencyResponse, LoadCurve, Resonance, ResonancePoint};
+use stickslip_wire::{BestLoad, BestLoadStudy, FrequencyResponse, LoadCurve, Resonance, ResonancePoint, Warning};
 
-use super::Failure;
 use crate::admission::Stop;
+use crate::simulation::{Cause, Failure, excess_error};
 
 /// Frequencies where none are named, and the first and the last of them over that of small oscillations.
-const FREQUENCIES: usize = 200;
+pub(super) const FREQUENCIES: usize = 200;
 const SWEPT: [f64; 2] = [0.3, 1.5];
 /// The largest load of a curve over the best.
 const CURVE_END: f64 = 3.0;
@@ -36,12 +36,13 @@ pub fn best_load(
     Ok(Some(BestLoad { normal_force: best.normal_force, dissipated_energy: best.dissipated_energy, curve }))
 }
 
-/// The oscillations of a mass on the contact to a tolerance, of the amplitude, and their largest error likewise.
+/// The oscillations of a mass on the contact to a tolerance, of the amplitude, and the warning if it is not met.
 pub fn resonance(
     contact: &Contact,
-    (asked, tolerance): &(FrequencyResponse, f64),
+    asked: &FrequencyResponse,
+    tolerance: f64,
     stop: &Stop,
-) -> Result<(Resonance, f64), Failure> {
+) -> Result<(Resonance, Option<Warning>), Failure> {
     let body = Resonator { mass: asked.mass, drive_force: asked.drive_force };
     let natural_frequency = body.natural_frequency(contact);
     let frequencies = asked.frequencies.clone().unwrap_or_else(|| {
@@ -49,10 +50,8 @@ pub fn resonance(
         let at = |index: usize| from + (to - from) * index as f64 / (FREQUENCIES - 1) as f64;
         (0..FREQUENCIES).map(at).filter(|frequency| *frequency > 0.0).collect()
     });
-    let Some(found) = body.respond(contact, &frequencies, *tolerance, &|| stop.check().is_ok()) else {
-        stop.check()?;
-        return Err(Failure::Stopped);
-    };
+    let found = body.respond(contact, &frequencies, tolerance, &|| stop.check().is_ok());
+    let found = found.ok_or_else(|| Failure::at("", Cause::Stopped).unless_interrupted(stop, ""))?;
     let point = |found: stickslip_mechanics::cycle::Response| ResonancePoint {
         frequency: found.frequency,
         amplitude: found.amplitude,
@@ -64,5 +63,20 @@ pub fn resonance(
     };
     let error =
         found.iter().map(|found| found.amplitude_error.max(found.peak_error) / found.amplitude).fold(0.0, f64::max);
-    Ok((Resonance { natural_frequency, points: found.into_iter().map(point).collect() }, error))
+    let warning = excess_error(error, tolerance, 1).map(tolerance_not_met);
+    Ok((Resonance { natural_frequency, points: found.into_iter().map(point).collect() }, warning))
+}
+
+/// The warning for oscillations of which the largest error, of the amplitude, is beyond the tolerance.
+fn tolerance_not_met(error: f64) -> Warning {
+    let message = if error.is_finite() {
+        format!(
+            "an oscillation of the mass may be off by {error:.1e} of its amplitude, more than the tolerance asked for"
+        )
+    } else {
+        "at some frequencies the steady oscillation was not found: `amplitude_error` is null there, and the numbers \
+         are what the first harmonic of the force alone would make of it"
+            .to_owned()
+    };
+    Warning::new("tolerance_not_met", message)
 }

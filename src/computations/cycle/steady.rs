@@ -8,11 +8,9 @@ use stickslip_wire::cycle::CycleTask;
 use stickslip_wire::reply::finite;
 use stickslip_wire::{CycleReply, FrictionWork, Harmonic, SteadyCycle};
 
-use super::cycle_studies::{best_load, resonance};
-use super::stated_accuracy::{Timer, accuracy};
-use super::warnings::{excess_error, resonance_warning, warnings_at};
-use super::{Failure, needs_stress_field};
+use super::studies::{best_load, resonance};
 use crate::admission::Stop;
+use crate::simulation::{Failure, Timer, accuracy, excess_error, needs_stress_field, warnings_at};
 
 /// Radii between two checks of the flag: each time the contact is copied and turned.
 const RADII_PER_CHECK: usize = 512;
@@ -24,43 +22,60 @@ const REASON_STEPPED: &str =
 /// The steady cycles of a contact at its present load, which has no history.
 ///
 /// # Errors
-/// [`Failure::Refused`] for a force of μ F_N or more, [`Failure`] if the work was ended.
-pub fn cycle(contact: &Contact, task: &CycleTask, timer: Timer<'_>, stop: &Stop) -> Result<CycleReply, Failure> {
+/// [`Failure`] for a force of μ F_N or more, or if the work was ended.
+pub fn steady_cycles(
+    contact: &Contact,
+    task: &CycleTask,
+    timer: Timer<'_>,
+    stop: &Stop,
+) -> Result<CycleReply, Failure> {
     if task.density.is_some() {
         needs_stress_field(contact, "/work_density")?;
     }
     let radii = task.density.as_ref().map(|points| points.radii(contact.contact_radius()));
+    // Compliance of the machine, m/N.
+    let compliance = task.stiffness.map_or(0.0, f64::recip);
     let mut cycles = Vec::with_capacity(task.drives().len());
     // The largest cycle shows the error of the forces.
     let (mut largest, mut error) = (0.0_f64, 0.0_f64);
     for (index, drive) in task.drives().enumerate() {
         stop.check()?;
-        if let Some((load, tolerance)) = task.normal {
-            let swing = Oscillation { drive, load, compliance: compliance(task) };
+        let row = if let Some((load, tolerance)) = task.normal {
+            let swing = Oscillation { drive, load, compliance };
             let found = swing.steady(contact, tolerance, task.harmonics, &|| stop.check().is_ok());
-            let found = found.map_err(|error| match stop.check() {
-                Err(interrupted) => Failure::interrupted(interrupted, &task.place_of(index)),
-                Ok(()) => Failure::Refused { pointer: place_of_refused(&error, &load, task, index), error },
+            let found = found.map_err(|error| {
+                let place = place_of_refused(&error, &load, task, index);
+                Failure::at(place, error).unless_interrupted(stop, &task.place_of(index))
             })?;
             error = error.max(found.error);
-            largest = largest.max(found.displacement_amplitude);
-            cycles.push(stepped(found, task));
-            continue;
-        }
-        let found = cycle::SteadyCycle::driven(contact, drive, compliance(task))
-            .map_err(|error| Failure::Refused { pointer: task.place_of(index), error })?;
-        largest = largest.max(found.displacement_amplitude());
-        let mut row = row(&found, task.stiffness.is_some());
-        if task.harmonics > 0 {
-            let harmonics = found.harmonics(task.harmonics);
-            error = error.max(harmonics.error);
-            row.harmonics = Some(harmonics.harmonics.into_iter().map(harmonic).collect());
-        }
-        row.best_load = task
-            .best_load
-            .and_then(|study| best_load(contact, (drive, compliance(task)), study, stop).transpose())
-            .transpose()?;
-        row.friction_work = radii.as_deref().map(|radii| friction_work(&found, radii, stop)).transpose()?;
+            stepped(found, task)
+        } else {
+            let found = cycle::SteadyCycle::driven(contact, drive, compliance)
+                .map_err(|error| Failure::at(task.place_of(index), error))?;
+            let harmonics = (task.harmonics > 0).then(|| found.harmonics(task.harmonics));
+            error = harmonics.as_ref().map_or(error, |found| error.max(found.error));
+            SteadyCycle {
+                displacement_amplitude: found.displacement_amplitude(),
+                force_amplitude: found.force_amplitude(),
+                machine_amplitude: task.stiffness.map(|_| found.machine_amplitude()),
+                dissipated_energy: found.dissipated_energy(),
+                max_elastic_energy: found.max_elastic_energy(),
+                secant_stiffness: found.secant_stiffness(),
+                tangent_stiffness: found.tangent_stiffness(),
+                loss_factor: found.loss_factor().and_then(finite),
+                sliding_ratio: found.sliding_ratio().and_then(finite),
+                stick_radius: found.stick_radius(),
+                regime: found.regime().into(),
+                harmonics: harmonics.map(|found| found.harmonics.into_iter().map(harmonic).collect()),
+                friction_work: radii.as_deref().map(|radii| friction_work(&found, radii, stop)).transpose()?,
+                best_load: match task.best_load {
+                    Some(study) => best_load(contact, (drive, compliance), study, stop)?,
+                    None => None,
+                },
+                ..SteadyCycle::default()
+            }
+        };
+        largest = largest.max(row.displacement_amplitude);
         cycles.push(row);
     }
     let (reason, missed) = match task.normal {
@@ -75,17 +90,12 @@ pub fn cycle(contact: &Contact, task: &CycleTask, timer: Timer<'_>, stop: &Stop)
     accuracy.force_error = accuracy.force_error.max(error);
     let mut warnings = warnings_at(contact, contact.contact_radius(), contact.indentation(), missed);
     let mut frequency_response = None;
-    if let Some(asked) = &task.response {
-        let (found, error) = resonance(contact, asked, stop)?;
-        warnings.extend(resonance_warning(error, asked.1));
+    if let Some((asked, tolerance)) = &task.response {
+        let (found, warning) = resonance(contact, asked, *tolerance, stop)?;
+        warnings.extend(warning);
         frequency_response = Some(found);
     }
     Ok(CycleReply { contact: contact.summary().into(), cycles, frequency_response, accuracy, warnings })
-}
-
-/// Compliance of the machine, m/N.
-fn compliance(task: &CycleTask) -> f64 {
-    task.stiffness.map_or(0.0, f64::recip)
 }
 
 /// The member that a cycle under a load that oscillates is refused for: the drive, or the load.
@@ -102,48 +112,21 @@ fn stepped(cycle: OscillatingCycle, task: &CycleTask) -> SteadyCycle {
     let moves = cycle.displacement_amplitude > 0.0;
     let stored = cycle.max_elastic_energy;
     let loss = if stored > 0.0 { cycle.dissipated_energy / (TAU * stored) } else { f64::NAN };
+    let secant = cycle.force_amplitude / cycle.displacement_amplitude;
     SteadyCycle {
-        normal_force: None,
-        gross_slip_displacement: None,
         displacement_amplitude: cycle.displacement_amplitude,
         force_amplitude: cycle.force_amplitude,
         machine_amplitude: task.stiffness.map(|_| cycle.machine_amplitude),
         dissipated_energy: cycle.dissipated_energy,
         max_elastic_energy: stored,
-        secant_stiffness: if moves {
-            cycle.force_amplitude / cycle.displacement_amplitude
-        } else {
-            cycle.tangent_stiffness
-        },
+        secant_stiffness: if moves { secant } else { cycle.tangent_stiffness },
         tangent_stiffness: cycle.tangent_stiffness,
         loss_factor: finite(if moves { loss } else { 0.0 }),
         sliding_ratio: if moves { cycle.sliding_ratio.and_then(finite) } else { Some(0.0) },
         stick_radius: cycle.stick_radius,
         regime: cycle.regime.into(),
         harmonics: (task.harmonics > 0).then(|| cycle.harmonics.into_iter().map(harmonic).collect()),
-        friction_work: None,
-        best_load: None,
-    }
-}
-
-fn row(cycle: &cycle::SteadyCycle<'_>, with_machine: bool) -> SteadyCycle {
-    SteadyCycle {
-        normal_force: None,
-        gross_slip_displacement: None,
-        displacement_amplitude: cycle.displacement_amplitude(),
-        force_amplitude: cycle.force_amplitude(),
-        machine_amplitude: with_machine.then(|| cycle.machine_amplitude()),
-        dissipated_energy: cycle.dissipated_energy(),
-        max_elastic_energy: cycle.max_elastic_energy(),
-        secant_stiffness: cycle.secant_stiffness(),
-        tangent_stiffness: cycle.tangent_stiffness(),
-        loss_factor: cycle.loss_factor().and_then(finite),
-        sliding_ratio: cycle.sliding_ratio().and_then(finite),
-        stick_radius: cycle.stick_radius(),
-        regime: cycle.regime().into(),
-        harmonics: None,
-        friction_work: None,
-        best_load: None,
+        ..SteadyCycle::default()
     }
 }
 

@@ -9,14 +9,13 @@ use stickslip_wire::fit::{
 use stickslip_wire::profile::SphereProfile;
 use stickslip_wire::{ContactDefinition, Effective, Material, Profile, Warning};
 
-use super::Failure;
-use super::run::{contact, refused_at};
 use crate::admission::Stop;
+use crate::simulation::{Failure, contact, refused_at};
 
 /// Fits what is free to measured loops.
 ///
 /// # Errors
-/// [`Failure::Loops`], which says what the loops lack; [`Failure`] if the contact cannot be made or the work was ended.
+/// [`Failure`], which says what the loops lack, that the contact cannot be made, or that the work was ended.
 pub fn fit_loops(task: FitTask, stop: &Stop) -> Result<FitReply, Failure> {
     let FitTask { definition, setup, loops, free, known, noise, units } = task;
     let (preload, has_friction) = (setup.preload, setup.friction > 0.0);
@@ -34,20 +33,12 @@ pub fn fit_loops(task: FitTask, stop: &Stop) -> Result<FitReply, Failure> {
             .collect(),
         noise: Noise { force: noise.force, displacement: noise.displacement },
     };
-    let asked = Asked { free, units, has_friction };
     let fit = loops::fit(&task, &|| stop.check().is_ok()).map_err(|error| match (error, stop.check()) {
         (Error::Interrupted, Err(interrupted)) => Failure::interrupted(interrupted, "/loops"),
         (Error::Refused(error), _) => refused_at("/contact", preload)(error),
-        (error, _) => Failure::Loops { pointer: place(&error, &asked), error },
+        (error, _) => Failure::at(place(&error, &free, units, has_friction), error),
     })?;
     Ok(reply(fit, definition))
-}
-
-/// What of a request the place of an error depends on.
-struct Asked {
-    free: Vec<FitParameter>,
-    units: FitUnits,
-    has_friction: bool,
 }
 
 /// Both lists have the same order.
@@ -69,24 +60,24 @@ fn record(record: LoopRecord) -> Record {
 }
 
 /// The JSON pointer to what an error is about.
-fn place(error: &Error, task: &Asked) -> String {
+fn place(error: &Error, free: &[FitParameter], units: FitUnits, has_friction: bool) -> String {
     let of_record = |record: usize, member: &str| format!("/loops/{record}/{member}");
     let of_unit = |is_given: bool, record: usize, member: &str| {
         if is_given { format!("/units/{member}") } else { of_record(record, member) }
     };
-    let position = |parameter: Parameter| task.free.iter().position(|name| of(*name) == parameter);
+    let position = |parameter: Parameter| free.iter().position(|name| of(*name) == parameter);
     match *error {
         Error::TooFewPoints { record } | Error::ConstantForce { record } | Error::WrongWay { record, .. } => {
             of_record(record, "force")
         }
         Error::SingleBranch { record } | Error::ConstantDisplacement { record } => of_record(record, "displacement"),
-        Error::ForceUnit { record, .. } => of_unit(task.units.force.is_some(), record, "force"),
-        Error::StiffnessUnit { record, .. } => of_unit(task.units.displacement.is_some(), record, "displacement"),
+        Error::ForceUnit { record, .. } => of_unit(units.force.is_some(), record, "force"),
+        Error::StiffnessUnit { record, .. } => of_unit(units.displacement.is_some(), record, "displacement"),
         Error::NoTime { record } => of_record(record, "time"),
         Error::Inseparable { parameter, .. } | Error::NotOfProfile { parameter } => {
             position(parameter).map_or_else(|| "/free".to_owned(), |index| format!("/free/{index}"))
         }
-        Error::NoContact { .. } if task.has_friction => "/contact/preload".to_owned(),
+        Error::NoContact { .. } if has_friction => "/contact/preload".to_owned(),
         Error::NoContact { .. } => "/contact/friction".to_owned(),
         Error::NoSolution | Error::Refused(_) | Error::Interrupted => "/loops".to_owned(),
     }
@@ -186,7 +177,7 @@ fn warning(note: Note) -> Warning {
              another error. The standard errors are too small",
         ),
     };
-    Warning { code: code.to_owned(), message: message.to_owned() }
+    Warning::new(code, message)
 }
 
 #[cfg(test)]

@@ -7,21 +7,18 @@ use stickslip_wire::fretting::{self as wire, FrettingTask};
 use stickslip_wire::reply::finite;
 use stickslip_wire::{Accuracy, FrettingReply, Rating, StressPath};
 
-use super::Failure;
-use super::fretting_warnings::{Rated, fretting_warnings};
-use super::run::{contact, cycle_moves};
-use super::stated_accuracy::{Timer, accuracy};
-use super::warnings::{beyond_model, bulk_warning, present_warnings};
+use super::warnings::{Rated, beyond_model, fretting_warnings};
 use crate::admission::Stop;
+use crate::simulation::{Cause, Failure, Timer, accuracy, bulk_warning, contact, cycle_moves, present_warnings};
 
 const REASON: &str = "the cycle follows from the exact slip history, and the stress from that without a mesh";
 
 /// The criteria over the steady cycle of a contact.
 ///
 /// # Errors
-/// [`Failure::Refused`] for a preload that cannot be reached, a move without an answer, or a path that does not close;
-/// [`Failure::CycleTooLarge`]; [`Failure`] if the work was ended.
-pub fn fretting(setup: SharedSetup, task: &FrettingTask, stop: &Stop) -> Result<FrettingReply, Failure> {
+/// [`Failure`] for a preload that cannot be reached, a move without an answer, a path that does not close or a cycle that
+/// is too large, or if the work was ended.
+pub fn rate(setup: SharedSetup, task: &FrettingTask, stop: &Stop) -> Result<FrettingReply, Failure> {
     let timer = Timer::start(stop);
     let contact = contact(setup, "/contact")?;
     let moves = cycle_moves(&task.plan, &contact)?;
@@ -55,13 +52,11 @@ pub fn fretting(setup: SharedSetup, task: &FrettingTask, stop: &Stop) -> Result<
     let Ratings { values, largest, instants } = &ratings;
     let change = largest.iter().flatten().map(|most| relative(most.rated.error, most.rated.value)).fold(0.0, f64::max);
 
-    let mut index = 0;
-    let mut rating = |asked: Option<(_, Option<f64>)>| {
-        let (_, limit) = asked?;
-        let (found, most) = (&values[index], largest[index]);
-        index += 1;
+    let mut found = values.iter().zip(largest);
+    let rating = |asked: Option<(_, Option<f64>)>| {
+        let ((_, limit), (values, most)) = (asked?, found.next()?);
         // What nowhere rises above zero, or has no bound, has no distance to its limit.
-        let bounded = found.iter().all(|value| *value < f64::INFINITY || value.is_nan());
+        let bounded = values.iter().all(|value| *value < f64::INFINITY || value.is_nan());
         let rated = most.map(|most| most.rated.value).filter(|value| *value > 0.0 && bounded);
         let margin = limit.zip(rated).and_then(|(limit, value)| finite(limit / value));
         let largest = most.map(|Largest { place, rated }| wire::Largest {
@@ -69,12 +64,11 @@ pub fn fretting(setup: SharedSetup, task: &FrettingTask, stop: &Stop) -> Result<
             error: rated.error,
             point: places[place],
             plane: rated.plane,
-            at: rated.at.map(instant),
+            at: rated.at.map(|at| wire::Instant { step: at.step, part: at.part }),
         });
-        Some(Rating { values: found.iter().map(|value| finite(*value)).collect(), largest, margin })
+        Some(Rating { values: values.iter().map(|value| finite(*value)).collect(), largest, margin })
     };
-    let [crossland, dang_van, findley, swt, fatemi_socie, ruiz, ruiz_tension, friction_work] =
-        measures.map(&mut rating);
+    let [crossland, dang_van, findley, swt, fatemi_socie, ruiz, ruiz_tension, friction_work] = measures.map(rating);
     let path = |place: &usize| study.path(&places[*place]).map(|path| stress_path(*place, &path)).map_err(refused);
     let stress_paths: Vec<StressPath> = task.stress_paths.iter().map(path).collect::<Result<_, _>>()?;
     let field = cycle.start().subsurface(task.body.0, task.body.1).map_err(refused)?;
@@ -101,8 +95,8 @@ pub fn fretting(setup: SharedSetup, task: &FrettingTask, stop: &Stop) -> Result<
         accuracy: Accuracy { subsurface_error: Some(field.error()), ..accuracy(&contact, timer, REASON) },
         contact: contact.summary().into(),
     };
-    let radius = study.contact_radius();
-    let warnings = fretting_warnings(&reply, &Rated { task, ratings: &ratings, places: &places, off_grid, radius });
+    let rated = Rated { task, ratings: &ratings, places: &places, off_grid, radius: study.contact_radius() };
+    let warnings = fretting_warnings(&reply, &rated);
     reply.warnings.extend(warnings);
     Ok(reply)
 }
@@ -112,17 +106,9 @@ fn relative(error: f64, value: f64) -> f64 {
     finite(error / value.abs()).unwrap_or(0.0)
 }
 
-fn instant(at: fatigue::Instant) -> wire::Instant {
-    wire::Instant { step: at.step, part: at.part }
-}
-
 fn refused(error: Error, stop: &Stop) -> Failure {
-    let pointer = "/path".to_owned();
-    match (stop.check(), error) {
-        (Err(interrupted), _) => Failure::interrupted(interrupted, "/path"),
-        (Ok(()), Error::CycleTooLarge) => Failure::CycleTooLarge { pointer },
-        (Ok(()), error) => Failure::Refused { pointer, error },
-    }
+    let cause = if error == Error::CycleTooLarge { Cause::CycleTooLarge } else { error.into() };
+    Failure::at("/path", cause).unless_interrupted(stop, "/path")
 }
 
 /// The stresses of a place over the cycle, as columns.

@@ -1,18 +1,21 @@
 //! `protocol`: paths that leave little shear stress.
 
+mod design;
+
 use serde_json::json;
 use uuid::Uuid;
 
+use stickslip_mechanics::range;
 use stickslip_mechanics::{Contact, Profile};
 use stickslip_wire::protocol::{Aim, ProtocolSubject, ProtocolTask};
 use stickslip_wire::{ContactDefinition, ProtocolReply, ProtocolRequest, limits};
 
-use super::{About, Computation, Example, FromStored, OnContact, Plain, Route, example};
+use super::{About, Computation, Example, FromStored, OnContact, Plain, Route, Task, example, example_contact};
 use crate::admission::{Nanoseconds, Stop};
-use crate::formats::Format;
 use crate::simulation::bytes::{MOVE_BYTES, RECORD_BYTES, STATE_BYTES, of_shape};
 use crate::simulation::cost::{MOVE_COST, Work, on_profile};
-use crate::simulation::{self, Failure, Subject};
+use crate::simulation::{Cause, Failure, contact};
+use design::{Subject, protocol};
 
 /// One pair of kinks of a protocol on a sphere, over all evaluations and all three laws.
 const KINK_PAIR_COST: u64 = 10_000;
@@ -40,10 +43,7 @@ impl Computation for FindProtocol {
                       reach a target, and says what remains, how far that may be from the optimum, and what the \
                       other laws would leave. Nothing is stored or changed.",
         reply: "The path, and what remains",
-        formats: &[Format::Columns],
-        printed: Format::Columns,
-        shows: "",
-        choice: None,
+        ..About::DOCUMENT
     };
 
     type Request = ProtocolRequest;
@@ -63,12 +63,7 @@ impl Computation for FindProtocol {
                 "target",
                 "The fewest reversals that leave a quarter, and how robust they are with a coarse actuator",
                 json!({
-                    "contact": {
-                        "profile": {"type": "power_law", "exponent": 3.0, "coefficient": 1e4},
-                        "material": {"effective": {"e_star": 1.2e11, "g_star": 9.6e10}},
-                        "friction": 0.3,
-                        "preload": {"normal_force": 10.0}
-                    },
+                    "contact": example_contact(json!({"type": "power_law", "exponent": 3.0, "coefficient": 1e4}), json!({"normal_force": 10.0})),
                     "target": 0.25, "kind": "equal_peaks",
                     "robustness": {"amplitude_error": 0.01, "friction_error": 0.05, "samples": 100, "seed": 1}
                 }),
@@ -76,7 +71,7 @@ impl Computation for FindProtocol {
         ]
     }
 
-    fn bytes((subject, task): &(ProtocolSubject, ProtocolTask)) -> usize {
+    fn bytes((subject, task): &Task<Self>) -> usize {
         let shape = match subject {
             ProtocolSubject::Virgin(made, _) => of_shape(&made.0.profile),
             ProtocolSubject::Living(..) => 0,
@@ -84,27 +79,32 @@ impl Computation for FindProtocol {
         task.bytes() + shape
     }
 
-    fn cost((subject, task): &(ProtocolSubject, ProtocolTask)) -> Nanoseconds {
+    fn cost((subject, task): &Task<Self>) -> Nanoseconds {
         match subject {
             ProtocolSubject::Virgin(made, _) => task.cost(&made.1.profile, 0),
             ProtocolSubject::Living(..) => 0,
         }
     }
 
-    fn run((subject, task): (ProtocolSubject, ProtocolTask), stop: &Stop) -> Result<Plain<ProtocolReply>, Failure> {
-        match subject {
-            ProtocolSubject::Virgin(made, first) => simulation::protocol_for(&made.1, first, &task, stop).map(Plain),
-            ProtocolSubject::Living(..) => Err(Failure::NeedsServer { pointer: "/start/contact_id" }),
+    fn run((subject, task): Task<Self>, stop: &Stop) -> Result<Plain<ProtocolReply>, Failure> {
+        let ProtocolSubject::Virgin(made, first) = subject else {
+            return Err(Failure::at("/start/contact_id", Cause::NeedsServer));
+        };
+        let setup = &made.1;
+        let contact = &contact(setup.clone(), "/contact")?;
+        let full = contact.gross_slip_displacement();
+        if first.is_none() {
+            // What the request does not have cannot be at fault: the contact is.
+            range::DISPLACEMENT.check(full).map_err(|error| Failure::at("/contact", error))?;
         }
+        protocol(&Subject { contact, first: first.or(Some(full)), setup: Some(setup) }, &task, stop).map(Plain)
     }
 }
 
 impl FromStored for FindProtocol {
     type OnContact = ProtocolTask;
 
-    fn stored(
-        (subject, task): (ProtocolSubject, ProtocolTask),
-    ) -> Result<(Uuid, Option<ContactDefinition>, ProtocolTask), (ProtocolSubject, ProtocolTask)> {
+    fn stored((subject, task): Task<Self>) -> Result<(Uuid, Option<ContactDefinition>, ProtocolTask), Task<Self>> {
         match subject {
             ProtocolSubject::Living(id, definition) => Ok((id, definition.map(|definition| *definition), task)),
             virgin @ ProtocolSubject::Virgin(..) => Err((virgin, task)),
@@ -140,12 +140,12 @@ impl OnContact for ProtocolTask {
 /// The protocol that begins from the present state of a contact.
 ///
 /// # Errors
-/// [`Failure::Lifted`] if it does not touch, or as [`simulation::protocol`].
+/// [`Cause::Lifted`] if it does not touch, or as [`protocol`].
 pub fn find_from_state(contact: &Contact, task: &ProtocolTask, stop: &Stop) -> Result<ProtocolReply, Failure> {
     if contact.contact_radius() <= 0.0 {
-        return Err(Failure::Lifted);
+        return Err(Failure::at("", Cause::Lifted));
     }
-    simulation::protocol(&Subject { contact, first: None, setup: None }, task, stop)
+    protocol(&Subject { contact, first: None, setup: None }, task, stop)
 }
 
 /// What a search costs on a profile over that on a sphere.

@@ -1,34 +1,62 @@
-//! The plot of a fretting map: where gross slip begins, and lines of equal friction work, over the load.
+//! A fretting map: steady cycles under many loads; its plot has where gross slip begins, and lines of equal friction
+//! work, over the load.
 
+use stickslip_mechanics::Contact;
 use stickslip_report::plot::{Axis, Colour, Curve, Panel, Plot};
-use stickslip_wire::SteadyCycle;
+use stickslip_wire::cycle::{CycleTask, FrettingMap};
+use stickslip_wire::{Accuracy, CycleReply, SteadyCycle};
+
+use super::steady::steady_cycles;
+use crate::admission::Stop;
+use crate::simulation::{Failure, Timer};
+
+/// The steady cycles of a contact under each load of a map, the loads one after the other; the rows say which.
+///
+/// # Errors
+/// As [`steady_cycles`], and [`Failure`] for a load that the profile does not reach.
+pub fn cycles(
+    contact: &Contact,
+    task: &CycleTask,
+    map: FrettingMap,
+    timer: Timer<'_>,
+    stop: &Stop,
+) -> Result<CycleReply, Failure> {
+    let under = |load: f64| {
+        let pressed = contact.pressed(load).map_err(|error| Failure::at("/map/normal_force", error))?;
+        let mut reply = steady_cycles(&pressed, task, timer, stop)?;
+        for row in &mut reply.cycles {
+            row.normal_force = Some(load);
+            row.gross_slip_displacement = Some(reply.contact.gross_slip_displacement);
+        }
+        Ok::<_, Failure>(reply)
+    };
+    let mut loads = map.loads();
+    let mut whole = under(loads.next().unwrap_or(map.normal_force.from))?;
+    for load in loads {
+        let CycleReply { cycles, accuracy, warnings, .. } = under(load)?;
+        whole.cycles.extend(cycles);
+        // The time is that of all, the warnings are those of the largest load.
+        let force_error = accuracy.force_error.max(whole.accuracy.force_error);
+        (whole.accuracy, whole.warnings) = (Accuracy { force_error, ..accuracy }, warnings);
+    }
+    Ok(CycleReply { contact: contact.summary().into(), ..whole })
+}
 
 /// The plot of cycles load by load, with so many amplitudes under each.
-#[must_use]
 pub fn plot(cycles: &[SteadyCycle], amplitudes: usize) -> Plot {
     let columns: Vec<Column> = cycles.chunks(amplitudes.max(1)).map(Column::of).collect();
     let most = columns.iter().flat_map(|column| &column.cycles).map(|cycle| cycle.0).fold(0.0, f64::max);
-    let over = |amplitude: &dyn Fn(&Column) -> f64| {
+    let over = |amplitude: &dyn Fn(&Column) -> f64| -> Vec<_> {
         columns.iter().map(|column| (column.load.log10(), amplitude(column).log10())).collect()
     };
     let slip = over(&|column| if column.gross_slip <= most { column.gross_slip } else { f64::NAN });
-    let mut curves =
-        vec![Curve { name: "gross slip above", points: slip, colour: Colour::Red, silent: false, dots: false }];
+    let mut curves = vec![Curve::line("gross slip above", Colour::Red, slip)];
     for (index, level) in decades(&columns).into_iter().enumerate() {
-        curves.push(Curve {
-            name: "equal friction work, a factor of 10 from line to line",
-            points: over(&|column| column.amplitude_of(level)),
-            colour: Colour::Grey,
-            silent: index > 0,
-            dots: false,
-        });
+        let name = if index == 0 { "equal friction work, a factor of 10 from line to line" } else { "" };
+        curves.push(Curve::line(name, Colour::Grey, over(&|column| column.amplitude_of(level))));
     }
-    Plot {
-        title: "Fretting map".to_owned(),
-        x: Axis { name: "log₁₀(normal force / N)", unit: None },
-        panels: vec![Panel { y: Axis { name: "log₁₀(displacement amplitude U₀ / m)", unit: None }, curves }],
-        bands: Vec::new(),
-    }
+    let y = Axis { name: "log₁₀(displacement amplitude U₀ / m)", unit: None };
+    Plot::new("Fretting map", Axis { name: "log₁₀(normal force / N)", unit: None }, vec![Panel { y, curves }])
 }
 
 /// The cycles under one load.

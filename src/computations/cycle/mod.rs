@@ -1,19 +1,22 @@
 //! `cycle`: the steady cycles of a contact at constant load, under a load that oscillates, or under many.
 
+mod map;
+mod steady;
+mod studies;
+
 use serde_json::json;
 
 use stickslip_mechanics::{Contact, Move, Profile, Tangential};
 use stickslip_report::plot::{Axis, Colour, Curve, Drawing, Panel, Plot};
 use stickslip_wire::cycle::CycleTask;
-use stickslip_wire::definition::SharedSetup;
 use stickslip_wire::{ContactDefinition, CycleReply, CycleRequest, Harmonic, SteadyCycle};
 
-use super::{About, Computation, Example, OnContact, Outcome, Route, Shown, example, fretting_map};
+use super::{About, Computation, Example, OnContact, Outcome, Route, Shown, Task, example};
 use crate::admission::{Nanoseconds, Stop};
-use crate::formats::{Cells, Column, Format, Table};
+use crate::formats::{Column, Table};
 use crate::simulation::bytes::{NUMBER_LENGTH, STATE_LENGTH, of_shape};
 use crate::simulation::cost::{RADIUS_COST, on_profile};
-use crate::simulation::{self, Failure, Timer};
+use crate::simulation::{Failure, Timer, contact};
 
 /// One steady cycle with its row as JSON.
 const CYCLE_COST: u64 = 2_000;
@@ -58,10 +61,8 @@ impl Computation for Cycle {
                       asked for, the harmonics and the friction work per area, or the same cycles under many loads. \
                       Nothing is stored.",
         reply: "The cycles, one for each amplitude, under each load of a map",
-        formats: &Format::ALL,
-        printed: Format::Columns,
         shows: "The friction work per area is in `columns` alone.",
-        choice: None,
+        ..About::TABLE
     };
 
     type Request = CycleRequest;
@@ -98,24 +99,21 @@ impl Computation for Cycle {
         ]
     }
 
-    fn bytes((definition, _, task): &(ContactDefinition, SharedSetup, CycleTask)) -> usize {
+    fn bytes((definition, _, task): &Task<Self>) -> usize {
         task.bytes() + of_shape(&definition.profile)
     }
 
-    fn rows((.., task): &(ContactDefinition, SharedSetup, CycleTask)) -> (usize, usize) {
+    fn rows((.., task): &Task<Self>) -> (usize, usize) {
         OnContact::rows(task)
     }
 
-    fn cost((_, setup, task): &(ContactDefinition, SharedSetup, CycleTask)) -> Nanoseconds {
+    fn cost((_, setup, task): &Task<Self>) -> Nanoseconds {
         task.cost(&setup.profile, 0)
     }
 
-    fn run(
-        (_, setup, task): (ContactDefinition, SharedSetup, CycleTask),
-        stop: &Stop,
-    ) -> Result<SteadyCycles, Failure> {
-        let (contact, reply) = simulation::cycle_of(setup, &task, stop)?;
-        Ok(SteadyCycles { contact, reply, task })
+    fn run((_, setup, task): Task<Self>, stop: &Stop) -> Result<SteadyCycles, Failure> {
+        let timer = Timer::start(stop);
+        SteadyCycles::of(contact(setup, "/contact")?, task, timer, stop)
     }
 }
 
@@ -124,9 +122,8 @@ impl OnContact for CycleTask {
 
     fn bytes(&self) -> usize {
         let curve = self.best_load.map_or(0, |study| study.points.unwrap_or(0));
-        let swept = self.response.as_ref().map_or(0, |(asked, _)| asked.frequencies.as_ref().map_or(200, Vec::len));
         self.rows() * (CYCLE_BYTES + self.harmonics * HARMONIC_BYTES + (self.radii() + curve) * DENSITY_BYTES)
-            + swept * CYCLE_BYTES
+            + frequencies(self) * CYCLE_BYTES
     }
 
     fn rows(&self) -> (usize, usize) {
@@ -142,15 +139,27 @@ impl OnContact for CycleTask {
         // Some four hundred loads are compared.
         let searched = self.best_load.map_or(0, |study| 400 + study.points.unwrap_or(0) as u64) * CYCLE_COST;
         let each = CYCLE_COST + stepped + harmonics + searched + self.radii() as u64 * RADIUS_COST;
-        let swept = self.response.as_ref().map_or(0, |(asked, _)| asked.frequencies.as_ref().map_or(200, Vec::len));
-        let response = OSCILLATION_COST * swept as u64;
+        let response = OSCILLATION_COST * frequencies(self) as u64;
         on_profile(profile, each.saturating_mul(self.rows() as u64).saturating_add(response), false)
     }
 
     fn run(self, contact: Contact, _: u64, stop: &Stop) -> Result<SteadyCycles, Failure> {
-        let contact = contact.without_history();
-        let reply = simulation::cycle(&contact, &self, Timer::start(stop), stop)?;
-        Ok(SteadyCycles { contact, reply, task: self })
+        SteadyCycles::of(contact.without_history(), self, Timer::start(stop), stop)
+    }
+}
+
+/// Frequencies of the oscillations of a mass.
+fn frequencies(task: &CycleTask) -> usize {
+    task.response.as_ref().map_or(0, |(asked, _)| asked.frequencies.as_ref().map_or(studies::FREQUENCIES, Vec::len))
+}
+
+impl SteadyCycles {
+    fn of(contact: Contact, task: CycleTask, timer: Timer<'_>, stop: &Stop) -> Result<SteadyCycles, Failure> {
+        let reply = match task.map {
+            Some(map) => map::cycles(&contact, &task, map, timer, stop)?,
+            None => steady::steady_cycles(&contact, &task, timer, stop)?,
+        };
+        Ok(SteadyCycles { contact, reply, task })
     }
 }
 
@@ -161,96 +170,81 @@ impl Outcome for SteadyCycles {
         &self.reply
     }
 
+    /// A row for each amplitude, under each load of a map.
     fn table(&self, _: &Shown) -> Option<Table<'_>> {
-        Some(table(&self.reply, &self.task))
+        let (cycles, task) = (&self.reply.cycles, &self.task);
+        let column = |name, unit, of: fn(&SteadyCycle) -> f64| Column::floats(name, unit, move |row| of(&cycles[row]));
+        let mut columns = Vec::new();
+        if task.map.is_some() {
+            columns.push(Column::floats("normal_force", "N", |row| cycles[row].normal_force));
+            columns.push(Column::floats("gross_slip_displacement", "m", |row| cycles[row].gross_slip_displacement));
+        }
+        columns.push(column("displacement_amplitude", "m", |cycle| cycle.displacement_amplitude));
+        columns.push(column("force_amplitude", "N", |cycle| cycle.force_amplitude));
+        if task.stiffness.is_some() {
+            columns.push(Column::floats("machine_amplitude", "m", |row| cycles[row].machine_amplitude));
+        }
+        columns.extend([
+            column("dissipated_energy", "J", |cycle| cycle.dissipated_energy),
+            column("max_elastic_energy", "J", |cycle| cycle.max_elastic_energy),
+            column("secant_stiffness", "N/m", |cycle| cycle.secant_stiffness),
+            column("tangent_stiffness", "N/m", |cycle| cycle.tangent_stiffness),
+            Column::floats("loss_factor", "1", |row| cycles[row].loss_factor),
+            Column::floats("sliding_ratio", "1", |row| cycles[row].sliding_ratio),
+            column("stick_radius", "m", |cycle| cycle.stick_radius),
+            Column::words("regime", |row| cycles[row].regime.name()),
+        ]);
+        let unit = if task.is_force_driven() { "m" } else { "N" };
+        for index in 0..task.harmonics {
+            let part = |name: &str, of: fn(&Harmonic) -> f64| {
+                let value = move |row: usize| cycles[row].harmonics.as_deref()?.get(index).map(of);
+                Column::floats(&format!("{name}_{}", index + 1), unit, value)
+            };
+            columns.push(part("in_phase", |harmonic| harmonic.in_phase));
+            columns.push(part("quadrature", |harmonic| harmonic.quadrature));
+        }
+        Some(Table::flat(cycles.len(), columns))
     }
 
     fn picture(&self, _: &Shown) -> Option<Drawing> {
-        Some(Drawing::Plot(plot(&self.contact, &self.reply, &self.task)))
+        Some(Drawing::Plot(plot(&self.contact, &self.reply.cycles, &self.task)))
     }
-}
-
-/// Steady cycles: a row for each amplitude.
-fn table<'a>(reply: &'a CycleReply, task: &CycleTask) -> Table<'a> {
-    let cycles = &reply.cycles;
-    let column = |name, unit, of: fn(&SteadyCycle) -> f64| Column::floats(name, unit, move |row| of(&cycles[row]));
-    let maybe = |number: Option<f64>| number.unwrap_or(f64::NAN);
-    let mut columns = vec![
-        column("displacement_amplitude", "m", |cycle| cycle.displacement_amplitude),
-        column("force_amplitude", "N", |cycle| cycle.force_amplitude),
-        column("dissipated_energy", "J", |cycle| cycle.dissipated_energy),
-        column("max_elastic_energy", "J", |cycle| cycle.max_elastic_energy),
-        column("secant_stiffness", "N/m", |cycle| cycle.secant_stiffness),
-        column("tangent_stiffness", "N/m", |cycle| cycle.tangent_stiffness),
-        Column::floats("loss_factor", "1", move |row| maybe(cycles[row].loss_factor)),
-        Column::floats("sliding_ratio", "1", move |row| maybe(cycles[row].sliding_ratio)),
-        column("stick_radius", "m", |cycle| cycle.stick_radius),
-        Column::new("regime", Some(""), Cells::Words(Box::new(|row| cycles[row].regime.name()))),
-    ];
-    if task.stiffness.is_some() {
-        let amplitude = Column::floats("machine_amplitude", "m", move |row| maybe(cycles[row].machine_amplitude));
-        columns.insert(2, amplitude);
-    }
-    if task.map.is_some() {
-        let load = Column::floats("normal_force", "N", move |row| maybe(cycles[row].normal_force));
-        let limit = move |row: usize| maybe(cycles[row].gross_slip_displacement);
-        columns.splice(0..0, [load, Column::floats("gross_slip_displacement", "m", limit)]);
-    }
-    let unit = if task.is_force_driven() { "m" } else { "N" };
-    for index in 0..task.harmonics {
-        let part = |of: fn(&Harmonic) -> f64| {
-            move |row: usize| maybe(cycles[row].harmonics.as_deref().and_then(|all| all.get(index)).map(of))
-        };
-        let order = index + 1;
-        columns.push(Column::floats(&format!("in_phase_{order}"), unit, part(|harmonic| harmonic.in_phase)));
-        columns.push(Column::floats(&format!("quadrature_{order}"), unit, part(|harmonic| harmonic.quadrature)));
-    }
-    Table::flat(cycles.len(), columns)
 }
 
 /// Loss factor and secant stiffness over the amplitude, or the loop if there is one amplitude at constant load, or the
 /// fretting map. `contact` is at the load of the cycles and has no history.
-fn plot(contact: &Contact, reply: &CycleReply, task: &CycleTask) -> Plot {
+fn plot(contact: &Contact, cycles: &[SteadyCycle], task: &CycleTask) -> Plot {
     if task.map.is_some() {
-        return fretting_map::plot(&reply.cycles, task.drives().len());
+        return map::plot(cycles, task.drives().len());
     }
-    if let ([only], None) = (&reply.cycles[..], task.normal) {
+    if let ([only], None) = (cycles, task.normal) {
         return steady_loop(contact, only);
     }
-    let panel = |name, unit, colour, of: fn(&SteadyCycle) -> f64| {
-        let mut points: Vec<_> = reply.cycles.iter().map(|cycle| (cycle.displacement_amplitude, of(cycle))).collect();
+    let panel = |y, colour, of: fn(&SteadyCycle) -> f64| {
+        let mut points: Vec<_> = cycles.iter().map(|cycle| (cycle.displacement_amplitude, of(cycle))).collect();
         points.sort_by(|one, other| one.0.total_cmp(&other.0));
-        Panel { y: Axis { name, unit }, curves: vec![Curve { name: "", points, colour, silent: true, dots: false }] }
+        Panel { y, curves: vec![Curve::line("", colour, points)] }
     };
-    Plot {
-        title: "Steady cycles".to_owned(),
-        x: Axis { name: "displacement amplitude U₀", unit: Some("m") },
-        panels: vec![
-            panel("loss factor", None, Colour::Red, |cycle| cycle.loss_factor.unwrap_or(f64::NAN)),
-            panel("secant stiffness", Some("N/m"), Colour::Blue, |cycle| cycle.secant_stiffness),
-        ],
-        bands: Vec::new(),
-    }
+    let loss =
+        panel(Axis { name: "loss factor", unit: None }, Colour::Red, |cycle| cycle.loss_factor.unwrap_or(f64::NAN));
+    let stiffness = panel(Axis::of("secant stiffness", "N/m"), Colour::Blue, |cycle| cycle.secant_stiffness);
+    Plot::new("Steady cycles", Axis::of("displacement amplitude U₀", "m"), vec![loss, stiffness])
 }
 
 /// The loop of a steady cycle, followed from its upper end.
 fn steady_loop(contact: &Contact, cycle: &SteadyCycle) -> Plot {
     let mut contact = contact.clone();
-    let mut at = |share: f64| {
+    let at = |share: f64| {
         let displacement = share * cycle.displacement_amplitude;
         let step = Move { tangential: Some(Tangential::Displacement(displacement)), ..Move::default() };
         (displacement, contact.apply(&step).map_or(f64::NAN, |()| contact.force()))
     };
     let down = (0..=BRANCH_POINTS).map(|index| 1.0 - 2.0 * index as f64 / BRANCH_POINTS as f64);
     let up = down.clone().map(|share| -share);
-    let points = down.chain(up).map(&mut at).collect();
-    Plot {
-        title: format!("Steady cycle of {:.4e} J", cycle.dissipated_energy),
-        x: Axis { name: "displacement U", unit: Some("m") },
-        panels: vec![Panel {
-            y: Axis { name: "tangential force F", unit: Some("N") },
-            curves: vec![Curve { name: "", points, colour: Colour::Blue, silent: true, dots: false }],
-        }],
-        bands: Vec::new(),
-    }
+    let curves = vec![Curve::line("", Colour::Blue, down.chain(up).map(at))];
+    Plot::new(
+        format!("Steady cycle of {:.4e} J", cycle.dissipated_energy),
+        Axis::of("displacement U", "m"),
+        vec![Panel { y: Axis::of("tangential force F", "N"), curves }],
+    )
 }

@@ -1,20 +1,23 @@
 //! `fretting`: fatigue criteria over the steady cycle of a contact.
 
+mod picture;
+mod rating;
+mod warnings;
+
 use serde_json::json;
 
-use stickslip_mechanics as mechanics;
-use stickslip_mechanics::Profile;
+use stickslip_mechanics::{Profile, Stress, fatigue};
 use stickslip_report::plot::Drawing;
-use stickslip_wire::definition::SharedSetup;
 use stickslip_wire::fretting::FrettingTask;
 use stickslip_wire::{ContactDefinition, Fault, FrettingReply, FrettingRequest};
 
-use super::{About, Choice, Computation, Example, Outcome, Route, Shown, example, fretting_picture as picture};
+use super::subsurface::column_table;
+use super::{About, Choice, Computation, Example, Outcome, Route, Shown, Task, example};
 use crate::admission::{Nanoseconds, Stop};
-use crate::formats::{Column, Format, SUBSURFACE_ROW, Table};
+use crate::formats::{SUBSURFACE_ROW, Table};
+use crate::simulation::Failure;
 use crate::simulation::bytes::{NUMBER_LENGTH, of_shape};
 use crate::simulation::cost::{KINK_COST, MOVE_COST, PLACE_COST};
-use crate::simulation::{self, Failure};
 
 /// One instant of a curved move, with the mesh of the many pieces that it leaves.
 const CURVED_INSTANT_COST: u64 = 20_000_000;
@@ -57,10 +60,9 @@ impl Computation for Fretting {
                       cycle and rates it by fatigue criteria: where would a crack start, on which plane, and how far \
                       is it from a limit. Nothing is stored.",
         reply: "The criteria, place by place",
-        formats: &Format::ALL,
-        printed: Format::Columns,
         shows: "A picture is of one criterion over a `plane`, the `surface` or a `line`.",
         choice: Some(CRITERION),
+        ..About::TABLE
     };
 
     type Request = FrettingRequest;
@@ -81,8 +83,7 @@ impl Computation for Fretting {
             ),
             example(
                 "surface",
-                "Critical planes and Ruiz's parameters on the surface, with a bulk \
-            stress",
+                "Critical planes and Ruiz's parameters on the surface, with a bulk stress",
                 json!({
                     "contact": ContactDefinition::example(),
                     "path": {"displacement": [1e-7, -1e-7]},
@@ -95,29 +96,29 @@ impl Computation for Fretting {
         ]
     }
 
-    fn check_shown((.., task): &(ContactDefinition, SharedSetup, FrettingTask), shown: &Shown) -> Result<(), Fault> {
+    fn check_shown((.., task): &Task<Self>, shown: &Shown) -> Result<(), Fault> {
         picture::criterion(task, shown).map(drop)
     }
 
     /// The states and fields of a cycle, the places of a search, and the values.
-    fn bytes((definition, _, task): &(ContactDefinition, SharedSetup, FrettingTask)) -> usize {
+    fn bytes((definition, _, task): &Task<Self>) -> usize {
         let columns = task.measures().iter().flatten().count();
-        let path = size_of::<mechanics::Stress>() + 8 * 2 * NUMBER_LENGTH;
+        let path = size_of::<Stress>() + 8 * 2 * NUMBER_LENGTH;
         let instants = task.plan.length() * ASSUMED_INSTANTS;
         task.places.count() * (3 + columns) * (size_of::<f64>() + size_of::<Option<f64>>() + 2 * NUMBER_LENGTH)
             + SEARCHED_PLACES * (4 + columns) * size_of::<f64>()
             + task.stress_paths.len() * instants * path
-            + mechanics::fatigue::MOST_BYTES
-            + mechanics::fatigue::FIELD_BYTES
+            + fatigue::MOST_BYTES
+            + fatigue::FIELD_BYTES
             + of_shape(&definition.profile)
     }
 
-    fn rows((.., task): &(ContactDefinition, SharedSetup, FrettingTask)) -> (usize, usize) {
+    fn rows((.., task): &Task<Self>) -> (usize, usize) {
         (task.places.count(), SUBSURFACE_ROW)
     }
 
     /// Of the criteria at some places and of the search beside them, or of a search for the worst places.
-    fn cost((_, setup, task): &(ContactDefinition, SharedSetup, FrettingTask)) -> Nanoseconds {
+    fn cost((_, setup, task): &Task<Self>) -> Nanoseconds {
         let moves = task.plan.length() as u64;
         let stress = match &*setup.profile {
             Profile::Sphere(_) => KINK_COST * 4,
@@ -134,8 +135,8 @@ impl Computation for Fretting {
         places.saturating_mul(each).saturating_add(netted).saturating_add(followed)
     }
 
-    fn run((_, setup, task): (ContactDefinition, SharedSetup, FrettingTask), stop: &Stop) -> Result<Rated, Failure> {
-        Ok(Rated { reply: simulation::fretting(setup, &task, stop)?, task })
+    fn run((_, setup, task): Task<Self>, stop: &Stop) -> Result<Rated, Failure> {
+        Ok(Rated { reply: rating::rate(setup, &task, stop)?, task })
     }
 }
 
@@ -156,24 +157,13 @@ impl Outcome for Rated {
     }
 
     fn table(&self, _: &Shown) -> Option<Table<'_>> {
-        Some(table(&self.reply))
+        let FrettingReply { x, y, z, .. } = &self.reply;
+        let ratings = self.reply.ratings().map(|(name, unit, rating)| (name, unit, &rating.values[..]));
+        Some(column_table([x, y, z], ratings))
     }
 
     fn picture(&self, shown: &Shown) -> Option<Drawing> {
         let criterion = picture::criterion(&self.task, shown).ok()??;
         Some(picture::plot(&self.reply, &self.task, criterion))
     }
-}
-
-/// Fatigue criteria: a row for each place.
-fn table(reply: &FrettingReply) -> Table<'_> {
-    let mut columns = vec![
-        Column::floats("x", "m", |row| reply.x[row]),
-        Column::floats("y", "m", |row| reply.y[row]),
-        Column::floats("z", "m", |row| reply.z[row]),
-    ];
-    for (name, unit, rating) in reply.ratings() {
-        columns.push(Column::floats(name, unit, |row| rating.values[row].unwrap_or(f64::NAN)));
-    }
-    Table::flat(reply.x.len(), columns)
 }
