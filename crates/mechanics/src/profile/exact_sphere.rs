@@ -7,8 +7,9 @@
 //! Well below the equator, short series serve: [`shallow_sphere`], [`slope_series`](super::slope_series).
 
 use super::shallow_sphere::{self, LIMIT};
-use super::shape::{self, End, Falls, KernelOrder, Shape, ShapeFacts};
+use super::shape::{End, Falls, KernelOrder, Shape, ShapeFacts};
 use super::slope_series::MOST_POWERS;
+use super::smooth_coordinate::{self, SmoothCoordinate};
 use super::{DoubleDouble, Error, Moments, Ring, Span, StressRadius, range, series_kernel};
 use crate::numerics::gauss::{Singular, along_strip};
 use crate::numerics::roots::{distance_below, increasing};
@@ -128,6 +129,45 @@ fn shortfall(s: f64) -> f64 {
     }
 }
 
+impl SmoothCoordinate for ExactSphere {
+    fn kink_radius(&self) -> f64 {
+        0.0
+    }
+
+    fn level_at(&self, t: f64) -> f64 {
+        self.level(t)
+    }
+
+    fn slope_at(&self, t: f64) -> f64 {
+        self.slope(t)
+    }
+
+    fn bend_at(&self, t: f64) -> f64 {
+        let u = self.share(t);
+        let square = u * u;
+        if square > 0.1 {
+            let rest = 1.0 - square;
+            return 2.0 * u / (rest * rest) - u / rest - u.atanh();
+        }
+        // sum over k of (4 k (k + 1)/(2k + 1)) u^(2k+1).
+        let sum =
+            (1..=16).rev().map(f64::from).fold(0.0, |sum, k| square * (sum + 4.0 * k * (k + 1.0) / (2.0 * k + 1.0)));
+        u * sum
+    }
+
+    fn rise_at(&self, t: f64, top: f64, dt: f64) -> f64 {
+        self.rise(&Span::under(DoubleDouble::square_of(top), top, dt * (t + top)))
+    }
+
+    fn upper_bound(&self, level: f64) -> f64 {
+        self.square(level.into()).value().sqrt()
+    }
+
+    fn ceiling(&self) -> f64 {
+        self.radius
+    }
+}
+
 impl Shape for ExactSphere {
     fn level(&self, radius: f64) -> f64 {
         radius * self.sigma_at(radius)
@@ -239,7 +279,10 @@ impl Shape for ExactSphere {
             return if order == KernelOrder::Value { kernel } else { slope };
         }
         if order == KernelOrder::Slope {
-            return shape::kernel(self, order, at, span);
+            // At the tip gamma/t is 2/R to the last digit below 1e-9 R.
+            let tip = StressRadius::new(1e-9 * span.outer_radius);
+            let at = if at.radius > 0.0 || span.inner_radius > 0.0 { at } else { &tip };
+            return smooth_coordinate::kernel(self, order, at, span);
         }
         let height = self.height_square(at.square).sqrt();
         let square_outer = self.height_square(span.outer);
@@ -251,7 +294,7 @@ impl Shape for ExactSphere {
         // Inward from the outer end, where asinh(q)/(q cosh s) is least: the panels must not end early, so from s = low
         // on.
         let low = (top - length).max(0.0);
-        let curved = along_strip(length, 1.0, |s| {
+        let curved = along_strip(length, 1.0, f64::INFINITY, |s| {
             let s = low + s;
             let q = (square + (stretch * s.sinh()).powi(2)).sqrt();
             let angle = if q > 1e-8 { q.asinh() / q } else { 1.0 };

@@ -238,7 +238,7 @@ pub(super) fn displacement_integral<S: Shape>(shape: &S, at: &StressRadius, span
 }
 
 /// [`Shape::kernel`] by series.
-pub(super) fn kernel<S: Shape>(shape: &S, order: KernelOrder, at: &StressRadius, span: &Span) -> f64 {
+fn kernel<S: Shape>(shape: &S, order: KernelOrder, at: &StressRadius, span: &Span) -> f64 {
     let Some(pieces) = SmoothPieces::of_span(shape, span, at.radius) else { return f64::NAN };
     match order {
         KernelOrder::Value => pieces.sum(at),

@@ -94,6 +94,11 @@ pub(super) trait SmoothCoordinate {
         1.0
     }
 
+    /// The t at which gamma is singular, never reached.
+    fn ceiling(&self) -> f64 {
+        f64::INFINITY
+    }
+
     /// Whether gamma > 0 at t = 0, so that f' jumps at b and stresses are infinite there.
     fn jumps(&self) -> bool {
         self.slope_at(0.0) > 0.0

@@ -68,10 +68,15 @@ impl Path {
         Some(self.length * slopes.iter().zip(rule).map(|(slope, (_, weight))| slope * weight).sum::<f64>())
     }
 
-    /// int f(t, v, t_outer - t) ds for an f that changes as a power of t does.
-    fn integrate(&self, power: f64, f: impl Fn(f64, f64, f64) -> f64) -> f64 {
+    /// int f(t, v, t_outer - t) ds for an f that changes as a power of t does; `ceiling` is the t where it is singular.
+    fn integrate(&self, power: f64, ceiling: f64, f: impl Fn(f64, f64, f64) -> f64) -> f64 {
         let end = self.high + self.v_high;
-        along_strip(self.length, power.max(1.0).recip(), |s| {
+        let room = if ceiling < f64::INFINITY {
+            ((ceiling + (ceiling * ceiling - self.kappa).sqrt()) / end).ln()
+        } else {
+            ceiling
+        };
+        along_strip(self.length, power.max(1.0).recip(), room, |s| {
             let here = end * (-s).exp();
             let other = self.kappa / here;
             let drop = -0.5 * (-s).exp_m1() * (end - other);
@@ -94,7 +99,7 @@ pub(super) fn kernel(family: &impl SmoothCoordinate, order: KernelOrder, at: &St
     if let Some(kernel) = path.short(family) {
         return kernel;
     }
-    path.integrate(family.power(), |t, _, drop| family.slope_below(t, path.high, drop))
+    path.integrate(family.power(), family.ceiling(), |t, _, drop| family.slope_below(t, path.high, drop))
 }
 
 /// dK/d(r^2) over a path: (1/2) int gamma dt/v^3, by parts where v starts from zero or nearly so.
@@ -102,12 +107,13 @@ fn kernel_slope(family: &impl SmoothCoordinate, path: &Path) -> f64 {
     let (low, high, v_low, v_high) = (path.low, path.high, path.v_low, path.v_high);
     if v_low > 0.0 && (path.kappa <= 0.0 || v_high < 2.0 * v_low) {
         let integrand = |t, v, drop| family.slope_below(t, high, drop) / (v * v);
-        return 0.5 * path.integrate(family.power(), integrand);
+        return 0.5 * path.integrate(family.power(), family.ceiling(), integrand);
     }
     if low <= 0.0 && family.jumps() {
         return f64::NEG_INFINITY;
     }
-    let bend = path.integrate(family.power(), |t, _, drop| family.bend_below(t, high, drop) / (t * t));
+    let bend =
+        path.integrate(family.power(), family.ceiling(), |t, _, drop| family.bend_below(t, high, drop) / (t * t));
     let start = if v_low > 0.0 { family.slope_at(low) / (low * v_low) } else { 0.0 };
     0.5 * (bend + start - family.slope_at(high) / (high * v_high))
 }
