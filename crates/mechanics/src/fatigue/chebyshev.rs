@@ -48,11 +48,12 @@ pub(super) fn weights(n: usize, x: f64) -> Vec<f64> {
 
 fn work_weights(n: usize) -> Vec<Vec<f64>> {
     let mut works = vec![vec![0.0; n + 1]; n + 1];
+    let cosines: Vec<f64> = (0..2 * n).map(|index| point(n, index)).collect();
     for panel in 0..PANELS {
         let width = 2.0 / f64::from(PANELS);
         QuadraturePanel::fine(width).visit(|offset, share| {
             let x = width * f64::from(panel) - 1.0 + offset;
-            let slope = slopes(n, x.acos());
+            let slope = slopes(n, &cosines, x.acos());
             for (row, value) in works.iter_mut().zip(weights(n, x)) {
                 row.iter_mut().zip(&slope).for_each(|(entry, rise)| *entry += share * value * rise);
             }
@@ -61,17 +62,18 @@ fn work_weights(n: usize) -> Vec<Vec<f64>> {
     works
 }
 
-/// The weights of the values at the points in the derivative of the polynomial at x = cos(angle), between the ends.
-fn slopes(n: usize, angle: f64) -> Vec<f64> {
+/// The weights of the values at the points in the derivative of the polynomial at x = cos(angle), between the ends, by
+/// the cosines of all multiples of the angle between points.
+fn slopes(n: usize, cosines: &[f64], angle: f64) -> Vec<f64> {
     let half = |m: usize| if m == 0 || m == n { 0.5 } else { 1.0 };
     // dT_m/dx = m sin(m angle)/sin(angle).
-    let rise = |m: usize| m as f64 * (m as f64 * angle).sin() / angle.sin();
-    (0..=n)
-        .map(|j| {
-            let sum: f64 = (1..=n).map(|m| half(m) * (PI * (m * j) as f64 / n as f64).cos() * rise(m)).sum();
-            2.0 / n as f64 * half(j) * sum
-        })
-        .collect()
+    let rise = |m: usize| half(m) * m as f64 * (m as f64 * angle).sin() / angle.sin();
+    let rises: Vec<f64> = (0..=n).map(rise).collect();
+    let slope = |j: usize| {
+        let sum: f64 = rises.iter().enumerate().map(|(m, rise)| cosines[m * j % (2 * n)] * rise).sum();
+        2.0 / n as f64 * half(j) * sum
+    };
+    (0..=n).map(slope).collect()
 }
 
 #[cfg(test)]

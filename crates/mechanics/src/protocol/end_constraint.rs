@@ -1,9 +1,9 @@
 //! Equal alternating extrema with a prescribed end of the path.
 //!
 //! The kinks of the smallest E determine where the path ends. For another end, one extremum must be smaller than the
-//! others: of many extrema it matters little which, and few strokes are sought by `from_any_state` too. If it is that at
-//! the outermost kink, its share and E are the two unknowns of two equations, the end and the stress of the core, solved
-//! by Broyden's method from the free optimum. If it is the core, E alone is sought.
+//! others: of many extrema it matters little which, and few strokes are sought by `from_any_state` too. If it is that
+//! at the outermost kink, its share and E are the two unknowns of two equations, the end and the stress of the core,
+//! solved by Broyden's method from the free optimum. If it is the core, E alone is sought.
 
 use super::super::normal::{load, whole};
 use super::super::profile::Point;

@@ -75,7 +75,8 @@ impl VirginStrokes<'_> {
 }
 
 impl Problem<'_> {
-    /// A sum over the rings between the edge, the kinks and `least`, with the signs of their strokes but for the last's.
+    /// A sum over the rings between the edge, the kinks and `least`, with the signs of their strokes, the outermost
+    /// being positive.
     pub(super) fn sum_down_to(&self, least: Point, kinks: &[Point], part: impl Fn(&Ring) -> f64) -> f64 {
         let mut outer = self.edge;
         let ring = |inner: &Point| Ring::between(*inner, std::mem::replace(&mut outer, *inner));
@@ -197,8 +198,8 @@ impl Problem<'_> {
 }
 
 /// The smallest largest stress E that strokes keep to, and these strokes. `march` gives the strokes for an E, if there
-/// are any, and by how much what they leave exceeds it, over it: below zero where fewer strokes are enough. `None` if it
-/// was stopped, or no E fits.
+/// are any, and by how much what they leave exceeds it, over it: below zero where fewer strokes are enough. `None` if
+/// it was stopped, or no E fits.
 ///
 /// Too large an E can be as wrong as too small a one if strokes are to end somewhere: with a `pace`, a factor, E is
 /// sought to both sides of the guess, in steps of that.

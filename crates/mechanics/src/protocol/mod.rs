@@ -196,8 +196,8 @@ fn minimax_to(
     found.into_iter().map(path).collect()
 }
 
-/// Where strokes from `first` on that slip down to kinks, the innermost first, lead to, scaled by m, if the last of them
-/// goes forwards: a stroke slips from the level on where it is twice the bound there.
+/// Where strokes from `first` on that slip down to kinks, the innermost first, lead to, scaled by m, if the last of
+/// them goes forwards: a stroke slips from the level on where it is twice the bound there.
 fn positions(first: f64, edge: DoubleDouble, kinks: &[Point]) -> Vec<f64> {
     let mut here = DoubleDouble::from(first);
     let mut positions = vec![first];

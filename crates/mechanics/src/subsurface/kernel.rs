@@ -30,8 +30,8 @@ pub(super) struct DeepPlace {
 }
 
 impl DeepPlace {
-    /// The functions for a unit of slope at t = r + `offset`, which is given by the offset to keep the digits of rho near
-    /// the surface.
+    /// The functions for a unit of slope at t = r + `offset`, which is given by the offset to keep the digits of rho
+    /// near the surface.
     pub(super) fn kernels(&self, offset: f64) -> (NormalKernels, TangentialKernels) {
         let DeepPlace { r, z, poisson: nu } = *self;
         let (zeta, square) = (Complex::new(z, r + offset), z * z - offset * (r + (r + offset)));

@@ -41,25 +41,33 @@ impl Trial {
         self.largest() + penalty * self.miss.value.abs()
     }
 
-    /// The step that the tangents promise most of within a distance, and the merit that they promise.
+    /// The step that the tangents promise most of within a distance, and the merit that they promise. One unknown more
+    /// says by how much more the end is missed, at its price.
     fn step(&self, far: f64, penalty: f64) -> Option<(Vec<f64>, f64)> {
-        let levels = &self.levels;
-        let penalties: &[f64] = if penalty > 0.0 { &[penalty, -penalty] } else { &[0.0] };
-        let signs = [1.0, -1.0].into_iter().flat_map(|sign| penalties.iter().map(move |penalty| (sign, *penalty)));
-        let rows = signs.flat_map(|(sign, penalty)| {
-            self.stresses.iter().map(move |stress| stress.combined(sign, &self.miss, penalty))
-        });
+        let (levels, missed) = (&self.levels, self.miss.value.abs());
+        let with = |function: &Linear, sign: f64, share: f64, by_miss: f64| {
+            let slope = function.slope.iter().map(|part| sign * part).chain([by_miss]);
+            Linear { value: sign * function.value + share * missed, slope: slope.collect() }
+        };
+        let signs = [1.0, -1.0];
+        let both = |sign: f64| self.stresses.iter().map(move |stress| with(stress, sign, penalty, penalty));
+        let rows: Vec<Linear> = signs.into_iter().flat_map(both).collect();
         let limit = |value: f64, parts: &[(usize, f64)]| {
-            let mut slope = vec![0.0; levels.len()];
+            let mut slope = vec![0.0; levels.len() + 1];
             parts.iter().for_each(|(index, part)| slope[*index] = *part);
             Linear { value, slope }
         };
-        let bounds = levels.iter().enumerate().flat_map(|(index, level)| {
-            [limit(-(1.0 - level).min(far), &[(index, 1.0)]), limit((-level).max(-far), &[(index, -1.0)])]
-        });
+        let between =
+            |index: usize, least: f64, most: f64| [limit(-most, &[(index, 1.0)]), limit(least, &[(index, -1.0)])];
+        let bound = |(index, level): (usize, &f64)| between(index, (-level).max(-far), (1.0 - level).min(far));
+        let farthest = far * self.miss.slope.iter().map(|part| part.abs()).sum::<f64>();
         let order = |index: usize| limit(levels[index] - levels[index - 1], &[(index - 1, -1.0), (index, 1.0)]);
-        let limits: Vec<Linear> = bounds.chain((1..levels.len()).map(order)).collect();
-        lowest(&rows.collect::<Vec<Linear>>(), &limits)
+        let limits = levels.iter().enumerate().flat_map(bound).chain(between(levels.len(), -missed, farthest));
+        let ends = signs.map(|sign| with(&self.miss, sign, -1.0, -1.0));
+        let (mut step, merit) =
+            lowest(&rows, &limits.chain((1..levels.len()).map(order)).chain(ends).collect::<Vec<Linear>>())?;
+        step.pop();
+        Some((step, merit))
     }
 }
 

@@ -12,14 +12,6 @@ pub(super) struct Linear {
     pub(super) slope: Vec<f64>,
 }
 
-impl Linear {
-    /// A multiple of it, and one of another function added.
-    pub(super) fn combined(&self, factor: f64, other: &Linear, share: f64) -> Linear {
-        let slope = self.slope.iter().zip(&other.slope).map(|(one, other)| factor * one + share * other);
-        Linear { value: factor * self.value + share * other.value, slope: slope.collect() }
-    }
-}
-
 /// The step d at which the largest of `rows` is smallest, and the value there, while no function of `limits` is above
 /// zero, as none is at d = 0; `None` where it is not found. The limits begin with an upper and a lower bound of each
 /// unknown in turn.
