@@ -29,6 +29,9 @@ pub struct Compute {
     matches: ArgMatches,
 }
 
+/// Takes a part out of a reply in JSON.
+type ReplyPart = fn(&[u8]) -> Result<String, String>;
+
 /// What flags make of a request.
 #[derive(Default)]
 struct Body {
@@ -36,7 +39,7 @@ struct Body {
     /// The format if the command line does not name one.
     format: Option<Format>,
     /// Takes out of the reply what alone is printed.
-    only: Option<fn(&[u8]) -> Result<String, String>>,
+    only: Option<ReplyPart>,
     /// What was taken for what in a measured file.
     reading: Vec<String>,
 }
