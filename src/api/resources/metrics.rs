@@ -11,8 +11,6 @@ use prometheus::core::Collector;
 use prometheus::{Counter, Gauge, IntCounter, Opts, Registry, TextEncoder};
 use stickslip_mechanics::ENGINE;
 
-use crate::admission::PoolMeters;
-use crate::jobs::JobMeters;
 use crate::metrics::process::Process;
 use crate::sessions::Readings;
 use crate::store::Commits;
@@ -43,14 +41,15 @@ pub async fn metrics(
 /// The current page: the registered counters, and gauges that are read at this request.
 fn page(app: &App, traffic: &RequestMetrics) -> prometheus::Result<String> {
     let page = Registry::new();
-    for collector in traffic.collectors() {
+    let readings = app.sessions.readings();
+    let counted = [readings.counted.collectors(), app.pool.meters().collectors(), app.jobs.meters().collectors()];
+    for collector in counted.into_iter().flatten().chain(traffic.collectors()) {
         page.register(collector)?;
     }
-    let readings = app.sessions.readings();
     sessions(&page, &readings)?;
-    solver(&page, app.pool.meters())?;
+    let threads = app.pool.capacity().threads.max(1);
+    gauge(&page, Opts::new("stickslip_solver_threads", "Threads for long work."), threads as f64)?;
     show(&page, app.pool.quotas().refused())?;
-    jobs(&page, app.jobs.meters())?;
     if let Some(store) = readings.commits {
         commits(&page, store)?;
     }
@@ -69,15 +68,10 @@ fn gauge(page: &Registry, options: Opts, value: f64) -> prometheus::Result<()> {
 }
 
 fn sessions(page: &Registry, readings: &Readings<'_>) -> prometheus::Result<()> {
-    show(page, &readings.counted.moves)?;
-    show(page, &readings.counted.hits)?;
-    show(page, &readings.counted.profiles_prepared)?;
-    show(page, &readings.counted.profiles_shared)?;
     let misses =
         IntCounter::new("stickslip_cache_misses_total", "Times that it was not, and was brought from the store.")?;
     misses.inc_by(readings.counted.open.get_sample_count());
     show(page, &misses)?;
-    show(page, &readings.counted.open)?;
     for (name, help, value) in [
         ("stickslip_cache_contacts", "Contacts in memory that nobody works on.", readings.cached),
         ("stickslip_cache_bytes", "Bytes of their states, and of profiles that are ready.", readings.bytes),
@@ -91,23 +85,6 @@ fn sessions(page: &Registry, readings: &Readings<'_>) -> prometheus::Result<()> 
         gauge(page, Opts::new(name, help), value as f64)?;
     }
     Ok(())
-}
-
-fn solver(page: &Registry, meters: &PoolMeters) -> prometheus::Result<()> {
-    gauge(page, Opts::new("stickslip_solver_threads", "Threads for long work."), meters.threads as f64)?;
-    show(page, &meters.work)?;
-    show(page, &meters.running)?;
-    show(page, &meters.waiting)?;
-    show(page, &meters.wait)?;
-    show(page, &meters.refused)
-}
-
-fn jobs(page: &Registry, meters: &JobMeters) -> prometheus::Result<()> {
-    show(page, &meters.points)?;
-    show(page, &meters.chunks)?;
-    show(page, &meters.returned)?;
-    show(page, &meters.running)?;
-    show(page, &meters.failed)
 }
 
 fn commits(page: &Registry, commits: &Commits) -> prometheus::Result<()> {
