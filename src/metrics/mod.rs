@@ -19,8 +19,8 @@ pub const SIZES: &[f64] = &[1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0, 128.0, 256.0, 
 /// The message of a panic that cannot occur, because all names are constants.
 pub const OWN_NAME: &str = "the name, the labels and the buckets of a metric are constants that the format allows";
 
-/// Defines a group of metrics: their struct, in which all of them are zero at first, and the list of them. The help text
-/// of a metric is its doc comment.
+/// Defines a group of metrics: their struct, in which all of them are zero at first, and the list of them. The help
+/// text of a metric is its doc comment.
 macro_rules! metrics {
     ($(#[$about:meta])* pub struct $group:ident {
         $($(#[doc = $help:literal])+ $field:ident: $kind:ident = $make:ident($name:literal $(, $bounds:expr)?),)+
