@@ -52,16 +52,15 @@ pub fn new_key_until(
 ) -> Result<NewKey, String> {
     let mut random = [0; RANDOM];
     getrandom::fill(&mut random).map_err(|error| format!("the system has no randomness: {error}"))?;
-    let key = format!("{PREFIX}{}", hexadecimal(&random));
+    let key = format!("{PREFIX}{}", const_hex::encode(random));
     let roles: Vec<&str> = roles.iter().map(|role| role.name()).collect();
-    let hash = hexadecimal(&Sha256::digest(key.as_bytes()));
+    let hash = const_hex::encode(Sha256::digest(key.as_bytes()));
     let end = expires_at.map(|expires_at| format!(":{expires_at}")).unwrap_or_default();
     let entry = format!("{name}:{}:{tenant}:sha256:{hash}{end}", roles.join("+"));
     parse(&entry)?;
     Ok(NewKey { key, entry })
 }
 
-/// Reads an entry.
 pub(super) fn parse(entry: &str) -> Result<Holder, String> {
     let mut parts = entry.splitn(6, ':');
     let parts: [Option<&str>; 6] = std::array::from_fn(|_| parts.next());
@@ -77,7 +76,10 @@ pub(super) fn parse(entry: &str) -> Result<Holder, String> {
         return Err(invalid_name("the name of a tenant"));
     }
     let roles = roles.split('+').map(str::parse).collect::<Result<_, _>>()?;
-    let hash = bytes(hash).ok_or("expected the SHA-256 of the key as 64 hexadecimal digits")?;
+    // The library would take a prefix, too.
+    let hash: Option<Hash> =
+        const_hex::decode_to_array(hash).ok().filter(|hashed: &Hash| hash.len() == 2 * hashed.len());
+    let hash = hash.ok_or("expected the SHA-256 of the key as 64 hexadecimal digits")?;
     let expires_at = end.map(str::parse).transpose();
     let expires_at = expires_at.map_err(|_| "expected the end of the key as 2027-01-31T12:00:00Z")?;
     Ok(Holder { name: name.into(), roles, tenant: Tenant::new(tenant), expires_at, hash })
@@ -89,15 +91,4 @@ fn invalid_name(what: &str) -> String {
 
 fn is_name(text: &str) -> bool {
     text.len() <= NAME_LENGTH && text.bytes().all(|byte| byte.is_ascii_alphanumeric() || b".-_".contains(&byte))
-}
-
-fn hexadecimal(bytes: &[u8]) -> String {
-    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
-}
-
-fn bytes(hexadecimal: &str) -> Option<Hash> {
-    let digits: Vec<u8> =
-        hexadecimal.chars().map(|digit| digit.to_digit(16)?.try_into().ok()).collect::<Option<_>>()?;
-    let bytes: Vec<u8> = digits.chunks(2).map(|pair| pair.iter().fold(0, |byte, digit| byte << 4 | digit)).collect();
-    (digits.len() == 2 * size_of::<Hash>()).then(|| bytes.try_into().ok())?
 }

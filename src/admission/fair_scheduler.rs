@@ -10,10 +10,11 @@
 
 use std::cell::RefCell;
 use std::collections::{BTreeMap, HashMap};
+use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
+use parking_lot::Mutex;
 use tokio::sync::oneshot;
 use tokio::time::timeout;
 
@@ -59,7 +60,7 @@ struct Shared {
     threads: usize,
     // How many wait, for a look without the lock.
     waiting: AtomicUsize,
-    // A std mutex: held for a moment, and never across an await.
+    // Locked for a moment, and never across an await.
     queues: Mutex<WaitQueues>,
 }
 
@@ -158,13 +159,13 @@ impl FairScheduler {
 
     /// Slots that are held.
     pub(super) fn taken(&self) -> usize {
-        self.queues().taken.len()
+        self.0.queues.lock().taken.len()
     }
 
     /// A slot for a piece of work; it is lost to others if the future is dropped.
     pub(super) async fn wait_for_slot(&self, client: Client, kind: Kind) -> SolverSlot {
         let waiter = {
-            let mut queues = self.queues();
+            let mut queues = self.0.queues.lock();
             let arrival = queues.arrivals;
             queues.arrivals += 1;
             self.queue((client, kind), arrival, &mut queues)
@@ -174,24 +175,20 @@ impl FairScheduler {
             match timeout(OVERDUE, &mut guard.waiter.slot).await {
                 // The sender is kept until it is used.
                 Ok(slot) => return slot.unwrap_or(SolverSlot(None)),
-                Err(_) => self.admit(&mut self.queues()),
+                Err(_) => self.admit(&mut self.0.queues.lock()),
             }
         }
     }
 
     /// Another slot for the same work, if nobody waits for it.
     pub(super) fn another(&self, client: &Client, kind: Kind) -> Option<SolverSlot> {
-        let mut queues = self.queues();
+        let mut queues = self.0.queues.lock();
         if self.0.waiting.load(Ordering::Relaxed) > 0 || !self.has_room(&queues, kind) {
             return None;
         }
         let arrival = queues.arrivals;
         queues.arrivals += 1;
         Some(self.begin((client.clone(), kind), arrival, &mut queues))
-    }
-
-    fn queues(&self) -> MutexGuard<'_, WaitQueues> {
-        self.0.queues.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// Whether a thread is free for work of this kind.
@@ -309,7 +306,7 @@ impl Held {
             return Duration::ZERO;
         }
         let scheduler = self.scheduler.clone();
-        let mut queues = scheduler.queues();
+        let mut queues = scheduler.0.queues.lock();
         queues.end(self);
         let worked = self.worked + held;
         if self.key.1 == Kind::Interactive && worked > INTERACTIVE {
@@ -329,7 +326,7 @@ impl Held {
 impl Drop for WaiterGuard<'_> {
     fn drop(&mut self) {
         let (scheduler, Waiter { key, arrival, .. }) = (self.scheduler, &self.waiter);
-        let mut queues = scheduler.queues();
+        let mut queues = scheduler.0.queues.lock();
         if queues.all.get_mut(key).is_some_and(|queue| queue.waiting.remove(arrival).is_some()) {
             scheduler.0.waiting.fetch_sub(1, Ordering::Relaxed);
             scheduler.admit(&mut queues);
@@ -340,7 +337,7 @@ impl Drop for WaiterGuard<'_> {
 impl Drop for SolverSlot {
     fn drop(&mut self) {
         if let Some(held) = self.0.take() {
-            let mut queues = held.scheduler.queues();
+            let mut queues = held.scheduler.0.queues.lock();
             queues.end(&held);
             held.scheduler.admit(&mut queues);
         }

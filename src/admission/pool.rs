@@ -9,13 +9,13 @@ use std::sync::Arc;
 use std::task::Poll;
 use std::time::{Duration, Instant};
 
-use prometheus::{Histogram, IntCounter, IntGauge, Opts};
+use prometheus::{Histogram, IntCounter, IntGauge};
 use tokio::sync::{OwnedSemaphorePermit, Semaphore};
 use tokio::task::spawn_blocking;
 use tokio::time::timeout;
 use tracing::Span;
 
-use crate::metrics::{Counted, SECONDS, SHORT_SECONDS, counter, gauge, histogram};
+use crate::metrics::{Counted, SECONDS, SHORT_SECONDS, metrics};
 
 use super::fair_scheduler::{FairScheduler, INTERACTIVE, Kind, SolverSlot};
 use super::memory::{BYTES, UNIT};
@@ -84,21 +84,20 @@ pub(super) struct Shared {
 #[derive(Debug)]
 pub struct RequestPermit(#[expect(dead_code, reason = "held for its drop")] OwnedSemaphorePermit);
 
-/// The metrics of a pool.
-#[derive(Debug)]
-pub struct PoolMeters {
-    /// Its threads.
-    pub threads: usize,
-    /// Work that waits for a thread.
-    pub waiting: IntGauge,
-    /// Work that has begun.
-    pub running: IntGauge,
-    /// Work for which no thread became free in time.
-    pub refused: IntCounter,
-    /// How long work waited for a thread, s.
-    pub wait: Histogram,
-    /// How long work took, at once or on a thread, s.
-    pub work: Histogram,
+metrics! {
+    /// The metrics of a pool.
+    pub struct PoolMeters {
+        /// Long work that waits for a thread.
+        waiting: IntGauge = gauge("stickslip_solver_waiting"),
+        /// Long work that has begun; some of it may have given way to other work.
+        running: IntGauge = gauge("stickslip_solver_running"),
+        /// Work for which no thread became free in time.
+        refused: IntCounter = counter("stickslip_solver_refused_total"),
+        /// How long work waited for its thread.
+        wait: Histogram = histogram("stickslip_solver_wait_seconds", SECONDS),
+        /// Time of a piece of work of the solver: moves, replays, stresses, simulations.
+        work: Histogram = histogram("stickslip_solver_seconds", SHORT_SECONDS),
+    }
 }
 
 /// The resources in use.
@@ -145,7 +144,7 @@ impl Pool {
             states: semaphore(capacity.state_bytes() / UNIT),
             queue: semaphore(capacity.queue),
             quotas: Quotas::new(capacity.quotas),
-            meters: Arc::new(PoolMeters::new(capacity.threads.max(1))),
+            meters: Arc::default(),
         }))
     }
 
@@ -318,32 +317,6 @@ impl Kind {
 }
 
 impl PoolMeters {
-    fn new(threads: usize) -> PoolMeters {
-        PoolMeters {
-            threads,
-            waiting: gauge(Opts::new("stickslip_solver_waiting", "Long work that waits for a thread.")),
-            running: gauge(Opts::new(
-                "stickslip_solver_running",
-                "Long work that has begun; some of it may have given way to other work.",
-            )),
-            refused: counter(Opts::new(
-                "stickslip_solver_refused_total",
-                "Work for which no thread became free in time.",
-            )),
-            wait: histogram(
-                Opts::new("stickslip_solver_wait_seconds", "How long work waited for its thread."),
-                SECONDS,
-            ),
-            work: histogram(
-                Opts::new(
-                    "stickslip_solver_seconds",
-                    "Time of a piece of work of the solver: moves, replays, stresses, simulations.",
-                ),
-                SHORT_SECONDS,
-            ),
-        }
-    }
-
     fn timed<T>(&self, work: impl FnOnce() -> T) -> T {
         let begin = Instant::now();
         let done = work();

@@ -2,9 +2,10 @@
 
 use std::collections::HashMap;
 use std::fmt;
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::Arc;
 
 use bytesize::ByteSize;
+use parking_lot::Mutex;
 use prometheus::{IntCounterVec, Opts};
 
 use super::Client;
@@ -134,7 +135,7 @@ impl fmt::Display for QuotaExceeded {
 #[derive(Clone, Debug)]
 pub struct Quotas {
     limits: QuotaLimits,
-    // A std mutex: held for a moment, and never across an await.
+    // Locked for a moment, and never across an await.
     used: Arc<Mutex<HashMap<(Quota, Client), usize>>>,
     refused: IntCounterVec,
 }
@@ -196,10 +197,6 @@ impl Quotas {
         self.refused.with_label_values(&[quota.name()]).inc();
         QuotaExceeded { quota, limit: self.limits.of(quota) }
     }
-
-    fn used(&self) -> MutexGuard<'_, HashMap<(Quota, Client), usize>> {
-        self.used.lock().unwrap_or_else(PoisonError::into_inner)
-    }
 }
 
 impl Share {
@@ -209,7 +206,7 @@ impl Share {
     /// [`QuotaExceeded`] if the client would have more than it may; the share is unchanged then.
     pub fn resize(&mut self, amount: usize) -> Result<(), QuotaExceeded> {
         let (quota, client) = &self.of;
-        let mut used = self.quotas.used();
+        let mut used = self.quotas.used.lock();
         let others = used.get(&self.of).map_or(0, |count| count - self.amount);
         let all = others.saturating_add(amount);
         if amount > self.amount && all > self.quotas.limits.of(*quota) && *client != Client::Server {

@@ -47,12 +47,6 @@ struct Flag {
 pub struct StopOnDrop(Stop);
 
 impl Stop {
-    /// As [`Stop::within`] the time of [`LONGEST_WORK`].
-    #[must_use]
-    pub fn guarded() -> (Stop, StopOnDrop) {
-        Stop::within(LONGEST_WORK)
-    }
-
     /// A flag that is raised when the guard is dropped, or after the work has taken `allowed`. The default flag is
     /// never raised.
     #[must_use]

@@ -350,7 +350,7 @@ async fn listen(
     tokio::spawn(sessions::run_expiry_loop(store, options.expire_after));
     tokio::spawn(reload_on_change(files, hangup, reload));
     let scheme = if tls.is_some() { "https" } else { "http" };
-    tracing::info!(%address, threads = pool.meters().threads, memory_bound, "listening");
+    tracing::info!(%address, threads = pool.capacity().threads.max(1), memory_bound, "listening");
     print(format_args!("stickslip listens on {scheme}://{address}, the page at /, the API at /docs"))?;
     let app = App { sessions, jobs, pool, access };
     api::serve_within(limiter, listener, tls, app, stop).await.map_err(|error| format!("stopped: {error}"))?;

@@ -24,7 +24,6 @@ struct Follower {
     last: Option<JobReply>,
     listener: Listener,
     _share: Share,
-    ended: bool,
 }
 
 impl Jobs {
@@ -39,8 +38,8 @@ impl Jobs {
         let listener = listener.ok_or(JobError::TooManyStreams)?;
         self.find_own(id).await?;
         let (jobs, last) = (self.clone(), None);
-        let follower = Follower { jobs, id, last, listener, _share: share, ended: false };
-        Ok(futures::stream::unfold(follower, Follower::next))
+        let follower = Follower { jobs, id, last, listener, _share: share };
+        Ok(futures::stream::unfold(Some(follower), async |follower| Some(follower?.next().await)))
     }
 
     /// Ends all events, present and future, and all work on jobs: the process is about to stop.
@@ -50,10 +49,8 @@ impl Jobs {
 }
 
 impl Follower {
-    async fn next(mut self) -> Option<(StreamEvent<JobReply>, Follower)> {
-        if self.ended {
-            return None;
-        }
+    /// The next event, and what follows it unless it is the last.
+    async fn next(mut self) -> (StreamEvent<JobReply>, Option<Follower>) {
         if self.last.is_some() {
             self.listener.pause(REST).await;
         }
@@ -68,13 +65,8 @@ impl Follower {
                 Ok(_) | Err(_) => drop(timeout(LONGEST_WAIT, self.listener.wait()).await),
             }
         };
-        match &event {
-            StreamEvent::State(job) => {
-                self.ended = job.state != JobState::Running;
-                self.last = Some(job.clone());
-            }
-            StreamEvent::End(_) => self.ended = true,
-        }
-        Some((event, self))
+        self.last = if let StreamEvent::State(job) = &event { Some(job.clone()) } else { None };
+        let runs = self.last.as_ref().is_some_and(|job| job.state == JobState::Running);
+        (event, runs.then_some(self))
     }
 }

@@ -12,12 +12,12 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use jiff::Timestamp;
-use prometheus::{IntCounter, IntGauge, Opts};
+use prometheus::{IntCounter, IntGauge};
 use tokio::sync::Notify;
 use uuid::Uuid;
 
 use crate::admission::{INLINE, Kind, Nanoseconds, Pool, Stop};
-use crate::metrics::{counter, gauge};
+use crate::metrics::metrics;
 use crate::simulation::cost::MARGIN;
 use crate::simulation::{Sweep, SweepResult};
 use crate::store::jobs::JOB_LIFETIME;
@@ -65,34 +65,19 @@ struct Common {
     meters: JobMeters,
 }
 
-/// Metrics of the sweeps that this process has computed since its start.
-#[derive(Debug)]
-pub struct JobMeters {
-    /// Points computed, at once and for jobs; those without an answer too.
-    pub points: IntCounter,
-    /// Chunks of jobs whose results are stored.
-    pub chunks: IntCounter,
-    /// Chunks that were released, for this process or another one to compute.
-    pub returned: IntCounter,
-    /// Jobs that failed.
-    pub failed: IntCounter,
-    /// Chunks under way.
-    pub running: IntGauge,
-}
-
-impl Default for JobMeters {
-    fn default() -> JobMeters {
-        let count = |name, help| counter(Opts::new(name, help));
-        JobMeters {
-            points: count(
-                "stickslip_sweep_points_total",
-                "Points of sweeps computed by this process, at once or for jobs.",
-            ),
-            chunks: count("stickslip_job_chunks_total", "Chunks of jobs that this process has computed and stored."),
-            returned: count("stickslip_job_chunks_returned_total", "Chunks that this process released unfinished."),
-            failed: count("stickslip_jobs_failed_total", "Jobs that failed in this process; the log says why."),
-            running: gauge(Opts::new("stickslip_job_chunks_running", "Chunks under way in this process.")),
-        }
+metrics! {
+    /// Metrics of the sweeps that this process has computed since its start. Points without an answer count too.
+    pub struct JobMeters {
+        /// Points of sweeps computed by this process, at once or for jobs.
+        points: IntCounter = counter("stickslip_sweep_points_total"),
+        /// Chunks of jobs that this process has computed and stored.
+        chunks: IntCounter = counter("stickslip_job_chunks_total"),
+        /// Chunks that this process released unfinished.
+        returned: IntCounter = counter("stickslip_job_chunks_returned_total"),
+        /// Jobs that failed in this process; the log says why.
+        failed: IntCounter = counter("stickslip_jobs_failed_total"),
+        /// Chunks under way in this process.
+        running: IntGauge = gauge("stickslip_job_chunks_running"),
     }
 }
 
@@ -278,7 +263,6 @@ impl Jobs {
     }
 }
 
-/// Converts an error of the store.
 fn store_error(id: Uuid) -> impl Fn(StoreError) -> JobError {
     move |error| match error {
         StoreError::NotFound => JobError::NotFound(id),
@@ -286,7 +270,6 @@ fn store_error(id: Uuid) -> impl Fn(StoreError) -> JobError {
     }
 }
 
-/// The public view of a job.
 fn job_reply(job: &Job) -> JobReply {
     let state = match (job.finished_at, &job.error) {
         (_, Some(_)) => JobState::Failed,

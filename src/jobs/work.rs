@@ -59,7 +59,6 @@ impl Jobs {
         }
     }
 
-    /// Computes a chunk, or releases it.
     async fn compute_or_release(&self, claim: Claim, known: &mut OpenJob, lease: Duration) {
         let meters = &self.common.meters;
         let running = Counted::by(&meters.running);
@@ -116,7 +115,6 @@ impl Jobs {
         Ok(())
     }
 
-    /// The request of a job.
     async fn open(&self, id: Uuid) -> Result<(Job, Arc<Sweep>), JobError> {
         let job = self.common.store.job(id).await.map_err(store_error(id))?;
         let request = self.common.store.job_request(id).await.map_err(store_error(id))?;

@@ -19,6 +19,35 @@ pub const SIZES: &[f64] = &[1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0, 128.0, 256.0, 
 /// The message of a panic that cannot occur, because all names are constants.
 pub const OWN_NAME: &str = "the name, the labels and the buckets of a metric are constants that the format allows";
 
+/// Defines a group of metrics: their struct, in which all of them are zero at first, and the list of them. The help
+/// text of a metric is its doc comment.
+macro_rules! metrics {
+    ($(#[$about:meta])* pub struct $group:ident {
+        $($(#[doc = $help:literal])+ $field:ident: $kind:ident = $make:ident($name:literal $(, $bounds:expr)?),)+
+    }) => {
+        $(#[$about])*
+        #[derive(Debug)]
+        pub struct $group { $($(#[doc = $help])+ pub $field: $kind,)+ }
+
+        impl Default for $group {
+            fn default() -> $group {
+                $(let $field = ::prometheus::Opts::new($name, concat!($($help),+).trim_start());)+
+                $group { $($field: $crate::metrics::$make($field $(, $bounds)?),)+ }
+            }
+        }
+
+        impl $group {
+            /// All of them, for the page that Prometheus reads.
+            #[must_use]
+            pub fn collectors(&self) -> Vec<Box<dyn ::prometheus::core::Collector>> {
+                vec![$(Box::new(self.$field.clone()),)+]
+            }
+        }
+    };
+}
+
+pub(crate) use metrics;
+
 /// A number that only grows.
 ///
 /// # Panics

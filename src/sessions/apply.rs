@@ -1,5 +1,6 @@
 //! Applying moves to a session: the one place where its state changes.
 
+use std::pin::pin;
 use std::sync::Arc;
 
 use tracing::Instrument as _;
@@ -17,7 +18,7 @@ use stickslip_wire::{Plan, RelaxReply, limits};
 
 use super::attempt::{Done, PIECES_OF_A_MOVE, attempt};
 use super::cache::Guard;
-use super::changes::unless_answered;
+use super::changes::answer_once;
 use super::group::{GroupResult, lock_or_join, may_join};
 use super::loaded::LoadedSession;
 use super::observations::Observations;
@@ -54,12 +55,7 @@ impl Mover {
         key: Option<RequestKey>,
     ) -> Result<Reply, SessionError> {
         let request = self.replay.request(key);
-        // Before anything else: a retry gets its reply even if the session has been deleted or has moved on.
-        if let Some(reply) = request.earlier_reply().await? {
-            return Ok(reply);
-        }
-        let made = self.apply_anew(id, Arc::new(advance), expected, &request).await;
-        unless_answered(&request, made).await
+        answer_once(&request, pin!(self.apply_anew(id, Arc::new(advance), expected, &request))).await
     }
 
     async fn apply_anew(
@@ -192,7 +188,7 @@ impl Mover {
         let copied = guard.live.as_ref().filter(|_| !in_place).map_or(0, |live| live.contact.memory_bytes());
         let _held = if copied > 0 { self.replay.reserve_copy(guard, copied).await? } else { Reservation::default() };
         let live = if in_place { guard.live.take() } else { guard.live.clone() };
-        let live = live.ok_or(SessionError::NotFound(guard.id()))?;
+        let mut live = live.ok_or(SessionError::NotFound(guard.id()))?;
         let radii = advance.stress.as_ref().map_or(0, |stress| stress.length());
         let (moves, curved) = (advance.plan.length(), advance.plan.curved());
         let profile = live.contact.profile();
@@ -201,8 +197,11 @@ impl Mover {
         let cost = work.cost(profile).saturating_add(sought);
         let (advance, stop) = (Arc::clone(advance), stop.clone());
         let by = self.by.clone();
-        let (live, result) =
-            self.replay.common.pool.run(cost, move || attempt(live, &advance, by.as_ref(), &stop)).await?;
+        let solve = move || {
+            let result = attempt(&mut live, &advance, by.as_ref(), &stop);
+            (live, result)
+        };
+        let (live, result) = self.replay.common.pool.run(cost, solve).await?;
         match result {
             Ok(done) => Ok((live, done)),
             Err(error) => {

@@ -24,19 +24,13 @@ pub(super) struct Done {
 /// The most pieces that one straight move can add to the slip history, with a margin.
 pub(super) const PIECES_OF_A_MOVE: usize = 8;
 
-/// Makes the moves, and returns the state whether they are made or refused.
+/// Makes the moves, and writes the reply: the part of the work that needs a processor.
 pub(super) fn attempt(
-    mut live: Box<LoadedSession>,
+    live: &mut LoadedSession,
     advance: &Advance,
     by: Option<&Arc<str>>,
     stop: &Stop,
-) -> (Box<LoadedSession>, Result<Done, SessionError>) {
-    let result = make(&mut live, advance, by, stop);
-    (live, result)
-}
-
-/// Makes the moves, and writes the reply: the part of the work that needs a processor.
-fn make(live: &mut LoadedSession, advance: &Advance, by: Option<&Arc<str>>, stop: &Stop) -> Result<Done, SessionError> {
+) -> Result<Done, SessionError> {
     let solving = otlp::part!("solve").entered();
     let now = Timestamp::now();
     let mut records: Vec<Record> = Vec::with_capacity(advance.plan.length());

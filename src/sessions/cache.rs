@@ -8,21 +8,27 @@
 //! A profile that is kept counts once, however many states and requests have it. It is used whenever one of these
 //! states is, so that it goes after them; and one that somebody has stays, because to forget it would free nothing.
 
+use std::collections::hash_map::Entry;
 use std::collections::{HashMap, VecDeque};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 
 use hashlink::LruCache;
+use parking_lot::Mutex;
 use prometheus::IntCounter;
-use tokio::sync::{Mutex as SessionLock, OwnedMutexGuard};
+use tokio::sync::oneshot;
+use tracing::Span;
 use uuid::Uuid;
 
 use crate::admission::Reservation;
-use crate::store::Tenant;
+use crate::store::{Reply, Tenant};
 use stickslip_mechanics::Profile;
+use stickslip_wire::session::Advance;
 
+use super::SessionError;
 use super::loaded::LoadedSession;
-use super::waiting_move::WaitingMove;
+use super::storage_reservation::StorageReservation;
 
 /// How many bytes of states are cached by default.
 pub const CAPACITY: usize = 256 * 1024 * 1024;
@@ -33,60 +39,65 @@ type Key = (Tenant, Uuid);
 /// What tells prepared profiles apart: a digest.
 pub(super) type ProfileKey = [u8; 32];
 
-/// A prepared profile, and the bytes that it takes.
-pub(super) struct KeptProfile {
-    pub(super) profile: Arc<Profile>,
-    pub(super) bytes: usize,
-}
-
 /// States, profiles and locks.
 pub(super) struct Cache {
-    // Std mutexes both: held for a lookup, never across an await.
-    locks: Mutex<HashMap<Key, LockEntry>>,
-    states: Mutex<States>,
+    // Both are locked for a lookup, never across an await.
+    /// The sessions in use, each with those who wait for it in the order of their arrival.
+    lines: Mutex<HashMap<Key, VecDeque<Waiter>>>,
+    cached: Mutex<Cached>,
+    /// Numbers those who wait: no two of them have the same number.
+    arrivals: AtomicU64,
     capacity: usize,
     // How often a state that was asked for was cached.
     hits: IntCounter,
 }
 
-/// The lock of a session that requests use or wait for. It is dropped with the last of them, so that a session has one
-/// lock at a time.
-#[derive(Default)]
-struct LockEntry {
-    // The lock is fair, so that moves apply in the order of their arrival.
-    lock: Arc<SessionLock<()>>,
-    users: usize,
-    /// Who waits for the lock, in that order, with a number each: a move that whoever has the lock may make, or
-    /// anything else.
-    line: VecDeque<(u64, Option<WaitingMove>)>,
-    /// The number of the next one in the line.
-    next: u64,
+/// Somebody who waits: with a move that whoever has the session may make, or for anything else.
+struct Waiter {
+    number: u64,
+    waiting_move: Option<WaitingMove>,
+    turn: oneshot::Sender<Turn>,
+}
+
+/// A move that may be made by whoever has the session.
+pub(super) struct WaitingMove {
+    pub(super) advance: Arc<Advance>,
+    /// The sequence that the client expects.
+    pub(super) expected: Option<u64>,
+    /// The name of its key.
+    pub(super) by: Option<Arc<str>>,
+    pub(super) reservation: StorageReservation,
+    pub(super) span: Span,
+}
+
+/// What somebody who waits gets.
+pub(super) enum Turn {
+    /// The session, and the move that has waited for it.
+    Locked(SessionLock, Option<WaitingMove>),
+    /// Another one has taken the move: it is stored, or the store has refused those made with it.
+    Answered(Result<Reply, SessionError>),
+    /// Another one has taken the move, and has not made it.
+    NotMade,
 }
 
 /// States that no request uses, and profiles; `bytes` are theirs and those of the states that requests have taken out.
-struct States {
-    by_key: LruCache<Key, Cached<Box<LoadedSession>>>,
-    /// By their addresses, which the states know.
-    profiles: LruCache<usize, Cached<(Arc<Profile>, ProfileKey)>>,
+struct Cached {
+    /// With their bytes; what was used least recently comes first.
+    items: LruCache<ItemKey, (Item, usize)>,
     addresses: HashMap<ProfileKey, usize>,
     bytes: usize,
-    /// Counts the uses.
-    clock: u64,
 }
 
-/// A state or a profile, its bytes, and when it was used last.
-struct Cached<T> {
-    item: T,
-    bytes: usize,
-    used: u64,
+#[derive(PartialEq, Eq, Hash)]
+enum ItemKey {
+    State(Key),
+    /// By its address, which the states know.
+    Profile(usize),
 }
 
-/// What no longer fits.
-#[derive(Default)]
-struct Evicted {
-    #[expect(clippy::vec_box, reason = "a pointer is moved while others wait for the cache, not the state")]
-    states: Vec<Box<LoadedSession>>,
-    profiles: Vec<Arc<Profile>>,
+enum Item {
+    State(Box<LoadedSession>),
+    Profile(Arc<Profile>, ProfileKey),
 }
 
 /// Exclusive use of a session until the guard is dropped, when its state goes back to the cache.
@@ -99,114 +110,121 @@ pub(super) struct Guard {
     pub(super) held: Reservation,
     /// Bytes of the state as it came out of the cache, which are counted there.
     taken: usize,
-    // Declared, and so released, before the user: a request that comes in between finds the entry and waits for its
-    // lock.
-    _lock: OwnedMutexGuard<()>,
-    user: LockUser,
+    lock: SessionLock,
 }
 
-/// A user who waits for the lock.
-pub(super) struct Waiting {
-    lock: Arc<SessionLock<()>>,
-    user: LockUser,
-}
-
-/// A place in the line before a lock, which is left when this is dropped.
-pub(super) struct QueuePosition<'a> {
-    user: &'a LockUser,
-    number: u64,
-}
-
-/// One of the users of a lock.
-struct LockUser {
+/// Exclusive use of a session, which goes to the next who waits for it when this is dropped.
+pub(super) struct SessionLock {
     cache: Arc<Cache>,
     key: Key,
+}
+
+/// A place in the line, which is left when this is dropped.
+pub(super) struct QueuePosition {
+    cache: Arc<Cache>,
+    key: Key,
+    number: u64,
+    pub(super) turn: oneshot::Receiver<Turn>,
 }
 
 impl Cache {
     /// A cache of at most this many bytes, and the counter of its hits.
     pub(super) fn new(capacity: usize, hits: IntCounter) -> Cache {
-        let (by_key, profiles) = (LruCache::new_unbounded(), LruCache::new_unbounded());
-        let states = States { by_key, profiles, addresses: HashMap::new(), bytes: 0, clock: 0 };
-        Cache { locks: Mutex::default(), states: Mutex::new(states), capacity, hits }
+        let cached = Cached { items: LruCache::new_unbounded(), addresses: HashMap::new(), bytes: 0 };
+        Cache { lines: Mutex::default(), cached: Mutex::new(cached), arrivals: AtomicU64::new(0), capacity, hits }
     }
 
     /// Waits for exclusive use of a session. A dropped future no longer waits.
     pub(super) async fn lock(self: &Arc<Self>, tenant: &Tenant, id: Uuid) -> Guard {
-        match self.try_lock(tenant, id) {
-            Ok(guard) => guard,
-            Err(waiting) => waiting.lock().await,
+        loop {
+            // Nobody gets anything else who waits without a move.
+            if let Ok(Turn::Locked(lock, _)) = (&mut self.enqueue(tenant, id, None).turn).await {
+                return lock.guard();
+            }
         }
     }
 
     /// Exclusive use of a session if nobody else has it.
-    pub(super) fn try_lock(self: &Arc<Self>, tenant: &Tenant, id: Uuid) -> Result<Guard, Waiting> {
-        let (lock, user) = self.enter((tenant.clone(), id));
-        match Arc::clone(&lock).try_lock_owned() {
-            Ok(free) => Ok(user.guard(free)),
-            Err(_) => Err(Waiting { lock, user }),
+    pub(super) fn try_lock(self: &Arc<Self>, tenant: &Tenant, id: Uuid) -> Option<Guard> {
+        let key = (tenant.clone(), id);
+        match self.lines.lock().entry(key.clone()) {
+            Entry::Vacant(free) => drop(free.insert(VecDeque::new())),
+            Entry::Occupied(_) => return None,
         }
+        Some(SessionLock { cache: Arc::clone(self), key }.guard())
+    }
+
+    /// A place at the end of the line for a session, which has its turn at once if nobody has the session.
+    pub(super) fn enqueue(
+        self: &Arc<Self>,
+        tenant: &Tenant,
+        id: Uuid,
+        waiting_move: Option<WaitingMove>,
+    ) -> QueuePosition {
+        let (cache, key) = (Arc::clone(self), (tenant.clone(), id));
+        let (sender, turn) = oneshot::channel();
+        let number = self.arrivals.fetch_add(1, Ordering::Relaxed);
+        let mut lines = self.lines.lock();
+        let is_free = !lines.contains_key(&key);
+        lines.entry(key.clone()).or_default().push_back(Waiter { number, waiting_move, turn: sender });
+        drop(lines);
+        if is_free {
+            // It goes to whoever has come first.
+            drop(SessionLock { cache: Arc::clone(self), key: key.clone() });
+        }
+        QueuePosition { cache, key, number, turn }
     }
 
     /// Whether the state of a session is cached.
     pub(super) fn holds(&self, tenant: &Tenant, id: Uuid) -> bool {
-        self.states().by_key.contains_key(&(tenant.clone(), id))
+        self.cached.lock().items.contains_key(&ItemKey::State((tenant.clone(), id)))
     }
 
-    /// How many bytes there may be.
     pub(super) fn capacity(&self) -> usize {
         self.capacity
     }
 
     /// Bytes of the cached states, with those in use, and of the profiles, and how many states nobody uses.
     pub(super) fn held(&self) -> (usize, usize) {
-        let states = self.states();
-        (states.bytes, states.by_key.len())
-    }
-
-    fn enter(self: &Arc<Self>, key: Key) -> (Arc<SessionLock<()>>, LockUser) {
-        let mut locks = self.locks();
-        let entry = locks.entry(key.clone()).or_default();
-        entry.users += 1;
-        (Arc::clone(&entry.lock), LockUser { cache: Arc::clone(self), key })
+        let cached = self.cached.lock();
+        (cached.bytes, cached.items.len() - cached.addresses.len())
     }
 
     /// Takes a state out. It still counts, until it is given back.
     fn take(&self, key: &Key) -> Option<(Box<LoadedSession>, usize)> {
-        let mut states = self.states();
-        let Cached { item, bytes, .. } = states.by_key.remove(key)?;
-        states.use_profile(item.contact.profile());
-        drop(states);
+        let mut cached = self.cached.lock();
+        let (Item::State(state), bytes) = cached.items.remove(&ItemKey::State(key.clone()))? else { return None };
+        cached.use_profile(address_of(state.contact.profile()));
+        drop(cached);
         self.hits.inc();
-        Some((item, bytes))
+        Some((state, bytes))
     }
 
-    /// A profile, if it is kept.
     pub(super) fn profile(&self, key: &ProfileKey) -> Option<Arc<Profile>> {
-        let mut states = self.states();
-        let address = *states.addresses.get(key)?;
-        states.use_profile_at(address)
+        let mut cached = self.cached.lock();
+        let address = *cached.addresses.get(key)?;
+        cached.use_profile(address)
     }
 
-    /// Keeps a profile if it fits, unless there is one with this key already; returns the one that is to be used.
-    pub(super) fn keep_profile(&self, key: ProfileKey, kept: KeptProfile) -> Arc<Profile> {
-        let KeptProfile { profile, bytes } = kept;
-        let mut states = self.states();
-        if let Some(ready) = states.addresses.get(&key).copied().and_then(|address| states.use_profile_at(address)) {
+    /// Keeps a profile of so many bytes if it fits, unless there is one with this key already; returns the one that is
+    /// to be used.
+    pub(super) fn keep_profile(&self, key: ProfileKey, profile: Arc<Profile>, bytes: usize) -> Arc<Profile> {
+        let mut cached = self.cached.lock();
+        if let Some(ready) = cached.addresses.get(&key).copied().and_then(|address| cached.use_profile(address)) {
             return ready;
         }
         if bytes > self.capacity {
             return profile;
         }
-        let gone = states.make_room(self.capacity - bytes);
+        let gone = cached.make_room(self.capacity - bytes);
         // Where those that others have leave no room, only its user has it.
-        if states.bytes <= self.capacity - bytes {
-            let (address, used) = (address_of(&profile), states.tick());
-            states.bytes += bytes;
-            states.addresses.insert(key, address);
-            states.profiles.insert(address, Cached { item: (Arc::clone(&profile), key), bytes, used });
+        if cached.bytes <= self.capacity - bytes {
+            let address = address_of(&profile);
+            cached.bytes += bytes;
+            cached.addresses.insert(key, address);
+            cached.items.insert(ItemKey::Profile(address), (Item::Profile(Arc::clone(&profile), key), bytes));
         }
-        drop(states);
+        drop(cached);
         drop(gone);
         profile
     }
@@ -214,89 +232,64 @@ impl Cache {
     /// Puts a state in, in place of `taken` bytes that had been taken out.
     fn put(&self, live: Option<Box<LoadedSession>>, taken: usize) {
         let (own, shape) = live.as_ref().map_or((0, 0), |live| (live.bytes(), live.shape_bytes()));
-        let mut states = self.states();
-        states.bytes -= taken;
+        let mut cached = self.cached.lock();
+        cached.bytes -= taken;
         let Some(live) = live else { return };
-        // Before its profile, which is to be the younger of the two.
-        let used = states.tick();
-        let bytes = if states.use_profile(live.contact.profile()) { own } else { own + shape };
+        let profile = address_of(live.contact.profile());
+        let bytes = if cached.use_profile(profile).is_some() { own } else { own + shape };
         // One that is too large would evict all others and itself.
         if bytes > self.capacity {
             return;
         }
-        states.bytes += bytes;
-        let key = (live.session.tenant.clone(), live.session.id);
-        if let Some(before) = states.by_key.insert(key, Cached { item: live, bytes, used }) {
-            states.bytes -= before.bytes;
+        cached.bytes += bytes;
+        let key = ItemKey::State((live.session.tenant.clone(), live.session.id));
+        if let Some((_, before)) = cached.items.insert(key, (Item::State(live), bytes)) {
+            cached.bytes -= before;
         }
-        let gone = states.make_room(self.capacity);
+        // After the state, so that it is the younger of the two.
+        cached.use_profile(profile);
+        let gone = cached.make_room(self.capacity);
         // Freed once others can get at the cache again.
-        drop(states);
+        drop(cached);
         drop(gone);
-    }
-
-    fn locks(&self) -> MutexGuard<'_, HashMap<Key, LockEntry>> {
-        self.locks.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-
-    fn states(&self) -> MutexGuard<'_, States> {
-        self.states.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
-impl States {
-    fn tick(&mut self) -> u64 {
-        self.clock += 1;
-        self.clock
-    }
-
-    /// Marks a profile as used; returns whether it is kept.
-    fn use_profile(&mut self, profile: &Profile) -> bool {
-        !self.profiles.is_empty() && self.use_profile_at(address_of(profile)).is_some()
-    }
-
-    fn use_profile_at(&mut self, address: usize) -> Option<Arc<Profile>> {
-        let now = self.tick();
-        let kept = self.profiles.get_mut(&address)?;
-        kept.used = now;
-        Some(Arc::clone(&kept.item.0))
+impl Cached {
+    /// Marks the profile at an address as used, and returns it if it is kept.
+    fn use_profile(&mut self, address: usize) -> Option<Arc<Profile>> {
+        if self.addresses.is_empty() {
+            return None;
+        }
+        match self.items.get(&ItemKey::Profile(address))? {
+            (Item::Profile(profile, _), _) => Some(Arc::clone(profile)),
+            _ => None,
+        }
     }
 
     /// Takes out what was used least recently until the rest takes no more than this, but for profiles that somebody
     /// has.
-    fn make_room(&mut self, most: usize) -> Evicted {
-        let mut gone = Evicted::default();
-        // Each profile that is in use is met once.
-        let mut profiles = self.profiles.len();
-        while self.bytes > most {
-            let state = self.by_key.iter().next().map(|(_, oldest)| oldest.used);
-            let profile = self.profiles.iter().next().map(|(_, oldest)| oldest.used).filter(|_| profiles > 0);
-            if profile.is_some_and(|used| state.is_none_or(|of_state| used < of_state)) {
-                profiles -= 1;
-                // Then the states that have just been taken out have theirs no longer.
-                gone.states.clear();
-                self.take_out_profile(&mut gone);
-            } else if let Some((_, state)) = self.by_key.remove_lru() {
-                self.bytes -= state.bytes;
-                gone.states.push(state.item);
-            } else {
+    fn make_room(&mut self, most: usize) -> Vec<Item> {
+        let mut gone = Vec::new();
+        // A profile that is in use is met once.
+        for _ in 0..self.items.len() {
+            if self.bytes <= most {
                 break;
             }
+            let Some((key, (item, bytes))) = self.items.remove_lru() else { break };
+            if let Item::Profile(profile, digest) = &item {
+                // Then the states that have just been taken out have theirs no longer.
+                gone.retain(|item| matches!(item, Item::Profile(..)));
+                if Arc::strong_count(profile) > 1 {
+                    self.items.insert(key, (item, bytes));
+                    continue;
+                }
+                self.addresses.remove(digest);
+            }
+            self.bytes -= bytes;
+            gone.push(item);
         }
         gone
-    }
-
-    /// Takes out the profile that was used least recently, unless somebody has it.
-    fn take_out_profile(&mut self, gone: &mut Evicted) {
-        let Some((address, mut kept)) = self.profiles.remove_lru() else { return };
-        if Arc::strong_count(&kept.item.0) > 1 {
-            kept.used = self.tick();
-            self.profiles.insert(address, kept);
-            return;
-        }
-        self.bytes -= kept.bytes;
-        self.addresses.remove(&kept.item.1);
-        gone.profiles.push(kept.item.0);
     }
 }
 
@@ -305,108 +298,71 @@ fn address_of(profile: &Profile) -> usize {
 }
 
 impl Guard {
-    /// The session.
     pub(super) fn id(&self) -> Uuid {
-        self.user.key.1
+        self.lock.key.1
     }
 
     /// Takes the moves at the head of the line, at most so many, up to whatever else waits there.
-    pub(super) fn take_moves(&self, most: usize) -> Vec<WaitingMove> {
-        let mut locks = self.user.cache.locks();
-        let Some(entry) = locks.get_mut(&self.user.key) else { return Vec::new() };
-        let moves = entry.line.iter().take(most).take_while(|(_, waiting_move)| waiting_move.is_some()).count();
-        entry.line.drain(..moves).filter_map(|(_, waiting_move)| waiting_move).collect()
+    pub(super) fn take_moves(&self, most: usize) -> Vec<(WaitingMove, oneshot::Sender<Turn>)> {
+        let mut lines = self.lock.cache.lines.lock();
+        let Some(line) = lines.get_mut(&self.lock.key) else { return Vec::new() };
+        let moves = line.iter().take(most).take_while(|waiter| waiter.waiting_move.is_some()).count();
+        line.drain(..moves).filter_map(|waiter| Some((waiter.waiting_move?, waiter.turn))).collect()
     }
 }
 
-impl Waiting {
-    /// The session.
-    pub(super) fn id(&self) -> Uuid {
-        self.user.key.1
-    }
-
-    /// The lock that is waited for.
-    pub(super) fn awaited(&self) -> Arc<SessionLock<()>> {
-        Arc::clone(&self.lock)
-    }
-
-    /// A place at the end of the line.
-    pub(super) fn enqueue(&self, waiting_move: Option<WaitingMove>) -> QueuePosition<'_> {
-        let mut locks = self.user.cache.locks();
-        let number = locks.get_mut(&self.user.key).map_or(0, |entry| {
-            let number = entry.next;
-            entry.next += 1;
-            entry.line.push_back((number, waiting_move));
-            number
-        });
-        QueuePosition { user: &self.user, number }
-    }
-
-    /// Waits for exclusive use.
-    pub(super) async fn lock(self) -> Guard {
-        let place = self.enqueue(None);
-        let lock = Arc::clone(&self.lock).lock_owned().await;
-        drop(place);
-        self.guard(lock)
-    }
-
-    /// Exclusive use, by the lock that has been acquired.
-    pub(super) fn guard(self, lock: OwnedMutexGuard<()>) -> Guard {
-        self.user.guard(lock)
-    }
-}
-
-impl LockUser {
-    fn guard(self, lock: OwnedMutexGuard<()>) -> Guard {
+impl SessionLock {
+    /// The session with its state, if that is cached.
+    pub(super) fn guard(self) -> Guard {
         let (live, taken) = self.cache.take(&self.key).unzip();
-        Guard {
-            live,
-            loading: Duration::ZERO,
-            held: Reservation::default(),
-            taken: taken.unwrap_or(0),
-            _lock: lock,
-            user: self,
-        }
+        let taken = taken.unwrap_or(0);
+        Guard { live, loading: Duration::ZERO, held: Reservation::default(), taken, lock: self }
     }
 }
 
-impl QueuePosition<'_> {
-    /// Leaves the line, with the move if nobody has taken it.
-    pub(super) fn leave(self) -> Option<WaitingMove> {
-        self.remove()
-    }
-
-    fn remove(&self) -> Option<WaitingMove> {
-        let mut locks = self.user.cache.locks();
-        let line = &mut locks.get_mut(&self.user.key)?.line;
-        let place = line.iter().position(|(number, _)| *number == self.number)?;
-        line.remove(place)?.1
-    }
-}
-
-impl Drop for QueuePosition<'_> {
-    fn drop(&mut self) {
+impl QueuePosition {
+    /// Leaves the line; returns whether it was still there, so that nobody has taken its move.
+    pub(super) fn leave(&self) -> bool {
+        let left = {
+            let mut lines = self.cache.lines.lock();
+            lines.get_mut(&self.key).and_then(|line| {
+                let place = line.iter().position(|waiter| waiter.number == self.number)?;
+                line.remove(place)
+            })
+        };
         // A move that is dropped gives its reservation back, for which the lock of the cache is not needed.
-        drop(self.remove());
+        left.is_some()
+    }
+}
+
+impl Drop for QueuePosition {
+    fn drop(&mut self) {
+        self.leave();
     }
 }
 
 impl Drop for Guard {
     fn drop(&mut self) {
         if self.live.is_some() || self.taken > 0 {
-            self.user.cache.put(self.live.take(), self.taken);
+            self.lock.cache.put(self.live.take(), self.taken);
         }
     }
 }
 
-impl Drop for LockUser {
+impl Drop for SessionLock {
     fn drop(&mut self) {
-        let mut locks = self.cache.locks();
-        if let Some(entry) = locks.get_mut(&self.key) {
-            entry.users -= 1;
-            if entry.users == 0 {
-                locks.remove(&self.key);
+        let next = {
+            let mut lines = self.cache.lines.lock();
+            let next = lines.get_mut(&self.key).and_then(VecDeque::pop_front);
+            if next.is_none() {
+                lines.remove(&self.key);
             }
+            next
+        };
+        if let Some(Waiter { waiting_move, turn, .. }) = next {
+            let lock = SessionLock { cache: Arc::clone(&self.cache), key: self.key.clone() };
+            // From one who has just left, the lock comes back and goes on.
+            let _ = turn.send(Turn::Locked(lock, waiting_move));
         }
     }
 }

@@ -1,5 +1,6 @@
 //! Making, copying, naming and deleting sessions.
 
+use std::pin::{Pin, pin};
 use std::sync::Arc;
 
 use jiff::Timestamp;
@@ -27,33 +28,31 @@ impl Changes {
     /// [`SessionError`]; nothing has been made then.
     pub async fn create(&self, creation: Creation, key: Option<RequestKey>) -> Result<Reply, SessionError> {
         let request = self.replay.request(key);
-        if let Some(reply) = request.earlier_reply().await? {
-            return Ok(reply);
-        }
-        let now = Timestamp::now();
-        let session = Session {
-            id: Uuid::now_v7(),
-            tenant: self.replay.tenant.clone(),
-            label: creation.label,
-            definition: Arc::new(creation.definition),
-            sequence: 0,
-            created_at: now,
-            updated_at: now,
-        };
-        let live = LoadedSession::start(session, creation.setup)?;
-        let reply = live.created_reply()?;
-        let receipt = request.receipt(&reply);
-        let added = Usage::of(1, live.stored_bytes(), receipt.as_ref());
-        let reservation = self.replay.reserve_storage(added).await?;
-        // A request that finds the new session in the store waits until it is cached.
-        let mut guard = self.replay.common.cache.lock(&self.replay.tenant, live.session.id).await;
-        let stored = self.replay.common.store.create(live.session.clone(), receipt);
-        if let Err(error) = stored.instrument(otlp::part!("store")).await {
-            return Ok(request.after_refusal(error).await?);
-        }
-        reservation.used(added);
-        guard.live = Some(Box::new(live));
-        Ok(reply)
+        let create = pin!(async {
+            let now = Timestamp::now();
+            let session = Session {
+                id: Uuid::now_v7(),
+                tenant: self.replay.tenant.clone(),
+                label: creation.label,
+                definition: Arc::new(creation.definition),
+                sequence: 0,
+                created_at: now,
+                updated_at: now,
+            };
+            let live = LoadedSession::start(session, creation.setup)?;
+            let reply = live.created_reply()?;
+            let receipt = request.receipt(&reply);
+            let added = Usage::of(1, live.stored_bytes(), receipt.as_ref());
+            let reservation = self.replay.reserve_storage(added).await?;
+            // A request that finds the new session in the store waits until it is cached.
+            let mut guard = self.replay.common.cache.lock(&self.replay.tenant, live.session.id).await;
+            let stored = self.replay.common.store.create(live.session.clone(), receipt);
+            stored.instrument(otlp::part!("store")).await?;
+            reservation.used(added);
+            guard.live = Some(Box::new(live));
+            Ok(reply)
+        });
+        answer_once(&request, create).await
     }
 
     /// Makes a session with the same moves, or with the first of them.
@@ -62,53 +61,43 @@ impl Changes {
     /// [`SessionError`]; nothing has been made then.
     pub async fn fork(&self, id: Uuid, asked: ForkRequest, key: Option<RequestKey>) -> Result<Reply, SessionError> {
         let request = self.replay.request(key);
-        if let Some(reply) = request.earlier_reply().await? {
-            return Ok(reply);
-        }
-        let forked = self.fork_anew(id, asked, &request).await;
-        unless_answered(&request, forked).await
-    }
-
-    async fn fork_anew(
-        &self,
-        id: Uuid,
-        asked: ForkRequest,
-        request: &IdempotentRequest<'_>,
-    ) -> Result<Reply, SessionError> {
-        // A tenant at its quota is refused before its past is read.
-        drop(self.replay.reserve_storage(Usage::of(1, CONTACT_BYTES, None)).await?);
-        let mut guard = self.replay.lock(id).await?;
-        let (mut copy, _held) = self.replay.after(&mut guard, asked.sequence).await?;
-        let now = Timestamp::now();
-        copy.session = Session {
-            id: Uuid::now_v7(),
-            label: asked.label.or(copy.session.label),
-            created_at: now,
-            updated_at: now,
-            ..copy.session
-        };
-        let reply = copy.created_reply()?;
-        let receipt = request.receipt(&reply);
-        let extent =
-            self.replay.common.store.extent(id).await.map_err(|error| self.replay.store_failure(&mut guard, error))?;
-        let moves = copy.session.sequence * self.replay.common.store.move_bytes();
-        let added = Usage::of(1, copy.stored_bytes() + moves + extent.snapshot, receipt.as_ref());
-        let reservation = self.replay.reserve_storage(added).await?;
-        let mut new = self.replay.common.cache.lock(&self.replay.tenant, copy.session.id).await;
-        // The original may have moved on meanwhile in another process: its past stays what it was.
-        let stored = self.replay.common.store.fork(id, copy.session.clone(), receipt);
-        match stored.instrument(otlp::part!("store")).await {
-            Ok(()) => {
-                reservation.used(added);
-                new.live = Some(copy);
-                Ok(reply)
+        let fork = pin!(async {
+            // A tenant at its quota is refused before its past is read.
+            drop(self.replay.reserve_storage(Usage::of(1, CONTACT_BYTES, None)).await?);
+            let mut guard = self.replay.lock(id).await?;
+            let (mut copy, _held) = self.replay.after(&mut guard, asked.sequence).await?;
+            let now = Timestamp::now();
+            copy.session = Session {
+                id: Uuid::now_v7(),
+                label: asked.label.or(copy.session.label),
+                created_at: now,
+                updated_at: now,
+                ..copy.session
+            };
+            let reply = copy.created_reply()?;
+            let receipt = request.receipt(&reply);
+            let extent = self.replay.common.store.extent(id).await;
+            let extent = extent.map_err(|error| self.replay.store_failure(&mut guard, error))?;
+            let moves = copy.session.sequence * self.replay.common.store.move_bytes();
+            let added = Usage::of(1, copy.stored_bytes() + moves + extent.snapshot, receipt.as_ref());
+            let reservation = self.replay.reserve_storage(added).await?;
+            let mut new = self.replay.common.cache.lock(&self.replay.tenant, copy.session.id).await;
+            // The original may have moved on meanwhile in another process: its past stays what it was.
+            let stored = self.replay.common.store.fork(id, copy.session.clone(), receipt);
+            match stored.instrument(otlp::part!("store")).await {
+                Ok(()) => {
+                    reservation.used(added);
+                    new.live = Some(copy);
+                    Ok(reply)
+                }
+                Err(error @ (StoreError::NotFound | StoreError::Expired(_))) => {
+                    Err(self.replay.store_failure(&mut guard, error))
+                }
+                Err(StoreError::Stale { found }) => Err(SessionError::Overtaken { found }),
+                Err(error) => Err(error.into()),
             }
-            Err(error @ (StoreError::NotFound | StoreError::Expired(_))) => {
-                Err(self.replay.store_failure(&mut guard, error))
-            }
-            Err(StoreError::Stale { found }) => Err(SessionError::Overtaken { found }),
-            Err(error) => Err(error.into()),
-        }
+        });
+        answer_once(&request, fork).await
     }
 
     /// Gives a session another label, or none, if it is at the sequence that the client expects, where it stays.
@@ -123,45 +112,34 @@ impl Changes {
         key: Option<RequestKey>,
     ) -> Result<Reply, SessionError> {
         let request = self.replay.request(key);
-        if let Some(reply) = request.earlier_reply().await? {
-            return Ok(reply);
-        }
-        let renamed = self.rename_anew(id, label, expected, &request).await;
-        unless_answered(&request, renamed).await
-    }
-
-    async fn rename_anew(
-        &self,
-        id: Uuid,
-        label: Option<String>,
-        expected: Option<u64>,
-        request: &IdempotentRequest<'_>,
-    ) -> Result<Reply, SessionError> {
-        let mut guard = self.replay.lock(id).await?;
-        let mut overtaken = 0;
-        for _ in 0..ATTEMPTS {
-            let now = self.replay.current(&mut guard).await?.reply();
-            if let Some(expected) = expected.filter(|expected| *expected != now.sequence) {
-                return Err(SessionError::Stale { expected, found: now.sequence });
-            }
-            let renamed = SessionReply { label: label.clone(), ..now };
-            let reply = Reply { created: None, sequence: renamed.sequence, body: written(&renamed)? };
-            let receipt = request.receipt(&reply);
-            let added = Usage::of(0, 0, receipt.as_ref());
-            let reservation = self.replay.reserve_storage(added).await?;
-            // The reply shows the sequence, and the client may expect one: both hold only as long as no other process
-            // moves it.
-            let stored = self.replay.common.store.rename(id, label.clone(), reply.sequence, receipt);
-            match stored.instrument(otlp::part!("store")).await {
-                Ok(()) => {
-                    reservation.used(added);
-                    return Ok(reply);
+        let rename = pin!(async {
+            let mut guard = self.replay.lock(id).await?;
+            let mut overtaken = 0;
+            for _ in 0..ATTEMPTS {
+                let now = self.replay.current(&mut guard).await?.reply();
+                if let Some(expected) = expected.filter(|expected| *expected != now.sequence) {
+                    return Err(SessionError::Stale { expected, found: now.sequence });
                 }
-                Err(StoreError::Stale { found }) => overtaken = found,
-                Err(error) => return Err(self.replay.store_failure(&mut guard, error)),
+                let renamed = SessionReply { label: label.clone(), ..now };
+                let reply = Reply { created: None, sequence: renamed.sequence, body: written(&renamed)? };
+                let receipt = request.receipt(&reply);
+                let added = Usage::of(0, 0, receipt.as_ref());
+                let reservation = self.replay.reserve_storage(added).await?;
+                // The reply shows the sequence, and the client may expect one: both hold only as long as no other
+                // process moves it.
+                let stored = self.replay.common.store.rename(id, label.clone(), reply.sequence, receipt);
+                match stored.instrument(otlp::part!("store")).await {
+                    Ok(()) => {
+                        reservation.used(added);
+                        return Ok(reply);
+                    }
+                    Err(StoreError::Stale { found }) => overtaken = found,
+                    Err(error) => return Err(self.replay.store_failure(&mut guard, error)),
+                }
             }
-        }
-        Err(SessionError::Overtaken { found: overtaken })
+            Err(SessionError::Overtaken { found: overtaken })
+        });
+        answer_once(&request, rename).await
     }
 
     /// Deletes a session, if it is at the sequence that the client expects.
@@ -195,13 +173,17 @@ impl Changes {
     }
 }
 
-/// What a request is answered that was not answered before. One that is refused may be refused for what the same
-/// request, sent twice, has changed elsewhere meanwhile: then it gets the reply to that one.
-pub(super) async fn unless_answered(
+/// The reply to a request: that to an earlier one with the same key, even if the session has been deleted or has moved
+/// on, or else the outcome of its work. One that is refused may be refused for what the same request, sent twice, has
+/// changed elsewhere meanwhile: then it gets the reply to that one.
+pub(super) async fn answer_once(
     request: &IdempotentRequest<'_>,
-    done: Result<Reply, SessionError>,
+    work: Pin<&mut impl Future<Output = Result<Reply, SessionError>>>,
 ) -> Result<Reply, SessionError> {
-    match done {
+    if let Some(reply) = request.earlier_reply().await? {
+        return Ok(reply);
+    }
+    match work.await {
         Err(SessionError::Store(error)) => Ok(request.after_refusal(error).await?),
         Err(refusal) => request.earlier_reply().await?.ok_or(refusal),
         done => done,

@@ -15,7 +15,7 @@ use stickslip_wire::{Cycle, CyclePage, HistoryPage, State};
 use super::SessionError;
 use super::cycle_log::{CycleLog, STATE_COST};
 use super::cycle_scan::{Answer, ClosedCycle};
-use super::replay::{PAGE, Replay, damaged};
+use super::replay::{PAGE, Replay};
 
 /// Moves whose cost that of a steady cycle is like.
 const CYCLE_MOVES: usize = 4;
@@ -136,19 +136,15 @@ impl ClosedCycles {
                 return Ok((Arc::new(log), Err(interrupted)));
             }
             self.replay.common.pool.resize(&mut held, log.bytes_with(PAGE)).await?;
-            let most = usize::try_from(sequence - log.sequence).unwrap_or(PAGE).min(PAGE);
-            let records = self.replay.common.store.history(id, log.sequence, most).await;
-            let records = records.map_err(|error| self.replay.store_error(id, error))?;
-            if records.is_empty() {
-                return Err(damaged(id, &format_args!("move {} is missing", log.sequence + 1)));
-            }
+            let records = self.replay.page(id, log.sequence, sequence).await?;
+            let cost = STATE_COST * records.len() as u64;
             let look = move || {
                 for record in records {
                     log.push(record.sequence, &record.state);
                 }
                 log
             };
-            log = self.replay.common.pool.run(STATE_COST * most as u64, look).await?;
+            log = self.replay.common.pool.run(cost, look).await?;
         }
         log.shrink();
         Ok((Arc::new(log), Ok(())))

@@ -35,7 +35,6 @@ struct Follower {
     ready: VecDeque<StateEvent>,
     listener: Listener,
     _share: Share,
-    ended: bool,
 }
 
 /// The states of a session: after each move with a sequence greater than `after`, or, without it, the present state
@@ -68,8 +67,8 @@ pub async fn events(
         }
     };
     let (history, cycles) = (sessions.history(), sessions.cycles());
-    let follower = Follower { history, cycles, id, seen, ready, listener, _share: share, ended: false };
-    Ok(futures::stream::unfold(follower, Follower::next))
+    let follower = Follower { history, cycles, id, seen, ready, listener, _share: share };
+    Ok(futures::stream::unfold(Some(follower), async |follower| Some(follower?.next().await)))
 }
 
 impl Follower {
@@ -80,10 +79,8 @@ impl Follower {
         Ok(page)
     }
 
-    async fn next(mut self) -> Option<(StreamEvent<StateEvent>, Follower)> {
-        if self.ended {
-            return None;
-        }
+    /// The next event, and what follows it unless it is the last.
+    async fn next(mut self) -> (StreamEvent<StateEvent>, Option<Follower>) {
         let event = loop {
             if self.listener.is_ending() {
                 break StreamEvent::End(EndReason::Stopping);
@@ -115,7 +112,7 @@ impl Follower {
                 Err(_) => self.listener.pause(RETRY_DELAY).await,
             }
         };
-        self.ended = matches!(event, StreamEvent::End(_));
-        Some((event, self))
+        let ended = matches!(event, StreamEvent::End(_));
+        (event, (!ended).then_some(self))
     }
 }

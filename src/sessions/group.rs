@@ -21,9 +21,8 @@ use stickslip_wire::{Plan, limits};
 
 use super::SessionError;
 use super::attempt::{Done, PIECES_OF_A_MOVE, attempt};
-use super::cache::{Guard, Waiting};
+use super::cache::{Guard, Turn, WaitingMove};
 use super::replay::Replay;
-use super::waiting_move::{Outcome, WaitingMove};
 
 /// Moves that are made together at most.
 const GROUP: usize = 64;
@@ -40,8 +39,11 @@ pub(super) enum GroupResult {
 struct Group {
     replay: Replay,
     guard: Guard,
-    moves: Vec<WaitingMove>,
+    moves: Vec<TakenMove>,
 }
+
+/// A move that has waited, and where its client awaits what becomes of it.
+type TakenMove = (WaitingMove, oneshot::Sender<Turn>);
 
 /// Whether a move may be made together with others.
 pub(super) fn may_join(advance: &Advance) -> bool {
@@ -62,66 +64,54 @@ pub(super) async fn lock_or_join(
     expected: Option<u64>,
 ) -> Result<GroupResult, SessionError> {
     match replay.common.cache.try_lock(&replay.tenant, id) {
-        Ok(guard) => Ok(GroupResult::Locked(guard)),
+        Some(guard) => Ok(GroupResult::Locked(guard)),
         // In a box, so that a move that need not wait is not as large as one that does.
-        Err(waiting) => Box::pin(join_queue(replay, by, waiting, advance, expected)).await,
+        None => Box::pin(join_queue(replay, by, id, advance, expected)).await,
     }
 }
 
 async fn join_queue(
     replay: &Replay,
     by: Option<&Arc<str>>,
-    waiting: Waiting,
+    id: Uuid,
     advance: &Arc<Advance>,
     expected: Option<u64>,
 ) -> Result<GroupResult, SessionError> {
-    let id = waiting.id();
     let reservation = replay.reserve_storage(Usage::of(0, replay.common.store.move_bytes(), None)).await?;
-    let (outcome, mut answer) = oneshot::channel();
     let (advance, by) = (Arc::clone(advance), by.cloned());
-    let position =
-        waiting.enqueue(Some(WaitingMove { advance, expected, by, reservation, span: Span::current(), outcome }));
-    let lock = waiting.awaited().lock_owned();
-    let wait = async {
-        tokio::select! {
-            biased;
-            done = &mut answer => Err(done),
-            lock = lock => Ok(lock),
-        }
-    };
-    let waited = replay.common.pool.wait(wait).await;
-    match (waited, position.leave()) {
-        (Ok(Ok(lock)), Some(waiting_move)) => {
-            let guard = waiting.guard(lock);
-            let others = if is_groupable(&guard) { guard.take_moves(GROUP - 1) } else { Vec::new() };
-            if others.is_empty() {
-                return Ok(GroupResult::Locked(guard));
-            }
-            let moves = std::iter::once(waiting_move).chain(others).collect();
-            let group = Group { replay: replay.clone(), guard, moves };
-            // In a task of its own: whose client leaves does not take the others with it.
-            tokio::spawn(Client::current().serve(group.make().in_current_span()));
-            resolve(replay, id, answer.await).await
-        }
-        (Err(busy), Some(_)) => Err(busy.into()),
-        (Ok(Err(done)), _) => resolve(replay, id, done).await,
+    let waiting_move = WaitingMove { advance, expected, by, reservation, span: Span::current() };
+    let mut position = replay.common.cache.enqueue(&replay.tenant, id, Some(waiting_move));
+    let turn = match replay.common.pool.wait(&mut position.turn).await {
+        Err(busy) if position.leave() => return Err(busy.into()),
         // Another one has taken it: from then on nothing else says what has become of it.
-        (waited, None) => {
-            // With the lock in hand it could not wait for the lock again.
-            drop(waited);
-            resolve(replay, id, answer.await).await
-        }
+        Err(_) => (&mut position.turn).await,
+        Ok(turn) => turn,
+    };
+    let (guard, own) = match turn {
+        Ok(Turn::Locked(lock, Some(own))) => (lock.guard(), own),
+        turn => return resolve(replay, id, turn).await,
+    };
+    let others = if is_groupable(&guard) { guard.take_moves(GROUP - 1) } else { Vec::new() };
+    if others.is_empty() {
+        return Ok(GroupResult::Locked(guard));
     }
+    let (turn, answer) = oneshot::channel();
+    let moves = std::iter::once((own, turn)).chain(others).collect();
+    let group = Group { replay: replay.clone(), guard, moves };
+    // In a task of its own: whose client leaves does not take the others with it.
+    tokio::spawn(Client::current().serve(group.make().in_current_span()));
+    resolve(replay, id, answer.await).await
 }
 
 async fn resolve(
     replay: &Replay,
     id: Uuid,
-    done: Result<Outcome, oneshot::error::RecvError>,
+    turn: Result<Turn, oneshot::error::RecvError>,
 ) -> Result<GroupResult, SessionError> {
-    match done {
-        Ok(Outcome::Answered(answer)) => Ok(GroupResult::Answered(answer)),
-        Ok(Outcome::NotMade) => Ok(GroupResult::Locked(replay.lock(id).await?)),
+    match turn {
+        Ok(Turn::Locked(lock, _)) => Ok(GroupResult::Locked(lock.guard())),
+        Ok(Turn::Answered(answer)) => Ok(GroupResult::Answered(answer)),
+        Ok(Turn::NotMade) => Ok(GroupResult::Locked(replay.lock(id).await?)),
         Err(_) => Err(StoreError::Unavailable("the move was given up with others".to_owned()).into()),
     }
 }
@@ -135,7 +125,7 @@ impl Group {
     /// Makes the moves, stores them, and tells each waiting move what has become of its own. The guard is dropped last.
     async fn make(mut self) {
         let Some(before) = self.guard.live.as_ref().map(|live| live.session.sequence) else {
-            return self.moves.into_iter().for_each(WaitingMove::decline);
+            return self.moves.into_iter().for_each(decline);
         };
         let Ok((made, records)) = self.compute().await else { return };
         if records.is_empty() {
@@ -154,59 +144,57 @@ impl Group {
                     live
                 });
                 let added = Usage::of(0, common.store.move_bytes(), None);
-                for (waiting_move, reply) in made {
-                    let WaitingMove { reservation, outcome, .. } = waiting_move;
-                    reservation.used(added);
-                    let _ = outcome.send(Outcome::Answered(Ok(reply)));
+                for ((waiting_move, turn), reply) in made {
+                    waiting_move.reservation.used(added);
+                    let _ = turn.send(Turn::Answered(Ok(reply)));
                 }
             }
             // Nothing has changed: each finds out for itself what is wrong.
             Err(StoreError::Stale { .. } | StoreError::NotFound | StoreError::Expired(_)) => {
-                made.into_iter().for_each(|(waiting_move, _)| waiting_move.decline());
+                made.into_iter().for_each(|(taken, _)| decline(taken));
             }
-            Err(error) => made.into_iter().for_each(|(waiting_move, _)| waiting_move.finish(Err(again(&error).into()))),
+            Err(error) => made.into_iter().for_each(|((_, turn), _)| {
+                let _ = turn.send(Turn::Answered(Err(error.clone().into())));
+            }),
         }
     }
 
     /// Makes the moves one after the other. The guard has the state after them, or, if one of them has spoiled it,
     /// nothing; nothing is to be stored then, and every waiting move has been told to go on alone.
-    async fn compute(&mut self) -> Result<(Vec<(WaitingMove, Reply)>, Vec<Record>), ()> {
+    async fn compute(&mut self) -> Result<(Vec<(TakenMove, Reply)>, Vec<Record>), ()> {
         let (stop, _raised_at_the_end) = self.replay.common.pool.deadline();
         let (mut made, mut records) = (Vec::with_capacity(self.moves.len()), Vec::with_capacity(self.moves.len()));
         let mut moves = std::mem::take(&mut self.moves).into_iter();
-        while let Some(waiting_move) = moves.next() {
-            let fits = |guard: &Guard| {
-                guard.live.as_ref().is_some_and(|live| {
-                    waiting_move.expected.is_none_or(|expected| expected == live.session.sequence)
-                        && live.contact.memory_depth() + PIECES_OF_A_MOVE <= limits::MEMORY_DEPTH
-                })
-            };
+        while let Some(taken) = moves.next() {
+            let waiting_move = &taken.0;
             // A refusal counts only once the store has been asked, which its client does alone.
-            let Some(live) = (if fits(&self.guard) { self.guard.live.take() } else { None }) else {
-                waiting_move.decline();
+            let Some(mut live) = self.guard.live.take_if(|live| {
+                waiting_move.expected.is_none_or(|expected| expected == live.session.sequence)
+                    && live.contact.memory_depth() + PIECES_OF_A_MOVE <= limits::MEMORY_DEPTH
+            }) else {
+                decline(taken);
                 continue;
             };
             let work = Work { moves: 1, depth: live.contact.memory_depth(), ..Work::default() };
             let cost = work.cost(live.contact.profile());
             let (advance, by, stop, span) =
                 (Arc::clone(&waiting_move.advance), waiting_move.by.clone(), stop.clone(), waiting_move.span.clone());
-            let solve = move || span.in_scope(|| attempt(live, &advance, by.as_ref(), &stop));
+            let solve = move || {
+                let result = span.in_scope(|| attempt(&mut live, &advance, by.as_ref(), &stop));
+                (live, result)
+            };
             match self.replay.common.pool.run(cost, solve).await {
                 Ok((live, Ok(Done { records: more, reply }))) => {
                     self.guard.live = Some(live);
                     records.extend(more);
-                    made.push((waiting_move, reply));
+                    made.push((taken, reply));
                 }
                 Ok((live, Err(SessionError::Failure(_)))) => {
                     self.guard.live = Some(live);
-                    waiting_move.decline();
+                    decline(taken);
                 }
                 _ => {
-                    made.into_iter()
-                        .map(|(waiting_move, _)| waiting_move)
-                        .chain([waiting_move])
-                        .chain(moves)
-                        .for_each(WaitingMove::decline);
+                    made.into_iter().map(|(taken, _)| taken).chain([taken]).chain(moves).for_each(decline);
                     return Err(());
                 }
             }
@@ -215,13 +203,7 @@ impl Group {
     }
 }
 
-/// The same failure for another waiting move.
-fn again(error: &StoreError) -> StoreError {
-    match error {
-        StoreError::Full(why) => StoreError::Full(why.clone()),
-        StoreError::Unavailable(why) => StoreError::Unavailable(why.clone()),
-        StoreError::Locked(why) => StoreError::Locked(why.clone()),
-        StoreError::Damaged { contact, what } => StoreError::Damaged { contact: *contact, what: what.clone() },
-        other => StoreError::Failed(other.to_string()),
-    }
+/// Leaves a move to its client, who may have left.
+fn decline((_, turn): TakenMove) {
+    let _ = turn.send(Turn::NotMade);
 }

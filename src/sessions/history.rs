@@ -7,7 +7,7 @@ use crate::otlp;
 use stickslip_wire::{HistoryItem, HistoryPage};
 
 use super::SessionError;
-use super::replay::{PAGE, Replay, damaged};
+use super::replay::{Replay, damaged};
 
 /// The recorded moves of the sessions of a tenant.
 #[derive(Clone)]
@@ -35,16 +35,14 @@ impl History {
     /// [`SessionError::Store`] with [`StoreError::Damaged`](crate::store::StoreError::Damaged) if they are not, or a
     /// failure of the store.
     pub async fn check_complete(&self, id: Uuid, end: u64) -> Result<(), SessionError> {
-        let store = &self.replay.common.store;
-        if store.count_moves(id, end).await.map_err(|error| self.replay.store_error(id, error))? == end {
+        let count = self.replay.common.store.count_moves(id, end).await;
+        if count.map_err(|error| self.replay.store_error(id, error))? == end {
             return Ok(());
         }
         // Which one is missing is found by reading them.
         let mut at = 0;
         while at < end {
-            let page = store.history(id, at, PAGE).await.map_err(|error| self.replay.store_error(id, error))?;
-            let Some(last) = page.last() else { break };
-            at = last.sequence;
+            at += self.replay.page(id, at, end).await?.len() as u64;
         }
         Err(damaged(id, &format_args!("of its {end} moves some are missing")))
     }

@@ -36,7 +36,6 @@ mod replay_cost;
 mod snapshot;
 mod storage_reservation;
 mod trace;
-mod waiting_move;
 
 use std::sync::Arc;
 

@@ -147,10 +147,8 @@ impl Observations {
         let stored = to.min(log.sequence - new.len() as u64);
         let mut read = from.saturating_sub(1);
         while read < stored {
-            let most = usize::try_from(stored - read).unwrap_or(PAGE).min(PAGE);
-            let page = self.cycles.replay.common.store.history(id, read, most).await;
-            let page = page.map_err(|error| self.cycles.replay.store_error(id, error))?;
-            if page.is_empty() || !page.iter().all(|record| cycle.push(record)) {
+            let page = self.cycles.replay.page(id, read, stored).await?;
+            if !page.iter().all(|record| cycle.push(record)) {
                 return Ok(unknown);
             }
             read += page.len() as u64;

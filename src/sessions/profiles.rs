@@ -12,7 +12,7 @@ use stickslip_wire::profile::{SumProfile, TabulatedProfile};
 use stickslip_wire::{self as wire, DefinedProfile, Document, Prepare, Rejection};
 
 use super::Common;
-use super::cache::{KeptProfile, ProfileKey};
+use super::cache::ProfileKey;
 
 /// The shared profiles, for work that ends when its flag is raised.
 #[derive(Clone)]
@@ -75,8 +75,7 @@ impl Prepare for Profiles {
         }
         let profile = Arc::new(prepare()?);
         self.common.metrics.profiles_prepared.inc();
-        let kept = KeptProfile { profile, bytes: bytes::of_shape(document) };
-        Some(self.common.cache.keep_profile(key, kept))
+        Some(self.common.cache.keep_profile(key, profile, bytes::of_shape(document)))
     }
 
     fn keep_going(&self) -> bool {

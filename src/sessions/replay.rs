@@ -57,8 +57,8 @@ impl Replay {
     /// Exclusive use of a session: waits for earlier requests, as long as the pool permits.
     pub(super) async fn lock(&self, id: Uuid) -> Result<Guard, SessionError> {
         match self.common.cache.try_lock(&self.tenant, id) {
-            Ok(guard) => Ok(guard),
-            Err(waiting) => Ok(Box::pin(self.common.pool.wait(waiting.lock())).await?),
+            Some(guard) => Ok(guard),
+            None => Ok(Box::pin(self.common.pool.wait(self.common.cache.lock(&self.tenant, id))).await?),
         }
     }
 
@@ -222,16 +222,24 @@ impl Replay {
         (live.contact, live.session.sequence) =
             self.common.snapshots.load(&mut guard.loading, snapshot, live.contact, wanted).await?;
         while live.session.sequence < wanted {
-            let reached = live.session.sequence;
-            let limit = usize::try_from(wanted - reached).map_or(PAGE, |left| left.min(PAGE));
-            let page = self.common.store.history(id, reached, limit).await;
-            let page = page.map_err(|error| self.store_failure(guard, error))?;
-            if page.is_empty() {
-                return Err(damaged(id, &format_args!("move {} is missing", reached + 1)));
-            }
+            let page = self.page(id, live.session.sequence, wanted).await?;
             live = self.follow(guard, live, page).await?;
         }
         Ok((live, held))
+    }
+
+    /// The first of the moves of a session after the move `after`, up to the move `last`, which is after it: as many as
+    /// are fetched at a time.
+    ///
+    /// # Errors
+    /// As [`Replay::store_error`]; it is damaged if there is none.
+    pub(super) async fn page(&self, id: Uuid, after: u64, last: u64) -> Result<Vec<Record>, SessionError> {
+        let limit = usize::try_from(last - after).map_or(PAGE, |left| left.min(PAGE));
+        let page = self.common.store.history(id, after, limit).await.map_err(|error| self.store_error(id, error))?;
+        if page.is_empty() {
+            return Err(damaged(id, &format_args!("move {} is missing", after + 1)));
+        }
+        Ok(page)
     }
 
     /// The state of a stored session before its first move. The sequence of the session is that of the store.

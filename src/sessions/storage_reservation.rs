@@ -4,8 +4,10 @@
 //! because others on the same store change it too. In between, this process adds what it stores itself.
 
 use std::collections::HashMap;
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::Arc;
 use std::time::{Duration, Instant};
+
+use parking_lot::Mutex;
 
 use crate::admission::{Pool, PoolError, Quota};
 use crate::store::{Store, StoreError, Tenant, Usage};
@@ -28,7 +30,7 @@ pub(super) struct UsageByTenant(Mutex<HashMap<Tenant, Arc<ClientUsage>>>);
 struct ClientUsage {
     // Held while the store counts, so that it counts once for all who wait.
     counting: Arc<tokio::sync::Mutex<()>>,
-    // A std mutex: held for a moment, never across an await.
+    // Held for a moment, never across an await.
     known: Mutex<Known>,
 }
 
@@ -66,8 +68,7 @@ impl UsageByTenant {
         tenant: &Tenant,
         requested: Usage,
     ) -> Result<StorageReservation, SessionError> {
-        let client =
-            Arc::clone(self.0.lock().unwrap_or_else(PoisonError::into_inner).entry(tenant.clone()).or_default());
+        let client = Arc::clone(self.0.lock().entry(tenant.clone()).or_default());
         match client.try_reserve(pool, requested) {
             Some(Ok(reservation)) => {
                 if client.is_older_than(RECOUNT)
@@ -94,11 +95,11 @@ impl UsageByTenant {
 
     /// A tenant has deleted so much.
     pub(super) fn give_back(&self, tenant: &Tenant, deleted: Usage) {
-        let client = self.0.lock().unwrap_or_else(PoisonError::into_inner).get(tenant).cloned();
+        let client = self.0.lock().get(tenant).cloned();
         let Some(client) = client else { return };
         // A count under way may know of it already, and the next one does.
         let Ok(_counting) = client.counting.try_lock() else { return };
-        let mut known = client.known();
+        let mut known = client.known.lock();
         known.usage = known.usage.map(|usage| Usage {
             contacts: usage.contacts.saturating_sub(deleted.contacts),
             bytes: usage.bytes.saturating_sub(deleted.bytes),
@@ -107,17 +108,13 @@ impl UsageByTenant {
 }
 
 impl ClientUsage {
-    fn known(&self) -> MutexGuard<'_, Known> {
-        self.known.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-
     /// Whether the last count is older than this, or there is none. It counts as younger if counting takes long.
     fn is_older_than(&self, age: Duration) -> bool {
-        self.known().counted.is_none_or(|(at, took)| at.elapsed() >= age.max(took * COUNTING_SHARE))
+        self.known.lock().counted.is_none_or(|(at, took)| at.elapsed() >= age.max(took * COUNTING_SHARE))
     }
 
     fn has_failed_since(&self, begin: Instant) -> bool {
-        self.known().failed.is_some_and(|at| at >= begin)
+        self.known.lock().failed.is_some_and(|at| at >= begin)
     }
 
     /// Reserves by the last count, or names the quota that is exceeded; nothing if there has been no count.
@@ -127,7 +124,7 @@ impl ClientUsage {
         requested: Usage,
     ) -> Option<Result<StorageReservation, Quota>> {
         let limits = pool.quotas().limits();
-        let mut known = self.known();
+        let mut known = self.known.lock();
         let all = sum(sum(known.usage?, known.pending), requested);
         let fits = |most: usize, all: u64, requested: u64| requested == 0 || all <= most as u64;
         if !fits(limits.contacts, all.contacts, requested.contacts) {
@@ -166,9 +163,9 @@ impl ClientUsage {
 
     async fn count(&self, store: &dyn Store, tenant: &Tenant) -> Result<(), SessionError> {
         let begin = Instant::now();
-        self.known().meanwhile = Usage::default();
+        self.known.lock().meanwhile = Usage::default();
         let counted = store.usage(tenant).await;
-        let mut known = self.known();
+        let mut known = self.known.lock();
         known.failed = counted.is_err().then(Instant::now);
         let counted = counted?;
         // The store may have counted some of it: rather too much than too little.
@@ -186,7 +183,7 @@ impl StorageReservation {
 
     /// The change has been stored, and has added so much.
     pub(super) fn used(self, added: Usage) {
-        let mut known = self.client.known();
+        let mut known = self.client.known.lock();
         known.usage = known.usage.map(|usage| sum(usage, added));
         known.meanwhile = sum(known.meanwhile, added);
     }
@@ -194,7 +191,7 @@ impl StorageReservation {
 
 impl Drop for StorageReservation {
     fn drop(&mut self) {
-        let mut known = self.client.known();
+        let mut known = self.client.known.lock();
         known.pending.contacts -= self.reserved.contacts;
         known.pending.bytes -= self.reserved.bytes;
     }

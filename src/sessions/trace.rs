@@ -13,7 +13,7 @@ use stickslip_wire::{HistoryItem, LoopPage, limits};
 
 use super::SessionError;
 use super::history::History;
-use super::replay::{PAGE, PIECE_BYTES, damaged};
+use super::replay::{PIECE_BYTES, damaged};
 
 /// Bytes of a point in the longest of the formats, with the room that growing texts and columns take.
 const POINT: usize = 512;
@@ -53,11 +53,8 @@ pub async fn trace(
     let loading = &mut Duration::default();
     let (mut contact, mut at) = replay.common.snapshots.load(loading, snapshot, initial, after).await?;
     while at < last {
-        let most = usize::try_from(last - at).unwrap_or(PAGE).min(PAGE);
-        let records = replay.common.store.history(id, at, most).await.map_err(|error| replay.store_error(id, error))?;
-        let Some(end) = records.last().map(|record| record.sequence) else {
-            return Err(damaged(id, &format_args!("move {} is missing", at + 1)));
-        };
+        let records = replay.page(id, at, last).await?;
+        let end = at + records.len() as u64;
         let drawn = records.iter().filter(|record| record.sequence > after).count();
         let curved = records.iter().filter(|record| record.step.is_curved()).count();
         let steps = records.len() + drawn * points;

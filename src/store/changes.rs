@@ -4,15 +4,15 @@
 //! that it has seen. So wake-ups may be merged or spurious, and no change is missed.
 
 use std::collections::HashMap;
-use std::sync::{Mutex, MutexGuard, PoisonError};
 
+use parking_lot::Mutex;
 use tokio::sync::watch;
 use uuid::Uuid;
 
 /// The waiting listeners by session. The map holds an entry only while a listener waits.
 #[derive(Default)]
 pub struct Changes {
-    // A std mutex: held for a lookup, never across an await.
+    // Locked for a lookup, never across an await.
     waiting: Mutex<HashMap<Uuid, watch::Sender<()>>>,
 }
 
@@ -20,27 +20,23 @@ impl Changes {
     /// A listener that is woken by each change of a session from now on.
     #[must_use]
     pub fn subscribe(&self, id: Uuid) -> watch::Receiver<()> {
-        let mut waiting = self.lock();
+        let mut waiting = self.waiting.lock();
         waiting.retain(|_, sender| sender.receiver_count() > 0);
         waiting.entry(id).or_default().subscribe()
     }
 
     /// Wakes the listeners of a session.
     pub fn wake(&self, id: Uuid) {
-        if let Some(sender) = self.lock().get(&id) {
+        if let Some(sender) = self.waiting.lock().get(&id) {
             sender.send_replace(());
         }
     }
 
     /// Wakes all listeners: after a gap in which changes may have been missed.
     pub fn wake_all(&self) {
-        for sender in self.lock().values() {
+        for sender in self.waiting.lock().values() {
             sender.send_replace(());
         }
-    }
-
-    fn lock(&self) -> MutexGuard<'_, HashMap<Uuid, watch::Sender<()>>> {
-        self.waiting.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
@@ -60,6 +56,6 @@ mod tests {
         assert!(waits.has_changed().unwrap() && idles.has_changed().unwrap());
         drop((waits, idles));
         drop(changes.subscribe(here));
-        assert_eq!(changes.lock().len(), 1);
+        assert_eq!(changes.waiting.lock().len(), 1);
     }
 }

@@ -1,8 +1,8 @@
 //! Metrics of a store that commits.
 
-use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
+use parking_lot::Mutex;
 use prometheus::{Histogram, IntCounter, IntGauge, Opts};
 
 use crate::metrics::{Counted, SECONDS, SIZES, counter, gauge, histogram};
@@ -18,8 +18,7 @@ pub struct Commits {
     pub time: Histogram,
     /// Transactions that failed.
     pub failed: IntCounter,
-    /// When a transaction was last durable, or, if that is later, the first of the waiting changes arrived. A std
-    /// mutex: held for a read or a write.
+    /// When a transaction was last durable, or, if that is later, the first of the waiting changes arrived.
     progress: Mutex<Instant>,
 }
 
@@ -54,13 +53,13 @@ impl Commits {
 
     /// Notes a transaction that is durable, and that made no change.
     pub fn progressed(&self) {
-        *self.progress.lock().unwrap_or_else(PoisonError::into_inner) = Instant::now();
+        *self.progress.lock() = Instant::now();
     }
 
     /// For how long changes have waited while no transaction became durable.
     #[must_use]
     pub fn stalled(&self) -> Duration {
-        let progress = *self.progress.lock().unwrap_or_else(PoisonError::into_inner);
+        let progress = *self.progress.lock();
         if self.pending.get() == 0 { Duration::ZERO } else { progress.elapsed() }
     }
 }

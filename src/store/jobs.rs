@@ -5,11 +5,11 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Bound::{Excluded, Unbounded};
-use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
 use async_trait::async_trait;
-use jiff::{SignedDuration, Timestamp};
+use jiff::Timestamp;
+use parking_lot::Mutex;
 use uuid::Uuid;
 
 use super::{Receipt, Result, StoreError, Tenant};
@@ -60,7 +60,6 @@ impl Job {
             Some(at) => (at, JOB_LIFETIME),
             None => (self.created_at, JOB_TIME_LIMIT),
         };
-        let time = SignedDuration::try_from(time).unwrap_or(SignedDuration::MAX);
         from.checked_add(time).unwrap_or(Timestamp::MAX)
     }
 }
@@ -159,7 +158,7 @@ pub trait JobStore: Send + Sync + 'static {
 /// it.
 #[derive(Default)]
 pub(super) struct ChunkQueue {
-    // A std mutex: held for a lookup.
+    // Locked for a lookup.
     open: Mutex<BTreeMap<Uuid, OpenJob>>,
 }
 
@@ -172,12 +171,12 @@ struct OpenJob {
 impl ChunkQueue {
     /// Adds a job with its unfinished chunks.
     pub(super) fn add_job(&self, id: Uuid, waiting: impl Iterator<Item = u64>) {
-        self.lock().insert(id, OpenJob { waiting: waiting.collect(), claimed: BTreeSet::new() });
+        self.open.lock().insert(id, OpenJob { waiting: waiting.collect(), claimed: BTreeSet::new() });
     }
 
     /// A chunk to work on.
     pub(super) fn claim(&self, owner: Uuid, after: Option<Uuid>) -> Option<Claim> {
-        let mut open = self.lock();
+        let mut open = self.open.lock();
         let from = after.unwrap_or_default();
         let beyond = open.range((Excluded(from), Unbounded)).chain(open.range(..=from));
         let job = beyond.filter(|(_, job)| !job.waiting.is_empty()).map(|(id, _)| *id).next()?;
@@ -189,12 +188,12 @@ impl ChunkQueue {
 
     /// Whether a claim is still valid.
     pub(super) fn is_claimed(&self, claim: Claim) -> bool {
-        self.lock().get(&claim.job).is_some_and(|job| job.claimed.contains(&claim.chunk))
+        self.open.lock().get(&claim.job).is_some_and(|job| job.claimed.contains(&claim.chunk))
     }
 
     /// Releases a chunk.
     pub(super) fn release(&self, claim: Claim) {
-        if let Some(job) = self.lock().get_mut(&claim.job)
+        if let Some(job) = self.open.lock().get_mut(&claim.job)
             && job.claimed.remove(&claim.chunk)
         {
             job.waiting.insert(claim.chunk);
@@ -203,7 +202,7 @@ impl ChunkQueue {
 
     /// Removes a chunk that is done.
     pub(super) fn finish(&self, claim: Claim) {
-        let mut open = self.lock();
+        let mut open = self.open.lock();
         if let Some(job) = open.get_mut(&claim.job) {
             job.claimed.remove(&claim.chunk);
             if job.claimed.is_empty() && job.waiting.is_empty() {
@@ -214,11 +213,7 @@ impl ChunkQueue {
 
     /// Removes a job.
     pub(super) fn remove_job(&self, id: Uuid) {
-        self.lock().remove(&id);
-    }
-
-    fn lock(&self) -> MutexGuard<'_, BTreeMap<Uuid, OpenJob>> {
-        self.open.lock().unwrap_or_else(PoisonError::into_inner)
+        self.open.lock().remove(&id);
     }
 }
 

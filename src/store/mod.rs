@@ -238,7 +238,7 @@ pub const RECEIPT_OVERHEAD: u64 = 256;
 
 /// Why a call to a store failed. Nothing has changed then, except perhaps after
 /// [`StoreError::Unavailable`] and [`StoreError::Failed`].
-#[derive(Debug, thiserror::Error)]
+#[derive(Clone, Debug, thiserror::Error)]
 pub enum StoreError {
     /// The session was not found.
     #[error("there is no such contact")]

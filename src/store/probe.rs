@@ -16,32 +16,7 @@ const LIMIT: Duration = Duration::from_secs(2);
 #[derive(Default)]
 pub(super) struct Probe {
     // Held while a probe is under way: those who ask meanwhile get its outcome.
-    last: Mutex<Option<(Instant, Result<(), Failure>)>>,
-}
-
-/// Why a probe failed.
-#[derive(Clone)]
-enum Failure {
-    Full(String),
-    Unavailable(String),
-}
-
-impl From<StoreError> for Failure {
-    fn from(error: StoreError) -> Failure {
-        match error {
-            StoreError::Full(why) => Failure::Full(why),
-            other => Failure::Unavailable(other.to_string()),
-        }
-    }
-}
-
-impl From<Failure> for StoreError {
-    fn from(failure: Failure) -> StoreError {
-        match failure {
-            Failure::Full(why) => StoreError::Full(why),
-            Failure::Unavailable(why) => StoreError::Unavailable(why),
-        }
-    }
+    last: Mutex<Option<(Instant, Result<()>)>>,
 }
 
 impl Probe {
@@ -49,12 +24,14 @@ impl Probe {
     pub(super) async fn outcome(&self, write: impl Future<Output = Result<()>>) -> Result<()> {
         let mut last = self.last.lock().await;
         if last.as_ref().is_none_or(|(at, _)| at.elapsed() >= INTERVAL) {
-            let outcome = timeout(LIMIT, write).await.map_err(|_| Failure::Unavailable("no answer in time".to_owned()));
-            let outcome = outcome.and_then(|written| written.map_err(Failure::from));
+            let outcome = match timeout(LIMIT, write).await {
+                Ok(outcome @ (Ok(()) | Err(StoreError::Full(_)))) => outcome,
+                Ok(Err(error)) => Err(StoreError::Unavailable(error.to_string())),
+                Err(_) => Err(StoreError::Unavailable("no answer in time".to_owned())),
+            };
             *last = Some((Instant::now(), outcome));
         }
-        let outcome = last.as_ref().map_or(Ok(()), |(_, outcome)| outcome.clone());
-        outcome.map_err(StoreError::from)
+        last.as_ref().map_or(Ok(()), |(_, outcome)| outcome.clone())
     }
 }
 

@@ -71,7 +71,6 @@ pub(super) fn session<R: RowReader>(row: &mut R) -> Result<Session, R::Error> {
     Ok(Session { id, tenant, label, definition, sequence, created_at, updated_at })
 }
 
-/// The name of a tenant.
 pub(super) fn tenant<R: RowReader>(row: &mut R) -> Result<Tenant, R::Error> {
     row.text(|name| Ok::<_, std::convert::Infallible>(Tenant::new(name)))
 }

@@ -8,7 +8,7 @@ use std::sync::{Arc, Mutex, mpsc};
 use std::time::Duration;
 
 use stickslip::admission::{
-    Capacity, Client, INLINE, Interrupted, Kind, Nanoseconds, Pool, PoolError, Quota, QuotaLimits, Stop,
+    Capacity, Client, INLINE, Interrupted, Kind, LONGEST_WORK, Nanoseconds, Pool, PoolError, Quota, QuotaLimits, Stop,
 };
 use stickslip::simulation::cost::Work;
 use stickslip_mechanics::profile::Cone;
@@ -83,7 +83,7 @@ async fn small_needs_do_not_wait_behind_large_ones() {
 
 #[test]
 fn work_ends_with_the_guard() {
-    let (stop, guard) = Stop::guarded();
+    let (stop, guard) = Stop::within(LONGEST_WORK);
     assert_eq!(stop.check(), Ok(()));
     drop(guard);
     assert_eq!(stop.check(), Err(Interrupted::Abandoned));

@@ -41,17 +41,15 @@ macro_rules! show {
 /// The current page: the registered counters, and gauges that are read at this request.
 fn page(app: &App, traffic: &RequestMetrics) -> prometheus::Result<String> {
     let page = Registry::new();
-    for collector in traffic.collectors() {
+    let readings = app.sessions.readings();
+    let counted = [readings.counted.collectors(), app.pool.meters().collectors(), app.jobs.meters().collectors()];
+    for collector in counted.into_iter().flatten().chain(traffic.collectors()) {
         page.register(collector)?;
     }
-    let readings = app.sessions.readings();
     sessions(&page, &readings)?;
-    let meters = app.pool.meters();
-    gauge(&page, Opts::new("stickslip_solver_threads", "Threads for long work."), meters.threads as f64)?;
-    show!(page, meters.work, meters.running, meters.waiting, meters.wait, meters.refused);
+    let threads = app.pool.capacity().threads.max(1);
+    gauge(&page, Opts::new("stickslip_solver_threads", "Threads for long work."), threads as f64)?;
     show!(page, app.pool.quotas().refused());
-    let jobs = app.jobs.meters();
-    show!(page, jobs.points, jobs.chunks, jobs.returned, jobs.running, jobs.failed);
     if let Some(commits) = readings.commits {
         show!(page, commits.time, commits.size, commits.failed, commits.pending);
     }
@@ -67,11 +65,9 @@ fn gauge(page: &Registry, options: Opts, value: f64) -> prometheus::Result<()> {
 }
 
 fn sessions(page: &Registry, readings: &Readings<'_>) -> prometheus::Result<()> {
-    let counted = readings.counted;
-    show!(page, counted.moves, counted.hits, counted.profiles_prepared, counted.profiles_shared, counted.open);
     let misses =
         IntCounter::new("stickslip_cache_misses_total", "Times that it was not, and was brought from the store.")?;
-    misses.inc_by(counted.open.get_sample_count());
+    misses.inc_by(readings.counted.open.get_sample_count());
     show!(page, misses);
     for (name, help, value) in [
         ("stickslip_cache_contacts", "Contacts in memory that nobody works on.", readings.cached),

@@ -18,10 +18,9 @@ pub(super) struct StoredJob {
 }
 
 impl MemoryStore {
-    /// Deletes the jobs that have expired.
     pub(super) fn purge_jobs(&self) {
         let now = Timestamp::now();
-        self.lock().jobs.retain(|id, stored| {
+        self.inner.lock().jobs.retain(|id, stored| {
             let stays = stored.job.expires_at() > now;
             if !stays {
                 self.queue.remove_job(*id);
@@ -31,14 +30,14 @@ impl MemoryStore {
     }
 
     fn with_job<T>(&self, id: Uuid, look: impl FnOnce(&mut StoredJob) -> T) -> Result<T> {
-        self.lock().jobs.get_mut(&id).map(look).ok_or(StoreError::NotFound)
+        self.inner.lock().jobs.get_mut(&id).map(look).ok_or(StoreError::NotFound)
     }
 }
 
 #[async_trait]
 impl JobStore for MemoryStore {
     async fn create_job(&self, job: Job, request: String, limits: JobLimits, receipt: Option<Receipt>) -> Result<()> {
-        let mut inner = self.lock();
+        let mut inner = self.inner.lock();
         inner.receipts.check_free(receipt.as_ref())?;
         let (mut jobs, mut bytes, mut cost) = (0, 0, 0);
         for other in inner.jobs.values().map(|stored| &stored.job).filter(|other| other.tenant == job.tenant) {
@@ -59,7 +58,7 @@ impl JobStore for MemoryStore {
     }
 
     async fn jobs(&self, tenant: Tenant) -> Result<Vec<Job>> {
-        let inner = self.lock();
+        let inner = self.inner.lock();
         let own = inner.jobs.values().map(|stored| &stored.job).filter(|job| job.tenant == tenant);
         let mut own: Vec<Job> = own.cloned().collect();
         own.sort_by_key(|job| job.id);
@@ -116,7 +115,7 @@ impl JobStore for MemoryStore {
     }
 
     async fn delete_job(&self, id: Uuid) -> Result<()> {
-        let deleted = self.lock().jobs.remove(&id).map(drop).ok_or(StoreError::NotFound);
+        let deleted = self.inner.lock().jobs.remove(&id).map(drop).ok_or(StoreError::NotFound);
         self.queue.remove_job(id);
         self.changes.wake(id);
         deleted

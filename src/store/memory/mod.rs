@@ -4,11 +4,12 @@ mod jobs;
 
 use std::collections::{BTreeMap, HashMap, VecDeque};
 use std::ops::Bound::{Excluded, Unbounded};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::Arc;
 use std::time::Instant;
 
 use async_trait::async_trait;
 use jiff::Timestamp;
+use parking_lot::Mutex;
 use uuid::Uuid;
 
 use stickslip_wire::SessionSummary;
@@ -17,17 +18,18 @@ use jobs::StoredJob;
 
 use super::jobs::ChunkQueue;
 use super::{
-    CONTACT_BYTES, Changes, Extent, Heading, RECEIPT_LIFETIME, RECEIPT_OVERHEAD, RECORD_BYTES, Receipt, Record, Result,
-    Session, Snapshot, Store, StoreError, Tenant, Usage,
+    CONTACT_BYTES, Changes, Extent, Heading, RECEIPT_LIFETIME, RECORD_BYTES, Receipt, Record, Result, Session,
+    Snapshot, Store, StoreError, Tenant, Usage,
 };
 
 /// Bytes of replies kept for retries. Beyond that the oldest are deleted early, because memory is bounded.
-const RECEIPT_BYTES: usize = 256 * 1024 * 1024;
+const RECEIPT_BYTES: u64 = 256 * 1024 * 1024;
 
 /// Sessions in a map.
 #[derive(Default)]
 pub struct MemoryStore {
-    // A std mutex: it is held for a lookup, a push or a page of copies, never across an await.
+    // Locked for a lookup, a push or a page of copies, never across an await. No call can panic between its first and
+    // its last change, so that what a panic leaves is consistent.
     inner: Mutex<Inner>,
     queue: ChunkQueue,
     changes: Changes,
@@ -56,7 +58,7 @@ struct Receipts {
     by_key: HashMap<String, Receipt>,
     // In the order of arrival, which is that of expiry.
     arrivals: VecDeque<(Instant, String)>,
-    bytes: usize,
+    bytes: u64,
 }
 
 impl MemoryStore {
@@ -64,11 +66,6 @@ impl MemoryStore {
     #[must_use]
     pub fn new() -> MemoryStore {
         MemoryStore::default()
-    }
-
-    fn lock(&self) -> MutexGuard<'_, Inner> {
-        // No call can panic between its first and its last change, so that a poisoned map is consistent.
-        self.inner.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
@@ -101,7 +98,7 @@ impl Receipts {
 
     fn insert(&mut self, receipt: Option<Receipt>) {
         if let Some(receipt) = receipt {
-            self.bytes += size(&receipt);
+            self.bytes += receipt.bytes();
             self.arrivals.push_back((Instant::now(), receipt.request.key.clone()));
             self.by_key.insert(receipt.request.key.clone(), receipt);
             self.purge();
@@ -114,15 +111,11 @@ impl Receipts {
                 break;
             }
             if let Some(receipt) = self.by_key.remove(key) {
-                self.bytes -= size(&receipt);
+                self.bytes -= receipt.bytes();
             }
             self.arrivals.pop_front();
         }
     }
-}
-
-fn size(receipt: &Receipt) -> usize {
-    RECEIPT_OVERHEAD as usize + receipt.reply.body.len() + 2 * receipt.request.key.len()
 }
 
 fn summary(session: &Session) -> SessionSummary {
@@ -138,7 +131,7 @@ impl Store for MemoryStore {
 
     async fn create(&self, session: Session, receipt: Option<Receipt>) -> Result<()> {
         let definition = serde_json::to_vec(&*session.definition).map_or(0, |text| text.len() as u64);
-        let mut inner = self.lock();
+        let mut inner = self.inner.lock();
         inner.receipts.check_free(receipt.as_ref())?;
         inner.sessions.insert(session.id, Stored { session, definition, moves: Arc::default(), snapshot: None });
         inner.receipts.insert(receipt);
@@ -147,7 +140,7 @@ impl Store for MemoryStore {
 
     async fn extent(&self, id: Uuid) -> Result<Extent> {
         // What is in memory already is not read again: the definition is shared.
-        self.lock().get(id).map(|Stored { session, snapshot, .. }| Extent {
+        self.inner.lock().get(id).map(|Stored { session, snapshot, .. }| Extent {
             tenant: session.tenant.clone(),
             sequence: session.sequence,
             definition: 0,
@@ -156,7 +149,7 @@ impl Store for MemoryStore {
     }
 
     async fn usage(&self, tenant: &Tenant) -> Result<Usage> {
-        let inner = self.lock();
+        let inner = self.inner.lock();
         let own = inner.sessions.values().filter(|stored| stored.session.tenant == *tenant);
         let usage = own.fold(Usage::default(), |Usage { contacts, bytes }, stored| {
             let snapshot = stored.snapshot.as_ref().map_or(0, |snapshot| snapshot.state.len() as u64);
@@ -164,7 +157,7 @@ impl Store for MemoryStore {
             Usage { contacts: contacts + 1, bytes: bytes + CONTACT_BYTES + stored.definition + moves + snapshot }
         });
         let receipts = inner.receipts.by_key.values().filter(|receipt| receipt.request.is_of(tenant));
-        Ok(Usage { bytes: usage.bytes + receipts.map(|receipt| size(receipt) as u64).sum::<u64>(), ..usage })
+        Ok(Usage { bytes: usage.bytes + receipts.map(Receipt::bytes).sum::<u64>(), ..usage })
     }
 
     fn move_bytes(&self) -> u64 {
@@ -172,12 +165,12 @@ impl Store for MemoryStore {
     }
 
     async fn find(&self, id: Uuid) -> Result<Session> {
-        self.lock().get(id).map(|stored| stored.session.clone())
+        self.inner.lock().get(id).map(|stored| stored.session.clone())
     }
 
     async fn heading(&self, id: Uuid) -> Result<Heading> {
         let heading = |session: &Session| Heading { sequence: session.sequence, label: session.label.clone() };
-        self.lock().get(id).map(|stored| heading(&stored.session))
+        self.inner.lock().get(id).map(|stored| heading(&stored.session))
     }
 
     async fn list(
@@ -191,7 +184,7 @@ impl Store for MemoryStore {
         let is_labelled = |wanted: &str, session: &Session| {
             session.label.as_ref().is_some_and(|label| label.to_ascii_lowercase().contains(wanted))
         };
-        let inner = self.lock();
+        let inner = self.inner.lock();
         let sessions = inner.sessions.range((after.map_or(Unbounded, Excluded), Unbounded));
         let sessions = sessions.map(|(_, stored)| &stored.session);
         let own = sessions.filter(|session| tenant.as_ref().is_none_or(|tenant| session.tenant == *tenant));
@@ -200,7 +193,7 @@ impl Store for MemoryStore {
     }
 
     async fn rename(&self, id: Uuid, label: Option<String>, expected: u64, receipt: Option<Receipt>) -> Result<()> {
-        let mut inner = self.lock();
+        let mut inner = self.inner.lock();
         inner.receipts.check_free(receipt.as_ref())?;
         inner.at(id, expected)?.session.label = label;
         inner.receipts.insert(receipt);
@@ -209,7 +202,7 @@ impl Store for MemoryStore {
 
     async fn append(&self, id: Uuid, expected: u64, records: Vec<Record>, receipt: Option<Receipt>) -> Result<()> {
         {
-            let mut inner = self.lock();
+            let mut inner = self.inner.lock();
             inner.receipts.check_free(receipt.as_ref())?;
             let stored = inner.at(id, expected)?;
             if let Some(last) = records.last() {
@@ -225,7 +218,7 @@ impl Store for MemoryStore {
 
     async fn history(&self, id: Uuid, after: u64, limit: usize) -> Result<Vec<Record>> {
         // Copied under the lock: moves that are shared would have to be copied whole by the next append.
-        self.lock().get(id).map(|stored| {
+        self.inner.lock().get(id).map(|stored| {
             // Sequences count from 1, so that the sequence of the last move seen is the index of the next one.
             let start = usize::try_from(after).unwrap_or(usize::MAX).min(stored.moves.len());
             stored.moves[start..].iter().take(limit).cloned().collect()
@@ -233,11 +226,11 @@ impl Store for MemoryStore {
     }
 
     async fn count_moves(&self, id: Uuid, end: u64) -> Result<u64> {
-        self.lock().get(id).map(|stored| end.min(stored.moves.len() as u64))
+        self.inner.lock().get(id).map(|stored| end.min(stored.moves.len() as u64))
     }
 
     async fn fork(&self, id: Uuid, copy: Session, receipt: Option<Receipt>) -> Result<()> {
-        let mut inner = self.lock();
+        let mut inner = self.inner.lock();
         inner.receipts.check_free(receipt.as_ref())?;
         let Stored { session, definition, moves, snapshot } = inner.get(id)?;
         let (found, definition) = (session.sequence, *definition);
@@ -255,7 +248,7 @@ impl Store for MemoryStore {
 
     async fn delete(&self, id: Uuid, expected: u64) -> Result<()> {
         {
-            let mut inner = self.lock();
+            let mut inner = self.inner.lock();
             inner.at(id, expected)?;
             inner.sessions.remove(&id);
         }
@@ -264,17 +257,17 @@ impl Store for MemoryStore {
     }
 
     async fn receipt(&self, key: &str) -> Result<Option<Receipt>> {
-        let mut inner = self.lock();
+        let mut inner = self.inner.lock();
         inner.receipts.purge();
         Ok(inner.receipts.by_key.get(key).cloned())
     }
 
     async fn snapshot(&self, id: Uuid) -> Result<Option<Snapshot>> {
-        self.lock().get(id).map(|stored| stored.snapshot.clone())
+        self.inner.lock().get(id).map(|stored| stored.snapshot.clone())
     }
 
     async fn save_snapshot(&self, id: Uuid, snapshot: Snapshot) -> Result<()> {
-        if let Some(stored) = self.lock().sessions.get_mut(&id)
+        if let Some(stored) = self.inner.lock().sessions.get_mut(&id)
             && stored.snapshot.as_ref().is_none_or(|older| older.sequence < snapshot.sequence)
         {
             stored.snapshot = Some(snapshot);
@@ -284,7 +277,7 @@ impl Store for MemoryStore {
 
     async fn purge_expired(&self, idle_since: Option<Timestamp>) -> Result<u64> {
         self.purge_jobs();
-        let mut inner = self.lock();
+        let mut inner = self.inner.lock();
         inner.receipts.purge();
         let Some(since) = idle_since else { return Ok(0) };
         let idle = inner.sessions.values().filter(|stored| stored.session.updated_at < since);
@@ -317,7 +310,7 @@ mod tests {
     fn old_receipts_make_room_for_new_ones() {
         let mut receipts = Receipts::default();
         for key in ["a", "b", "c"] {
-            receipts.insert(Some(receipt(key, RECEIPT_BYTES / 3)));
+            receipts.insert(Some(receipt(key, RECEIPT_BYTES as usize / 3)));
         }
         assert!(!receipts.by_key.contains_key("a"));
         assert!(receipts.check_free(Some(&receipt("c", 0))).is_err() && receipts.bytes <= RECEIPT_BYTES);

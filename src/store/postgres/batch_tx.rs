@@ -18,15 +18,6 @@ pub(super) struct WriterConnection {
     batch: Statement,
 }
 
-/// A batch as columns.
-#[derive(Default)]
-struct Columns {
-    requests: Requests,
-    moves: Moves,
-    receipts: Receipts,
-    sessions: Sessions,
-}
-
 impl WriterConnection {
     /// Connects, and prepares the statements of batches.
     pub(super) async fn open(pool: &ClientPool) -> Result<WriterConnection, Fault> {
@@ -52,36 +43,25 @@ impl WriterConnection {
         pool: &ClientPool,
         requests: &[WriteRequest],
     ) -> Result<HashMap<Uuid, Option<u64>>, Fault> {
-        let columns = Columns::of(requests);
-        let parameters = columns.requests.parameters().into_iter().chain(columns.moves.parameters());
-        let parameters = parameters.chain(columns.receipts.parameters()).chain(columns.sessions.parameters());
-        let parameters: Vec<_> = parameters.collect();
+        let (mut appends, mut moves) = (Requests::default(), Moves::default());
+        let (mut receipts, mut sessions) = (Receipts::default(), Sessions::default());
+        for request in requests {
+            match &request.change {
+                Change::Create(session, definition) => sessions.push((session, definition.clone())),
+                Change::Append { id, expected, records } => {
+                    let last = records.last();
+                    let sequence = last.map_or(*expected, |record| record.sequence);
+                    appends.push((*id, *expected, sequence, last.map(|record| record.at)));
+                    records.iter().for_each(|record| moves.push((*id, request.stamp, record)));
+                }
+            }
+            request.receipt.iter().for_each(|receipt| receipts.push((request.id(), receipt)));
+        }
+        let columns = [appends.parameters(), moves.parameters(), receipts.parameters(), sessions.parameters()];
+        let parameters = columns.concat();
         // The driver returns once the database is ready again, and so after the commit of a statement without `BEGIN`.
         let commit = async { Ok(self.client.query(&self.batch, &parameters).await?) };
         let found = pool.answer(ANSWER, commit).await?;
         Ok(found.iter().map(|row| (row.get(0), row.get::<_, Option<i64>>(1).map(from_bigint))).collect())
-    }
-}
-
-impl Columns {
-    fn of(requests: &[WriteRequest]) -> Columns {
-        let mut columns = Columns::default();
-        for request in requests {
-            match &request.change {
-                Change::Create(session, definition) => columns.sessions.push((session, definition.clone())),
-                Change::Append { id, expected, records } => {
-                    let last = records.last();
-                    let sequence = last.map_or(*expected, |record| record.sequence);
-                    columns.requests.push((*id, *expected, sequence, last.map(|record| record.at)));
-                    for record in records {
-                        columns.moves.push((*id, request.stamp, record));
-                    }
-                }
-            }
-            if let Some(receipt) = &request.receipt {
-                columns.receipts.push((request.id(), receipt));
-            }
-        }
-        columns
     }
 }

@@ -18,12 +18,10 @@ pub(super) struct Reader<'a> {
     next: usize,
 }
 
-/// Reads a row from its first column on.
 pub(super) fn reader(row: &Row) -> Reader<'_> {
     reader_from(row, 0)
 }
 
-/// Reads a row from another column on.
 pub(super) fn reader_from(row: &Row, next: usize) -> Reader<'_> {
     Reader { row, next }
 }

@@ -1,16 +1,18 @@
 //! Commits batches of changes on a connection of its own, and answers those who wait for them.
 
+use std::collections::HashMap;
 use std::sync::Arc;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use futures::future::join_all;
+use uuid::Uuid;
 
-use crate::store::{Changes, Commits, RECEIPT_LIFETIME, Result, StoreError};
+use crate::store::{Changes, Commits, RECEIPT_LIFETIME, Result, StoreError, Tenant};
 
 use super::batch_tx::WriterConnection;
 use super::client_pool::ClientPool;
+use super::columns::{from_bigint, to_bigint};
 use super::fault::{Backoff, Fault};
-use super::outcome::outcome_of;
 use super::request::{Change, WriteRequest};
 use super::sql;
 
@@ -19,7 +21,6 @@ const COLLISIONS: usize = 8;
 /// How often a connection may be lost under one batch: perhaps the batch itself is the cause.
 const LOSSES: usize = 4;
 
-/// A connection for batches.
 pub(super) struct Committer {
     pool: Arc<ClientPool>,
     changes: Arc<Changes>,
@@ -43,77 +44,51 @@ impl Committer {
     pub(super) async fn commit(&mut self, mut batch: Vec<WriteRequest>) -> Vec<WriteRequest> {
         let (mut backoff, mut collisions, mut losses) = (Backoff::default(), 0, 0);
         while !batch.is_empty() {
-            let begin = Instant::now();
-            let pool = Arc::clone(&self.pool);
-            let fault = match self.connection().await {
-                Ok(connection) => match connection.commit_batch(&pool, &batch).await {
-                    Ok(found) => {
-                        self.pool.outage.end();
-                        let (locked, done): (Vec<_>, Vec<_>) =
-                            batch.into_iter().partition(|request| found.get(&request.id()) == Some(&None));
-                        if done.is_empty() {
-                            self.commits.progressed();
-                        } else {
-                            self.commits.committed(done.len(), begin.elapsed());
-                        }
-                        for request in done {
-                            self.reply_committed(found.get(&request.id()).copied().flatten(), request);
-                        }
-                        return locked;
-                    }
-                    Err(fault) => {
-                        if matches!(fault, Fault::Lost(_)) {
-                            losses += 1;
-                            batch.iter_mut().for_each(|request| request.in_doubt = true);
-                        }
-                        fault
-                    }
-                },
+            let (begin, pool) = (Instant::now(), Arc::clone(&self.pool));
+            let (sent, outcome) = match self.connection().await {
+                Ok(connection) => (true, connection.commit_batch(&pool, &batch).await),
+                Err(fault) => (false, Err(fault)),
+            };
+            let fault = match outcome {
+                Ok(found) => return self.reply_committed(batch, &found, begin.elapsed()),
                 Err(fault) => fault,
             };
+            if sent && matches!(fault, Fault::Lost(_)) {
+                losses += 1;
+                batch.iter_mut().for_each(|request| request.in_doubt = true);
+            }
             self.commits.failed.inc();
-            match fault {
+            let refusal = match fault {
                 Fault::Lost(text) => {
                     self.connection = None;
-                    if !self.pool.outage.worth_waiting(&text) || losses > LOSSES {
-                        answer_all(batch, || StoreError::Unavailable(text.clone()));
-                        break;
+                    if self.pool.outage.worth_waiting(&text) && losses <= LOSSES {
+                        backoff.pause().await;
+                        continue;
                     }
-                    backoff.pause().await;
+                    StoreError::Unavailable(text)
                 }
                 Fault::Conflict(text) | Fault::Duplicate(text) if collisions == COLLISIONS => {
-                    answer_all(batch, || StoreError::Unavailable(text.clone()));
-                    break;
+                    StoreError::Unavailable(text)
                 }
                 Fault::Conflict(_) => {
                     collisions += 1;
                     backoff.pause().await;
+                    continue;
                 }
                 Fault::Duplicate(_) => {
                     collisions += 1;
                     batch = self.without_duplicates(batch).await;
-                }
-                Fault::Refused(StoreError::Full(text)) => {
-                    answer_all(batch, || StoreError::Full(text.clone()));
-                    break;
+                    continue;
                 }
                 Fault::Locked(_) => {
                     batch = without_overdue(batch);
-                    if batch.len() < 2 {
-                        return batch;
-                    }
-                    return self.commit_halves(batch).await;
+                    return if batch.len() < 2 { batch } else { self.commit_halves(batch).await };
                 }
                 Fault::Refused(StoreError::Failed(_)) if batch.len() > 1 => return self.commit_halves(batch).await,
-                Fault::Refused(StoreError::Failed(text)) => {
-                    answer_all(batch, || StoreError::Failed(text.clone()));
-                    break;
-                }
-                Fault::Refused(other) => {
-                    answer_all(batch, || StoreError::Unavailable(other.to_string()));
-                    break;
-                }
-            }
+                Fault::Refused(error @ (StoreError::Full(_) | StoreError::Failed(_))) => error,
+                Fault::Refused(other) => StoreError::Unavailable(other.to_string()),
+            };
+            batch.drain(..).for_each(|request| request.answer(Err(refusal.clone())));
         }
         Vec::new()
     }
@@ -134,8 +109,30 @@ impl Committer {
         }
     }
 
-    /// Answers a request of a batch that has been committed.
-    fn reply_committed(&self, found: Option<u64>, request: WriteRequest) {
+    /// Answers the requests of a batch that has been committed, by the sequences at which their sessions were found;
+    /// but returns those whose contacts other transactions hold.
+    fn reply_committed(
+        &self,
+        batch: Vec<WriteRequest>,
+        found: &HashMap<Uuid, Option<u64>>,
+        time: Duration,
+    ) -> Vec<WriteRequest> {
+        self.pool.outage.end();
+        let (locked, done): (Vec<_>, Vec<_>) =
+            batch.into_iter().partition(|request| found.get(&request.id()) == Some(&None));
+        if done.is_empty() {
+            self.commits.progressed();
+        } else {
+            self.commits.committed(done.len(), time);
+        }
+        for request in done {
+            self.reply(found.get(&request.id()).copied().flatten(), request);
+        }
+        locked
+    }
+
+    /// Answers a request that was sent, and whose session was found at a sequence.
+    fn reply(&self, found: Option<u64>, request: WriteRequest) {
         let Change::Append { expected, .. } = &request.change else {
             return request.answer(Ok(()));
         };
@@ -195,6 +192,30 @@ fn answer_known(request: WriteRequest, outcome: Result<()>, changes: &Changes) {
     request.answer(outcome);
 }
 
-fn answer_all(batch: Vec<WriteRequest>, error: impl Fn() -> StoreError) {
-    batch.into_iter().for_each(|request| request.answer(Err(error())));
+/// Reads whether a request is stored whose answer was lost, or why it was refused; one that is neither may be tried
+/// again.
+async fn outcome_of(pool: &ClientPool, request: &WriteRequest) -> Result<bool> {
+    let (id, expected, last) = match &request.change {
+        Change::Create(session, _) => (session.id, None, 0),
+        Change::Append { id, expected, records } => {
+            (*id, Some(*expected), records.last().map_or(0, |record| record.sequence))
+        }
+    };
+    let lifetime = RECEIPT_LIFETIME.as_secs_f64();
+    let row = pool.row(sql::OUTCOME, &[&id, &request.key(), &lifetime, &to_bigint(last)]).await?;
+    let row = row.ok_or_else(|| StoreError::Failed("the database returned no row".to_owned()))?;
+    let (sequence, expired, taken): (Option<i64>, Option<&str>, bool) = (row.get(0), row.get(1), row.get(2));
+    let stored = match expected {
+        Some(_) => row.get::<_, Option<i64>>(3) == Some(request.stamp),
+        None => sequence.is_some(),
+    };
+    match (expected, sequence.map(from_bigint)) {
+        _ if request.in_doubt && stored => Ok(true),
+        _ if taken => Err(StoreError::KeyTaken),
+        (None, None) => Ok(false),
+        (None, Some(_)) => Err(StoreError::Failed(format!("there is a contact {id} already"))),
+        (Some(_), None) => Err(expired.map(Tenant::new).map_or(StoreError::NotFound, StoreError::Expired)),
+        (Some(expected), Some(found)) if found == expected => Ok(false),
+        (Some(_), Some(found)) => Err(StoreError::Stale { found }),
+    }
 }

@@ -4,7 +4,6 @@
 //! and database alone.
 
 use std::sync::Arc;
-use std::time::Duration;
 
 use percent_encoding::percent_decode_str;
 use rustls::crypto::ring;
@@ -19,13 +18,10 @@ use tokio_postgres_rustls::MakeRustlsConnect;
 use super::sql;
 use crate::unverified_tls;
 
-/// How long connecting may take, unless the URL says otherwise.
-const CONNECT_TIMEOUT: Duration = Duration::from_secs(3);
-/// How long sent bytes may stay unconfirmed before a connection counts as lost, and how long one may be silent before
-/// it is tested, and how often and how many times.
-const SILENCE: Duration = Duration::from_secs(10);
-const KEEPALIVE_INTERVAL: Duration = Duration::from_secs(2);
-const KEEPALIVES: u32 = 3;
+/// What counts unless the URL says otherwise: connecting may take 3 s, and sent bytes may stay unconfirmed for 10 s; a
+/// connection that has been silent for 10 s is tested 3 times, 2 s apart.
+const DEFAULTS: &str = "application_name=stickslip&connect_timeout=3&tcp_user_timeout=10&keepalives_idle=10\
+    &keepalives_interval=2&keepalives_retries=3";
 
 /// A connection whose messages have yet to be driven.
 pub(super) type Driver = Connection<Socket, <MakeRustlsConnect as MakeTlsConnect<Socket>>::Stream>;
@@ -38,30 +34,11 @@ pub(super) struct ConnectTarget {
 }
 
 impl ConnectTarget {
-    /// Reads a URL.
     pub(super) fn parse(url: &str) -> Result<ConnectTarget, String> {
         let (url, verification) = split_tls_options(url)?;
-        let mut config: Config = url.parse().map_err(|error| error_chain(&error))?;
+        let config: Config = url.parse().map_err(|error| error_chain(&error))?;
         if config.get_hosts().is_empty() && config.get_hostaddrs().is_empty() {
             return Err("the URL names no host".to_owned());
-        }
-        if config.get_connect_timeout().is_none() {
-            config.connect_timeout(CONNECT_TIMEOUT);
-        }
-        if config.get_tcp_user_timeout().is_none() {
-            config.tcp_user_timeout(SILENCE);
-        }
-        if !url.contains("keepalives_idle=") {
-            config.keepalives_idle(SILENCE);
-        }
-        if config.get_keepalives_interval().is_none() {
-            config.keepalives_interval(KEEPALIVE_INTERVAL);
-        }
-        if config.get_keepalives_retries().is_none() {
-            config.keepalives_retries(KEEPALIVES);
-        }
-        if config.get_application_name().is_none() {
-            config.application_name("stickslip");
         }
         Ok(ConnectTarget { config, tls: MakeRustlsConnect::new(verification.config()?) })
     }
@@ -112,12 +89,11 @@ enum Verification {
     File(String),
 }
 
-/// Removes from a URL the TLS options that the driver does not support.
+/// Removes from a URL the TLS options that the driver does not support, and adds the default of others.
 fn split_tls_options(url: &str) -> Result<(String, Verification), String> {
-    let Some((base, query)) = url.split_once('?') else {
-        return Ok((url.to_owned(), Verification::None));
-    };
-    let (mut rest, mut root, mut full) = (Vec::new(), None, false);
+    let (base, query) = url.split_once('?').unwrap_or((url, ""));
+    // The last one of a name counts.
+    let (mut rest, mut root, mut full) = (vec![DEFAULTS], None, false);
     for option in query.split('&').filter(|option| !option.is_empty()) {
         match option.split_once('=') {
             Some(("sslmode", "verify-full")) => {

@@ -1,10 +1,10 @@
 //! What an error of the database means, and how long to go on trying.
 
 use std::io;
-use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
 use deadpool_postgres::PoolError;
+use parking_lot::Mutex;
 use tokio::sync::watch;
 use tokio::time::timeout_at;
 use tokio_postgres::Error;
@@ -124,7 +124,7 @@ impl Fault {
 
 /// Since when the database has been unreachable, as observed by the last call, and when it was last heard of.
 pub(super) struct Outage {
-    // A std mutex: held for a read, never across an await.
+    // Locked for a read, never across an await.
     since: Mutex<Option<Instant>>,
     heard: watch::Sender<Instant>,
 }
@@ -145,7 +145,7 @@ impl Outage {
     /// not silence: other answers come meanwhile (`listen.rs` asks for them).
     pub(super) async fn silence(&self) {
         let (begin, mut heard) = (Instant::now(), self.heard.subscribe());
-        let known = self.lock().is_some() && heard.borrow().elapsed() >= PATIENCE;
+        let known = self.since.lock().is_some() && heard.borrow().elapsed() >= PATIENCE;
         let least = begin + if known { BRIEF_PATIENCE } else { PATIENCE };
         loop {
             let end = least.max(*heard.borrow_and_update() + PATIENCE);
@@ -166,22 +166,18 @@ impl Outage {
             }
             is_old
         });
-        if let Some(begin) = self.lock().take() {
+        if let Some(begin) = self.since.lock().take() {
             tracing::info!(outage_ms = begin.elapsed().as_millis() as u64, "the database is back");
         }
     }
 
     /// Notes that it could not; returns whether another attempt is worth waiting for.
     pub(super) fn worth_waiting(&self, fault: &str) -> bool {
-        let mut since = self.lock();
+        let mut since = self.since.lock();
         if since.is_none() {
             tracing::warn!(error = fault, "the database is unreachable");
         }
         since.get_or_insert_with(|| *self.heard.borrow()).elapsed() < PATIENCE
-    }
-
-    fn lock(&self) -> MutexGuard<'_, Option<Instant>> {
-        self.since.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 

@@ -3,7 +3,6 @@
 //! A worker has a lease on the chunk that it computes, and renews it. The chunks of a replica that is gone are claimed
 //! by others when its leases have run out.
 
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use async_trait::async_trait;
@@ -21,7 +20,7 @@ use super::client_pool::{
 use super::columns::{Receipts, from_bigint, reader, split_time, to_bigint};
 use super::fault::Fault;
 use super::sql;
-use super::transactions::begin;
+use super::transactions::{InDoubt, begin};
 
 /// Jobs that one statement deletes: their results are large.
 const PURGED_AT_ONCE: i64 = 4;
@@ -33,7 +32,7 @@ impl ClientPool {
         (job, request): (&Job, &str),
         limits: JobLimits,
         receipts: &Receipts,
-        commit_sent: &AtomicBool,
+        sent: &InDoubt,
     ) -> Result<(), Fault> {
         let transaction = begin(connection).await?;
         let tenant = job.tenant.name();
@@ -49,12 +48,9 @@ impl ClientPool {
         let row: [Parameter<'_>; 10] = [&job.id, &tenant, &at, &ns, &points, &chunk, &bytes, &cost, &request, &chunks];
         let row: Vec<_> = row.into_iter().chain(receipts.parameters()).collect();
         rows(&transaction, &sql::create_job(self.announces), &row).await?;
-        commit_sent.store(true, Ordering::Relaxed);
-        transaction.commit().await?;
-        Ok(())
+        sent.answered(async { Ok(transaction.commit().await?) }).await
     }
 
-    /// Deletes the expired jobs.
     pub(super) async fn purge_jobs(&self) -> Result<()> {
         let times = [JOB_LIFETIME, JOB_TIME_LIMIT].map(|time| time.as_secs_f64());
         let which: [Parameter<'_>; 3] = [&times[0], &times[1], &PURGED_AT_ONCE];
@@ -69,22 +65,16 @@ impl ClientPool {
 #[async_trait]
 impl JobStore for PostgresStore {
     async fn create_job(&self, job: Job, request: String, limits: JobLimits, receipt: Option<Receipt>) -> Result<()> {
-        let (pool, commit_sent, mut receipts) = (&self.pool, AtomicBool::new(false), Receipts::default());
-        if let Some(receipt) = &receipt {
-            receipts.push((job.id, receipt));
-            pool.free_key(receipt).await?;
-        }
+        let (pool, sent) = (&self.pool, InDoubt::default());
+        let receipts = pool.free_key(job.id, receipt.as_ref()).await?;
         let made = with_retries!(pool, LONG_ANSWER, connection =>
-            pool.create_job(connection, (&job, &request), limits, &receipts, &commit_sent));
+            pool.create_job(connection, (&job, &request), limits, &receipts, &sent));
         let Err(error) = made else { return Ok(()) };
         // A lost connection may have hidden that an earlier attempt went well.
-        if commit_sent.into_inner() && pool.row(sql::JOB, &[&job.id]).await?.is_some() {
+        if sent.get() && pool.row(sql::JOB, &[&job.id]).await?.is_some() {
             return Ok(());
         }
-        match receipt {
-            Some(receipt) if pool.receipt(&receipt.request.key).await?.is_some() => Err(StoreError::KeyTaken),
-            _ => Err(error),
-        }
+        Err(pool.key_taken_or(receipt.as_ref(), error).await?)
     }
 
     async fn job(&self, id: Uuid) -> Result<Job> {
@@ -125,16 +115,18 @@ impl JobStore for PostgresStore {
         let (chunk, points, failed) = (to_bigint(claim.chunk), to_bigint(result.points), to_bigint(result.failed));
         let parameters: [Parameter<'_>; 5] = [&claim.job, &chunk, &result.content, &points, &failed];
         let statement = sql::save_chunk(self.pool.announces);
-        let save = async |connection: &Object| existed(&rows(connection, &statement, &parameters).await?);
-        let found = with_retries!(self.pool, ANSWER, connection => save(connection))?;
+        let found = with_retries!(self.pool, ANSWER, connection => async {
+            existed(&rows(connection, &statement, &parameters).await?)
+        })?;
         self.changes.wake(claim.job);
         if found { Ok(()) } else { Err(StoreError::NotFound) }
     }
 
     async fn fail_job(&self, id: Uuid, error: String) -> Result<()> {
         let statement = sql::fail_job(self.pool.announces);
-        let fail = async |connection: &Object| existed(&rows(connection, &statement, &[&id, &error]).await?);
-        with_retries!(self.pool, ANSWER, connection => fail(connection))?;
+        with_retries!(self.pool, ANSWER, connection => async {
+            existed(&rows(connection, &statement, &[&id, &error]).await?)
+        })?;
         self.changes.wake(id);
         Ok(())
     }
@@ -145,17 +137,11 @@ impl JobStore for PostgresStore {
     }
 
     async fn delete_job(&self, id: Uuid) -> Result<()> {
-        let (sent, statement) = (AtomicBool::new(false), sql::delete_job(self.pool.announces));
-        let delete = async |connection: &Object| {
-            let in_doubt = sent.load(Ordering::Relaxed);
-            sent.store(true, Ordering::Relaxed);
-            let found = long_rows(connection, &statement, &[&id]).await?;
-            // It has been answered, and what an earlier attempt has done is no clearer.
-            sent.store(in_doubt, Ordering::Relaxed);
-            Ok(existed(&found)? || in_doubt)
-        };
-        let deleted = with_retries!(self.pool, LONG_ANSWER, connection => delete(connection))?;
+        let (sent, statement) = (InDoubt::default(), sql::delete_job(self.pool.announces));
+        let delete =
+            async |connection: &Object| existed(&sent.answered(long_rows(connection, &statement, &[&id])).await?);
+        let existed = with_retries!(self.pool, LONG_ANSWER, connection => delete(connection))?;
         self.changes.wake(id);
-        if deleted { Ok(()) } else { Err(StoreError::NotFound) }
+        if existed || sent.get() { Ok(()) } else { Err(StoreError::NotFound) }
     }
 }

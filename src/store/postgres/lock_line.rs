@@ -5,9 +5,10 @@
 //! change in the line joins the line.
 
 use std::collections::{HashSet, VecDeque};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::Arc;
 use std::time::Instant;
 
+use parking_lot::Mutex;
 use tokio::sync::Notify;
 use tokio::task::JoinHandle;
 use tokio::time::timeout_at;
@@ -29,7 +30,7 @@ pub(super) struct LockLine {
 /// What both sides see.
 #[derive(Default)]
 struct Shared {
-    // A std mutex: held for a pass over the line, never across an await.
+    // Locked for a pass over the line, never across an await.
     line: Mutex<Line>,
     pushed: Notify,
 }
@@ -76,7 +77,7 @@ impl LockLine {
 
     /// Takes those changes of the writer's that come after one in the line.
     pub(super) fn take_followers(&self, backlog: &mut VecDeque<WriteRequest>) {
-        let mut line = self.shared.lock();
+        let mut line = self.shared.line.lock();
         if line.waiting.is_empty() && line.tried.ids.is_empty() {
             return;
         }
@@ -94,7 +95,7 @@ impl LockLine {
     /// Puts changes into the line that are held.
     pub(super) fn push(&self, held: Vec<WriteRequest>) {
         if !held.is_empty() {
-            let mut line = self.shared.lock();
+            let mut line = self.shared.line.lock();
             held.into_iter().for_each(|request| line.push(request));
             self.shared.pushed.notify_one();
         }
@@ -102,7 +103,7 @@ impl LockLine {
 
     /// Waits until the line is empty, and ends it.
     pub(super) async fn end(self) {
-        self.shared.lock().ended = true;
+        self.shared.line.lock().ended = true;
         self.shared.pushed.notify_one();
         // It ends with an error only if the process does.
         let _ = self.task.await;
@@ -110,7 +111,6 @@ impl LockLine {
 }
 
 impl Line {
-    /// Adds a change at the end.
     fn push(&mut self, mut request: WriteRequest) {
         if self.waiting.len() >= LENGTH {
             return request.refuse_as_locked();
@@ -151,15 +151,11 @@ impl Line {
 }
 
 impl Shared {
-    fn lock(&self) -> MutexGuard<'_, Line> {
-        self.line.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-
     /// Tries changes again until the line has ended.
     async fn run(self: Arc<Self>, mut committer: Committer) {
         loop {
             let ((mut due, next), ended) = {
-                let mut line = self.lock();
+                let mut line = self.line.lock();
                 (line.take_due(), line.ended)
             };
             if due.is_empty() {
@@ -175,7 +171,7 @@ impl Shared {
             while !due.is_empty() {
                 held.extend(committer.commit(collect_batch(&mut due)).await);
             }
-            self.lock().put_back(without_overdue(held));
+            self.line.lock().put_back(without_overdue(held));
         }
     }
 }

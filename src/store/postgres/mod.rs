@@ -17,7 +17,6 @@ mod fault;
 mod jobs;
 mod listen;
 mod lock_line;
-mod outcome;
 mod request;
 pub mod schema;
 mod sql;
@@ -271,7 +270,8 @@ impl Store for PostgresStore {
     }
 
     async fn receipt(&self, key: &str) -> Result<Option<Receipt>> {
-        self.pool.receipt(key).await
+        let row = self.pool.row(sql::RECEIPT, &[&key, &RECEIPT_LIFETIME.as_secs_f64()]).await?;
+        row.map(|row| rows::receipt(key, &mut reader(&row))).transpose()
     }
 
     async fn snapshot(&self, id: Uuid) -> Result<Option<Snapshot>> {
@@ -306,13 +306,5 @@ impl Store for PostgresStore {
         let line = |id: Uuid| format!("the moves of contact {id} are there, and the contact is not");
         let jobs = self.pool.rows(sql::JOB_FAULTS, &[]).await?;
         Ok(orphans.iter().map(|row| line(row.get(0))).chain(jobs.iter().map(|row| row.get(0))).collect())
-    }
-}
-
-impl ClientPool {
-    /// [`Store::receipt`]
-    async fn receipt(&self, key: &str) -> Result<Option<Receipt>> {
-        let row = self.row(sql::RECEIPT, &[&key, &RECEIPT_LIFETIME.as_secs_f64()]).await?;
-        row.map(|row| rows::receipt(key, &mut reader(&row))).transpose()
     }
 }

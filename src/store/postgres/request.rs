@@ -15,7 +15,6 @@ const REQUESTS: usize = 512;
 /// Moves in one transaction, unless a single request has more.
 const MOVES: usize = 20_000;
 
-/// The change.
 pub(super) enum Change {
     /// A new session, with its definition as text.
     Create(Session, String),

@@ -97,7 +97,6 @@ fn announcing(announces: bool, statement: &str, changed: &str) -> String {
     )
 }
 
-/// Makes the changes of a batch.
 pub(super) fn batch(announces: bool) -> String {
     announcing(announces, BATCH, "won")
 }
@@ -105,7 +104,6 @@ pub(super) fn batch(announces: bool) -> String {
 /// Fails if the database has no notifications.
 pub(super) const PROBE_NOTIFY: &str = concat!("SELECT pg_notify('", channel!(), "', '')");
 
-/// Begins to receive notifications.
 pub(super) const LISTEN: &str = concat!("LISTEN ", channel!());
 
 /// The outcome of a request: the sequence of its session, whose it was if it has expired, whether its key is taken, and

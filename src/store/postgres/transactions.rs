@@ -47,86 +47,74 @@ impl ClientPool {
         expected: u64,
         receipt: Option<Receipt>,
     ) -> Result<()> {
-        let mut receipts = Receipts::default();
-        if let Some(receipt) = &receipt {
-            receipts.push((id, receipt));
-            self.free_key(receipt).await?;
-        }
-        let (sent, sequence) = (AtomicBool::new(false), to_bigint(expected));
+        let receipts = self.free_key(id, receipt.as_ref()).await?;
+        let (sent, sequence) = (InDoubt::default(), to_bigint(expected));
         let parameters: [Parameter<'_>; 3] = [&id, &label, &sequence];
         let parameters: Vec<_> = parameters.into_iter().chain(receipts.parameters()).collect();
-        let rename = async |connection: &Object| {
-            let in_doubt = sent.swap(true, Ordering::Relaxed);
-            let found = rows(connection, sql::RENAME, &parameters).await?;
-            sent.store(in_doubt, Ordering::Relaxed);
-            done_at(&found, expected)
-        };
-        match (with_retries!(self, ANSWER, connection => rename(connection)), receipt) {
+        let renamed = with_retries!(self, ANSWER, connection => async {
+            done_at(&sent.answered(rows(connection, sql::RENAME, &parameters)).await?, expected)
+        });
+        match renamed {
             // It may have been made before the connection was lost, and the contact moved since.
-            (Ok(Err(StoreError::Stale { found })), _) if sent.into_inner() => {
+            Ok(Err(StoreError::Stale { found })) if sent.get() => {
                 Err(StoreError::Unavailable(format!("the connection was lost in a commit, and {id} is now at {found}")))
             }
-            (Ok(Err(StoreError::NotFound)), _) => Err(self.missing(id).await),
-            (Ok(renamed), _) => renamed,
-            (Err(_), Some(receipt)) if self.receipt(&receipt.request.key).await?.is_some() => Err(StoreError::KeyTaken),
-            (Err(error), _) => Err(error),
+            Ok(Err(StoreError::NotFound)) => Err(self.missing(id).await),
+            Ok(renamed) => renamed,
+            Err(error) => Err(self.key_taken_or(receipt.as_ref(), error).await?),
         }
     }
 
-    /// Makes room for the key of a receipt, if it is kept for a request from long ago.
-    pub(super) async fn free_key(&self, receipt: &Receipt) -> Result<()> {
-        let (keys, lifetime) = ([receipt.request.key.as_str()], RECEIPT_LIFETIME.as_secs_f64());
-        self.rows(sql::DELETE_OLD_KEYS, &[&&keys[..], &lifetime]).await.map(drop)
+    /// The columns of a receipt for a change of what has this identifier. Makes room for its key, if that is kept for a
+    /// request from long ago.
+    pub(super) async fn free_key(&self, id: Uuid, receipt: Option<&Receipt>) -> Result<Receipts> {
+        let mut receipts = Receipts::default();
+        if let Some(receipt) = receipt {
+            receipts.push((id, receipt));
+            let (keys, lifetime) = ([receipt.request.key.as_str()], RECEIPT_LIFETIME.as_secs_f64());
+            self.rows(sql::DELETE_OLD_KEYS, &[&&keys[..], &lifetime]).await?;
+        }
+        Ok(receipts)
     }
 
-    /// [`crate::store::Store::delete`]
+    /// Why a change failed: perhaps because another request has used its key.
+    pub(super) async fn key_taken_or(&self, receipt: Option<&Receipt>, error: StoreError) -> Result<StoreError> {
+        let Some(receipt) = receipt else { return Ok(error) };
+        let found = self.row(sql::RECEIPT, &[&receipt.request.key, &RECEIPT_LIFETIME.as_secs_f64()]).await?;
+        Ok(if found.is_some() { StoreError::KeyTaken } else { error })
+    }
+
     pub(super) async fn delete(&self, id: Uuid, expected: u64) -> Result<()> {
-        let (sent, statement) = (AtomicBool::new(false), sql::delete(self.announces));
-        let delete = async |connection: &Object| {
-            let in_doubt = sent.swap(true, Ordering::Relaxed);
-            let found = long_rows(connection, &statement, &[&id, &to_bigint(expected)]).await?;
-            // It has been answered, and what an earlier attempt has done is no clearer.
-            sent.store(in_doubt, Ordering::Relaxed);
-            Ok(match done_at(&found, expected)? {
-                Err(StoreError::NotFound) if in_doubt => Ok(()),
-                done => done,
-            })
-        };
-        match with_retries!(self, LONG_ANSWER, connection => delete(connection))? {
+        let (sent, statement) = (InDoubt::default(), sql::delete(self.announces));
+        let sequence = to_bigint(expected);
+        let deleted = with_retries!(self, LONG_ANSWER, connection => async {
+            done_at(&sent.answered(long_rows(connection, &statement, &[&id, &sequence])).await?, expected)
+        });
+        match deleted? {
+            Err(StoreError::NotFound) if sent.get() => Ok(()),
             Err(StoreError::NotFound) => Err(self.missing(id).await),
             deleted => deleted,
         }
     }
 
-    /// [`crate::store::Store::fork`]
     pub(super) async fn fork(&self, id: Uuid, copy: Session, receipt: Option<Receipt>) -> Result<()> {
         let definition = super::definition(&copy)?;
-        let (mut sessions, mut receipts) = (Sessions::default(), Receipts::default());
+        let mut sessions = Sessions::default();
         sessions.push((&copy, definition));
-        if let Some(receipt) = &receipt {
-            receipts.push((copy.id, receipt));
-            self.free_key(receipt).await?;
-        }
+        let receipts = self.free_key(copy.id, receipt.as_ref()).await?;
         let moves = to_bigint(copy.sequence);
         let parameters: [Parameter<'_>; 2] = [&id, &moves];
         let parameters: Vec<_> =
             parameters.into_iter().chain(sessions.parameters()).chain(receipts.parameters()).collect();
-        let sent = AtomicBool::new(false);
-        let fork = async |connection: &Object| {
-            sent.store(true, Ordering::Relaxed);
-            long_rows(connection, sql::FORK, &parameters).await
-        };
-        let forked = match with_retries!(self, LONG_ANSWER, connection => fork(connection)) {
+        let sent = InDoubt::default();
+        let forked = with_retries!(self, LONG_ANSWER, connection =>
+            sent.answered(long_rows(connection, sql::FORK, &parameters)));
+        let forked = match forked {
             Ok(forked) => forked,
             Err(error) => {
                 return match self.row(sql::SEQUENCE, &[&copy.id]).await? {
-                    Some(_) if sent.into_inner() => Ok(()),
-                    _ => match receipt {
-                        Some(receipt) if self.receipt(&receipt.request.key).await?.is_some() => {
-                            Err(StoreError::KeyTaken)
-                        }
-                        _ => Err(error),
-                    },
+                    Some(_) if sent.get() => Ok(()),
+                    _ => Err(self.key_taken_or(receipt.as_ref(), error).await?),
                 };
             }
         };
@@ -141,20 +129,17 @@ impl ClientPool {
         }
     }
 
-    /// [`crate::store::Store::save_snapshot`]
     pub(super) async fn save_snapshot(&self, id: Uuid, snapshot: Snapshot) -> Result<()> {
-        let keep = async |connection: &Object| {
+        with_retries!(self, ANSWER, connection => async {
             let statement = connection.prepare_cached(sql::SAVE_SNAPSHOT).await?;
             match connection.execute(&statement, &[&id, &to_bigint(snapshot.sequence), &snapshot.state]).await {
                 // The session has just been deleted.
                 Err(error) if error.code() == Some(&SqlState::FOREIGN_KEY_VIOLATION) => Ok(()),
                 other => Ok(other.map(drop)?),
             }
-        };
-        with_retries!(self, ANSWER, connection => keep(connection))
+        })
     }
 
-    /// [`crate::store::Store::purge_expired`]
     pub(super) async fn purge_expired(&self, idle_since: Option<Timestamp>) -> Result<Vec<Uuid>> {
         let lifetime = RECEIPT_LIFETIME.as_secs_f64();
         let which: [Parameter<'_>; 2] = [&lifetime, &RECEIPTS];
@@ -182,6 +167,26 @@ impl ClientPool {
     async fn purge_idle(&self, connection: &Object, which: &[Parameter<'_>]) -> Result<Vec<Uuid>, Fault> {
         let gone = long_rows(connection, &sql::purge_idle(self.announces), which).await?;
         Ok(gone.iter().map(|row| row.get(0)).collect())
+    }
+}
+
+/// Whether a change may have been made by an attempt whose connection was lost.
+#[derive(Default)]
+pub(super) struct InDoubt(AtomicBool);
+
+impl InDoubt {
+    /// The answer to another attempt, which says nothing about those before.
+    pub(super) async fn answered<T>(&self, attempt: impl Future<Output = Result<T, Fault>>) -> Result<T, Fault> {
+        let before = self.0.swap(true, Ordering::Relaxed);
+        let answer = attempt.await;
+        if !matches!(answer, Err(Fault::Lost(_))) {
+            self.0.store(before, Ordering::Relaxed);
+        }
+        answer
+    }
+
+    pub(super) fn get(&self) -> bool {
+        self.0.load(Ordering::Relaxed)
     }
 }
 

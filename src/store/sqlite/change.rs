@@ -4,17 +4,20 @@ use std::sync::Arc;
 
 use hashlink::LruCache;
 use jiff::Timestamp;
-use rusqlite::{Connection, OptionalExtension as _, params};
+use rusqlite::{Connection, params};
 use uuid::Uuid;
 
 use crate::store::rows::{RowReader as _, tenant};
-use crate::store::{Receipt, Record, Session, Snapshot};
+use crate::store::{RECEIPT_LIFETIME, Receipt, Record, Session, Snapshot};
 
-use super::columns::{CONTACTS, MOVE_COLUMNS, clamped_nanoseconds, insert_move, reader, to_integer, to_nanoseconds};
+use super::columns::{
+    CONTACTS, MOVE_COLUMNS, all, clamped_nanoseconds, execute, first, insert_move, nanoseconds_ago, to_integer,
+    to_nanoseconds,
+};
 use super::fault::Fault;
 use super::fork::{Copying, Fork};
 use super::schema;
-use super::statements::{check_key, insert_receipt, insert_session, number_at, receipt_cutoff};
+use super::statements::{check_key, insert_receipt, insert_session, number_at};
 
 /// Receipts that one change looks at.
 const RECEIPTS_AT_ONCE: i64 = 256;
@@ -28,7 +31,6 @@ pub(super) type SequenceCache = LruCache<Uuid, (i64, u64)>;
 /// Makes a change within the transaction under way.
 type Apply = dyn Fn(&mut Transaction<'_>) -> Result<Done, Fault> + Send;
 
-/// A change to the database.
 pub(super) struct Change {
     /// Makes it; called again if its transaction fails.
     pub(super) apply: Box<Apply>,
@@ -38,7 +40,6 @@ pub(super) struct Change {
     pub(super) touched: Vec<Uuid>,
 }
 
-/// The transaction under way.
 pub(super) struct Transaction<'a> {
     pub(super) database: &'a Connection,
     pub(super) cache: &'a mut SequenceCache,
@@ -63,7 +64,6 @@ impl Transaction<'_> {
         Ok(Done::Made(0))
     }
 
-    /// [`crate::store::Store::create`]
     pub(super) fn create(&self, session: &Session, receipt: Option<&Receipt>) -> Result<Done, Fault> {
         check_key(self.database, receipt)?;
         insert_session(self.database, self.number, session, 0)?;
@@ -71,7 +71,6 @@ impl Transaction<'_> {
         Ok(Done::Made(0))
     }
 
-    /// [`crate::store::Store::append`]
     pub(super) fn append(
         &mut self,
         id: Uuid,
@@ -97,13 +96,11 @@ impl Transaction<'_> {
         Ok(Done::Made(0))
     }
 
-    /// [`crate::store::Store::fork`]
     pub(super) fn fork(&self, fork: &Arc<Fork>) -> Result<Done, Fault> {
         let begun = fork.begin(self.database, self.number)?;
         Ok(begun.map_or(Done::Made(0), |copying| Done::Copying(Arc::clone(fork), copying)))
     }
 
-    /// [`crate::store::Store::rename`]
     pub(super) fn rename(
         &self,
         id: Uuid,
@@ -113,13 +110,11 @@ impl Transaction<'_> {
     ) -> Result<Done, Fault> {
         check_key(self.database, receipt)?;
         let number = number_at(self.database, id, expected)?;
-        let mut rename = self.database.prepare_cached("UPDATE contacts SET label = ?2 WHERE number = ?1")?;
-        rename.execute(params![number, label])?;
+        execute(self.database, "UPDATE contacts SET label = ?2 WHERE number = ?1", params![number, label])?;
         insert_receipt(self.database, receipt)?;
         Ok(Done::Made(0))
     }
 
-    /// [`crate::store::Store::delete`]
     pub(super) fn delete(&mut self, id: Uuid, expected: u64) -> Result<Done, Fault> {
         let number = number_at(self.database, id, expected)?;
         self.cache.remove(&id);
@@ -127,33 +122,30 @@ impl Transaction<'_> {
         Ok(Done::Removed(0))
     }
 
-    /// [`crate::store::Store::save_snapshot`]
     pub(super) fn save_snapshot(&self, id: Uuid, snapshot: &Snapshot) -> Result<Done, Fault> {
         let sql = "INSERT INTO snapshots (contact, sequence, state)
                    SELECT number, ?2, ?3 FROM contacts WHERE id = ?1
                    ON CONFLICT (contact) DO UPDATE SET sequence = excluded.sequence, state = excluded.state
                    WHERE excluded.sequence > snapshots.sequence";
-        let sequence = to_integer(snapshot.sequence)?;
-        self.database.prepare_cached(sql)?.execute(params![id.to_string(), sequence, snapshot.state])?;
+        execute(self.database, sql, params![id.to_string(), to_integer(snapshot.sequence)?, snapshot.state])?;
         Ok(Done::Made(0))
     }
 
     /// Deletes expired receipts; returns 1 if there may be more of them.
     pub(super) fn purge_receipts(&self) -> Result<Done, Fault> {
-        let cutoff = clamped_nanoseconds(receipt_cutoff());
+        let cutoff = nanoseconds_ago(RECEIPT_LIFETIME);
         let sql = "SELECT number, at, length(body) FROM receipts ORDER BY number LIMIT ?1";
-        let mut statement = self.database.prepare_cached(sql)?;
-        let mut rows = statement.query([RECEIPTS_AT_ONCE])?;
+        let oldest: Vec<(i64, i64, i64)> =
+            all(self.database, sql, [RECEIPTS_AT_ONCE], |row| Ok((row.next()?, row.next()?, row.next()?)))?;
         let (mut last, mut count, mut bytes) = (None, 0, 0);
-        while let Some(row) = rows.next()? {
-            if row.get::<_, i64>(1)? > cutoff || bytes > RECEIPT_BYTES_AT_ONCE {
+        for (number, at, length) in oldest {
+            if at > cutoff || bytes > RECEIPT_BYTES_AT_ONCE {
                 break;
             }
-            (last, count, bytes) = (Some(row.get::<_, i64>(0)?), count + 1, bytes + row.get::<_, i64>(2)?);
+            (last, count, bytes) = (Some(number), count + 1, bytes + length);
         }
-        drop(rows);
         if let Some(last) = last {
-            self.database.prepare_cached("DELETE FROM receipts WHERE number <= ?1")?.execute([last])?;
+            execute(self.database, "DELETE FROM receipts WHERE number <= ?1", [last])?;
         }
         Ok(Done::Made(u64::from(count == RECEIPTS_AT_ONCE || bytes > RECEIPT_BYTES_AT_ONCE)))
     }
@@ -171,9 +163,8 @@ impl Transaction<'_> {
 
 /// Deletes a contact and leaves its moves to be removed some at a time.
 fn delete_contact(database: &Connection, number: i64) -> rusqlite::Result<()> {
-    database.prepare_cached("DELETE FROM contacts WHERE number = ?1")?.execute([number])?;
-    database.prepare_cached("INSERT INTO unowned (contact, forming) VALUES (?1, 0)")?.execute([number])?;
-    Ok(())
+    execute(database, "DELETE FROM contacts WHERE number = ?1", [number])?;
+    execute(database, "INSERT INTO unowned (contact, forming) VALUES (?1, 0)", [number]).map(drop)
 }
 
 /// Expires a session, unless it has been deleted or has moved meanwhile.
@@ -182,15 +173,11 @@ fn expire(database: &Connection, id: Uuid, since: Timestamp) -> rusqlite::Result
         "SELECT c.number, c.tenant FROM {CONTACTS}
          WHERE c.id = ?1 AND iif(m.sequence > c.inherited, m.at, c.initial_updated_at) < ?2"
     );
-    let mut statement = database.prepare_cached(&sql)?;
-    let idle = statement.query_row(params![id.to_string(), clamped_nanoseconds(since)], |row| {
-        let mut row = reader(row);
-        Ok((row.next()?, tenant(&mut row)?))
-    });
-    let Some((number, tenant)) = idle.optional()? else { return Ok(false) };
+    let which = params![id.to_string(), clamped_nanoseconds(since)];
+    let idle = first(database, &sql, which, |row| Ok((row.next()?, tenant(row)?)))?;
+    let Some((number, tenant)) = idle else { return Ok(false) };
     delete_contact(database, number)?;
-    let now = to_nanoseconds(Timestamp::now())?;
-    let mut mark = database.prepare_cached("INSERT INTO expired (id, at, tenant) VALUES (?1, ?2, ?3)")?;
-    mark.execute(params![id.to_string(), now, tenant.name()])?;
+    let expired = params![id.to_string(), to_nanoseconds(Timestamp::now())?, tenant.name()];
+    execute(database, "INSERT INTO expired (id, at, tenant) VALUES (?1, ?2, ?3)", expired)?;
     Ok(true)
 }

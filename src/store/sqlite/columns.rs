@@ -2,9 +2,10 @@
 
 use std::error::Error;
 use std::str::FromStr as _;
+use std::time::Duration;
 
 use jiff::Timestamp;
-use rusqlite::{CachedStatement, Row, params, types::Type};
+use rusqlite::{CachedStatement, Connection, OptionalExtension as _, Params, Row, params, types::Type};
 use uuid::Uuid;
 
 use crate::store::Record;
@@ -32,6 +33,31 @@ pub(super) struct Reader<'a, 'b> {
 /// Reads a row from its first column on.
 pub(super) fn reader<'a, 'b>(row: &'a Row<'b>) -> Reader<'a, 'b> {
     Reader { row, next: 0 }
+}
+
+/// Runs a statement, which is prepared once on each connection; returns how many rows it has changed.
+pub(super) fn execute(database: &Connection, sql: &str, parameters: impl Params) -> rusqlite::Result<usize> {
+    database.prepare_cached(sql)?.execute(parameters)
+}
+
+/// The first row of a query, if there is one.
+pub(super) fn first<T>(
+    database: &Connection,
+    sql: &str,
+    parameters: impl Params,
+    read: impl FnOnce(&mut Reader<'_, '_>) -> rusqlite::Result<T>,
+) -> rusqlite::Result<Option<T>> {
+    database.prepare_cached(sql)?.query_row(parameters, |row| read(&mut reader(row))).optional()
+}
+
+/// The rows of a query.
+pub(super) fn all<T>(
+    database: &Connection,
+    sql: &str,
+    parameters: impl Params,
+    mut read: impl FnMut(&mut Reader<'_, '_>) -> rusqlite::Result<T>,
+) -> rusqlite::Result<Vec<T>> {
+    database.prepare_cached(sql)?.query_map(parameters, |row| read(&mut reader(row)))?.collect()
 }
 
 impl RowReader for Reader<'_, '_> {
@@ -103,10 +129,9 @@ pub(super) fn insert_move(statement: &mut CachedStatement<'_>, number: i64, reco
 }
 
 /// The move of a row of [`MOVE_COLUMNS`].
-pub(super) fn record(row: &Row<'_>) -> rusqlite::Result<Record> {
-    let mut reader = reader(row);
-    let mut record = rows::record(&mut reader)?;
-    let zeros: i64 = reader.next()?;
+pub(super) fn record(row: &mut Reader<'_, '_>) -> rusqlite::Result<Record> {
+    let mut record = rows::record(row)?;
+    let zeros: i64 = row.next()?;
     if zeros != 0 {
         for (index, number) in numbers(&mut record).into_iter().enumerate() {
             if let Some(number) = number.filter(|_| zeros & (1 << index) != 0) {
@@ -153,6 +178,11 @@ pub(super) fn to_nanoseconds(at: Timestamp) -> rusqlite::Result<i64> {
 /// A time to compare stored ones with: beyond their range, the end of it.
 pub(super) fn clamped_nanoseconds(at: Timestamp) -> i64 {
     i64::try_from(at.as_nanosecond()).unwrap_or(if at < Timestamp::UNIX_EPOCH { i64::MIN } else { i64::MAX })
+}
+
+/// The time so long ago, likewise.
+pub(super) fn nanoseconds_ago(time: Duration) -> i64 {
+    clamped_nanoseconds(Timestamp::now().checked_sub(time).unwrap_or(Timestamp::MIN))
 }
 
 /// A count as it is stored.

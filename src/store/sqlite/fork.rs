@@ -4,12 +4,12 @@
 //! A copy belongs to no contact until it is whole, and then to its contact at once. What a crash leaves without a
 //! contact is removed after the next start.
 
-use rusqlite::{Connection, OptionalExtension as _, params};
+use rusqlite::{Connection, OptionalExtension as _};
 use uuid::Uuid;
 
 use crate::store::{Receipt, Session, StoreError};
 
-use super::columns::{MOVE_COLUMNS, to_integer};
+use super::columns::{MOVE_COLUMNS, execute, to_integer};
 use super::fault::Fault;
 use super::statements::{check_key, insert_receipt, insert_session, number_and_sequence};
 
@@ -25,7 +25,6 @@ pub(super) struct Fork {
     pub(super) receipt: Option<Receipt>,
 }
 
-/// How far the copy has come.
 #[derive(Clone, Copy)]
 pub(super) struct Copying {
     /// The contact that is copied.
@@ -53,7 +52,7 @@ impl Fork {
             self.complete(database, copying)?;
             return Ok(None);
         }
-        database.prepare_cached("INSERT INTO unowned (contact, forming) VALUES (?1, 1)")?.execute([copying.to])?;
+        execute(database, "INSERT INTO unowned (contact, forming) VALUES (?1, 1)", [copying.to])?;
         Ok(Some(copying))
     }
 
@@ -65,11 +64,10 @@ impl Fork {
             return Ok(false);
         }
         check_key(database, self.receipt.as_ref())?;
-        let mut original = database.prepare_cached("SELECT number FROM contacts WHERE number = ?1")?;
-        if !original.exists([copying.from])? {
+        if !database.prepare_cached("SELECT number FROM contacts WHERE number = ?1")?.exists([copying.from])? {
             return Err(StoreError::NotFound.into());
         }
-        database.prepare_cached("DELETE FROM unowned WHERE contact = ?1")?.execute([copying.to])?;
+        execute(database, "DELETE FROM unowned WHERE contact = ?1", [copying.to])?;
         self.complete(database, *copying)?;
         Ok(true)
     }
@@ -78,7 +76,7 @@ impl Fork {
         insert_session(database, copying.to, &self.copy, self.copy.sequence)?;
         let sql = "INSERT INTO snapshots (contact, sequence, state)
                    SELECT ?2, sequence, state FROM snapshots WHERE contact = ?1 AND sequence <= ?3";
-        database.prepare_cached(sql)?.execute([copying.from, copying.to, copying.last])?;
+        execute(database, sql, [copying.from, copying.to, copying.last])?;
         Ok(insert_receipt(database, self.receipt.as_ref())?)
     }
 }
@@ -86,7 +84,7 @@ impl Fork {
 impl Copying {
     /// Abandons a fork: its copy is removed like all moves without a contact.
     pub(super) fn abandon(self, database: &Connection) -> rusqlite::Result<()> {
-        database.prepare_cached("UPDATE unowned SET forming = 0 WHERE contact = ?1")?.execute([self.to]).map(drop)
+        execute(database, "UPDATE unowned SET forming = 0 WHERE contact = ?1", [self.to]).map(drop)
     }
 
     /// Copies the next moves of the contact `original`, unless one of them is missing.
@@ -102,7 +100,7 @@ impl Copying {
             "INSERT INTO moves (contact, {MOVE_COLUMNS})
              SELECT ?2, {MOVE_COLUMNS} FROM moves WHERE contact = ?1 AND sequence > ?3 AND sequence <= ?4"
         );
-        database.prepare_cached(&sql)?.execute(params![self.from, self.to, self.copied, upto])?;
+        execute(database, &sql, [self.from, self.to, self.copied, upto])?;
         self.copied = upto;
         Ok(())
     }

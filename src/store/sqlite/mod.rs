@@ -75,7 +75,6 @@ impl SqliteStore {
     /// # Errors
     /// Why it cannot be used, in one line. The file is as it was then.
     pub fn open(path: &Path) -> Result<SqliteStore, String> {
-        let (queue, probe) = (ChunkQueue::default(), Probe::default());
         let file::Opened { database, lock, files } = match file::open(path)? {
             file::Access::Writable(opened) => opened,
             file::Access::Full { why, readers } => {
@@ -83,34 +82,29 @@ impl SqliteStore {
                     why,
                     "there is no room to write: contacts can be read, and changed after the next start"
                 );
-                let (changes, commits) = (Arc::default(), Arc::new(Commits::new("sqlite")));
-                return Ok(SqliteStore {
-                    requests: None,
-                    writer: None,
-                    readers,
-                    changes,
-                    commits,
-                    queue,
-                    probe,
-                    full: Some(why),
-                });
+                return Ok(SqliteStore::reading(readers, Some(why)));
             }
         };
-        jobs::restore_queue(&database, &queue).map_err(|error| error.to_string())?;
-        let changes = Arc::new(Changes::default());
-        let commits = Arc::new(Commits::new("sqlite"));
-        let writer = Writer::new(database, Arc::clone(&files), Arc::clone(&changes), Arc::clone(&commits));
+        let readers = Readers::new(path.to_owned(), Arc::clone(&files), Some(Arc::clone(&lock)), false);
+        let mut store = SqliteStore::reading(readers, None);
+        jobs::restore_queue(&database, &store.queue).map_err(|error| error.to_string())?;
+        let writer = Writer::new(database, files, Arc::clone(&store.changes), Arc::clone(&store.commits));
         let writer = writer.map_err(|error| error.to_string())?;
         let (sender, requests) = mpsc::channel(QUEUE);
-        let held = Arc::clone(&lock);
         let thread = std::thread::Builder::new().name("sqlite-writer".to_owned()).spawn(move || {
             writer.run(requests);
-            drop(held);
+            drop(lock);
         });
-        let thread = thread.map_err(|error| error.to_string())?;
-        let readers = Readers::new(path.to_owned(), files, Some(lock), false);
-        let (requests, writer) = (Some(sender), Some(thread));
-        Ok(SqliteStore { requests, writer, readers, changes, commits, queue, probe, full: None })
+        store.writer = Some(thread.map_err(|error| error.to_string())?);
+        store.requests = Some(sender);
+        Ok(store)
+    }
+
+    /// A store without a writer.
+    fn reading(readers: Readers, full: Option<String>) -> SqliteStore {
+        let (changes, commits) = (Arc::default(), Arc::new(Commits::new("sqlite")));
+        let (queue, probe) = (ChunkQueue::default(), Probe::default());
+        SqliteStore { requests: None, writer: None, readers, changes, commits, queue, probe, full }
     }
 
     /// Opens a file for reading, while a process may serve it. Changes fail.
@@ -120,10 +114,7 @@ impl SqliteStore {
     pub fn open_to_read(path: &Path) -> Result<SqliteStore, String> {
         backup::open_read_only(path)?;
         let files = Arc::new(OpenFiles::at([path]).map_err(|error| error.to_string())?);
-        let (changes, commits) = (Arc::default(), Arc::new(Commits::new("sqlite")));
-        let (readers, queue) = (Readers::new(path.to_owned(), files, None, false), ChunkQueue::default());
-        let (requests, writer, probe, full) = (None, None, Probe::default(), None);
-        Ok(SqliteStore { requests, writer, readers, changes, commits, queue, probe, full })
+        Ok(SqliteStore::reading(Readers::new(path.to_owned(), files, None, false), None))
     }
 
     /// Copies the store in a file to another that is not there yet, while it is in use or not; returns its bytes.
@@ -245,7 +236,7 @@ impl Store for SqliteStore {
 
     async fn receipt(&self, key: &str) -> Result<Option<Receipt>> {
         let key = key.to_owned();
-        self.readers.read(move |database| read::receipt(database, &key, statements::receipt_cutoff())).await
+        self.readers.read(move |database| read::receipt(database, &key)).await
     }
 
     async fn snapshot(&self, id: Uuid) -> Result<Option<Snapshot>> {

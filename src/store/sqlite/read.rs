@@ -1,21 +1,24 @@
 //! The queries of readers. Each runs within one transaction, and so sees one state of the database.
 
 use jiff::Timestamp;
-use rusqlite::{Connection, OptionalExtension as _, Row, params};
+use rusqlite::{Connection, params};
 use uuid::Uuid;
 
 use crate::store::rows::{self, RowReader as _};
 use crate::store::{
-    CONTACT_BYTES, Extent, Heading, IsSmall, RECEIPT_OVERHEAD, Receipt, Record, Session, Snapshot, Tenant, Usage, Whole,
+    CONTACT_BYTES, Extent, Heading, IsSmall, RECEIPT_LIFETIME, RECEIPT_OVERHEAD, Receipt, Record, Session, Snapshot,
+    Tenant, Usage, Whole,
 };
 use stickslip_wire::SessionSummary;
 
-use super::columns::{CONTACTS, MOVE_COLUMNS, SUMMARY_COLUMNS, clamped_nanoseconds, reader, record, to_integer};
+use super::columns::{
+    CONTACTS, MOVE_COLUMNS, SUMMARY_COLUMNS, all, clamped_nanoseconds, first, nanoseconds_ago, record, to_integer,
+};
 use super::fault::Fault;
 use super::statements::{missing, number_and_sequence};
 
 /// Sessions that one search for idle ones examines.
-const IDLE_PAGE: i64 = 1_000;
+const IDLE_PAGE: usize = 1_000;
 
 /// Whether the database can be read at all.
 pub(super) fn alive(database: &Connection) -> Result<(), Fault> {
@@ -23,26 +26,20 @@ pub(super) fn alive(database: &Connection) -> Result<(), Fault> {
 }
 
 pub(super) fn find(database: &Connection, id: Uuid) -> Result<Session, Fault> {
-    let mut statement = database
-        .prepare_cached(&format!("SELECT {SUMMARY_COLUMNS}, c.definition, c.tenant FROM {CONTACTS} WHERE c.id = ?1"))?;
-    let found = statement.query_row([id.to_string()], |row| rows::session(&mut reader(row))).optional()?;
+    let sql = format!("SELECT {SUMMARY_COLUMNS}, c.definition, c.tenant FROM {CONTACTS} WHERE c.id = ?1");
+    let found = first(database, &sql, [id.to_string()], |row| rows::session(row))?;
     found.ok_or_else(|| missing(database, id))
 }
 
 pub(super) fn extent(database: &Connection, id: Uuid) -> Result<Extent, Fault> {
     let (number, sequence) = number_and_sequence(database, id)?;
-    let mut statement = database.prepare_cached(
-        "SELECT tenant, octet_length(definition), (SELECT octet_length(state) FROM snapshots WHERE contact = number)
-         FROM contacts WHERE number = ?1",
-    )?;
-    let found = statement.query_row([number], |row| {
-        let (name, definition, snapshot) =
-            (row.get::<_, String>(0)?, row.get::<_, i64>(1)?, row.get::<_, Option<i64>>(2)?);
-        let bytes = |count: i64| u64::try_from(count).unwrap_or(0);
-        let (tenant, definition) = (Tenant::new(&name), bytes(definition));
-        Ok(Extent { tenant, sequence, definition, snapshot: snapshot.map_or(0, bytes) })
-    });
-    found.optional()?.ok_or_else(|| missing(database, id))
+    let sql = "SELECT tenant, octet_length(definition),
+                   coalesce((SELECT octet_length(state) FROM snapshots WHERE contact = number), 0)
+               FROM contacts WHERE number = ?1";
+    let found = first(database, sql, [number], |row| {
+        Ok(Extent { tenant: rows::tenant(row)?, sequence, definition: row.count()?, snapshot: row.count()? })
+    })?;
+    found.ok_or_else(|| missing(database, id))
 }
 
 /// The extent of a session, and if that is small, the session with its moves.
@@ -67,11 +64,8 @@ pub(super) fn usage(database: &Connection, tenant: &Tenant) -> Result<Usage, Fau
              + coalesce((SELECT octet_length(state) FROM snapshots WHERE contact = number), 0)), 0)
          FROM contacts WHERE tenant = ?1"
     );
-    let mut statement = database.prepare_cached(&sql)?;
-    let (contacts, stored) = statement.query_row([tenant.name()], |row| {
-        let mut row = reader(row);
-        Ok((row.count()?, row.count()?))
-    })?;
+    let stored = first(database, &sql, [tenant.name()], |row| Ok((row.count()?, row.count()?)))?;
+    let (contacts, stored) = stored.unwrap_or_default();
     // The keys of a tenant with a name begin with it and a space, and lie together in their index.
     let receipts = |which: &str| {
         format!(
@@ -79,19 +73,17 @@ pub(super) fn usage(database: &Connection, tenant: &Tenant) -> Result<Usage, Fau
              WHERE {which}"
         )
     };
-    let read = |row: &Row<'_>| reader(row).count();
     let kept = match tenant.name() {
-        "" => database.prepare_cached(&receipts("instr(key, ' ') = 0"))?.query_row([], read),
-        name => database.prepare_cached(&receipts("key > ?1 || ' ' AND key < ?1 || '!'"))?.query_row([name], read),
+        "" => first(database, &receipts("instr(key, ' ') = 0"), [], |row| row.count()),
+        name => first(database, &receipts("key > ?1 || ' ' AND key < ?1 || '!'"), [name], |row| row.count()),
     }?;
-    Ok(Usage { contacts, bytes: stored + kept })
+    Ok(Usage { contacts, bytes: stored + kept.unwrap_or(0) })
 }
 
 pub(super) fn heading(database: &Connection, id: Uuid) -> Result<Heading, Fault> {
     let sql = "SELECT (SELECT coalesce(max(sequence), 0) FROM moves WHERE contact = number), label FROM contacts
                WHERE id = ?1";
-    let found = database.prepare_cached(sql)?.query_row([id.to_string()], |row| rows::heading(&mut reader(row)));
-    found.optional()?.ok_or_else(|| missing(database, id))
+    first(database, sql, [id.to_string()], |row| rows::heading(row))?.ok_or_else(|| missing(database, id))
 }
 
 pub(super) fn list(
@@ -109,17 +101,13 @@ pub(super) fn list(
     let page = |which: &str| {
         format!("SELECT {SUMMARY_COLUMNS} FROM {CONTACTS} WHERE {which} AND {labelled} ORDER BY c.id LIMIT ?2")
     };
-    let summary = |row: &Row<'_>| rows::summary(&mut reader(row));
-    let found: rusqlite::Result<_> = match tenant {
-        None => {
-            database.prepare_cached(&page("c.id > ?1"))?.query_map(params![after, limit, label], summary)?.collect()
-        }
+    Ok(match tenant {
+        None => all(database, &page("c.id > ?1"), params![after, limit, label], |row| rows::summary(row)),
         Some(tenant) => {
-            let mut statement = database.prepare_cached(&page("c.id > ?1 AND c.tenant = ?4"))?;
-            statement.query_map(params![after, limit, label, tenant.name()], summary)?.collect()
+            let which = params![after, limit, label, tenant.name()];
+            all(database, &page("c.id > ?1 AND c.tenant = ?4"), which, |row| rows::summary(row))
         }
-    };
-    Ok(found?)
+    }?)
 }
 
 pub(super) fn history(database: &Connection, id: Uuid, after: u64, limit: usize) -> Result<Vec<Record>, Fault> {
@@ -127,9 +115,7 @@ pub(super) fn history(database: &Connection, id: Uuid, after: u64, limit: usize)
     let Ok(from) = to_integer(after) else { return Ok(Vec::new()) };
     let sql =
         format!("SELECT {MOVE_COLUMNS} FROM moves WHERE contact = ?1 AND sequence > ?2 ORDER BY sequence LIMIT ?3");
-    let mut statement = database.prepare_cached(&sql)?;
-    let found = statement.query_map(params![number, from, to_integer(limit as u64)?], record)?;
-    let page = found.collect::<Result<Vec<Record>, _>>()?;
+    let page = all(database, &sql, [number, from, to_integer(limit as u64)?], record)?;
     rows::check_page(id, after, &page, limit, last)?;
     Ok(page)
 }
@@ -137,22 +123,18 @@ pub(super) fn history(database: &Connection, id: Uuid, after: u64, limit: usize)
 pub(super) fn count_moves(database: &Connection, id: Uuid, end: u64) -> Result<u64, Fault> {
     let (number, _) = number_and_sequence(database, id)?;
     let sql = "SELECT count(*) FROM moves WHERE contact = ?1 AND sequence <= ?2";
-    Ok(database.prepare_cached(sql)?.query_row(params![number, to_integer(end)?], |row| reader(row).count())?)
+    Ok(first(database, sql, [number, to_integer(end)?], |row| row.count())?.unwrap_or(0))
 }
 
-pub(super) fn receipt(database: &Connection, key: &str, not_before: Timestamp) -> Result<Option<Receipt>, Fault> {
+pub(super) fn receipt(database: &Connection, key: &str) -> Result<Option<Receipt>, Fault> {
     let sql = "SELECT fingerprint, created, sequence, body FROM receipts WHERE key = ?1 AND at > ?2";
-    let mut statement = database.prepare_cached(sql)?;
-    Ok(statement
-        .query_row(params![key, clamped_nanoseconds(not_before)], |row| rows::receipt(key, &mut reader(row)))
-        .optional()?)
+    Ok(first(database, sql, params![key, nanoseconds_ago(RECEIPT_LIFETIME)], |row| rows::receipt(key, row))?)
 }
 
 pub(super) fn snapshot(database: &Connection, id: Uuid) -> Result<Option<Snapshot>, Fault> {
     let number = number(database, id)?;
-    let mut statement = database.prepare_cached("SELECT sequence, state FROM snapshots WHERE contact = ?1")?;
-    let found = statement.query_row([number], |row| rows::snapshot(&mut reader(row)));
-    Ok(found.optional()?)
+    let sql = "SELECT sequence, state FROM snapshots WHERE contact = ?1";
+    Ok(first(database, sql, [number], |row| rows::snapshot(row))?)
 }
 
 /// The sessions of a page that have not moved since a time, and where the next page begins, if there is one.
@@ -161,19 +143,11 @@ pub(super) fn idle(database: &Connection, since: Timestamp, after: i64) -> Resul
         "SELECT c.number, c.id, iif(m.sequence > c.inherited, m.at, c.initial_updated_at) < ?1 FROM {CONTACTS}
          WHERE c.number > ?2 ORDER BY c.number LIMIT ?3"
     );
-    let mut statement = database.prepare_cached(&sql)?;
-    let mut rows = statement.query(params![clamped_nanoseconds(since), after, IDLE_PAGE])?;
-    let (mut idle, mut passed, mut last) = (Vec::new(), 0, after);
-    while let Some(row) = rows.next()? {
-        passed += 1;
-        let mut row = reader(row);
-        last = row.next()?;
-        let id = row.uuid()?;
-        if row.next()? {
-            idle.push(id);
-        }
-    }
-    Ok((idle, (passed == IDLE_PAGE).then_some(last)))
+    let page = all(database, &sql, [clamped_nanoseconds(since), after, IDLE_PAGE as i64], |row| {
+        Ok((row.next()?, row.uuid()?, row.next::<bool>()?))
+    })?;
+    let next = page.last().filter(|_| page.len() == IDLE_PAGE).map(|(number, ..)| *number);
+    Ok((page.into_iter().filter_map(|(_, id, is_idle)| is_idle.then_some(id)).collect(), next))
 }
 
 /// Faults of the file, and of data that belongs to no single session.
@@ -240,7 +214,6 @@ SELECT 'the chunk ' || chunk || ' of job number ' || job || ' belongs to no job'
 WHERE job NOT IN (SELECT number FROM jobs)";
 
 fn number(database: &Connection, id: Uuid) -> Result<i64, Fault> {
-    let mut statement = database.prepare_cached("SELECT number FROM contacts WHERE id = ?1")?;
-    let found = statement.query_row([id.to_string()], |row| row.get(0)).optional()?;
+    let found = first(database, "SELECT number FROM contacts WHERE id = ?1", [id.to_string()], |row| row.next())?;
     found.ok_or_else(|| missing(database, id))
 }

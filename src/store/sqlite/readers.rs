@@ -3,9 +3,10 @@
 use std::fs::File;
 use std::os::unix::ffi::OsStrExt as _;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex, PoisonError};
 
+use parking_lot::Mutex;
 use percent_encoding::{NON_ALPHANUMERIC, percent_encode};
 use rusqlite::{Connection, OpenFlags};
 use tokio::sync::Semaphore;
@@ -30,7 +31,7 @@ pub(super) struct Readers {
 
 /// The idle connections, and what is needed to open more.
 struct Idle {
-    // A std mutex: held for a push or a pop.
+    // Locked for a push or a pop.
     connections: Mutex<Vec<Connection>>,
     path: PathBuf,
     files: Arc<OpenFiles>,
@@ -75,15 +76,14 @@ impl Readers {
         }
     }
 
-    /// Closes the idle connections.
     pub(super) fn close(&self) {
-        self.idle.lock().clear();
+        self.idle.connections.lock().clear();
     }
 }
 
 impl Idle {
     fn take(&self) -> rusqlite::Result<Connection> {
-        let pooled = self.lock().pop();
+        let pooled = self.connections.lock().pop();
         let connection = match pooled {
             Some(connection) => connection,
             None => {
@@ -97,11 +97,7 @@ impl Idle {
     }
 
     fn put(&self, connection: Connection) {
-        self.lock().push(connection);
-    }
-
-    fn lock(&self) -> std::sync::MutexGuard<'_, Vec<Connection>> {
-        self.connections.lock().unwrap_or_else(PoisonError::into_inner)
+        self.connections.lock().push(connection);
     }
 }
 

@@ -16,7 +16,6 @@ pub(super) const IN_USE: i32 = 0x7374_636f;
 pub const MIGRATIONS: &[&str] =
     &[include_str!("schema_1.sql"), include_str!("schema_2.sql"), include_str!("schema_3.sql")];
 
-/// Marks a file as in use or as closed.
 pub(super) fn mark(connection: &Connection, application: i32) -> rusqlite::Result<()> {
     connection.pragma_update(None, "application_id", application)
 }

@@ -224,11 +224,13 @@ impl Writer {
         let begun = self.files.check().and_then(|()| self.run_statement("BEGIN IMMEDIATE"));
         let done = begun.and_then(|()| work(&self.database, &mut self.cache));
         let outcome = match done {
-            Ok(value) => self.run_statement("COMMIT").map(|()| value).map_err(|error| (error, Stage::Commit)),
-            Err(error) => Err((error, Stage::Before)),
+            Ok(value) => {
+                self.run_statement("COMMIT").map(|()| value).map_err(|error| Failure { error, stage: Stage::Commit })
+            }
+            Err(error) => Err(Failure { error, stage: Stage::Before }),
         };
-        self.record_health(outcome.as_ref().err().map(|(error, _)| error));
-        outcome.map_err(|(error, stage)| {
+        self.record_health(outcome.as_ref().err().map(|failure| &failure.error));
+        outcome.inspect_err(|_| {
             self.cache.clear();
             // Some failures end the transaction by themselves.
             if !self.database.is_autocommit()
@@ -236,7 +238,6 @@ impl Writer {
             {
                 tracing::error!(%error, "a transaction could not be rolled back");
             }
-            Failure { error, stage }
         })
     }
 
