@@ -60,7 +60,10 @@ impl Computation for Simulate {
                 "springs",
                 "The same contact on the paper's spring foundation",
                 json!({
-                    "contact": example_contact(json!({"type": "sphere", "radius": 0.01}), json!({"contact_radius": 1e-4})),
+                    "contact": example_contact(
+                        json!({"type": "sphere", "radius": 0.01}),
+                        json!({"contact_radius": 1e-4})
+                    ),
                     "path": {"moves": [{"displacement": 1e-7}, {"indentation": 8e-7, "displacement": 0.0}]},
                     "solver": {"springs": {"count": 1000}}
                 }),

@@ -16,8 +16,8 @@ const REASON: &str = "the cycle follows from the exact slip history, and the str
 /// The criteria over the steady cycle of a contact.
 ///
 /// # Errors
-/// [`Failure`] for a preload that cannot be reached, a move without an answer, a path that does not close or a cycle that
-/// is too large, or if the work was ended.
+/// [`Failure`] for a preload that cannot be reached, a move without an answer, a path that does not close or a cycle
+/// that is too large, or if the work was ended.
 pub fn rate(setup: SharedSetup, task: &FrettingTask, stop: &Stop) -> Result<FrettingReply, Failure> {
     let timer = Timer::start(stop);
     let contact = contact(setup, "/contact")?;

@@ -63,7 +63,10 @@ impl Computation for FindProtocol {
                 "target",
                 "The fewest reversals that leave a quarter, and how robust they are with a coarse actuator",
                 json!({
-                    "contact": example_contact(json!({"type": "power_law", "exponent": 3.0, "coefficient": 1e4}), json!({"normal_force": 10.0})),
+                    "contact": example_contact(
+                        json!({"type": "power_law", "exponent": 3.0, "coefficient": 1e4}),
+                        json!({"normal_force": 10.0})
+                    ),
                     "target": 0.25, "kind": "equal_peaks",
                     "robustness": {"amplitude_error": 0.01, "friction_error": 0.05, "samples": 100, "seed": 1}
                 }),
