@@ -4,6 +4,8 @@ use serde::{Deserialize, Serialize};
 use serde_with::{apply, skip_serializing_none};
 use utoipa::ToSchema;
 
+use stickslip_mechanics::DEFAULT_TOLERANCE;
+
 use super::check::{Fault, Faults, JsonPath, Rejection};
 use super::definition::{ContactDefinition, DefinedProfile, SharedSetup};
 use super::document::Document;
@@ -44,7 +46,7 @@ pub struct AccuracyRequest {
     /// Tolerance for what is not exact, relative to μ F_N, a pure number. The reference is held to a sixteenth of it.
     pub tolerance: Option<f64>,
 }
-limits!(AccuracyRequest { tolerance: Tolerance, solvers: SOLVERS });
+limits!(AccuracyRequest { tolerance: Tolerance(DEFAULT_TOLERANCE), solvers: SOLVERS });
 
 /// The time and the error of each solver.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
@@ -165,7 +167,7 @@ impl Document for AccuracyRequest {
         if sampling.as_ref().is_some_and(|sampling| !sampling.fields.shear) {
             faults.add(at.member("fields"), "the shear stress is what is compared: name `shear`");
         }
-        let tolerance = Tolerance::of(self.tolerance, &mut faults);
+        let tolerance = Tolerance(DEFAULT_TOLERANCE).of(self.tolerance, &mut faults);
         let at = JsonPath::Root.member("solvers");
         let solvers = self.solvers.unwrap_or_else(ladder);
         let radii = sampling.as_ref().map_or(0, Sampling::length);

@@ -15,7 +15,7 @@ use stickslip_mechanics::{
 };
 
 use super::check::{Faults, JsonPath};
-use super::limits::{Items, Keywords as _, Limited, Numbers, PATH_MOVES, limits};
+use super::limits::{Array, Items, Keywords as _, Limited, PATH_MOVES, limits};
 use super::single_key::{not_null, single_key};
 
 pub(crate) use cycles::PHASE;
@@ -71,8 +71,8 @@ single_key!(Path {
 });
 limits!(enum Path {
     Moves "moves": Items(PATH_MOVES),
-    Displacement "displacement": Numbers(PATH_MOVES, range::DISPLACEMENT),
-    Force "force": Numbers(PATH_MOVES, range::FORCE),
+    Displacement "displacement": Array(PATH_MOVES, range::DISPLACEMENT),
+    Force "force": Array(PATH_MOVES, range::FORCE),
 });
 
 /// A tangential oscillation that dies away by the law of equal peaks; it ends at displacement zero.

@@ -77,7 +77,7 @@ pub struct MoveRequest {
     /// Tolerance for what is not exact, relative to μ F_N, a pure number.
     pub tolerance: Option<f64>,
 }
-limits!(MoveRequest { tolerance: Tolerance } and Move);
+limits!(MoveRequest { tolerance: Tolerance(DEFAULT_TOLERANCE) } and Move);
 
 /// A path for a contact, applied as a whole or not at all.
 #[skip_serializing_none]
@@ -96,7 +96,7 @@ pub struct PathRequest {
     /// Tolerance for what is not exact, relative to μ F_N, a pure number.
     pub tolerance: Option<f64>,
 }
-limits!(PathRequest { tolerance: Tolerance });
+limits!(PathRequest { tolerance: Tolerance(DEFAULT_TOLERANCE) });
 
 /// Options of a fork; the body may be empty.
 #[skip_serializing_none]
@@ -319,7 +319,7 @@ impl Document for MoveRequest {
         let step = self.step();
         step.check(JsonPath::Root, &mut faults);
         let stress = self.stress.and_then(|stress| stress.check(JsonPath::Root.member("stress"), &mut faults));
-        let tolerance = Tolerance::of(self.tolerance, &mut faults);
+        let tolerance = Tolerance(DEFAULT_TOLERANCE).of(self.tolerance, &mut faults);
         faults.done(Some(Advance { plan: Plan::Single(step), stress, steps: Steps::Last, tolerance, relax: None }))
     }
 }
@@ -338,7 +338,7 @@ impl Document for PathRequest {
         let mut faults = Faults::default();
         let plan = self.path.check(JsonPath::Root.member("path"), &mut faults);
         let stress = self.stress.and_then(|stress| stress.check(JsonPath::Root.member("stress"), &mut faults));
-        let tolerance = Tolerance::of(self.tolerance, &mut faults);
+        let tolerance = Tolerance(DEFAULT_TOLERANCE).of(self.tolerance, &mut faults);
         faults.done(plan.map(|plan| Advance { plan, stress, steps: self.steps, tolerance, relax: None }))
     }
 }

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 use serde_with::{apply, skip_serializing_none};
 use utoipa::ToSchema;
 
-use stickslip_mechanics::range;
+use stickslip_mechanics::{DEFAULT_TOLERANCE, range};
 
 use super::check::{Faults, JsonPath, Rejection};
 use super::definition::{ContactDefinition, DefinedProfile, SharedSetup};
@@ -48,7 +48,7 @@ pub struct SimulateRequest {
     /// Tolerance for what is not exact, relative to μ F_N, a pure number.
     pub tolerance: Option<f64>,
 }
-limits!(SimulateRequest { tolerance: Tolerance });
+limits!(SimulateRequest { tolerance: Tolerance(DEFAULT_TOLERANCE) });
 
 /// Which states of a path to return.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
@@ -151,7 +151,7 @@ impl Document for SimulateRequest {
         for (name, _) in needing.into_iter().filter(|(_, asked)| *asked) {
             faults.needs_stress_field(setup.as_ref(), JsonPath::Root.member(name));
         }
-        let tolerance = Tolerance::of(self.tolerance, &mut faults);
+        let tolerance = Tolerance(DEFAULT_TOLERANCE).of(self.tolerance, &mut faults);
         let no_surface = setup.as_ref().is_some_and(|setup| !setup.profile.has_stress_field());
         if matches!(self.solver, Some(Solver::Springs(_))) && no_surface {
             let detail = "springs stand under a surface, which this profile has not: leave `solver` out";

@@ -7,7 +7,7 @@ use utoipa::ToSchema;
 use stickslip_mechanics::range;
 
 use super::check::{Faults, JsonPath};
-use super::limits::{Numbers, STRESS_POINTS, limits};
+use super::limits::{Array, STRESS_POINTS, limits};
 use super::single_key::not_null;
 
 /// Where stresses are asked for: exactly one of `points` and `radii`, and which `fields`.
@@ -24,7 +24,7 @@ pub struct StressRequest {
     /// Which fields are computed; left out, `pressure` and `shear`.
     pub fields: Option<Vec<Field>>,
 }
-limits!(StressRequest { points: STRESS_POINTS, radii: Numbers(1..=10_000, range::CONTACT_RADIUS) });
+limits!(StressRequest { points: STRESS_POINTS, radii: Array(1..=10_000, range::CONTACT_RADIUS) });
 
 /// A quantity along the radius.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]

@@ -16,7 +16,7 @@ use super::check::{Faults, JsonPath, Rejection};
 use super::definition::ContactDefinition;
 use super::document::Document;
 use super::json_value::{JsonValue, Pointer};
-use super::limits::{Items, Limit, Numbers, limits};
+use super::limits::{Array, Items, Limit, limits};
 use super::parse::parse_value;
 use super::prepare::Prepare;
 use super::simulate::SimulateRequest;
@@ -35,7 +35,7 @@ const OUTPUTS: RangeInclusive<usize> = 1..=16;
 /// A value of an axis; the field that it goes to has a range of its own.
 const AXIS_VALUE: Range = Range { quantity: Quantity::Number, unit: "", min: -1e280, max: 1e280 };
 /// Values of an axis that lists them.
-const AXIS_VALUES: Numbers = Numbers(1..=10_000, AXIS_VALUE);
+const AXIS_VALUES: Array<Range> = Array(1..=10_000, AXIS_VALUE);
 /// Points of a sweep: the product of the counts of its axes.
 const SWEEP_POINTS: usize = 2_000_000;
 /// Numbers that come out of a sweep: points times outputs.

@@ -24,9 +24,7 @@ use stickslip_mechanics::{
 use crate::check::{Faults, JsonPath, Rejection};
 use crate::definition::{ContactDefinition, DefinedProfile, SharedSetup};
 use crate::document::Document;
-use crate::limits::{
-    BEST_LOADS, CYCLE_AMPLITUDES, CYCLE_RADII, HARMONICS, Keywords, Limit, Numbers, ToleranceOr, limits,
-};
+use crate::limits::{Array, BEST_LOADS, CYCLE_AMPLITUDES, CYCLE_RADII, HARMONICS, Keywords, Limit, Tolerance, limits};
 use crate::path::NormalOscillation;
 use crate::prepare::Prepare;
 use crate::single_key::{not_null, single_key};
@@ -72,7 +70,7 @@ pub struct CycleRequest {
     /// with `machine` alone. At most 100 000 cycles.
     pub map: Option<FrettingMap>,
 }
-limits!(CycleRequest { harmonics: HARMONICS, tolerance: ToleranceOr(DEFAULT_TOLERANCE) });
+limits!(CycleRequest { harmonics: HARMONICS, tolerance: Tolerance(DEFAULT_TOLERANCE) });
 
 /// What is prescribed as a cosine, one key: its amplitude, or a list of amplitudes with a cycle for each.
 #[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
@@ -130,7 +128,7 @@ struct Within(Range);
 impl Keywords for Within {
     fn keywords(&self) -> Value {
         // Some keywords are for a number, the others for a list: JSON Schema applies each to its own type.
-        let mut keywords = Numbers(CYCLE_AMPLITUDES, self.0).keywords();
+        let mut keywords = Array(CYCLE_AMPLITUDES, self.0).keywords();
         keywords["type"] = json!(["number", "array"]);
         keywords["items"]["type"] = json!("number");
         (keywords["minimum"], keywords["maximum"]) = (json!(self.0.min), json!(self.0.max));
@@ -142,7 +140,7 @@ impl Limit<Amplitudes> for Within {
     fn check(&self, value: &Amplitudes, at: JsonPath<'_>, faults: &mut Faults) {
         match value {
             Amplitudes::One(amplitude) => faults.number(at, *amplitude, &self.0),
-            Amplitudes::Many(amplitudes) => Numbers(CYCLE_AMPLITUDES, self.0).check(amplitudes, at, faults),
+            Amplitudes::Many(amplitudes) => Array(CYCLE_AMPLITUDES, self.0).check(amplitudes, at, faults),
         }
     }
 }
@@ -352,7 +350,7 @@ impl Document for CycleRequest {
         let options = CycleOptions { drive, stiffness, harmonics, density: work_density };
         let task = options.check(CyclePlaces::BODY, &mut faults);
         let at = |name| JsonPath::Root.member(name);
-        Limit::check(&ToleranceOr(DEFAULT_TOLERANCE), &tolerance, at("tolerance"), &mut faults);
+        let tolerance = Tolerance(DEFAULT_TOLERANCE).of(tolerance, &mut faults);
         let load = normal.and_then(|normal| normal.swing(at("normal"), &mut faults));
         if let Some(response) = &response {
             response.check_members(at("frequency_response"), &mut faults);
@@ -384,7 +382,6 @@ impl Document for CycleRequest {
         if task.as_ref().is_some_and(|task| task.radii() > 0) {
             faults.needs_stress_field(setup.as_ref(), at("work_density"));
         }
-        let tolerance = tolerance.unwrap_or(DEFAULT_TOLERANCE);
         let normal = load.map(|load| (load, tolerance));
         let response = response.map(|response| (response, tolerance));
         let task = task.map(|task| CycleTask { normal, response, best_load, map, ..task });

@@ -6,7 +6,7 @@ use utoipa::ToSchema;
 
 use stickslip_mechanics::range::{self, Quantity, Range};
 
-use crate::limits::{CURVE_POINTS, FREQUENCIES, Numbers, limits};
+use crate::limits::{Array, CURVE_POINTS, FREQUENCIES, limits};
 use crate::single_key::not_null;
 
 /// A mass that hangs on the contact alone, and a force on it that is a cosine of the time.
@@ -26,7 +26,7 @@ pub struct FrequencyResponse {
 limits!(FrequencyResponse {
     mass: Range { quantity: Quantity::Number, unit: "kg", min: 1e-15, max: 1e15 },
     drive_force: Range { min: 1e-15, max: 1e15, ..range::FORCE },
-    frequencies: Numbers(FREQUENCIES, Range { quantity: Quantity::Number, unit: "Hz", min: 1e-6, max: 1e12 }),
+    frequencies: Array(FREQUENCIES, Range { quantity: Quantity::Number, unit: "Hz", min: 1e-6, max: 1e12 }),
 });
 
 /// A search for the load that damps most.

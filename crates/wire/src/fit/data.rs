@@ -7,7 +7,7 @@ use utoipa::ToSchema;
 use stickslip_mechanics::range::{self, MIN_POSITIVE_NORMAL_FORCE, Quantity, Range};
 
 use crate::check::{Faults, JsonPath};
-use crate::limits::{FIT_POINTS, Numbers, limits};
+use crate::limits::{Array, FIT_POINTS, limits};
 use crate::profile_fit::LengthUnit;
 use crate::single_key::not_null;
 
@@ -41,9 +41,9 @@ pub struct MeasuredLoop {
     pub weight: Option<f64>,
 }
 limits!(MeasuredLoop {
-    displacement: Numbers(FIT_POINTS, NUMBER),
-    force: Numbers(FIT_POINTS, NUMBER),
-    time: Numbers(FIT_POINTS, TIME),
+    displacement: Array(FIT_POINTS, NUMBER),
+    force: Array(FIT_POINTS, NUMBER),
+    time: Array(FIT_POINTS, TIME),
     normal_force: LOAD,
     weight: WEIGHT,
 });

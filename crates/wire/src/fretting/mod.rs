@@ -4,6 +4,8 @@ mod reply;
 
 pub use reply::{FrettingReply, Instant, Largest, Rating, StressPath};
 
+use std::ops::RangeInclusive;
+
 use serde::{Deserialize, Serialize};
 use serde_with::{apply, skip_serializing_none};
 use utoipa::ToSchema;
@@ -16,7 +18,7 @@ use crate::check::{Faults, JsonPath, Rejection};
 use crate::definition::{BodyName, ContactDefinition, DefinedProfile, SharedSetup};
 use crate::document::Document;
 use crate::limits::{
-    Counts, FRETTING_MOVES, Keywords, Limit, Limited, STRESS_PATHS, SUBSURFACE_POINTS, ToleranceOr, Triples, limits,
+    Array, FRETTING_MOVES, Keywords, Limit, Limited, STRESS_PATHS, SUBSURFACE_POINTS, Tolerance, Triple, limits,
 };
 use crate::path::{PHASE, Path, Plan};
 use crate::prepare::Prepare;
@@ -71,12 +73,12 @@ pub struct FrettingRequest {
 }
 limits!(FrettingRequest {
     poisson_ratio: range::POISSON_RATIO,
-    points: Triples(SUBSURFACE_POINTS, range::PLACE),
+    points: Array(SUBSURFACE_POINTS, Triple(range::PLACE)),
     stress_paths: PATHS,
-    tolerance: ToleranceOr(DEFAULT_TOLERANCE),
+    tolerance: Tolerance(DEFAULT_TOLERANCE),
 });
 /// Which stresses over the cycle may be asked for.
-const PATHS: Counts = Counts(STRESS_PATHS, 0..=*SUBSURFACE_POINTS.end() - 1);
+const PATHS: Array<RangeInclusive<usize>> = Array(STRESS_PATHS, 0..=*SUBSURFACE_POINTS.end() - 1);
 /// A value that a material bears.
 const BEARABLE: Range = Range { quantity: Quantity::Number, unit: "", min: 1e-300, max: 1e30 };
 
@@ -283,13 +285,14 @@ impl Document for FrettingRequest {
                 faults.add(at("path"), format_args!("{} moves: at most {most} can be rated", plan.length()));
             }
         }
-        Limit::check(&ToleranceOr(DEFAULT_TOLERANCE), &self.tolerance, at("tolerance"), &mut faults);
+        let searches = self.points.is_none() && self.line.is_none() && self.plane.is_none() && self.surface.is_none();
+        let default = if searches { SEARCH_TOLERANCE } else { DEFAULT_TOLERANCE };
+        let tolerance = Tolerance(default).of(self.tolerance, &mut faults);
         let bulk = self.bulk.map(|bulk| {
             bulk.check_members(at("bulk"), &mut faults);
             let [mean, amplitude, phase] = [bulk.mean, bulk.amplitude, bulk.phase].map(|part| part.unwrap_or(0.0));
             fatigue::Bulk { mean, amplitude, phase: phase.to_radians() }
         });
-        let searches = self.points.is_none() && self.line.is_none() && self.plane.is_none() && self.surface.is_none();
         let places = SubsurfaceRequest {
             body: self.body,
             poisson_ratio: self.poisson_ratio,
@@ -332,7 +335,7 @@ impl Document for FrettingRequest {
             ruiz: self.criteria.ruiz,
             friction_work: self.criteria.friction_work,
             stress_paths,
-            tolerance: self.tolerance.unwrap_or(if searches { SEARCH_TOLERANCE } else { DEFAULT_TOLERANCE }),
+            tolerance,
         });
         faults.done(setup.zip(task).map(|(setup, task)| (self.contact, setup, task)))
     }

@@ -1,13 +1,12 @@
 //! The heights of a scan, and the limits of their numbers.
 
 use serde::{Deserialize, Serialize};
-use serde_json::{Value, json};
 use utoipa::ToSchema;
 
 use stickslip_mechanics::range::{Quantity, Range};
 
 use crate::check::{Faults, JsonPath};
-use crate::limits::{Keywords, Limit, Numbers, SCAN_POINTS, SCAN_ROWS, limits};
+use crate::limits::{Array, SCAN_POINTS, SCAN_ROWS, limits};
 use crate::single_key::single_key;
 
 /// A place or a height of a scan, in its unit.
@@ -37,7 +36,7 @@ pub struct LineScan {
     /// Heights, as many, in the unit of `units.height`.
     pub z: Vec<Option<f64>>,
 }
-limits!(LineScan { x: Numbers(SCAN_POINTS, SCAN_NUMBER), z: Heights(SCAN_POINTS) });
+limits!(LineScan { x: Array(SCAN_POINTS, SCAN_NUMBER), z: Array(SCAN_POINTS, SCAN_NUMBER) });
 
 /// A scan on a grid. The first height is at x = y = 0.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
@@ -50,7 +49,7 @@ pub struct MapScan {
     /// The rows of heights, each as long, in the unit of `units.height`.
     pub z: Vec<Vec<Option<f64>>>,
 }
-limits!(MapScan { dx: SCAN_STEP, dy: SCAN_STEP, z: Rows });
+limits!(MapScan { dx: SCAN_STEP, dy: SCAN_STEP, z: Array(SCAN_ROWS, Array(SCAN_ROWS, SCAN_NUMBER)) });
 
 /// Heights at places, in any order.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
@@ -64,46 +63,10 @@ pub struct PointScan {
     pub z: Vec<Option<f64>>,
 }
 limits!(PointScan {
-    x: Numbers(SCAN_POINTS, SCAN_NUMBER),
-    y: Numbers(SCAN_POINTS, SCAN_NUMBER),
-    z: Heights(SCAN_POINTS)
+    x: Array(SCAN_POINTS, SCAN_NUMBER),
+    y: Array(SCAN_POINTS, SCAN_NUMBER),
+    z: Array(SCAN_POINTS, SCAN_NUMBER)
 });
-
-/// The number of heights, and the range of each.
-pub struct Heights(pub std::ops::RangeInclusive<usize>);
-
-impl Keywords for Heights {
-    fn keywords(&self) -> Value {
-        json!({"minItems": self.0.start(), "maxItems": self.0.end(), "items": SCAN_NUMBER.keywords()})
-    }
-}
-
-impl Limit<Vec<Option<f64>>> for Heights {
-    fn check(&self, value: &Vec<Option<f64>>, at: JsonPath<'_>, faults: &mut Faults) {
-        if faults.length(at, value.len(), &self.0) {
-            for (index, height) in value.iter().enumerate() {
-                Limit::check(&SCAN_NUMBER, height, at.index(index), faults);
-            }
-        }
-    }
-}
-
-/// Rows of heights.
-pub struct Rows;
-
-impl Keywords for Rows {
-    fn keywords(&self) -> Value {
-        json!({"minItems": SCAN_ROWS.start(), "maxItems": SCAN_ROWS.end(), "items": Heights(SCAN_ROWS).keywords()})
-    }
-}
-
-impl Limit<Vec<Vec<Option<f64>>>> for Rows {
-    fn check(&self, value: &Vec<Vec<Option<f64>>>, at: JsonPath<'_>, faults: &mut Faults) {
-        if faults.length(at, value.len(), &SCAN_ROWS) {
-            value.iter().enumerate().for_each(|(index, row)| Heights(SCAN_ROWS).check(row, at.index(index), faults));
-        }
-    }
-}
 
 /// Notes a column that is not as long as the first.
 fn as_long(at: JsonPath<'_>, length: usize, first: usize, faults: &mut Faults) {

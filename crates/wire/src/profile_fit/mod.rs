@@ -3,7 +3,7 @@
 mod data;
 mod reply;
 
-pub use data::{Heights, LineScan, MapScan, PointScan, Rows, ScanData};
+pub use data::{LineScan, MapScan, PointScan, ScanData};
 pub use reply::{Axis2, ColumnPair, ContactEstimate, Estimate, ProfileFitReply, ScanResidual};
 
 use serde::de::value::MapAccessDeserializer;

@@ -13,7 +13,7 @@ use stickslip_mechanics::{self as mechanics, range, subsurface::Side};
 use crate::check::{Faults, JsonPath, Rejection};
 use crate::definition::{Body, BodyName, ContactDefinition};
 use crate::document::Document;
-use crate::limits::{SUBSURFACE_POINTS, Triples, limits};
+use crate::limits::{Array, SUBSURFACE_POINTS, Triple, limits};
 use crate::prepare::Prepare;
 use crate::reply::{Accuracy, Warning};
 use crate::single_key::not_null;
@@ -47,7 +47,10 @@ pub struct SubsurfaceRequest {
     /// A uniform stress of the body that is added, Pa. It does not move the stick zone in this model.
     pub bulk: Option<Bulk>,
 }
-limits!(SubsurfaceRequest { poisson_ratio: range::POISSON_RATIO, points: Triples(SUBSURFACE_POINTS, range::PLACE) });
+limits!(SubsurfaceRequest {
+    poisson_ratio: range::POISSON_RATIO,
+    points: Array(SUBSURFACE_POINTS, Triple(range::PLACE))
+});
 
 /// A quantity below the surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
