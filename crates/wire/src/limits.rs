@@ -1,5 +1,5 @@
-//! Limits of the members of documents. Each is declared once, beside its document, by `limits!`: from that declaration
-//! come the check of the member and the keywords of its schema in the OpenAPI document.
+//! Limits of the members of documents. Each is declared once, beside its member, by `requests!` or `choices!`: from
+//! that declaration come the check of the member and the keywords of its schema in the OpenAPI document.
 //!
 //! The constants here are those that more than one document, or the service, needs.
 
@@ -102,6 +102,9 @@ pub trait Limited {
 
     /// The names of the members that have a limit, with the keywords of each.
     fn limits() -> Vec<(&'static str, Value)>;
+
+    /// Notes which of its own members are out of their limits.
+    fn check_members(&self, at: JsonPath<'_>, faults: &mut Faults);
 
     /// The same with the name of the schema.
     #[must_use]
@@ -253,60 +256,17 @@ impl Limit<f64> for Tolerance {
     }
 }
 
-/// Declares the limits of the members of a document, `limits!(Document { member: limit, .. } and Shared)`, or of a
-/// choice with one key, `limits!(enum Choice { Variant "key": limit, .. })`. `check_members` then checks them.
-/// `Shared` is a document whose limited members this one has too, and which checks them itself.
-macro_rules! limits {
-    ($document:ident and $shared:ty) => {
-        impl $crate::limits::Limited for $document {
-            const SCHEMA: &'static str = stringify!($document);
+/// The limits of a document within a document: those of its members.
+pub struct OfItsMembers;
 
-            fn limits() -> Vec<(&'static str, serde_json::Value)> {
-                <$shared as $crate::limits::Limited>::limits()
-            }
-        }
-    };
-    ($document:ident { $($member:ident: $limit:expr),* $(,)? } $(and $shared:ty)?) => {
-        impl $crate::limits::Limited for $document {
-            const SCHEMA: &'static str = stringify!($document);
-
-            fn limits() -> Vec<(&'static str, serde_json::Value)> {
-                #[allow(unused_mut)]
-                let mut limits = vec![$((stringify!($member), $crate::limits::Keywords::keywords(&$limit))),*];
-                $(limits.extend(<$shared as $crate::limits::Limited>::limits());)?
-                limits
-            }
-        }
-
-        impl $document {
-            /// Notes which of its own members are out of their limits.
-            #[allow(dead_code, reason = "a document that is taken apart on the way checks its members one by one")]
-            pub(super) fn check_members(&self, at: $crate::check::JsonPath<'_>, faults: &mut $crate::check::Faults) {
-                $($crate::limits::Limit::check(&$limit, &self.$member, at.member(stringify!($member)), faults);)*
-            }
-        }
-    };
-    (enum $choice:ident { $($variant:ident $key:literal: $limit:expr),* $(,)? }) => {
-        impl $crate::limits::Limited for $choice {
-            const SCHEMA: &'static str = stringify!($choice);
-
-            fn limits() -> Vec<(&'static str, serde_json::Value)> {
-                vec![$(($key, $crate::limits::Keywords::keywords(&$limit))),*]
-            }
-        }
-
-        impl $choice {
-            /// Notes whether the value of the key is out of its limits.
-            fn check_members(&self, at: $crate::check::JsonPath<'_>, faults: &mut $crate::check::Faults) {
-                #[allow(unreachable_patterns)]
-                match self {
-                    $($choice::$variant(value) => {
-                        $crate::limits::Limit::check(&$limit, value, at.member($key), faults);
-                    })*
-                    _ => {}
-                }
-            }
-        }
-    };
+impl Keywords for OfItsMembers {
+    fn keywords(&self) -> Value {
+        json!({})
+    }
 }
-pub(crate) use limits;
+
+impl<T: Limited> Limit<T> for OfItsMembers {
+    fn check(&self, value: &T, at: JsonPath<'_>, faults: &mut Faults) {
+        value.check_members(at, faults);
+    }
+}

@@ -6,7 +6,7 @@ use axum::http::HeaderMap;
 use axum::response::Response;
 
 use stickslip_mechanics::range;
-use stickslip_wire::limits::{self, Numbers};
+use stickslip_wire::limits::{self, Array};
 use stickslip_wire::{Field, JsonPath, Sampling, StressReply, StressRequest};
 
 use crate::api::computations;
@@ -30,7 +30,7 @@ parameters! {
         /// ask for a plot.
         points: Option<usize> = count(&limits::STRESS_POINTS).checked_later().such_as(100);
         /// Radii, m, separated by commas or given one by one.
-        radii: Option<Vec<f64>> = List(Numbers(QUERY_RADII, range::CONTACT_RADIUS));
+        radii: Option<Vec<f64>> = List(Array(QUERY_RADII, range::CONTACT_RADIUS));
         /// Which fields, separated by commas, out of `pressure`, `shear`, `slip` and `displacement`. If it is left out,
         /// the first two.
         fields: Option<Vec<Field>> = Fields;

@@ -34,10 +34,10 @@ pub struct FitFlags {
     #[arg(long, value_name = "COLUMN")]
     time: Option<String>,
     /// The unit of displacements; without it the one that the header names, or m.
-    #[arg(long, value_parser = PossibleValuesParser::new(LengthUnit::ALL.map(LengthUnit::symbol)))]
+    #[arg(long, value_parser = PossibleValuesParser::new(LengthUnit::ALL.map(LengthUnit::name)))]
     displacement_unit: Option<String>,
     /// The unit of forces; without it the one that the header names, or N.
-    #[arg(long, value_parser = PossibleValuesParser::new(ForceUnit::ALL.map(ForceUnit::symbol)))]
+    #[arg(long, value_parser = PossibleValuesParser::new(ForceUnit::ALL.map(ForceUnit::name)))]
     force_unit: Option<String>,
     /// The column of loads, if there is one; without it the one that is called so.
     #[arg(long, value_name = "COLUMN")]

@@ -17,10 +17,10 @@ use crate::cli::refusal::Refusal;
 #[derive(Args)]
 pub struct ProfileFlags {
     /// The unit of places in a file of columns; without it the one that the header names, or m.
-    #[arg(long, value_parser = PossibleValuesParser::new(LengthUnit::ALL.map(LengthUnit::symbol)))]
+    #[arg(long, value_parser = PossibleValuesParser::new(LengthUnit::ALL.map(LengthUnit::name)))]
     lateral: Option<String>,
     /// The unit of heights in a file of columns, likewise.
-    #[arg(long, value_parser = PossibleValuesParser::new(LengthUnit::ALL.map(LengthUnit::symbol)))]
+    #[arg(long, value_parser = PossibleValuesParser::new(LengthUnit::ALL.map(LengthUnit::name)))]
     height: Option<String>,
     /// The distance of neighbours in a matrix of heights, in the unit of places.
     #[arg(long)]
