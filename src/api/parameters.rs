@@ -10,7 +10,7 @@ use utoipa::openapi::path::{Parameter, ParameterBuilder, ParameterIn};
 use uuid::Uuid;
 
 use stickslip_mechanics::range::Range;
-use stickslip_wire::limits::{Characters, Keywords as _, Limit, Numbers};
+use stickslip_wire::limits::{Array, Characters, Keywords as _, Limit};
 use stickslip_wire::{Faults, Field, JobState, JsonPath};
 
 use super::formats::Format;
@@ -209,7 +209,7 @@ impl<V: FromStr + serde::Serialize> Kind<V> for Number<V> {
 }
 
 /// Numbers with commas between them, or given one by one; the check of the request looks at their range.
-pub struct List(pub Numbers);
+pub struct List(pub Array<Range>);
 
 impl Kind<Vec<f64>> for List {
     fn read(&self, name: &'static str, query: &mut QueryReader) -> Option<Vec<f64>> {

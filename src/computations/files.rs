@@ -67,11 +67,11 @@ pub fn force(symbol: &str) -> Option<Force> {
 }
 
 fn length_unit(unit: Length) -> Option<LengthUnit> {
-    LengthUnit::ALL.into_iter().find(|one| one.symbol() == unit.symbol())
+    LengthUnit::ALL.into_iter().find(|one| one.name() == unit.symbol())
 }
 
 fn force_unit(unit: Force) -> Option<ForceUnit> {
-    ForceUnit::ALL.into_iter().find(|one| one.symbol() == unit.symbol())
+    ForceUnit::ALL.into_iter().find(|one| one.name() == unit.symbol())
 }
 
 fn preview(preview: Preview) -> FilePreview {

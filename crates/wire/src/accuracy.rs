@@ -1,18 +1,19 @@
 //! The body of `POST /accuracy` and its reply.
 
 use serde::{Deserialize, Serialize};
-use serde_with::{apply, skip_serializing_none};
 use utoipa::ToSchema;
 
-use super::check::{Fault, Faults, JsonPath, Rejection};
+use stickslip_mechanics::DEFAULT_TOLERANCE;
+
+use super::check::{Fault, Faults, JsonPath};
 use super::definition::{ContactDefinition, DefinedProfile, SharedSetup};
 use super::document::Document;
-use super::limits::{Items, Tolerance, limits};
+use super::limits::{Items, Tolerance};
 use super::path::{Path, Plan};
 use super::prepare::Prepare;
 use super::reply::SolverKind;
+use super::request::requests;
 use super::simulate::{Solver, Springs, most_springs};
-use super::single_key::not_null;
 use super::stress::{Field, Sampling, StressRequest};
 
 /// Solvers that one comparison may name.
@@ -22,11 +23,8 @@ const SPRING_LADDER: [usize; 4] = [10, 100, 1_000, 10_000];
 /// Radii at which stresses are compared unless the request names some.
 const COMPARED_RADII: usize = 200;
 
+requests! {
 /// A contact, the path that it follows, and the solvers to compare on it; the server keeps nothing of it.
-#[skip_serializing_none]
-#[apply(Option => #[serde(default, deserialize_with = "not_null")] #[schema(nullable = false)])]
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-#[serde(deny_unknown_fields)]
 #[schema(example = json!({
     "contact": ContactDefinition::example(),
     "path": {"falling_amplitude": {"reversals": 20}}
@@ -40,11 +38,11 @@ pub struct AccuracyRequest {
     /// to the edge. `fields`, if named, must hold `shear`; nothing else is compared.
     pub stress: Option<StressRequest>,
     /// The solvers, in the order of the rows; left out, the exact one and 10, 100, 1000 and 10 000 springs.
-    pub solvers: Option<Vec<Solver>>,
+    pub solvers: Option<Vec<Solver>> = SOLVERS,
     /// Tolerance for what is not exact, relative to μ F_N, a pure number. The reference is held to a sixteenth of it.
-    pub tolerance: Option<f64>,
+    pub tolerance: Option<f64> = Tolerance(DEFAULT_TOLERANCE),
 }
-limits!(AccuracyRequest { tolerance: Tolerance, solvers: SOLVERS });
+}
 
 /// The time and the error of each solver.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
@@ -149,30 +147,29 @@ impl Document for AccuracyRequest {
         Some(self.contact.defined_profile("/contact/profile"))
     }
 
-    fn check_with(self, profiles: &dyn Prepare) -> Result<Comparison, Rejection> {
-        let mut faults = Faults::default();
-        let setup = self.contact.check(JsonPath::Root.member("contact"), profiles, &mut faults);
+    fn checked(self, profiles: &dyn Prepare, faults: &mut Faults) -> Option<Self::Checked> {
+        let setup = self.contact.check(JsonPath::Root.member("contact"), profiles, faults);
         // Stresses are always compared.
         faults.needs_stress_field(setup.as_ref(), JsonPath::Root.member("contact").member("profile"));
-        let plan = self.path.check(JsonPath::Root.member("path"), &mut faults);
+        let plan = self.path.check(JsonPath::Root.member("path"), faults);
         let stress = self.stress.unwrap_or_else(|| StressRequest {
             points: Some(COMPARED_RADII),
             fields: Some(vec![Field::Shear]),
             ..StressRequest::default()
         });
         let at = JsonPath::Root.member("stress");
-        let sampling = stress.check(at, &mut faults);
+        let sampling = stress.check(at, faults);
         if sampling.as_ref().is_some_and(|sampling| !sampling.fields.shear) {
             faults.add(at.member("fields"), "the shear stress is what is compared: name `shear`");
         }
-        let tolerance = Tolerance::of(self.tolerance, &mut faults);
+        let tolerance = Tolerance(DEFAULT_TOLERANCE).of(self.tolerance, faults);
         let at = JsonPath::Root.member("solvers");
         let solvers = self.solvers.unwrap_or_else(ladder);
         let radii = sampling.as_ref().map_or(0, Sampling::length);
         let passes = plan.as_ref().map_or(0, Plan::length).saturating_add(radii);
         if faults.length(at, solvers.len(), &SOLVERS.0) {
             let each = solvers.iter().enumerate();
-            each.for_each(|(index, solver)| solver.check(at.index(index), passes, &mut faults));
+            each.for_each(|(index, solver)| solver.check(at.index(index), passes, faults));
         }
         let comparison = setup.zip(plan).zip(sampling).map(|((setup, plan), sampling)| {
             let definition = self.contact;
@@ -184,6 +181,6 @@ impl Document for AccuracyRequest {
                 faults.add(at, format_args!("{all} springs in all over {passes} moves and radii: allowed are {most}"));
             }
         }
-        faults.done(comparison)
+        comparison
     }
 }

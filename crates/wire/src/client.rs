@@ -5,7 +5,6 @@ use eventsource_stream::{EventStreamError, Eventsource as _};
 use futures::{Stream, StreamExt as _};
 use reqwest::header::{AUTHORIZATION, CONTENT_TYPE, HeaderValue};
 use reqwest::{Method, RequestBuilder, StatusCode};
-use serde::Serialize;
 use serde::de::DeserializeOwned;
 use uuid::Uuid;
 
@@ -87,6 +86,33 @@ impl Error {
     }
 }
 
+/// Declares the methods of calls that reply with a document, with a body,
+/// `name: METHOD "path" [id] Request + options => Reply;`, or with optional parameters,
+/// `name: METHOD "path" [id] ? parameter: Type, .. => Reply;`.
+macro_rules! calls {
+    ($(
+        $(#[doc = $about:literal])*
+        $name:ident: $method:ident $path:literal $([$id:ident])?
+            $($Request:ident)? $(+ $options:ident)? $(? $($query:ident: $Type:ty),+)? => $Reply:ty;
+    )+) => {$(
+        #[doc = concat!("`", stringify!($method), " ", $path, "`.")]
+        $(#[doc = $about])*
+        pub async fn $name(
+            &self,
+            $($id: Uuid,)?
+            $(request: &$Request,)?
+            $($options: &Options,)?
+            $($($query: Option<$Type>),+)?
+        ) -> Result<$Reply, Error> {
+            let call = self.call(Method::$method, &format!($path $(, $id = $id)?));
+            $(let call = call.json::<$Request>(request);)?
+            $(let call = with(call, $options);)?
+            $($(let call = call.query(&[(stringify!($query), $query)]);)+)?
+            json(call).await
+        }
+    )+};
+}
+
 impl Client {
     /// A client for the service at `base`, such as `http://127.0.0.1:8080`.
     #[must_use]
@@ -106,29 +132,39 @@ impl Client {
         self
     }
 
-    /// `POST /simulate`.
-    pub async fn simulate(&self, request: &SimulateRequest) -> Result<SimulateReply, Error> {
-        json(self.call(Method::POST, "/simulate").json(request)).await
-    }
-
-    /// `POST /accuracy`.
-    pub async fn accuracy(&self, request: &AccuracyRequest) -> Result<AccuracyReply, Error> {
-        json(self.call(Method::POST, "/accuracy").json(request)).await
-    }
-
-    /// `POST /cycle`.
-    pub async fn cycle(&self, request: &CycleRequest) -> Result<CycleReply, Error> {
-        json(self.call(Method::POST, "/cycle").json(request)).await
-    }
-
-    /// `POST /contacts`.
-    pub async fn create(&self, request: &CreateRequest, options: &Options) -> Result<NewSession, Error> {
-        self.post("/contacts", request, options).await
-    }
-
-    /// `GET /contacts`: a page, beyond the `next` of the page before.
-    pub async fn contacts(&self, after: Option<Uuid>, limit: Option<usize>) -> Result<SessionPage, Error> {
-        json(self.call(Method::GET, "/contacts").query(&[("after", after)]).query(&[("limit", limit)])).await
+    calls! {
+        simulate: POST "/simulate" SimulateRequest => SimulateReply;
+        accuracy: POST "/accuracy" AccuracyRequest => AccuracyReply;
+        cycle: POST "/cycle" CycleRequest => CycleReply;
+        protocol: POST "/protocols" ProtocolRequest => ProtocolReply;
+        fretting: POST "/fretting" FrettingRequest => FrettingReply;
+        fit_profile: POST "/profiles/fit" ProfileFitRequest => ProfileFitReply;
+        fit_loops: POST "/fit" FitRequest => FitReply;
+        create: POST "/contacts" CreateRequest + options => NewSession;
+        contact: GET "/contacts/{id}" [id] => SessionReply;
+        definition: GET "/contacts/{id}/definition" [id] => ContactDefinition;
+        apply: POST "/contacts/{id}/move" [id] MoveRequest + options => MoveReply;
+        path: POST "/contacts/{id}/path" [id] PathRequest + options => PathReply;
+        observe: POST "/contacts/{id}/observations" [id] ObservationsRequest + options => ObservationsReply;
+        friction: GET "/contacts/{id}/friction" [id] => FrictionReply;
+        relax: POST "/contacts/{id}/relax" [id] RelaxRequest + options => RelaxReply;
+        residual: GET "/contacts/{id}/residual" [id] => Residual;
+        subsurface: POST "/contacts/{id}/subsurface" [id] SubsurfaceRequest => SubsurfaceReply;
+        fork: POST "/contacts/{id}/fork" [id] ForkRequest + options => NewSession;
+        job: GET "/jobs/{id}" [id] => JobReply;
+        job_result: GET "/jobs/{id}/result" [id] => SweepReply;
+        /// A page, beyond the `next` of the page before.
+        contacts: GET "/contacts" ? after: Uuid, limit: usize => SessionPage;
+        /// A page, beyond the `next` of the page before.
+        history: GET "/contacts/{id}/history" [id] ? after: u64, limit: usize => HistoryPage;
+        /// A page of moves with `points_per_move` points for each, by default the recorded states alone.
+        hysteresis_loop:
+            GET "/contacts/{id}/loop" [id] ? after: u64, limit: usize, points_per_move: usize => LoopPage;
+        /// The newest `last` closed cycles, oldest first.
+        cycles: GET "/contacts/{id}/cycles" [id] ? last: usize => CyclePage;
+        /// Those in one state, or all.
+        jobs: GET "/jobs" ? state: JobState => JobList;
+        openapi: GET "/openapi.json" => serde_json::Value;
     }
 
     /// `GET /contacts?label=`: a page of those whose label contains the text, whatever the case of its ASCII letters.
@@ -142,51 +178,6 @@ impl Client {
         json(call.query(&[("after", after)]).query(&[("limit", limit)])).await
     }
 
-    /// `GET /contacts/{id}`.
-    pub async fn contact(&self, id: Uuid) -> Result<SessionReply, Error> {
-        json(self.call(Method::GET, &format!("/contacts/{id}"))).await
-    }
-
-    /// `GET /contacts/{id}/definition`.
-    pub async fn definition(&self, id: Uuid) -> Result<ContactDefinition, Error> {
-        json(self.call(Method::GET, &format!("/contacts/{id}/definition"))).await
-    }
-
-    /// `POST /contacts/{id}/move`.
-    pub async fn apply(&self, id: Uuid, request: &MoveRequest, options: &Options) -> Result<MoveReply, Error> {
-        self.post(&format!("/contacts/{id}/move"), request, options).await
-    }
-
-    /// `POST /contacts/{id}/path`.
-    pub async fn path(&self, id: Uuid, request: &PathRequest, options: &Options) -> Result<PathReply, Error> {
-        self.post(&format!("/contacts/{id}/path"), request, options).await
-    }
-
-    /// `POST /contacts/{id}/observations`.
-    pub async fn observe(
-        &self,
-        id: Uuid,
-        request: &ObservationsRequest,
-        options: &Options,
-    ) -> Result<ObservationsReply, Error> {
-        self.post(&format!("/contacts/{id}/observations"), request, options).await
-    }
-
-    /// `GET /contacts/{id}/friction`.
-    pub async fn friction(&self, id: Uuid) -> Result<FrictionReply, Error> {
-        json(self.call(Method::GET, &format!("/contacts/{id}/friction"))).await
-    }
-
-    /// `POST /protocols`.
-    pub async fn protocol(&self, request: &ProtocolRequest) -> Result<ProtocolReply, Error> {
-        json(self.call(Method::POST, "/protocols").json(request)).await
-    }
-
-    /// `POST /contacts/{id}/relax`.
-    pub async fn relax(&self, id: Uuid, request: &RelaxRequest, options: &Options) -> Result<RelaxReply, Error> {
-        self.post(&format!("/contacts/{id}/relax"), request, options).await
-    }
-
     /// `GET /contacts/{id}/stress`.
     pub async fn stress(&self, id: Uuid, request: &StressRequest, residual: bool) -> Result<StressReply, Error> {
         let radii = request.radii.as_ref().map(|radii| listed(radii.iter().map(|radius| format!("{radius:e}"))));
@@ -194,21 +185,6 @@ impl Client {
         let call = self.call(Method::GET, &format!("/contacts/{id}/stress"));
         let call = call.query(&[("points", request.points)]).query(&[("radii", radii), ("fields", fields)]);
         json(call.query(&[("residual", residual)])).await
-    }
-
-    /// `POST /fretting`.
-    pub async fn fretting(&self, request: &FrettingRequest) -> Result<FrettingReply, Error> {
-        json(self.call(Method::POST, "/fretting").json(request)).await
-    }
-
-    /// `POST /profiles/fit`.
-    pub async fn fit_profile(&self, request: &ProfileFitRequest) -> Result<ProfileFitReply, Error> {
-        json(self.call(Method::POST, "/profiles/fit").json(request)).await
-    }
-
-    /// `POST /fit`.
-    pub async fn fit_loops(&self, request: &FitRequest) -> Result<FitReply, Error> {
-        json(self.call(Method::POST, "/fit").json(request)).await
     }
 
     /// `POST /files/scan`.
@@ -221,16 +197,6 @@ impl Client {
     pub async fn read_loop(&self, file: Vec<u8>, hints: &LoopFileHints) -> Result<LoopFileReply, Error> {
         let call = self.call(Method::POST, "/files/loop").query(hints);
         json(call.header(CONTENT_TYPE, "application/octet-stream").body(file)).await
-    }
-
-    /// `GET /contacts/{id}/residual`.
-    pub async fn residual(&self, id: Uuid) -> Result<Residual, Error> {
-        json(self.call(Method::GET, &format!("/contacts/{id}/residual"))).await
-    }
-
-    /// `POST /contacts/{id}/subsurface`.
-    pub async fn subsurface(&self, id: Uuid, request: &SubsurfaceRequest) -> Result<SubsurfaceReply, Error> {
-        json(self.call(Method::POST, &format!("/contacts/{id}/subsurface")).json(request)).await
     }
 
     /// `GET /contacts/{id}/cycle`: the steady cycles of the contact at its present load.
@@ -248,30 +214,6 @@ impl Client {
         let call = call.query(&[(drive.name(), exact(drive.amplitudes().all()))]);
         let call = call.query(&[("machine_stiffness", stiffness), ("radii", density.radii.as_deref().map(exact))]);
         json(call.query(&[("harmonics", harmonics), ("points", density.points)])).await
-    }
-
-    /// `GET /contacts/{id}/history`: a page, beyond the `next` of the page before.
-    pub async fn history(&self, id: Uuid, after: Option<u64>, limit: Option<usize>) -> Result<HistoryPage, Error> {
-        let call = self.call(Method::GET, &format!("/contacts/{id}/history"));
-        json(call.query(&[("after", after)]).query(&[("limit", limit)])).await
-    }
-
-    /// `GET /contacts/{id}/loop`: a page of moves with `points` points for each, by default the recorded states alone.
-    pub async fn hysteresis_loop(
-        &self,
-        id: Uuid,
-        after: Option<u64>,
-        limit: Option<usize>,
-        points_per_move: Option<usize>,
-    ) -> Result<LoopPage, Error> {
-        let call = self.call(Method::GET, &format!("/contacts/{id}/loop"));
-        let call = call.query(&[("after", after)]).query(&[("limit", limit)]);
-        json(call.query(&[("points_per_move", points_per_move)])).await
-    }
-
-    /// `GET /contacts/{id}/cycles`: the newest `last` closed cycles, oldest first.
-    pub async fn cycles(&self, id: Uuid, last: Option<usize>) -> Result<CyclePage, Error> {
-        json(self.call(Method::GET, &format!("/contacts/{id}/cycles")).query(&[("last", last)])).await
     }
 
     /// `GET /contacts/{id}/events`: the states beyond the move `after`, or the present one and then each new one. The
@@ -292,11 +234,6 @@ impl Client {
         }
         let events = response.bytes_stream().eventsource();
         Ok(events.filter_map(move |event| std::future::ready(event_of(status, event))))
-    }
-
-    /// `POST /contacts/{id}/fork`.
-    pub async fn fork(&self, id: Uuid, request: &ForkRequest, options: &Options) -> Result<NewSession, Error> {
-        self.post(&format!("/contacts/{id}/fork"), request, options).await
     }
 
     /// `PATCH /contacts/{id}`: another label, or none.
@@ -321,34 +258,9 @@ impl Client {
         }
     }
 
-    /// `GET /jobs`, those in one state or all.
-    pub async fn jobs(&self, state: Option<JobState>) -> Result<JobList, Error> {
-        let call = self.call(Method::GET, "/jobs");
-        json(match state {
-            Some(state) => call.query(&[("state", state.name())]),
-            None => call,
-        })
-        .await
-    }
-
-    /// `GET /jobs/{id}`.
-    pub async fn job(&self, id: Uuid) -> Result<JobReply, Error> {
-        json(self.call(Method::GET, &format!("/jobs/{id}"))).await
-    }
-
-    /// `GET /jobs/{id}/result`.
-    pub async fn job_result(&self, id: Uuid) -> Result<SweepReply, Error> {
-        json(self.call(Method::GET, &format!("/jobs/{id}/result"))).await
-    }
-
     /// `DELETE /jobs/{id}`.
     pub async fn delete_job(&self, id: Uuid) -> Result<(), Error> {
         sent(self.call(Method::DELETE, &format!("/jobs/{id}"))).await.map(drop)
-    }
-
-    /// `GET /openapi.json`.
-    pub async fn openapi(&self) -> Result<serde_json::Value, Error> {
-        json(self.call(Method::GET, "/openapi.json")).await
     }
 
     /// `GET /healthz`: whether the process is alive.
@@ -367,15 +279,6 @@ impl Client {
             Some(key) => call.header(AUTHORIZATION, key.clone()),
             None => call,
         }
-    }
-
-    async fn post<T: DeserializeOwned>(
-        &self,
-        path: &str,
-        body: &impl Serialize,
-        options: &Options,
-    ) -> Result<T, Error> {
-        json(with(self.call(Method::POST, path).json(body), options)).await
     }
 }
 

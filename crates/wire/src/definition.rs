@@ -4,20 +4,19 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
-use serde_with::skip_serializing_none;
 use utoipa::ToSchema;
 
 use stickslip_mechanics::{self as mechanics, Setup, elasticity, range, range::Quantity};
 
 use super::check::{Faults, JsonPath};
-use super::limits::{Items, limits};
+use super::choice::{choices, object_or_string};
+use super::limits::{Items, Limited as _};
 use super::prepare::Prepare;
 use super::profile::Profile;
-use super::single_key::{not_null, single_key};
+use super::request::requests;
 
+requests! {
 /// Two bodies pressed together, at rest and never moved tangentially.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-#[serde(deny_unknown_fields)]
 #[schema(example = json!(ContactDefinition::example()))]
 pub struct ContactDefinition {
     /// The shape of the indenter.
@@ -25,11 +24,30 @@ pub struct ContactDefinition {
     /// The elastic constants.
     pub material: Material,
     /// Coulomb's coefficient of friction μ, a pure number.
-    pub friction: f64,
+    pub friction: f64 = range::FRICTION,
     /// The normal load that the contact starts with.
     pub preload: Preload,
 }
-limits!(ContactDefinition { friction: range::FRICTION });
+
+/// An isotropic, linearly elastic body.
+pub struct ElasticBody {
+    /// Young's modulus E, Pa.
+    pub youngs_modulus: f64 = range::YOUNGS_MODULUS,
+    /// Poisson's ratio ν, a pure number.
+    pub poisson_ratio: f64 = range::POISSON_RATIO,
+}
+
+/// The reduced moduli of the pair of bodies.
+pub struct Effective {
+    /// E*, Pa: 1/E* = Σ (1−νᵢ²)/Eᵢ.
+    pub e_star: f64 = range::E_STAR,
+    /// G*, Pa: 1/G* = Σ (2−νᵢ)/(4Gᵢ).
+    pub g_star: f64 = range::G_STAR,
+    /// The two bodies that they were measured of, where these are known: the contact has the moduli above, and the
+    /// stress below its surface, the fatigue criteria and the warnings the constants of these.
+    pub bodies: Option<Vec<Body>> = BODIES,
+}
+}
 
 /// A checked definition, whose profile copies and other contacts share.
 pub type SharedSetup = Setup<Arc<mechanics::Profile>>;
@@ -55,20 +73,17 @@ pub enum BodyName {
     Second,
 }
 
+choices! {
 /// The elastic constants, one key: the two bodies, or their reduced moduli.
-#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
-#[serde(rename_all = "snake_case")]
 pub enum Material {
     /// The two bodies in contact; one of them may be rigid.
-    Bodies(Vec<Body>),
+    "bodies" => Bodies(Vec<Body>) = BODIES,
     /// The reduced moduli themselves.
-    Effective(Effective),
+    "effective" => Effective(Effective),
 }
-single_key!(Material { "bodies" => Bodies, "effective" => Effective });
-limits!(enum Material { Bodies "bodies": BODIES });
+}
 
 /// One of the two bodies: its elastic constants, or the string `"rigid"`.
-// Untagged when written. It is read by hand below, so that a fault in the object names its member.
 #[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
 #[serde(untagged)]
 pub enum Body {
@@ -86,80 +101,26 @@ pub enum Rigid {
     Rigid,
 }
 
-/// An isotropic, linearly elastic body.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-#[serde(deny_unknown_fields)]
-pub struct ElasticBody {
-    /// Young's modulus E, Pa.
-    pub youngs_modulus: f64,
-    /// Poisson's ratio ν, a pure number.
-    pub poisson_ratio: f64,
-}
-limits!(ElasticBody { youngs_modulus: range::YOUNGS_MODULUS, poisson_ratio: range::POISSON_RATIO });
-
-/// The reduced moduli of the pair of bodies.
-#[skip_serializing_none]
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Effective {
-    /// E*, Pa: 1/E* = Σ (1−νᵢ²)/Eᵢ.
-    pub e_star: f64,
-    /// G*, Pa: 1/G* = Σ (2−νᵢ)/(4Gᵢ).
-    pub g_star: f64,
-    /// The two bodies that they were measured of, where these are known: the contact has the moduli above, and the
-    /// stress below its surface, the fatigue criteria and the warnings the constants of these.
-    #[serde(default, deserialize_with = "not_null")]
-    #[schema(nullable = false)]
-    pub bodies: Option<Vec<Body>>,
-}
-limits!(Effective { e_star: range::E_STAR, g_star: range::G_STAR, bodies: BODIES });
 /// How many bodies there are.
 const BODIES: Items = Items(2..=2);
 
+choices! {
 /// The normal load that the contact starts with, one key. Zero is a contact just touching.
-#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
-#[serde(rename_all = "snake_case")]
 pub enum Preload {
     /// Normal force, N.
-    NormalForce(f64),
+    "normal_force" => NormalForce(f64) = range::NORMAL_FORCE,
     /// Indentation, m.
-    Indentation(f64),
+    "indentation" => Indentation(f64) = range::PRELOAD_INDENTATION,
     /// Contact radius, m.
-    ContactRadius(f64),
+    "contact_radius" => ContactRadius(f64) = range::CONTACT_RADIUS,
 }
-single_key!(Preload { "normal_force" => NormalForce, "indentation" => Indentation, "contact_radius" => ContactRadius });
-limits!(enum Preload {
-    NormalForce "normal_force": range::NORMAL_FORCE,
-    Indentation "indentation": range::PRELOAD_INDENTATION,
-    ContactRadius "contact_radius": range::CONTACT_RADIUS,
-});
-
-impl<'de> Deserialize<'de> for Body {
-    fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        deserializer.deserialize_any(BodyVisitor)
-    }
 }
 
-struct BodyVisitor;
-
-impl<'de> serde::de::Visitor<'de> for BodyVisitor {
-    type Value = Body;
-
-    fn expecting(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str("an object with `youngs_modulus` and `poisson_ratio`, or the string \"rigid\"")
-    }
-
-    fn visit_map<A: serde::de::MapAccess<'de>>(self, map: A) -> Result<Body, A::Error> {
-        ElasticBody::deserialize(serde::de::value::MapAccessDeserializer::new(map)).map(Body::Elastic)
-    }
-
-    fn visit_str<E: serde::de::Error>(self, word: &str) -> Result<Body, E> {
-        match word {
-            "rigid" => Ok(Body::Rigid(Rigid::Rigid)),
-            _ => Err(E::invalid_value(serde::de::Unexpected::Str(word), &self)),
-        }
-    }
-}
+object_or_string!(
+    Body: "an object with `youngs_modulus` and `poisson_ratio`, or the string \"rigid\"",
+    ElasticBody => Body::Elastic,
+    "rigid" => Body::Rigid(Rigid::Rigid)
+);
 
 impl ContactDefinition {
     /// The contact of the examples in the OpenAPI document: a steel ball on a rigid plane.

@@ -2,7 +2,7 @@
 
 use serde::de::DeserializeOwned;
 
-use super::check::Rejection;
+use super::check::{Faults, Rejection};
 use super::definition::DefinedProfile;
 use super::parse::parse;
 use super::prepare::{Prepare, PrepareAnew};
@@ -12,12 +12,20 @@ pub trait Document: DeserializeOwned + Send {
     /// The checked document.
     type Checked: Send + 'static;
 
-    /// Checks every number against its range, and prepares the profile of the contact that the document defines.
+    /// Checks every number against its range, and prepares the profile of the contact that the document defines. Faults
+    /// are noted, in any case where there is no checked document.
+    fn checked(self, profiles: &dyn Prepare, faults: &mut Faults) -> Option<Self::Checked>;
+
+    /// The checked document.
     ///
     /// # Errors
     /// [`Rejection::Invalid`] with every fault, or [`Rejection::Refused`]; with
     /// [`Interrupted`](stickslip_mechanics::Error::Interrupted) if the preparation was ended.
-    fn check_with(self, profiles: &dyn Prepare) -> Result<Self::Checked, Rejection>;
+    fn check_with(self, profiles: &dyn Prepare) -> Result<Self::Checked, Rejection> {
+        let mut faults = Faults::default();
+        let checked = self.checked(profiles, &mut faults);
+        faults.done(checked)
+    }
 
     /// The same with a profile that is made anew, however long that takes.
     ///

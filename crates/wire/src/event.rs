@@ -2,6 +2,7 @@
 
 use jiff::Timestamp;
 use serde::{Deserialize, Serialize};
+use serde_with::apply;
 use utoipa::ToSchema;
 use uuid::Uuid;
 
@@ -11,6 +12,7 @@ use super::path::Move;
 use super::reply::State;
 
 /// The data of an event `state`: a move that has been applied, with the state after it.
+#[apply(Option => #[serde(default, skip_serializing_if = "Option::is_none")] #[schema(nullable = false)])]
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct StateEvent {
     /// The identifier of the contact.
@@ -18,18 +20,13 @@ pub struct StateEvent {
     /// The number of the move, and of moves so far; the identifier of the event.
     pub sequence: u64,
     /// The move as it was given; absent before the first.
-    #[serde(rename = "move", default, skip_serializing_if = "Option::is_none")]
-    #[schema(nullable = false)]
+    #[serde(rename = "move")]
     pub step: Option<Move>,
     /// The state after it.
     pub state: State,
     /// The cycle that it closed; the outermost if several.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(nullable = false)]
     pub cycle: Option<Cycle>,
     /// What was measured there, if it is an observation.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(nullable = false)]
     pub observation: Option<ObservedForce>,
     /// When it was applied, or the contact created (ISO 8601, UTC).
     pub at: Timestamp,

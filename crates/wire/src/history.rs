@@ -2,6 +2,7 @@
 
 use jiff::Timestamp;
 use serde::{Deserialize, Serialize};
+use serde_with::apply;
 use utoipa::ToSchema;
 
 use super::closed_cycle::Cycle;
@@ -10,6 +11,7 @@ use super::path::Move;
 use super::reply::State;
 
 /// A move that has been applied.
+#[apply(Option => #[serde(default, skip_serializing_if = "Option::is_none")] #[schema(nullable = false)])]
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct HistoryItem {
     /// Its number, counted from 1.
@@ -20,16 +22,10 @@ pub struct HistoryItem {
     /// The state after it.
     pub state: State,
     /// The cycle that it closed; the outermost if several.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(nullable = false)]
     pub cycle: Option<Cycle>,
     /// What was measured there, if it is an observation.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(nullable = false)]
     pub observation: Option<ObservedForce>,
     /// The name of the key that made it. Left out of a move that was made without a key, and where no keys are in use.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(nullable = false)]
     pub by: Option<String>,
     /// When it was applied (ISO 8601, UTC).
     pub at: Timestamp,

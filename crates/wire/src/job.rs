@@ -6,6 +6,7 @@ use serde_with::apply;
 use utoipa::ToSchema;
 use uuid::Uuid;
 
+use super::choice::words;
 use super::event::EndReason;
 
 /// A sweep that the server computes after its request has been answered.
@@ -41,31 +42,16 @@ pub struct JobList {
     pub items: Vec<JobReply>,
 }
 
+words! {
 /// The state of a job.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
-#[serde(rename_all = "snake_case")]
 pub enum JobState {
     /// It is queued, or being computed.
-    Running,
+    Running = "running",
     /// Its result is available.
-    Done,
+    Done = "done",
     /// It ended with an error.
-    Failed,
+    Failed = "failed",
 }
-
-impl JobState {
-    /// All states.
-    pub const ALL: [JobState; 3] = [JobState::Running, JobState::Done, JobState::Failed];
-
-    /// Its name in documents and queries.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            JobState::Running => "running",
-            JobState::Done => "done",
-            JobState::Failed => "failed",
-        }
-    }
 }
 
 /// The progress of a job.

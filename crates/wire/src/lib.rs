@@ -2,7 +2,7 @@
 //!
 //! A request is checked in two steps. [`parse()`] turns bytes into the typed document: it refuses what is not JSON,
 //! names an unknown member or has a wrong type. [`Document::check`] then checks every number against its limit,
-//! declared beside the document by `limits!`, and collects all faults at once. Both name the place by a JSON pointer.
+//! declared beside the member by `requests!`, and collects all faults at once. Both name the place by a JSON pointer.
 //! What has passed is trusted from there on.
 //!
 //! Choices are objects with one key, or carry a `type`; there is no untagged union, so that an error can always say
@@ -15,6 +15,7 @@
 
 pub mod accuracy;
 pub mod check;
+mod choice;
 #[cfg(feature = "client")]
 pub mod client;
 pub mod closed_cycle;
@@ -41,9 +42,9 @@ pub mod profile;
 pub mod profile_fit;
 pub mod protocol;
 pub mod reply;
+mod request;
 pub mod session;
 pub mod simulate;
-mod single_key;
 pub mod stress;
 pub mod subsurface;
 pub mod sweep;

@@ -1,12 +1,11 @@
-//! Limits of the members of documents. Each is declared once, beside its document, by `limits!`: from that declaration
-//! come the check of the member and the keywords of its schema in the OpenAPI document.
+//! Limits of the members of documents. Each is declared once, beside its member, by `requests!` or `choices!`: from
+//! that declaration come the check of the member and the keywords of its schema in the OpenAPI document.
 //!
 //! The constants here are those that more than one document, or the service, needs.
 
 use std::ops::RangeInclusive;
 
 use serde_json::{Value, json};
-use stickslip_mechanics::DEFAULT_TOLERANCE;
 use stickslip_mechanics::range::{self, Range};
 
 use super::check::{Faults, JsonPath};
@@ -67,15 +66,15 @@ pub const SUM_PARTS: RangeInclusive<usize> = count(&range::PARTS);
 /// Points of a tabulated profile.
 pub const TABLE_POINTS: RangeInclusive<usize> = count(&range::TABLE_POINTS);
 /// Gaps of a set of asperities.
-pub const ASPERITY_GAPS: Numbers = Numbers(count(&range::ASPERITIES), range::GAP);
+pub const ASPERITY_GAPS: Array<Range> = Array(count(&range::ASPERITIES), range::GAP);
 /// Their radii, one for each.
-pub const ASPERITY_RADII: Numbers = Numbers(count(&range::ASPERITIES), range::RADIUS);
+pub const ASPERITY_RADII: Array<Range> = Array(count(&range::ASPERITIES), range::RADIUS);
 /// Indentations of a load curve.
-pub const CURVE_INDENTATIONS: Numbers = Numbers(count(&range::CURVE_POINTS), range::PRELOAD_INDENTATION);
+pub const CURVE_INDENTATIONS: Array<Range> = Array(count(&range::CURVE_POINTS), range::PRELOAD_INDENTATION);
 /// Its forces.
-pub const CURVE_FORCES: Numbers = Numbers(count(&range::CURVE_POINTS), range::NORMAL_FORCE);
+pub const CURVE_FORCES: Array<Range> = Array(count(&range::CURVE_POINTS), range::NORMAL_FORCE);
 /// The principal radii of curvature of an ellipsoid.
-pub const ELLIPSOID_RADII: Numbers = Numbers(2..=2, range::RADIUS);
+pub const ELLIPSOID_RADII: Array<Range> = Array(2..=2, range::RADIUS);
 /// Points without an answer that the reply to a sweep lists; all of them are counted.
 pub const SWEEP_FAILURES: usize = 100;
 
@@ -104,6 +103,9 @@ pub trait Limited {
     /// The names of the members that have a limit, with the keywords of each.
     fn limits() -> Vec<(&'static str, Value)>;
 
+    /// Notes which of its own members are out of their limits.
+    fn check_members(&self, at: JsonPath<'_>, faults: &mut Faults);
+
     /// The same with the name of the schema.
     #[must_use]
     fn limits_of_schema() -> Vec<(&'static str, &'static str, Value)> {
@@ -114,14 +116,11 @@ pub trait Limited {
 /// The number of elements of an array, whose elements have checks of their own.
 pub struct Items(pub RangeInclusive<usize>);
 
-/// The number of elements of an array of numbers, and the range of each.
-pub struct Numbers(pub RangeInclusive<usize>, pub Range);
+/// The number of elements of an array, and the limit of each.
+pub struct Array<L>(pub RangeInclusive<usize>, pub L);
 
 /// Three numbers, each within the range.
 pub struct Triple(pub Range);
-
-/// The number of elements of an array of such triples.
-pub struct Triples(pub RangeInclusive<usize>, pub Range);
 
 /// A whole number whose range the mechanics gives.
 pub struct Whole(pub Range);
@@ -130,19 +129,13 @@ pub struct Whole(pub Range);
 pub struct Characters(pub usize);
 
 /// [`TOLERANCE`], with the default.
-pub struct Tolerance;
-
-/// [`TOLERANCE`], with another default.
-pub struct ToleranceOr(pub f64);
-
-/// The number of elements of an array of whole numbers, and the limits of each.
-pub struct Counts(pub RangeInclusive<usize>, pub RangeInclusive<usize>);
+pub struct Tolerance(pub f64);
 
 impl Tolerance {
     /// The member `tolerance` of a request, or else the default.
-    pub(super) fn of(tolerance: Option<f64>, faults: &mut Faults) -> f64 {
-        Tolerance.check(&tolerance, JsonPath::Root.member("tolerance"), faults);
-        tolerance.unwrap_or(DEFAULT_TOLERANCE)
+    pub(super) fn of(&self, tolerance: Option<f64>, faults: &mut Faults) -> f64 {
+        self.check(&tolerance, JsonPath::Root.member("tolerance"), faults);
+        tolerance.unwrap_or(self.0)
     }
 }
 
@@ -205,43 +198,29 @@ impl<T> Limit<Vec<T>> for Items {
     }
 }
 
-impl Keywords for Numbers {
+impl<L: Keywords> Keywords for Array<L> {
     fn keywords(&self) -> Value {
         json!({"minItems": self.0.start(), "maxItems": self.0.end(), "items": self.1.keywords()})
     }
 }
 
-impl Limit<Vec<f64>> for Numbers {
-    fn check(&self, value: &Vec<f64>, at: JsonPath<'_>, faults: &mut Faults) {
+impl<T, L: Limit<T>> Limit<Vec<T>> for Array<L> {
+    fn check(&self, value: &Vec<T>, at: JsonPath<'_>, faults: &mut Faults) {
         if faults.length(at, value.len(), &self.0) {
-            value.iter().enumerate().for_each(|(index, value)| faults.number(at.index(index), *value, &self.1));
+            value.iter().enumerate().for_each(|(index, value)| self.1.check(value, at.index(index), faults));
         }
     }
 }
 
 impl Keywords for Triple {
     fn keywords(&self) -> Value {
-        json!({"minItems": 3, "maxItems": 3, "items": self.0.keywords()})
+        Array(3..=3, self.0).keywords()
     }
 }
 
 impl Limit<[f64; 3]> for Triple {
     fn check(&self, value: &[f64; 3], at: JsonPath<'_>, faults: &mut Faults) {
         value.iter().enumerate().for_each(|(index, value)| faults.number(at.index(index), *value, &self.0));
-    }
-}
-
-impl Keywords for Triples {
-    fn keywords(&self) -> Value {
-        json!({"minItems": self.0.start(), "maxItems": self.0.end(), "items": Triple(self.1).keywords()})
-    }
-}
-
-impl Limit<Vec<[f64; 3]>> for Triples {
-    fn check(&self, value: &Vec<[f64; 3]>, at: JsonPath<'_>, faults: &mut Faults) {
-        if faults.length(at, value.len(), &self.0) {
-            value.iter().enumerate().for_each(|(index, value)| Triple(self.1).check(value, at.index(index), faults));
-        }
     }
 }
 
@@ -264,35 +243,7 @@ impl Limit<String> for Characters {
 
 impl Keywords for Tolerance {
     fn keywords(&self) -> Value {
-        json!({"minimum": TOLERANCE.start(), "maximum": TOLERANCE.end(), "default": DEFAULT_TOLERANCE})
-    }
-}
-
-impl Keywords for ToleranceOr {
-    fn keywords(&self) -> Value {
-        let mut keywords = Tolerance.keywords();
-        keywords["default"] = json!(self.0);
-        keywords
-    }
-}
-
-impl Limit<f64> for ToleranceOr {
-    fn check(&self, value: &f64, at: JsonPath<'_>, faults: &mut Faults) {
-        Tolerance.check(value, at, faults);
-    }
-}
-
-impl Keywords for Counts {
-    fn keywords(&self) -> Value {
-        json!({"minItems": self.0.start(), "maxItems": self.0.end(), "items": self.1.keywords()})
-    }
-}
-
-impl Limit<Vec<usize>> for Counts {
-    fn check(&self, value: &Vec<usize>, at: JsonPath<'_>, faults: &mut Faults) {
-        if faults.length(at, value.len(), &self.0) {
-            value.iter().enumerate().for_each(|(index, value)| faults.count(at.index(index), *value, &self.1));
-        }
+        json!({"minimum": TOLERANCE.start(), "maximum": TOLERANCE.end(), "default": self.0})
     }
 }
 
@@ -305,60 +256,17 @@ impl Limit<f64> for Tolerance {
     }
 }
 
-/// Declares the limits of the members of a document, `limits!(Document { member: limit, .. } and Shared)`, or of a
-/// choice with one key, `limits!(enum Choice { Variant "key": limit, .. })`. `check_members` then checks them.
-/// `Shared` is a document whose limited members this one has too, and which checks them itself.
-macro_rules! limits {
-    ($document:ident and $shared:ty) => {
-        impl $crate::limits::Limited for $document {
-            const SCHEMA: &'static str = stringify!($document);
+/// The limits of a document within a document: those of its members.
+pub struct OfItsMembers;
 
-            fn limits() -> Vec<(&'static str, serde_json::Value)> {
-                <$shared as $crate::limits::Limited>::limits()
-            }
-        }
-    };
-    ($document:ident { $($member:ident: $limit:expr),* $(,)? } $(and $shared:ty)?) => {
-        impl $crate::limits::Limited for $document {
-            const SCHEMA: &'static str = stringify!($document);
-
-            fn limits() -> Vec<(&'static str, serde_json::Value)> {
-                #[allow(unused_mut)]
-                let mut limits = vec![$((stringify!($member), $crate::limits::Keywords::keywords(&$limit))),*];
-                $(limits.extend(<$shared as $crate::limits::Limited>::limits());)?
-                limits
-            }
-        }
-
-        impl $document {
-            /// Notes which of its own members are out of their limits.
-            #[allow(dead_code, reason = "a document that is taken apart on the way checks its members one by one")]
-            pub(super) fn check_members(&self, at: $crate::check::JsonPath<'_>, faults: &mut $crate::check::Faults) {
-                $($crate::limits::Limit::check(&$limit, &self.$member, at.member(stringify!($member)), faults);)*
-            }
-        }
-    };
-    (enum $choice:ident { $($variant:ident $key:literal: $limit:expr),* $(,)? }) => {
-        impl $crate::limits::Limited for $choice {
-            const SCHEMA: &'static str = stringify!($choice);
-
-            fn limits() -> Vec<(&'static str, serde_json::Value)> {
-                vec![$(($key, $crate::limits::Keywords::keywords(&$limit))),*]
-            }
-        }
-
-        impl $choice {
-            /// Notes whether the value of the key is out of its limits.
-            fn check_members(&self, at: $crate::check::JsonPath<'_>, faults: &mut $crate::check::Faults) {
-                #[allow(unreachable_patterns)]
-                match self {
-                    $($choice::$variant(value) => {
-                        $crate::limits::Limit::check(&$limit, value, at.member($key), faults);
-                    })*
-                    _ => {}
-                }
-            }
-        }
-    };
+impl Keywords for OfItsMembers {
+    fn keywords(&self) -> Value {
+        json!({})
+    }
 }
-pub(crate) use limits;
+
+impl<T: Limited> Limit<T> for OfItsMembers {
+    fn check(&self, value: &T, at: JsonPath<'_>, faults: &mut Faults) {
+        value.check_members(at, faults);
+    }
+}

@@ -2,7 +2,7 @@
 //! in the order of their declaration.
 //!
 //! It delegates to another deserializer, and wraps the deserializers of nested values. What is inside an enum is not
-//! wrapped: the enums that serde reads have no content, and choices with content are objects (`single_key!`).
+//! wrapped: the enums that serde reads have no content, and choices with content are objects (`choices!`).
 
 use serde::Deserializer;
 use serde::de::{DeserializeSeed, EnumAccess, MapAccess, SeqAccess, Visitor};

@@ -8,25 +8,25 @@ use uuid::Uuid;
 
 use stickslip_mechanics::DEFAULT_TOLERANCE;
 
-use super::check::{Faults, JsonPath, Rejection};
+use super::check::{Faults, JsonPath};
 use super::document::Document;
-use super::limits::{Items, PATH_MOVES, limits};
+use super::limits::{Items, Limited as _, PATH_MOVES};
 use super::path::{Observation, Plan};
 use super::prepare::Prepare;
+use super::request::requests;
 use super::session::Advance;
 use super::simulate::Steps;
 
+requests! {
 /// Measurements on a bench, in their order: the contact follows all of them, or none.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-#[serde(deny_unknown_fields)]
 #[schema(example = json!({
     "observations": [{"displacement": 1e-7, "force": 1.21}, {"displacement": 2e-7, "force": 2.04}]
 }))]
 pub struct ObservationsRequest {
     /// The measurements.
-    pub observations: Vec<Observation>,
+    pub observations: Vec<Observation> = Items(PATH_MOVES),
 }
-limits!(ObservationsRequest { observations: Items(PATH_MOVES) });
+}
 
 /// The result of observations.
 #[apply(Option => #[serde(skip_serializing_if = "Option::is_none")] #[schema(nullable = false)])]
@@ -108,8 +108,7 @@ impl ObservedForce {
 impl Document for ObservationsRequest {
     type Checked = Advance;
 
-    fn check_with(self, _: &dyn Prepare) -> Result<Advance, Rejection> {
-        let mut faults = Faults::default();
+    fn checked(self, _: &dyn Prepare, faults: &mut Faults) -> Option<Self::Checked> {
         let plan = faults.part(|faults| {
             self.check_members(JsonPath::Root, faults);
             let at = JsonPath::Root.member("observations");
@@ -127,12 +126,6 @@ impl Document for ObservationsRequest {
             }
         });
         let plan = plan.map(|()| Plan::Observations(self.observations));
-        faults.done(plan.map(|plan| Advance {
-            plan,
-            stress: None,
-            steps: Steps::All,
-            tolerance: DEFAULT_TOLERANCE,
-            relax: None,
-        }))
+        plan.map(|plan| Advance { plan, stress: None, steps: Steps::All, tolerance: DEFAULT_TOLERANCE, relax: None })
     }
 }

@@ -15,8 +15,9 @@ use stickslip_mechanics::{
 };
 
 use super::check::{Faults, JsonPath};
-use super::limits::{Items, Keywords as _, Limited, Numbers, PATH_MOVES, limits};
-use super::single_key::{not_null, single_key};
+use super::choice::choices;
+use super::limits::{Array, Items, Keywords as _, Limit, Limited, PATH_MOVES};
+use super::request::{not_null, requests};
 
 pub(crate) use cycles::PHASE;
 pub use cycles::{Cycles, CyclicPath, FirstTurn, NormalOscillation};
@@ -46,64 +47,58 @@ pub struct Move {
     pub relative: bool,
 }
 
+choices! {
 /// A path, one key: a list of moves, or a short form of one.
-#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
-#[serde(rename_all = "snake_case")]
 #[schema(example = json!({"displacement": [1e-7, -1e-7, 0.0]}))]
 pub enum Path {
     /// Moves, one after the other.
-    Moves(Vec<Move>),
+    "moves" => Moves(Vec<Move>) = Items(PATH_MOVES),
     /// Tangential displacements of the indenter, m, one move each.
-    Displacement(Vec<f64>),
+    "displacement" => Displacement(Vec<f64>) = Array(PATH_MOVES, range::DISPLACEMENT),
     /// Tangential forces, N, one move each.
-    Force(Vec<f64>),
+    "force" => Force(Vec<f64>) = Array(PATH_MOVES, range::FORCE),
     /// Back and forth with an amplitude that falls linearly to zero (eq. 20 of the paper).
-    FallingAmplitude(FallingAmplitude),
+    "falling_amplitude" => FallingAmplitude(FallingAmplitude),
     /// Back and forth from gross slip to rest, with the amplitudes that leave equal peaks of shear stress on the
     /// profile of the contact.
-    EqualPeaks(EqualPeaks),
+    "equal_peaks" => EqualPeaks(EqualPeaks),
     /// Equal cycles about a mean, under a constant load or one that oscillates too.
-    Cycles(CyclicPath),
+    "cycles" => Cycles(CyclicPath),
 }
-single_key!(Path {
-    "moves" => Moves, "displacement" => Displacement, "force" => Force, "falling_amplitude" => FallingAmplitude,
-    "equal_peaks" => EqualPeaks, "cycles" => Cycles
-});
-limits!(enum Path {
-    Moves "moves": Items(PATH_MOVES),
-    Displacement "displacement": Numbers(PATH_MOVES, range::DISPLACEMENT),
-    Force "force": Numbers(PATH_MOVES, range::FORCE),
-});
+}
 
+requests! {
 /// A tangential oscillation that dies away by the law of equal peaks; it ends at displacement zero.
-#[skip_serializing_none]
-#[apply(Option => #[serde(default, deserialize_with = "not_null")] #[schema(nullable = false)])]
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-#[serde(deny_unknown_fields)]
 #[schema(example = json!({"reversals": 20}))]
 pub struct EqualPeaks {
     /// Number of reversals N_R; the path has one move more.
-    pub reversals: usize,
+    pub reversals: usize = REVERSALS,
     /// Radius from which on the peaks are equal, m, up to the contact radius. The law needs one where the slope of the
     /// profile jumps (the tip of a cone, the rim of a flat), from that radius on; left out, it is there a tenth of the
     /// way from that radius to the edge, else zero.
-    pub cutoff_radius: Option<f64>,
+    pub cutoff_radius: Option<f64> = range::CONTACT_RADIUS,
 }
-limits!(EqualPeaks { reversals: REVERSALS, cutoff_radius: range::CONTACT_RADIUS });
 
 /// A tangential oscillation that dies away; it ends at displacement zero.
-#[skip_serializing_none]
-#[apply(Option => #[serde(default, deserialize_with = "not_null")] #[schema(nullable = false)])]
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-#[serde(deny_unknown_fields)]
 #[schema(example = json!({"reversals": 20}))]
 pub struct FallingAmplitude {
     /// Number of reversals N_R; the path has one move more.
-    pub reversals: usize,
+    pub reversals: usize = REVERSALS,
     /// Displacement of the first reversal, m; left out, the displacement at which the contact just slips as a whole.
-    pub amplitude: Option<f64>,
+    pub amplitude: Option<f64> = range::DISPLACEMENT,
 }
-limits!(FallingAmplitude { reversals: REVERSALS, amplitude: range::DISPLACEMENT });
+
+/// A displacement and the force that was measured there.
+#[schema(example = json!({"displacement": 1e-7, "force": 1.21, "at": "2026-03-01T12:00:00.25Z"}))]
+pub struct Observation: Copy {
+    /// Tangential displacement of the indenter, m, to which the contact is moved.
+    pub displacement: f64 = range::DISPLACEMENT,
+    /// Measured tangential force, N.
+    pub force: f64 = range::FORCE,
+    /// When it was measured (RFC 3339, from 1678 to 2261); not before the measurement that precedes it.
+    pub at: Option<Timestamp>,
+}
+}
 
 impl Limited for Move {
     const SCHEMA: &'static str = "Move";
@@ -113,23 +108,11 @@ impl Limited for Move {
         let widest = Move { relative: true, ..Move::default() };
         widest.targets().map(|(name, _, range)| (name, range.keywords())).into()
     }
-}
 
-/// A displacement and the force that was measured there.
-#[skip_serializing_none]
-#[apply(Option => #[serde(default, deserialize_with = "not_null")] #[schema(nullable = false)])]
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-#[serde(deny_unknown_fields)]
-#[schema(example = json!({"displacement": 1e-7, "force": 1.21, "at": "2026-03-01T12:00:00.25Z"}))]
-pub struct Observation {
-    /// Tangential displacement of the indenter, m, to which the contact is moved.
-    pub displacement: f64,
-    /// Measured tangential force, N.
-    pub force: f64,
-    /// When it was measured (RFC 3339, from 1678 to 2261); not before the measurement that precedes it.
-    pub at: Option<Timestamp>,
+    fn check_members(&self, at: JsonPath<'_>, faults: &mut Faults) {
+        self.targets().iter().for_each(|(name, value, range)| Limit::check(*range, value, at.member(name), faults));
+    }
 }
-limits!(Observation { displacement: range::DISPLACEMENT, force: range::FORCE });
 
 /// A checked path. Its moves may depend on the contact.
 #[derive(Clone, Debug)]
@@ -167,11 +150,7 @@ impl Move {
 
     /// Notes the faults of the move at `at`.
     pub fn check(&self, at: JsonPath<'_>, faults: &mut Faults) {
-        for (name, value, range) in self.targets() {
-            if let Some(value) = value {
-                faults.number(at.member(name), value, range);
-            }
-        }
+        self.check_members(at, faults);
         if self.displacement.is_some() && self.force.is_some() {
             faults.add(at.member("force"), "conflicts with `displacement`: at most one tangential target is allowed");
         }

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
+use super::choice::words;
 use stickslip_mechanics as mechanics;
 
 /// What follows from the definition of a contact at its preload.
@@ -56,32 +57,19 @@ pub struct State {
     pub memory_depth: usize,
 }
 
+words! {
 /// How much of the contact slipped in the last move.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum Regime {
+pub enum Regime: Default {
     /// Nothing slipped.
     #[default]
-    Stick,
+    Stick = "stick",
     /// An outer ring slipped.
-    PartialSlip,
+    PartialSlip = "partial_slip",
     /// The whole contact slipped.
-    GrossSlip,
+    GrossSlip = "gross_slip",
     /// The bodies are apart.
-    Separated,
+    Separated = "separated",
 }
-
-impl Regime {
-    /// Its name in JSON.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Regime::Stick => "stick",
-            Regime::PartialSlip => "partial_slip",
-            Regime::GrossSlip => "gross_slip",
-            Regime::Separated => "separated",
-        }
-    }
 }
 
 /// The extrema of the shear stress of a contact.

@@ -4,23 +4,23 @@ use std::ops::RangeInclusive;
 
 use jiff::Timestamp;
 use serde::{Deserialize, Serialize};
-use serde_with::{apply, skip_serializing_none};
+use serde_with::apply;
 use utoipa::ToSchema;
 use uuid::Uuid;
 
 use stickslip_mechanics::DEFAULT_TOLERANCE;
 
-use super::check::{Faults, JsonPath, Rejection};
+use super::check::{Faults, JsonPath};
 use super::definition::{ContactDefinition, DefinedProfile, Material, Preload, SharedSetup};
 use super::document::Document;
-use super::limits::{Characters, Tolerance, limits};
+use super::limits::{Characters, Limited as _, Tolerance};
 use super::path::{Move, Path, Plan};
 use super::prepare::Prepare;
 use super::profile::Profile;
 use super::protocol::Relaxation;
 use super::reply::{Accuracy, ContactSummary, Protocol, Residual, State, Warning};
+use super::request::requests;
 use super::simulate::Steps;
-use super::single_key::not_null;
 use super::stress::{Sampling, Stress, StressRequest};
 
 /// The text by which a client identifies a contact.
@@ -28,11 +28,8 @@ pub const LABEL: Characters = Characters(200);
 /// The number of a move.
 const SEQUENCE: RangeInclusive<u64> = 0..=i64::MAX as u64;
 
+requests! {
 /// A contact definition, with an optional label.
-#[skip_serializing_none]
-#[apply(Option => #[serde(default, deserialize_with = "not_null")] #[schema(nullable = false)])]
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-#[serde(deny_unknown_fields)]
 #[schema(example = json!({
     "label": "steel ball",
     "profile": {"type": "sphere", "radius": 0.01},
@@ -40,9 +37,9 @@ const SEQUENCE: RangeInclusive<u64> = 0..=i64::MAX as u64;
     "friction": 0.3,
     "preload": {"normal_force": 10.0}
 }))]
-pub struct CreateRequest {
+pub struct CreateRequest and ContactDefinition {
     /// A label of your own.
-    pub label: Option<String>,
+    pub label: Option<String> = LABEL,
     /// The shape of the indenter.
     pub profile: Profile,
     /// The elastic constants.
@@ -52,15 +49,10 @@ pub struct CreateRequest {
     /// The normal load that the contact starts with.
     pub preload: Preload,
 }
-limits!(CreateRequest { label: LABEL } and ContactDefinition);
 
 /// A move, with an optional request for the stresses after it.
-#[skip_serializing_none]
-#[apply(Option => #[serde(default, deserialize_with = "not_null")] #[schema(nullable = false)])]
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
-#[serde(deny_unknown_fields)]
 #[schema(example = json!({"displacement": 1e-7}))]
-pub struct MoveRequest {
+pub struct MoveRequest: Default and Move {
     /// Tangential displacement of the indenter, m.
     pub displacement: Option<f64>,
     /// Tangential force, N. Its magnitude must stay below the friction limit μ F_N.
@@ -75,15 +67,10 @@ pub struct MoveRequest {
     /// Ask for stresses after the move.
     pub stress: Option<StressRequest>,
     /// Tolerance for what is not exact, relative to μ F_N, a pure number.
-    pub tolerance: Option<f64>,
+    pub tolerance: Option<f64> = Tolerance(DEFAULT_TOLERANCE),
 }
-limits!(MoveRequest { tolerance: Tolerance } and Move);
 
 /// A path for a contact, applied as a whole or not at all.
-#[skip_serializing_none]
-#[apply(Option => #[serde(default, deserialize_with = "not_null")] #[schema(nullable = false)])]
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-#[serde(deny_unknown_fields)]
 #[schema(example = json!({"path": {"displacement": [1e-7, -1e-7, 0.0]}}))]
 pub struct PathRequest {
     /// The path.
@@ -94,36 +81,30 @@ pub struct PathRequest {
     #[serde(default)]
     pub steps: Steps,
     /// Tolerance for what is not exact, relative to μ F_N, a pure number.
-    pub tolerance: Option<f64>,
+    pub tolerance: Option<f64> = Tolerance(DEFAULT_TOLERANCE),
 }
-limits!(PathRequest { tolerance: Tolerance });
 
 /// Options of a fork; the body may be empty.
-#[skip_serializing_none]
-#[apply(Option => #[serde(default, deserialize_with = "not_null")] #[schema(nullable = false)])]
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
-#[serde(deny_unknown_fields)]
 #[schema(example = json!({"label": "what if"}))]
-pub struct ForkRequest {
+pub struct ForkRequest: Default {
     /// A label for the new contact; left out, that of the original.
-    pub label: Option<String>,
+    pub label: Option<String> = LABEL,
     /// After how many moves of the original the new contact begins; left out, after all of them. It has made these
     /// moves itself, and none of the later ones.
-    pub sequence: Option<u64>,
+    pub sequence: Option<u64> = SEQUENCE,
 }
-limits!(ForkRequest { label: LABEL, sequence: SEQUENCE });
 
 /// What of a contact can be changed without a move.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-#[serde(deny_unknown_fields)]
 #[schema(example = json!({"label": "steel ball, third run"}))]
 pub struct RenameRequest {
     /// The new label, or `null` for none.
-    #[serde(deserialize_with = "Option::deserialize")]
+    #[serialize_always]
+    #[serde_with(skip_apply)]
+    #[serde(deserialize_with = "serde::Deserialize::deserialize")]
     #[schema(required = true)]
-    pub label: Option<String>,
+    pub label: Option<String> = LABEL,
 }
-limits!(RenameRequest { label: LABEL });
+}
 
 /// A contact that has just been made.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
@@ -287,13 +268,12 @@ impl Document for CreateRequest {
         Some(DefinedProfile { pointer: "/profile", profile, material })
     }
 
-    fn check_with(self, profiles: &dyn Prepare) -> Result<Creation, Rejection> {
-        let mut faults = Faults::default();
-        self.check_members(JsonPath::Root, &mut faults);
+    fn checked(self, profiles: &dyn Prepare, faults: &mut Faults) -> Option<Self::Checked> {
+        self.check_members(JsonPath::Root, faults);
         let CreateRequest { label, profile, material, friction, preload } = self;
         let definition = ContactDefinition { profile, material, friction, preload };
-        let setup = definition.check(JsonPath::Root, profiles, &mut faults);
-        faults.done(setup.map(|setup| Creation { label, definition, setup }))
+        let setup = definition.check(JsonPath::Root, profiles, faults);
+        setup.map(|setup| Creation { label, definition, setup })
     }
 }
 
@@ -314,13 +294,12 @@ impl MoveRequest {
 impl Document for MoveRequest {
     type Checked = Advance;
 
-    fn check_with(self, _: &dyn Prepare) -> Result<Advance, Rejection> {
-        let mut faults = Faults::default();
+    fn checked(self, _: &dyn Prepare, faults: &mut Faults) -> Option<Self::Checked> {
         let step = self.step();
-        step.check(JsonPath::Root, &mut faults);
-        let stress = self.stress.and_then(|stress| stress.check(JsonPath::Root.member("stress"), &mut faults));
-        let tolerance = Tolerance::of(self.tolerance, &mut faults);
-        faults.done(Some(Advance { plan: Plan::Single(step), stress, steps: Steps::Last, tolerance, relax: None }))
+        step.check(JsonPath::Root, faults);
+        let stress = self.stress.and_then(|stress| stress.check(JsonPath::Root.member("stress"), faults));
+        let tolerance = Tolerance(DEFAULT_TOLERANCE).of(self.tolerance, faults);
+        Some(Advance { plan: Plan::Single(step), stress, steps: Steps::Last, tolerance, relax: None })
     }
 }
 
@@ -334,31 +313,28 @@ impl From<Move> for MoveRequest {
 impl Document for PathRequest {
     type Checked = Advance;
 
-    fn check_with(self, _: &dyn Prepare) -> Result<Advance, Rejection> {
-        let mut faults = Faults::default();
-        let plan = self.path.check(JsonPath::Root.member("path"), &mut faults);
-        let stress = self.stress.and_then(|stress| stress.check(JsonPath::Root.member("stress"), &mut faults));
-        let tolerance = Tolerance::of(self.tolerance, &mut faults);
-        faults.done(plan.map(|plan| Advance { plan, stress, steps: self.steps, tolerance, relax: None }))
+    fn checked(self, _: &dyn Prepare, faults: &mut Faults) -> Option<Self::Checked> {
+        let plan = self.path.check(JsonPath::Root.member("path"), faults);
+        let stress = self.stress.and_then(|stress| stress.check(JsonPath::Root.member("stress"), faults));
+        let tolerance = Tolerance(DEFAULT_TOLERANCE).of(self.tolerance, faults);
+        plan.map(|plan| Advance { plan, stress, steps: self.steps, tolerance, relax: None })
     }
 }
 
 impl Document for RenameRequest {
     type Checked = RenameRequest;
 
-    fn check_with(self, _: &dyn Prepare) -> Result<RenameRequest, Rejection> {
-        let mut faults = Faults::default();
-        self.check_members(JsonPath::Root, &mut faults);
-        faults.done(Some(self))
+    fn checked(self, _: &dyn Prepare, faults: &mut Faults) -> Option<Self::Checked> {
+        self.check_members(JsonPath::Root, faults);
+        Some(self)
     }
 }
 
 impl Document for ForkRequest {
     type Checked = ForkRequest;
 
-    fn check_with(self, _: &dyn Prepare) -> Result<ForkRequest, Rejection> {
-        let mut faults = Faults::default();
-        self.check_members(JsonPath::Root, &mut faults);
-        faults.done(Some(self))
+    fn checked(self, _: &dyn Prepare, faults: &mut Faults) -> Option<Self::Checked> {
+        self.check_members(JsonPath::Root, faults);
+        Some(self)
     }
 }

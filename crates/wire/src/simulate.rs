@@ -1,27 +1,25 @@
 //! The body of `POST /simulate` and its reply.
 
 use serde::{Deserialize, Serialize};
-use serde_with::{apply, skip_serializing_none};
+use serde_with::apply;
 use utoipa::ToSchema;
 
-use stickslip_mechanics::range;
+use stickslip_mechanics::{DEFAULT_TOLERANCE, range};
 
-use super::check::{Faults, JsonPath, Rejection};
+use super::check::{Faults, JsonPath};
+use super::choice::choices;
 use super::definition::{ContactDefinition, DefinedProfile, SharedSetup};
 use super::document::Document;
-use super::limits::{SPRING_SEARCH, SPRING_STEPS, Tolerance, Whole, limits};
+use super::limits::{Limited as _, SPRING_SEARCH, SPRING_STEPS, Tolerance, Whole};
 use super::path::{Path, Plan};
 use super::prepare::Prepare;
 use super::reply::{Accuracy, ContactSummary, Protocol, Residual, State, Warning};
-use super::single_key::{not_null, single_key};
+use super::request::requests;
 use super::stress::{Sampling, Stress, StressRequest};
 use super::subsurface::{Subsurface, SubsurfaceRequest, SubsurfaceTask};
 
+requests! {
 /// A contact and the path that it follows; the server keeps nothing of it. Only what is asked for is computed.
-#[skip_serializing_none]
-#[apply(Option => #[serde(default, deserialize_with = "not_null")] #[schema(nullable = false)])]
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-#[serde(deny_unknown_fields)]
 #[schema(example = json!({
     "contact": ContactDefinition::example(),
     "path": {"falling_amplitude": {"reversals": 20}},
@@ -46,9 +44,16 @@ pub struct SimulateRequest {
     /// Which solver to use; left out, the cheapest that serves the request.
     pub solver: Option<Solver>,
     /// Tolerance for what is not exact, relative to μ F_N, a pure number.
-    pub tolerance: Option<f64>,
+    pub tolerance: Option<f64> = Tolerance(DEFAULT_TOLERANCE),
 }
-limits!(SimulateRequest { tolerance: Tolerance });
+
+/// The spring foundation.
+#[schema(example = json!({"count": 1000}))]
+pub struct Springs: Copy, Eq {
+    /// Number of springs across the diameter of the contact.
+    pub count: usize = Whole(range::SPRING_COUNT),
+}
+}
 
 /// Which states of a path to return.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
@@ -61,29 +66,20 @@ pub enum Steps {
     Last,
 }
 
+choices! {
 /// A solver: the string `"exact"`, or an object with one key.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, ToSchema)]
-#[serde(rename_all = "snake_case")]
 #[schema(example = "exact")]
-pub enum Solver {
-    /// The exact solver, which stores turning points of the path.
-    Exact,
+pub enum Solver: Copy, Eq {
+    words {
+        /// The exact solver, which stores turning points of the path.
+        Exact = "exact",
+    }
     /// The spring foundation of the paper: a reference for comparison, slower and approximate. It follows a tangential
     /// force only at constant indentation, and a normal force only without a tangential target (else
     /// `unsupported_move`).
-    Springs(Springs),
+    "springs" => Springs(Springs),
 }
-single_key!(Solver { "springs" => Springs } or { "exact" => Exact });
-
-/// The spring foundation.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
-#[serde(deny_unknown_fields)]
-#[schema(example = json!({"count": 1000}))]
-pub struct Springs {
-    /// Number of springs across the diameter of the contact.
-    pub count: usize,
 }
-limits!(Springs { count: Whole(range::SPRING_COUNT) });
 
 /// The result of a simulation.
 #[apply(Option => #[serde(skip_serializing_if = "Option::is_none")] #[schema(nullable = false)])]
@@ -137,13 +133,12 @@ impl Document for SimulateRequest {
         Some(self.contact.defined_profile("/contact/profile"))
     }
 
-    fn check_with(self, profiles: &dyn Prepare) -> Result<Simulation, Rejection> {
-        let mut faults = Faults::default();
-        let setup = self.contact.check(JsonPath::Root.member("contact"), profiles, &mut faults);
-        let plan = self.path.check(JsonPath::Root.member("path"), &mut faults);
-        let stress = self.stress.and_then(|stress| stress.check(JsonPath::Root.member("stress"), &mut faults));
+    fn checked(self, profiles: &dyn Prepare, faults: &mut Faults) -> Option<Self::Checked> {
+        let setup = self.contact.check(JsonPath::Root.member("contact"), profiles, faults);
+        let plan = self.path.check(JsonPath::Root.member("path"), faults);
+        let stress = self.stress.and_then(|stress| stress.check(JsonPath::Root.member("stress"), faults));
         let at = JsonPath::Root.member("subsurface");
-        let subsurface = self.subsurface.and_then(|asked| asked.at(&self.contact, at, &mut faults));
+        let subsurface = self.subsurface.and_then(|asked| asked.at(&self.contact, at, faults));
         if subsurface.is_some() && matches!(self.solver, Some(Solver::Springs(_))) {
             faults.add(at, "springs have no stress below the surface: leave this or `solver` out");
         }
@@ -151,7 +146,7 @@ impl Document for SimulateRequest {
         for (name, _) in needing.into_iter().filter(|(_, asked)| *asked) {
             faults.needs_stress_field(setup.as_ref(), JsonPath::Root.member(name));
         }
-        let tolerance = Tolerance::of(self.tolerance, &mut faults);
+        let tolerance = Tolerance(DEFAULT_TOLERANCE).of(self.tolerance, faults);
         let no_surface = setup.as_ref().is_some_and(|setup| !setup.profile.has_stress_field());
         if matches!(self.solver, Some(Solver::Springs(_))) && no_surface {
             let detail = "springs stand under a surface, which this profile has not: leave `solver` out";
@@ -162,7 +157,7 @@ impl Document for SimulateRequest {
             let moves = plan.as_ref().map_or(0, Plan::length);
             let radii = stress.as_ref().map_or(0, Sampling::length);
             let passes = moves.saturating_add(radii).saturating_add(search);
-            solver.check(JsonPath::Root.member("solver"), passes, &mut faults);
+            solver.check(JsonPath::Root.member("solver"), passes, faults);
         }
         let (definition, residual, steps, solver) = (self.contact, self.residual, self.steps, self.solver);
         let simulation = |(setup, plan)| Simulation {
@@ -176,7 +171,7 @@ impl Document for SimulateRequest {
             solver,
             tolerance,
         };
-        faults.done(setup.zip(plan).map(simulation))
+        setup.zip(plan).map(simulation)
     }
 }
 

@@ -1,59 +1,41 @@
 //! Stress requests and their answers.
 
 use serde::{Deserialize, Serialize};
-use serde_with::{apply, skip_serializing_none};
+use serde_with::apply;
 use utoipa::ToSchema;
 
 use stickslip_mechanics::range;
 
 use super::check::{Faults, JsonPath};
-use super::limits::{Numbers, STRESS_POINTS, limits};
-use super::single_key::not_null;
+use super::choice::words;
+use super::limits::{Array, Limited as _, STRESS_POINTS};
+use super::request::requests;
 
+requests! {
 /// Where stresses are asked for: exactly one of `points` and `radii`, and which `fields`.
-#[skip_serializing_none]
-#[apply(Option => #[serde(default, deserialize_with = "not_null")] #[schema(nullable = false)])]
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
-#[serde(deny_unknown_fields)]
 #[schema(example = json!({"points": 200}))]
-pub struct StressRequest {
+pub struct StressRequest: Default {
     /// Number of radii, evenly spaced from the centre to the edge of the contact, both included.
-    pub points: Option<usize>,
+    pub points: Option<usize> = STRESS_POINTS,
     /// Radii, m; outside the contact the stresses are zero.
-    pub radii: Option<Vec<f64>>,
+    pub radii: Option<Vec<f64>> = Array(1..=10_000, range::CONTACT_RADIUS),
     /// Which fields are computed; left out, `pressure` and `shear`.
     pub fields: Option<Vec<Field>>,
 }
-limits!(StressRequest { points: STRESS_POINTS, radii: Numbers(1..=10_000, range::CONTACT_RADIUS) });
-
-/// A quantity along the radius.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum Field {
-    /// Normal pressure p(r), Pa.
-    Pressure,
-    /// Shear stress τ(r), Pa; a positive displacement of the indenter gives a positive stress.
-    Shear,
-    /// Slip U − u(r) under the indenter since the preload, m; none outside the contact.
-    Slip,
-    /// Tangential displacement u(r) of the surface, m, inside the contact and outside.
-    Displacement,
 }
 
-impl Field {
-    /// All fields.
-    pub const ALL: [Field; 4] = [Field::Pressure, Field::Shear, Field::Slip, Field::Displacement];
-
-    /// Its name.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Field::Pressure => "pressure",
-            Field::Shear => "shear",
-            Field::Slip => "slip",
-            Field::Displacement => "displacement",
-        }
-    }
+words! {
+/// A quantity along the radius.
+pub enum Field {
+    /// Normal pressure p(r), Pa.
+    Pressure = "pressure",
+    /// Shear stress τ(r), Pa; a positive displacement of the indenter gives a positive stress.
+    Shear = "shear",
+    /// Slip U − u(r) under the indenter since the preload, m; none outside the contact.
+    Slip = "slip",
+    /// Tangential displacement u(r) of the surface, m, inside the contact and outside.
+    Displacement = "displacement",
+}
 }
 
 /// Stresses along the radius; an array that was not asked for is left out.

@@ -7,20 +7,19 @@ use std::ops::RangeInclusive;
 
 use serde::{Deserialize, Serialize};
 use serde_json::{Number, Value};
-use serde_with::{apply, skip_serializing_none};
 use utoipa::ToSchema;
 
 use stickslip_mechanics::range::{Quantity, Range};
 
-use super::check::{Faults, JsonPath, Rejection};
+use super::check::{Faults, JsonPath};
 use super::definition::ContactDefinition;
 use super::document::Document;
 use super::json_value::{JsonValue, Pointer};
-use super::limits::{Items, Limit, Numbers, limits};
+use super::limits::{Array, Items, Limit, Limited as _};
 use super::parse::parse_value;
 use super::prepare::Prepare;
+use super::request::requests;
 use super::simulate::SimulateRequest;
-use super::single_key::not_null;
 use column::ColumnName;
 
 pub use column::{NamedOutput, Output};
@@ -35,16 +34,15 @@ const OUTPUTS: RangeInclusive<usize> = 1..=16;
 /// A value of an axis; the field that it goes to has a range of its own.
 const AXIS_VALUE: Range = Range { quantity: Quantity::Number, unit: "", min: -1e280, max: 1e280 };
 /// Values of an axis that lists them.
-const AXIS_VALUES: Numbers = Numbers(1..=10_000, AXIS_VALUE);
+const AXIS_VALUES: Array<Range> = Array(1..=10_000, AXIS_VALUE);
 /// Points of a sweep: the product of the counts of its axes.
 const SWEEP_POINTS: usize = 2_000_000;
 /// Numbers that come out of a sweep: points times outputs.
 const SWEEP_NUMBERS: usize = 8_000_000;
 
+requests! {
 /// Many simulations that differ in up to three numbers, and which numbers of each reply are wanted. The points are all
 /// combinations of the values of the axes, the last axis running fastest.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-#[serde(deny_unknown_fields)]
 #[schema(example = json!({
     "base": {
         "contact": ContactDefinition::example(),
@@ -58,52 +56,44 @@ pub struct SweepRequest {
     #[schema(value_type = Object)]
     pub base: JsonValue,
     /// The numbers that change.
-    pub axes: Vec<Axis>,
+    pub axes: Vec<Axis> = Items(AXES),
     /// JSON pointers to numbers in the reply to `POST /simulate`, a column each, with or without a name. Where a point
     /// does not have one, such as a peak of a number that it does not reach, the column has `null`.
     #[schema(example = json!(["/residual/max"]))]
-    pub outputs: Vec<Output>,
+    pub outputs: Vec<Output> = Items(OUTPUTS),
     /// Always make a job of it, even if it is small.
     #[serde(default)]
     pub job: bool,
 }
-limits!(SweepRequest { axes: Items(AXES), outputs: Items(OUTPUTS) });
 
 /// A number of the base and the values that it takes: `pointer`, and one key out of `linear`, `logarithmic` and
 /// `values`.
-#[skip_serializing_none]
-#[apply(Option => #[serde(default, deserialize_with = "not_null")] #[schema(nullable = false)])]
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-#[serde(deny_unknown_fields)]
 pub struct Axis {
     /// JSON pointer to the number in the base, or to a member for a number that the base leaves out.
     #[schema(example = "/contact/friction")]
     pub pointer: String,
     /// The name of the column; left out, the pointer.
     #[schema(example = "friction")]
-    pub name: Option<String>,
+    pub name: Option<String> = ColumnName,
     /// Evenly spaced values.
     pub linear: Option<Span>,
     /// Values with the same ratio from one to the next; both ends positive, or both negative.
     pub logarithmic: Option<Span>,
     /// These values.
-    pub values: Option<Vec<f64>>,
+    pub values: Option<Vec<f64>> = AXIS_VALUES,
 }
-limits!(Axis { name: ColumnName, values: AXIS_VALUES });
 
 /// Values from one to another. Where the field takes whole numbers, each of them must be whole to one part in 1e9, and
 /// is rounded; else list the values.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Span {
+pub struct Span: Copy {
     /// The first value.
-    pub from: f64,
+    pub from: f64 = AXIS_VALUE,
     /// The last value.
-    pub to: f64,
+    pub to: f64 = AXIS_VALUE,
     /// How many values, both ends included.
-    pub count: usize,
+    pub count: usize = 2..=2_000_000_usize,
 }
-limits!(Span { count: 2..=2_000_000_usize, from: AXIS_VALUE, to: AXIS_VALUE });
+}
 
 /// The table of a sweep: a row a point.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
@@ -167,17 +157,14 @@ enum Values {
 impl Document for SweepRequest {
     type Checked = CheckedSweep;
 
-    fn check_with(self, _: &dyn Prepare) -> Result<CheckedSweep, Rejection> {
-        let mut faults = Faults::default();
+    fn checked(self, _: &dyn Prepare, faults: &mut Faults) -> Option<Self::Checked> {
         let at = JsonPath::Root.member("axes");
         let mut axes = Vec::new();
         if faults.length(at, self.axes.len(), &AXES) {
-            axes.extend(
-                self.axes.iter().enumerate().filter_map(|(index, axis)| axis.check(at.index(index), &mut faults)),
-            );
+            axes.extend(self.axes.iter().enumerate().filter_map(|(index, axis)| axis.check(at.index(index), faults)));
         }
-        let outputs = self.check_outputs(&mut faults);
-        self.check_names(&mut faults);
+        let outputs = self.check_outputs(faults);
+        self.check_names(faults);
         let points = axes.iter().fold(1_usize, |points, axis| points.saturating_mul(axis.count()));
         if points > SWEEP_POINTS {
             faults.add(at, format_args!("{points} points: allowed are {}", SWEEP_POINTS));
@@ -191,9 +178,9 @@ impl Document for SweepRequest {
             }
         }
         if faults.is_empty() {
-            find_kinds(&self.base.0, &mut axes, &mut faults);
+            find_kinds(&self.base.0, &mut axes, faults);
         }
-        faults.done(Some(CheckedSweep { request: self, axes, outputs, points }))
+        Some(CheckedSweep { request: self, axes, outputs, points })
     }
 }
 

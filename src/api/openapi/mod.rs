@@ -41,7 +41,7 @@ fn operations(document: &mut Value) -> impl Iterator<Item = (&str, &str, &mut Va
 
 /// The limits of the members of profiles.
 fn profile_limits() -> Vec<(&'static str, &'static str, Value)> {
-    let column = |range: Range| limits::Numbers(limits::TABLE_POINTS, range).keywords();
+    let column = |range: Range| limits::Array(limits::TABLE_POINTS, range).keywords();
     let numbers = profile::NUMBERS.iter().map(|&(schema, member, range)| (schema, member, range.keywords()));
     numbers
         .chain([

@@ -2,7 +2,7 @@
 
 use stickslip_mechanics::range::{self, Range};
 use stickslip_wire::cycle::{CycleOptions, CyclePlaces, CycleTask};
-use stickslip_wire::limits::{self, Numbers};
+use stickslip_wire::limits::{self, Array};
 use stickslip_wire::{Amplitudes, CycleDrive, CycleReply, JsonPath, WorkDensity};
 
 use super::prelude::*;
@@ -14,12 +14,12 @@ parameters! {
     pub struct CycleQuery {
         /// Amplitudes of the displacement, m, separated by commas or given one by one: of the indenter or, with
         /// `machine_stiffness`, of the machine. Give this or `force`.
-        displacement: Option<Vec<f64>> = List(Numbers(QUERY_RADII, Range { min: 0.0, ..range::DISPLACEMENT }));
+        displacement: Option<Vec<f64>> = List(Array(QUERY_RADII, Range { min: 0.0, ..range::DISPLACEMENT }));
         /// Amplitudes of the tangential force, N, likewise.
-        force: Option<Vec<f64>> = List(Numbers(QUERY_RADII, Range { min: 0.0, ..range::FORCE }));
+        force: Option<Vec<f64>> = List(Array(QUERY_RADII, Range { min: 0.0, ..range::FORCE }));
         /// Radii for the friction work per area, m, separated by commas or given one by one. Give this or `points`, or
         /// neither.
-        radii: Option<Vec<f64>> = List(Numbers(QUERY_RADII, range::CONTACT_RADIUS));
+        radii: Option<Vec<f64>> = List(Array(QUERY_RADII, range::CONTACT_RADIUS));
         /// The stiffness of a machine in series with the contact, N/m.
         machine_stiffness: Option<f64> = number(&range::MACHINE_STIFFNESS);
         /// The number of harmonics.

@@ -3,7 +3,7 @@
 use std::ops::RangeInclusive;
 
 use stickslip_mechanics::range;
-use stickslip_wire::limits::{self, Numbers};
+use stickslip_wire::limits::{self, Array};
 use stickslip_wire::{Field, JsonPath, Sampling, StressReply, StressRequest};
 
 use super::prelude::*;
@@ -22,7 +22,7 @@ parameters! {
         /// ask for a plot.
         points: Option<usize> = Number { is_checked: false, example: Some(100), ..count(&limits::STRESS_POINTS) };
         /// Radii, m, separated by commas or given one by one.
-        radii: Option<Vec<f64>> = List(Numbers(QUERY_RADII, range::CONTACT_RADIUS));
+        radii: Option<Vec<f64>> = List(Array(QUERY_RADII, range::CONTACT_RADIUS));
         /// Which fields, separated by commas, out of `pressure`, `shear`, `slip` and `displacement`. If it is left out,
         /// the first two.
         fields: Option<Vec<Field>> = Fields;

@@ -2,7 +2,7 @@
 //! contact radius.
 
 use super::POINTS;
-use super::protocols::{contact_of, sphere};
+use super::contact::{ball, small_contact};
 use crate::plot::chart::{Chart, Series};
 use stickslip_mechanics::cycle::SteadyCycle;
 use stickslip_mechanics::profile::{Cone, TruncatedSphere};
@@ -32,11 +32,11 @@ pub(super) fn charts() -> Result<[Chart; 2], Error> {
 fn curves(value: impl Fn(&SteadyCycle<'_>) -> f64) -> Result<Vec<Series>, Error> {
     let shapes = [
         ("cone", Profile::Cone(Cone::new(0.005)?)),
-        ("ball", sphere()?),
+        ("ball", ball()?),
         ("worn ball (flat to 0.8 a)", Profile::TruncatedSphere(TruncatedSphere::new(0.01, 8e-5)?)),
     ];
     let series = shapes.into_iter().map(|(name, shape)| {
-        let contact = contact_of(shape, 0.3)?;
+        let contact = small_contact(shape, 0.3)?;
         let point = |index| {
             let share = LARGEST * index as f64 / POINTS as f64;
             (share, value(&SteadyCycle::of(&contact, share * contact.gross_slip_displacement())))

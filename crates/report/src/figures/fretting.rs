@@ -1,11 +1,11 @@
 //! Figures 12 and 13: Crossland's criterion below a ball that is moved back and forth, in partial slip and in gross
 //! slip.
 
-use super::protocols::{contact_of, sphere};
+use super::contact::{ball, small_contact, to};
 use crate::plot::{Axis, ContactEdge, Peak, Section};
+use stickslip_mechanics::Error;
 use stickslip_mechanics::fatigue::{Criterion, Cycle};
 use stickslip_mechanics::subsurface::Side;
-use stickslip_mechanics::{Error, Move, Tangential};
 
 /// Amplitudes over that of gross slip.
 const AMPLITUDES: [(&str, f64); 2] = [
@@ -30,9 +30,8 @@ pub(super) fn sections() -> Result<[Section; 2], Error> {
 }
 
 fn section(title: &str, share: f64) -> Result<Section, Error> {
-    let contact = contact_of(sphere()?, FRICTION)?;
+    let contact = small_contact(ball()?, FRICTION)?;
     let amplitude = share * contact.gross_slip_displacement();
-    let to = |displacement| Move { tangential: Some(Tangential::Displacement(displacement)), ..Move::default() };
     let cycle = Cycle::new(&contact, &[to(amplitude), to(-amplitude)], &|| true)?;
     let x: Vec<f64> = (0..COLUMNS).map(|index| HALF * (2.0 * index as f64 / (COLUMNS - 1) as f64 - 1.0)).collect();
     let z: Vec<f64> = (0..ROWS).map(|index| DEPTH * index as f64 / (ROWS - 1) as f64).collect();

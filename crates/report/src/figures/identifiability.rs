@@ -1,9 +1,11 @@
 //! Figure 15: how well a measured loop determines friction, stiffness and the compliance of the machine, over its
 //! amplitude.
 
+use super::Failure;
+use super::contact::{ball_under_load, to};
 use crate::plot::chart::{Chart, Series};
 use stickslip_measured::loops::{self, Known, Noise, Parameter, Record, Start, Task};
-use stickslip_mechanics::{Contact, Elasticity, Error, Move, Preload, Profile, Setup, Sphere, Tangential};
+use stickslip_mechanics::{Contact, Error};
 
 /// Amplitudes of the contact over the displacement of gross slip.
 const AMPLITUDES: [f64; 13] = [0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.1, 1.3, 1.6, 2.0, 2.5, 3.0];
@@ -13,14 +15,8 @@ const NOISE: f64 = 0.01;
 /// Compliance of the machine over that of the contact before it slips.
 const COMPLIANCE: f64 = 0.4;
 
-pub(super) fn chart() -> Result<Chart, String> {
-    let contact = Contact::new(Setup {
-        profile: Profile::Sphere(Sphere::new(0.01).map_err(|error| error.to_string())?),
-        elasticity: Elasticity::effective(1.15e11, 8.5e10).map_err(|error| error.to_string())?,
-        friction: 0.3,
-        preload: Preload::NormalForce(10.0),
-    })
-    .map_err(|error| error.to_string())?;
+pub(super) fn chart() -> Result<Chart, Failure> {
+    let contact = ball_under_load()?;
     let compliance = COMPLIANCE / (2.0 * contact.elasticity().g_star() * contact.contact_radius());
     let sought = [
         ("friction", Parameter::Friction, false),
@@ -31,9 +27,9 @@ pub(super) fn chart() -> Result<Chart, String> {
     ];
     let mut series: Vec<Series> = sought.iter().map(|(name, ..)| Series::line(*name, Vec::new())).collect();
     for amplitude in AMPLITUDES {
-        let record = steady(&contact, amplitude, compliance).map_err(|error| error.to_string())?;
+        let record = steady(&contact, amplitude, compliance)?;
         for known in [false, true] {
-            let found = fitted(&contact, &record, compliance, known).map_err(|error| error.to_string())?;
+            let found = fitted(&contact, &record, compliance, known)?;
             for (of, (_, parameter, _)) in sought.iter().enumerate().filter(|(_, (.., is_known))| *is_known == known) {
                 let estimate = found.estimates.iter().find(|estimate| estimate.parameter == *parameter);
                 let error = estimate.and_then(|estimate| Some(estimate.standard_error? / estimate.value));
@@ -53,8 +49,7 @@ pub(super) fn chart() -> Result<Chart, String> {
 fn steady(contact: &Contact, amplitude: f64, compliance: f64) -> Result<Record, Error> {
     let (mut contact, unit) = (contact.clone(), contact.summary().gross_slip_displacement);
     let mut at = |place: f64| {
-        let target = Some(Tangential::Displacement(amplitude * unit * place));
-        contact.apply(&Move { tangential: target, ..Move::default() })?;
+        contact.apply(&to(amplitude * unit * place))?;
         Ok(contact.force())
     };
     for turn in [1.0, -1.0] {

@@ -5,6 +5,7 @@
 //! All are normalised — displacement by that of gross slip, force by mu F_N, stress by mu p_max, radius by a — so
 //! that they hold for every sphere, whatever the reference contact below is made of.
 
+mod contact;
 mod cycles;
 mod fretting;
 mod identifiability;
@@ -19,9 +20,7 @@ use std::path::Path;
 use crate::plot::chart::{Chart, Series};
 use crate::plot::{Picture as _, Section};
 use stickslip_mechanics::protocol::falling_amplitude;
-use stickslip_mechanics::{
-    Contact, Elasticity, Error, Move, Preload, Profile, Residual, Setup, Sphere, State, Tangential,
-};
+use stickslip_mechanics::{Contact, Error, Residual, State};
 
 const REVERSALS: usize = 20;
 /// Radii of a curve, beside its kinks.
@@ -35,30 +34,47 @@ const MAX_REVERSALS: usize = 40;
 /// An error of the file system; a figure that cannot be drawn is [`io::ErrorKind::Other`].
 pub fn write(dir: &Path) -> io::Result<()> {
     fs::create_dir_all(dir)?;
-    let charts = charts().map_err(io::Error::other)?;
-    let draw = |number: usize, chart: &Chart| -> io::Result<()> {
-        let name = format!("figure{number}");
-        fs::write(dir.join(format!("{name}.svg")), chart.svg().map_err(io::Error::other)?)?;
-        fs::write(dir.join(format!("{name}.csv")), csv(chart))
-    };
-    for (index, chart) in charts.iter().enumerate() {
-        draw(index + 1, chart)?;
+    let [paper, later] = without_protocols().map_err(io::Error::other)?;
+    let protocols = protocols::charts().map_err(io::Error::other)?.map(Figure::Chart);
+    for (number, figure) in (1..).zip(paper.into_iter().chain(protocols).chain(later)) {
+        fs::write(dir.join(format!("figure{number}.csv")), figure.csv())?;
+        fs::write(dir.join(format!("figure{number}.svg")), figure.svg().map_err(io::Error::other)?)?;
     }
-    let sections = fretting::sections().map_err(io::Error::other)?;
-    for (index, section) in sections.iter().enumerate() {
-        let name = format!("figure{}", charts.len() + index + 1);
-        fs::write(dir.join(format!("{name}.svg")), section.svg().map_err(io::Error::other)?)?;
-        fs::write(dir.join(format!("{name}.csv")), section_csv(section))?;
-    }
-    let next = charts.len() + sections.len() + 1;
-    draw(next, &rough::chart().map_err(io::Error::other)?)?;
-    let decades = identifiability::chart().map_err(io::Error::other)?;
-    fs::write(dir.join(format!("figure{}.csv", next + 1)), csv(&decades))?;
-    fs::write(dir.join(format!("figure{}.svg", next + 1)), decades.svg_over_decades().map_err(io::Error::other)?)
+    Ok(())
 }
 
-fn charts() -> Result<Vec<Chart>, Error> {
-    Ok(paper()?.into_iter().chain(protocols::charts()?).chain(cycles::charts()?).collect())
+/// Why there is no figure.
+type Failure = Box<dyn std::error::Error + Send + Sync>;
+
+enum Figure {
+    Chart(Chart),
+    /// Over logarithmic axes.
+    Decades(Chart),
+    Section(Section),
+}
+
+impl Figure {
+    fn svg(self) -> Result<Vec<u8>, String> {
+        match self {
+            Figure::Chart(chart) => chart.svg().map(String::into_bytes),
+            Figure::Decades(chart) => chart.svg_over_decades().map(String::into_bytes),
+            Figure::Section(section) => section.svg(),
+        }
+    }
+
+    fn csv(&self) -> String {
+        match self {
+            Figure::Chart(chart) | Figure::Decades(chart) => csv(chart),
+            Figure::Section(section) => section_csv(section),
+        }
+    }
+}
+
+/// Figures 1 to 5, and those from 10 on: all but those of protocols, which take long.
+fn without_protocols() -> Result<[Vec<Figure>; 2], Failure> {
+    let (cycles, fretting) = (cycles::charts()?.map(Figure::Chart), fretting::sections()?.map(Figure::Section));
+    let last = [Figure::Chart(rough::chart()?), Figure::Decades(identifiability::chart()?)];
+    Ok([paper()?.map(Figure::Chart).into(), cycles.into_iter().chain(fretting).chain(last).collect()])
 }
 
 fn paper() -> Result<[Chart; 5], Error> {
@@ -74,13 +90,7 @@ struct NormalisedPath {
 
 impl NormalisedPath {
     fn follow(reversals: usize, moves: usize) -> Result<NormalisedPath, Error> {
-        let contact = Contact::new(Setup {
-            profile: Profile::Sphere(Sphere::new(0.01)?),
-            elasticity: Elasticity::effective(1.15e11, 8.5e10)?,
-            friction: 0.3,
-            preload: Preload::NormalForce(10.0),
-        })?;
-        let mut path = NormalisedPath { contact, states: Vec::new() };
+        let mut path = NormalisedPath { contact: contact::ball_under_load()?, states: Vec::new() };
         let amplitude = path.contact.summary().gross_slip_displacement;
         for target in falling_amplitude(reversals, amplitude).take(moves) {
             path.move_to(target)?;
@@ -89,7 +99,7 @@ impl NormalisedPath {
     }
 
     fn move_to(&mut self, target: f64) -> Result<(), Error> {
-        self.contact.apply(&Move { tangential: Some(Tangential::Displacement(target)), ..Move::default() })?;
+        self.contact.apply(&contact::to(target))?;
         self.states.push(self.contact.state());
         Ok(())
     }
@@ -240,26 +250,17 @@ fn section_csv(section: &Section) -> String {
 mod tests {
     use std::path::Path;
 
-    use crate::plot::Picture as _;
-
     /// All but those of protocols, which take long. `cargo run --release -- figures --out docs/figures` draws them
     /// anew.
     #[test]
     fn the_figures_of_the_documentation_are_those_that_are_drawn() {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/figures");
-        let (paper, cycles) = (super::paper().unwrap(), super::cycles::charts().unwrap());
-        let rough = [super::rough::chart().unwrap()];
-        for (number, chart) in (1..).zip(&paper).chain((10..).zip(&cycles)).chain((14..).zip(&rough)) {
-            let name = format!("figure{number}.svg");
-            let kept = std::fs::read_to_string(folder.join(&name)).unwrap();
-            assert!(chart.svg().unwrap() == kept, "{name} has changed");
-        }
-        let decades = super::identifiability::chart().unwrap().svg_over_decades().unwrap();
-        assert!(decades == std::fs::read_to_string(folder.join("figure15.svg")).unwrap(), "figure15.svg has changed");
-        for (number, section) in (12..).zip(super::fretting::sections().unwrap()) {
+        let [paper, later] = super::without_protocols().unwrap();
+        assert_eq!((paper.len(), later.len()), (5, 6));
+        for (number, figure) in (1..).zip(paper).chain((10..).zip(later)) {
             let name = format!("figure{number}.svg");
             let kept = std::fs::read(folder.join(&name)).unwrap();
-            assert!(section.svg().unwrap() == kept, "{name} has changed");
+            assert!(figure.svg().unwrap() == kept, "{name} has changed");
         }
     }
 }

@@ -1,10 +1,11 @@
 //! Figures 6 to 9: the shear stress that remains after the three kinds of protocol, on the sphere and on other shapes.
 
+use super::contact::{ball, small_contact};
 use super::shear_curve;
 use crate::plot::chart::{Chart, Series};
 use stickslip_mechanics::profile::PowerLaw;
 use stickslip_mechanics::protocol::{AmplitudeLaw, Design, ExecutionErrors, PathEnd, PathStart, design, trials};
-use stickslip_mechanics::{Contact, Elasticity, Error, Preload, Profile, Setup, Sphere};
+use stickslip_mechanics::{Contact, Error, Profile};
 
 const KINDS: [(AmplitudeLaw, &str); 3] =
     [(AmplitudeLaw::Linear, "linear"), (AmplitudeLaw::EqualPeaks, "equal peaks"), (AmplitudeLaw::Minimax, "minimax")];
@@ -18,16 +19,6 @@ const SEED: u64 = 2016;
 
 pub(super) fn charts() -> Result<[Chart; 4], Error> {
     Ok([reduction()?, over_radius()?, shapes()?, robustness()?])
-}
-
-/// A contact of the radius 1e-4 m.
-pub(super) fn contact_of(profile: Profile, friction: f64) -> Result<Contact, Error> {
-    let elasticity = Elasticity::effective(1.15e11, 8.5e10)?;
-    Contact::new(Setup { profile, elasticity, friction, preload: Preload::ContactRadius(1e-4) })
-}
-
-pub(super) fn sphere() -> Result<Profile, Error> {
-    Ok(Profile::Sphere(Sphere::new(0.01)?))
 }
 
 fn power_law(exponent: f64) -> Result<Profile, Error> {
@@ -46,7 +37,7 @@ fn designed(contact: &Contact, kind: AmplitudeLaw, reversals: usize) -> Result<D
 }
 
 fn reduction() -> Result<Chart, Error> {
-    let contact = contact_of(power_law(4.0)?, 0.3)?;
+    let contact = small_contact(power_law(4.0)?, 0.3)?;
     let series = KINDS.into_iter().map(|(kind, name)| {
         let point = |reversals| Ok((reversals as f64, designed(&contact, kind, reversals)?.largest / unit(&contact)));
         Ok(Series::dots(name, REVERSAL_COUNTS.into_iter().map(point).collect::<Result<_, Error>>()?))
@@ -60,7 +51,7 @@ fn reduction() -> Result<Chart, Error> {
 }
 
 fn over_radius() -> Result<Chart, Error> {
-    let contact = contact_of(power_law(4.0)?, 0.3)?;
+    let contact = small_contact(power_law(4.0)?, 0.3)?;
     let series = KINDS.into_iter().map(|(kind, name)| {
         let left = designed(&contact, kind, REVERSALS)?;
         Ok(Series::line(name, shear_curve(&left.contact, &left.residual, unit(&contact))))
@@ -76,12 +67,12 @@ fn over_radius() -> Result<Chart, Error> {
 fn shapes() -> Result<Chart, Error> {
     let shapes = [
         ("z ~ r^1.5", power_law(1.5)?),
-        ("sphere", sphere()?),
+        ("sphere", ball()?),
         ("z ~ r^3", power_law(3.0)?),
         ("z ~ r^4", power_law(4.0)?),
     ];
     let series = shapes.into_iter().map(|(name, shape)| {
-        let contact = contact_of(shape, 0.3)?;
+        let contact = small_contact(shape, 0.3)?;
         let point = |reversals| {
             let linear = designed(&contact, AmplitudeLaw::Linear, reversals)?.largest;
             Ok((reversals as f64, designed(&contact, AmplitudeLaw::Minimax, reversals)?.largest / linear))
@@ -97,7 +88,7 @@ fn shapes() -> Result<Chart, Error> {
 }
 
 fn robustness() -> Result<Chart, Error> {
-    let contact = contact_of(power_law(4.0)?, 0.3)?;
+    let contact = small_contact(power_law(4.0)?, 0.3)?;
     let series = KINDS.into_iter().map(|(kind, name)| {
         let path = designed(&contact, kind, REVERSALS)?.displacements;
         let point = |step: u32| {

@@ -1,38 +1,32 @@
 //! Figure 14: the hysteresis loop of a rough contact beside that of a ball of the same load and stiffness.
 
+use super::contact::{contact_of, to};
 use crate::plot::chart::{Chart, Series};
 use stickslip_mechanics::profile::Asperities;
-use stickslip_mechanics::{Contact, Elasticity, Error, Move, Preload, Profile, Setup, Sphere, Tangential};
+use stickslip_mechanics::{Contact, Error, Preload, Profile, Sphere};
 
 /// Asperities, and the scale of their exponential heights, m.
 const COUNT: u32 = 100_000;
 const HEIGHT: f64 = 1e-6;
+const FRICTION: f64 = 0.3;
+const LOAD: Preload = Preload::NormalForce(100.0);
 /// Amplitude over the limit of friction by the stiffness, and points of a branch.
 const AMPLITUDE: f64 = 2.0;
 const POINTS: i32 = 100;
 
 pub(super) fn chart() -> Result<Chart, Error> {
     let gaps: Vec<f64> = (0..COUNT).map(|index| HEIGHT * (f64::from(index) + 0.5).ln()).collect();
-    let rough = contact_of(Profile::Asperities(Asperities::new(&[1e-4], &gaps)?))?;
+    let rough = contact_of(Profile::Asperities(Asperities::new(&[1e-4], &gaps)?), FRICTION, LOAD)?;
     let radius = rough.contact_radius();
     // Hertz: F_N = 4 E* a^3/(3 R).
     let curvature = 4.0 * rough.elasticity().e_star() * radius * radius * radius / (3.0 * rough.normal_force());
-    let ball = contact_of(Profile::Sphere(Sphere::new(curvature)?))?;
+    let ball = contact_of(Profile::Sphere(Sphere::new(curvature)?), FRICTION, LOAD)?;
     Ok(Chart::new(
         "Figure 14: a rough contact and a ball of the same load and stiffness",
         "2 G* X U / (mu F_N)",
         "F / (mu F_N)",
         vec![Series::line("100 000 asperities", hysteresis(rough)?), Series::line("ball", hysteresis(ball)?)],
     ))
-}
-
-fn contact_of(profile: Profile) -> Result<Contact, Error> {
-    Contact::new(Setup {
-        profile,
-        elasticity: Elasticity::effective(1.15e11, 8.5e10)?,
-        friction: 0.3,
-        preload: Preload::NormalForce(100.0),
-    })
 }
 
 /// First loading, and a cycle.
@@ -44,8 +38,7 @@ fn hysteresis(mut contact: Contact) -> Result<Vec<(f64, f64)>, Error> {
     let path = rise.chain(fall).chain(1 - POINTS..=POINTS);
     path.map(|index| {
         let place = AMPLITUDE * f64::from(index) / f64::from(POINTS);
-        let target = Some(Tangential::Displacement(place * unit));
-        contact.apply(&Move { tangential: target, ..Move::default() })?;
+        contact.apply(&to(place * unit))?;
         Ok((place, contact.force() / limit))
     })
     .collect()

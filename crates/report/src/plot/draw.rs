@@ -9,7 +9,7 @@ use plotters::prelude::*;
 use stickslip_mechanics::unit_prefix;
 
 use super::round_joins::RoundJoins;
-use super::{Axis, Band, Colour, Panel, Picture, Plot};
+use super::{Axis, Band, Colour, DrawResult, Panel, Picture, Plot};
 
 /// Pixels of a plot. Twice the size shown on a page, so that curves and text are smooth.
 pub(super) const SIZE: (u32, u32) = (1520, 1000);
@@ -65,13 +65,10 @@ pub(super) fn pixels(picture: &(impl Picture + ?Sized)) -> Result<Vec<u8>, Box<d
 }
 
 /// Draws on white, with the fonts.
-fn prepare<DB: DrawingBackend>(
+fn prepare<DB: DrawingBackend<ErrorType: 'static>>(
     picture: &(impl Picture + ?Sized),
     area: &DrawingArea<DB, Shift>,
-) -> Result<(), Box<dyn Error>>
-where
-    DB::ErrorType: 'static,
-{
+) -> DrawResult {
     super::font::register();
     area.fill(&WHITE)?;
     picture.draw(area)?;
@@ -84,45 +81,32 @@ impl Picture for Plot {
         (SIZE.0, SIZE.1.max(PANEL * u32::try_from(self.panels.len()).unwrap_or(1)))
     }
 
-    fn draw<DB: DrawingBackend>(&self, area: &DrawingArea<DB, Shift>) -> Result<(), Box<dyn Error>>
-    where
-        DB::ErrorType: 'static,
-    {
-        draw(self, area)
+    fn draw<DB: DrawingBackend<ErrorType: 'static>>(&self, area: &DrawingArea<DB, Shift>) -> DrawResult {
+        let titled = area.margin(16, 0, 0, 0).titled(&self.title, ("sans-serif", 30))?;
+        let ends = self.bands.iter().flat_map(|band| [band.from, band.to]);
+        let x_range =
+            self.panels.iter().flat_map(|panel| &panel.curves).flat_map(|curve| &curve.points).map(|point| point.0);
+        let extent = extent(x_range.chain(ends));
+        let scale = scale(&self.x, &extent);
+        let last = self.panels.len().saturating_sub(1);
+        for (index, (part, panel)) in
+            titled.split_evenly((self.panels.len().max(1), 1)).iter().zip(&self.panels).enumerate()
+        {
+            let bands: &[Band] = if index == 0 { &self.bands } else { &[] };
+            draw_panel(part, panel, bands, &extent, &scale, index == last)?;
+        }
+        Ok(())
     }
 }
 
-fn draw<DB: DrawingBackend>(plot: &Plot, area: &DrawingArea<DB, Shift>) -> Result<(), Box<dyn Error>>
-where
-    DB::ErrorType: 'static,
-{
-    let titled = area.margin(16, 0, 0, 0).titled(&plot.title, ("sans-serif", 30))?;
-    let ends = plot.bands.iter().flat_map(|band| [band.from, band.to]);
-    let x_range =
-        plot.panels.iter().flat_map(|panel| &panel.curves).flat_map(|curve| &curve.points).map(|point| point.0);
-    let extent = extent(x_range.chain(ends));
-    let scale = scale(&plot.x, &extent);
-    let last = plot.panels.len().saturating_sub(1);
-    for (index, (part, panel)) in
-        titled.split_evenly((plot.panels.len().max(1), 1)).iter().zip(&plot.panels).enumerate()
-    {
-        let bands: &[Band] = if index == 0 { &plot.bands } else { &[] };
-        draw_panel(part, panel, bands, &extent, &scale, index == last)?;
-    }
-    Ok(())
-}
-
-fn draw_panel<DB: DrawingBackend>(
+fn draw_panel<DB: DrawingBackend<ErrorType: 'static>>(
     area: &DrawingArea<DB, Shift>,
     panel: &Panel,
     bands: &[Band],
     x_range: &Range<f64>,
     x: &Scale,
     lowest: bool,
-) -> Result<(), Box<dyn Error>>
-where
-    DB::ErrorType: 'static,
-{
+) -> DrawResult {
     let values = panel.curves.iter().flat_map(|curve| &curve.points).map(|point| point.1);
     let y_range = extent(values);
     let y = scale(&panel.y, &y_range);

@@ -113,15 +113,16 @@ pub enum Colour {
     Grey,
 }
 
+/// Whether the backend could draw it all.
+pub type DrawResult = Result<(), Box<dyn Error>>;
+
 /// Something that can be drawn.
 pub trait Picture {
     /// Draws it on an empty area.
     ///
     /// # Errors
     /// What the backend cannot do.
-    fn draw<DB: DrawingBackend>(&self, area: &DrawingArea<DB, Shift>) -> Result<(), Box<dyn Error>>
-    where
-        DB::ErrorType: 'static;
+    fn draw<DB: DrawingBackend<ErrorType: 'static>>(&self, area: &DrawingArea<DB, Shift>) -> DrawResult;
 
     /// Its width and height, pixels.
     fn size(&self) -> (u32, u32) {
@@ -154,10 +155,7 @@ pub enum Drawing {
 }
 
 impl Picture for Drawing {
-    fn draw<DB: DrawingBackend>(&self, area: &DrawingArea<DB, Shift>) -> Result<(), Box<dyn Error>>
-    where
-        DB::ErrorType: 'static,
-    {
+    fn draw<DB: DrawingBackend<ErrorType: 'static>>(&self, area: &DrawingArea<DB, Shift>) -> DrawResult {
         match self {
             Drawing::Plot(plot) => plot.draw(area),
             Drawing::Section(section) => section.draw(area),

@@ -2,9 +2,9 @@
 //! are spikes far beyond the data.
 
 use plotters::prelude::{BitMapBackend, DrawingBackend};
-use plotters_backend::{BackendColor, BackendCoord, BackendStyle, BackendTextStyle, DrawingErrorKind};
+use plotters_backend::{BackendColor, BackendCoord, BackendStyle, DrawingErrorKind};
 
-/// The backend of pixels, but for its lines.
+/// The backend of pixels, but for its lines: what is not forwarded here is made of what is, as by that backend itself.
 pub(super) struct RoundJoins<'a>(pub(super) BitMapBackend<'a>);
 
 type Drawn<'a> = Result<(), DrawingErrorKind<<BitMapBackend<'a> as DrawingBackend>::ErrorType>>;
@@ -60,22 +60,6 @@ impl<'a> DrawingBackend for RoundJoins<'a> {
             last = Some(point);
         }
         Ok(())
-    }
-
-    fn draw_circle<S: BackendStyle>(&mut self, center: BackendCoord, radius: u32, style: &S, fill: bool) -> Drawn<'a> {
-        self.0.draw_circle(center, radius, style, fill)
-    }
-
-    fn fill_polygon<S: BackendStyle, I: IntoIterator<Item = BackendCoord>>(
-        &mut self,
-        vertices: I,
-        style: &S,
-    ) -> Drawn<'a> {
-        self.0.fill_polygon(vertices, style)
-    }
-
-    fn draw_text<T: BackendTextStyle>(&mut self, text: &str, style: &T, position: BackendCoord) -> Drawn<'a> {
-        self.0.draw_text(text, style, position)
     }
 
     fn blit_bitmap(&mut self, position: BackendCoord, size: (u32, u32), source: &[u8]) -> Drawn<'a> {

@@ -10,7 +10,7 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 use super::contour::{Grid, Outline};
 use super::draw::{SIZE, Scale, extent, scale, tick};
-use super::{Axis, Picture};
+use super::{Axis, DrawResult, Picture};
 
 /// Lines of equal value at most, and shades between two of them: so many that their steps are hardly seen.
 const LINES: f64 = 9.0;
@@ -204,10 +204,7 @@ impl Section {
     }
 
     /// Names the marks, in a row below the title.
-    fn draw_legend<DB: DrawingBackend>(&self, area: &DrawingArea<DB, Shift>) -> Result<(), Box<dyn Error>>
-    where
-        DB::ErrorType: 'static,
-    {
+    fn draw_legend<DB: DrawingBackend<ErrorType: 'static>>(&self, area: &DrawingArea<DB, Shift>) -> DrawResult {
         const ROW: i32 = 88;
         // The middle of letters is above that of their line.
         const MARK: i32 = ROW - 2;
@@ -242,15 +239,12 @@ impl Section {
 }
 
 /// The scale of the colours, with its quantity and the values that have lines.
-fn draw_scale<DB: DrawingBackend>(
+fn draw_scale<DB: DrawingBackend<ErrorType: 'static>>(
     area: &DrawingArea<DB, Shift>,
     (left, height): (i32, i32),
     levels: &Levels,
     label: &str,
-) -> Result<(), Box<dyn Error>>
-where
-    DB::ErrorType: 'static,
-{
+) -> DrawResult {
     const WIDTH: i32 = 44;
     let (top, Range { start, end }) = (ABOVE as i32, levels.range.clone());
     let row = |value: f64| top + (f64::from(height) * (end - value) / (end - start)).round() as i32;
@@ -275,10 +269,7 @@ impl Picture for Section {
         (SIZE.0, ABOVE + self.extent_in_pixels().1 + BELOW)
     }
 
-    fn draw<DB: DrawingBackend>(&self, area: &DrawingArea<DB, Shift>) -> Result<(), Box<dyn Error>>
-    where
-        DB::ErrorType: 'static,
-    {
+    fn draw<DB: DrawingBackend<ErrorType: 'static>>(&self, area: &DrawingArea<DB, Shift>) -> DrawResult {
         let grid = Grid::refined(&self.x.1, &self.y.1, &self.values.1);
         let [x_range, y_range, range] =
             [&self.x.1, &self.y.1, &self.values.1].map(|values| extent(values.iter().copied()));
@@ -448,13 +439,8 @@ mod tests {
         section.values.0.unit = Some("N²/m³");
         section.largest = Some(Peak { value: 3.0e6, places: Vec::new() });
         let svg = String::from_utf8(section.svg().unwrap()).unwrap();
-        assert!(
-            svg.contains("crossland / (10⁶ N²/m³)")
-                && svg.contains(
-                    "largest 3 · 10⁶ \
-            N²/m³"
-                ),
-            "{svg:.900}"
-        );
+        for text in ["crossland / (10⁶ N²/m³)", "largest 3 · 10⁶ N²/m³"] {
+            assert!(svg.contains(text), "{svg:.900}");
+        }
     }
 }

@@ -1,34 +1,29 @@
 //! The normal forces of a fretting map.
 
-use serde::{Deserialize, Serialize};
-use utoipa::ToSchema;
-
 use stickslip_mechanics::range::{self, Range};
 
 use crate::check::{Faults, JsonPath};
-use crate::limits::{MAP_CYCLES, MAP_LOADS, limits};
+use crate::limits::{Limited as _, MAP_CYCLES, MAP_LOADS};
+use crate::request::requests;
 
+requests! {
 /// Steady cycles under many loads: each amplitude under each of them.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-#[serde(deny_unknown_fields)]
 #[schema(example = json!({"normal_force": {"from": 1.0, "to": 100.0, "count": 40}}))]
-pub struct FrettingMap {
+pub struct FrettingMap: Copy {
     /// The loads.
     pub normal_force: LoadSpan,
 }
 
 /// Normal forces with the same ratio from one to the next.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-#[serde(deny_unknown_fields)]
-pub struct LoadSpan {
+pub struct LoadSpan: Copy {
     /// The first, N.
-    pub from: f64,
+    pub from: f64 = LOAD,
     /// The last, N; above the first.
-    pub to: f64,
+    pub to: f64 = LOAD,
     /// How many, both ends included.
-    pub count: usize,
+    pub count: usize = MAP_LOADS,
 }
-limits!(LoadSpan { from: LOAD, to: LOAD, count: MAP_LOADS });
+}
 
 /// A positive normal force.
 const LOAD: Range = Range { min: range::MIN_POSITIVE_NORMAL_FORCE, ..range::NORMAL_FORCE };

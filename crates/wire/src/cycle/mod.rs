@@ -10,38 +10,35 @@ pub use studies::{BestLoad, BestLoadStudy, FrequencyResponse, LoadCurve, Resonan
 
 use std::fmt;
 
+use serde::de::value::SeqAccessDeserializer;
 use serde::de::{Error, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize};
 use serde_json::{Value, json};
-use serde_with::{apply, skip_serializing_none};
-use utoipa::ToSchema;
 
 use stickslip_mechanics::{
     cycle::{self, OscillatingLoad},
     range::{self, Range},
 };
 
-use crate::check::{Faults, JsonPath, Rejection};
+use crate::check::{Faults, JsonPath};
+use crate::choice::choices;
 use crate::definition::{ContactDefinition, DefinedProfile, SharedSetup};
 use crate::document::Document;
 use crate::limits::{
-    BEST_LOADS, CYCLE_AMPLITUDES, CYCLE_RADII, HARMONICS, Keywords, Limit, Numbers, ToleranceOr, limits,
+    Array, BEST_LOADS, CYCLE_AMPLITUDES, CYCLE_RADII, HARMONICS, Keywords, Limit, Limited as _, Tolerance,
 };
 use crate::path::NormalOscillation;
 use crate::prepare::Prepare;
-use crate::single_key::{not_null, single_key};
+use crate::request::requests;
 use crate::stress::{Points, StressRequest};
 
 /// What cycles under a load that oscillates and oscillations of a mass are held to if the request does not say: steps
 /// cost, and what is left of the former falls with a low power of them.
 const DEFAULT_TOLERANCE: f64 = 1e-6;
 
+requests! {
 /// A contact that is moved back and forth for so long that every cycle is as the one before; the server keeps nothing
 /// of it.
-#[skip_serializing_none]
-#[apply(Option => #[serde(default, deserialize_with = "not_null")] #[schema(nullable = false)])]
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-#[serde(deny_unknown_fields)]
 #[schema(example = json!({
     "contact": ContactDefinition::example(),
     "drive": {"displacement": [5e-8, 1e-7, 2e-7]},
@@ -55,7 +52,7 @@ pub struct CycleRequest {
     /// A machine in series with the contact: a displacement amplitude is then that of the machine.
     pub machine: Option<Machine>,
     /// Ask for the harmonics from the first to this one.
-    pub harmonics: Option<usize>,
+    pub harmonics: Option<usize> = HARMONICS,
     /// Ask for the friction work per area. Radii times amplitudes are at most 200 000. Not under a load that
     /// oscillates.
     pub work_density: Option<WorkDensity>,
@@ -63,7 +60,7 @@ pub struct CycleRequest {
     pub normal: Option<NormalOscillation>,
     /// Tolerance of cycles under a load that oscillates, relative to μ F_N and to the work of that force, and of
     /// `frequency_response`, relative to the amplitude; a pure number.
-    pub tolerance: Option<f64>,
+    pub tolerance: Option<f64> = Tolerance(DEFAULT_TOLERANCE),
     /// Ask for the oscillations of a mass that hangs on the contact and is driven by a force.
     pub frequency_response: Option<FrequencyResponse>,
     /// Ask for the normal force under which each amplitude does most friction work; with at most 100 amplitudes.
@@ -72,24 +69,33 @@ pub struct CycleRequest {
     /// with `machine` alone. At most 100 000 cycles.
     pub map: Option<FrettingMap>,
 }
-limits!(CycleRequest { harmonics: HARMONICS, tolerance: ToleranceOr(DEFAULT_TOLERANCE) });
 
+/// A machine in series with the contact.
+pub struct Machine: Copy {
+    /// Its stiffness, N/m.
+    pub stiffness: f64 = range::MACHINE_STIFFNESS,
+}
+
+/// Where the friction work per area is asked for: exactly one of `points` and `radii`.
+pub struct WorkDensity: Default and StressRequest {
+    /// Number of radii, evenly spaced from the centre to the edge of the contact, both included.
+    pub points: Option<usize>,
+    /// Radii, m; outside the contact there is no work.
+    pub radii: Option<Vec<f64>>,
+}
+}
+
+choices! {
 /// What is prescribed as a cosine, one key: its amplitude, or a list of amplitudes with a cycle for each.
-#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
-#[serde(rename_all = "snake_case")]
 pub enum CycleDrive {
     /// Amplitude of the tangential displacement, m: of the indenter or, with `machine`, of the machine.
     #[schema(value_type = f64)]
-    Displacement(Amplitudes),
+    "displacement" => Displacement(Amplitudes) = Within(Range { min: 0.0, ..range::DISPLACEMENT }),
     /// Amplitude of the tangential force, N; below μ F_N.
     #[schema(value_type = f64)]
-    Force(Amplitudes),
+    "force" => Force(Amplitudes) = Within(Range { min: 0.0, ..range::FORCE }),
 }
-single_key!(CycleDrive { "displacement" => Displacement, "force" => Force });
-limits!(enum CycleDrive {
-    Displacement "displacement": Within(Range { min: 0.0, ..range::DISPLACEMENT }),
-    Force "force": Within(Range { min: 0.0, ..range::FORCE }),
-});
+}
 
 /// One amplitude, or a list of them.
 // Untagged when written. It is read by hand below, so that a fault in the list has its index.
@@ -102,35 +108,13 @@ pub enum Amplitudes {
     Many(Vec<f64>),
 }
 
-/// A machine in series with the contact.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Machine {
-    /// Its stiffness, N/m.
-    pub stiffness: f64,
-}
-limits!(Machine { stiffness: range::MACHINE_STIFFNESS });
-
-/// Where the friction work per area is asked for: exactly one of `points` and `radii`.
-#[skip_serializing_none]
-#[apply(Option => #[serde(default, deserialize_with = "not_null")] #[schema(nullable = false)])]
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
-#[serde(deny_unknown_fields)]
-pub struct WorkDensity {
-    /// Number of radii, evenly spaced from the centre to the edge of the contact, both included.
-    pub points: Option<usize>,
-    /// Radii, m; outside the contact there is no work.
-    pub radii: Option<Vec<f64>>,
-}
-limits!(WorkDensity and StressRequest);
-
 /// The limits of amplitudes.
 struct Within(Range);
 
 impl Keywords for Within {
     fn keywords(&self) -> Value {
         // Some keywords are for a number, the others for a list: JSON Schema applies each to its own type.
-        let mut keywords = Numbers(CYCLE_AMPLITUDES, self.0).keywords();
+        let mut keywords = Array(CYCLE_AMPLITUDES, self.0).keywords();
         keywords["type"] = json!(["number", "array"]);
         keywords["items"]["type"] = json!("number");
         (keywords["minimum"], keywords["maximum"]) = (json!(self.0.min), json!(self.0.max));
@@ -142,7 +126,7 @@ impl Limit<Amplitudes> for Within {
     fn check(&self, value: &Amplitudes, at: JsonPath<'_>, faults: &mut Faults) {
         match value {
             Amplitudes::One(amplitude) => faults.number(at, *amplitude, &self.0),
-            Amplitudes::Many(amplitudes) => Numbers(CYCLE_AMPLITUDES, self.0).check(amplitudes, at, faults),
+            Amplitudes::Many(amplitudes) => Array(CYCLE_AMPLITUDES, self.0).check(amplitudes, at, faults),
         }
     }
 }
@@ -174,12 +158,8 @@ impl<'de> Visitor<'de> for AmplitudesVisitor {
         Ok(Amplitudes::One(value as f64))
     }
 
-    fn visit_seq<A: SeqAccess<'de>>(self, mut elements: A) -> Result<Amplitudes, A::Error> {
-        let mut values = Vec::new();
-        while let Some(value) = elements.next_element()? {
-            values.push(value);
-        }
-        Ok(Amplitudes::Many(values))
+    fn visit_seq<A: SeqAccess<'de>>(self, elements: A) -> Result<Amplitudes, A::Error> {
+        Vec::deserialize(SeqAccessDeserializer::new(elements)).map(Amplitudes::Many)
     }
 }
 
@@ -343,22 +323,21 @@ impl Document for CycleRequest {
         Some(self.contact.defined_profile("/contact/profile"))
     }
 
-    fn check_with(self, profiles: &dyn Prepare) -> Result<Self::Checked, Rejection> {
-        let mut faults = Faults::default();
+    fn checked(self, profiles: &dyn Prepare, faults: &mut Faults) -> Option<Self::Checked> {
         let CycleRequest { contact, drive, machine, harmonics, work_density, normal, tolerance, .. } = self;
         let (response, best_load, map) = (self.frequency_response, self.best_load, self.map);
-        let setup = contact.check(JsonPath::Root.member("contact"), profiles, &mut faults);
+        let setup = contact.check(JsonPath::Root.member("contact"), profiles, faults);
         let stiffness = machine.map(|machine| machine.stiffness);
         let options = CycleOptions { drive, stiffness, harmonics, density: work_density };
-        let task = options.check(CyclePlaces::BODY, &mut faults);
+        let task = options.check(CyclePlaces::BODY, faults);
         let at = |name| JsonPath::Root.member(name);
-        Limit::check(&ToleranceOr(DEFAULT_TOLERANCE), &tolerance, at("tolerance"), &mut faults);
-        let load = normal.and_then(|normal| normal.swing(at("normal"), &mut faults));
+        let tolerance = Tolerance(DEFAULT_TOLERANCE).of(tolerance, faults);
+        let load = normal.and_then(|normal| normal.swing(at("normal"), faults));
         if let Some(response) = &response {
-            response.check_members(at("frequency_response"), &mut faults);
+            response.check_members(at("frequency_response"), faults);
         }
         if let Some(best) = &best_load {
-            best.check_members(at("best_load"), &mut faults);
+            best.check_members(at("best_load"), faults);
             if task.as_ref().is_some_and(|task| task.drives().len() > *BEST_LOADS.end()) {
                 faults.add(at("best_load"), format_args!("too many amplitudes: allowed are {}", BEST_LOADS.end()));
             }
@@ -375,7 +354,7 @@ impl Document for CycleRequest {
             faults.add(at("frequency_response"), "the mass hangs on the contact alone: leave this or `machine` out");
         }
         if let Some(map) = &map {
-            map.check(task.as_ref().map_or(0, |task| task.drives().len()), at("map"), &mut faults);
+            map.check(task.as_ref().map_or(0, |task| task.drives().len()), at("map"), faults);
             let others = [("harmonics", harmonics.is_some()), ("normal", normal.is_some())];
             for (name, _) in constant.into_iter().chain(others).filter(|(_, asked)| *asked) {
                 faults.add(at(name), "not in a fretting map: leave this or `map` out");
@@ -384,10 +363,9 @@ impl Document for CycleRequest {
         if task.as_ref().is_some_and(|task| task.radii() > 0) {
             faults.needs_stress_field(setup.as_ref(), at("work_density"));
         }
-        let tolerance = tolerance.unwrap_or(DEFAULT_TOLERANCE);
         let normal = load.map(|load| (load, tolerance));
         let response = response.map(|response| (response, tolerance));
         let task = task.map(|task| CycleTask { normal, response, best_load, map, ..task });
-        faults.done(setup.zip(task).map(|(setup, task)| (contact, setup, task)))
+        setup.zip(task).map(|(setup, task)| (contact, setup, task))
     }
 }

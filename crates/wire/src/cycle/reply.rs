@@ -1,12 +1,14 @@
 //! The reply of `POST /cycle` and `GET /contacts/{id}/cycle`.
 
 use serde::{Deserialize, Serialize};
+use serde_with::apply;
 use utoipa::ToSchema;
 
 use super::{BestLoad, Resonance};
 use crate::reply::{Accuracy, ContactSummary, Regime, Warning};
 
 /// Steady cycles, one for each amplitude.
+#[apply(Option => #[serde(default, skip_serializing_if = "Option::is_none")] #[schema(nullable = false)])]
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct CycleReply {
     /// The contact at its load, in a map at its preload.
@@ -14,8 +16,6 @@ pub struct CycleReply {
     /// The cycles, in the order of the amplitudes; in a map load by load.
     pub cycles: Vec<SteadyCycle>,
     /// The oscillations of a mass on the contact, if asked for.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(nullable = false)]
     pub frequency_response: Option<Resonance>,
     /// Solver, errors and time. `force_error` is that of the harmonics too, relative to the amplitude of the answer.
     pub accuracy: Accuracy,
@@ -24,23 +24,18 @@ pub struct CycleReply {
 }
 
 /// One steady cycle.
+#[apply(Option => #[serde(default, skip_serializing_if = "Option::is_none")] #[schema(nullable = false)])]
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct SteadyCycle {
     /// Normal force, N; in a map alone.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(nullable = false)]
     pub normal_force: Option<f64>,
     /// Displacement amplitude of the indenter at which gross slip begins under this load, m; in a map alone.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(nullable = false)]
     pub gross_slip_displacement: Option<f64>,
     /// Amplitude of the displacement of the indenter, m.
     pub displacement_amplitude: f64,
     /// Amplitude of the tangential force, N.
     pub force_amplitude: f64,
     /// Amplitude of the displacement at the machine, m; with `machine` alone.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(nullable = false)]
     pub machine_amplitude: Option<f64>,
     /// Friction work of a cycle, J.
     pub dissipated_energy: f64,
@@ -52,9 +47,11 @@ pub struct SteadyCycle {
     pub tangent_stiffness: f64,
     /// Dissipated energy over 2π times the largest elastic energy, a pure number; `null` where the indenter slides and
     /// nothing is stored, as without friction and without load.
+    #[serde_with(skip_apply)]
     pub loss_factor: Option<f64>,
     /// Displacement at zero force over the amplitude of the indenter, a pure number; `null` where it moves and there is
     /// no force, as without friction and without load.
+    #[serde_with(skip_apply)]
     pub sliding_ratio: Option<f64>,
     /// Radius of the part that never slips, m; zero in gross slip.
     pub stick_radius: f64,
@@ -62,16 +59,10 @@ pub struct SteadyCycle {
     pub regime: Regime,
     /// The harmonics, if asked for: of the force, N, where the displacement is driven, and of the displacement of the
     /// indenter, m, where the force is.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(nullable = false)]
     pub harmonics: Option<Vec<Harmonic>>,
     /// The friction work per area, if asked for.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(nullable = false)]
     pub friction_work: Option<FrictionWork>,
     /// The load under which this amplitude does most friction work, if asked for and if there is one.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(nullable = false)]
     pub best_load: Option<BestLoad>,
 }
 

@@ -1,45 +1,35 @@
 //! What steady cycles are asked for beside themselves: a mass on the contact, and the load that damps most.
 
 use serde::{Deserialize, Serialize};
-use serde_with::{apply, skip_serializing_none};
 use utoipa::ToSchema;
 
 use stickslip_mechanics::range::{self, Quantity, Range};
 
-use crate::limits::{CURVE_POINTS, FREQUENCIES, Numbers, limits};
-use crate::single_key::not_null;
+use crate::limits::{Array, CURVE_POINTS, FREQUENCIES};
+use crate::request::requests;
 
+requests! {
 /// A mass that hangs on the contact alone, and a force on it that is a cosine of the time.
-#[skip_serializing_none]
-#[apply(Option => #[serde(default, deserialize_with = "not_null")] #[schema(nullable = false)])]
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-#[serde(deny_unknown_fields)]
 #[schema(example = json!({"mass": 0.1, "drive_force": 0.5}))]
 pub struct FrequencyResponse {
     /// The mass, kg.
-    pub mass: f64,
+    pub mass: f64 = Range { quantity: Quantity::Number, unit: "kg", min: 1e-15, max: 1e15 },
     /// Amplitude of the force on it, N.
-    pub drive_force: f64,
+    pub drive_force: f64 = Range { min: 1e-15, max: 1e15, ..range::FORCE },
     /// Frequencies, Hz; left out, 200 from 0.3 to 1.5 of that of small oscillations.
-    pub frequencies: Option<Vec<f64>>,
+    pub frequencies: Option<Vec<f64>> = Array(FREQUENCIES, FREQUENCY),
 }
-limits!(FrequencyResponse {
-    mass: Range { quantity: Quantity::Number, unit: "kg", min: 1e-15, max: 1e15 },
-    drive_force: Range { min: 1e-15, max: 1e15, ..range::FORCE },
-    frequencies: Numbers(FREQUENCIES, Range { quantity: Quantity::Number, unit: "Hz", min: 1e-6, max: 1e12 }),
-});
 
 /// A search for the load that damps most.
-#[skip_serializing_none]
-#[apply(Option => #[serde(default, deserialize_with = "not_null")] #[schema(nullable = false)])]
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
-#[serde(deny_unknown_fields)]
 #[schema(example = json!({"points": 50}))]
-pub struct BestLoadStudy {
+pub struct BestLoadStudy: Copy, Default {
     /// Ask for the work at so many loads too, evenly spaced up to three times the best.
-    pub points: Option<usize>,
+    pub points: Option<usize> = CURVE_POINTS,
 }
-limits!(BestLoadStudy { points: CURVE_POINTS });
+}
+
+/// A frequency of the force.
+const FREQUENCY: Range = Range { quantity: Quantity::Number, unit: "Hz", min: 1e-6, max: 1e12 };
 
 /// Steady oscillations of a mass on the contact.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]

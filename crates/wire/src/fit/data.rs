@@ -1,15 +1,15 @@
 //! Measured loops, their units, and the limits of their numbers.
 
 use serde::{Deserialize, Serialize};
-use serde_with::{apply, skip_serializing_none};
 use utoipa::ToSchema;
 
 use stickslip_mechanics::range::{self, MIN_POSITIVE_NORMAL_FORCE, Quantity, Range};
 
 use crate::check::{Faults, JsonPath};
-use crate::limits::{FIT_POINTS, Numbers, limits};
+use crate::choice::words;
+use crate::limits::{Array, FIT_POINTS, Limited as _};
 use crate::profile_fit::LengthUnit;
-use crate::single_key::not_null;
+use crate::request::requests;
 
 /// A measured number, in its unit.
 const NUMBER: Range = Range { quantity: Quantity::Number, unit: "", min: -1e12, max: 1e12 };
@@ -20,33 +20,32 @@ const LOAD: Range = Range { min: MIN_POSITIVE_NORMAL_FORCE, ..range::NORMAL_FORC
 /// The weight of a loop.
 const WEIGHT: Range = Range { quantity: Quantity::Number, unit: "", min: 1e-9, max: 1e9 };
 
+requests! {
 /// Force over displacement as a bench has measured them, point by point in the order of time, under a constant load.
-#[skip_serializing_none]
-#[apply(Option => #[serde(default, deserialize_with = "not_null")] #[schema(nullable = false)])]
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-#[serde(deny_unknown_fields)]
 pub struct MeasuredLoop {
     /// Displacements, in the unit of `units.displacement`.
-    pub displacement: Vec<f64>,
+    pub displacement: Vec<f64> = Array(FIT_POINTS, NUMBER),
     /// Tangential forces, as many, in the unit of `units.force`.
-    pub force: Vec<f64>,
+    pub force: Vec<f64> = Array(FIT_POINTS, NUMBER),
     /// Times, s, rising, as many; only `drift` needs them.
-    pub time: Option<Vec<f64>>,
+    pub time: Option<Vec<f64>> = Array(FIT_POINTS, TIME),
     /// The load, N; that of the contact if it is left out.
-    pub normal_force: Option<f64>,
+    pub normal_force: Option<f64> = LOAD,
     /// How the record begins; as `steady` if it is left out, with a warning.
     pub start: Option<LoopStart>,
     /// How much the loop counts beside the others, a pure number.
     #[schema(default = 1.0)]
-    pub weight: Option<f64>,
+    pub weight: Option<f64> = WEIGHT,
 }
-limits!(MeasuredLoop {
-    displacement: Numbers(FIT_POINTS, NUMBER),
-    force: Numbers(FIT_POINTS, NUMBER),
-    time: Numbers(FIT_POINTS, TIME),
-    normal_force: LOAD,
-    weight: WEIGHT,
-});
+
+/// The units of measured loops.
+pub struct FitUnits: Copy, Default {
+    /// Of `displacement`.
+    pub displacement: Option<LengthUnit>,
+    /// Of `force`.
+    pub force: Option<ForceUnit>,
+}
+}
 
 /// How a record begins.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
@@ -58,18 +57,6 @@ pub enum LoopStart {
     Virgin,
 }
 
-/// The units of measured loops.
-#[skip_serializing_none]
-#[apply(Option => #[serde(default, deserialize_with = "not_null")] #[schema(nullable = false)])]
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
-#[serde(deny_unknown_fields)]
-pub struct FitUnits {
-    /// Of `displacement`.
-    pub displacement: Option<LengthUnit>,
-    /// Of `force`.
-    pub force: Option<ForceUnit>,
-}
-
 impl FitUnits {
     /// Those of displacement and force in m and N.
     #[must_use]
@@ -78,29 +65,22 @@ impl FitUnits {
     }
 }
 
+words! {
 /// A unit of force.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
-pub enum ForceUnit {
+pub enum ForceUnit: Default {
     /// Newton.
     #[default]
-    #[serde(rename = "N")]
-    Newton,
+    Newton = "N",
     /// Millinewton.
-    #[serde(rename = "mN")]
-    Millinewton,
+    Millinewton = "mN",
     /// Micronewton.
-    #[serde(rename = "uN")]
-    Micronewton,
+    Micronewton = "uN",
     /// Kilonewton.
-    #[serde(rename = "kN")]
-    Kilonewton,
+    Kilonewton = "kN",
+}
 }
 
 impl ForceUnit {
-    /// All of them.
-    pub const ALL: [ForceUnit; 4] =
-        [ForceUnit::Newton, ForceUnit::Millinewton, ForceUnit::Micronewton, ForceUnit::Kilonewton];
-
     /// It in newtons.
     #[must_use]
     pub fn newtons(self) -> f64 {
@@ -109,17 +89,6 @@ impl ForceUnit {
             ForceUnit::Millinewton => 1e-3,
             ForceUnit::Micronewton => 1e-6,
             ForceUnit::Kilonewton => 1e3,
-        }
-    }
-
-    /// Its symbol.
-    #[must_use]
-    pub fn symbol(self) -> &'static str {
-        match self {
-            ForceUnit::Newton => "N",
-            ForceUnit::Millinewton => "mN",
-            ForceUnit::Micronewton => "uN",
-            ForceUnit::Kilonewton => "kN",
         }
     }
 }

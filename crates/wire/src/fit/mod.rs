@@ -8,58 +8,47 @@ pub use data::{FitUnits, ForceUnit, LoopRecord, LoopStart, MeasuredLoop};
 pub use parameter::{FitParameter, KnownValue, KnownValues};
 pub use reply::{FitEstimate, FitReply, FitResidual, FittedLoop, NoiseLevels, SignRuns};
 
-use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
-use serde_with::{apply, skip_serializing_none};
-use utoipa::ToSchema;
 
 use stickslip_mechanics::range::{Quantity, Range};
 
-use crate::check::{Faults, JsonPath, Rejection};
+use crate::check::{Faults, JsonPath};
 use crate::definition::{ContactDefinition, DefinedProfile, SharedSetup};
 use crate::document::Document;
-use crate::limits::{FIT_LOOPS, Items, Keywords, Limit, limits};
+use crate::limits::{FIT_LOOPS, Items, Keywords, Limit, Limited as _};
 use crate::prepare::Prepare;
-use crate::single_key::not_null;
+use crate::request::requests;
 
 /// The standard deviation of a measured force.
 const FORCE_NOISE: Range = Range { quantity: Quantity::Force, unit: "N", min: 1e-18, max: 1e18 };
 /// The standard deviation of a measured displacement; zero is an exact one.
 const DISPLACEMENT_NOISE: Range = Range { quantity: Quantity::Displacement, unit: "m", min: 0.0, max: 1e9 };
 
+requests! {
 /// Loops that a bench has measured, and what a fit is to find out from them; the server keeps nothing of it.
-#[skip_serializing_none]
-#[apply(Option => #[serde(default, deserialize_with = "not_null")] #[schema(nullable = false)])]
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-#[serde(deny_unknown_fields)]
 pub struct FitRequest {
     /// The contact as far as it is known. What is free begins with its value here.
     pub contact: ContactDefinition,
     /// The measured loops, which are fitted together.
-    pub loops: Vec<MeasuredLoop>,
+    pub loops: Vec<MeasuredLoop> = Items(FIT_LOOPS),
     /// The units of `displacement` and `force` of the loops: SI if they are left out. Everything else is in SI units.
     pub units: Option<FitUnits>,
     /// What the fit determines.
-    pub free: Vec<FitParameter>,
+    pub free: Vec<FitParameter> = Distinct,
     /// What is known from elsewhere. With a standard error it takes part in the fit, whether it is free or not.
     pub known: Option<KnownValues>,
     /// The noise of the numbers; estimated from the loops if it is left out.
     pub noise: Option<FitNoise>,
 }
-limits!(FitRequest { loops: Items(FIT_LOOPS), free: Distinct });
 
 /// Standard deviations of the noise of a measurement, in SI units.
-#[skip_serializing_none]
-#[apply(Option => #[serde(default, deserialize_with = "not_null")] #[schema(nullable = false)])]
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
-#[serde(deny_unknown_fields)]
-pub struct FitNoise {
+pub struct FitNoise: Copy, Default {
     /// Of a force, N.
-    pub force: Option<f64>,
+    pub force: Option<f64> = FORCE_NOISE,
     /// Of a displacement, m.
-    pub displacement: Option<f64>,
+    pub displacement: Option<f64> = DISPLACEMENT_NOISE,
 }
-limits!(FitNoise { force: FORCE_NOISE, displacement: DISPLACEMENT_NOISE });
+}
 
 /// At least one name, and none twice.
 struct Distinct;
@@ -115,25 +104,25 @@ impl Document for FitRequest {
         Some(self.contact.defined_profile("/contact/profile"))
     }
 
-    fn check_with(self, profiles: &dyn Prepare) -> Result<FitTask, Rejection> {
-        let (mut faults, root) = (Faults::default(), JsonPath::Root);
-        let setup = self.contact.check(root.member("contact"), profiles, &mut faults);
-        self.check_members(root, &mut faults);
+    fn checked(self, profiles: &dyn Prepare, faults: &mut Faults) -> Option<Self::Checked> {
+        let root = JsonPath::Root;
+        let setup = self.contact.check(root.member("contact"), profiles, faults);
+        self.check_members(root, faults);
         let drifts = self.free.contains(&FitParameter::Drift);
         let units = self.units.unwrap_or_default();
         let in_si = units.in_si();
         let at = root.member("loops");
         let loops: Option<Vec<LoopRecord>> = if FIT_LOOPS.contains(&self.loops.len()) {
             let loops = self.loops.into_iter().enumerate();
-            loops.map(|(index, one)| one.check(in_si, drifts, at.index(index), &mut faults)).collect()
+            loops.map(|(index, one)| one.check(in_si, drifts, at.index(index), faults)).collect()
         } else {
             None
         };
         let known = self.known.unwrap_or_default();
-        known.check(root.member("known"), &mut faults);
+        known.check(root.member("known"), faults);
         let noise = self.noise.unwrap_or_default();
-        noise.check_members(root.member("noise"), &mut faults);
-        let task = setup.zip(loops).map(|(setup, loops)| FitTask {
+        noise.check_members(root.member("noise"), faults);
+        setup.zip(loops).map(|(setup, loops)| FitTask {
             definition: self.contact,
             setup,
             loops,
@@ -141,7 +130,6 @@ impl Document for FitRequest {
             known,
             noise,
             units,
-        });
-        faults.done(task)
+        })
     }
 }

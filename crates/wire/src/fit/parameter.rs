@@ -7,8 +7,8 @@ use utoipa::ToSchema;
 use stickslip_mechanics::range::{self, Quantity, Range};
 
 use crate::check::{Faults, JsonPath};
-use crate::limits::limits;
-use crate::single_key::not_null;
+use crate::limits::Limited as _;
+use crate::request::{not_null, requests};
 
 /// The compliance of a machine: zero is a rigid one.
 const COMPLIANCE: Range = Range { quantity: Quantity::MachineStiffness, unit: "m/N", min: 0.0, max: 1e9 };
@@ -88,18 +88,15 @@ parameters! {
     Drift drift DRIFT, "How fast the zero of the displacement wanders, m/s.";
 }
 
+requests! {
 /// A value that is known from elsewhere.
-#[skip_serializing_none]
-#[apply(Option => #[serde(default, deserialize_with = "not_null")] #[schema(nullable = false)])]
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-#[serde(deny_unknown_fields)]
-pub struct KnownValue {
+pub struct KnownValue: Copy {
     /// The value, in the SI unit of its quantity.
-    pub value: f64,
+    pub value: f64 = VALUE,
     /// Its standard error, in the same unit; zero, which is the default, holds the value.
-    pub standard_error: Option<f64>,
+    pub standard_error: Option<f64> = STANDARD_ERROR,
 }
-limits!(KnownValue { value: VALUE, standard_error: STANDARD_ERROR });
+}
 
 impl KnownValues {
     pub(super) fn check(&self, at: JsonPath<'_>, faults: &mut Faults) {

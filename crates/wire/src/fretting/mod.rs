@@ -4,36 +4,31 @@ mod reply;
 
 pub use reply::{FrettingReply, Instant, Largest, Rating, StressPath};
 
-use serde::{Deserialize, Serialize};
-use serde_with::{apply, skip_serializing_none};
-use utoipa::ToSchema;
+use std::ops::RangeInclusive;
 
 use stickslip_mechanics::fatigue::{self, Criterion, Measure};
 use stickslip_mechanics::range::{self, Quantity, Range};
 use stickslip_mechanics::subsurface::Side;
 
-use crate::check::{Faults, JsonPath, Rejection};
+use crate::check::{Faults, JsonPath};
 use crate::definition::{BodyName, ContactDefinition, DefinedProfile, SharedSetup};
 use crate::document::Document;
 use crate::limits::{
-    Counts, FRETTING_MOVES, Keywords, Limit, Limited, STRESS_PATHS, SUBSURFACE_POINTS, ToleranceOr, Triples, limits,
+    Array, FRETTING_MOVES, Limit, Limited as _, OfItsMembers, STRESS_PATHS, SUBSURFACE_POINTS, Tolerance, Triple,
 };
 use crate::path::{PHASE, Path, Plan};
 use crate::prepare::Prepare;
-use crate::single_key::not_null;
+use crate::request::requests;
 use crate::subsurface::{Places, SubsurfaceLine, SubsurfacePlane, SubsurfaceRequest, SubsurfaceSurface};
 
 /// Error of a criterion that is accepted if the request does not say, at given places and in a search.
 const DEFAULT_TOLERANCE: f64 = 1e-4;
 const SEARCH_TOLERANCE: f64 = 1e-3;
 
+requests! {
 /// A contact, a path that closes, and the fatigue criteria that its steady cycle is rated by; the server keeps nothing
 /// of it. Without `points`, `line`, `plane` and `surface` the largest value of each criterion in the body is searched
 /// for.
-#[skip_serializing_none]
-#[apply(Option => #[serde(default, deserialize_with = "not_null")] #[schema(nullable = false)])]
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-#[serde(deny_unknown_fields)]
 #[schema(example = json!({
     "contact": ContactDefinition::example(),
     "path": {"cycles": {"displacement": 1e-7, "count": 1}},
@@ -49,9 +44,9 @@ pub struct FrettingRequest {
     /// Which body.
     pub body: BodyName,
     /// Its Poisson's ratio, a pure number. Where the material has `bodies` it is known, and may be left out.
-    pub poisson_ratio: Option<f64>,
+    pub poisson_ratio: Option<f64> = range::POISSON_RATIO,
     /// Where: a list of x, y, z, m, with z of at least zero.
-    pub points: Option<Vec<[f64; 3]>>,
+    pub points: Option<Vec<[f64; 3]>> = Array(SUBSURFACE_POINTS, Triple(range::PLACE)),
     /// Where: a straight line.
     pub line: Option<SubsurfaceLine>,
     /// Where: a grid in a plane.
@@ -64,147 +59,87 @@ pub struct FrettingRequest {
     /// The criteria.
     pub criteria: Criteria,
     /// Indices of places whose stresses over the cycle are wanted too.
-    pub stress_paths: Option<Vec<usize>>,
+    pub stress_paths: Option<Vec<usize>> = PATHS,
     /// Error of a criterion, relative to its largest value, that is accepted; a pure number. In a search it is 1e-3 if
     /// left out.
-    pub tolerance: Option<f64>,
+    pub tolerance: Option<f64> = Tolerance(DEFAULT_TOLERANCE),
 }
-limits!(FrettingRequest {
-    poisson_ratio: range::POISSON_RATIO,
-    points: Triples(SUBSURFACE_POINTS, range::PLACE),
-    stress_paths: PATHS,
-    tolerance: ToleranceOr(DEFAULT_TOLERANCE),
-});
-/// Which stresses over the cycle may be asked for.
-const PATHS: Counts = Counts(STRESS_PATHS, 0..=*SUBSURFACE_POINTS.end() - 1);
-/// A value that a material bears.
-const BEARABLE: Range = Range { quantity: Quantity::Number, unit: "", min: 1e-300, max: 1e30 };
 
 /// A bulk stress along x that goes with the cycle.
-#[skip_serializing_none]
-#[apply(Option => #[serde(default, deserialize_with = "not_null")] #[schema(nullable = false)])]
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
-#[serde(deny_unknown_fields)]
-pub struct BulkCycle {
+pub struct BulkCycle: Copy, Default {
     /// Its mean, Pa; zero if left out.
-    pub mean: Option<f64>,
+    pub mean: Option<f64> = range::BULK_STRESS,
     /// Its amplitude, Pa; zero if left out.
-    pub amplitude: Option<f64>,
+    pub amplitude: Option<f64> = range::BULK_STRESS,
     /// Its phase, degrees; zero if left out.
-    pub phase: Option<f64>,
+    pub phase: Option<f64> = PHASE,
 }
-limits!(BulkCycle { mean: range::BULK_STRESS, amplitude: range::BULK_STRESS, phase: PHASE });
 
 /// Which criteria, at least one.
-#[skip_serializing_none]
-#[apply(Option => #[serde(default, deserialize_with = "not_null")] #[schema(nullable = false)])]
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Criteria {
+pub struct Criteria: Copy, Default {
     /// √J2a + α · the largest hydrostatic stress, Pa (Crossland 1956).
-    pub crossland: Option<Weighted>,
+    pub crossland: Option<Weighted> = OfItsMembers,
     /// The largest of shear stress + α · hydrostatic stress, Pa (Dang Van 1973).
-    pub dang_van: Option<Weighted>,
+    pub dang_van: Option<Weighted> = OfItsMembers,
     /// The largest of shear amplitude + k · largest normal stress on a plane, Pa (Findley 1959).
-    pub findley: Option<Findley>,
+    pub findley: Option<Findley> = OfItsMembers,
     /// The largest of normal stress times amplitude of the normal strain on a plane, Pa (Smith, Watson & Topper 1970).
-    pub swt: Option<StrainBased>,
+    pub swt: Option<StrainBased> = OfItsMembers,
     /// The largest amplitude of the shear strain, raised by the normal stress, a pure number (Fatemi & Socie 1988).
-    pub fatemi_socie: Option<FatemiSocie>,
+    pub fatemi_socie: Option<FatemiSocie> = OfItsMembers,
     /// Shear stress times slip at the surface, N/m (Ruiz, Boddington & Chen 1984).
-    pub ruiz: Option<SurfaceCriterion>,
+    pub ruiz: Option<SurfaceCriterion> = OfItsMembers,
     /// Friction work per area and cycle at the surface, J/m².
-    pub friction_work: Option<SurfaceCriterion>,
+    pub friction_work: Option<SurfaceCriterion> = OfItsMembers,
 }
 
 /// A criterion with a weight of the hydrostatic stress.
-#[skip_serializing_none]
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Weighted {
+pub struct Weighted: Copy {
     /// The weight, a pure number.
-    pub alpha: f64,
+    pub alpha: f64 = range::FATIGUE_WEIGHT,
     /// The value that the material bears, Pa.
-    #[serde(default, deserialize_with = "not_null")]
-    #[schema(nullable = false)]
-    pub limit: Option<f64>,
+    pub limit: Option<f64> = BEARABLE,
 }
-limits!(Weighted { alpha: range::FATIGUE_WEIGHT, limit: BEARABLE });
 
 /// Findley's criterion.
-#[skip_serializing_none]
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Findley {
+pub struct Findley: Copy {
     /// The weight of the normal stress, a pure number.
-    pub k: f64,
+    pub k: f64 = range::FATIGUE_WEIGHT,
     /// The value that the material bears, Pa.
-    #[serde(default, deserialize_with = "not_null")]
-    #[schema(nullable = false)]
-    pub limit: Option<f64>,
+    pub limit: Option<f64> = BEARABLE,
 }
-limits!(Findley { k: range::FATIGUE_WEIGHT, limit: BEARABLE });
 
 /// A criterion that needs strains.
-#[skip_serializing_none]
-#[apply(Option => #[serde(default, deserialize_with = "not_null")] #[schema(nullable = false)])]
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
-#[serde(deny_unknown_fields)]
-pub struct StrainBased {
+pub struct StrainBased: Copy, Default {
     /// Young's modulus of the body, Pa. Where the material has `bodies` it is known, and may be left out.
-    pub youngs_modulus: Option<f64>,
+    pub youngs_modulus: Option<f64> = range::YOUNGS_MODULUS,
     /// The value that the material bears, Pa.
-    pub limit: Option<f64>,
+    pub limit: Option<f64> = BEARABLE,
 }
-limits!(StrainBased { youngs_modulus: range::YOUNGS_MODULUS, limit: BEARABLE });
 
 /// Fatemi and Socie's criterion.
-#[skip_serializing_none]
-#[apply(Option => #[serde(default, deserialize_with = "not_null")] #[schema(nullable = false)])]
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-#[serde(deny_unknown_fields)]
-pub struct FatemiSocie {
+pub struct FatemiSocie: Copy {
     /// The weight of the normal stress, a pure number.
-    pub k: f64,
+    pub k: f64 = range::FATIGUE_WEIGHT,
     /// The yield stress, Pa.
-    #[serde(rename = "yield")]
-    pub yield_stress: f64,
+    pub r#yield: f64 = range::YIELD_STRESS,
     /// Young's modulus of the body, Pa. Where the material has `bodies` it is known, and may be left out.
-    pub youngs_modulus: Option<f64>,
+    pub youngs_modulus: Option<f64> = range::YOUNGS_MODULUS,
     /// The value that the material bears, a pure number.
-    pub limit: Option<f64>,
-}
-
-impl FatemiSocie {
-    fn members(&self) -> [(&'static str, Option<f64>, Range); 4] {
-        [
-            ("k", Some(self.k), range::FATIGUE_WEIGHT),
-            ("yield", Some(self.yield_stress), range::YIELD_STRESS),
-            ("youngs_modulus", self.youngs_modulus, range::YOUNGS_MODULUS),
-            ("limit", self.limit, BEARABLE),
-        ]
-    }
-}
-
-impl Limited for FatemiSocie {
-    const SCHEMA: &'static str = "FatemiSocie";
-
-    fn limits() -> Vec<(&'static str, serde_json::Value)> {
-        let any = FatemiSocie { k: 0.0, yield_stress: 0.0, youngs_modulus: None, limit: None };
-        any.members().map(|(name, _, range)| (name, range.keywords())).into()
-    }
+    pub limit: Option<f64> = BEARABLE,
 }
 
 /// A quantity of the surface.
-#[skip_serializing_none]
-#[apply(Option => #[serde(default, deserialize_with = "not_null")] #[schema(nullable = false)])]
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
-#[serde(deny_unknown_fields)]
-pub struct SurfaceCriterion {
+pub struct SurfaceCriterion: Copy, Default {
     /// The value that the material bears.
-    pub limit: Option<f64>,
+    pub limit: Option<f64> = BEARABLE,
 }
-limits!(SurfaceCriterion { limit: BEARABLE });
+}
+
+/// Which stresses over the cycle may be asked for.
+const PATHS: Array<RangeInclusive<usize>> = Array(STRESS_PATHS, 0..=*SUBSURFACE_POINTS.end() - 1);
+/// A value that a material bears.
+const BEARABLE: Range = Range { quantity: Quantity::Number, unit: "", min: 1e-300, max: 1e30 };
 
 /// A checked request.
 #[derive(Clone, Debug)]
@@ -249,18 +184,12 @@ impl FrettingTask {
     /// What is computed, with limits, by the order of the reply.
     #[must_use]
     pub fn measures(&self) -> [Option<(Measure, Option<f64>)>; 8] {
-        let stress = |index: usize| self.criteria[index].map(|(criterion, limit)| (Measure::Stress(criterion), limit));
+        let [crossland, dang_van, findley, swt, fatemi_socie] =
+            self.criteria.map(|asked| asked.map(|(criterion, limit)| (Measure::Stress(criterion), limit)));
         let surface = |asked: Option<SurfaceCriterion>, measure| asked.map(|asked| (measure, asked.limit));
-        [
-            stress(0),
-            stress(1),
-            stress(2),
-            stress(3),
-            stress(4),
-            surface(self.ruiz, Measure::Ruiz),
-            self.ruiz.map(|_| (Measure::RuizTension, None)),
-            surface(self.friction_work, Measure::FrictionWork),
-        ]
+        let ruiz_tension = self.ruiz.map(|_| (Measure::RuizTension, None));
+        let (ruiz, work) = (surface(self.ruiz, Measure::Ruiz), surface(self.friction_work, Measure::FrictionWork));
+        [crossland, dang_van, findley, swt, fatemi_socie, ruiz, ruiz_tension, work]
     }
 }
 
@@ -271,25 +200,25 @@ impl Document for FrettingRequest {
         Some(self.contact.defined_profile("/contact/profile"))
     }
 
-    fn check_with(self, profiles: &dyn Prepare) -> Result<Self::Checked, Rejection> {
-        let mut faults = Faults::default();
+    fn checked(self, profiles: &dyn Prepare, faults: &mut Faults) -> Option<Self::Checked> {
         let at = |name| JsonPath::Root.member(name);
-        let setup = self.contact.check(at("contact"), profiles, &mut faults);
+        let setup = self.contact.check(at("contact"), profiles, faults);
         faults.needs_stress_field(setup.as_ref(), at("contact").member("profile"));
-        let plan = self.path.check(at("path"), &mut faults);
+        let plan = self.path.check(at("path"), faults);
         if let Some(plan) = &plan {
             let most = *FRETTING_MOVES.end();
             if plan.length() > most {
                 faults.add(at("path"), format_args!("{} moves: at most {most} can be rated", plan.length()));
             }
         }
-        Limit::check(&ToleranceOr(DEFAULT_TOLERANCE), &self.tolerance, at("tolerance"), &mut faults);
+        let searches = self.points.is_none() && self.line.is_none() && self.plane.is_none() && self.surface.is_none();
+        let default = if searches { SEARCH_TOLERANCE } else { DEFAULT_TOLERANCE };
+        let tolerance = Tolerance(default).of(self.tolerance, faults);
         let bulk = self.bulk.map(|bulk| {
-            bulk.check_members(at("bulk"), &mut faults);
+            bulk.check_members(at("bulk"), faults);
             let [mean, amplitude, phase] = [bulk.mean, bulk.amplitude, bulk.phase].map(|part| part.unwrap_or(0.0));
             fatigue::Bulk { mean, amplitude, phase: phase.to_radians() }
         });
-        let searches = self.points.is_none() && self.line.is_none() && self.plane.is_none() && self.surface.is_none();
         let places = SubsurfaceRequest {
             body: self.body,
             poisson_ratio: self.poisson_ratio,
@@ -301,17 +230,17 @@ impl Document for FrettingRequest {
             fields: None,
             bulk: None,
         };
-        let mut asked = places.at(&self.contact, JsonPath::Root, &mut faults);
+        let mut asked = places.at(&self.contact, JsonPath::Root, faults);
         if let Some(asked) = asked.as_mut().filter(|_| searches) {
             asked.places = Places::Points(Vec::new());
         }
         let youngs_modulus = self.contact.material.youngs_modulus(self.body);
         let poisson = asked.as_ref().map_or(0.0, |asked| asked.poisson_ratio);
-        let criteria = self.criteria.check((youngs_modulus, poisson), at("criteria"), &mut faults);
+        let criteria = self.criteria.check((youngs_modulus, poisson), at("criteria"), faults);
         let stress_paths = self.stress_paths.unwrap_or_default();
-        Limit::check(&PATHS, &stress_paths, at("stress_paths"), &mut faults);
+        Limit::check(&PATHS, &stress_paths, at("stress_paths"), faults);
         if let Some(asked) = &asked {
-            self.criteria.check_surface(&asked.places, at("criteria"), &mut faults);
+            self.criteria.check_surface(&asked.places, at("criteria"), faults);
             for (index, place) in stress_paths.iter().enumerate() {
                 if searches {
                     let detail = "a search finds its places itself: name them, or leave `stress_paths` out";
@@ -332,9 +261,9 @@ impl Document for FrettingRequest {
             ruiz: self.criteria.ruiz,
             friction_work: self.criteria.friction_work,
             stress_paths,
-            tolerance: self.tolerance.unwrap_or(if searches { SEARCH_TOLERANCE } else { DEFAULT_TOLERANCE }),
+            tolerance,
         });
-        faults.done(setup.zip(task).map(|(setup, task)| (self.contact, setup, task)))
+        setup.zip(task).map(|(setup, task)| (self.contact, setup, task))
     }
 }
 
@@ -365,29 +294,7 @@ impl Criteria {
             }
             given.or(youngs_modulus).unwrap_or(1.0)
         };
-        if let Some(weighted) = &self.crossland {
-            weighted.check_members(at.member("crossland"), faults);
-        }
-        if let Some(weighted) = &self.dang_van {
-            weighted.check_members(at.member("dang_van"), faults);
-        }
-        if let Some(findley) = &self.findley {
-            findley.check_members(at.member("findley"), faults);
-        }
-        if let Some(swt) = &self.swt {
-            swt.check_members(at.member("swt"), faults);
-        }
-        if let Some(fatemi) = &self.fatemi_socie {
-            let place = at.member("fatemi_socie");
-            for (name, value, range) in fatemi.members() {
-                Limit::check(&range, &value, place.member(name), faults);
-            }
-        }
-        for (name, surface) in [("ruiz", &self.ruiz), ("friction_work", &self.friction_work)] {
-            if let Some(surface) = surface {
-                surface.check_members(at.member(name), faults);
-            }
-        }
+        self.check_members(at, faults);
         [
             self.crossland.map(|asked| (Criterion::Crossland { alpha: asked.alpha }, asked.limit)),
             self.dang_van.map(|asked| (Criterion::DangVan { alpha: asked.alpha }, asked.limit)),
@@ -398,7 +305,7 @@ impl Criteria {
             }),
             self.fatemi_socie.map(|asked| {
                 let youngs_modulus = modulus(asked.youngs_modulus, "fatemi_socie", faults);
-                let FatemiSocie { k, yield_stress, limit, .. } = asked;
+                let FatemiSocie { k, r#yield: yield_stress, limit, .. } = asked;
                 (Criterion::FatemiSocie { k, yield_stress, youngs_modulus, poisson }, limit)
             }),
         ]

@@ -4,7 +4,6 @@ use std::f64::consts::TAU;
 use std::ops::RangeInclusive;
 
 use serde::{Deserialize, Serialize};
-use serde_with::{apply, skip_serializing_none};
 use utoipa::ToSchema;
 
 use stickslip_mechanics::{
@@ -16,8 +15,8 @@ use stickslip_mechanics::{
 
 use super::Move;
 use crate::check::{Faults, JsonPath};
-use crate::limits::{PATH_MOVES, limits};
-use crate::single_key::not_null;
+use crate::limits::{Limited as _, PATH_MOVES};
+use crate::request::requests;
 
 /// Cycles of a path: with two moves each, and one before them, as many as a path may have moves.
 const CYCLES: RangeInclusive<usize> = 1..=49_999;
@@ -30,41 +29,45 @@ const DEFAULT_POINTS: usize = 64;
 /// Phase of the oscillation of the load.
 pub(crate) const PHASE: Range = Range { quantity: Quantity::Number, unit: "degrees", min: -360.0, max: 360.0 };
 
+requests! {
 /// Equal cycles: exactly one of `displacement` and `force`, the amplitude. The path has 1 + n k moves, at most 100 000,
 /// for n cycles of k moves: the first from the present state to the first turn, then k each cycle, which ends at that
 /// turn again. Under a constant load the difference of the dissipated energies of two states k moves apart is the
 /// friction work of a cycle.
-#[skip_serializing_none]
-#[apply(Option => #[serde(default, deserialize_with = "not_null")] #[schema(nullable = false)])]
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-#[serde(deny_unknown_fields)]
 #[schema(example = json!({"displacement": 1e-7, "count": 10}))]
-pub struct CyclicPath {
+pub struct CyclicPath: Copy {
     /// Amplitude A of the tangential displacement of the indenter, m.
-    pub displacement: Option<f64>,
+    pub displacement: Option<f64> = Range { min: 0.0, ..range::DISPLACEMENT },
     /// Amplitude A of the tangential force, N. The magnitude of the force must stay below the friction limit μ F_N.
-    pub force: Option<f64>,
+    pub force: Option<f64> = Range { min: 0.0, ..range::FORCE },
     /// Number of cycles n.
-    pub count: usize,
+    pub count: usize = CYCLES,
     /// The first turn.
     #[serde(default)]
     pub start: FirstTurn,
     /// Moves per cycle k, an even number: the points of mean + A cos(2π t), or mean - A cos(2π t) from the lower
     /// turn, at t = j/k. Left out, under a constant load 2 (the turns; more points add recorded states between them),
     /// else 64.
-    pub points_per_cycle: Option<usize>,
+    pub points_per_cycle: Option<usize> = POINTS_PER_CYCLE,
     /// The value in the middle between both turns, m or N; left out, zero.
-    pub mean: Option<f64>,
+    pub mean: Option<f64> = range::FORCE,
     /// Oscillation of the load in the same cycles; left out, the load is constant.
     pub normal: Option<NormalOscillation>,
 }
-limits!(CyclicPath {
-    displacement: Range { min: 0.0, ..range::DISPLACEMENT },
-    force: Range { min: 0.0, ..range::FORCE },
-    count: CYCLES,
-    points_per_cycle: POINTS_PER_CYCLE,
-    mean: range::FORCE,
-});
+
+/// An oscillation of the load: its value at the beginning + amplitude cos(2π t + phase), with the t of the cycles.
+/// Exactly one of `normal_force` and `indentation`, the amplitude. Moves in displacement and indentation are exact;
+/// those with a force are followed to the tolerance.
+#[schema(example = json!({"indentation": 1e-8, "phase": 90.0}))]
+pub struct NormalOscillation: Copy {
+    /// Amplitude of the normal force, N, at most the normal force at the beginning.
+    pub normal_force: Option<f64> = range::NORMAL_FORCE,
+    /// Amplitude of the indentation, m. Below zero the bodies are apart and the slip history is lost.
+    pub indentation: Option<f64> = Range { min: 0.0, ..range::INDENTATION },
+    /// Phase, degrees; left out, zero.
+    pub phase: Option<f64> = PHASE,
+}
+}
 
 /// Where cycles begin and end.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
@@ -76,28 +79,6 @@ pub enum FirstTurn {
     /// At mean - amplitude.
     Down,
 }
-
-/// An oscillation of the load: its value at the beginning + amplitude cos(2π t + phase), with the t of the cycles.
-/// Exactly one of `normal_force` and `indentation`, the amplitude. Moves in displacement and indentation are exact;
-/// those with a force are followed to the tolerance.
-#[skip_serializing_none]
-#[apply(Option => #[serde(default, deserialize_with = "not_null")] #[schema(nullable = false)])]
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-#[serde(deny_unknown_fields)]
-#[schema(example = json!({"indentation": 1e-8, "phase": 90.0}))]
-pub struct NormalOscillation {
-    /// Amplitude of the normal force, N, at most the normal force at the beginning.
-    pub normal_force: Option<f64>,
-    /// Amplitude of the indentation, m. Below zero the bodies are apart and the slip history is lost.
-    pub indentation: Option<f64>,
-    /// Phase, degrees; left out, zero.
-    pub phase: Option<f64>,
-}
-limits!(NormalOscillation {
-    normal_force: range::NORMAL_FORCE,
-    indentation: Range { min: 0.0, ..range::INDENTATION },
-    phase: PHASE,
-});
 
 /// Cycles that have passed all checks.
 #[derive(Clone, Copy, Debug)]

@@ -1,108 +1,57 @@
 //! The heights of a scan, and the limits of their numbers.
 
-use serde::{Deserialize, Serialize};
-use serde_json::{Value, json};
-use utoipa::ToSchema;
-
 use stickslip_mechanics::range::{Quantity, Range};
 
 use crate::check::{Faults, JsonPath};
-use crate::limits::{Keywords, Limit, Numbers, SCAN_POINTS, SCAN_ROWS, limits};
-use crate::single_key::single_key;
+use crate::choice::choices;
+use crate::limits::{Array, Limited as _, SCAN_POINTS, SCAN_ROWS};
+use crate::request::requests;
 
 /// A place or a height of a scan, in its unit.
 pub const SCAN_NUMBER: Range = Range { quantity: Quantity::Place, unit: "", min: -1e12, max: 1e12 };
 /// The distance of neighbouring points of a map, in its unit.
 pub const SCAN_STEP: Range = Range { quantity: Quantity::Place, unit: "", min: 1e-9, max: 1e9 };
 
+choices! {
 /// Heights with their places, one key. A height of `null` is missing.
-#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
-#[serde(rename_all = "snake_case")]
 pub enum ScanData {
     /// A profile along a line through the axis.
-    Line(LineScan),
+    "line" => Line(LineScan),
     /// Heights on a grid.
-    Map(MapScan),
+    "map" => Map(MapScan),
     /// Heights anywhere.
-    Points(PointScan),
+    "points" => Points(PointScan),
 }
-single_key!(ScanData { "line" => Line, "map" => Map, "points" => Points });
+}
 
+requests! {
 /// A scan along a line through the axis, in any order.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-#[serde(deny_unknown_fields)]
 pub struct LineScan {
     /// Places along the line, in the unit of `units.lateral`.
-    pub x: Vec<f64>,
+    pub x: Vec<f64> = Array(SCAN_POINTS, SCAN_NUMBER),
     /// Heights, as many, in the unit of `units.height`.
-    pub z: Vec<Option<f64>>,
+    pub z: Vec<Option<f64>> = Array(SCAN_POINTS, SCAN_NUMBER),
 }
-limits!(LineScan { x: Numbers(SCAN_POINTS, SCAN_NUMBER), z: Heights(SCAN_POINTS) });
 
 /// A scan on a grid. The first height is at x = y = 0.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-#[serde(deny_unknown_fields)]
 pub struct MapScan {
     /// The distance of neighbours in a row, along x, in the unit of `units.lateral`.
-    pub dx: f64,
+    pub dx: f64 = SCAN_STEP,
     /// The distance of rows, along y, in the unit of `units.lateral`.
-    pub dy: f64,
+    pub dy: f64 = SCAN_STEP,
     /// The rows of heights, each as long, in the unit of `units.height`.
-    pub z: Vec<Vec<Option<f64>>>,
+    pub z: Vec<Vec<Option<f64>>> = Array(SCAN_ROWS, Array(SCAN_ROWS, SCAN_NUMBER)),
 }
-limits!(MapScan { dx: SCAN_STEP, dy: SCAN_STEP, z: Rows });
 
 /// Heights at places, in any order.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-#[serde(deny_unknown_fields)]
 pub struct PointScan {
     /// Places along x, in the unit of `units.lateral`.
-    pub x: Vec<f64>,
+    pub x: Vec<f64> = Array(SCAN_POINTS, SCAN_NUMBER),
     /// Places along y, as many, in the unit of `units.lateral`.
-    pub y: Vec<f64>,
+    pub y: Vec<f64> = Array(SCAN_POINTS, SCAN_NUMBER),
     /// Heights, as many, in the unit of `units.height`.
-    pub z: Vec<Option<f64>>,
+    pub z: Vec<Option<f64>> = Array(SCAN_POINTS, SCAN_NUMBER),
 }
-limits!(PointScan {
-    x: Numbers(SCAN_POINTS, SCAN_NUMBER),
-    y: Numbers(SCAN_POINTS, SCAN_NUMBER),
-    z: Heights(SCAN_POINTS)
-});
-
-/// The number of heights, and the range of each.
-pub struct Heights(pub std::ops::RangeInclusive<usize>);
-
-impl Keywords for Heights {
-    fn keywords(&self) -> Value {
-        json!({"minItems": self.0.start(), "maxItems": self.0.end(), "items": SCAN_NUMBER.keywords()})
-    }
-}
-
-impl Limit<Vec<Option<f64>>> for Heights {
-    fn check(&self, value: &Vec<Option<f64>>, at: JsonPath<'_>, faults: &mut Faults) {
-        if faults.length(at, value.len(), &self.0) {
-            for (index, height) in value.iter().enumerate() {
-                Limit::check(&SCAN_NUMBER, height, at.index(index), faults);
-            }
-        }
-    }
-}
-
-/// Rows of heights.
-pub struct Rows;
-
-impl Keywords for Rows {
-    fn keywords(&self) -> Value {
-        json!({"minItems": SCAN_ROWS.start(), "maxItems": SCAN_ROWS.end(), "items": Heights(SCAN_ROWS).keywords()})
-    }
-}
-
-impl Limit<Vec<Vec<Option<f64>>>> for Rows {
-    fn check(&self, value: &Vec<Vec<Option<f64>>>, at: JsonPath<'_>, faults: &mut Faults) {
-        if faults.length(at, value.len(), &SCAN_ROWS) {
-            value.iter().enumerate().for_each(|(index, row)| Heights(SCAN_ROWS).check(row, at.index(index), faults));
-        }
-    }
 }
 
 /// Notes a column that is not as long as the first.

@@ -3,35 +3,30 @@
 mod data;
 mod reply;
 
-pub use data::{Heights, LineScan, MapScan, PointScan, Rows, ScanData};
+pub use data::{LineScan, MapScan, PointScan, ScanData};
 pub use reply::{Axis2, ColumnPair, ContactEstimate, Estimate, ProfileFitReply, ScanResidual};
 
-use serde::de::value::MapAccessDeserializer;
-use serde::de::{MapAccess, Unexpected, Visitor};
-use serde::{Deserialize, Deserializer, Serialize};
-use serde_with::{apply, skip_serializing_none};
+use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
 use stickslip_mechanics::range::{Quantity, Range};
 use stickslip_mechanics::{Elasticity, Preload as Load, range};
 
-use crate::check::{Faults, JsonPath, Rejection};
+use crate::check::{Faults, JsonPath};
+use crate::choice::{choices, object_or_string, words};
 use crate::definition::{Material, Preload};
 use crate::document::Document;
-use crate::limits::{SCAN_KNOTS, limits};
+use crate::limits::{Limited as _, SCAN_KNOTS};
 use crate::prepare::Prepare;
-use crate::single_key::{not_null, single_key};
+use crate::request::requests;
 
 /// The noise of a height that a scan may be said to have.
 pub const SCAN_NOISE: Range = Range { quantity: Quantity::Place, unit: "m", min: 1e-15, max: 1.0 };
 /// A coordinate of the axis.
 pub const SCAN_AXIS: Range = Range { quantity: Quantity::Place, unit: "m", min: -1e3, max: 1e3 };
 
+requests! {
 /// A scan of heights, and how a profile is to be fitted to it; the server keeps nothing of it.
-#[skip_serializing_none]
-#[apply(Option => #[serde(default, deserialize_with = "not_null")] #[schema(nullable = false)])]
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-#[serde(deny_unknown_fields)]
 pub struct ProfileFitRequest {
     /// The heights, with their places.
     pub scan: ScanData,
@@ -52,40 +47,48 @@ pub struct ProfileFitRequest {
 }
 
 /// The units of a scan.
-#[skip_serializing_none]
-#[apply(Option => #[serde(default, deserialize_with = "not_null")] #[schema(nullable = false)])]
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
-#[serde(deny_unknown_fields)]
-pub struct ScanUnits {
+pub struct ScanUnits: Copy, Default {
     /// That of x and y, and of dx and dy.
     pub lateral: Option<LengthUnit>,
     /// That of z.
     pub height: Option<LengthUnit>,
 }
 
+/// The place of an axis.
+pub struct CentrePlace: Copy {
+    /// Along the line, or along the rows of a map, m.
+    pub x: f64 = SCAN_AXIS,
+    /// Along the columns of a map, m; 0 if it is left out, as for a line.
+    pub y: Option<f64> = SCAN_AXIS,
+}
+
+/// A load on the body that was scanned.
+pub struct ScanLoad {
+    /// The elastic constants.
+    pub material: Material,
+    /// Coulomb's coefficient of friction μ, a pure number.
+    pub friction: f64 = range::FRICTION,
+    /// The normal load.
+    pub preload: Preload,
+}
+}
+
+words! {
 /// A unit of length.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
-pub enum LengthUnit {
+pub enum LengthUnit: Default {
     /// Metre.
     #[default]
-    #[serde(rename = "m")]
-    Metre,
+    Metre = "m",
     /// Millimetre.
-    #[serde(rename = "mm")]
-    Millimetre,
+    Millimetre = "mm",
     /// Micrometre.
-    #[serde(rename = "um")]
-    Micrometre,
+    Micrometre = "um",
     /// Nanometre.
-    #[serde(rename = "nm")]
-    Nanometre,
+    Nanometre = "nm",
+}
 }
 
 impl LengthUnit {
-    /// All of them.
-    pub const ALL: [LengthUnit; 4] =
-        [LengthUnit::Metre, LengthUnit::Millimetre, LengthUnit::Micrometre, LengthUnit::Nanometre];
-
     /// It in metres.
     #[must_use]
     pub fn metres(self) -> f64 {
@@ -94,17 +97,6 @@ impl LengthUnit {
             LengthUnit::Millimetre => 1e-3,
             LengthUnit::Micrometre => 1e-6,
             LengthUnit::Nanometre => 1e-9,
-        }
-    }
-
-    /// Its symbol.
-    #[must_use]
-    pub fn symbol(self) -> &'static str {
-        match self {
-            LengthUnit::Metre => "m",
-            LengthUnit::Millimetre => "mm",
-            LengthUnit::Micrometre => "um",
-            LengthUnit::Nanometre => "nm",
         }
     }
 }
@@ -123,7 +115,6 @@ pub enum ScanOrientation {
 }
 
 /// Where the axis is: the string `"auto"`, or a place.
-// Untagged when written. It is read by hand below, so that a fault in the object names its member.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, ToSchema)]
 #[serde(untagged)]
 pub enum Centre {
@@ -141,69 +132,25 @@ pub enum Auto {
     Auto,
 }
 
-/// The place of an axis.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-#[serde(deny_unknown_fields)]
-pub struct CentrePlace {
-    /// Along the line, or along the rows of a map, m.
-    pub x: f64,
-    /// Along the columns of a map, m; 0 if it is left out, as for a line.
-    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "not_null")]
-    #[schema(nullable = false)]
-    pub y: Option<f64>,
-}
-limits!(CentrePlace { x: SCAN_AXIS, y: SCAN_AXIS });
-
+choices! {
 /// What decides how smooth a profile is, one key or `"auto"`.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, ToSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum Smoothing {
-    /// Generalised cross-validation.
-    Auto,
+pub enum Smoothing: Copy {
+    words {
+        /// Generalised cross-validation.
+        Auto = "auto",
+    }
     /// The standard deviation of the noise of a height, m.
-    Noise(f64),
+    "noise" => Noise(f64) = SCAN_NOISE,
     /// So many intervals of constant curvature, without a penalty on their differences.
-    Knots(usize),
+    "knots" => Knots(usize) = SCAN_KNOTS,
 }
-single_key!(Smoothing { "noise" => Noise, "knots" => Knots } or { "auto" => Auto });
-limits!(enum Smoothing { Noise "noise": SCAN_NOISE, Knots "knots": SCAN_KNOTS });
-
-/// A load on the body that was scanned.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-#[serde(deny_unknown_fields)]
-pub struct ScanLoad {
-    /// The elastic constants.
-    pub material: Material,
-    /// Coulomb's coefficient of friction μ, a pure number.
-    pub friction: f64,
-    /// The normal load.
-    pub preload: Preload,
-}
-limits!(ScanLoad { friction: range::FRICTION });
-
-impl<'de> Deserialize<'de> for Centre {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        deserializer.deserialize_any(CentreVisitor)
-    }
 }
 
-struct CentreVisitor;
-
-impl<'de> Visitor<'de> for CentreVisitor {
-    type Value = Centre;
-
-    fn expecting(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str("an object with `x`, or the string \"auto\"")
-    }
-
-    fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<Centre, A::Error> {
-        CentrePlace::deserialize(MapAccessDeserializer::new(map)).map(Centre::At)
-    }
-
-    fn visit_str<E: serde::de::Error>(self, word: &str) -> Result<Centre, E> {
-        if word == "auto" { Ok(Centre::Auto(Auto::Auto)) } else { Err(E::invalid_value(Unexpected::Str(word), &self)) }
-    }
-}
+object_or_string!(
+    Centre: "an object with `x`, or the string \"auto\"",
+    CentrePlace => Centre::At,
+    "auto" => Centre::Auto(Auto::Auto)
+);
 
 /// A checked request, in SI units.
 #[derive(Clone, Debug, PartialEq)]
@@ -229,31 +176,31 @@ pub struct ProfileFitTask {
 impl Document for ProfileFitRequest {
     type Checked = ProfileFitTask;
 
-    fn check_with(self, _: &dyn Prepare) -> Result<ProfileFitTask, Rejection> {
-        let (mut faults, root) = (Faults::default(), JsonPath::Root);
+    fn checked(self, _: &dyn Prepare, faults: &mut Faults) -> Option<Self::Checked> {
+        let root = JsonPath::Root;
         let units = self.units.unwrap_or_default();
         let units = [units.lateral, units.height].map(|unit| unit.unwrap_or_default().metres());
         let line = matches!(self.scan, ScanData::Line(_));
         let pointer = self.scan.pointer();
-        let points = self.scan.check(units, root.member("scan"), &mut faults);
+        let points = self.scan.check(units, root.member("scan"), faults);
         let centre = match self.centre {
             Some(Centre::At(place)) => {
-                place.check_members(root.member("centre"), &mut faults);
+                place.check_members(root.member("centre"), faults);
                 Some([place.x, place.y.unwrap_or(0.0)])
             }
             Some(Centre::Auto(Auto::Auto)) | None => None,
         };
         if let Some(smoothing) = &self.smoothing {
-            smoothing.check_members(root.member("smoothing"), &mut faults);
+            smoothing.check_members(root.member("smoothing"), faults);
         }
         let load = self.load.as_ref().map(|load| {
             let at = root.member("load");
-            let elasticity = load.material.check(at.member("material"), &mut faults);
-            load.check_members(at, &mut faults);
-            let preload = load.preload.check(at.member("preload"), &mut faults);
+            let elasticity = load.material.check(at.member("material"), faults);
+            load.check_members(at, faults);
+            let preload = load.preload.check(at.member("preload"), faults);
             elasticity.map(|elasticity| (elasticity, load.friction, preload))
         });
-        let task = points.map(|points| ProfileFitTask {
+        points.map(|points| ProfileFitTask {
             points,
             line,
             pointer,
@@ -262,7 +209,6 @@ impl Document for ProfileFitRequest {
             level: self.level.unwrap_or(true),
             smoothing: self.smoothing.unwrap_or(Smoothing::Auto),
             load: load.flatten(),
-        });
-        faults.done(task)
+        })
     }
 }

@@ -3,32 +3,32 @@
 mod reply;
 
 use serde::{Deserialize, Serialize};
-use serde_with::{apply, skip_serializing_none};
 use utoipa::ToSchema;
 use uuid::Uuid;
 
 use stickslip_mechanics::protocol::{AmplitudeLaw, PathEnd};
 use stickslip_mechanics::range::{DISPLACEMENT, Quantity, Range};
 
-use super::check::{Faults, JsonPath, Rejection};
+use super::check::{Faults, JsonPath};
 use super::definition::{ContactDefinition, DefinedProfile, SharedSetup};
 use super::document::Document;
-use super::limits::{PROTOCOL_REVERSALS, limits};
 use super::prepare::Prepare;
 use super::simulate::Steps;
-use super::single_key::{not_null, single_key};
+use crate::limits::{Limit as _, Limited as _, PROTOCOL_REVERSALS};
+use crate::request::requests;
 
+use crate::choice::choices;
 pub use reply::{
     Comparison, DisplacementPath, FirstStroke, Gap, JudgedReply, Outcome, PressureUnit, ProtocolReply, RelaxReply,
     RobustnessReply, StartReply,
 };
 
+/// The largest stress that may remain, over the unit of stress.
+const TARGET: Range = Range { quantity: Quantity::ProtocolTarget, unit: "", min: 1e-4, max: 10.0 };
+
+requests! {
 /// A contact, and how it is to be moved so that little shear stress remains. The number of reversals is given, or
 /// follows from a target.
-#[skip_serializing_none]
-#[apply(Option => #[serde(default, deserialize_with = "not_null")] #[schema(nullable = false)])]
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-#[serde(deny_unknown_fields)]
 #[schema(example = json!({
     "contact": ContactDefinition::example(),
     "reversals": 20,
@@ -38,10 +38,10 @@ pub struct ProtocolRequest {
     /// The contact; may be left out where `start` names one on the server.
     pub contact: Option<ContactDefinition>,
     /// Number of reversals N_R; this or `target`.
-    pub reversals: Option<usize>,
+    pub reversals: Option<usize> = PROTOCOL_REVERSALS,
     /// The largest |τ|/(μ p_max) that may remain, a pure number (over the mean pressure where the largest is
     /// infinite): the smallest number of reversals that reaches it is found.
-    pub target: Option<f64>,
+    pub target: Option<f64> = TARGET,
     /// The law of the amplitudes.
     #[serde(default)]
     pub kind: ProtocolKind,
@@ -55,17 +55,13 @@ pub struct ProtocolRequest {
 }
 
 /// How a contact on the server is to be relaxed; `reversals` or `target` is needed, all else has a default.
-#[skip_serializing_none]
-#[apply(Option => #[serde(default, deserialize_with = "not_null")] #[schema(nullable = false)])]
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-#[serde(deny_unknown_fields)]
 #[schema(example = json!({"reversals": 20, "dry_run": true}))]
 pub struct RelaxRequest {
     /// Number of reversals N_R, at the most; this or `target`. The path begins with a stroke more.
-    pub reversals: Option<usize>,
+    pub reversals: Option<usize> = PROTOCOL_REVERSALS,
     /// The largest |τ|/(μ p_max) that may remain, a pure number (over the mean pressure where the largest is
     /// infinite): the smallest number of reversals that reaches it is found.
-    pub target: Option<f64>,
+    pub target: Option<f64> = TARGET,
     /// The law of the amplitudes.
     #[serde(default)]
     pub kind: ProtocolKind,
@@ -77,6 +73,26 @@ pub struct RelaxRequest {
     pub dry_run: bool,
     /// Ask for the states along the path.
     pub steps: Option<Steps>,
+}
+
+/// Errors with which a protocol is followed: it is tried many times, each with errors of its own.
+#[schema(example = json!({"amplitude_error": 0.01, "friction_error": 0.05, "samples": 100, "seed": 1}))]
+pub struct Robustness: Copy {
+    /// Standard deviation of each displacement, relative to itself, a pure number; normally distributed.
+    #[serde(default)]
+    pub amplitude_error: f64 = Range { quantity: Quantity::AmplitudeError, unit: "", min: 0.0, max: 1.0 },
+    /// The fraction that the coefficient of friction may be off either way, a pure number; evenly distributed. Not for
+    /// a start from a contact on the server, whose history belongs to its own coefficient.
+    #[serde(default)]
+    pub friction_error: f64 = Range { quantity: Quantity::FrictionError, unit: "", min: 0.0, max: 0.9 },
+    /// How many times it is tried.
+    #[serde(default = "samples")]
+    pub samples: usize = 2..=10_000_usize,
+    /// Where the sequence of random numbers begins: the same seed gives the same reply.
+    #[serde(default)]
+    // Integers that every JSON parser reads exactly.
+    pub seed: u64 = 0..=0x1f_ffff_ffff_ffff_u64,
+}
 }
 
 /// The law of the amplitudes.
@@ -92,17 +108,15 @@ pub enum ProtocolKind {
     Minimax,
 }
 
+choices! {
 /// What the reversals begin from, one key.
-#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
-#[serde(rename_all = "snake_case")]
 pub enum ProtocolStart {
     /// This displacement of a contact that has never moved, m; the path begins with it.
-    Displacement(f64),
+    "displacement" => Displacement(f64) = DISPLACEMENT,
     /// The present state of the contact of this identifier, whatever its history.
-    ContactId(Uuid),
+    "contact_id" => ContactId(Uuid),
 }
-single_key!(ProtocolStart { "displacement" => Displacement, "contact_id" => ContactId });
-limits!(enum ProtocolStart { Displacement "displacement": DISPLACEMENT });
+}
 
 /// Where a path ends.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
@@ -116,33 +130,6 @@ pub enum ProtocolEnd {
     /// Wherever the least stress remains.
     Free,
 }
-
-/// Errors with which a protocol is followed: it is tried many times, each with errors of its own.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-#[serde(deny_unknown_fields)]
-#[schema(example = json!({"amplitude_error": 0.01, "friction_error": 0.05, "samples": 100, "seed": 1}))]
-pub struct Robustness {
-    /// Standard deviation of each displacement, relative to itself, a pure number; normally distributed.
-    #[serde(default)]
-    pub amplitude_error: f64,
-    /// The fraction that the coefficient of friction may be off either way, a pure number; evenly distributed. Not for
-    /// a start from a contact on the server, whose history belongs to its own coefficient.
-    #[serde(default)]
-    pub friction_error: f64,
-    /// How many times it is tried.
-    #[serde(default = "samples")]
-    pub samples: usize,
-    /// Where the sequence of random numbers begins: the same seed gives the same reply.
-    #[serde(default)]
-    pub seed: u64,
-}
-limits!(Robustness {
-    amplitude_error: Range { quantity: Quantity::AmplitudeError, unit: "", min: 0.0, max: 1.0 },
-    friction_error: Range { quantity: Quantity::FrictionError, unit: "", min: 0.0, max: 0.9 },
-    samples: 2..=10_000_usize,
-    // Integers that every JSON parser reads exactly.
-    seed: 0..=0x1f_ffff_ffff_ffff_u64,
-});
 
 /// How many times a protocol is tried with errors by default.
 fn samples() -> usize {
@@ -158,36 +145,22 @@ pub enum Aim {
     Target(f64),
 }
 
-/// The members by which a protocol and a relaxation name their aim; exactly one of the two is given.
-struct AimMembers {
-    reversals: Option<usize>,
-    target: Option<f64>,
-}
-limits!(AimMembers {
-    reversals: PROTOCOL_REVERSALS,
-    target: Range { quantity: Quantity::ProtocolTarget, unit: "", min: 1e-4, max: 10.0 },
-});
-limits!(ProtocolRequest and AimMembers);
-limits!(RelaxRequest and AimMembers);
-
-impl AimMembers {
-    fn check(&self, faults: &mut Faults) -> Option<Aim> {
-        let at = JsonPath::Root;
-        let aim = match (self.reversals, self.target) {
-            (Some(reversals), None) => Aim::Reversals(reversals),
-            (None, Some(target)) => Aim::Target(target),
-            (None, None) => {
-                faults.add(at.member("reversals"), "missing: name `reversals` or `target`");
-                return None;
-            }
-            (Some(_), Some(_)) => {
-                faults.add(at.member("target"), "conflicts with `reversals`: one of the two is allowed");
-                return None;
-            }
-        };
-        self.check_members(at, faults);
-        Some(aim)
+/// The aim that a protocol or a relaxation names; exactly one of the two is given.
+fn aim(reversals: Option<usize>, target: Option<f64>, faults: &mut Faults) -> Option<Aim> {
+    let (at_reversals, at_target) = (JsonPath::Root.member("reversals"), JsonPath::Root.member("target"));
+    match (reversals, target) {
+        (Some(reversals), None) => {
+            PROTOCOL_REVERSALS.check(&reversals, at_reversals, faults);
+            return Some(Aim::Reversals(reversals));
+        }
+        (None, Some(target)) => {
+            faults.number(at_target, target, &TARGET);
+            return Some(Aim::Target(target));
+        }
+        (None, None) => faults.add(at_reversals, "missing: name `reversals` or `target`"),
+        (Some(_), Some(_)) => faults.add(at_target, "conflicts with `reversals`: one of the two is allowed"),
     }
+    None
 }
 
 /// The checked options of a protocol.
@@ -219,10 +192,9 @@ impl Document for ProtocolRequest {
         self.contact.as_ref().map(|contact| contact.defined_profile("/contact/profile"))
     }
 
-    fn check_with(self, profiles: &dyn Prepare) -> Result<Self::Checked, Rejection> {
-        let mut faults = Faults::default();
+    fn checked(self, profiles: &dyn Prepare, faults: &mut Faults) -> Option<Self::Checked> {
         let at = |name| JsonPath::Root.member(name);
-        let setup = self.contact.as_ref().and_then(|contact| contact.check(at("contact"), profiles, &mut faults));
+        let setup = self.contact.as_ref().and_then(|contact| contact.check(at("contact"), profiles, faults));
         // Protocols are judged by the stress that they leave.
         faults.needs_stress_field(setup.as_ref(), at("contact").member("profile"));
         let subject = match (self.start, self.contact, setup) {
@@ -241,16 +213,16 @@ impl Document for ProtocolRequest {
                 None
             }
             (start, Some(definition), setup) => {
-                let first = start.and_then(|start| start.check(at("start"), &mut faults));
+                let first = start.and_then(|start| start.check(at("start"), faults));
                 setup.map(|setup| ProtocolSubject::Virgin(Box::new((definition, setup)), first))
             }
         };
-        let aim = AimMembers { reversals: self.reversals, target: self.target }.check(&mut faults);
+        let aim = aim(self.reversals, self.target, faults);
         if let Some(robustness) = &self.robustness {
-            robustness.check_members(at("robustness"), &mut faults);
+            robustness.check_members(at("robustness"), faults);
         }
         let task = aim.map(|aim| ProtocolTask { aim, kind: self.kind, end: self.end, robustness: self.robustness });
-        faults.done(subject.zip(task))
+        subject.zip(task)
     }
 }
 
@@ -268,11 +240,10 @@ pub struct Relaxation {
 impl Document for RelaxRequest {
     type Checked = Relaxation;
 
-    fn check_with(self, _: &dyn Prepare) -> Result<Relaxation, Rejection> {
-        let mut faults = Faults::default();
-        let aim = AimMembers { reversals: self.reversals, target: self.target }.check(&mut faults);
+    fn checked(self, _: &dyn Prepare, faults: &mut Faults) -> Option<Self::Checked> {
+        let aim = aim(self.reversals, self.target, faults);
         let task = aim.map(|aim| ProtocolTask { aim, kind: self.kind, end: self.end, robustness: None });
-        faults.done(task.map(|task| Relaxation { task, dry_run: self.dry_run, steps: self.steps }))
+        task.map(|task| Relaxation { task, dry_run: self.dry_run, steps: self.steps })
     }
 }
 

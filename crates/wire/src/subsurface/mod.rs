@@ -5,7 +5,7 @@ mod places;
 pub use places::{Direction, Places, Steps, SubsurfaceLine, SubsurfacePlane, SubsurfaceSurface};
 
 use serde::{Deserialize, Serialize};
-use serde_with::{apply, skip_serializing_none};
+use serde_with::apply;
 use utoipa::ToSchema;
 
 use stickslip_mechanics::{self as mechanics, range, subsurface::Side};
@@ -13,18 +13,15 @@ use stickslip_mechanics::{self as mechanics, range, subsurface::Side};
 use crate::check::{Faults, JsonPath, Rejection};
 use crate::definition::{Body, BodyName, ContactDefinition};
 use crate::document::Document;
-use crate::limits::{SUBSURFACE_POINTS, Triples, limits};
+use crate::limits::{Array, Limited as _, SUBSURFACE_POINTS, Triple};
 use crate::prepare::Prepare;
 use crate::reply::{Accuracy, Warning};
-use crate::single_key::not_null;
+use crate::request::requests;
 
+requests! {
 /// The stress in one of the bodies, tension positive: x along the motion of the first body, which carries the profile,
 /// z into the body asked for, the origin on the axis of the contact. Exactly one of `points`, `line`, `plane` and
 /// `surface` says where.
-#[skip_serializing_none]
-#[apply(Option => #[serde(default, deserialize_with = "not_null")] #[schema(nullable = false)])]
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-#[serde(deny_unknown_fields)]
 #[schema(example = json!({
     "body": "first", "plane": {"normal": "y", "offset": 0.0, "x": [-2e-4, 2e-4, 41], "z": [0.0, 2e-4, 21]},
     "fields": ["von_mises"]
@@ -33,9 +30,9 @@ pub struct SubsurfaceRequest {
     /// Which body.
     pub body: BodyName,
     /// Its Poisson's ratio, a pure number. Where the material has `bodies` it is known, and may be left out.
-    pub poisson_ratio: Option<f64>,
+    pub poisson_ratio: Option<f64> = range::POISSON_RATIO,
     /// A list of x, y, z, m, with z of at least zero.
-    pub points: Option<Vec<[f64; 3]>>,
+    pub points: Option<Vec<[f64; 3]>> = Array(SUBSURFACE_POINTS, Triple(range::PLACE)),
     /// A straight line.
     pub line: Option<SubsurfaceLine>,
     /// A grid in a plane.
@@ -47,7 +44,23 @@ pub struct SubsurfaceRequest {
     /// A uniform stress of the body that is added, Pa. It does not move the stick zone in this model.
     pub bulk: Option<Bulk>,
 }
-limits!(SubsurfaceRequest { poisson_ratio: range::POISSON_RATIO, points: Triples(SUBSURFACE_POINTS, range::PLACE) });
+
+/// A uniform stress, Pa, tension positive; a component left out is zero.
+pub struct Bulk: Copy, Default {
+    /// Normal stress along x.
+    pub xx: Option<f64> = range::BULK_STRESS,
+    /// Normal stress along y.
+    pub yy: Option<f64> = range::BULK_STRESS,
+    /// Normal stress along z.
+    pub zz: Option<f64> = range::BULK_STRESS,
+    /// Shear stress in the plane of x and y.
+    pub xy: Option<f64> = range::BULK_STRESS,
+    /// Shear stress in the plane of y and z.
+    pub yz: Option<f64> = range::BULK_STRESS,
+    /// Shear stress in the plane of x and z.
+    pub xz: Option<f64> = range::BULK_STRESS,
+}
+}
 
 /// A quantity below the surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
@@ -64,34 +77,6 @@ pub enum SubsurfaceField {
     /// The mean normal stress `hydrostatic`, Pa.
     Hydrostatic,
 }
-
-/// A uniform stress, Pa, tension positive; a component left out is zero.
-#[skip_serializing_none]
-#[apply(Option => #[serde(default, deserialize_with = "not_null")] #[schema(nullable = false)])]
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Bulk {
-    /// Normal stress along x.
-    pub xx: Option<f64>,
-    /// Normal stress along y.
-    pub yy: Option<f64>,
-    /// Normal stress along z.
-    pub zz: Option<f64>,
-    /// Shear stress in the plane of x and y.
-    pub xy: Option<f64>,
-    /// Shear stress in the plane of y and z.
-    pub yz: Option<f64>,
-    /// Shear stress in the plane of x and z.
-    pub xz: Option<f64>,
-}
-limits!(Bulk {
-    xx: range::BULK_STRESS,
-    yy: range::BULK_STRESS,
-    zz: range::BULK_STRESS,
-    xy: range::BULK_STRESS,
-    yz: range::BULK_STRESS,
-    xz: range::BULK_STRESS,
-});
 
 /// Stresses below the surface, in columns; an array that was not asked for is left out, and `null` is where a stress is
 /// infinite.
@@ -227,8 +212,8 @@ impl Document for SubsurfaceRequest {
     /// What can only be checked against a contact is checked by [`SubsurfaceRequest::of_contact`].
     type Checked = SubsurfaceRequest;
 
-    fn check_with(self, _: &dyn Prepare) -> Result<SubsurfaceRequest, Rejection> {
-        Ok(self)
+    fn checked(self, _: &dyn Prepare, _: &mut Faults) -> Option<Self::Checked> {
+        Some(self)
     }
 }
 

@@ -6,64 +6,46 @@ use utoipa::ToSchema;
 use stickslip_mechanics::range;
 
 use crate::check::{Faults, JsonPath};
-use crate::limits::{SUBSURFACE_POINTS, Triple, limits};
+use crate::limits::{Limited as _, SUBSURFACE_POINTS, Triple};
+use crate::request::requests;
 
+requests! {
 /// Points on a straight line, both ends included.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-#[serde(deny_unknown_fields)]
 pub struct SubsurfaceLine {
     /// Where it begins: x, y, z, m.
-    pub from: [f64; 3],
+    pub from: [f64; 3] = Triple(range::PLACE),
     /// Where it ends: x, y, z, m.
-    pub to: [f64; 3],
+    pub to: [f64; 3] = Triple(range::PLACE),
     /// Number of points.
-    pub count: usize,
+    pub count: usize = LINE,
 }
-limits!(SubsurfaceLine { from: Triple(range::PLACE), to: Triple(range::PLACE), count: LINE });
-/// Points of a line: two ends at least.
-const LINE: std::ops::RangeInclusive<usize> = 2..=*SUBSURFACE_POINTS.end();
 
 /// A grid in a plane of constant x, y or z. Each of the other two coordinates is `[from, to, count]`, m, both ends
 /// included.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-#[serde(deny_unknown_fields)]
 pub struct SubsurfacePlane {
     /// The coordinate that is constant.
     pub normal: Direction,
     /// Its value, m.
-    pub offset: f64,
+    pub offset: f64 = range::PLACE,
     /// x from, to and number; left out where `normal` is x.
-    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "crate::single_key::not_null")]
-    #[schema(nullable = false)]
-    pub x: Option<[f64; 3]>,
+    pub x: Option<[f64; 3]> = Triple(range::PLACE),
     /// y from, to and number; left out where `normal` is y.
-    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "crate::single_key::not_null")]
-    #[schema(nullable = false)]
-    pub y: Option<[f64; 3]>,
+    pub y: Option<[f64; 3]> = Triple(range::PLACE),
     /// z from, to and number; left out where `normal` is z.
-    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "crate::single_key::not_null")]
-    #[schema(nullable = false)]
-    pub z: Option<[f64; 3]>,
+    pub z: Option<[f64; 3]> = Triple(range::PLACE),
 }
-
-limits!(SubsurfacePlane {
-    offset: range::PLACE,
-    x: Triple(range::PLACE),
-    y: Triple(range::PLACE),
-    z: Triple(range::PLACE),
-});
 
 /// A grid on the surface, z = 0. Each coordinate is `[from, to, count]`, m, both ends included.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-#[serde(deny_unknown_fields)]
 pub struct SubsurfaceSurface {
     /// x from, to and number.
-    pub x: [f64; 3],
+    pub x: [f64; 3] = Triple(range::PLACE),
     /// y from, to and number.
-    pub y: [f64; 3],
+    pub y: [f64; 3] = Triple(range::PLACE),
+}
 }
 
-limits!(SubsurfaceSurface { x: Triple(range::PLACE), y: Triple(range::PLACE) });
+/// Points of a line: two ends at least.
+const LINE: std::ops::RangeInclusive<usize> = 2..=*SUBSURFACE_POINTS.end();
 
 /// An axis: x along the motion of the first body, z into the body asked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]

@@ -1,12 +1,14 @@
 //! The columns of the table of a sweep, and their names.
 
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 use serde_json::{Value, json};
 use utoipa::ToSchema;
 
 use super::{Axis, SweepRequest};
 use crate::check::{Faults, JsonPath};
-use crate::limits::{Keywords, Limit, limits};
+use crate::choice::object_or_string;
+use crate::limits::{Keywords, Limit};
+use crate::request::requests;
 
 /// The name of a column: a letter, then letters, digits and `_`. It is a name in SQL, Python and a header of a CSV, and
 /// differs from every JSON pointer.
@@ -16,7 +18,6 @@ pub(super) struct ColumnName;
 const NAME_LENGTH: usize = 64;
 
 /// A number of the reply to `POST /simulate`: a JSON pointer, or an object that names its column too.
-// Untagged when written. It is read by hand below, so that a fault in the object names its member.
 #[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
 #[serde(untagged)]
 pub enum Output {
@@ -26,18 +27,17 @@ pub enum Output {
     Named(NamedOutput),
 }
 
+requests! {
 /// A number of the reply to `POST /simulate`, and the name of its column.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-#[serde(deny_unknown_fields)]
 pub struct NamedOutput {
     /// JSON pointer to the number in the reply.
     #[schema(example = "/residual/max")]
     pub pointer: String,
     /// The name of the column.
     #[schema(example = "largest_shear")]
-    pub name: String,
+    pub name: String = ColumnName,
 }
-limits!(NamedOutput { name: ColumnName });
+}
 
 impl Output {
     /// JSON pointer to the number.
@@ -117,26 +117,8 @@ impl Limit<String> for ColumnName {
     }
 }
 
-impl<'de> Deserialize<'de> for Output {
-    fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        deserializer.deserialize_any(OutputVisitor)
-    }
-}
-
-struct OutputVisitor;
-
-impl<'de> serde::de::Visitor<'de> for OutputVisitor {
-    type Value = Output;
-
-    fn expecting(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str("a JSON pointer, or an object with `pointer` and `name`")
-    }
-
-    fn visit_map<A: serde::de::MapAccess<'de>>(self, map: A) -> Result<Output, A::Error> {
-        NamedOutput::deserialize(serde::de::value::MapAccessDeserializer::new(map)).map(Output::Named)
-    }
-
-    fn visit_str<E: serde::de::Error>(self, pointer: &str) -> Result<Output, E> {
-        Ok(Output::Pointer(pointer.to_owned()))
-    }
-}
+object_or_string!(
+    Output: "a JSON pointer, or an object with `pointer` and `name`",
+    NamedOutput => Output::Named,
+    pointer => Output::Pointer(pointer.to_owned())
+);

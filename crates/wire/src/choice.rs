@@ -1,0 +1,157 @@
+//! Declaring choices: of a word, of an object with one key, of an object or a string.
+//!
+//! serde's own externally tagged enums do as much as an object with one key, but call a second key a syntax error; here
+//! it is a fault with a name. The value is read in place, so that a fault inside it keeps its path.
+
+/// Declares choices with the word of each, `words! { pub enum Name { Choice = "word", .. } .. }`, and the traits that
+/// they have beside those of all.
+macro_rules! words {
+    ($(
+        $(#[doc = $about:literal])*
+        pub enum $Name:ident $(: $Trait:ident)? {
+            $($(#[$of_choice:meta])* $Choice:ident = $word:tt,)+
+        }
+    )+) => {$(
+        $(#[doc = $about])*
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
+        $(#[derive($Trait)])?
+        pub enum $Name {
+            $($(#[$of_choice])* #[serde(rename = $word)] $Choice,)+
+        }
+
+        impl $Name {
+            /// All of them.
+            pub const ALL: [$Name; [$($word),+].len()] = [$($Name::$Choice),+];
+
+            /// Its word.
+            #[must_use]
+            pub const fn name(self) -> &'static str {
+                match self {
+                    $($Name::$Choice => $word,)+
+                }
+            }
+        }
+    )+};
+}
+pub(crate) use words;
+
+/// Declares choices that are objects with one key, or words:
+/// `choices! { pub enum Name { words { Choice = "word", .. } "key" => Choice(Type) = limit, .. } .. }`, with the traits
+/// that they have beside those of all and the [limits](crate::limits) of the values.
+macro_rules! choices {
+    ($(
+        $(#[doc = $about:literal])*
+        $(#[schema($($schema:tt)*)])?
+        pub enum $Name:ident $(: $($Trait:ident),+)? {
+            $(words { $($(#[$of_word:meta])* $Word:ident = $word:literal,)+ })?
+            $($(#[$of_key:meta])* $key:literal => $Choice:ident($Value:ty) $(= $limit:expr)?,)+
+        }
+    )+) => {$(
+        $(#[doc = $about])*
+        #[derive(Clone, Debug, PartialEq, serde::Serialize, utoipa::ToSchema $($(, $Trait)+)?)]
+        #[serde(rename_all = "snake_case")]
+        $(#[schema($($schema)*)])?
+        pub enum $Name {
+            $($($(#[$of_word])* $Word,)+)?
+            $($(#[$of_key])* $Choice($Value),)+
+        }
+
+        impl<'de> serde::Deserialize<'de> for $Name {
+            fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+                struct Choice;
+
+                impl<'de> serde::de::Visitor<'de> for Choice {
+                    type Value = $Name;
+
+                    fn expecting(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                        f.write_str("an object with one key, one of")?;
+                        $(write!(f, " `{}`", $key)?;)+
+                        $($(write!(f, ", or the string \"{}\"", $word)?;)+)?
+                        Ok(())
+                    }
+
+                    fn visit_map<A: serde::de::MapAccess<'de>>(self, mut map: A) -> Result<$Name, A::Error> {
+                        use serde::de::Error;
+                        let Some(key) = map.next_key::<String>()? else {
+                            return Err(A::Error::invalid_length(0, &self));
+                        };
+                        let value = match key.as_str() {
+                            $($key => $Name::$Choice(map.next_value()?),)+
+                            _ => return Err(A::Error::unknown_variant(&key, &[$($key),+])),
+                        };
+                        match map.next_key::<String>()? {
+                            None => Ok(value),
+                            Some(second) => Err(A::Error::custom(format_args!(
+                                "`{second}` conflicts with `{key}`, expected {}", &self as &dyn serde::de::Expected
+                            ))),
+                        }
+                    }
+
+                    $(fn visit_str<E: serde::de::Error>(self, word: &str) -> Result<$Name, E> {
+                        match word {
+                            $($word => Ok($Name::$Word),)+
+                            _ => Err(E::invalid_value(serde::de::Unexpected::Str(word), &self)),
+                        }
+                    })?
+                }
+
+                deserializer.deserialize_any(Choice)
+            }
+        }
+
+        impl $crate::limits::Limited for $Name {
+            const SCHEMA: &'static str = stringify!($Name);
+
+            fn limits() -> Vec<(&'static str, serde_json::Value)> {
+                vec![$($(($key, $crate::limits::Keywords::keywords(&$limit)),)?)+]
+            }
+
+            #[allow(unused_variables, unreachable_patterns, reason = "some keys have limits, or none, or all")]
+            fn check_members(&self, at: $crate::check::JsonPath<'_>, faults: &mut $crate::check::Faults) {
+                match self {
+                    $($($Name::$Choice(value) => {
+                        $crate::limits::Limit::check(&$limit, value, at.member($key), faults);
+                    })?)+
+                    _ => {}
+                }
+            }
+        }
+    )+};
+}
+pub(crate) use choices;
+
+/// Implements `Deserialize` for an untagged enum of an object and a string: not by trial, so that a fault in the object
+/// names its member.
+macro_rules! object_or_string {
+    ($Name:ident: $expected:literal, $Object:ident => $object:expr, $word:pat => $string:expr) => {
+        impl<'de> serde::Deserialize<'de> for $Name {
+            fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+                struct Choice;
+
+                impl<'de> serde::de::Visitor<'de> for Choice {
+                    type Value = $Name;
+
+                    fn expecting(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                        f.write_str($expected)
+                    }
+
+                    fn visit_map<A: serde::de::MapAccess<'de>>(self, map: A) -> Result<$Name, A::Error> {
+                        let object = serde::de::value::MapAccessDeserializer::new(map);
+                        <$Object as serde::Deserialize>::deserialize(object).map($object)
+                    }
+
+                    #[allow(unreachable_patterns, reason = "any string may be meant")]
+                    fn visit_str<E: serde::de::Error>(self, word: &str) -> Result<$Name, E> {
+                        match word {
+                            $word => Ok($string),
+                            _ => Err(E::invalid_value(serde::de::Unexpected::Str(word), &self)),
+                        }
+                    }
+                }
+
+                deserializer.deserialize_any(Choice)
+            }
+        }
+    };
+}
+pub(crate) use object_or_string;
