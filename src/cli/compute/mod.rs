@@ -29,14 +29,17 @@ pub struct Compute {
     matches: ArgMatches,
 }
 
+/// Takes a part out of a reply, as its document is written.
+type PartOfReply = fn(&[u8]) -> Result<String, String>;
+
 /// What flags make of a request.
 #[derive(Default)]
 struct Body {
     text: Vec<u8>,
     /// The format if the command line does not name one.
     format: Option<Format>,
-    /// Takes out of the reply what alone is printed.
-    only: Option<fn(&[u8]) -> Result<String, String>>,
+    /// What alone is printed of the reply.
+    only: Option<PartOfReply>,
     /// What was taken for what in a measured file.
     reading: Vec<String>,
 }
