@@ -1,7 +1,7 @@
 //! Declaring the objects of requests.
 //!
-//! Declarations within `requests!`, `choices!` and `words!` begin at the margin: the descriptions in the OpenAPI document
-//! have the lines of these comments.
+//! Declarations within `requests!`, `choices!` and `words!` begin at the margin: the descriptions in the OpenAPI
+//! document have the lines of these comments.
 
 use serde::{Deserialize, Deserializer};
 

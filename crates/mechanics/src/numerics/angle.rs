@@ -1,7 +1,7 @@
 //! An angle against its tangent, where the two nearly agree.
 
-/// The coefficients of (u - atan(u))/u^3 as a polynomial of u^2 for u up to [`QUARTER`], without the sign of every other
-/// one: by interpolation at Chebyshev's points, to 4e-18 of itself.
+/// The coefficients of (u - atan(u))/u^3 as a polynomial of u^2 for u up to [`QUARTER`], without the sign of every
+/// other one: by interpolation at Chebyshev's points, to 4e-18 of itself.
 pub(crate) const LACKING: [f64; 12] = [
     0.333_333_333_333_333_3,
     0.199_999_999_999_998_04,

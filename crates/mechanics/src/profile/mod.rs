@@ -245,9 +245,9 @@ impl Profile {
         self.facts().kernel_falls
     }
 
-    /// What is known of the kernel up to c = `outer`, m, from r = `inner`, m, on. With q = g'/x as a function of x^2 and
-    /// v = sqrt(c^2 - r^2), -2 v dK/d(r^2) is q(c^2) - 2 v int q'(r^2 + t^2) dt over t up to v: above zero the kernel
-    /// falls there.
+    /// What is known of the kernel up to c = `outer`, m, from r = `inner`, m, on. With q = g'/x as a function of x^2
+    /// and v = sqrt(c^2 - r^2), -2 v dK/d(r^2) is q(c^2) - 2 v int q'(r^2 + t^2) dt over t up to v: above zero the
+    /// kernel falls there.
     ///
     /// Where q neither falls nor bends upward, dK/d(r^2) falls all the way from `inner` to c, since its derivative with
     /// respect to r^2 is int q'' dt - q'(c^2)/(2 v) - q(c^2)/(4 v^3).

@@ -170,8 +170,8 @@ impl Tabulated {
         panels.iter().flat_map(|panel| panel.slope_check_places().into_iter().map(|t| panel.radius_at(t)))
     }
 
-    /// The kernels of rings from the centre outward, each with its weight, for sums at so many radii; `None` with levels
-    /// at a vertical edge.
+    /// The kernels of rings from the centre outward, each with its weight, for sums at so many radii; `None` with
+    /// levels at a vertical edge.
     pub(super) fn weighted_panels(&self, rings: &[(Ring, f64)], radii: usize) -> Option<WeightedPanels<'_>> {
         let spans: Vec<(Span, f64)> = rings.iter().map(|(ring, weight)| (span(self, ring), *weight)).collect();
         self.panels_over(&spans, radii)

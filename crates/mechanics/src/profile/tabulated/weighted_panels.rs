@@ -2,8 +2,8 @@
 //!
 //! A panel that lies in one ring has that ring's weight, and so has a cluster of such panels: what it does from afar is
 //! that of the table times the weight. The few panels that rings cut are cut with them, and only the clusters that hold
-//! one, or panels of several rings, get moments of their own; for a few radii only the small ones among them. So a state
-//! costs in proportion to the number of its rings and not to that of the panels.
+//! one, or panels of several rings, get moments of their own; for a few radii only the small ones among them. So a
+//! state costs in proportion to the number of its rings and not to that of the panels.
 //!
 //! Radii go through the tree together, in such an order that a cluster is far from the first of them and near the last:
 //! at each cluster three runs part. Those from which it is far take its moments, side by side; those beyond it are
