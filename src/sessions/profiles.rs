@@ -29,7 +29,7 @@ impl Profiles {
     /// The cost of preparing the profile of a document: none if it is ready.
     ///
     /// # Errors
-    /// [`Failure::Preparation`] if it cannot end in time.
+    /// [`Cause::Preparation`](crate::simulation::Cause) if it cannot end in time.
     pub fn cost<T: Document>(&self, document: &T) -> Result<Nanoseconds, Failure> {
         document.profile().map_or(Ok(0), |defined| self.cost_of(&defined))
     }

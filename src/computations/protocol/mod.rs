@@ -143,7 +143,7 @@ impl OnContact for ProtocolTask {
 /// The protocol that begins from the present state of a contact.
 ///
 /// # Errors
-/// [`Cause::Lifted`] if it does not touch, or as [`protocol`].
+/// [`Cause::Lifted`] if it does not touch, or as the search on a new contact.
 pub fn find_from_state(contact: &Contact, task: &ProtocolTask, stop: &Stop) -> Result<ProtocolReply, Failure> {
     if contact.contact_radius() <= 0.0 {
         return Err(Failure::at("", Cause::Lifted));

@@ -7,9 +7,9 @@
 //!
 //! - Near: with s = (r^2 - X)/h and I_k = int Y^k dv it holds that (2k + 1) I_k = [Y^k v] + 2 k s I_(k-1), so that the
 //!   antiderivative is v A(Y), and by the even and the odd part of A the kernel is (v_1 - v_0) E + (v_1 + v_0) O: what
-//!   a thin ring has is not lost. |c_k| falls as the k-th power of h over the distance of X from the singularity, of
-//!   which |s| is no more than the inverse: no term is large.
-//! - Far, where D = X - r^2 >= 5 h: with z = h/D it is sum of binom(-1/2, k) m_k z^k over sqrt D, m_k = int Y^k dg.
+//!   a thin ring has is not lost. |c_k| falls as the k-th power of h over the distance of X from the singularity, a
+//!   fifth at most, and |s| is three at most: no term is large.
+//! - Far, where D = X - r^2 >= 3 h: with z = h/D it is sum of binom(-1/2, k) m_k z^k over sqrt D, m_k = int Y^k dg.
 //!   What lies beyond a singularity is far from all that is inside it.
 //! - At a kink, which q begins at as a power of t = sqrt(x^2 - b^2): with gamma = t q = sum of g_k t^k and kappa = r^2
 //!   - b^2 it is int gamma dt/sqrt(t^2 - kappa), by k J_k = [t^(k-1) v] + (k - 1) kappa J_(k-2); J_0 is a logarithm. t
@@ -39,8 +39,8 @@ const FAR: f64 = 1.0 / 3.0;
 const WIDEST: f64 = 0.5;
 /// The part of the distance to the next singularity, in squares, up to which the series in t of a kink is taken.
 const KINK: f64 = 1.0 / 16.0;
-/// How often a piece may be halved.
-const HALVINGS: usize = 12;
+/// What halving a piece takes off the last term of its series at the least, unless that is rounding.
+const NEARER: f64 = 0.1;
 /// Terms whose size is below this share of the largest do not count.
 const NEGLIGIBLE: f64 = 1e-17;
 /// The smallest radius, over that of the edge, that pieces reach down to at a tip where q is not smooth.
@@ -217,24 +217,26 @@ impl<'a, S: Shape> SmoothPieces<'a, S> {
             let ratio = (half / (half + below)).max(half / (half + room));
             let middle = outer - DoubleDouble::from(half);
             let ends = PieceEnds { base, inner, outer, middle, half };
-            self.resolve(&ends, (gap, thin && cuts <= 1.0), weight, ratio, HALVINGS);
+            self.resolve(&ends, (gap, thin && cuts <= 1.0), weight, ratio, f64::INFINITY);
             outer = inner;
         }
         Some(())
     }
 
-    /// Adds a piece, or its halves where the series does not end by itself.
-    fn resolve(&mut self, ends: &PieceEnds, gap: (f64, bool), weight: f64, ratio: f64, halvings: usize) {
+    /// Adds a piece, or its halves where its series does not end and those of halves come nearer to it: what rounding has
+    /// left in the last term of the piece `before`, over the largest one, halves have too.
+    fn resolve(&mut self, ends: &PieceEnds, gap: (f64, bool), weight: f64, ratio: f64, before: f64) {
         let PieceEnds { base, inner, outer, middle, half } = *ends;
-        let Some(series) = of_slope_over_radius(self.shape, base, (middle, half), ratio, halvings > 0) else {
+        let series = of_slope_over_radius(self.shape, base, (middle, half), ratio);
+        if !series.ends() && series.last < NEARER * before {
             let half = 0.5 * half;
             for (inner, outer) in [(middle, outer), (inner, middle)] {
                 let ends = PieceEnds { base, inner, outer, middle: outer - DoubleDouble::from(half), half };
-                self.resolve(&ends, (2.0 * half, false), weight, ratio, halvings - 1);
+                self.resolve(&ends, (2.0 * half, false), weight, ratio, series.last);
             }
             return;
-        };
-        let (series, edge) = (counted(&series), self.unit.sqrt().recip());
+        }
+        let (series, edge) = (counted(&series.coefficients), self.unit.sqrt().recip());
         let far = moments(series, half * self.unit * edge);
         let near = Near::Smooth(self.keep(series, edge));
         self.push((inner, outer), gap, weight, (near, far));

@@ -19,11 +19,25 @@ pub(super) const KINK_TERMS: usize = 8;
 /// resolve it. Sixteen do up to a fifth, which no piece exceeds.
 const RATIOS: [f64; 2] = [0.02, 0.09];
 
-/// The last term over the first ones, of a series that ends.
+/// The last term over the largest one, of a series that ends.
 const LAST: f64 = 1e-14;
 
 /// Coefficients; those that do not count are zero.
 pub(super) type Series = [f64; TERMS];
+
+/// A series by the values of a function.
+pub(super) struct SampledSeries {
+    pub(super) coefficients: Series,
+    /// The last term of the Chebyshev series over the largest one.
+    pub(super) last: f64,
+}
+
+impl SampledSeries {
+    /// Whether the points resolve the function.
+    pub(super) fn ends(&self) -> bool {
+        self.last <= LAST
+    }
+}
 
 /// Points of an interval, and the coefficients of its Chebyshev polynomials in powers, a row for each order.
 ///
@@ -53,59 +67,49 @@ impl<const N: usize> Sampling<N> {
         Sampling { points, polynomials: rows }
     }
 
-    /// The series of these values; `None` if it must end by itself and does not.
-    fn series(&self, values: [f64; N], must_end: bool) -> Option<Series> {
-        let mut sum = [0.0; TERMS];
+    /// The series of these values.
+    fn series(&self, values: [f64; N]) -> SampledSeries {
         let terms = self.points.terms(&values);
-        let size = terms[0].abs().max(terms[1].abs());
-        if must_end && terms[N - 1].abs() > LAST * size {
-            return None;
-        }
+        let size = terms.iter().fold(f64::MIN_POSITIVE, |size, a| size.max(a.abs()));
+        let mut sum = [0.0; TERMS];
         for (a, row) in counted(&terms).iter().zip(&self.polynomials) {
             for power in 0..N {
                 sum[power] += a * row[power];
             }
         }
-        Some(sum)
+        SampledSeries { coefficients: sum, last: terms[N - 1].abs() / size }
     }
 
-    /// That of g'/x for t^2 between `low` and `high`, m^2, above the kink `base`, m.
-    fn slope_over_radius(
-        &self,
-        shape: &impl Shape,
-        base: f64,
-        [low, high]: [f64; 2],
-        must_end: bool,
-    ) -> Option<Series> {
+    /// That of g'/x for t^2 between two values, m^2, above the kink `base`, m.
+    fn slope_over_radius(&self, shape: &impl Shape, base: f64, [low, high]: [f64; 2]) -> SampledSeries {
         let t = self.points.places(low, high).map(f64::sqrt);
         let gamma = shape.slopes(base, t);
-        self.series(std::array::from_fn(|index| gamma[index] / t[index]), must_end)
+        self.series(std::array::from_fn(|index| gamma[index] / t[index]))
     }
 }
 
-/// The series of q, 1/m, about the square `middle`, m^2, over `half`, m^2, above the kink `base`, m; `None` if it must
-/// end by itself and does not. `ratio` is `half` over the distance of the middle from the next singularity.
+/// The series of q, 1/m, about the square `middle`, m^2, over `half`, m^2, above the kink `base`, m. `ratio` is `half`
+/// over the distance of the middle from the next singularity.
 pub(super) fn of_slope_over_radius(
     shape: &impl Shape,
     base: f64,
     (middle, half): (DoubleDouble, f64),
     ratio: f64,
-    must_end: bool,
-) -> Option<Series> {
+) -> SampledSeries {
     let above = (middle - DoubleDouble::square_of(base)).value();
     let ends = [above - half, above + half];
     let short = match RATIOS.iter().position(|most| ratio <= *most) {
-        Some(0) => SHORT.slope_over_radius(shape, base, ends, true),
-        Some(_) => MIDDLING.slope_over_radius(shape, base, ends, true),
+        Some(0) => Some(SHORT.slope_over_radius(shape, base, ends)),
+        Some(_) => Some(MIDDLING.slope_over_radius(shape, base, ends)),
         None => None,
     };
-    short.or_else(|| LONG.slope_over_radius(shape, base, ends, must_end))
+    short.filter(SampledSeries::ends).unwrap_or_else(|| LONG.slope_over_radius(shape, base, ends))
 }
 
 /// The coefficients of even and of odd powers of t/`top` in gamma above the kink `base`, m, for t up to `top`, m.
 pub(super) fn beside_kink(shape: &impl Shape, base: f64, top: f64) -> [[f64; KINK_TERMS]; 2] {
     let values = shape.slopes(base, BESIDE_KINK.points.places(0.0, top));
-    let mut series = BESIDE_KINK.series(values, false).unwrap_or([0.0; TERMS]);
+    let mut series = BESIDE_KINK.series(values).coefficients;
     // Stresses are infinite at the kink unless this is zero, which it must then be without an error of rounding.
     [series[0]] = shape.slopes(base, [0.0]);
     [0, 1].map(|parity| std::array::from_fn(|index| series[2 * index + parity]))

@@ -155,9 +155,9 @@ impl KernelPanel {
     pub(super) fn moments_between(&self, low: f64, high: f64, width: f64) -> Option<Moments> {
         let ends = (low, high);
         Some(match self.points()? {
-            8 => self.moments_by(&EIGHT_POINTS, ends, width),
-            12 => self.moments_by(&TWELVE_POINTS, ends, width),
-            _ => self.moments_by(&TWENTY_POINTS, ends, width),
+            8 => self.moments_by::<8, 10>(&EIGHT_POINTS, ends, width),
+            12 => self.moments_by::<12, 14>(&TWELVE_POINTS, ends, width),
+            _ => self.moments_by::<20, 22>(&TWENTY_POINTS, ends, width),
         })
     }
 
@@ -184,11 +184,18 @@ impl KernelPanel {
     }
 
     /// The moments by a rule whose points all of it can be left to. The rises are differences of P, good to round-off
-    /// of the depth.
-    fn moments_by<const N: usize>(&self, rule: &[(f64, f64); N], (low, high): (f64, f64), width: f64) -> Moments {
-        let place = self.place(high);
-        let (step, top) = ((high - low) * 2.0 / (self.high - self.low), chebyshev::values(&self.primitive, [place])[0]);
-        let levels = chebyshev::values(&self.primitive, rule.map(|(share, _)| place - step * share));
+    /// of the depth; that of the end is one of the `LANES` beside those of the rule.
+    fn moments_by<const N: usize, const LANES: usize>(
+        &self,
+        rule: &[(f64, f64); N],
+        (low, high): (f64, f64),
+        width: f64,
+    ) -> Moments {
+        let (place, step) = (self.place(high), (high - low) * 2.0 / (self.high - self.low));
+        let mut places = [place; LANES];
+        places.iter_mut().zip(rule).for_each(|(place, (share, _))| *place -= step * share);
+        let levels = chebyshev::values(&self.primitive, places);
+        let top = levels[N];
         let (mut first, mut second) = (0.0, 0.0);
         for (&(share, weight), level) in rule.iter().zip(levels) {
             let rise = top - level;
