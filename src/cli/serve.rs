@@ -294,6 +294,9 @@ fn time(text: &str) -> Result<Duration, String> {
 /// A filter of the log. The library takes an empty part for all that there is.
 fn filter(text: &str) -> Result<Targets, String> {
     let parts: Vec<&str> = text.split(',').map(str::trim).filter(|part| !part.is_empty()).collect();
+    if let Some(part) = parts.iter().find(|part| part.contains(['[', '{'])) {
+        return Err(format!("{part}: give a level or target=level; spans and fields do not filter"));
+    }
     let text = if parts.is_empty() { "error".to_owned() } else { parts.join(",") };
     text.parse().map_err(|error: ParseError| error.to_string())
 }

@@ -36,14 +36,14 @@ pub const CAPACITY: usize = 256 * 1024 * 1024;
 /// A session of a tenant. Under the identifier of another tenant's session a tenant finds neither a state nor a lock.
 type Key = (Tenant, Uuid);
 
-/// What tells prepared profiles apart: a digest.
+/// What distinguishes prepared profiles: a digest.
 pub(super) type ProfileKey = [u8; 32];
 
 /// States, profiles and locks.
 pub(super) struct Cache {
     // Both are locked for a lookup, never across an await.
     /// The sessions in use, each with those who wait for it in the order of their arrival.
-    lines: Mutex<HashMap<Key, VecDeque<Waiter>>>,
+    queues: Mutex<HashMap<Key, VecDeque<Waiter>>>,
     cached: Mutex<Cached>,
     /// Numbers those who wait: no two of them have the same number.
     arrivals: AtomicU64,
@@ -52,11 +52,11 @@ pub(super) struct Cache {
     hits: IntCounter,
 }
 
-/// Somebody who waits: with a move that whoever has the session may make, or for anything else.
+/// A request that waits: with a move that whoever has the session may make, or for anything else.
 struct Waiter {
     number: u64,
     waiting_move: Option<WaitingMove>,
-    turn: oneshot::Sender<Turn>,
+    outcome: oneshot::Sender<WaitOutcome>,
 }
 
 /// A move that may be made by whoever has the session.
@@ -70,8 +70,8 @@ pub(super) struct WaitingMove {
     pub(super) span: Span,
 }
 
-/// What somebody who waits gets.
-pub(super) enum Turn {
+/// What a request that waits gets.
+pub(super) enum WaitOutcome {
     /// The session, and the move that has waited for it.
     Locked(SessionLock, Option<WaitingMove>),
     /// Another one has taken the move: it is stored, or the store has refused those made with it.
@@ -119,26 +119,26 @@ pub(super) struct SessionLock {
     key: Key,
 }
 
-/// A place in the line, which is left when this is dropped.
+/// A position in the queue, which is left when this is dropped.
 pub(super) struct QueuePosition {
     cache: Arc<Cache>,
     key: Key,
     number: u64,
-    pub(super) turn: oneshot::Receiver<Turn>,
+    pub(super) outcome: oneshot::Receiver<WaitOutcome>,
 }
 
 impl Cache {
     /// A cache of at most this many bytes, and the counter of its hits.
     pub(super) fn new(capacity: usize, hits: IntCounter) -> Cache {
         let cached = Cached { items: LruCache::new_unbounded(), addresses: HashMap::new(), bytes: 0 };
-        Cache { lines: Mutex::default(), cached: Mutex::new(cached), arrivals: AtomicU64::new(0), capacity, hits }
+        Cache { queues: Mutex::default(), cached: Mutex::new(cached), arrivals: AtomicU64::new(0), capacity, hits }
     }
 
     /// Waits for exclusive use of a session. A dropped future no longer waits.
     pub(super) async fn lock(self: &Arc<Self>, tenant: &Tenant, id: Uuid) -> Guard {
         loop {
             // Nobody gets anything else who waits without a move.
-            if let Ok(Turn::Locked(lock, _)) = (&mut self.enqueue(tenant, id, None).turn).await {
+            if let Ok(WaitOutcome::Locked(lock, _)) = (&mut self.enqueue(tenant, id, None).outcome).await {
                 return lock.guard();
             }
         }
@@ -147,14 +147,14 @@ impl Cache {
     /// Exclusive use of a session if nobody else has it.
     pub(super) fn try_lock(self: &Arc<Self>, tenant: &Tenant, id: Uuid) -> Option<Guard> {
         let key = (tenant.clone(), id);
-        match self.lines.lock().entry(key.clone()) {
+        match self.queues.lock().entry(key.clone()) {
             Entry::Vacant(free) => drop(free.insert(VecDeque::new())),
             Entry::Occupied(_) => return None,
         }
         Some(SessionLock { cache: Arc::clone(self), key }.guard())
     }
 
-    /// A place at the end of the line for a session, which has its turn at once if nobody has the session.
+    /// A position at the end of the queue for a session, which gets it at once if nobody has the session.
     pub(super) fn enqueue(
         self: &Arc<Self>,
         tenant: &Tenant,
@@ -162,17 +162,17 @@ impl Cache {
         waiting_move: Option<WaitingMove>,
     ) -> QueuePosition {
         let (cache, key) = (Arc::clone(self), (tenant.clone(), id));
-        let (sender, turn) = oneshot::channel();
+        let (sender, outcome) = oneshot::channel();
         let number = self.arrivals.fetch_add(1, Ordering::Relaxed);
-        let mut lines = self.lines.lock();
-        let is_free = !lines.contains_key(&key);
-        lines.entry(key.clone()).or_default().push_back(Waiter { number, waiting_move, turn: sender });
-        drop(lines);
+        let mut queues = self.queues.lock();
+        let is_free = !queues.contains_key(&key);
+        queues.entry(key.clone()).or_default().push_back(Waiter { number, waiting_move, outcome: sender });
+        drop(queues);
         if is_free {
             // It goes to whoever has come first.
             drop(SessionLock { cache: Arc::clone(self), key: key.clone() });
         }
-        QueuePosition { cache, key, number, turn }
+        QueuePosition { cache, key, number, outcome }
     }
 
     /// Whether the state of a session is cached.
@@ -269,8 +269,8 @@ impl Cached {
 
     /// Takes out what was used least recently until the rest takes no more than this, but for profiles that somebody
     /// has.
-    fn make_room(&mut self, most: usize) -> Vec<Item> {
-        let mut gone = Vec::new();
+    fn make_room(&mut self, most: usize) -> (Vec<Item>, Vec<Item>) {
+        let (mut states, mut profiles) = (Vec::new(), Vec::new());
         // A profile that is in use is met once.
         for _ in 0..self.items.len() {
             if self.bytes <= most {
@@ -279,7 +279,7 @@ impl Cached {
             let Some((key, (item, bytes))) = self.items.remove_lru() else { break };
             if let Item::Profile(profile, digest) = &item {
                 // Then the states that have just been taken out have theirs no longer.
-                gone.retain(|item| matches!(item, Item::Profile(..)));
+                states.clear();
                 if Arc::strong_count(profile) > 1 {
                     self.items.insert(key, (item, bytes));
                     continue;
@@ -287,9 +287,9 @@ impl Cached {
                 self.addresses.remove(digest);
             }
             self.bytes -= bytes;
-            gone.push(item);
+            if matches!(item, Item::Profile(..)) { profiles.push(item) } else { states.push(item) }
         }
-        gone
+        (states, profiles)
     }
 }
 
@@ -302,12 +302,12 @@ impl Guard {
         self.lock.key.1
     }
 
-    /// Takes the moves at the head of the line, at most so many, up to whatever else waits there.
-    pub(super) fn take_moves(&self, most: usize) -> Vec<(WaitingMove, oneshot::Sender<Turn>)> {
-        let mut lines = self.lock.cache.lines.lock();
-        let Some(line) = lines.get_mut(&self.lock.key) else { return Vec::new() };
-        let moves = line.iter().take(most).take_while(|waiter| waiter.waiting_move.is_some()).count();
-        line.drain(..moves).filter_map(|waiter| Some((waiter.waiting_move?, waiter.turn))).collect()
+    /// Takes the moves at the head of the queue, at most so many, up to whatever else waits there.
+    pub(super) fn take_moves(&self, most: usize) -> Vec<(WaitingMove, oneshot::Sender<WaitOutcome>)> {
+        let mut queues = self.lock.cache.queues.lock();
+        let Some(queue) = queues.get_mut(&self.lock.key) else { return Vec::new() };
+        let moves = queue.iter().take(most).take_while(|waiter| waiter.waiting_move.is_some()).count();
+        queue.drain(..moves).filter_map(|waiter| Some((waiter.waiting_move?, waiter.outcome))).collect()
     }
 }
 
@@ -321,13 +321,13 @@ impl SessionLock {
 }
 
 impl QueuePosition {
-    /// Leaves the line; returns whether it was still there, so that nobody has taken its move.
+    /// Leaves the queue; returns whether it was still there, so that nobody has taken its move.
     pub(super) fn leave(&self) -> bool {
         let left = {
-            let mut lines = self.cache.lines.lock();
-            lines.get_mut(&self.key).and_then(|line| {
-                let place = line.iter().position(|waiter| waiter.number == self.number)?;
-                line.remove(place)
+            let mut queues = self.cache.queues.lock();
+            queues.get_mut(&self.key).and_then(|queue| {
+                let place = queue.iter().position(|waiter| waiter.number == self.number)?;
+                queue.remove(place)
             })
         };
         // A move that is dropped gives its reservation back, for which the lock of the cache is not needed.
@@ -352,17 +352,17 @@ impl Drop for Guard {
 impl Drop for SessionLock {
     fn drop(&mut self) {
         let next = {
-            let mut lines = self.cache.lines.lock();
-            let next = lines.get_mut(&self.key).and_then(VecDeque::pop_front);
+            let mut queues = self.cache.queues.lock();
+            let next = queues.get_mut(&self.key).and_then(VecDeque::pop_front);
             if next.is_none() {
-                lines.remove(&self.key);
+                queues.remove(&self.key);
             }
             next
         };
-        if let Some(Waiter { waiting_move, turn, .. }) = next {
+        if let Some(Waiter { waiting_move, outcome, .. }) = next {
             let lock = SessionLock { cache: Arc::clone(&self.cache), key: self.key.clone() };
             // From one who has just left, the lock comes back and goes on.
-            let _ = turn.send(Turn::Locked(lock, waiting_move));
+            let _ = outcome.send(WaitOutcome::Locked(lock, waiting_move));
         }
     }
 }

@@ -21,7 +21,7 @@ use stickslip_wire::{Plan, limits};
 
 use super::SessionError;
 use super::attempt::{Done, PIECES_OF_A_MOVE, attempt};
-use super::cache::{Guard, Turn, WaitingMove};
+use super::cache::{Guard, WaitOutcome, WaitingMove};
 use super::replay::Replay;
 
 /// Moves that are made together at most.
@@ -43,7 +43,7 @@ struct Group {
 }
 
 /// A move that has waited, and where its client awaits what becomes of it.
-type TakenMove = (WaitingMove, oneshot::Sender<Turn>);
+type TakenMove = (WaitingMove, oneshot::Sender<WaitOutcome>);
 
 /// Whether a move may be made together with others.
 pub(super) fn may_join(advance: &Advance) -> bool {
@@ -81,22 +81,22 @@ async fn join_queue(
     let (advance, by) = (Arc::clone(advance), by.cloned());
     let waiting_move = WaitingMove { advance, expected, by, reservation, span: Span::current() };
     let mut position = replay.common.cache.enqueue(&replay.tenant, id, Some(waiting_move));
-    let turn = match replay.common.pool.wait(&mut position.turn).await {
+    let outcome = match replay.common.pool.wait(&mut position.outcome).await {
         Err(busy) if position.leave() => return Err(busy.into()),
         // Another one has taken it: from then on nothing else says what has become of it.
-        Err(_) => (&mut position.turn).await,
-        Ok(turn) => turn,
+        Err(_) => (&mut position.outcome).await,
+        Ok(outcome) => outcome,
     };
-    let (guard, own) = match turn {
-        Ok(Turn::Locked(lock, Some(own))) => (lock.guard(), own),
-        turn => return resolve(replay, id, turn).await,
+    let (guard, own) = match outcome {
+        Ok(WaitOutcome::Locked(lock, Some(own))) => (lock.guard(), own),
+        outcome => return resolve(replay, id, outcome).await,
     };
     let others = if is_groupable(&guard) { guard.take_moves(GROUP - 1) } else { Vec::new() };
     if others.is_empty() {
         return Ok(GroupResult::Locked(guard));
     }
-    let (turn, answer) = oneshot::channel();
-    let moves = std::iter::once((own, turn)).chain(others).collect();
+    let (outcome, answer) = oneshot::channel();
+    let moves = std::iter::once((own, outcome)).chain(others).collect();
     let group = Group { replay: replay.clone(), guard, moves };
     // In a task of its own: whose client leaves does not take the others with it.
     tokio::spawn(Client::current().serve(group.make().in_current_span()));
@@ -106,12 +106,12 @@ async fn join_queue(
 async fn resolve(
     replay: &Replay,
     id: Uuid,
-    turn: Result<Turn, oneshot::error::RecvError>,
+    outcome: Result<WaitOutcome, oneshot::error::RecvError>,
 ) -> Result<GroupResult, SessionError> {
-    match turn {
-        Ok(Turn::Locked(lock, _)) => Ok(GroupResult::Locked(lock.guard())),
-        Ok(Turn::Answered(answer)) => Ok(GroupResult::Answered(answer)),
-        Ok(Turn::NotMade) => Ok(GroupResult::Locked(replay.lock(id).await?)),
+    match outcome {
+        Ok(WaitOutcome::Locked(lock, _)) => Ok(GroupResult::Locked(lock.guard())),
+        Ok(WaitOutcome::Answered(answer)) => Ok(GroupResult::Answered(answer)),
+        Ok(WaitOutcome::NotMade) => Ok(GroupResult::Locked(replay.lock(id).await?)),
         Err(_) => Err(StoreError::Unavailable("the move was given up with others".to_owned()).into()),
     }
 }
@@ -144,17 +144,17 @@ impl Group {
                     live
                 });
                 let added = Usage::of(0, common.store.move_bytes(), None);
-                for ((waiting_move, turn), reply) in made {
+                for ((waiting_move, outcome), reply) in made {
                     waiting_move.reservation.used(added);
-                    let _ = turn.send(Turn::Answered(Ok(reply)));
+                    let _ = outcome.send(WaitOutcome::Answered(Ok(reply)));
                 }
             }
             // Nothing has changed: each finds out for itself what is wrong.
             Err(StoreError::Stale { .. } | StoreError::NotFound | StoreError::Expired(_)) => {
                 made.into_iter().for_each(|(taken, _)| decline(taken));
             }
-            Err(error) => made.into_iter().for_each(|((_, turn), _)| {
-                let _ = turn.send(Turn::Answered(Err(error.clone().into())));
+            Err(error) => made.into_iter().for_each(|((_, outcome), _)| {
+                let _ = outcome.send(WaitOutcome::Answered(Err(error.clone().into())));
             }),
         }
     }
@@ -204,6 +204,6 @@ impl Group {
 }
 
 /// Leaves a move to its client, who may have left.
-fn decline((_, turn): TakenMove) {
-    let _ = turn.send(Turn::NotMade);
+fn decline((_, outcome): TakenMove) {
+    let _ = outcome.send(WaitOutcome::NotMade);
 }

@@ -11,7 +11,7 @@ use std::time::Duration;
 use uuid::Uuid;
 
 use crate::admission::{Nanoseconds, Stop};
-use crate::store;
+use crate::store::{self, StoreError};
 use stickslip_measured::loops::{Error, Known, LoopFit, Noise, Note, Parameter, Record, Start, Task, fit};
 use stickslip_mechanics::{Contact, range};
 use stickslip_report::plot::in_unit;
@@ -147,7 +147,11 @@ impl Observations {
         let stored = to.min(log.sequence - new.len() as u64);
         let mut read = from.saturating_sub(1);
         while read < stored {
-            let page = self.cycles.replay.page(id, read, stored).await?;
+            let page = match self.cycles.replay.page(id, read, stored).await {
+                // A store behind the cached state: the append that follows says so.
+                Err(SessionError::Store(StoreError::Damaged { .. })) if !new.is_empty() => return Ok(unknown),
+                page => page?,
+            };
             if !page.iter().all(|record| cycle.push(record)) {
                 return Ok(unknown);
             }

@@ -222,7 +222,11 @@ impl Replay {
         (live.contact, live.session.sequence) =
             self.common.snapshots.load(&mut guard.loading, snapshot, live.contact, wanted).await?;
         while live.session.sequence < wanted {
-            let page = self.page(id, live.session.sequence, wanted).await?;
+            let page = self.page(id, live.session.sequence, wanted).await.inspect_err(|error| {
+                if matches!(error, SessionError::NotFound(_) | SessionError::Expired(_)) {
+                    guard.live = None;
+                }
+            })?;
             live = self.follow(guard, live, page).await?;
         }
         Ok((live, held))

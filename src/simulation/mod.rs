@@ -36,7 +36,7 @@ use crate::admission::{Interrupted, Stop};
 
 /// Why a request has no result.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("{}: {cause}", if pointer.is_empty() { "the request" } else { pointer.as_str() })]
+#[error("{pointer}{}{cause}", if pointer.is_empty() { "" } else { ": " })]
 pub struct Failure {
     /// JSON pointer to the member that asks for what has no answer; empty for the request as a whole.
     pub pointer: String,

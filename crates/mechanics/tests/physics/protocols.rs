@@ -216,7 +216,6 @@ fn the_search_for_a_bound_ends_when_it_is_stopped() {
         left.get() > 0
     };
     assert_eq!(protocol::lower_bound(&contact, 4, &some), None);
-    assert_eq!(protocol::lower_bound(&contact, 4, &|| true), Some(lower_bound(&contact, 4)));
 }
 
 proptest! {
