@@ -295,7 +295,7 @@ async fn a_request_without_a_place_is_refused_soon_and_health_is_not() {
 
 #[tokio::test]
 async fn many_moves_of_one_contact_queue_up_to_a_bound() {
-    let service = Service::start(&["--max-queue", "5", "--max-wait", "1s", "--deadline", "20s", "--log", "off"]);
+    let service = Service::start(&["--max-queue", "5", "--max-wait", "100ms", "--deadline", "20s", "--log", "off"]);
     let contact = service.client.create(&create(), &Options::default()).await.unwrap().id;
     let mut long = TcpStream::connect(service.address).await.unwrap();
     long.write_all(post(&format!("/contacts/{contact}/path"), &long_path()).as_bytes()).await.unwrap();
