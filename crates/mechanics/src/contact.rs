@@ -156,6 +156,13 @@ impl Contact {
         self.at_rest(indentation, initial)
     }
 
+    /// [`Contact::without_history`] but for the summary, which takes a search for the largest pressure.
+    pub(super) fn unmoved(self) -> Contact {
+        let initial = ContactSummary { normal_force: self.normal_force, ..self.initial };
+        let indentation = self.history.edge().level;
+        self.at_rest(indentation, initial)
+    }
+
     /// The virgin contact of the same bodies under another normal force, N.
     ///
     /// # Errors

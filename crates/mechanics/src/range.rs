@@ -1,4 +1,4 @@
-//! The ranges of the numbers that the mechanics accepts, one constant each, and their checks.
+//! The checks of the ranges of the numbers that the mechanics accepts, and limits that are no quantity of their own.
 
 use std::fmt;
 

@@ -299,7 +299,7 @@ impl<'a> SteadyCycle<'a> {
             return vec![0.0; radii.len()];
         }
         let indentation = edge;
-        let mut turned = contact.clone().without_history();
+        let mut turned = contact.clone().unmoved();
         let displacement = DoubleDouble::from(self.displacement);
         turned.advance(&PathPoint { indentation, normal_force: contact.normal_force, displacement });
         let work = |(slip, pressure): (Option<f64>, f64)| {

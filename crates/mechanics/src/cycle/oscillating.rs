@@ -145,7 +145,7 @@ impl Oscillation {
         keep_going: &dyn Fn() -> bool,
     ) -> Result<OscillatingCycle, Error> {
         self.check(contact)?;
-        let mut moving = contact.clone().without_history();
+        let mut moving = contact.clone().unmoved();
         self.step_to(contact, &mut moving, 0.0, None)?;
         let unit = self.force_unit(contact);
         let (mut before, mut end) = self.lap(contact, &mut moving, steps, count)?;

@@ -11,7 +11,7 @@ use super::{Cycle, Instant, Measure, Rated};
 use crate::subsurface::{Side, Subsurface};
 use crate::{Contact, Error, Profile, Stress};
 
-/// A measure of the surface below it.
+/// What a measure of the surface has below the surface: no value.
 const NO_VALUE: Rated = Rated { value: f64::NAN, error: 0.0, plane: None, at: None };
 /// The part of the accepted error that the curve of a place may use.
 const CURVE_SHARE: f64 = 0.5;

@@ -8,7 +8,7 @@
 use std::sync::LazyLock;
 
 /// The part of the largest coefficient below which a last one is the rounding of the values.
-const ROUNDED: f64 = 5e-16;
+pub(crate) const ROUNDED: f64 = 5e-16;
 
 /// The Chebyshev points of -1..1, and what turns values there into coefficients.
 ///
@@ -19,7 +19,6 @@ pub(crate) struct Points<const N: usize> {
     transform: [[f64; N]; N],
 }
 
-/// So many points.
 pub(crate) static EIGHT: LazyLock<Points<8>> = LazyLock::new(Points::new);
 pub(crate) static TWELVE: LazyLock<Points<12>> = LazyLock::new(Points::new);
 pub(crate) static SIXTEEN: LazyLock<Points<16>> = LazyLock::new(Points::new);
@@ -69,9 +68,9 @@ impl<const N: usize> Points<N> {
         terms
     }
 
-    /// The same; what rounding alone keeps from zero is cut off.
+    /// The coefficients without the last ones that are rounding.
     pub(crate) fn series(&self, values: &[f64; N]) -> Vec<f64> {
-        counted(&self.terms(values)).to_vec()
+        counted(&self.terms(values), ROUNDED).to_vec()
     }
 
     /// The weights at the points of -1..1 that stand for sources with these sums of weighted polynomials: those of the
@@ -92,10 +91,10 @@ impl<const N: usize> Points<N> {
     }
 }
 
-/// The terms of a series up to the last that is more than the rounding of its values.
-pub(crate) fn counted(terms: &[f64]) -> &[f64] {
+/// The terms of a series up to the last that is more than this share of the largest, or no number.
+pub(crate) fn counted(terms: &[f64], share: f64) -> &[f64] {
     let size = terms.iter().fold(0.0f64, |size, a| size.max(a.abs()));
-    let last = terms.iter().rposition(|a| a.abs() > ROUNDED * size);
+    let last = terms.iter().rposition(|a| a.is_nan() || a.abs() > share * size);
     &terms[..last.map_or(0, |last| last + 1)]
 }
 

@@ -146,7 +146,7 @@ impl KernelSlopes<'_> {
     }
 
     /// The derivative, 1/m^2, at each radius, with the sum of the sizes of what it adds up from.
-    /// `goes_on` is told how many terms follow; once it is false, derivatives are zero.
+    /// `goes_on` is called with how many terms follow; once it is false, derivatives are zero.
     pub(crate) fn at(&self, radii: &[StressRadius], goes_on: impl Fn(usize) -> bool) -> Vec<(f64, f64)> {
         match &self.0 {
             SlopeSource::Pieces(pieces) => pieces.slopes(radii, goes_on),
@@ -165,7 +165,7 @@ pub(crate) struct InwardSum<'a> {
 }
 
 impl<'a> InwardSum<'a> {
-    /// No ring as yet, of about so many inside an edge at a radius, m.
+    /// No rings yet, of about so many inside an edge at a radius, m.
     pub(crate) fn new(profile: &'a Profile, edge: f64, rings: usize) -> InwardSum<'a> {
         // The kernels of a cone and of a parabola are quicker still.
         let quick = profile.slope_series(edge).is_some_and(|series| series.len() <= 2);

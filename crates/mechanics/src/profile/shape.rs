@@ -37,9 +37,9 @@ pub(super) struct ShapeFacts {
     pub(super) analytic_tip: bool,
     /// Whether stresses are analytic in r^2 at the centre.
     pub(super) smooth_centre: bool,
-    /// Whether g'/x is a polynomial in x^2 below all kinks.
+    /// Whether g'/x is analytic in x^2 at the tip.
     pub(super) smooth_tip: bool,
-    /// Whether short series resolve g between few kinks.
+    /// Whether short series resolve g between few kinks; a family without must have its own [`Shape::kernel`].
     pub(super) by_series: bool,
 }
 
@@ -87,7 +87,7 @@ pub(super) enum KernelOrder {
 pub(crate) struct Falls {
     /// A lower bound, 1/m, of -2 v dK/d(r^2); minus infinity where nothing is known.
     pub(crate) least: f64,
-    /// Whether q neither falls nor bends upward.
+    /// Whether q neither falls nor bends upward from the inner radius on.
     pub(crate) concavely: bool,
 }
 

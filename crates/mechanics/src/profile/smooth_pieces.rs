@@ -15,7 +15,8 @@
 //!   - b^2 it is int gamma dt/sqrt(t^2 - kappa), by k J_k = [t^(k-1) v] + (k - 1) kappa J_(k-2); J_0 is a logarithm. t
 //!     ends at a quarter of its distance from the next singularity there, and what is inside that is far.
 //!
-//! All series end where their terms no longer count, so that the error is that of rounding.
+//! Series end where their terms no longer count. A piece whose series does not is halved as long as that brings it
+//! nearer to its end: what is left then is the rounding of q itself.
 
 mod kernels;
 mod moments;
@@ -27,6 +28,7 @@ use std::ops::Range;
 use super::call_count;
 use super::shape::{KernelOrder, Shape, ShapeFacts, span};
 use super::{DoubleDouble, Ring, Span, StressRadius};
+use crate::numerics::chebyshev::counted;
 use kernels::{far_kernels, kink_kernels, near_kernels};
 use moments::{FAR_TERMS, kink_moments, moments};
 use sampled_series::{TERMS, beside_kink, of_slope_over_radius};
@@ -51,6 +53,8 @@ const CLEAR: f64 = 0.9;
 const TIP: f64 = 1e-12;
 /// With more pieces than this within a ring, others are quicker.
 const MOST_CUTS: f64 = 48.0;
+/// How near to where g ceases to be analytic an edge may be, in squares over its own.
+const CLOSEST: f64 = 1e-2;
 /// Squares of radii that differ by less, over that of the outer one, have lost digits that the depth of their ring has.
 const THIN: f64 = 1e-3;
 
@@ -67,6 +71,8 @@ pub(super) struct SmoothPieces<'a, S> {
     unit: f64,
     /// With more pieces than this within a ring, there is none.
     most_cuts: f64,
+    /// Nor where the edge is nearer than this to the ceiling, in squares over its own.
+    closest: f64,
 }
 
 struct SmoothPiece {
@@ -116,7 +122,7 @@ impl<'a, S: Shape> SmoothPieces<'a, S> {
         Some(made)
     }
 
-    /// None as yet, of so many rings inside an edge at a radius, m.
+    /// No pieces yet, for so many rings inside an edge at a radius, m.
     pub(super) fn within(shape: &'a S, edge: f64, least: f64, rings: usize) -> SmoothPieces<'a, S> {
         let innermost = if shape.facts().smooth_tip { 0.0 } else { (CLEAR * least).max(INNERMOST * edge) };
         let (pieces, terms) = (Vec::with_capacity(2 * rings), Vec::with_capacity(2 * TERMS * rings));
@@ -128,6 +134,7 @@ impl<'a, S: Shape> SmoothPieces<'a, S> {
             tip: Vec::new(),
             unit: 1.0 / (edge * edge),
             most_cuts: MOST_CUTS,
+            closest: CLOSEST,
         }
     }
 
@@ -135,7 +142,7 @@ impl<'a, S: Shape> SmoothPieces<'a, S> {
     /// [`TIP`] of the outer radius.
     pub(super) fn of_span(shape: &'a S, span: &Span, radius: f64) -> Option<SmoothPieces<'a, S>> {
         let mut made = SmoothPieces::within(shape, span.outer_radius, radius, 1);
-        made.most_cuts = f64::INFINITY;
+        (made.most_cuts, made.closest) = (f64::INFINITY, f64::EPSILON);
         if made.innermost > 0.0 {
             made.innermost = (CLEAR * radius).max(TIP * span.outer_radius);
         }
@@ -154,6 +161,10 @@ impl<'a, S: Shape> SmoothPieces<'a, S> {
         let thin = (ring.outer - ring.inner).value() <= THIN * ring.outer.value();
         let (mut outer, mut radius) = (ring.outer, ring.outer_radius);
         let floor = larger(ring.inner, DoubleDouble::square_of(self.innermost));
+        // Beside the ceiling a radius has lost the digits that g depends on.
+        if (ceiling - radius) * (ceiling + radius) < self.closest * outer.value() {
+            return None;
+        }
         while outer > floor {
             let kink = shape.kink_below(radius);
             let base = DoubleDouble::square_of(kink);
@@ -166,14 +177,14 @@ impl<'a, S: Shape> SmoothPieces<'a, S> {
             let above = (low - base).value();
             if kink > 0.0 && above <= 0.0 {
                 let next = DoubleDouble::square_of(shape.kink_below(kink));
-                let reach = KINK * (base - next).value();
+                let reach = KINK * (base - next).value().min((ceiling - kink) * (ceiling + kink));
                 let top = if gap <= reach { gap } else { reach };
                 let from = if gap <= reach { outer } else { base + DoubleDouble::from(reach) };
                 if gap > reach {
                     self.smooth(kink, (from, outer), (gap - reach, false), [reach, room], weight)?;
                 }
                 let [even, odd] = beside_kink(shape, kink, top.sqrt());
-                let (even, odd) = (counted(&even), counted(&odd));
+                let (even, odd) = (counted(&even, NEGLIGIBLE), counted(&odd, NEGLIGIBLE));
                 let far = kink_moments(even, odd, (top * self.unit).sqrt());
                 let near = Near::Kink { even: self.keep(even, 1.0), odd: self.keep(odd, 1.0) };
                 self.push((base, from), (top, thin && gap <= reach), weight, (near, far));
@@ -202,7 +213,7 @@ impl<'a, S: Shape> SmoothPieces<'a, S> {
         let growth = gap / above;
         let steps = if growth <= WIDEST { 0.0 } else { growth.ln_1p() };
         let cuts = (steps / WIDEST.ln_1p()).ceil().max(1.0);
-        if growth.is_nan() || cuts > self.most_cuts {
+        if !growth.is_finite() || cuts > self.most_cuts {
             return None;
         }
         let step = steps / cuts;
@@ -213,7 +224,7 @@ impl<'a, S: Shape> SmoothPieces<'a, S> {
             let gap = if cuts > 1.0 { (outer - inner).value() } else { gap };
             let half = 0.5 * gap;
             let below = if above < f64::INFINITY { above + (inner - low).value() } else { above };
-            // Without a singularity q is a polynomial, of which the fewest points are enough.
+            // Without a singularity nearby the fewest points are enough.
             let ratio = (half / (half + below)).max(half / (half + room));
             let middle = outer - DoubleDouble::from(half);
             let ends = PieceEnds { base, inner, outer, middle, half };
@@ -223,8 +234,8 @@ impl<'a, S: Shape> SmoothPieces<'a, S> {
         Some(())
     }
 
-    /// Adds a piece, or its halves where its series does not end and those of halves come nearer to it: what rounding has
-    /// left in the last term of the piece `before`, over the largest one, halves have too.
+    /// Adds a piece, or its halves where its series does not end and those of halves come nearer to it: what rounding
+    /// has left in the last term of the piece `before`, over the largest one, halves have too.
     fn resolve(&mut self, ends: &PieceEnds, gap: (f64, bool), weight: f64, ratio: f64, before: f64) {
         let PieceEnds { base, inner, outer, middle, half } = *ends;
         let series = of_slope_over_radius(self.shape, base, (middle, half), ratio);
@@ -236,7 +247,7 @@ impl<'a, S: Shape> SmoothPieces<'a, S> {
             }
             return;
         }
-        let (series, edge) = (counted(&series.coefficients), self.unit.sqrt().recip());
+        let (series, edge) = (counted(&series.coefficients, NEGLIGIBLE), self.unit.sqrt().recip());
         let far = moments(series, half * self.unit * edge);
         let near = Near::Smooth(self.keep(series, edge));
         self.push((inner, outer), gap, weight, (near, far));
@@ -286,7 +297,7 @@ impl<'a, S: Shape> SmoothPieces<'a, S> {
     }
 
     /// The derivatives of the sum with respect to r^2, 1/m^2, each with the sum of the sizes of what it adds up from.
-    /// `goes_on` is told of the pieces that follow; once it is false, derivatives are zero.
+    /// `goes_on` is called with the number of pieces that follow; once it is false, derivatives are zero.
     pub(super) fn slopes(&self, radii: &[StressRadius], goes_on: impl Fn(usize) -> bool) -> Vec<(f64, f64)> {
         let mut found = Vec::with_capacity(radii.len());
         for chunk in radii.chunks(LANES) {
@@ -389,13 +400,6 @@ fn larger(a: DoubleDouble, b: DoubleDouble) -> DoubleDouble {
 fn counting(ratio: f64) -> usize {
     let logarithm = ratio.to_bits() as f64 / (1_u64 << 52) as f64 - (1023.0 - 0.0861);
     (NEGLIGIBLE.log2() / logarithm) as usize + 2
-}
-
-/// The terms of a series that count beside the first two.
-fn counted(series: &[f64]) -> &[f64] {
-    let size = series[0].abs().max(series[1].abs());
-    let last = series.iter().rposition(|c| c.abs() > NEGLIGIBLE * size).map_or(0, |last| last + 1);
-    &series[..last]
 }
 
 #[cfg(test)]

@@ -96,7 +96,7 @@ impl Problem<'_> {
         kinks.iter().enumerate().map(stroke).sum()
     }
 
-    /// No kinks as yet.
+    /// No kinks yet.
     fn edge_alone(&self) -> VirginStrokes<'_> {
         let beyond = InwardSum::new(self.profile, self.edge.radius, self.reversals);
         VirginStrokes { problem: self, kinks: Vec::with_capacity(self.reversals), beyond, excess: None }

@@ -9,7 +9,7 @@ use std::sync::LazyLock;
 
 use super::super::DoubleDouble;
 use super::super::shape::Shape;
-use crate::numerics::chebyshev::{EIGHT, Points, SIXTEEN, TWELVE, counted};
+use crate::numerics::chebyshev::{EIGHT, Points, ROUNDED, SIXTEEN, TWELVE, counted};
 
 /// The most terms of a series.
 pub(super) const TERMS: usize = 16;
@@ -72,7 +72,7 @@ impl<const N: usize> Sampling<N> {
         let terms = self.points.terms(&values);
         let size = terms.iter().fold(f64::MIN_POSITIVE, |size, a| size.max(a.abs()));
         let mut sum = [0.0; TERMS];
-        for (a, row) in counted(&terms).iter().zip(&self.polynomials) {
+        for (a, row) in counted(&terms, ROUNDED).iter().zip(&self.polynomials) {
             for power in 0..N {
                 sum[power] += a * row[power];
             }

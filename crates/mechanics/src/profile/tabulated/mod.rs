@@ -112,13 +112,13 @@ impl Tabulated {
             return Err(Error::Table { fault: TableFault::RadiusNotRising, index: index + 1 });
         }
         range::RADIUS.check(radii[1])?;
-        let knots = spline::knots(radii, heights);
+        let table = Tabulated::from_knots(spline::knots(radii, heights), whole, keep_going)?;
         Ok(Tabulated {
             radii: radii.to_vec(),
             heights: heights.to_vec(),
             noise: noise::of_heights(radii, heights),
             gaps: interpolation_error::gaps(radii, heights),
-            ..Tabulated::from_knots(knots, whole, keep_going)?
+            ..table
         })
     }
 
