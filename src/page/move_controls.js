@@ -46,6 +46,7 @@ export function moveControl({ name, label, unit, limits, value, send }) {
     toSend.textContent = "";
   };
   const commit = async (amount) => {
+    const typed = box.value;
     settle();
     try {
       await send(amount);
@@ -53,6 +54,8 @@ export function moveControl({ name, label, unit, limits, value, send }) {
     } catch (error) {
       showFault(error.errors?.[0]?.detail ?? error.message);
       isEdited = document.activeElement === box;
+      // A state that came meanwhile has written over it.
+      if (isEdited) box.value = typed;
       show(shown);
     }
   };
