@@ -241,16 +241,18 @@ impl Shape for PowerLaw {
     }
 
     fn slopes<const N: usize>(&self, base: f64, t: [f64; N]) -> [f64; N] {
-        // By the powers of radii over the least of them, which a logarithm side by side is good for.
         let x = if base > 0.0 { t.map(|t| (base * base + t * t).sqrt()) } else { t };
+        let share = |index: usize| if base > 0.0 { t[index] / x[index] } else { 1.0 };
+        if self.order.is_some() {
+            // Products leave a series of whole powers fewer terms of rounding.
+            return std::array::from_fn(|index| self.slope(x[index]) * share(index));
+        }
+        // By the powers of radii over the least of them, which a logarithm side by side is good for.
         let least = x.iter().copied().fold(f64::INFINITY, f64::min).max(f64::MIN_POSITIVE);
         let power = self.exponent - 1.0;
         let growth = exp_m1(ln_1p(x.map(|x| (x / least - 1.0).max(0.0))).map(|logarithm| power * logarithm));
         let slope = self.slope(least);
-        std::array::from_fn(|index| {
-            let share = if base > 0.0 { t[index] / x[index] } else { 1.0 };
-            (slope + slope * growth[index]) * share
-        })
+        std::array::from_fn(|index| (slope + slope * growth[index]) * share(index))
     }
 
     fn square(&self, level: DoubleDouble) -> DoubleDouble {
