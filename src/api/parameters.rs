@@ -10,7 +10,7 @@ use utoipa::openapi::path::{Parameter, ParameterBuilder, ParameterIn};
 use uuid::Uuid;
 
 use stickslip_mechanics::range::Range;
-use stickslip_wire::limits::{Array, Characters, Keywords as _, Limit};
+use stickslip_wire::limits::{Array, Characters, Limit};
 use stickslip_wire::{Faults, Field, JobState, JsonPath};
 
 use super::formats::Format;
@@ -221,7 +221,7 @@ impl Kind<Vec<f64>> for List {
     }
 
     fn schema(&self) -> Value {
-        let mut schema = self.0.keywords();
+        let mut schema = Limit::<Vec<f64>>::keywords(&self.0);
         (schema["type"], schema["items"]["type"]) = (json!("array"), json!("number"));
         schema
     }
@@ -295,7 +295,7 @@ impl Kind<String> for Text {
     }
 
     fn schema(&self) -> Value {
-        let mut schema = self.0.keywords();
+        let mut schema = Limit::<String>::keywords(&self.0);
         schema["type"] = json!("string");
         schema
     }

@@ -11,7 +11,7 @@ use serde_json::json;
 use stickslip_mechanics::{Contact, ErrorEstimate};
 use stickslip_wire::reply::finite;
 use stickslip_wire::{
-    AccuracyReply, AccuracyRequest, AccuracyRow, Comparison, ContactDefinition, Fault, Fields, Points, Protocol,
+    AccuracyReply, AccuracyRequest, AccuracyRow, Comparison, ContactDefinition, Fault, Field, Points, Protocol,
     Reference, Sampling, Solver as Named, SolverKind, Steps, limits,
 };
 
@@ -148,8 +148,7 @@ pub fn compare_solvers(comparison: &Comparison, stop: &Stop) -> Result<AccuracyR
     };
     let (truth, forces, unit) = followed?;
     let radii = comparison.sampling.radii(truth.contact_radius());
-    let fields = Fields { pressure: false, shear: true, slip: false, displacement: false };
-    let sampling = Sampling { points: Points::Radii(radii), fields };
+    let sampling = Sampling { points: Points::Radii(radii), fields: vec![Field::Shear] };
     let shears = stresses(&truth, &sampling, stop)?.shear.unwrap_or_default();
     let pressure = truth.summary().unit_pressure();
     let pressure = if pressure.is_finite() { pressure } else { 0.0 };

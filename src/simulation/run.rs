@@ -256,8 +256,8 @@ pub fn stresses<S: Solver>(solver: &S, sampling: &Sampling, stop: &Stop) -> Resu
     let (least, most) = RADII_PER_CHECK;
     // Springs have no pieces, and each radius costs as many terms as there are springs.
     let at_once = TERMS_PER_CHECK.checked_div(solver.depth()).map_or(least, |radii| radii.clamp(least, most));
-    let along = |field: Field, asked: bool| -> Result<Option<Vec<Option<f64>>>, Failure> {
-        if !asked {
+    let along = |field: Field| -> Result<Option<Vec<Option<f64>>>, Failure> {
+        if !sampling.fields.contains(&field) {
             return Ok(None);
         }
         let mut all = Vec::with_capacity(radius.len());
@@ -267,9 +267,8 @@ pub fn stresses<S: Solver>(solver: &S, sampling: &Sampling, stop: &Stop) -> Resu
         }
         Ok(Some(all))
     };
-    let fields = sampling.fields;
-    let (pressure, shear) = (along(Field::Pressure, fields.pressure)?, along(Field::Shear, fields.shear)?);
-    let (slip, displacement) = (along(Field::Slip, fields.slip)?, along(Field::Displacement, fields.displacement)?);
+    let (pressure, shear) = (along(Field::Pressure)?, along(Field::Shear)?);
+    let (slip, displacement) = (along(Field::Slip)?, along(Field::Displacement)?);
     Ok(Stress { radius, pressure, shear, slip, displacement })
 }
 

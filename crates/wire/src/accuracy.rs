@@ -1,8 +1,5 @@
 //! The body of `POST /accuracy` and its reply.
 
-use serde::{Deserialize, Serialize};
-use utoipa::ToSchema;
-
 use stickslip_mechanics::DEFAULT_TOLERANCE;
 
 use super::check::{Fault, Faults, JsonPath};
@@ -12,7 +9,7 @@ use super::limits::{Items, Tolerance};
 use super::path::{Path, Plan};
 use super::prepare::Prepare;
 use super::reply::SolverKind;
-use super::request::requests;
+use super::request::{replies, requests};
 use super::simulate::{Solver, Springs, most_springs};
 use super::stress::{Field, Sampling, StressRequest};
 
@@ -44,8 +41,8 @@ pub struct AccuracyRequest {
 }
 }
 
+replies! {
 /// The time and the error of each solver.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct AccuracyReply {
     /// What the rows are compared with.
     pub reference: Reference,
@@ -54,7 +51,6 @@ pub struct AccuracyReply {
 }
 
 /// The solution that errors are measured from, with its own error.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Reference {
     /// The solver.
     pub solver: SolverKind,
@@ -77,7 +73,6 @@ pub struct Reference {
 }
 
 /// One solver on the path.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct AccuracyRow {
     /// The solver.
     pub solver: Solver,
@@ -99,6 +94,7 @@ pub struct AccuracyRow {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub refused: Option<Fault>,
+}
 }
 
 /// A comparison that has passed all checks.
@@ -159,7 +155,7 @@ impl Document for AccuracyRequest {
         });
         let at = JsonPath::Root.member("stress");
         let sampling = stress.check(at, faults);
-        if sampling.as_ref().is_some_and(|sampling| !sampling.fields.shear) {
+        if sampling.as_ref().is_some_and(|sampling| !sampling.fields.contains(&Field::Shear)) {
             faults.add(at.member("fields"), "the shear stress is what is compared: name `shear`");
         }
         let tolerance = Tolerance(DEFAULT_TOLERANCE).of(self.tolerance, faults);

@@ -103,7 +103,7 @@ macro_rules! choices {
             const SCHEMA: &'static str = stringify!($Name);
 
             fn limits() -> Vec<(&'static str, serde_json::Value)> {
-                vec![$($(($key, $crate::limits::Keywords::keywords(&$limit)),)?)+]
+                vec![$($(($key, $crate::limits::Limit::<$Value>::keywords(&$limit)),)?)+]
             }
 
             #[allow(unused_variables, unreachable_patterns, reason = "some keys have limits, or none, or all")]

@@ -1,11 +1,10 @@
 //! The reply of `/contacts/{id}/cycles`: the closed cycles of a contact's past.
 
-use serde::{Deserialize, Serialize};
-use utoipa::ToSchema;
+use crate::request::replies;
 
+replies! {
 /// A closed cycle: the displacement went from one turning point to the opposite one and came back. Smaller cycles
 /// within it are cycles of their own.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Cycle {
     /// The number of the move after which it began, at its first turning point.
     pub from: u64,
@@ -26,8 +25,8 @@ pub struct Cycle {
 }
 
 /// The newest closed cycles of a contact, oldest first.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
-pub struct CyclePage {
+pub struct CyclePage: Default {
     /// The cycles, in the order in which they closed; of those that one move closed the inner ones first.
     pub items: Vec<Cycle>,
+}
 }

@@ -1,67 +1,64 @@
 //! Profiles of contacts that are known by their load curve alone: asperities, measured curves, Hertz's ellipse.
 
-use serde::{Deserialize, Serialize};
-use utoipa::ToSchema;
+use std::ops::RangeInclusive;
 
 use stickslip_mechanics::profile::{self as families, Asperities, Ellipsoid, LoadCurve, Profile as Shape};
 use stickslip_mechanics::{CurveFault, Elasticity, Error, range, range::Range};
 
 use super::check::{Faults, JsonPath, accepted};
-use super::limits::{self, Limit as _};
+use super::choice::words;
+use super::limits::{Array, Limited as _, count};
+use super::request::requests;
 
+requests! {
 /// Hertzian asperities between two rigid bodies, of which each is an elastic contact of its own.
-#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
 pub struct AsperitiesProfile {
     /// Radii of curvature, m, one for each gap; or give one `radius` for all.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    #[schema(nullable = false)]
-    pub radii: Option<Vec<f64>>,
+    pub radii: Option<Vec<f64>> = Array(ASPERITIES, range::RADIUS),
     /// Radius of curvature of all asperities, m.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    #[schema(nullable = false)]
-    pub radius: Option<f64>,
+    pub radius: Option<f64> = range::RADIUS,
     /// Distances of the tips from the flat before the load, m, in any order; an offset does not matter, because the
     /// indentation counts from the first touch.
-    pub gaps: Vec<f64>,
+    pub gaps: Vec<f64> = Array(ASPERITIES, range::GAP),
 }
 
 /// A load curve from the first touch on. Its slope must not fall.
-#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
 pub struct LoadCurveProfile {
     /// Indentations d, m: from 0 on, increasing. The indentation never exceeds the last.
-    pub indentation: Vec<f64>,
+    pub indentation: Vec<f64> = Array(CURVE_POINTS, range::PRELOAD_INDENTATION),
     /// The normal force F_N at each, N: from 0 on.
-    pub normal_force: Vec<f64>,
+    pub normal_force: Vec<f64> = Array(CURVE_POINTS, range::NORMAL_FORCE),
 }
 
 /// A gap x²/(2 R_x) + y²/(2 R_y); `material` must name the bodies.
-#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
 pub struct EllipsoidProfile {
     /// The principal radii of curvature of the gap, R_x and R_y, m; their ratio is 10⁶ at the most.
-    pub radii: Vec<f64>,
+    pub radii: Vec<f64> = Array(2..=2, range::RADIUS),
     /// The axis along which the indenter moves.
     pub direction: MotionAxis,
 }
+}
 
+const ASPERITIES: RangeInclusive<usize> = count(&range::ASPERITIES);
+const CURVE_POINTS: RangeInclusive<usize> = count(&range::CURVE_POINTS);
+
+words! {
 /// The axis of the tangential motion.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
-#[serde(rename_all = "snake_case")]
 pub enum MotionAxis {
     /// Along x, whose radius is R_x.
-    X,
+    X = "x",
     /// Along y, whose radius is R_y.
-    Y,
+    Y = "y",
+}
 }
 
 impl AsperitiesProfile {
     /// The checked profile; its faults are noted at `at`.
     pub(super) fn check(&self, at: JsonPath<'_>, keep_going: &dyn Fn() -> bool, faults: &mut Faults) -> Option<Shape> {
         faults.part(|faults| {
-            limits::ASPERITY_GAPS.check(&self.gaps, at.member("gaps"), faults);
-            match (&self.radii, self.radius) {
-                (Some(radii), None) => limits::ASPERITY_RADII.check(radii, at.member("radii"), faults),
-                (None, Some(radius)) => faults.number(at.member("radius"), radius, &range::RADIUS),
-                _ => faults.add(at, "give either `radii`, one for each gap, or one `radius` for all"),
+            self.check_members(at, faults);
+            if self.radii.is_some() == self.radius.is_some() {
+                faults.add(at, "give either `radii`, one for each gap, or one `radius` for all");
             }
         })?;
         let radii = self.radii.as_deref().unwrap_or(self.radius.as_slice());
@@ -84,10 +81,7 @@ impl LoadCurveProfile {
         faults: &mut Faults,
     ) -> Option<Shape> {
         let LoadCurveProfile { indentation, normal_force } = self;
-        faults.part(|faults| {
-            limits::CURVE_INDENTATIONS.check(indentation, at.member("indentation"), faults);
-            limits::CURVE_FORCES.check(normal_force, at.member("normal_force"), faults);
-        })?;
+        faults.part(|faults| self.check_members(at, faults))?;
         let curve =
             if keep_going() { LoadCurve::new(indentation, normal_force, bodies) } else { Err(Error::Interrupted) };
         if let Err(Error::Curve { fault, index }) = curve {
@@ -113,7 +107,7 @@ impl EllipsoidProfile {
     /// The checked profile; its faults are noted at `at`.
     pub(super) fn check(&self, at: JsonPath<'_>, faults: &mut Faults) -> Option<Shape> {
         let place = at.member("radii");
-        faults.part(|faults| limits::ELLIPSOID_RADII.check(&self.radii, place, faults))?;
+        faults.part(|faults| self.check_members(at, faults))?;
         let &[x, y] = self.radii.as_slice() else { return None };
         let ratio = x.max(y) / x.min(y);
         let Range { max, .. } = range::RADIUS_RATIO;

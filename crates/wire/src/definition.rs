@@ -2,14 +2,14 @@
 
 use std::sync::Arc;
 
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 use serde_json::{Value, json};
 use utoipa::ToSchema;
 
 use stickslip_mechanics::{self as mechanics, Setup, elasticity, range, range::Quantity};
 
 use super::check::{Faults, JsonPath};
-use super::choice::{choices, object_or_string};
+use super::choice::{choices, object_or_string, words};
 use super::limits::{Items, Limited as _};
 use super::prepare::Prepare;
 use super::profile::Profile;
@@ -63,14 +63,14 @@ pub struct DefinedProfile<'a> {
     pub material: &'a Material,
 }
 
+words! {
 /// One of the two bodies in contact.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
-#[serde(rename_all = "snake_case")]
 pub enum BodyName {
     /// The one with the profile, which moves along x: its surface feels −τ.
-    First,
+    First = "first",
     /// The plane one: its surface feels +τ.
-    Second,
+    Second = "second",
+}
 }
 
 choices! {
@@ -223,39 +223,21 @@ impl Material {
 }
 
 fn check_bodies(bodies: &[Body], at: JsonPath<'_>, faults: &mut Faults) -> Option<elasticity::Elasticity> {
-    let mut checked = bodies.iter().enumerate().map(|(index, body)| body.check(at.index(index), faults));
-    match (checked.next(), checked.next(), checked.next()) {
-        (Some(first), Some(second), None) => match (first, second) {
-            (Checked::Elastic(first), Checked::Elastic(second)) => {
-                Some(elasticity::Elasticity::of_bodies(first?, second?))
-            }
-            (Checked::Elastic(body), Checked::Rigid) | (Checked::Rigid, Checked::Elastic(body)) => {
-                Some(elasticity::Elasticity::against_rigid(body?))
-            }
-            (Checked::Rigid, Checked::Rigid) => {
-                faults.add(at, "both bodies are rigid: one of them must be elastic");
-                None
-            }
-        },
-        _ => None,
-    }
-}
-
-/// A body after its check; an elastic one may have had faults.
-enum Checked {
-    Elastic(Option<elasticity::Body>),
-    Rigid,
-}
-
-impl Body {
-    fn check(&self, at: JsonPath<'_>, faults: &mut Faults) -> Checked {
-        match self {
-            Body::Rigid(Rigid::Rigid) => Checked::Rigid,
-            Body::Elastic(body) => {
-                body.check_members(at, faults);
-                Checked::Elastic(elasticity::Body::new(body.youngs_modulus, body.poisson_ratio).ok())
-            }
+    let checked = bodies.iter().enumerate().map(|(index, body)| match body {
+        Body::Rigid(Rigid::Rigid) => None,
+        Body::Elastic(body) => {
+            body.check_members(at.index(index), faults);
+            Some(elasticity::Body::new(body.youngs_modulus, body.poisson_ratio).ok())
         }
+    });
+    match checked.collect::<Vec<_>>()[..] {
+        [Some(first), Some(second)] => Some(elasticity::Elasticity::of_bodies(first?, second?)),
+        [Some(body), None] | [None, Some(body)] => Some(elasticity::Elasticity::against_rigid(body?)),
+        [None, None] => {
+            faults.add(at, "both bodies are rigid: one of them must be elastic");
+            None
+        }
+        _ => None,
     }
 }
 

@@ -1,20 +1,18 @@
 //! What `/contacts/{id}/events` sends.
 
 use jiff::Timestamp;
-use serde::{Deserialize, Serialize};
-use serde_with::apply;
-use utoipa::ToSchema;
 use uuid::Uuid;
 
+use super::choice::words;
 use super::closed_cycle::Cycle;
 use super::observation::ObservedForce;
 use super::path::Move;
 use super::reply::State;
+use super::request::replies;
 
+replies! {
 /// The data of an event `state`: a move that has been applied, with the state after it.
-#[apply(Option => #[serde(default, skip_serializing_if = "Option::is_none")] #[schema(nullable = false)])]
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-pub struct StateEvent {
+pub struct StateEvent omits Option {
     /// The identifier of the contact.
     pub id: Uuid,
     /// The number of the move, and of moves so far; the identifier of the event.
@@ -33,22 +31,22 @@ pub struct StateEvent {
 }
 
 /// The data of the event `end`, the last one.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
-pub struct EndEvent {
+pub struct EndEvent: Copy, Eq {
     /// Why there are no more.
     pub reason: EndReason,
 }
+}
 
+words! {
 /// Why there are no more events.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
-#[serde(rename_all = "snake_case")]
 pub enum EndReason {
     /// The contact has been deleted.
-    Deleted,
+    Deleted = "deleted",
     /// The contact has been idle for so long that it has expired.
-    Expired,
+    Expired = "expired",
     /// The server stops. After a restart, or on another server, the stream continues from `Last-Event-ID`.
-    Stopping,
+    Stopping = "stopping",
     /// What is stored of the contact is damaged: there are moves that cannot be shown.
-    Damaged,
+    Damaged = "damaged",
+}
 }

@@ -1,10 +1,11 @@
 //! What `POST /files/scan` and `POST /files/loop` are told of a file of an instrument, and what they find in it.
 
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 use utoipa::ToSchema;
 
 use crate::fit::{FitUnits, ForceUnit, MeasuredLoop};
 use crate::profile_fit::{LengthUnit, ScanData, ScanUnits};
+use crate::request::replies;
 
 /// What is known of a scan beside its file: the query of `POST /files/scan`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
@@ -35,8 +36,8 @@ pub struct LoopFileHints {
     pub force_unit: Option<ForceUnit>,
 }
 
+replies! {
 /// A scan that was read from a file. `scan` and `units` are members of the body of `POST /profiles/fit`.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct ScanFileReply {
     /// The heights, with their places.
     #[schema(value_type = ScanInFile)]
@@ -49,7 +50,6 @@ pub struct ScanFileReply {
 
 /// A measured loop that was read from a file. `loop` is one of the `loops` of the body of `POST /fit`, and `units` its
 /// member.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct LoopFileReply {
     /// Displacement and force, with the time and the mean load if the file has them.
     #[serde(rename = "loop")]
@@ -59,6 +59,7 @@ pub struct LoopFileReply {
     pub units: FitUnits,
     /// How the file was read.
     pub preview: FilePreview,
+}
 }
 
 /// A scan as a file has it: that of `POST /profiles/fit`, with however few or many points.
@@ -119,8 +120,8 @@ pub struct LoopInFile {
     pub normal_force: Option<f64>,
 }
 
+replies! {
 /// How a file was read.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct FilePreview {
     /// The encoding, such as `UTF-8` or `UTF-16LE`.
     pub encoding: String,
@@ -141,8 +142,7 @@ pub struct FilePreview {
 }
 
 /// A column of a file.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
-pub struct FileColumn {
+pub struct FileColumn: Eq {
     /// Its name in the header, if it has one.
     pub name: Option<String>,
     /// What it was taken for: `x`, `y`, `z`, `displacement`, `force`, `time` or `normal_force`; `null` if it was not
@@ -152,4 +152,5 @@ pub struct FileColumn {
     pub unit: Option<String>,
     /// Whether neither the file nor the query names that unit.
     pub assumed: bool,
+}
 }

@@ -1,19 +1,16 @@
 //! What a contact has done: its moves, and its hysteresis loop.
 
 use jiff::Timestamp;
-use serde::{Deserialize, Serialize};
-use serde_with::apply;
-use utoipa::ToSchema;
 
 use super::closed_cycle::Cycle;
 use super::observation::ObservedForce;
 use super::path::Move;
 use super::reply::State;
+use super::request::replies;
 
+replies! {
 /// A move that has been applied.
-#[apply(Option => #[serde(default, skip_serializing_if = "Option::is_none")] #[schema(nullable = false)])]
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-pub struct HistoryItem {
+pub struct HistoryItem omits Option {
     /// Its number, counted from 1.
     pub sequence: u64,
     /// The move as it was given.
@@ -32,7 +29,6 @@ pub struct HistoryItem {
 }
 
 /// A page of the history of a contact, oldest first.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct HistoryPage {
     /// The moves.
     pub items: Vec<HistoryItem>,
@@ -42,8 +38,7 @@ pub struct HistoryPage {
 
 /// A page of the hysteresis loop of a contact, oldest first. The first page begins with the virgin contact at sequence
 /// zero; the pages in sequence are the whole loop.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
-pub struct LoopPage {
+pub struct LoopPage: Default {
     /// The number of the move that a point belongs to.
     pub sequence: Vec<u64>,
     /// Fraction of that move, a pure number: 1 at its end.
@@ -58,6 +53,7 @@ pub struct LoopPage {
     pub observed_force: Vec<Option<f64>>,
     /// What to give as `after` for the next page; `null` on the last.
     pub next: Option<u64>,
+}
 }
 
 impl LoopPage {

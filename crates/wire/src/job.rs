@@ -1,18 +1,15 @@
 //! Replies of `/jobs`: work that continues after its request has been answered.
 
 use jiff::Timestamp;
-use serde::{Deserialize, Serialize};
-use serde_with::apply;
-use utoipa::ToSchema;
 use uuid::Uuid;
 
 use super::choice::words;
 use super::event::EndReason;
+use super::request::replies;
 
+replies! {
 /// A sweep that the server computes after its request has been answered.
-#[apply(Option => #[serde(skip_serializing_if = "Option::is_none")] #[schema(nullable = false)])]
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-pub struct JobReply {
+pub struct JobReply omits Option {
     /// Its identifier.
     pub id: Uuid,
     /// Its state.
@@ -36,10 +33,10 @@ pub struct JobReply {
 }
 
 /// Jobs of a tenant.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct JobList {
     /// The jobs, oldest first.
     pub items: Vec<JobReply>,
+}
 }
 
 words! {
@@ -54,9 +51,9 @@ pub enum JobState {
 }
 }
 
+replies! {
 /// The progress of a job.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
-pub struct JobProgress {
+pub struct JobProgress: Copy, Eq {
     /// Points in all.
     pub points: u64,
     /// Points that are computed and stored.
@@ -66,8 +63,8 @@ pub struct JobProgress {
 }
 
 /// The data of the event `end`, the last one before a job has ended itself.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
-pub struct JobEndEvent {
+pub struct JobEndEvent: Copy, Eq {
     /// Why there are no more.
     pub reason: EndReason,
+}
 }

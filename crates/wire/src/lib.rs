@@ -31,7 +31,6 @@ pub mod history;
 pub mod job;
 pub mod json_value;
 pub mod limits;
-mod objects_only;
 pub mod observation;
 pub mod parse;
 pub mod path;
@@ -83,19 +82,19 @@ pub use session::{
     SessionReply, SessionSummary, StressReply,
 };
 pub use simulate::{SimulateReply, SimulateRequest, Solver, Springs, Steps};
-pub use stress::{Field, Fields, Points, Sampling, Stress, StressRequest};
+pub use stress::{Field, Points, Sampling, Stress, StressRequest};
 pub use subsurface::{
     Bulk, Direction, Subsurface, SubsurfaceField, SubsurfaceLine, SubsurfacePlane, SubsurfaceReply, SubsurfaceRequest,
     SubsurfaceSurface,
 };
 pub use sweep::{Axis, NamedOutput, Output, PointFailure, Span, SweepReply, SweepRequest};
 
-/// Schema, member and keywords of every limit but those of profiles.
+/// Schema, member and keywords of every limit.
 #[must_use]
 pub fn all_limits() -> Vec<(&'static str, &'static str, serde_json::Value)> {
     macro_rules! of_all {
         { $($document:ty),* } => {
-            [$(<$document as limits::Limited>::limits_of_schema()),*].concat()
+            [profile::limits(), $(<$document as limits::Limited>::limits_of_schema()),*].concat()
         };
     }
     of_all! {

@@ -6,7 +6,7 @@
 use std::ops::RangeInclusive;
 
 use serde_json::{Value, json};
-use stickslip_mechanics::range::{self, Range};
+use stickslip_mechanics::range::Range;
 
 use super::check::{Faults, JsonPath};
 
@@ -61,36 +61,19 @@ pub const SPRING_STEPS: usize = 2_000_000_000;
 pub const MEMORY_DEPTH: usize = 200_000;
 /// Relative tolerance for what is not exact.
 pub const TOLERANCE: RangeInclusive<f64> = 1e-14..=1e-2;
-/// Profiles in one sum.
-pub const SUM_PARTS: RangeInclusive<usize> = count(&range::PARTS);
-/// Points of a tabulated profile.
-pub const TABLE_POINTS: RangeInclusive<usize> = count(&range::TABLE_POINTS);
-/// Gaps of a set of asperities.
-pub const ASPERITY_GAPS: Array<Range> = Array(count(&range::ASPERITIES), range::GAP);
-/// Their radii, one for each.
-pub const ASPERITY_RADII: Array<Range> = Array(count(&range::ASPERITIES), range::RADIUS);
-/// Indentations of a load curve.
-pub const CURVE_INDENTATIONS: Array<Range> = Array(count(&range::CURVE_POINTS), range::PRELOAD_INDENTATION);
-/// Its forces.
-pub const CURVE_FORCES: Array<Range> = Array(count(&range::CURVE_POINTS), range::NORMAL_FORCE);
-/// The principal radii of curvature of an ellipsoid.
-pub const ELLIPSOID_RADII: Array<Range> = Array(2..=2, range::RADIUS);
 /// Points without an answer that the reply to a sweep lists; all of them are counted.
 pub const SWEEP_FAILURES: usize = 100;
 
 /// The range of a count that the mechanics has among its quantities.
-const fn count(range: &Range) -> RangeInclusive<usize> {
+pub(super) const fn count(range: &Range) -> RangeInclusive<usize> {
     RangeInclusive::new(range.min as usize, range.max as usize)
 }
 
-/// A limit as JSON Schema states it.
-pub trait Keywords {
-    /// An object of keywords, to be added to the schema of the member.
-    fn keywords(&self) -> Value;
-}
-
 /// A limit of values of the type `T`.
-pub trait Limit<T>: Keywords {
+pub trait Limit<T> {
+    /// It as JSON Schema states it: an object of keywords, to be added to the schema of the member.
+    fn keywords(&self) -> Value;
+
     /// Notes a fault at `at` if `value` is outside.
     fn check(&self, value: &T, at: JsonPath<'_>, faults: &mut Faults);
 }
@@ -140,18 +123,20 @@ impl Tolerance {
 }
 
 impl<T, L: Limit<T>> Limit<Option<T>> for L {
+    fn keywords(&self) -> Value {
+        Limit::<T>::keywords(self)
+    }
+
     fn check(&self, value: &Option<T>, at: JsonPath<'_>, faults: &mut Faults) {
         value.iter().for_each(|value| self.check(value, at, faults));
     }
 }
 
-impl Keywords for Range {
+impl Limit<f64> for Range {
     fn keywords(&self) -> Value {
         json!({"minimum": self.min, "maximum": self.max})
     }
-}
 
-impl Limit<f64> for Range {
     fn check(&self, value: &f64, at: JsonPath<'_>, faults: &mut Faults) {
         faults.number(at, *value, self);
     }
@@ -159,13 +144,11 @@ impl Limit<f64> for Range {
 
 macro_rules! counts {
     ($($count:ty),*) => {$(
-        impl Keywords for RangeInclusive<$count> {
+        impl Limit<$count> for RangeInclusive<$count> {
             fn keywords(&self) -> Value {
                 json!({"minimum": self.start(), "maximum": self.end()})
             }
-        }
 
-        impl Limit<$count> for RangeInclusive<$count> {
             fn check(&self, value: &$count, at: JsonPath<'_>, faults: &mut Faults) {
                 faults.count(at, *value, self);
             }
@@ -174,37 +157,31 @@ macro_rules! counts {
 }
 counts!(usize, u64);
 
-impl Keywords for Whole {
-    fn keywords(&self) -> Value {
-        count(&self.0).keywords()
-    }
-}
-
 impl Limit<usize> for Whole {
+    fn keywords(&self) -> Value {
+        Limit::<usize>::keywords(&count(&self.0))
+    }
+
     fn check(&self, value: &usize, at: JsonPath<'_>, faults: &mut Faults) {
         faults.number(at, *value as f64, &self.0);
     }
 }
 
-impl Keywords for Items {
+impl<T> Limit<Vec<T>> for Items {
     fn keywords(&self) -> Value {
         json!({"minItems": self.0.start(), "maxItems": self.0.end()})
     }
-}
 
-impl<T> Limit<Vec<T>> for Items {
     fn check(&self, value: &Vec<T>, at: JsonPath<'_>, faults: &mut Faults) {
         faults.length(at, value.len(), &self.0);
     }
 }
 
-impl<L: Keywords> Keywords for Array<L> {
-    fn keywords(&self) -> Value {
-        json!({"minItems": self.0.start(), "maxItems": self.0.end(), "items": self.1.keywords()})
-    }
-}
-
 impl<T, L: Limit<T>> Limit<Vec<T>> for Array<L> {
+    fn keywords(&self) -> Value {
+        json!({"minItems": self.0.start(), "maxItems": self.0.end(), "items": Limit::<T>::keywords(&self.1)})
+    }
+
     fn check(&self, value: &Vec<T>, at: JsonPath<'_>, faults: &mut Faults) {
         if faults.length(at, value.len(), &self.0) {
             value.iter().enumerate().for_each(|(index, value)| self.1.check(value, at.index(index), faults));
@@ -212,25 +189,21 @@ impl<T, L: Limit<T>> Limit<Vec<T>> for Array<L> {
     }
 }
 
-impl Keywords for Triple {
-    fn keywords(&self) -> Value {
-        Array(3..=3, self.0).keywords()
-    }
-}
-
 impl Limit<[f64; 3]> for Triple {
+    fn keywords(&self) -> Value {
+        Limit::<Vec<f64>>::keywords(&Array(3..=3, self.0))
+    }
+
     fn check(&self, value: &[f64; 3], at: JsonPath<'_>, faults: &mut Faults) {
         value.iter().enumerate().for_each(|(index, value)| faults.number(at.index(index), *value, &self.0));
     }
 }
 
-impl Keywords for Characters {
+impl Limit<String> for Characters {
     fn keywords(&self) -> Value {
         json!({"maxLength": self.0})
     }
-}
 
-impl Limit<String> for Characters {
     fn check(&self, value: &String, at: JsonPath<'_>, faults: &mut Faults) {
         if value.contains('\0') {
             // Databases end a text there.
@@ -241,13 +214,11 @@ impl Limit<String> for Characters {
     }
 }
 
-impl Keywords for Tolerance {
+impl Limit<f64> for Tolerance {
     fn keywords(&self) -> Value {
         json!({"minimum": TOLERANCE.start(), "maximum": TOLERANCE.end(), "default": self.0})
     }
-}
 
-impl Limit<f64> for Tolerance {
     fn check(&self, value: &f64, at: JsonPath<'_>, faults: &mut Faults) {
         if !TOLERANCE.contains(value) {
             let (least, most) = (TOLERANCE.start(), TOLERANCE.end());
@@ -259,13 +230,11 @@ impl Limit<f64> for Tolerance {
 /// The limits of a document within a document: those of its members.
 pub struct OfItsMembers;
 
-impl Keywords for OfItsMembers {
+impl<T: Limited> Limit<T> for OfItsMembers {
     fn keywords(&self) -> Value {
         json!({})
     }
-}
 
-impl<T: Limited> Limit<T> for OfItsMembers {
     fn check(&self, value: &T, at: JsonPath<'_>, faults: &mut Faults) {
         value.check_members(at, faults);
     }

@@ -1,9 +1,6 @@
 //! The body of `POST /contacts/{id}/observations` and its reply: a contact follows a bench.
 
 use jiff::Timestamp;
-use serde::{Deserialize, Serialize};
-use serde_with::{apply, skip_serializing_none};
-use utoipa::ToSchema;
 use uuid::Uuid;
 
 use stickslip_mechanics::DEFAULT_TOLERANCE;
@@ -13,7 +10,7 @@ use super::document::Document;
 use super::limits::{Items, Limited as _, PATH_MOVES};
 use super::path::{Observation, Plan};
 use super::prepare::Prepare;
-use super::request::requests;
+use super::request::{replies, requests};
 use super::session::Advance;
 use super::simulate::Steps;
 
@@ -28,10 +25,9 @@ pub struct ObservationsRequest {
 }
 }
 
+replies! {
 /// The result of observations.
-#[apply(Option => #[serde(skip_serializing_if = "Option::is_none")] #[schema(nullable = false)])]
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-pub struct ObservationsReply {
+pub struct ObservationsReply omits Option {
     /// The identifier of the contact.
     pub id: Uuid,
     /// The number of the last move, and of moves so far.
@@ -44,8 +40,7 @@ pub struct ObservationsReply {
 }
 
 /// An observation beside what the contact predicts.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-pub struct ObservedMove {
+pub struct ObservedMove: Copy {
     /// Tangential displacement, m.
     pub displacement: f64,
     /// Measured tangential force, N; positive along x.
@@ -57,10 +52,7 @@ pub struct ObservedMove {
 }
 
 /// What was measured at the displacement of a move.
-#[skip_serializing_none]
-#[apply(Option => #[serde(default)] #[schema(nullable = false)])]
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-pub struct ObservedForce {
+pub struct ObservedForce: Copy omits Option {
     /// Measured tangential force, N; positive along x.
     pub force: f64,
     /// Tangential force of the contact there, N, with the friction of its definition.
@@ -72,8 +64,7 @@ pub struct ObservedForce {
 }
 
 /// A coefficient of friction from a measured cycle.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-pub struct FrictionEstimate {
+pub struct FrictionEstimate: Copy {
     /// Coefficient of friction μ, a pure number.
     pub value: f64,
     /// Both ends of its 95 % interval, pure numbers.
@@ -86,15 +77,14 @@ pub struct FrictionEstimate {
 }
 
 /// The coefficient of friction that the observations of a contact have last determined.
-#[apply(Option => #[serde(skip_serializing_if = "Option::is_none")] #[schema(nullable = false)])]
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-pub struct FrictionReply {
+pub struct FrictionReply: Copy omits Option {
     /// The identifier of the contact.
     pub id: Uuid,
     /// Number of moves so far.
     pub sequence: u64,
     /// The estimate; left out as long as the observations do not determine it.
     pub friction: Option<FrictionEstimate>,
+}
 }
 
 impl ObservedForce {

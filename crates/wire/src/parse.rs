@@ -5,7 +5,6 @@ use serde_json::Value;
 use serde_path_to_error::{Deserializer, Path, Segment, Track};
 
 use super::check::{Fault, Rejection, escaped};
-use super::objects_only::ObjectsOnly;
 
 /// Longest detail or pointer of a fault: both can quote the body, which may be long.
 const LONGEST_TEXT: usize = 400;
@@ -17,7 +16,7 @@ const LONGEST_TEXT: usize = 400;
 pub fn parse<T: DeserializeOwned>(body: &[u8]) -> Result<T, Rejection> {
     let mut json = serde_json::Deserializer::from_slice(body);
     let mut track = Track::new();
-    let parsed = T::deserialize(ObjectsOnly(Deserializer::new(&mut json, &mut track)));
+    let parsed = T::deserialize(Deserializer::new(&mut json, &mut track));
     match parsed.and_then(|value| json.end().map(|()| value)) {
         Ok(value) => Ok(value),
         // serde_json calls some well-formed documents a syntax error too (1e999, an array longer than expected), and
@@ -35,7 +34,7 @@ pub fn parse<T: DeserializeOwned>(body: &[u8]) -> Result<T, Rejection> {
 /// The fault if it is not the expected document.
 pub fn parse_value<T: DeserializeOwned>(value: &Value) -> Result<T, Fault> {
     let mut track = Track::new();
-    let parsed = T::deserialize(ObjectsOnly(Deserializer::new(value, &mut track)));
+    let parsed = T::deserialize(Deserializer::new(value, &mut track));
     parsed.map_err(|error| fault(&track.path(), &error.to_string()))
 }
 
@@ -86,7 +85,6 @@ fn in_json_terms(message: &str) -> String {
             "usize" | "u64" => "a whole number, not negative",
             "a sequence" => "an array",
             "a boolean" => "true or false",
-            _ if tail.starts_with("struct ") => "an object",
             _ if tail.contains("enum ") => "a string",
             _ => tail,
         };

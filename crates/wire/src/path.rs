@@ -16,8 +16,8 @@ use stickslip_mechanics::{
 
 use super::check::{Faults, JsonPath};
 use super::choice::choices;
-use super::limits::{Array, Items, Keywords as _, Limit, Limited, PATH_MOVES};
-use super::request::{not_null, requests};
+use super::limits::{Array, Items, Limit, Limited, OfItsMembers, PATH_MOVES};
+use super::request::{not_null, object, requests};
 
 pub(crate) use cycles::PHASE;
 pub use cycles::{Cycles, CyclicPath, FirstTurn, NormalOscillation};
@@ -31,7 +31,7 @@ const REVERSALS: RangeInclusive<usize> = 1..=99_999;
 #[skip_serializing_none]
 #[apply(Option => #[serde(default, deserialize_with = "not_null")] #[schema(nullable = false)])]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, remote = "Self")]
 #[schema(example = json!({"displacement": 1e-7}))]
 pub struct Move {
     /// Tangential displacement of the indenter, m.
@@ -46,6 +46,7 @@ pub struct Move {
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub relative: bool,
 }
+object!(Move);
 
 choices! {
 /// A path, one key: a list of moves, or a short form of one.
@@ -58,10 +59,10 @@ pub enum Path {
     /// Tangential forces, N, one move each.
     "force" => Force(Vec<f64>) = Array(PATH_MOVES, range::FORCE),
     /// Back and forth with an amplitude that falls linearly to zero (eq. 20 of the paper).
-    "falling_amplitude" => FallingAmplitude(FallingAmplitude),
+    "falling_amplitude" => FallingAmplitude(FallingAmplitude) = OfItsMembers,
     /// Back and forth from gross slip to rest, with the amplitudes that leave equal peaks of shear stress on the
     /// profile of the contact.
-    "equal_peaks" => EqualPeaks(EqualPeaks),
+    "equal_peaks" => EqualPeaks(EqualPeaks) = OfItsMembers,
     /// Equal cycles about a mean, under a constant load or one that oscillates too.
     "cycles" => Cycles(CyclicPath),
 }
@@ -106,7 +107,7 @@ impl Limited for Move {
     /// Those of a relative move: as an increment the normal force may be negative.
     fn limits() -> Vec<(&'static str, serde_json::Value)> {
         let widest = Move { relative: true, ..Move::default() };
-        widest.targets().map(|(name, _, range)| (name, range.keywords())).into()
+        widest.targets().map(|(name, _, range)| (name, Limit::<f64>::keywords(range))).into()
     }
 
     fn check_members(&self, at: JsonPath<'_>, faults: &mut Faults) {
@@ -218,14 +219,8 @@ impl Path {
             }
             Path::Displacement(targets) => Some(Plan::Displacement(targets)),
             Path::Force(targets) => Some(Plan::Force(targets)),
-            Path::FallingAmplitude(fall) => {
-                fall.check_members(at.member("falling_amplitude"), faults);
-                Some(Plan::FallingAmplitude(fall))
-            }
-            Path::EqualPeaks(peaks) => {
-                peaks.check_members(at.member("equal_peaks"), faults);
-                Some(Plan::EqualPeaks(peaks))
-            }
+            Path::FallingAmplitude(fall) => Some(Plan::FallingAmplitude(fall)),
+            Path::EqualPeaks(peaks) => Some(Plan::EqualPeaks(peaks)),
             Path::Cycles(cycles) => cycles.check(at.member("cycles"), faults).map(Plan::Cycles),
         });
         plan.flatten()

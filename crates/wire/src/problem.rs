@@ -1,9 +1,7 @@
 //! The document that every refusal comes as (RFC 9457), and the table of its kinds.
 
-use serde::{Deserialize, Serialize};
-use utoipa::ToSchema;
-
 use super::check::Fault;
+use super::request::replies;
 
 /// Declares [`Code`]: for each kind when to use it, its status, code and title, and what a client can do.
 macro_rules! codes {
@@ -157,9 +155,9 @@ impl Code {
     }
 }
 
+replies! {
 /// What went wrong, for programs (`code`, `errors`) and for people (`title`, `detail`).
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
-pub struct ProblemDocument {
+pub struct ProblemDocument: Eq {
     /// A reference that identifies the kind of problem: `/problems/` and the code.
     #[serde(rename = "type")]
     #[schema(example = "/problems/invalid_input")]
@@ -180,6 +178,7 @@ pub struct ProblemDocument {
     pub errors: Vec<Fault>,
     /// The identifier of the request, by which its operator finds it in the log; also in the header `x-request-id`.
     pub request_id: String,
+}
 }
 
 impl ProblemDocument {

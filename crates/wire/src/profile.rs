@@ -4,27 +4,30 @@
 //! [`stickslip_mechanics::for_each_family!`]; tables of heights and sums are written out here, and contacts that are
 //! known by their load curve alone in [`curve_profiles`](super::curve_profiles).
 
-use std::collections::BTreeMap;
 use std::fmt;
+use std::ops::RangeInclusive;
 use std::sync::LazyLock;
 
-use serde::de::{Error as _, MapAccess, Visitor};
+use serde::de::{DeserializeOwned, Error as _, MapAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize};
+use serde_json::{Map, Value, json};
 use utoipa::ToSchema;
 use utoipa::openapi::{RefOr, Schema};
 
 use stickslip_mechanics::profile::{Profile as Shape, Sum, Tabulated};
-use stickslip_mechanics::{Elasticity, Error, for_each_family, profile as families, range, range::Range};
+use stickslip_mechanics::{Elasticity, Error, for_each_family, profile as families, range};
 
 use super::check::{Faults, JsonPath, accepted};
 use super::curve_profiles::{AsperitiesProfile, EllipsoidProfile, LoadCurveProfile, MotionAxis};
-use super::limits;
+use super::limits::{Array, Items, Limited, count};
+use super::request::requests;
 
 /// Declares everything that follows from the table of families.
 macro_rules! documents {
     ($(
         $(#[$about:meta])* $module:ident::$Family:ident,
-        $(#[$about_document:meta])* $Document:ident { $($(#[$about_number:meta])* $number:ident: $RANGE:ident,)+ }
+        $(#[doc = $about_document:literal])*
+        $Document:ident { $($(#[$about_number:meta])* $number:ident: $RANGE:ident,)+ }
     )+) => {
         /// The shape of the indenter before it is loaded, chosen by `type`.
         #[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
@@ -45,17 +48,28 @@ macro_rules! documents {
             Ellipsoid(EllipsoidProfile),
         }
 
-        $(
-            $(#[$about_document])*
-            #[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
+        requests! {$(
+            $(#[doc = $about_document])*
             pub struct $Document {
-                $($(#[$about_number])* pub $number: f64,)+
+                $($(#[$about_number])* pub $number: f64 = range::$RANGE,)+
             }
-        )+
+        )+}
 
-        /// The numbers of the families: schema, member and range of each.
-        pub const NUMBERS: &[(&str, &str, Range)] =
-            &[$($((stringify!($Document), stringify!($number), range::$RANGE),)+)+];
+        /// The names of the members that are numbers.
+        const NUMBERS: &[&str] = &[$($(stringify!($number),)+)+];
+
+        /// Schema, member and keywords of every limit.
+        pub(super) fn limits() -> Vec<(&'static str, &'static str, serde_json::Value)> {
+            [
+                $(<$Document as Limited>::limits_of_schema(),)+
+                TabulatedProfile::limits_of_schema(),
+                SumProfile::limits_of_schema(),
+                AsperitiesProfile::limits_of_schema(),
+                LoadCurveProfile::limits_of_schema(),
+                EllipsoidProfile::limits_of_schema(),
+            ]
+            .concat()
+        }
 
         /// The schemas of the documents that [`Profile`] chooses from, by name: its recursion keeps the derivation from
         /// finding them.
@@ -87,20 +101,6 @@ macro_rules! documents {
             Ellipsoid,
         }
 
-        impl Kind {
-            /// The members beside `type`, all of which are needed, but for one of the radii of asperities.
-            fn members(self) -> &'static [&'static str] {
-                match self {
-                    $(Kind::$Family => &[$(stringify!($number)),+],)+
-                    Kind::Tabulated => &["r", "z", "indentation_error", "pressure_error"],
-                    Kind::Sum => &["parts"],
-                    Kind::Asperities => &["radii", "radius", "gaps"],
-                    Kind::LoadCurve => &["indentation", "normal_force"],
-                    Kind::Ellipsoid => &["radii", "direction"],
-                }
-            }
-        }
-
         impl Profile {
             /// The checked profile of these bodies, `None` if they are at fault; its own faults are noted at `at`, and
             /// so it is if `keep_going` has returned false.
@@ -112,9 +112,9 @@ macro_rules! documents {
                 faults: &mut Faults,
             ) -> Option<Shape> {
                 match self {
-                    $(Profile::$Family($Document { $($number),+ }) => {
-                        $(faults.number(at.member(stringify!($number)), *$number, &range::$RANGE);)+
-                        accepted(families::$Family::new($(*$number),+).map(Shape::$Family), at, faults)
+                    $(Profile::$Family(document) => {
+                        document.check_members(at, faults);
+                        accepted(families::$Family::new($(document.$number),+).map(Shape::$Family), at, faults)
                     })+
                     Profile::Tabulated(table) => check_table(table, Tabulated::new_while, at, keep_going, faults),
                     Profile::Sum(SumProfile { parts }) => check_sum(parts, bodies, at, keep_going, faults),
@@ -127,35 +127,15 @@ macro_rules! documents {
 
         impl<'de> Deserialize<'de> for Profile {
             fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-                let mut members = deserializer.deserialize_struct("Members", &[], MembersVisitor)?;
-                Ok(match members.kind()? {
-                    $(Kind::$Family => Profile::$Family($Document {
-                        $($number: members.number(stringify!($number))?),+
-                    }),)+
-                    Kind::Tabulated => {
-                        let mut given = |name| members.columns.remove(name);
-                        let indentation_error = given("indentation_error");
-                        let pressure_error = given("pressure_error");
-                        let (r, z) = (members.column("r")?, members.column("z")?);
-                        Profile::Tabulated(TabulatedProfile { r, z, indentation_error, pressure_error })
-                    }
-                    Kind::Sum => Profile::Sum(SumProfile {
-                        parts: members.parts.ok_or_else(|| D::Error::missing_field("parts"))?,
-                    }),
-                    Kind::Asperities => Profile::Asperities(AsperitiesProfile {
-                        radii: members.columns.remove("radii"),
-                        radius: members.numbers.get("radius").copied(),
-                        gaps: members.column("gaps")?,
-                    }),
-                    Kind::LoadCurve => Profile::LoadCurve(LoadCurveProfile {
-                        indentation: members.column("indentation")?,
-                        normal_force: members.column("normal_force")?,
-                    }),
-                    Kind::Ellipsoid => Profile::Ellipsoid(EllipsoidProfile {
-                        radii: members.column("radii")?,
-                        direction: members.direction.ok_or_else(|| D::Error::missing_field("direction"))?,
-                    }),
-                })
+                let members = deserializer.deserialize_map(MembersVisitor)?;
+                match members.kind.ok_or_else(|| D::Error::missing_field("type"))? {
+                    $(Kind::$Family => members.document().map(Profile::$Family),)+
+                    Kind::Tabulated => members.document().map(Profile::Tabulated),
+                    Kind::Sum => members.sum().map(Profile::Sum),
+                    Kind::Asperities => members.document().map(Profile::Asperities),
+                    Kind::LoadCurve => members.document().map(Profile::LoadCurve),
+                    Kind::Ellipsoid => members.document().map(Profile::Ellipsoid),
+                }
             }
         }
     };
@@ -182,29 +162,33 @@ impl Profile {
     }
 }
 
+requests! {
 /// A table of heights over radii, of equal lengths.
-#[serde_with::apply(Option => #[serde(default, skip_serializing_if = "Option::is_none")] #[schema(nullable = false)])]
-#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
 pub struct TabulatedProfile {
     /// Radii, m: from 0 on, increasing. The contact radius stays below the last.
-    pub r: Vec<f64>,
+    pub r: Vec<f64> = Array(TABLE_POINTS, range::TABLE_RADIUS),
     /// Heights z above the plane, m; an offset does not matter.
-    pub z: Vec<f64>,
+    pub z: Vec<f64> = Array(TABLE_POINTS, range::TABLE_HEIGHT),
     /// Standard errors of the indentation at which a contact has each radius, m, as `POST /profiles/fit` gives them:
     /// they take the place of what the heights say of their noise and of the shape between them. Of the length of `r`,
     /// and together with `pressure_error`.
-    pub indentation_error: Option<Vec<f64>>,
+    pub indentation_error: Option<Vec<f64>> = Array(TABLE_POINTS, range::INDENTATION_ERROR),
     /// The largest standard error of the pressure in a contact of each radius, over E*, a pure number. Of the length of
     /// `r`, and together with `indentation_error`.
-    pub pressure_error: Option<Vec<f64>>,
+    pub pressure_error: Option<Vec<f64>> = Array(TABLE_POINTS, range::PRESSURE_ERROR),
 }
 
 /// A sum of profiles.
-#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
 pub struct SumProfile {
     /// The profiles that are added up.
-    pub parts: Vec<Profile>,
+    pub parts: Vec<Profile> = Items(SUM_PARTS),
 }
+}
+
+/// Points of a tabulated profile.
+const TABLE_POINTS: RangeInclusive<usize> = count(&range::TABLE_POINTS);
+/// Profiles in one sum.
+const SUM_PARTS: RangeInclusive<usize> = count(&range::PARTS);
 
 /// The constructor of a table from radii and heights: on its own, or as part of a sum.
 type Through = fn(&[f64], &[f64], &dyn Fn() -> bool) -> Result<Tabulated, Error>;
@@ -217,30 +201,25 @@ fn check_table(
     faults: &mut Faults,
 ) -> Option<Shape> {
     let TabulatedProfile { r, z, indentation_error, pressure_error } = table;
+    table.check_members(at, faults);
     for (name, given, other) in [
         ("indentation_error", indentation_error, pressure_error),
         ("pressure_error", pressure_error, indentation_error),
     ] {
-        if given.is_none() && other.is_some() {
-            faults.add(at.member(name), "the two errors of a table go together: give both or neither");
-        }
-    }
-    let errors = indentation_error.as_ref().zip(pressure_error.as_ref());
-    let columns = [("r", Some(r), &range::TABLE_RADIUS), ("z", Some(z), &range::TABLE_HEIGHT)].into_iter().chain([
-        ("indentation_error", errors.map(|errors| errors.0), &range::INDENTATION_ERROR),
-        ("pressure_error", errors.map(|errors| errors.1), &range::PRESSURE_ERROR),
-    ]);
-    for (name, numbers, range) in columns {
-        let (place, Some(numbers)) = (at.member(name), numbers) else { continue };
-        if name.ends_with("_error") && numbers.len() != r.len() {
-            faults.add(place, format_args!("{} elements: r has {}", numbers.len(), r.len()));
-        } else if faults.length(place, numbers.len(), &limits::TABLE_POINTS) {
-            numbers.iter().enumerate().for_each(|(index, value)| faults.number(place.index(index), *value, range));
+        match given {
+            None if other.is_some() => {
+                faults.add(at.member(name), "the two errors of a table go together: give both or neither");
+            }
+            Some(errors) if errors.len() != r.len() => {
+                faults.add(at.member(name), format_args!("{} elements: r has {}", errors.len(), r.len()));
+            }
+            _ => {}
         }
     }
     if !faults.is_empty() {
         return None;
     }
+    let errors = indentation_error.as_ref().zip(pressure_error.as_ref());
     let made = through(r, z, keep_going).and_then(|made| match errors {
         Some((indentation, pressure)) => made.with_standard_errors(indentation, pressure),
         None => Ok(made),
@@ -256,7 +235,7 @@ fn check_sum(
     faults: &mut Faults,
 ) -> Option<Shape> {
     let place = at.member("parts");
-    if !faults.length(place, parts.len(), &limits::SUM_PARTS) {
+    if !faults.length(place, parts.len(), &SUM_PARTS) {
         return None;
     }
     let mut check = |(index, part): (usize, &Profile)| match part {
@@ -279,10 +258,8 @@ fn check_sum(
 #[derive(Default)]
 struct Members {
     kind: Option<Kind>,
-    numbers: BTreeMap<&'static str, f64>,
-    columns: BTreeMap<&'static str, Vec<f64>>,
-    direction: Option<MotionAxis>,
     parts: Option<Vec<Profile>>,
+    others: Map<String, Value>,
 }
 
 /// The names of the members that are arrays of numbers.
@@ -292,7 +269,7 @@ const COLUMNS: [&str; 8] =
 /// The names of all members, each once.
 static NAMES: LazyLock<Vec<&'static str>> = LazyLock::new(|| {
     let mut names = vec!["type"];
-    for name in NUMBERS.iter().map(|(_, name, _)| *name).chain(COLUMNS).chain(["direction", "parts"]) {
+    for name in NUMBERS.iter().copied().chain(COLUMNS).chain(["direction", "parts"]) {
         if !names.contains(&name) {
             names.push(name);
         }
@@ -301,35 +278,25 @@ static NAMES: LazyLock<Vec<&'static str>> = LazyLock::new(|| {
 });
 
 impl Members {
-    fn has(&self, name: &str) -> bool {
-        match name {
-            "type" => self.kind.is_some(),
-            "parts" => self.parts.is_some(),
-            "direction" => self.direction.is_some(),
-            name => self.numbers.contains_key(name) || self.columns.contains_key(name),
+    /// The document of a family, if all the members given belong to it.
+    fn document<T: DeserializeOwned, E: serde::de::Error>(mut self) -> Result<T, E> {
+        if self.parts.is_some() {
+            // No other family has any, whatever they are.
+            self.others.insert("parts".to_owned(), Value::Null);
         }
+        serde_json::from_value(Value::Object(self.others)).map_err(E::custom)
     }
 
-    /// The family, if all the members given belong to it.
-    fn kind<E: serde::de::Error>(&self) -> Result<Kind, E> {
-        let kind = self.kind.ok_or_else(|| E::missing_field("type"))?;
-        let foreign = |name: &&&str| **name != "type" && self.has(name) && !kind.members().contains(name);
-        match NAMES.iter().find(foreign) {
-            Some(foreign) => Err(E::unknown_field(foreign, kind.members())),
-            None => Ok(kind),
+    fn sum<E: serde::de::Error>(self) -> Result<SumProfile, E> {
+        match (self.others.keys().next(), self.parts) {
+            (Some(foreign), _) => Err(E::unknown_field(foreign, &["parts"])),
+            (None, None) => Err(E::missing_field("parts")),
+            (None, Some(parts)) => Ok(SumProfile { parts }),
         }
-    }
-
-    fn column<E: serde::de::Error>(&mut self, name: &'static str) -> Result<Vec<f64>, E> {
-        self.columns.remove(name).ok_or_else(|| E::missing_field(name))
-    }
-
-    fn number<E: serde::de::Error>(&self, name: &'static str) -> Result<f64, E> {
-        self.numbers.get(name).copied().ok_or_else(|| E::missing_field(name))
     }
 }
 
-/// The name of a member.
+/// The name of a member: an unknown one is a fault at its own place.
 struct Name(&'static str);
 
 impl<'de> Deserialize<'de> for Name {
@@ -346,22 +313,27 @@ impl<'de> Visitor<'de> for MembersVisitor {
     type Value = Members;
 
     fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("struct Members")
+        f.write_str("an object")
     }
 
     fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Members, A::Error> {
         let mut members = Members::default();
         while let Some(Name(name)) = map.next_key()? {
-            if members.has(name) {
-                return Err(A::Error::duplicate_field(name));
-            }
             // `null` is not a value.
-            match name {
-                "type" => members.kind = Some(map.next_value()?),
-                "parts" => members.parts = Some(map.next_value()?),
-                "direction" => members.direction = Some(map.next_value()?),
-                column if COLUMNS.contains(&column) => drop(members.columns.insert(column, map.next_value()?)),
-                number => drop(members.numbers.insert(number, map.next_value()?)),
+            let is_repeated = match name {
+                "type" => members.kind.replace(map.next_value()?).is_some(),
+                "parts" => members.parts.replace(map.next_value()?).is_some(),
+                name => {
+                    let value = match name {
+                        "direction" => json!(map.next_value::<MotionAxis>()?),
+                        column if COLUMNS.contains(&column) => json!(map.next_value::<Vec<f64>>()?),
+                        _ => json!(map.next_value::<f64>()?),
+                    };
+                    members.others.insert(name.to_owned(), value).is_some()
+                }
+            };
+            if is_repeated {
+                return Err(A::Error::duplicate_field(name));
             }
         }
         Ok(members)

@@ -1,15 +1,13 @@
 //! Parts that several replies share.
 
-use serde::{Deserialize, Serialize};
-use utoipa::ToSchema;
-
 use super::choice::words;
+use super::request::replies;
 use stickslip_mechanics as mechanics;
 
+replies! {
 /// What follows from the definition of a contact at its preload.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 #[schema(as = Figures)]
-pub struct ContactSummary {
+pub struct ContactSummary: Default omits Option {
     /// Reduced modulus E*, Pa.
     pub e_star: f64,
     /// Reduced shear modulus G*, Pa.
@@ -21,10 +19,9 @@ pub struct ContactSummary {
     /// Normal force F_N, N.
     pub normal_force: f64,
     /// Largest pressure, Pa; `null` where it is infinite, and of a profile without a stress field.
+    #[serde_with(skip_apply)]
     pub max_pressure: Option<f64>,
     /// Semi-axes of the contact along x and y, m: of an ellipsoid.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(nullable = false)]
     pub semi_axes: Option<[f64; 2]>,
     /// Displacement at which a virgin contact just slips as a whole, μ (E*/G*) d, m.
     pub gross_slip_displacement: f64,
@@ -33,8 +30,7 @@ pub struct ContactSummary {
 }
 
 /// The state after a move.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
-pub struct State {
+pub struct State: Copy, Default {
     /// Tangential displacement U of the indenter, m; positive along x.
     pub displacement: f64,
     /// Tangential force F, N; positive for a positive displacement of a virgin contact.
@@ -56,6 +52,7 @@ pub struct State {
     /// Number of pieces of the slip history.
     pub memory_depth: usize,
 }
+}
 
 words! {
 /// How much of the contact slipped in the last move.
@@ -72,9 +69,9 @@ pub enum Regime: Default {
 }
 }
 
+replies! {
 /// The extrema of the shear stress of a contact.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
-pub struct Residual {
+pub struct Residual: Default {
     /// Shear stress in the centre, Pa, positive as a positive displacement causes it; `null` where it is infinite.
     pub centre: Option<f64>,
     /// All local extrema strictly between centre and edge, from the centre outwards, at their exact positions.
@@ -91,8 +88,7 @@ pub struct Residual {
 }
 
 /// A local extremum of the shear stress.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
-pub struct Peak {
+pub struct Peak: Copy, Default {
     /// Where, m.
     pub radius: f64,
     /// Shear stress there, Pa, positive as a positive displacement causes it; `null` where it is infinite.
@@ -100,8 +96,7 @@ pub struct Peak {
 }
 
 /// Which solver answered, and how accurate its answer is.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
-pub struct Accuracy {
+pub struct Accuracy: Default omits Option {
     /// The solver that answered.
     pub solver: SolverKind,
     /// Why this one.
@@ -114,27 +109,26 @@ pub struct Accuracy {
     pub stress_error: f64,
     /// Estimated error of the stress below the surface, relative to the largest pressure (or to the mean), a pure
     /// number, if it was asked for.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(nullable = false)]
     pub subsurface_error: Option<f64>,
     /// Processor time that the request took but for HTTP, s: with the check, the preparation of the profile unless it
     /// was ready, and the loading of a stored contact; without the time for which the work gave way to that of others.
     pub compute_time: f64,
 }
-
-/// The two solvers.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum SolverKind {
-    /// The exact solver, which stores turning points of the path.
-    #[default]
-    Exact,
-    /// The spring foundation of the paper.
-    Springs,
 }
 
+words! {
+/// The two solvers.
+pub enum SolverKind: Default {
+    /// The exact solver, which stores turning points of the path.
+    #[default]
+    Exact = "exact",
+    /// The spring foundation of the paper.
+    Springs = "springs",
+}
+}
+
+replies! {
 /// The path that the law of equal peaks has given.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Protocol {
     /// Displacements, m; usable as a path of their own.
     pub displacement: Vec<f64>,
@@ -143,9 +137,8 @@ pub struct Protocol {
 }
 
 /// A caveat about a result.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[schema(example = json!({"code": "dundurs_beta", "message": "the bodies are unlike"}))]
-pub struct Warning {
+pub struct Warning: Eq {
     /// A name for programs: `dundurs_beta`, `large_contact`, `slip_direction`, `noisy_table`, `tolerance_not_met`,
     /// `units`, `interaction_neglected`, `load_curve_alone`, `elliptic_slip`, `bulk_shift_neglected`; of fits also
     /// `many_outliers`, `short_scan`, `machine_compliance_unknown`, `partial_slip_only`, `beyond_gross_slip`,
@@ -153,6 +146,7 @@ pub struct Warning {
     pub code: String,
     /// An explanation for people.
     pub message: String,
+}
 }
 
 impl Warning {

@@ -3,9 +3,6 @@
 use std::ops::RangeInclusive;
 
 use jiff::Timestamp;
-use serde::{Deserialize, Serialize};
-use serde_with::apply;
-use utoipa::ToSchema;
 use uuid::Uuid;
 
 use stickslip_mechanics::DEFAULT_TOLERANCE;
@@ -19,7 +16,7 @@ use super::prepare::Prepare;
 use super::profile::Profile;
 use super::protocol::Relaxation;
 use super::reply::{Accuracy, ContactSummary, Protocol, Residual, State, Warning};
-use super::request::requests;
+use super::request::{replies, requests};
 use super::simulate::Steps;
 use super::stress::{Sampling, Stress, StressRequest};
 
@@ -106,8 +103,8 @@ pub struct RenameRequest {
 }
 }
 
+replies! {
 /// A contact that has just been made.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct NewSession {
     /// Its identifier.
     pub id: Uuid,
@@ -124,7 +121,6 @@ pub struct NewSession {
 }
 
 /// A contact.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct SessionReply {
     /// Its identifier.
     pub id: Uuid,
@@ -143,7 +139,6 @@ pub struct SessionReply {
 }
 
 /// A contact as an item of a list.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct SessionSummary {
     /// Its identifier.
     pub id: Uuid,
@@ -158,7 +153,6 @@ pub struct SessionSummary {
 }
 
 /// A page of contacts, oldest first.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct SessionPage {
     /// The contacts.
     pub items: Vec<SessionSummary>,
@@ -167,9 +161,7 @@ pub struct SessionPage {
 }
 
 /// The result of a move.
-#[apply(Option => #[serde(skip_serializing_if = "Option::is_none")] #[schema(nullable = false)])]
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-pub struct MoveReply {
+pub struct MoveReply omits Option {
     /// The identifier of the contact.
     pub id: Uuid,
     /// The number of this move, and of moves so far.
@@ -187,9 +179,7 @@ pub struct MoveReply {
 }
 
 /// The result of a path.
-#[apply(Option => #[serde(skip_serializing_if = "Option::is_none")] #[schema(nullable = false)])]
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-pub struct PathReply {
+pub struct PathReply omits Option {
     /// The identifier of the contact.
     pub id: Uuid,
     /// The number of the last move, and of moves so far.
@@ -209,9 +199,7 @@ pub struct PathReply {
 }
 
 /// The stresses of a contact, and their extrema if asked for.
-#[apply(Option => #[serde(skip_serializing_if = "Option::is_none")] #[schema(nullable = false)])]
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-pub struct StressReply {
+pub struct StressReply omits Option {
     /// Radii, m.
     pub radius: Vec<f64>,
     /// Normal pressure, Pa; compression is positive; `null` where it is infinite.
@@ -224,6 +212,7 @@ pub struct StressReply {
     pub displacement: Option<Vec<Option<f64>>>,
     /// The extrema of the shear stress, if asked for.
     pub residual: Option<Residual>,
+}
 }
 
 /// A contact that has passed all checks, to be created.

@@ -1,20 +1,16 @@
 //! The body of `POST /simulate` and its reply.
 
-use serde::{Deserialize, Serialize};
-use serde_with::apply;
-use utoipa::ToSchema;
-
 use stickslip_mechanics::{DEFAULT_TOLERANCE, range};
 
 use super::check::{Faults, JsonPath};
-use super::choice::choices;
+use super::choice::{choices, words};
 use super::definition::{ContactDefinition, DefinedProfile, SharedSetup};
 use super::document::Document;
 use super::limits::{Limited as _, SPRING_SEARCH, SPRING_STEPS, Tolerance, Whole};
 use super::path::{Path, Plan};
 use super::prepare::Prepare;
 use super::reply::{Accuracy, ContactSummary, Protocol, Residual, State, Warning};
-use super::request::requests;
+use super::request::{replies, requests};
 use super::stress::{Sampling, Stress, StressRequest};
 use super::subsurface::{Subsurface, SubsurfaceRequest, SubsurfaceTask};
 
@@ -55,15 +51,15 @@ pub struct Springs: Copy, Eq {
 }
 }
 
+words! {
 /// Which states of a path to return.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum Steps {
+pub enum Steps: Default {
     /// One state a move.
     #[default]
-    All,
+    All = "all",
     /// The state after the last move alone.
-    Last,
+    Last = "last",
+}
 }
 
 choices! {
@@ -81,10 +77,9 @@ pub enum Solver: Copy, Eq {
 }
 }
 
+replies! {
 /// The result of a simulation.
-#[apply(Option => #[serde(skip_serializing_if = "Option::is_none")] #[schema(nullable = false)])]
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-pub struct SimulateReply {
+pub struct SimulateReply omits Option {
     /// What follows from the definition at the preload.
     pub contact: ContactSummary,
     /// The states along the path: all of them, or the last.
@@ -101,6 +96,7 @@ pub struct SimulateReply {
     pub accuracy: Accuracy,
     /// Warnings about the result.
     pub warnings: Vec<Warning>,
+}
 }
 
 /// A simulation that has passed all checks.

@@ -1,15 +1,11 @@
 //! Stress requests and their answers.
 
-use serde::{Deserialize, Serialize};
-use serde_with::apply;
-use utoipa::ToSchema;
-
 use stickslip_mechanics::range;
 
 use super::check::{Faults, JsonPath};
 use super::choice::words;
 use super::limits::{Array, Limited as _, STRESS_POINTS};
-use super::request::requests;
+use super::request::{replies, requests};
 
 requests! {
 /// Where stresses are asked for: exactly one of `points` and `radii`, and which `fields`.
@@ -38,10 +34,9 @@ pub enum Field {
 }
 }
 
+replies! {
 /// Stresses along the radius; an array that was not asked for is left out.
-#[apply(Option => #[serde(skip_serializing_if = "Option::is_none")] #[schema(nullable = false)])]
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
-pub struct Stress {
+pub struct Stress: Default omits Option {
     /// Radii, m.
     pub radius: Vec<f64>,
     /// Normal pressure, Pa; compression is positive; `null` where it is infinite.
@@ -53,6 +48,7 @@ pub struct Stress {
     /// Tangential displacement u(r) of the surface, m; positive along x.
     pub displacement: Option<Vec<Option<f64>>>,
 }
+}
 
 /// A checked stress request.
 #[derive(Clone, Debug)]
@@ -60,7 +56,7 @@ pub struct Sampling {
     /// The radii.
     pub points: Points,
     /// The fields.
-    pub fields: Fields,
+    pub fields: Vec<Field>,
 }
 
 /// The radii of a checked stress request.
@@ -72,27 +68,6 @@ pub enum Points {
     Radii(Vec<f64>),
 }
 
-/// Which fields to compute.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Fields {
-    /// The pressure.
-    pub pressure: bool,
-    /// The shear stress.
-    pub shear: bool,
-    /// The slip.
-    pub slip: bool,
-    /// The displacement of the surface.
-    pub displacement: bool,
-}
-
-impl Fields {
-    /// The number of requested fields.
-    #[must_use]
-    pub fn count(&self) -> usize {
-        [self.pressure, self.shear, self.slip, self.displacement].into_iter().filter(|asked| *asked).count()
-    }
-}
-
 impl StressRequest {
     /// The checked request; its faults are noted at `at`.
     pub fn check(self, at: JsonPath<'_>, faults: &mut Faults) -> Option<Sampling> {
@@ -100,21 +75,10 @@ impl StressRequest {
     }
 
     fn read(self, at: JsonPath<'_>, faults: &mut Faults) -> Option<Sampling> {
-        let fields = match self.fields.as_deref() {
-            None => Fields { pressure: true, shear: true, slip: false, displacement: false },
-            Some(named) => {
-                if named.is_empty() {
-                    let all = Field::ALL.map(Field::name).join("`, `");
-                    faults.add(at.member("fields"), format_args!("empty: name at least one of `{all}`"));
-                }
-                Fields {
-                    pressure: named.contains(&Field::Pressure),
-                    shear: named.contains(&Field::Shear),
-                    slip: named.contains(&Field::Slip),
-                    displacement: named.contains(&Field::Displacement),
-                }
-            }
-        };
+        if self.fields.as_ref().is_some_and(Vec::is_empty) {
+            let all = Field::ALL.map(Field::name).join("`, `");
+            faults.add(at.member("fields"), format_args!("empty: name at least one of `{all}`"));
+        }
         if self.points.is_some() != self.radii.is_some() {
             self.check_members(at, faults);
         }
@@ -130,7 +94,7 @@ impl StressRequest {
                 return None;
             }
         };
-        Some(Sampling { points, fields })
+        Some(Sampling { points, fields: self.fields.unwrap_or_else(|| vec![Field::Pressure, Field::Shear]) })
     }
 }
 

@@ -5,9 +5,7 @@ mod column;
 use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
 
-use serde::{Deserialize, Serialize};
 use serde_json::{Number, Value};
-use utoipa::ToSchema;
 
 use stickslip_mechanics::range::{Quantity, Range};
 
@@ -18,7 +16,7 @@ use super::json_value::{JsonValue, Pointer};
 use super::limits::{Array, Items, Limit, Limited as _};
 use super::parse::parse_value;
 use super::prepare::Prepare;
-use super::request::requests;
+use super::request::{replies, requests};
 use super::simulate::SimulateRequest;
 use column::ColumnName;
 
@@ -95,8 +93,8 @@ pub struct Span: Copy {
 }
 }
 
+replies! {
 /// The table of a sweep: a row a point.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct SweepReply {
     /// How many points, and numbers in each column.
     pub points: usize,
@@ -110,8 +108,7 @@ pub struct SweepReply {
 }
 
 /// A point without an answer.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
-pub struct PointFailure {
+pub struct PointFailure: Eq {
     /// The row, counted from 0.
     pub index: u64,
     /// What `POST /simulate` would give as the code of the problem.
@@ -122,6 +119,7 @@ pub struct PointFailure {
     pub pointer: String,
     /// What is wrong.
     pub detail: String,
+}
 }
 
 /// A sweep whose axes lead to numbers, each within the limits of an axis; whether a point is valid is not known yet.

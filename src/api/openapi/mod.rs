@@ -8,9 +8,7 @@ mod schemas;
 
 use serde_json::{Map, Value, json};
 
-use stickslip_mechanics::range::{self, Range};
-use stickslip_wire::limits::{self, Keywords as _};
-use stickslip_wire::{all_limits, profile};
+use stickslip_wire::all_limits;
 
 use super::computations;
 use super::facts::FactsOfRoutes;
@@ -39,29 +37,8 @@ fn operations(document: &mut Value) -> impl Iterator<Item = (&str, &str, &mut Va
     })
 }
 
-/// The limits of the members of profiles.
-fn profile_limits() -> Vec<(&'static str, &'static str, Value)> {
-    let column = |range: Range| limits::Array(limits::TABLE_POINTS, range).keywords();
-    let numbers = profile::NUMBERS.iter().map(|&(schema, member, range)| (schema, member, range.keywords()));
-    numbers
-        .chain([
-            ("TabulatedProfile", "r", column(range::TABLE_RADIUS)),
-            ("TabulatedProfile", "z", column(range::TABLE_HEIGHT)),
-            ("TabulatedProfile", "indentation_error", column(range::INDENTATION_ERROR)),
-            ("TabulatedProfile", "pressure_error", column(range::PRESSURE_ERROR)),
-            ("SumProfile", "parts", limits::Items(limits::SUM_PARTS).keywords()),
-            ("AsperitiesProfile", "radii", limits::ASPERITY_RADII.keywords()),
-            ("AsperitiesProfile", "radius", range::RADIUS.keywords()),
-            ("AsperitiesProfile", "gaps", limits::ASPERITY_GAPS.keywords()),
-            ("LoadCurveProfile", "indentation", limits::CURVE_INDENTATIONS.keywords()),
-            ("LoadCurveProfile", "normal_force", limits::CURVE_FORCES.keywords()),
-            ("EllipsoidProfile", "radii", limits::ELLIPSOID_RADII.keywords()),
-        ])
-        .collect()
-}
-
 fn write_limits(document: &mut Value) {
-    for (schema, property, keywords) in all_limits().into_iter().chain(profile_limits()) {
+    for (schema, property, keywords) in all_limits() {
         if let Some(schema) = document.pointer_mut(&format!("/components/schemas/{schema}")) {
             visit_property(schema, property, &|node| write_keywords(node, &keywords));
         }

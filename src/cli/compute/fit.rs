@@ -45,7 +45,7 @@ pub struct FitFlags {
     normal_force: Option<f64>,
     /// How the record begins: `steady` in a cycle that has been repeated before, `virgin` with a contact that was never
     /// moved.
-    #[arg(long, value_parser = one_of(&[LoopStart::Steady, LoopStart::Virgin], start))]
+    #[arg(long, value_parser = one_of(&LoopStart::ALL, LoopStart::name))]
     start: Option<LoopStart>,
     /// What is to be determined, separated by commas: friction, g_star and force_offset if left out.
     #[arg(long, value_delimiter = ',', value_parser = one_of(&FitParameter::ALL, FitParameter::name))]
@@ -100,13 +100,6 @@ impl FitFlags {
             noise: None,
         };
         Ok((request, found.preview.reading))
-    }
-}
-
-fn start(start: LoopStart) -> &'static str {
-    match start {
-        LoopStart::Steady => "steady",
-        LoopStart::Virgin => "virgin",
     }
 }
 

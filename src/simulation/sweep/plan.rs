@@ -12,8 +12,8 @@ use stickslip_wire::pointer_lookup::{Lookup, lookup};
 use stickslip_wire::simulate::Simulation;
 use stickslip_wire::sweep::CheckedSweep;
 use stickslip_wire::{
-    Accuracy, ContactSummary, Document as _, Peak, Plan, Prepare, PrepareOnce, Protocol, Rejection, Residual, Sampling,
-    SimulateReply, SimulateRequest, State, Steps, Stress, parse_value,
+    Accuracy, ContactSummary, Document as _, Field, Peak, Plan, Prepare, PrepareOnce, Protocol, Rejection, Residual,
+    Sampling, SimulateReply, SimulateRequest, State, Steps, Stress, parse_value,
 };
 
 /// Bytes that a value in a body takes once it is parsed, for each byte that it is written with; twice, as it is turned
@@ -162,13 +162,13 @@ fn reply_template(simulation: &Simulation) -> SimulateReply {
 }
 
 fn stress_template(sampling: &Sampling) -> Stress {
-    let (length, fields) = (sampling.length(), &sampling.fields);
-    let column = |asked: bool| asked.then(|| vec![None; length]);
+    let length = sampling.length();
+    let column = |field: Field| sampling.fields.contains(&field).then(|| vec![None; length]);
     Stress {
         radius: vec![0.0; length],
-        pressure: column(fields.pressure),
-        shear: column(fields.shear),
-        slip: column(fields.slip),
-        displacement: column(fields.displacement),
+        pressure: column(Field::Pressure),
+        shear: column(Field::Shear),
+        slip: column(Field::Slip),
+        displacement: column(Field::Displacement),
     }
 }

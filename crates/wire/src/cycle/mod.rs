@@ -24,9 +24,7 @@ use crate::check::{Faults, JsonPath};
 use crate::choice::choices;
 use crate::definition::{ContactDefinition, DefinedProfile, SharedSetup};
 use crate::document::Document;
-use crate::limits::{
-    Array, BEST_LOADS, CYCLE_AMPLITUDES, CYCLE_RADII, HARMONICS, Keywords, Limit, Limited as _, Tolerance,
-};
+use crate::limits::{Array, BEST_LOADS, CYCLE_AMPLITUDES, CYCLE_RADII, HARMONICS, Limit, Limited as _, Tolerance};
 use crate::path::NormalOscillation;
 use crate::prepare::Prepare;
 use crate::request::requests;
@@ -111,18 +109,16 @@ pub enum Amplitudes {
 /// The limits of amplitudes.
 struct Within(Range);
 
-impl Keywords for Within {
+impl Limit<Amplitudes> for Within {
     fn keywords(&self) -> Value {
         // Some keywords are for a number, the others for a list: JSON Schema applies each to its own type.
-        let mut keywords = Array(CYCLE_AMPLITUDES, self.0).keywords();
+        let mut keywords = Limit::<Vec<f64>>::keywords(&Array(CYCLE_AMPLITUDES, self.0));
         keywords["type"] = json!(["number", "array"]);
         keywords["items"]["type"] = json!("number");
         (keywords["minimum"], keywords["maximum"]) = (json!(self.0.min), json!(self.0.max));
         keywords
     }
-}
 
-impl Limit<Amplitudes> for Within {
     fn check(&self, value: &Amplitudes, at: JsonPath<'_>, faults: &mut Faults) {
         match value {
             Amplitudes::One(amplitude) => faults.number(at, *amplitude, &self.0),

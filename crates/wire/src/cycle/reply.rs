@@ -1,16 +1,12 @@
 //! The reply of `POST /cycle` and `GET /contacts/{id}/cycle`.
 
-use serde::{Deserialize, Serialize};
-use serde_with::apply;
-use utoipa::ToSchema;
-
 use super::{BestLoad, Resonance};
 use crate::reply::{Accuracy, ContactSummary, Regime, Warning};
+use crate::request::replies;
 
+replies! {
 /// Steady cycles, one for each amplitude.
-#[apply(Option => #[serde(default, skip_serializing_if = "Option::is_none")] #[schema(nullable = false)])]
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-pub struct CycleReply {
+pub struct CycleReply omits Option {
     /// The contact at its load, in a map at its preload.
     pub contact: ContactSummary,
     /// The cycles, in the order of the amplitudes; in a map load by load.
@@ -24,9 +20,7 @@ pub struct CycleReply {
 }
 
 /// One steady cycle.
-#[apply(Option => #[serde(default, skip_serializing_if = "Option::is_none")] #[schema(nullable = false)])]
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
-pub struct SteadyCycle {
+pub struct SteadyCycle: Default omits Option {
     /// Normal force, N; in a map alone.
     pub normal_force: Option<f64>,
     /// Displacement amplitude of the indenter at which gross slip begins under this load, m; in a map alone.
@@ -67,8 +61,7 @@ pub struct SteadyCycle {
 }
 
 /// One harmonic of the answer to a drive that is a cosine.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-pub struct Harmonic {
+pub struct Harmonic: Copy {
     /// 1 for the fundamental. Even ones vanish at constant load.
     pub order: usize,
     /// Amplitude of the cosine, in the unit of the answer.
@@ -79,10 +72,10 @@ pub struct Harmonic {
 }
 
 /// Friction work of a cycle per area, along the radius.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct FrictionWork {
     /// Radii, m.
     pub radius: Vec<f64>,
     /// Friction work per area, J/m²; `null` where it is infinite.
     pub density: Vec<Option<f64>>,
+}
 }

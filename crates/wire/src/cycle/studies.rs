@@ -1,12 +1,9 @@
 //! What steady cycles are asked for beside themselves: a mass on the contact, and the load that damps most.
 
-use serde::{Deserialize, Serialize};
-use utoipa::ToSchema;
-
 use stickslip_mechanics::range::{self, Quantity, Range};
 
 use crate::limits::{Array, CURVE_POINTS, FREQUENCIES};
-use crate::request::requests;
+use crate::request::{replies, requests};
 
 requests! {
 /// A mass that hangs on the contact alone, and a force on it that is a cosine of the time.
@@ -31,8 +28,8 @@ pub struct BestLoadStudy: Copy, Default {
 /// A frequency of the force.
 const FREQUENCY: Range = Range { quantity: Quantity::Number, unit: "Hz", min: 1e-6, max: 1e12 };
 
+replies! {
 /// Steady oscillations of a mass on the contact.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Resonance {
     /// Frequency of small oscillations, Hz.
     pub natural_frequency: f64,
@@ -42,8 +39,7 @@ pub struct Resonance {
 }
 
 /// One steady oscillation.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-pub struct ResonancePoint {
+pub struct ResonancePoint: Copy {
     /// Frequency, Hz.
     pub frequency: f64,
     /// Amplitude of the first harmonic of the displacement, m.
@@ -63,24 +59,21 @@ pub struct ResonancePoint {
 }
 
 /// The load under which a drive does most friction work.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-pub struct BestLoad {
+pub struct BestLoad omits Option {
     /// Normal force, N.
     pub normal_force: f64,
     /// Friction work of a cycle under it, J.
     pub dissipated_energy: f64,
     /// The work at other loads, if asked for.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(nullable = false)]
     pub curve: Option<LoadCurve>,
 }
 
 /// Friction work over the load.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct LoadCurve {
     /// Normal forces, N.
     pub normal_force: Vec<f64>,
     /// Friction work of a cycle, J; `null` under loads that do not hold the driven force, or that the profile has no
     /// contact for.
     pub dissipated_energy: Vec<Option<f64>>,
+}
 }

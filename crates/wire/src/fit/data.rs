@@ -1,8 +1,5 @@
 //! Measured loops, their units, and the limits of their numbers.
 
-use serde::{Deserialize, Serialize};
-use utoipa::ToSchema;
-
 use stickslip_mechanics::range::{self, MIN_POSITIVE_NORMAL_FORCE, Quantity, Range};
 
 use crate::check::{Faults, JsonPath};
@@ -47,14 +44,14 @@ pub struct FitUnits: Copy, Default {
 }
 }
 
+words! {
 /// How a record begins.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
-#[serde(rename_all = "snake_case")]
 pub enum LoopStart {
     /// In a cycle that has been repeated before.
-    Steady,
+    Steady = "steady",
     /// With a contact that has never been moved.
-    Virgin,
+    Virgin = "virgin",
+}
 }
 
 impl FitUnits {

@@ -15,7 +15,7 @@ use stickslip_mechanics::range::{Quantity, Range};
 use crate::check::{Faults, JsonPath};
 use crate::definition::{ContactDefinition, DefinedProfile, SharedSetup};
 use crate::document::Document;
-use crate::limits::{FIT_LOOPS, Items, Keywords, Limit, Limited as _};
+use crate::limits::{FIT_LOOPS, Items, Limit, Limited as _};
 use crate::prepare::Prepare;
 use crate::request::requests;
 
@@ -53,13 +53,11 @@ pub struct FitNoise: Copy, Default {
 /// At least one name, and none twice.
 struct Distinct;
 
-impl Keywords for Distinct {
+impl Limit<Vec<FitParameter>> for Distinct {
     fn keywords(&self) -> Value {
         json!({"minItems": 1, "maxItems": FitParameter::ALL.len(), "uniqueItems": true})
     }
-}
 
-impl Limit<Vec<FitParameter>> for Distinct {
     fn check(&self, names: &Vec<FitParameter>, at: JsonPath<'_>, faults: &mut Faults) {
         faults.length(at, names.len(), &(1..=FitParameter::ALL.len()));
         for (index, name) in names.iter().enumerate() {

@@ -8,7 +8,7 @@ use stickslip_mechanics::range::{self, Quantity, Range};
 
 use crate::check::{Faults, JsonPath};
 use crate::limits::Limited as _;
-use crate::request::{not_null, requests};
+use crate::request::{not_null, object, requests};
 
 /// The compliance of a machine: zero is a rigid one.
 const COMPLIANCE: Range = Range { quantity: Quantity::MachineStiffness, unit: "m/N", min: 0.0, max: 1e9 };
@@ -54,10 +54,11 @@ macro_rules! parameters {
         #[skip_serializing_none]
         #[apply(Option => #[serde(default, deserialize_with = "not_null")] #[schema(nullable = false)])]
         #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
-        #[serde(deny_unknown_fields)]
+        #[serde(deny_unknown_fields, remote = "Self")]
         pub struct KnownValues {
             $(#[doc = $doc] pub $name: Option<KnownValue>,)*
         }
+        object!(KnownValues);
 
         impl KnownValues {
             /// What is known, in the order of [`FitParameter::ALL`].

@@ -9,9 +9,10 @@ use utoipa::ToSchema;
 use super::FitParameter;
 use crate::definition::ContactDefinition;
 use crate::reply::Warning;
+use crate::request::replies;
 
+replies! {
 /// What the loops say, and what they leave open.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct FitReply {
     /// What is free, and what is known with a standard error, by name.
     pub estimates: BTreeMap<FitParameter, FitEstimate>,
@@ -30,6 +31,7 @@ pub struct FitReply {
     /// Warnings about the fit.
     pub warnings: Vec<Warning>,
 }
+}
 
 /// A quantity as the loops determine it, in its SI unit.
 #[apply(bool => #[serde(default, skip_serializing_if = "std::ops::Not::not")])]
@@ -46,9 +48,9 @@ pub struct FitEstimate {
     pub at_bound: bool,
 }
 
+replies! {
 /// What a fit leaves of the forces.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-pub struct FitResidual {
+pub struct FitResidual: Copy {
     /// Root mean square without outliers, N.
     pub rms: f64,
     /// The largest magnitude without outliers, N.
@@ -60,8 +62,7 @@ pub struct FitResidual {
 }
 
 /// Stretches of one sign in a residual: few of them are a systematic deviation.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-pub struct SignRuns {
+pub struct SignRuns: Copy {
     /// How many there are.
     pub count: usize,
     /// How many noise would have on average, a pure number.
@@ -71,8 +72,7 @@ pub struct SignRuns {
 }
 
 /// Standard deviations of the noise.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-pub struct NoiseLevels {
+pub struct NoiseLevels: Copy {
     /// Of a force, N.
     pub force: f64,
     /// Of a displacement, m.
@@ -80,7 +80,6 @@ pub struct NoiseLevels {
 }
 
 /// A loop as it was fitted, point by point.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct FittedLoop {
     /// Measured displacements, m.
     pub displacement: Vec<f64>,
@@ -90,4 +89,5 @@ pub struct FittedLoop {
     pub measured: Vec<f64>,
     /// Whether the point was used; if not, it is an outlier.
     pub used: Vec<bool>,
+}
 }

@@ -1,15 +1,11 @@
 //! The reply of `POST /fretting`.
 
-use serde::{Deserialize, Serialize};
-use serde_with::apply;
-use utoipa::ToSchema;
-
 use crate::reply::{Accuracy, ContactSummary, Warning};
+use crate::request::replies;
 
+replies! {
 /// The criteria over the steady cycle, each with its values at all places.
-#[apply(Option => #[serde(default, skip_serializing_if = "Option::is_none")] #[schema(nullable = false)])]
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-pub struct FrettingReply {
+pub struct FrettingReply omits Option {
     /// What follows from the definition at the preload.
     pub contact: ContactSummary,
     /// Place along the motion of the first body, m.
@@ -47,9 +43,7 @@ pub struct FrettingReply {
 }
 
 /// A criterion at all places.
-#[apply(Option => #[serde(default, skip_serializing_if = "Option::is_none")] #[schema(nullable = false)])]
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-pub struct Rating {
+pub struct Rating omits Option {
     /// Its values, place by place, in the unit of the criterion; `null` where a stress is infinite, and below the
     /// surface for a quantity of the surface.
     pub values: Vec<Option<f64>>,
@@ -61,9 +55,7 @@ pub struct Rating {
 }
 
 /// The place where a criterion is largest.
-#[apply(Option => #[serde(default, skip_serializing_if = "Option::is_none")] #[schema(nullable = false)])]
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-pub struct Largest {
+pub struct Largest omits Option {
     /// The value, in the unit of the criterion.
     pub value: f64,
     /// The estimated distance of the value from the largest over the cycle and, in a search, over the body, in the unit
@@ -78,8 +70,7 @@ pub struct Largest {
 }
 
 /// An instant of the cycle.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-pub struct Instant {
+pub struct Instant: Copy {
     /// Index of the move.
     #[serde(rename = "move")]
     pub step: usize,
@@ -88,8 +79,7 @@ pub struct Instant {
 }
 
 /// The stresses at one place over the cycle, in columns, Pa, tension positive.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
-pub struct StressPath {
+pub struct StressPath: Default {
     /// Index of the place.
     pub place: usize,
     /// Index of the move.
@@ -109,6 +99,7 @@ pub struct StressPath {
     pub yz: Vec<Option<f64>>,
     /// Shear stress in the plane of x and z, Pa.
     pub xz: Vec<Option<f64>>,
+}
 }
 
 impl FrettingReply {

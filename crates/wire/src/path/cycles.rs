@@ -3,9 +3,6 @@
 use std::f64::consts::TAU;
 use std::ops::RangeInclusive;
 
-use serde::{Deserialize, Serialize};
-use utoipa::ToSchema;
-
 use stickslip_mechanics::{
     Error, Normal,
     cycle::OscillatingLoad,
@@ -15,6 +12,7 @@ use stickslip_mechanics::{
 
 use super::Move;
 use crate::check::{Faults, JsonPath};
+use crate::choice::words;
 use crate::limits::{Limited as _, PATH_MOVES};
 use crate::request::requests;
 
@@ -69,15 +67,15 @@ pub struct NormalOscillation: Copy {
 }
 }
 
+words! {
 /// Where cycles begin and end.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum FirstTurn {
+pub enum FirstTurn: Default {
     /// At mean + amplitude.
     #[default]
-    Up,
+    Up = "up",
     /// At mean - amplitude.
-    Down,
+    Down = "down",
+}
 }
 
 /// Cycles that have passed all checks.

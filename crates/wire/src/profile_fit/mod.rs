@@ -6,7 +6,7 @@ mod reply;
 pub use data::{LineScan, MapScan, PointScan, ScanData};
 pub use reply::{Axis2, ColumnPair, ContactEstimate, Estimate, ProfileFitReply, ScanResidual};
 
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 use utoipa::ToSchema;
 
 use stickslip_mechanics::range::{Quantity, Range};
@@ -101,17 +101,17 @@ impl LengthUnit {
     }
 }
 
+words! {
 /// Which way up a scan is.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum ScanOrientation {
+pub enum ScanOrientation: Default {
     /// By the curvature of the surface.
     #[default]
-    Auto,
+    Auto = "auto",
     /// The body is highest on its axis.
-    PeakUp,
+    PeakUp = "peak_up",
     /// The body is lowest on its axis.
-    PeakDown,
+    PeakDown = "peak_down",
+}
 }
 
 /// Where the axis is: the string `"auto"`, or a place.

@@ -1,17 +1,13 @@
 //! The reply of `POST /profiles/fit`.
 
-use serde::{Deserialize, Serialize};
-use serde_with::apply;
-use utoipa::ToSchema;
-
 use super::ScanOrientation;
 use crate::profile::Profile;
 use crate::reply::Warning;
+use crate::request::replies;
 
+replies! {
 /// A profile that was fitted to a scan, with what is left of the scan.
-#[apply(Option => #[serde(default, skip_serializing_if = "Option::is_none")] #[schema(nullable = false)])]
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-pub struct ProfileFitReply {
+pub struct ProfileFitReply omits Option {
     /// The profile, for `/simulate` and `/contacts`.
     pub profile: Profile,
     /// The radius of curvature on the axis, m; `null` where the surface is flat there to within its error.
@@ -40,8 +36,7 @@ pub struct ProfileFitReply {
 }
 
 /// A value and its standard error, both in the unit of the quantity; `null` where it is not known.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-pub struct Estimate {
+pub struct Estimate: Copy {
     /// The value, in the unit of the quantity.
     pub value: Option<f64>,
     /// Its standard error, in the unit of the quantity.
@@ -49,9 +44,7 @@ pub struct Estimate {
 }
 
 /// Two components in the plane of the scan; a line has no y.
-#[apply(Option => #[serde(default, skip_serializing_if = "Option::is_none")] #[schema(nullable = false)])]
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-pub struct Axis2 {
+pub struct Axis2: Copy omits Option {
     /// Along x, in the unit of the quantity.
     pub x: f64,
     /// Along y, in the unit of the quantity.
@@ -59,8 +52,7 @@ pub struct Axis2 {
 }
 
 /// What a profile leaves of a scan.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-pub struct ScanResidual {
+pub struct ScanResidual: Copy {
     /// Root mean square of the points that were fitted, m: noise and roughness.
     pub rms: f64,
     /// Distance along the scan over which it is correlated, to 1/e, m.
@@ -70,7 +62,6 @@ pub struct ScanResidual {
 }
 
 /// Heights over radii.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct ColumnPair {
     /// Radii, m, increasing.
     pub radius: Vec<f64>,
@@ -79,8 +70,7 @@ pub struct ColumnPair {
 }
 
 /// The contact as the scan alone determines it.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-pub struct ContactEstimate {
+pub struct ContactEstimate: Copy {
     /// Indentation, m.
     pub indentation: Estimate,
     /// Contact radius, m.
@@ -89,4 +79,5 @@ pub struct ContactEstimate {
     pub normal_force: Estimate,
     /// Largest pressure, Pa.
     pub max_pressure: Estimate,
+}
 }

@@ -2,8 +2,6 @@
 
 mod reply;
 
-use serde::{Deserialize, Serialize};
-use utoipa::ToSchema;
 use uuid::Uuid;
 
 use stickslip_mechanics::protocol::{AmplitudeLaw, PathEnd};
@@ -17,7 +15,7 @@ use super::simulate::Steps;
 use crate::limits::{Limit as _, Limited as _, PROTOCOL_REVERSALS};
 use crate::request::requests;
 
-use crate::choice::choices;
+use crate::choice::{choices, words};
 pub use reply::{
     Comparison, DisplacementPath, FirstStroke, Gap, JudgedReply, Outcome, PressureUnit, ProtocolReply, RelaxReply,
     RobustnessReply, StartReply,
@@ -95,17 +93,17 @@ pub struct Robustness: Copy {
 }
 }
 
+words! {
 /// The law of the amplitudes.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum ProtocolKind {
+pub enum ProtocolKind: Default {
     /// They fall linearly (eq. 20 of the paper).
-    Linear,
+    Linear = "linear",
     /// They leave equal peaks on the profile of the contact, by steps proportional to x/g'(x).
-    EqualPeaks,
+    EqualPeaks = "equal_peaks",
     /// They minimise the largest stress that remains, as far as a search finds.
     #[default]
-    Minimax,
+    Minimax = "minimax",
+}
 }
 
 choices! {
@@ -118,17 +116,17 @@ pub enum ProtocolStart {
 }
 }
 
+words! {
 /// Where a path ends.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum ProtocolEnd {
+pub enum ProtocolEnd: Default {
     /// At displacement zero.
     #[default]
-    DisplacementZero,
+    DisplacementZero = "displacement_zero",
     /// Without a tangential force.
-    ForceZero,
+    ForceZero = "force_zero",
     /// Wherever the least stress remains.
-    Free,
+    Free = "free",
+}
 }
 
 /// How many times a protocol is tried with errors by default.

@@ -1,16 +1,15 @@
 //! What `POST /protocols` and `POST /contacts/{id}/relax` reply.
 
-use serde::{Deserialize, Serialize};
-use serde_with::apply;
-use utoipa::ToSchema;
 use uuid::Uuid;
 
-use super::super::reply::{Accuracy, ContactSummary, Residual, State, Warning};
 use super::{ProtocolEnd, ProtocolKind};
+use crate::choice::words;
+use crate::reply::{Accuracy, ContactSummary, Residual, State, Warning};
+use crate::request::replies;
 
+replies! {
 /// How to move so that little shear stress remains.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-pub struct ProtocolReply {
+pub struct ProtocolReply omits Option {
     /// What follows from the definition at the present load.
     pub contact: ContactSummary,
     /// The law of the amplitudes.
@@ -28,8 +27,10 @@ pub struct ProtocolReply {
     /// What remains.
     pub residual: Residual,
     /// The largest magnitude of the shear stress that remains where it is measured, Pa; `null` where it is infinite.
+    #[serde_with(skip_apply)]
     pub largest: Option<f64>,
     /// The same over `judged.unit`, a pure number.
+    #[serde_with(skip_apply)]
     pub relative: Option<f64>,
     /// Tangential displacement at the end, m.
     pub displacement: f64,
@@ -38,12 +39,8 @@ pub struct ProtocolReply {
     /// Work done against friction on the path, J.
     pub dissipated_energy: f64,
     /// How far the path may be from the optimum; of `minimax` alone.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(nullable = false)]
     pub gap: Option<Gap>,
     /// What remains if it is not followed exactly, if asked for.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(nullable = false)]
     pub robustness: Option<RobustnessReply>,
     /// The same for the other laws, with as many reversals.
     pub comparison: Comparison,
@@ -54,37 +51,36 @@ pub struct ProtocolReply {
 }
 
 /// A path of displacements.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct DisplacementPath {
     /// Tangential displacements of the indenter, m, one move each.
     pub displacement: Vec<f64>,
 }
 
 /// How a path begins.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct StartReply {
     /// The first displacement of the path, m.
     pub displacement: f64,
     /// Which beginning was chosen.
     pub stroke: FirstStroke,
 }
-
-/// The beginning of a path.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum FirstStroke {
-    /// A displacement of a contact that has never moved, as asked for.
-    Given,
-    /// A stroke to gross slip, which erases the whole slip history.
-    GrossSlip,
-    /// A stroke that erases the outer part of the slip history and keeps the inner one.
-    Partial,
-    /// None: less stress is present already than any other path would leave.
-    Stay,
 }
 
+words! {
+/// The beginning of a path.
+pub enum FirstStroke {
+    /// A displacement of a contact that has never moved, as asked for.
+    Given = "given",
+    /// A stroke to gross slip, which erases the whole slip history.
+    GrossSlip = "gross_slip",
+    /// A stroke that erases the outer part of the slip history and keeps the inner one.
+    Partial = "partial",
+    /// None: less stress is present already than any other path would leave.
+    Stay = "stay",
+}
+}
+
+replies! {
 /// Where and in which unit the remaining stress is measured.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct JudgedReply {
     /// From this radius on, m: zero, but where the stress is infinite whatever is done (the tip of a cone, the rim of a
     /// truncated profile).
@@ -98,19 +94,20 @@ pub struct JudgedReply {
     /// What is made small, in words.
     pub objective: String,
 }
-
-/// The pressure that stresses are compared with.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum PressureUnit {
-    /// The largest one.
-    Largest,
-    /// The mean one, where the largest is infinite.
-    Mean,
 }
 
+words! {
+/// The pressure that stresses are compared with.
+pub enum PressureUnit {
+    /// The largest one.
+    Largest = "largest",
+    /// The mean one, where the largest is infinite.
+    Mean = "mean",
+}
+}
+
+replies! {
 /// How far a path may be from the optimum.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Gap {
     /// By how much the smallest of the alternating extrema falls short of the largest, relative to it, a pure number;
     /// `null` where they are not all meant to be equal: with a prescribed end, or a start from a history.
@@ -126,7 +123,6 @@ pub struct Gap {
 
 /// What remains when a protocol is not followed exactly: of the largest stress over `judged.unit`, pure numbers. `null`
 /// where it is infinite.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct RobustnessReply {
     /// How many times it was tried.
     pub samples: usize,
@@ -139,9 +135,7 @@ pub struct RobustnessReply {
 }
 
 /// The results of the other laws.
-#[apply(Option => #[serde(skip_serializing_if = "Option::is_none")] #[schema(nullable = false)])]
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
-pub struct Comparison {
+pub struct Comparison: Default omits Option {
     /// The linear fall.
     pub linear: Option<Outcome>,
     /// Equal peaks.
@@ -151,13 +145,14 @@ pub struct Comparison {
 }
 
 /// What a law leaves.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-pub struct Outcome {
+pub struct Outcome omits Option {
     /// What remains.
     pub residual: Residual,
     /// The largest magnitude of the shear stress that remains where it is measured, Pa; `null` where it is infinite.
+    #[serde_with(skip_apply)]
     pub largest: Option<f64>,
     /// The same over `judged.unit`, a pure number.
+    #[serde_with(skip_apply)]
     pub relative: Option<f64>,
     /// Tangential displacement at the end, m.
     pub displacement: f64,
@@ -166,18 +161,13 @@ pub struct Outcome {
     /// Work done against friction on the path, J.
     pub dissipated_energy: f64,
     /// How far the path may be from the optimum; of `minimax` alone.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(nullable = false)]
     pub gap: Option<Gap>,
     /// What remains if it is not followed exactly, if asked for.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(nullable = false)]
     pub robustness: Option<RobustnessReply>,
 }
 
 /// The result of relaxing a contact, or of a dry run.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-pub struct RelaxReply {
+pub struct RelaxReply omits Option {
     /// The contact.
     pub id: Uuid,
     /// Number of moves so far.
@@ -185,10 +175,9 @@ pub struct RelaxReply {
     /// Whether the path was only shown.
     pub dry_run: bool,
     /// The states along the path: all of them, or the last; if asked for.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(nullable = false)]
     pub steps: Option<Vec<State>>,
     /// The path and what it leaves.
     #[serde(flatten)]
     pub protocol: ProtocolReply,
+}
 }

@@ -4,19 +4,16 @@ mod places;
 
 pub use places::{Direction, Places, Steps, SubsurfaceLine, SubsurfacePlane, SubsurfaceSurface};
 
-use serde::{Deserialize, Serialize};
-use serde_with::apply;
-use utoipa::ToSchema;
-
 use stickslip_mechanics::{self as mechanics, range, subsurface::Side};
 
 use crate::check::{Faults, JsonPath, Rejection};
+use crate::choice::words;
 use crate::definition::{Body, BodyName, ContactDefinition};
 use crate::document::Document;
 use crate::limits::{Array, Limited as _, SUBSURFACE_POINTS, Triple};
 use crate::prepare::Prepare;
 use crate::reply::{Accuracy, Warning};
-use crate::request::requests;
+use crate::request::{replies, requests};
 
 requests! {
 /// The stress in one of the bodies, tension positive: x along the motion of the first body, which carries the profile,
@@ -62,27 +59,26 @@ pub struct Bulk: Copy, Default {
 }
 }
 
+words! {
 /// A quantity below the surface.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
-#[serde(rename_all = "snake_case")]
 pub enum SubsurfaceField {
     /// The six components `xx`, `yy`, `zz`, `xy`, `yz`, `xz`, Pa.
-    Tensor,
+    Tensor = "tensor",
     /// The principal stresses `principal_1` to `principal_3`, falling, Pa.
-    Principal,
+    Principal = "principal",
     /// Von Mises's equivalent stress `von_mises`, Pa.
-    VonMises,
+    VonMises = "von_mises",
     /// The largest shear stress `max_shear` on any plane, Pa.
-    MaxShear,
+    MaxShear = "max_shear",
     /// The mean normal stress `hydrostatic`, Pa.
-    Hydrostatic,
+    Hydrostatic = "hydrostatic",
+}
 }
 
+replies! {
 /// Stresses below the surface, in columns; an array that was not asked for is left out, and `null` is where a stress is
 /// infinite.
-#[apply(Option => #[serde(default, skip_serializing_if = "Option::is_none")] #[schema(nullable = false)])]
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
-pub struct Subsurface {
+pub struct Subsurface: Default omits Option {
     /// Place along the motion of the first body, m.
     pub x: Vec<f64>,
     /// Place across it, m.
@@ -116,7 +112,6 @@ pub struct Subsurface {
 }
 
 /// Stresses below the surface of a contact on the server.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct SubsurfaceReply {
     /// The columns.
     #[serde(flatten)]
@@ -125,6 +120,7 @@ pub struct SubsurfaceReply {
     pub accuracy: Accuracy,
     /// Warnings about the result.
     pub warnings: Vec<Warning>,
+}
 }
 
 impl Subsurface {

@@ -1,11 +1,9 @@
 //! The places below the surface at which stresses are asked for.
 
-use serde::{Deserialize, Serialize};
-use utoipa::ToSchema;
-
 use stickslip_mechanics::range;
 
 use crate::check::{Faults, JsonPath};
+use crate::choice::words;
 use crate::limits::{Limited as _, SUBSURFACE_POINTS, Triple};
 use crate::request::requests;
 
@@ -47,16 +45,16 @@ pub struct SubsurfaceSurface {
 /// Points of a line: two ends at least.
 const LINE: std::ops::RangeInclusive<usize> = 2..=*SUBSURFACE_POINTS.end();
 
+words! {
 /// An axis: x along the motion of the first body, z into the body asked for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
-#[serde(rename_all = "snake_case")]
 pub enum Direction {
     /// Along the motion.
-    X,
+    X = "x",
     /// Across it.
-    Y,
+    Y = "y",
     /// Into the body.
-    Z,
+    Z = "z",
+}
 }
 
 /// Checked places, in the order of the reply.

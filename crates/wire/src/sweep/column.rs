@@ -7,7 +7,7 @@ use utoipa::ToSchema;
 use super::{Axis, SweepRequest};
 use crate::check::{Faults, JsonPath};
 use crate::choice::object_or_string;
-use crate::limits::{Keywords, Limit};
+use crate::limits::Limit;
 use crate::request::requests;
 
 /// The name of a column: a letter, then letters, digits and `_`. It is a name in SQL, Python and a header of a CSV, and
@@ -97,13 +97,11 @@ impl SweepRequest {
     }
 }
 
-impl Keywords for ColumnName {
+impl Limit<String> for ColumnName {
     fn keywords(&self) -> Value {
         json!({"pattern": format!("^[A-Za-z][A-Za-z0-9_]{{0,{}}}$", NAME_LENGTH - 1)})
     }
-}
 
-impl Limit<String> for ColumnName {
     fn check(&self, value: &String, at: JsonPath<'_>, faults: &mut Faults) {
         let begins = value.starts_with(|first: char| first.is_ascii_alphabetic());
         let fits = value.len() <= NAME_LENGTH && value.chars().all(|next| next.is_ascii_alphanumeric() || next == '_');
