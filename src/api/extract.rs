@@ -13,9 +13,7 @@ use http_body::Body as _;
 use sha2::{Digest as _, Sha256};
 use tokio::time::{Instant, timeout};
 
-use crate::admission::{
-    INLINE, Nanoseconds, Pool, PoolError, Quota, RequestPermit, Reservation, Stop, StopOnDrop, UNCOUNTED,
-};
+use crate::admission::{INLINE, Pool, PoolError, Quota, RequestPermit, Reservation, Stop, StopOnDrop, UNCOUNTED};
 use crate::computations::files;
 use crate::otlp;
 use crate::server::RequestClient;
@@ -33,11 +31,9 @@ use super::state::App;
 /// A checked body, and the headers that make the request safe to repeat. If it is `OPTIONAL`, no body at all counts as
 /// `{}`.
 pub struct CheckedBody<T: Document, const OPTIONAL: bool = false> {
-    /// The body.
     pub body: T::Checked,
     /// The idempotency key, with a fingerprint of the request.
     pub key: Option<RequestKey>,
-    /// The resources that the request holds.
     pub held: HeldResources,
 }
 
@@ -47,13 +43,6 @@ pub struct HeldResources {
     _permit: RequestPermit,
     /// The work of its check.
     spent: Duration,
-}
-
-/// A body that has been read.
-enum ReadBody<T: Document> {
-    Checked(T::Checked),
-    /// The check prepares a profile, at this cost.
-    Unprepared(T, Nanoseconds),
 }
 
 impl HeldResources {
@@ -110,17 +99,14 @@ impl<T: Document + 'static, const OPTIONAL: bool> FromRequest<Arc<App>> for Chec
             let key = key.map(|key| RequestKey { key, fingerprint: fingerprint(&parts, &bytes) });
             let document = wire::parse::<T>(&bytes)?;
             let cost = check.cost(&document)?;
-            let read = if cost < INLINE {
-                ReadBody::Checked(check.check(document)??)
-            } else {
-                ReadBody::Unprepared(document, cost)
-            };
+            // Or else the check prepares a profile, at this cost.
+            let read = if cost < INLINE { Ok(check.check(document)??) } else { Err((document, cost)) };
             Ok::<_, Problem>((read, key))
         };
         let (read, key) = app.pool.run(cost, work).await??;
         let body = match read {
-            ReadBody::Checked(body) => body,
-            ReadBody::Unprepared(document, cost) => {
+            Ok(body) => body,
+            Err((document, cost)) => {
                 let shape = document.profile().map_or(0, |defined| bytes::of_shape(defined.profile));
                 app.pool.resize(&mut memory, shape.max(length.saturating_mul(bytes::EXPANSION))).await?;
                 let work = move || otlp::part!("prepare").in_scope(|| profiles.check(document));
@@ -133,9 +119,7 @@ impl<T: Document + 'static, const OPTIONAL: bool> FromRequest<Arc<App>> for Chec
 
 /// The bytes of a file, with memory for what they become.
 pub struct FileBody {
-    /// The file.
     pub bytes: Vec<u8>,
-    /// The resources that the request holds.
     pub held: HeldResources,
 }
 

@@ -21,7 +21,6 @@ pub enum Need {
 /// A status, and why a route answers with it.
 pub type Refusal = (&'static str, &'static str);
 
-/// The facts of an operation.
 #[derive(Clone, Copy, Debug)]
 pub struct Facts {
     /// What a request needs.
@@ -64,11 +63,9 @@ impl Facts {
         Facts { need, refusals, formats: &[], events: &[], conditional: false, paged: false, optional_body: false }
     }
 
-    /// For everybody.
     pub const OPEN: Facts = Facts::of(Need::Nothing, &[]);
     /// Whether the service is ready.
     pub const READY: Facts = Facts::of(Need::Nothing, &[NOT_READY]);
-    /// The metrics.
     pub const METRICS: Facts = Facts::of(Need::Key(Role::Metrics), &[]);
     /// Reads or computes something, and changes nothing.
     pub const READS: Facts = Facts::of(Need::Key(Role::Read), &[LIMITED]);
@@ -90,7 +87,6 @@ impl Facts {
 pub struct Routes {
     /// The routes, and what their handlers say of them.
     pub router: OpenApiRouter<Arc<App>>,
-    /// The facts.
     pub facts: FactsOfRoutes,
 }
 

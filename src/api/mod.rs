@@ -97,7 +97,6 @@ pub async fn serve_within(
     .await
 }
 
-/// All routes.
 fn router(app: App, observed: Observed) -> Router {
     let (api, _) = described(document()).router.split_for_parts();
     let docs = SwaggerUi::new("/docs").config(Config::from("/openapi.json").validator_url("none"));
@@ -129,7 +128,6 @@ pub fn document() -> &'static str {
     })
 }
 
-/// The facts of all routes.
 fn facts() -> &'static FactsOfRoutes {
     static FACTS: OnceLock<FactsOfRoutes> = OnceLock::new();
     FACTS.get_or_init(|| {

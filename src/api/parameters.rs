@@ -73,11 +73,9 @@ impl QueryReader {
 
 /// A query whose parameters are declared by `parameters!`.
 pub trait Parameters: Sized {
-    /// Reads them; faults are noted in the reader.
     fn read(query: &mut QueryReader) -> Self;
 }
 
-/// For operations without parameters.
 impl Parameters for () {
     fn read(_: &mut QueryReader) {}
 }
@@ -87,7 +85,6 @@ pub trait Kind<V> {
     /// The value, if the client gives one that can be read.
     fn read(&self, name: &'static str, query: &mut QueryReader) -> Option<V>;
 
-    /// Its JSON schema.
     fn schema(&self) -> Value;
 
     /// An example of its values, where a request needs one.
@@ -263,7 +260,6 @@ pub const fn words<V>(values: &'static [V], name: fn(V) -> &'static str) -> Choi
     Choice { values, name, schema }
 }
 
-/// The state of a job.
 pub const JOB_STATE: Choice<JobState> =
     Choice { values: &JobState::ALL, name: JobState::name, schema: |names| json!({"type": "string", "enum": names}) };
 

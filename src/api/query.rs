@@ -20,7 +20,6 @@ pub const PAGE: RangeInclusive<usize> = 1..=1_000;
 /// Items of a page if the client does not say.
 pub const DEFAULT_PAGE: usize = 100;
 
-/// The parameters of an operation.
 pub trait QueryParams: Sized {
     /// Takes its parameters out of the query; `None` if it has noted a fault without which there would be a value.
     fn take(query: &mut QueryReader, headers: &HeaderMap) -> Option<Self>;
@@ -45,7 +44,6 @@ pub enum Moves {
     Page(u64, usize),
     /// So many, up to the last one.
     Newest(usize),
-    /// All of them, piece by piece.
     All,
 }
 

@@ -26,8 +26,7 @@ use stickslip_report::plot::Drawing;
 use stickslip_wire::{self as wire, ContactDefinition, Document, Fault, Rejection};
 
 use crate::admission::{Nanoseconds, Stop};
-use crate::formats::{self, CAPACITY, Format, Table, Unwritable};
-use crate::otlp;
+use crate::formats::{CAPACITY, Format, Table, Unwritable};
 use crate::simulation::{self, Failure};
 
 pub use cycle::Cycle;
@@ -293,20 +292,10 @@ impl Shown {
     /// # Errors
     /// [`Unwritable`], which is a fault of the service.
     pub fn write<O: Outcome>(&self, outcome: &O) -> Result<Vec<u8>, Unwritable> {
-        let none = || Unwritable::new(format_args!("it has no {}", self.format.name()));
-        if self.format == Format::Columns {
-            return if self.indented {
-                serde_json::to_vec_pretty(outcome.reply()).map_err(Unwritable::new)
-            } else {
-                formats::json(outcome.length(), outcome.reply())
-            };
+        if self.format == Format::Columns && self.indented {
+            return serde_json::to_vec_pretty(outcome.reply()).map_err(Unwritable::new);
         }
-        let _span = otlp::part!("write").entered();
-        if self.format.is_plot() {
-            self.format.draw(&outcome.picture(self).ok_or_else(none)?)
-        } else {
-            outcome.table(self).ok_or_else(none)?.write(self.format).map_err(Unwritable::new)
-        }
+        self.format.write(outcome.length(), outcome.reply(), || outcome.picture(self), || outcome.table(self))
     }
 }
 

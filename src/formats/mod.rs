@@ -106,30 +106,28 @@ impl Format {
         if self.is_plot() { INLINE } else { 0 }
     }
 
-    /// A page in this format; only the plot or table that it needs is made.
+    /// A document in this format, about `length` bytes long as JSON; only the plot or table that this needs is made.
     ///
     /// # Errors
     /// [`Unwritable`], which is a fault of the service.
     pub fn write<'p, P: Picture>(
         self,
-        page: &impl Serialize,
-        plot: impl FnOnce() -> P,
-        table: impl FnOnce() -> Table<'p>,
+        length: usize,
+        document: &impl Serialize,
+        picture: impl FnOnce() -> Option<P>,
+        table: impl FnOnce() -> Option<Table<'p>>,
     ) -> Result<Vec<u8>, Unwritable> {
-        let write = || match self {
-            Format::Columns => json(CAPACITY, page),
-            Format::Svg | Format::Png => self.draw(&plot()),
-            Format::Rows | Format::Csv | Format::Ndjson | Format::Arrow => table().write(self).map_err(Unwritable::new),
-        };
-        if self == Format::Columns { write() } else { otlp::part!("write").in_scope(write) }
-    }
-
-    /// A picture as a vector plot if this format is one, else as a bitmap.
-    ///
-    /// # Errors
-    /// [`Unwritable`], which is a fault of the service.
-    pub fn draw(self, picture: &impl Picture) -> Result<Vec<u8>, Unwritable> {
-        if self == Format::Svg { picture.svg() } else { picture.png() }.map_err(Unwritable::new)
+        if self == Format::Columns {
+            return json(length, document);
+        }
+        let _span = otlp::part!("write").entered();
+        let none = || Unwritable::new(format_args!("it has no {}", self.name()));
+        if self.is_plot() {
+            let picture = picture().ok_or_else(none)?;
+            if self == Format::Svg { picture.svg() } else { picture.png() }.map_err(Unwritable::new)
+        } else {
+            table().ok_or_else(none)?.write(self).map_err(Unwritable::new)
+        }
     }
 }
 

@@ -1,9 +1,6 @@
-//! What a request gets of [`crate::formats`]: the choice by the query or by `Accept`, and the reply. The tables and
-//! plots of the pages of a contact.
+//! What a request gets of [`crate::formats`]: the choice by the query or by `Accept`, and the reply.
 
 mod accept;
-pub mod plots;
-pub mod tables;
 
 use axum::body::Body;
 use axum::http::{HeaderValue, header};

@@ -118,7 +118,6 @@ pub async fn log_request(
 /// The route label of a request that matches no route.
 const NO_ROUTE: &str = "none";
 
-/// The contact that a path names.
 fn contact_in(path: &str) -> Option<Uuid> {
     path.strip_prefix("/contacts/")?.split('/').next()?.parse().ok()
 }

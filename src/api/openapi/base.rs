@@ -22,7 +22,6 @@ use crate::api::query::PAGE;
 )]
 struct Base;
 
-/// The document before the handlers add themselves.
 pub fn base() -> utoipa::openapi::OpenApi {
     let mut base = Base::openapi();
     base.info.description = Some(introduction());

@@ -50,7 +50,6 @@ pub fn write(document: &mut Value, facts: &FactsOfRoutes) {
     }
 }
 
-/// A refusal as a response.
 pub fn refusal(description: &str) -> Value {
     let schema = json!({"$ref": "#/components/schemas/ProblemDocument"});
     json!({"description": description, "content": {MEDIA_TYPE: {"schema": schema}}})

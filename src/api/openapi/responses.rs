@@ -10,7 +10,6 @@ use crate::formats::Format;
 /// Replies of the program by operation: `UPDATE=1 cargo test --test api shows_a_reply` prints them anew.
 const EXAMPLES: &str = include_str!("../../../openapi/examples.json");
 
-/// Completes the responses.
 pub fn write(document: &mut Value, facts: &FactsOfRoutes) {
     let examples: Map<String, Value> = serde_json::from_str(EXAMPLES).unwrap_or_default();
     let (of_contacts, of_jobs) = (links(document, "/contacts/{id}"), links(document, "/jobs/{id}"));

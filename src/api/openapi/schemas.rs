@@ -5,7 +5,6 @@ use serde_json::{Map, Value, json};
 
 use stickslip_mechanics::range;
 
-/// Completes the schemas.
 pub fn write(document: &mut Value) {
     if let Some(Value::Object(schemas)) = document.pointer_mut("/components/schemas") {
         close_choices(schemas);

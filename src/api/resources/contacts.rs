@@ -29,7 +29,6 @@ pub async fn create_contact(
 }
 
 parameters! {
-    /// Which contacts to list.
     pub struct ListQuery {
         /// Those alone whose label contains this text. Upper and lower case are the same for the letters A to Z; the
         /// empty text finds all that have a label.

@@ -10,7 +10,6 @@ use super::stress::QUERY_RADII;
 use crate::api::parameters::{List, number};
 
 parameters! {
-    /// Which cycles are asked for.
     pub struct CycleQuery {
         /// Amplitudes of the displacement, m, separated by commas or given one by one: of the indenter or, with
         /// `machine_stiffness`, of the machine. Give this or `force`.
@@ -33,7 +32,6 @@ parameters! {
     }
 }
 
-/// A [`CycleQuery`] that has been checked.
 pub struct CheckedCycle {
     task: CycleTask,
     format: Option<Format>,

@@ -1,15 +1,16 @@
 //! `/contacts/{id}/cycles`: the closed cycles of a contact's past.
 
-use stickslip_wire::{CyclePage, limits};
+use stickslip_report::plot::{Axis, Colour, Plot};
+use stickslip_wire::{Cycle, CyclePage, limits};
 
+use super::move_series::curve;
 use super::prelude::*;
-use crate::api::formats::{plots, tables};
+use crate::formats::{CAPACITY, Column, Table};
 
 /// Bytes of a cycle in the longest of the formats.
 const CYCLE_BYTES: usize = 1_024;
 
 parameters! {
-    /// Which cycles to list.
     pub struct CyclesQuery {
         /// How many of the newest cycles at most.
         last: usize = count(&limits::CYCLES), or DEFAULT_PAGE;
@@ -40,8 +41,40 @@ pub async fn get_cycles(
     }
     let memory = app.pool.reserve(last * CYCLE_BYTES + format.bytes(0, 0)).await?;
     let (sequence, page) = app.sessions.cycles().newest(id, last).await?;
-    let write = move || format.write(&page, || plots::cycles(id, &page), || tables::cycles(&page));
+    let write = move || format.write(CAPACITY, &page, || Some(plot(id, &page)), || Some(table(&page)));
     let body = app.pool.run(format.cost(), write).await??;
     let tag = format.tag(&sequence.to_string());
     Ok(reply::holding(reply::tagged(format.reply(body), &tag), memory))
+}
+
+/// Amplitudes, friction work and stiffness of the cycles over the moves that closed them.
+fn plot(id: Uuid, page: &CyclePage) -> Plot {
+    let panel = |name, unit, colour, of: fn(&Cycle) -> f64| {
+        curve(name, unit, colour, page.items.iter().map(|cycle| (cycle.to as f64, of(cycle))))
+    };
+    Plot::new(
+        format!("Contact {id}: {}closed cycles", if page.items.is_empty() { "no " } else { "" }),
+        Axis { name: "move", unit: None },
+        vec![
+            panel("amplitude U₀", "m", Colour::Blue, |cycle| cycle.displacement_amplitude),
+            panel("amplitude F₀", "N", Colour::Blue, |cycle| cycle.force_amplitude),
+            panel("friction work", "J", Colour::Red, |cycle| cycle.dissipated_energy),
+            panel("secant stiffness", "N/m", Colour::Blue, |cycle| cycle.secant_stiffness.unwrap_or(f64::NAN)),
+        ],
+    )
+}
+
+fn table(page: &CyclePage) -> Table<'_> {
+    let items = &page.items;
+    let value = |name, unit, of: fn(&Cycle) -> Option<f64>| Column::floats(name, unit, move |row| of(&items[row]));
+    let columns = vec![
+        Column::counts("from", |row| items[row].from),
+        Column::counts("to", |row| items[row].to),
+        value("displacement_amplitude", "m", |cycle| Some(cycle.displacement_amplitude)),
+        value("force_amplitude", "N", |cycle| Some(cycle.force_amplitude)),
+        value("dissipated_energy", "J", |cycle| Some(cycle.dissipated_energy)),
+        value("secant_stiffness", "N/m", |cycle| cycle.secant_stiffness),
+        value("sliding_ratio", "1", |cycle| cycle.sliding_ratio),
+    ];
+    Table::flat(items.len(), columns)
 }

@@ -62,21 +62,6 @@ parameters! {
     }
 }
 
-impl QueryParams for ScanHints {
-    fn take(query: &mut QueryReader, _: &axum::http::HeaderMap) -> Option<ScanHints> {
-        let ScanFileQuery { lateral, height, spacing } = ScanFileQuery::read(query);
-        Some(ScanHints { lateral, height, spacing, most: 0 })
-    }
-}
-
-impl QueryParams for LoopHints {
-    fn take(query: &mut QueryReader, _: &axum::http::HeaderMap) -> Option<LoopHints> {
-        let LoopFileQuery { displacement, force, time, load, displacement_unit, force_unit } =
-            LoopFileQuery::read(query);
-        Some(LoopHints { displacement, force, time, load, displacement_unit, force_unit })
-    }
-}
-
 /// Read a scan from a file
 ///
 /// Takes a file of an instrument as it is, and replies with the members of the body of `POST /profiles/fit`, and with
@@ -91,10 +76,11 @@ impl QueryParams for LoopHints {
 )]
 pub async fn read_scan_file(
     State(app): State<Arc<App>>,
-    query: Result<CheckedQuery<ScanHints>, Problem>,
+    query: Result<CheckedQuery<ScanFileQuery>, Problem>,
     body: FileBody,
 ) -> Result<Response, Problem> {
-    let CheckedQuery(hints) = query?;
+    let CheckedQuery(ScanFileQuery { lateral, height, spacing }) = query?;
+    let hints = ScanHints { lateral, height, spacing, most: 0 };
     answer(&app, body, move |bytes| files::scan(bytes, hints)).await
 }
 
@@ -111,10 +97,11 @@ pub async fn read_scan_file(
 )]
 pub async fn read_loop_file(
     State(app): State<Arc<App>>,
-    query: Result<CheckedQuery<LoopHints>, Problem>,
+    query: Result<CheckedQuery<LoopFileQuery>, Problem>,
     body: FileBody,
 ) -> Result<Response, Problem> {
-    let CheckedQuery(hints) = query?;
+    let CheckedQuery(LoopFileQuery { displacement, force, time, load, displacement_unit, force_unit }) = query?;
+    let hints = LoopHints { displacement, force, time, load, displacement_unit, force_unit };
     answer(&app, body, move |bytes| files::measured_loop(bytes, &hints)).await
 }
 

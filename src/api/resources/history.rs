@@ -1,14 +1,14 @@
 //! `/contacts/{id}/history`: the moves that a contact has made.
 
-use stickslip_report::plot::Plot;
-use stickslip_wire::HistoryPage;
+use stickslip_report::plot::{Axis, Colour, Plot};
+use stickslip_wire::{Cycle, HistoryPage, ObservedForce, State};
 
 use super::move_series::{self, ITEM_BYTES, MoveSeries};
 use super::prelude::*;
-use crate::api::formats::{plots, tables};
 use crate::api::parameters::FLAG;
 use crate::api::query::MovesQuery;
-use crate::formats::Table;
+use crate::computations::state_columns;
+use crate::formats::{Cells, Column, Table};
 
 parameters! {
     /// What a history has of each move.
@@ -80,11 +80,56 @@ impl MoveSeries for History {
         Ok(moves)
     }
 
+    /// Displacement, force and friction work over the moves.
     fn plot(id: Uuid, page: &HistoryPage) -> Plot {
-        plots::history(id, page)
+        let panel = |name, unit, colour, of: fn(&State) -> f64| {
+            move_series::curve(
+                name,
+                unit,
+                colour,
+                page.items.iter().map(|item| (item.sequence as f64, of(&item.state))),
+            )
+        };
+        Plot::new(
+            format!("Contact {id}: history{}", move_series::shown(page.items.iter().map(|item| item.sequence))),
+            Axis { name: "move", unit: None },
+            vec![
+                panel("displacement", "m", Colour::Blue, |state| state.displacement),
+                panel("force", "N", Colour::Blue, |state| state.force),
+                panel("friction work", "J", Colour::Red, |state| state.dissipated_energy),
+            ],
+        )
     }
 
+    /// The states with their numbers and times, the cycles that they closed, and who made them.
     fn table<'a>(&self, page: &'a HistoryPage) -> Table<'a> {
-        tables::history(page, self.names_makers)
+        let items = &page.items;
+        let cycle = |name, unit, of: fn(&Cycle) -> Option<f64>| {
+            Column::floats(name, unit, move |row| items[row].cycle.as_ref().and_then(of))
+        };
+        let observed = |name, of: fn(&ObservedForce) -> f64| {
+            Column::floats(name, "N", move |row| items[row].observation.as_ref().map(of))
+        };
+        let cycle_from = |row: usize| items[row].cycle.as_ref().map(|cycle| cycle.from);
+        let mut columns = vec![
+            Column::counts("sequence", |row| items[row].sequence),
+            Column::new("at", Some("UTC"), Cells::Times(Box::new(|row| items[row].at))),
+        ];
+        columns.extend(state_columns(|row| &items[row].state));
+        columns.extend([
+            Column::new("cycle_from", Some("1"), Cells::SomeCounts(Box::new(cycle_from))),
+            cycle("cycle_displacement_amplitude", "m", |cycle| Some(cycle.displacement_amplitude)),
+            cycle("cycle_force_amplitude", "N", |cycle| Some(cycle.force_amplitude)),
+            cycle("cycle_dissipated_energy", "J", |cycle| Some(cycle.dissipated_energy)),
+            cycle("cycle_secant_stiffness", "N/m", |cycle| cycle.secant_stiffness),
+            cycle("cycle_sliding_ratio", "1", |cycle| cycle.sliding_ratio),
+            observed("observed_force", |observed| observed.force),
+            observed("predicted_force", |observed| observed.predicted),
+            observed("innovation", |observed| observed.innovation),
+        ]);
+        if self.names_makers {
+            columns.push(Column::new("by", Some(""), Cells::SomeNames(Box::new(|row| items[row].by.as_deref()))));
+        }
+        Table::flat(items.len(), columns)
     }
 }

@@ -1,13 +1,12 @@
 //! `/contacts/{id}/loop`: the tangential force over the displacement along the moves of a contact.
 
-use stickslip_report::plot::Plot;
-use stickslip_wire::{HistoryPage, LoopPage, limits};
+use stickslip_report::plot::{Axis, Colour, Plot};
+use stickslip_wire::{HistoryPage, LoopPage, ObservedForce, limits};
 
 use super::move_series::{self, ITEM_BYTES, MoveSeries};
 use super::prelude::*;
-use crate::api::formats::{plots, tables};
 use crate::api::query::MovesQuery;
-use crate::formats::Table;
+use crate::formats::{Column, Table};
 use crate::sessions::{bytes_of_trace, trace};
 
 parameters! {
@@ -69,10 +68,30 @@ impl MoveSeries for Loop {
     }
 
     fn plot(id: Uuid, page: &LoopPage) -> Plot {
-        plots::hysteresis_loop(id, page)
+        let points = page.displacement.iter().copied().zip(page.force.iter().copied());
+        let moves = move_series::shown(page.sequence.iter().copied().filter(|number| *number > 0));
+        Plot::new(
+            format!("Contact {id}: hysteresis loop{moves}"),
+            Axis::of("displacement U", "m"),
+            vec![move_series::curve("tangential force F", "N", Colour::Blue, points)],
+        )
     }
 
     fn table<'a>(&self, page: &'a LoopPage) -> Table<'a> {
-        tables::hysteresis_loop(page)
+        let observed = |name, of: fn(&ObservedForce) -> f64| {
+            let at =
+                |row: usize| page.observed_force(row).map(|force| ObservedForce::new(force, page.force[row], None));
+            Column::floats(name, "N", move |row| at(row).as_ref().map(of))
+        };
+        let columns = vec![
+            Column::counts("sequence", |row| page.sequence[row]),
+            Column::floats("part", "1", |row| page.part[row]),
+            Column::floats("displacement", "m", |row| page.displacement[row]),
+            Column::floats("force", "N", |row| page.force[row]),
+            observed("observed_force", |observed| observed.force),
+            observed("predicted_force", |observed| observed.predicted),
+            observed("innovation", |observed| observed.innovation),
+        ];
+        Table::flat(page.sequence.len(), columns)
     }
 }

@@ -12,7 +12,6 @@ use crate::store::StreamEvent;
 use stickslip_wire::{JobEndEvent, JobList, JobReply, JobState, SweepReply};
 
 parameters! {
-    /// How a table is written.
     pub struct TableQuery {
         /// `columns` (this document), `rows` (a JSON array of flat objects), `csv`, `ndjson` or `arrow` (an Arrow IPC
         /// stream). If it is left out, `Accept` decides.
@@ -21,7 +20,6 @@ parameters! {
 }
 
 parameters! {
-    /// Which jobs to list.
     pub struct JobsQuery {
         /// Only those in this state.
         state: Option<JobState> = JOB_STATE;
@@ -107,7 +105,6 @@ pub async fn watch_job(
     stream(&app, id).await
 }
 
-/// The events of a job as a reply.
 pub async fn stream(app: &App, id: Uuid) -> Result<Response, Problem> {
     let events = app.jobs.events(id).await?.map(|event| match event {
         StreamEvent::State(job) => {

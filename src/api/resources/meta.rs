@@ -75,7 +75,6 @@ pub async fn get_problem(Path(code): Path<String>, uri: Uri) -> Result<Response,
     Ok(reply::json(reply::written(&json!({"code": code, "title": kind.title(), "status": kind.status()}))?))
 }
 
-/// The answer to a path that does not exist.
 pub async fn not_found(uri: Uri) -> Problem {
     let path: String = uri.path().chars().take(100).collect();
     Problem::new(Code::NotFound, format!("there is nothing at {path}; /docs shows what there is"))
@@ -92,7 +91,6 @@ pub async fn refused(refusal: Option<Extension<Refusal>>) -> Problem {
     }
 }
 
-/// The answer when a handler panicked.
 pub fn panicked(panic: Box<dyn Any + Send + 'static>) -> Response {
     let text = panic.downcast_ref::<String>().map(String::as_str).or(panic.downcast_ref::<&str>().copied());
     Problem::internal(format!("panicked: {}", text.unwrap_or("without a message"))).into_response()

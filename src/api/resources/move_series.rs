@@ -7,22 +7,20 @@ use std::sync::Arc;
 use axum::body::Body;
 use futures::{StreamExt as _, stream};
 use serde::Serialize;
-use stickslip_report::plot::Plot;
+use stickslip_report::plot::{Axis, Colour, Curve, Panel, Plot};
 use stickslip_wire::HistoryPage;
 
 use super::prelude::*;
 use crate::api::formats::TableStream;
 use crate::api::query::{Moves, MovesQuery};
-use crate::formats::{Table, Unwritable};
+use crate::formats::{CAPACITY, Table, Unwritable};
 
 /// Moves that are read at once.
 const PAGE: usize = 500;
 /// Bytes of an item of a history.
 pub(super) const ITEM_BYTES: usize = 2_048;
 
-/// What is shown of moves.
 pub(super) trait MoveSeries: Clone + Send + Sync + 'static {
-    /// The document of a page.
     type Page: Serialize + Send + 'static;
 
     /// The last part of the path.
@@ -47,10 +45,8 @@ pub(super) trait MoveSeries: Clone + Send + Sync + 'static {
         format: Format,
     ) -> impl Future<Output = Result<Self::Page, Problem>> + Send;
 
-    /// The plot of a page.
     fn plot(id: Uuid, page: &Self::Page) -> Plot;
 
-    /// The table of a page.
     fn table<'a>(&self, page: &'a Self::Page) -> Table<'a>;
 }
 
@@ -81,7 +77,7 @@ pub(super) async fn reply<T: MoveSeries>(
         HeaderValue::from_str(&format!("</contacts/{id}/{}?{query}>; rel=\"next\"", T::NAME)).ok()
     });
     let page = shown.page(&app, id, after, moves, format).await?;
-    let write = move || format.write(&page, || T::plot(id, &page), || shown.table(&page));
+    let write = move || format.write(CAPACITY, &page, || Some(T::plot(id, &page)), || Some(shown.table(&page)));
     let mut response = reply::tagged(format.reply(app.pool.run(format.cost(), write).await??), &tag);
     response.headers_mut().extend(next.map(|next| (header::LINK, next)));
     Ok(reply::holding(response, memory))
@@ -156,4 +152,23 @@ impl<T: MoveSeries> WholeTable<T> {
 fn broken_off(problem: Problem) -> io::Error {
     tracing::warn!(code = problem.code().as_str(), cause = problem.cause(), "a history is cut off while it is sent");
     io::Error::other("a history cannot be read on")
+}
+
+/// A panel with one curve.
+pub(super) fn curve(
+    name: &'static str,
+    unit: &'static str,
+    colour: Colour,
+    points: impl Iterator<Item = (f64, f64)>,
+) -> Panel {
+    Panel { y: Axis::of(name, unit), curves: vec![Curve::line("", colour, points)] }
+}
+
+/// Which moves a plot shows, for its title.
+pub(super) fn shown(mut moves: impl DoubleEndedIterator<Item = u64>) -> String {
+    let Some(last) = moves.next_back() else { return String::new() };
+    match moves.next() {
+        Some(first) if first < last => format!(", moves {first} to {last}"),
+        _ => format!(", move {last}"),
+    }
 }

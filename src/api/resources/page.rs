@@ -13,7 +13,6 @@ use super::meta;
 use crate::api::params::list_members;
 use crate::api::{reply, routes};
 
-/// One file of the page.
 struct Asset {
     name: &'static str,
     plain: &'static [u8],
@@ -26,7 +25,6 @@ const ASSETS: &[Asset] = &include!(concat!(env!("OUT_DIR"), "/page.in"));
 /// The truncated hashes of all files, in the order of [`ASSETS`].
 static HASHES: LazyLock<Vec<String>> = LazyLock::new(|| ASSETS.iter().map(|asset| hash(asset.plain)).collect());
 
-/// The routes of the page.
 pub fn routes() -> Router {
     Router::new().route(routes::PAGE, get(index)).route(routes::PAGE_FILES, get(file))
 }

@@ -9,7 +9,6 @@ use crate::computations::ResidualTask;
 const PLOT_RADII: usize = 1_000;
 
 parameters! {
-    /// How the extrema are shown.
     pub struct ResidualQuery {
         /// `columns` (this document), or a row for each extremum with its radius, shear stress and kind (`maximum` or
         /// `minimum`), as `rows` (a JSON array of flat objects), `csv`, `ndjson` or `arrow` (an Arrow IPC stream), or a

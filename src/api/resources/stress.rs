@@ -16,7 +16,6 @@ pub const QUERY_RADII: RangeInclusive<usize> = 1..=1_000;
 const PLOT_RADII: usize = 1_000;
 
 parameters! {
-    /// Which stresses are asked for.
     pub struct StressQuery {
         /// Number of radii, evenly spaced from the centre to the edge, both included. Give this or `radii`, unless you
         /// ask for a plot.
@@ -34,7 +33,6 @@ parameters! {
     }
 }
 
-/// A [`StressQuery`] that has been checked.
 pub struct CheckedStress {
     sampling: Sampling,
     residual: bool,

@@ -5,7 +5,6 @@ use stickslip_wire::{SubsurfaceReply, SubsurfaceRequest};
 use super::prelude::*;
 
 parameters! {
-    /// How the stresses are written.
     pub struct SubsurfaceFormat {
         /// `columns` (this document), `rows` (a JSON array of flat objects), `csv`, `ndjson`, `arrow` (an Arrow IPC
         /// stream), or a picture as `svg` or `png`: of one field in a plane or on the surface. If it is left out,
