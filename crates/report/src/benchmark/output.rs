@@ -32,7 +32,7 @@ pub fn write(dir: &Path, report: &Report) -> io::Result<()> {
             ("force", "largest error of the force / mu F_N", |row: &Row| row.force_error),
         ] {
             let chart = chart(&report.rows, scene, what, error);
-            let svg = chart.svg_over_decades().map_err(io::Error::other)?;
+            let svg = chart.svg().map_err(io::Error::other)?;
             fs::write(dir.join(format!("{scene}_{name}.svg")), svg)?;
         }
     }
@@ -127,7 +127,7 @@ fn chart(rows: &[Row], scene: &str, what: &str, error: fn(&Row) -> f64) -> Chart
             rows().filter(|row| row.solver == solver).map(|row| (row.median, error(row).max(SMALLEST_ERROR))).collect();
         if solver == "exact" { Series::dots(solver, points) } else { Series::line(solver, points) }
     });
-    Chart::new(scene, "processor time, s", what, series.collect())
+    Chart { over_decades: true, ..Chart::new(scene, "processor time, s", what, series.collect()) }
 }
 
 /// Processor, cores, system, compiler and optimisation.

@@ -37,12 +37,9 @@ pub(super) fn chart() -> Result<Chart, Failure> {
             }
         }
     }
-    Ok(Chart::new(
-        "Figure 15: what one loop with 1 % of noise determines",
-        "amplitude / displacement of gross slip",
-        "standard error (%)",
-        series,
-    ))
+    let title = "Figure 15: what one loop with 1 % of noise determines";
+    let chart = Chart::new(title, "amplitude / displacement of gross slip", "standard error (%)", series);
+    Ok(Chart { over_decades: true, ..chart })
 }
 
 /// A steady loop behind a machine spring, without noise.

@@ -48,8 +48,6 @@ type Failure = Box<dyn std::error::Error + Send + Sync>;
 
 enum Figure {
     Chart(Chart),
-    /// Over logarithmic axes.
-    Decades(Chart),
     Section(Section),
 }
 
@@ -57,14 +55,13 @@ impl Figure {
     fn svg(self) -> Result<Vec<u8>, String> {
         match self {
             Figure::Chart(chart) => chart.svg().map(String::into_bytes),
-            Figure::Decades(chart) => chart.svg_over_decades().map(String::into_bytes),
             Figure::Section(section) => section.svg(),
         }
     }
 
     fn csv(&self) -> String {
         match self {
-            Figure::Chart(chart) | Figure::Decades(chart) => csv(chart),
+            Figure::Chart(chart) => csv(chart),
             Figure::Section(section) => section_csv(section),
         }
     }
@@ -73,7 +70,7 @@ impl Figure {
 /// Figures 1 to 5, and those from 10 on: all but those of protocols, which take long.
 fn without_protocols() -> Result<[Vec<Figure>; 2], Failure> {
     let (cycles, fretting) = (cycles::charts()?.map(Figure::Chart), fretting::sections()?.map(Figure::Section));
-    let last = [Figure::Chart(rough::chart()?), Figure::Decades(identifiability::chart()?)];
+    let last = [rough::chart()?, identifiability::chart()?].map(Figure::Chart);
     Ok([paper()?.map(Figure::Chart).into(), cycles.into_iter().chain(fretting).chain(last).collect()])
 }
 

@@ -36,32 +36,32 @@ fn designed(contact: &Contact, kind: AmplitudeLaw, reversals: usize) -> Result<D
     design(contact, start, kind, reversals, PathEnd::DisplacementZero, &|| true)
 }
 
+/// A chart with its title and the names of its axes, and a series of each of some things.
+fn chart<T>(
+    [title, x, y]: [&str; 3],
+    of: impl IntoIterator<Item = T>,
+    series: impl Fn(T) -> Result<Series, Error>,
+) -> Result<Chart, Error> {
+    Ok(Chart::new(title, x, y, of.into_iter().map(series).collect::<Result<_, _>>()?))
+}
+
 fn reduction() -> Result<Chart, Error> {
     let contact = small_contact(power_law(4.0)?, 0.3)?;
-    let series = KINDS.into_iter().map(|(kind, name)| {
+    let names =
+        ["Figure 6: largest remaining stress, profile z ~ r^4", "number of reversals", "max |tau| / (mu p_max)"];
+    chart(names, KINDS, |(kind, name)| {
         let point = |reversals| Ok((reversals as f64, designed(&contact, kind, reversals)?.largest / unit(&contact)));
         Ok(Series::dots(name, REVERSAL_COUNTS.into_iter().map(point).collect::<Result<_, Error>>()?))
-    });
-    Ok(Chart::new(
-        "Figure 6: largest remaining stress, profile z ~ r^4",
-        "number of reversals",
-        "max |tau| / (mu p_max)",
-        series.collect::<Result<_, Error>>()?,
-    ))
+    })
 }
 
 fn over_radius() -> Result<Chart, Error> {
     let contact = small_contact(power_law(4.0)?, 0.3)?;
-    let series = KINDS.into_iter().map(|(kind, name)| {
+    let names = ["Figure 7: stress after 20 reversals, profile z ~ r^4", "r / a", "tau / (mu p_max)"];
+    chart(names, KINDS, |(kind, name)| {
         let left = designed(&contact, kind, REVERSALS)?;
         Ok(Series::line(name, shear_curve(&left.contact, &left.residual, unit(&contact))))
-    });
-    Ok(Chart::new(
-        "Figure 7: stress after 20 reversals, profile z ~ r^4",
-        "r / a",
-        "tau / (mu p_max)",
-        series.collect::<Result<_, Error>>()?,
-    ))
+    })
 }
 
 fn shapes() -> Result<Chart, Error> {
@@ -71,25 +71,29 @@ fn shapes() -> Result<Chart, Error> {
         ("z ~ r^3", power_law(3.0)?),
         ("z ~ r^4", power_law(4.0)?),
     ];
-    let series = shapes.into_iter().map(|(name, shape)| {
+    let names = [
+        "Figure 8: remaining stress of minimax over that of linear",
+        "number of reversals",
+        "max |tau|, minimax / linear",
+    ];
+    chart(names, shapes, |(name, shape)| {
         let contact = small_contact(shape, 0.3)?;
         let point = |reversals| {
             let linear = designed(&contact, AmplitudeLaw::Linear, reversals)?.largest;
             Ok((reversals as f64, designed(&contact, AmplitudeLaw::Minimax, reversals)?.largest / linear))
         };
         Ok(Series::dots(name, REVERSAL_COUNTS.into_iter().map(point).collect::<Result<_, Error>>()?))
-    });
-    Ok(Chart::new(
-        "Figure 8: remaining stress of minimax over that of linear",
-        "number of reversals",
-        "max |tau|, minimax / linear",
-        series.collect::<Result<_, Error>>()?,
-    ))
+    })
 }
 
 fn robustness() -> Result<Chart, Error> {
     let contact = small_contact(power_law(4.0)?, 0.3)?;
-    let series = KINDS.into_iter().map(|(kind, name)| {
+    let names = [
+        "Figure 9: mean of the largest stress, 20 reversals with errors, z ~ r^4",
+        "standard deviation of each amplitude, %",
+        "max |tau| / (mu p_max)",
+    ];
+    chart(names, KINDS, |(kind, name)| {
         let path = designed(&contact, kind, REVERSALS)?.displacements;
         let point = |step: u32| {
             let amplitude = 0.01 * f64::from(step);
@@ -98,11 +102,5 @@ fn robustness() -> Result<Chart, Error> {
             Ok((100.0 * amplitude, tried.iter().sum::<f64>() / SAMPLES as f64 / unit(&contact)))
         };
         Ok(Series::line(name, (0..=8).map(point).collect::<Result<_, Error>>()?))
-    });
-    Ok(Chart::new(
-        "Figure 9: mean of the largest stress, 20 reversals with errors, z ~ r^4",
-        "standard deviation of each amplitude, %",
-        "max |tau| / (mu p_max)",
-        series.collect::<Result<_, Error>>()?,
-    ))
+    })
 }

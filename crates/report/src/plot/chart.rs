@@ -12,6 +12,8 @@ pub struct Chart {
     pub y: String,
     /// What is drawn.
     pub series: Vec<Series>,
+    /// Whether the axes are logarithmic, from decade to decade; points that are not above zero are left out.
+    pub over_decades: bool,
 }
 
 /// One named set of points.
@@ -52,28 +54,28 @@ impl Series {
 impl Chart {
     /// A chart with its title, the labels of abscissa and ordinate, and its series.
     pub fn new(title: &str, x: &str, y: &str, series: Vec<Series>) -> Chart {
-        Chart { title: title.to_owned(), x: x.to_owned(), y: y.to_owned(), series }
+        Chart { title: title.to_owned(), x: x.to_owned(), y: y.to_owned(), series, over_decades: false }
     }
 
     /// The chart as an SVG document.
     pub fn svg(&self) -> Result<String, String> {
         let mut text = String::new();
-        self.draw(&mut text, false).map_err(|fault| fault.to_string())?;
+        self.draw(&mut text).map_err(|fault| fault.to_string())?;
         Ok(text)
     }
 
-    /// The same over logarithmic axes, from decade to decade; points that are not above zero are left out.
-    pub fn svg_over_decades(mut self) -> Result<String, String> {
-        for series in &mut self.series {
-            series.points.retain(|point| point.0 > 0.0 && point.1 > 0.0);
-            series.points.iter_mut().for_each(|point| *point = (point.0.log10(), point.1.log10()));
-        }
-        let mut text = String::new();
-        self.draw(&mut text, true).map_err(|fault| fault.to_string())?;
-        Ok(text)
+    /// The points of a series as they lie on the axes.
+    fn placed<'a>(&self, series: &'a Series) -> impl Iterator<Item = (f64, f64)> + use<'a> {
+        let decades = self.over_decades;
+        series
+            .points
+            .iter()
+            .filter(move |point| !decades || (point.0 > 0.0 && point.1 > 0.0))
+            .map(move |&(x, y)| if decades { (x.log10(), y.log10()) } else { (x, y) })
     }
 
-    fn draw(&self, text: &mut String, decades: bool) -> Result<(), Box<dyn std::error::Error>> {
+    fn draw(&self, text: &mut String) -> Result<(), Box<dyn std::error::Error>> {
+        let decades = self.over_decades;
         super::font::register();
         let area = SVGBackend::with_string(text, SIZE).into_drawing_area();
         area.fill(&WHITE)?;
@@ -112,13 +114,12 @@ impl Chart {
         for (series, colour) in self.series.iter().zip(COLOURS.iter()).rev() {
             let style = colour.stroke_width(4);
             if series.joined && decades {
-                axes.draw_series(series.points.iter().map(|&point| Circle::new(point, 7, colour.filled())))?;
+                axes.draw_series(self.placed(series).map(|point| Circle::new(point, 7, colour.filled())))?;
             }
             let drawn = if series.joined {
-                axes.draw_series(LineSeries::new(series.points.iter().copied(), style))?
+                axes.draw_series(LineSeries::new(self.placed(series), style))?
             } else {
-                let dot = |&point| Circle::new(point, 8, colour.filled());
-                axes.draw_series(series.points.iter().map(dot))?
+                axes.draw_series(self.placed(series).map(|point| Circle::new(point, 8, colour.filled())))?
             };
             drawn
                 .label(&series.name)
@@ -135,8 +136,8 @@ impl Chart {
         Ok(())
     }
 
-    fn extent(&self, coordinate: impl Fn(&(f64, f64)) -> f64) -> (f64, f64) {
-        let values = || self.series.iter().flat_map(|series| &series.points).map(&coordinate);
+    fn extent(&self, coordinate: impl Fn((f64, f64)) -> f64) -> (f64, f64) {
+        let values = || self.series.iter().flat_map(|series| self.placed(series)).map(&coordinate);
         (values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max))
     }
 }
@@ -159,8 +160,8 @@ mod tests {
     #[test]
     fn decades_are_labelled_and_what_has_no_logarithm_is_left_out() {
         let points = vec![(1e-5, 1e-3), (0.0, 1.0), (1e-3, 1e-9)];
-        let chart = Chart::new("t", "x", "y", vec![Series::line("a", points)]);
-        let svg = chart.svg_over_decades().unwrap();
+        let chart = Chart { over_decades: true, ..Chart::new("t", "x", "y", vec![Series::line("a", points)]) };
+        let svg = chart.svg().unwrap();
         for label in ["1e-5", "1e-4", "1e-3", "1e-9", "1e-6"] {
             assert!(svg.contains(label), "{label}");
         }
