@@ -30,7 +30,6 @@ pub fn problem(problem: impl Into<Problem>) -> String {
     fault(problem, !io::stderr().is_terminal())
 }
 
-/// Prints a line on standard output.
 pub fn print(text: impl Display) -> Result<(), String> {
     write(|out| writeln!(out, "{text}"))
 }
@@ -65,7 +64,6 @@ pub fn fault(error: impl Into<Problem>, as_json: bool) -> String {
         + &places.collect::<String>()
 }
 
-/// The JSON value in a text.
 pub fn parsed(text: &[u8]) -> Result<Value, String> {
     serde_json::from_slice(text).map_err(|error| format!("not JSON: {error}"))
 }

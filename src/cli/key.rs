@@ -52,7 +52,6 @@ fn note(text: &str) -> Result<String, String> {
     if sound { Ok(text.to_owned()) } else { Err("a note is one line without commas".to_owned()) }
 }
 
-/// Makes a key and prints it.
 pub fn key(key: Key) -> Result<(), String> {
     let Key::New { name, role, tenant, expires_at, note } = key;
     let roles: Vec<Role> = role.into_iter().flat_map(|Roles(roles)| roles).collect();

@@ -86,7 +86,6 @@ pub struct Limits {
 }
 
 impl Limits {
-    /// The limits of the solvers.
     pub fn capacity(&self) -> Capacity {
         Capacity {
             requests: self.max_requests,

@@ -8,7 +8,6 @@ use clap_complete::Shell;
 use super::Cli;
 use super::io::write;
 
-/// The name of the program.
 const NAME: &str = "stickslip";
 
 /// The shell that the script is for.
@@ -19,7 +18,6 @@ pub struct Completions {
 }
 
 impl Completions {
-    /// Prints the script.
     pub fn run(&self) -> Result<(), String> {
         let mut script = Vec::new();
         clap_complete::generate(self.shell, &mut Cli::command(), NAME, &mut script);

@@ -8,7 +8,6 @@ use indicatif::{ProgressBar, ProgressStyle};
 /// How often a bar moves that has nothing new to show.
 const TICK: Duration = Duration::from_millis(200);
 
-/// Whether bars are drawn.
 pub fn is_shown() -> bool {
     io::stderr().is_terminal()
 }

@@ -8,7 +8,6 @@ use stickslip_wire::{Code, Rejection};
 use super::io::{fault, problem};
 use crate::api::Problem;
 
-/// A command that cannot go on.
 pub struct Refusal {
     /// What is printed unless JSON is asked for.
     text: String,
@@ -22,7 +21,6 @@ impl Refusal {
         Refusal { text: format!("{}: {error}", file.display()), problem: error.into() }
     }
 
-    /// The message of the error.
     pub fn message(self, as_json: bool) -> String {
         if as_json { fault(self.problem, true) } else { self.text }
     }

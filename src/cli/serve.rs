@@ -217,7 +217,6 @@ fn collector(text: &str) -> Result<String, String> {
     }
 }
 
-/// Replaces the keys of a service.
 type KeysInForce = watch::Sender<Arc<Keys>>;
 
 /// Who may use the service, and where its keys are replaced. Without keys it listens on loopback addresses only, unless

@@ -2,13 +2,10 @@
 
 use serde_json::Value;
 
-/// Columns before the values.
+use stickslip_mechanics::unit_prefix;
+
 const INDENT: usize = 2;
-/// Width of the names.
 const NAMES: usize = 34;
-/// Powers of ten and their prefixes.
-const PREFIXES: [(i32, &str); 9] =
-    [(12, "T"), (9, "G"), (6, "M"), (3, "k"), (0, ""), (-3, "m"), (-6, "u"), (-9, "n"), (-12, "p")];
 /// Units by the last words of a name after that of the object around it; the first that fits.
 const UNITS: [(&str, &str); 22] = [
     ("_error", ""),
@@ -101,9 +98,9 @@ fn quantity(value: f64, unit: &str) -> String {
     if unit.is_empty() || value == 0.0 {
         return format!("{} {unit}", six(value)).trim_end().to_owned();
     }
-    let fits = |(power, _): &&(i32, &str)| value.abs() >= 0.999_999_5 * 10_f64.powi(*power);
-    let (power, prefix) = PREFIXES.iter().find(fits).unwrap_or(&PREFIXES[PREFIXES.len() - 1]);
-    format!("{} {prefix}{unit}", six(value / 10_f64.powi(*power)))
+    let (divisor, prefix) = unit_prefix(value.abs());
+    // Not every terminal has the Greek letter.
+    format!("{} {}{unit}", six(value / divisor), prefix.replace('µ', "u"))
 }
 
 /// A number with at most six significant digits.

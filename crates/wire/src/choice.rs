@@ -3,12 +3,12 @@
 //! serde's own externally tagged enums do as much as an object with one key, but call a second key a syntax error; here
 //! it is a fault with a name. The value is read in place, so that a fault inside it keeps its path.
 
-/// Declares choices with the word of each, `words! { pub enum Name { Choice = "word", .. } .. }`, and the traits that
-/// they have beside those of all.
+/// Declares choices with the word of each, `words! { pub enum Name: Trait of Other { Choice = "word", .. } .. }`, the
+/// trait that they have beside those of all, and the type of the mechanics that has the same choices.
 macro_rules! words {
     ($(
         $(#[doc = $about:literal])*
-        pub enum $Name:ident $(: $Trait:ident)? {
+        pub enum $Name:ident $(: $Trait:ident)? $(of $Other:ty)? {
             $($(#[$of_choice:meta])* $Choice:ident = $word:tt,)+
         }
     )+) => {$(
@@ -18,6 +18,8 @@ macro_rules! words {
         pub enum $Name {
             $($(#[$of_choice])* #[serde(rename = $word)] $Choice,)+
         }
+
+        $crate::choice::same! { $Name [$($Other)?] $($Choice)+ }
 
         impl $Name {
             /// All of them.
@@ -34,6 +36,29 @@ macro_rules! words {
     )+};
 }
 pub(crate) use words;
+
+/// Converts between a type and another one with the same choices, if there is one.
+macro_rules! same {
+    ($Name:ident [] $($Choice:ident)+) => {};
+    ($Name:ident [$Other:ty] $($Choice:ident)+) => {
+        impl From<$Other> for $Name {
+            fn from(other: $Other) -> $Name {
+                match other {
+                    $(<$Other>::$Choice => $Name::$Choice,)+
+                }
+            }
+        }
+
+        impl From<$Name> for $Other {
+            fn from(this: $Name) -> $Other {
+                match this {
+                    $($Name::$Choice => <$Other>::$Choice,)+
+                }
+            }
+        }
+    };
+}
+pub(crate) use same;
 
 /// Declares choices that are objects with one key, or words:
 /// `choices! { pub enum Name { words { Choice = "word", .. } "key" => Choice(Type) = limit, .. } .. }`, with the traits

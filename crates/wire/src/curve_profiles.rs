@@ -2,7 +2,7 @@
 
 use std::ops::RangeInclusive;
 
-use stickslip_mechanics::profile::{self as families, Asperities, Ellipsoid, LoadCurve, Profile as Shape};
+use stickslip_mechanics::profile::{Asperities, Direction, Ellipsoid, LoadCurve, Profile as Shape};
 use stickslip_mechanics::{CurveFault, Elasticity, Error, range, range::Range};
 
 use super::check::{Faults, JsonPath, accepted};
@@ -44,7 +44,7 @@ const CURVE_POINTS: RangeInclusive<usize> = count(&range::CURVE_POINTS);
 
 words! {
 /// The axis of the tangential motion.
-pub enum MotionAxis {
+pub enum MotionAxis of Direction {
     /// Along x, whose radius is R_x.
     X = "x",
     /// Along y, whose radius is R_y.
@@ -115,10 +115,6 @@ impl EllipsoidProfile {
             faults.add(place, format_args!("one radius is {ratio:e} times the other: {max:e} times is the most"));
             return None;
         }
-        let direction = match self.direction {
-            MotionAxis::X => families::Direction::X,
-            MotionAxis::Y => families::Direction::Y,
-        };
-        accepted(Ellipsoid::new([x, y], direction).map(Shape::Ellipsoid), at, faults)
+        accepted(Ellipsoid::new([x, y], self.direction.into()).map(Shape::Ellipsoid), at, faults)
     }
 }

@@ -6,7 +6,7 @@ use serde::Serialize;
 use serde_json::{Value, json};
 use utoipa::ToSchema;
 
-use stickslip_mechanics::{self as mechanics, Setup, elasticity, range, range::Quantity};
+use stickslip_mechanics::{self as mechanics, Setup, elasticity, range, range::Quantity, subsurface::Side};
 
 use super::check::{Faults, JsonPath};
 use super::choice::{choices, object_or_string, words};
@@ -65,7 +65,7 @@ pub struct DefinedProfile<'a> {
 
 words! {
 /// One of the two bodies in contact.
-pub enum BodyName {
+pub enum BodyName of Side {
     /// The one with the profile, which moves along x: its surface feels −τ.
     First = "first",
     /// The plane one: its surface feels +τ.

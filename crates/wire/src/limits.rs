@@ -24,14 +24,8 @@ pub const CYCLE_AMPLITUDES: RangeInclusive<usize> = 1..=10_000;
 pub const CYCLE_RADII: usize = 200_000;
 /// Amplitudes for which the best load is sought.
 pub const BEST_LOADS: RangeInclusive<usize> = 1..=100;
-/// Normal forces of a fretting map.
-pub const MAP_LOADS: RangeInclusive<usize> = 2..=1_000;
 /// Loads times amplitudes of a fretting map.
 pub const MAP_CYCLES: usize = 100_000;
-/// Loads of the curve about it.
-pub const CURVE_POINTS: RangeInclusive<usize> = 2..=1_000;
-/// Frequencies of the response of a mass.
-pub const FREQUENCIES: RangeInclusive<usize> = 1..=1_000;
 /// Harmonics of a steady cycle.
 pub const HARMONICS: RangeInclusive<usize> = 1..=31;
 /// Cycles in a reply.
@@ -40,14 +34,10 @@ pub const CYCLES: RangeInclusive<usize> = 1..=1_000;
 pub const SUBSURFACE_POINTS: RangeInclusive<usize> = 1..=1_000_000;
 /// Moves of a cycle that is rated for fatigue.
 pub const FRETTING_MOVES: RangeInclusive<usize> = 1..=200;
-/// Places whose stresses over a cycle are in a reply.
-pub const STRESS_PATHS: RangeInclusive<usize> = 0..=100;
 /// Heights of a scan.
 pub const SCAN_POINTS: RangeInclusive<usize> = 12..=300_000;
 /// Rows of a map of heights, and heights of a row.
 pub const SCAN_ROWS: RangeInclusive<usize> = 4..=25_000;
-/// Intervals of a profile that is fitted without a penalty.
-pub const SCAN_KNOTS: RangeInclusive<usize> = 4..=100;
 /// Measured loops that are fitted together.
 pub const FIT_LOOPS: RangeInclusive<usize> = 1..=16;
 /// Points of each.

@@ -56,7 +56,7 @@ pub struct State: Copy, Default {
 
 words! {
 /// How much of the contact slipped in the last move.
-pub enum Regime: Default {
+pub enum Regime: Default of mechanics::Regime {
     /// Nothing slipped.
     #[default]
     Stick = "stick",
@@ -192,17 +192,6 @@ impl From<mechanics::State> for State {
             dissipated_energy: state.dissipated_energy,
             elastic_energy: state.elastic_energy,
             memory_depth: state.memory_depth,
-        }
-    }
-}
-
-impl From<mechanics::Regime> for Regime {
-    fn from(regime: mechanics::Regime) -> Regime {
-        match regime {
-            mechanics::Regime::Stick => Regime::Stick,
-            mechanics::Regime::PartialSlip => Regime::PartialSlip,
-            mechanics::Regime::GrossSlip => Regime::GrossSlip,
-            mechanics::Regime::Separated => Regime::Separated,
         }
     }
 }

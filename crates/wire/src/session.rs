@@ -310,20 +310,17 @@ impl Document for PathRequest {
     }
 }
 
-impl Document for RenameRequest {
-    type Checked = RenameRequest;
+/// Documents of which their members are all that is checked.
+macro_rules! checked_alone {
+    ($($Name:ident)*) => {$(
+        impl Document for $Name {
+            type Checked = $Name;
 
-    fn checked(self, _: &dyn Prepare, faults: &mut Faults) -> Option<Self::Checked> {
-        self.check_members(JsonPath::Root, faults);
-        Some(self)
-    }
+            fn checked(self, _: &dyn Prepare, faults: &mut Faults) -> Option<Self::Checked> {
+                self.check_members(JsonPath::Root, faults);
+                Some(self)
+            }
+        }
+    )*};
 }
-
-impl Document for ForkRequest {
-    type Checked = ForkRequest;
-
-    fn checked(self, _: &dyn Prepare, faults: &mut Faults) -> Option<Self::Checked> {
-        self.check_members(JsonPath::Root, faults);
-        Some(self)
-    }
-}
+checked_alone! { RenameRequest ForkRequest }

@@ -102,21 +102,7 @@ impl Sampling {
     /// How many radii there are.
     #[must_use]
     pub fn length(&self) -> usize {
-        self.points.length()
-    }
-
-    /// The radii, m, in a contact of the given radius, m.
-    #[must_use]
-    pub fn radii(&self, contact_radius: f64) -> Vec<f64> {
-        self.points.radii(contact_radius)
-    }
-}
-
-impl Points {
-    /// How many radii there are.
-    #[must_use]
-    pub fn length(&self) -> usize {
-        match self {
+        match &self.points {
             Points::Uniform(count) => *count,
             Points::Radii(radii) => radii.len(),
         }
@@ -125,7 +111,7 @@ impl Points {
     /// The radii, m, in a contact of the given radius, m.
     #[must_use]
     pub fn radii(&self, contact_radius: f64) -> Vec<f64> {
-        match self {
+        match &self.points {
             // The quotient is exactly 1 at the last point, so that it is the edge itself.
             Points::Uniform(count) => {
                 let last = count.saturating_sub(1) as f64;

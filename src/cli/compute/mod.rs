@@ -72,12 +72,10 @@ fn one_of<V: Clone + Send + Sync>(
 
 /// Flags of a computation beside those that all have.
 trait Flags: Args {
-    /// Adds them.
     fn add(command: Command) -> Command {
         Self::augment_args(command)
     }
 
-    /// The body of the request.
     fn body(&self, file: Option<&Path>) -> Result<Body, Refusal>;
 }
 
@@ -171,7 +169,6 @@ impl FromArgMatches for Compute {
 }
 
 impl Compute {
-    /// Computes and prints the reply.
     pub fn run(&self) -> Result<(), String> {
         let Compute { about, matches } = self;
         let wants_json = matches.get_flag("json");

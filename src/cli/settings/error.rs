@@ -19,11 +19,8 @@ pub enum SettingsError {
 
 /// The source of an invalid value.
 pub enum Origin<'a> {
-    /// The command line.
     Flag,
-    /// The environment.
     Environment,
-    /// The file.
     File(&'a Path),
 }
 

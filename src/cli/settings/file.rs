@@ -9,9 +9,7 @@ use toml::{Table, Value};
 use super::error::{SettingsError, unknown_setting};
 use super::{all_settings, masked};
 
-/// The settings of a file.
 pub struct ConfigValues {
-    /// The file.
     pub path: PathBuf,
     // As on the command line.
     values: BTreeMap<String, String>,
@@ -42,7 +40,6 @@ impl ConfigValues {
         Ok(ConfigValues { path: path.to_owned(), values })
     }
 
-    /// The value of a key.
     pub fn get(&self, key: &str) -> Option<&str> {
         self.values.get(key).map(String::as_str)
     }

@@ -1,6 +1,5 @@
 //! Values as they are printed: in one line, without secrets.
 
-/// The replacement of a secret.
 const MASK: &str = "***";
 /// Most characters of a value that are printed.
 const LONGEST: usize = 200;

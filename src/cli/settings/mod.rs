@@ -20,7 +20,6 @@ pub use error::SettingsError;
 use file::ConfigValues;
 pub use mask::masked;
 
-/// The prefix of all variables.
 const PREFIX: &str = "STICKSLIP_";
 /// Prefixes of variables that Kubernetes sets for a service of this name.
 const FOREIGN_PREFIXES: [&str; 2] = ["STICKSLIP_SERVICE_", "STICKSLIP_PORT"];
@@ -35,7 +34,6 @@ pub struct ConfigFile {
 
 /// The settings of a command, to be printed.
 pub struct Settings {
-    /// The command.
     command: Command,
     matches: ArgMatches,
     file: Option<ConfigValues>,
@@ -91,7 +89,6 @@ fn requested<'a>(command: &'a Command, matches: &ArgMatches) -> &'a Command {
     matches.subcommand_name().and_then(|name| command.find_subcommand(name)).unwrap_or(command)
 }
 
-/// The arguments of the requested command.
 fn requested_matches(matches: &ArgMatches) -> &ArgMatches {
     matches.subcommand().map_or(matches, |(_, own)| own)
 }
@@ -107,7 +104,6 @@ fn with_defaults(command: Command, values: &ConfigValues) -> Command {
     })
 }
 
-/// The settings of all commands.
 fn all_settings(command: &Command) -> impl Iterator<Item = &Arg> {
     settings_of(command).chain(command.get_subcommands().flat_map(settings_of))
 }

@@ -32,7 +32,7 @@ pub fn steady_cycles(
     if task.density.is_some() {
         needs_stress_field(contact, "/work_density")?;
     }
-    let radii = task.density.as_ref().map(|points| points.radii(contact.contact_radius()));
+    let radii = task.density.as_ref().map(|sampling| sampling.radii(contact.contact_radius()));
     // Compliance of the machine, m/N.
     let compliance = task.stiffness.map_or(0.0, f64::recip);
     let mut cycles = Vec::with_capacity(task.drives().len());

@@ -1,10 +1,9 @@
 //! The picture of one fatigue criterion: a map over a grid of places, or a curve over a line.
 
-use stickslip_mechanics::subsurface::Side;
 use stickslip_report::plot::{Axis, Band, Colour, ContactEdge, Curve, Drawing, Panel, Peak, Plot, Section, on_axis};
 use stickslip_wire::fretting::FrettingTask;
 use stickslip_wire::subsurface::{Places, SubsurfaceLine};
-use stickslip_wire::{Fault, FrettingReply, Largest};
+use stickslip_wire::{BodyName, Fault, FrettingReply, Largest};
 
 use crate::computations::Shown;
 use crate::computations::subsurface::{COORDINATES, over_plane, shown_axes};
@@ -68,10 +67,7 @@ pub fn plot(reply: &FrettingReply, task: &FrettingTask, criterion: &str) -> Draw
         Some((_, unit, rating)) => (*unit, &rating.values[..], rating.largest.as_ref()),
         None => Default::default(),
     };
-    let body = match task.body.0 {
-        Side::First => "first",
-        Side::Second => "second",
-    };
+    let body = BodyName::from(task.body.0).name();
     let name = title(criterion);
     let title = format!("{name}, {body} body");
     let radius = reply.contact.contact_radius;

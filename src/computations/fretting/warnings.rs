@@ -1,11 +1,12 @@
 //! What to know about the largest value of a fatigue criterion, and of a cycle, before it is trusted.
 
-use stickslip_mechanics::fatigue::{Criterion, Ratings, Worst};
+use stickslip_mechanics::fatigue::{Ratings, Worst};
 use stickslip_mechanics::{Contact, Move, in_unit};
 use stickslip_wire::fretting::FrettingTask;
 use stickslip_wire::subsurface::Places;
 use stickslip_wire::{FrettingReply, Warning};
 
+use super::picture::NAMES;
 use crate::simulation::MAX_SLOPE;
 
 /// Places farther than this from the centre of the contact, in contact radii, miss it.
@@ -167,15 +168,9 @@ pub(super) fn beyond_model(
     if bulk > 0.0 && bulk < LEAST_STRESS {
         messages.push(format!("the bulk stress reaches {} alone: is it in Pa, rather than MPa?", in_unit(bulk, "Pa")));
     }
-    for (criterion, limit) in task.criteria.iter().flatten() {
-        let (name, is_stress) = match criterion {
-            Criterion::Crossland { .. } => ("crossland", true),
-            Criterion::DangVan { .. } => ("dang_van", true),
-            Criterion::Findley { .. } => ("findley", true),
-            Criterion::SmithWatsonTopper { .. } => ("swt", true),
-            Criterion::FatemiSocie { .. } => ("fatemi_socie", false),
-        };
-        let Some(limit) = limit.filter(|_| is_stress) else { continue };
+    // All but that of Fatemi and Socie, the last of them, are stresses.
+    let limits = NAMES.into_iter().zip(task.criteria).take(4).filter_map(|(name, asked)| Some((name, asked?.1?)));
+    for (name, limit) in limits {
         if limit < LEAST_STRESS {
             messages.push(format!("the limit of {name} is {}: is it in Pa, rather than MPa?", in_unit(limit, "Pa")));
         } else if limit > MAX_STRAIN * e_star {

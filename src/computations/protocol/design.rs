@@ -7,8 +7,8 @@ use stickslip_mechanics::range::Quantity;
 use stickslip_mechanics::{Contact, Error, Setup};
 use stickslip_wire::definition::SharedSetup;
 use stickslip_wire::protocol::{
-    Aim, Comparison, DisplacementPath, FirstStroke, Gap, JudgedReply, Outcome, PressureUnit, ProtocolKind,
-    ProtocolReply, ProtocolTask, Robustness, RobustnessReply, StartReply,
+    Aim, Comparison, DisplacementPath, Gap, JudgedReply, Outcome, PressureUnit, ProtocolKind, ProtocolReply,
+    ProtocolTask, Robustness, RobustnessReply, StartReply,
 };
 use stickslip_wire::reply::finite;
 use stickslip_wire::{Residual, limits};
@@ -149,12 +149,7 @@ pub fn protocol(subject: &Subject<'_>, task: &ProtocolTask, stop: &Stop) -> Resu
         reversals,
         start: StartReply {
             displacement: chosen.displacements.first().copied().unwrap_or_default(),
-            stroke: match chosen.first_move {
-                FirstMove::Given => FirstStroke::Given,
-                FirstMove::GrossSlip => FirstStroke::GrossSlip,
-                FirstMove::Partial => FirstStroke::Partial,
-                FirstMove::Stay => FirstStroke::Stay,
-            },
+            stroke: chosen.first_move.into(),
         },
         judged: JudgedReply {
             from_radius: judged.from,

@@ -28,7 +28,7 @@ use crate::limits::{Array, BEST_LOADS, CYCLE_AMPLITUDES, CYCLE_RADII, HARMONICS,
 use crate::path::NormalOscillation;
 use crate::prepare::Prepare;
 use crate::request::requests;
-use crate::stress::{Points, StressRequest};
+use crate::stress::{Sampling, StressRequest};
 
 /// What cycles under a load that oscillates and oscillations of a mass are held to if the request does not say: steps
 /// cost, and what is left of the former falls with a low power of them.
@@ -226,7 +226,7 @@ pub struct CycleTask {
     /// The number of harmonics; zero if none are asked for.
     pub harmonics: usize,
     /// Where the friction work per area is asked for.
-    pub density: Option<Points>,
+    pub density: Option<Sampling>,
     /// A load that oscillates, with the tolerance.
     pub normal: Option<(OscillatingLoad, f64)>,
     /// A mass on the contact, with the tolerance.
@@ -249,10 +249,10 @@ impl CycleOptions {
         let density = match density {
             None => None,
             Some(WorkDensity { points, radii }) => {
-                Some(StressRequest { points, radii, fields: None }.check(at, faults)?.points)
+                Some(StressRequest { points, radii, fields: None }.check(at, faults)?)
             }
         };
-        let (count, radii) = (drive.amplitudes().all().len(), density.as_ref().map_or(0, Points::length));
+        let (count, radii) = (drive.amplitudes().all().len(), density.as_ref().map_or(0, Sampling::length));
         if count.saturating_mul(radii) > CYCLE_RADII {
             faults.add(
                 at,
@@ -308,7 +308,7 @@ impl CycleTask {
     /// How many radii there are for each cycle.
     #[must_use]
     pub fn radii(&self) -> usize {
-        self.density.as_ref().map_or(0, Points::length)
+        self.density.as_ref().map_or(0, Sampling::length)
     }
 }
 

@@ -2,7 +2,7 @@
 
 use stickslip_mechanics::range::{self, Quantity, Range};
 
-use crate::limits::{Array, CURVE_POINTS, FREQUENCIES};
+use crate::limits::Array;
 use crate::request::{replies, requests};
 
 requests! {
@@ -14,14 +14,14 @@ pub struct FrequencyResponse {
     /// Amplitude of the force on it, N.
     pub drive_force: f64 = Range { min: 1e-15, max: 1e15, ..range::FORCE },
     /// Frequencies, Hz; left out, 200 from 0.3 to 1.5 of that of small oscillations.
-    pub frequencies: Option<Vec<f64>> = Array(FREQUENCIES, FREQUENCY),
+    pub frequencies: Option<Vec<f64>> = Array(1..=1_000, FREQUENCY),
 }
 
 /// A search for the load that damps most.
 #[schema(example = json!({"points": 50}))]
 pub struct BestLoadStudy: Copy, Default {
     /// Ask for the work at so many loads too, evenly spaced up to three times the best.
-    pub points: Option<usize> = CURVE_POINTS,
+    pub points: Option<usize> = 2..=1_000_usize,
 }
 }
 

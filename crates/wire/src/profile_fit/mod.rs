@@ -16,7 +16,7 @@ use crate::check::{Faults, JsonPath};
 use crate::choice::{choices, object_or_string, words};
 use crate::definition::{Material, Preload};
 use crate::document::Document;
-use crate::limits::{Limited as _, SCAN_KNOTS};
+use crate::limits::Limited as _;
 use crate::prepare::Prepare;
 use crate::request::requests;
 
@@ -142,7 +142,7 @@ pub enum Smoothing: Copy {
     /// The standard deviation of the noise of a height, m.
     "noise" => Noise(f64) = SCAN_NOISE,
     /// So many intervals of constant curvature, without a penalty on their differences.
-    "knots" => Knots(usize) = SCAN_KNOTS,
+    "knots" => Knots(usize) = 4..=100_usize,
 }
 }
 

@@ -95,7 +95,7 @@ pub struct Robustness: Copy {
 
 words! {
 /// The law of the amplitudes.
-pub enum ProtocolKind: Default {
+pub enum ProtocolKind: Default of AmplitudeLaw {
     /// They fall linearly (eq. 20 of the paper).
     Linear = "linear",
     /// They leave equal peaks on the profile of the contact, by steps proportional to x/g'(x).
@@ -118,7 +118,7 @@ pub enum ProtocolStart {
 
 words! {
 /// Where a path ends.
-pub enum ProtocolEnd: Default {
+pub enum ProtocolEnd: Default of PathEnd {
     /// At displacement zero.
     #[default]
     DisplacementZero = "displacement_zero",
@@ -254,25 +254,5 @@ impl ProtocolStart {
             faults.add(at.member("displacement"), "must not be 0: allowed is any other displacement");
         }
         Some(first)
-    }
-}
-
-impl From<ProtocolKind> for AmplitudeLaw {
-    fn from(kind: ProtocolKind) -> AmplitudeLaw {
-        match kind {
-            ProtocolKind::Linear => AmplitudeLaw::Linear,
-            ProtocolKind::EqualPeaks => AmplitudeLaw::EqualPeaks,
-            ProtocolKind::Minimax => AmplitudeLaw::Minimax,
-        }
-    }
-}
-
-impl From<ProtocolEnd> for PathEnd {
-    fn from(end: ProtocolEnd) -> PathEnd {
-        match end {
-            ProtocolEnd::DisplacementZero => PathEnd::DisplacementZero,
-            ProtocolEnd::ForceZero => PathEnd::ForceZero,
-            ProtocolEnd::Free => PathEnd::Free,
-        }
     }
 }

@@ -67,7 +67,7 @@ pub struct StartReply {
 
 words! {
 /// The beginning of a path.
-pub enum FirstStroke {
+pub enum FirstStroke of stickslip_mechanics::protocol::FirstMove {
     /// A displacement of a contact that has never moved, as asked for.
     Given = "given",
     /// A stroke to gross slip, which erases the whole slip history.

@@ -182,10 +182,7 @@ impl SubsurfaceTask {
     /// The name of the body.
     #[must_use]
     pub fn body_name(&self) -> &'static str {
-        match self.side {
-            Side::First => "first",
-            Side::Second => "second",
-        }
+        BodyName::from(self.side).name()
     }
 
     /// How many columns its reply has.
@@ -250,11 +247,7 @@ impl SubsurfaceRequest {
                 None
             }
         };
-        let side = match self.body {
-            BodyName::First => Side::First,
-            BodyName::Second => Side::Second,
-        };
-        Some(SubsurfaceTask { side, poisson_ratio: poisson_ratio?, places: places?, fields, bulk })
+        Some(SubsurfaceTask { side: self.body.into(), poisson_ratio: poisson_ratio?, places: places?, fields, bulk })
     }
 
     /// Poisson's ratio of the body, from the material or from the request.
