@@ -18,16 +18,11 @@ use crate::otlp;
 
 use super::extract::{CheckedBody, HeldResources};
 use super::facts::{Facts, Routes};
-use super::parameters::{Kind as _, QueryReader, described, formats, words};
+use super::parameters::{Kind as _, QueryParams, QueryReader, described, formats, words};
 use super::problem::Problem;
-use super::query::{CheckedQuery, QueryParams};
+use super::query::CheckedQuery;
 use super::reply;
 use super::state::{App, TenantApp};
-
-/// Adds the route of every computation, and the schemas of its documents.
-pub fn add_routes(routes: &mut Routes) {
-    each(routes);
-}
 
 impl Routes {
     fn add<C: Computation>(&mut self, facts: Facts, handler: MethodRouter<Arc<App>>) {
@@ -42,6 +37,7 @@ impl Routes {
     }
 }
 
+/// Adds the route of every computation, and the schemas of its documents.
 impl Visitor for Routes {
     fn visit<C: Computation>(&mut self) {
         self.add::<C>(Facts::READS, post(answer::<C>));

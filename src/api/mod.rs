@@ -33,6 +33,7 @@ use utoipa_axum::router::{OpenApiRouter, UtoipaMethodRouterExt as _};
 use utoipa_axum::routes;
 use utoipa_swagger_ui::{Config, SwaggerUi};
 
+use crate::computations::each;
 use crate::formats::Format;
 use crate::server::tls::Tls;
 use crate::server::{self, ConnectionLimiter, ConnectionLimits, Service};
@@ -148,7 +149,7 @@ pub fn need(method: &str, route: &str) -> Need {
 fn described(document: &'static str) -> Routes {
     let router = OpenApiRouter::with_openapi(openapi::base());
     let mut routes = Routes { router, facts: FactsOfRoutes::default() };
-    computations::add_routes(&mut routes);
+    each(&mut routes);
     let page = Facts { formats: &Format::ALL, conditional: true, ..Facts::READS_CONTACT };
     routes
         .with(Facts { formats: &Format::TABLES, ..Facts::WRITES }, routes!(sweep::run_sweep))

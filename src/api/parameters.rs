@@ -4,6 +4,7 @@
 use std::ops::RangeInclusive;
 use std::str::FromStr;
 
+use axum::http::HeaderMap;
 use serde_json::{Value, json};
 use utoipa::openapi::Required;
 use utoipa::openapi::path::{Parameter, ParameterBuilder, ParameterIn};
@@ -71,13 +72,17 @@ impl QueryReader {
     }
 }
 
-/// A query whose parameters are declared by `parameters!`.
-pub trait Parameters: Sized {
-    fn read(query: &mut QueryReader) -> Self;
+/// The parameters of an operation.
+pub trait QueryParams: Sized {
+    /// Takes its parameters out of the query; `None` if it has noted a fault without which there would be a value.
+    fn take(query: &mut QueryReader, headers: &HeaderMap) -> Option<Self>;
 }
 
-impl Parameters for () {
-    fn read(_: &mut QueryReader) {}
+/// For operations without parameters.
+impl QueryParams for () {
+    fn take(_: &mut QueryReader, _: &HeaderMap) -> Option<()> {
+        Some(())
+    }
 }
 
 /// A kind of parameter, with values of the type `V`.
@@ -107,12 +112,12 @@ macro_rules! parameters {
             $($(#[doc = $doc])* pub $member: $type,)*
         }
 
-        impl $crate::api::parameters::Parameters for $name {
-            fn read(query: &mut $crate::api::parameters::QueryReader) -> $name {
-                $name {
+        impl $crate::api::parameters::QueryParams for $name {
+            fn take(query: &mut $crate::api::parameters::QueryReader, _: &axum::http::HeaderMap) -> Option<$name> {
+                Some($name {
                     $($member: $crate::api::parameters::Kind::read(&$kind, stringify!($member), query)
                         $(.unwrap_or($default))?,)*
-                }
+                })
             }
         }
 

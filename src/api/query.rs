@@ -11,7 +11,7 @@ use axum::http::request::Parts;
 use stickslip_wire::{Fault, JsonPath, Rejection};
 
 use super::formats::Format;
-use super::parameters::{MOVE_NUMBER, Number, Parameters, QueryReader, count, parameters};
+use super::parameters::{MOVE_NUMBER, Number, QueryParams, QueryReader, count, parameters};
 use super::problem::Problem;
 use super::state::App;
 
@@ -19,11 +19,6 @@ use super::state::App;
 pub const PAGE: RangeInclusive<usize> = 1..=1_000;
 /// Items of a page if the client does not say.
 pub const DEFAULT_PAGE: usize = 100;
-
-pub trait QueryParams: Sized {
-    /// Takes its parameters out of the query; `None` if it has noted a fault without which there would be a value.
-    fn take(query: &mut QueryReader, headers: &HeaderMap) -> Option<Self>;
-}
 
 parameters! {
     /// Which moves of a contact a reply is of, as the query has it.
@@ -61,21 +56,14 @@ impl MovesQuery {
     }
 }
 
-/// A query whose parameters need no check but their own.
-impl<T: Parameters> QueryParams for T {
-    fn take(query: &mut QueryReader, _: &HeaderMap) -> Option<T> {
-        Some(T::read(query))
-    }
-}
-
 /// Which moves, and what else.
-impl<T: Parameters> QueryParams for (MovesQuery, T) {
-    fn take(query: &mut QueryReader, _: &HeaderMap) -> Option<(MovesQuery, T)> {
-        let moves = MovesQuery::read(query);
+impl<T: QueryParams> QueryParams for (MovesQuery, T) {
+    fn take(query: &mut QueryReader, headers: &HeaderMap) -> Option<(MovesQuery, T)> {
+        let moves = MovesQuery::take(query, headers)?;
         if moves.last.is_some() && (moves.after.is_some() || moves.limit.is_some()) {
             query.faults.add(JsonPath::Root.member("last"), "the newest moves need no `after` and no `limit`");
         }
-        Some((moves, T::read(query)))
+        Some((moves, T::take(query, headers)?))
     }
 }
 

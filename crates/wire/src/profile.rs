@@ -55,9 +55,6 @@ macro_rules! documents {
             }
         )+}
 
-        /// The names of the members that are numbers.
-        const NUMBERS: &[&str] = &[$($(stringify!($number),)+)+];
-
         /// Schema, member and keywords of every limit.
         pub(super) fn limits() -> Vec<(&'static str, &'static str, serde_json::Value)> {
             [
@@ -269,7 +266,7 @@ const COLUMNS: [&str; 8] =
 /// The names of all members, each once.
 static NAMES: LazyLock<Vec<&'static str>> = LazyLock::new(|| {
     let mut names = vec!["type"];
-    for name in NUMBERS.iter().copied().chain(COLUMNS).chain(["direction", "parts"]) {
+    for name in limits().into_iter().map(|(_, name, _)| name).chain(["direction"]) {
         if !names.contains(&name) {
             names.push(name);
         }

@@ -38,9 +38,9 @@ pub struct CheckedCycle {
 }
 
 impl QueryParams for CheckedCycle {
-    fn take(query: &mut QueryReader, _: &HeaderMap) -> Option<CheckedCycle> {
+    fn take(query: &mut QueryReader, headers: &HeaderMap) -> Option<CheckedCycle> {
         let CycleQuery { displacement, force, radii, machine_stiffness, harmonics, points, format } =
-            CycleQuery::read(query);
+            CycleQuery::take(query, headers)?;
         if !query.faults.is_empty() {
             return None;
         }

@@ -6,9 +6,9 @@ pub(super) use uuid::Uuid;
 
 pub(super) use crate::api::extract::CheckedBody;
 pub(super) use crate::api::formats::Format;
-pub(super) use crate::api::parameters::{Number, Parameters as _, QueryReader, count, formats, parameters};
+pub(super) use crate::api::parameters::{Number, QueryParams, QueryReader, count, formats, parameters};
 pub(super) use crate::api::params::{ContactPath, IdempotencyKey, IfMatch};
 pub(super) use crate::api::problem::{Code, Problem};
-pub(super) use crate::api::query::{CheckedQuery, DEFAULT_PAGE, PAGE, QueryParams};
+pub(super) use crate::api::query::{CheckedQuery, DEFAULT_PAGE, PAGE};
 pub(super) use crate::api::state::{App, TenantApp};
 pub(super) use crate::api::{computations, reply};

@@ -41,7 +41,7 @@ pub struct CheckedStress {
 
 impl QueryParams for CheckedStress {
     fn take(query: &mut QueryReader, headers: &HeaderMap) -> Option<CheckedStress> {
-        let StressQuery { mut points, radii, fields, residual, format } = StressQuery::read(query);
+        let StressQuery { mut points, radii, fields, residual, format } = StressQuery::take(query, headers)?;
         if Format::chosen(format, headers, &Format::ALL).is_ok_and(Format::is_plot) {
             if fields.is_some() {
                 let detail = "a plot always shows pressure and shear: leave this out";

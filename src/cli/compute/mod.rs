@@ -76,18 +76,17 @@ trait Flags: Args {
         Self::augment_args(command)
     }
 
-    fn body(&self, file: Option<&Path>) -> Result<Body, Refusal>;
+    /// The body of the request: the file as it is.
+    fn body(&self, file: Option<&Path>) -> Result<Body, Refusal> {
+        Ok(Body { text: read(file.unwrap_or(Path::new("-")))?, ..Body::default() })
+    }
 }
 
 /// No flags: the file is the body.
 #[derive(Args)]
 struct NoFlags {}
 
-impl Flags for NoFlags {
-    fn body(&self, file: Option<&Path>) -> Result<Body, Refusal> {
-        Ok(Body { text: read(file.unwrap_or(Path::new("-")))?, ..Body::default() })
-    }
-}
+impl Flags for NoFlags {}
 
 /// How flags are added to a command, and read.
 type FlagsOf = (fn(Command) -> Command, fn(&ArgMatches, Option<&Path>) -> Result<Body, Refusal>);
