@@ -127,7 +127,6 @@ pub(super) fn give_way() -> Duration {
 
 impl SolverSlot {
     /// A slot of a thread that nobody else waits for.
-    #[must_use]
     pub fn alone() -> SolverSlot {
         SolverSlot(None)
     }

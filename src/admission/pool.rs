@@ -132,7 +132,6 @@ pub enum PoolError {
 
 impl Pool {
     /// A pool with these resources; at least one of each.
-    #[must_use]
     pub fn new(capacity: Capacity) -> Pool {
         let semaphore = |permits: usize| Arc::new(Semaphore::new(permits.clamp(1, Semaphore::MAX_PERMITS)));
         Pool(Arc::new(Shared {
@@ -149,19 +148,16 @@ impl Pool {
     }
 
     /// A pool with the default resources.
-    #[must_use]
     pub fn with_defaults() -> Pool {
         Pool::new(Capacity::default())
     }
 
     /// The resources.
-    #[must_use]
     pub fn capacity(&self) -> &Capacity {
         &self.0.capacity
     }
 
     /// What each client may have.
-    #[must_use]
     pub fn quotas(&self) -> &Quotas {
         &self.0.quotas
     }
@@ -175,7 +171,6 @@ impl Pool {
     }
 
     /// The resources in use.
-    #[must_use]
     pub fn taken(&self) -> Taken {
         let taken = |most: usize, semaphore: &Semaphore| most.max(1).saturating_sub(semaphore.available_permits());
         Taken {
@@ -235,7 +230,6 @@ impl Pool {
     }
 
     /// The metrics.
-    #[must_use]
     pub fn meters(&self) -> &PoolMeters {
         &self.0.meters
     }
@@ -310,7 +304,6 @@ impl Pool {
 
 impl Kind {
     /// The kind of work of this estimated cost that somebody waits for.
-    #[must_use]
     pub fn of(cost: Nanoseconds) -> Kind {
         if Duration::from_nanos(cost) > INTERACTIVE { Kind::Long } else { Kind::Interactive }
     }

@@ -20,13 +20,11 @@ pub const REQUEST: u64 = 64 * KIB;
 pub const STREAM: u64 = 64 * KIB;
 
 /// What TLS on all connections adds to the bound, bytes.
-#[must_use]
 pub fn tls(connections: &ConnectionLimits) -> u64 {
     TLS.saturating_mul((connections.most + SPARE_CONNECTIONS) as u64)
 }
 
 /// The bound, bytes.
-#[must_use]
 pub fn memory(connections: &ConnectionLimits, capacity: &Capacity, cache: u64) -> u64 {
     let requests = (capacity.requests + capacity.queue) as u64;
     PROGRAM

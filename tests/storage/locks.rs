@@ -218,7 +218,7 @@ async fn changes_that_wait_for_rows_hold_no_connection() {
     };
     let reads = async {
         for id in ids.iter().chain(&ids) {
-            assert_eq!(soon(store.heading(*id)).await.unwrap().label, None);
+            assert_eq!(soon(store.extent(*id)).await.unwrap().label, None);
         }
         // A copy needs no lock.
         soon(store.fork(ids[0], session(None), None)).await.unwrap();
@@ -233,7 +233,7 @@ async fn changes_that_wait_for_rows_hold_no_connection() {
         assert!(matches!(refused, Err(StoreError::Locked(_))), "{refused:?}");
     }
     let free = async {
-        soon(store.heading(ids[0])).await.unwrap();
+        soon(store.extent(ids[0])).await.unwrap();
         other.batch_execute("COMMIT").await.unwrap();
     };
     let (renamed, deleted, saved, ()) = futures::join!(
@@ -243,7 +243,7 @@ async fn changes_that_wait_for_rows_hold_no_connection() {
         free
     );
     assert!(renamed.is_ok() && deleted.is_ok() && saved.is_ok(), "{renamed:?} {deleted:?} {saved:?}");
-    assert_eq!(store.heading(ids[0]).await.unwrap().label.as_deref(), Some("new"));
+    assert_eq!(store.extent(ids[0]).await.unwrap().label.as_deref(), Some("new"));
     assert!(matches!(store.find(ids[1]).await, Err(StoreError::NotFound)));
     assert_eq!(store.job(job.id).await.unwrap().done, 1);
     assert!(store.check_integrity().await.unwrap().is_empty());
@@ -316,7 +316,7 @@ async fn a_writer_without_a_commit_while_changes_wait_is_not_ready() {
     let (refused, ()) = futures::join!(moves, ready);
     println!("refused meanwhile: {refused:?}");
     for id in ids {
-        assert_eq!(store.heading(id).await.unwrap().sequence, 1);
+        assert_eq!(store.extent(id).await.unwrap().sequence, 1);
     }
     ended.send_replace(true);
 }

@@ -18,8 +18,8 @@ use jobs::StoredJob;
 
 use super::jobs::ChunkQueue;
 use super::{
-    CONTACT_BYTES, Changes, Extent, Heading, RECEIPT_LIFETIME, RECORD_BYTES, Receipt, Record, Result, Session,
-    Snapshot, Store, StoreError, Tenant, Usage,
+    CONTACT_BYTES, Changes, Extent, RECEIPT_LIFETIME, RECORD_BYTES, Receipt, Record, Result, Session, Snapshot, Store,
+    StoreError, Tenant, Usage,
 };
 
 /// Bytes of replies kept for retries. Beyond that the oldest are deleted early, because memory is bounded.
@@ -63,7 +63,6 @@ struct Receipts {
 
 impl MemoryStore {
     /// An empty store.
-    #[must_use]
     pub fn new() -> MemoryStore {
         MemoryStore::default()
     }
@@ -143,6 +142,7 @@ impl Store for MemoryStore {
         self.inner.lock().get(id).map(|Stored { session, snapshot, .. }| Extent {
             tenant: session.tenant.clone(),
             sequence: session.sequence,
+            label: session.label.clone(),
             definition: 0,
             snapshot: snapshot.as_ref().map_or(0, |snapshot| snapshot.state.len() as u64),
         })
@@ -166,11 +166,6 @@ impl Store for MemoryStore {
 
     async fn find(&self, id: Uuid) -> Result<Session> {
         self.inner.lock().get(id).map(|stored| stored.session.clone())
-    }
-
-    async fn heading(&self, id: Uuid) -> Result<Heading> {
-        let heading = |session: &Session| Heading { sequence: session.sequence, label: session.label.clone() };
-        self.inner.lock().get(id).map(|stored| heading(&stored.session))
     }
 
     async fn list(

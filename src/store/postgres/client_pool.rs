@@ -25,7 +25,7 @@ pub(super) const ANSWER: Duration = Duration::from_secs(15);
 pub(super) const LONG_ANSWER: Duration = Duration::from_secs(90);
 /// How often work is tried in all, and how often because two transactions conflicted.
 const TRIES: usize = 12;
-const COLLISIONS: usize = 5;
+const COLLISIONS: usize = 8;
 
 /// Does work on a connection of the pool that may be done again on another, until it is done or no further
 /// attempt is worthwhile. (A macro, because the bounds of a closure's future cannot be expressed for a function.)

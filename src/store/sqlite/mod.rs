@@ -33,8 +33,8 @@ use uuid::Uuid;
 use super::jobs::ChunkQueue;
 use super::probe::Probe;
 use super::{
-    Changes, Commits, Extent, Heading, IsSmall, Receipt, Record, Result, Session, Snapshot, Store, StoreError, Tenant,
-    Usage, Whole,
+    Changes, Commits, Extent, IsSmall, Receipt, Record, Result, Session, Snapshot, Store, StoreError, Tenant, Usage,
+    Whole,
 };
 use crate::metrics::Counted;
 use change::{Change, Done, Transaction};
@@ -187,10 +187,6 @@ impl Store for SqliteStore {
 
     async fn find(&self, id: Uuid) -> Result<Session> {
         self.readers.read(move |database| read::find(database, id)).await
-    }
-
-    async fn heading(&self, id: Uuid) -> Result<Heading> {
-        self.readers.read(move |database| read::heading(database, id)).await
     }
 
     async fn list(

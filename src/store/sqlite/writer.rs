@@ -13,7 +13,7 @@ use rusqlite::config::DbConfig;
 use tokio::sync::mpsc::error::TryRecvError;
 use tokio::sync::{mpsc, oneshot};
 
-use crate::store::{Changes, Commits, Result, StoreError};
+use crate::store::{Changes, Commits, Result, StoreError, batch};
 
 use super::change::{Change, Done, SequenceCache, Transaction};
 use super::fault::{Fault, Stage, is_locked, store_error, worth_splitting};
@@ -22,10 +22,6 @@ use super::open_files::OpenFiles;
 use super::schema::{self, APPLICATION};
 use super::{BUSY, STILL_BUSY};
 
-/// Requests that share a transaction.
-const BATCH: usize = 512;
-/// Rows that they may write before the transaction ends.
-const BATCH_WEIGHT: usize = 10_000;
 /// Contacts in the cache of sequences, of some 64 bytes each.
 const CACHED: usize = 131_072;
 
@@ -107,7 +103,7 @@ impl Writer {
                 }
             };
             if let Some(first) = first {
-                self.commit(collect_batch(first, &mut requests));
+                self.commit(batch::collect(first, &mut requests, |request| request.change.weight));
             }
             self.background_step();
         }
@@ -266,20 +262,6 @@ impl Writer {
     fn run_statement(&self, sql: &str) -> rusqlite::Result<()> {
         self.database.prepare_cached(sql)?.execute([]).map(drop)
     }
-}
-
-/// A request with those that wait behind it.
-fn collect_batch(first: Request, requests: &mut mpsc::Receiver<Request>) -> Vec<Request> {
-    let mut weight = first.change.weight;
-    let mut batch = vec![first];
-    while batch.len() < BATCH
-        && weight < BATCH_WEIGHT
-        && let Ok(request) = requests.try_recv()
-    {
-        weight += request.change.weight;
-        batch.push(request);
-    }
-    batch
 }
 
 fn answer(reply: Reply, outcome: Result<u64>) {
