@@ -114,18 +114,15 @@ pub struct Taken {
 }
 
 /// Why work was not done.
+#[expect(missing_docs, reason = "the messages say it")]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum PoolError {
-    /// Nothing became free in time.
     #[error("the server is busy, and nothing became free in time")]
     Busy,
-    /// The queue is full.
     #[error("the server is busy, and its queue is full")]
     QueueFull,
-    /// The client has as much as it may.
     #[error("{0}")]
     Quota(QuotaExceeded),
-    /// The work panicked, which is a bug of this program.
     #[error("the solver panicked")]
     Panicked,
 }

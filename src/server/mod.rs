@@ -70,13 +70,7 @@ pub async fn serve(
             && logged_at.is_none_or(|last| last.elapsed() >= LOG_INTERVAL)
         {
             let ConnectionCounts { open, spare, refused, closed } = counts;
-            tracing::warn!(
-                open,
-                spare,
-                refused,
-                closed,
-                "all connections are taken: some clients are refused or closed"
-            );
+            tracing::warn!(open, spare, refused, closed, "all connections are taken: some are refused or closed");
             (logged, logged_at) = (counts, Some(Instant::now()));
         }
     }
@@ -123,12 +117,11 @@ fn accept(
     let task = match tls.map(Tls::acceptor) {
         None => tokio::spawn(serve_connection(stream, peer, permit, limits, service, closing)),
         Some(acceptor) => tokio::spawn(async move {
+            let accept = acceptor.accept_with(stream, |tls| tls.set_buffer_limit(Some(PIECE)));
             let accepted = tokio::select! {
-                    accepted = timeout(
-                limits.head, acceptor.accept_with(stream, |tls| tls.set_buffer_limit(Some(PIECE))),
-            ) => accepted,
-                    _ = closing.changed() => return,
-                };
+                accepted = timeout(limits.head, accept) => accepted,
+                _ = closing.changed() => return,
+            };
             match accepted {
                 Ok(Ok(stream)) => serve_connection(stream, peer, permit, limits, service, closing).await,
                 Ok(Err(error)) => tracing::debug!(%error, "a client did not speak TLS as the server does"),
@@ -139,7 +132,6 @@ fn accept(
     limiter.started(number, task.abort_handle());
 }
 
-/// Serves a connection to its end.
 async fn serve_connection<S: AsyncRead + AsyncWrite + Unpin>(
     stream: S,
     peer: IpAddr,

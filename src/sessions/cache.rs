@@ -65,7 +65,6 @@ pub(super) struct WaitingMove {
     pub(super) advance: Arc<Advance>,
     /// The sequence that the client expects.
     pub(super) expected: Option<u64>,
-    /// The name of its key.
     pub(super) by: Option<Arc<str>>,
     pub(super) reservation: StorageReservation,
     pub(super) span: Span,

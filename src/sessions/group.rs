@@ -35,7 +35,6 @@ pub(super) enum GroupResult {
     Answered(Result<Reply, SessionError>),
 }
 
-/// Moves under way together.
 struct Group {
     replay: Replay,
     guard: Guard,

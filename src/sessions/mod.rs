@@ -79,7 +79,6 @@ pub struct Sessions {
     by: Option<Arc<str>>,
 }
 
-/// The state that the handles share.
 struct Common {
     store: Arc<dyn Store>,
     pool: Pool,

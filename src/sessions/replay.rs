@@ -97,18 +97,14 @@ impl Replay {
         let mut moved = false;
         while let Some(sequence) = guard.live.as_ref().map(|live| live.session.sequence).filter(|at| *at < last) {
             let limit = usize::try_from(last - sequence).map_or(PAGE, |left| left.min(PAGE));
-            let page = match self.common.store.history(id, sequence, limit).await {
-                Ok(page) => page,
-                Err(error) => return Err(self.store_failure(guard, error)),
-            };
-            let last_page = page.len() < limit;
-            if !page.is_empty()
-                && let Some(live) = guard.live.take()
-            {
+            let page = self.common.store.history(id, sequence, limit).await;
+            let page = page.map_err(|error| self.store_failure(guard, error))?;
+            let is_last = page.len() < limit;
+            if let Some(live) = guard.live.take_if(|_| !page.is_empty()) {
                 guard.live = Some(self.follow(guard, live, page).await?);
                 moved = true;
             }
-            if last_page {
+            if is_last {
                 break;
             }
         }
@@ -240,7 +236,6 @@ impl Replay {
         first.map_err(|error| damaged(id, &error))
     }
 
-    /// Applies stored moves.
     async fn follow(
         &self,
         guard: &mut Guard,
@@ -324,7 +319,6 @@ impl Replay {
         self.store_error(guard.id(), error)
     }
 
-    /// Converts a failure of the store.
     pub(super) fn store_error(&self, id: Uuid, error: StoreError) -> SessionError {
         match error {
             StoreError::Expired(tenant) if tenant == self.tenant => SessionError::Expired(id),

@@ -22,7 +22,6 @@ const AT_ONCE: usize = 2;
 /// Bytes of the checksum at the end.
 const CHECKSUM: usize = 4;
 
-/// The snapshots of a store.
 pub(super) struct Snapshots {
     store: Arc<dyn Store>,
     pool: Pool,

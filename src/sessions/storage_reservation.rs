@@ -34,7 +34,6 @@ struct ClientUsage {
     known: Mutex<Known>,
 }
 
-/// What is known of it.
 #[derive(Default)]
 struct Known {
     /// As it was counted, when, and how long that took.
@@ -177,7 +176,6 @@ impl ClientUsage {
 }
 
 impl StorageReservation {
-    /// Bytes that are reserved.
     pub(super) fn bytes(&self) -> u64 {
         self.reserved.bytes
     }

@@ -29,7 +29,6 @@ pub struct ConnectionActivity {
 #[derive(Debug)]
 struct State {
     phase: Phase,
-    /// When the phase began.
     since: Instant,
     /// When writing to the client began to block, if it does.
     blocked_since: Option<Instant>,

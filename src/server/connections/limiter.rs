@@ -35,7 +35,6 @@ pub struct ConnectionLimiter {
 struct Table {
     next: u64,
     connections: HashMap<u64, Connection>,
-    /// Connections by client.
     clients: HashMap<Client, usize>,
     /// But for the open ones.
     counts: ConnectionCounts,
@@ -120,7 +119,6 @@ impl ConnectionLimiter {
         }
     }
 
-    /// Closes every connection.
     pub(crate) fn close_all(&self) {
         for task in self.table.lock().connections.values().filter_map(|connection| connection.task.as_ref()) {
             task.abort();

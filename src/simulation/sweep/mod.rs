@@ -35,12 +35,11 @@ pub struct Sweep {
 }
 
 /// Why a sweep was not completed.
+#[expect(missing_docs, reason = "the messages say it")]
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SweepError {
-    /// It was stopped, or took too long.
     #[error(transparent)]
     Failure(#[from] Failure),
-    /// No thread became free, or one panicked.
     #[error(transparent)]
     Pool(#[from] PoolError),
 }

@@ -66,10 +66,8 @@ macro_rules! try_once {
 
 pub(super) use {try_once, with_retries};
 
-/// A parameter of a statement.
 pub(super) type Parameter<'a> = &'a (dyn ToSql + Sync);
 
-/// A pool of connections to the database.
 pub(super) struct ClientPool {
     pub(super) target: ConnectTarget,
     pub(super) outage: Outage,
@@ -98,7 +96,6 @@ impl ClientPool {
         Ok(ClientPool { target, outage: Outage::default(), announces, pool })
     }
 
-    /// A connection of the pool.
     pub(super) async fn connection(&self) -> Result<Object, Fault> {
         self.answer(PATIENCE_FOR_CONNECTION, async { Ok(self.pool.get().await?) }).await
     }

@@ -34,7 +34,6 @@ type Apply = dyn Fn(&mut Transaction<'_>) -> Result<Done, Fault> + Send;
 pub(super) struct Change {
     /// Makes it; called again if its transaction fails.
     pub(super) apply: Box<Apply>,
-    /// How many rows it writes, roughly.
     pub(super) weight: usize,
     /// The sessions and jobs whose listeners are to be woken when it is made.
     pub(super) touched: Vec<Uuid>,
@@ -47,7 +46,6 @@ pub(super) struct Transaction<'a> {
     pub(super) number: i64,
 }
 
-/// The result of a change.
 pub(super) enum Done {
     /// It is made, with this count.
     Made(u64),

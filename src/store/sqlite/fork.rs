@@ -27,13 +27,9 @@ pub(super) struct Fork {
 
 #[derive(Clone, Copy)]
 pub(super) struct Copying {
-    /// The contact that is copied.
     from: i64,
-    /// The copy.
     to: i64,
-    /// The last move copied.
     copied: i64,
-    /// The last move to copy.
     last: i64,
 }
 

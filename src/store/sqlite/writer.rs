@@ -34,7 +34,6 @@ pub(super) struct Request {
 /// The channel for the outcome of a change.
 type Reply = oneshot::Sender<Result<u64>>;
 
-/// The state of the writing thread.
 pub(super) struct Writer {
     database: Connection,
     /// The files that it writes to.
@@ -182,7 +181,6 @@ impl Writer {
         change.touched.iter().for_each(|id| self.changes.wake(*id));
     }
 
-    /// One step of the background work.
     fn background_step(&mut self) {
         if let Some((fork, copying, reply)) = self.forks.pop_front() {
             let mut proceeded = copying;
