@@ -164,7 +164,9 @@ impl Pool {
     /// # Errors
     /// [`PoolError::Quota`] if it has as many as it may.
     pub fn share_of(&self, quota: Quota) -> Result<Share, PoolError> {
-        self.0.quotas.share(quota).map_err(PoolError::Quota)
+        let mut share = self.0.quotas.no_share(quota);
+        share.resize(1).map_err(PoolError::Quota)?;
+        Ok(share)
     }
 
     /// The resources in use.
@@ -189,7 +191,7 @@ impl Pool {
     /// The same for a request that has had so much work done before.
     #[must_use]
     pub fn deadline_after(&self, spent: Duration) -> (Stop, StopOnDrop) {
-        Stop::within_rest(self.0.capacity.deadline, spent)
+        Stop::within(self.0.capacity.deadline, spent)
     }
 
     /// Waits for `request` within the limits of time and of the queue.

@@ -157,19 +157,9 @@ impl Quotas {
         Quotas { limits, used: Arc::default(), refused }
     }
 
-    /// A share of nothing yet, for the client that this task serves.
+    /// A share of nothing yet, for the client that this task serves. The server itself has no quotas.
     pub fn no_share(&self, quota: Quota) -> Share {
         Share { quotas: self.clone(), of: (quota, Client::current()), amount: 0 }
-    }
-
-    /// One more for the client that this task serves. The server itself has no quotas.
-    ///
-    /// # Errors
-    /// [`QuotaExceeded`] if it has as many as it may.
-    pub fn share(&self, quota: Quota) -> Result<Share, QuotaExceeded> {
-        let mut share = self.no_share(quota);
-        share.resize(1)?;
-        Ok(share)
     }
 
     /// The refusal of what is beyond a quota whose count is kept elsewhere.

@@ -47,16 +47,10 @@ struct Flag {
 pub struct StopOnDrop(Stop);
 
 impl Stop {
-    /// A flag that is raised when the guard is dropped, or after the work has taken `allowed`. The default flag is
-    /// never raised.
+    /// A flag that is raised when the guard is dropped, or after work that has taken `spent` before has taken `allowed`
+    /// in all. The default flag is never raised.
     #[must_use]
-    pub fn within(allowed: Duration) -> (Stop, StopOnDrop) {
-        Stop::within_rest(allowed, Duration::ZERO)
-    }
-
-    /// The same for the rest of work that has taken `spent` before.
-    #[must_use]
-    pub fn within_rest(allowed: Duration, spent: Duration) -> (Stop, StopOnDrop) {
+    pub fn within(allowed: Duration, spent: Duration) -> (Stop, StopOnDrop) {
         let stop = Stop(Arc::new(Flag { allowed: Some(allowed), spent, ..Flag::default() }));
         stop.count(spent);
         (stop.clone(), StopOnDrop(stop))

@@ -15,13 +15,14 @@ use uuid::Uuid;
 use crate::admission::Client;
 use crate::otlp;
 use crate::simulation::cost::Work;
-use crate::store::{Record, Reply, StoreError, Usage};
+use crate::store::{Reply, StoreError, Usage};
 use stickslip_wire::session::Advance;
 use stickslip_wire::{Plan, limits};
 
 use super::SessionError;
 use super::attempt::{Done, PIECES_OF_A_MOVE, attempt};
 use super::cache::{Guard, WaitingMove};
+use super::loaded::LoadedSession;
 use super::replay::Replay;
 
 /// Moves that are made together at most.
@@ -108,29 +109,40 @@ fn is_groupable(guard: &Guard) -> bool {
 impl Group {
     /// Makes the moves, stores them, and tells each waiting move what has become of its own. The guard is dropped last.
     async fn make(mut self) {
-        let Some(before) = self.guard.live.as_ref().map(|live| live.session.sequence) else {
-            return self.moves.into_iter().for_each(decline);
-        };
-        let Ok((made, records)) = self.compute().await else { return };
-        if records.is_empty() {
-            return;
-        }
         let common = &self.replay.common;
         // Until the store has answered the new state is in doubt, as for a move that is made alone.
-        let live = self.guard.live.take();
+        let Some(live) = self.guard.live.take() else {
+            return self.moves.into_iter().for_each(decline);
+        };
+        let before = live.session.sequence;
+        let Some((mut live, outcomes)) = self.compute(live).await else {
+            return self.moves.into_iter().for_each(decline);
+        };
+        let (mut made, mut records) = (Vec::with_capacity(outcomes.len()), Vec::with_capacity(outcomes.len()));
+        for (taken, done) in self.moves.into_iter().zip(outcomes) {
+            match done {
+                Some(Done { records: more, reply }) => {
+                    records.extend(more);
+                    made.push((taken, reply));
+                }
+                None => decline(taken),
+            }
+        }
+        if records.is_empty() {
+            self.guard.live = Some(live);
+            return;
+        }
         let moves = records.len() as u64;
         let stored = common.store.append(self.guard.id(), before, records, None);
         match stored.instrument(otlp::part!("store")).await {
             Ok(()) => {
                 common.metrics.moves.inc_by(moves);
-                self.guard.live = live.map(|mut live| {
-                    self.replay.common.snapshots.offer(&mut live);
-                    live
-                });
+                common.snapshots.offer(&mut live);
+                self.guard.live = Some(live);
                 let added = Usage::of(0, common.store.move_bytes(), None);
-                for (waiting_move, reply) in made {
-                    waiting_move.reservation.used(added);
-                    let _ = waiting_move.answer.send(Some(Ok(reply)));
+                for (taken, reply) in made {
+                    taken.reservation.used(added);
+                    let _ = taken.answer.send(Some(Ok(reply)));
                 }
             }
             // Nothing has changed: each finds out for itself what is wrong.
@@ -143,46 +155,32 @@ impl Group {
         }
     }
 
-    /// Makes the moves one after the other. The guard has the state after them, or, if one of them has spoiled it,
-    /// nothing; nothing is to be stored then, and every waiting move has been told to go on alone.
-    async fn compute(&mut self) -> Result<(Vec<(WaitingMove, Reply)>, Vec<Record>), ()> {
-        let (stop, _raised_at_the_end) = self.replay.common.pool.deadline();
-        let (mut made, mut records) = (Vec::with_capacity(self.moves.len()), Vec::with_capacity(self.moves.len()));
-        let mut moves = std::mem::take(&mut self.moves).into_iter();
-        while let Some(taken) = moves.next() {
-            // A refusal counts only once the store has been asked, which its client does alone.
-            let Some(mut live) = self.guard.live.take_if(|live| {
-                taken.expected.is_none_or(|expected| expected == live.session.sequence)
-                    && live.contact.memory_depth() + PIECES_OF_A_MOVE <= limits::MEMORY_DEPTH
-            }) else {
-                decline(taken);
-                continue;
-            };
-            let work = Work { moves: 1, depth: live.contact.memory_depth(), ..Work::default() };
-            let cost = work.cost(live.contact.profile());
-            let (advance, by, stop, span) =
-                (Arc::clone(&taken.advance), taken.by.clone(), stop.clone(), taken.span.clone());
-            let solve = move || {
-                let result = span.in_scope(|| attempt(&mut live, &advance, by.as_ref(), &stop));
-                (live, result)
-            };
-            match self.replay.common.pool.run(cost, solve).await {
-                Ok((live, Ok(Done { records: more, reply }))) => {
-                    self.guard.live = Some(live);
-                    records.extend(more);
-                    made.push((taken, reply));
-                }
-                Ok((live, Err(SessionError::Failure(_)))) => {
-                    self.guard.live = Some(live);
-                    decline(taken);
-                }
-                _ => {
-                    made.into_iter().map(|(taken, _)| taken).chain([taken]).chain(moves).for_each(decline);
-                    return Err(());
-                }
+    /// Makes the moves one after the other. Returns the state after them, and what each has done, unless it is refused;
+    /// nothing if one of them has spoiled the state.
+    async fn compute(&self, mut live: Box<LoadedSession>) -> Option<(Box<LoadedSession>, Vec<Option<Done>>)> {
+        let pool = &self.replay.common.pool;
+        let (stop, _raised_at_the_end) = pool.deadline();
+        let work = Work { moves: self.moves.len(), depth: live.contact.memory_depth(), ..Work::default() };
+        let cost = work.cost(live.contact.profile());
+        let asked = self.moves.iter();
+        let asked =
+            asked.map(|taken| (Arc::clone(&taken.advance), taken.expected, taken.by.clone(), taken.span.clone()));
+        let asked: Vec<_> = asked.collect();
+        let solve = move || {
+            let mut outcomes = Vec::with_capacity(asked.len());
+            for (advance, expected, by, span) in asked {
+                // A refusal counts only once the store has been asked, which its client does alone.
+                let joins = expected.is_none_or(|expected| expected == live.session.sequence)
+                    && live.contact.memory_depth() + PIECES_OF_A_MOVE <= limits::MEMORY_DEPTH;
+                let done = joins.then(|| span.in_scope(|| attempt(&mut live, &advance, by.as_ref(), &stop)));
+                outcomes.push(match done.transpose() {
+                    Err(SessionError::Failure(_)) => None,
+                    done => done.ok()?,
+                });
             }
-        }
-        Ok((made, records))
+            Some((live, outcomes))
+        };
+        pool.run(cost, solve).await.ok().flatten()
     }
 }
 
