@@ -35,10 +35,7 @@ const LOG_INTERVAL: Duration = Duration::from_secs(1);
 
 /// Serves on `listener`, by TLS if it is given, the connections that `limiter` admits, until `stop` is done. Then
 /// `end_streams` is called, and other requests may be done within the time that the limits give; what is left then is
-/// refused. Connections that are still open [`GRACE`] later are closed.
-///
-/// # Errors
-/// None at present: a failure to accept a connection is waited out.
+/// refused. Connections that are still open [`GRACE`] later are closed. A failure to accept a connection is waited out.
 pub async fn serve(
     limiter: ConnectionLimiter,
     listener: TcpListener,
@@ -46,7 +43,7 @@ pub async fn serve(
     service: Service,
     stop: impl Future<Output = ()> + Send + 'static,
     end_streams: impl FnOnce(),
-) -> io::Result<()> {
+) {
     let service = Arc::new(service);
     // Every connection holds a receiver: it is notified by it, and counted.
     let (closing, _) = watch::channel(());
@@ -88,7 +85,6 @@ pub async fn serve(
         tracing::warn!("connections were still open and have been closed");
         limiter.close_all();
     }
-    Ok(())
 }
 
 /// Whether the client closed the connection before it was accepted.

@@ -86,7 +86,9 @@ async fn join_queue(
     };
     if let Ok((lock, own)) = locked {
         let guard = lock.guard();
-        let others = if is_groupable(&guard) { guard.take_moves(GROUP - 1) } else { Vec::new() };
+        // If the state is there, and no other process is likely to move the session first.
+        let is_own = guard.live.as_ref().is_some_and(|live| !live.shared);
+        let others = if is_own { guard.take_moves(GROUP - 1) } else { Vec::new() };
         if others.is_empty() {
             return Ok(GroupResult::Locked(guard));
         }
@@ -99,11 +101,6 @@ async fn join_queue(
         Ok(None) => Ok(GroupResult::Locked(replay.lock(id).await?)),
         Err(_) => Err(StoreError::Unavailable("the move was given up with others".to_owned()).into()),
     }
-}
-
-/// Whether the state is there, and no other process is likely to move the session first.
-fn is_groupable(guard: &Guard) -> bool {
-    guard.live.as_ref().is_some_and(|live| !live.shared)
 }
 
 impl Group {

@@ -58,7 +58,7 @@ pub use check::{CheckEvent, Checked, Finding, check, count_moves};
 pub use cycles::ClosedCycles;
 pub use error::SessionError;
 pub use events::{STREAMS, events};
-pub use expiry::{purge_expired, run_expiry_loop};
+pub use expiry::run_expiry_loop;
 pub use history::History;
 pub use metrics::{Readings, SessionMetrics};
 pub use observations::Observations;

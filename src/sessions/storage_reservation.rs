@@ -109,10 +109,6 @@ impl ClientUsage {
         self.known.lock().counted.is_none_or(|(_, at, took)| at.elapsed() >= age.max(took * COUNTING_SHARE))
     }
 
-    fn has_failed_since(&self, begin: Instant) -> bool {
-        self.known.lock().failed.is_some_and(|at| at >= begin)
-    }
-
     /// Reserves by the last count, or names the quota that is exceeded; nothing if there has been no count.
     fn try_reserve(
         self: &Arc<ClientUsage>,
@@ -144,7 +140,7 @@ impl ClientUsage {
         let begin = Instant::now();
         let _counting = pool.wait(self.counting.lock()).await?;
         // Whoever had the lock before may have counted, or may have waited in vain for a store that does not answer.
-        if self.has_failed_since(begin) {
+        if self.known.lock().failed.is_some_and(|at| at >= begin) {
             return Err(StoreError::Unavailable("what the tenant has stored cannot be counted".to_owned()).into());
         }
         if self.is_older_than(RECOUNT_FULL) {

@@ -226,24 +226,20 @@ pub const RECEIPT_OVERHEAD: u64 = 256;
 
 /// Why a call to a store failed. Nothing has changed then, except perhaps after
 /// [`StoreError::Unavailable`] and [`StoreError::Failed`].
+#[expect(missing_docs, reason = "the messages say the rest")]
 #[derive(Clone, Debug, thiserror::Error)]
 pub enum StoreError {
-    /// The session was not found.
     #[error("there is no such contact")]
     NotFound,
     /// There was such a session, of this tenant; it has expired.
     #[error("the contact has expired")]
     Expired(Tenant),
-    /// The session has another sequence than expected.
+    /// That is not the expected sequence.
     #[error("the contact is at sequence {found}")]
-    Stale {
-        /// Its sequence.
-        found: u64,
-    },
+    Stale { found: u64 },
     /// Another request has used the idempotency key meanwhile.
     #[error("the idempotency key has been used")]
     KeyTaken,
-    /// The idempotency key belongs to another request.
     #[error("the idempotency key has been used for another request")]
     KeyReused,
     /// The tenant has as many jobs as it may; the text says which limit is reached.
@@ -251,12 +247,7 @@ pub enum StoreError {
     TooManyJobs(String),
     /// Moves of a contact are missing, or cannot be made again: whatever is shown of it might be wrong.
     #[error("contact {contact}: {what}")]
-    Damaged {
-        /// The contact.
-        contact: Uuid,
-        /// What is wrong with it.
-        what: String,
-    },
+    Damaged { contact: Uuid, what: String },
     /// There is no room left. Nothing has changed.
     #[error("the storage is full: {0}")]
     Full(String),

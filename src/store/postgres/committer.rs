@@ -55,7 +55,12 @@ impl Committer {
                 Fault::Locked(_) => return batch,
                 Fault::Duplicate(text) => {
                     let Some(request) = batch.pop() else { return batch };
-                    match self.known_duplicate(&request).await {
+                    // A key from long ago is made free.
+                    let known = async {
+                        self.pool.free_key(request.id(), request.receipt.as_ref()).await?;
+                        outcome_of(&self.pool, &request).await
+                    };
+                    match known.await {
                         Ok(false) => batch.push(request),
                         known => {
                             answer_known(request, known.map(drop), &self.changes);
@@ -91,13 +96,6 @@ impl Committer {
             }
         }
         held
-    }
-
-    /// Whether a request whose key or identifier was taken is stored already, or why it is refused; one that is neither
-    /// may be tried again. A key from long ago is free then.
-    async fn known_duplicate(&self, request: &WriteRequest) -> Result<bool> {
-        self.pool.free_key(request.id(), request.receipt.as_ref()).await?;
-        outcome_of(&self.pool, request).await
     }
 
     async fn connection(&mut self) -> Result<&WriterConnection, Fault> {
