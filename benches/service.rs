@@ -113,7 +113,12 @@ async fn compare() {
         Service::start("postgres", serve(&cluster.database().await)).await,
     ];
     let other_file = format!("sqlite:{}", folder.join("other.db").display());
-    for (name, store) in [("memory, other build", "memory:"), ("sqlite, other build", &other_file)] {
+    let other_database = cluster.database().await;
+    for (name, store) in [
+        ("memory, other build", "memory:"),
+        ("sqlite, other build", &other_file),
+        ("postgres, other build", &other_database),
+    ] {
         if let Some(command) = serve_other(store) {
             services.push(Service::start(name, command).await);
         }

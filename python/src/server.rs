@@ -76,7 +76,7 @@ fn start(store: &str, port: u16) -> Result<Server, String> {
             stopped.await.ok();
         };
         // The listener is bound: what fails later is for the clients to see.
-        api::serve(listener, app, stop).await.ok();
+        api::serve(listener, app, stop).await;
     });
     Ok(Server { address, running: Some(Running { runtime, stop, served }) })
 }

@@ -88,7 +88,6 @@ struct WaitQueue {
     waiting: BTreeMap<u64, oneshot::Sender<SolverSlot>>,
 }
 
-/// Work in a queue.
 struct Waiter {
     key: QueueKey,
     arrival: u64,
@@ -127,7 +126,6 @@ pub(super) fn give_way() -> Duration {
 
 impl SolverSlot {
     /// A slot of a thread that nobody else waits for.
-    #[must_use]
     pub fn alone() -> SolverSlot {
         SolverSlot(None)
     }
@@ -148,7 +146,6 @@ impl SolverSlot {
 }
 
 impl FairScheduler {
-    /// At least one thread.
     pub(super) fn new(threads: usize) -> FairScheduler {
         FairScheduler(Arc::new(Shared {
             threads: threads.max(1),
@@ -157,7 +154,6 @@ impl FairScheduler {
         }))
     }
 
-    /// Slots that are held.
     pub(super) fn taken(&self) -> usize {
         self.0.queues.lock().taken.len()
     }

@@ -114,25 +114,21 @@ pub struct Taken {
 }
 
 /// Why work was not done.
+#[expect(missing_docs, reason = "the messages say it")]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum PoolError {
-    /// Nothing became free in time.
     #[error("the server is busy, and nothing became free in time")]
     Busy,
-    /// The queue is full.
     #[error("the server is busy, and its queue is full")]
     QueueFull,
-    /// The client has as much as it may.
     #[error("{0}")]
     Quota(QuotaExceeded),
-    /// The work panicked, which is a bug of this program.
     #[error("the solver panicked")]
     Panicked,
 }
 
 impl Pool {
     /// A pool with these resources; at least one of each.
-    #[must_use]
     pub fn new(capacity: Capacity) -> Pool {
         let semaphore = |permits: usize| Arc::new(Semaphore::new(permits.clamp(1, Semaphore::MAX_PERMITS)));
         Pool(Arc::new(Shared {
@@ -149,19 +145,16 @@ impl Pool {
     }
 
     /// A pool with the default resources.
-    #[must_use]
     pub fn with_defaults() -> Pool {
         Pool::new(Capacity::default())
     }
 
     /// The resources.
-    #[must_use]
     pub fn capacity(&self) -> &Capacity {
         &self.0.capacity
     }
 
     /// What each client may have.
-    #[must_use]
     pub fn quotas(&self) -> &Quotas {
         &self.0.quotas
     }
@@ -171,11 +164,12 @@ impl Pool {
     /// # Errors
     /// [`PoolError::Quota`] if it has as many as it may.
     pub fn share_of(&self, quota: Quota) -> Result<Share, PoolError> {
-        self.0.quotas.share(quota).map_err(PoolError::Quota)
+        let mut share = self.0.quotas.no_share(quota);
+        share.resize(1).map_err(PoolError::Quota)?;
+        Ok(share)
     }
 
     /// The resources in use.
-    #[must_use]
     pub fn taken(&self) -> Taken {
         let taken = |most: usize, semaphore: &Semaphore| most.max(1).saturating_sub(semaphore.available_permits());
         Taken {
@@ -197,7 +191,7 @@ impl Pool {
     /// The same for a request that has had so much work done before.
     #[must_use]
     pub fn deadline_after(&self, spent: Duration) -> (Stop, StopOnDrop) {
-        Stop::within_rest(self.0.capacity.deadline, spent)
+        Stop::within(self.0.capacity.deadline, spent)
     }
 
     /// Waits for `request` within the limits of time and of the queue.
@@ -235,7 +229,6 @@ impl Pool {
     }
 
     /// The metrics.
-    #[must_use]
     pub fn meters(&self) -> &PoolMeters {
         &self.0.meters
     }
@@ -310,7 +303,6 @@ impl Pool {
 
 impl Kind {
     /// The kind of work of this estimated cost that somebody waits for.
-    #[must_use]
     pub fn of(cost: Nanoseconds) -> Kind {
         if Duration::from_nanos(cost) > INTERACTIVE { Kind::Long } else { Kind::Interactive }
     }

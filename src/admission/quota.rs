@@ -42,7 +42,6 @@ impl Quota {
     pub const ALL: [Quota; 5] = [Quota::Requests, Quota::Streams, Quota::Contacts, Quota::StoreBytes, Quota::BodyBytes];
 
     /// Its name: that of its setting, without the dashes in front.
-    #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Quota::Requests => "max-requests-per-client",
@@ -83,7 +82,6 @@ impl Default for QuotaLimits {
 
 impl QuotaLimits {
     /// The limit of a quota.
-    #[must_use]
     pub fn of(&self, quota: Quota) -> usize {
         match quota {
             Quota::Requests => self.requests,
@@ -107,26 +105,21 @@ pub struct QuotaExceeded {
 impl fmt::Display for QuotaExceeded {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (name, limit) = (self.quota.name(), self.limit);
+        let bytes = ByteSize::b(limit as u64);
         match self.quota {
             Quota::Requests => write!(f, "you have {limit} requests in progress, as many as `{name}` allows"),
             Quota::Streams => write!(f, "you follow {limit} streams of events, as many as `{name}` allows"),
             Quota::Contacts => write!(f, "you have {limit} contacts, as many as `{name}` allows: delete some"),
-            Quota::BodyBytes => {
-                let limit = ByteSize::b(limit as u64);
-                write!(
-                    f,
-                    "bodies that are arriving from you would take more than the {limit} that `{name}` allows: send \
-                        fewer at a time"
-                )
-            }
-            Quota::StoreBytes => {
-                let limit = ByteSize::b(limit as u64);
-                write!(
-                    f,
-                    "beyond the {limit} in the store that `{name}` allows your contacts: delete some, or do with fewer \
-                        moves"
-                )
-            }
+            Quota::BodyBytes => write!(
+                f,
+                "bodies that are arriving from you would take more than the {bytes} that `{name}` allows: send fewer \
+                 at a time"
+            ),
+            Quota::StoreBytes => write!(
+                f,
+                "beyond the {bytes} in the store that `{name}` allows your contacts: delete some, or do with fewer \
+                 moves"
+            ),
         }
     }
 }
@@ -134,10 +127,12 @@ impl fmt::Display for QuotaExceeded {
 /// The quotas of all clients. Clones share it.
 #[derive(Clone, Debug)]
 pub struct Quotas {
-    limits: QuotaLimits,
+    /// The most that a client may have of each.
+    pub limits: QuotaLimits,
+    /// How many requests were beyond each quota.
+    pub refused: IntCounterVec,
     // Locked for a moment, and never across an await.
     used: Arc<Mutex<HashMap<(Quota, Client), usize>>>,
-    refused: IntCounterVec,
 }
 
 /// A client's share of what a quota counts, until dropped.
@@ -153,7 +148,6 @@ impl Quotas {
     ///
     /// # Panics
     /// Never: the name of the metric is one that is allowed.
-    #[must_use]
     pub fn new(limits: QuotaLimits) -> Quotas {
         let options = Opts::new("stickslip_quota_refused_total", "Requests beyond a quota of their client.");
         let refused = IntCounterVec::new(options, &["quota"]).expect(OWN_NAME);
@@ -163,32 +157,9 @@ impl Quotas {
         Quotas { limits, used: Arc::default(), refused }
     }
 
-    /// The most that a client may have of each.
-    #[must_use]
-    pub fn limits(&self) -> &QuotaLimits {
-        &self.limits
-    }
-
-    /// How many requests were beyond each quota.
-    #[must_use]
-    pub fn refused(&self) -> &IntCounterVec {
-        &self.refused
-    }
-
-    /// A share of nothing yet, for the client that this task serves.
-    #[must_use]
+    /// A share of nothing yet, for the client that this task serves. The server itself has no quotas.
     pub fn no_share(&self, quota: Quota) -> Share {
         Share { quotas: self.clone(), of: (quota, Client::current()), amount: 0 }
-    }
-
-    /// One more for the client that this task serves. The server itself has no quotas.
-    ///
-    /// # Errors
-    /// [`QuotaExceeded`] if it has as many as it may.
-    pub fn share(&self, quota: Quota) -> Result<Share, QuotaExceeded> {
-        let mut share = self.no_share(quota);
-        share.resize(1)?;
-        Ok(share)
     }
 
     /// The refusal of what is beyond a quota whose count is kept elsewhere.

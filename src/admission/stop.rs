@@ -47,16 +47,10 @@ struct Flag {
 pub struct StopOnDrop(Stop);
 
 impl Stop {
-    /// A flag that is raised when the guard is dropped, or after the work has taken `allowed`. The default flag is
-    /// never raised.
+    /// A flag that is raised when the guard is dropped, or after work that has taken `spent` before has taken `allowed`
+    /// in all. The default flag is never raised.
     #[must_use]
-    pub fn within(allowed: Duration) -> (Stop, StopOnDrop) {
-        Stop::within_rest(allowed, Duration::ZERO)
-    }
-
-    /// The same for the rest of work that has taken `spent` before.
-    #[must_use]
-    pub fn within_rest(allowed: Duration, spent: Duration) -> (Stop, StopOnDrop) {
+    pub fn within(allowed: Duration, spent: Duration) -> (Stop, StopOnDrop) {
         let stop = Stop(Arc::new(Flag { allowed: Some(allowed), spent, ..Flag::default() }));
         stop.count(spent);
         (stop.clone(), StopOnDrop(stop))
@@ -70,13 +64,11 @@ impl Stop {
     }
 
     /// A flag for a part of the work: it is raised with this one, or after the part has taken `allowed`.
-    #[must_use]
     pub fn child_deadline(&self, allowed: Option<Duration>) -> Stop {
         Stop(Arc::new(Flag { allowed, parent: Some(self.clone()), ..Flag::default() }))
     }
 
     /// The time limit of the work, if it has one.
-    #[must_use]
     pub fn time_limit(&self) -> Option<Duration> {
         self.0.allowed
     }
@@ -87,13 +79,11 @@ impl Stop {
     }
 
     /// The work that has been counted by [`Stop::count`].
-    #[must_use]
     pub fn before(&self) -> Duration {
         Duration::from_nanos(self.0.before.load(Ordering::Relaxed))
     }
 
     /// How long the work has given way to others.
-    #[must_use]
     pub fn waited(&self) -> Duration {
         Duration::from_nanos(self.0.waited.load(Ordering::Relaxed))
     }

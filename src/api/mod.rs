@@ -18,7 +18,6 @@ mod routes;
 mod state;
 
 use std::future::Future;
-use std::io;
 use std::sync::{Arc, OnceLock};
 
 use axum::http::header::AUTHORIZATION;
@@ -52,26 +51,20 @@ pub use problem::Problem;
 pub use state::{Access, App};
 
 /// Serves the API on `listener` within the usual limits of connections, until `stop` is done.
-///
-/// # Errors
-/// As [`server::serve`].
-pub async fn serve(listener: TcpListener, app: App, stop: impl Future<Output = ()> + Send + 'static) -> io::Result<()> {
+pub async fn serve(listener: TcpListener, app: App, stop: impl Future<Output = ()> + Send + 'static) {
     let limiter = ConnectionLimiter::new(ConnectionLimits::default(), Arc::default());
     serve_within(limiter, listener, None, app, stop).await
 }
 
 /// Serves the API on `listener`, by TLS if it is given, for the connections that `limiter` admits, until `stop` is
 /// done.
-///
-/// # Errors
-/// As [`server::serve`].
 pub async fn serve_within(
     limiter: ConnectionLimiter,
     listener: TcpListener,
     tls: Option<Tls>,
     app: App,
     stop: impl Future<Output = ()> + Send + 'static,
-) -> io::Result<()> {
+) {
     let (sessions, jobs, pool) = (app.sessions.clone(), app.jobs.clone(), app.pool.clone());
     let by_address = app.access.keys.is_none();
     // The document always parses; without it, metrics of endpoints would appear with their first request.
@@ -95,7 +88,7 @@ pub async fn serve_within(
         sessions.end_events();
         jobs.end();
     })
-    .await
+    .await;
 }
 
 fn router(app: App, observed: Observed) -> Router {

@@ -335,8 +335,8 @@ async fn listen(
     let pool = Pool::new(options.limits.capacity());
     let limiter =
         ConnectionLimiter::new(options.limits.connections(), options.limits.trusted_proxies.as_slice().into());
-    let memory_bound = memory_budget::memory(&limiter.limits, pool.capacity(), options.cache_bytes.as_u64());
-    let memory_bound = memory_bound.saturating_add(tls.as_ref().map_or(0, |_| memory_budget::tls(&limiter.limits)));
+    let cache_bytes = options.cache_bytes.as_u64();
+    let memory_bound = memory_budget::memory(&limiter.limits, pool.capacity(), cache_bytes, tls.is_some());
     if let Some(memory) = machine_memory::available().filter(|memory| memory_bound > *memory) {
         tracing::warn!(
             memory_bound = %ByteSize::b(memory_bound),
@@ -345,7 +345,7 @@ async fn listen(
              --cache-bytes or --max-connections"
         );
     }
-    let capacity = usize::try_from(options.cache_bytes.as_u64()).unwrap_or(usize::MAX);
+    let capacity = usize::try_from(cache_bytes).unwrap_or(usize::MAX);
     let jobs = Jobs::new(Arc::clone(&store), pool.clone());
     let sessions = Sessions::new(Arc::clone(&store), pool.clone(), capacity);
     let working = tokio::spawn(jobs.clone().work(options.job_lease));
@@ -355,7 +355,7 @@ async fn listen(
     tracing::info!(%address, threads = pool.capacity().threads.max(1), memory_bound, "listening");
     print(format_args!("stickslip listens on {scheme}://{address}, the page at /, the API at /docs"))?;
     let app = App { sessions, jobs, pool, access };
-    api::serve_within(limiter, listener, tls, app, stop).await.map_err(|error| format!("stopped: {error}"))?;
+    api::serve_within(limiter, listener, tls, app, stop).await;
     // If the store is unreachable, other processes take over when the leases expire.
     let _ = tokio::time::timeout(JOB_RELEASE_TIMEOUT, working).await;
     Ok(())

@@ -17,7 +17,6 @@ const LONGEST_WAIT: Duration = Duration::from_secs(1);
 /// The shortest time between two events: chunks may be finished faster than a client reads.
 const REST: Duration = Duration::from_millis(100);
 
-/// A client that follows a job.
 struct Follower {
     jobs: Jobs,
     id: Uuid,

@@ -83,7 +83,6 @@ metrics! {
 
 impl Jobs {
     /// Jobs in a store, of the tenant without a name.
-    #[must_use]
     pub fn new(store: Arc<dyn Store>, pool: Pool) -> Jobs {
         let common = Common {
             store,
@@ -97,7 +96,6 @@ impl Jobs {
     }
 
     /// The jobs of another tenant.
-    #[must_use]
     pub fn for_tenant(&self, tenant: Tenant) -> Jobs {
         Jobs { tenant, common: Arc::clone(&self.common) }
     }
@@ -114,7 +112,6 @@ impl Jobs {
     }
 
     /// The metrics of this process, for all tenants.
-    #[must_use]
     pub fn meters(&self) -> &JobMeters {
         &self.common.meters
     }

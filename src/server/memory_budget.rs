@@ -19,22 +19,16 @@ pub const REQUEST: u64 = 64 * KIB;
 /// A client that listens to events: a page of the history.
 pub const STREAM: u64 = 64 * KIB;
 
-/// What TLS on all connections adds to the bound, bytes.
-#[must_use]
-pub fn tls(connections: &ConnectionLimits) -> u64 {
-    TLS.saturating_mul((connections.most + SPARE_CONNECTIONS) as u64)
-}
-
 /// The bound, bytes.
-#[must_use]
-pub fn memory(connections: &ConnectionLimits, capacity: &Capacity, cache: u64) -> u64 {
+pub fn memory(connections: &ConnectionLimits, capacity: &Capacity, cache: u64, with_tls: bool) -> u64 {
+    let connection = CONNECTION + if with_tls { TLS } else { 0 };
     let requests = (capacity.requests + capacity.queue) as u64;
     PROGRAM
         .saturating_add(cache)
         .saturating_add(capacity.bytes as u64)
         .saturating_add(capacity.small_bytes() as u64)
         .saturating_add(capacity.state_bytes() as u64)
-        .saturating_add(CONNECTION.saturating_mul((connections.most + SPARE_CONNECTIONS) as u64))
+        .saturating_add(connection.saturating_mul((connections.most + SPARE_CONNECTIONS) as u64))
         .saturating_add(REQUEST.saturating_mul(requests))
         .saturating_add(STREAM * STREAMS as u64)
 }

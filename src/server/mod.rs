@@ -35,10 +35,7 @@ const LOG_INTERVAL: Duration = Duration::from_secs(1);
 
 /// Serves on `listener`, by TLS if it is given, the connections that `limiter` admits, until `stop` is done. Then
 /// `end_streams` is called, and other requests may be done within the time that the limits give; what is left then is
-/// refused. Connections that are still open [`GRACE`] later are closed.
-///
-/// # Errors
-/// None at present: a failure to accept a connection is waited out.
+/// refused. Connections that are still open [`GRACE`] later are closed. A failure to accept a connection is waited out.
 pub async fn serve(
     limiter: ConnectionLimiter,
     listener: TcpListener,
@@ -46,7 +43,7 @@ pub async fn serve(
     service: Service,
     stop: impl Future<Output = ()> + Send + 'static,
     end_streams: impl FnOnce(),
-) -> io::Result<()> {
+) {
     let service = Arc::new(service);
     // Every connection holds a receiver: it is notified by it, and counted.
     let (closing, _) = watch::channel(());
@@ -70,13 +67,7 @@ pub async fn serve(
             && logged_at.is_none_or(|last| last.elapsed() >= LOG_INTERVAL)
         {
             let ConnectionCounts { open, spare, refused, closed } = counts;
-            tracing::warn!(
-                open,
-                spare,
-                refused,
-                closed,
-                "all connections are taken: some clients are refused or closed"
-            );
+            tracing::warn!(open, spare, refused, closed, "all connections are taken: some are refused or closed");
             (logged, logged_at) = (counts, Some(Instant::now()));
         }
     }
@@ -94,7 +85,6 @@ pub async fn serve(
         tracing::warn!("connections were still open and have been closed");
         limiter.close_all();
     }
-    Ok(())
 }
 
 /// Whether the client closed the connection before it was accepted.
@@ -123,12 +113,11 @@ fn accept(
     let task = match tls.map(Tls::acceptor) {
         None => tokio::spawn(serve_connection(stream, peer, permit, limits, service, closing)),
         Some(acceptor) => tokio::spawn(async move {
+            let accept = acceptor.accept_with(stream, |tls| tls.set_buffer_limit(Some(PIECE)));
             let accepted = tokio::select! {
-                    accepted = timeout(
-                limits.head, acceptor.accept_with(stream, |tls| tls.set_buffer_limit(Some(PIECE))),
-            ) => accepted,
-                    _ = closing.changed() => return,
-                };
+                accepted = timeout(limits.head, accept) => accepted,
+                _ = closing.changed() => return,
+            };
             match accepted {
                 Ok(Ok(stream)) => serve_connection(stream, peer, permit, limits, service, closing).await,
                 Ok(Err(error)) => tracing::debug!(%error, "a client did not speak TLS as the server does"),
@@ -139,7 +128,6 @@ fn accept(
     limiter.started(number, task.abort_handle());
 }
 
-/// Serves a connection to its end.
 async fn serve_connection<S: AsyncRead + AsyncWrite + Unpin>(
     stream: S,
     peer: IpAddr,

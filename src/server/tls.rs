@@ -3,8 +3,9 @@
 use std::io;
 use std::net::SocketAddr;
 use std::path::PathBuf;
-use std::sync::{Arc, PoisonError, RwLock};
+use std::sync::Arc;
 
+use parking_lot::RwLock;
 use rustls::ServerConfig;
 use rustls::crypto::ring;
 use rustls::pki_types::pem::PemObject as _;
@@ -28,7 +29,7 @@ pub struct TlsFiles {
 #[derive(Clone)]
 pub struct Tls {
     files: TlsFiles,
-    // A std lock: held for a clone of the handle, and never across an await.
+    // Locked for a clone of the handle, and never across an await.
     acceptor: Arc<RwLock<TlsAcceptor>>,
 }
 
@@ -48,13 +49,13 @@ impl Tls {
     /// As [`Tls::open`]; the certificate stays as it was then.
     pub fn reload(&self) -> Result<(), String> {
         let acceptor = read(&self.files)?;
-        *self.acceptor.write().unwrap_or_else(PoisonError::into_inner) = acceptor;
+        *self.acceptor.write() = acceptor;
         Ok(())
     }
 
     /// What accepts a connection now.
     pub(crate) fn acceptor(&self) -> TlsAcceptor {
-        self.acceptor.read().unwrap_or_else(PoisonError::into_inner).clone()
+        self.acceptor.read().clone()
     }
 }
 

@@ -56,7 +56,8 @@ pub(super) struct Cache {
 struct Waiter {
     number: u64,
     waiting_move: Option<WaitingMove>,
-    outcome: oneshot::Sender<WaitOutcome>,
+    // Dropped when another one takes the move.
+    lock: oneshot::Sender<(SessionLock, Option<WaitingMove>)>,
 }
 
 /// A move that may be made by whoever has the session.
@@ -64,20 +65,12 @@ pub(super) struct WaitingMove {
     pub(super) advance: Arc<Advance>,
     /// The sequence that the client expects.
     pub(super) expected: Option<u64>,
-    /// The name of its key.
     pub(super) by: Option<Arc<str>>,
     pub(super) reservation: StorageReservation,
     pub(super) span: Span,
-}
-
-/// What a request that waits gets.
-pub(super) enum WaitOutcome {
-    /// The session, and the move that has waited for it.
-    Locked(SessionLock, Option<WaitingMove>),
-    /// Another one has taken the move: it is stored, or the store has refused those made with it.
-    Answered(Result<Reply, SessionError>),
-    /// Another one has taken the move, and has not made it.
-    NotMade,
+    /// What becomes of it if another one takes it: it is stored, or the store has refused those made with it; nothing if
+    /// it has not been made.
+    pub(super) answer: oneshot::Sender<Option<Result<Reply, SessionError>>>,
 }
 
 /// States that no request uses, and profiles; `bytes` are theirs and those of the states that requests have taken out.
@@ -124,7 +117,8 @@ pub(super) struct QueuePosition {
     cache: Arc<Cache>,
     key: Key,
     number: u64,
-    pub(super) outcome: oneshot::Receiver<WaitOutcome>,
+    /// The session, with the move that has waited for it; an error if another one has taken the move.
+    pub(super) lock: oneshot::Receiver<(SessionLock, Option<WaitingMove>)>,
 }
 
 impl Cache {
@@ -135,13 +129,11 @@ impl Cache {
     }
 
     /// Waits for exclusive use of a session. A dropped future no longer waits.
-    pub(super) async fn lock(self: &Arc<Self>, tenant: &Tenant, id: Uuid) -> Guard {
-        loop {
-            // Nobody gets anything else who waits without a move.
-            if let Ok(WaitOutcome::Locked(lock, _)) = (&mut self.enqueue(tenant, id, None).outcome).await {
-                return lock.guard();
-            }
-        }
+    pub(super) async fn lock(self: &Arc<Self>, tenant: &Tenant, id: Uuid) -> Result<Guard, SessionError> {
+        let locked = (&mut self.enqueue(tenant, id, None).lock).await;
+        // Nobody else takes it from one who waits without a move.
+        let (lock, _) = locked.map_err(|_| SessionError::Broken("a lock was lost".to_owned()))?;
+        Ok(lock.guard())
     }
 
     /// Exclusive use of a session if nobody else has it.
@@ -162,17 +154,17 @@ impl Cache {
         waiting_move: Option<WaitingMove>,
     ) -> QueuePosition {
         let (cache, key) = (Arc::clone(self), (tenant.clone(), id));
-        let (sender, outcome) = oneshot::channel();
+        let (sender, lock) = oneshot::channel();
         let number = self.arrivals.fetch_add(1, Ordering::Relaxed);
         let mut queues = self.queues.lock();
         let is_free = !queues.contains_key(&key);
-        queues.entry(key.clone()).or_default().push_back(Waiter { number, waiting_move, outcome: sender });
+        queues.entry(key.clone()).or_default().push_back(Waiter { number, waiting_move, lock: sender });
         drop(queues);
         if is_free {
             // It goes to whoever has come first.
             drop(SessionLock { cache: Arc::clone(self), key: key.clone() });
         }
-        QueuePosition { cache, key, number, outcome }
+        QueuePosition { cache, key, number, lock }
     }
 
     /// Whether the state of a session is cached.
@@ -303,11 +295,11 @@ impl Guard {
     }
 
     /// Takes the moves at the head of the queue, at most so many, up to whatever else waits there.
-    pub(super) fn take_moves(&self, most: usize) -> Vec<(WaitingMove, oneshot::Sender<WaitOutcome>)> {
+    pub(super) fn take_moves(&self, most: usize) -> Vec<WaitingMove> {
         let mut queues = self.lock.cache.queues.lock();
         let Some(queue) = queues.get_mut(&self.lock.key) else { return Vec::new() };
         let moves = queue.iter().take(most).take_while(|waiter| waiter.waiting_move.is_some()).count();
-        queue.drain(..moves).filter_map(|waiter| Some((waiter.waiting_move?, waiter.outcome))).collect()
+        queue.drain(..moves).filter_map(|waiter| waiter.waiting_move).collect()
     }
 }
 
@@ -359,10 +351,10 @@ impl Drop for SessionLock {
             }
             next
         };
-        if let Some(Waiter { waiting_move, outcome, .. }) = next {
+        if let Some(waiter) = next {
             let lock = SessionLock { cache: Arc::clone(&self.cache), key: self.key.clone() };
             // From one who has just left, the lock comes back and goes on.
-            let _ = outcome.send(WaitOutcome::Locked(lock, waiting_move));
+            let _ = waiter.lock.send((lock, waiter.waiting_move));
         }
     }
 }

@@ -45,7 +45,7 @@ impl Changes {
             let added = Usage::of(1, live.stored_bytes(), receipt.as_ref());
             let reservation = self.replay.reserve_storage(added).await?;
             // A request that finds the new session in the store waits until it is cached.
-            let mut guard = self.replay.common.cache.lock(&self.replay.tenant, live.session.id).await;
+            let mut guard = self.replay.common.cache.lock(&self.replay.tenant, live.session.id).await?;
             let stored = self.replay.common.store.create(live.session.clone(), receipt);
             stored.instrument(otlp::part!("store")).await?;
             reservation.used(added);
@@ -81,7 +81,7 @@ impl Changes {
             let moves = copy.session.sequence * self.replay.common.store.move_bytes();
             let added = Usage::of(1, copy.stored_bytes() + moves + extent.snapshot, receipt.as_ref());
             let reservation = self.replay.reserve_storage(added).await?;
-            let mut new = self.replay.common.cache.lock(&self.replay.tenant, copy.session.id).await;
+            let mut new = self.replay.common.cache.lock(&self.replay.tenant, copy.session.id).await?;
             // The original may have moved on meanwhile in another process: its past stays what it was.
             let stored = self.replay.common.store.fork(id, copy.session.clone(), receipt);
             match stored.instrument(otlp::part!("store")).await {
@@ -150,7 +150,7 @@ impl Changes {
         let mut guard = self.replay.lock(id).await?;
         let found = match &guard.live {
             Some(live) => live.session.sequence,
-            None => self.replay.find_own(id).await?.sequence,
+            None => self.replay.extent(id).await?.sequence,
         };
         let mut at = expected.unwrap_or(found);
         for _ in 0..ATTEMPTS {

@@ -25,7 +25,6 @@ const PAGE: usize = 80;
 /// How long a listener waits for an unreachable store before it tries again.
 const RETRY_DELAY: Duration = Duration::from_secs(1);
 
-/// A client that follows a session.
 struct Follower {
     history: History,
     cycles: ClosedCycles,

@@ -5,30 +5,21 @@ use std::time::Duration;
 
 use jiff::Timestamp;
 
-use crate::store::{Store, StoreError};
+use crate::store::Store;
 
 /// The shortest and the longest period.
 const PERIODS: (Duration, Duration) = (Duration::from_millis(100), Duration::from_secs(60));
 /// An idle session outlives its time by at most this fraction of it, within [`PERIODS`].
 const SHARE: u32 = 10;
 
-/// Deletes sessions that have not moved for `expire_after`, if it is given, and replies past the time of retries.
-/// Returns how many sessions expired.
-///
-/// # Errors
-/// A failure of the store.
-pub async fn purge_expired(store: &dyn Store, expire_after: Option<Duration>) -> Result<u64, StoreError> {
-    let now = Timestamp::now();
-    let idle_since = expire_after.map(|idle| now.checked_sub(idle).unwrap_or(Timestamp::MIN));
-    store.purge_expired(idle_since).await
-}
-
-/// Deletes expired sessions and receipts periodically, and never ends.
+/// Deletes sessions that have not moved for `expire_after`, if it is given, and replies past the time of retries:
+/// periodically, and never ends.
 pub async fn run_expiry_loop(store: Arc<dyn Store>, expire_after: Option<Duration>) {
     let (least, most) = PERIODS;
     let period = expire_after.map_or(most, |idle| (idle / SHARE).clamp(least, most));
     loop {
-        match purge_expired(&*store, expire_after).await {
+        let idle_since = expire_after.map(|idle| Timestamp::now().checked_sub(idle).unwrap_or(Timestamp::MIN));
+        match store.purge_expired(idle_since).await {
             Ok(0) => {}
             Ok(expired) => tracing::info!(expired, "idle contacts have expired"),
             Err(error) => tracing::warn!(%error, "expired contacts could not be deleted; another attempt follows"),

@@ -15,13 +15,14 @@ use uuid::Uuid;
 use crate::admission::Client;
 use crate::otlp;
 use crate::simulation::cost::Work;
-use crate::store::{Record, Reply, StoreError, Usage};
+use crate::store::{Reply, StoreError, Usage};
 use stickslip_wire::session::Advance;
 use stickslip_wire::{Plan, limits};
 
 use super::SessionError;
 use super::attempt::{Done, PIECES_OF_A_MOVE, attempt};
-use super::cache::{Guard, WaitOutcome, WaitingMove};
+use super::cache::{Guard, WaitingMove};
+use super::loaded::LoadedSession;
 use super::replay::Replay;
 
 /// Moves that are made together at most.
@@ -35,15 +36,11 @@ pub(super) enum GroupResult {
     Answered(Result<Reply, SessionError>),
 }
 
-/// Moves under way together.
 struct Group {
     replay: Replay,
     guard: Guard,
-    moves: Vec<TakenMove>,
+    moves: Vec<WaitingMove>,
 }
-
-/// A move that has waited, and where its client awaits what becomes of it.
-type TakenMove = (WaitingMove, oneshot::Sender<WaitOutcome>);
 
 /// Whether a move may be made together with others.
 pub(super) fn may_join(advance: &Advance) -> bool {
@@ -79,131 +76,112 @@ async fn join_queue(
 ) -> Result<GroupResult, SessionError> {
     let reservation = replay.reserve_storage(Usage::of(0, replay.common.store.move_bytes(), None)).await?;
     let (advance, by) = (Arc::clone(advance), by.cloned());
-    let waiting_move = WaitingMove { advance, expected, by, reservation, span: Span::current() };
+    let (answer, answered) = oneshot::channel();
+    let waiting_move = WaitingMove { advance, expected, by, reservation, span: Span::current(), answer };
     let mut position = replay.common.cache.enqueue(&replay.tenant, id, Some(waiting_move));
-    let outcome = match replay.common.pool.wait(&mut position.outcome).await {
+    let locked = match replay.common.pool.wait(&mut position.lock).await {
         Err(busy) if position.leave() => return Err(busy.into()),
-        // Another one has taken it: from then on nothing else says what has become of it.
-        Err(_) => (&mut position.outcome).await,
-        Ok(outcome) => outcome,
+        Err(_) => (&mut position.lock).await,
+        Ok(locked) => locked,
     };
-    let (guard, own) = match outcome {
-        Ok(WaitOutcome::Locked(lock, Some(own))) => (lock.guard(), own),
-        outcome => return resolve(replay, id, outcome).await,
-    };
-    let others = if is_groupable(&guard) { guard.take_moves(GROUP - 1) } else { Vec::new() };
-    if others.is_empty() {
-        return Ok(GroupResult::Locked(guard));
+    if let Ok((lock, own)) = locked {
+        let guard = lock.guard();
+        // If the state is there, and no other process is likely to move the session first.
+        let is_own = guard.live.as_ref().is_some_and(|live| !live.shared);
+        let others = if is_own { guard.take_moves(GROUP - 1) } else { Vec::new() };
+        if others.is_empty() {
+            return Ok(GroupResult::Locked(guard));
+        }
+        let group = Group { replay: replay.clone(), guard, moves: own.into_iter().chain(others).collect() };
+        // In a task of its own: whose client leaves does not take the others with it.
+        tokio::spawn(Client::current().serve(group.make().in_current_span()));
     }
-    let (outcome, answer) = oneshot::channel();
-    let moves = std::iter::once((own, outcome)).chain(others).collect();
-    let group = Group { replay: replay.clone(), guard, moves };
-    // In a task of its own: whose client leaves does not take the others with it.
-    tokio::spawn(Client::current().serve(group.make().in_current_span()));
-    resolve(replay, id, answer.await).await
-}
-
-async fn resolve(
-    replay: &Replay,
-    id: Uuid,
-    outcome: Result<WaitOutcome, oneshot::error::RecvError>,
-) -> Result<GroupResult, SessionError> {
-    match outcome {
-        Ok(WaitOutcome::Locked(lock, _)) => Ok(GroupResult::Locked(lock.guard())),
-        Ok(WaitOutcome::Answered(answer)) => Ok(GroupResult::Answered(answer)),
-        Ok(WaitOutcome::NotMade) => Ok(GroupResult::Locked(replay.lock(id).await?)),
+    match answered.await {
+        Ok(Some(answer)) => Ok(GroupResult::Answered(answer)),
+        Ok(None) => Ok(GroupResult::Locked(replay.lock(id).await?)),
         Err(_) => Err(StoreError::Unavailable("the move was given up with others".to_owned()).into()),
     }
-}
-
-/// Whether the state is there, and no other process is likely to move the session first.
-fn is_groupable(guard: &Guard) -> bool {
-    guard.live.as_ref().is_some_and(|live| !live.shared)
 }
 
 impl Group {
     /// Makes the moves, stores them, and tells each waiting move what has become of its own. The guard is dropped last.
     async fn make(mut self) {
-        let Some(before) = self.guard.live.as_ref().map(|live| live.session.sequence) else {
-            return self.moves.into_iter().for_each(decline);
-        };
-        let Ok((made, records)) = self.compute().await else { return };
-        if records.is_empty() {
-            return;
-        }
         let common = &self.replay.common;
         // Until the store has answered the new state is in doubt, as for a move that is made alone.
-        let live = self.guard.live.take();
+        let Some(live) = self.guard.live.take() else {
+            return self.moves.into_iter().for_each(decline);
+        };
+        let before = live.session.sequence;
+        let Some((mut live, outcomes)) = self.compute(live).await else {
+            return self.moves.into_iter().for_each(decline);
+        };
+        let (mut made, mut records) = (Vec::with_capacity(outcomes.len()), Vec::with_capacity(outcomes.len()));
+        for (taken, done) in self.moves.into_iter().zip(outcomes) {
+            match done {
+                Some(Done { records: more, reply }) => {
+                    records.extend(more);
+                    made.push((taken, reply));
+                }
+                None => decline(taken),
+            }
+        }
+        if records.is_empty() {
+            self.guard.live = Some(live);
+            return;
+        }
         let moves = records.len() as u64;
         let stored = common.store.append(self.guard.id(), before, records, None);
         match stored.instrument(otlp::part!("store")).await {
             Ok(()) => {
                 common.metrics.moves.inc_by(moves);
-                self.guard.live = live.map(|mut live| {
-                    self.replay.common.snapshots.offer(&mut live);
-                    live
-                });
+                common.snapshots.offer(&mut live);
+                self.guard.live = Some(live);
                 let added = Usage::of(0, common.store.move_bytes(), None);
-                for ((waiting_move, outcome), reply) in made {
-                    waiting_move.reservation.used(added);
-                    let _ = outcome.send(WaitOutcome::Answered(Ok(reply)));
+                for (taken, reply) in made {
+                    taken.reservation.used(added);
+                    let _ = taken.answer.send(Some(Ok(reply)));
                 }
             }
             // Nothing has changed: each finds out for itself what is wrong.
             Err(StoreError::Stale { .. } | StoreError::NotFound | StoreError::Expired(_)) => {
                 made.into_iter().for_each(|(taken, _)| decline(taken));
             }
-            Err(error) => made.into_iter().for_each(|((_, outcome), _)| {
-                let _ = outcome.send(WaitOutcome::Answered(Err(error.clone().into())));
+            Err(error) => made.into_iter().for_each(|(taken, _)| {
+                let _ = taken.answer.send(Some(Err(error.clone().into())));
             }),
         }
     }
 
-    /// Makes the moves one after the other. The guard has the state after them, or, if one of them has spoiled it,
-    /// nothing; nothing is to be stored then, and every waiting move has been told to go on alone.
-    async fn compute(&mut self) -> Result<(Vec<(TakenMove, Reply)>, Vec<Record>), ()> {
-        let (stop, _raised_at_the_end) = self.replay.common.pool.deadline();
-        let (mut made, mut records) = (Vec::with_capacity(self.moves.len()), Vec::with_capacity(self.moves.len()));
-        let mut moves = std::mem::take(&mut self.moves).into_iter();
-        while let Some(taken) = moves.next() {
-            let waiting_move = &taken.0;
-            // A refusal counts only once the store has been asked, which its client does alone.
-            let Some(mut live) = self.guard.live.take_if(|live| {
-                waiting_move.expected.is_none_or(|expected| expected == live.session.sequence)
-                    && live.contact.memory_depth() + PIECES_OF_A_MOVE <= limits::MEMORY_DEPTH
-            }) else {
-                decline(taken);
-                continue;
-            };
-            let work = Work { moves: 1, depth: live.contact.memory_depth(), ..Work::default() };
-            let cost = work.cost(live.contact.profile());
-            let (advance, by, stop, span) =
-                (Arc::clone(&waiting_move.advance), waiting_move.by.clone(), stop.clone(), waiting_move.span.clone());
-            let solve = move || {
-                let result = span.in_scope(|| attempt(&mut live, &advance, by.as_ref(), &stop));
-                (live, result)
-            };
-            match self.replay.common.pool.run(cost, solve).await {
-                Ok((live, Ok(Done { records: more, reply }))) => {
-                    self.guard.live = Some(live);
-                    records.extend(more);
-                    made.push((taken, reply));
-                }
-                Ok((live, Err(SessionError::Failure(_)))) => {
-                    self.guard.live = Some(live);
-                    decline(taken);
-                }
-                _ => {
-                    made.into_iter().map(|(taken, _)| taken).chain([taken]).chain(moves).for_each(decline);
-                    return Err(());
-                }
+    /// Makes the moves one after the other. Returns the state after them, and what each has done, unless it is refused;
+    /// nothing if one of them has spoiled the state.
+    async fn compute(&self, mut live: Box<LoadedSession>) -> Option<(Box<LoadedSession>, Vec<Option<Done>>)> {
+        let pool = &self.replay.common.pool;
+        let (stop, _raised_at_the_end) = pool.deadline();
+        let work = Work { moves: self.moves.len(), depth: live.contact.memory_depth(), ..Work::default() };
+        let cost = work.cost(live.contact.profile());
+        let asked = self.moves.iter();
+        let asked =
+            asked.map(|taken| (Arc::clone(&taken.advance), taken.expected, taken.by.clone(), taken.span.clone()));
+        let asked: Vec<_> = asked.collect();
+        let solve = move || {
+            let mut outcomes = Vec::with_capacity(asked.len());
+            for (advance, expected, by, span) in asked {
+                // A refusal counts only once the store has been asked, which its client does alone.
+                let joins = expected.is_none_or(|expected| expected == live.session.sequence)
+                    && live.contact.memory_depth() + PIECES_OF_A_MOVE <= limits::MEMORY_DEPTH;
+                let done = joins.then(|| span.in_scope(|| attempt(&mut live, &advance, by.as_ref(), &stop)));
+                outcomes.push(match done.transpose() {
+                    Err(SessionError::Failure(_)) => None,
+                    done => done.ok()?,
+                });
             }
-        }
-        Ok((made, records))
+            Some((live, outcomes))
+        };
+        pool.run(cost, solve).await.ok().flatten()
     }
 }
 
 /// Leaves a move to its client, who may have left.
-fn decline((_, outcome): TakenMove) {
-    let _ = outcome.send(WaitOutcome::NotMade);
+fn decline(taken: WaitingMove) {
+    let _ = taken.answer.send(None);
 }

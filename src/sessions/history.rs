@@ -22,11 +22,7 @@ impl History {
     /// # Errors
     /// [`SessionError::NotFound`] or [`SessionError::Expired`], or a failure of the store.
     pub async fn sequence(&self, id: Uuid) -> Result<u64, SessionError> {
-        if !self.replay.common.cache.holds(&self.replay.tenant, id) {
-            return Ok(self.replay.find_own(id).await?.sequence);
-        }
-        let heading = self.replay.common.store.heading(id).await;
-        heading.map(|heading| heading.sequence).map_err(|error| self.replay.store_error(id, error))
+        Ok(self.replay.extent(id).await?.sequence)
     }
 
     /// Checks that the first `end` moves of a session are all stored.
@@ -53,7 +49,7 @@ impl History {
     /// [`SessionError::NotFound`] or [`SessionError::Expired`], or a failure of the store.
     pub async fn page(&self, id: Uuid, after: u64, limit: usize) -> Result<HistoryPage, SessionError> {
         if !self.replay.common.cache.holds(&self.replay.tenant, id) {
-            self.replay.find_own(id).await?;
+            self.replay.extent(id).await?;
         }
         self.own_page(id, after, limit).await
     }

@@ -3,7 +3,6 @@
 use std::sync::Arc;
 use std::time::Instant;
 
-use jiff::Timestamp;
 use uuid::Uuid;
 
 use crate::admission::{Reservation, Stop};
@@ -11,7 +10,7 @@ use crate::simulation::bytes::EXPANSION;
 use crate::simulation::cost::Work;
 use crate::simulation::{Failure, Timer};
 use crate::store::{
-    Extent, IdempotentRequest, RECORD_BYTES, Record, RequestKey, Session, StoreError, Tenant, Usage, Whole,
+    Extent, IdempotentRequest, RECORD_BYTES, Record, RequestKey, Session, Snapshot, StoreError, Tenant, Usage, Whole,
 };
 use stickslip_mechanics::Contact;
 use stickslip_wire::{ContactDefinition, limits};
@@ -58,7 +57,7 @@ impl Replay {
     pub(super) async fn lock(&self, id: Uuid) -> Result<Guard, SessionError> {
         match self.common.cache.try_lock(&self.tenant, id) {
             Some(guard) => Ok(guard),
-            None => Ok(Box::pin(self.common.pool.wait(self.common.cache.lock(&self.tenant, id))).await?),
+            None => Box::pin(self.common.pool.wait(self.common.cache.lock(&self.tenant, id))).await?,
         }
     }
 
@@ -76,7 +75,7 @@ impl Replay {
     /// The session as it is stored: with what other processes have done to it up to now.
     pub(super) async fn current<'a>(&self, guard: &'a mut Guard) -> Result<&'a mut LoadedSession, SessionError> {
         if let Some(cached) = guard.live.as_ref().map(|live| live.session.sequence) {
-            let stored = self.common.store.heading(guard.id()).await;
+            let stored = self.common.store.extent(guard.id()).await;
             let stored = stored.map_err(|error| self.store_failure(guard, error))?;
             if let Some(live) = &mut guard.live {
                 live.session.label = stored.label;
@@ -98,18 +97,14 @@ impl Replay {
         let mut moved = false;
         while let Some(sequence) = guard.live.as_ref().map(|live| live.session.sequence).filter(|at| *at < last) {
             let limit = usize::try_from(last - sequence).map_or(PAGE, |left| left.min(PAGE));
-            let page = match self.common.store.history(id, sequence, limit).await {
-                Ok(page) => page,
-                Err(error) => return Err(self.store_failure(guard, error)),
-            };
-            let last_page = page.len() < limit;
-            if !page.is_empty()
-                && let Some(live) = guard.live.take()
-            {
+            let page = self.common.store.history(id, sequence, limit).await;
+            let page = page.map_err(|error| self.store_failure(guard, error))?;
+            let is_last = page.len() < limit;
+            if let Some(live) = guard.live.take_if(|_| !page.is_empty()) {
                 guard.live = Some(self.follow(guard, live, page).await?);
                 moved = true;
             }
-            if last_page {
+            if is_last {
                 break;
             }
         }
@@ -129,62 +124,49 @@ impl Replay {
             Err(error) => return Err(self.store_error(id, error)),
         };
         guard.held = self.common.pool.reserve_states(bytes_to_load(&extent)).await?;
-        let (sequence, updated_at) = match whole {
-            Some(whole) => self.load_whole(guard, whole).await?,
-            None => self.load_in_parts(guard).await?,
+        let (mut live, updated_at) = match whole {
+            Some(Whole { session, moves }) => {
+                let updated_at = session.updated_at;
+                let first = self.first_state(guard, session).await?;
+                (self.follow(guard, first, moves).await?, updated_at)
+            }
+            None => {
+                // First: taken later, it might be of a move that the session found has not made yet.
+                let snapshot = self.common.store.snapshot(id).await;
+                let session = self.find_own(id).await?;
+                let (last, updated_at) = (session.sequence, session.updated_at);
+                if matches!(&snapshot, Ok(Some(snapshot)) if snapshot.sequence > last) {
+                    return Err(damaged(id, &format_args!("move {} is missing", last + 1)));
+                }
+                (self.replayed(guard, session, snapshot, last).await?, updated_at)
+            }
         };
-        if let Some(live) = guard.live.as_mut() {
-            let reached = live.session.sequence;
-            if reached < sequence {
-                guard.live = None;
-                return Err(damaged(id, &format_args!("moves are missing after {reached}")));
-            }
-            if reached == sequence {
-                live.session.updated_at = updated_at;
-            }
-            live.shared = false;
-            // The state, and a copy of it, which shares the profile.
-            guard.held.shrink(2 * live.bytes() + live.shape_bytes());
-        }
+        live.session.updated_at = updated_at;
+        self.common.snapshots.offer(&mut live);
+        // The state, and a copy of it, which shares the profile.
+        guard.held.shrink(2 * live.bytes() + live.shape_bytes());
+        guard.live = Some(live);
         self.common.metrics.open.observe(begin.elapsed().as_secs_f64());
         Ok(())
     }
 
-    /// Replays a session from what one read of the store has returned. Returns the sequence that the store named, and
-    /// when the session last moved.
-    async fn load_whole(&self, guard: &mut Guard, whole: Whole) -> Result<(u64, Timestamp), SessionError> {
-        let Whole { session, moves } = whole;
-        let last = (session.sequence, session.updated_at);
-        let mut live = self.first_state(guard, session).await?;
-        live.session.sequence = 0;
-        if !moves.is_empty() {
-            live = self.follow(guard, live, moves).await?;
-        }
-        guard.live = Some(live);
-        Ok(last)
-    }
-
-    /// The same of a session that may be large: its snapshot, then its moves, page by page.
-    async fn load_in_parts(&self, guard: &mut Guard) -> Result<(u64, Timestamp), SessionError> {
-        let id = guard.id();
-        let mut session = self.find_own(id).await?;
-        let snapshot = self.common.store.snapshot(id).await;
-        // The session may have moved on in between.
-        if matches!(&snapshot, Ok(Some(snapshot)) if snapshot.sequence > session.sequence) {
-            session = self.find_own(id).await?;
-        }
-        let last = (session.sequence, session.updated_at);
-        if let Ok(Some(ahead)) = &snapshot
-            && ahead.sequence > session.sequence
-        {
-            return Err(damaged(id, &format_args!("move {} is missing", session.sequence + 1)));
-        }
+    /// A stored session after its move `last`, from its snapshot on.
+    async fn replayed(
+        &self,
+        guard: &mut Guard,
+        session: Session,
+        snapshot: Result<Option<Snapshot>, StoreError>,
+        last: u64,
+    ) -> Result<Box<LoadedSession>, SessionError> {
+        let id = session.id;
         let mut live = self.first_state(guard, session).await?;
         (live.contact, live.session.sequence) =
-            self.common.snapshots.load(&mut guard.loading, snapshot, live.contact, last.0).await?;
-        guard.live = Some(live);
-        self.catch_up(guard, last.0).await?;
-        Ok(last)
+            self.common.snapshots.load(&mut guard.loading, snapshot, live.contact, last).await?;
+        while live.session.sequence < last {
+            let page = self.page(id, live.session.sequence, last).await?;
+            live = self.follow(guard, live, page).await?;
+        }
+        Ok(live)
     }
 
     /// A copy of the session after so many of its moves, or after all of them, and the memory of a state that is made
@@ -218,18 +200,7 @@ impl Replay {
             return Ok((now.clone(), held));
         }
         let snapshot = self.common.store.snapshot(id).await;
-        let mut live = self.first_state(guard, session).await?;
-        (live.contact, live.session.sequence) =
-            self.common.snapshots.load(&mut guard.loading, snapshot, live.contact, wanted).await?;
-        while live.session.sequence < wanted {
-            let page = self.page(id, live.session.sequence, wanted).await.inspect_err(|error| {
-                if matches!(error, SessionError::NotFound(_) | SessionError::Expired(_)) {
-                    guard.live = None;
-                }
-            })?;
-            live = self.follow(guard, live, page).await?;
-        }
-        Ok((live, held))
+        Ok((self.replayed(guard, session, snapshot, wanted).await?, held))
     }
 
     /// The first of the moves of a session after the move `after`, up to the move `last`, which is after it: as many as
@@ -265,7 +236,6 @@ impl Replay {
         first.map_err(|error| damaged(id, &error))
     }
 
-    /// Applies stored moves.
     async fn follow(
         &self,
         guard: &mut Guard,
@@ -323,6 +293,15 @@ impl Replay {
         Ok(self.common.pool.reserve_states(bytes).await?)
     }
 
+    /// What can be known of a session without reading it, if it belongs to the tenant.
+    pub(super) async fn extent(&self, id: Uuid) -> Result<Extent, SessionError> {
+        match self.common.store.extent(id).await {
+            Ok(extent) if extent.tenant == self.tenant => Ok(extent),
+            Ok(_) => Err(SessionError::NotFound(id)),
+            Err(error) => Err(self.store_error(id, error)),
+        }
+    }
+
     /// The session as it is stored, if it belongs to the tenant.
     pub(super) async fn find_own(&self, id: Uuid) -> Result<Session, SessionError> {
         match self.common.store.find(id).await {
@@ -340,7 +319,6 @@ impl Replay {
         self.store_error(guard.id(), error)
     }
 
-    /// Converts a failure of the store.
     pub(super) fn store_error(&self, id: Uuid, error: StoreError) -> SessionError {
         match error {
             StoreError::Expired(tenant) if tenant == self.tenant => SessionError::Expired(id),

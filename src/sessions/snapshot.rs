@@ -22,7 +22,6 @@ const AT_ONCE: usize = 2;
 /// Bytes of the checksum at the end.
 const CHECKSUM: usize = 4;
 
-/// The snapshots of a store.
 pub(super) struct Snapshots {
     store: Arc<dyn Store>,
     pool: Pool,
@@ -99,24 +98,13 @@ fn checked(bytes: &[u8]) -> Option<&[u8]> {
     (crc32fast::hash(state) == u32::from_le_bytes(*checksum)).then_some(state)
 }
 
-/// The result of comparing a snapshot with a replay.
-pub(super) enum SnapshotState {
-    /// It is equal to the state, to the last bit.
-    Sound,
-    /// Another engine made it; it is never read.
-    Foreign,
-    /// It is damaged; it is never read.
-    Damaged,
-    /// It holds another state.
-    Wrong,
-}
-
-/// Compares a snapshot with the state that it should be.
-pub(super) fn compare(state: &Contact, snapshot: &[u8]) -> SnapshotState {
+/// Compares a snapshot with the state that it should be, to the last bit. Returns whether this engine made it, as others
+/// are never read; or what is wrong with it.
+pub(super) fn compare(state: &Contact, snapshot: &[u8]) -> Result<bool, &'static str> {
     match checked(snapshot) {
-        None => SnapshotState::Damaged,
-        Some(packed) if !Contact::is_current_packing(packed) => SnapshotState::Foreign,
-        Some(_) if snapshot == with_checksum(state) => SnapshotState::Sound,
-        Some(_) => SnapshotState::Wrong,
+        None => Err("is damaged; it is not used"),
+        Some(packed) if !Contact::is_current_packing(packed) => Ok(false),
+        Some(_) if snapshot == with_checksum(state) => Ok(true),
+        Some(_) => Err("is not the state after that move"),
     }
 }

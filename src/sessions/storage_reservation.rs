@@ -34,17 +34,14 @@ struct ClientUsage {
     known: Mutex<Known>,
 }
 
-/// What is known of it.
 #[derive(Default)]
 struct Known {
-    /// As it was counted, with what has been stored since.
-    usage: Option<Usage>,
-    /// When it was counted, and how long that took.
-    counted: Option<(Instant, Duration)>,
+    /// As it was counted, when, and how long that took.
+    counted: Option<(Usage, Instant, Duration)>,
+    /// What has been stored since the last count began, whether that has ended or not.
+    stored: Usage,
     /// When the store last failed to count, if it has not counted since.
     failed: Option<Instant>,
-    /// What has been stored since a count began that has not ended.
-    meanwhile: Usage,
     /// What changes under way will add at most.
     pending: Usage,
 }
@@ -99,22 +96,17 @@ impl UsageByTenant {
         let Some(client) = client else { return };
         // A count under way may know of it already, and the next one does.
         let Ok(_counting) = client.counting.try_lock() else { return };
-        let mut known = client.known.lock();
-        known.usage = known.usage.map(|usage| Usage {
-            contacts: usage.contacts.saturating_sub(deleted.contacts),
-            bytes: usage.bytes.saturating_sub(deleted.bytes),
-        });
+        if let Some((usage, ..)) = &mut client.known.lock().counted {
+            usage.contacts = usage.contacts.saturating_sub(deleted.contacts);
+            usage.bytes = usage.bytes.saturating_sub(deleted.bytes);
+        }
     }
 }
 
 impl ClientUsage {
     /// Whether the last count is older than this, or there is none. It counts as younger if counting takes long.
     fn is_older_than(&self, age: Duration) -> bool {
-        self.known.lock().counted.is_none_or(|(at, took)| at.elapsed() >= age.max(took * COUNTING_SHARE))
-    }
-
-    fn has_failed_since(&self, begin: Instant) -> bool {
-        self.known.lock().failed.is_some_and(|at| at >= begin)
+        self.known.lock().counted.is_none_or(|(_, at, took)| at.elapsed() >= age.max(took * COUNTING_SHARE))
     }
 
     /// Reserves by the last count, or names the quota that is exceeded; nothing if there has been no count.
@@ -123,9 +115,9 @@ impl ClientUsage {
         pool: &Pool,
         requested: Usage,
     ) -> Option<Result<StorageReservation, Quota>> {
-        let limits = pool.quotas().limits();
+        let limits = &pool.quotas().limits;
         let mut known = self.known.lock();
-        let all = sum(sum(known.usage?, known.pending), requested);
+        let all = [known.stored, known.pending, requested].into_iter().fold(known.counted?.0, sum);
         let fits = |most: usize, all: u64, requested: u64| requested == 0 || all <= most as u64;
         if !fits(limits.contacts, all.contacts, requested.contacts) {
             return Some(Err(Quota::Contacts));
@@ -148,7 +140,7 @@ impl ClientUsage {
         let begin = Instant::now();
         let _counting = pool.wait(self.counting.lock()).await?;
         // Whoever had the lock before may have counted, or may have waited in vain for a store that does not answer.
-        if self.has_failed_since(begin) {
+        if self.known.lock().failed.is_some_and(|at| at >= begin) {
             return Err(StoreError::Unavailable("what the tenant has stored cannot be counted".to_owned()).into());
         }
         if self.is_older_than(RECOUNT_FULL) {
@@ -163,20 +155,23 @@ impl ClientUsage {
 
     async fn count(&self, store: &dyn Store, tenant: &Tenant) -> Result<(), SessionError> {
         let begin = Instant::now();
-        self.known.lock().meanwhile = Usage::default();
+        {
+            let mut known = self.known.lock();
+            let stored = std::mem::take(&mut known.stored);
+            if let Some((usage, ..)) = &mut known.counted {
+                *usage = sum(*usage, stored);
+            }
+        }
         let counted = store.usage(tenant).await;
         let mut known = self.known.lock();
         known.failed = counted.is_err().then(Instant::now);
-        let counted = counted?;
-        // The store may have counted some of it: rather too much than too little.
-        known.usage = Some(sum(counted, known.meanwhile));
-        known.counted = Some((begin, begin.elapsed()));
+        // The store may have counted some of what is stored meanwhile: rather too much than too little.
+        known.counted = Some((counted?, begin, begin.elapsed()));
         Ok(())
     }
 }
 
 impl StorageReservation {
-    /// Bytes that are reserved.
     pub(super) fn bytes(&self) -> u64 {
         self.reserved.bytes
     }
@@ -184,8 +179,7 @@ impl StorageReservation {
     /// The change has been stored, and has added so much.
     pub(super) fn used(self, added: Usage) {
         let mut known = self.client.known.lock();
-        known.usage = known.usage.map(|usage| sum(usage, added));
-        known.meanwhile = sum(known.meanwhile, added);
+        known.stored = sum(known.stored, added);
     }
 }
 

@@ -61,7 +61,7 @@ pub(super) fn run<S: Solver>(
     reason: &str,
     stop: &Stop,
 ) -> Result<SimulateReply, Failure> {
-    let summary = solver.summary();
+    let summary = solver.exact().initial_summary();
     let protocol = equal_peaks(&simulation.plan, &solver)?;
     let mut largest = summary.contact_radius;
     let all = simulation.steps == Steps::All;
@@ -294,7 +294,7 @@ pub fn residual<S: Solver>(solver: &S, stop: &Stop) -> Result<Residual, Failure>
     needs_stress_field(solver.exact(), "/residual")?;
     check_search(solver.exact().profile(), solver.depth(), stop)?;
     match solver.residual(&|| stop.check().is_ok()) {
-        Some(residual) => Ok(Residual::new(residual, solver.unit_shear())),
+        Some(residual) => Ok(Residual::new(residual, solver.exact().summary().unit_shear())),
         None => Err(Failure::at("", Cause::Stopped).unless_interrupted(stop, "")),
     }
 }

@@ -1,7 +1,7 @@
 //! The interface that the exact solver and the spring foundation share.
 
 use stickslip_mechanics::protocol::{self, EqualPeaks};
-use stickslip_mechanics::{Contact, ContactSummary, Error, ErrorEstimate, Move, Residual, Springs, State};
+use stickslip_mechanics::{Contact, Error, ErrorEstimate, Move, Residual, Springs, State};
 use stickslip_wire::{Field, SolverKind};
 
 /// A contact that can be moved and whose fields can be read. What a solver does not define is that of its exact
@@ -19,11 +19,6 @@ pub trait Solver {
     /// # Errors
     /// What the mechanics has no answer to, and [`Error::Interrupted`].
     fn apply(&mut self, step: &Move, tolerance: f64, go_on: &dyn Fn() -> bool) -> Result<(), Error>;
-
-    /// The summary of the definition.
-    fn summary(&self) -> ContactSummary {
-        self.exact().initial_summary()
-    }
 
     /// The state after the last move.
     fn state(&self) -> State {
@@ -70,11 +65,6 @@ pub trait Solver {
     /// The extrema of the shear stress, if `go_on` has not ended the search for them.
     fn residual(&self, go_on: &dyn Fn() -> bool) -> Option<Residual> {
         self.exact().residual_while(go_on)
-    }
-
-    /// mu p_max at the present load, Pa, or mu times the mean pressure where p_max is infinite.
-    fn unit_shear(&self) -> f64 {
-        self.exact().summary().unit_shear()
     }
 
     /// Estimated errors of force and stress, relative to μ F_N and μ p_max.

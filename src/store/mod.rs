@@ -5,6 +5,7 @@
 //! [`sqlite`] keeps it in a file, and [`postgres`] in a database that many processes share. [`open()`] chooses by the
 //! URL.
 
+mod batch;
 pub mod changes;
 pub mod commits;
 pub mod idempotency;
@@ -46,13 +47,11 @@ pub struct Tenant(Arc<str>);
 
 impl Tenant {
     /// The tenant of a name.
-    #[must_use]
     pub fn new(name: &str) -> Tenant {
         Tenant(name.into())
     }
 
     /// The name.
-    #[must_use]
     pub fn name(&self) -> &str {
         &self.0
     }
@@ -77,15 +76,6 @@ pub struct Session {
     pub updated_at: Timestamp,
 }
 
-/// What can change of a session.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Heading {
-    /// The number of its moves.
-    pub sequence: u64,
-    /// Its label.
-    pub label: Option<String>,
-}
-
 /// A move as it is stored, with the state after it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Record {
@@ -107,7 +97,6 @@ pub struct Record {
 
 impl Record {
     /// What was measured beside what the contact predicts, if it is an observation.
-    #[must_use]
     pub fn observation(&self) -> Option<ObservedForce> {
         self.measured.map(|Measured { force, at }| ObservedForce::new(force, self.state.force, at))
     }
@@ -136,7 +125,6 @@ pub struct RequestKey {
 
 impl RequestKey {
     /// The same key as that of a tenant. No key holds a space, so that the keys of two tenants always differ.
-    #[must_use]
     pub fn for_tenant(self, tenant: &Tenant) -> RequestKey {
         match tenant.name() {
             "" => self,
@@ -145,7 +133,6 @@ impl RequestKey {
     }
 
     /// Whether it is a key of this tenant.
-    #[must_use]
     pub fn is_of(&self, tenant: &Tenant) -> bool {
         self.key.split_once(' ').map_or("", |(name, _)| name) == tenant.name()
     }
@@ -173,7 +160,6 @@ pub struct Receipt {
 
 impl Receipt {
     /// Bytes that it takes in the store.
-    #[must_use]
     pub fn bytes(&self) -> u64 {
         RECEIPT_OVERHEAD + self.reply.body.len() as u64 + 2 * self.request.key.len() as u64
     }
@@ -188,13 +174,16 @@ pub struct Snapshot {
     pub state: Vec<u8>,
 }
 
-/// What can be known of a session before it is read: whose it is, and how much there is to read.
+/// What can be known of a session before it is read: whose it is, how much there is to read, and all that can change
+/// of it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Extent {
     /// Its tenant.
     pub tenant: Tenant,
     /// How many moves it has made.
     pub sequence: u64,
+    /// Its label.
+    pub label: Option<String>,
     /// Bytes of its definition as JSON.
     pub definition: u64,
     /// Bytes of its snapshot, if there is one.
@@ -225,7 +214,6 @@ pub struct Usage {
 
 impl Usage {
     /// What a change adds: contacts, bytes, and those of the reply that is kept of it.
-    #[must_use]
     pub fn of(contacts: u64, bytes: u64, receipt: Option<&Receipt>) -> Usage {
         Usage { contacts, bytes: bytes + receipt.map_or(0, Receipt::bytes) }
     }
@@ -238,24 +226,20 @@ pub const RECEIPT_OVERHEAD: u64 = 256;
 
 /// Why a call to a store failed. Nothing has changed then, except perhaps after
 /// [`StoreError::Unavailable`] and [`StoreError::Failed`].
+#[expect(missing_docs, reason = "the messages say the rest")]
 #[derive(Clone, Debug, thiserror::Error)]
 pub enum StoreError {
-    /// The session was not found.
     #[error("there is no such contact")]
     NotFound,
     /// There was such a session, of this tenant; it has expired.
     #[error("the contact has expired")]
     Expired(Tenant),
-    /// The session has another sequence than expected.
+    /// That is not the expected sequence.
     #[error("the contact is at sequence {found}")]
-    Stale {
-        /// Its sequence.
-        found: u64,
-    },
+    Stale { found: u64 },
     /// Another request has used the idempotency key meanwhile.
     #[error("the idempotency key has been used")]
     KeyTaken,
-    /// The idempotency key belongs to another request.
     #[error("the idempotency key has been used for another request")]
     KeyReused,
     /// The tenant has as many jobs as it may; the text says which limit is reached.
@@ -263,12 +247,7 @@ pub enum StoreError {
     TooManyJobs(String),
     /// Moves of a contact are missing, or cannot be made again: whatever is shown of it might be wrong.
     #[error("contact {contact}: {what}")]
-    Damaged {
-        /// The contact.
-        contact: Uuid,
-        /// What is wrong with it.
-        what: String,
-    },
+    Damaged { contact: Uuid, what: String },
     /// There is no room left. Nothing has changed.
     #[error("the storage is full: {0}")]
     Full(String),
@@ -314,9 +293,6 @@ pub trait Store: JobStore {
 
     /// The session.
     async fn find(&self, id: Uuid) -> Result<Session>;
-
-    /// The sequence of a session and its label: all that a caller who has the rest cached needs to ask.
-    async fn heading(&self, id: Uuid) -> Result<Heading>;
 
     /// At most `limit` sessions of a tenant, or of all tenants, with identifiers greater than `after`, in order; of
     /// those alone whose label contains `label`, whatever the case of ASCII letters. Without their definitions: a page

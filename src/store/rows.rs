@@ -9,7 +9,7 @@ use serde::de::IntoDeserializer;
 use serde::de::value::Error as NameError;
 use uuid::Uuid;
 
-use super::{Heading, Job, Measured, Receipt, Record, Reply, RequestKey, Session, Snapshot, StoreError, Tenant};
+use super::{Extent, Job, Measured, Receipt, Record, Reply, RequestKey, Session, Snapshot, StoreError, Tenant};
 use stickslip_wire::{Move, Regime, SessionSummary, State};
 
 /// A type that every database reads by itself.
@@ -58,9 +58,15 @@ pub(super) fn summary<R: RowReader>(row: &mut R) -> Result<SessionSummary, R::Er
     })
 }
 
-/// Sequence and label.
-pub(super) fn heading<R: RowReader>(row: &mut R) -> Result<Heading, R::Error> {
-    Ok(Heading { sequence: row.count()?, label: row.next()? })
+/// Tenant, sequence, label, and the bytes of definition and snapshot.
+pub(super) fn extent<R: RowReader>(row: &mut R) -> Result<Extent, R::Error> {
+    Ok(Extent {
+        tenant: tenant(row)?,
+        sequence: row.count()?,
+        label: row.next()?,
+        definition: row.count()?,
+        snapshot: row.count()?,
+    })
 }
 
 /// The columns of [`summary`], definition and tenant.

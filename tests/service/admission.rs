@@ -83,7 +83,7 @@ async fn small_needs_do_not_wait_behind_large_ones() {
 
 #[test]
 fn work_ends_with_the_guard() {
-    let (stop, guard) = Stop::within(LONGEST_WORK);
+    let (stop, guard) = Stop::within(LONGEST_WORK, Duration::ZERO);
     assert_eq!(stop.check(), Ok(()));
     drop(guard);
     assert_eq!(stop.check(), Err(Interrupted::Abandoned));
@@ -92,7 +92,7 @@ fn work_ends_with_the_guard() {
 #[test]
 fn the_time_limit_runs_from_the_first_check() {
     let allowed = Duration::from_millis(20);
-    let (stop, _guard) = Stop::within(allowed);
+    let (stop, _guard) = Stop::within(allowed, Duration::ZERO);
     std::thread::sleep(2 * allowed);
     assert_eq!(stop.check(), Ok(()));
     std::thread::sleep(2 * allowed);
@@ -107,7 +107,7 @@ fn client(number: u8) -> Client {
 fn patient(ended: &Arc<AtomicBool>) -> impl Fn() -> bool + Clone + Send + Sync + 'static {
     let ended = Arc::clone(ended);
     move || {
-        let (stop, _guard) = Stop::within(Duration::from_secs(20));
+        let (stop, _guard) = Stop::within(Duration::from_secs(20), Duration::ZERO);
         while !ended.load(Ordering::Relaxed) {
             if stop.check().is_err() {
                 return false;

@@ -70,6 +70,8 @@ pub fn cases() -> Vec<(&'static str, Vec<u8>, u16)> {
         ("a header without a name", head(&["GET /healthz HTTP/1.1", "Host: localhost", ": b"]), 400),
         ("a header without a colon", head(&["GET /healthz HTTP/1.1", "Host: localhost", "b"]), 400),
         ("two hosts", head(&["GET /healthz HTTP/1.1", "Host: localhost", "Host: y"]), 400),
+        ("two hosts to delete", head(&["DELETE /contacts/7 HTTP/1.1", "Host: localhost", "Host: y"]), 400),
+        ("two hosts with a body", simulate(&["Host: y", "Content-Length: 2"], b"{}"), 400),
         ("no host", head(&["GET /healthz HTTP/1.1", "A: b"]), 400),
         ("two types", simulate(&["Content-Type: text/plain", "Content-Length: 2"], b"{}"), 400),
         (
@@ -169,6 +171,20 @@ async fn a_body_that_is_announced_may_come_and_need_not() {
     assert_eq!(service.exchange(&too_long).await.statuses, [413]);
     let sent = simulate(&["Expect: 100-continue", "Content-Length: 2"], b"{}");
     assert_eq!(service.exchange(&sent).await.statuses.last(), Some(&422));
+}
+
+/// The other limits are longer than the test waits: what closes the connection is the reply.
+#[tokio::test]
+async fn a_body_that_stalls_ends_its_connection() {
+    let service = Service::start(&["--body-time", "200ms", "--head-time", "1h", "--idle-time", "1h"]);
+    for stalled in [
+        simulate(&["Content-Length: 20"], b"{\"contact\":"),
+        simulate(&["Transfer-Encoding: chunked"], b"ff\r\n{\"contact\":"),
+    ] {
+        let answer = service.exchange(&stalled).await;
+        assert_eq!(answer.statuses, [408]);
+        assert!(answer.text.to_ascii_lowercase().contains("\r\nconnection: close\r\n"), "{}", answer.text);
+    }
 }
 
 #[tokio::test]

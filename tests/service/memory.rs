@@ -59,7 +59,7 @@ async fn cold_contacts_that_are_asked_for_at_once_stay_within_the_memory_bound()
     let capacity =
         Capacity { requests: 100, queue: 100, bytes: 256 * MIB, wait: Duration::from_secs(60), ..Capacity::default() };
     let connections = ConnectionLimits { most: 200, ..ConnectionLimits::default() };
-    let bound = memory_budget::memory(&connections, &capacity, MIB as u64) as usize;
+    let bound = memory_budget::memory(&connections, &capacity, MIB as u64, false) as usize;
     assert!(service.log().contains(&format!("memory_bound={bound}")), "{}", service.log());
     let peak = service.peak();
     println!(

@@ -106,7 +106,8 @@ async fn two_thousand_slow_clients_use_little_memory_and_delay_no_others() {
     join_all(slow).await;
     let capacity = Capacity::default();
     // Beside what the bound allows for large bodies, of which there are none here.
-    let allowed = memory_budget::memory(&ConnectionLimits::default(), &capacity, 16 << 20) as usize - capacity.bytes;
+    let allowed =
+        memory_budget::memory(&ConnectionLimits::default(), &capacity, 16 << 20, false) as usize - capacity.bytes;
     let peak = service.peak();
     println!("{SLOW} slow clients: at most {} MiB, {} KiB each", peak / MIB, peak / 1024 / SLOW);
     assert!(peak < allowed && peak < 150 * MIB, "{peak} of {allowed}");
@@ -200,7 +201,8 @@ async fn a_flood_of_ten_times_the_capacity_is_survived() {
     let capacity = Capacity { requests: 16, queue: 32, bytes: 256 * MIB, ..Capacity::default() };
     // What was created is kept in memory by this store, some 4 KiB each.
     let kept = good.load(Ordering::Relaxed) * 4 * 1024;
-    let (peak, allowed) = (service.peak(), memory_budget::memory(&connections, &capacity, 16 << 20) as usize + kept);
+    let (peak, allowed) =
+        (service.peak(), memory_budget::memory(&connections, &capacity, 16 << 20, false) as usize + kept);
     println!(
         "flood: {} served, {} refused, at most {} MiB",
         good.load(Ordering::Relaxed),
@@ -241,7 +243,7 @@ async fn large_bodies_wait_for_memory_or_are_refused() {
     assert!(read > 0 && refused > 0, "{read} read, {refused} refused");
     let capacity = Capacity { bytes: 256 * MIB, ..Capacity::default() };
     let connections = ConnectionLimits { most: 60, ..ConnectionLimits::default() };
-    let (peak, allowed) = (service.peak(), memory_budget::memory(&connections, &capacity, 16 << 20) as usize);
+    let (peak, allowed) = (service.peak(), memory_budget::memory(&connections, &capacity, 16 << 20, false) as usize);
     println!("large bodies: {read} read, {refused} refused, at most {} MiB", peak / MIB);
     assert!(peak < allowed, "{peak} of {allowed}");
     assert!(served(&service, FLOOD, &post("/simulate", &sound_simulation())).await);

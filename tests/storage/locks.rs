@@ -13,7 +13,8 @@ use common::{Server, ball, until};
 use futures::future::join_all;
 use reqwest::{Method, StatusCode};
 use serde_json::{Value, json};
-use stickslip::sessions::CAPACITY;
+use stickslip::admission::{Capacity, Pool, QuotaLimits};
+use stickslip::sessions::{CAPACITY, Sessions};
 use stickslip::store::{ChunkResult, Job, JobLimits, JobStore as _, PostgresStore, Session, Store, StoreError, Tenant};
 use tokio_postgres::{Client, NoTls};
 use uuid::Uuid;
@@ -218,7 +219,7 @@ async fn changes_that_wait_for_rows_hold_no_connection() {
     };
     let reads = async {
         for id in ids.iter().chain(&ids) {
-            assert_eq!(soon(store.heading(*id)).await.unwrap().label, None);
+            assert_eq!(soon(store.extent(*id)).await.unwrap().label, None);
         }
         // A copy needs no lock.
         soon(store.fork(ids[0], session(None), None)).await.unwrap();
@@ -233,7 +234,7 @@ async fn changes_that_wait_for_rows_hold_no_connection() {
         assert!(matches!(refused, Err(StoreError::Locked(_))), "{refused:?}");
     }
     let free = async {
-        soon(store.heading(ids[0])).await.unwrap();
+        soon(store.extent(ids[0])).await.unwrap();
         other.batch_execute("COMMIT").await.unwrap();
     };
     let (renamed, deleted, saved, ()) = futures::join!(
@@ -243,10 +244,46 @@ async fn changes_that_wait_for_rows_hold_no_connection() {
         free
     );
     assert!(renamed.is_ok() && deleted.is_ok() && saved.is_ok(), "{renamed:?} {deleted:?} {saved:?}");
-    assert_eq!(store.heading(ids[0]).await.unwrap().label.as_deref(), Some("new"));
+    assert_eq!(store.extent(ids[0]).await.unwrap().label.as_deref(), Some("new"));
     assert!(matches!(store.find(ids[1]).await, Err(StoreError::NotFound)));
     assert_eq!(store.job(job.id).await.unwrap().done, 1);
     assert!(store.check_integrity().await.unwrap().is_empty());
+}
+
+/// A creation that was under way when another replica made the same one, and that the quota refuses for that reason: it
+/// gets the reply to the other.
+#[tokio::test(flavor = "multi_thread")]
+async fn a_creation_that_fills_the_quota_and_is_sent_twice_has_one_reply() {
+    let url = Cluster::shared().database().await;
+    let replica = async || {
+        let quotas = QuotaLimits { contacts: 2, ..QuotaLimits::default() };
+        let pool = Pool::new(Capacity { quotas, ..Capacity::default() });
+        let store = Arc::new(PostgresStore::open(&url).await.unwrap());
+        Server::over(Sessions::new(store, pool.clone(), CAPACITY), pool).await
+    };
+    let (here, there, other) = (replica().await, replica().await, connected(&url).await);
+    let text = ball().to_string();
+    let create = async |server: &Server| {
+        let headers = [("idempotency-key", "once")];
+        let made = server.send(Method::POST, "/contacts", Some(&text), &headers).await;
+        (made.status(), made.text().await.unwrap())
+    };
+    // This one has counted what is stored; the other has to, which takes this table.
+    here.contact().await;
+    other.batch_execute("BEGIN; LOCK TABLE snapshots IN ACCESS EXCLUSIVE MODE").await.unwrap();
+    let waits = "SELECT 1 FROM pg_locks JOIN pg_database ON pg_database.oid = database
+        WHERE NOT granted AND datname = current_database() AND relation = 'snapshots'::regclass";
+    let first = async {
+        until("it counts", async || (!other.query(waits, &[]).await.unwrap().is_empty()).then_some(())).await;
+        let made = create(&here).await;
+        other.batch_execute("COMMIT").await.unwrap();
+        made
+    };
+    let (second, first) = futures::join!(create(&there), first);
+    assert_eq!((second.0, &second), (StatusCode::CREATED, &first));
+    for server in [&here, &there] {
+        assert_eq!(server.post("/contacts", &ball()).await.status(), StatusCode::TOO_MANY_REQUESTS);
+    }
 }
 
 fn job(points: u64) -> Job {
@@ -316,7 +353,7 @@ async fn a_writer_without_a_commit_while_changes_wait_is_not_ready() {
     let (refused, ()) = futures::join!(moves, ready);
     println!("refused meanwhile: {refused:?}");
     for id in ids {
-        assert_eq!(store.heading(id).await.unwrap().sequence, 1);
+        assert_eq!(store.extent(id).await.unwrap().sequence, 1);
     }
     ended.send_replace(true);
 }

@@ -9,11 +9,11 @@ use std::time::Duration;
 use common::{Binary, Server, ball, create, problem};
 use futures::StreamExt as _;
 use futures::future::join_all;
-use jiff::Timestamp;
+use jiff::{SignedDuration, Timestamp};
 use reqwest::Method;
 use serde_json::json;
 use stickslip::admission::Pool;
-use stickslip::sessions::{Sessions, purge_expired};
+use stickslip::sessions::Sessions;
 use stickslip::store::{MemoryStore, Snapshot, SqliteStore, Store};
 use stickslip_mechanics::Contact;
 use stickslip_wire::client::{Client, Event, Options};
@@ -253,9 +253,9 @@ async fn an_expired_session_is_gone_for_reads_moves_and_events_though_it_was_cac
     let mut events = Box::pin(client.events(idle, Some(0)).await.unwrap());
     let between = Timestamp::now();
     let busy = client.create(&create(), &options).await.unwrap().id;
-    assert_eq!(purge_expired(&*store, None).await.unwrap(), 0);
+    assert_eq!(store.purge_expired(None).await.unwrap(), 0);
     client.contact(idle).await.unwrap();
-    assert_eq!(purge_expired(&*store, Some(Duration::from_secs(3_600))).await.unwrap(), 0);
+    assert_eq!(store.purge_expired(Some(between - SignedDuration::from_hours(1))).await.unwrap(), 0);
     assert_eq!(store.purge_expired(Some(between)).await.unwrap(), 1);
 
     let last = tokio::time::timeout(Duration::from_secs(30), events.next()).await.expect("the events did not end");
@@ -278,7 +278,7 @@ async fn an_expired_session_is_gone_for_reads_moves_and_events_though_it_was_cac
     }
     client.contact(busy).await.unwrap();
     assert_eq!(client.contacts(None, None).await.unwrap().items.len(), 1);
-    assert_eq!(purge_expired(&*store, Some(Duration::ZERO)).await.unwrap(), 1);
+    assert_eq!(store.purge_expired(Some(Timestamp::now())).await.unwrap(), 1);
 }
 
 #[tokio::test]

@@ -49,7 +49,7 @@ fn page(app: &App, traffic: &RequestMetrics) -> prometheus::Result<String> {
     sessions(&page, &readings)?;
     let threads = app.pool.capacity().threads.max(1);
     gauge(&page, Opts::new("stickslip_solver_threads", "Threads for long work."), threads as f64)?;
-    show!(page, app.pool.quotas().refused());
+    show!(page, app.pool.quotas().refused);
     if let Some(commits) = readings.commits {
         show!(page, commits.time, commits.size, commits.failed, commits.pending);
     }

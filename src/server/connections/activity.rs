@@ -1,7 +1,6 @@
 //! What a connection is doing and since when, as its timers and the connection limiter need it.
 
-use std::sync::{Mutex, MutexGuard, PoisonError};
-
+use parking_lot::Mutex;
 use tokio::time::Instant;
 
 use super::ConnectionLimits;
@@ -23,14 +22,13 @@ enum Phase {
 /// Written by the socket and the service of a connection, read by its timer and by the limiter.
 #[derive(Debug)]
 pub struct ConnectionActivity {
-    // A std mutex: held for a moment, and never across an await.
+    // Locked for a moment, and never across an await.
     state: Mutex<State>,
 }
 
 #[derive(Debug)]
 struct State {
     phase: Phase,
-    /// When the phase began.
     since: Instant,
     /// When writing to the client began to block, if it does.
     blocked_since: Option<Instant>,
@@ -46,13 +44,9 @@ impl ConnectionActivity {
         ConnectionActivity { state: Mutex::new(State { phase, since, blocked_since: None, written: 0, fault: None }) }
     }
 
-    fn state(&self) -> MutexGuard<'_, State> {
-        self.state.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-
     /// Records that bytes of a head were received.
     pub fn received_head(&self) {
-        let mut state = self.state();
+        let mut state = self.state.lock();
         if state.phase == Phase::Idle {
             (state.phase, state.since) = (Phase::Head, Instant::now());
         }
@@ -60,33 +54,33 @@ impl ConnectionActivity {
 
     /// Whether the last reply has been handed to the socket, and nothing of another request to the HTTP library.
     pub fn is_idle(&self) -> bool {
-        self.state().phase == Phase::Idle
+        self.state.lock().phase == Phase::Idle
     }
 
     /// Marks the head that is being received as one that must not be served.
     pub fn reject_head(&self, fault: &'static str) {
-        self.state().fault = Some(fault);
+        self.state.lock().fault = Some(fault);
     }
 
     /// Why the received head must not be served, if so. No other request follows on this connection then.
     pub fn head_fault(&self) -> Option<&'static str> {
-        self.state().fault
+        self.state.lock().fault
     }
 
     /// Records the start of a request. False if the connection is being closed already.
     pub fn begin_request(&self) -> bool {
-        std::mem::replace(&mut self.state().phase, Phase::Busy) != Phase::Closing
+        std::mem::replace(&mut self.state.lock().phase, Phase::Busy) != Phase::Closing
     }
 
     /// Records that the reply has been handed to the socket.
     pub fn end_request(&self) {
-        let mut state = self.state();
+        let mut state = self.state.lock();
         (state.phase, state.since) = (Phase::Idle, Instant::now());
     }
 
     /// Records that a write blocked: the client reads nothing.
     pub fn write_blocked(&self) {
-        let mut state = self.state();
+        let mut state = self.state.lock();
         if state.blocked_since.is_none() {
             (state.blocked_since, state.written) = (Some(Instant::now()), 0);
         }
@@ -94,17 +88,17 @@ impl ConnectionActivity {
 
     /// Records bytes that the client has accepted.
     pub fn wrote(&self, bytes: usize) {
-        self.state().written += bytes;
+        self.state.lock().written += bytes;
     }
 
     /// Records that everything has been written.
     pub fn flushed(&self) {
-        self.state().blocked_since = None;
+        self.state.lock().blocked_since = None;
     }
 
     /// When to check the client next; none if it has taken too long. The HTTP library times idle connections itself.
     pub fn next_check(&self, limits: &ConnectionLimits) -> Option<Instant> {
-        let (mut state, now) = (self.state(), Instant::now());
+        let (mut state, now) = (self.state.lock(), Instant::now());
         // The next phase may have a shorter limit.
         let soon = now + limits.shortest();
         let due = match (state.blocked_since, state.phase) {
@@ -122,13 +116,13 @@ impl ConnectionActivity {
 
     /// Since when the connection has waited for its client; none while a request is being served.
     pub fn waiting_since(&self) -> Option<Instant> {
-        let state = self.state();
+        let state = self.state.lock();
         matches!(state.phase, Phase::Head | Phase::Idle).then_some(state.since)
     }
 
     /// Marks the connection as closing unless a request has begun meanwhile, and returns whether it did.
     pub fn try_close(&self) -> bool {
-        let mut state = self.state();
+        let mut state = self.state.lock();
         let waits = matches!(state.phase, Phase::Head | Phase::Idle);
         if waits {
             state.phase = Phase::Closing;

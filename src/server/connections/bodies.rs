@@ -1,13 +1,13 @@
 //! Bodies of requests, whose rest is discarded, and bodies of replies that hold the resources of their request until
 //! they are sent.
 
-use std::future::poll_fn;
 use std::pin::Pin;
 use std::sync::Arc;
 use std::task::{Context, Poll};
 
 use axum::body::{Body, Bytes};
 use http_body::{Frame, SizeHint};
+use http_body_util::BodyExt as _;
 use tokio::sync::oneshot;
 use tokio::time::timeout;
 
@@ -15,23 +15,20 @@ use super::ConnectionActivity;
 use crate::admission::{Client, RequestPermit, Reservation};
 use crate::server::limits::{DISCARD_TIME, DISCARDED, PIECE};
 
-/// The body of a request, of which the service gets back what a handler has not read.
-pub struct ReturnedBody<B: Unpin> {
-    body: Option<B>,
-    back: Option<oneshot::Sender<B>>,
-}
+/// The body of a request, of which the service gets back what a handler has not read. Nothing once it has ended.
+pub struct ReturnedBody<B: Unpin>(Option<(B, oneshot::Sender<B>)>);
 
 impl<B: Unpin> ReturnedBody<B> {
     /// A body, and where its rest comes back when it is dropped before its end.
     pub fn new(body: B) -> (ReturnedBody<B>, oneshot::Receiver<B>) {
         let (back, returned) = oneshot::channel();
-        (ReturnedBody { body: Some(body), back: Some(back) }, returned)
+        (ReturnedBody(Some((body, back))), returned)
     }
 }
 
 impl<B: Unpin> Drop for ReturnedBody<B> {
     fn drop(&mut self) {
-        if let (Some(body), Some(back)) = (self.body.take(), self.back.take()) {
+        if let Some((body, back)) = self.0.take() {
             // The request may be over already.
             let _ = back.send(body);
         }
@@ -43,20 +40,20 @@ impl<B: http_body::Body + Unpin> http_body::Body for ReturnedBody<B> {
     type Error = B::Error;
 
     fn poll_frame(mut self: Pin<&mut Self>, cx: &mut Context<'_>) -> Poll<Option<Result<Frame<B::Data>, B::Error>>> {
-        let Some(body) = &mut self.body else { return Poll::Ready(None) };
+        let Some((body, _)) = &mut self.0 else { return Poll::Ready(None) };
         let frame = Pin::new(body).poll_frame(cx);
         if let Poll::Ready(None | Some(Err(_))) = frame {
-            self.back = None;
+            self.0 = None;
         }
         frame
     }
 
     fn is_end_stream(&self) -> bool {
-        self.body.as_ref().is_none_or(http_body::Body::is_end_stream)
+        self.0.as_ref().is_none_or(|(body, _)| body.is_end_stream())
     }
 
     fn size_hint(&self) -> SizeHint {
-        self.body.as_ref().map_or_else(SizeHint::default, http_body::Body::size_hint)
+        self.0.as_ref().map_or_else(SizeHint::default, |(body, _)| body.size_hint())
     }
 }
 
@@ -67,8 +64,9 @@ where
 {
     let read = async {
         let mut length = 0;
-        while !body.is_end_stream() {
-            let Some(frame) = poll_fn(|cx| Pin::new(&mut body).poll_frame(cx)).await else { break };
+        while !body.is_end_stream()
+            && let Some(frame) = body.frame().await
+        {
             let Ok(frame) = frame else { return false };
             length += frame.data_ref().map_or(0, Bytes::len);
             if length > DISCARDED {
@@ -134,14 +132,7 @@ impl http_body::Body for TrackedBody {
     }
 
     fn size_hint(&self) -> SizeHint {
-        let (mut hint, rest) = (self.body.size_hint(), self.rest.len() as u64);
-        if rest > 0 {
-            let upper = hint.upper();
-            hint = SizeHint::new();
-            if let Some(upper) = upper {
-                hint.set_upper(upper + rest);
-            }
-        }
-        hint
+        // It is read before the first piece.
+        if self.rest.is_empty() { self.body.size_hint() } else { SizeHint::new() }
     }
 }

@@ -3,10 +3,11 @@
 use std::cmp::Reverse;
 use std::collections::HashMap;
 use std::net::IpAddr;
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::Arc;
 use std::time::Duration;
 
 use ipnet::IpNet;
+use parking_lot::Mutex;
 use tokio::task::AbortHandle;
 use tokio::time::Instant;
 
@@ -26,7 +27,7 @@ pub struct ConnectionLimiter {
     pub limits: ConnectionLimits,
     /// The proxies that are trusted. Their clients are many: the bound of one does not hold for them.
     pub proxies: Arc<[IpNet]>,
-    // A std mutex: held for a moment when a connection opens or closes, and never across an await.
+    // Locked for a moment when a connection opens or closes, and never across an await.
     table: Arc<Mutex<Table>>,
 }
 
@@ -34,11 +35,9 @@ pub struct ConnectionLimiter {
 struct Table {
     next: u64,
     connections: HashMap<u64, Connection>,
-    /// Connections by client.
     clients: HashMap<Client, usize>,
-    spare: usize,
-    refused: u64,
-    closed: u64,
+    /// But for the open ones.
+    counts: ConnectionCounts,
     searched_in_vain: Option<Instant>,
 }
 
@@ -75,32 +74,21 @@ pub struct ConnectionPermit {
 
 impl ConnectionLimiter {
     /// A limiter without connections. The bound of a client does not hold for `proxies`.
-    #[must_use]
     pub fn new(limits: ConnectionLimits, proxies: Arc<[IpNet]>) -> ConnectionLimiter {
         ConnectionLimiter { limits, proxies, table: Arc::default() }
     }
 
     /// Counts of connections.
-    #[must_use]
     pub fn counts(&self) -> ConnectionCounts {
-        let table = self.table();
-        ConnectionCounts {
-            open: table.connections.len(),
-            spare: table.spare,
-            refused: table.refused,
-            closed: table.closed,
-        }
-    }
-
-    fn table(&self) -> MutexGuard<'_, Table> {
-        self.table.lock().unwrap_or_else(PoisonError::into_inner)
+        let table = self.table.lock();
+        ConnectionCounts { open: table.connections.len(), ..table.counts }
     }
 
     /// Decides on a connection from `address`; without a permit it is closed at once.
     pub(crate) fn admit(&self, address: IpAddr) -> Option<ConnectionPermit> {
         let (client, activity) = (Client::of_address(address), Arc::new(ConnectionActivity::new()));
         let bounded = !is_trusted(&self.proxies, address.to_canonical());
-        let mut table = self.table();
+        let mut table = self.table.lock();
         if table.connections.len() >= self.limits.most {
             table.make_room(self.limits.most.div_ceil(FREED_SHARE));
         }
@@ -113,27 +101,26 @@ impl ConnectionLimiter {
             let activity = Arc::clone(&activity);
             table.connections.insert(number, Connection { client, activity, task: None });
             Some(permit(Some(number)))
-        } else if table.spare < SPARE_CONNECTIONS {
-            table.spare += 1;
+        } else if table.counts.spare < SPARE_CONNECTIONS {
+            table.counts.spare += 1;
             Some(permit(None))
         } else {
-            table.refused += 1;
+            table.counts.refused += 1;
             None
         }
     }
 
     /// Registers the task that serves a connection, which is aborted to close it.
     pub(crate) fn started(&self, number: Option<u64>, task: AbortHandle) {
-        let mut table = self.table();
+        let mut table = self.table.lock();
         // It may have ended already.
         if let Some(connection) = number.and_then(|number| table.connections.get_mut(&number)) {
             connection.task = Some(task);
         }
     }
 
-    /// Closes every connection.
     pub(crate) fn close_all(&self) {
-        for task in self.table().connections.values().filter_map(|connection| connection.task.as_ref()) {
+        for task in self.table.lock().connections.values().filter_map(|connection| connection.task.as_ref()) {
             task.abort();
         }
     }
@@ -164,7 +151,7 @@ impl Table {
                 && let Some(connection) = self.remove(number)
             {
                 found = true;
-                self.closed += 1;
+                self.counts.closed += 1;
                 if let Some(task) = connection.task {
                     task.abort();
                 }
@@ -194,10 +181,10 @@ impl ConnectionPermit {
 
 impl Drop for ConnectionPermit {
     fn drop(&mut self) {
-        let mut table = self.limiter.table();
+        let mut table = self.limiter.table.lock();
         match self.number {
             Some(number) => drop(table.remove(number)),
-            None => table.spare -= 1,
+            None => table.counts.spare -= 1,
         }
     }
 }

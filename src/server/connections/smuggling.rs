@@ -24,7 +24,6 @@ pub enum BodyLength {
 pub struct RequestSmugglingGuard {
     /// The beginning of the line.
     line: [u8; LINE],
-    /// Its length so far.
     length: usize,
     last: u8,
     /// Lines of this head so far.

@@ -128,7 +128,6 @@ impl Sweep {
         Ok(result)
     }
 
-    /// The reply to a point.
     fn point(&self, document: &mut Value, point: usize, stop: &Stop) -> Result<SimulateReply, PointFailure> {
         self.checked.put(document, point);
         let request = SimulateRequest::deserialize(&*document)

@@ -37,20 +37,19 @@ impl MemoryStore {
 #[async_trait]
 impl JobStore for MemoryStore {
     async fn create_job(&self, job: Job, request: String, limits: JobLimits, receipt: Option<Receipt>) -> Result<()> {
-        let mut inner = self.inner.lock();
-        inner.receipts.check_free(receipt.as_ref())?;
-        let (mut jobs, mut bytes, mut cost) = (0, 0, 0);
-        for other in inner.jobs.values().map(|stored| &stored.job).filter(|other| other.tenant == job.tenant) {
-            jobs += 1;
-            bytes += other.bytes;
-            cost += if other.finished_at.is_none() { other.cost } else { 0 };
-        }
-        limits.check(jobs, bytes, cost, &job)?;
-        let (id, chunks) = (job.id, job.chunks());
-        inner.jobs.insert(id, StoredJob { job, request, chunks: BTreeMap::new() });
-        self.queue.add_job(id, 0..chunks);
-        inner.receipts.insert(receipt);
-        Ok(())
+        self.change(receipt, |inner| {
+            let (mut jobs, mut bytes, mut cost) = (0, 0, 0);
+            for other in inner.jobs.values().map(|stored| &stored.job).filter(|other| other.tenant == job.tenant) {
+                jobs += 1;
+                bytes += other.bytes;
+                cost += if other.finished_at.is_none() { other.cost } else { 0 };
+            }
+            limits.check(jobs, bytes, cost, &job)?;
+            let (id, chunks) = (job.id, job.chunks());
+            inner.jobs.insert(id, StoredJob { job, request, chunks: BTreeMap::new() });
+            self.queue.add_job(id, 0..chunks);
+            Ok(())
+        })
     }
 
     async fn job(&self, id: Uuid) -> Result<Job> {

@@ -18,8 +18,8 @@ use jobs::StoredJob;
 
 use super::jobs::ChunkQueue;
 use super::{
-    CONTACT_BYTES, Changes, Extent, Heading, RECEIPT_LIFETIME, RECORD_BYTES, Receipt, Record, Result, Session,
-    Snapshot, Store, StoreError, Tenant, Usage,
+    CONTACT_BYTES, Changes, Extent, RECEIPT_LIFETIME, RECORD_BYTES, Receipt, Record, Result, Session, Snapshot, Store,
+    StoreError, Tenant, Usage,
 };
 
 /// Bytes of replies kept for retries. Beyond that the oldest are deleted early, because memory is bounded.
@@ -63,9 +63,17 @@ struct Receipts {
 
 impl MemoryStore {
     /// An empty store.
-    #[must_use]
     pub fn new() -> MemoryStore {
         MemoryStore::default()
+    }
+
+    /// Makes a change, and keeps the receipt if that is done; refuses a receipt whose key is in use.
+    fn change(&self, receipt: Option<Receipt>, work: impl FnOnce(&mut Inner) -> Result<()>) -> Result<()> {
+        let mut inner = self.inner.lock();
+        inner.receipts.check_free(receipt.as_ref())?;
+        work(&mut inner)?;
+        inner.receipts.insert(receipt);
+        Ok(())
     }
 }
 
@@ -131,11 +139,10 @@ impl Store for MemoryStore {
 
     async fn create(&self, session: Session, receipt: Option<Receipt>) -> Result<()> {
         let definition = serde_json::to_vec(&*session.definition).map_or(0, |text| text.len() as u64);
-        let mut inner = self.inner.lock();
-        inner.receipts.check_free(receipt.as_ref())?;
-        inner.sessions.insert(session.id, Stored { session, definition, moves: Arc::default(), snapshot: None });
-        inner.receipts.insert(receipt);
-        Ok(())
+        self.change(receipt, |inner| {
+            inner.sessions.insert(session.id, Stored { session, definition, moves: Arc::default(), snapshot: None });
+            Ok(())
+        })
     }
 
     async fn extent(&self, id: Uuid) -> Result<Extent> {
@@ -143,6 +150,7 @@ impl Store for MemoryStore {
         self.inner.lock().get(id).map(|Stored { session, snapshot, .. }| Extent {
             tenant: session.tenant.clone(),
             sequence: session.sequence,
+            label: session.label.clone(),
             definition: 0,
             snapshot: snapshot.as_ref().map_or(0, |snapshot| snapshot.state.len() as u64),
         })
@@ -168,11 +176,6 @@ impl Store for MemoryStore {
         self.inner.lock().get(id).map(|stored| stored.session.clone())
     }
 
-    async fn heading(&self, id: Uuid) -> Result<Heading> {
-        let heading = |session: &Session| Heading { sequence: session.sequence, label: session.label.clone() };
-        self.inner.lock().get(id).map(|stored| heading(&stored.session))
-    }
-
     async fn list(
         &self,
         tenant: Option<Tenant>,
@@ -193,25 +196,19 @@ impl Store for MemoryStore {
     }
 
     async fn rename(&self, id: Uuid, label: Option<String>, expected: u64, receipt: Option<Receipt>) -> Result<()> {
-        let mut inner = self.inner.lock();
-        inner.receipts.check_free(receipt.as_ref())?;
-        inner.at(id, expected)?.session.label = label;
-        inner.receipts.insert(receipt);
-        Ok(())
+        self.change(receipt, |inner| inner.at(id, expected).map(|stored| stored.session.label = label))
     }
 
     async fn append(&self, id: Uuid, expected: u64, records: Vec<Record>, receipt: Option<Receipt>) -> Result<()> {
-        {
-            let mut inner = self.inner.lock();
-            inner.receipts.check_free(receipt.as_ref())?;
+        self.change(receipt, |inner| {
             let stored = inner.at(id, expected)?;
             if let Some(last) = records.last() {
                 stored.session.sequence = last.sequence;
                 stored.session.updated_at = last.at;
             }
             Arc::make_mut(&mut stored.moves).extend(records);
-            inner.receipts.insert(receipt);
-        }
+            Ok(())
+        })?;
         self.changes.wake(id);
         Ok(())
     }
@@ -230,20 +227,19 @@ impl Store for MemoryStore {
     }
 
     async fn fork(&self, id: Uuid, copy: Session, receipt: Option<Receipt>) -> Result<()> {
-        let mut inner = self.inner.lock();
-        inner.receipts.check_free(receipt.as_ref())?;
-        let Stored { session, definition, moves, snapshot } = inner.get(id)?;
-        let (found, definition) = (session.sequence, *definition);
-        if found < copy.sequence {
-            return Err(StoreError::Stale { found });
-        }
-        let count = usize::try_from(copy.sequence).unwrap_or(usize::MAX);
-        // All of the past is shared until one of the two moves on; a part of it is a copy.
-        let moves = if count == moves.len() { Arc::clone(moves) } else { Arc::new(moves[..count].to_vec()) };
-        let snapshot = snapshot.clone().filter(|snapshot| snapshot.sequence <= copy.sequence);
-        inner.sessions.insert(copy.id, Stored { session: copy, definition, moves, snapshot });
-        inner.receipts.insert(receipt);
-        Ok(())
+        self.change(receipt, |inner| {
+            let Stored { session, definition, moves, snapshot } = inner.get(id)?;
+            let (found, definition) = (session.sequence, *definition);
+            if found < copy.sequence {
+                return Err(StoreError::Stale { found });
+            }
+            let count = usize::try_from(copy.sequence).unwrap_or(usize::MAX);
+            // All of the past is shared until one of the two moves on; a part of it is a copy.
+            let moves = if count == moves.len() { Arc::clone(moves) } else { Arc::new(moves[..count].to_vec()) };
+            let snapshot = snapshot.clone().filter(|snapshot| snapshot.sequence <= copy.sequence);
+            inner.sessions.insert(copy.id, Stored { session: copy, definition, moves, snapshot });
+            Ok(())
+        })
     }
 
     async fn delete(&self, id: Uuid, expected: u64) -> Result<()> {

@@ -12,7 +12,6 @@ use super::fault::Fault;
 use super::request::{Change, WriteRequest};
 use super::sql;
 
-/// The writer's connection.
 pub(super) struct WriterConnection {
     client: Client,
     batch: Statement,

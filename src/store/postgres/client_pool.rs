@@ -25,7 +25,7 @@ pub(super) const ANSWER: Duration = Duration::from_secs(15);
 pub(super) const LONG_ANSWER: Duration = Duration::from_secs(90);
 /// How often work is tried in all, and how often because two transactions conflicted.
 const TRIES: usize = 12;
-const COLLISIONS: usize = 5;
+const COLLISIONS: usize = 8;
 
 /// Does work on a connection of the pool that may be done again on another, until it is done or no further
 /// attempt is worthwhile. (A macro, because the bounds of a closure's future cannot be expressed for a function.)
@@ -66,10 +66,8 @@ macro_rules! try_once {
 
 pub(super) use {try_once, with_retries};
 
-/// A parameter of a statement.
 pub(super) type Parameter<'a> = &'a (dyn ToSql + Sync);
 
-/// A pool of connections to the database.
 pub(super) struct ClientPool {
     pub(super) target: ConnectTarget,
     pub(super) outage: Outage,
@@ -98,7 +96,6 @@ impl ClientPool {
         Ok(ClientPool { target, outage: Outage::default(), announces, pool })
     }
 
-    /// A connection of the pool.
     pub(super) async fn connection(&self) -> Result<Object, Fault> {
         self.answer(PATIENCE_FOR_CONNECTION, async { Ok(self.pool.get().await?) }).await
     }

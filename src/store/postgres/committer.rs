@@ -4,22 +4,16 @@ use std::collections::HashMap;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use futures::future::join_all;
 use uuid::Uuid;
 
 use crate::store::{Changes, Commits, RECEIPT_LIFETIME, Result, StoreError, Tenant};
 
 use super::batch_tx::WriterConnection;
-use super::client_pool::ClientPool;
+use super::client_pool::{ClientPool, Tries};
 use super::columns::{from_bigint, to_bigint};
-use super::fault::{Backoff, Fault};
+use super::fault::Fault;
 use super::request::{Change, WriteRequest};
 use super::sql;
-
-/// How often a batch may conflict with other transactions before its requests fail.
-const COLLISIONS: usize = 8;
-/// How often a connection may be lost under one batch: perhaps the batch itself is the cause.
-const LOSSES: usize = 4;
 
 pub(super) struct Committer {
     pool: Arc<ClientPool>,
@@ -39,12 +33,11 @@ impl Committer {
         Committer::new(Arc::clone(&self.pool), Arc::clone(&self.changes), Arc::clone(&self.commits))
     }
 
-    /// Makes or refuses each of the changes, and answers them; but returns, in their order, those whose contacts other
-    /// transactions hold.
+    /// Makes or refuses each of the changes, and answers them; but returns those whose contacts other transactions hold.
     pub(super) async fn commit(&mut self, mut batch: Vec<WriteRequest>) -> Vec<WriteRequest> {
-        let (mut backoff, mut collisions, mut losses) = (Backoff::default(), 0, 0);
-        while !batch.is_empty() {
-            let (begin, pool) = (Instant::now(), Arc::clone(&self.pool));
+        let (mut tries, pool) = (Tries::default(), Arc::clone(&self.pool));
+        let refusal = loop {
+            let begin = Instant::now();
             let (sent, outcome) = match self.connection().await {
                 Ok(connection) => (true, connection.commit_batch(&pool, &batch).await),
                 Err(fault) => (false, Err(fault)),
@@ -53,53 +46,56 @@ impl Committer {
                 Ok(found) => return self.reply_committed(batch, &found, begin.elapsed()),
                 Err(fault) => fault,
             };
-            if sent && matches!(fault, Fault::Lost(_)) {
-                losses += 1;
-                batch.iter_mut().for_each(|request| request.in_doubt = true);
-            }
             self.commits.failed.inc();
-            let refusal = match fault {
+            let fault = match fault {
+                // What fails for one of them.
+                Fault::Duplicate(_) | Fault::Locked(_) | Fault::Refused(StoreError::Failed(_)) if batch.len() > 1 => {
+                    return self.commit_each(batch, matches!(fault, Fault::Locked(_))).await;
+                }
+                Fault::Locked(_) => return batch,
+                Fault::Duplicate(text) => {
+                    let Some(request) = batch.pop() else { return batch };
+                    // A key from long ago is made free.
+                    let known = async {
+                        self.pool.free_key(request.id(), request.receipt.as_ref()).await?;
+                        outcome_of(&self.pool, &request).await
+                    };
+                    match known.await {
+                        Ok(false) => batch.push(request),
+                        known => {
+                            answer_known(request, known.map(drop), &self.changes);
+                            return batch;
+                        }
+                    }
+                    Fault::Conflict(text)
+                }
                 Fault::Lost(text) => {
                     self.connection = None;
-                    if self.pool.outage.worth_waiting(&text) && losses <= LOSSES {
-                        backoff.pause().await;
-                        continue;
-                    }
-                    StoreError::Unavailable(text)
+                    batch.iter_mut().for_each(|request| request.in_doubt |= sent);
+                    Fault::Lost(text)
                 }
-                Fault::Conflict(text) | Fault::Duplicate(text) if collisions == COLLISIONS => {
-                    StoreError::Unavailable(text)
-                }
-                Fault::Conflict(_) => {
-                    collisions += 1;
-                    backoff.pause().await;
-                    continue;
-                }
-                Fault::Duplicate(_) => {
-                    collisions += 1;
-                    batch = self.without_duplicates(batch).await;
-                    continue;
-                }
-                Fault::Locked(_) => {
-                    batch = without_overdue(batch);
-                    return if batch.len() < 2 { batch } else { self.commit_halves(batch).await };
-                }
-                Fault::Refused(StoreError::Failed(_)) if batch.len() > 1 => return self.commit_halves(batch).await,
-                Fault::Refused(error @ (StoreError::Full(_) | StoreError::Failed(_))) => error,
-                Fault::Refused(other) => StoreError::Unavailable(other.to_string()),
+                other => other,
             };
-            batch.drain(..).for_each(|request| request.answer(Err(refusal.clone())));
-        }
-        Vec::new()
+            if let Err(error) = tries.retry_or_fail(&pool.outage, fault).await {
+                break error;
+            }
+        };
+        batch.drain(..).for_each(|request| request.answer(Err(refusal.clone())));
+        batch
     }
 
-    /// Commits each half of a batch of which one request fails, or waits for what another transaction holds: so that
-    /// the others succeed.
-    async fn commit_halves(&mut self, mut batch: Vec<WriteRequest>) -> Vec<WriteRequest> {
-        let second = batch.split_off(batch.len() / 2);
-        let mut locked = Box::pin(self.commit(batch)).await;
-        locked.extend(Box::pin(self.commit(second)).await);
-        locked
+    /// Commits each request of a batch alone, so that one that fails, or waits for what another transaction holds, does
+    /// not keep the others from it. Those that have waited for locks for as long as they may are refused.
+    async fn commit_each(&mut self, batch: Vec<WriteRequest>, locked: bool) -> Vec<WriteRequest> {
+        let mut held = Vec::new();
+        for request in batch {
+            if locked && request.is_overdue() {
+                request.refuse_as_locked();
+            } else {
+                held.extend(Box::pin(self.commit(vec![request])).await);
+            }
+        }
+        held
     }
 
     async fn connection(&mut self) -> Result<&WriterConnection, Fault> {
@@ -154,34 +150,6 @@ impl Committer {
             }
         }
     }
-
-    /// Answers those requests of a batch whose keys or identifiers are taken, and returns the rest.
-    async fn without_duplicates(&self, batch: Vec<WriteRequest>) -> Vec<WriteRequest> {
-        let keys: Vec<&str> = batch.iter().filter_map(WriteRequest::key).collect();
-        let freed = self.pool.rows(sql::DELETE_OLD_KEYS, &[&keys, &RECEIPT_LIFETIME.as_secs_f64()]).await;
-        if let Err(error) = freed {
-            tracing::warn!(%error, "expired idempotency keys could not be freed");
-        }
-        let outcome = join_all(batch.iter().map(|request| outcome_of(&self.pool, request))).await;
-        let mut rest = Vec::new();
-        for (request, outcome) in batch.into_iter().zip(outcome) {
-            match outcome {
-                Ok(false) => rest.push(request),
-                known => answer_known(request, known.map(drop), &self.changes),
-            }
-        }
-        rest
-    }
-}
-
-/// Answers those that have waited for locks for as long as they may, and returns the rest.
-pub(super) fn without_overdue(batch: Vec<WriteRequest>) -> Vec<WriteRequest> {
-    let (overdue, rest): (Vec<_>, Vec<_>) = batch.into_iter().partition(WriteRequest::is_overdue);
-    if let Some(first) = overdue.first() {
-        tracing::warn!(contact = %first.id(), changes = overdue.len(), "locks of other transactions were not released");
-    }
-    overdue.into_iter().for_each(WriteRequest::refuse_as_locked);
-    rest
 }
 
 /// Answers a request, and wakes the listeners of a session that it has changed.

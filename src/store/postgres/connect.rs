@@ -26,7 +26,6 @@ const DEFAULTS: &str = "application_name=stickslip&connect_timeout=3&tcp_user_ti
 /// A connection whose messages have yet to be driven.
 pub(super) type Driver = Connection<Socket, <MakeRustlsConnect as MakeTlsConnect<Socket>>::Stream>;
 
-/// A database to connect to.
 #[derive(Clone)]
 pub(super) struct ConnectTarget {
     pub(super) config: Config,

@@ -198,13 +198,8 @@ impl Backoff {
 
     /// Waits, each time longer.
     pub(super) async fn pause(&mut self) {
-        tokio::time::sleep(self.next()).await;
-    }
-
-    /// How long to wait, each time longer.
-    pub(super) fn next(&mut self) -> Duration {
         let pause = self.0;
         self.0 = (2 * pause).min(LONGEST_PAUSE);
-        pause
+        tokio::time::sleep(pause).await;
     }
 }

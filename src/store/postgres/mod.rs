@@ -9,6 +9,7 @@
 //! `docs/postgres.md` describes the tables and what the database must support.
 
 mod batch_tx;
+mod change_locks;
 mod client_pool;
 mod columns;
 mod committer;
@@ -16,7 +17,6 @@ mod connect;
 mod fault;
 mod jobs;
 mod listen;
-mod lock_line;
 mod request;
 pub mod schema;
 mod sql;
@@ -39,8 +39,8 @@ use super::probe::Probe;
 use super::rows;
 use super::schema::SchemaError;
 use super::{
-    CONTACT_BYTES, Changes, Commits, Extent, Heading, RECEIPT_LIFETIME, RECEIPT_OVERHEAD, Receipt, Record, Result,
-    Session, Snapshot, Store, StoreError, Tenant, Usage,
+    CONTACT_BYTES, Changes, Commits, Extent, RECEIPT_LIFETIME, RECEIPT_OVERHEAD, Receipt, Record, Result, Session,
+    Snapshot, Store, StoreError, Tenant, Usage,
 };
 
 use client_pool::{ANSWER, ClientPool};
@@ -110,7 +110,6 @@ impl PostgresStore {
     }
 
     /// Which database it is, without the password.
-    #[must_use]
     pub fn address(&self) -> String {
         self.pool.target.address()
     }
@@ -182,16 +181,10 @@ impl Store for PostgresStore {
     }
 
     async fn extent(&self, id: Uuid) -> Result<Extent> {
-        let Some(row) = self.pool.row(sql::EXTENT, &[&id]).await? else {
-            return Err(self.pool.missing(id).await);
-        };
-        let (sequence, definition, snapshot) = (row.get(1), row.get::<_, i32>(2), row.get::<_, Option<i32>>(3));
-        Ok(Extent {
-            tenant: Tenant::new(row.get(0)),
-            sequence: from_bigint(sequence),
-            definition: u64::try_from(definition).unwrap_or(0),
-            snapshot: snapshot.and_then(|bytes| u64::try_from(bytes).ok()).unwrap_or(0),
-        })
+        match self.pool.row(sql::EXTENT, &[&id]).await? {
+            Some(row) => rows::extent(&mut reader(&row)),
+            None => Err(self.pool.missing(id).await),
+        }
     }
 
     async fn usage(&self, tenant: &Tenant) -> Result<Usage> {
@@ -208,13 +201,6 @@ impl Store for PostgresStore {
     async fn find(&self, id: Uuid) -> Result<Session> {
         match self.pool.row(sql::FIND, &[&id]).await? {
             Some(row) => rows::session(&mut reader(&row)),
-            None => Err(self.pool.missing(id).await),
-        }
-    }
-
-    async fn heading(&self, id: Uuid) -> Result<Heading> {
-        match self.pool.row(sql::HEADING, &[&id]).await? {
-            Some(row) => rows::heading(&mut reader(&row)),
             None => Err(self.pool.missing(id).await),
         }
     }
@@ -277,7 +263,7 @@ impl Store for PostgresStore {
     async fn snapshot(&self, id: Uuid) -> Result<Option<Snapshot>> {
         let found = self.pool.row(sql::SNAPSHOT, &[&id]).await?;
         if found.is_none() {
-            self.heading(id).await?;
+            self.extent(id).await?;
         }
         found.map(|row| rows::snapshot(&mut reader(&row))).transpose()
     }

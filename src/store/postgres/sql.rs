@@ -132,8 +132,8 @@ SELECT id, label, sequence, created_at, created_ns, updated_at, updated_ns, defi
 FROM contacts WHERE id = $1";
 
 pub(super) const EXTENT: &str = "
-SELECT tenant, sequence, octet_length(definition),
-    (SELECT octet_length(state) FROM snapshots WHERE contact = contacts.id)
+SELECT tenant, sequence, label, octet_length(definition)::bigint,
+    coalesce((SELECT octet_length(state) FROM snapshots WHERE contact = contacts.id), 0)::bigint
 FROM contacts WHERE id = $1";
 
 /// What is stored for a tenant: how many contacts and bytes. A contact takes `$2` of them besides its definition and
@@ -149,8 +149,6 @@ FROM contacts WHERE tenant = $1";
 pub(super) const SEQUENCE: &str = "SELECT sequence FROM contacts WHERE id = $1";
 
 pub(super) const EXPIRED: &str = "SELECT tenant FROM expired WHERE id = $1";
-
-pub(super) const HEADING: &str = "SELECT sequence, label FROM contacts WHERE id = $1";
 
 /// In the collation C, `lower` changes ASCII letters alone.
 pub(super) const LIST: &str = r#"

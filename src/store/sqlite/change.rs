@@ -34,10 +34,23 @@ type Apply = dyn Fn(&mut Transaction<'_>) -> Result<Done, Fault> + Send;
 pub(super) struct Change {
     /// Makes it; called again if its transaction fails.
     pub(super) apply: Box<Apply>,
-    /// How many rows it writes, roughly.
     pub(super) weight: usize,
     /// The sessions and jobs whose listeners are to be woken when it is made.
     pub(super) touched: Vec<Uuid>,
+    /// Kept with it.
+    pub(super) receipt: Option<Receipt>,
+}
+
+impl Change {
+    /// Makes the change, and keeps its receipt, unless it goes on in small steps.
+    pub(super) fn make(&self, transaction: &mut Transaction<'_>) -> Result<Done, Fault> {
+        check_key(transaction.database, self.receipt.as_ref())?;
+        let done = (self.apply)(transaction)?;
+        if !matches!(done, Done::Copying(..)) {
+            insert_receipt(transaction.database, self.receipt.as_ref())?;
+        }
+        Ok(done)
+    }
 }
 
 pub(super) struct Transaction<'a> {
@@ -47,7 +60,6 @@ pub(super) struct Transaction<'a> {
     pub(super) number: i64,
 }
 
-/// The result of a change.
 pub(super) enum Done {
     /// It is made, with this count.
     Made(u64),
@@ -64,21 +76,12 @@ impl Transaction<'_> {
         Ok(Done::Made(0))
     }
 
-    pub(super) fn create(&self, session: &Session, receipt: Option<&Receipt>) -> Result<Done, Fault> {
-        check_key(self.database, receipt)?;
+    pub(super) fn create(&self, session: &Session) -> Result<Done, Fault> {
         insert_session(self.database, self.number, session, 0)?;
-        insert_receipt(self.database, receipt)?;
         Ok(Done::Made(0))
     }
 
-    pub(super) fn append(
-        &mut self,
-        id: Uuid,
-        expected: u64,
-        records: &[Record],
-        receipt: Option<&Receipt>,
-    ) -> Result<Done, Fault> {
-        check_key(self.database, receipt)?;
+    pub(super) fn append(&mut self, id: Uuid, expected: u64, records: &[Record]) -> Result<Done, Fault> {
         let number = match self.cache.get(&id) {
             Some((number, sequence)) if *sequence == expected => *number,
             _ => number_at(self.database, id, expected)?,
@@ -89,7 +92,6 @@ impl Transaction<'_> {
                 ?21, ?22, ?23)"
         ))?;
         records.iter().try_for_each(|record| insert_move(&mut insert, number, record))?;
-        insert_receipt(self.database, receipt)?;
         if let Some(last) = records.last() {
             self.cache.insert(id, (number, last.sequence));
         }
@@ -101,17 +103,9 @@ impl Transaction<'_> {
         Ok(begun.map_or(Done::Made(0), |copying| Done::Copying(Arc::clone(fork), copying)))
     }
 
-    pub(super) fn rename(
-        &self,
-        id: Uuid,
-        label: Option<&str>,
-        expected: u64,
-        receipt: Option<&Receipt>,
-    ) -> Result<Done, Fault> {
-        check_key(self.database, receipt)?;
+    pub(super) fn rename(&self, id: Uuid, label: Option<&str>, expected: u64) -> Result<Done, Fault> {
         let number = number_at(self.database, id, expected)?;
         execute(self.database, "UPDATE contacts SET label = ?2 WHERE number = ?1", params![number, label])?;
-        insert_receipt(self.database, receipt)?;
         Ok(Done::Made(0))
     }
 

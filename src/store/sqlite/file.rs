@@ -44,7 +44,6 @@ pub(super) struct Opened {
     pub(super) files: Arc<OpenFiles>,
 }
 
-/// How a file can be used.
 pub(super) enum Access {
     Writable(Opened),
     /// There is no room to write.

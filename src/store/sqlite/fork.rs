@@ -7,11 +7,11 @@
 use rusqlite::{Connection, OptionalExtension as _};
 use uuid::Uuid;
 
-use crate::store::{Receipt, Session, StoreError};
+use crate::store::{Session, StoreError};
 
 use super::columns::{MOVE_COLUMNS, execute, to_integer};
 use super::fault::Fault;
-use super::statements::{check_key, insert_receipt, insert_session, number_and_sequence};
+use super::statements::{insert_session, number_and_sequence};
 
 /// Moves that are copied or removed in one step.
 const MOVES_AT_ONCE: i64 = 4_000;
@@ -22,18 +22,13 @@ const CONTACTS_AT_ONCE: usize = 200;
 pub(super) struct Fork {
     pub(super) id: Uuid,
     pub(super) copy: Session,
-    pub(super) receipt: Option<Receipt>,
 }
 
 #[derive(Clone, Copy)]
 pub(super) struct Copying {
-    /// The contact that is copied.
     from: i64,
-    /// The copy.
     to: i64,
-    /// The last move copied.
     copied: i64,
-    /// The last move to copy.
     last: i64,
 }
 
@@ -41,7 +36,6 @@ impl Fork {
     /// Checks a fork and makes a short one, whose contact gets this number, at once; a long one begins, and
     /// [`Fork::proceed`] goes on with what is returned.
     pub(super) fn begin(&self, database: &Connection, number: i64) -> Result<Option<Copying>, Fault> {
-        check_key(database, self.receipt.as_ref())?;
         let (from, found) = number_and_sequence(database, self.id)?;
         if found < self.copy.sequence {
             return Err(StoreError::Stale { found }.into());
@@ -63,7 +57,6 @@ impl Fork {
         if copying.copied < copying.last {
             return Ok(false);
         }
-        check_key(database, self.receipt.as_ref())?;
         if !database.prepare_cached("SELECT number FROM contacts WHERE number = ?1")?.exists([copying.from])? {
             return Err(StoreError::NotFound.into());
         }
@@ -77,7 +70,7 @@ impl Fork {
         let sql = "INSERT INTO snapshots (contact, sequence, state)
                    SELECT ?2, sequence, state FROM snapshots WHERE contact = ?1 AND sequence <= ?3";
         execute(database, sql, [copying.from, copying.to, copying.last])?;
-        Ok(insert_receipt(database, self.receipt.as_ref())?)
+        Ok(())
     }
 }
 
@@ -104,11 +97,6 @@ impl Copying {
         self.copied = upto;
         Ok(())
     }
-}
-
-/// Abandons the forks that a crash has left incomplete.
-pub(super) fn abandon_all(database: &Connection) -> rusqlite::Result<()> {
-    database.execute("UPDATE unowned SET forming = 0 WHERE forming = 1", []).map(drop)
 }
 
 /// Removes some of the moves without a contact; returns whether there may be more.

@@ -16,18 +16,10 @@ use super::SqliteStore;
 use super::change::{Done, Transaction};
 use super::columns::{all, execute, first, nanoseconds_ago, to_integer, to_nanoseconds};
 use super::fault::Fault;
-use super::statements::{check_key, insert_receipt};
 
 impl Transaction<'_> {
-    fn create_job(
-        &self,
-        job: &Job,
-        request: &str,
-        limits: JobLimits,
-        receipt: Option<&Receipt>,
-    ) -> Result<Done, Fault> {
+    fn create_job(&self, job: &Job, request: &str, limits: JobLimits) -> Result<Done, Fault> {
         let database = self.database;
-        check_key(database, receipt)?;
         let sql = "SELECT count(*), coalesce(sum(bytes), 0), coalesce(sum(iif(finished_at IS NULL, cost, 0)), 0)
                    FROM jobs WHERE tenant = ?1";
         let found = first(database, sql, [job.tenant.name()], |row| Ok((row.count()?, row.count()?, row.count()?)))?;
@@ -39,7 +31,6 @@ impl Transaction<'_> {
         let (points, chunk) = (to_integer(job.points)?, to_integer(job.chunk)?);
         let (bytes, cost) = (to_integer(job.bytes)?, to_integer(job.cost)?);
         execute(database, sql, params![id, tenant, created_at, points, chunk, bytes, cost, request])?;
-        insert_receipt(database, receipt)?;
         Ok(Done::Made(0))
     }
 
@@ -99,7 +90,7 @@ const COLUMNS: &str = "id, tenant, created_at, finished_at, error, points, chunk
 
 impl SqliteStore {
     pub(super) async fn purge_jobs(&self) -> Result<()> {
-        while self.change(1, [], |transaction| transaction.purge_job()).await? > 0 {}
+        while self.change(1, [], None, |transaction| transaction.purge_job()).await? > 0 {}
         Ok(())
     }
 }
@@ -108,7 +99,7 @@ impl SqliteStore {
 impl JobStore for SqliteStore {
     async fn create_job(&self, job: Job, request: String, limits: JobLimits, receipt: Option<Receipt>) -> Result<()> {
         let (id, chunks) = (job.id, job.chunks());
-        self.change(1, [], move |transaction| transaction.create_job(&job, &request, limits, receipt.as_ref())).await?;
+        self.change(1, [], receipt, move |transaction| transaction.create_job(&job, &request, limits)).await?;
         self.queue.add_job(id, 0..chunks);
         Ok(())
     }
@@ -149,8 +140,10 @@ impl JobStore for SqliteStore {
     }
 
     async fn save_chunk(&self, claim: Claim, result: ChunkResult) -> Result<()> {
-        let saved =
-            self.change(1, [claim.job], move |transaction| transaction.save_chunk(claim, &result)).await.map(drop);
+        let saved = self
+            .change(1, [claim.job], None, move |transaction| transaction.save_chunk(claim, &result))
+            .await
+            .map(drop);
         if matches!(saved, Ok(()) | Err(StoreError::NotFound)) {
             self.queue.finish(claim);
         }
@@ -158,7 +151,7 @@ impl JobStore for SqliteStore {
     }
 
     async fn fail_job(&self, id: Uuid, error: String) -> Result<()> {
-        self.change(1, [id], move |transaction| transaction.fail_job(id, &error)).await?;
+        self.change(1, [id], None, move |transaction| transaction.fail_job(id, &error)).await?;
         self.queue.remove_job(id);
         Ok(())
     }
@@ -174,7 +167,7 @@ impl JobStore for SqliteStore {
     }
 
     async fn delete_job(&self, id: Uuid) -> Result<()> {
-        self.change(1, [id], move |transaction| transaction.delete_job(id)).await?;
+        self.change(1, [id], None, move |transaction| transaction.delete_job(id)).await?;
         self.queue.remove_job(id);
         // The writer has woken the listeners before the claims were removed.
         self.changes.wake(id);

@@ -33,8 +33,8 @@ use uuid::Uuid;
 use super::jobs::ChunkQueue;
 use super::probe::Probe;
 use super::{
-    Changes, Commits, Extent, Heading, IsSmall, Receipt, Record, Result, Session, Snapshot, Store, StoreError, Tenant,
-    Usage, Whole,
+    Changes, Commits, Extent, IsSmall, Receipt, Record, Result, Session, Snapshot, Store, StoreError, Tenant, Usage,
+    Whole,
 };
 use crate::metrics::Counted;
 use change::{Change, Done, Transaction};
@@ -125,12 +125,13 @@ impl SqliteStore {
         backup::backup(path, copy, progress)
     }
 
-    /// Has the writer make a change of about `weight` rows, and returns its count when it is durable. The listeners of
-    /// `touched` are woken then.
+    /// Has the writer make a change of about `weight` rows and keep the receipt, and returns its count when it is
+    /// durable. The listeners of `touched` are woken then.
     async fn change(
         &self,
         weight: usize,
         touched: impl Into<Vec<Uuid>>,
+        receipt: Option<Receipt>,
         apply: impl Fn(&mut Transaction<'_>) -> Result<Done, Fault> + Send + 'static,
     ) -> Result<u64> {
         let ended = || match &self.full {
@@ -140,7 +141,7 @@ impl SqliteStore {
         let _pending = Counted::by(&self.commits.pending);
         let (reply, outcome) = oneshot::channel();
         let requests = self.requests.as_ref().ok_or_else(ended)?;
-        let change = Change { apply: Box::new(apply), weight, touched: touched.into() };
+        let change = Change { apply: Box::new(apply), weight, touched: touched.into(), receipt };
         requests.send(Request { change, reply }).await.map_err(|_| ended())?;
         outcome.await.map_err(|_| ended())?
     }
@@ -161,11 +162,11 @@ impl Drop for SqliteStore {
 impl Store for SqliteStore {
     async fn ready(&self) -> Result<()> {
         self.readers.read(read::alive).await?;
-        self.probe.outcome(async { self.change(1, [], |transaction| transaction.probe()).await.map(drop) }).await
+        self.probe.outcome(async { self.change(1, [], None, |transaction| transaction.probe()).await.map(drop) }).await
     }
 
     async fn create(&self, session: Session, receipt: Option<Receipt>) -> Result<()> {
-        self.change(1, [], move |transaction| transaction.create(&session, receipt.as_ref())).await.map(drop)
+        self.change(1, [], receipt, move |transaction| transaction.create(&session)).await.map(drop)
     }
 
     async fn extent(&self, id: Uuid) -> Result<Extent> {
@@ -189,10 +190,6 @@ impl Store for SqliteStore {
         self.readers.read(move |database| read::find(database, id)).await
     }
 
-    async fn heading(&self, id: Uuid) -> Result<Heading> {
-        self.readers.read(move |database| read::heading(database, id)).await
-    }
-
     async fn list(
         &self,
         tenant: Option<Tenant>,
@@ -204,17 +201,16 @@ impl Store for SqliteStore {
     }
 
     async fn rename(&self, id: Uuid, label: Option<String>, expected: u64, receipt: Option<Receipt>) -> Result<()> {
-        let rename = move |transaction: &mut Transaction<'_>| {
-            transaction.rename(id, label.as_deref(), expected, receipt.as_ref())
-        };
-        self.change(1, [], rename).await.map(drop)
+        self.change(1, [], receipt, move |transaction| transaction.rename(id, label.as_deref(), expected))
+            .await
+            .map(drop)
     }
 
     async fn append(&self, id: Uuid, expected: u64, records: Vec<Record>, receipt: Option<Receipt>) -> Result<()> {
         let weight = records.len().max(1);
-        let append =
-            move |transaction: &mut Transaction<'_>| transaction.append(id, expected, &records, receipt.as_ref());
-        self.change(weight, [id], append).await.map(drop)
+        self.change(weight, [id], receipt, move |transaction| transaction.append(id, expected, &records))
+            .await
+            .map(drop)
     }
 
     async fn history(&self, id: Uuid, after: u64, limit: usize) -> Result<Vec<Record>> {
@@ -226,12 +222,12 @@ impl Store for SqliteStore {
     }
 
     async fn fork(&self, id: Uuid, copy: Session, receipt: Option<Receipt>) -> Result<()> {
-        let fork = Arc::new(Fork { id, copy, receipt });
-        self.change(1, [], move |transaction| transaction.fork(&fork)).await.map(drop)
+        let fork = Arc::new(Fork { id, copy });
+        self.change(1, [], receipt, move |transaction| transaction.fork(&fork)).await.map(drop)
     }
 
     async fn delete(&self, id: Uuid, expected: u64) -> Result<()> {
-        self.change(1, [id], move |transaction| transaction.delete(id, expected)).await.map(drop)
+        self.change(1, [id], None, move |transaction| transaction.delete(id, expected)).await.map(drop)
     }
 
     async fn receipt(&self, key: &str) -> Result<Option<Receipt>> {
@@ -244,11 +240,11 @@ impl Store for SqliteStore {
     }
 
     async fn save_snapshot(&self, id: Uuid, snapshot: Snapshot) -> Result<()> {
-        self.change(1, [], move |transaction| transaction.save_snapshot(id, &snapshot)).await.map(drop)
+        self.change(1, [], None, move |transaction| transaction.save_snapshot(id, &snapshot)).await.map(drop)
     }
 
     async fn purge_expired(&self, idle_since: Option<Timestamp>) -> Result<u64> {
-        while self.change(1, [], |transaction| transaction.purge_receipts()).await? > 0 {}
+        while self.change(1, [], None, |transaction| transaction.purge_receipts()).await? > 0 {}
         self.purge_jobs().await?;
         let Some(since) = idle_since else { return Ok(0) };
         let (mut expired, mut next) = (0, Some(0));
@@ -257,7 +253,8 @@ impl Store for SqliteStore {
             (idle, next) = self.readers.read(move |database| read::idle(database, since, after)).await?;
             for ids in idle.chunks(EXPIRE_AT_ONCE) {
                 let idle = ids.to_vec();
-                expired += self.change(ids.len(), ids, move |transaction| transaction.expire(&idle, since)).await?;
+                expired +=
+                    self.change(ids.len(), ids, None, move |transaction| transaction.expire(&idle, since)).await?;
             }
         }
         Ok(expired)

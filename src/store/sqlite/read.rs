@@ -6,8 +6,8 @@ use uuid::Uuid;
 
 use crate::store::rows::{self, RowReader as _};
 use crate::store::{
-    CONTACT_BYTES, Extent, Heading, IsSmall, RECEIPT_LIFETIME, RECEIPT_OVERHEAD, Receipt, Record, Session, Snapshot,
-    Tenant, Usage, Whole,
+    CONTACT_BYTES, Extent, IsSmall, RECEIPT_LIFETIME, RECEIPT_OVERHEAD, Receipt, Record, Session, Snapshot, Tenant,
+    Usage, Whole,
 };
 use stickslip_wire::SessionSummary;
 
@@ -32,14 +32,11 @@ pub(super) fn find(database: &Connection, id: Uuid) -> Result<Session, Fault> {
 }
 
 pub(super) fn extent(database: &Connection, id: Uuid) -> Result<Extent, Fault> {
-    let (number, sequence) = number_and_sequence(database, id)?;
-    let sql = "SELECT tenant, octet_length(definition),
+    let sql = "SELECT tenant, (SELECT coalesce(max(sequence), 0) FROM moves WHERE contact = number), label,
+                   octet_length(definition),
                    coalesce((SELECT octet_length(state) FROM snapshots WHERE contact = number), 0)
-               FROM contacts WHERE number = ?1";
-    let found = first(database, sql, [number], |row| {
-        Ok(Extent { tenant: rows::tenant(row)?, sequence, definition: row.count()?, snapshot: row.count()? })
-    })?;
-    found.ok_or_else(|| missing(database, id))
+               FROM contacts WHERE id = ?1";
+    first(database, sql, [id.to_string()], |row| rows::extent(row))?.ok_or_else(|| missing(database, id))
 }
 
 /// The extent of a session, and if that is small, the session with its moves.
@@ -78,12 +75,6 @@ pub(super) fn usage(database: &Connection, tenant: &Tenant) -> Result<Usage, Fau
         name => first(database, &receipts("key > ?1 || ' ' AND key < ?1 || '!'"), [name], |row| row.count()),
     }?;
     Ok(Usage { contacts, bytes: stored + kept.unwrap_or(0) })
-}
-
-pub(super) fn heading(database: &Connection, id: Uuid) -> Result<Heading, Fault> {
-    let sql = "SELECT (SELECT coalesce(max(sequence), 0) FROM moves WHERE contact = number), label FROM contacts
-               WHERE id = ?1";
-    first(database, sql, [id.to_string()], |row| rows::heading(row))?.ok_or_else(|| missing(database, id))
 }
 
 pub(super) fn list(

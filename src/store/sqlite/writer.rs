@@ -13,19 +13,16 @@ use rusqlite::config::DbConfig;
 use tokio::sync::mpsc::error::TryRecvError;
 use tokio::sync::{mpsc, oneshot};
 
-use crate::store::{Changes, Commits, Result, StoreError};
+use crate::store::{Changes, Commits, Result, StoreError, batch};
 
 use super::change::{Change, Done, SequenceCache, Transaction};
 use super::fault::{Fault, Stage, is_locked, store_error, worth_splitting};
 use super::fork::{self, Copying, Fork};
 use super::open_files::OpenFiles;
 use super::schema::{self, APPLICATION};
+use super::statements::{check_key, insert_receipt};
 use super::{BUSY, STILL_BUSY};
 
-/// Requests that share a transaction.
-const BATCH: usize = 512;
-/// Rows that they may write before the transaction ends.
-const BATCH_WEIGHT: usize = 10_000;
 /// Contacts in the cache of sequences, of some 64 bytes each.
 const CACHED: usize = 131_072;
 
@@ -38,7 +35,6 @@ pub(super) struct Request {
 /// The channel for the outcome of a change.
 type Reply = oneshot::Sender<Result<u64>>;
 
-/// The state of the writing thread.
 pub(super) struct Writer {
     database: Connection,
     /// The files that it writes to.
@@ -49,7 +45,7 @@ pub(super) struct Writer {
     /// A number that no session has had.
     next_number: i64,
     /// Forks under way; the first of them is being copied.
-    forks: VecDeque<(Arc<Fork>, Copying, Reply)>,
+    forks: VecDeque<(Arc<Fork>, Copying, Request)>,
     /// Whether there may be moves without a contact.
     unowned: bool,
     /// Whether the last transaction succeeded: if not, background work rests.
@@ -71,7 +67,8 @@ impl Writer {
         changes: Arc<Changes>,
         commits: Arc<Commits>,
     ) -> rusqlite::Result<Writer> {
-        fork::abandon_all(&database)?;
+        // Forks that a crash has left incomplete are abandoned.
+        database.execute("UPDATE unowned SET forming = 0 WHERE forming = 1", [])?;
         let sql = "SELECT max(coalesce((SELECT max(number) FROM contacts), 0),
                               coalesce((SELECT max(contact) FROM moves), 0),
                               coalesce((SELECT max(contact) FROM unowned), 0))";
@@ -107,12 +104,12 @@ impl Writer {
                 }
             };
             if let Some(first) = first {
-                self.commit(collect_batch(first, &mut requests));
+                self.commit(batch::collect(first, &mut requests, |request| request.change.weight));
             }
             self.background_step();
         }
-        for (_, _, reply) in self.forks.drain(..) {
-            answer(reply, Err(StoreError::Unavailable("the store is closing".to_owned())));
+        for (_, _, request) in self.forks.drain(..) {
+            answer(request.reply, Err(StoreError::Unavailable("the store is closing".to_owned())));
         }
         if let Err(error) = self.close() {
             tracing::warn!(%error, "the write-ahead log could not be merged; the next start does it");
@@ -156,7 +153,7 @@ impl Writer {
         let outcomes = self.transaction(|database, cache| {
             let mut outcomes = Vec::with_capacity(batch.len());
             for request in batch {
-                outcomes.push(match (request.change.apply)(&mut Transaction { database, cache, number }) {
+                outcomes.push(match request.change.make(&mut Transaction { database, cache, number }) {
                     Ok(done) => Ok(done),
                     Err(Fault::Refused(error)) => Err(error),
                     Err(Fault::Sqlite(error)) => return Err(error),
@@ -171,41 +168,47 @@ impl Writer {
     }
 
     fn finish(&mut self, request: Request, outcome: Result<Done>) {
-        let Request { change, reply } = request;
         let count = match outcome {
-            Err(error) => return answer(reply, Err(error)),
+            Err(error) => return answer(request.reply, Err(error)),
             Ok(Done::Made(count)) => count,
             Ok(Done::Removed(count)) => {
                 self.unowned = true;
                 count
             }
-            Ok(Done::Copying(fork, copying)) => return self.forks.push_back((fork, copying, reply)),
+            Ok(Done::Copying(fork, copying)) => return self.forks.push_back((fork, copying, request)),
         };
         // The reply goes first: its client waits longer than the listeners have.
-        answer(reply, Ok(count));
-        change.touched.iter().for_each(|id| self.changes.wake(*id));
+        answer(request.reply, Ok(count));
+        request.change.touched.iter().for_each(|id| self.changes.wake(*id));
     }
 
-    /// One step of the background work.
     fn background_step(&mut self) {
-        if let Some((fork, copying, reply)) = self.forks.pop_front() {
-            let mut proceeded = copying;
+        if let Some((fork, copying, request)) = self.forks.pop_front() {
+            let (mut proceeded, receipt) = (copying, request.change.receipt.as_ref());
+            let proceed = |database: &Connection, proceeded: &mut Copying| {
+                check_key(database, receipt)?;
+                let complete = fork.proceed(database, proceeded)?;
+                if complete {
+                    insert_receipt(database, receipt)?;
+                }
+                Ok(complete)
+            };
             // A refusal has written a part of the copy and nothing else, and that part is removed later.
-            let step = self.transaction(|database, _| match fork.proceed(database, &mut proceeded) {
+            let step = self.transaction(|database, _| match proceed(database, &mut proceeded) {
                 Ok(complete) => Ok(Ok(complete)),
                 Err(Fault::Refused(error)) => copying.abandon(database).map(|()| Err(error)),
                 Err(Fault::Sqlite(error)) => Err(error),
             });
             match step {
-                Ok(Ok(false)) => self.forks.push_front((fork, proceeded, reply)),
-                Ok(Ok(true)) => answer(reply, Ok(0)),
+                Ok(Ok(false)) => self.forks.push_front((fork, proceeded, request)),
+                Ok(Ok(true)) => answer(request.reply, Ok(0)),
                 Ok(Err(error)) => {
                     self.unowned = true;
-                    answer(reply, Err(error));
+                    answer(request.reply, Err(error));
                 }
                 Err(Failure { error, stage }) => {
                     self.unowned |= self.transaction(|database, _| copying.abandon(database)).is_ok();
-                    answer(reply, Err(store_error(&error, stage)));
+                    answer(request.reply, Err(store_error(&error, stage)));
                 }
             }
         } else if self.unowned && self.healthy {
@@ -266,20 +269,6 @@ impl Writer {
     fn run_statement(&self, sql: &str) -> rusqlite::Result<()> {
         self.database.prepare_cached(sql)?.execute([]).map(drop)
     }
-}
-
-/// A request with those that wait behind it.
-fn collect_batch(first: Request, requests: &mut mpsc::Receiver<Request>) -> Vec<Request> {
-    let mut weight = first.change.weight;
-    let mut batch = vec![first];
-    while batch.len() < BATCH
-        && weight < BATCH_WEIGHT
-        && let Ok(request) = requests.try_recv()
-    {
-        weight += request.change.weight;
-        batch.push(request);
-    }
-    batch
 }
 
 fn answer(reply: Reply, outcome: Result<u64>) {

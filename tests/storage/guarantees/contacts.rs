@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use futures::future::join_all;
-use stickslip::store::{Heading, Session, Store, StoreError};
+use stickslip::store::{Session, Store, StoreError};
 use stickslip_wire::SessionSummary;
 use uuid::Uuid;
 
@@ -66,7 +66,8 @@ pub async fn a_label_changes_alone_and_finds_its_session(store: &dyn Store) {
         store.rename(made.id, label.clone(), 2, None).await.unwrap();
         let renamed = Session { label: label.clone(), ..made.clone() };
         assert_eq!(exact(&store.find(made.id).await.unwrap()), exact(&renamed));
-        assert_eq!(store.heading(made.id).await.unwrap(), Heading { sequence: 2, label: label.clone() });
+        let extent = store.extent(made.id).await.unwrap();
+        assert_eq!((extent.sequence, extent.label), (2, label.clone()));
         assert_eq!(exact(&store.history(made.id, 0, 10).await.unwrap()), exact(&past));
         for (text, is_part) in [
             ("a.b\\c", true),
@@ -94,7 +95,7 @@ pub async fn a_label_changes_alone_and_finds_its_session(store: &dyn Store) {
         assert!(matches!(late, Err(StoreError::Stale { found: 2 })), "{late:?}");
     }
     assert!(store.receipt("late").await.unwrap().is_none());
-    assert_eq!(store.heading(made.id).await.unwrap().label.as_deref(), Some("first"));
+    assert_eq!(store.extent(made.id).await.unwrap().label.as_deref(), Some("first"));
 }
 
 pub async fn moves_are_appended_at_the_expected_sequence_alone(store: &dyn Store) {
@@ -133,7 +134,7 @@ pub async fn a_fork_shares_the_past_and_nothing_else(store: &dyn Store) {
         assert_eq!(exact(&store.history(early.id, 0, 10).await.unwrap()), exact(&past.to_vec()));
         assert_eq!(store.snapshot(early.id).await.unwrap(), kept);
         store.append(early.id, sequence, vec![record(sequence + 1)], None).await.unwrap();
-        assert_eq!(store.heading(early.id).await.unwrap().sequence, sequence + 1);
+        assert_eq!(store.extent(early.id).await.unwrap().sequence, sequence + 1);
     }
     assert_eq!(exact(&store.history(original.id, 0, 10).await.unwrap()), exact(&past));
     store.fork(original.id, copy.clone(), None).await.unwrap();

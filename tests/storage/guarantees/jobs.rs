@@ -76,6 +76,7 @@ pub async fn each_chunk_is_given_once_and_heard_once(store: &dyn Store) {
     let failed = store.job(second.id).await.unwrap();
     assert!(failed.finished_at.is_some() && failed.error.as_deref() == Some("no use"));
     assert!(!store.renew(claims[1], LEASE).await.unwrap());
+    store.release(claims[1]).await.unwrap();
     assert_eq!(store.claim(owner, None, LEASE).await.unwrap(), None);
     store.purge_expired(None).await.unwrap();
     for id in [first.id, second.id] {

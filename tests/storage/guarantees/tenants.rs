@@ -61,7 +61,7 @@ pub async fn a_request_for_an_expired_contact_gets_its_tenant(store: &dyn Store)
     for gone in [theirs, nameless] {
         for refused in [
             store.find(gone.id).await.map(drop),
-            store.heading(gone.id).await.map(drop),
+            store.extent(gone.id).await.map(drop),
             store.history(gone.id, 0, 1).await.map(drop),
             store.append(gone.id, 0, records(0, 1), None).await,
             store.delete(gone.id, 0).await,
