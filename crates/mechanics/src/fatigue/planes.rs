@@ -94,7 +94,7 @@ pub(super) fn peaks(more: &[Vector], mut value: impl FnMut(&Vector, bool) -> f64
     found
 }
 
-/// Peaks so near to one that the grid does not tell them apart: climbed from the highest planes of circles around it.
+/// Peaks so near to one that the grid does not distinguish them: climbed from the highest planes of circles around it.
 fn beside(normal: &Vector, mut value: impl FnMut(&Vector) -> f64) -> Vec<(f64, Vector)> {
     let [one, two] = axes(normal);
     let mut found = Vec::new();
