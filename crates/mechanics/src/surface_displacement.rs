@@ -80,9 +80,8 @@ impl Contact {
             (core.line.at(DoubleDouble::ZERO).value(), top.line.at(self.history.edge().level).value())
         });
         let at_once = ends.and_then(|ends| {
-            let mut rings: Vec<_> = self.history.rings().map(|(ring, line)| (ring, line.slope.value())).collect();
-            rings.reverse();
-            self.profile.displacements(&rings, ends, &StressRadius::of_all(radii))
+            let rings = self.history.rings().rev().map(|(ring, line)| (ring, line.slope.value()));
+            self.profile.displacements(&rings.collect::<Vec<_>>(), ends, &StressRadius::of_all(radii))
         });
         at_once.unwrap_or_else(|| radii.iter().map(|&radius| self.relative_displacement(radius)).collect())
     }

@@ -185,18 +185,16 @@ impl<'a, 'b> Branch<'a, 'b> {
         };
         let point = contact.profile.point(level);
         let (scale, unit) = (contact.scale(), contact.force_unit());
-        let [mut gone, mut left] = [scale * fallen, scale * standing];
-        if cycle.force_driven || cycle.compliance > 0.0 {
-            let carried = |inner, outer| unit * load(&contact.profile, &Ring::between(inner, outer));
-            let forces = [carried(point, ring.outer), carried(ring.inner, point)];
-            if cycle.force_driven {
-                [gone, left] = forces;
-            } else {
-                gone += cycle.compliance * forces[0];
-                left += cycle.compliance * forces[1];
-            }
-        }
-        left += cycle.slide;
+        let carried = |inner, outer| unit * load(&contact.profile, &Ring::between(inner, outer));
+        let forces = [carried(point, ring.outer), carried(ring.inner, point)];
+        let [gone, left] = if cycle.force_driven {
+            forces
+        } else {
+            [
+                scale * fallen + cycle.compliance * forces[0],
+                scale * standing + cycle.compliance * forces[1] + cycle.slide,
+            ]
+        };
         let sides = [2.0 * (gone * left).max(0.0).sqrt() / drive, (left - gone) / drive];
         let stiffness = 2.0 * contact.elasticity.g_star() * point.radius;
         // X(d) - X(y), of the squares.

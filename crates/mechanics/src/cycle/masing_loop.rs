@@ -21,13 +21,8 @@ pub(super) struct FirstLoading<'a> {
 
 impl<'a> FirstLoading<'a> {
     pub(super) fn new(contact: &'a Contact) -> FirstLoading<'a> {
-        let edge = contact.history.edge().level;
-        let held = edge.value() > 0.0 && contact.friction > 0.0;
-        FirstLoading {
-            contact,
-            gross_slip: if held { contact.unscaled(edge).value() } else { 0.0 },
-            limit: if held { contact.friction * contact.normal_force } else { 0.0 },
-        }
+        let gross_slip = contact.unscaled(contact.history.edge().level).value().max(0.0);
+        FirstLoading { contact, gross_slip, limit: contact.friction * contact.normal_force }
     }
 
     /// mu F_N, N.

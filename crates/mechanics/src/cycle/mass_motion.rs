@@ -43,6 +43,8 @@ pub(super) enum Unfinished {
 /// The mass, its drive and its contact.
 pub(super) struct DrivenMass<'a> {
     pub(super) loading: FirstLoading<'a>,
+    /// Of the drive, Hz.
+    pub(super) frequency: f64,
     /// P, N.
     pub(super) drive_force: f64,
     /// M w^2, N/m.

@@ -96,6 +96,7 @@ impl Resonator {
             keep_going().then_some(())?;
             let mass = DrivenMass {
                 loading: FirstLoading::new(contact),
+                frequency,
                 drive_force: self.drive_force,
                 inertia: self.mass * (TAU * frequency).powi(2),
                 ratio: natural / frequency,
@@ -107,7 +108,7 @@ impl Resonator {
             } else {
                 mass.steady([start.amplitude, start.phase], tolerance).ok()?
             };
-            Some(Response { frequency, ..found.unwrap_or(start) })
+            Some(found.unwrap_or(start))
         };
         frequencies.iter().map(respond).collect()
     }
@@ -130,7 +131,7 @@ impl DrivenMass<'_> {
         let amplitude = between(ends, START, lack).exp();
         let [carried, lost] = lag(amplitude, first(amplitude));
         Response {
-            frequency: 0.0,
+            frequency: self.frequency,
             amplitude,
             phase: lost.atan2(carried),
             peak: amplitude,
@@ -154,7 +155,7 @@ impl DrivenMass<'_> {
         // The other way as well, and the ringing of the mass.
         let error = 2.0 * (farther - peak);
         Some(Response {
-            frequency: 0.0,
+            frequency: self.frequency,
             amplitude: in_phase.hypot(quadrature),
             phase: quadrature.atan2(in_phase),
             peak,

@@ -101,7 +101,7 @@ impl DrivenMass<'_> {
     fn solve(&self, start: [f64; 2], step: f64) -> Attempt<(Tried, Slopes)> {
         let rough = ROUGH.max(step);
         let here = self.tried(start, rough * start[0])?;
-        let Some(slopes) = self.slopes(&here, rough * start[0])? else { return Ok(None) };
+        let Some(slopes) = self.slopes_beside(&here, rough * start[0])? else { return Ok(None) };
         let Some((here, slopes)) = self.approach(here, slopes, rough)? else { return Ok(None) };
         let fine = self.tried(here.from, step * here.from[0])?;
         let Some((found, slopes)) = self.approach(fine, slopes, step)? else { return Ok(None) };
@@ -115,7 +115,7 @@ impl DrivenMass<'_> {
         let slopes = if moved.iter().all(|change| change.abs() < NEAR) {
             Some(slopes)
         } else {
-            self.slopes(&self.tried(found.from, rough * amplitude)?, rough * amplitude)?
+            self.slopes(found.from, rough * amplitude)?
         };
         Ok(slopes.map(|slopes| (found, slopes)))
     }
@@ -128,9 +128,7 @@ impl DrivenMass<'_> {
             if self.size(here.off) <= tolerance {
                 return Ok(Some((here, slopes)));
             }
-            let renewed = |here: &Tried| {
-                self.slopes(&self.tried(here.from, ROUGH.max(step) * here.from[0])?, ROUGH.max(step) * here.from[0])
-            };
+            let renewed = |from: [f64; 2]| self.slopes(from, ROUGH.max(step) * from[0]);
             let full = product(&slopes.inverse, here.off).map(|change| -change);
             let limits = [LONGEST[0] * here.from[0], LONGEST[1]];
             let mut part = full.iter().zip(limits).fold(1.0_f64, |part, (change, most)| part.min(most / change.abs()));
@@ -148,13 +146,13 @@ impl DrivenMass<'_> {
                     // What no step makes smaller is the rounding of the motions.
                     return Ok((self.size(here.off) <= LEFT * tolerance).then_some((here, slopes)));
                 }
-                let Some(renewed) = renewed(&here)? else { return Ok(None) };
+                let Some(renewed) = renewed(here.from)? else { return Ok(None) };
                 (slopes, fresh) = (renewed, true);
                 continue;
             };
             fresh = self.size(tried.off) > SLOW * self.size(here.off);
             if fresh {
-                let Some(renewed) = renewed(&tried)? else { return Ok(None) };
+                let Some(renewed) = renewed(tried.from)? else { return Ok(None) };
                 slopes = renewed;
             } else {
                 let [step, change] = [(here.from, tried.from), (here.off, tried.off)]
@@ -179,8 +177,13 @@ impl DrivenMass<'_> {
         off[0].hypot(off[1] / self.fastest())
     }
 
+    /// The derivatives at a turning point, by motions to this tolerance, m.
+    fn slopes(&self, from: [f64; 2], tolerance: f64) -> Attempt<Slopes> {
+        self.slopes_beside(&self.tried(from, tolerance)?, tolerance)
+    }
+
     /// The derivatives beside a motion, of motions to the same `tolerance`, m.
-    fn slopes(&self, middle: &Tried, tolerance: f64) -> Attempt<Slopes> {
+    fn slopes_beside(&self, middle: &Tried, tolerance: f64) -> Attempt<Slopes> {
         let steps = [DIFFERENCE * middle.from[0], DIFFERENCE];
         let (mut slopes, mut waves) = ([[0.0; 2]; 2], [[0.0; 2]; 2]);
         for (index, step) in steps.into_iter().enumerate() {
@@ -205,7 +208,7 @@ impl DrivenMass<'_> {
         let [cos_error, sin_error] = product(&magnitudes(&slopes.waves), moved);
         let first_force = force_cos.hypot(force_sin);
         Response {
-            frequency: 0.0,
+            frequency: self.frequency,
             amplitude: cos.hypot(sin),
             phase: sin.atan2(cos),
             peak: found.from[0],

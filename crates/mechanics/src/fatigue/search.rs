@@ -102,7 +102,7 @@ impl Study<'_> {
 
     /// The radii, in contact radii, at which edges of the contact and of slip end, and kinks of the history lie.
     fn circles(&self) -> Vec<f64> {
-        let mut circles = self.cycle().ends();
+        let mut circles = self.cycle().circles();
         circles.iter_mut().for_each(|circle| *circle /= self.radius);
         circles.sort_by(|one, other| other.total_cmp(one));
         circles.dedup_by(|one, other| (*one - *other).abs() < SAME_CIRCLE);
@@ -270,16 +270,14 @@ impl Study<'_> {
 
 impl Cycle {
     /// The radii, m, at which an edge of the contact or of slip is at the end of a move, and a kink of the history.
-    fn ends(&self) -> Vec<f64> {
-        let mut ends = Vec::new();
-        for step in 0..self.moves() {
-            let state = self.state(step, 1.0).0;
-            let profile = state.profile();
-            ends.push(state.contact_radius());
-            ends.extend(state.history.kink_levels().map(|level| profile.radius(level)));
+    fn circles(&self) -> Vec<f64> {
+        let mut circles = Vec::new();
+        for state in self.ends() {
+            circles.push(state.contact_radius());
+            circles.extend(state.history.kink_levels().map(|level| state.profile().radius(level)));
         }
-        ends.retain(|radius| *radius > 0.0);
-        ends
+        circles.retain(|radius| *radius > 0.0);
+        circles
     }
 }
 

@@ -48,7 +48,7 @@ struct Equations<'a> {
 impl Equations<'_> {
     /// The kinks of an E, relative to the free optimum, and of a share of it for the outermost, with the residuals.
     fn evaluate(&self, [stress, share]: [f64; 2]) -> Option<([f64; 2], VirginStrokes<'_>)> {
-        let marched = self.problem.march_with(self.limit * stress, share, self.keep_going)?;
+        let marched = self.problem.march(self.limit * stress, share, self.keep_going)?;
         Some(([miss(self.problem, &marched.kinks, self.first, self.end), marched.excess?], marched))
     }
 

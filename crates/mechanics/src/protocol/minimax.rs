@@ -157,18 +157,8 @@ impl Problem<'_> {
         most.max(largest(beside, BRACKET, value).1)
     }
 
-    /// The kinks for one E; `None` if `keep_going` returned false.
-    pub(super) fn march(&self, limit: f64, keep_going: &dyn Fn() -> bool) -> Option<VirginStrokes<'_>> {
-        self.march_with(limit, 1.0, keep_going)
-    }
-
-    /// The same with a share of the limit for the outermost extremum.
-    pub(super) fn march_with(
-        &self,
-        limit: f64,
-        share: f64,
-        keep_going: &dyn Fn() -> bool,
-    ) -> Option<VirginStrokes<'_>> {
+    /// The kinks for one E, and a share of it for the outermost extremum; `None` if `keep_going` returned false.
+    pub(super) fn march(&self, limit: f64, share: f64, keep_going: &dyn Fn() -> bool) -> Option<VirginStrokes<'_>> {
         let mut strokes = self.edge_alone();
         while strokes.kinks.len() < self.reversals {
             if !keep_going() {
@@ -188,7 +178,7 @@ impl Problem<'_> {
         let middle = StressRadius::new(0.5 * (self.cutoff + self.edge.radius));
         let guess = self.edge_alone().shear(&middle) / (self.reversals as f64).sqrt();
         let (limit, strokes) = smallest(guess, TOLERANCE, None, |limit| {
-            let strokes = self.march(limit, keep_going)?;
+            let strokes = self.march(limit, 1.0, keep_going)?;
             // Where fewer kinks are enough, the core has no stress.
             Some((strokes.excess.unwrap_or(-1.0), Some(strokes)))
         })?;

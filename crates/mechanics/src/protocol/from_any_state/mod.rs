@@ -69,8 +69,7 @@ impl<'a> FromAnyState<'a> {
         if history.pieces().len() > MAX_DEPTH {
             return None;
         }
-        let mut rings: Vec<_> = history.rings().map(|(ring, line)| (ring, *line)).collect();
-        rings.reverse();
+        let rings: Vec<_> = history.rings().rev().map(|(ring, line)| (ring, *line)).collect();
         let rim = profile.rim_radius().filter(|rim| edge.radius >= *rim).map(|rim| profile.level(rim));
         let outer = rim.map_or(edge, |level| profile.point(DoubleDouble::from(level)));
         let inner_strokes = strokes.checked_sub(usize::from(rim.is_some()))?;
@@ -161,7 +160,7 @@ impl<'a> FromAnyState<'a> {
     /// The strokes of a largest stress E, if there are any, and by how much they exceed it, over it; `None` if
     /// `keep_going` returned false.
     fn strokes(&self, limit: f64, keep_going: &dyn Fn() -> bool) -> Option<(f64, Option<LaterStrokes>)> {
-        let marched = self.problem.march(limit, keep_going)?;
+        let marched = self.problem.march(limit, 1.0, keep_going)?;
         if marched.excess.is_none() {
             return Some((-1.0, None));
         }
