@@ -34,7 +34,7 @@ use ball::dot;
 pub use ball::{Ball, enclosing_ball};
 pub use curve::{Instant, MAX_INSTANTS};
 pub use cycle::{Cycle, MOST_BYTES};
-use planes::{Vector, axes, highest, peaks, unit};
+use planes::{Vector, axes, grid, peaks, unit};
 pub use rating::{Measure, Rated};
 pub use search::Worst;
 pub use study::{Bulk, FIELD_BYTES, Largest, Ratings, Study};
@@ -166,8 +166,10 @@ impl Criterion {
         if matches!(self, Criterion::Crossland { .. } | Criterion::DangVan { .. }) {
             return self.of(path).value;
         }
-        let normal = highest(&self.starts(path), |normal| self.on_plane(path, normal, true).0);
-        self.on_plane(path, &normal, false).0
+        let starts = self.starts(path);
+        let planes: Vec<&Vector> = grid(&starts).collect();
+        let (highest, _) = most(planes.iter().map(|normal| self.on_plane(path, normal, true).0));
+        self.on_plane(path, planes[highest], false).0
     }
 
     /// The planes that a search must not miss: of largest tension, where a criterion is cut off without.

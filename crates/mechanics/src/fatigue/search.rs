@@ -9,8 +9,8 @@ use std::f64::consts::PI;
 
 use super::planes::Vector;
 use super::study::Study;
-use super::{Cycle, Measure, Rated};
-use crate::{Error, Profile};
+use super::{Measure, Rated};
+use crate::Error;
 
 /// Depths of the net, in contact radii; the first ones, and not the others, on the circles where something ends.
 const DEPTHS: [f64; 12] = [0.0, 0.01, 0.03, 0.08, 0.15, 0.25, 0.35, 0.48, 0.65, 0.9, 1.2, 1.7];
@@ -102,7 +102,12 @@ impl Study<'_> {
 
     /// The radii, in contact radii, at which edges of the contact and of slip end, and kinks of the history lie.
     fn circles(&self) -> Vec<f64> {
-        let mut circles = self.cycle().circles();
+        let mut circles = Vec::new();
+        for state in self.cycle.ends() {
+            circles.push(state.contact_radius());
+            circles.extend(state.history.kink_levels().map(|level| state.profile().radius(level)));
+        }
+        circles.retain(|radius| *radius > 0.0);
         circles.iter_mut().for_each(|circle| *circle /= self.radius);
         circles.sort_by(|one, other| other.total_cmp(one));
         circles.dedup_by(|one, other| (*one - *other).abs() < SAME_CIRCLE);
@@ -179,7 +184,8 @@ impl Study<'_> {
 
     /// A place of the surface at which the measure is infinite.
     fn unbounded(&mut self, measure: usize) -> Result<Option<Worst>, Error> {
-        for radius in spikes(self.cycle().start().profile()) {
+        let profile = self.cycle.start().profile();
+        for radius in profile.singular_radii().into_iter().chain(profile.rim_radius()) {
             let place = [radius, 0.0, 0.0];
             if self.rate_one(measure, &place, None)?.0.value == f64::INFINITY {
                 let rated = Rated { value: f64::INFINITY, error: f64::INFINITY, plane: None, at: None };
@@ -266,22 +272,4 @@ impl Study<'_> {
         let spot = self.spot(measure, at, from.found.plane)?;
         Ok(Some(spot).filter(|spot| spot.found.value.is_finite()))
     }
-}
-
-impl Cycle {
-    /// The radii, m, at which an edge of the contact or of slip is at the end of a move, and a kink of the history.
-    fn circles(&self) -> Vec<f64> {
-        let mut circles = Vec::new();
-        for state in self.ends() {
-            circles.push(state.contact_radius());
-            circles.extend(state.history.kink_levels().map(|level| state.profile().radius(level)));
-        }
-        circles.retain(|radius| *radius > 0.0);
-        circles
-    }
-}
-
-/// The radii, m, at which stresses of a profile may be infinite on the surface.
-fn spikes(profile: &Profile) -> Vec<f64> {
-    profile.singular_radii().into_iter().chain(profile.rim_radius()).collect()
 }

@@ -73,7 +73,7 @@ type Field = Rc<(Subsurface, f64)>;
 
 /// What is asked of a cycle.
 pub struct Study<'a> {
-    cycle: &'a Cycle,
+    pub(super) cycle: &'a Cycle,
     body: (Side, f64),
     bulk: Option<Bulk>,
     pub(super) measures: Vec<Measure>,
@@ -260,11 +260,6 @@ impl<'a> Study<'a> {
     #[must_use]
     pub fn contact_radius(&self) -> f64 {
         self.radius
-    }
-
-    /// The cycle.
-    pub(super) fn cycle(&self) -> &'a Cycle {
-        self.cycle
     }
 
     /// A value with its instant as the move prescribes it.

@@ -138,7 +138,11 @@ impl Subsurface {
     fn integrated(&self, place: &DeepPlace) -> (NormalKernels, TangentialKernels) {
         let (mut normal, mut tangential) = ([0.0; 4], [0.0; 6]);
         let radius = self.contact.contact_radius();
-        self.mesh().visit(self.contact.profile(), radius, (place.r, place.z), |offset, source| {
+        let mesh = self.mesh.get_or_init(|| {
+            let rings = self.contact.shear_rings().collect::<Vec<_>>();
+            Mesh::new(self.contact.profile(), &rings, radius, self.contact.accuracy().stress_error)
+        });
+        mesh.visit(self.contact.profile(), radius, (place.r, place.z), |offset, source| {
             let (p, q) = place.kernels(offset);
             for (sum, value) in normal.iter_mut().zip(p) {
                 *sum += source.normal * value;
@@ -148,14 +152,6 @@ impl Subsurface {
             }
         });
         (normal, tangential)
-    }
-
-    fn mesh(&self) -> &Mesh {
-        let contact = &self.contact;
-        let rings = || contact.shear_rings().collect::<Vec<_>>();
-        self.mesh.get_or_init(|| {
-            Mesh::new(contact.profile(), &rings(), contact.contact_radius(), contact.accuracy().stress_error)
-        })
     }
 
     /// Estimated error of any component, relative to
