@@ -30,8 +30,6 @@ const SPARSE: usize = 3;
 /// Starts of a search for each measure, and the value of one over the best.
 const STARTS: usize = 5;
 const WORTH: f64 = 0.75;
-/// Starts of a search that only asks whether a larger value exists.
-const SHORT: usize = 1;
 /// Nearer than this to a start, in contact radii, is no other start.
 const APART: f64 = 0.2;
 /// The first steps along radius, over the contact radius, angle and depth, and how far they fall, first and at the best
@@ -85,9 +83,8 @@ impl Study<'_> {
         let mut places = Vec::with_capacity(known.len());
         for (measure, known) in known.iter().enumerate() {
             let mut larger = self.unbounded(measure)?;
-            let mut tried = self.best_starts(measure, &starts).into_iter().take(SHORT);
-            while let (None, Some(start)) = (larger, tried.next()) {
-                let spot = self.climb(measure, start, (1.0, 1.0))?.0;
+            if let (None, Some(start)) = (larger, self.best_starts(measure, &starts).first()) {
+                let spot = self.climb(measure, *start, (1.0, 1.0))?.0;
                 let margin = spot.found.error + self.tolerance * spot.found.value.abs();
                 larger = (spot.found.value - margin > *known).then(|| self.found_at(&spot));
             }

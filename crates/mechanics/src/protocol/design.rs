@@ -2,7 +2,7 @@
 
 use super::super::shear_stress::Residual;
 use super::super::state::{Move, Regime, Tangential};
-use super::from_any_state::FromAnyState;
+use super::from_any_state::{FromAnyState, MAX_DEPTH};
 use super::{
     Contact, DEFAULT_CUTOFF, DoubleDouble, EqualPeakMeasure, Error, Quantity, cutoff_of, evenly_spread,
     falling_amplitude, outermost_singular,
@@ -12,9 +12,6 @@ use super::{
 const ROUNDED: f64 = 1e-9;
 /// Up to this many reversals the strokes of a path with a prescribed end are sought in every way.
 const FEW: usize = 8;
-/// The present state of a deeper slip history is no candidate: the cost of its extrema grows with the square of the
-/// depth.
-const MAX_DEPTH: usize = 256;
 
 /// A law for the amplitudes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -21,8 +21,9 @@ use super::minimax::{Problem, smallest};
 use super::{Contact, DoubleDouble, PathEnd, Profile, alternating, cutoff_of, outermost_singular, positions};
 use crate::numerics::roots::{largest, turning};
 
-/// A slip history of more pieces is refused, because each piece is evaluated for every E.
-const MAX_DEPTH: usize = 256;
+/// A slip history of more pieces is refused, because each piece is evaluated for every E; nor is it a candidate as it
+/// is, because the cost of its extrema grows with the square of the depth.
+pub(super) const MAX_DEPTH: usize = 256;
 /// Number of sampled radii besides the kinks of the history, and of cuts that are tried.
 const GRID: usize = 64;
 const CUTS: usize = 16;
