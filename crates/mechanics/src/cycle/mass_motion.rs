@@ -32,12 +32,12 @@ const ROUNDING: f64 = 32.0 * f64::EPSILON;
 const ROWS: usize = 8;
 type StateRows = [f64; ROWS];
 
-/// Why a motion was not followed to its end.
+/// Why a motion was not followed to its end, or none was found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Unfinished {
     Interrupted,
-    /// The steps did not suffice.
-    TooManySteps,
+    /// The steps did not suffice, or did not lead to what was sought.
+    NotFound,
 }
 
 /// The mass, its drive and its contact.
@@ -118,7 +118,7 @@ impl DrivenMass<'_> {
         while motion.angle < end {
             taken += 1.0;
             if taken > most {
-                return Err(Unfinished::TooManySteps);
+                return Err(Unfinished::NotFound);
             }
             if (taken as usize).is_multiple_of(64) && !(self.keep_going)() {
                 return Err(Unfinished::Interrupted);
@@ -167,7 +167,7 @@ impl DrivenMass<'_> {
             let start = if direction * motion.speed > 0.0 { 0.0 } else { 1e-3 * length };
             let at_start = if start > 0.0 { speed(start) } else { direction * motion.speed };
             if at_start <= 0.0 {
-                return Err(Unfinished::TooManySteps);
+                return Err(Unfinished::NotFound);
             }
             let ends = [(start, at_start), (length, direction * (motion.speed + trial.change[1]))];
             length = between(ends, EVENT * length, speed);

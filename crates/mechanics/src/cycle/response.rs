@@ -11,7 +11,7 @@
 use std::f64::consts::TAU;
 
 use super::masing_loop::FirstLoading;
-use super::mass_motion::DrivenMass;
+use super::mass_motion::{DrivenMass, Unfinished};
 use super::{Drive, Harmonic, SteadyCycle};
 use crate::Contact;
 use crate::numerics::roots::between;
@@ -103,12 +103,13 @@ impl Resonator {
                 keep_going,
             };
             let start = mass.balance_of_first(contact);
-            let found = if mass.ratio > QUASI_STATIC {
-                mass.quasi_static(contact)
-            } else {
-                mass.steady([start.amplitude, start.phase], tolerance).ok()?
-            };
-            Some(found.unwrap_or(start))
+            if mass.ratio > QUASI_STATIC {
+                return Some(mass.quasi_static(contact).unwrap_or(start));
+            }
+            match mass.steady([start.amplitude, start.phase], tolerance) {
+                Err(Unfinished::Interrupted) => None,
+                found => Some(found.unwrap_or(start)),
+            }
         };
         frequencies.iter().map(respond).collect()
     }
