@@ -307,8 +307,8 @@ impl DesignTask<'_> {
 
     /// Strokes by [`FromAnyState`], m, to the end, but for what it misses.
     fn relieved(&self, from: &Contact, strokes: usize, last: f64) -> Vec<Vec<f64>> {
-        let found = FromAnyState::new(from, strokes, last, self.end);
-        let mut paths = found.map_or_else(Vec::new, |strokes| strokes.solve(self.keep_going));
+        let found = FromAnyState::new(from, strokes, last, self.end, self.keep_going);
+        let mut paths = found.map_or_else(Vec::new, |strokes| strokes.solve());
         paths.iter_mut().flatten().for_each(|position| *position *= from.scale());
         paths
     }

@@ -19,6 +19,7 @@ pub use bound::lower_bound;
 pub use design::{AmplitudeLaw, Design, EvaluationRange, FirstMove, PathEnd, PathStart, design};
 pub use robustness::{ExecutionErrors, trials};
 
+use end_constraint::Equations;
 use equal_peak_measure::EqualPeakMeasure;
 use minimax::Problem;
 
@@ -176,12 +177,12 @@ fn minimax_to(
     if reversals == 0 || contact.friction <= 0.0 || edge.level.value() <= 0.0 || vertical {
         return Vec::new();
     }
-    let problem = Problem { profile: &contact.profile, edge, cutoff, reversals };
-    let Some(equal) = problem.solve(keep_going) else { return Vec::new() };
+    let problem = Problem { profile: &contact.profile, edge, cutoff, reversals, keep_going };
+    let Some(equal) = problem.solve() else { return Vec::new() };
     let found = if end == PathEnd::Free {
         vec![equal.kinks]
     } else {
-        end_constraint::kinks(&problem, equal.limit, first / contact.scale(), end, keep_going)
+        Equations { problem: &problem, limit: equal.limit, first: first / contact.scale(), end }.kinks()
     };
     let path = |kinks: Vec<Point>| {
         // The stroke after the first goes back.
