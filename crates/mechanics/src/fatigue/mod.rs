@@ -270,8 +270,8 @@ fn resolved(stress: &Stress, [xx, yy, zz, xy, yz, xz]: &[f64; 6]) -> f64 {
 /// The radius of the smallest circle around the shear stresses of a path in a plane, or of one about the middle of
 /// their ranges.
 fn shear_amplitude(path: &[Stress], normal: &Vector, bound: bool) -> f64 {
-    let axes = shear_axes(normal);
-    let shears: Vec<[f64; 2]> = path.iter().map(|stress| axes.map(|axis| resolved(stress, &axis))).collect();
+    let [one, two] = shear_axes(normal);
+    let shears: Vec<[f64; 2]> = path.iter().map(|stress| [resolved(stress, &one), resolved(stress, &two)]).collect();
     if !bound {
         return enclosing_ball(&shears).radius;
     }

@@ -272,8 +272,8 @@ fn witnesses(criterion: &Criterion, curve: &StressCurve, normal: &Vector, path: 
         }
         return opening.at;
     }
-    let axes = shear_axes(normal);
-    let shear = |stress: &Stress| axes.map(|axis| resolved(stress, &axis));
+    let [one, two] = shear_axes(normal);
+    let shear = |stress: &Stress| [resolved(stress, &one), resolved(stress, &two)];
     let mut shears: Vec<[f64; 2]> = path.iter().map(shear).collect();
     grown(&mut shears, |center| {
         let far = peak_of(curve, |sample| squared_distance(&shear(&stress(sample)), center));
