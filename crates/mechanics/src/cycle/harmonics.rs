@@ -63,22 +63,21 @@ impl SteadyCycle<'_> {
     #[must_use]
     pub fn harmonics(&self, count: usize) -> Harmonics {
         let branch = Branch::new(self);
-        if !self.force_driven && self.compliance <= 0.0 {
-            let (sums, error) = masing_harmonics::integrals(self, count);
-            return branch.harmonics(&sums, count, f64::EPSILON + error);
-        }
-        let (panels, resolved) = self.panels(count);
-        let (mut sums, mut error) = (branch.integrate(&panels, count), f64::EPSILON);
-        if !resolved {
-            let halves: Vec<f64> =
-                panels.windows(2).flat_map(|pair| [pair[0], 0.5 * (pair[0] + pair[1])]).chain([PI]).collect();
-            let finer = branch.integrate(&halves, count);
-            let off = |(one, other): (&[f64; 2], &[f64; 2])| (one[0] - other[0]).abs().max((one[1] - other[1]).abs());
-            error +=
-                4.0 / PI * sums.iter().zip(&finer).map(off).fold(0.0, f64::max) / branch.answer.max(f64::MIN_POSITIVE);
-            sums = finer;
-        }
-        branch.harmonics(&sums, count, error)
+        let (sums, coarser) = if self.force_driven || self.compliance > 0.0 {
+            let (panels, resolved) = self.panels(count);
+            let sums = branch.integrate(&panels, count);
+            if resolved {
+                (sums, None)
+            } else {
+                let halves = panels.windows(2).flat_map(|pair| [pair[0], 0.5 * (pair[0] + pair[1])]).chain([PI]);
+                (branch.integrate(&halves.collect::<Vec<f64>>(), count), Some(sums))
+            }
+        } else {
+            masing_harmonics::integrals(self, count)
+        };
+        let off = coarser.iter().flatten().flatten().zip(sums.iter().flatten()).map(|(one, other)| (one - other).abs());
+        let error = 4.0 / PI * off.fold(0.0, f64::max) / branch.answer.max(f64::MIN_POSITIVE);
+        branch.harmonics(&sums, count, f64::EPSILON + error)
     }
 
     /// The ends of the panels of the angle from 0 to pi, and whether they resolve every kink.
