@@ -148,7 +148,7 @@ impl DrivenMass<'_> {
         (mut trial, mut length): (MotionTrial, f64),
         slowest: bool,
     ) -> Result<bool, Unfinished> {
-        let direction = motion.branch.direction();
+        let direction = motion.branch.direction;
         let mut found_slowest = false;
         let slows = |pair: &[f64]| direction * pair[0] < 0.0 && direction * pair[1] > 0.0;
         if let Some(part) = trial.accelerations.windows(2).position(slows)

@@ -127,7 +127,7 @@ impl DrivenMass<'_> {
         };
         // The first harmonic of F lies below the stiffness times U0, and below 4/pi of the limit.
         let small = 0.5 * self.drive_force / (self.inertia * (1.0 + self.ratio * self.ratio));
-        let large = 2.0 * (self.drive_force + 1.3 * self.loading.limit()) / self.inertia;
+        let large = 2.0 * (self.drive_force + 1.3 * self.loading.limit) / self.inertia;
         let ends = [small, large].map(f64::ln).map(|logarithm| (logarithm, lack(logarithm)));
         let amplitude = between(ends, START, lack).exp();
         let [carried, lost] = lag(amplitude, first(amplitude));

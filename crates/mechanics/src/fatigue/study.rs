@@ -373,7 +373,7 @@ impl<'a> Study<'a> {
         if let Some(Bulk { mean, amplitude, phase }) = self.bulk {
             xx += mean + amplitude * (TAU * (step as f64 + part) / self.cycle.moves() as f64 + phase).cos();
         }
-        let contact = field.contact();
+        let contact = &field.contact;
         let edge = contact.contact_radius();
         let touched = contact.indentation() > 0.0 && radius <= edge * (1.0 + SAME_INSTANT);
         let [mut pressure, mut shear, mut slip] = [0.0; 3];

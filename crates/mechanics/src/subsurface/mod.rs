@@ -44,7 +44,8 @@ pub enum Side {
 /// The stress field below one surface in the state of a contact when it was asked for.
 #[derive(Clone, Debug)]
 pub struct Subsurface {
-    contact: Contact,
+    /// In the state of the field.
+    pub(super) contact: Contact,
     /// The changes of the slopes of pressure and shear stress at the kinks of the slip history, under a parabola alone.
     kinks: Option<Kinks>,
     /// The slopes over the radius, made when the first place needs them.
@@ -105,11 +106,6 @@ impl Contact {
 }
 
 impl Subsurface {
-    /// The contact in the state of the field.
-    pub(super) fn contact(&self) -> &Contact {
-        &self.contact
-    }
-
     /// The stress at x, y, z, m, with z of at least zero; not finite where it is infinite.
     #[must_use]
     pub fn at(&self, [x, y, z]: [f64; 3]) -> Stress {
