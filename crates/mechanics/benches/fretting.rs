@@ -48,8 +48,11 @@ fn main() -> Result<(), Error> {
         [("Crossland", Criterion::Crossland { alpha: 0.3 }), ("Findley", Criterion::Findley { k: 0.3 })]
     {
         let equal = || -> Result<Vec<f64>, Error> {
-            let paths = cycle.stress_paths(INSTANTS, BODY, &places, &|| true)?;
-            Ok(paths.iter().map(|path| criterion.of(path).value).collect())
+            let states = cycle.states(INSTANTS, &|| true)?;
+            let fields: Vec<_> =
+                states.iter().map(|state| state.subsurface(BODY.0, BODY.1)).collect::<Result<_, _>>()?;
+            let path = |place: &[f64; 3]| fields.iter().map(|field| field.at(*place)).collect::<Vec<_>>();
+            Ok(places.iter().map(|place| criterion.of(&path(place)).value).collect())
         };
         let study = |tolerance| Study::new(&cycle, BODY, None, vec![Measure::Stress(criterion)], tolerance, &|| true);
         for (work, search) in [("1000 places", false), ("search", true)] {

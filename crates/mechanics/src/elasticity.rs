@@ -48,8 +48,6 @@ impl Body {
 pub struct Elasticity {
     e_star: f64,
     g_star: f64,
-    dundurs_beta: Option<f64>,
-    poisson: Option<f64>,
     /// The elastic bodies, where they are known.
     bodies: [Option<Body>; 2],
 }
@@ -76,29 +74,18 @@ impl Elasticity {
     /// Two elastic bodies.
     #[must_use]
     pub fn of_bodies(first: Body, second: Body) -> Elasticity {
-        let (g1, g2) = (first.shear_modulus(), second.shear_modulus());
-        let (nu1, nu2) = (first.poisson_ratio, second.poisson_ratio);
-        let beta = 0.5 * (g1 * (1.0 - 2.0 * nu2) - g2 * (1.0 - 2.0 * nu1)) / (g1 * (1.0 - nu2) + g2 * (1.0 - nu1));
-        Elasticity {
-            e_star: 1.0 / (first.normal_compliance() + second.normal_compliance()),
-            g_star: 1.0 / (first.tangential_compliance() + second.tangential_compliance()),
-            dundurs_beta: Some(beta),
-            poisson: Some(nu1.max(nu2)),
-            bodies: [Some(first), Some(second)],
-        }
+        Elasticity::of([Some(first), Some(second)])
     }
 
     /// An elastic body against a rigid one.
     #[must_use]
     pub fn against_rigid(body: Body) -> Elasticity {
-        let nu = body.poisson_ratio;
-        Elasticity {
-            e_star: 1.0 / body.normal_compliance(),
-            g_star: 1.0 / body.tangential_compliance(),
-            dundurs_beta: Some(-(1.0 - 2.0 * nu) / (2.0 * (1.0 - nu))),
-            poisson: Some(nu),
-            bodies: [Some(body), None],
-        }
+        Elasticity::of([Some(body), None])
+    }
+
+    fn of(bodies: [Option<Body>; 2]) -> Elasticity {
+        let modulus = |compliance: fn(Body) -> f64| bodies.into_iter().flatten().map(compliance).sum::<f64>().recip();
+        Elasticity { e_star: modulus(Body::normal_compliance), g_star: modulus(Body::tangential_compliance), bodies }
     }
 
     /// The reduced moduli E* and G* themselves (Pa); the bodies, and so Dundurs' beta, remain unknown.
@@ -106,13 +93,7 @@ impl Elasticity {
     /// # Errors
     /// [`Error::OutOfRange`] by [`range::E_STAR`] and [`range::G_STAR`].
     pub fn effective(e_star: f64, g_star: f64) -> Result<Elasticity, Error> {
-        Ok(Elasticity {
-            e_star: range::E_STAR.check(e_star)?,
-            g_star: range::G_STAR.check(g_star)?,
-            dundurs_beta: None,
-            poisson: None,
-            bodies: [None; 2],
-        })
+        Ok(Elasticity { e_star: range::E_STAR.check(e_star)?, g_star: range::G_STAR.check(g_star)?, bodies: [None; 2] })
     }
 
     /// The same bodies with measured reduced moduli (Pa) in place of those that follow from their constants: an
@@ -156,12 +137,21 @@ impl Elasticity {
     /// contact decouple exactly only where it is zero.
     #[must_use]
     pub fn dundurs_beta(&self) -> Option<f64> {
-        self.dundurs_beta
+        match self.bodies {
+            [Some(first), Some(second)] => {
+                let (g1, g2) = (first.shear_modulus(), second.shear_modulus());
+                let (nu1, nu2) = (first.poisson_ratio, second.poisson_ratio);
+                let coupling = g1 * (1.0 - 2.0 * nu2) - g2 * (1.0 - 2.0 * nu1);
+                Some(0.5 * coupling / (g1 * (1.0 - nu2) + g2 * (1.0 - nu1)))
+            }
+            [Some(Body { poisson_ratio: nu, .. }), None] => Some(-(1.0 - 2.0 * nu) / (2.0 * (1.0 - nu))),
+            _ => None,
+        }
     }
 
     /// The larger Poisson's ratio of the elastic bodies; `None` where only the reduced moduli are known.
     #[must_use]
     pub fn largest_poisson_ratio(&self) -> Option<f64> {
-        self.poisson
+        self.bodies.into_iter().flatten().map(|body| body.poisson_ratio).reduce(f64::max)
     }
 }

@@ -74,12 +74,8 @@ impl Contact {
         let tangential = self.tangential_path(step)?;
         // Without a tangential target the displacement stays, and every path to the new indentation ends in the same
         // state.
-        let straight = match (step.tangential, step.normal) {
-            (None, _) => true,
-            (Some(Tangential::Displacement(_)), normal) => !matches!(normal, Some(Normal::NormalForce(_))),
-            (Some(Tangential::Force(_)), _) => false,
-        };
-        if let (true, TangentialPath::Displacement { to: displacement, .. }) = (straight, tangential) {
+        let straight = step.tangential.is_none() || matches!(normal, NormalPath::Indentation { .. });
+        if straight && let TangentialPath::Displacement { to: displacement, .. } = tangential {
             let (indentation, normal_force) = match normal {
                 NormalPath::Indentation { from, to } if from == to => (to, self.normal_force),
                 NormalPath::Indentation { to, .. } => (to, self.normal_force_at(to)),

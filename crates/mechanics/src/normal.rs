@@ -183,7 +183,7 @@ pub(super) fn max_pressure(profile: &Profile, elasticity: &Elasticity, edge: &Po
     // A scan, then a search about its largest value: a profile that is steep outside has its maximum off the
     // centre. Beside a flat end that hardly exceeds the contact it lies within the thin annulus beyond the flat, which
     // may be narrower than a unit in the last place of a radius: so radii at even steps of the level are scanned too,
-    // and told apart by their squares.
+    // and distinguished by their squares.
     let pressure_at = |square: DoubleDouble| {
         pressure(profile, elasticity, edge, &StressRadius { radius: square.value().sqrt(), square })
     };

@@ -11,7 +11,6 @@
 //! | the rest | the slip history, see `slip_history/packed.rs` |
 
 use super::profile::Point;
-use super::slip_history::SlipHistory;
 use super::{Contact, DoubleDouble};
 
 /// The version of the results of the engine. **Raise it with every change that alters a result in any bit**, for
@@ -23,29 +22,54 @@ pub const ENGINE: u16 = 11;
 /// The version of the arrangement of the bytes.
 const LAYOUT: u16 = 1;
 
-/// Writes numbers one after the other.
-pub(super) struct Writer(Vec<u8>);
+/// What is written as numbers one after the other, and read again if all are finite.
+pub(super) trait Packed: Sized {
+    fn pack(&self, bytes: &mut Vec<u8>);
+    fn unpack(reader: &mut Reader<'_>) -> Option<Self>;
+}
+
+/// A struct is packed field by field.
+macro_rules! packed {
+    ($Type:ident { $($field:ident),+ }) => {
+        impl Packed for $Type {
+            fn pack(&self, bytes: &mut Vec<u8>) {
+                $(self.$field.pack(bytes);)+
+            }
+
+            fn unpack(reader: &mut Reader<'_>) -> Option<Self> {
+                Some($Type { $($field: Packed::unpack(reader)?),+ })
+            }
+        }
+    };
+}
+pub(super) use packed;
+
+packed!(Point { level, radius, square });
+
+impl Packed for f64 {
+    fn pack(&self, bytes: &mut Vec<u8>) {
+        bytes.extend_from_slice(&self.to_le_bytes());
+    }
+
+    fn unpack(reader: &mut Reader<'_>) -> Option<f64> {
+        reader.any().filter(|value| value.is_finite())
+    }
+}
+
+impl Packed for DoubleDouble {
+    fn pack(&self, bytes: &mut Vec<u8>) {
+        let (hi, lo) = self.parts();
+        hi.pack(bytes);
+        lo.pack(bytes);
+    }
+
+    fn unpack(reader: &mut Reader<'_>) -> Option<DoubleDouble> {
+        Some(DoubleDouble::from_parts(f64::unpack(reader)?, f64::unpack(reader)?))
+    }
+}
 
 /// Reads numbers one after the other; `None` after the last byte.
 pub(super) struct Reader<'a>(&'a [u8]);
-
-impl Writer {
-    pub(super) fn number(&mut self, value: f64) {
-        self.0.extend_from_slice(&value.to_le_bytes());
-    }
-
-    pub(super) fn double(&mut self, value: DoubleDouble) {
-        let (hi, lo) = value.parts();
-        self.number(hi);
-        self.number(lo);
-    }
-
-    pub(super) fn point(&mut self, point: &Point) {
-        self.double(point.level);
-        self.number(point.radius);
-        self.double(point.square);
-    }
-}
 
 impl Reader<'_> {
     fn bytes<const N: usize>(&mut self) -> Option<[u8; N]> {
@@ -62,18 +86,6 @@ impl Reader<'_> {
     /// A number whatever its bits.
     fn any(&mut self) -> Option<f64> {
         self.bytes().map(f64::from_le_bytes)
-    }
-
-    pub(super) fn number(&mut self) -> Option<f64> {
-        self.any().filter(|value| value.is_finite())
-    }
-
-    pub(super) fn double(&mut self) -> Option<DoubleDouble> {
-        Some(DoubleDouble::from_parts(self.number()?, self.number()?))
-    }
-
-    pub(super) fn point(&mut self) -> Option<Point> {
-        Some(Point { level: self.double()?, radius: self.number()?, square: self.double()? })
     }
 
     /// The number of items of `size` bytes in the rest, if it is whole.
@@ -110,17 +122,14 @@ impl Contact {
         let mut bytes = Vec::with_capacity(self.packed_length());
         bytes.extend_from_slice(&LAYOUT.to_le_bytes());
         bytes.extend_from_slice(&ENGINE.to_le_bytes());
-        let mut writer = Writer(bytes);
-        for value in self.definition_marks() {
-            writer.number(value);
-        }
-        writer.double(self.displacement);
-        writer.number(self.normal_force);
-        writer.double(self.dissipated);
-        writer.number(self.path_error);
-        writer.number(self.path_kernel);
-        self.history.pack(&mut writer);
-        writer.0
+        self.definition_marks().iter().for_each(|mark| mark.pack(&mut bytes));
+        self.displacement.pack(&mut bytes);
+        self.normal_force.pack(&mut bytes);
+        self.dissipated.pack(&mut bytes);
+        self.path_error.pack(&mut bytes);
+        self.path_kernel.pack(&mut bytes);
+        self.history.pack(&mut bytes);
+        bytes
     }
 
     /// Whether bytes are of this layout and engine, so that [`Contact::unpack`] reads them if they are undamaged.
@@ -142,12 +151,12 @@ impl Contact {
             reader.any().filter(|found| found.to_bits() == value.to_bits())?;
         }
         let mut contact = self.clone();
-        contact.displacement = reader.double()?;
-        contact.normal_force = reader.number()?;
-        contact.dissipated = reader.double()?;
+        contact.displacement = Packed::unpack(&mut reader)?;
+        contact.normal_force = Packed::unpack(&mut reader)?;
+        contact.dissipated = Packed::unpack(&mut reader)?;
         // The error of a stress may be without bound.
         (contact.path_error, contact.path_kernel) = (reader.any()?, reader.any()?);
-        contact.history = SlipHistory::unpack(&mut reader)?;
+        contact.history = Packed::unpack(&mut reader)?;
         Some(contact)
     }
 

@@ -74,8 +74,7 @@ impl Contact {
 
     /// [`Contact::shears`] at radii whose squares have all their digits.
     pub(super) fn shears_at(&self, radii: &[StressRadius]) -> Vec<f64> {
-        let mut rings: Vec<_> = self.shear_rings().collect();
-        rings.reverse();
+        let rings: Vec<_> = self.shear_rings().rev().collect();
         self.shears_of(self.profile.kernel_sums_at(&rings, radii))
     }
 
@@ -86,7 +85,7 @@ impl Contact {
     }
 
     /// The rings of the slip history from the edge inward, each with its -dw/dy.
-    pub(super) fn shear_rings(&self) -> impl Iterator<Item = (Ring, f64)> + '_ {
+    pub(super) fn shear_rings(&self) -> impl DoubleEndedIterator<Item = (Ring, f64)> {
         self.history.rings().map(|(ring, line)| (ring, -line.slope.value()))
     }
 

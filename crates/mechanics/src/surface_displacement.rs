@@ -28,25 +28,19 @@ impl Contact {
     /// Tangential displacement u(r) of the surface, m, at a radius (m) of at least zero, inside the contact or outside.
     #[must_use]
     pub fn surface_displacement(&self, radius: f64) -> f64 {
-        self.displacement_at(radius, self.relative_displacements(&[radius])[0])
+        self.surface_displacements(&[radius])[0]
     }
 
     /// [`Contact::surface_displacement`] at each of `radii`, m: faster than one by one.
     #[must_use]
     pub fn surface_displacements(&self, radii: &[f64]) -> Vec<f64> {
+        let (edge, shift) = (self.history.edge(), self.history.shift().value());
+        // What the pieces carry is relative to the indenter.
+        let moved = |radius: f64| {
+            if radius > 0.0 { shift * FRAC_2_PI * arc_to(edge, &StressRadius::new(radius)) } else { shift }
+        };
         let carried = self.relative_displacements(radii);
-        radii.iter().zip(carried).map(|(&radius, carried)| self.displacement_at(radius, carried)).collect()
-    }
-
-    /// u, m, at a radius, m, with the u - U that pieces carry.
-    fn displacement_at(&self, radius: f64, carried: f64) -> f64 {
-        let shift = self.history.shift().value();
-        self.scale()
-            * if radius > 0.0 {
-                carried + shift * FRAC_2_PI * arc_to(self.history.edge(), &StressRadius::new(radius))
-            } else {
-                carried + shift
-            }
+        radii.iter().zip(carried).map(|(&radius, carried)| self.scale() * (carried + moved(radius))).collect()
     }
 
     /// Slip U - u(r), m, since the virgin contact; `None` outside the contact. Where the contact grew later, a ring's
@@ -80,9 +74,8 @@ impl Contact {
             (core.line.at(DoubleDouble::ZERO).value(), top.line.at(self.history.edge().level).value())
         });
         let at_once = ends.and_then(|ends| {
-            let mut rings: Vec<_> = self.history.rings().map(|(ring, line)| (ring, line.slope.value())).collect();
-            rings.reverse();
-            self.profile.displacements(&rings, ends, &StressRadius::of_all(radii))
+            let rings = self.history.rings().rev().map(|(ring, line)| (ring, line.slope.value()));
+            self.profile.displacements(&rings.collect::<Vec<_>>(), ends, &StressRadius::of_all(radii))
         });
         at_once.unwrap_or_else(|| radii.iter().map(|&radius| self.relative_displacement(radius)).collect())
     }

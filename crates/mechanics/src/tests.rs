@@ -74,24 +74,12 @@ fn each_field_costs_its_own_calls_and_no_others() {
         let (pieces, radii) = (contact.memory_depth(), radii(&contact));
         assert!(pieces > REVERSALS / 2);
         let all = RADII * pieces;
-        let pressure = || drop(contact.pressures(&radii));
-        let shear = || drop(contact.shears(&radii));
-        let slip = || {
-            radii.iter().for_each(|&radius| {
-                let _ = contact.slip(radius);
-            })
-        };
-        let displacement = || {
-            radii.iter().for_each(|&radius| {
-                let _ = contact.surface_displacement(radius);
-            })
-        };
         // One call a radius for the pressure, one a radius and piece for each of the others, at the most.
         let fields: [(&str, &dyn Fn(), usize, usize); 4] = [
-            ("pressure", &pressure, RADII, 0),
-            ("shear", &shear, all, 0),
-            ("slip", &slip, 0, all),
-            ("displacement", &displacement, 0, all),
+            ("pressure", &|| drop(contact.pressures(&radii)), RADII, 0),
+            ("shear", &|| drop(contact.shears(&radii)), all, 0),
+            ("slip", &|| drop(contact.slips(&radii)), 0, all),
+            ("displacement", &|| drop(contact.surface_displacements(&radii)), 0, all),
         ];
         for (field, compute, kernel, lift) in fields {
             let (calls, ()) = during(compute);

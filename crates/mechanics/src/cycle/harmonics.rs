@@ -63,22 +63,21 @@ impl SteadyCycle<'_> {
     #[must_use]
     pub fn harmonics(&self, count: usize) -> Harmonics {
         let branch = Branch::new(self);
-        if !self.force_driven && self.compliance <= 0.0 {
-            let (sums, error) = masing_harmonics::integrals(self, count);
-            return branch.harmonics(&sums, count, f64::EPSILON + error);
-        }
-        let (panels, resolved) = self.panels(count);
-        let (mut sums, mut error) = (branch.integrate(&panels, count), f64::EPSILON);
-        if !resolved {
-            let halves: Vec<f64> =
-                panels.windows(2).flat_map(|pair| [pair[0], 0.5 * (pair[0] + pair[1])]).chain([PI]).collect();
-            let finer = branch.integrate(&halves, count);
-            let off = |(one, other): (&[f64; 2], &[f64; 2])| (one[0] - other[0]).abs().max((one[1] - other[1]).abs());
-            error +=
-                4.0 / PI * sums.iter().zip(&finer).map(off).fold(0.0, f64::max) / branch.answer.max(f64::MIN_POSITIVE);
-            sums = finer;
-        }
-        branch.harmonics(&sums, count, error)
+        let (sums, coarser) = if self.force_driven || self.compliance > 0.0 {
+            let (panels, resolved) = self.panels(count);
+            let sums = branch.integrate(&panels, count);
+            if resolved {
+                (sums, None)
+            } else {
+                let halves = panels.windows(2).flat_map(|pair| [pair[0], 0.5 * (pair[0] + pair[1])]).chain([PI]);
+                (branch.integrate(&halves.collect::<Vec<f64>>(), count), Some(sums))
+            }
+        } else {
+            masing_harmonics::integrals(self, count)
+        };
+        let off = coarser.iter().flatten().flatten().zip(sums.iter().flatten()).map(|(one, other)| (one - other).abs());
+        let error = 4.0 / PI * off.fold(0.0, f64::max) / branch.answer.max(f64::MIN_POSITIVE);
+        branch.harmonics(&sums, count, f64::EPSILON + error)
     }
 
     /// The ends of the panels of the angle from 0 to pi, and whether they resolve every kink.
@@ -185,18 +184,16 @@ impl<'a, 'b> Branch<'a, 'b> {
         };
         let point = contact.profile.point(level);
         let (scale, unit) = (contact.scale(), contact.force_unit());
-        let [mut gone, mut left] = [scale * fallen, scale * standing];
-        if cycle.force_driven || cycle.compliance > 0.0 {
-            let carried = |inner, outer| unit * load(&contact.profile, &Ring::between(inner, outer));
-            let forces = [carried(point, ring.outer), carried(ring.inner, point)];
-            if cycle.force_driven {
-                [gone, left] = forces;
-            } else {
-                gone += cycle.compliance * forces[0];
-                left += cycle.compliance * forces[1];
-            }
-        }
-        left += cycle.slide;
+        let carried = |inner, outer| unit * load(&contact.profile, &Ring::between(inner, outer));
+        let forces = [carried(point, ring.outer), carried(ring.inner, point)];
+        let [gone, left] = if cycle.force_driven {
+            forces
+        } else {
+            [
+                scale * fallen + cycle.compliance * forces[0],
+                scale * standing + cycle.compliance * forces[1] + cycle.slide,
+            ]
+        };
         let sides = [2.0 * (gone * left).max(0.0).sqrt() / drive, (left - gone) / drive];
         let stiffness = 2.0 * contact.elasticity.g_star() * point.radius;
         // X(d) - X(y), of the squares.

@@ -1,10 +1,12 @@
-//! What is taken down while a cycle is stepped, and the figures of the cycle that follow.
+//! What follows from the states of a cycle that was stepped.
+
+use std::f64::consts::TAU;
 
 use super::Harmonic;
-use crate::{Contact, Regime};
+use crate::{Contact, Regime, State};
 
 /// A steady cycle that was stepped.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct OscillatingCycle {
     /// Half the range of the displacement of the indenter, m.
     pub displacement_amplitude: f64,
@@ -33,94 +35,61 @@ pub struct OscillatingCycle {
     pub error: f64,
 }
 
-/// The range of a quantity over a cycle.
-#[derive(Clone, Copy, Debug)]
-struct Extent(f64, f64);
-
-impl Extent {
-    const NONE: Extent = Extent(f64::INFINITY, f64::NEG_INFINITY);
-
-    fn include(&mut self, value: f64) {
-        *self = Extent(self.0.min(value), self.1.max(value));
-    }
-
-    fn half(self) -> f64 {
-        0.5 * (self.1 - self.0)
-    }
-}
-
-/// One stepped cycle.
-#[derive(Clone, Debug)]
-pub(super) struct Lap {
-    /// What has been found so far, but for the ranges.
-    cycle: OscillatingCycle,
-    displacement: Extent,
-    force: Extent,
-    machine: Extent,
-    /// The last displacement, m, and force, N.
-    pub(super) last: [f64; 2],
-    /// Displacements at which the force changes its sign, m.
-    crossings: Vec<f64>,
-}
-
-impl Lap {
-    /// From the present state of a contact, with harmonics up to the order `count`.
-    pub(super) fn new(contact: &Contact, count: usize) -> Lap {
-        let harmonic = |order| Harmonic { order, in_phase: 0.0, quadrature: 0.0 };
-        let cycle = OscillatingCycle {
-            tangent_stiffness: 2.0 * contact.elasticity.g_star() * contact.contact_radius(),
-            stick_radius: f64::INFINITY,
-            harmonics: (1..=count).map(harmonic).collect(),
-            ..OscillatingCycle::default()
+impl OscillatingCycle {
+    /// The cycle through these states of a contact, the first of which is its start, with this friction work, J,
+    /// through a machine of this compliance, m/N. Harmonics up to the order `count` follow from an answer at every
+    /// second step.
+    pub(super) fn through(
+        contact: &Contact,
+        states: &[State],
+        dissipated_energy: f64,
+        (answers, count): (&[f64], usize),
+        compliance: f64,
+    ) -> OscillatingCycle {
+        let after = &states[1..];
+        let amplitude = |of: &dyn Fn(&State) -> f64| {
+            let largest = |sign: f64| after.iter().map(|state| sign * of(state)).fold(f64::NEG_INFINITY, f64::max);
+            0.5 * (largest(1.0) + largest(-1.0))
         };
-        let last = [contact.displacement.value(), contact.force()];
-        let [displacement, force, machine] = [Extent::NONE; 3];
-        Lap { cycle, displacement, force, machine, last, crossings: Vec::new() }
-    }
-
-    /// Takes down the state of a contact, through a machine of this compliance, m/N.
-    pub(super) fn include(&mut self, contact: &Contact, compliance: f64) {
-        let state = contact.state();
-        let [displacement, force] = [state.displacement, state.force];
-        self.displacement.include(displacement);
-        self.force.include(force);
-        self.machine.include(displacement + compliance * force);
-        let cycle = &mut self.cycle;
-        cycle.max_elastic_energy = cycle.max_elastic_energy.max(state.elastic_energy);
-        cycle.stick_radius = cycle.stick_radius.min(state.stick_radius);
-        cycle.regime = cycle.regime.max(state.regime);
-        let [before, carried] = self.last;
-        if (carried > 0.0) != (force > 0.0) && (force - carried).abs() > 0.0 {
-            self.crossings.push(before - carried * (displacement - before) / (force - carried));
-        }
-        self.last = [displacement, force];
-    }
-
-    /// Adds one of so many equally spaced answers to the harmonics.
-    pub(super) fn transform(&mut self, answer: f64, angle: f64, steps: usize) {
-        for harmonic in &mut self.cycle.harmonics {
-            let (sin, cos) = (harmonic.order as f64 * angle).sin_cos();
-            let share = 2.0 / steps as f64 * answer;
-            harmonic.in_phase += share * cos;
-            harmonic.quadrature += share * sin;
-        }
-    }
-
-    /// The cycle, in which this friction work was done, J.
-    pub(super) fn finished(self, steps: usize, dissipated_energy: f64) -> OscillatingCycle {
-        let displacement_amplitude = self.displacement.half();
-        let sliding_ratio = match self.crossings[..] {
+        let displacement_amplitude = amplitude(&|state| state.displacement);
+        // Where the force changes its sign.
+        let crossing = |pair: &[State]| {
+            let change = pair[1].force - pair[0].force;
+            let crosses = (pair[0].force > 0.0) != (pair[1].force > 0.0) && change.abs() > 0.0;
+            let way = pair[1].displacement - pair[0].displacement;
+            crosses.then(|| pair[0].displacement - pair[0].force * way / change)
+        };
+        let sliding_ratio = match states.windows(2).filter_map(crossing).collect::<Vec<f64>>()[..] {
             [one, other] if displacement_amplitude > 0.0 => Some(0.5 * (one - other).abs() / displacement_amplitude),
             _ => None,
         };
         OscillatingCycle {
             displacement_amplitude,
-            force_amplitude: self.force.half(),
-            machine_amplitude: self.machine.half(),
+            force_amplitude: amplitude(&|state| state.force),
+            machine_amplitude: amplitude(&|state| state.displacement + compliance * state.force),
             dissipated_energy,
+            max_elastic_energy: after.iter().map(|state| state.elastic_energy).fold(0.0, f64::max),
+            tangent_stiffness: 2.0 * contact.elasticity.g_star() * states[0].contact_radius,
             sliding_ratio,
-            steps,
-            ..self.cycle
+            stick_radius: after.iter().map(|state| state.stick_radius).fold(f64::INFINITY, f64::min),
+            regime: after.iter().map(|state| state.regime).fold(Regime::Stick, Regime::max),
+            harmonics: (1..=count).map(|order| Harmonic::of(answers, order)).collect(),
+            steps: 2 * answers.len(),
+            error: 0.0,
         }
+    }
+}
+
+impl Harmonic {
+    /// The harmonic of answers at equal steps over a cycle, up to its end.
+    fn of(answers: &[f64], order: usize) -> Harmonic {
+        let mut harmonic = Harmonic { order, in_phase: 0.0, quadrature: 0.0 };
+        let share = 2.0 / answers.len() as f64;
+        for (step, answer) in answers.iter().enumerate() {
+            let (sin, cos) = (order as f64 * (TAU * (step + 1) as f64 / answers.len() as f64)).sin_cos();
+            harmonic.in_phase += share * answer * cos;
+            harmonic.quadrature += share * answer * sin;
+        }
+        harmonic
     }
 }

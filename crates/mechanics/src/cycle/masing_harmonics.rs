@@ -20,18 +20,18 @@ const TERMS: usize = 9;
 /// Sums of e_m and q_m, for m from zero on.
 type HarmonicSums = Vec<[f64; 2]>;
 
-/// int sin(n th) dR and int cos(n th) dR for odd n up to `count`, without the straight part unless the contact slides,
-/// and what they are off by as a part of the force amplitude.
-pub(super) fn integrals(cycle: &SteadyCycle<'_>, count: usize) -> (HarmonicSums, f64) {
+/// int sin(n th) dR and int cos(n th) dR for odd n up to `count`, without the straight part unless the contact slides;
+/// where they are not resolved to round-off, also by a coarser rule.
+pub(super) fn integrals(cycle: &SteadyCycle<'_>, count: usize) -> (HarmonicSums, Option<HarmonicSums>) {
     let (contact, ring) = (cycle.contact, &cycle.ring);
     let orders = count.div_ceil(2);
     if ring.depth <= 0.0 {
-        return (vec![[0.0; 2]; orders], 0.0);
+        return (vec![[0.0; 2]; orders], None);
     }
     let slides = cycle.slide > 0.0;
     let total = ring.depth + cycle.slide / contact.scale();
     if let Some(sums) = sphere_harmonics::integrals(cycle, total, count) {
-        return (sums, 0.0);
+        return (sums, None);
     }
     let unit = 2.0 * contact.elasticity.g_star() * contact.scale() * 0.25 * total;
     let result = |nodes: &[DepthNode]| {
@@ -47,13 +47,8 @@ pub(super) fn integrals(cycle: &SteadyCycle<'_>, count: usize) -> (HarmonicSums,
         sums.windows(2).map(|pair| [0, 1].map(|kind| unit * (pair[1][kind] - pair[0][kind]))).collect::<HarmonicSums>()
     };
     match contact.profile.ring_nodes(ring, total, count + 1) {
-        RingNodes::Resolved(nodes) => (result(&nodes), 0.0),
-        RingNodes::Compared(coarse, fine) => {
-            let (coarse, fine) = (result(&coarse), result(&fine));
-            let off = coarse.iter().flatten().zip(fine.iter().flatten()).map(|(a, b)| (a - b).abs());
-            let error = 4.0 / PI * off.fold(0.0, f64::max) / cycle.force.max(f64::MIN_POSITIVE);
-            (fine, error)
-        }
+        RingNodes::Resolved(nodes) => (result(&nodes), None),
+        RingNodes::Compared(coarse, fine) => (result(&fine), Some(result(&coarse))),
     }
 }
 

@@ -14,25 +14,16 @@ use crate::profile::Ring;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct FirstLoading<'a> {
     contact: &'a Contact,
-    /// Displacement and force of gross slip, m and N.
+    /// Displacement of gross slip, m.
     gross_slip: f64,
-    limit: f64,
+    /// Force of gross slip mu F_N, N.
+    pub(super) limit: f64,
 }
 
 impl<'a> FirstLoading<'a> {
     pub(super) fn new(contact: &'a Contact) -> FirstLoading<'a> {
-        let edge = contact.history.edge().level;
-        let held = edge.value() > 0.0 && contact.friction > 0.0;
-        FirstLoading {
-            contact,
-            gross_slip: if held { contact.unscaled(edge).value() } else { 0.0 },
-            limit: if held { contact.friction * contact.normal_force } else { 0.0 },
-        }
-    }
-
-    /// mu F_N, N.
-    pub(super) fn limit(&self) -> f64 {
-        self.limit
+        let gross_slip = contact.unscaled(contact.history.edge().level).value().max(0.0);
+        FirstLoading { contact, gross_slip, limit: contact.friction * contact.normal_force }
     }
 
     /// The force at a displacement from rest, N.
@@ -54,17 +45,13 @@ impl<'a> FirstLoading<'a> {
 pub(super) struct MasingLoop {
     turns: Vec<(f64, f64)>,
     /// 1 or -1: the direction of the present branch.
-    direction: f64,
+    pub(super) direction: f64,
 }
 
 impl MasingLoop {
     /// On the first loading curve, moving up.
     pub(super) fn virgin() -> MasingLoop {
         MasingLoop { turns: Vec::new(), direction: 1.0 }
-    }
-
-    pub(super) fn direction(&self) -> f64 {
-        self.direction
     }
 
     /// The force on the present branch, N.

@@ -32,17 +32,19 @@ const ROUNDING: f64 = 32.0 * f64::EPSILON;
 const ROWS: usize = 8;
 type StateRows = [f64; ROWS];
 
-/// Why a motion was not followed to its end.
+/// Why a motion was not followed to its end, or none was found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Unfinished {
     Interrupted,
-    /// The steps did not suffice.
-    TooManySteps,
+    /// The steps did not suffice, or did not lead to what was sought.
+    NotFound,
 }
 
 /// The mass, its drive and its contact.
 pub(super) struct DrivenMass<'a> {
     pub(super) loading: FirstLoading<'a>,
+    /// Of the drive, Hz.
+    pub(super) frequency: f64,
     /// P, N.
     pub(super) drive_force: f64,
     /// M w^2, N/m.
@@ -116,7 +118,7 @@ impl DrivenMass<'_> {
         while motion.angle < end {
             taken += 1.0;
             if taken > most {
-                return Err(Unfinished::TooManySteps);
+                return Err(Unfinished::NotFound);
             }
             if (taken as usize).is_multiple_of(64) && !(self.keep_going)() {
                 return Err(Unfinished::Interrupted);
@@ -146,7 +148,7 @@ impl DrivenMass<'_> {
         (mut trial, mut length): (MotionTrial, f64),
         slowest: bool,
     ) -> Result<bool, Unfinished> {
-        let direction = motion.branch.direction();
+        let direction = motion.branch.direction;
         let mut found_slowest = false;
         let slows = |pair: &[f64]| direction * pair[0] < 0.0 && direction * pair[1] > 0.0;
         if let Some(part) = trial.accelerations.windows(2).position(slows)
@@ -165,7 +167,7 @@ impl DrivenMass<'_> {
             let start = if direction * motion.speed > 0.0 { 0.0 } else { 1e-3 * length };
             let at_start = if start > 0.0 { speed(start) } else { direction * motion.speed };
             if at_start <= 0.0 {
-                return Err(Unfinished::TooManySteps);
+                return Err(Unfinished::NotFound);
             }
             let ends = [(start, at_start), (length, direction * (motion.speed + trial.change[1]))];
             length = between(ends, EVENT * length, speed);

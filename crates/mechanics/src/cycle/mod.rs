@@ -123,7 +123,6 @@ impl<'a> SteadyCycle<'a> {
             Drive::Force(amplitude) if amplitude.abs() >= limit && amplitude.abs() > 0.0 => {
                 return Err(Error::ForceExceedsFriction { target: amplitude, limit, part: 1.0 });
             }
-            Drive::Force(amplitude) if amplitude.abs() <= 0.0 => SteadyCycle::of(contact, 0.0),
             Drive::Force(amplitude) => {
                 let all = whole(&contact.profile, contact.history.edge());
                 let unit = 2.0 * contact.friction * contact.elasticity.e_star();

@@ -10,7 +10,7 @@
 use std::f64::consts::TAU;
 
 use super::Drive;
-use super::lap::{Lap, OscillatingCycle};
+use super::lap::OscillatingCycle;
 use crate::curved_path::PathPoint;
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::roots::{between, turning};
@@ -174,7 +174,7 @@ impl Oscillation {
         count: usize,
     ) -> Result<(OscillatingCycle, f64), Error> {
         let start = moving.dissipated;
-        let mut lap = Lap::new(moving, count);
+        let (mut states, mut answers) = (vec![moving.state()], Vec::with_capacity(steps / 2));
         for index in 1..=steps / 2 {
             let angle = |step: usize| TAU * step as f64 / steps as f64;
             let (from, to) = (angle(2 * index - 2), angle(2 * index));
@@ -184,13 +184,14 @@ impl Oscillation {
                 self.step_to(contact, moving, middle, self.elbow(contact, [here, middle, next]))?;
                 self.step_to(contact, moving, next, None)?;
                 here = next;
-                lap.include(moving, self.compliance);
+                states.push(moving.state());
             }
-            let [displacement, force] = lap.last;
-            lap.transform(if matches!(self.drive, Drive::Force(_)) { displacement } else { force }, to, steps / 2);
+            let force_driven = matches!(self.drive, Drive::Force(_));
+            answers.push(if force_driven { moving.displacement() } else { moving.force() });
         }
-        let end = lap.last[1];
-        Ok((lap.finished(steps, (moving.dissipated - start).value()), end))
+        let work = (moving.dissipated - start).value();
+        let cycle = OscillatingCycle::through(contact, &states, work, (&answers, count), self.compliance);
+        Ok((cycle, moving.force()))
     }
 
     /// The amplitude of the displacement where that is given, m.

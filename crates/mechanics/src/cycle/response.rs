@@ -11,7 +11,7 @@
 use std::f64::consts::TAU;
 
 use super::masing_loop::FirstLoading;
-use super::mass_motion::DrivenMass;
+use super::mass_motion::{DrivenMass, Unfinished};
 use super::{Drive, Harmonic, SteadyCycle};
 use crate::Contact;
 use crate::numerics::roots::between;
@@ -96,18 +96,20 @@ impl Resonator {
             keep_going().then_some(())?;
             let mass = DrivenMass {
                 loading: FirstLoading::new(contact),
+                frequency,
                 drive_force: self.drive_force,
                 inertia: self.mass * (TAU * frequency).powi(2),
                 ratio: natural / frequency,
                 keep_going,
             };
             let start = mass.balance_of_first(contact);
-            let found = if mass.ratio > QUASI_STATIC {
-                mass.quasi_static(contact)
-            } else {
-                mass.steady([start.amplitude, start.phase], tolerance).ok()?
-            };
-            Some(Response { frequency, ..found.unwrap_or(start) })
+            if mass.ratio > QUASI_STATIC {
+                return Some(mass.quasi_static(contact).unwrap_or(start));
+            }
+            match mass.steady([start.amplitude, start.phase], tolerance) {
+                Err(Unfinished::Interrupted) => None,
+                found => Some(found.unwrap_or(start)),
+            }
         };
         frequencies.iter().map(respond).collect()
     }
@@ -125,12 +127,12 @@ impl DrivenMass<'_> {
         };
         // The first harmonic of F lies below the stiffness times U0, and below 4/pi of the limit.
         let small = 0.5 * self.drive_force / (self.inertia * (1.0 + self.ratio * self.ratio));
-        let large = 2.0 * (self.drive_force + 1.3 * self.loading.limit()) / self.inertia;
+        let large = 2.0 * (self.drive_force + 1.3 * self.loading.limit) / self.inertia;
         let ends = [small, large].map(f64::ln).map(|logarithm| (logarithm, lack(logarithm)));
         let amplitude = between(ends, START, lack).exp();
         let [carried, lost] = lag(amplitude, first(amplitude));
         Response {
-            frequency: 0.0,
+            frequency: self.frequency,
             amplitude,
             phase: lost.atan2(carried),
             peak: amplitude,
@@ -154,7 +156,7 @@ impl DrivenMass<'_> {
         // The other way as well, and the ringing of the mass.
         let error = 2.0 * (farther - peak);
         Some(Response {
-            frequency: 0.0,
+            frequency: self.frequency,
             amplitude: in_phase.hypot(quadrature),
             phase: quadrature.atan2(in_phase),
             peak,

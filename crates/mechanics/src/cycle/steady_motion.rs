@@ -35,8 +35,7 @@ const LEAST: f64 = 1e-13;
 /// What the end of a motion that is not brought nearer by any step may be off by, in tolerances of a step.
 const LEFT: f64 = 1e3;
 
-/// What has been asked for and not interrupted: `None` where it was not found.
-type Attempt<T> = Result<Option<T>, Unfinished>;
+type Attempt<T> = Result<T, Unfinished>;
 
 /// The inverse of the Jacobian of what the end is off by, and the derivatives of the first harmonic, cosine and sine.
 #[derive(Clone, Copy)]
@@ -60,7 +59,10 @@ impl DrivenMass<'_> {
         let (mut best, mut from, mut share): (Option<Response>, _, _) = (None, start, SHARE);
         for _ in 0..=TIGHTENINGS {
             let step = (share * tolerance).max(LEAST);
-            let Some((tried, slopes)) = self.search(from, step)? else { break };
+            let (tried, slopes) = match self.search(from, step) {
+                Err(Unfinished::NotFound) => break,
+                found => found?,
+            };
             let found = self.response(&tried, &slopes);
             if best.is_none_or(|best| found.amplitude_error < best.amplitude_error) {
                 best = Some(found);
@@ -71,7 +73,7 @@ impl DrivenMass<'_> {
             from = tried.from;
             share *= TIGHTER;
         }
-        Ok(best)
+        best.ok_or(Unfinished::NotFound)
     }
 
     /// The same with motions of one tolerance of a step, as part of the amplitude.
@@ -79,45 +81,40 @@ impl DrivenMass<'_> {
         let mut from = start;
         let mut moving = Motion::at_rest(self, start[0], start[1]);
         for doubling in 0..=DOUBLINGS {
-            let found = unless_too_long(self.solve(from, step))?;
-            if found.is_some() {
-                return Ok(found);
+            match self.solve(from, step) {
+                Err(Unfinished::NotFound) => {}
+                found => return found,
             }
             for periods in [2_f64.powi(doubling), 1.0] {
                 moving.extremes = [None; 2];
                 let next = moving.angle + TAU * periods;
-                if unless_too_long(self.follow(&mut moving, next, ROUGH * start[0]).map(Some))?.is_none() {
-                    return Ok(None);
-                }
+                self.follow(&mut moving, next, ROUGH * start[0])?;
             }
             if let [Some((upper, angle)), Some((lower, _))] = moving.extremes {
                 from = [0.5 * (upper - lower), angle.rem_euclid(TAU)];
             }
         }
-        Ok(None)
+        Err(Unfinished::NotFound)
     }
 
     /// The turning point from which the mass comes to its mirror image, near `start`.
     fn solve(&self, start: [f64; 2], step: f64) -> Attempt<(Tried, Slopes)> {
         let rough = ROUGH.max(step);
         let here = self.tried(start, rough * start[0])?;
-        let Some(slopes) = self.slopes(&here, rough * start[0])? else { return Ok(None) };
-        let Some((here, slopes)) = self.approach(here, slopes, rough)? else { return Ok(None) };
+        let slopes = self.slopes_beside(&here, rough * start[0])?;
+        let (here, slopes) = self.approach(here, slopes, rough)?;
         let fine = self.tried(here.from, step * here.from[0])?;
-        let Some((found, slopes)) = self.approach(fine, slopes, step)? else { return Ok(None) };
+        let (found, slopes) = self.approach(fine, slopes, step)?;
         // A motion that went farther than it began has begun at another of its turning points.
         let farthest = found.motion.extremes.iter().flatten().fold(0.0_f64, |most, (place, _)| most.max(place.abs()));
         let amplitude = found.from[0];
         if amplitude <= 0.0 || farthest > (1.0 + LEFT * step) * amplitude {
-            return Ok(None);
+            return Err(Unfinished::NotFound);
         }
         let moved = [(amplitude / slopes.taken_at[0]).ln(), found.from[1] - slopes.taken_at[1]];
-        let slopes = if moved.iter().all(|change| change.abs() < NEAR) {
-            Some(slopes)
-        } else {
-            self.slopes(&self.tried(found.from, rough * amplitude)?, rough * amplitude)?
-        };
-        Ok(slopes.map(|slopes| (found, slopes)))
+        let near = moved.iter().all(|change| change.abs() < NEAR);
+        let slopes = if near { slopes } else { self.slopes(found.from, rough * amplitude)? };
+        Ok((found, slopes))
     }
 
     /// Broyden's method with motions of this tolerance of a step, as part of the amplitude.
@@ -126,11 +123,9 @@ impl DrivenMass<'_> {
         for _ in 0..STEPS {
             let tolerance = step * here.from[0];
             if self.size(here.off) <= tolerance {
-                return Ok(Some((here, slopes)));
+                return Ok((here, slopes));
             }
-            let renewed = |here: &Tried| {
-                self.slopes(&self.tried(here.from, ROUGH.max(step) * here.from[0])?, ROUGH.max(step) * here.from[0])
-            };
+            let renewed = |from: [f64; 2]| self.slopes(from, ROUGH.max(step) * from[0]);
             let full = product(&slopes.inverse, here.off).map(|change| -change);
             let limits = [LONGEST[0] * here.from[0], LONGEST[1]];
             let mut part = full.iter().zip(limits).fold(1.0_f64, |part, (change, most)| part.min(most / change.abs()));
@@ -146,16 +141,15 @@ impl DrivenMass<'_> {
             let Some(tried) = nearer else {
                 if fresh {
                     // What no step makes smaller is the rounding of the motions.
-                    return Ok((self.size(here.off) <= LEFT * tolerance).then_some((here, slopes)));
+                    let rounded = self.size(here.off) <= LEFT * tolerance;
+                    return rounded.then_some((here, slopes)).ok_or(Unfinished::NotFound);
                 }
-                let Some(renewed) = renewed(&here)? else { return Ok(None) };
-                (slopes, fresh) = (renewed, true);
+                (slopes, fresh) = (renewed(here.from)?, true);
                 continue;
             };
             fresh = self.size(tried.off) > SLOW * self.size(here.off);
             if fresh {
-                let Some(renewed) = renewed(&tried)? else { return Ok(None) };
-                slopes = renewed;
+                slopes = renewed(tried.from)?;
             } else {
                 let [step, change] = [(here.from, tried.from), (here.off, tried.off)]
                     .map(|(before, after)| [after[0] - before[0], after[1] - before[1]]);
@@ -163,11 +157,11 @@ impl DrivenMass<'_> {
             }
             here = tried;
         }
-        Ok(None)
+        Err(Unfinished::NotFound)
     }
 
     /// Half a period from a turning point, each step to `tolerance`, m.
-    fn tried(&self, from: [f64; 2], tolerance: f64) -> Result<Tried, Unfinished> {
+    fn tried(&self, from: [f64; 2], tolerance: f64) -> Attempt<Tried> {
         let mut motion = Motion::at_rest(self, from[0], from[1]);
         self.follow(&mut motion, from[1] + PI, tolerance)?;
         let off = [motion.displacement + from[0], motion.speed];
@@ -179,8 +173,13 @@ impl DrivenMass<'_> {
         off[0].hypot(off[1] / self.fastest())
     }
 
+    /// The derivatives at a turning point, by motions to this tolerance, m.
+    fn slopes(&self, from: [f64; 2], tolerance: f64) -> Attempt<Slopes> {
+        self.slopes_beside(&self.tried(from, tolerance)?, tolerance)
+    }
+
     /// The derivatives beside a motion, of motions to the same `tolerance`, m.
-    fn slopes(&self, middle: &Tried, tolerance: f64) -> Attempt<Slopes> {
+    fn slopes_beside(&self, middle: &Tried, tolerance: f64) -> Attempt<Slopes> {
         let steps = [DIFFERENCE * middle.from[0], DIFFERENCE];
         let (mut slopes, mut waves) = ([[0.0; 2]; 2], [[0.0; 2]; 2]);
         for (index, step) in steps.into_iter().enumerate() {
@@ -192,7 +191,8 @@ impl DrivenMass<'_> {
                 waves[row][index] = (beside.motion.sums[row] - middle.motion.sums[row]) * 2.0 / (PI * step);
             }
         }
-        Ok(inverse(slopes).map(|inverse| Slopes { taken_at: middle.from, inverse, waves }))
+        let inverse = inverse(slopes).ok_or(Unfinished::NotFound)?;
+        Ok(Slopes { taken_at: middle.from, inverse, waves })
     }
 
     /// What has been found, with its error: that of the motion and what it is off by, through the derivatives.
@@ -205,7 +205,7 @@ impl DrivenMass<'_> {
         let [cos_error, sin_error] = product(&magnitudes(&slopes.waves), moved);
         let first_force = force_cos.hypot(force_sin);
         Response {
-            frequency: 0.0,
+            frequency: self.frequency,
             amplitude: cos.hypot(sin),
             phase: sin.atan2(cos),
             peak: found.from[0],
@@ -213,13 +213,5 @@ impl DrivenMass<'_> {
             amplitude_error: cos_error.hypot(sin_error) + displaced,
             peak_error: moved[0] + displaced,
         }
-    }
-}
-
-/// A motion that takes too many steps has not led to what was sought.
-fn unless_too_long<T>(found: Attempt<T>) -> Attempt<T> {
-    match found {
-        Err(Unfinished::TooManySteps) => Ok(None),
-        other => other,
     }
 }

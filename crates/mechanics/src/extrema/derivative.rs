@@ -73,8 +73,7 @@ impl<'c, 'p> Derivative<'c, 'p> {
     /// The same at many radii, best in rising order.
     pub(super) fn at_all(&self, radii: &[StressRadius]) -> Vec<f64> {
         let slopes = self.slopes.get_or_init(|| {
-            let mut rings: Vec<(Ring, f64)> = self.contact.shear_rings().collect();
-            rings.reverse();
+            let rings: Vec<(Ring, f64)> = self.contact.shear_rings().rev().collect();
             self.contact.profile.kernel_slopes(&rings)
         });
         let Some(slopes) = slopes else { return radii.iter().map(|at| self.by_rings(at)).collect() };

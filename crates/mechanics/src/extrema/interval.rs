@@ -61,9 +61,6 @@ impl StressInterval {
     }
 
     pub(super) fn at(&self, place: f64) -> StressRadius {
-        if place.is_infinite() {
-            return if place > 0.0 { self.outer } else { self.inner };
-        }
         let distance = DoubleDouble::from(self.half() * (-place.abs()).exp());
         let square = if place > 0.0 { self.outer.square - distance } else { self.inner.square + distance };
         StressRadius { radius: square.value().max(0.0).sqrt(), square }

@@ -172,14 +172,10 @@ struct Search<'s, 'c, 'p> {
 }
 
 impl Search<'_, '_, '_> {
-    fn record(&mut self, at: &StressRadius) {
-        self.places.push(*at);
-    }
-
     /// Crosses a radius beyond which the derivative has the sign of `value`.
     fn cross(&mut self, at: &StressRadius, value: f64) {
         if self.sign * value.signum() < 0.0 {
-            self.record(at);
+            self.places.push(*at);
         }
         self.sign = value.signum();
     }
@@ -286,7 +282,7 @@ impl Search<'_, '_, '_> {
         self.sign = -sign;
         // An extremum this near to the centre cannot be distinguished from the centre.
         if interval.inner.square.value() > 0.0 || low > -MAX_PLACE {
-            self.record(&interval.at(high));
+            self.places.push(interval.at(high));
         }
     }
 }

@@ -19,6 +19,8 @@
 //! the same two cases: dD/d(r^2) falls as c grows, as D does, by d^2 D/(d(r^2) dc) = -3 g'(c)/(4 v^5), and of the
 //! dR_i/d(r^2) = int 3 dy/(4 v^5) each outweighs the next.
 
+use std::cell::LazyCell;
+
 use super::super::Contact;
 use super::super::profile::Ring;
 
@@ -57,10 +59,10 @@ impl Settled<'_> {
         let Outward { bends, slopes } = self.pieces[index];
         let profile = &self.contact.profile;
         let (outer, edge) = (self.contact.history.ring(index).outer.radius, self.contact.history.edge().radius);
-        let falls_to = |radius: f64| profile.falls(from, radius).least > 0.0;
-        if bends && falls_to(edge) || slopes && falls_to(outer) {
+        let to_edge = LazyCell::new(|| profile.falls(from, edge));
+        if bends && to_edge.least > 0.0 || slopes && profile.falls(from, outer).least > 0.0 {
             Known::Sign
-        } else if (bends || slopes) && profile.falls(from, edge).concavely {
+        } else if (bends || slopes) && to_edge.concavely {
             Known::OneChange
         } else {
             Known::Nothing

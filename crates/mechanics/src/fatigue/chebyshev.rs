@@ -3,13 +3,8 @@
 use std::f64::consts::PI;
 use std::sync::LazyLock;
 
-use crate::numerics::gauss::QuadraturePanel;
-
 /// The numbers of steps between the points: each has the points of the one before it.
 pub(super) const STEPS: [usize; 4] = [4, 8, 16, 32];
-
-/// Panels of twenty points that integrate the polynomials of twice the most steps to round-off.
-const PANELS: u32 = 8;
 
 /// The weights of the values at the points of `STEPS[level]`, one row for each of the points half a step between them.
 pub(super) fn between(level: usize) -> &'static [Vec<f64>] {
@@ -46,34 +41,19 @@ pub(super) fn weights(n: usize, x: f64) -> Vec<f64> {
     found.into_iter().map(|weight| weight / sum).collect()
 }
 
+/// By the coefficients of both polynomials: int T_m dT_k is 2 k^2/(k^2 - m^2) where m + k is odd, else zero.
 fn work_weights(n: usize) -> Vec<Vec<f64>> {
-    let mut works = vec![vec![0.0; n + 1]; n + 1];
     let cosines: Vec<f64> = (0..2 * n).map(|index| point(n, index)).collect();
-    for panel in 0..PANELS {
-        let width = 2.0 / f64::from(PANELS);
-        QuadraturePanel::fine(width).visit(|offset, share| {
-            let x = width * f64::from(panel) - 1.0 + offset;
-            let slope = slopes(n, &cosines, x.acos());
-            for (row, value) in works.iter_mut().zip(weights(n, x)) {
-                row.iter_mut().zip(&slope).for_each(|(entry, rise)| *entry += share * value * rise);
-            }
-        });
-    }
-    works
-}
-
-/// The weights of the values at the points in the derivative of the polynomial at x = cos(angle), between the ends, by
-/// the cosines of all multiples of the angle between points.
-fn slopes(n: usize, cosines: &[f64], angle: f64) -> Vec<f64> {
     let half = |m: usize| if m == 0 || m == n { 0.5 } else { 1.0 };
-    // dT_m/dx = m sin(m angle)/sin(angle).
-    let rise = |m: usize| half(m) * m as f64 * (m as f64 * angle).sin() / angle.sin();
-    let rises: Vec<f64> = (0..=n).map(rise).collect();
-    let slope = |j: usize| {
-        let sum: f64 = rises.iter().enumerate().map(|(m, rise)| cosines[m * j % (2 * n)] * rise).sum();
-        2.0 / n as f64 * half(j) * sum
+    let share = |m: usize, j: usize| 2.0 / n as f64 * half(m) * half(j) * cosines[m * j % (2 * n)];
+    let work = |m: usize, k: usize| {
+        let [m, k] = [m, k].map(|order| (order * order) as f64);
+        if (m + k) % 2.0 > 0.0 { 2.0 * k / (k - m) } else { 0.0 }
     };
-    (0..=n).map(slope).collect()
+    let sum = |term: &dyn Fn(usize) -> f64| (0..=n).map(term).sum::<f64>();
+    let rows = (0..=n).map(|m| (0..=n).map(|j| sum(&|k| work(m, k) * share(k, j))).collect());
+    let by_order: Vec<Vec<f64>> = rows.collect();
+    (0..=n).map(|i| (0..=n).map(|j| sum(&|m| share(m, i) * by_order[m][j])).collect()).collect()
 }
 
 #[cfg(test)]

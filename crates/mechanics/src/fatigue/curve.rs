@@ -292,10 +292,6 @@ impl Arc {
         Instant { step: self.stretch.step, part: self.stretch.part(0.5 * ((first + last) + (last - first) * x)) }
     }
 
-    fn at(&self, x: f64) -> StressSample {
-        combined(&chebyshev::weights(self.samples.len() - 1, x), &self.samples)
-    }
-
     /// The peak next to one of the dense samples, by the golden section.
     fn summit(&self, index: usize, value: &mut impl FnMut(&StressSample) -> f64) -> CurvePeak {
         let n = self.samples.len() + self.between.len() - 1;
@@ -303,7 +299,7 @@ impl Arc {
         let (low, high) = (point((index + 1).min(n)), point(index.saturating_sub(1)));
         let mut best = CurvePeak { value: f64::NEG_INFINITY, sample: [0.0; 9], at: self.instant(0.0) };
         let mut look = |x: f64| {
-            let sample = self.at(x);
+            let sample = combined(&chebyshev::weights(self.samples.len() - 1, x), &self.samples);
             let found = value(&sample);
             if found > best.value {
                 best = CurvePeak { value: found, sample, at: self.instant(x) };

@@ -3,8 +3,7 @@
 use crate::curved_path::PathPoint;
 use crate::numerics::double_double::DoubleDouble;
 use crate::range::Quantity;
-use crate::subsurface::Side;
-use crate::{Contact, DEFAULT_TOLERANCE, Error, Move, Normal, Stress, Tangential};
+use crate::{Contact, DEFAULT_TOLERANCE, Error, Move, Normal, Tangential};
 
 /// A cycle is closed if it ends as near as this to where it began, relative to its largest displacement or indentation.
 const CLOSED: f64 = 1e-9;
@@ -34,8 +33,7 @@ struct Chord {
     from: f64,
     to: f64,
     end: PathPoint,
-    /// The level of the edge, and that down to which there was slip, m, at its end.
-    edge: f64,
+    /// The level down to which there was slip at its end, m; infinite without slip.
     front: f64,
 }
 
@@ -90,9 +88,8 @@ impl Cycle {
             here.apply_visited(target, DEFAULT_TOLERANCE, keep_going, &mut |to, contact| {
                 let history = &contact.history;
                 size = size.max(contact.memory_bytes());
-                let end = contact.path_point();
                 let front = history.slip_from().map_or(f64::INFINITY, |start| start.level.value());
-                chords.push(Chord { step, from: done, to, end, edge: end.indentation.value(), front });
+                chords.push(Chord { step, from: done, to, end: contact.path_point(), front });
                 done = to;
             })?;
         }
@@ -157,8 +154,8 @@ impl Cycle {
             // The cycle ends where it begins.
             let before = self.chords[index.checked_sub(1).unwrap_or(self.chords.len() - 1)];
             let slipped = chord.from > 0.0 && before.front <= level;
-            let edge_passes = (before.edge - level) * (chord.edge - level) < 0.0;
-            if edge_passes || (chord.front <= level && !slipped) {
+            let [start, end] = [before, chord].map(|chord| chord.end.indentation.value() - level);
+            if start * end < 0.0 || (chord.front <= level && !slipped) {
                 let state = self.before(index);
                 let target = (chord.end.indentation, state.scaled(chord.end.displacement));
                 let passes = state.history.passes(target, level);
@@ -177,13 +174,17 @@ impl Cycle {
         here
     }
 
+    /// The contact at the end of each move.
+    pub(super) fn ends(&self) -> impl Iterator<Item = Contact> {
+        (0..self.moves.len()).map(|step| self.state(step, 1.0).0)
+    }
+
     /// The contact after a part of a move, which is of the displacement or the indentation where the move is straight
     /// in both, and the part of what the move prescribes.
     pub(super) fn state(&self, step: usize, part: f64) -> (Contact, f64) {
-        let first = self.chords.partition_point(|chord| chord.step < step);
-        let index = first + self.chords[first..].partition_point(|chord| chord.step == step && chord.to < part);
-        let chord = self.chords[index.min(self.chords.len() - 1)];
-        let mut here = self.before(index.min(self.chords.len() - 1));
+        let earlier = |chord: &Chord| chord.step < step || chord.step == step && chord.to < part;
+        let index = self.chords.partition_point(earlier).min(self.chords.len() - 1);
+        let (chord, mut here) = (self.chords[index], self.before(index));
         let start = here.path_point();
         let share = if chord.to > chord.from { (part - chord.from) / (chord.to - chord.from) } else { 1.0 };
         if share < 1.0 {
@@ -244,31 +245,6 @@ impl Cycle {
             states.push(here.clone());
         }
         Ok(states)
-    }
-
-    /// The stresses of [`Cycle::states`], Pa, at each of the places, m, in one of the bodies: axes, Poisson's ratio and
-    /// infinite stresses as in [`Contact::subsurface`].
-    ///
-    /// # Errors
-    /// As [`Cycle::states`], and [`Error::OutOfRange`] for Poisson's ratio.
-    pub fn stress_paths(
-        &self,
-        instants: usize,
-        (side, poisson): (Side, f64),
-        places: &[[f64; 3]],
-        keep_going: &dyn Fn() -> bool,
-    ) -> Result<Vec<Vec<Stress>>, Error> {
-        let mut paths = vec![Vec::with_capacity(instants * self.moves.len()); places.len()];
-        for state in self.states(instants, keep_going)? {
-            if !keep_going() {
-                return Err(Error::Interrupted);
-            }
-            let field = state.into_subsurface(side, poisson)?;
-            for (path, place) in paths.iter_mut().zip(places) {
-                path.push(field.at(*place));
-            }
-        }
-        Ok(paths)
     }
 }
 

@@ -34,7 +34,7 @@ use ball::dot;
 pub use ball::{Ball, enclosing_ball};
 pub use curve::{Instant, MAX_INSTANTS};
 pub use cycle::{Cycle, MOST_BYTES};
-use planes::{Vector, axes, highest, peaks, unit};
+use planes::{Vector, axes, grid, peaks, unit};
 pub use rating::{Measure, Rated};
 pub use search::Worst;
 pub use study::{Bulk, FIELD_BYTES, Largest, Ratings, Study};
@@ -166,9 +166,10 @@ impl Criterion {
         if matches!(self, Criterion::Crossland { .. } | Criterion::DangVan { .. }) {
             return self.of(path).value;
         }
-        let mut shears = Vec::with_capacity(path.len());
-        let normal = highest(&self.starts(path), |normal| self.on_plane(path, normal, true, &mut shears).0);
-        self.on_plane(path, &normal, false, &mut shears).0
+        let starts = self.starts(path);
+        let planes: Vec<&Vector> = grid(&starts).collect();
+        let (highest, _) = most(planes.iter().map(|normal| self.on_plane(path, normal, true).0));
+        self.on_plane(path, planes[highest], false).0
     }
 
     /// The planes that a search must not miss: of largest tension, where a criterion is cut off without.
@@ -184,21 +185,18 @@ impl Criterion {
     }
 
     fn on_worst_plane(&self, path: &[Stress]) -> (f64, Option<[f64; 3]>, usize) {
-        let mut shears = Vec::with_capacity(path.len());
-        let (value, normal) =
-            peaks(&self.starts(path), |normal, bound| self.on_plane(path, normal, bound, &mut shears).0)[0];
-        let (_, instant) = self.on_plane(path, &normal, false, &mut shears);
+        let (value, normal) = peaks(&self.starts(path), |normal, bound| self.on_plane(path, normal, bound).0)[0];
+        let (_, instant) = self.on_plane(path, &normal, false);
         (value, Some(upward(normal)), instant)
     }
 
-    /// The value on one plane, or a bound of it, and the instant of the largest normal stress. `shears` is room to work
-    /// in.
-    fn on_plane(&self, path: &[Stress], normal: &Vector, bound: bool, shears: &mut Vec<[f64; 2]>) -> (f64, usize) {
+    /// The value on one plane, or a bound of it, and the instant of the largest normal stress.
+    fn on_plane(&self, path: &[Stress], normal: &Vector, bound: bool) -> (f64, usize) {
         let along = weights(normal, normal);
         let (instant, tension) = most(path.iter().map(|stress| resolved(stress, &along)));
         let value = match *self {
             Criterion::Crossland { .. } | Criterion::DangVan { .. } => 0.0,
-            Criterion::Findley { k } => shear_amplitude(path, normal, bound, shears) + k * tension,
+            Criterion::Findley { k } => shear_amplitude(path, normal, bound) + k * tension,
             Criterion::SmithWatsonTopper { .. } if tension <= 0.0 => 0.0,
             Criterion::SmithWatsonTopper { youngs_modulus, poisson } => {
                 let strain = |stress: &Stress| strained(stress, &along, poisson);
@@ -212,7 +210,7 @@ impl Criterion {
                     0.0
                 } else {
                     let shear_modulus = 0.5 * youngs_modulus / (1.0 + poisson);
-                    shear_amplitude(path, normal, bound, shears) / shear_modulus * factor
+                    shear_amplitude(path, normal, bound) / shear_modulus * factor
                 }
             }
         };
@@ -271,15 +269,14 @@ fn resolved(stress: &Stress, [xx, yy, zz, xy, yz, xz]: &[f64; 6]) -> f64 {
 
 /// The radius of the smallest circle around the shear stresses of a path in a plane, or of one about the middle of
 /// their ranges.
-fn shear_amplitude(path: &[Stress], normal: &Vector, bound: bool, shears: &mut Vec<[f64; 2]>) -> f64 {
+fn shear_amplitude(path: &[Stress], normal: &Vector, bound: bool) -> f64 {
     let [one, two] = shear_axes(normal);
-    shears.clear();
-    shears.extend(path.iter().map(|stress| [resolved(stress, &one), resolved(stress, &two)]));
+    let shears: Vec<[f64; 2]> = path.iter().map(|stress| [resolved(stress, &one), resolved(stress, &two)]).collect();
     if !bound {
-        return enclosing_ball(shears).radius;
+        return enclosing_ball(&shears).radius;
     }
     let mut ends = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
-    for shear in shears.iter() {
+    for shear in &shears {
         for i in 0..2 {
             ends[0][i] = ends[0][i].min(shear[i]);
             ends[1][i] = ends[1][i].max(shear[i]);

@@ -49,13 +49,17 @@ static NORMALS: LazyLock<Vec<Vector>> = LazyLock::new(|| {
     normals
 });
 
+/// The normals of the grid, and `more`.
+pub(super) fn grid(more: &[Vector]) -> impl Iterator<Item = &Vector> {
+    NORMALS.iter().chain(more)
+}
+
 /// The largest peaks of a function that opposite normals share, and their normals, sought from the grid and from
 /// `more`; the largest of all comes first. The function takes whether a bound from above will do, which is to be
 /// cheaper: it spares low planes the exact value.
 pub(super) fn peaks(more: &[Vector], mut value: impl FnMut(&Vector, bool) -> f64) -> Vec<(f64, Vector)> {
     let highest_first = |one: &(f64, Vector), other: &(f64, Vector)| other.0.total_cmp(&one.0);
-    let mut bounds: Vec<(f64, Vector)> =
-        NORMALS.iter().chain(more).map(|normal| (value(normal, true), *normal)).collect();
+    let mut bounds: Vec<(f64, Vector)> = grid(more).map(|normal| (value(normal, true), *normal)).collect();
     bounds.sort_by(highest_first);
     let bottom = bounds[bounds.len() - 1].0;
     let mut best = (f64::NEG_INFINITY, bounds[0].1);
@@ -94,7 +98,7 @@ pub(super) fn peaks(more: &[Vector], mut value: impl FnMut(&Vector, bool) -> f64
     found
 }
 
-/// Peaks so near to one that the grid does not tell them apart: climbed from the highest planes of circles around it.
+/// Peaks so near to one that the grid does not distinguish them: climbed from the highest planes of circles around it.
 fn beside(normal: &Vector, mut value: impl FnMut(&Vector) -> f64) -> Vec<(f64, Vector)> {
     let [one, two] = axes(normal);
     let mut found = Vec::new();
@@ -112,16 +116,6 @@ fn beside(normal: &Vector, mut value: impl FnMut(&Vector) -> f64) -> Vec<(f64, V
         }
     }
     found
-}
-
-/// The normal of the grid and of `more` on which a function is largest.
-pub(super) fn highest(more: &[Vector], mut value: impl FnMut(&Vector) -> f64) -> Vector {
-    let best = (f64::NEG_INFINITY, NORMALS[0]);
-    let higher = |best: (f64, Vector), normal: &Vector| {
-        let found = value(normal);
-        if found > best.0 { (found, *normal) } else { best }
-    };
-    NORMALS.iter().chain(more).fold(best, higher).1
 }
 
 /// The peak next to a normal, from a distance of the first parabola on: parabolas through six values, and the best

@@ -187,7 +187,7 @@ fn wander(ball: &Ball<5>, mut points: Vec<[f64; 5]>, error: f64) -> f64 {
 /// still leaves the curve outside.
 fn grown<const N: usize>(
     points: &mut Vec<[f64; N]>,
-    farthest: impl Fn(&[f64; N]) -> ([f64; N], f64),
+    mut farthest: impl FnMut(&[f64; N]) -> ([f64; N], f64),
 ) -> (Ball<N>, f64) {
     let mut ball = enclosing_ball(points);
     for _ in 0..MOST_ROUNDS {
@@ -208,7 +208,7 @@ fn grown<const N: usize>(
 }
 
 /// The planes on which a criterion may be largest.
-fn candidates(criterion: &Criterion, curve: &StressCurve, shears: &mut Vec<[f64; 2]>) -> Vec<Vector> {
+fn candidates(criterion: &Criterion, curve: &StressCurve) -> Vec<Vector> {
     let opening = peak_of(curve, |sample| stress(sample).principal()[0]);
     let mut few = vec![stress(&opening.sample)];
     let apart = |one: &Stress, other: &Stress| (*one + *other * -1.0).norm();
@@ -221,7 +221,7 @@ fn candidates(criterion: &Criterion, curve: &StressCurve, shears: &mut Vec<[f64;
     }
     let mut range = [f64::INFINITY, f64::NEG_INFINITY];
     let found = peaks(&criterion.starts(&few), |normal, bound| {
-        let value = criterion.on_plane(&few, normal, bound, shears).0;
+        let value = criterion.on_plane(&few, normal, bound).0;
         range = [range[0].min(value), range[1].max(value)];
         value
     });
@@ -239,14 +239,13 @@ fn candidates(criterion: &Criterion, curve: &StressCurve, shears: &mut Vec<[f64;
 /// The largest value over all planes, or those near one.
 fn on_worst_plane(criterion: &Criterion, curve: &StressCurve, off: f64, near: Option<Vector>) -> Rated {
     let mut path: Vec<Stress> = curve.samples().map(|(_, sample)| stress(sample)).collect();
-    let mut shears = Vec::with_capacity(path.len());
-    let normals = near.map_or_else(|| candidates(criterion, curve, &mut shears), |normal| vec![normal]);
+    let normals = near.map_or_else(|| candidates(criterion, curve), |normal| vec![normal]);
     let mut best = Rated { value: f64::NEG_INFINITY, error: off, plane: None, at: None };
     for mut normal in normals {
         let mut value = f64::NEG_INFINITY;
         for round in 0..MOST_ROUNDS {
-            let at = witnesses(criterion, curve, &normal, &mut path, &mut shears);
-            let (here, _) = criterion.on_plane(&path, &normal, false, &mut shears);
+            let at = witnesses(criterion, curve, &normal, &mut path);
+            let (here, _) = criterion.on_plane(&path, &normal, false);
             if here > best.value {
                 best = Rated { value: here, plane: Some(upward(normal)), at: Some(at), ..best };
             }
@@ -255,20 +254,14 @@ fn on_worst_plane(criterion: &Criterion, curve: &StressCurve, off: f64, near: Op
             }
             value = here;
             let step = if round == 0 { CLIMB_STEP } else { 0.1 * CLIMB_STEP };
-            normal = climb((here, normal), step, |normal| criterion.on_plane(&path, normal, false, &mut shears).0).1;
+            normal = climb((here, normal), step, |normal| criterion.on_plane(&path, normal, false).0).1;
         }
     }
     best
 }
 
 /// Adds the stresses that matter on a plane, and says when its normal stress is largest.
-fn witnesses(
-    criterion: &Criterion,
-    curve: &StressCurve,
-    normal: &Vector,
-    path: &mut Vec<Stress>,
-    shears: &mut Vec<[f64; 2]>,
-) -> Instant {
+fn witnesses(criterion: &Criterion, curve: &StressCurve, normal: &Vector, path: &mut Vec<Stress>) -> Instant {
     let along = weights(normal, normal);
     let opening = peak_of(curve, |sample| resolved(&stress(sample), &along));
     path.push(stress(&opening.sample));
@@ -279,17 +272,14 @@ fn witnesses(
         }
         return opening.at;
     }
-    let axes = shear_axes(normal);
-    let shear = |stress: &Stress| axes.map(|axis| resolved(stress, &axis));
-    shears.clear();
-    shears.extend(path.iter().map(shear));
-    let found = std::cell::RefCell::new(Vec::new());
-    grown(shears, |center| {
+    let [one, two] = shear_axes(normal);
+    let shear = |stress: &Stress| [resolved(stress, &one), resolved(stress, &two)];
+    let mut shears: Vec<[f64; 2]> = path.iter().map(shear).collect();
+    grown(&mut shears, |center| {
         let far = peak_of(curve, |sample| squared_distance(&shear(&stress(sample)), center));
-        found.borrow_mut().push(stress(&far.sample));
+        path.push(stress(&far.sample));
         (shear(&stress(&far.sample)), far.value)
     });
-    path.extend(found.into_inner());
     opening.at
 }
 

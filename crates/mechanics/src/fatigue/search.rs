@@ -9,8 +9,8 @@ use std::f64::consts::PI;
 
 use super::planes::Vector;
 use super::study::Study;
-use super::{Cycle, Measure, Rated};
-use crate::{Error, Profile};
+use super::{Measure, Rated};
+use crate::Error;
 
 /// Depths of the net, in contact radii; the first ones, and not the others, on the circles where something ends.
 const DEPTHS: [f64; 12] = [0.0, 0.01, 0.03, 0.08, 0.15, 0.25, 0.35, 0.48, 0.65, 0.9, 1.2, 1.7];
@@ -30,8 +30,6 @@ const SPARSE: usize = 3;
 /// Starts of a search for each measure, and the value of one over the best.
 const STARTS: usize = 5;
 const WORTH: f64 = 0.75;
-/// Starts of a search that only asks whether a larger value exists.
-const SHORT: usize = 1;
 /// Nearer than this to a start, in contact radii, is no other start.
 const APART: f64 = 0.2;
 /// The first steps along radius, over the contact radius, angle and depth, and how far they fall, first and at the best
@@ -85,9 +83,8 @@ impl Study<'_> {
         let mut places = Vec::with_capacity(known.len());
         for (measure, known) in known.iter().enumerate() {
             let mut larger = self.unbounded(measure)?;
-            let mut tried = self.best_starts(measure, &starts).into_iter().take(SHORT);
-            while let (None, Some(start)) = (larger, tried.next()) {
-                let spot = self.climb(measure, start, (1.0, 1.0))?.0;
+            if let (None, Some(start)) = (larger, self.best_starts(measure, &starts).first()) {
+                let spot = self.climb(measure, *start, (1.0, 1.0))?.0;
                 let margin = spot.found.error + self.tolerance * spot.found.value.abs();
                 larger = (spot.found.value - margin > *known).then(|| self.found_at(&spot));
             }
@@ -102,7 +99,12 @@ impl Study<'_> {
 
     /// The radii, in contact radii, at which edges of the contact and of slip end, and kinks of the history lie.
     fn circles(&self) -> Vec<f64> {
-        let mut circles = self.cycle().ends();
+        let mut circles = Vec::new();
+        for state in self.cycle.ends() {
+            circles.push(state.contact_radius());
+            circles.extend(state.history.kink_levels().map(|level| state.profile().radius(level)));
+        }
+        circles.retain(|radius| *radius > 0.0);
         circles.iter_mut().for_each(|circle| *circle /= self.radius);
         circles.sort_by(|one, other| other.total_cmp(one));
         circles.dedup_by(|one, other| (*one - *other).abs() < SAME_CIRCLE);
@@ -179,7 +181,8 @@ impl Study<'_> {
 
     /// A place of the surface at which the measure is infinite.
     fn unbounded(&mut self, measure: usize) -> Result<Option<Worst>, Error> {
-        for radius in spikes(self.cycle().start().profile()) {
+        let profile = self.cycle.start().profile();
+        for radius in profile.singular_radii().into_iter().chain(profile.rim_radius()) {
             let place = [radius, 0.0, 0.0];
             if self.rate_one(measure, &place, None)?.0.value == f64::INFINITY {
                 let rated = Rated { value: f64::INFINITY, error: f64::INFINITY, plane: None, at: None };
@@ -266,24 +269,4 @@ impl Study<'_> {
         let spot = self.spot(measure, at, from.found.plane)?;
         Ok(Some(spot).filter(|spot| spot.found.value.is_finite()))
     }
-}
-
-impl Cycle {
-    /// The radii, m, at which an edge of the contact or of slip is at the end of a move, and a kink of the history.
-    fn ends(&self) -> Vec<f64> {
-        let mut ends = Vec::new();
-        for step in 0..self.moves() {
-            let state = self.state(step, 1.0).0;
-            let profile = state.profile();
-            ends.push(state.contact_radius());
-            ends.extend(state.history.kink_levels().map(|level| profile.radius(level)));
-        }
-        ends.retain(|radius| *radius > 0.0);
-        ends
-    }
-}
-
-/// The radii, m, at which stresses of a profile may be infinite on the surface.
-fn spikes(profile: &Profile) -> Vec<f64> {
-    profile.singular_radii().into_iter().chain(profile.rim_radius()).collect()
 }

@@ -73,7 +73,7 @@ type Field = Rc<(Subsurface, f64)>;
 
 /// What is asked of a cycle.
 pub struct Study<'a> {
-    cycle: &'a Cycle,
+    pub(super) cycle: &'a Cycle,
     body: (Side, f64),
     bulk: Option<Bulk>,
     pub(super) measures: Vec<Measure>,
@@ -111,14 +111,11 @@ impl<'a> Study<'a> {
         tolerance: f64,
         keep_going: &'a dyn Fn() -> bool,
     ) -> Result<Study<'a>, Error> {
-        let ends: Vec<Contact> = (0..cycle.moves()).map(|step| cycle.state(step, 1.0).0).collect();
+        let ends: Vec<Contact> = cycle.ends().collect();
         for end in &ends {
             end.subsurface(body.0, body.1)?;
         }
         let most = |of: &dyn Fn(&Contact) -> f64| ends.iter().map(of).fold(0.0, f64::max);
-        let displacements = ends.iter().map(|end| end.state().displacement);
-        let (low, high) =
-            displacements.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), at| (low.min(at), high.max(at)));
         let panels = if matches!(cycle.start().profile(), Profile::Sphere(_)) { 0 } else { PANEL_BYTES };
         let largest = ends.iter().map(Contact::memory_bytes).max().unwrap_or(0);
         let added = bulk.map_or(0.0, |bulk| bulk.mean.abs() + bulk.amplitude.abs());
@@ -130,7 +127,7 @@ impl<'a> Study<'a> {
             keep_going,
             radius: most(&Contact::contact_radius),
             stress: most(&|end| end.summary().unit_pressure()) + added,
-            travel: high - low,
+            travel: extent(ends.iter().map(Contact::displacement)),
             friction: cycle.start().friction(),
             reference: vec![0.0; measures.len()],
             measures,
@@ -265,11 +262,6 @@ impl<'a> Study<'a> {
         self.radius
     }
 
-    /// The cycle.
-    pub(super) fn cycle(&self) -> &'a Cycle {
-        self.cycle
-    }
-
     /// A value with its instant as the move prescribes it.
     pub(super) fn rated(&self, found: &Rated) -> Rated {
         Rated { at: found.at.map(|at| self.prescribed(at)), ..*found }
@@ -286,10 +278,8 @@ impl<'a> Study<'a> {
     /// A measure where the stress is infinite: infinite too, unless it needs slip and there is none.
     fn infinite(&self, measure: &Measure, place: &[f64; 3]) -> Rated {
         let radius = place[0].hypot(place[1]);
-        let slips = (0..self.cycle.moves()).filter_map(|step| self.cycle.state(step, 1.0).0.slip(radius));
-        let (low, high) =
-            slips.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), slip| (low.min(slip), high.max(slip)));
-        let value = if measure.of_surface() && high <= low { 0.0 } else { f64::INFINITY };
+        let slips = self.cycle.ends().filter_map(|end| end.slip(radius));
+        let value = if measure.of_surface() && extent(slips) <= 0.0 { 0.0 } else { f64::INFINITY };
         Rated { value, ..NO_VALUE }
     }
 
@@ -383,7 +373,7 @@ impl<'a> Study<'a> {
         if let Some(Bulk { mean, amplitude, phase }) = self.bulk {
             xx += mean + amplitude * (TAU * (step as f64 + part) / self.cycle.moves() as f64 + phase).cos();
         }
-        let contact = field.contact();
+        let contact = &field.contact;
         let edge = contact.contact_radius();
         let touched = contact.indentation() > 0.0 && radius <= edge * (1.0 + SAME_INSTANT);
         let [mut pressure, mut shear, mut slip] = [0.0; 3];
@@ -394,4 +384,10 @@ impl<'a> Study<'a> {
         }
         ([xx, yy, zz, xy, yz, xz, pressure, shear, slip], touched)
     }
+}
+
+/// The largest of some values less the smallest; below zero for none.
+fn extent(values: impl Iterator<Item = f64>) -> f64 {
+    let ends = values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| [low.min(value), high.max(value)]);
+    ends[1] - ends[0]
 }

@@ -2,7 +2,7 @@
 
 use super::super::shear_stress::Residual;
 use super::super::state::{Move, Regime, Tangential};
-use super::from_any_state::FromAnyState;
+use super::from_any_state::{FromAnyState, MAX_DEPTH};
 use super::{
     Contact, DEFAULT_CUTOFF, DoubleDouble, EqualPeakMeasure, Error, Quantity, cutoff_of, evenly_spread,
     falling_amplitude, outermost_singular,
@@ -12,9 +12,6 @@ use super::{
 const ROUNDED: f64 = 1e-9;
 /// Up to this many reversals the strokes of a path with a prescribed end are sought in every way.
 const FEW: usize = 8;
-/// The present state of a deeper slip history is no candidate: the cost of its extrema grows with the square of the
-/// depth.
-const MAX_DEPTH: usize = 256;
 
 /// A law for the amplitudes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -178,7 +175,7 @@ pub fn design(
         PathStart::Here => (task.gross(), FirstMove::GrossSlip),
     };
     match kind {
-        AmplitudeLaw::Linear | AmplitudeLaw::EqualPeaks => task.by_law(kind, first, first_move),
+        AmplitudeLaw::Linear | AmplitudeLaw::EqualPeaks => task.judge(task.by_law(kind, first), first_move, None),
         AmplitudeLaw::Minimax => task.best(first, first_move),
     }
 }
@@ -226,12 +223,12 @@ impl DesignTask<'_> {
         Ok(Design { displacements: path, first_move, gap, contact, residual, largest })
     }
 
-    fn by_law(&self, kind: AmplitudeLaw, first: f64, first_move: FirstMove) -> Result<Design, Error> {
-        let path = match kind {
+    /// The path of a law from an amplitude on, m.
+    fn by_law(&self, kind: AmplitudeLaw, first: f64) -> Vec<f64> {
+        match kind {
             AmplitudeLaw::Linear => falling_amplitude(self.reversals, first).collect(),
             AmplitudeLaw::EqualPeaks | AmplitudeLaw::Minimax => self.equal_from(first),
-        };
-        self.judge(path, first_move, None)
+        }
     }
 
     /// The law of equal peaks from an amplitude on, which may be less than gross slip.
@@ -246,61 +243,54 @@ impl DesignTask<'_> {
 
     /// The best of all candidates: equal alternating extrema, and the two laws, for where those do not exist.
     fn best(&self, first: f64, first_move: FirstMove) -> Result<Design, Error> {
-        let mut best: Option<Design> = None;
-        let mut offer = |design: Result<Design, Error>| match design {
-            Ok(design) => {
-                if best.as_ref().is_none_or(|best| design.largest < best.largest * (1.0 - ROUNDED)) {
-                    best = Some(design);
-                }
-                Ok(())
-            }
-            Err(Error::Interrupted) => Err(Error::Interrupted),
-            // A law or construction that does not exist here is no candidate.
-            Err(_) => Ok(()),
-        };
-        if first_move == FirstMove::GrossSlip && self.contact.memory_depth() <= MAX_DEPTH && self.at_an_end() {
-            let stay = self.judge(vec![self.contact.state().displacement], FirstMove::Stay, None)?;
+        let (mut best, mut paths) = (None::<Design>, Vec::new());
+        let free = first_move == FirstMove::GrossSlip;
+        if free && self.contact.memory_depth() <= MAX_DEPTH && self.at_an_end() {
+            let stay = self.judge(vec![self.contact.displacement()], FirstMove::Stay, None)?;
             if stay.largest <= 0.0 {
                 return Ok(stay);
             }
-            offer(Ok(stay))?;
+            best = Some(stay);
         }
-        let full = self.contact.gross_slip_displacement();
         let sign = if first < 0.0 { -1.0 } else { 1.0 };
-        // The smallest of the extrema is nowhere near the largest where the end is prescribed.
-        let gap = |found: &super::Minimax| (self.end == PathEnd::Free).then_some(found.gap);
-        let found = if first.abs() >= full {
-            super::minimax_to(self.contact, self.reversals, first.abs(), self.end, self.keep_going)
-        } else {
-            Vec::new()
-        };
-        for found in &found {
-            let path = found.displacements.iter().map(|target| sign * target);
-            offer(self.judge(path.collect(), first_move, gap(found)))?;
+        if first.abs() >= self.contact.gross_slip_displacement() {
+            let found = super::minimax_to(self.contact, self.reversals, first.abs(), self.end, self.keep_going);
+            paths.extend(found.into_iter().map(|found| {
+                // The smallest of the extrema is nowhere near the largest where the end is prescribed.
+                let gap = (self.end == PathEnd::Free).then_some(found.gap);
+                (found.displacements.iter().map(|target| sign * target).collect(), first_move, gap)
+            }));
         }
-        if found.is_empty() || (self.end != PathEnd::Free && self.reversals <= FEW) {
+        if paths.is_empty() || (self.end != PathEnd::Free && self.reversals <= FEW) {
             let begun = self.after(&[first])?;
             // The first of the strokes goes back.
             let last = if self.reversals.is_multiple_of(2) { sign } else { -sign };
-            for path in self.relieved(&begun, self.reversals, last) {
-                offer(self.judge([vec![first], path].concat(), first_move, None))?;
+            let strokes = self.relieved(&begun, self.reversals, last).into_iter();
+            paths.extend(strokes.map(|path| ([vec![first], path].concat(), first_move, None)));
+        }
+        for last in if free { &[1.0, -1.0][..] } else { &[] } {
+            for path in self.relieved(self.contact, self.reversals + 1, *last) {
+                let wiped = self.after(&path[..1])?.state().regime == Regime::GrossSlip;
+                paths.push((path, if wiped { FirstMove::GrossSlip } else { FirstMove::Partial }, None));
             }
         }
-        if first_move == FirstMove::GrossSlip {
-            for last in [1.0, -1.0] {
-                for path in self.relieved(self.contact, self.reversals + 1, last) {
-                    let wiped = self.after(&path[..1])?.state().regime == Regime::GrossSlip;
-                    offer(self.judge(path, if wiped { FirstMove::GrossSlip } else { FirstMove::Partial }, None))?;
+        let laws = [AmplitudeLaw::EqualPeaks, AmplitudeLaw::Linear];
+        paths.extend(laws.map(|kind| (self.by_law(kind, first), first_move, None)));
+        // Without a force a punch carries nothing at all.
+        let unloaded = (self.range.vertical && self.end != PathEnd::DisplacementZero).then(|| {
+            let path = self.by_law(AmplitudeLaw::Linear, first);
+            DesignTask { end: PathEnd::ForceZero, ..*self }.judge(path, first_move, None)
+        });
+        for found in paths.into_iter().map(|(path, first_move, gap)| self.judge(path, first_move, gap)).chain(unloaded)
+        {
+            match found {
+                Ok(design) if best.as_ref().is_none_or(|best| design.largest < best.largest * (1.0 - ROUNDED)) => {
+                    best = Some(design);
                 }
+                Err(Error::Interrupted) => return Err(Error::Interrupted),
+                // A law or construction that does not exist here is no candidate.
+                _ => {}
             }
-        }
-        for kind in [AmplitudeLaw::EqualPeaks, AmplitudeLaw::Linear] {
-            offer(self.by_law(kind, first, first_move))?;
-        }
-        if self.range.vertical && self.end != PathEnd::DisplacementZero {
-            // Without a force a punch carries nothing at all.
-            let path = falling_amplitude(self.reversals, first).collect();
-            offer(DesignTask { end: PathEnd::ForceZero, ..*self }.judge(path, first_move, None))?;
         }
         if (self.keep_going)() { best.ok_or(Error::Interrupted) } else { Err(Error::Interrupted) }
     }
@@ -317,8 +307,8 @@ impl DesignTask<'_> {
 
     /// Strokes by [`FromAnyState`], m, to the end, but for what it misses.
     fn relieved(&self, from: &Contact, strokes: usize, last: f64) -> Vec<Vec<f64>> {
-        let found = FromAnyState::new(from, strokes, last, self.end);
-        let mut paths = found.map_or_else(Vec::new, |strokes| strokes.solve(self.keep_going));
+        let found = FromAnyState::new(from, strokes, last, self.end, self.keep_going);
+        let mut paths = found.map_or_else(Vec::new, |strokes| strokes.solve());
         paths.iter_mut().flatten().for_each(|position| *position *= from.scale());
         paths
     }

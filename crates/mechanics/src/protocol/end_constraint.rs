@@ -23,32 +23,25 @@ const PACE: f64 = 0.1;
 const LEAST: f64 = 1e-3;
 const RETRIES: usize = 8;
 
-/// The kinks that lead to `end`, the outermost first, for a first stroke forwards to `first`, scaled by m: one sequence
-/// for each extremum that may stay below the others.
-pub(super) fn kinks(
-    problem: &Problem<'_>,
-    limit: f64,
-    first: f64,
-    end: PathEnd,
-    keep_going: &dyn Fn() -> bool,
-) -> Vec<Vec<Point>> {
-    let equations = Equations { problem, limit, first, end, keep_going };
-    equations.by_share().into_iter().chain(equations.by_core()).collect()
-}
-
-/// The equations to be solved.
-struct Equations<'a> {
-    problem: &'a Problem<'a>,
-    limit: f64,
-    first: f64,
-    end: PathEnd,
-    keep_going: &'a dyn Fn() -> bool,
+/// The equations to be solved, for a first stroke forwards to `first`, scaled by m.
+pub(super) struct Equations<'a> {
+    pub(super) problem: &'a Problem<'a>,
+    /// E of the free optimum.
+    pub(super) limit: f64,
+    pub(super) first: f64,
+    pub(super) end: PathEnd,
 }
 
 impl Equations<'_> {
+    /// The kinks that lead to the end, the outermost first: one sequence for each extremum that may stay below the
+    /// others.
+    pub(super) fn kinks(&self) -> Vec<Vec<Point>> {
+        self.by_share().into_iter().chain(self.by_core()).collect()
+    }
+
     /// The kinks of an E, relative to the free optimum, and of a share of it for the outermost, with the residuals.
     fn evaluate(&self, [stress, share]: [f64; 2]) -> Option<([f64; 2], VirginStrokes<'_>)> {
-        let marched = self.problem.march_with(self.limit * stress, share, self.keep_going)?;
+        let marched = self.problem.march(self.limit * stress, share)?;
         Some(([miss(self.problem, &marched.kinks, self.first, self.end), marched.excess?], marched))
     }
 

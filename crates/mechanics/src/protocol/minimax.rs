@@ -38,6 +38,7 @@ pub(super) struct Problem<'a> {
     pub(super) edge: Point,
     pub(super) cutoff: f64,
     pub(super) reversals: usize,
+    pub(super) keep_going: &'a dyn Fn() -> bool,
 }
 
 /// The kinks from the edge inward, and the rings between them.
@@ -157,21 +158,11 @@ impl Problem<'_> {
         most.max(largest(beside, BRACKET, value).1)
     }
 
-    /// The kinks for one E; `None` if `keep_going` returned false.
-    pub(super) fn march(&self, limit: f64, keep_going: &dyn Fn() -> bool) -> Option<VirginStrokes<'_>> {
-        self.march_with(limit, 1.0, keep_going)
-    }
-
-    /// The same with a share of the limit for the outermost extremum.
-    pub(super) fn march_with(
-        &self,
-        limit: f64,
-        share: f64,
-        keep_going: &dyn Fn() -> bool,
-    ) -> Option<VirginStrokes<'_>> {
+    /// The kinks for one E, and a share of it for the outermost extremum; `None` if `keep_going` returned false.
+    pub(super) fn march(&self, limit: f64, share: f64) -> Option<VirginStrokes<'_>> {
         let mut strokes = self.edge_alone();
         while strokes.kinks.len() < self.reversals {
-            if !keep_going() {
+            if !(self.keep_going)() {
                 return None;
             }
             match self.next(&strokes, if strokes.kinks.is_empty() { share * limit } else { limit }) {
@@ -184,11 +175,11 @@ impl Problem<'_> {
     }
 
     /// The smallest E, and its kinks; `None` if `keep_going` returned false, or there is no such E.
-    pub(super) fn solve(&self, keep_going: &dyn Fn() -> bool) -> Option<EqualExtrema> {
+    pub(super) fn solve(&self) -> Option<EqualExtrema> {
         let middle = StressRadius::new(0.5 * (self.cutoff + self.edge.radius));
         let guess = self.edge_alone().shear(&middle) / (self.reversals as f64).sqrt();
         let (limit, strokes) = smallest(guess, TOLERANCE, None, |limit| {
-            let strokes = self.march(limit, keep_going)?;
+            let strokes = self.march(limit, 1.0)?;
             // Where fewer kinks are enough, the core has no stress.
             Some((strokes.excess.unwrap_or(-1.0), Some(strokes)))
         })?;

@@ -19,6 +19,7 @@ pub use bound::lower_bound;
 pub use design::{AmplitudeLaw, Design, EvaluationRange, FirstMove, PathEnd, PathStart, design};
 pub use robustness::{ExecutionErrors, trials};
 
+use end_constraint::Equations;
 use equal_peak_measure::EqualPeakMeasure;
 use minimax::Problem;
 
@@ -136,8 +137,6 @@ fn evenly_spread(
 pub struct Minimax {
     /// The displacements, m: that of gross slip, and one a reversal; the last is not zero.
     pub displacements: Vec<f64>,
-    /// The radius, m, from which on the stress is minimised; zero if it is over the whole contact.
-    pub cutoff_radius: f64,
     /// By how much the smallest of the alternating extrema falls short of the largest, relative to that: zero where all
     /// are equal.
     pub gap: f64,
@@ -174,16 +173,16 @@ fn minimax_to(
     keep_going: &dyn Fn() -> bool,
 ) -> Vec<Minimax> {
     let edge = *contact.history.edge();
-    let EvaluationRange { from: cutoff_radius, vertical, .. } = EvaluationRange::of(contact);
+    let EvaluationRange { from: cutoff, vertical, .. } = EvaluationRange::of(contact);
     if reversals == 0 || contact.friction <= 0.0 || edge.level.value() <= 0.0 || vertical {
         return Vec::new();
     }
-    let problem = Problem { profile: &contact.profile, edge, cutoff: cutoff_radius, reversals };
-    let Some(equal) = problem.solve(keep_going) else { return Vec::new() };
+    let problem = Problem { profile: &contact.profile, edge, cutoff, reversals, keep_going };
+    let Some(equal) = problem.solve() else { return Vec::new() };
     let found = if end == PathEnd::Free {
         vec![equal.kinks]
     } else {
-        end_constraint::kinks(&problem, equal.limit, first / contact.scale(), end, keep_going)
+        Equations { problem: &problem, limit: equal.limit, first: first / contact.scale(), end }.kinks()
     };
     let path = |kinks: Vec<Point>| {
         // The stroke after the first goes back.
@@ -191,7 +190,7 @@ fn minimax_to(
         let mut displacements = positions(first / scale, edge.level, &kinks);
         displacements.iter_mut().for_each(|displacement| *displacement *= scale);
         displacements[0] = first;
-        Minimax { displacements, cutoff_radius, gap: 1.0 - equal.ratio }
+        Minimax { displacements, gap: 1.0 - equal.ratio }
     };
     found.into_iter().map(path).collect()
 }

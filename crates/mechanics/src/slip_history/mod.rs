@@ -106,7 +106,7 @@ impl SlipHistory {
     }
 
     /// The rings of the stack with their lines, from the edge inward.
-    pub(super) fn rings(&self) -> impl Iterator<Item = (Ring, &Line)> {
+    pub(super) fn rings(&self) -> impl DoubleEndedIterator<Item = (Ring, &Line)> {
         self.pieces.iter().enumerate().rev().map(|(index, piece)| (self.ring(index), &piece.line))
     }
 

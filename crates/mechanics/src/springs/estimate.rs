@@ -39,9 +39,9 @@ impl Springs {
         let relative = |error: f64, unit: f64| if unit > 0.0 { error / unit } else { 0.0 };
         let pressure = figures.unit_pressure();
         let bends = self.bends();
-        let misplaced = 2.0 * self.initial.g_star * self.misplaced;
+        let misplaced = 2.0 * self.virgin.initial.g_star * self.misplaced;
         let differences = self.coarser.iter().map(|coarse| (self.force() - coarse.force()).abs());
-        let normal = self.friction * (self.normal_force() - figures.normal_force).abs();
+        let normal = self.virgin.friction * (self.normal_force() - figures.normal_force).abs();
         let force = differences.fold(normal.max(self.force_bound(&bends)), f64::max) + misplaced * edge;
         let stress = if self.resolves_a_radius(edge) {
             self.off_kinks(edge, NEAREST * self.spacing).map(|at| self.stress_doubt(at, &bends)).fold(0.0, f64::max)
@@ -52,7 +52,7 @@ impl Springs {
         ErrorEstimate {
             path_error: 0.0,
             force_error: relative(force, figures.gross_slip_force) + f64::EPSILON,
-            stress_error: relative(stress, self.friction * pressure) + f64::EPSILON,
+            stress_error: relative(stress, self.virgin.friction * pressure) + f64::EPSILON,
         }
     }
 
@@ -70,21 +70,21 @@ impl Springs {
         if self.farthest <= 0.0 {
             return 0.0;
         }
-        let scale = self.scale();
+        let scale = self.virgin.scale();
         let held = if scale > 0.0 { (self.shallowest - self.farthest / scale).max(0.0) } else { 0.0 };
         let mut core = self.normal.clone();
         let kept = core.apply(&Move { normal: Some(Normal::Indentation(held)), ..Move::default() }).is_ok();
         self.off_kinks(edge, 0.0)
             .map(|radius| {
                 let inner = if kept { core.pressure(radius) } else { 0.0 };
-                self.shear(radius).abs() + self.friction * (self.normal.pressure(radius) - inner)
+                self.shear(radius).abs() + self.virgin.friction * (self.normal.pressure(radius) - inner)
             })
             .fold(0.0, f64::max)
     }
 
     /// Radii over the contact, but for those as `near` to where the profile has a singular stress, m.
     fn off_kinks(&self, edge: f64, near: f64) -> impl Iterator<Item = f64> {
-        let singular = self.profile.singular_radii();
+        let singular = self.virgin.profile.singular_radii();
         (0..COMPARED)
             .map(move |index| edge * (index as f64 + 0.5) / COMPARED as f64)
             .filter(move |radius| singular.iter().all(|at| (radius - at).abs() > near))
@@ -117,7 +117,7 @@ impl Springs {
     /// Bound on the error of the force by the second differences, N.
     fn force_bound(&self, bends: &[(f64, f64, f64)]) -> f64 {
         let sum: f64 = bends.iter().map(|(_, weight, bend)| weight * bend).sum();
-        self.initial.g_star * self.spacing * sum / 8.0
+        self.stiffness() * sum / 8.0
     }
 
     /// Estimated error of the shear stress at a radius, m, in Pa.
@@ -132,8 +132,8 @@ impl Springs {
                 bend * at / (square * square.sqrt())
             })
             .sum();
-        let open = self.initial.g_star / PI * self.spacing * sum / 8.0;
-        let normal = self.friction * (self.pressure(radius) - self.normal.pressure(radius)).abs();
+        let open = self.virgin.initial.g_star / PI * self.spacing * sum / 8.0;
+        let normal = self.virgin.friction * (self.pressure(radius) - self.normal.pressure(radius)).abs();
         let shear = self.shear(radius);
         let differences = self.coarser.iter().map(|coarse| (shear - coarse.shear(radius)).abs());
         differences.fold(open.max(normal), f64::max)
@@ -142,7 +142,7 @@ impl Springs {
     /// Error of the displacement, m, under a prescribed force: the change that a force within its error bound makes.
     pub(super) fn misplacement(&self, displacement: f64) -> f64 {
         let moved = displacement - self.displacement;
-        let scale = self.scale();
+        let scale = self.virgin.scale();
         let mut after = self.clone();
         after.coarser.clear();
         after.advance(self.indentation, displacement);

@@ -23,12 +23,10 @@ const ROUNDED: f64 = 8.0 * f64::EPSILON;
 /// A foundation of springs in contact.
 #[derive(Clone, Debug)]
 pub struct Springs {
-    profile: Arc<Profile>,
+    /// The exact contact that the foundation approximates, before its first move.
     virgin: Contact,
     /// The exact normal contact along the path; it is never moved sideways.
     normal: Contact,
-    initial: ContactSummary,
-    friction: f64,
     spacing: f64,
     springs: Vec<Spring>,
     displacement: f64,
@@ -110,42 +108,32 @@ impl Springs {
     }
 
     fn one_row(setup: Setup<Arc<Profile>>, count: usize, reach: f64) -> Result<Springs, Error> {
-        let contact = Contact::new(setup.clone())?;
-        let initial = contact.initial_summary();
-        let Setup { profile, friction, .. } = setup;
+        let contact = Contact::new(setup)?;
+        let ContactSummary { indentation, contact_radius, .. } = contact.initial_summary();
         let spacing = 2.0 * reach / count as f64;
         let first = if count.is_multiple_of(2) { 0.5 } else { 0.0 };
         let springs = (0..count.div_ceil(2))
             .map(|index| {
                 let radius = (index as f64 + first) * spacing;
                 let weight = if radius > 0.0 { 2.0 } else { 1.0 };
-                Spring { radius, level: profile.level(radius), weight, carried: 0.0 }
+                Spring { radius, level: contact.profile.level(radius), weight, carried: 0.0 }
             })
             .collect();
         Ok(Springs {
-            profile,
             normal: contact.clone(),
             virgin: contact,
-            initial,
-            friction,
             spacing,
             springs,
             displacement: 0.0,
-            indentation: initial.indentation,
+            indentation,
             dissipated: 0.0,
             slipped: false,
-            stick_radius: initial.contact_radius,
+            stick_radius: contact_radius,
             misplaced: 0.0,
             farthest: 0.0,
-            shallowest: initial.indentation,
+            shallowest: indentation,
             coarser: Vec::new(),
         })
-    }
-
-    /// The summary of the definition, from the exact normal contact.
-    #[must_use]
-    pub fn initial_summary(&self) -> ContactSummary {
-        self.initial
     }
 
     /// The exact contact that the foundation approximates, before its first move.
@@ -154,9 +142,9 @@ impl Springs {
         &self.virgin
     }
 
-    /// Bound on a spring's displacement over its normal displacement, mu E*/G*.
-    fn scale(&self) -> f64 {
-        self.friction * self.initial.e_star / self.initial.g_star
+    /// Tangential stiffness of a spring, G* dx, N/m.
+    fn stiffness(&self) -> f64 {
+        self.virgin.initial.g_star * self.spacing
     }
 
     /// Moves along a straight line. Nothing has changed when an error is returned.
@@ -203,9 +191,9 @@ impl Springs {
     }
 
     fn advance(&mut self, d1: f64, u1: f64) {
-        let scale = self.scale();
+        let scale = self.virgin.scale();
         let (dd, du) = (d1 - self.indentation, u1 - self.displacement);
-        let stiffness = self.initial.g_star * self.spacing;
+        let stiffness = self.stiffness();
         let mut work = 0.0;
         let mut stick_radius: f64 = 0.0;
         self.slipped = false;
@@ -251,15 +239,15 @@ impl Springs {
 
     /// The displacement, m, that gives a tangential force, N: bisected, since the force only grows with it.
     fn displacement_for(&self, target: f64) -> Result<f64, Error> {
-        let limit = self.friction * self.normal_force();
+        let limit = self.virgin.friction * self.normal_force();
         if target.abs() >= limit {
             let way = (target - self.force()).abs();
             // Without friction no force can be held, and the move has no length.
             let part = if way > 0.0 { (limit - target.signum() * self.force()) / way } else { 0.0 };
             return Err(Error::ForceExceedsFriction { target, limit, part: part.clamp(0.0, 1.0) });
         }
-        let scale = self.scale();
-        let stiffness = self.initial.g_star * self.spacing;
+        let scale = self.virgin.scale();
+        let stiffness = self.stiffness();
         let force_at = |change: f64| -> f64 {
             self.in_contact()
                 .map(|spring| {
@@ -286,33 +274,33 @@ impl Springs {
     /// Displacement of gross slip on first loading, m, at the present load.
     #[must_use]
     pub fn gross_slip_displacement(&self) -> f64 {
-        self.scale() * self.indentation.max(0.0)
+        self.virgin.scale() * self.indentation.max(0.0)
     }
 
     /// Contact radius a, m.
     #[must_use]
     pub fn contact_radius(&self) -> f64 {
-        if self.indentation < 0.0 { 0.0 } else { self.profile.radius(self.indentation) }
+        if self.indentation < 0.0 { 0.0 } else { self.virgin.profile.radius(self.indentation) }
     }
 
     /// Tangential force, N.
     #[must_use]
     pub fn force(&self) -> f64 {
         let sum: f64 = self.in_contact().map(|spring| spring.weight * spring.carried).sum();
-        self.initial.g_star * self.spacing * sum
+        self.stiffness() * sum
     }
 
     /// Normal force, N.
     #[must_use]
     pub fn normal_force(&self) -> f64 {
         let sum: f64 = self.in_contact().map(|spring| spring.weight * (self.indentation - spring.level)).sum();
-        self.initial.e_star * self.spacing * sum
+        self.virgin.initial.e_star * self.spacing * sum
     }
 
     /// The state after the last move; `memory_depth` counts the springs in contact.
     #[must_use]
     pub fn state(&self) -> State {
-        let stiffness = self.initial.g_star * self.spacing;
+        let stiffness = self.stiffness();
         let energy: f64 =
             self.in_contact().map(|spring| 0.5 * spring.weight * stiffness * spring.carried.powi(2)).sum();
         let regime = if self.indentation < 0.0 {

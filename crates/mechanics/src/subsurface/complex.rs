@@ -1,6 +1,6 @@
 //! The few operations on complex numbers that the potentials need.
 
-use std::ops::{Add, Mul, Neg, Sub};
+use std::ops::{Add, Mul};
 
 /// A complex number.
 #[derive(Clone, Copy, Debug)]
@@ -40,22 +40,6 @@ impl Add for Complex {
 
     fn add(self, other: Complex) -> Complex {
         Complex::new(self.re + other.re, self.im + other.im)
-    }
-}
-
-impl Sub for Complex {
-    type Output = Complex;
-
-    fn sub(self, other: Complex) -> Complex {
-        Complex::new(self.re - other.re, self.im - other.im)
-    }
-}
-
-impl Neg for Complex {
-    type Output = Complex;
-
-    fn neg(self) -> Complex {
-        Complex::new(-self.re, -self.im)
     }
 }
 

@@ -39,30 +39,24 @@ impl DeepPlace {
         let (one, s) = (rho.inverse(), (rho + zeta).inverse());
         let (both, cube) = (one * s, one * one * one);
         // D L1, D^2 L1; D L2, D^2 L2, D^3 L2; D^2 L3, D^3 L3.
-        let (d1, dd1) = (both, -(cube * s + both * both));
-        let (d2, dd2, ddd2) = (-s, both * s, -s * (cube * s + 2.0 * both * both));
+        let (d1, dd1) = (both, -1.0 * (cube * s + both * both));
+        let (d2, dd2, ddd2) = (-1.0 * s, both * s, -1.0 * s * (cube * s + 2.0 * both * both));
         let (dd3, ddd3) = (-0.5 * s * s, both * s * s);
-        let slip = one - z * d1;
+        let slip = one.im - z * d1.im;
         let normal = [
-            (2.0 * nu * one - (1.0 - 2.0 * nu) * d2 - z * d1).im,
-            -((1.0 - 2.0 * nu) * dd2 + z * dd1).im,
-            (one + z * zeta * cube).im,
-            (z * cube).im,
+            2.0 * nu * one.im - (1.0 - 2.0 * nu) * d2.im - z * d1.im,
+            -((1.0 - 2.0 * nu) * dd2.im + z * dd1.im),
+            one.im + (z * zeta * cube).im,
+            z * cube.im,
         ];
         if r > 0.0 {
-            let even = (2.0 * nu * dd3 - z * dd2).im;
-            let tangential = [
-                2.0 * nu * d1.im + even,
-                d1.im + even,
-                (2.0 * nu * ddd3 - z * ddd2).im,
-                normal[3],
-                -(z * dd1).im,
-                slip.im,
-            ];
+            let even = 2.0 * nu * dd3.im - z * dd2.im;
+            let uneven = 2.0 * nu * ddd3.im - z * ddd2.im;
+            let tangential = [2.0 * nu * d1.im + even, d1.im + even, uneven, normal[3], -(z * dd1.im), slip];
             (normal, tangential)
         } else {
             // On the axis x and y are zero, whatever they are multiplied by.
-            ([normal[0], 0.0, normal[2], 0.0], [0.0, 0.0, 0.0, 0.0, 0.0, slip.im])
+            ([normal[0], 0.0, normal[2], 0.0], [0.0, 0.0, 0.0, 0.0, 0.0, slip])
         }
     }
 }

@@ -7,6 +7,7 @@
 //! takes the root away. Over a tree's node that is half as long as its distance, 16 Chebyshev points stand for all
 //! below it: what they leave is 8^-16.
 
+use crate::numerics::chebyshev::{self, SIXTEEN};
 use crate::numerics::cluster_tree::{Cluster, ClusterTree};
 use crate::numerics::gauss;
 use crate::profile::{Profile, Ring};
@@ -33,13 +34,14 @@ pub(super) struct Source {
 }
 
 /// A stretch of radii over which g is analytic and the shear has one slope.
-#[derive(Clone, Debug)]
+#[derive(Clone, Copy, Debug)]
 struct MeshPanel {
+    low: f64,
+    high: f64,
     /// -dw/dy.
     share: f64,
     /// Whether g goes like the root of t - low at the lower end.
     rooted: bool,
-    stretch: Stretch,
 }
 
 /// What stands for the panels of a stretch where it is far.
@@ -88,8 +90,12 @@ impl Mesh {
         panels.reverse();
         let tree = ClusterTree::new(panels.len(), 1, |items, halves| match halves {
             Some(halves) => Stretch::of_both(halves),
-            None => panels[items.start].stretch.clone(),
+            None => {
+                let (MeshPanel { low, high, .. }, sources) = &panels[items.start];
+                Stretch { low: *low, high: *high, sources: sources.clone() }
+            }
         });
+        let panels = panels.into_iter().map(|(panel, _)| panel).collect();
         Mesh { panels, tree, edge: Some(edge).filter(|edge| edge.normal > 0.0) }
     }
 
@@ -133,7 +139,7 @@ struct Resolution<'a> {
     slack: f64,
     /// How often a panel may still be halved.
     spare: usize,
-    panels: Vec<MeshPanel>,
+    panels: Vec<(MeshPanel, Vec<Source>)>,
 }
 
 impl Resolution<'_> {
@@ -145,7 +151,7 @@ impl Resolution<'_> {
         let rounding = ROUNDING * (profile.cancellation(outer) * top + ring.depth) + self.slack;
         let beyond = top - profile.level(outer);
         if beyond.abs() > rounding {
-            self.panels.push(self.at(outer, share, beyond));
+            self.push_rise(outer, share, beyond);
         }
         let knots = profile.knots_below(outer);
         let first = knots.partition_point(|&knot| knot <= inner);
@@ -158,15 +164,15 @@ impl Resolution<'_> {
         }
         let before = profile.level(inner) - ring.inner.level.value();
         if before.abs() > rounding {
-            self.panels.push(self.at(inner, share, before));
+            self.push_rise(inner, share, before);
         }
     }
 
-    /// A rise of g, m, at one radius, m.
-    fn at(&self, radius: f64, share: f64, rise: f64) -> MeshPanel {
+    /// Appends a rise of g, m, at one radius, m.
+    fn push_rise(&mut self, radius: f64, share: f64, rise: f64) {
         let t = radius / self.radius;
-        let sources = vec![Source { t, normal: rise, tangential: rise * share }];
-        MeshPanel { share, rooted: false, stretch: Stretch { low: t, high: t, sources } }
+        let source = Source { t, normal: rise, tangential: rise * share };
+        self.panels.push((MeshPanel { low: t, high: t, share, rooted: false }, vec![source]));
     }
 
     /// Appends the panels of a stretch of radii, m.
@@ -181,7 +187,7 @@ impl Resolution<'_> {
             let mut sources = sources(profile, radius, ends, rooted, share);
             let sum: f64 = sources.iter().map(|source| source.normal).sum();
             if last && !(sum > 0.0 && sum.is_finite()) {
-                self.panels.push(self.at(middle, share, rise));
+                self.push_rise(middle, share, rise);
                 return;
             }
             // Rounding of the level, which has no digits left where it underflows, and of the radii where g is steep.
@@ -197,8 +203,7 @@ impl Resolution<'_> {
                         source.tangential *= rise / sum;
                     }
                 }
-                let stretch = Stretch { low: ends.0, high: ends.1, sources };
-                self.panels.push(MeshPanel { share, rooted, stretch });
+                self.panels.push((MeshPanel { low: ends.0, high: ends.1, share, rooted }, sources));
                 return;
             }
         }
@@ -230,26 +235,16 @@ impl Stretch {
 
 /// The sources at Chebyshev's points that act like `all` on every polynomial of less than the 16th degree.
 fn condense(low: f64, high: f64, all: &[Source]) -> Vec<Source> {
-    let angle = |i: usize| std::f64::consts::PI * (i as f64 + 0.5) / CHEBYSHEV as f64;
-    let (centre, half) = (0.5 * (low + high), 0.5 * (high - low));
-    let mut points: Vec<Source> =
-        (0..CHEBYSHEV).map(|i| Source { t: centre + half * angle(i).cos(), normal: 0.0, tangential: 0.0 }).collect();
-    let mut shares = [0.0; CHEBYSHEV];
+    let half = 0.5 * (high - low);
+    let [mut normal, mut tangential] = [[0.0; CHEBYSHEV]; 2];
     for source in all {
-        // The barycentric form of Lagrange's interpolation.
-        let mut sum = 0.0;
-        for (i, point) in points.iter().enumerate() {
-            let sign = if i % 2 == 0 { 1.0 } else { -1.0 };
-            let gap = source.t - point.t;
-            shares[i] = sign * angle(i).sin() / if gap == 0.0 { f64::MIN_POSITIVE } else { gap };
-            sum += shares[i];
-        }
-        for (point, share) in points.iter_mut().zip(shares) {
-            point.normal += source.normal * (share / sum);
-            point.tangential += source.tangential * (share / sum);
-        }
+        let place = (source.t - low) / half - 1.0;
+        chebyshev::add_polynomials(&mut normal, place, source.normal);
+        chebyshev::add_polynomials(&mut tangential, place, source.tangential);
     }
-    points
+    let weights = SIXTEEN.weights(&normal).into_iter().zip(SIXTEEN.weights(&tangential));
+    let source = |(t, (normal, tangential))| Source { t, normal, tangential };
+    SIXTEEN.places(low, high).into_iter().zip(weights).map(source).collect()
 }
 
 /// Visits the sources of a panel too long for its distance from the branch point, in ever shorter parts.
@@ -260,7 +255,7 @@ fn near(profile: &Profile, radius: f64, panel: &MeshPanel, (r, z): (f64, f64), v
         visit(offset, &Source { t, normal, tangential: normal * panel.share });
     };
     // Ends as offsets from r, which keep their digits near it.
-    let mut parts = vec![(panel.stretch.low - r, panel.stretch.high - r, panel.rooted)];
+    let mut parts = vec![(panel.low - r, panel.high - r, panel.rooted)];
     while let Some((low, high, rooted)) = parts.pop() {
         let length = high - low;
         let touches = z <= 0.0 && (low == 0.0 || (high == 0.0 && !rooted)) && (length <= r || r <= 0.0);

@@ -44,7 +44,8 @@ pub enum Side {
 /// The stress field below one surface in the state of a contact when it was asked for.
 #[derive(Clone, Debug)]
 pub struct Subsurface {
-    contact: Contact,
+    /// In the state of the field.
+    pub(super) contact: Contact,
     /// The changes of the slopes of pressure and shear stress at the kinks of the slip history, under a parabola alone.
     kinks: Option<Kinks>,
     /// The slopes over the radius, made when the first place needs them.
@@ -105,11 +106,6 @@ impl Contact {
 }
 
 impl Subsurface {
-    /// The contact in the state of the field.
-    pub(super) fn contact(&self) -> &Contact {
-        &self.contact
-    }
-
     /// The stress at x, y, z, m, with z of at least zero; not finite where it is infinite.
     #[must_use]
     pub fn at(&self, [x, y, z]: [f64; 3]) -> Stress {
@@ -138,7 +134,11 @@ impl Subsurface {
     fn integrated(&self, place: &DeepPlace) -> (NormalKernels, TangentialKernels) {
         let (mut normal, mut tangential) = ([0.0; 4], [0.0; 6]);
         let radius = self.contact.contact_radius();
-        self.mesh().visit(self.contact.profile(), radius, (place.r, place.z), |offset, source| {
+        let mesh = self.mesh.get_or_init(|| {
+            let rings = self.contact.shear_rings().collect::<Vec<_>>();
+            Mesh::new(self.contact.profile(), &rings, radius, self.contact.accuracy().stress_error)
+        });
+        mesh.visit(self.contact.profile(), radius, (place.r, place.z), |offset, source| {
             let (p, q) = place.kernels(offset);
             for (sum, value) in normal.iter_mut().zip(p) {
                 *sum += source.normal * value;
@@ -148,14 +148,6 @@ impl Subsurface {
             }
         });
         (normal, tangential)
-    }
-
-    fn mesh(&self) -> &Mesh {
-        let contact = &self.contact;
-        let rings = || contact.shear_rings().collect::<Vec<_>>();
-        self.mesh.get_or_init(|| {
-            Mesh::new(contact.profile(), &rings(), contact.contact_radius(), contact.accuracy().stress_error)
-        })
     }
 
     /// Estimated error of any component, relative to

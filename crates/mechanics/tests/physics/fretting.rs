@@ -65,6 +65,27 @@ fn ruiz_multiplies_half_ranges_by_the_largest_tension() {
     assert!(found.values[0][3] == 0.0 && found.values[1][..2].iter().any(|value| *value > 0.0));
 }
 
+/// In gross slip the shear stress is mu p(r) both ways, and the surface of a sphere has moved by u_max (1 - r^2/(2 a^2)).
+#[test]
+fn in_gross_slip_ruiz_is_exact_and_has_no_tension_where_all_is_pressed() {
+    let contact = steel(sphere(0.01), 0.5, 1e-4);
+    let (full, radius) = (contact.gross_slip_displacement(), contact.contact_radius());
+    let cycle = Cycle::new(&contact, &[displace(2.0 * full), displace(-2.0 * full)], &|| true).unwrap();
+    let places = [0.0, 0.4, 0.97].map(|part| [-part * radius, 0.0, 0.0]);
+    let found = |mean: f64| {
+        let (bulk, measures) = (Bulk { mean, amplitude: 0.0, phase: 0.0 }, vec![Measure::Ruiz, Measure::RuizTension]);
+        Study::new(&cycle, BODY, Some(bulk), measures, 1e-4, &|| true).unwrap().rate_all(&places).unwrap().values
+    };
+    let (pulled, pressed) = (found(1e12), found(-1e12));
+    for (index, [x, ..]) in places.into_iter().enumerate() {
+        let slip = full * (1.0 + 0.5 * (x / radius).powi(2));
+        let damage = 0.5 * contact.pressure(x.abs()) * slip;
+        assert!((pulled[0][index] / damage - 1.0).abs() < 1e-12, "{x}: {:e} {damage:e}", pulled[0][index]);
+        assert!((pulled[1][index] / (1e12 * damage) - 1.0).abs() < 1e-2);
+        assert!((pressed[0][index] / damage - 1.0).abs() < 1e-12 && pressed[1][index] == 0.0);
+    }
+}
+
 /// The stresses of a place over a cycle of straight moves, at so many instants that the curve is within `sag` of the
 /// chords between them, and these shorter than `length`, Pa.
 fn curve(cycle: &Cycle, place: [f64; 3], moves: &[Move], (sag, length): (f64, f64)) -> Vec<Stress> {

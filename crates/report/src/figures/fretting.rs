@@ -37,9 +37,12 @@ fn section(title: &str, share: f64) -> Result<Section, Error> {
     let z: Vec<f64> = (0..ROWS).map(|index| DEPTH * index as f64 / (ROWS - 1) as f64).collect();
     let a = contact.contact_radius();
     let places: Vec<[f64; 3]> = x.iter().flat_map(|x| z.iter().map(move |z| [a * x, 0.0, a * z])).collect();
-    let paths = cycle.stress_paths(INSTANTS, (Side::Second, POISSON), &places, &|| true)?;
+    let states = cycle.states(INSTANTS, &|| true)?;
+    let fields = states.iter().map(|state| state.subsurface(Side::Second, POISSON)).collect::<Result<Vec<_>, _>>()?;
+    let path = |place: &[f64; 3]| fields.iter().map(|field| field.at(*place)).collect::<Vec<_>>();
     let unit = contact.summary().unit_pressure();
-    let values: Vec<f64> = paths.iter().map(|path| Criterion::Crossland { alpha: 0.3 }.of(path).value / unit).collect();
+    let value = |place| Criterion::Crossland { alpha: 0.3 }.of(&path(place)).value / unit;
+    let values: Vec<f64> = places.iter().map(value).collect();
     let largest = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     // The cycle is symmetric, so that two places have the largest value, to round-off.
     let worst = places.iter().zip(&values).filter(|(_, value)| **value > largest * (1.0 - ROUNDED));

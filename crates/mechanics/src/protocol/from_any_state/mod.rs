@@ -21,8 +21,9 @@ use super::minimax::{Problem, smallest};
 use super::{Contact, DoubleDouble, PathEnd, Profile, alternating, cutoff_of, outermost_singular, positions};
 use crate::numerics::roots::{largest, turning};
 
-/// A slip history of more pieces is refused, because each piece is evaluated for every E.
-const MAX_DEPTH: usize = 256;
+/// A slip history of more pieces is refused, because each piece is evaluated for every E; nor is it a candidate as it
+/// is, because the cost of its extrema grows with the square of the depth.
+pub(super) const MAX_DEPTH: usize = 256;
 /// Number of sampled radii besides the kinks of the history, and of cuts that are tried.
 const GRID: usize = 64;
 const CUTS: usize = 16;
@@ -63,14 +64,19 @@ struct LaterStrokes {
 impl<'a> FromAnyState<'a> {
     /// At most `strokes` strokes, the last one of which goes in the direction `last`; `None` where they are too few, or
     /// where the history is too deep.
-    pub(super) fn new(contact: &'a Contact, strokes: usize, last: f64, end: PathEnd) -> Option<FromAnyState<'a>> {
+    pub(super) fn new(
+        contact: &'a Contact,
+        strokes: usize,
+        last: f64,
+        end: PathEnd,
+        keep_going: &'a dyn Fn() -> bool,
+    ) -> Option<FromAnyState<'a>> {
         let (profile, history) = (&*contact.profile, &contact.history);
         let edge = *history.edge();
         if history.pieces().len() > MAX_DEPTH {
             return None;
         }
-        let mut rings: Vec<_> = history.rings().map(|(ring, line)| (ring, *line)).collect();
-        rings.reverse();
+        let rings: Vec<_> = history.rings().rev().map(|(ring, line)| (ring, *line)).collect();
         let rim = profile.rim_radius().filter(|rim| edge.radius >= *rim).map(|rim| profile.level(rim));
         let outer = rim.map_or(edge, |level| profile.point(DoubleDouble::from(level)));
         let inner_strokes = strokes.checked_sub(usize::from(rim.is_some()))?;
@@ -78,7 +84,7 @@ impl<'a> FromAnyState<'a> {
             return None;
         }
         let cutoff = cutoff_of(outermost_singular(profile, outer.radius), outer.radius);
-        let problem = Problem { profile, edge: outer, cutoff, reversals: inner_strokes - 1 };
+        let problem = Problem { profile, edge: outer, cutoff, reversals: inner_strokes - 1, keep_going };
         let last = if rim.is_some() { -last } else { last };
         let first = if inner_strokes.is_multiple_of(2) { -1.0 } else { 1.0 };
         let height = rim.map_or(0.0, |level| (edge.level - DoubleDouble::from(level)).value());
@@ -160,8 +166,8 @@ impl<'a> FromAnyState<'a> {
 
     /// The strokes of a largest stress E, if there are any, and by how much they exceed it, over it; `None` if
     /// `keep_going` returned false.
-    fn strokes(&self, limit: f64, keep_going: &dyn Fn() -> bool) -> Option<(f64, Option<LaterStrokes>)> {
-        let marched = self.problem.march(limit, keep_going)?;
+    fn strokes(&self, limit: f64) -> Option<(f64, Option<LaterStrokes>)> {
+        let marched = self.problem.march(limit, 1.0)?;
         if marched.excess.is_none() {
             return Some((-1.0, None));
         }
@@ -221,20 +227,19 @@ impl<'a> FromAnyState<'a> {
 
     /// The displacements, scaled by m, of the strokes that leave least, found in two ways; fewer where a way finds
     /// none, or `keep_going` returned false.
-    pub(super) fn solve(&self, keep_going: &dyn Fn() -> bool) -> Vec<Vec<f64>> {
-        let marched = self.equal(keep_going);
-        let searched =
-            if self.problem.reversals < SEARCHED { self.searched(marched.as_ref(), keep_going) } else { Vec::new() };
+    pub(super) fn solve(&self) -> Vec<Vec<f64>> {
+        let marched = self.equal();
+        let searched = if self.problem.reversals < SEARCHED { self.searched(marched.as_ref()) } else { Vec::new() };
         marched.iter().chain(&searched).map(|strokes| self.positions(strokes)).collect()
     }
 
     /// The strokes of the smallest E; `None` if there are none, or `keep_going` returned false.
-    fn equal(&self, keep_going: &dyn Fn() -> bool) -> Option<LaterStrokes> {
+    fn equal(&self) -> Option<LaterStrokes> {
         let problem = &self.problem;
         let middle = StressRadius::new(0.5 * (problem.cutoff + problem.edge.radius));
         let zero = problem.profile.point(DoubleDouble::ZERO);
         let guess = problem.shear_down_to(zero, &[], &middle) / (problem.reversals as f64 + 1.0).sqrt();
-        Some(smallest(guess, TOLERANCE, Some(PACE), |limit| self.strokes(limit, keep_going))?.1)
+        Some(smallest(guess, TOLERANCE, Some(PACE), |limit| self.strokes(limit))?.1)
     }
 
     fn positions(&self, strokes: &LaterStrokes) -> Vec<f64> {

@@ -12,7 +12,7 @@ const PROBE: f64 = 1e-6;
 
 impl FromAnyState<'_> {
     /// The best of all sequences of few strokes, where the first stroke slips in part and where it slips as a whole.
-    pub(super) fn searched(&self, known: Option<&LaterStrokes>, keep_going: &dyn Fn() -> bool) -> Vec<LaterStrokes> {
+    pub(super) fn searched(&self, known: Option<&LaterStrokes>) -> Vec<LaterStrokes> {
         let edge = self.problem.edge.level.value();
         let known = known.map(|known| {
             let levels =
@@ -25,7 +25,7 @@ impl FromAnyState<'_> {
             let count = self.problem.reversals + usize::from(!slides);
             let known = known.iter().map(|known| known[..count].to_vec()).collect();
             let evaluate = |levels: Vec<f64>| self.trial(levels, slides);
-            let levels = search(count, self.end != PathEnd::Free, known, &evaluate, keep_going)?;
+            let levels = search(count, self.end != PathEnd::Free, known, &evaluate, self.problem.keep_going)?;
             let (kinks, cut) = self.points(&levels, slides);
             let (cut, first) = match self.end {
                 PathEnd::Free => (cut, self.first_to(cut.level)),
