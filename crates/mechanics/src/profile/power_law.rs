@@ -7,7 +7,7 @@
 
 use super::shape::{Falls, KernelOrder, Shape, ShapeFacts};
 use super::smooth_coordinate::{self, SmoothCoordinate};
-use super::{DoubleDouble, Error, Moments, Ring, Span, StressRadius, range, series_kernel};
+use super::{DoubleDouble, Error, Moments, Ring, Span, StressRadius, range, slope_series};
 use crate::numerics::gauss::{EIGHT_POINTS, Singular, first_and_second};
 use crate::numerics::logarithm::{exp_m1, ln_1p};
 
@@ -145,11 +145,6 @@ impl PowerLaw {
         let mut series = vec![0.0; usize::from(self.order?)];
         *series.last_mut()? = self.slope(a);
         Some(series)
-    }
-
-    /// The kernel and its slope by their closed form, where n is whole.
-    fn by_series(&self, at: &StressRadius, span: &Span) -> Option<(f64, f64)> {
-        series_kernel::kernel_and_slope(&self.slope_series(span.outer_radius)?, at, span)
     }
 
     /// The slope at r = 0 of the kernel up to a radius: (n/2) B x^(n-3)/(n - 3), where that integral exists.
@@ -360,8 +355,8 @@ impl Shape for PowerLaw {
         if order == KernelOrder::Slope && at.radius <= 0.0 && span.inner_radius <= 0.0 {
             return self.kernel_slope_at_tip(span.outer_radius);
         }
-        if let Some((kernel, slope)) = self.by_series(at, span) {
-            return if order == KernelOrder::Value { kernel } else { slope };
+        if let Some(series) = self.slope_series(span.outer_radius) {
+            return slope_series::kernel(&series, order, at, span);
         }
         if order == KernelOrder::Slope {
             return smooth_coordinate::kernel(self, order, at, span);
