@@ -14,7 +14,8 @@ use super::slope_series::SeriesRings;
 use super::smooth_pieces::SmoothPieces;
 use super::sum::SumFields;
 use super::tabulated::{self, Kernel, SumAndSize, WeightedPanels};
-use super::{Profile, Ring, StressRadius};
+use super::{Profile, Ring, Span, StressRadius};
+use crate::numerics::multipole::Multipole;
 
 /// What the derivative of a table's kernels counts for, in terms of a sum over rings.
 const PANEL_TERMS: usize = 8;
@@ -173,9 +174,16 @@ fn beyond<'r>(rings: &'r [(Ring, f64)], at: &StressRadius) -> impl Iterator<Item
 /// The weighted sum of the kernels of rings that are added one by one, from an edge inward.
 pub(crate) struct InwardSum<'a> {
     profile: &'a Profile,
-    rings: Vec<(Ring, f64)>,
+    rings: Vec<InwardRing>,
     /// What is quicker than the rings, if anything.
     pieces: Option<SmoothPieces<'a, Profile>>,
+}
+
+struct InwardRing {
+    ring: Ring,
+    weight: f64,
+    /// What stands for it from afar, where that is quicker.
+    far: Option<Multipole>,
 }
 
 impl<'a> InwardSum<'a> {
@@ -193,14 +201,39 @@ impl<'a> InwardSum<'a> {
         if self.pieces.as_mut().is_some_and(|pieces| pieces.add(&span, weight).is_none()) {
             self.pieces = None;
         }
-        self.rings.push((ring, weight));
+        self.rings.push(InwardRing { ring, weight, far: far_sources(self.profile, &span) });
     }
 
     /// The sum at a radius.
     pub(crate) fn at(&self, at: &StressRadius) -> f64 {
-        match &self.pieces {
-            Some(pieces) => pieces.sum(at),
-            None => self.rings.iter().map(|(ring, weight)| weight * self.profile.kernel(at, ring)).sum(),
+        if let Some(pieces) = &self.pieces {
+            return pieces.sum(at);
+        }
+        let square = at.square.value();
+        let kernel = |InwardRing { ring, weight, far }: &InwardRing| {
+            weight
+                * match far.as_ref().filter(|far| far.is_far(square)) {
+                    Some(far) => far.potentials([square])[0],
+                    None => self.profile.kernel(at, ring),
+                }
+        };
+        self.rings.iter().map(kernel).sum()
+    }
+}
+
+/// What stands from afar for a ring of a table, or of a sum with tables, in which there may be many knots.
+fn far_sources(profile: &Profile, span: &Span) -> Option<Multipole> {
+    let mut sources = Multipole::empty((span.inner.value(), span.outer.value()));
+    let parts = match profile {
+        Profile::Tabulated(_) => std::slice::from_ref(profile),
+        Profile::Sum(sum) if sum.parts().iter().any(|part| matches!(part, Profile::Tabulated(_))) => sum.parts(),
+        _ => return None,
+    };
+    for part in parts.iter().filter(|_| span.edge <= 0.0) {
+        match part {
+            Profile::Tabulated(table) => table.add_sources(span, &mut sources),
+            other => SmoothPieces::of_span(other, span, span.inner_radius)?.add_sources(&mut sources),
         }
     }
+    (span.edge <= 0.0).then_some(sources)
 }

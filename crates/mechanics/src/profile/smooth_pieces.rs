@@ -306,6 +306,14 @@ impl<'a, S: Shape> SmoothPieces<'a, S> {
         kernel + self.in_tip(at, KernelOrder::Value)
     }
 
+    /// Adds what the pieces are from afar to sources over squares, m^2.
+    pub(super) fn add_sources(&self, sources: &mut Multipole) {
+        let edge = self.unit.sqrt().recip();
+        for SmoothPiece { inner: (low, _), gap, weight, far, .. } in &self.pieces {
+            sources.add_part((*low, low + gap / self.unit), &far.moments, weight * edge);
+        }
+    }
+
     /// What lies inside all pieces, for radii there.
     fn in_tip(&self, at: &StressRadius, order: KernelOrder) -> f64 {
         let tip = self.tip.iter().filter(|(_, weight)| at.radius < self.innermost && weight.abs() > 0.0);
