@@ -68,7 +68,7 @@ impl Shape for Cone {
         }
     }
 
-    fn moments(&self, span: &Span) -> Moments {
+    fn moments(&self, span: &Span, _top: f64) -> Moments {
         let width = span.width();
         let depth = self.rise * width;
         Moments { width, first: 0.5 * depth * width, second: depth * depth * width / 3.0 }

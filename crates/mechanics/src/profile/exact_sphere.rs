@@ -238,7 +238,7 @@ impl Shape for ExactSphere {
         facts.ending(Some(end))
     }
 
-    fn moments(&self, span: &Span) -> Moments {
+    fn moments(&self, span: &Span, _top: f64) -> Moments {
         if self.shallow(span.outer.value()).is_some() {
             let Moments { width, first, second } =
                 shallow_sphere::moments(span.outer_radius / self.radius, span.width() / self.radius);

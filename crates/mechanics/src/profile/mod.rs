@@ -341,7 +341,7 @@ dispatch! {
     indentation_for(load: f64) -> f64;
     rise(span: &Span) -> f64;
     gap(ring: &Ring, depth: f64) -> f64;
-    moments(span: &Span) -> Moments;
+    moments(span: &Span, top: f64) -> Moments;
     kernel(order: KernelOrder, at: &StressRadius, span: &Span) -> f64;
     falls(inner: f64, outer: f64) -> Falls;
 }

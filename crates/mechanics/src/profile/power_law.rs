@@ -74,13 +74,7 @@ impl PowerLaw {
     /// X, m, of a level, m.
     fn radius(&self, level: f64) -> f64 {
         let power = level / self.scale;
-        match self.order {
-            Some(1) => power,
-            Some(2) => power.sqrt(),
-            Some(3) => power.cbrt(),
-            Some(4) => power.sqrt().sqrt(),
-            _ => power.powf(self.exponent.recip()),
-        }
+        self.order.map_or_else(|| power.powf(self.exponent.recip()), |order| root(power, order))
     }
 
     /// (x_outer^n - x^n)/(x_outer - x) of a whole n: a sum of positive terms.
@@ -161,6 +155,17 @@ impl PowerLaw {
         } else {
             f64::NEG_INFINITY
         }
+    }
+}
+
+/// The root of this order.
+pub(super) fn root(power: f64, order: u16) -> f64 {
+    match order {
+        1 => power,
+        2 => power.sqrt(),
+        3 => power.cbrt(),
+        4 => power.sqrt().sqrt(),
+        _ => power.powf(f64::from(order).recip()),
     }
 }
 
@@ -310,9 +315,8 @@ impl Shape for PowerLaw {
         }
     }
 
-    fn moments(&self, span: &Span) -> Moments {
+    fn moments(&self, span: &Span, y: f64) -> Moments {
         let (n, x, width) = (self.exponent, span.outer_radius, span.width());
-        let y = self.level(x);
         if width <= 0.0 {
             return Moments::default();
         }

@@ -34,8 +34,7 @@ impl Profile {
         if let Some(curve) = self.curve() {
             return curve.moments_of(ring);
         }
-        let span = self.span(ring);
-        Moments::stack(Shape::moments(self, &span), Moments::default(), span.edge)
+        each!(self, shape => shape::ring_moments(shape, ring))
     }
 
     /// The span of a ring.

@@ -205,8 +205,11 @@ impl Shape for Tabulated {
         load(radius: f64) -> f64, up to radius;
         kink_below(radius: f64) -> f64, up to radius;
         rise(span: &Span) -> f64, up to span.outer_radius;
-        moments(span: &Span) -> Moments, up to span.outer_radius;
         gap(ring: &Ring, depth: f64) -> f64, up to ring.outer.radius;
+    }
+
+    fn moments(&self, span: &Span, _top: f64) -> Moments {
+        self.curve.up_to(span.outer_radius).moments(span)
     }
 
     fn square(&self, level: DoubleDouble) -> DoubleDouble {
