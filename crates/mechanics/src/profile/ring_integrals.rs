@@ -7,6 +7,7 @@ use super::curve_family::CurveFamily;
 use super::ring_nodes::RingNodes;
 use super::ring_quadrature;
 use super::shape::{self, KernelOrder, Shape};
+use super::smooth_coordinate;
 use super::{Asperities, Count, Ellipsoid, Moments, Profile, Ring, Span, StressRadius};
 
 impl Profile {
@@ -86,7 +87,13 @@ impl Profile {
         #[cfg(test)]
         call_count::add(|calls| &mut calls.displacement_integral);
         let span = self.span(ring);
-        let face = each!(self, shape => shape::displacement_integral(shape, at, &span));
+        let face = match self {
+            // A flat core has no rings, and what lies beyond it rises in closed form from node to node.
+            Profile::TruncatedCone(flat) => smooth_coordinate::displacement_integral(flat, at, &span),
+            Profile::TruncatedSphere(flat) => smooth_coordinate::displacement_integral(flat, at, &span),
+            Profile::RoundedPunch(flat) => smooth_coordinate::displacement_integral(flat, at, &span),
+            _ => each!(self, shape => shape::displacement_integral(shape, at, &span)),
+        };
         if span.edge > 0.0 { face + span.edge * span.arc(at) } else { face }
     }
 

@@ -51,7 +51,8 @@ pub(super) fn of_kink(series: &[f64], gap: f64) -> Multipole {
 fn of(series: &[f64], rows: &[[f64; ORDERS]], gap: f64, unit: f64) -> Multipole {
     let mut far = Multipole::empty((0.0, gap));
     for (c, row) in series.iter().zip(rows) {
-        far.moments.iter_mut().zip(row).for_each(|(moment, share)| *moment += unit * c * share);
+        let c = unit * c;
+        far.moments.iter_mut().zip(row).for_each(|(moment, share)| *moment += c * share);
     }
     far
 }
