@@ -141,8 +141,7 @@ impl Contact {
         let found = self.extrema(keep_going)?;
         radii.extend(found.places);
         // All at once, and by what the search has made: what the rings add up to from afar is found once.
-        let sums = found.slopes.and_then(|slopes| slopes.sums(&self.profile, edge, &radii));
-        let shears = sums.map_or_else(|| self.shears_at(&radii), |sums| self.shears_of(sums));
+        let shears = found.sum.map_or_else(|| self.shears_at(&radii), |sum| self.shears_of(sum.sums(&radii)));
         let peak = |(place, &shear): (&StressRadius, &f64)| Peak { radius: place.radius, shear };
         let peaks = radii[others..].iter().zip(&shears[others..]).map(peak).collect();
         Some(Residual::of(shears[0], peaks, shears[1..others].iter().all(|shear| shear.is_finite())))

@@ -3,7 +3,7 @@
 use std::cell::{Cell, OnceCell};
 
 use super::super::Contact;
-use super::super::profile::{KernelSlopes, Ring, StressRadius};
+use super::super::profile::{Ring, RingSum, StressRadius};
 
 /// A derivative below this share of what it is the sum of is zero: the kernels of some families are good to 1e-13.
 pub(super) const NOISE: f64 = 1e-12;
@@ -52,17 +52,17 @@ pub(super) struct Derivative<'c, 'p> {
     contact: &'c Contact,
     pace: &'p Pace<'p>,
     /// Made when first asked for: between settled kinks there is nothing to search.
-    slopes: OnceCell<Option<KernelSlopes<'c>>>,
+    sum: OnceCell<RingSum<'c>>,
 }
 
 impl<'c, 'p> Derivative<'c, 'p> {
     pub(super) fn new(contact: &'c Contact, pace: &'p Pace<'p>) -> Derivative<'c, 'p> {
-        Derivative { contact, pace, slopes: OnceCell::new() }
+        Derivative { contact, pace, sum: OnceCell::new() }
     }
 
-    /// What it is summed up by, if it was asked for and there is one.
-    pub(super) fn into_slopes(self) -> Option<KernelSlopes<'c>> {
-        self.slopes.into_inner().flatten()
+    /// What it is summed up by, if it was asked for.
+    pub(super) fn into_sum(self) -> Option<RingSum<'c>> {
+        self.sum.into_inner()
     }
 
     /// d tau/d(r^2) but for a positive factor, from the right at a kink; zero where its sign is lost in round-off.
@@ -72,33 +72,13 @@ impl<'c, 'p> Derivative<'c, 'p> {
 
     /// The same at many radii, best in rising order.
     pub(super) fn at_all(&self, radii: &[StressRadius]) -> Vec<f64> {
-        let slopes = self.slopes.get_or_init(|| {
-            let rings: Vec<(Ring, f64)> = self.contact.shear_rings().rev().collect();
-            self.contact.profile.kernel_slopes(&rings)
+        let sum = self.sum.get_or_init(|| {
+            let mut rings: Vec<(Ring, f64)> = self.contact.shear_rings().collect();
+            rings.reverse();
+            self.contact.profile.ring_sum(&rings)
         });
-        let Some(slopes) = slopes else { return radii.iter().map(|at| self.by_rings(at)).collect() };
-        let found = slopes.at(radii, |terms| self.pace.counts_on(terms));
+        let found = sum.slopes(radii, |terms| self.pace.counts_on(terms));
         found.into_iter().map(|(sum, size)| significant(sum, size)).collect()
-    }
-
-    /// The same ring by ring.
-    fn by_rings(&self, at: &StressRadius) -> f64 {
-        let (mut sum, mut size) = (0.0, 0.0);
-        for (ring, weight) in self.contact.shear_rings() {
-            if ring.outer.radius < at.radius {
-                break;
-            }
-            if !self.pace.counts_on(1) {
-                return 0.0;
-            }
-            // What is stuck since it was touched adds nothing, even where the kernel is infinite.
-            if weight.abs() > 0.0 {
-                let term = weight * self.contact.profile.kernel_slope(at, &ring);
-                sum += term;
-                size += term.abs();
-            }
-        }
-        significant(sum, size)
     }
 }
 

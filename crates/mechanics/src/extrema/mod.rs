@@ -10,7 +10,7 @@ mod derivative;
 mod interval;
 mod settled;
 
-use super::profile::{KernelSlopes, StressRadius};
+use super::profile::{RingSum, StressRadius};
 use super::{Contact, DoubleDouble};
 use derivative::{Derivative, NOISE, Pace};
 use interval::{EndBehaviour, KNOT_FLOOR, MAX_PLACE, Sample, StressInterval};
@@ -33,7 +33,7 @@ pub(super) struct Extrema<'a> {
     /// Their radii, from the centre outward.
     pub(super) places: Vec<StressRadius>,
     /// What the derivative was summed up by, if it was asked for.
-    pub(super) slopes: Option<KernelSlopes<'a>>,
+    pub(super) sum: Option<RingSum<'a>>,
 }
 
 impl Contact {
@@ -133,7 +133,7 @@ impl Contact {
         let Search { mut places, .. } = search;
         let spike = |place: &StressRadius| singular.contains(&place.radius) || place.radius >= edge.radius;
         places.retain(|place| !spike(place) && place.radius > 0.0);
-        Some(Extrema { places, slopes: derivative.into_slopes() })
+        Some(Extrema { places, sum: derivative.into_sum() })
     }
 
     /// How the derivative begins beyond kink `index` of the slip history, the centre for the first.

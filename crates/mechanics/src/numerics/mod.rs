@@ -8,6 +8,7 @@
 //! | `chebyshev` | which series has these values, and its primitive? |
 //! | `gauss` | what is an integral, given where the integrand is singular? |
 //! | `angle`, `logarithm` | what are angles and logarithms of several numbers side by side, to round-off? |
+//! | `root_kernel` | what is the integral of a power series over sqrt(t^2 - kappa)? |
 //! | `cluster_tree`, `multipole`, `far_field` | what do many sources add up to, far away? |
 
 pub(crate) mod angle;
@@ -19,4 +20,5 @@ pub(crate) mod far_field;
 pub(crate) mod gauss;
 pub(crate) mod logarithm;
 pub(crate) mod multipole;
+pub(crate) mod root_kernel;
 pub(crate) mod roots;

@@ -128,24 +128,47 @@ impl Multipole {
 
     /// The sums of w/sqrt(X - Y) at several places Y far below the interval, side by side.
     pub(crate) fn potentials<const N: usize>(&self, below: [f64; N]) -> [f64; N] {
-        let inverse = self.roots(below).map(|(p, q)| 1.0 / (p + q));
-        let sums = polynomial(&self.moments, inverse.map(|inverse| -self.width() * inverse * inverse));
-        std::array::from_fn(|lane| 2.0 * inverse[lane] * sums[lane])
+        let Roots { inverse, sigma, .. } = self.roots(below);
+        let mut sums = polynomial(&self.moments, sigma);
+        for lane in 0..N {
+            sums[lane] *= 2.0 * inverse[lane];
+        }
+        sums
     }
 
     /// Their derivatives with respect to Y: that of 1/(p + q) is 1/(2pq) of itself, and that of sigma 1/(pq).
     pub(crate) fn potential_slopes<const N: usize>(&self, below: [f64; N]) -> [f64; N] {
-        let roots = self.roots(below);
-        let inverse = roots.map(|(p, q)| 1.0 / (p + q));
-        let terms = std::array::from_fn(|order| (order as f64 + 0.5) * self.moments[order]);
-        let sums = polynomial(&terms, inverse.map(|inverse| -self.width() * inverse * inverse));
-        std::array::from_fn(|lane| 2.0 * inverse[lane] / (roots[lane].0 * roots[lane].1) * sums[lane])
+        let Roots { inverse, sigma, product } = self.roots(below);
+        let mut terms = self.moments;
+        for (order, term) in terms.iter_mut().enumerate() {
+            *term *= order as f64 + 0.5;
+        }
+        let mut sums = polynomial(&terms, sigma);
+        for lane in 0..N {
+            sums[lane] *= 2.0 * inverse[lane] / product[lane];
+        }
+        sums
     }
 
-    /// The roots p and q of the distances of both ends from places.
-    fn roots<const N: usize>(&self, below: [f64; N]) -> [(f64, f64); N] {
-        below.map(|below| ((self.interval.0 - below).sqrt(), (self.interval.1 - below).sqrt()))
+    /// What the roots p and q of the distances of both ends from places give.
+    fn roots<const N: usize>(&self, below: [f64; N]) -> Roots<N> {
+        let mut roots = Roots { inverse: [0.0; N], sigma: [0.0; N], product: [0.0; N] };
+        for lane in 0..N {
+            let (p, q) = ((self.interval.0 - below[lane]).sqrt(), (self.interval.1 - below[lane]).sqrt());
+            let inverse = 1.0 / (p + q);
+            roots.inverse[lane] = inverse;
+            roots.sigma[lane] = -self.width() * inverse * inverse;
+            roots.product[lane] = p * q;
+        }
+        roots
     }
+}
+
+/// 1/(p + q), sigma and p q at several places.
+struct Roots<const N: usize> {
+    inverse: [f64; N],
+    sigma: [f64; N],
+    product: [f64; N],
 }
 
 /// The polynomial with these coefficients, so many of them as count, at several places side by side; four terms at
@@ -154,17 +177,24 @@ fn polynomial<const N: usize>(coefficients: &[f64; ORDERS], x: [f64; N]) -> [f64
     let largest = x.iter().fold(0.0_f64, |largest, x| largest.max(x.abs()));
     // One place alone takes as long for the choice as for the terms.
     let terms = FEWER.iter().find(|(limit, _)| N > 1 && largest <= *limit).map_or(ORDERS, |(_, terms)| *terms);
-    let square = x.map(|x| x * x);
+    let (mut square, mut fourth) = ([0.0; N], [0.0; N]);
+    for lane in 0..N {
+        square[lane] = x[lane] * x[lane];
+        fourth[lane] = square[lane] * square[lane];
+    }
     let mut sums = [[0.0; N]; 4];
     for four in coefficients[..terms].chunks_exact(4).rev() {
         for (sum, coefficient) in sums.iter_mut().zip(four) {
             for lane in 0..N {
-                sum[lane] = sum[lane] * (square[lane] * square[lane]) + coefficient;
+                sum[lane] = sum[lane] * fourth[lane] + coefficient;
             }
         }
     }
-    let [a, b, c, d] = sums;
-    std::array::from_fn(|lane| (a[lane] + x[lane] * b[lane]) + square[lane] * (c[lane] + x[lane] * d[lane]))
+    let [mut sum, b, c, d] = sums;
+    for lane in 0..N {
+        sum[lane] = (sum[lane] + x[lane] * b[lane]) + square[lane] * (c[lane] + x[lane] * d[lane]);
+    }
+    sum
 }
 
 /// The last two rows, with one empty column on either side, and the factors of a step.

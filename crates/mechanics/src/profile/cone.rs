@@ -5,7 +5,7 @@
 use std::f64::consts::FRAC_PI_2;
 
 use super::shape::{KernelOrder, Shape, ShapeFacts};
-use super::{DoubleDouble, Error, Moments, Ring, Span, StressRadius, range};
+use super::{DoubleDouble, Error, Moments, Ring, Span, StressRadius, range, slope_series};
 
 /// A cone.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,27 +24,6 @@ impl Cone {
     pub fn new(slope: f64) -> Result<Cone, Error> {
         let slope = range::SLOPE.check(slope)?;
         Ok(Cone { slope, rise: FRAC_PI_2 * slope })
-    }
-
-    /// The slope of the kernel, by how far the ends of the span are beyond r, in squares.
-    fn kernel_slope(&self, at: &StressRadius, span: &Span, (inner, outer): (f64, f64)) -> f64 {
-        // d arcosh(c/r)/d(r^2) = -1/(2 r^2) * c/v, v = sqrt(c^2 - r^2), of which the part -1/(2 r^2) is common: c/v - 1
-        // = r^2/(v (c + v)).
-        let share = |radius: f64, v: f64| 0.5 / (v * (radius + v));
-        let v = outer.sqrt();
-        let end = share(span.outer_radius, v);
-        if inner <= 0.0 {
-            return -self.rise * (end + 0.5 / at.square.value());
-        }
-        let (low, v_low) = (span.inner_radius, inner.sqrt());
-        if v > 2.0 * v_low {
-            return self.rise * (share(low, v_low) - end);
-        }
-        let dx = span.gap / (low + span.outer_radius);
-        let dv = span.gap / (v_low + v);
-        let (ends, starts) = (v * (span.outer_radius + v), v_low * (low + v_low));
-        // The difference of the reciprocals, from that of v (x + v).
-        self.rise * 0.5 * (dv * (span.outer_radius + v) + v_low * (dx + dv)) / (ends * starts)
     }
 }
 
@@ -89,25 +68,14 @@ impl Shape for Cone {
         }
     }
 
-    fn moments(&self, span: &Span) -> Moments {
+    fn moments(&self, span: &Span, _top: f64) -> Moments {
         let width = span.width();
         let depth = self.rise * width;
         Moments { width, first: 0.5 * depth * width, second: depth * depth * width / 3.0 }
     }
 
     fn kernel(&self, order: KernelOrder, at: &StressRadius, span: &Span) -> f64 {
-        let (inner, outer) = span.excess(at.square);
-        if outer <= 0.0 {
-            return 0.0;
-        }
-        if order == KernelOrder::Slope {
-            return self.kernel_slope(at, span, (inner, outer));
-        }
-        // arcosh(c/r) = ln((c + sqrt(c^2 - r^2))/r); the difference of two is a logarithm of nearly one.
-        let (low, v_low, gap) =
-            if inner > 0.0 { (span.inner_radius, inner.sqrt(), span.gap) } else { (at.radius, 0.0, outer) };
-        let step = gap / (low + span.outer_radius) + gap / (v_low + outer.sqrt());
-        self.rise * (step / (low + v_low)).ln_1p()
+        slope_series::kernel(&[self.rise], order, at, span)
     }
 
     fn surface_slope(&self, _r: f64) -> f64 {

@@ -8,9 +8,8 @@
 
 use super::shallow_sphere::{self, LIMIT};
 use super::shape::{End, Falls, KernelOrder, Shape, ShapeFacts};
-use super::slope_series::MOST_POWERS;
 use super::smooth_coordinate::{self, SmoothCoordinate};
-use super::{DoubleDouble, Error, Moments, Ring, Span, StressRadius, range, series_kernel};
+use super::{DoubleDouble, Error, Moments, Ring, Span, StressRadius, range, slope_series};
 use crate::numerics::gauss::{Singular, along_strip};
 use crate::numerics::roots::{distance_below, increasing};
 
@@ -68,19 +67,13 @@ impl ExactSphere {
         Some(square / (self.radius * self.radius)).filter(|s| *s < LIMIT)
     }
 
-    /// The kernel and its slope where series serve best.
-    fn by_series(&self, at: &StressRadius, span: &Span) -> Option<(f64, f64)> {
-        self.shallow(span.outer.value())?;
-        series_kernel::kernel_and_slope(&self.slope_series(span.outer_radius)?, at, span)
-    }
-
     /// The coefficients of g'(a xi) in powers of xi; `None` where they are too many.
     pub(super) fn slope_series(&self, a: f64) -> Option<Vec<f64>> {
         let u = a / self.radius;
         let (mut series, mut power) = (Vec::new(), u);
         // By artanh(u) + u/(1 - u^2), up to a share of it that rounding loses.
         while power > 0.02 * f64::EPSILON * u {
-            if series.len() >= MOST_POWERS {
+            if series.len() >= slope_series::MOST_POWERS {
                 return None;
             }
             series.extend([0.0, power + power / (series.len() + 1) as f64]);
@@ -245,7 +238,7 @@ impl Shape for ExactSphere {
         facts.ending(Some(end))
     }
 
-    fn moments(&self, span: &Span) -> Moments {
+    fn moments(&self, span: &Span, _top: f64) -> Moments {
         if self.shallow(span.outer.value()).is_some() {
             let Moments { width, first, second } =
                 shallow_sphere::moments(span.outer_radius / self.radius, span.width() / self.radius);
@@ -275,8 +268,9 @@ impl Shape for ExactSphere {
         if outer <= 0.0 {
             return 0.0;
         }
-        if let Some((kernel, slope)) = self.by_series(at, span) {
-            return if order == KernelOrder::Value { kernel } else { slope };
+        let shallow = self.shallow(span.outer.value()).and_then(|_| self.slope_series(span.outer_radius));
+        if let Some(series) = shallow {
+            return slope_series::kernel(&series, order, at, span);
         }
         if order == KernelOrder::Slope {
             // At the tip gamma/t is 2/R to the last digit below 1e-9 R.

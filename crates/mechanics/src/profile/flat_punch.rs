@@ -50,7 +50,7 @@ impl Shape for FlatPunch {
         ShapeFacts { rim: Some(self.radius), ..ShapeFacts::default() }
     }
 
-    fn moments(&self, _span: &Span) -> Moments {
+    fn moments(&self, _span: &Span, _top: f64) -> Moments {
         Moments::default()
     }
 

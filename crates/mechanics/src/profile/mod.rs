@@ -21,7 +21,6 @@ mod exact_sphere;
 #[macro_use]
 mod families;
 mod flat_punch;
-mod kernel_sums;
 mod load_curve;
 mod moment_tree;
 mod open_gaps;
@@ -30,9 +29,9 @@ mod power_law;
 mod ring;
 pub(super) mod ring_nodes;
 pub(super) mod ring_quadrature;
+mod ring_sum;
 mod rounded_cone;
 mod rounded_punch;
-mod series_kernel;
 mod shallow_sphere;
 mod shape;
 mod slope_series;
@@ -49,9 +48,9 @@ mod truncated_sphere;
 
 pub use asperities::Asperities;
 pub use ellipsoid::{Direction, Ellipsoid};
-pub(super) use kernel_sums::{InwardSum, KernelSlopes};
 pub use load_curve::LoadCurve;
 pub use ring::{Moments, Point, Ring, StressRadius};
+pub(super) use ring_sum::{InwardSum, RingSum};
 pub use sum::Sum;
 pub use tabulated::{InterpolationError, Tabulated};
 
@@ -342,7 +341,7 @@ dispatch! {
     indentation_for(load: f64) -> f64;
     rise(span: &Span) -> f64;
     gap(ring: &Ring, depth: f64) -> f64;
-    moments(span: &Span) -> Moments;
+    moments(span: &Span, top: f64) -> Moments;
     kernel(order: KernelOrder, at: &StressRadius, span: &Span) -> f64;
     falls(inner: f64, outer: f64) -> Falls;
 }

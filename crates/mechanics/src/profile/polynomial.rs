@@ -3,6 +3,7 @@
 //! Differences are taken by divided differences, sums of positive terms. g is convex, so that Newton's steps from above
 //! come down on X(y); the rule of eight points integrates h^2 exactly, up to a degree of seven for g.
 
+use super::power_law::root;
 use super::{Moments, Profile, Ring, Span};
 use crate::numerics::gauss::{EIGHT_POINTS, first_and_second};
 use crate::numerics::roots::{descend, distance_below};
@@ -58,8 +59,10 @@ impl Polynomial {
         value + x * slope
     }
 
-    /// X(y), m, from a radius that is not below it.
-    pub(super) fn radius(&self, level: f64, above: f64) -> f64 {
+    /// X(y), m, from the least radius at which one of the terms is y.
+    pub(super) fn radius(&self, level: f64) -> f64 {
+        let terms = (1..).zip(&self.coefficients[..self.degree]).filter(|(_, coefficient)| **coefficient > 0.0);
+        let above = terms.map(|(order, coefficient)| root(level / coefficient, order)).fold(f64::INFINITY, f64::min);
         descend(above, |x| {
             let (value, slope) = self.quotient(x);
             (x * value - level, value + x * slope)

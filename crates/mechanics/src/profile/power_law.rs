@@ -7,7 +7,7 @@
 
 use super::shape::{Falls, KernelOrder, Shape, ShapeFacts};
 use super::smooth_coordinate::{self, SmoothCoordinate};
-use super::{DoubleDouble, Error, Moments, Ring, Span, StressRadius, range, series_kernel};
+use super::{DoubleDouble, Error, Moments, Ring, Span, StressRadius, range, slope_series};
 use crate::numerics::gauss::{EIGHT_POINTS, Singular, first_and_second};
 use crate::numerics::logarithm::{exp_m1, ln_1p};
 
@@ -74,13 +74,7 @@ impl PowerLaw {
     /// X, m, of a level, m.
     fn radius(&self, level: f64) -> f64 {
         let power = level / self.scale;
-        match self.order {
-            Some(1) => power,
-            Some(2) => power.sqrt(),
-            Some(3) => power.cbrt(),
-            Some(4) => power.sqrt().sqrt(),
-            _ => power.powf(self.exponent.recip()),
-        }
+        self.order.map_or_else(|| power.powf(self.exponent.recip()), |order| root(power, order))
     }
 
     /// (x_outer^n - x^n)/(x_outer - x) of a whole n: a sum of positive terms.
@@ -147,11 +141,6 @@ impl PowerLaw {
         Some(series)
     }
 
-    /// The kernel and its slope by their closed form, where n is whole.
-    fn by_series(&self, at: &StressRadius, span: &Span) -> Option<(f64, f64)> {
-        series_kernel::kernel_and_slope(&self.slope_series(span.outer_radius)?, at, span)
-    }
-
     /// The slope at r = 0 of the kernel up to a radius: (n/2) B x^(n-3)/(n - 3), where that integral exists.
     fn kernel_slope_at_tip(&self, x: f64) -> f64 {
         let n = self.exponent;
@@ -166,6 +155,17 @@ impl PowerLaw {
         } else {
             f64::NEG_INFINITY
         }
+    }
+}
+
+/// The root of this order.
+pub(super) fn root(power: f64, order: u16) -> f64 {
+    match order {
+        1 => power,
+        2 => power.sqrt(),
+        3 => power.cbrt(),
+        4 => power.sqrt().sqrt(),
+        _ => power.powf(f64::from(order).recip()),
     }
 }
 
@@ -315,9 +315,8 @@ impl Shape for PowerLaw {
         }
     }
 
-    fn moments(&self, span: &Span) -> Moments {
+    fn moments(&self, span: &Span, y: f64) -> Moments {
         let (n, x, width) = (self.exponent, span.outer_radius, span.width());
-        let y = self.level(x);
         if width <= 0.0 {
             return Moments::default();
         }
@@ -360,8 +359,8 @@ impl Shape for PowerLaw {
         if order == KernelOrder::Slope && at.radius <= 0.0 && span.inner_radius <= 0.0 {
             return self.kernel_slope_at_tip(span.outer_radius);
         }
-        if let Some((kernel, slope)) = self.by_series(at, span) {
-            return if order == KernelOrder::Value { kernel } else { slope };
+        if let Some(series) = self.slope_series(span.outer_radius) {
+            return slope_series::kernel(&series, order, at, span);
         }
         if order == KernelOrder::Slope {
             return smooth_coordinate::kernel(self, order, at, span);

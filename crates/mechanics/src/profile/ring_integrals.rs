@@ -7,6 +7,7 @@ use super::curve_family::CurveFamily;
 use super::ring_nodes::RingNodes;
 use super::ring_quadrature;
 use super::shape::{self, KernelOrder, Shape};
+use super::smooth_coordinate;
 use super::{Asperities, Count, Ellipsoid, Moments, Profile, Ring, Span, StressRadius};
 
 impl Profile {
@@ -34,8 +35,7 @@ impl Profile {
         if let Some(curve) = self.curve() {
             return curve.moments_of(ring);
         }
-        let span = self.span(ring);
-        Moments::stack(Shape::moments(self, &span), Moments::default(), span.edge)
+        each!(self, shape => shape::ring_moments(shape, ring))
     }
 
     /// The span of a ring.
@@ -87,7 +87,13 @@ impl Profile {
         #[cfg(test)]
         call_count::add(|calls| &mut calls.displacement_integral);
         let span = self.span(ring);
-        let face = each!(self, shape => shape::displacement_integral(shape, at, &span));
+        let face = match self {
+            // A flat core has no rings, and what lies beyond it rises in closed form from node to node.
+            Profile::TruncatedCone(flat) => smooth_coordinate::displacement_integral(flat, at, &span),
+            Profile::TruncatedSphere(flat) => smooth_coordinate::displacement_integral(flat, at, &span),
+            Profile::RoundedPunch(flat) => smooth_coordinate::displacement_integral(flat, at, &span),
+            _ => each!(self, shape => shape::displacement_integral(shape, at, &span)),
+        };
         if span.edge > 0.0 { face + span.edge * span.arc(at) } else { face }
     }
 

@@ -192,11 +192,15 @@ impl Shape for RoundedCone {
         if radius > self.flank.tip_radius { self.flank.tip_radius } else { 0.0 }
     }
 
-    fn moments(&self, span: &Span) -> Moments {
+    fn moments(&self, span: &Span, _top: f64) -> Moments {
         let (tip, flank) = self.parts(span);
         let above = flank.map_or(0.0, |span| smooth_coordinate::rise(&self.flank, &span));
         let outer = flank.map_or(Moments::default(), |span| smooth_coordinate::moments(&self.flank, &span));
-        Moments::stack(tip.map_or(Moments::default(), |span| self.tip.moments(&span)), outer, above)
+        Moments::stack(
+            tip.map_or(Moments::default(), |span| self.tip.moments(&span, self.flank.tip_level.value())),
+            outer,
+            above,
+        )
     }
 
     fn kernel(&self, order: KernelOrder, at: &StressRadius, span: &Span) -> f64 {

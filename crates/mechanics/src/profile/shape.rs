@@ -131,7 +131,7 @@ pub(super) trait Shape: Sized {
     /// int_0^x t g'(t) dt = F_N/(2 E*), m^2.
     fn load(&self, radius: f64) -> f64 {
         // By parts.
-        self.moments(&Span::from_centre(radius)).first
+        self.moments(&Span::from_centre(radius), self.level(radius)).first
     }
 
     /// The level at which [`Shape::load`] has this value.
@@ -152,8 +152,8 @@ pub(super) trait Shape: Sized {
         gap(self, ring, depth)
     }
 
-    /// The moments of h = g(x_outer) - g(x).
-    fn moments(&self, span: &Span) -> Moments {
+    /// The moments of h = g(x_outer) - g(x); `top` = g(x_outer).
+    fn moments(&self, span: &Span, _top: f64) -> Moments {
         moments(self, span)
     }
 
@@ -210,6 +210,13 @@ pub(super) fn span<S: Shape>(shape: &S, ring: &Ring) -> Span {
         }
     }
     Span::of(ring, if depth > 0.0 { shape.gap(ring, depth) } else { 0.0 }, edge)
+}
+
+/// The moments of a ring, with what it crosses at a vertical edge.
+pub(super) fn ring_moments<S: Shape>(shape: &S, ring: &Ring) -> Moments {
+    let span = span(shape, ring);
+    let face = shape.moments(&span, ring.outer.level.value() - span.edge);
+    if span.edge > 0.0 { Moments::stack(face, Moments::default(), span.edge) } else { face }
 }
 
 /// [`Shape::rise`] by quadratures of dg/dt between kink and kink.

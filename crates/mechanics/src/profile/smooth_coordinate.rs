@@ -199,19 +199,21 @@ pub(super) fn slopes<const N: usize>(family: &impl SmoothCoordinate, base: f64, 
     std::array::from_fn(|index| slopes[index] * (t[index] / above[index]))
 }
 
-/// Both ends of a span in t.
+/// Both ends in t of what a span has above the kink.
 pub(super) fn ends(family: &impl SmoothCoordinate, span: &Span) -> SpanEnds {
-    let (low, high) = span.excess(DoubleDouble::square_of(family.kink_radius()));
-    let (low, high) = (low.max(0.0).sqrt(), high.max(0.0).sqrt());
-    SpanEnds { low, high, drop: if high > 0.0 { span.gap / (low + high) } else { 0.0 } }
+    let (below, above) = span.excess(DoubleDouble::square_of(family.kink_radius()));
+    if above <= 0.0 {
+        return SpanEnds { low: 0.0, high: 0.0, drop: 0.0 };
+    }
+    let (low, high, gap) =
+        if below < 0.0 { (0.0, above.sqrt(), above) } else { (below.sqrt(), above.sqrt(), span.gap) };
+    SpanEnds { low, high, drop: gap / (low + high) }
 }
 
 /// g over a span, to round-off of itself.
 pub(super) fn rise(family: &impl SmoothCoordinate, span: &Span) -> f64 {
-    let square = DoubleDouble::square_of(family.kink_radius());
-    let Some(span) = span.above(square, family.kink_radius()) else { return 0.0 };
-    let SpanEnds { low, high, drop } = ends(family, &span);
-    family.rise_at(low, high, drop)
+    let SpanEnds { low, high, drop } = ends(family, span);
+    if high > 0.0 { family.rise_at(low, high, drop) } else { 0.0 }
 }
 
 /// Difference of the squares over a ring of this depth.
@@ -339,7 +341,7 @@ macro_rules! flat_core {
             fn kink_below(&self, radius: f64) -> f64 {
                 if radius > self.kink_radius() { self.kink_radius() } else { 0.0 }
             }
-            fn moments(&self, span: &Span) -> Moments {
+            fn moments(&self, span: &Span, _top: f64) -> Moments {
                 smooth_coordinate::moments(self, span)
             }
             fn kernel(&self, order: KernelOrder, at: &StressRadius, span: &Span) -> f64 {

@@ -9,17 +9,19 @@
 //!   antiderivative is v A(Y), and by the even and the odd part of A the kernel is (v_1 - v_0) E + (v_1 + v_0) O: what
 //!   a thin ring has is not lost. |c_k| falls as the k-th power of h over the distance of X from the singularity, a
 //!   fifth at most, and |s| is three at most: no term is large.
-//! - Far, where D = X - r^2 >= 3 h: with z = h/D it is sum of binom(-1/2, k) m_k z^k over sqrt D, m_k = int Y^k dg.
-//!   What lies beyond a singularity is far from all that is inside it.
+//! - Far, where the inner end is at least as far beyond r^2 as the piece is wide: a [`Multipole`]. What lies beyond a
+//!   singularity is far from all that is inside it.
 //! - At a kink, which q begins at as a power of t = sqrt(x^2 - b^2): with gamma = t q = sum of g_k t^k and kappa = r^2
-//!   - b^2 it is int gamma dt/sqrt(t^2 - kappa), by k J_k = [t^(k-1) v] + (k - 1) kappa J_(k-2); J_0 is a logarithm. t
-//!     ends at a quarter of its distance from the next singularity there, and what is inside that is far.
+//!   - b^2 it is the integral of [`root_kernel`](crate::numerics::root_kernel). t ends at a quarter of its distance from
+//!     the next singularity there, and what is inside that is far.
+//!
+//! A vertical edge adds the levels that rings cross there, over the root of its distance.
 //!
 //! Series end where their terms no longer count. A piece whose series does not is halved as long as that brings it
 //! nearer to its end: what is left then is the rounding of q itself.
 
+mod far;
 mod kernels;
-mod moments;
 mod sampled_series;
 
 use std::ops::Range;
@@ -29,14 +31,14 @@ use super::call_count;
 use super::shape::{KernelOrder, Shape, ShapeFacts, span};
 use super::{DoubleDouble, Ring, Span, StressRadius};
 use crate::numerics::chebyshev::counted;
-use kernels::{far_kernels, kink_kernels, near_kernels};
-use moments::{FAR_TERMS, kink_moments, moments};
+use crate::numerics::multipole::Multipole;
+use crate::numerics::root_kernel::KernelPair;
 use sampled_series::{TERMS, beside_kink, of_slope_over_radius};
 
 /// Radii that are summed for side by side.
 const LANES: usize = 4;
-/// From this h/D on a piece is near.
-const FAR: f64 = 1.0 / 3.0;
+/// A piece is far from radii whose squares are this many times its width below it.
+const ROOM: f64 = 1.0;
 /// A piece is no wider than this share of its distance from a singularity.
 const WIDEST: f64 = 0.5;
 /// The part of the distance to the next singularity, in squares, up to which the series in t of a kink is taken.
@@ -67,12 +69,23 @@ pub(super) struct SmoothPieces<'a, S> {
     /// The radius, m, that the pieces reach down to, and what is left of rings inside it, with their weights.
     innermost: f64,
     tip: Vec<(Span, f64)>,
+    /// The vertical edge of the rings, if they have one.
+    rim: Option<Rim>,
     /// 1/a^2, m^-2: lengths are in units of the edge.
     unit: f64,
     /// With more pieces than this within a ring, there is none.
     most_cuts: f64,
     /// Nor where the edge is nearer than this to the ceiling, in squares over its own.
     closest: f64,
+}
+
+/// A vertical edge: the square of its radius, m^2, in two parts; the weighted levels that rings cross there, and the
+/// sum of their sizes, in units of the edge.
+#[derive(Clone, Copy)]
+struct Rim {
+    square: (f64, f64),
+    levels: f64,
+    size: f64,
 }
 
 struct SmoothPiece {
@@ -85,8 +98,7 @@ struct SmoothPiece {
     thin: bool,
     weight: f64,
     near: Near,
-    /// The coefficients of z^k for far radii.
-    far: Range<usize>,
+    far: Multipole,
 }
 
 /// A piece to be: the kink beneath it, m, the squares of its ends and of its middle, m^2, and half their difference.
@@ -102,8 +114,8 @@ struct PieceEnds {
 enum Near {
     /// c_k.
     Smooth(Range<usize>),
-    /// g_k times the k-th power of the t where the piece ends, for even and for odd k.
-    Kink { even: Range<usize>, odd: Range<usize> },
+    /// g_k times the k-th power of the t where the piece ends.
+    Kink(Range<usize>),
 }
 
 /// Weighted sums of kernels, of their derivatives, and of the sizes of these.
@@ -115,7 +127,7 @@ struct PieceSums<const N: usize> {
 
 impl<'a, S: Shape> SmoothPieces<'a, S> {
     /// The pieces of rings and their weights best for radii of at least `least`, m; `None` if the profile has no such
-    /// series, or levels at a vertical edge.
+    /// series.
     pub(super) fn new(shape: &'a S, rings: &[(Ring, f64)], least: f64) -> Option<SmoothPieces<'a, S>> {
         let mut made = SmoothPieces::within(shape, rings.last()?.0.outer.radius, least, rings.len());
         rings.iter().rev().try_for_each(|(ring, weight)| made.add(&span(shape, ring), *weight))?;
@@ -132,6 +144,7 @@ impl<'a, S: Shape> SmoothPieces<'a, S> {
             terms,
             innermost,
             tip: Vec::new(),
+            rim: None,
             unit: 1.0 / (edge * edge),
             most_cuts: MOST_CUTS,
             closest: CLOSEST,
@@ -155,8 +168,13 @@ impl<'a, S: Shape> SmoothPieces<'a, S> {
     pub(super) fn add(&mut self, ring: &Span, weight: f64) -> Option<()> {
         let shape = self.shape;
         let ShapeFacts { by_series, smooth_tip, ceiling, .. } = shape.facts();
-        if !by_series || ring.edge > 0.0 {
+        if !by_series {
             return None;
+        }
+        if ring.edge > 0.0 {
+            let levels = ring.edge * self.unit.sqrt() * weight;
+            let rim = self.rim.get_or_insert(Rim { square: ring.outer.parts(), levels: 0.0, size: 0.0 });
+            (rim.levels, rim.size) = (rim.levels + levels, rim.size + levels.abs());
         }
         let thin = (ring.outer - ring.inner).value() <= THIN * ring.outer.value();
         let (mut outer, mut radius) = (ring.outer, ring.outer_radius);
@@ -183,11 +201,10 @@ impl<'a, S: Shape> SmoothPieces<'a, S> {
                 if gap > reach {
                     self.smooth(kink, (from, outer), (gap - reach, false), [reach, room], weight)?;
                 }
-                let [even, odd] = beside_kink(shape, kink, top.sqrt());
-                let (even, odd) = (counted(&even, NEGLIGIBLE), counted(&odd, NEGLIGIBLE));
-                let far = kink_moments(even, odd, (top * self.unit).sqrt());
-                let near = Near::Kink { even: self.keep(even, 1.0), odd: self.keep(odd, 1.0) };
-                self.push((base, from), (top, thin && gap <= reach), weight, (near, far));
+                let series = beside_kink(shape, kink, top.sqrt());
+                let series = counted(&series, NEGLIGIBLE);
+                let near = (Near::Kink(self.keep(series, 1.0)), far::of_kink(series, top * self.unit));
+                self.push((base, from), (top, thin && gap <= reach), weight, near);
             } else {
                 let above = if kink > 0.0 || !smooth_tip { above } else { f64::INFINITY };
                 self.smooth(kink, (low, outer), (gap, thin), [above, room], weight)?;
@@ -248,9 +265,9 @@ impl<'a, S: Shape> SmoothPieces<'a, S> {
             return;
         }
         let (series, edge) = (counted(&series.coefficients, NEGLIGIBLE), self.unit.sqrt().recip());
-        let far = moments(series, half * self.unit * edge);
-        let near = Near::Smooth(self.keep(series, edge));
-        self.push((inner, outer), gap, weight, (near, far));
+        let range = self.keep(series, edge);
+        let far = far::of_smooth(&self.terms[range.clone()], gap.0 * self.unit);
+        self.push((inner, outer), gap, weight, (Near::Smooth(range), far));
     }
 
     /// Keeps coefficients, each times `unit`.
@@ -265,9 +282,8 @@ impl<'a, S: Shape> SmoothPieces<'a, S> {
         (inner, outer): (DoubleDouble, DoubleDouble),
         (gap, thin): (f64, bool),
         weight: f64,
-        (near, far): (Near, [f64; FAR_TERMS]),
+        (near, far): (Near, Multipole),
     ) {
-        let far = self.keep(&far, 1.0);
         let (inner, outer, gap) = (inner.parts(), outer.parts(), gap * self.unit);
         self.pieces.push(SmoothPiece { inner, outer, gap, thin, weight, near, far });
     }
@@ -288,6 +304,14 @@ impl<'a, S: Shape> SmoothPieces<'a, S> {
     pub(super) fn sum(&self, at: &StressRadius) -> f64 {
         let [kernel] = self.lanes::<1, false>(&[at.square]).kernels;
         kernel + self.in_tip(at, KernelOrder::Value)
+    }
+
+    /// Adds what the pieces are from afar to sources over squares, m^2.
+    pub(super) fn add_sources(&self, sources: &mut Multipole) {
+        let edge = self.unit.sqrt().recip();
+        for SmoothPiece { inner: (low, _), gap, weight, far, .. } in &self.pieces {
+            sources.add_part((*low, low + gap / self.unit), &far.moments, weight * edge);
+        }
     }
 
     /// What lies inside all pieces, for radii there.
@@ -337,30 +361,26 @@ impl<'a, S: Shape> SmoothPieces<'a, S> {
             #[cfg(test)]
             call_count::add(|calls| if SLOPES { &mut calls.kernel_slope } else { &mut calls.kernel });
             let below = excess(piece.inner);
-            let half = 0.5 * piece.gap;
-            let shares: [f64; N] = below.map(|below| half / (below + half));
-            let distant = shares.map(|z| z > 0.0 && z <= FAR);
-            let far = || far_kernels::<N, SLOPES>(&self.terms[piece.far.clone()], half, &shares);
-            let (kernel, slope) = if distant.iter().all(|&distant| distant) {
-                far()
-            } else {
+            let distant = below.map(|below| below > 0.0 && below >= ROOM * piece.gap);
+            let far = || piece.far_kernels::<N, SLOPES>(&below);
+            let near = || {
                 let above = piece.above(&below, excess);
                 let terms = |range: &Range<usize>| &self.terms[range.clone()];
-                let near = match &piece.near {
-                    Near::Smooth(series) => near_kernels::<N, SLOPES>(terms(series), piece.gap, &below, &above),
-                    Near::Kink { even, odd } => {
-                        kink_kernels::<N, SLOPES>(terms(even), terms(odd), piece.gap, &below, &above)
-                    }
-                };
-                if distant.iter().any(|&distant| distant) {
-                    let far = far();
-                    let pick = |near: [f64; N], far: [f64; N]| {
-                        std::array::from_fn(|lane| if distant[lane] { far[lane] } else { near[lane] })
-                    };
-                    (pick(near.0, far.0), pick(near.1, far.1))
-                } else {
-                    near
+                match &piece.near {
+                    Near::Smooth(series) => kernels::smooth::<N, SLOPES>(terms(series), piece.gap, &below, &above),
+                    Near::Kink(series) => kernels::kink::<N, SLOPES>(terms(series), piece.gap, &below, &above),
                 }
+            };
+            let (kernel, slope) = if distant.iter().all(|&distant| distant) {
+                far()
+            } else if distant.iter().any(|&distant| distant) {
+                let (near, far) = (near(), far());
+                let pick = |near: [f64; N], far: [f64; N]| {
+                    std::array::from_fn(|lane| if distant[lane] { far[lane] } else { near[lane] })
+                };
+                (pick(near.0, far.0), pick(near.1, far.1))
+            } else {
+                near()
             };
             for lane in 0..N {
                 sums.kernels[lane] += piece.weight * kernel[lane];
@@ -371,11 +391,25 @@ impl<'a, S: Shape> SmoothPieces<'a, S> {
                 }
             }
         }
+        if let Some(Rim { square, levels, size }) = self.rim.filter(|rim| rim.size > 0.0) {
+            for (lane, beyond) in excess(square).into_iter().enumerate().filter(|(_, beyond)| *beyond >= 0.0) {
+                let root = beyond.sqrt();
+                sums.kernels[lane] += levels / root;
+                sums.slopes[lane] += 0.5 * levels / (beyond * root);
+                sums.sizes[lane] += 0.5 * size / (beyond * root);
+            }
+        }
         sums
     }
 }
 
 impl SmoothPiece {
+    /// Its kernel at radii that it is far from, or the derivative.
+    fn far_kernels<const N: usize, const SLOPES: bool>(&self, below: &[f64; N]) -> KernelPair<N> {
+        let places = below.map(|below| -below);
+        if SLOPES { ([0.0; N], self.far.potential_slopes(places)) } else { (self.far.potentials(places), [0.0; N]) }
+    }
+
     /// x^2 - r^2 at the outer end, zero where that is inside r.
     fn above<const N: usize>(&self, below: &[f64; N], excess: impl Fn((f64, f64)) -> [f64; N]) -> [f64; N] {
         let plain = excess(self.outer);
@@ -393,13 +427,6 @@ fn filled<T>(chunk: &[T], square: impl Fn(&T) -> DoubleDouble) -> [DoubleDouble;
 
 fn larger(a: DoubleDouble, b: DoubleDouble) -> DoubleDouble {
     if a > b { a } else { b }
-}
-
-/// How many powers of a ratio below one count. The logarithm is taken from the bits: what a number has beyond a power
-/// of two is no more than 0.0861 below that of its own.
-fn counting(ratio: f64) -> usize {
-    let logarithm = ratio.to_bits() as f64 / (1_u64 << 52) as f64 - (1023.0 - 0.0861);
-    (NEGLIGIBLE.log2() / logarithm) as usize + 2
 }
 
 #[cfg(test)]

@@ -83,7 +83,7 @@ impl Shape for Sphere {
         self.curvature_radius * depth
     }
 
-    fn moments(&self, span: &Span) -> Moments {
+    fn moments(&self, span: &Span, _top: f64) -> Moments {
         self.moments_by_width(span.outer_radius, span.width())
     }
 

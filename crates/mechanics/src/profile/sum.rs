@@ -90,15 +90,10 @@ impl Sum {
         Span { inner, outer, inner_radius: base, outer_radius: outer.value().sqrt(), gap, edge: 0.0 }
     }
 
-    /// The least of the radii at which a part alone has a level: not below that of the sum.
-    fn least_radius(&self, level: f64) -> f64 {
-        self.parts.iter().map(|part| part.radius(level)).fold(f64::INFINITY, f64::min)
-    }
-
     /// X(y), m.
     fn radius(&self, level: f64) -> f64 {
         if let Some(polynomial) = self.polynomial.as_ref().filter(|_| level > 0.0) {
-            return polynomial.radius(level, self.least_radius(level));
+            return polynomial.radius(level);
         }
         match self.rim {
             Some((rim, top)) if level >= top => rim,
@@ -202,7 +197,7 @@ impl Shape for Sum {
             let mut polished = level;
             for _ in 0..POLISH {
                 let ring = Ring::between(point(0.0), point(polished));
-                let carried = core * polished + self.moments(&shape::span(self, &ring)).first;
+                let carried = core * polished + shape::ring_moments(self, &ring).first;
                 polished = (polished + (load - carried) / ring.outer.radius).max(0.0);
             }
             // Beyond the end of a part the search has gone as far as it can, and there is nothing to polish.
@@ -222,7 +217,7 @@ impl Shape for Sum {
         self.polynomial.map_or_else(|| shape::gap(self, ring, depth), |polynomial| polynomial.gap(ring, depth))
     }
 
-    fn moments(&self, span: &Span) -> Moments {
+    fn moments(&self, span: &Span, _top: f64) -> Moments {
         match &self.polynomial {
             Some(polynomial) => polynomial.moments(span),
             None => {

@@ -13,8 +13,6 @@ use crate::numerics::chebyshev::{EIGHT, Points, ROUNDED, SIXTEEN, TWELVE, counte
 
 /// The most terms of a series.
 pub(super) const TERMS: usize = 16;
-/// Terms of either parity beside a kink.
-pub(super) const KINK_TERMS: usize = 8;
 /// Half the width of a piece over the distance of its middle from a singularity, up to which eight and twelve points
 /// resolve it. Sixteen do up to a fifth, which no piece exceeds.
 const RATIOS: [f64; 2] = [0.02, 0.09];
@@ -106,11 +104,11 @@ pub(super) fn of_slope_over_radius(
     short.filter(SampledSeries::ends).unwrap_or_else(|| LONG.slope_over_radius(shape, base, ends))
 }
 
-/// The coefficients of even and of odd powers of t/`top` in gamma above the kink `base`, m, for t up to `top`, m.
-pub(super) fn beside_kink(shape: &impl Shape, base: f64, top: f64) -> [[f64; KINK_TERMS]; 2] {
+/// The coefficients of powers of t/`top` in gamma above the kink `base`, m, for t up to `top`, m.
+pub(super) fn beside_kink(shape: &impl Shape, base: f64, top: f64) -> Series {
     let values = shape.slopes(base, BESIDE_KINK.points.places(0.0, top));
     let mut series = BESIDE_KINK.series(values).coefficients;
     // Stresses are infinite at the kink unless this is zero, which it must then be without an error of rounding.
     [series[0]] = shape.slopes(base, [0.0]);
-    [0, 1].map(|parity| std::array::from_fn(|index| series[2 * index + parity]))
+    series
 }

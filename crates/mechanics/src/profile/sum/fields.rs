@@ -1,7 +1,8 @@
 //! Stresses and displacements of a sum with tables at many radii, since both are linear in g: each table goes through
-//! its panels once for all rings, and the kernels of the other parts are added ring by ring.
+//! its panels once for all rings, and the kernels of the other parts are added by pieces, or ring by ring.
 
 use super::super::shape::span;
+use super::super::smooth_pieces::SmoothPieces;
 use super::super::tabulated::{Kernel, SumAndSize, WeightedPanels, add_to};
 use super::super::{Profile, Ring, Span, StressRadius};
 use super::Sum;
@@ -9,7 +10,8 @@ use super::Sum;
 /// The parts of a sum over weighted rings.
 pub(crate) struct SumFields<'a> {
     tables: Vec<WeightedPanels<'a>>,
-    others: Vec<&'a Profile>,
+    /// The other parts, each with its pieces, if it has such.
+    others: Vec<(&'a Profile, Option<SmoothPieces<'a, Profile>>)>,
     spans: Vec<(Span, f64)>,
 }
 
@@ -22,7 +24,7 @@ impl SumFields<'_> {
         for part in &sum.parts {
             match part {
                 Profile::Tabulated(table) => tables.push(table.panels_over(&spans, radii)?),
-                other => others.push(other),
+                other => others.push((other, pieces(other, &spans))),
             }
         }
         (!tables.is_empty()).then_some(SumFields { tables, others, spans })
@@ -36,11 +38,32 @@ impl SumFields<'_> {
                 *sum = (sum.0 + term, sum.1 + size);
             }
         }
-        for (at, sum) in radii.iter().zip(&mut sums) {
-            for (span, weight) in self.spans.iter().filter(|(_, weight)| weight.abs() > 0.0) {
-                self.others.iter().for_each(|part| add_to(sum, weight * kernel.of_part(part, at, span)));
-            }
+        for (part, pieces) in &self.others {
+            let found = match (kernel, pieces) {
+                (Kernel::Root, Some(pieces)) => {
+                    pieces.sums(radii).into_iter().map(|kernel| (kernel, kernel.abs())).collect()
+                }
+                (Kernel::RootSlope, Some(pieces)) => pieces.slopes(radii, |_| true),
+                _ => radii.iter().map(|at| self.by_rings(part, kernel, at)).collect(),
+            };
+            sums.iter_mut().zip(found).for_each(|(sum, (term, size))| *sum = (sum.0 + term, sum.1 + size));
         }
         sums
     }
+
+    /// The same of one part, ring by ring.
+    fn by_rings(&self, part: &Profile, kernel: Kernel, at: &StressRadius) -> SumAndSize {
+        let mut sum = (0.0, 0.0);
+        for (span, weight) in self.spans.iter().filter(|(_, weight)| weight.abs() > 0.0) {
+            add_to(&mut sum, weight * kernel.of_part(part, at, span));
+        }
+        sum
+    }
+}
+
+/// The pieces of a part over weighted spans from the centre outward.
+fn pieces<'a>(part: &'a Profile, spans: &[(Span, f64)]) -> Option<SmoothPieces<'a, Profile>> {
+    let mut made = SmoothPieces::within(part, spans.last()?.0.outer_radius, 0.0, spans.len());
+    spans.iter().rev().try_for_each(|(span, weight)| made.add(span, *weight))?;
+    Some(made)
 }

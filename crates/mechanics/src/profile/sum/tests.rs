@@ -60,7 +60,7 @@ proptest! {
             .collect();
         for (ring, _) in &rings {
             let span = shape::span(sum, ring);
-            let (found, expected) = (sum.moments(&span), shape::moments(sum, &span));
+            let (found, expected) = (sum.moments(&span, ring.outer.level.value()), shape::moments(sum, &span));
             let parts = |moments: Moments| [moments.width, moments.first, moments.second];
             for (found, expected) in parts(found).into_iter().zip(parts(expected)) {
                 prop_assert!(close(found, expected, 2e-14), "{found:e} instead of {expected:e}");

@@ -62,12 +62,11 @@ impl Kernel {
     /// The sum over a part of a panel.
     pub(super) fn near(self, panel: &KernelPanel, at: &StressRadius, span: &Span) -> f64 {
         match self {
-            Kernel::Root => near_kernel::kernel(panel, at, span)
-                .unwrap_or_else(|| smooth_coordinate::kernel(panel, KernelOrder::Value, at, span)),
+            Kernel::Root => by_powers(panel, KernelOrder::Value, at, span),
             Kernel::RootSlope => {
                 #[cfg(test)]
                 call_count::add(|calls| &mut calls.kernel_slope);
-                smooth_coordinate::kernel(panel, KernelOrder::Slope, at, span)
+                by_powers(panel, KernelOrder::Slope, at, span)
             }
             Kernel::Arccos | Kernel::Arcsin => self.angle_sum(at, span, || {
                 (smooth_coordinate::rise(panel, span), smooth_coordinate::displacement_integral(panel, at, span))
@@ -121,6 +120,11 @@ impl Kernel {
         let at_centre = squares.map(|square| self.angle(centre.sqrt(), square - centre) * sources.moments[0]);
         std::array::from_fn(|lane| at_centre[lane] + self.sign() * 0.5 * half * sums[lane])
     }
+}
+
+/// The kernel of a part of a panel by the powers of its slope where these serve, else by a quadrature.
+fn by_powers(panel: &KernelPanel, order: KernelOrder, at: &StressRadius, span: &Span) -> f64 {
+    near_kernel::kernel(panel, order, at, span).unwrap_or_else(|| smooth_coordinate::kernel(panel, order, at, span))
 }
 
 /// Gauss's points, and what turns moments into the weights there of a derivative: of each point and order, the part of

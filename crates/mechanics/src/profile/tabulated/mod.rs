@@ -32,6 +32,7 @@ use super::super::error::TableFault;
 use super::shape::{End, Falls, KernelOrder, Shape, ShapeFacts, span};
 use super::smooth_coordinate::SmoothCoordinate;
 use super::{DoubleDouble, Error, Moments, Point, Profile, Ring, Span, StressRadius, range};
+use crate::numerics::multipole::Multipole;
 use curve::TableCurve;
 pub(super) use displacement::displacements;
 pub use interpolation_error::InterpolationError;
@@ -177,7 +178,12 @@ impl Tabulated {
         self.panels_over(&spans, radii)
     }
 
-    /// The same of spans.
+    /// Adds what the radii of a span are from afar to sources over their squares, m^2.
+    pub(super) fn add_sources(&self, span: &Span, sources: &mut Multipole) {
+        self.curve.up_to(span.outer_radius).add_sources(span, sources);
+    }
+
+    /// [`Tabulated::weighted_panels`] of spans.
     pub(super) fn panels_over(&self, spans: &[(Span, f64)], radii: usize) -> Option<WeightedPanels<'_>> {
         WeightedPanels::new(self.curve.up_to(spans.last()?.0.outer_radius), spans, radii)
     }
@@ -199,8 +205,11 @@ impl Shape for Tabulated {
         load(radius: f64) -> f64, up to radius;
         kink_below(radius: f64) -> f64, up to radius;
         rise(span: &Span) -> f64, up to span.outer_radius;
-        moments(span: &Span) -> Moments, up to span.outer_radius;
         gap(ring: &Ring, depth: f64) -> f64, up to ring.outer.radius;
+    }
+
+    fn moments(&self, span: &Span, _top: f64) -> Moments {
+        self.curve.up_to(span.outer_radius).moments(span)
     }
 
     fn square(&self, level: DoubleDouble) -> DoubleDouble {

@@ -74,7 +74,7 @@ impl KernelPanel {
         }
     }
 
-    /// Coefficients of q in powers of t over its upper end, for the kernel; none if they do not serve.
+    /// Coefficients of gamma over its upper end in powers of t over that, for the kernel; none if they do not serve.
     pub(super) fn powers(&self) -> &[f64] {
         self.powers.get_or_init(|| panel_powers::powers(&self.slope, self.low, self.high))
     }

@@ -6,7 +6,7 @@
 use std::sync::LazyLock;
 
 /// The most terms of a series.
-pub(super) const POINTS: usize = 24;
+const POINTS: usize = 24;
 
 /// The sum of the magnitudes of the terms of a series in powers, over the size of the series.
 const CONDITION: f64 = 3.0;
@@ -15,7 +15,7 @@ const CONDITION: f64 = 3.0;
 const DROPPED: f64 = 4e-15;
 
 /// 1/(n + 1).
-pub(super) const SHARES: [f64; POINTS + 1] = {
+const SHARES: [f64; POINTS + 1] = {
     let mut shares = [0.0; POINTS + 1];
     let mut order = 0;
     while order <= POINTS {
@@ -25,8 +25,8 @@ pub(super) const SHARES: [f64; POINTS + 1] = {
     shares
 };
 
-/// The coefficients in powers of t/high of a Chebyshev series over low..high; none if they are too large to be added
-/// up. The last terms of the series, which rounding alone has left, are dropped first.
+/// The coefficients in powers of t/high of (t/high) q, q being a Chebyshev series over low..high; none if they are too
+/// large to be added up. The last terms of the series, which rounding alone has left, are dropped first.
 pub(super) fn powers(series: &[f64], low: f64, high: f64) -> Box<[f64]> {
     let (scale, offset) = (2.0 * high / (high - low), -(high + low) / (high - low));
     let furthest = scale - offset;
@@ -49,13 +49,13 @@ pub(super) fn powers(series: &[f64], low: f64, high: f64) -> Box<[f64]> {
         return Box::default();
     }
     let own = (low > 0.0).then(|| polynomials(scale, offset));
-    let mut sum = [0.0; POINTS];
+    let mut sum = [0.0; POINTS + 1];
     for (order, (a, row)) in series.iter().zip(own.as_ref().unwrap_or(&FROM_KNOT)).enumerate() {
-        for (sum, c) in sum[..=order].iter_mut().zip(&row[..=order]) {
+        for (sum, c) in sum[1..].iter_mut().zip(&row[..=order]) {
             *sum += a * c;
         }
     }
-    sum[..series.len()].into()
+    sum[..=series.len()].into()
 }
 
 /// The coefficients of the Chebyshev polynomials of scale x + offset in powers of x, a row for each order.
@@ -82,7 +82,7 @@ pub(super) fn rise(powers: &[f64], (low, high): (f64, f64), t: f64, s: f64) -> f
     let square = t * t;
     let (mut before, mut this) = (1.0, if t > 0.0 { (square + t * low + low * low) / (t + low) } else { 0.0 });
     let (mut sum, mut lower) = (0.0, low * low);
-    for (c, share) in powers.iter().zip(&SHARES[1..]) {
+    for (c, share) in powers.iter().zip(&SHARES).skip(1) {
         sum += c * before * share;
         (before, this) = (this, square * before + lower);
         lower *= low;

@@ -11,7 +11,7 @@ use super::kernel::Kernel;
 use super::lookup::Lookup;
 use super::panel::KernelPanel;
 use super::{DoubleDouble, Moments, Point, Ring, Span, StressRadius, panel_sources};
-use crate::numerics::cluster_tree::ClusterTree;
+use crate::numerics::cluster_tree::{Cluster, ClusterTree};
 use crate::numerics::multipole::Multipole;
 
 /// A bound of int dt/sqrt(t^2 - s^2) over any panel, for any radius that is further from a knot than e^-36 of the
@@ -78,6 +78,20 @@ impl Panels {
     /// The kernel's sources.
     pub(super) fn sources(&self) -> &ClusterTree<Multipole> {
         self.sources.get_or_init(|| panel_sources::sources(&self.panels))
+    }
+
+    /// Adds the sources of a span to those of its squares.
+    pub(super) fn add_sources(&self, span: &Span, sources: &mut Multipole) {
+        let SpanParts { low, whole, high } = self.parts(span);
+        for (index, part) in low.into_iter().chain(high) {
+            let panel = &self.panels[index];
+            panel_sources::add_panel(sources, panel, (panel.t_of(part.inner), panel.t_of(part.outer)), 1.0);
+        }
+        let mut add = |cluster: &Cluster<Multipole>| {
+            sources.add(&cluster.sources, 1.0);
+            true
+        };
+        self.sources().visit(whole, &mut add, &mut |_| {});
     }
 
     pub(super) fn level(&self, radius: f64) -> f64 {

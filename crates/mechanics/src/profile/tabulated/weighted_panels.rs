@@ -25,7 +25,7 @@ const LANES: usize = 4;
 const MANY: usize = 64;
 
 /// The moments of a cluster of so many panels are made of what is in it at once, not half by half.
-const FEW_PANELS: usize = 8;
+const FEW_PANELS: usize = 2;
 
 /// A stretch within the panel of this index, and its weight.
 type Part = (usize, Span, f64);
