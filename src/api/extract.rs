@@ -13,7 +13,9 @@ use http_body::Body as _;
 use sha2::{Digest as _, Sha256};
 use tokio::time::{Instant, timeout};
 
-use crate::admission::{INLINE, Pool, PoolError, Quota, RequestPermit, Reservation, Stop, StopOnDrop, UNCOUNTED};
+use crate::admission::{
+    INLINE, Nanoseconds, Pool, PoolError, Quota, RequestPermit, Reservation, Stop, StopOnDrop, UNCOUNTED,
+};
 use crate::computations::files;
 use crate::otlp;
 use crate::server::RequestClient;
@@ -43,6 +45,13 @@ pub struct HeldResources {
     _permit: RequestPermit,
     /// The work of its check.
     spent: Duration,
+}
+
+/// A body that has been read.
+enum ReadBody<T: Document> {
+    Checked(T::Checked),
+    /// The check prepares a profile, at this cost.
+    Unprepared(T, Nanoseconds),
 }
 
 impl HeldResources {
@@ -99,14 +108,17 @@ impl<T: Document + 'static, const OPTIONAL: bool> FromRequest<Arc<App>> for Chec
             let key = key.map(|key| RequestKey { key, fingerprint: fingerprint(&parts, &bytes) });
             let document = wire::parse::<T>(&bytes)?;
             let cost = check.cost(&document)?;
-            // Or else the check prepares a profile, at this cost.
-            let read = if cost < INLINE { Ok(check.check(document)??) } else { Err((document, cost)) };
+            let read = if cost < INLINE {
+                ReadBody::Checked(check.check(document)??)
+            } else {
+                ReadBody::Unprepared(document, cost)
+            };
             Ok::<_, Problem>((read, key))
         };
         let (read, key) = app.pool.run(cost, work).await??;
         let body = match read {
-            Ok(body) => body,
-            Err((document, cost)) => {
+            ReadBody::Checked(body) => body,
+            ReadBody::Unprepared(document, cost) => {
                 let shape = document.profile().map_or(0, |defined| bytes::of_shape(defined.profile));
                 app.pool.resize(&mut memory, shape.max(length.saturating_mul(bytes::EXPANSION))).await?;
                 let work = move || otlp::part!("prepare").in_scope(|| profiles.check(document));

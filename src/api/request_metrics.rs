@@ -140,15 +140,23 @@ impl Endpoint {
 
 #[cfg(test)]
 mod tests {
-    use super::{ABANDONED, RequestMetrics};
+    use super::{ABANDONED, NONE, RequestMetrics};
     use crate::api::document;
     use axum::http::Method;
+    use prometheus::proto::MetricFamily;
     use std::time::Duration;
+
+    fn metrics() -> RequestMetrics {
+        RequestMetrics::of(&serde_json::from_str(document()).unwrap())
+    }
+
+    fn families(traffic: &RequestMetrics) -> Vec<MetricFamily> {
+        traffic.collectors().iter().flat_map(|collector| collector.collect()).collect()
+    }
 
     /// The number of requests with a status, if it is shown.
     fn shown(traffic: &RequestMetrics, route: &str, method: &str, status: &str) -> Option<f64> {
-        let [requests, ..] = traffic.collectors();
-        let families = requests.collect();
+        let families = families(traffic);
         let mut found = families[0].get_metric().iter().filter(|metric| {
             let labels: Vec<&str> = metric.get_label().iter().map(|label| label.value()).collect();
             labels == [method, route, status]
@@ -157,8 +165,22 @@ mod tests {
     }
 
     #[test]
+    fn what_clients_make_up_adds_no_labels() {
+        let traffic = metrics();
+        let before: Vec<usize> = families(&traffic).iter().map(|family| family.get_metric().len()).collect();
+        for number in 0..1_000 {
+            let method = Method::from_bytes(format!("M{number}").as_bytes()).unwrap();
+            traffic.endpoint(None, &method).answered(404, Duration::ZERO);
+        }
+        let after: Vec<usize> = families(&traffic).iter().map(|family| family.get_metric().len()).collect();
+        assert_eq!(after, before.iter().map(|count| count + 1).collect::<Vec<_>>());
+        assert_eq!(shown(&traffic, NONE, "other", "404"), Some(1_000.0));
+        assert_eq!(traffic.endpoint(None, &Method::from_bytes(b"BREW").unwrap()).duration.get_sample_count(), 1_000);
+    }
+
+    #[test]
     fn a_described_endpoint_is_shown_at_zero_and_a_status_when_it_comes() {
-        let traffic = RequestMetrics::of(&serde_json::from_str(document()).unwrap());
+        let traffic = metrics();
         let route = "/contacts/{id}/move";
         let abandoned = ABANDONED.to_string();
         let of = |status: &str| shown(&traffic, route, "POST", status);

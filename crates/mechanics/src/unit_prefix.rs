@@ -21,7 +21,7 @@ pub fn in_unit(value: f64, unit: &str) -> String {
 pub fn unit_prefix(largest: f64) -> (f64, &'static str) {
     const PREFIXES: [(i32, &str); 9] =
         [(-12, "p"), (-9, "n"), (-6, "µ"), (-3, "m"), (0, ""), (3, "k"), (6, "M"), (9, "G"), (12, "T")];
-    let fits = |(exponent, _): &&(i32, &str)| largest >= 0.999_999 * 10_f64.powi(*exponent);
+    let fits = |(exponent, _): &&(i32, &str)| largest >= 0.999_999_5 * 10_f64.powi(*exponent);
     let (exponent, prefix) = if largest > 0.0 && largest.is_finite() {
         PREFIXES.iter().rev().find(fits).copied().unwrap_or(PREFIXES[0])
     } else {
@@ -48,5 +48,7 @@ mod tests {
         {
             assert_eq!(unit_prefix(largest).1, prefix, "{largest}");
         }
+        // Six digits round to 999.999 m and to 1.
+        assert_eq!([0.999_999_2, 0.999_999_6].map(|largest| unit_prefix(largest).1), ["m", ""]);
     }
 }

@@ -37,7 +37,11 @@ impl<'de> Visitor<'de> for JsonValueVisitor {
         f.write_str("a JSON value")
     }
 
-    plain! { visit_bool(bool) visit_i64(i64) visit_u64(u64) visit_f64(f64) visit_str(&str) }
+    plain! { visit_bool(bool) visit_i64(i64) visit_u64(u64) visit_str(&str) }
+
+    fn visit_f64<E: Error>(self, value: f64) -> Result<Value, E> {
+        Number::from_f64(value).map(Value::Number).ok_or_else(|| E::custom("number out of range"))
+    }
 
     fn visit_unit<E: Error>(self) -> Result<Value, E> {
         Ok(Value::Null)

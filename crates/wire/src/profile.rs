@@ -5,12 +5,13 @@
 //! known by their load curve alone in [`curve_profiles`](super::curve_profiles).
 
 use std::fmt;
+use std::marker::PhantomData;
 use std::ops::RangeInclusive;
 use std::sync::LazyLock;
 
-use serde::de::{DeserializeOwned, Error as _, MapAccess, Visitor};
-use serde::{Deserialize, Deserializer, Serialize};
-use serde_json::{Map, Value, json};
+use serde::de::value::{MapDeserializer, SeqDeserializer};
+use serde::de::{DeserializeOwned, Error as _, IntoDeserializer, MapAccess, Visitor};
+use serde::{Deserialize, Deserializer, Serialize, forward_to_deserialize_any};
 use utoipa::ToSchema;
 use utoipa::openapi::{RefOr, Schema};
 
@@ -256,7 +257,16 @@ fn check_sum(
 struct Members {
     kind: Option<Kind>,
     parts: Option<Vec<Profile>>,
-    others: Map<String, Value>,
+    others: Vec<(&'static str, Member)>,
+}
+
+/// A member that the document of a family is read from again, without a detour by JSON: a table may be long.
+enum Member {
+    Number(f64),
+    Column(Vec<f64>),
+    Direction(MotionAxis),
+    /// Parts of a sum, which no other family has.
+    Parts,
 }
 
 /// The names of the members that are arrays of numbers.
@@ -277,19 +287,48 @@ static NAMES: LazyLock<Vec<&'static str>> = LazyLock::new(|| {
 impl Members {
     /// The document of a family, if all the members given belong to it.
     fn document<T: DeserializeOwned, E: serde::de::Error>(mut self) -> Result<T, E> {
-        if self.parts.is_some() {
-            // No other family has any, whatever they are.
-            self.others.insert("parts".to_owned(), Value::Null);
-        }
-        serde_json::from_value(Value::Object(self.others)).map_err(E::custom)
+        self.others.extend(self.parts.is_some().then_some(("parts", Member::Parts)));
+        T::deserialize(MapDeserializer::new(self.others.into_iter()))
     }
 
     fn sum<E: serde::de::Error>(self) -> Result<SumProfile, E> {
-        match (self.others.keys().next(), self.parts) {
-            (Some(foreign), _) => Err(E::unknown_field(foreign, &["parts"])),
+        match (self.others.first(), self.parts) {
+            (Some((foreign, _)), _) => Err(E::unknown_field(foreign, &["parts"])),
             (None, None) => Err(E::missing_field("parts")),
             (None, Some(parts)) => Ok(SumProfile { parts }),
         }
+    }
+}
+
+impl<'de, E: serde::de::Error> IntoDeserializer<'de, E> for Member {
+    type Deserializer = MemberDeserializer<E>;
+
+    fn into_deserializer(self) -> MemberDeserializer<E> {
+        MemberDeserializer(self, PhantomData)
+    }
+}
+
+struct MemberDeserializer<E>(Member, PhantomData<E>);
+
+impl<'de, E: serde::de::Error> Deserializer<'de> for MemberDeserializer<E> {
+    type Error = E;
+
+    fn deserialize_any<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, E> {
+        match self.0 {
+            Member::Number(number) => visitor.visit_f64(number),
+            Member::Column(numbers) => visitor.visit_seq(SeqDeserializer::new(numbers.into_iter())),
+            Member::Direction(direction) => visitor.visit_enum(direction.name().into_deserializer()),
+            Member::Parts => visitor.visit_unit(),
+        }
+    }
+
+    fn deserialize_option<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, E> {
+        visitor.visit_some(self)
+    }
+
+    forward_to_deserialize_any! {
+        bool i8 i16 i32 i64 i128 u8 u16 u32 u64 u128 f32 f64 char str string bytes byte_buf unit unit_struct
+        newtype_struct seq tuple tuple_struct map struct enum identifier ignored_any
     }
 }
 
@@ -322,11 +361,12 @@ impl<'de> Visitor<'de> for MembersVisitor {
                 "parts" => members.parts.replace(map.next_value()?).is_some(),
                 name => {
                     let value = match name {
-                        "direction" => json!(map.next_value::<MotionAxis>()?),
-                        column if COLUMNS.contains(&column) => json!(map.next_value::<Vec<f64>>()?),
-                        _ => json!(map.next_value::<f64>()?),
+                        "direction" => Member::Direction(map.next_value()?),
+                        column if COLUMNS.contains(&column) => Member::Column(map.next_value()?),
+                        _ => Member::Number(map.next_value()?),
                     };
-                    members.others.insert(name.to_owned(), value).is_some()
+                    members.others.push((name, value));
+                    members.others.iter().filter(|(other, _)| *other == name).count() > 1
                 }
             };
             if is_repeated {

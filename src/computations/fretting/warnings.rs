@@ -1,6 +1,6 @@
 //! What to know about the largest value of a fatigue criterion, and of a cycle, before it is trusted.
 
-use stickslip_mechanics::fatigue::{Ratings, Worst};
+use stickslip_mechanics::fatigue::{Criterion, Ratings, Worst};
 use stickslip_mechanics::{Contact, Move, in_unit};
 use stickslip_wire::fretting::FrettingTask;
 use stickslip_wire::subsurface::Places;
@@ -168,9 +168,12 @@ pub(super) fn beyond_model(
     if bulk > 0.0 && bulk < LEAST_STRESS {
         messages.push(format!("the bulk stress reaches {} alone: is it in Pa, rather than MPa?", in_unit(bulk, "Pa")));
     }
-    // All but that of Fatemi and Socie, the last of them, are stresses.
-    let limits = NAMES.into_iter().zip(task.criteria).take(4).filter_map(|(name, asked)| Some((name, asked?.1?)));
-    for (name, limit) in limits {
+    for (name, asked) in NAMES.into_iter().zip(task.criteria) {
+        let Some((criterion, Some(limit))) = asked else { continue };
+        if matches!(criterion, Criterion::FatemiSocie { .. }) {
+            // A strain.
+            continue;
+        }
         if limit < LEAST_STRESS {
             messages.push(format!("the limit of {name} is {}: is it in Pa, rather than MPa?", in_unit(limit, "Pa")));
         } else if limit > MAX_STRAIN * e_star {
