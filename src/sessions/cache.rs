@@ -68,8 +68,8 @@ pub(super) struct WaitingMove {
     pub(super) by: Option<Arc<str>>,
     pub(super) reservation: StorageReservation,
     pub(super) span: Span,
-    /// What becomes of it if another one takes it: it is stored, or the store has refused those made with it; nothing if
-    /// it has not been made.
+    /// What becomes of it if another one takes it: it is stored, or the store has refused those made with it; nothing
+    /// if it has not been made.
     pub(super) answer: oneshot::Sender<Option<Result<Reply, SessionError>>>,
 }
 

@@ -98,8 +98,8 @@ fn checked(bytes: &[u8]) -> Option<&[u8]> {
     (crc32fast::hash(state) == u32::from_le_bytes(*checksum)).then_some(state)
 }
 
-/// Compares a snapshot with the state that it should be, to the last bit. Returns whether this engine made it, as others
-/// are never read; or what is wrong with it.
+/// Compares a snapshot with the state that it should be, to the last bit. Returns whether this engine made it, as
+/// others are never read; or what is wrong with it.
 pub(super) fn compare(state: &Contact, snapshot: &[u8]) -> Result<bool, &'static str> {
     match checked(snapshot) {
         None => Err("is damaged; it is not used"),

@@ -33,7 +33,8 @@ impl Committer {
         Committer::new(Arc::clone(&self.pool), Arc::clone(&self.changes), Arc::clone(&self.commits))
     }
 
-    /// Makes or refuses each of the changes, and answers them; but returns those whose contacts other transactions hold.
+    /// Makes or refuses each of the changes, and answers them; but returns those whose contacts other transactions
+    /// hold.
     pub(super) async fn commit(&mut self, mut batch: Vec<WriteRequest>) -> Vec<WriteRequest> {
         let (mut tries, pool) = (Tries::default(), Arc::clone(&self.pool));
         let refusal = loop {
@@ -50,7 +51,7 @@ impl Committer {
             let fault = match fault {
                 // What fails for one of them.
                 Fault::Duplicate(_) | Fault::Locked(_) | Fault::Refused(StoreError::Failed(_)) if batch.len() > 1 => {
-                    return self.commit_each(batch, matches!(fault, Fault::Locked(_))).await;
+                    return self.commit_parts(batch, matches!(fault, Fault::Locked(_))).await;
                 }
                 Fault::Locked(_) => return batch,
                 Fault::Duplicate(text) => {
@@ -84,16 +85,19 @@ impl Committer {
         batch
     }
 
-    /// Commits each request of a batch alone, so that one that fails, or waits for what another transaction holds, does
-    /// not keep the others from it. Those that have waited for locks for as long as they may are refused.
-    async fn commit_each(&mut self, batch: Vec<WriteRequest>, locked: bool) -> Vec<WriteRequest> {
-        let mut held = Vec::new();
-        for request in batch {
-            if locked && request.is_overdue() {
-                request.refuse_as_locked();
+    /// Commits parts of a batch of which one request fails, or waits for what another transaction holds, so that the
+    /// others succeed: halves, or each request alone where a part may have to wait, until the requests have waited for
+    /// as long as they may.
+    async fn commit_parts(&mut self, mut batch: Vec<WriteRequest>, locked: bool) -> Vec<WriteRequest> {
+        let (mut held, size) = (Vec::new(), if locked { 1 } else { batch.len().div_ceil(2) });
+        while !batch.is_empty() {
+            let rest = batch.split_off(size.min(batch.len()));
+            if locked && batch.iter().all(WriteRequest::is_overdue) {
+                batch.into_iter().for_each(WriteRequest::refuse_as_locked);
             } else {
-                held.extend(Box::pin(self.commit(vec![request])).await);
+                held.extend(Box::pin(self.commit(batch)).await);
             }
+            batch = rest;
         }
         held
     }
