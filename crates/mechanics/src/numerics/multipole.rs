@@ -153,8 +153,8 @@ impl Multipole {
     /// What the roots p and q of the distances of both ends from places give.
     fn roots<const N: usize>(&self, below: [f64; N]) -> Roots<N> {
         let mut roots = Roots { inverse: [0.0; N], sigma: [0.0; N], product: [0.0; N] };
-        for lane in 0..N {
-            let (p, q) = ((self.interval.0 - below[lane]).sqrt(), (self.interval.1 - below[lane]).sqrt());
+        for (lane, below) in below.into_iter().enumerate() {
+            let (p, q) = ((self.interval.0 - below).sqrt(), (self.interval.1 - below).sqrt());
             let inverse = 1.0 / (p + q);
             roots.inverse[lane] = inverse;
             roots.sigma[lane] = -self.width() * inverse * inverse;
