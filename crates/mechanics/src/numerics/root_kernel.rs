@@ -1,9 +1,9 @@
-//! int gamma dt/sqrt(t^2 - kappa) of a power series gamma = sum of c_k t^k, and its derivative with respect to kappa, at
-//! several kappa side by side.
+//! int gamma dt/sqrt(t^2 - kappa) of a power series gamma = sum of c_k t^k, and its derivative with respect to kappa,
+//! at several kappa side by side.
 //!
 //! With v = sqrt(t^2 - kappa) and J_k = int t^k dt/v it holds that k J_k = [t^(k-1) v] + (k - 1) kappa J_(k-2). So the
-//! antiderivative is v A(t^2) + t v B(t^2) + L ln(t + v), A of the odd k, B of the even ones from two on, and A, B and L
-//! depend on kappa alone. Between the ends of a stretch differences are taken of each factor, not of the products, so
+//! antiderivative is v A(t^2) + t v B(t^2) + L ln(t + v), A of the odd k, B of the even ones from two on, and A, B and
+//! L depend on kappa alone. Between the ends of a stretch differences are taken of each factor, not of the products, so
 //! that a thin one keeps its digits; where no c_k and no kappa is negative, no term is.
 
 use super::logarithm::ln_1p;
@@ -121,8 +121,10 @@ fn add_even<const N: usize, const SLOPES: bool>(
     let (high, first) = (stretch.high, series.first().copied().unwrap_or(0.0));
     let (mut width, mut growth) = ([0.0; N], [0.0; N]);
     for lane in 0..N {
-        width[lane] = stretch.gap[lane] / (high + stretch.low[lane]);
-        growth[lane] = (width[lane] + rise[lane]) / (stretch.low[lane] + stretch.v_low[lane]);
+        // A stretch without length has nothing, at zero too.
+        let (gap, low) = (stretch.gap[lane], stretch.low[lane]);
+        width[lane] = gap / (high + low).max(f64::MIN_POSITIVE);
+        growth[lane] = if gap > 0.0 { (width[lane] + rise[lane]) / (low + stretch.v_low[lane]) } else { 0.0 };
     }
     let logarithm = ln_1p(growth);
     for lane in 0..N {

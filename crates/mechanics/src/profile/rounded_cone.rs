@@ -197,7 +197,7 @@ impl Shape for RoundedCone {
         let above = flank.map_or(0.0, |span| smooth_coordinate::rise(&self.flank, &span));
         let outer = flank.map_or(Moments::default(), |span| smooth_coordinate::moments(&self.flank, &span));
         Moments::stack(
-            tip.map_or(Moments::default(), |span| self.tip.moments(&span, self.flank.tip_level.value())),
+            tip.map_or(Moments::default(), |span| self.tip.moments(&span, self.tip.level(span.outer_radius))),
             outer,
             above,
         )

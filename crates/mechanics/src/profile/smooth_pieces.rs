@@ -12,8 +12,8 @@
 //! - Far, where the inner end is at least as far beyond r^2 as the piece is wide: a [`Multipole`]. What lies beyond a
 //!   singularity is far from all that is inside it.
 //! - At a kink, which q begins at as a power of t = sqrt(x^2 - b^2): with gamma = t q = sum of g_k t^k and kappa = r^2
-//!   - b^2 it is the integral of [`root_kernel`](crate::numerics::root_kernel). t ends at a quarter of its distance from
-//!     the next singularity there, and what is inside that is far.
+//!   - b^2 it is the integral of [`root_kernel`](crate::numerics::root_kernel). t ends at a quarter of its distance
+//!     from the next singularity there, and what is inside that is far.
 //!
 //! A vertical edge adds the levels that rings cross there, over the root of its distance.
 //!

@@ -103,6 +103,23 @@ fn kernels_of_odd_powers_are_finite_at_the_centre_and_so_are_their_slopes_off_it
 }
 
 #[test]
+fn slopes_of_kernels_are_finite_at_any_radius_off_the_centre() {
+    for r in [1e-9, 1e-90, 1e-150, 1e-160, 1e-170, 1e-200] {
+        let at = StressRadius::new(r);
+        // int x^2 dx/sqrt(x^2 - r^2) = (a v + r^2 ln((a + v)/r))/2 and int x^4 dx/sqrt(x^2 - r^2) for r << a.
+        for (n, slope) in [(3.0, 0.5 * ((2.0 * 0.4_f64 / r).ln() - 1.0)), (5.0, 0.25 * 0.4 * 0.4)] {
+            let power = Profile::PowerLaw(PowerLaw::new(n, 0.2).unwrap());
+            let whole = ring(&power, DoubleDouble::ZERO, power.level(0.4));
+            let found = power.kernel_slope(&at, &whole) / power.slope(1.0);
+            // The square of a radius below 1e-154 has lost digits, or is zero.
+            let lost = if r > 1e-154 { 1e-12 } else { 1e-6 };
+            let right = if r > 1e-162 { (found / slope - 1.0).abs() < lost } else { found.is_finite() };
+            assert!(right, "{n} at {r}: {found} is not {slope}");
+        }
+    }
+}
+
+#[test]
 fn power_laws_from_the_smallest_exponent_to_the_largest() {
     // kappa = sqrt(pi) Gamma(n/2 + 1)/Gamma((n + 1)/2), the g(1) of f = r^n, to 17 digits.
     for (n, kappa) in [

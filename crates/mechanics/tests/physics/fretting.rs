@@ -65,7 +65,8 @@ fn ruiz_multiplies_half_ranges_by_the_largest_tension() {
     assert!(found.values[0][3] == 0.0 && found.values[1][..2].iter().any(|value| *value > 0.0));
 }
 
-/// In gross slip the shear stress is mu p(r) both ways, and the surface of a sphere has moved by u_max (1 - r^2/(2 a^2)).
+/// In gross slip the shear stress is mu p(r) both ways, and the surface of a sphere has moved by
+/// u_max (1 - r^2/(2 a^2)).
 #[test]
 fn in_gross_slip_ruiz_is_exact_and_has_no_tension_where_all_is_pressed() {
     let contact = steel(sphere(0.01), 0.5, 1e-4);
