@@ -96,7 +96,10 @@ impl UsageByTenant {
         let Some(client) = client else { return };
         // A count under way may know of it already, and the next one does.
         let Ok(_counting) = client.counting.try_lock() else { return };
-        if let Some((usage, ..)) = &mut client.known.lock().counted {
+        let known = &mut *client.known.lock();
+        if let Some((usage, ..)) = &mut known.counted {
+            // Some of it may have been stored since the count.
+            *usage = sum(*usage, std::mem::take(&mut known.stored));
             usage.contacts = usage.contacts.saturating_sub(deleted.contacts);
             usage.bytes = usage.bytes.saturating_sub(deleted.bytes);
         }

@@ -261,6 +261,18 @@ async fn contacts_beyond_the_quota_are_refused_by_its_name_until_some_are_delete
 }
 
 #[tokio::test]
+async fn a_contact_that_is_deleted_makes_room_at_once_for_another() {
+    let service = Service::start(&["--max-contacts-per-tenant", "1", "--log", "warn"]);
+    for _ in 0..4 {
+        let answer = service.ask(HONEST, &post("/contacts", &ball().to_string())).await.unwrap();
+        assert_eq!(answer.statuses, [201], "{}", answer.text);
+        let id = &answer.text.split("\"id\":\"").nth(1).unwrap()[..36];
+        let delete = get(&format!("/contacts/{id}")).replacen("GET", "DELETE", 1);
+        assert_eq!(service.ask(HONEST, &delete).await.unwrap().statuses, [204]);
+    }
+}
+
+#[tokio::test]
 async fn a_search_that_cannot_end_in_time_is_refused_at_once_with_what_would_fit() {
     let service = Service::start(&["--deadline", "1s", "--log", "warn"]);
     let refused = service.ask(HONEST, &post("/simulate", &search(99_999).to_string())).await.unwrap();

@@ -36,8 +36,11 @@ impl Committer {
     /// Makes or refuses each of the changes, and answers them; but returns those whose contacts other transactions
     /// hold.
     pub(super) async fn commit(&mut self, mut batch: Vec<WriteRequest>) -> Vec<WriteRequest> {
-        let (mut tries, pool) = (Tries::default(), Arc::clone(&self.pool));
+        let (mut tries, mut freed, pool) = (Tries::default(), false, Arc::clone(&self.pool));
         let refusal = loop {
+            if batch.is_empty() {
+                return batch;
+            }
             let begin = Instant::now();
             let (sent, outcome) = match self.connection().await {
                 Ok(connection) => (true, connection.commit_batch(&pool, &batch).await),
@@ -49,11 +52,14 @@ impl Committer {
             };
             self.commits.failed.inc();
             let fault = match fault {
-                // What fails for one of them.
-                Fault::Duplicate(_) | Fault::Locked(_) | Fault::Refused(StoreError::Failed(_)) if batch.len() > 1 => {
-                    return self.commit_parts(batch, matches!(fault, Fault::Locked(_))).await;
+                Fault::Locked(_) => {
+                    batch = without_overdue(batch);
+                    return if batch.len() < 2 { batch } else { self.commit_halves(batch).await };
                 }
-                Fault::Locked(_) => return batch,
+                // What fails for one of them.
+                Fault::Duplicate(_) | Fault::Refused(StoreError::Failed(_)) if batch.len() > 1 => {
+                    return self.commit_halves(batch).await;
+                }
                 Fault::Duplicate(text) => {
                     let Some(request) = batch.pop() else { return batch };
                     // A key from long ago is made free.
@@ -62,13 +68,16 @@ impl Committer {
                         outcome_of(&self.pool, &request).await
                     };
                     match known.await {
-                        Ok(false) => batch.push(request),
-                        known => {
-                            answer_known(request, known.map(drop), &self.changes);
-                            return batch;
+                        Ok(false) if !freed => {
+                            freed = true;
+                            batch.push(request);
+                            continue;
                         }
+                        // It is taken again, or by something else.
+                        Ok(false) => request.answer(Err(StoreError::Unavailable(text))),
+                        known => answer_known(request, known.map(drop), &self.changes),
                     }
-                    Fault::Conflict(text)
+                    return batch;
                 }
                 Fault::Lost(text) => {
                     self.connection = None;
@@ -85,20 +94,12 @@ impl Committer {
         batch
     }
 
-    /// Commits parts of a batch of which one request fails, or waits for what another transaction holds, so that the
-    /// others succeed: halves, or each request alone where a part may have to wait, until the requests have waited for
-    /// as long as they may.
-    async fn commit_parts(&mut self, mut batch: Vec<WriteRequest>, locked: bool) -> Vec<WriteRequest> {
-        let (mut held, size) = (Vec::new(), if locked { 1 } else { batch.len().div_ceil(2) });
-        while !batch.is_empty() {
-            let rest = batch.split_off(size.min(batch.len()));
-            if locked && batch.iter().all(WriteRequest::is_overdue) {
-                batch.into_iter().for_each(WriteRequest::refuse_as_locked);
-            } else {
-                held.extend(Box::pin(self.commit(batch)).await);
-            }
-            batch = rest;
-        }
+    /// Commits each half of a batch of which one request fails, or waits for what another transaction holds, so that
+    /// the others succeed.
+    async fn commit_halves(&mut self, mut batch: Vec<WriteRequest>) -> Vec<WriteRequest> {
+        let second = batch.split_off(batch.len() / 2);
+        let mut held = Box::pin(self.commit(batch)).await;
+        held.extend(Box::pin(self.commit(second)).await);
         held
     }
 
@@ -154,6 +155,16 @@ impl Committer {
             }
         }
     }
+}
+
+/// Answers those that have waited for locks for as long as they may, and returns the others.
+pub(super) fn without_overdue(batch: Vec<WriteRequest>) -> Vec<WriteRequest> {
+    let (overdue, rest): (Vec<_>, Vec<_>) = batch.into_iter().partition(WriteRequest::is_overdue);
+    if let Some(first) = overdue.first() {
+        tracing::warn!(contact = %first.id(), changes = overdue.len(), "locks of other transactions were not released");
+    }
+    overdue.into_iter().for_each(WriteRequest::refuse_as_locked);
+    rest
 }
 
 /// Answers a request, and wakes the listeners of a session that it has changed.

@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use tokio::sync::{OwnedMutexGuard, oneshot};
+use tokio::sync::{OwnedMutexGuard, OwnedSemaphorePermit, oneshot};
 use uuid::Uuid;
 
 use crate::store::{Receipt, Record, Result, Session, StoreError};
@@ -27,6 +27,8 @@ pub(super) struct WriteRequest {
     pub(super) in_doubt: bool,
     /// Those of its contact and its key: later changes wait until it is answered.
     pub(super) locks: Vec<OwnedMutexGuard<()>>,
+    /// Its place among those that wait for other transactions, if it has one.
+    pub(super) place: Option<OwnedSemaphorePermit>,
     pub(super) answer: oneshot::Sender<Result<()>>,
 }
 
@@ -35,7 +37,7 @@ impl WriteRequest {
     pub(super) fn new(change: Change, receipt: Option<Receipt>) -> (WriteRequest, oneshot::Receiver<Result<()>>) {
         let (answer, answered) = oneshot::channel();
         let (stamp, arrived, locks) = (random_stamp(), Instant::now(), Vec::new());
-        (WriteRequest { change, receipt, stamp, arrived, in_doubt: false, locks, answer }, answered)
+        (WriteRequest { change, receipt, stamp, arrived, in_doubt: false, locks, place: None, answer }, answered)
     }
 
     /// Whether it has waited for locks for as long as it may.

@@ -3,7 +3,8 @@
 use std::sync::Arc;
 use std::time::Duration;
 
-use tokio::sync::{Mutex, Semaphore, mpsc};
+use tokio::sync::mpsc::error::SendError;
+use tokio::sync::{Semaphore, mpsc};
 use tokio::time::timeout;
 use uuid::Uuid;
 
@@ -11,7 +12,7 @@ use crate::store::{Changes, Commits, Receipt, Result, StoreError, batch};
 
 use super::change_locks::ChangeLocks;
 use super::client_pool::ClientPool;
-use super::committer::Committer;
+use super::committer::{Committer, without_overdue};
 use super::fault::Backoff;
 use super::request::{Change, WriteRequest};
 
@@ -51,6 +52,11 @@ impl Writer {
             if let Some(key) = request.key().map(str::to_owned) {
                 request.locks.push(self.keys.lock(key).await);
             }
+            // Whoever had the locks before may have waited for those of other transactions.
+            if request.is_overdue() {
+                request.refuse_as_locked();
+                return Ok(());
+            }
             self.queue.send(request).await
         };
         match timeout(PATIENCE, send).await {
@@ -65,31 +71,34 @@ impl Writer {
 /// Makes changes as they arrive. What another transaction holds is tried again on a connection beside that of the
 /// others, which go on without it.
 async fn write_batches(mut requests: mpsc::Receiver<WriteRequest>, mut committer: Committer) {
-    let (places, beside) = (Arc::new(Semaphore::new(LOCKED)), Arc::new(Mutex::new(committer.another())));
+    let (beside, held) = mpsc::unbounded_channel();
+    let places = Arc::new(Semaphore::new(LOCKED));
+    tokio::spawn(write_held(held, committer.another()));
     while let Some(first) = requests.recv().await {
-        for held in committer.commit(batch::collect(first, &mut requests, WriteRequest::rows)).await {
-            let Ok(place) = Arc::clone(&places).try_acquire_owned() else {
+        for mut held in committer.commit(batch::collect(first, &mut requests, WriteRequest::rows)).await {
+            held.place = Arc::clone(&places).try_acquire_owned().ok();
+            if held.place.is_none() {
                 held.refuse_as_locked();
-                continue;
-            };
-            let beside = Arc::clone(&beside);
-            tokio::spawn(async move {
-                let _place = place;
-                commit_when_free(held, &beside).await;
-            });
+            } else if let Err(SendError(held)) = beside.send(held) {
+                held.answer(Err(StoreError::Failed("the writer has ended".to_owned())));
+            }
         }
     }
 }
 
-/// Tries a change that another transaction holds until it is made or has waited for as long as it may.
-async fn commit_when_free(request: WriteRequest, committer: &Mutex<Committer>) {
-    let (mut backoff, mut held) = (Backoff::for_lock(), Some(request));
-    while let Some(request) = held.take() {
-        if request.is_overdue() {
-            tracing::warn!(contact = %request.id(), "the lock of another transaction was not released");
-            return request.refuse_as_locked();
+/// Tries changes that other transactions hold, all of them together, until they are made or have waited for as long as
+/// they may.
+async fn write_held(mut requests: mpsc::UnboundedReceiver<WriteRequest>, mut committer: Committer) {
+    while let Some(first) = requests.recv().await {
+        let (mut backoff, mut held) = (Backoff::for_lock(), vec![first]);
+        while !held.is_empty() {
+            tokio::select! {
+                () = backoff.pause() => held = committer.commit(without_overdue(held)).await,
+                Some(next) = requests.recv() => {
+                    held.push(next);
+                    backoff = Backoff::for_lock();
+                }
+            }
         }
-        backoff.pause().await;
-        held = committer.lock().await.commit(vec![request]).await.pop();
     }
 }
