@@ -75,7 +75,19 @@ impl Shape for Cone {
     }
 
     fn kernel(&self, order: KernelOrder, at: &StressRadius, span: &Span) -> f64 {
-        slope_series::kernel(&[self.rise], order, at, span)
+        if order == KernelOrder::Slope {
+            return slope_series::kernel(&[self.rise], order, at, span);
+        }
+        let (inner, outer) = span.excess(at.square);
+        if outer <= 0.0 {
+            return 0.0;
+        }
+        // The difference of two arcosh(x/r) = ln((x + v)/r), v = sqrt(x^2 - r^2): quicker than the series, and a search
+        // for protocols on a cone asks for nothing else.
+        let (low, v_low, gap) =
+            if inner > 0.0 { (span.inner_radius, inner.sqrt(), span.gap) } else { (at.radius, 0.0, outer) };
+        let step = gap / (low + span.outer_radius) + gap / (v_low + outer.sqrt());
+        self.rise * (step / (low + v_low)).ln_1p()
     }
 
     fn surface_slope(&self, _r: f64) -> f64 {
