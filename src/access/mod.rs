@@ -41,6 +41,7 @@ impl Role {
     pub const ALL: [Role; 3] = [Role::Write, Role::Read, Role::Metrics];
 
     /// Its name in a file of keys.
+    #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Role::Write => "write",
@@ -121,6 +122,7 @@ impl Keys {
     }
 
     /// How many there are.
+    #[must_use]
     pub fn count(&self) -> usize {
         self.by_prefix.values().map(Vec::len).sum()
     }

@@ -126,6 +126,7 @@ pub(super) fn give_way() -> Duration {
 
 impl SolverSlot {
     /// A slot of a thread that nobody else waits for.
+    #[must_use]
     pub fn alone() -> SolverSlot {
         SolverSlot(None)
     }

@@ -31,11 +31,13 @@ pub(super) const UNIT: usize = 1024;
 
 impl Capacity {
     /// Bytes of the states that work loads and copies at a time.
+    #[must_use]
     pub fn state_bytes(&self) -> usize {
         (self.bytes / STATES_SHARE).min(u32::MAX as usize)
     }
 
     /// Bytes beside those of the work for small reservations, when the others are taken.
+    #[must_use]
     pub fn small_bytes(&self) -> usize {
         (self.bytes / SMALL_SHARE).min(u32::MAX as usize)
     }
@@ -80,6 +82,7 @@ impl Reservation {
     }
 
     /// Whether it is large enough to be counted.
+    #[must_use]
     pub fn is_counted(&self) -> bool {
         self.units() > 0
     }

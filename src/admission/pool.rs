@@ -114,21 +114,25 @@ pub struct Taken {
 }
 
 /// Why work was not done.
-#[expect(missing_docs, reason = "the messages say it")]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum PoolError {
+    /// Nothing became free in time.
     #[error("the server is busy, and nothing became free in time")]
     Busy,
+    /// The queue is full.
     #[error("the server is busy, and its queue is full")]
     QueueFull,
+    /// The client has as much as it may.
     #[error("{0}")]
     Quota(QuotaExceeded),
+    /// The work panicked, which is a bug of this program.
     #[error("the solver panicked")]
     Panicked,
 }
 
 impl Pool {
     /// A pool with these resources; at least one of each.
+    #[must_use]
     pub fn new(capacity: Capacity) -> Pool {
         let semaphore = |permits: usize| Arc::new(Semaphore::new(permits.clamp(1, Semaphore::MAX_PERMITS)));
         Pool(Arc::new(Shared {
@@ -145,16 +149,19 @@ impl Pool {
     }
 
     /// A pool with the default resources.
+    #[must_use]
     pub fn with_defaults() -> Pool {
         Pool::new(Capacity::default())
     }
 
     /// The resources.
+    #[must_use]
     pub fn capacity(&self) -> &Capacity {
         &self.0.capacity
     }
 
     /// What each client may have.
+    #[must_use]
     pub fn quotas(&self) -> &Quotas {
         &self.0.quotas
     }
@@ -170,6 +177,7 @@ impl Pool {
     }
 
     /// The resources in use.
+    #[must_use]
     pub fn taken(&self) -> Taken {
         let taken = |most: usize, semaphore: &Semaphore| most.max(1).saturating_sub(semaphore.available_permits());
         Taken {
@@ -229,6 +237,7 @@ impl Pool {
     }
 
     /// The metrics.
+    #[must_use]
     pub fn meters(&self) -> &PoolMeters {
         &self.0.meters
     }
@@ -303,6 +312,7 @@ impl Pool {
 
 impl Kind {
     /// The kind of work of this estimated cost that somebody waits for.
+    #[must_use]
     pub fn of(cost: Nanoseconds) -> Kind {
         if Duration::from_nanos(cost) > INTERACTIVE { Kind::Long } else { Kind::Interactive }
     }

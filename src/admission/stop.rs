@@ -64,11 +64,13 @@ impl Stop {
     }
 
     /// A flag for a part of the work: it is raised with this one, or after the part has taken `allowed`.
+    #[must_use]
     pub fn child_deadline(&self, allowed: Option<Duration>) -> Stop {
         Stop(Arc::new(Flag { allowed, parent: Some(self.clone()), ..Flag::default() }))
     }
 
     /// The time limit of the work, if it has one.
+    #[must_use]
     pub fn time_limit(&self) -> Option<Duration> {
         self.0.allowed
     }
@@ -79,11 +81,13 @@ impl Stop {
     }
 
     /// The work that has been counted by [`Stop::count`].
+    #[must_use]
     pub fn before(&self) -> Duration {
         Duration::from_nanos(self.0.before.load(Ordering::Relaxed))
     }
 
     /// How long the work has given way to others.
+    #[must_use]
     pub fn waited(&self) -> Duration {
         Duration::from_nanos(self.0.waited.load(Ordering::Relaxed))
     }

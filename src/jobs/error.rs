@@ -9,15 +9,23 @@ use crate::simulation::SweepError;
 use crate::store::StoreError;
 
 /// Why a sweep or a job has no result.
-#[expect(missing_docs, reason = "the messages say it")]
 #[derive(Debug, thiserror::Error)]
 pub enum JobError {
+    /// The job was not found, or has been deleted.
     #[error("there is no job {0}")]
     NotFound(Uuid),
+    /// It has not ended.
     #[error("{done} of {points} points are done")]
-    Unfinished { done: u64, points: u64 },
+    Unfinished {
+        /// Points that are done.
+        done: u64,
+        /// Points in all.
+        points: u64,
+    },
+    /// It has failed.
     #[error("the job has failed: {0}")]
     Failed(String),
+    /// A point takes longer than a request may.
     #[error("a point is estimated at {wanted} s of work: allowed are {allowed} s")]
     LongPoint {
         /// The estimated work, s.
@@ -25,6 +33,7 @@ pub enum JobError {
         /// The allowed work, s.
         allowed: u64,
     },
+    /// The work exceeds the limit of one job.
     #[error("the sweep needs about {wanted} s of work of one core, {each} s a point: allowed are {allowed} s")]
     TooMuch {
         /// The estimated work, s.
@@ -34,14 +43,24 @@ pub enum JobError {
         /// The allowed work, s.
         allowed: u64,
     },
+    /// The limit of clients that follow jobs is reached.
     #[error("{} clients follow jobs, which is the limit", super::STREAMS)]
     TooManyStreams,
+    /// The tenant has as many jobs as it may have.
     #[error("{why}: GET /jobs lists them, delete some or wait until they are gone")]
-    TooMany { why: String, retry_after: Duration },
+    TooMany {
+        /// Which limit is reached.
+        why: String,
+        /// When there may be room.
+        retry_after: Duration,
+    },
+    /// It was stopped, or took too long.
     #[error(transparent)]
     Sweep(#[from] SweepError),
+    /// No memory or no thread became free.
     #[error(transparent)]
     Pool(#[from] PoolError),
+    /// The storage refused or failed.
     #[error(transparent)]
     Store(#[from] StoreError),
     /// Stored data cannot be read: a fault of this program.

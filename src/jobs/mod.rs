@@ -83,6 +83,7 @@ metrics! {
 
 impl Jobs {
     /// Jobs in a store, of the tenant without a name.
+    #[must_use]
     pub fn new(store: Arc<dyn Store>, pool: Pool) -> Jobs {
         let common = Common {
             store,
@@ -96,6 +97,7 @@ impl Jobs {
     }
 
     /// The jobs of another tenant.
+    #[must_use]
     pub fn for_tenant(&self, tenant: Tenant) -> Jobs {
         Jobs { tenant, common: Arc::clone(&self.common) }
     }
@@ -112,6 +114,7 @@ impl Jobs {
     }
 
     /// The metrics of this process, for all tenants.
+    #[must_use]
     pub fn meters(&self) -> &JobMeters {
         &self.common.meters
     }

@@ -5,6 +5,7 @@ use std::fs;
 use rustix::time::{ClockId, clock_gettime};
 
 /// Processor time since the start, s.
+#[must_use]
 pub fn processor_seconds() -> f64 {
     let time = clock_gettime(ClockId::ProcessCPUTime);
     time.tv_sec as f64 + 1e-9 * time.tv_nsec as f64

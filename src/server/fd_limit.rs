@@ -8,6 +8,7 @@ use crate::server::limits::SPARE_CONNECTIONS;
 const OTHERS: usize = 128;
 
 /// Raises the limit for this many connections as far as the process may; returns how many it allows.
+#[must_use]
 pub fn room_for(connections: usize) -> usize {
     let besides = (SPARE_CONNECTIONS + OTHERS) as u64;
     let wanted = connections as u64 + besides;

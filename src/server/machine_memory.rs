@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 const CONTROL_GROUPS: &str = "/sys/fs/cgroup";
 
 /// The memory that this process may have, bytes; none if the system does not say.
+#[must_use]
 pub fn available() -> Option<u64> {
     let read = |path: &Path| fs::read_to_string(path).ok();
     let groups = read(Path::new("/proc/self/cgroup")).unwrap_or_default();

@@ -20,6 +20,7 @@ pub const REQUEST: u64 = 64 * KIB;
 pub const STREAM: u64 = 64 * KIB;
 
 /// The bound, bytes.
+#[must_use]
 pub fn memory(connections: &ConnectionLimits, capacity: &Capacity, cache: u64, with_tls: bool) -> u64 {
     let connection = CONNECTION + if with_tls { TLS } else { 0 };
     let requests = (capacity.requests + capacity.queue) as u64;

@@ -26,6 +26,7 @@ use super::replay::Replay;
 use super::{ATTEMPTS, SessionError, written};
 
 /// Bytes that moves take, with their records and the reply; rather too many than too few.
+#[must_use]
 pub fn bytes_of_moves(advance: &Advance) -> usize {
     let radii = advance.stress.as_ref().map_or(0, |stress| stress.length());
     advance.relax.map_or(0, |relax| relax.task.bytes())

@@ -9,36 +9,64 @@ use crate::store::StoreError;
 use stickslip_wire::Rejection;
 
 /// Why an operation on a session failed. Nothing has changed then.
-#[expect(missing_docs, reason = "the messages say it")]
 #[derive(Debug, thiserror::Error)]
 pub enum SessionError {
+    /// The session was not found.
     #[error("there is no contact {0}")]
     NotFound(Uuid),
+    /// There was such a session, and it has expired.
     #[error("the contact {0} has expired")]
     Expired(Uuid),
+    /// The definition differs from the one that the client gave.
     #[error("the contact {0} has another definition: leave `contact` out, or give it as it was made")]
     OtherDefinition(Uuid),
+    /// The sequence is not the one that the client expects.
     #[error("the contact is at sequence {found}, not at {expected}")]
-    Stale { expected: u64, found: u64 },
+    Stale {
+        /// What the client expects.
+        expected: u64,
+        /// The present sequence.
+        found: u64,
+    },
+    /// Other processes have moved the session on, again and again.
     #[error("other requests keep moving the contact, which is now at sequence {found}: try again")]
-    Overtaken { found: u64 },
+    Overtaken {
+        /// The present sequence.
+        found: u64,
+    },
+    /// A fork is to begin after a move that has not been made.
     #[error("the contact has made {found} moves: give 0 to {found}")]
-    NoSuchMove { found: u64 },
+    NoSuchMove {
+        /// The sequence of the session.
+        found: u64,
+    },
+    /// Events are asked for from a move on that has not been made.
     #[error("the contact is at sequence {found}: there is no event {after} yet")]
-    Ahead { after: u64, found: u64 },
+    Ahead {
+        /// The last event that the client has received.
+        after: u64,
+        /// The sequence of the session.
+        found: u64,
+    },
+    /// The limit of clients that listen to events is reached.
     #[error("{} clients listen to events, which is the limit", super::STREAMS)]
     TooManyStreams,
+    /// The mechanics has no answer, or the client no longer waits for it.
     #[error(transparent)]
     Failure(#[from] simulation::Failure),
+    /// The request does not fit the definition of the contact.
     #[error(transparent)]
     Rejected(#[from] Rejection),
+    /// No solver is free, or one failed.
     #[error(transparent)]
     Pool(#[from] PoolError),
+    /// The storage refused or failed.
     #[error(transparent)]
     Store(#[from] StoreError),
+    /// A reply cannot be written: a fault of this program.
     #[error(transparent)]
     Unwritable(#[from] Unwritable),
-    /// A fault of this program.
+    /// Another fault of this program.
     #[error("{0}")]
     Broken(String),
 }

@@ -159,10 +159,9 @@ impl Group {
         let (stop, _raised_at_the_end) = pool.deadline();
         let work = Work { moves: self.moves.len(), depth: live.contact.memory_depth(), ..Work::default() };
         let cost = work.cost(live.contact.profile());
-        let asked = self.moves.iter();
-        let asked =
-            asked.map(|taken| (Arc::clone(&taken.advance), taken.expected, taken.by.clone(), taken.span.clone()));
-        let asked: Vec<_> = asked.collect();
+        let question =
+            |taken: &WaitingMove| (Arc::clone(&taken.advance), taken.expected, taken.by.clone(), taken.span.clone());
+        let asked: Vec<_> = self.moves.iter().map(question).collect();
         let solve = move || {
             let mut outcomes = Vec::with_capacity(asked.len());
             for (advance, expected, by, span) in asked {

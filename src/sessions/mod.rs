@@ -92,6 +92,7 @@ struct Common {
 impl Sessions {
     /// Sessions in a store, of the tenant without a name. At most `capacity` bytes of states are cached; the rest is
     /// replayed when needed.
+    #[must_use]
     pub fn new(store: Arc<dyn Store>, pool: Pool, capacity: usize) -> Sessions {
         let metrics = SessionMetrics::default();
         let common = Common {
@@ -107,36 +108,43 @@ impl Sessions {
     }
 
     /// The sessions of another tenant, for requests that come with the key of this name.
+    #[must_use]
     pub fn for_tenant(&self, tenant: Tenant, key: Arc<str>) -> Sessions {
         Sessions { replay: Replay { tenant, common: Arc::clone(&self.replay.common) }, by: Some(key) }
     }
 
     /// Making, copying, naming and deleting them.
+    #[must_use]
     pub fn changes(&self) -> Changes {
         Changes { replay: self.replay.clone() }
     }
 
     /// Their moves to come.
+    #[must_use]
     pub fn moves(&self) -> Mover {
         Mover { replay: self.replay.clone(), by: self.by.clone() }
     }
 
     /// Their moves of the past.
+    #[must_use]
     pub fn history(&self) -> History {
         History { replay: self.replay.clone(), names_makers: self.names_makers() }
     }
 
     /// The cycles that they have closed.
+    #[must_use]
     pub fn cycles(&self) -> ClosedCycles {
         ClosedCycles { replay: self.replay.clone() }
     }
 
     /// What a bench has measured beside their moves.
+    #[must_use]
     pub fn observations(&self) -> Observations {
         Observations::of(&self.replay)
     }
 
     /// The shared profiles, for work that ends when this flag is raised.
+    #[must_use]
     pub fn profiles(&self, stop: &Stop) -> Profiles {
         Profiles::new(&self.replay.common, stop)
     }
@@ -147,6 +155,7 @@ impl Sessions {
     }
 
     /// Whether requests come with keys, by whose names the history says who made a move.
+    #[must_use]
     pub fn names_makers(&self) -> bool {
         self.by.is_some()
     }
@@ -160,6 +169,7 @@ impl Sessions {
     }
 
     /// Bytes of the cached states, and how many sessions they are.
+    #[must_use]
     pub fn held(&self) -> (usize, usize) {
         self.replay.common.cache.held()
     }
@@ -246,6 +256,7 @@ impl Sessions {
     }
 
     /// The metrics of the sessions.
+    #[must_use]
     pub fn readings(&self) -> Readings<'_> {
         let (bytes, cached) = self.replay.common.cache.held();
         Readings {

@@ -79,6 +79,7 @@ pub async fn trace(
 }
 
 /// Bytes that a loop of this many points takes.
+#[must_use]
 pub fn bytes_of_trace(points: usize) -> usize {
     points * POINT
 }

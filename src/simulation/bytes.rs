@@ -32,6 +32,7 @@ pub(crate) const NUMBER_LENGTH: usize = 24;
 pub(crate) const STATE_LENGTH: usize = 512;
 
 /// Bytes that stresses at this many radii take, as numbers and as JSON.
+#[must_use]
 pub fn of_stress(radii: usize) -> usize {
     radii * RADIUS_BYTES
 }
@@ -43,6 +44,7 @@ pub(crate) fn of_moves(plan: &Plan, steps: Steps) -> usize {
 }
 
 /// Bytes that a shape takes: the series that the mechanics makes of tables, the clusters of asperities.
+#[must_use]
 pub fn of_shape(profile: &wire::Profile) -> usize {
     match profile {
         wire::Profile::Tabulated(table) => table.r.len() * POINT_BYTES,
@@ -54,6 +56,7 @@ pub fn of_shape(profile: &wire::Profile) -> usize {
 }
 
 /// Bytes that a simulation takes, with its reply; rather too many than too few.
+#[must_use]
 pub fn of_simulation(simulation: &Simulation) -> usize {
     let radii = simulation.stress.as_ref().map_or(0, |stress| stress.length());
     let springs = match simulation.solver {
@@ -68,6 +71,7 @@ pub fn of_simulation(simulation: &Simulation) -> usize {
 }
 
 /// Bytes that stresses below the surface take, with their reply.
+#[must_use]
 pub fn of_subsurface(task: &SubsurfaceTask) -> usize {
     task.places.count() * task.columns() * (size_of::<Option<f64>>() + 2 * NUMBER_LENGTH)
 }

@@ -51,6 +51,7 @@ const SUM_POINT_COST: u64 = 2_000;
 const MOVE_ON_SUM: u64 = 13;
 
 /// The cost of preparing a profile.
+#[must_use]
 pub fn of_preparation(profile: &wire::Profile) -> Nanoseconds {
     let points = profile.points() as u64;
     match profile {
@@ -66,6 +67,7 @@ pub fn of_preparation(profile: &wire::Profile) -> Nanoseconds {
 }
 
 /// The cost of preparing the profile of a body that is still JSON: as if all its numbers were of tables.
+#[must_use]
 pub fn of_profile_in(body: &Value) -> Nanoseconds {
     fn numbers(value: &Value) -> u64 {
         match value {
@@ -94,6 +96,7 @@ pub struct Work {
 
 impl Work {
     /// The cost on a shape.
+    #[must_use]
     pub fn cost(&self, profile: &Profile) -> Nanoseconds {
         let moves = (self.moves as u64 * MOVE_COST).saturating_mul(relative_cost_of_moves(profile));
         moves.saturating_add(on_profile(profile, self.stresses(), self.residual))
@@ -123,11 +126,13 @@ impl Work {
 pub const MARGIN: u32 = 4;
 
 /// The cost of the search for extrema with a slip history of this many pieces.
+#[must_use]
 pub fn of_search(profile: &Profile, depth: usize) -> Nanoseconds {
     Work { depth, residual: true, ..Work::default() }.cost(profile)
 }
 
 /// The longest slip history whose search for extrema is not refused before it begins.
+#[must_use]
 pub fn longest_search(profile: &Profile, allowed: Duration) -> usize {
     let most = allowed.saturating_mul(MARGIN);
     let (mut fits, mut not) = (0, limits::MEMORY_DEPTH + 1);
@@ -139,6 +144,7 @@ pub fn longest_search(profile: &Profile, allowed: Duration) -> usize {
 }
 
 /// The cost of writing a table of this many points as JSON.
+#[must_use]
 pub fn writing_table(points: usize) -> Nanoseconds {
     points as u64 * RADIUS_COST
 }
@@ -172,6 +178,7 @@ fn relative_cost_of_moves(profile: &Profile) -> u64 {
 }
 
 /// The cost of a simulation.
+#[must_use]
 pub fn of_simulation(simulation: &Simulation) -> Nanoseconds {
     let moves = simulation.plan.length();
     let radii = simulation.stress.as_ref().map_or(0, |stress| stress.length());
@@ -194,6 +201,7 @@ pub(crate) fn of_springs(springs: usize, passes: usize) -> Nanoseconds {
 }
 
 /// The cost of stresses below the surface, with a slip history of this many pieces.
+#[must_use]
 pub fn of_subsurface(profile: &Profile, task: &SubsurfaceTask, depth: usize) -> Nanoseconds {
     let each = match profile {
         Profile::Sphere(_) => KINK_COST.saturating_mul(depth as u64 + 1),

@@ -45,29 +45,47 @@ pub struct Failure {
 }
 
 /// What is wrong with a request that has no result.
-#[expect(missing_docs, reason = "the messages say it")]
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Cause {
+    /// The mechanics has no answer to it.
     #[error(transparent)]
     Refused(#[from] mechanics::Error),
+    /// The scan yields no profile, or none that reaches the edge of the contact.
     #[error(transparent)]
     Scan(#[from] scan::Error),
+    /// The loops determine nothing, or not what is free.
     #[error(transparent)]
     Loops(#[from] loops::Error),
+    /// The slip history would exceed its limit.
     #[error("the slip history of the contact would have {depth} pieces: allowed are {}", limits::MEMORY_DEPTH)]
-    MemoryFull { depth: usize },
+    MemoryFull {
+        /// The pieces that it would have.
+        depth: usize,
+    },
+    /// The states of a cycle are too many, or too large, to be held together.
     #[error(
         "the states of this cycle take too much memory: make it of fewer moves, or straight in displacement and \
             indentation"
     )]
     CycleTooLarge,
+    /// The work exceeds the time limit of one request.
     #[error("this takes longer than the {} s that are allowed", allowed.as_secs_f64())]
-    TooLong { allowed: Duration },
+    TooLong {
+        /// How long work may take.
+        allowed: Duration,
+    },
+    /// The profile cannot be prepared within the time limit of one request.
     #[error(
         "preparing this profile is estimated at {:.3} s, and {} s are allowed: give fewer points",
         estimate.as_secs_f64(), allowed.as_secs_f64()
     )]
-    Preparation { estimate: Duration, allowed: Duration },
+    Preparation {
+        /// The estimate.
+        estimate: Duration,
+        /// How long work may take.
+        allowed: Duration,
+    },
+    /// The extrema cannot be found within the time limit of one request.
     #[error(
         "finding the extrema of a slip history of up to {depth} pieces is estimated at {estimate} s, and {} s are \
             allowed: up to {fits} pieces fit",
@@ -76,14 +94,20 @@ pub enum Cause {
     Search {
         /// The estimate, s.
         estimate: u64,
+        /// Pieces of slip history.
         depth: usize,
+        /// How many would not be refused.
         fits: usize,
+        /// How long work may take.
         allowed: Duration,
     },
+    /// A contact that is to be relaxed does not touch.
     #[error("the indenter is lifted off, so there is no stress to relax: move it back into contact first")]
     Lifted,
+    /// The request names a stored contact, and only a server has any.
     #[error("needs a running service")]
     NeedsServer,
+    /// The client no longer waits for the result.
     #[error("stopped: the client no longer waits for the result")]
     Stopped,
 }
@@ -96,11 +120,13 @@ impl From<Interrupted> for Failure {
 
 impl Failure {
     /// The failure of what the member at `pointer` asks for.
+    #[must_use]
     pub fn at(pointer: impl Into<String>, cause: impl Into<Cause>) -> Failure {
         Failure { pointer: pointer.into(), cause: cause.into() }
     }
 
     /// The failure for interrupted work that the member at `pointer` requested.
+    #[must_use]
     pub fn interrupted(interrupted: Interrupted, pointer: &str) -> Failure {
         match interrupted {
             Interrupted::Abandoned => Failure::at("", Cause::Stopped),
@@ -109,6 +135,7 @@ impl Failure {
     }
 
     /// This failure, unless `stop` has ended the work that the member at `pointer` requested.
+    #[must_use]
     pub fn unless_interrupted(self, stop: &Stop, pointer: &str) -> Failure {
         match stop.check() {
             Err(interrupted) => Failure::interrupted(interrupted, pointer),
@@ -117,6 +144,7 @@ impl Failure {
     }
 
     /// The code with which `POST /simulate` refuses it.
+    #[must_use]
     pub fn code(&self) -> Code {
         match &self.cause {
             Cause::Refused(error) => match error {
@@ -154,6 +182,7 @@ pub fn needs_stress_field(contact: &mechanics::Contact, pointer: &str) -> Result
 }
 
 /// The quantity that an error is about, if it is about one.
+#[must_use]
 pub fn quantity(error: &mechanics::Error) -> Option<Quantity> {
     match error {
         mechanics::Error::OutOfRange { quantity, .. } => Some(*quantity),

@@ -19,11 +19,13 @@ pub struct Timer<'a> {
 
 impl Timer<'_> {
     /// Starts now.
+    #[must_use]
     pub fn start(stop: &Stop) -> Timer<'_> {
         Timer { stop, begin: Instant::now(), waited: stop.waited() }
     }
 
     /// The time up to now.
+    #[must_use]
     pub fn elapsed(&self) -> Duration {
         self.stop.before() + (self.begin.elapsed() + self.waited).saturating_sub(self.stop.waited())
     }

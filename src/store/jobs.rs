@@ -48,11 +48,13 @@ pub struct Job {
 
 impl Job {
     /// How many chunks it has.
+    #[must_use]
     pub fn chunks(&self) -> u64 {
         self.points.div_ceil(self.chunk.max(1))
     }
 
     /// When it is deleted.
+    #[must_use]
     pub fn expires_at(&self) -> Timestamp {
         let (from, time) = match self.finished_at {
             Some(at) => (at, JOB_LIFETIME),
@@ -209,7 +211,38 @@ impl ChunkQueue {
         }
     }
 
+    /// Removes a job.
     pub(super) fn remove_job(&self, id: Uuid) {
         self.open.lock().remove(&id);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::ChunkQueue;
+    use uuid::Uuid;
+
+    #[test]
+    fn jobs_take_turns_and_each_chunk_is_given_once() {
+        let (queue, owner) = (ChunkQueue::default(), Uuid::now_v7());
+        let (first, second) = (Uuid::now_v7(), Uuid::now_v7());
+        queue.add_job(first, 0..2);
+        queue.add_job(second, 0..2);
+        let mut last = None;
+        let mut turns = Vec::new();
+        while let Some(claim) = queue.claim(owner, last) {
+            last = Some(claim.job);
+            turns.push((claim.job, claim.chunk));
+        }
+        assert_eq!(turns, [(first, 0), (second, 0), (first, 1), (second, 1)]);
+        let claim = super::Claim { job: first, chunk: 1, owner };
+        assert!(queue.is_claimed(claim));
+        queue.release(claim);
+        assert!(!queue.is_claimed(claim));
+        assert_eq!(queue.claim(owner, None), Some(claim));
+        queue.remove_job(first);
+        assert!(!queue.is_claimed(claim));
+        queue.release(claim);
+        assert_eq!(queue.claim(owner, None), None);
     }
 }

@@ -47,11 +47,13 @@ pub struct Tenant(Arc<str>);
 
 impl Tenant {
     /// The tenant of a name.
+    #[must_use]
     pub fn new(name: &str) -> Tenant {
         Tenant(name.into())
     }
 
     /// The name.
+    #[must_use]
     pub fn name(&self) -> &str {
         &self.0
     }
@@ -97,6 +99,7 @@ pub struct Record {
 
 impl Record {
     /// What was measured beside what the contact predicts, if it is an observation.
+    #[must_use]
     pub fn observation(&self) -> Option<ObservedForce> {
         self.measured.map(|Measured { force, at }| ObservedForce::new(force, self.state.force, at))
     }
@@ -125,6 +128,7 @@ pub struct RequestKey {
 
 impl RequestKey {
     /// The same key as that of a tenant. No key holds a space, so that the keys of two tenants always differ.
+    #[must_use]
     pub fn for_tenant(self, tenant: &Tenant) -> RequestKey {
         match tenant.name() {
             "" => self,
@@ -133,6 +137,7 @@ impl RequestKey {
     }
 
     /// Whether it is a key of this tenant.
+    #[must_use]
     pub fn is_of(&self, tenant: &Tenant) -> bool {
         self.key.split_once(' ').map_or("", |(name, _)| name) == tenant.name()
     }
@@ -160,6 +165,7 @@ pub struct Receipt {
 
 impl Receipt {
     /// Bytes that it takes in the store.
+    #[must_use]
     pub fn bytes(&self) -> u64 {
         RECEIPT_OVERHEAD + self.reply.body.len() as u64 + 2 * self.request.key.len() as u64
     }
@@ -214,6 +220,7 @@ pub struct Usage {
 
 impl Usage {
     /// What a change adds: contacts, bytes, and those of the reply that is kept of it.
+    #[must_use]
     pub fn of(contacts: u64, bytes: u64, receipt: Option<&Receipt>) -> Usage {
         Usage { contacts, bytes: bytes + receipt.map_or(0, Receipt::bytes) }
     }
@@ -226,20 +233,24 @@ pub const RECEIPT_OVERHEAD: u64 = 256;
 
 /// Why a call to a store failed. Nothing has changed then, except perhaps after
 /// [`StoreError::Unavailable`] and [`StoreError::Failed`].
-#[expect(missing_docs, reason = "the messages say the rest")]
 #[derive(Clone, Debug, thiserror::Error)]
 pub enum StoreError {
+    /// The session was not found.
     #[error("there is no such contact")]
     NotFound,
     /// There was such a session, of this tenant; it has expired.
     #[error("the contact has expired")]
     Expired(Tenant),
-    /// That is not the expected sequence.
+    /// The session has another sequence than expected.
     #[error("the contact is at sequence {found}")]
-    Stale { found: u64 },
+    Stale {
+        /// Its sequence.
+        found: u64,
+    },
     /// Another request has used the idempotency key meanwhile.
     #[error("the idempotency key has been used")]
     KeyTaken,
+    /// The idempotency key belongs to another request.
     #[error("the idempotency key has been used for another request")]
     KeyReused,
     /// The tenant has as many jobs as it may; the text says which limit is reached.
@@ -247,7 +258,12 @@ pub enum StoreError {
     TooManyJobs(String),
     /// Moves of a contact are missing, or cannot be made again: whatever is shown of it might be wrong.
     #[error("contact {contact}: {what}")]
-    Damaged { contact: Uuid, what: String },
+    Damaged {
+        /// The contact.
+        contact: Uuid,
+        /// What is wrong with it.
+        what: String,
+    },
     /// There is no room left. Nothing has changed.
     #[error("the storage is full: {0}")]
     Full(String),

@@ -7,23 +7,33 @@
 use std::cmp::Ordering;
 
 /// Why tables of a version cannot be used.
-#[expect(missing_docs, reason = "the messages say it")]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum VersionError {
     /// A later version of this program has migrated the store.
     #[error("it has schema version {found}, and this program supports versions up to {known}: start the newer program")]
-    Newer { found: i32, known: i32 },
+    Newer {
+        /// The version of the tables.
+        found: i32,
+        /// The newest version that this program supports.
+        known: i32,
+    },
     /// An earlier version has made the store, which is open for reading only.
     #[error("it has schema version {found}: `stickslip serve` migrates it to version {known}")]
-    Older { found: i32, known: i32 },
+    Older {
+        /// The version of the tables.
+        found: i32,
+        /// The version that this program works with.
+        known: i32,
+    },
 }
 
 /// Why the tables of a store cannot be used.
-#[expect(missing_docs, reason = "the messages say it")]
 #[derive(Debug, thiserror::Error)]
 pub enum SchemaError<E> {
+    /// They have another version.
     #[error(transparent)]
     Version(VersionError),
+    /// The database refused or was lost.
     #[error(transparent)]
     Database(#[from] E),
 }

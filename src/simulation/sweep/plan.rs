@@ -22,6 +22,7 @@ const VALUE_BYTES: usize = 32;
 
 impl Sweep {
     /// The cost of [`Sweep::plan`]: above all of the profile, which each corner may have its own of.
+    #[must_use]
     pub fn planning_cost(checked: &CheckedSweep) -> Nanoseconds {
         let corners = 1_u64 << checked.axes.len();
         INLINE.saturating_add(cost::of_profile_in(&checked.request.base.0).saturating_mul(corners))

@@ -63,6 +63,7 @@ struct Receipts {
 
 impl MemoryStore {
     /// An empty store.
+    #[must_use]
     pub fn new() -> MemoryStore {
         MemoryStore::default()
     }

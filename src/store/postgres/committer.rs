@@ -15,6 +15,9 @@ use super::fault::Fault;
 use super::request::{Change, WriteRequest};
 use super::sql;
 
+/// How often a connection may be lost under one batch: perhaps the batch itself is the cause.
+const LOSSES: usize = 4;
+
 pub(super) struct Committer {
     pool: Arc<ClientPool>,
     changes: Arc<Changes>,
@@ -36,7 +39,7 @@ impl Committer {
     /// Makes or refuses each of the changes, and answers them; but returns those whose contacts other transactions
     /// hold.
     pub(super) async fn commit(&mut self, mut batch: Vec<WriteRequest>) -> Vec<WriteRequest> {
-        let (mut tries, mut freed, pool) = (Tries::default(), false, Arc::clone(&self.pool));
+        let (mut tries, mut losses, mut freed, pool) = (Tries::default(), 0, false, Arc::clone(&self.pool));
         let refusal = loop {
             if batch.is_empty() {
                 return batch;
@@ -82,6 +85,10 @@ impl Committer {
                 Fault::Lost(text) => {
                     self.connection = None;
                     batch.iter_mut().for_each(|request| request.in_doubt |= sent);
+                    losses += usize::from(sent);
+                    if losses > LOSSES {
+                        break StoreError::Unavailable(text);
+                    }
                     Fault::Lost(text)
                 }
                 other => other,

@@ -110,6 +110,7 @@ impl PostgresStore {
     }
 
     /// Which database it is, without the password.
+    #[must_use]
     pub fn address(&self) -> String {
         self.pool.target.address()
     }
