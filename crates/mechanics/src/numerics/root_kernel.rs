@@ -43,13 +43,15 @@ struct Parity<const N: usize> {
     value: KernelPair<N>,
     difference: KernelPair<N>,
     carried: KernelPair<N>,
+    /// The first of the last over kappa, which may underflow; for derivatives alone.
+    rest: [f64; N],
 }
 
 impl<const N: usize> Parity<N> {
     /// The terms `first`, `first` + 2, ... of a series.
     fn new<const SLOPES: bool>(series: &[f64], first: usize, stretch: &Stretch<N>) -> Parity<N> {
         let zero = ([0.0; N], [0.0; N]);
-        let Parity { mut value, mut difference, mut carried } = Parity { value: zero, difference: zero, carried: zero };
+        let (mut value, mut difference, mut carried, mut rest) = (zero, zero, zero, [0.0; N]);
         let high = stretch.high * stretch.high;
         let terms = series.len().saturating_sub(first).div_ceil(2);
         for k in (0..terms).rev().map(|index| first + 2 * index) {
@@ -65,11 +67,12 @@ impl<const N: usize> Parity<N> {
                     difference.1[lane] = difference.1[lane] * low + value.1[lane];
                     value.1[lane] = value.1[lane] * high + share * slope;
                     carried.1[lane] = less * (whole + kappa * slope);
+                    rest[lane] = less * whole;
                 }
                 carried.0[lane] = less * kappa * whole;
             }
         }
-        Parity { value, difference, carried }
+        Parity { value, difference, carried, rest }
     }
 }
 
@@ -83,7 +86,7 @@ pub(crate) struct Series<'a> {
 }
 
 /// The integrals of a series over a stretch; zero where kappa lies beyond it. From the right where kappa cuts it;
-/// infinite at kappa = 0 where a logarithm is.
+/// infinite at zero where a logarithm is.
 pub(crate) fn kernels<const N: usize, const SLOPES: bool>(series: Series<'_>, stretch: &Stretch<N>) -> KernelPair<N> {
     let Stretch { v_low, v_high, gap, .. } = stretch;
     let Parity { value, difference, .. } = Parity::new::<SLOPES>(series.terms, 1, stretch);
@@ -117,7 +120,7 @@ fn add_even<const N: usize, const SLOPES: bool>(
     rise: &[f64; N],
     (kernels, slopes): (&mut [f64; N], &mut [f64; N]),
 ) {
-    let Parity { value, difference, carried } = Parity::new::<SLOPES>(series, 2, stretch);
+    let Parity { value, difference, carried, rest } = Parity::new::<SLOPES>(series, 2, stretch);
     let (high, first) = (stretch.high, series.first().copied().unwrap_or(0.0));
     let (mut width, mut growth) = ([0.0; N], [0.0; N]);
     for lane in 0..N {
@@ -141,21 +144,22 @@ fn add_even<const N: usize, const SLOPES: bool>(
             continue;
         }
         // As above; d ln(t + v)/dkappa = -1/(2 v (t + v)), and of the root of kappa, where that is the lower end, 1/(2
-        // kappa).
+        // kappa), by which the logarithm's factor is divided term by term.
         let above = v_high * (high + v_high);
         let (ends, log_ends) = if v_low > 0.0 {
             let fall = gap * difference.0[lane];
             let ends =
                 (width * value.0[lane] + low * fall) / v_high - low * (value.0[lane] - fall) * rise / (v_low * v_high);
             let below = v_low * (low + v_low);
-            (ends, (rise * (high + v_high) + v_low * (width + rise)) / (above * below))
+            (ends, log * (rise * (high + v_high) + v_low * (width + rise)) / (above * below))
         } else {
-            (high * value.0[lane] / v_high, -(above.recip() + kappa.recip()))
+            let share = if first.abs() > 0.0 { first / kappa } else { 0.0 };
+            (high * value.0[lane] / v_high, -(log / above + share + rest[lane]))
         };
         slopes[lane] += product(value.1[lane], difference.1[lane]) - 0.5 * ends;
         if log.abs() > 0.0 || log_slope.abs() > 0.0 {
-            slopes[lane] += if v_low > 0.0 || kappa > 0.0 {
-                log_slope * logarithm[lane] + 0.5 * log * log_ends
+            slopes[lane] += if v_low > 0.0 || low > 0.0 {
+                log_slope * logarithm[lane] + 0.5 * log_ends
             } else if log.abs() > 0.0 {
                 -log * f64::INFINITY
             } else {

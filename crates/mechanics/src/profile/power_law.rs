@@ -25,8 +25,6 @@ const SERIES: (f64, f64) = (0.3, 1.5);
 const MOST_OF_SERIES: i32 = 60;
 /// Exponents up to half of this get a square with twice the digits.
 const MOST_HALVES: i32 = 16;
-/// The least square of a radius over that of a span whose logarithm a derivative can have.
-const TINY: f64 = 1e-200;
 /// Beyond this many r the r under the root is negligible.
 const FAR: f64 = 1e8;
 /// The largest exponent of which a series of few terms is made.
@@ -361,9 +359,7 @@ impl Shape for PowerLaw {
         if order == KernelOrder::Slope && at.radius <= 0.0 && span.inner_radius <= 0.0 {
             return self.kernel_slope_at_tip(span.outer_radius);
         }
-        // A derivative has the logarithm of the square of a radius that cuts the span, which must not underflow.
-        let serves = order == KernelOrder::Value || inner > 0.0 || at.square.value() >= TINY * span.outer.value();
-        if let Some(series) = self.slope_series(span.outer_radius).filter(|_| serves) {
+        if let Some(series) = self.slope_series(span.outer_radius) {
             return slope_series::kernel(&series, order, at, span);
         }
         if order == KernelOrder::Slope {

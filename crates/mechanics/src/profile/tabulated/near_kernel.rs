@@ -17,8 +17,6 @@ const LEAST_KAPPA: f64 = -2.0;
 /// The least t of the outer end over that of the panel's for radii below the panel: next to the knot the even terms
 /// cancel.
 const LEAST_HIGH: f64 = 0.1;
-/// The least kappa, over the square of the upper end, whose logarithm a derivative can have.
-const TINY: f64 = 1e-200;
 
 /// K of what lies beyond r in a part of a panel, or its derivative with respect to r^2; `None` if its powers do not
 /// serve.
@@ -35,8 +33,7 @@ pub(super) fn kernel(panel: &KernelPanel, order: KernelOrder, at: &StressRadius,
     let share = inverse * inverse;
     let kappa = (at.square - DoubleDouble::square_of(panel.base)).value() * share;
     let high = panel.t_of(span.outer) * inverse;
-    let tiny = kappa > 0.0 && kappa < TINY && below <= 0.0 && order == KernelOrder::Slope;
-    if kappa < LEAST_KAPPA || (kappa < 0.0 && high < LEAST_HIGH) || tiny {
+    if kappa < LEAST_KAPPA || (kappa < 0.0 && high < LEAST_HIGH) {
         return None;
     }
     let (low, v_low, gap) = if below > 0.0 {
