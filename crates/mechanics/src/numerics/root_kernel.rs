@@ -57,7 +57,7 @@ impl<const N: usize> Parity<N> {
         for k in (0..terms).rev().map(|index| first + 2 * index) {
             let (c, share) = (series[k], SHARES[k]);
             let less = 1.0 - share;
-            for lane in 0..N {
+            for (lane, rest) in rest.iter_mut().enumerate() {
                 let (low, kappa) = (stretch.low[lane] * stretch.low[lane], stretch.kappa[lane]);
                 let whole = c + carried.0[lane];
                 difference.0[lane] = difference.0[lane] * low + value.0[lane];
@@ -67,7 +67,7 @@ impl<const N: usize> Parity<N> {
                     difference.1[lane] = difference.1[lane] * low + value.1[lane];
                     value.1[lane] = value.1[lane] * high + share * slope;
                     carried.1[lane] = less * (whole + kappa * slope);
-                    rest[lane] = less * whole;
+                    *rest = less * whole;
                 }
                 carried.0[lane] = less * kappa * whole;
             }
