@@ -29,20 +29,27 @@ pub(crate) fn tangent_less_angle(u: f64) -> f64 {
         let w = u / (1.0 + (1.0 + u * u).sqrt());
         return 2.0 * (w * w * w / (1.0 - w * w) + tangent_less_angle(w));
     }
-    series(u)
+    let [lacking] = series([u]);
+    lacking
 }
 
-/// The same by its polynomial, for u up to [`QUARTER`].
-fn series(u: f64) -> f64 {
-    let square = u * u;
+/// The same of several u up to [`QUARTER`] by its polynomial.
+fn series<const N: usize>(u: [f64; N]) -> [f64; N] {
     // Every other term on its own, so that neither sum waits for the other.
-    let fourth = square * square;
-    let (mut falling, mut rising) = (0.0, 0.0);
+    let (mut falling, mut rising) = ([0.0; N], [0.0; N]);
     for [plus, minus] in LACKING.as_chunks().0.iter().rev() {
-        falling = falling * fourth + plus;
-        rising = rising * fourth + minus;
+        for lane in 0..N {
+            let square = u[lane] * u[lane];
+            let fourth = square * square;
+            falling[lane] = falling[lane] * fourth + plus;
+            rising[lane] = rising[lane] * fourth + minus;
+        }
     }
-    u * square * (falling - square * rising)
+    for lane in 0..N {
+        let square = u[lane] * u[lane];
+        falling[lane] = u[lane] * square * (falling[lane] - square * rising[lane]);
+    }
+    falling
 }
 
 /// atan(u) and u - atan(u) of several u >= 0 side by side, each to round-off of itself.
@@ -50,7 +57,7 @@ fn series(u: f64) -> f64 {
 /// At most twice the tangent of half the angle leaves one where the polynomial holds; u - 2 w = u w^2 for the tangent w
 /// of half the angle, so that all terms are positive.
 pub(crate) fn angles<const N: usize>(u: [f64; N]) -> ([f64; N], [f64; N]) {
-    let (mut angle, mut lacking) = ([0.0; N], [0.0; N]);
+    let (mut angle, mut lacking);
     if u.into_iter().fold(0.0, f64::max) > QUARTER {
         let mut halves = u;
         for half in &mut halves {
@@ -64,9 +71,9 @@ pub(crate) fn angles<const N: usize>(u: [f64; N]) -> ([f64; N], [f64; N]) {
             lacking[lane] = u[lane] * halves[lane] * halves[lane] + 2.0 * lacking[lane];
         }
     } else {
+        (angle, lacking) = (u, series(u));
         for lane in 0..N {
-            lacking[lane] = series(u[lane]);
-            angle[lane] = u[lane] - lacking[lane];
+            angle[lane] -= lacking[lane];
         }
     }
     (angle, lacking)

@@ -27,20 +27,29 @@ const LN2: (f64, f64) = (6.931_471_803_691_238e-1, 1.908_214_929_270_587_7e-10);
 ///
 /// 1 + z = 2^k m with m between sqrt(1/2) and sqrt(2), and ln m = 2 artanh((m - 1)/(m + 1)) by its series.
 pub(crate) fn ln_1p<const N: usize>(z: [f64; N]) -> [f64; N] {
-    z.map(|z| {
+    let (mut large, mut small, mut w, mut series) = ([0.0; N], [0.0; N], [0.0; N], [0.0; N]);
+    for lane in 0..N {
+        let z = z[lane];
         let y = 1.0 + z;
         // What the sum has lost: all of a small z.
         let lost = if z < 1.0 { z - (y - 1.0) } else { 1.0 - (y - z) };
         let raised = y.to_bits().wrapping_add(ONE - LOW);
         let exponent = f64::from_bits((raised >> 52) | TWO_52) - (4_503_599_627_370_496.0 + 1023.0);
         let f = f64::from_bits((raised & FRACTION) + LOW) - 1.0;
-        let w = f / (2.0 + f);
-        let square = w * w;
-        let series = SHARES.iter().fold(0.0, |sum, share| sum * square + share) * square;
-        let small = lost / y + exponent * LN2.1;
-        let result = exponent * LN2.0 + (2.0 * (w + w * series) + small);
-        if z < f64::MAX { result } else { f64::INFINITY }
-    })
+        w[lane] = f / (2.0 + f);
+        (large[lane], small[lane]) = (exponent * LN2.0, lost / y + exponent * LN2.1);
+    }
+    for share in SHARES {
+        for lane in 0..N {
+            series[lane] = series[lane] * (w[lane] * w[lane]) + share;
+        }
+    }
+    for lane in 0..N {
+        let odd = w[lane] + w[lane] * (series[lane] * (w[lane] * w[lane]));
+        let result = large[lane] + (2.0 * odd + small[lane]);
+        series[lane] = if z[lane] < f64::MAX { result } else { f64::INFINITY };
+    }
+    series
 }
 
 /// One over 14, 13, and so on down to 2: the next term of e^r is below 1e-18 for |r| up to ln(2)/2.
@@ -58,15 +67,23 @@ const ROUNDING: f64 = 6_755_399_441_055_744.0;
 
 /// e^s - 1, to round-off of itself, for s from -700 to 700.
 pub(crate) fn exp_m1<const N: usize>(s: [f64; N]) -> [f64; N] {
-    s.map(|s| {
+    let (mut power, mut rest, mut growth) = ([0.0; N], [0.0; N], [1.0; N]);
+    for lane in 0..N {
         // s = k ln 2 + r.
-        let shifted = s * std::f64::consts::LOG2_E + ROUNDING;
+        let shifted = s[lane] * std::f64::consts::LOG2_E + ROUNDING;
         let whole = shifted - ROUNDING;
-        let r = (s - whole * LN2.0) - whole * LN2.1;
-        let growth = RECIPROCALS.iter().fold(1.0, |sum, recip| 1.0 + sum * r * recip);
-        let power = f64::from_bits(shifted.to_bits().wrapping_shl(52).wrapping_add(ONE));
-        power * r * growth + (power - 1.0)
-    })
+        rest[lane] = (s[lane] - whole * LN2.0) - whole * LN2.1;
+        power[lane] = f64::from_bits(shifted.to_bits().wrapping_shl(52).wrapping_add(ONE));
+    }
+    for recip in RECIPROCALS {
+        for lane in 0..N {
+            growth[lane] = 1.0 + growth[lane] * rest[lane] * recip;
+        }
+    }
+    for lane in 0..N {
+        growth[lane] = power[lane] * rest[lane] * growth[lane] + (power[lane] - 1.0);
+    }
+    growth
 }
 
 #[cfg(test)]
