@@ -129,7 +129,7 @@ impl Multipole {
     /// The sums of w/sqrt(X - Y) at several places Y far below the interval, side by side.
     pub(crate) fn potentials<const N: usize>(&self, below: [f64; N]) -> [f64; N] {
         let Roots { inverse, sigma, .. } = self.roots(below);
-        let mut sums = polynomial(&self.moments, sigma);
+        let mut sums = polynomial::<N, false>(&self.moments, sigma);
         for lane in 0..N {
             sums[lane] *= 2.0 * inverse[lane];
         }
@@ -139,11 +139,7 @@ impl Multipole {
     /// Their derivatives with respect to Y: that of 1/(p + q) is 1/(2pq) of itself, and that of sigma 1/(pq).
     pub(crate) fn potential_slopes<const N: usize>(&self, below: [f64; N]) -> [f64; N] {
         let Roots { inverse, sigma, product } = self.roots(below);
-        let mut terms = self.moments;
-        for (order, term) in terms.iter_mut().enumerate() {
-            *term *= order as f64 + 0.5;
-        }
-        let mut sums = polynomial(&terms, sigma);
+        let mut sums = polynomial::<N, true>(&self.moments, sigma);
         for lane in 0..N {
             sums[lane] *= 2.0 * inverse[lane] / product[lane];
         }
@@ -171,9 +167,9 @@ struct Roots<const N: usize> {
     product: [f64; N],
 }
 
-/// The polynomial with these coefficients, so many of them as count, at several places side by side; four terms at
-/// once.
-fn polynomial<const N: usize>(coefficients: &[f64; ORDERS], x: [f64; N]) -> [f64; N] {
+/// The polynomial with these coefficients, for derivatives each times half more than its order, so many of them as
+/// count, at several places side by side; four terms at once.
+fn polynomial<const N: usize, const SLOPES: bool>(coefficients: &[f64; ORDERS], x: [f64; N]) -> [f64; N] {
     let largest = x.iter().fold(0.0_f64, |largest, x| largest.max(x.abs()));
     // One place alone takes as long for the choice as for the terms.
     let terms = FEWER.iter().find(|(limit, _)| N > 1 && largest <= *limit).map_or(ORDERS, |(_, terms)| *terms);
@@ -183,8 +179,10 @@ fn polynomial<const N: usize>(coefficients: &[f64; ORDERS], x: [f64; N]) -> [f64
         fourth[lane] = square[lane] * square[lane];
     }
     let mut sums = [[0.0; N]; 4];
-    for four in coefficients[..terms].chunks_exact(4).rev() {
-        for (sum, coefficient) in sums.iter_mut().zip(four) {
+    for (index, four) in coefficients[..terms].as_chunks::<4>().0.iter().enumerate().rev() {
+        for (place, sum) in sums.iter_mut().enumerate() {
+            let factor = if SLOPES { (4 * index + place) as f64 + 0.5 } else { 1.0 };
+            let coefficient = factor * four[place];
             for lane in 0..N {
                 sum[lane] = sum[lane] * fourth[lane] + coefficient;
             }

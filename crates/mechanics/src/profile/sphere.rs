@@ -62,6 +62,10 @@ impl Shape for Sphere {
         2.0 * radius / self.curvature_radius
     }
 
+    fn slopes<const N: usize>(&self, _base: f64, t: [f64; N]) -> [f64; N] {
+        t.map(|t| self.slope(t))
+    }
+
     fn square(&self, level: DoubleDouble) -> DoubleDouble {
         level * self.curvature_radius
     }
