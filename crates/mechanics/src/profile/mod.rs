@@ -59,7 +59,7 @@ use super::range;
 use crate::numerics::double_double::DoubleDouble;
 use asperities::Count;
 use shape::{End, Falls, KernelOrder, Shape, ShapeFacts};
-use span::Span;
+use span::{Span, SpanEnds};
 
 /// The enum of all families and `each!`, which evaluates an expression for whichever family a profile is of.
 macro_rules! profile {

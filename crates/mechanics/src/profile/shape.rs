@@ -2,7 +2,7 @@
 
 use super::smooth_interval::{Node, SmoothInterval};
 use super::smooth_pieces::SmoothPieces;
-use super::{DoubleDouble, Moments, Ring, Span, StressRadius};
+use super::{DoubleDouble, Moments, Ring, Span, SpanEnds, StressRadius};
 use crate::numerics::roots::increasing;
 
 /// Where contacts end.
@@ -189,12 +189,13 @@ pub(super) fn outermost_interval<S: Shape>(shape: &S, span: &Span) -> (SmoothInt
 
 /// The stretch from a node of an interval up to the interval's outer end.
 pub(super) fn under(top: &Span, interval: &SmoothInterval, node: Node) -> Span {
+    let above = Some((interval.base, SpanEnds { low: node.t, high: interval.high, drop: node.dt }));
     if node.dt < 0.5 * interval.high {
-        return Span::under(top.outer, top.outer_radius, node.dt * (interval.high + node.t));
+        return Span { above, ..Span::under(top.outer, top.outer_radius, node.dt * (interval.high + node.t)) };
     }
     // Near the inner end its own square must be exact, not the difference from the outer one.
     let inner = DoubleDouble::square_of(interval.base) + DoubleDouble::square_of(node.t);
-    Span { inner, inner_radius: inner.value().sqrt(), gap: (top.outer - inner).value(), edge: 0.0, ..*top }
+    Span { inner, inner_radius: inner.value().sqrt(), gap: (top.outer - inner).value(), edge: 0.0, above, ..*top }
 }
 
 /// The span of a ring.

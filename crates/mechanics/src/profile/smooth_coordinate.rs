@@ -8,7 +8,7 @@
 
 use super::smooth_interval::SmoothInterval;
 pub(super) use super::smooth_path::kernel;
-use super::{DoubleDouble, Moments, Ring, Span, StressRadius};
+use super::{DoubleDouble, Moments, Ring, Span, SpanEnds, StressRadius};
 use crate::numerics::gauss::{EIGHT_POINTS, QuadraturePanel, Singular, TWELVE_POINTS, TWENTY_POINTS};
 use crate::numerics::roots::{descend, distance_below, increasing};
 
@@ -105,15 +105,6 @@ pub(super) trait SmoothCoordinate {
     }
 }
 
-/// A span in t, m.
-#[derive(Clone, Copy)]
-pub(super) struct SpanEnds {
-    pub(super) low: f64,
-    pub(super) high: f64,
-    /// The difference of the two, to round-off of itself.
-    pub(super) drop: f64,
-}
-
 /// Several places of one span.
 pub(super) struct Nodes<const N: usize> {
     /// t, m.
@@ -201,7 +192,11 @@ pub(super) fn slopes<const N: usize>(family: &impl SmoothCoordinate, base: f64, 
 
 /// Both ends in t of what a span has above the kink.
 pub(super) fn ends(family: &impl SmoothCoordinate, span: &Span) -> SpanEnds {
-    let (below, above) = span.excess(DoubleDouble::square_of(family.kink_radius()));
+    let kink = family.kink_radius();
+    if let Some((_, ends)) = span.above.filter(|(base, _)| base.to_bits() == kink.to_bits()) {
+        return ends;
+    }
+    let (below, above) = span.excess(DoubleDouble::square_of(kink));
     if above <= 0.0 {
         return SpanEnds { low: 0.0, high: 0.0, drop: 0.0 };
     }

@@ -4,8 +4,8 @@
 //! it, with all of its points side by side.
 
 use super::shape::KernelOrder;
-use super::smooth_coordinate::{SmoothCoordinate, SpanEnds, ends};
-use super::{DoubleDouble, Span, StressRadius};
+use super::smooth_coordinate::{SmoothCoordinate, ends};
+use super::{DoubleDouble, Span, SpanEnds, StressRadius};
 use crate::numerics::gauss::{EIGHT_POINTS, TWELVE_POINTS, along_strip};
 use crate::numerics::logarithm::exp_m1;
 

@@ -6,6 +6,15 @@
 
 use super::{DoubleDouble, Moments, Ring, StressRadius};
 
+/// A stretch in the coordinate t = sqrt(x^2 - b^2) above a kink at b, m.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct SpanEnds {
+    pub(super) low: f64,
+    pub(super) high: f64,
+    /// The difference of the two, to round-off of itself.
+    pub(super) drop: f64,
+}
+
 /// The radii of a ring, and the levels it crosses at a vertical edge.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Span {
@@ -21,6 +30,8 @@ pub(super) struct Span {
     pub(super) gap: f64,
     /// Levels crossed at the outer radius, where the profile rises vertically, m.
     pub(super) edge: f64,
+    /// Its ends above a kink, with that kink, m, where they are known.
+    pub(super) above: Option<(f64, SpanEnds)>,
 }
 
 impl Span {
@@ -33,20 +44,21 @@ impl Span {
             outer_radius: ring.outer.radius,
             gap,
             edge,
+            above: None,
         }
     }
 
     /// All radii below one.
     pub(super) fn from_centre(radius: f64) -> Span {
         let (inner, outer) = (DoubleDouble::ZERO, DoubleDouble::square_of(radius));
-        Span { inner, outer, inner_radius: 0.0, outer_radius: radius, gap: outer.value(), edge: 0.0 }
+        Span { inner, outer, inner_radius: 0.0, outer_radius: radius, gap: outer.value(), edge: 0.0, above: None }
     }
 
     /// The span that ends at `outer` and whose square is smaller by `gap` at its inner end.
     pub(super) fn under(outer: DoubleDouble, outer_radius: f64, gap: f64) -> Span {
         let inner = outer - DoubleDouble::from(gap);
         let inner = if inner.value() > 0.0 { inner } else { DoubleDouble::ZERO };
-        Span { inner, outer, inner_radius: inner.value().sqrt(), outer_radius, gap, edge: 0.0 }
+        Span { inner, outer, inner_radius: inner.value().sqrt(), outer_radius, gap, edge: 0.0, above: None }
     }
 
     /// Difference of the radii, m.
@@ -70,7 +82,7 @@ impl Span {
         } else if outer <= 0.0 {
             Some(Span { edge: 0.0, ..*self })
         } else {
-            Some(Span { outer: square, outer_radius: radius, gap: -inner, edge: 0.0, ..*self })
+            Some(Span { outer: square, outer_radius: radius, gap: -inner, edge: 0.0, above: None, ..*self })
         }
     }
 
@@ -82,7 +94,7 @@ impl Span {
         } else if inner >= 0.0 {
             Some(*self)
         } else {
-            Some(Span { inner: square, inner_radius: radius, gap: outer, ..*self })
+            Some(Span { inner: square, inner_radius: radius, gap: outer, above: None, ..*self })
         }
     }
 

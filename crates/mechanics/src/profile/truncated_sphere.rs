@@ -9,8 +9,8 @@
 //! without a negative coefficient, so that nothing cancels.
 
 use super::shape::{Falls, KernelOrder, ShapeFacts};
-use super::smooth_coordinate::{self, SmoothCoordinate, SpanEnds, flat_core};
-use super::{DoubleDouble, Error, Moments, Ring, Span, StressRadius, range};
+use super::smooth_coordinate::{self, SmoothCoordinate, flat_core};
+use super::{DoubleDouble, Error, Moments, Ring, Span, SpanEnds, StressRadius, range};
 
 /// Squares of t have twice the digits: their differences, over the larger one, are good down to this.
 const RESOLVED: f64 = 1e-12;

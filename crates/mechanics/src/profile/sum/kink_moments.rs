@@ -27,7 +27,7 @@ impl KinkMoments {
             }
             let [inner, outer] = [pair[0], pair[1]].map(DoubleDouble::square_of);
             let gap = (outer - inner).value();
-            let span = Span { inner, outer, inner_radius: pair[0], outer_radius: pair[1], gap, edge: 0.0 };
+            let span = Span { inner, outer, inner_radius: pair[0], outer_radius: pair[1], gap, edge: 0.0, above: None };
             Ok((shape::moments(sum, &span), sum.rise(&span)))
         };
         let stretches: Vec<_> = sum.kinks.windows(2).map(stretch).collect::<Result<_, Error>>()?;

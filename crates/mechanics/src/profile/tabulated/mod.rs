@@ -31,7 +31,7 @@ use std::sync::Arc;
 use super::super::error::TableFault;
 use super::shape::{End, Falls, KernelOrder, Shape, ShapeFacts, span};
 use super::smooth_coordinate::SmoothCoordinate;
-use super::{DoubleDouble, Error, Moments, Point, Profile, Ring, Span, StressRadius, range};
+use super::{DoubleDouble, Error, Moments, Point, Profile, Ring, Span, SpanEnds, StressRadius, range};
 use crate::numerics::multipole::Multipole;
 use curve::TableCurve;
 pub(super) use displacement::displacements;

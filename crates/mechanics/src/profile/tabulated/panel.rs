@@ -32,6 +32,8 @@ pub(super) struct KernelPanel {
     pub(super) level: f64,
     pub(super) load: f64,
     pub(super) centre: f64,
+    /// How many points of Gauss's rule do for an integral over it; `None` where none does.
+    points: Option<usize>,
     /// Coefficients of q and, for u from -1 on, of P.
     slope: Box<[f64]>,
     primitive: Box<[f64]>,
@@ -51,7 +53,8 @@ impl KernelPanel {
             _ => middle * term(k) + 0.5 * half * (term(k - 1) + term(k + 1)),
         };
         let product: Vec<f64> = (0..=slope.len()).map(product).collect();
-        let primitive = chebyshev::primitive(&product, half);
+        let mut primitive = chebyshev::primitive(&product, half);
+        primitive[0] = primitive[1..].chunks(2).map(|pair| pair[0] - pair.get(1).unwrap_or(&0.0)).sum();
         let square = DoubleDouble::square_of(base) + DoubleDouble::square_of(low);
         let odd = primitive.iter().skip(1).step_by(2);
         let radius = square.value().sqrt();
@@ -68,6 +71,7 @@ impl KernelPanel {
             level: 0.0,
             load: 0.0,
             centre: 0.0,
+            points: points(base, (low, high), primitive.len()),
             powers: OnceLock::new(),
             slope: slope.into(),
             primitive: primitive.into(),
@@ -126,8 +130,13 @@ impl KernelPanel {
 
     /// q at t.
     pub(super) fn slope_over_radius(&self, t: f64) -> f64 {
-        let [value] = chebyshev::values(&self.slope, [self.place(t)]);
+        let [value] = self.slopes_over_radius([t]);
         value
+    }
+
+    /// q at several t side by side.
+    pub(super) fn slopes_over_radius<const N: usize>(&self, t: [f64; N]) -> [f64; N] {
+        chebyshev::values(&self.slope, t.map(|t| self.place(t)))
     }
 
     /// A bound of |dq/dt|: that of a Chebyshev polynomial of the order k is k^2 at most.
@@ -139,8 +148,8 @@ impl KernelPanel {
     /// Its moments, and what it adds to the kernel at the centre, int q dx.
     pub(super) fn totals(&self) -> (Moments, f64) {
         let span = self.span(None);
-        let moments = self.moments_between(self.low, self.high, self.width);
-        let centre = match self.points() {
+        let moments = self.moments_by_rule((self.low, self.high), (self.width, self.depth), &[]);
+        let centre = match self.points {
             Some(8) => self.centre_by(&EIGHT_POINTS),
             Some(12) => self.centre_by(&TWELVE_POINTS),
             Some(_) => self.centre_by(&TWENTY_POINTS),
@@ -149,15 +158,31 @@ impl KernelPanel {
         (moments.unwrap_or_else(|| smooth_coordinate::moments(self, &span)), centre)
     }
 
-    /// The moments between two places of t, `width` apart in the radius, m; `None` without a rule for the panel.
+    /// The moments from where it begins up to t, `width` further in the radius and `rise` in g, m; `None` without a
+    /// rule for the panel.
     ///
     /// They err by a few units in the last place of W H and W H^2: see [`KernelPanel::resolves`].
-    pub(super) fn moments_between(&self, low: f64, high: f64, width: f64) -> Option<Moments> {
-        let ends = (low, high);
-        Some(match self.points()? {
-            8 => self.moments_by::<8, 10>(&EIGHT_POINTS, ends, width),
-            12 => self.moments_by::<12, 14>(&TWELVE_POINTS, ends, width),
-            _ => self.moments_by::<20, 22>(&TWENTY_POINTS, ends, width),
+    pub(super) fn moments_below(&self, t: f64, width: f64, rise: f64) -> Option<Moments> {
+        self.moments_by_rule((self.low, t), (width, rise), self.powers_from_knot())
+    }
+
+    /// The moments from t up to where it ends, `width` further in the radius, m, likewise.
+    pub(super) fn moments_above(&self, t: f64, width: f64) -> Option<Moments> {
+        self.moments_by_rule((t, self.high), (width, self.depth), self.powers_from_knot())
+    }
+
+    /// [`KernelPanel::powers`] where it begins at its knot.
+    fn powers_from_knot(&self) -> &[f64] {
+        if self.low > 0.0 { &[] } else { self.powers() }
+    }
+
+    /// The moments between two places of t, a width in the radius apart, with how much g has risen up to the second, m,
+    /// by powers or else by its series.
+    fn moments_by_rule(&self, ends: (f64, f64), outer: (f64, f64), powers: &[f64]) -> Option<Moments> {
+        Some(match self.points? {
+            8 => self.moments_by(&EIGHT_POINTS, ends, outer, powers),
+            12 => self.moments_by(&TWELVE_POINTS, ends, outer, powers),
+            _ => self.moments_by(&TWENTY_POINTS, ends, outer, powers),
         })
     }
 
@@ -168,42 +193,31 @@ impl KernelPanel {
         ring.first >= area && ring.second >= area * self.depth
     }
 
-    /// How many points of Gauss's rule do for an integral over the panel; `None` where none does.
-    fn points(&self) -> Option<usize> {
-        // t/x is singular at t = +-ik, and q has the terms it has.
-        let below = if self.base > 0.0 { self.base } else { f64::INFINITY };
-        let rule = gauss::Singular { below, above: f64::INFINITY }.panel(self.high, self.high - self.low);
-        let terms = self.primitive.len();
-        let least = [(14, 8), (20, 12)].into_iter().find(|(most, _)| terms <= *most).map_or(20, |(_, points)| points);
-        (rule.width >= self.high - self.low).then_some(rule.points().max(least))
-    }
-
     /// t/x.
     fn stretch(&self, t: f64) -> f64 {
         if self.base > 0.0 { t / self.radius_at(t) } else { 1.0 }
     }
 
-    /// The moments by a rule whose points all of it can be left to. The rises are differences of P, good to round-off
-    /// of the depth; that of the end is one of the `LANES` beside those of the rule.
-    fn moments_by<const N: usize, const LANES: usize>(
+    /// The moments by a rule whose points all of it can be left to. The rises are differences, good to round-off of the
+    /// depth.
+    fn moments_by<const N: usize>(
         &self,
         rule: &[(f64, f64); N],
         (low, high): (f64, f64),
-        width: f64,
+        (width, top): (f64, f64),
+        powers: &[f64],
     ) -> Moments {
-        let (place, step) = (self.place(high), (high - low) * 2.0 / (self.high - self.low));
-        let mut places = [place; LANES];
-        places.iter_mut().zip(rule).for_each(|(place, (share, _))| *place -= step * share);
-        let levels = chebyshev::values(&self.primitive, places);
-        let top = levels[N];
-        let (mut first, mut second) = (0.0, 0.0);
-        for (&(share, weight), level) in rule.iter().zip(levels) {
-            let rise = top - level;
-            let area = (high - low) * weight * rise * self.stretch(high - (high - low) * share);
-            first += area;
-            second += area * rise;
-        }
-        Moments { width, first, second }
+        let places = rule.map(|(share, _)| high - (high - low) * share);
+        let levels = if powers.is_empty() {
+            chebyshev::values(&self.primitive, places.map(|t| self.place(t)))
+        } else {
+            panel_powers::rises_from_knot(powers, self.high, places)
+        };
+        let (rises, stretches) = (levels.map(|level| top - level), places.map(|t| self.stretch(t)));
+        let areas: [f64; N] = std::array::from_fn(|index| rule[index].1 * rises[index] * stretches[index]);
+        let first = areas.iter().sum::<f64>();
+        let second = areas.iter().zip(rises).map(|(area, rise)| area * rise).sum::<f64>();
+        Moments { width, first: (high - low) * first, second: (high - low) * second }
     }
 
     /// int q dx by such a rule.
@@ -225,7 +239,7 @@ impl KernelPanel {
     pub(super) fn span(&self, next: Option<&KernelPanel>) -> Span {
         let (outer, outer_radius) = next.map_or_else(|| self.end(), |next| (next.square, next.radius));
         let gap = (outer - self.square).value();
-        Span { inner: self.square, outer, inner_radius: self.radius, outer_radius, gap, edge: 0.0 }
+        Span { inner: self.square, outer, inner_radius: self.radius, outer_radius, gap, edge: 0.0, above: None }
     }
 
     /// The t of a radius that lies in it.
@@ -258,6 +272,15 @@ impl KernelPanel {
         let share = if self.low > 0.0 { share } else { share.powf(power.recip()) };
         within([self.low, self.high], self.low + (self.high - self.low) * share, f)
     }
+}
+
+/// How many points of Gauss's rule do for an integral over low..high in t above the knot `base`, by so many terms of P.
+fn points(base: f64, (low, high): (f64, f64), terms: usize) -> Option<usize> {
+    // t/x is singular at t = +-ik.
+    let below = if base > 0.0 { base } else { f64::INFINITY };
+    let rule = gauss::Singular { below, above: f64::INFINITY }.panel(high, high - low);
+    let least = [(14, 8), (20, 12)].into_iter().find(|(most, _)| terms <= *most).map_or(20, |(_, points)| points);
+    (rule.width >= high - low).then_some(rule.points().max(least))
 }
 
 impl SmoothCoordinate for KernelPanel {

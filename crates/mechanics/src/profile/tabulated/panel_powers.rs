@@ -74,6 +74,18 @@ fn polynomials(scale: f64, offset: f64) -> [[f64; POINTS]; POINTS] {
 /// Those of a panel that begins at its knot.
 static FROM_KNOT: LazyLock<[[f64; POINTS]; POINTS]> = LazyLock::new(|| polynomials(2.0, -1.0));
 
+/// The rises of g, m, from the knot where a panel begins up to several t.
+pub(super) fn rises_from_knot<const N: usize>(powers: &[f64], high: f64, t: [f64; N]) -> [f64; N] {
+    let (mut sums, t) = ([0.0; N], t.map(|t| t / high));
+    for (c, share) in powers.iter().zip(&SHARES).skip(1).rev() {
+        for lane in 0..N {
+            sums[lane] = sums[lane] * t[lane] + c * share;
+        }
+    }
+    let square = high * high;
+    std::array::from_fn(|lane| square * (t[lane] * t[lane]) * sums[lane])
+}
+
 /// The rise of g, m, from where a panel begins up to t, `s` further in the square of the radius, by the powers of its q
 /// on low..high: s times a mean of q/2. With l the t where it begins, int t^(n+1) dt is s E_n/(n + 2), E_n = t^2
 /// E_(n-2) + l^n, and no term is a difference.

@@ -21,9 +21,11 @@ pub(super) fn sources(panels: &[KernelPanel]) -> ClusterTree<Multipole> {
 
 /// Adds the sources of a panel from `low` to `high` in t.
 pub(super) fn add_panel(sources: &mut Multipole, panel: &KernelPanel, (low, high): (f64, f64), weight: f64) {
-    let nodes = gauss::TWENTY_POINTS.map(|(u, share)| (high - (high - low) * u, weight * (high - low) * share));
+    let places = gauss::TWENTY_POINTS.map(|(u, _)| high - (high - low) * u);
+    let slopes = panel.slopes_over_radius(places);
+    let share = |index: usize| weight * (high - low) * gauss::TWENTY_POINTS[index].1;
     sources.add_sources(
-        &nodes.map(|(t, _)| panel.square.value() - sources.interval.0 + (t - panel.low) * (t + panel.low)),
-        &nodes.map(|(t, share)| share * t * panel.slope_over_radius(t)),
+        &places.map(|t| panel.square.value() - sources.interval.0 + (t - panel.low) * (t + panel.low)),
+        &std::array::from_fn(|index| share(index) * places[index] * slopes[index]),
     );
 }

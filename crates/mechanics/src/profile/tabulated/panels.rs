@@ -10,7 +10,7 @@ use super::build::Built;
 use super::kernel::Kernel;
 use super::lookup::Lookup;
 use super::panel::KernelPanel;
-use super::{DoubleDouble, Moments, Point, Ring, Span, StressRadius, panel_sources};
+use super::{DoubleDouble, Moments, Point, Ring, Span, SpanEnds, StressRadius, panel_sources};
 use crate::numerics::cluster_tree::{Cluster, ClusterTree};
 use crate::numerics::multipole::Multipole;
 
@@ -153,6 +153,13 @@ impl Panels {
     }
 
     pub(super) fn rise(&self, span: &Span) -> f64 {
+        if let Some((base, SpanEnds { low, high, drop })) = span.above {
+            let panel = &self.panels[self.by_radius.ending_at(span.outer_radius)];
+            // Its series knows no other knot.
+            if panel.base.to_bits() == base.to_bits() && low >= panel.low {
+                return panel.rise_at(low, high, drop);
+            }
+        }
         let SpanParts { low, whole, high } = self.parts(span);
         let between = self.tree.run(whole.start, whole.end).1;
         [low, high]
@@ -279,15 +286,16 @@ impl Panels {
         let part = span.inner_radius > bottom.radius;
         let inside = if part {
             let width = (next.square - span.inner).value().max(0.0) / (next.radius + span.inner_radius);
-            bottom.moments_between(bottom.t_of(span.inner), bottom.high, width)?
+            bottom.moments_above(bottom.t_of(span.inner), width)?
         } else {
             Moments::default()
         };
         let beyond = (span.outer - top.square).value().max(0.0);
         let t = top.t_of(span.outer);
-        let outside = top.moments_between(top.low, t, beyond / (span.outer_radius + top.radius))?;
+        let rise = top.rise_by_powers(t, beyond);
+        let outside = top.moments_below(t, beyond / (span.outer_radius + top.radius), rise)?;
         let first = if part { inner + 1 } else { inner };
-        let sum = self.tree.across(first..outer, inside, (outside, top.rise_by_powers(t, beyond)));
+        let sum = self.tree.across(first..outer, inside, (outside, rise));
         (top.resolves(&sum) && (!part || bottom.resolves(&sum))).then_some(sum)
     }
 }
