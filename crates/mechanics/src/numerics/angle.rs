@@ -58,11 +58,11 @@ fn series<const N: usize>(u: [f64; N]) -> [f64; N] {
 /// of half the angle, so that all terms are positive.
 pub(crate) fn angles<const N: usize>(u: [f64; N]) -> ([f64; N], [f64; N]) {
     let (mut angle, mut lacking);
-    if u.into_iter().fold(0.0, f64::max) > QUARTER {
+    if u.iter().any(|u| *u > QUARTER) {
         let mut halves = u;
         for half in &mut halves {
             // Beyond 1e100 the angle is a right one, and its square would overflow.
-            let u = half.min(1e100);
+            let u = if *half < 1e100 { *half } else { 1e100 };
             *half = u / (1.0 + (1.0 + u * u).sqrt());
         }
         (angle, lacking) = angles(halves);

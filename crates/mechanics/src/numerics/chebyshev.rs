@@ -93,8 +93,8 @@ impl<const N: usize> Points<N> {
 
 /// The terms of a series up to the last that is more than this share of the largest, or no number.
 pub(crate) fn counted(terms: &[f64], share: f64) -> &[f64] {
-    let size = terms.iter().fold(0.0f64, |size, a| size.max(a.abs()));
-    let last = terms.iter().rposition(|a| a.is_nan() || a.abs() > share * size);
+    let size = terms.iter().fold(0.0, |size, a| if a.abs() > size { a.abs() } else { size });
+    let last = terms.iter().rposition(|a| a.abs() > share * size || a.is_nan());
     &terms[..last.map_or(0, |last| last + 1)]
 }
 

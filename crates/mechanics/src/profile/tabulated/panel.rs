@@ -244,7 +244,12 @@ impl KernelPanel {
 
     /// The t of a radius that lies in it.
     pub(super) fn t_of(&self, square: DoubleDouble) -> f64 {
-        (square - DoubleDouble::square_of(self.base)).value().max(0.0).sqrt().clamp(self.low, self.high)
+        self.t_at((square - self.square).value().max(0.0))
+    }
+
+    /// The t where the square of the radius is this much larger than where it begins.
+    pub(super) fn t_at(&self, further: f64) -> f64 {
+        (self.low * self.low + further).sqrt().min(self.high)
     }
 
     /// Values of t, increasing, between which q cannot hide a fall.

@@ -291,7 +291,7 @@ impl Panels {
             Moments::default()
         };
         let beyond = (span.outer - top.square).value().max(0.0);
-        let t = top.t_of(span.outer);
+        let t = top.t_at(beyond);
         let rise = top.rise_by_powers(t, beyond);
         let outside = top.moments_below(t, beyond / (span.outer_radius + top.radius), rise)?;
         let first = if part { inner + 1 } else { inner };
