@@ -3,12 +3,9 @@
 //!
 //! No term is negative, and differences are taken by P's divided difference, so that nothing cancels. The inverse is a
 //! series too, which converges far beyond [`LIMIT`]: s = z - z^2 C(z), z = g/R.
-//!
-//! Of a very shallow ring the moments are closed: with v = (x_outer^2 - x^2)/R^2, h/R = sum of e_k v^k, whose terms
-//! fall like s^k, and int v^k dx is a polynomial of the ring's width.
 
 use super::{DoubleDouble, Moments};
-use crate::numerics::gauss::QuadraturePanel;
+use crate::numerics::gauss::{EIGHT_POINTS, TWELVE_POINTS, TWENTY_POINTS, first_and_second};
 
 /// The s up to which the series are shorter than other ways.
 pub(super) const LIMIT: f64 = 0.09;
@@ -39,8 +36,6 @@ const INVERSE: [f64; 11] = [
 ];
 /// The z up to which five terms of C do: the sixth is z^6/2000 of the first.
 const SHORT: f64 = 1e-3;
-/// The s up to which four terms of h do: the fifth is at most s^4/20 of the first.
-const CLOSED: f64 = 2e-4;
 /// The s up to which Gauss's rules of eight and of twelve points integrate all terms of g^2 that count.
 const RULES: [f64; 2] = [1e-3, 1e-2];
 
@@ -103,48 +98,25 @@ pub(super) fn gap_of(z: f64, depth: f64) -> f64 {
 /// The moments of a ring from x/R = `outer` inward over `width`, in units of R.
 pub(super) fn moments(outer: f64, width: f64) -> Moments {
     let square = outer * outer;
-    if width <= 0.0 {
-        return Moments::default();
-    }
-    if square <= CLOSED {
-        return closed_moments(outer, width);
-    }
-    let panel = if square <= RULES[0] {
-        QuadraturePanel::coarse(width)
+    if square <= RULES[0] {
+        moments_by(&EIGHT_POINTS, outer, width)
     } else if square <= RULES[1] {
-        QuadraturePanel::middling(width)
+        moments_by(&TWELVE_POINTS, outer, width)
     } else {
-        QuadraturePanel::fine(width)
-    };
-    let (mut first, mut second) = (0.0, 0.0);
-    panel.visit(|below, weight| {
-        let h = rise(square, below * (2.0 * outer - below));
-        first += weight * h;
-        second += weight * h * h;
-    });
-    Moments { width, first, second }
+        moments_by(&TWENTY_POINTS, outer, width)
+    }
 }
 
-/// The same for s up to [`CLOSED`], with e_k = -(-1)^k (s P)^(k)/k! and
-/// int v^k dx = x^(2k+1) tau^(k+1) sum of C(k,i) 2^(k-i) (-tau)^i/(k + 1 + i), tau the width over x.
-fn closed_moments(outer: f64, width: f64) -> Moments {
-    let (s, tau) = (outer * outer, width / outer);
-    let one = 1.0 + s * (2.0 / 3.0 + s * (3.0 / 5.0 + s * (4.0 / 7.0)));
-    let two = -(1.0 / 3.0 + s * (3.0 / 5.0 + s * (6.0 / 7.0)));
-    let three = 1.0 / 5.0 + s * (4.0 / 7.0);
-    let four = -1.0 / 7.0;
-    let powers = [
-        1.0 - tau / 3.0,
-        4.0 / 3.0 + tau * (-1.0 + tau / 5.0),
-        2.0 + tau * (-12.0 / 5.0 + tau * (1.0 - tau / 7.0)),
-        16.0 / 5.0 + tau * (-16.0 / 3.0 + tau * (24.0 / 7.0 + tau * (-1.0 + tau / 9.0))),
-        16.0 / 3.0 + tau * (-80.0 / 7.0 + tau * (10.0 + tau * (-40.0 / 9.0 + tau * (1.0 - tau / 11.0)))),
-    ];
-    let step = s * tau;
-    let sum = |[a, b, c, d]: [f64; 4], of: usize| {
-        a * powers[of] + step * (b * powers[of + 1] + step * (c * powers[of + 2] + step * (d * powers[of + 3])))
-    };
-    let squares = [one * one, 2.0 * one * two, 2.0 * one * three + two * two, 2.0 * (one * four + two * three)];
-    let area = width * width;
-    Moments { width, first: area * outer * sum([one, two, three, four], 0), second: area * width * s * sum(squares, 1) }
+fn moments_by<const N: usize>(rule: &[(f64, f64); N], outer: f64, width: f64) -> Moments {
+    let (square, mut value, mut differences) = (outer * outer, 0.0, [0.0; N]);
+    let gaps = rule.map(|(u, _)| width * u * (2.0 * outer - width * u));
+    for share in terms(square).iter().rev() {
+        for lane in 0..N {
+            differences[lane] = differences[lane] * (square - gaps[lane]) + value;
+        }
+        value = value * square + share;
+    }
+    let rises = std::array::from_fn(|lane| gaps[lane] * (value + (square - gaps[lane]) * differences[lane]));
+    let (first, second) = first_and_second(rule, rises);
+    Moments { width, first: width * first, second: width * second }
 }
