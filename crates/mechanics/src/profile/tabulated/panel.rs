@@ -249,7 +249,7 @@ impl KernelPanel {
 
     /// The t where the square of the radius is this much larger than where it begins.
     pub(super) fn t_at(&self, further: f64) -> f64 {
-        (self.low * self.low + further).sqrt().min(self.high)
+        (self.low * self.low + further).sqrt().clamp(self.low, self.high)
     }
 
     /// Values of t, increasing, between which q cannot hide a fall.
