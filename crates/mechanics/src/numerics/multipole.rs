@@ -170,7 +170,7 @@ struct Roots<const N: usize> {
 /// The polynomial with these coefficients, for derivatives each times half more than its order, so many of them as
 /// count, at several places side by side; four terms at once.
 fn polynomial<const N: usize, const SLOPES: bool>(coefficients: &[f64; ORDERS], x: [f64; N]) -> [f64; N] {
-    let largest = x.iter().fold(0.0, |largest, x| if x.abs() > largest { x.abs() } else { largest });
+    let largest = x.iter().fold(0.0_f64, |largest, x| largest.max(x.abs()));
     // One place alone takes as long for the choice as for the terms.
     let terms = FEWER.iter().find(|(limit, _)| N > 1 && largest <= *limit).map_or(ORDERS, |(_, terms)| *terms);
     let (mut square, mut fourth) = ([0.0; N], [0.0; N]);

@@ -53,8 +53,7 @@ impl KernelPanel {
             _ => middle * term(k) + 0.5 * half * (term(k - 1) + term(k + 1)),
         };
         let product: Vec<f64> = (0..=slope.len()).map(product).collect();
-        let mut primitive = chebyshev::primitive(&product, half);
-        primitive[0] = primitive[1..].chunks(2).map(|pair| pair[0] - pair.get(1).unwrap_or(&0.0)).sum();
+        let primitive = chebyshev::primitive(&product, half);
         let square = DoubleDouble::square_of(base) + DoubleDouble::square_of(low);
         let odd = primitive.iter().skip(1).step_by(2);
         let radius = square.value().sqrt();
@@ -98,12 +97,11 @@ impl KernelPanel {
             return None;
         }
         let all = (self.high - self.low) * (self.high + self.low);
-        let t = |s: f64| (self.low * self.low + s).sqrt();
         let mut s = (all * (rise / self.depth)).min(all);
-        let slope = 0.5 * self.slope_over_radius(t(s));
+        let slope = 0.5 * self.slope_over_radius(self.t_at(s));
         let mut last = s;
         for _ in 0..8 {
-            let step = (rise - self.rise_by_powers(t(s), s)) / slope;
+            let step = (rise - self.rise_by_powers(self.t_at(s), s)) / slope;
             s += step;
             let size = step.abs();
             // Also where one of them is no number.
