@@ -94,7 +94,7 @@ fn quantity(range: &'static Range, low: f64, high: f64) -> impl Strategy<Value =
     ]
 }
 
-fn family() -> impl Strategy<Value = Value> {
+fn family() -> BoxedStrategy<Value> {
     let radius = || quantity(&range::RADIUS, -5.0, 0.0);
     let flat = || quantity(&range::FLAT_RADIUS, -7.0, -3.0);
     let slope = || quantity(&range::SLOPE, -4.0, 0.3);
@@ -118,6 +118,7 @@ fn family() -> impl Strategy<Value = Value> {
             .prop_map(|(k, b)| json!({"type": "rounded_cone", "slope": k, "tip_radius": b})),
         3 => table(),
     ]
+    .boxed()
 }
 
 /// Heights of a power law with some noise over radii that are even, crowded or repeated.
@@ -148,7 +149,7 @@ fn table() -> impl Strategy<Value = Value> {
 
 /// Contacts that are known by their load curve alone: asperities of even, crowded or repeated gaps, a power of the
 /// indentation with or without noise, ellipses.
-fn curve() -> impl Strategy<Value = Value> {
+fn curve() -> BoxedStrategy<Value> {
     let radius = || quantity(&range::RADIUS, -5.0, 0.0);
     let gaps = prop::collection::vec(prop_oneof![4 => 0.0..1.0_f64, 1 => 0.0..1e-9_f64, 1 => Just(0.5)], 1..80);
     let asperities = (gaps, radius(), -9.0..-4.0_f64, any::<bool>()).prop_map(|(gaps, radius, scale, each)| {
@@ -177,7 +178,7 @@ fn curve() -> impl Strategy<Value = Value> {
     let ellipsoid = (radius(), radius(), any::<bool>()).prop_map(
         |(x, y, along)| json!({"type": "ellipsoid", "radii": [x, y], "direction": if along { "x" } else { "y" }}),
     );
-    prop_oneof![asperities, load_curve, ellipsoid]
+    prop_oneof![asperities, load_curve, ellipsoid].boxed()
 }
 
 fn profile() -> impl Strategy<Value = Value> {
@@ -189,7 +190,7 @@ fn profile() -> impl Strategy<Value = Value> {
 }
 
 /// A definition of a contact.
-pub fn contact() -> impl Strategy<Value = Value> {
+pub fn contact() -> BoxedStrategy<Value> {
     let poisson = || prop_oneof![6 => 0.0..0.5_f64, 2 => -0.99..0.0_f64, 1 => Just(0.5), 1 => any_magnitude()];
     let body = || {
         (quantity(&range::YOUNGS_MODULUS, 6.0, 12.0), poisson())
@@ -216,6 +217,7 @@ pub fn contact() -> impl Strategy<Value = Value> {
     (profile(), material, friction, preload).prop_map(|(profile, material, friction, preload)| {
         json!({"profile": profile, "material": material, "friction": friction, "preload": preload})
     })
+    .boxed()
 }
 
 fn target() -> impl Strategy<Value = Target> {

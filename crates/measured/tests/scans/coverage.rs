@@ -2,7 +2,7 @@
 //!
 //! Two hundred by default, or as many as STICKSLIP_SCAN_CASES says.
 
-use stickslip_measured::scan::{Estimate, Options, ScanFit};
+use stickslip_measured::scan::{Estimate, Options, Scan, ScanFit};
 use stickslip_mechanics::Preload;
 
 use crate::synthetic::{Instrument, Shape};
@@ -75,32 +75,55 @@ impl Sample {
     }
 }
 
-#[test]
-fn the_standard_errors_cover_the_truth_and_nothing_is_refused() {
-    let mut random = fastrand::Rng::with_seed(2026);
-    let scans = std::env::var("STICKSLIP_SCAN_CASES").map_or(200, |cases| cases.parse().unwrap());
-    let mut samples = vec![vec![Sample::default(); QUANTITIES.len()]; KINDS.len()];
-    for index in 0..scans {
-        let kind = index % KINDS.len();
-        let (shape, a) = shape(&mut random, kind);
-        let instrument = instrument(&mut random, a, index / KINDS.len() % 5 == 4);
-        let scan = instrument.scan(&shape, &mut random);
-        let truth = truth(shape.profile(2.0 * instrument.half), Preload::ContactRadius(a));
-        let fit = ScanFit::new(&scan, &Options::default(), &|| true);
-        let fit = fit.unwrap_or_else(|error| panic!("{index} {shape:?} {instrument:?}: {error}"));
+/// A contact of a shape, as an instrument saw it.
+struct Case {
+    shape: Shape,
+    a: f64,
+    instrument: Instrument,
+    scan: Scan,
+}
+
+/// Of each quantity, what the fits of these cases found.
+fn samples<'a>(cases: impl Iterator<Item = &'a Case>) -> [Sample; QUANTITIES.len()] {
+    let mut samples = <[Sample; QUANTITIES.len()]>::default();
+    for Case { shape, a, instrument, scan } in cases {
+        let truth = truth(shape.profile(2.0 * instrument.half), Preload::ContactRadius(*a));
+        let fit = ScanFit::new(scan, &Options::default(), &|| true);
+        let fit = fit.unwrap_or_else(|error| panic!("{shape:?} {instrument:?}: {error}"));
         let found = fit.contact(steel(), 0.3, Preload::NormalForce(truth.normal_force));
-        let found = found.unwrap_or_else(|error| panic!("{index} {shape:?} {instrument:?}: {error}"));
-        for (sample, (estimate, truth)) in samples[kind].iter_mut().zip([
+        let found = found.unwrap_or_else(|error| panic!("{shape:?} {instrument:?}: {error}"));
+        for (sample, (estimate, truth)) in samples.iter_mut().zip([
             (found.max_pressure, truth.max_pressure.unwrap()),
             (found.indentation, truth.indentation),
             (found.contact_radius, truth.contact_radius),
         ]) {
             sample.add(estimate, truth);
             if (estimate.value - truth).abs() > 3.0 * estimate.standard_error {
-                println!("{index}: {truth} but {estimate:?} of {shape:?}, {instrument:?}, radius {a}");
+                println!("{truth} but {estimate:?} of {shape:?}, {instrument:?}, radius {a}");
             }
         }
     }
+    samples
+}
+
+#[test]
+fn the_standard_errors_cover_the_truth_and_nothing_is_refused() {
+    let mut random = fastrand::Rng::with_seed(2026);
+    let scans = std::env::var("STICKSLIP_SCAN_CASES").map_or(200, |cases| cases.parse().unwrap());
+    let cases: Vec<Case> = (0..scans)
+        .map(|index| {
+            let (shape, a) = shape(&mut random, index % KINDS.len());
+            let instrument = instrument(&mut random, a, index / KINDS.len() % 5 == 4);
+            let scan = instrument.scan(&shape, &mut random);
+            Case { shape, a, instrument, scan }
+        })
+        .collect();
+    let samples: Vec<_> = std::thread::scope(|scope| {
+        let cases = &cases;
+        let kinds =
+            [0, 1, 2, 3, 4].map(|kind| scope.spawn(move || samples(cases.iter().skip(kind).step_by(KINDS.len()))));
+        kinds.map(|kind| kind.join().unwrap()).into()
+    });
     for (kind, samples) in KINDS.iter().zip(&samples) {
         for (quantity, sample) in QUANTITIES.iter().zip(samples) {
             let count = sample.errors.len();
