@@ -76,14 +76,25 @@ static FROM_KNOT: LazyLock<[[f64; POINTS]; POINTS]> = LazyLock::new(|| polynomia
 
 /// The rises of g, m, from the knot where a panel begins up to several t.
 pub(super) fn rises_from_knot<const N: usize>(powers: &[f64], high: f64, t: [f64; N]) -> [f64; N] {
-    let (mut sums, t) = ([0.0; N], t.map(|t| t / high));
-    for (c, share) in powers.iter().zip(&SHARES).skip(1).rev() {
+    let inverse = high.recip();
+    let t = t.map(|t| t * inverse);
+    let squares = t.map(|t| t * t);
+    // Even and odd powers apart: neither chain of sums waits for the other.
+    let (mut even, mut odd) = ([0.0; N], [0.0; N]);
+    let (terms, last) = powers[1..].as_chunks::<2>();
+    let (shares, _) = SHARES[1..].as_chunks::<2>();
+    if let [c] = last {
+        even = [c * shares[terms.len()][0]; N];
+    }
+    for (terms, shares) in terms.iter().zip(shares).rev() {
+        let (one, other) = (terms[0] * shares[0], terms[1] * shares[1]);
         for lane in 0..N {
-            sums[lane] = sums[lane] * t[lane] + c * share;
+            even[lane] = even[lane] * squares[lane] + one;
+            odd[lane] = odd[lane] * squares[lane] + other;
         }
     }
     let square = high * high;
-    std::array::from_fn(|lane| square * (t[lane] * t[lane]) * sums[lane])
+    std::array::from_fn(|lane| square * squares[lane] * (even[lane] + t[lane] * odd[lane]))
 }
 
 /// The rise of g, m, from where a panel begins up to t, `s` further in the square of the radius, by the powers of its q
