@@ -22,7 +22,7 @@ pub enum Error {
         allowed: String,
     },
     /// The contact would outgrow what is known of the profile: a table's last radius, the radius of the exact sphere.
-    #[error("a contact radius of {} m is not below {} m, where the profile ends", short(*radius), short(*limit))]
+    #[error("{}{} m, where the profile ends", beyond(*radius, *limit), short(*limit))]
     BeyondProfile {
         /// The contact radius needed, m; the limit itself if none would do.
         radius: f64,
@@ -104,6 +104,16 @@ pub enum Error {
     Unsupported(UnsupportedMove),
 }
 
+/// What a contact would do that needs this radius, m, of a profile that ends at `limit`; how far it leads beyond the end
+/// is not always known.
+fn beyond(radius: f64, limit: f64) -> String {
+    if radius > limit {
+        format!("a contact radius of {} m is not below ", short(radius))
+    } else {
+        "the contact would reach the radius ".to_owned()
+    }
+}
+
 /// Why two columns of radii r and heights z are not a profile.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ThisError)]
 pub enum TableFault {
@@ -155,6 +165,14 @@ pub enum UnsupportedMove {
 #[cfg(test)]
 mod tests {
     use super::Error;
+
+    #[test]
+    fn a_contact_beyond_the_profile_is_told_where_that_ends() {
+        let said = |radius: f64| Error::BeyondProfile { radius, limit: 1.25e-4 }.to_string();
+        assert_eq!(said(2e-4), "a contact radius of 2e-4 m is not below 1.25e-4 m, where the profile ends");
+        // The radius that a load needs is sought up to the end alone.
+        assert_eq!(said(1.25e-4), "the contact would reach the radius 1.25e-4 m, where the profile ends");
+    }
 
     #[test]
     fn a_force_that_friction_cannot_hold_is_told_the_largest_that_it_can() {
