@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use std::path::Path;
 use std::{fs, io};
 
-use crate::plot::chart::{Chart, Series};
+use crate::plot::{Curve, Picture as _, Plot};
 
 use super::{Report, Row};
 
@@ -118,16 +118,15 @@ fn csv(rows: &[Row]) -> String {
     csv
 }
 
-fn chart(rows: &[Row], scene: &str, what: &str, error: fn(&Row) -> f64) -> Chart {
+fn chart(rows: &[Row], scene: &str, what: &'static str, error: fn(&Row) -> f64) -> Plot {
     let rows = || rows.iter().filter(move |row| row.scene == scene && row.solver != "reference");
     let mut seen = BTreeSet::new();
     let solvers: Vec<&str> = rows().map(|row| row.solver.as_str()).filter(|solver| seen.insert(*solver)).collect();
     let series = solvers.into_iter().map(|solver| {
-        let points =
-            rows().filter(|row| row.solver == solver).map(|row| (row.median, error(row).max(SMALLEST_ERROR))).collect();
-        if solver == "exact" { Series::dots(solver, points) } else { Series::line(solver, points) }
+        let points = rows().filter(|row| row.solver == solver).map(|row| (row.median, error(row).max(SMALLEST_ERROR)));
+        Curve { dots: solver == "exact", ..Curve::line(solver.to_owned(), None, points) }
     });
-    Chart { over_decades: true, ..Chart::new(scene, "processor time, s", what, series.collect()) }
+    Plot { over_decades: true, ..Plot::of_numbers(scene, "processor time, s", what, series.collect()) }
 }
 
 /// Processor, cores, system, compiler and optimisation.

@@ -3,7 +3,7 @@
 
 use super::POINTS;
 use super::contact::{ball, small_contact};
-use crate::plot::chart::{Chart, Series};
+use crate::plot::{Curve, Plot};
 use stickslip_mechanics::cycle::SteadyCycle;
 use stickslip_mechanics::profile::{Cone, TruncatedSphere};
 use stickslip_mechanics::{Error, Profile};
@@ -11,15 +11,15 @@ use stickslip_mechanics::{Error, Profile};
 /// The largest amplitude over that of gross slip.
 const LARGEST: f64 = 1.6;
 
-pub(super) fn charts() -> Result<[Chart; 2], Error> {
+pub(super) fn charts() -> Result<[Plot; 2], Error> {
     Ok([
-        Chart::new(
+        Plot::of_numbers(
             "Figure 10: secant stiffness of steady cycles",
             "U0 / u_max",
             "secant stiffness / (2 G* a)",
             curves(|cycle| cycle.secant_stiffness() / cycle.tangent_stiffness())?,
         ),
-        Chart::new(
+        Plot::of_numbers(
             "Figure 11: loss factor of steady cycles",
             "U0 / u_max",
             "loss factor",
@@ -29,7 +29,7 @@ pub(super) fn charts() -> Result<[Chart; 2], Error> {
 }
 
 /// A value over the amplitude, for each shape.
-fn curves(value: impl Fn(&SteadyCycle<'_>) -> f64) -> Result<Vec<Series>, Error> {
+fn curves(value: impl Fn(&SteadyCycle<'_>) -> f64) -> Result<Vec<Curve>, Error> {
     let shapes = [
         ("cone", Profile::Cone(Cone::new(0.005)?)),
         ("ball", ball()?),
@@ -41,7 +41,7 @@ fn curves(value: impl Fn(&SteadyCycle<'_>) -> f64) -> Result<Vec<Series>, Error>
             let share = LARGEST * index as f64 / POINTS as f64;
             (share, value(&SteadyCycle::of(&contact, share * contact.gross_slip_displacement())))
         };
-        Ok(Series::line(name, (0..=POINTS).map(point).collect()))
+        Ok(Curve::line(name, None, (0..=POINTS).map(point)))
     });
     series.collect()
 }

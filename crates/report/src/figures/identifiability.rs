@@ -3,7 +3,7 @@
 
 use super::Failure;
 use super::contact::{ball_under_load, to};
-use crate::plot::chart::{Chart, Series};
+use crate::plot::{Curve, Plot};
 use stickslip_measured::loops::{self, Known, Noise, Parameter, Record, Start, Task};
 use stickslip_mechanics::{Contact, Error};
 
@@ -15,7 +15,7 @@ const NOISE: f64 = 0.01;
 /// Compliance of the machine over that of the contact before it slips.
 const COMPLIANCE: f64 = 0.4;
 
-pub(super) fn chart() -> Result<Chart, Failure> {
+pub(super) fn chart() -> Result<Plot, Failure> {
     let contact = ball_under_load()?;
     let compliance = COMPLIANCE / (2.0 * contact.elasticity().g_star() * contact.contact_radius());
     let sought = [
@@ -25,7 +25,7 @@ pub(super) fn chart() -> Result<Chart, Failure> {
         ("friction, machine known", Parameter::Friction, true),
         ("stiffness, machine known", Parameter::GStar, true),
     ];
-    let mut series: Vec<Series> = sought.iter().map(|(name, ..)| Series::line(*name, Vec::new())).collect();
+    let mut series: Vec<Curve> = sought.iter().map(|(name, ..)| Curve::line(*name, None, Vec::new())).collect();
     for amplitude in AMPLITUDES {
         let record = steady(&contact, amplitude, compliance)?;
         for known in [false, true] {
@@ -38,8 +38,8 @@ pub(super) fn chart() -> Result<Chart, Failure> {
         }
     }
     let title = "Figure 15: what one loop with 1 % of noise determines";
-    let chart = Chart::new(title, "amplitude / displacement of gross slip", "standard error (%)", series);
-    Ok(Chart { over_decades: true, ..chart })
+    let chart = Plot::of_numbers(title, "amplitude / displacement of gross slip", "standard error (%)", series);
+    Ok(Plot { over_decades: true, ..chart })
 }
 
 /// A steady loop behind a machine spring, without noise.

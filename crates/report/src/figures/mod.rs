@@ -17,8 +17,7 @@ use std::fs;
 use std::io;
 use std::path::Path;
 
-use crate::plot::chart::{Chart, Series};
-use crate::plot::{Picture as _, Section};
+use crate::plot::{Colour, Curve, Drawing, Picture as _, Plot, Section};
 use stickslip_mechanics::protocol::falling_amplitude;
 use stickslip_mechanics::{Contact, Error, Residual, State};
 
@@ -35,9 +34,9 @@ const MAX_REVERSALS: usize = 40;
 pub fn write(dir: &Path) -> io::Result<()> {
     fs::create_dir_all(dir)?;
     let [paper, later] = without_protocols().map_err(io::Error::other)?;
-    let protocols = protocols::charts().map_err(io::Error::other)?.map(Figure::Chart);
+    let protocols = protocols::charts().map_err(io::Error::other)?.map(Drawing::Plot);
     for (number, figure) in (1..).zip(paper.into_iter().chain(protocols).chain(later)) {
-        fs::write(dir.join(format!("figure{number}.csv")), figure.csv())?;
+        fs::write(dir.join(format!("figure{number}.csv")), csv(&figure))?;
         fs::write(dir.join(format!("figure{number}.svg")), figure.svg().map_err(io::Error::other)?)?;
     }
     Ok(())
@@ -46,35 +45,14 @@ pub fn write(dir: &Path) -> io::Result<()> {
 /// Why there is no figure.
 type Failure = Box<dyn std::error::Error + Send + Sync>;
 
-enum Figure {
-    Chart(Chart),
-    Section(Section),
-}
-
-impl Figure {
-    fn svg(self) -> Result<Vec<u8>, String> {
-        match self {
-            Figure::Chart(chart) => chart.svg().map(String::into_bytes),
-            Figure::Section(section) => section.svg(),
-        }
-    }
-
-    fn csv(&self) -> String {
-        match self {
-            Figure::Chart(chart) => csv(chart),
-            Figure::Section(section) => section_csv(section),
-        }
-    }
-}
-
 /// Figures 1 to 5, and those from 10 on: all but those of protocols, which take long.
-fn without_protocols() -> Result<[Vec<Figure>; 2], Failure> {
-    let (cycles, fretting) = (cycles::charts()?.map(Figure::Chart), fretting::sections()?.map(Figure::Section));
-    let last = [rough::chart()?, identifiability::chart()?].map(Figure::Chart);
-    Ok([paper()?.map(Figure::Chart).into(), cycles.into_iter().chain(fretting).chain(last).collect()])
+fn without_protocols() -> Result<[Vec<Drawing>; 2], Failure> {
+    let (cycles, fretting) = (cycles::charts()?.map(Drawing::Plot), fretting::sections()?.map(Drawing::Section));
+    let last = [rough::chart()?, identifiability::chart()?].map(Drawing::Plot);
+    Ok([paper()?.map(Drawing::Plot).into(), cycles.into_iter().chain(fretting).chain(last).collect()])
 }
 
-fn paper() -> Result<[Chart; 5], Error> {
+fn paper() -> Result<[Plot; 5], Error> {
     let path = NormalisedPath::follow(REVERSALS, REVERSALS + 1)?;
     Ok([positions(&path), forces(&path), shear_partway()?, remaining_shear(&path), remaining_peaks()?])
 }
@@ -136,7 +114,7 @@ fn shear_curve(contact: &Contact, residual: &Residual, unit: f64) -> Vec<(f64, f
     radii.iter().map(|&r| (r / edge, contact.shear(r) / unit)).collect()
 }
 
-fn positions(path: &NormalisedPath) -> Chart {
+fn positions(path: &NormalisedPath) -> Plot {
     let turns = path.numbered(|state| state.displacement, path.contact.summary().gross_slip_displacement);
     // Only the reversal points matter; half a cosine is drawn between them, as in the paper.
     let position = turns.windows(2).flat_map(|pair| {
@@ -146,60 +124,60 @@ fn positions(path: &NormalisedPath) -> Chart {
             (x0 + part, u0 + (u1 - u0) * 0.5 * (1.0 - (std::f64::consts::PI * part).cos()))
         })
     });
-    let position = position.chain(turns.last().copied()).collect();
+    let position: Vec<_> = position.chain(turns.last().copied()).collect();
     let marked = vec![turns[5], (6.5, 0.0)];
-    Chart::new(
+    Plot::of_numbers(
         "Figure 1: position of the indenter, 20 reversals",
         "reversal point k",
         "u / u_max",
         vec![
-            Series::dots("A and B of figure 3", marked),
-            Series::dots("reversal points", turns),
-            Series::line("position", position),
+            Curve::line("position", Colour::Grey, position),
+            Curve::dots("reversal points", Colour::Red, turns),
+            Curve::dots("A and B of figure 3", Colour::Blue, marked),
         ],
     )
 }
 
-fn forces(path: &NormalisedPath) -> Chart {
+fn forces(path: &NormalisedPath) -> Plot {
     let sizes = path.numbered(|state| state.force.abs(), path.contact.summary().gross_slip_force);
-    Chart::new(
+    Plot::of_numbers(
         "Figure 2: tangential force at the reversal points",
         "reversal point k",
         "|F| / (mu F_N)",
-        vec![Series::dots("|F| / (mu F_N)", sizes)],
+        vec![Curve::dots("|F| / (mu F_N)", None, sizes)],
     )
 }
 
-fn shear_partway() -> Result<Chart, Error> {
+fn shear_partway() -> Result<Plot, Error> {
     let mut path = NormalisedPath::follow(REVERSALS, 6)?;
     let at_reversal = path.shear();
     path.move_to(0.0)?;
     let bound = path.bound();
-    let mirrored = bound.iter().map(|&(r, p)| (r, -p)).collect();
-    Ok(Chart::new(
+    let mirrored: Vec<_> = bound.iter().map(|&(r, p)| (r, -p)).collect();
+    Ok(Plot::of_numbers(
         "Figure 3: shear stress after 6 and 6.5 of 20 reversals",
         "r / a",
         "tau / (mu p_max)",
         // The friction bound lies behind the curves that it bounds.
         vec![
-            Series::line("A: reversal 6", at_reversal),
-            Series::line("B: back at u = 0", path.shear()),
-            Series::line("mu p", bound),
-            Series::line("-mu p", mirrored),
+            Curve::line("mu p", Colour::Grey, bound),
+            Curve::line("-mu p", Colour::LightGrey, mirrored),
+            Curve::line("B: back at u = 0", Colour::Red, path.shear()),
+            Curve::line("A: reversal 6", Colour::Blue, at_reversal),
         ],
     ))
 }
 
-fn remaining_shear(path: &NormalisedPath) -> Chart {
-    Chart::new(
+fn remaining_shear(path: &NormalisedPath) -> Plot {
+    Plot::of_numbers(
         "Figure 4: shear stress that remains after 20 reversals",
         "r / a",
         "tau / (mu p_max)",
-        vec![Series::line("tau / (mu p_max)", path.shear())],
+        vec![Curve::line("tau / (mu p_max)", None, path.shear())],
     )
 }
 
-fn remaining_peaks() -> Result<Chart, Error> {
+fn remaining_peaks() -> Result<Plot, Error> {
     let mut largest = Vec::new();
     let mut smallest = Vec::new();
     let mut mean = Vec::new();
@@ -212,33 +190,37 @@ fn remaining_peaks() -> Result<Chart, Error> {
         smallest.extend(residual.min.map(|value| (x, value / unit)));
         mean.extend(residual.mean.map(|value| (x, value / unit)));
     }
-    Ok(Chart::new(
+    Ok(Plot::of_numbers(
         "Figure 5: peaks of the remaining shear stress",
         "number of reversals",
         "|tau| / (mu p_max)",
-        vec![Series::dots("maximum", largest), Series::dots("mean", mean), Series::dots("minimum", smallest)],
+        vec![
+            Curve::dots("maximum", None, largest),
+            Curve::dots("mean", None, mean),
+            Curve::dots("minimum", None, smallest),
+        ],
     ))
 }
 
-/// One row a point: series, x, y, each number as short as it can be and exact.
-fn csv(chart: &Chart) -> String {
-    let mut text = format!("series,{},{}\n", chart.x, chart.y);
-    for series in &chart.series {
-        for (x, y) in &series.points {
-            // Writing to a string cannot fail.
-            let _ = writeln!(text, "{},{x},{y}", series.name);
+/// One row a point: series, x, y, or one row a place; each number as short as it can be and exact.
+fn csv(figure: &Drawing) -> String {
+    let mut text = String::new();
+    // Writing to a string cannot fail.
+    match figure {
+        Drawing::Plot(plot) => {
+            for panel in &plot.panels {
+                let _ = writeln!(text, "series,{},{}", plot.x.name, panel.y.name);
+                for (curve, (x, y)) in panel.curves.iter().flat_map(|c| c.points.iter().map(move |point| (c, point))) {
+                    let _ = writeln!(text, "{},{x},{y}", curve.name);
+                }
+            }
         }
-    }
-    text
-}
-
-/// One row a place.
-fn section_csv(section: &Section) -> String {
-    let ((x, columns), (y, rows), (value, values)) = (&section.x, &section.y, &section.values);
-    let mut text = format!("{},{},{}\n", x.name, y.name, value.name);
-    for (index, value) in values.iter().enumerate() {
-        // Writing to a string cannot fail.
-        let _ = writeln!(text, "{},{},{value}", columns[index / rows.len()], rows[index % rows.len()]);
+        Drawing::Section(Section { x: (x, columns), y: (y, rows), values: (value, values), .. }) => {
+            let _ = writeln!(text, "{},{},{}", x.name, y.name, value.name);
+            for (index, value) in values.iter().enumerate() {
+                let _ = writeln!(text, "{},{},{value}", columns[index / rows.len()], rows[index % rows.len()]);
+            }
+        }
     }
     text
 }
@@ -246,6 +228,8 @@ fn section_csv(section: &Section) -> String {
 #[cfg(test)]
 mod tests {
     use std::path::Path;
+
+    use crate::plot::Picture as _;
 
     /// All but those of protocols, which take long. `cargo run --release -- figures --out docs/figures` draws them
     /// anew.

@@ -2,7 +2,7 @@
 
 use super::contact::{ball, small_contact};
 use super::shear_curve;
-use crate::plot::chart::{Chart, Series};
+use crate::plot::{Curve, Plot};
 use stickslip_mechanics::profile::PowerLaw;
 use stickslip_mechanics::protocol::{AmplitudeLaw, Design, ExecutionErrors, PathEnd, PathStart, design, trials};
 use stickslip_mechanics::{Contact, Error, Profile};
@@ -17,7 +17,7 @@ const REVERSALS: usize = 20;
 const SAMPLES: usize = 100;
 const SEED: u64 = 2016;
 
-pub(super) fn charts() -> Result<[Chart; 4], Error> {
+pub(super) fn charts() -> Result<[Plot; 4], Error> {
     Ok([reduction()?, over_radius()?, shapes()?, robustness()?])
 }
 
@@ -38,33 +38,33 @@ fn designed(contact: &Contact, kind: AmplitudeLaw, reversals: usize) -> Result<D
 
 /// A chart with its title and the names of its axes, and a series of each of some things.
 fn chart<T>(
-    [title, x, y]: [&str; 3],
+    [title, x, y]: [&'static str; 3],
     of: impl IntoIterator<Item = T>,
-    series: impl Fn(T) -> Result<Series, Error>,
-) -> Result<Chart, Error> {
-    Ok(Chart::new(title, x, y, of.into_iter().map(series).collect::<Result<_, _>>()?))
+    series: impl Fn(T) -> Result<Curve, Error>,
+) -> Result<Plot, Error> {
+    Ok(Plot::of_numbers(title, x, y, of.into_iter().map(series).collect::<Result<_, _>>()?))
 }
 
-fn reduction() -> Result<Chart, Error> {
+fn reduction() -> Result<Plot, Error> {
     let contact = small_contact(power_law(4.0)?, 0.3)?;
     let names =
         ["Figure 6: largest remaining stress, profile z ~ r^4", "number of reversals", "max |tau| / (mu p_max)"];
     chart(names, KINDS, |(kind, name)| {
         let point = |reversals| Ok((reversals as f64, designed(&contact, kind, reversals)?.largest / unit(&contact)));
-        Ok(Series::dots(name, REVERSAL_COUNTS.into_iter().map(point).collect::<Result<_, Error>>()?))
+        Ok(Curve::dots(name, None, REVERSAL_COUNTS.into_iter().map(point).collect::<Result<Vec<_>, Error>>()?))
     })
 }
 
-fn over_radius() -> Result<Chart, Error> {
+fn over_radius() -> Result<Plot, Error> {
     let contact = small_contact(power_law(4.0)?, 0.3)?;
     let names = ["Figure 7: stress after 20 reversals, profile z ~ r^4", "r / a", "tau / (mu p_max)"];
     chart(names, KINDS, |(kind, name)| {
         let left = designed(&contact, kind, REVERSALS)?;
-        Ok(Series::line(name, shear_curve(&left.contact, &left.residual, unit(&contact))))
+        Ok(Curve::line(name, None, shear_curve(&left.contact, &left.residual, unit(&contact))))
     })
 }
 
-fn shapes() -> Result<Chart, Error> {
+fn shapes() -> Result<Plot, Error> {
     let shapes = [
         ("z ~ r^1.5", power_law(1.5)?),
         ("sphere", ball()?),
@@ -82,11 +82,11 @@ fn shapes() -> Result<Chart, Error> {
             let linear = designed(&contact, AmplitudeLaw::Linear, reversals)?.largest;
             Ok((reversals as f64, designed(&contact, AmplitudeLaw::Minimax, reversals)?.largest / linear))
         };
-        Ok(Series::dots(name, REVERSAL_COUNTS.into_iter().map(point).collect::<Result<_, Error>>()?))
+        Ok(Curve::dots(name, None, REVERSAL_COUNTS.into_iter().map(point).collect::<Result<Vec<_>, Error>>()?))
     })
 }
 
-fn robustness() -> Result<Chart, Error> {
+fn robustness() -> Result<Plot, Error> {
     let contact = small_contact(power_law(4.0)?, 0.3)?;
     let names = [
         "Figure 9: mean of the largest stress, 20 reversals with errors, z ~ r^4",
@@ -101,6 +101,6 @@ fn robustness() -> Result<Chart, Error> {
             let tried = trials(&|_| Ok(contact.clone()), &path, &errors, SAMPLES, &|| true)?;
             Ok((100.0 * amplitude, tried.iter().sum::<f64>() / SAMPLES as f64 / unit(&contact)))
         };
-        Ok(Series::line(name, (0..=8).map(point).collect::<Result<_, Error>>()?))
+        Ok(Curve::line(name, None, (0..=8).map(point).collect::<Result<Vec<_>, Error>>()?))
     })
 }

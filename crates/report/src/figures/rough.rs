@@ -1,7 +1,7 @@
 //! Figure 14: the hysteresis loop of a rough contact beside that of a ball of the same load and stiffness.
 
 use super::contact::{contact_of, to};
-use crate::plot::chart::{Chart, Series};
+use crate::plot::{Curve, Plot};
 use stickslip_mechanics::profile::Asperities;
 use stickslip_mechanics::{Contact, Error, Preload, Profile, Sphere};
 
@@ -14,18 +14,18 @@ const LOAD: Preload = Preload::NormalForce(100.0);
 const AMPLITUDE: f64 = 2.0;
 const POINTS: i32 = 100;
 
-pub(super) fn chart() -> Result<Chart, Error> {
+pub(super) fn chart() -> Result<Plot, Error> {
     let gaps: Vec<f64> = (0..COUNT).map(|index| HEIGHT * (f64::from(index) + 0.5).ln()).collect();
     let rough = contact_of(Profile::Asperities(Asperities::new(&[1e-4], &gaps)?), FRICTION, LOAD)?;
     let radius = rough.contact_radius();
     // Hertz: F_N = 4 E* a^3/(3 R).
     let curvature = 4.0 * rough.elasticity().e_star() * radius * radius * radius / (3.0 * rough.normal_force());
     let ball = contact_of(Profile::Sphere(Sphere::new(curvature)?), FRICTION, LOAD)?;
-    Ok(Chart::new(
+    Ok(Plot::of_numbers(
         "Figure 14: a rough contact and a ball of the same load and stiffness",
         "2 G* X U / (mu F_N)",
         "F / (mu F_N)",
-        vec![Series::line("100 000 asperities", hysteresis(rough)?), Series::line("ball", hysteresis(ball)?)],
+        vec![Curve::line("100 000 asperities", None, hysteresis(rough)?), Curve::line("ball", None, hysteresis(ball)?)],
     ))
 }
 

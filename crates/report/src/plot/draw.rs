@@ -9,7 +9,7 @@ use plotters::prelude::*;
 use stickslip_mechanics::unit_prefix;
 
 use super::round_joins::RoundJoins;
-use super::{Axis, Band, Colour, DrawResult, Panel, Picture, Plot};
+use super::{Axis, Band, Colour, Curve, DrawResult, Panel, Picture, Plot};
 
 /// Pixels of a plot. Twice the size shown on a page, so that curves and text are smooth.
 pub(super) const SIZE: (u32, u32) = (1520, 1000);
@@ -22,8 +22,10 @@ const MARGIN: f64 = 0.05;
 /// The part kept free above where there is a legend.
 const HEADROOM: f64 = 0.24;
 
-/// Radius of a measured point, pixels.
+/// Radius of a point, pixels; of one that stands alone, or is one of so few that none hides another.
 const DOT: u32 = 4;
+const LARGE_DOT: u32 = 7;
+const FEW: usize = 50;
 /// Smaller extents are treated as zero.
 const SMALLEST: f64 = 1e-200;
 
@@ -35,11 +37,17 @@ pub(super) struct Scale {
 }
 
 impl Colour {
+    const ALL: [Colour; 6] =
+        [Colour::Blue, Colour::Red, Colour::Grey, Colour::LightGrey, Colour::Orange, Colour::Green];
+
     fn rgb(self) -> RGBColor {
         match self {
             Colour::Blue => RGBColor(0, 90, 181),
             Colour::Red => RGBColor(220, 50, 32),
             Colour::Grey => RGBColor(110, 110, 110),
+            Colour::LightGrey => RGBColor(160, 160, 160),
+            Colour::Orange => RGBColor(230, 159, 0),
+            Colour::Green => RGBColor(0, 130, 90),
         }
     }
 }
@@ -82,98 +90,131 @@ impl Picture for Plot {
     }
 
     fn draw<DB: DrawingBackend<ErrorType: 'static>>(&self, area: &DrawingArea<DB, Shift>) -> DrawResult {
+        if self.over_decades {
+            return self.logarithms().draw_panels(area);
+        }
+        self.draw_panels(area)
+    }
+}
+
+impl Plot {
+    /// The same with the logarithm of each number; what has none is not drawable.
+    fn logarithms(&self) -> Plot {
+        let curve = |curve: &Curve| Curve {
+            points: curve.points.iter().map(|(x, y)| (x.log10(), y.log10())).collect(),
+            name: curve.name.clone(),
+            ..*curve
+        };
+        let panel = |panel: &Panel| Panel { y: panel.y, curves: panel.curves.iter().map(curve).collect() };
+        let panels = self.panels.iter().map(panel).collect();
+        Plot { over_decades: true, ..Plot::new(self.title.clone(), self.x, panels) }
+    }
+
+    fn draw_panels<DB: DrawingBackend<ErrorType: 'static>>(&self, area: &DrawingArea<DB, Shift>) -> DrawResult {
         let titled = area.margin(16, 0, 0, 0).titled(&self.title, ("sans-serif", 30))?;
         let ends = self.bands.iter().flat_map(|band| [band.from, band.to]);
         let x_range =
             self.panels.iter().flat_map(|panel| &panel.curves).flat_map(|curve| &curve.points).map(|point| point.0);
-        let extent = extent(x_range.chain(ends));
+        let extent = self.whole(extent(x_range.chain(ends)));
         let scale = scale(&self.x, &extent);
         let last = self.panels.len().saturating_sub(1);
         for (index, (part, panel)) in
             titled.split_evenly((self.panels.len().max(1), 1)).iter().zip(&self.panels).enumerate()
         {
             let bands: &[Band] = if index == 0 { &self.bands } else { &[] };
-            draw_panel(part, panel, bands, &extent, &scale, index == last)?;
+            self.draw_panel(part, panel, bands, (&extent, &scale), index == last)?;
         }
         Ok(())
     }
-}
 
-fn draw_panel<DB: DrawingBackend<ErrorType: 'static>>(
-    area: &DrawingArea<DB, Shift>,
-    panel: &Panel,
-    bands: &[Band],
-    x_range: &Range<f64>,
-    x: &Scale,
-    lowest: bool,
-) -> DrawResult {
-    let values = panel.curves.iter().flat_map(|curve| &curve.points).map(|point| point.1);
-    let y_range = extent(values);
-    let y = scale(&panel.y, &y_range);
-    let span = (y_range.end - y_range.start) / y.unit;
-    let legend = !bands.is_empty() || panel.curves.iter().any(|curve| !curve.name.is_empty());
-    let above = if legend { HEADROOM } else { MARGIN };
-    let (low, high) = (y_range.start / y.unit - MARGIN * span, y_range.end / y.unit + above * span);
-    let mut axes = ChartBuilder::on(area)
-        .margin_left(20)
-        .margin_right(36)
-        .margin_top(12)
-        .x_label_area_size(if lowest { 84 } else { 20 })
-        .y_label_area_size(LEFT)
-        .build_cartesian_2d(x_range.start / x.unit..x_range.end / x.unit, low..high)?;
-    for band in bands {
-        let corners = [(band.from / x.unit, low), (band.to / x.unit, high)];
-        let shade = band.colour.rgb().mix(0.10);
-        axes.draw_series([Rectangle::new(corners, shade.filled())])?
-            .label(band.name)
-            .legend(move |(x, y)| Rectangle::new([(x, y - 12), (x + 28, y + 12)], shade.filled()));
+    /// A range, or the decades that it lies in.
+    fn whole(&self, range: Range<f64>) -> Range<f64> {
+        if self.over_decades { range.start.floor()..range.end.ceil() } else { range }
     }
-    let mut mesh = axes.configure_mesh();
-    mesh.y_desc(&y.label)
-        .x_labels(if lowest { 10 } else { 0 })
-        .x_label_formatter(&tick)
-        .y_label_formatter(&tick)
-        .label_style(("sans-serif", 24))
-        .axis_desc_style(("sans-serif", 28))
-        .light_line_style(TRANSPARENT);
-    if lowest {
-        mesh.x_desc(&x.label);
-    }
-    mesh.draw()?;
-    for curve in &panel.curves {
-        let style = curve.colour.rgb().stroke_width(4);
-        let mut named = curve.name.is_empty();
-        for stretch in curve
-            .points
-            .split(|point| !is_drawable(&point.0) || !is_drawable(&point.1))
-            .filter(|stretch| !stretch.is_empty())
-        {
-            let points = stretch.iter().map(|point| (point.0 / x.unit, point.1 / y.unit));
-            let drawn = if curve.dots {
-                axes.draw_series(points.map(|point| Circle::new(point, DOT, curve.colour.rgb().filled())))?
-            } else if stretch.len() > 1 {
-                axes.draw_series(LineSeries::new(points, style))?
-            } else {
-                axes.draw_series(points.map(|point| Circle::new(point, 7, curve.colour.rgb().filled())))?
-            };
-            if !std::mem::replace(&mut named, true) {
-                drawn
-                    .label(curve.name)
-                    .legend(move |(x, y)| Rectangle::new([(x, y - 3), (x + 28, y + 3)], style.filled()));
+
+    fn draw_panel<DB: DrawingBackend<ErrorType: 'static>>(
+        &self,
+        area: &DrawingArea<DB, Shift>,
+        panel: &Panel,
+        bands: &[Band],
+        (x_range, x): (&Range<f64>, &Scale),
+        lowest: bool,
+    ) -> DrawResult {
+        let decades = self.over_decades;
+        let values = panel.curves.iter().flat_map(|curve| &curve.points).map(|point| point.1);
+        let y_range = self.whole(extent(values));
+        let y = scale(&panel.y, &y_range);
+        let span = (y_range.end - y_range.start) / y.unit;
+        let legend = !bands.is_empty() || panel.curves.iter().any(|curve| !curve.name.is_empty());
+        // Curves that fall over decades leave room for the legend at the middle of the left.
+        let (below, above, place) = match (decades, legend) {
+            (true, _) => (0.0, 0.0, SeriesLabelPosition::MiddleLeft),
+            (_, true) => (MARGIN, HEADROOM, SeriesLabelPosition::UpperRight),
+            _ => (MARGIN, MARGIN, SeriesLabelPosition::UpperRight),
+        };
+        let (low, high) = (y_range.start / y.unit - below * span, y_range.end / y.unit + above * span);
+        let mut axes = ChartBuilder::on(area)
+            .margin_left(20)
+            .margin_right(36)
+            .margin_top(12)
+            .x_label_area_size(if lowest { 84 } else { 20 })
+            .y_label_area_size(LEFT)
+            .build_cartesian_2d(x_range.start / x.unit..x_range.end / x.unit, low..high)?;
+        for band in bands {
+            let corners = [(band.from / x.unit, low), (band.to / x.unit, high)];
+            let shade = band.colour.rgb().mix(0.10);
+            axes.draw_series([Rectangle::new(corners, shade.filled())])?
+                .label(band.name)
+                .legend(move |(x, y)| Rectangle::new([(x, y - 12), (x + 28, y + 12)], shade.filled()));
+        }
+        let decades_of = |range: &Range<f64>| (range.end - range.start) as usize + 1;
+        let label = if decades { |value: &f64| format!("1e{}", value.round()) } else { tick };
+        let mut mesh = axes.configure_mesh();
+        mesh.y_desc(&y.label)
+            .x_labels(if lowest { 10 } else { 0 })
+            .x_label_formatter(&label)
+            .y_label_formatter(&label)
+            .label_style(("sans-serif", 24))
+            .axis_desc_style(("sans-serif", 28))
+            .light_line_style(TRANSPARENT);
+        if lowest {
+            mesh.x_desc(&x.label);
+        }
+        if decades {
+            mesh.x_labels(decades_of(x_range)).y_labels(decades_of(&y_range));
+        }
+        mesh.draw()?;
+        for (curve, own) in panel.curves.iter().zip(Colour::ALL.iter().cycle()) {
+            let colour = curve.colour.unwrap_or(*own).rgb();
+            let style = colour.stroke_width(4);
+            let points = curve.points.split(|point| !is_drawable(&point.0) || !is_drawable(&point.1));
+            let mut named = curve.name.is_empty();
+            for stretch in points.filter(|stretch| !stretch.is_empty()) {
+                let points = || stretch.iter().map(|point| (point.0 / x.unit, point.1 / y.unit));
+                let joined = stretch.len() > 1 && !curve.dots;
+                let dot = if stretch.len() == 1 || curve.points.len() < FEW { LARGE_DOT } else { DOT };
+                if !joined || decades {
+                    axes.draw_series(points().map(|point| Circle::new(point, dot, colour.filled())))?;
+                }
+                let line = axes.draw_series(joined.then(|| PathElement::new(points().collect::<Vec<_>>(), style)))?;
+                if !std::mem::replace(&mut named, true) {
+                    line.label(curve.name.as_ref())
+                        .legend(move |(x, y)| Rectangle::new([(x, y - 3), (x + 28, y + 3)], style.filled()));
+                }
             }
         }
+        if !legend {
+            return Ok(());
+        }
+        axes.configure_series_labels()
+            .position(place)
+            .legend_area_size(40)
+            .background_style(WHITE.mix(0.85))
+            .border_style(RGBColor(200, 200, 200))
+            .label_font(("sans-serif", 24))
+            .draw()?;
+        Ok(())
     }
-    if !legend {
-        return Ok(());
-    }
-    axes.configure_series_labels()
-        .position(SeriesLabelPosition::UpperRight)
-        .legend_area_size(40)
-        .background_style(WHITE.mix(0.85))
-        .border_style(RGBColor(200, 200, 200))
-        .label_font(("sans-serif", 24))
-        .draw()?;
-    Ok(())
 }
 
 /// The range of the values, widened if they are all the same.
@@ -263,7 +304,7 @@ mod tests {
     /// Every second of many points is high, so that each corner is sharp.
     fn comb(dots: bool) -> Plot {
         let points = (0..400).map(|index| (f64::from(index), if index % 2 == 0 { -1.0 } else { 1.0 })).collect();
-        let curve = Curve { name: "", points, colour: Colour::Red, dots };
+        let curve = Curve { name: "".into(), points, colour: Some(Colour::Red), dots };
         let axis = || Axis { name: "x", unit: None };
         Plot::new("t", axis(), vec![Panel { y: axis(), curves: vec![curve] }])
     }
@@ -289,6 +330,19 @@ mod tests {
         let (top, bottom) = (heights.clone().min().unwrap(), heights.max().unwrap());
         // Half the width of the line on both sides.
         assert!(rows[0] + 3 >= top && *rows.last().unwrap() <= bottom + 3, "{} {top} {bottom}", rows[0]);
+    }
+
+    #[test]
+    fn decades_are_labelled_and_what_has_no_logarithm_is_left_out() {
+        let curve = Curve::line("a", None, [(1e-5, 1e-3), (0.0, 1.0), (1e-3, 1e-9)]);
+        let plot = Plot { over_decades: true, ..Plot::of_numbers("t", "x", "y", vec![curve]) };
+        let svg = String::from_utf8(plot.svg().unwrap()).unwrap();
+        for label in ["1e-5", "1e-4", "1e-3", "1e-9", "1e-6"] {
+            assert!(svg.contains(label), "{label}");
+        }
+        // Two dots, and none for the point without a logarithm.
+        assert_eq!(svg.matches("<circle").count(), 2);
+        assert!(!svg.contains("NaN") && !svg.contains("inf"));
     }
 
     #[test]

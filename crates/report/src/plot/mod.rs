@@ -1,10 +1,8 @@
-//! Plots of a contact: panels of curves over one axis, with shaded bands, as SVG or PNG. The charts of figures and
-//! reports are in [`chart`].
+//! Plots: panels of curves over one axis, with shaded bands, as SVG or PNG.
 //!
 //! Each axis is labelled with its quantity and unit; values are given in SI units and shown with a unit prefix that
 //! fits.
 
-pub mod chart;
 mod contour;
 mod draw;
 mod font;
@@ -15,6 +13,7 @@ mod section;
 pub use section::{ContactEdge, Peak, Section};
 pub use stickslip_mechanics::in_unit;
 
+use std::borrow::Cow;
 use std::error::Error;
 
 use plotters::coord::Shift;
@@ -30,17 +29,27 @@ pub struct Plot {
     pub panels: Vec<Panel>,
     /// Shaded behind the curves of every panel.
     pub bands: Vec<Band>,
+    /// Whether the axes are logarithmic, from decade to decade; points that are not above zero are left out.
+    pub over_decades: bool,
 }
 
 impl Plot {
     /// A plot without bands.
     #[must_use]
     pub fn new(title: impl Into<String>, x: Axis, panels: Vec<Panel>) -> Plot {
-        Plot { title: title.into(), x, panels, bands: Vec::new() }
+        Plot { title: title.into(), x, panels, bands: Vec::new(), over_decades: false }
+    }
+
+    /// One panel over pure numbers, with the names of both axes.
+    #[must_use]
+    pub fn of_numbers(title: impl Into<String>, x: &'static str, y: &'static str, curves: Vec<Curve>) -> Plot {
+        let number = |name| Axis { name, unit: None };
+        Plot::new(title, number(x), vec![Panel { y: number(y), curves }])
     }
 }
 
 /// A quantity and its unit; a count has none.
+#[derive(Clone, Copy)]
 pub struct Axis {
     /// The quantity.
     pub name: &'static str,
@@ -67,11 +76,11 @@ pub struct Panel {
 /// Points in SI units, joined or alone; a line is interrupted where a value is not finite.
 pub struct Curve {
     /// Its name in the legend; one without a name is not there.
-    pub name: &'static str,
+    pub name: Cow<'static, str>,
     /// Abscissa and ordinate.
     pub points: Vec<(f64, f64)>,
-    /// Its colour.
-    pub colour: Colour,
+    /// Its colour; none for that of its place among the curves.
+    pub colour: Option<Colour>,
     /// Points alone, as they were measured: between them nothing is known.
     pub dots: bool,
 }
@@ -79,14 +88,22 @@ pub struct Curve {
 impl Curve {
     /// Joined points.
     #[must_use]
-    pub fn line(name: &'static str, colour: Colour, points: impl IntoIterator<Item = (f64, f64)>) -> Curve {
-        Curve { name, points: points.into_iter().collect(), colour, dots: false }
+    pub fn line(
+        name: impl Into<Cow<'static, str>>,
+        colour: impl Into<Option<Colour>>,
+        points: impl IntoIterator<Item = (f64, f64)>,
+    ) -> Curve {
+        Curve { name: name.into(), points: points.into_iter().collect(), colour: colour.into(), dots: false }
     }
 
     /// Points alone.
     #[must_use]
-    pub fn dots(name: &'static str, colour: Colour, points: impl IntoIterator<Item = (f64, f64)>) -> Curve {
-        Curve { name, points: points.into_iter().collect(), colour, dots: true }
+    pub fn dots(
+        name: impl Into<Cow<'static, str>>,
+        colour: impl Into<Option<Colour>>,
+        points: impl IntoIterator<Item = (f64, f64)>,
+    ) -> Curve {
+        Curve { dots: true, ..Curve::line(name, colour, points) }
     }
 }
 
@@ -102,15 +119,16 @@ pub struct Band {
     pub colour: Colour,
 }
 
-/// Colours that colour-blind readers can distinguish, in print too.
+/// Distinct in hue and in lightness, so that colour-blind readers can distinguish them, in print too.
 #[derive(Clone, Copy)]
+#[allow(missing_docs, reason = "their names say what they are")]
 pub enum Colour {
-    /// The first.
     Blue,
-    /// The second.
     Red,
-    /// For secondary curves.
     Grey,
+    LightGrey,
+    Orange,
+    Green,
 }
 
 /// Whether the backend could draw it all.
