@@ -27,26 +27,8 @@ pub fn lookup(reply: &impl Serialize, pointer: &Pointer) -> Lookup {
 /// The segments of the pointer that remain.
 struct NumberAt<'p>(&'p [String]);
 
-/// A value of a kind that no reply has on the way to a number.
-#[derive(Debug)]
-struct Unexpected;
-
-impl fmt::Display for Unexpected {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("unexpected kind of value")
-    }
-}
-
-impl std::error::Error for Unexpected {}
-
-impl serde::ser::Error for Unexpected {
-    fn custom<T: fmt::Display>(_: T) -> Self {
-        Unexpected
-    }
-}
-
 impl NumberAt<'_> {
-    fn end(self, here: Lookup) -> Result<Lookup, Unexpected> {
+    fn end(self, here: Lookup) -> Result<Lookup, fmt::Error> {
         Ok(if self.0.is_empty() { here } else { Lookup::Nothing })
     }
 }
@@ -74,7 +56,7 @@ impl<'p> Inside<'p> {
 /// Methods for numbers.
 macro_rules! numbers {
     ($($method:ident($type:ty))*) => {
-        $(fn $method(self, value: $type) -> Result<Lookup, Unexpected> {
+        $(fn $method(self, value: $type) -> Result<Lookup, fmt::Error> {
             self.end(Lookup::Number(finite(value as f64)))
         })*
     };
@@ -83,7 +65,7 @@ macro_rules! numbers {
 /// Methods for values that are no numbers.
 macro_rules! no_numbers {
     ($($method:ident($($type:ty),*))*) => {
-        $(fn $method(self, $(_: $type),*) -> Result<Lookup, Unexpected> {
+        $(fn $method(self, $(_: $type),*) -> Result<Lookup, fmt::Error> {
             self.end(Lookup::Other)
         })*
     };
@@ -92,22 +74,22 @@ macro_rules! no_numbers {
 /// Methods for kinds of values that no reply has.
 macro_rules! unexpected {
     ($($method:ident($($type:ty),*) -> $ok:ident)*) => {
-        $(fn $method(self, $(_: $type),*) -> Result<Self::$ok, Unexpected> {
-            Err(Unexpected)
+        $(fn $method(self, $(_: $type),*) -> Result<Self::$ok, fmt::Error> {
+            Err(fmt::Error)
         })*
     };
 }
 
 impl<'p> Serializer for NumberAt<'p> {
     type Ok = Lookup;
-    type Error = Unexpected;
+    type Error = fmt::Error;
     type SerializeSeq = Inside<'p>;
-    type SerializeTuple = Impossible<Lookup, Unexpected>;
-    type SerializeTupleStruct = Impossible<Lookup, Unexpected>;
-    type SerializeTupleVariant = Impossible<Lookup, Unexpected>;
-    type SerializeMap = Impossible<Lookup, Unexpected>;
+    type SerializeTuple = Impossible<Lookup, fmt::Error>;
+    type SerializeTupleStruct = Impossible<Lookup, fmt::Error>;
+    type SerializeTupleVariant = Impossible<Lookup, fmt::Error>;
+    type SerializeMap = Impossible<Lookup, fmt::Error>;
     type SerializeStruct = Inside<'p>;
-    type SerializeStructVariant = Impossible<Lookup, Unexpected>;
+    type SerializeStructVariant = Impossible<Lookup, fmt::Error>;
 
     numbers! {
         serialize_i8(i8) serialize_i16(i16) serialize_i32(i32) serialize_i64(i64)
@@ -128,19 +110,19 @@ impl<'p> Serializer for NumberAt<'p> {
         serialize_struct_variant(&'static str, u32, &'static str, usize) -> SerializeStructVariant
     }
 
-    fn serialize_none(self) -> Result<Lookup, Unexpected> {
+    fn serialize_none(self) -> Result<Lookup, fmt::Error> {
         self.end(Lookup::Number(None))
     }
 
-    fn serialize_some<T: Serialize + ?Sized>(self, value: &T) -> Result<Lookup, Unexpected> {
+    fn serialize_some<T: Serialize + ?Sized>(self, value: &T) -> Result<Lookup, fmt::Error> {
         value.serialize(self)
     }
 
-    fn serialize_unit(self) -> Result<Lookup, Unexpected> {
+    fn serialize_unit(self) -> Result<Lookup, fmt::Error> {
         self.end(Lookup::Number(None))
     }
 
-    fn serialize_newtype_struct<T: Serialize + ?Sized>(self, _: &'static str, value: &T) -> Result<Lookup, Unexpected> {
+    fn serialize_newtype_struct<T: Serialize + ?Sized>(self, _: &'static str, value: &T) -> Result<Lookup, fmt::Error> {
         value.serialize(self)
     }
 
@@ -150,7 +132,7 @@ impl<'p> Serializer for NumberAt<'p> {
         _: u32,
         variant: &'static str,
         value: &T,
-    ) -> Result<Lookup, Unexpected> {
+    ) -> Result<Lookup, fmt::Error> {
         match self.0.split_first() {
             Some((wanted, rest)) if wanted == variant => value.serialize(NumberAt(rest)),
             Some(_) => Ok(Lookup::Nothing),
@@ -158,20 +140,20 @@ impl<'p> Serializer for NumberAt<'p> {
         }
     }
 
-    fn serialize_seq(self, _: Option<usize>) -> Result<Inside<'p>, Unexpected> {
+    fn serialize_seq(self, _: Option<usize>) -> Result<Inside<'p>, fmt::Error> {
         Ok(Inside::new(self.0))
     }
 
-    fn serialize_struct(self, _: &'static str, _: usize) -> Result<Inside<'p>, Unexpected> {
+    fn serialize_struct(self, _: &'static str, _: usize) -> Result<Inside<'p>, fmt::Error> {
         Ok(Inside::new(self.0))
     }
 }
 
 impl SerializeSeq for Inside<'_> {
     type Ok = Lookup;
-    type Error = Unexpected;
+    type Error = fmt::Error;
 
-    fn serialize_element<T: Serialize + ?Sized>(&mut self, value: &T) -> Result<(), Unexpected> {
+    fn serialize_element<T: Serialize + ?Sized>(&mut self, value: &T) -> Result<(), fmt::Error> {
         if self.element == Some(self.passed) {
             self.found = value.serialize(NumberAt(self.rest))?;
         }
@@ -179,23 +161,23 @@ impl SerializeSeq for Inside<'_> {
         Ok(())
     }
 
-    fn end(self) -> Result<Lookup, Unexpected> {
+    fn end(self) -> Result<Lookup, fmt::Error> {
         Ok(self.found)
     }
 }
 
 impl SerializeStruct for Inside<'_> {
     type Ok = Lookup;
-    type Error = Unexpected;
+    type Error = fmt::Error;
 
-    fn serialize_field<T: Serialize + ?Sized>(&mut self, name: &'static str, value: &T) -> Result<(), Unexpected> {
+    fn serialize_field<T: Serialize + ?Sized>(&mut self, name: &'static str, value: &T) -> Result<(), fmt::Error> {
         if self.wanted == Some(name) {
             self.found = value.serialize(NumberAt(self.rest))?;
         }
         Ok(())
     }
 
-    fn end(self) -> Result<Lookup, Unexpected> {
+    fn end(self) -> Result<Lookup, fmt::Error> {
         Ok(self.found)
     }
 }
