@@ -54,19 +54,6 @@ impl Parameter {
         }
     }
 
-    /// Its SI unit, empty for a pure number.
-    #[must_use]
-    pub fn unit(self) -> &'static str {
-        match self {
-            Parameter::Friction => "",
-            Parameter::GStar | Parameter::EStar => "Pa",
-            Parameter::Radius | Parameter::DisplacementOffset => "m",
-            Parameter::MachineCompliance => "m/N",
-            Parameter::ForceOffset => "N",
-            Parameter::Drift => "m/s",
-        }
-    }
-
     /// Whether it is above zero, so that the search is for its logarithm.
     pub(super) fn positive(self) -> bool {
         self.power_of_stiffness() != 0 || matches!(self, Parameter::Friction | Parameter::MachineCompliance)

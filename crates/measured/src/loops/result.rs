@@ -7,7 +7,7 @@ use super::Parameter;
 pub struct Estimate {
     /// Which.
     pub parameter: Parameter,
-    /// Its value, in [`Parameter::unit`].
+    /// Its value, in the SI unit of the parameter.
     pub value: f64,
     /// Standard error; `None` where the data do not determine it.
     pub standard_error: Option<f64>,
