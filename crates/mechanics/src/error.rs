@@ -104,8 +104,8 @@ pub enum Error {
     Unsupported(UnsupportedMove),
 }
 
-/// What a contact would do that needs this radius, m, of a profile that ends at `limit`: how far it would lead beyond
-/// the end is not always known.
+/// The beginning of the message for a contact that needs this radius, m: how far it would lead beyond `limit`, m, is
+/// not always known.
 fn beyond(radius: f64, limit: f64) -> String {
     if radius > limit {
         format!("a contact radius of {} m is not below ", short(radius))

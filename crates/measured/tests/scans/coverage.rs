@@ -120,8 +120,8 @@ fn the_standard_errors_cover_the_truth_and_nothing_is_refused() {
         .collect();
     let samples: Vec<_> = std::thread::scope(|scope| {
         let cases = &cases;
-        let kinds =
-            [0, 1, 2, 3, 4].map(|kind| scope.spawn(move || samples(cases.iter().skip(kind).step_by(KINDS.len()))));
+        let kinds: [_; KINDS.len()] =
+            std::array::from_fn(|kind| scope.spawn(move || samples(cases.iter().skip(kind).step_by(KINDS.len()))));
         kinds.map(|kind| kind.join().unwrap()).into()
     });
     for (kind, samples) in KINDS.iter().zip(&samples) {

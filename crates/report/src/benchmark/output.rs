@@ -121,7 +121,9 @@ fn csv(rows: &[Row]) -> String {
 fn chart(rows: &[Row], scene: &str, what: &'static str, error: fn(&Row) -> f64) -> Plot {
     let rows = || rows.iter().filter(move |row| row.scene == scene && row.solver != "reference");
     let mut seen = BTreeSet::new();
-    let solvers: Vec<&str> = rows().map(|row| row.solver.as_str()).filter(|solver| seen.insert(*solver)).collect();
+    let mut solvers: Vec<&str> = rows().map(|row| row.solver.as_str()).filter(|solver| seen.insert(*solver)).collect();
+    // Its one dot lies on top of the lines.
+    solvers.sort_by_key(|solver| *solver == "exact");
     let series = solvers.into_iter().map(|solver| {
         let points = rows().filter(|row| row.solver == solver).map(|row| (row.median, error(row).max(SMALLEST_ERROR)));
         Curve { dots: solver == "exact", ..Curve::line(solver.to_owned(), None, points) }

@@ -98,10 +98,15 @@ impl Picture for Plot {
 }
 
 impl Plot {
-    /// The same with the logarithm of each number; what has none is not drawable.
+    /// The same with the logarithm of each number, without bands; points that have none are left out.
     fn logarithms(&self) -> Plot {
         let curve = |curve: &Curve| Curve {
-            points: curve.points.iter().map(|(x, y)| (x.log10(), y.log10())).collect(),
+            points: curve
+                .points
+                .iter()
+                .filter(|(x, y)| *x > 0.0 && *y > 0.0)
+                .map(|(x, y)| (x.log10(), y.log10()))
+                .collect(),
             name: curve.name.clone(),
             ..*curve
         };
@@ -342,7 +347,8 @@ mod tests {
         }
         // Two dots, and none for the point without a logarithm.
         assert_eq!(svg.matches("<circle").count(), 2);
-        assert!(!svg.contains("NaN") && !svg.contains("inf"));
+        // Nor do the axes reach to it.
+        assert!(!svg.contains("NaN") && !svg.contains("inf") && !svg.contains("1e0") && !svg.contains("1e-2"));
     }
 
     #[test]
