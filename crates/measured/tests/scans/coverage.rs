@@ -77,6 +77,7 @@ impl Sample {
 
 /// A contact of a shape, as an instrument saw it.
 struct Case {
+    index: usize,
     shape: Shape,
     a: f64,
     instrument: Instrument,
@@ -86,12 +87,12 @@ struct Case {
 /// Of each quantity, what the fits of these cases found.
 fn samples<'a>(cases: impl Iterator<Item = &'a Case>) -> [Sample; QUANTITIES.len()] {
     let mut samples = <[Sample; QUANTITIES.len()]>::default();
-    for Case { shape, a, instrument, scan } in cases {
+    for Case { index, shape, a, instrument, scan } in cases {
         let truth = truth(shape.profile(2.0 * instrument.half), Preload::ContactRadius(*a));
         let fit = ScanFit::new(scan, &Options::default(), &|| true);
-        let fit = fit.unwrap_or_else(|error| panic!("{shape:?} {instrument:?}: {error}"));
+        let fit = fit.unwrap_or_else(|error| panic!("{index} {shape:?} {instrument:?}: {error}"));
         let found = fit.contact(steel(), 0.3, Preload::NormalForce(truth.normal_force));
-        let found = found.unwrap_or_else(|error| panic!("{shape:?} {instrument:?}: {error}"));
+        let found = found.unwrap_or_else(|error| panic!("{index} {shape:?} {instrument:?}: {error}"));
         for (sample, (estimate, truth)) in samples.iter_mut().zip([
             (found.max_pressure, truth.max_pressure.unwrap()),
             (found.indentation, truth.indentation),
@@ -99,7 +100,7 @@ fn samples<'a>(cases: impl Iterator<Item = &'a Case>) -> [Sample; QUANTITIES.len
         ]) {
             sample.add(estimate, truth);
             if (estimate.value - truth).abs() > 3.0 * estimate.standard_error {
-                println!("{truth} but {estimate:?} of {shape:?}, {instrument:?}, radius {a}");
+                println!("{index}: {truth} but {estimate:?} of {shape:?}, {instrument:?}, radius {a}");
             }
         }
     }
@@ -115,7 +116,7 @@ fn the_standard_errors_cover_the_truth_and_nothing_is_refused() {
             let (shape, a) = shape(&mut random, index % KINDS.len());
             let instrument = instrument(&mut random, a, index / KINDS.len() % 5 == 4);
             let scan = instrument.scan(&shape, &mut random);
-            Case { shape, a, instrument, scan }
+            Case { index, shape, a, instrument, scan }
         })
         .collect();
     let samples: Vec<_> = std::thread::scope(|scope| {

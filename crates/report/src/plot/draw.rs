@@ -172,11 +172,11 @@ impl Plot {
                 .label(band.name)
                 .legend(move |(x, y)| Rectangle::new([(x, y - 12), (x + 28, y + 12)], shade.filled()));
         }
-        let decades_of = |range: &Range<f64>| (range.end - range.start) as usize + 1;
+        let ticks = |range: &Range<f64>| if decades { (range.end - range.start) as usize + 1 } else { 10 };
         let label = if decades { |value: &f64| format!("1e{}", value.round()) } else { tick };
         let mut mesh = axes.configure_mesh();
         mesh.y_desc(&y.label)
-            .x_labels(if lowest { 10 } else { 0 })
+            .x_labels(if lowest { ticks(x_range) } else { 0 })
             .x_label_formatter(&label)
             .y_label_formatter(&label)
             .label_style(("sans-serif", 24))
@@ -186,7 +186,7 @@ impl Plot {
             mesh.x_desc(&x.label);
         }
         if decades {
-            mesh.x_labels(decades_of(x_range)).y_labels(decades_of(&y_range));
+            mesh.y_labels(ticks(&y_range));
         }
         mesh.draw()?;
         for (curve, own) in panel.curves.iter().zip(Colour::ALL.iter().cycle()) {

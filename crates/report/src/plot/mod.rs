@@ -79,7 +79,7 @@ pub struct Curve {
     pub name: Cow<'static, str>,
     /// Abscissa and ordinate.
     pub points: Vec<(f64, f64)>,
-    /// Its colour; none for that of its place among the curves.
+    /// Its colour; none for that of its place among the curves, of which the seventh has that of the first again.
     pub colour: Option<Colour>,
     /// Points alone, as they were measured: between them nothing is known.
     pub dots: bool,
@@ -121,13 +121,18 @@ pub struct Band {
 
 /// Distinct in hue and in lightness, so that colour-blind readers can distinguish them, in print too.
 #[derive(Clone, Copy)]
-#[allow(missing_docs, reason = "their names say what they are")]
 pub enum Colour {
+    /// Of the first curve.
     Blue,
+    /// Of the second.
     Red,
+    /// Of the third, and for secondary curves.
     Grey,
+    /// Of the fourth.
     LightGrey,
+    /// Of the fifth.
     Orange,
+    /// Of the sixth.
     Green,
 }
 
