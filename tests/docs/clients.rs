@@ -20,8 +20,8 @@ async fn a_client_generated_from_the_document_works() {
     assert!(said.contains("the generated client works"), "{said}");
 }
 
-#[tokio::test(flavor = "multi_thread")]
-async fn schemathesis_finds_nothing() {
+/// Asks with the operations that a choice of Schemathesis takes, over the links between them.
+async fn schemathesis_finds_nothing(choice: &str) {
     let server = Process::start("memory:").await;
     // It needs existing contacts to start from.
     server.client.create(&crate::common::create(), &Default::default()).await.unwrap();
@@ -29,10 +29,20 @@ async fn schemathesis_finds_nothing() {
     let mut ask = program("schemathesis");
     ask.arg("--config-file").arg(file("tests/python/schemathesis.toml")).arg("run");
     ask.arg(format!("{}/openapi.json", server.base)).args(["--checks", "all", "--max-examples", "3", "--no-color"]);
-    ask.current_dir(folder.path());
+    ask.args([choice, "^/contacts"]).current_dir(folder.path());
     ask.env("SCHEMATHESIS_HOOKS", "hooks").env("PYTHONPATH", file("tests/python"));
     let said = succeed(&mut ask, "it is installed");
     assert!(said.contains("API Links"), "{said}");
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn schemathesis_finds_nothing_in_contacts() {
+    schemathesis_finds_nothing("--include-path-regex").await;
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn schemathesis_finds_nothing_elsewhere() {
+    schemathesis_finds_nothing("--exclude-path-regex").await;
 }
 
 #[test]

@@ -14,6 +14,8 @@ use tempfile::TempDir;
 
 /// The variable that names a folder for screenshots.
 const SCREENSHOTS: &str = "PAGE_SCREENSHOTS";
+/// The variable that names the browser, in place of the Chromium that the driver finds.
+const BROWSER: &str = "PAGE_BROWSER";
 /// How long to wait for something to appear: only a hang takes longer.
 pub const PATIENCE: Duration = Duration::from_secs(30);
 
@@ -64,7 +66,11 @@ impl Browser {
         let (driver, port) = tokio::task::spawn_blocking(move || driver(&path)).await.unwrap();
         let address = format!("http://127.0.0.1:{port}");
         // Without a sandbox, because tests in containers run as root; it sees no page but ours.
-        let options = json!({"args": ["--headless=new", "--no-sandbox", "--disable-dev-shm-usage", "--disable-gpu"]});
+        let mut options =
+            json!({"args": ["--headless=new", "--no-sandbox", "--disable-dev-shm-usage", "--disable-gpu"]});
+        if let Ok(browser) = std::env::var(BROWSER) {
+            options["binary"] = json!(browser);
+        }
         let wanted = json!({
             "browserName": "chrome",
             "goog:chromeOptions": options,
