@@ -251,7 +251,14 @@ impl Browser {
 
 impl Drop for Browser {
     fn drop(&mut self) {
-        // The browser ends with its driver's session, which ends with the driver.
+        // Chromium's headless shell outlives its driver. The runtime of the test may wait for this call, and with it what
+        // its connections need: hence another one.
+        let end = || {
+            let ending =
+                async { reqwest::Client::new().delete(&self.session).timeout(PATIENCE).send().await.map(drop) };
+            tokio::runtime::Runtime::new().map(|runtime| runtime.block_on(ending))
+        };
+        let _ = std::thread::scope(|scope| scope.spawn(end).join());
         let _ = self.driver.kill();
         let _ = self.driver.wait();
     }
