@@ -251,8 +251,8 @@ impl Browser {
 
 impl Drop for Browser {
     fn drop(&mut self) {
-        // Chromium's headless shell outlives its driver. The connections of the test need its runtime, which may wait for
-        // this very call: hence another one.
+        // Chromium's headless shell outlives its driver. The connections of the test need its runtime, which may wait
+        // for this very call: hence another one.
         let end = || {
             let ending =
                 async { reqwest::Client::new().delete(&self.session).timeout(PATIENCE).send().await.map(drop) };
