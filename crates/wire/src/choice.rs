@@ -3,18 +3,18 @@
 //! serde's own externally tagged enums do as much as an object with one key, but call a second key a syntax error; here
 //! it is a fault with a name. The value is read in place, so that a fault inside it keeps its path.
 
-/// Declares choices with the word of each, `words! { pub enum Name: Trait of Other { Choice = "word", .. } .. }`, the
-/// trait that they have beside those of all, and the type of the mechanics that has the same choices.
+/// Declares choices with the word of each, `words! { pub enum Name: Trait, .. of Other { Choice = "word", .. } .. }`,
+/// the traits that they have beside those of all, and the type of the mechanics that has the same choices.
 macro_rules! words {
     ($(
         $(#[doc = $about:literal])*
-        pub enum $Name:ident $(: $Trait:ident)? $(of $Other:ty)? {
+        pub enum $Name:ident $(: $($Trait:ident),+)? $(of $Other:ty)? {
             $($(#[$of_choice:meta])* $Choice:ident = $word:tt,)+
         }
     )+) => {$(
         $(#[doc = $about])*
         #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
-        $(#[derive($Trait)])?
+        $(#[derive($($Trait),+)])?
         pub enum $Name {
             $($(#[$of_choice])* #[serde(rename = $word)] $Choice,)+
         }

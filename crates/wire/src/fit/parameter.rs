@@ -1,14 +1,11 @@
 //! The quantities that a fit to a measured loop can determine, and what is known of them beforehand.
 
-use serde::{Deserialize, Serialize};
-use serde_with::{apply, skip_serializing_none};
-use utoipa::ToSchema;
-
 use stickslip_mechanics::range::{self, Quantity, Range};
 
 use crate::check::{Faults, JsonPath};
+use crate::choice::words;
 use crate::limits::Limited as _;
-use crate::request::{not_null, object, requests};
+use crate::request::requests;
 
 /// The compliance of a machine: zero is a rigid one.
 const COMPLIANCE: Range = Range { quantity: Quantity::MachineStiffness, unit: "m/N", min: 0.0, max: 1e9 };
@@ -19,28 +16,17 @@ const VALUE: Range = Range { quantity: Quantity::Number, unit: "", min: -1e20, m
 /// Its standard error.
 const STANDARD_ERROR: Range = Range { quantity: Quantity::Number, unit: "", min: 0.0, max: 1e20 };
 
-/// Declares the quantities from one table: variant, name, range, description.
+/// Declares the quantities from one table: variant, name, its word in JSON, range, description.
 macro_rules! parameters {
-    ($($variant:ident $name:ident $range:expr, $doc:literal;)*) => {
-        /// A quantity of the contact or of the bench that a fit can determine.
-        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, ToSchema)]
-        #[serde(rename_all = "snake_case")]
-        pub enum FitParameter {
-            $(#[doc = $doc] $variant,)*
+    ($($variant:ident $name:ident $word:tt $range:expr, $doc:literal;)*) => {
+        words! {
+            /// A quantity of the contact or of the bench that a fit can determine.
+            pub enum FitParameter: PartialOrd, Ord {
+                $(#[doc = $doc] $variant = $word,)*
+            }
         }
 
         impl FitParameter {
-            /// All of them.
-            pub const ALL: [FitParameter; [$(stringify!($name)),*].len()] = [$(FitParameter::$variant),*];
-
-            /// Its name in JSON.
-            #[must_use]
-            pub fn name(self) -> &'static str {
-                match self {
-                    $(FitParameter::$variant => stringify!($name),)*
-                }
-            }
-
             /// Its range, with its unit.
             #[must_use]
             pub fn range(self) -> Range {
@@ -50,15 +36,12 @@ macro_rules! parameters {
             }
         }
 
-        /// What is known beforehand, by name.
-        #[skip_serializing_none]
-        #[apply(Option => #[serde(default, deserialize_with = "not_null")] #[schema(nullable = false)])]
-        #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
-        #[serde(deny_unknown_fields, remote = "Self")]
-        pub struct KnownValues {
-            $(#[doc = $doc] pub $name: Option<KnownValue>,)*
+        requests! {
+            /// What is known beforehand, by name.
+            pub struct KnownValues: Copy, Default {
+                $(#[doc = $doc] pub $name: Option<KnownValue>,)*
+            }
         }
-        object!(KnownValues);
 
         impl KnownValues {
             /// What is known, in the order of [`FitParameter::ALL`].
@@ -78,15 +61,16 @@ macro_rules! parameters {
 }
 
 parameters! {
-    Friction friction range::FRICTION, "Coulomb's coefficient of friction μ, a pure number.";
-    GStar g_star range::G_STAR, "Reduced shear modulus G*, Pa.";
-    EStar e_star range::E_STAR, "Reduced modulus E*, Pa.";
-    Radius radius range::RADIUS, "Radius of a sphere, m.";
-    MachineCompliance machine_compliance COMPLIANCE, "Compliance of the machine in series with the contact, m/N.";
-    DisplacementOffset displacement_offset range::DISPLACEMENT, "Measured displacement at which the contact is not \
-        displaced, m.";
-    ForceOffset force_offset range::FORCE, "Measured force at which there is none, N.";
-    Drift drift DRIFT, "How fast the zero of the displacement wanders, m/s.";
+    Friction friction "friction" range::FRICTION, "Coulomb's coefficient of friction μ, a pure number.";
+    GStar g_star "g_star" range::G_STAR, "Reduced shear modulus G*, Pa.";
+    EStar e_star "e_star" range::E_STAR, "Reduced modulus E*, Pa.";
+    Radius radius "radius" range::RADIUS, "Radius of a sphere, m.";
+    MachineCompliance machine_compliance "machine_compliance" COMPLIANCE,
+        "Compliance of the machine in series with the contact, m/N.";
+    DisplacementOffset displacement_offset "displacement_offset" range::DISPLACEMENT,
+        "Measured displacement at which the contact is not displaced, m.";
+    ForceOffset force_offset "force_offset" range::FORCE, "Measured force at which there is none, N.";
+    Drift drift "drift" DRIFT, "How fast the zero of the displacement wanders, m/s.";
 }
 
 requests! {
