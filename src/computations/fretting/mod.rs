@@ -102,7 +102,7 @@ impl Computation for Fretting {
 
     /// The states and fields of a cycle, the places of a search, and the values.
     fn bytes((definition, _, task): &Task<Self>) -> usize {
-        let columns = task.measures().iter().flatten().count();
+        let columns = task.measures.iter().flatten().count();
         let path = size_of::<Stress>() + 8 * 2 * NUMBER_LENGTH;
         let instants = task.plan.length() * ASSUMED_INSTANTS;
         task.places.count() * (3 + columns) * (size_of::<f64>() + size_of::<Option<f64>>() + 2 * NUMBER_LENGTH)
@@ -124,7 +124,7 @@ impl Computation for Fretting {
             Profile::Sphere(_) => KINK_COST * 4,
             _ => PLACE_COST,
         };
-        let (planes, all) = (task.planes() as u64, task.measures().iter().flatten().count());
+        let (planes, all) = (task.planes() as u64, task.measures.iter().flatten().count());
         let instants = moves * ASSUMED_INSTANTS as u64;
         let each = instants.saturating_mul(stress + FIELD_COST + CRITERION_COST + planes * PLANES_COST);
         let (net, climb) = if task.searches() { (NET, CLIMB) } else { (SPARSE_NET, SHORT_CLIMB) };

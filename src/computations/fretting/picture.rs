@@ -39,7 +39,7 @@ fn title(criterion: &str) -> &'static str {
 /// The [`Fault`] of one that is not asked for, for several without a name, and for places that have no picture.
 pub fn criterion(task: &FrettingTask, shown: &Shown) -> Result<Option<&'static str>, Fault> {
     let is_plot = shown.format.is_plot();
-    let asked = NAMES.into_iter().zip(task.measures()).filter_map(|(name, asked)| asked.map(|_| name));
+    let asked = NAMES.into_iter().zip(task.measures).filter_map(|(name, asked)| asked.map(|_| name));
     let asked: Vec<&'static str> = asked.collect();
     let refused = |problem: &str| {
         let names = asked.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");

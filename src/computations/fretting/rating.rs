@@ -25,8 +25,7 @@ pub fn rate(setup: SharedSetup, task: &FrettingTask, stop: &Stop) -> Result<Fret
     let refused = |error| refused(error, stop);
     let go_on = || stop.check().is_ok();
     let cycle = Cycle::new(&contact, &moves, &go_on).map_err(refused)?;
-    let measures = task.measures();
-    let asked: Vec<_> = measures.iter().flatten().map(|(measure, _)| *measure).collect();
+    let asked: Vec<_> = task.measures.iter().flatten().map(|(measure, _)| *measure).collect();
     let study = Study::new(&cycle, task.body, task.bulk, asked, task.tolerance, &go_on);
     let mut study = study.map_err(refused)?;
 
@@ -68,7 +67,8 @@ pub fn rate(setup: SharedSetup, task: &FrettingTask, stop: &Stop) -> Result<Fret
         });
         Some(Rating { values: values.iter().map(|value| finite(*value)).collect(), largest, margin })
     };
-    let [crossland, dang_van, findley, swt, fatemi_socie, ruiz, ruiz_tension, friction_work] = measures.map(rating);
+    let [crossland, dang_van, findley, swt, fatemi_socie, ruiz, ruiz_tension, friction_work] =
+        task.measures.map(rating);
     let path = |place: &usize| study.path(&places[*place]).map(|path| stress_path(*place, &path)).map_err(refused);
     let stress_paths: Vec<StressPath> = task.stress_paths.iter().map(path).collect::<Result<_, _>>()?;
     let field = cycle.start().subsurface(task.body.0, task.body.1).map_err(refused)?;

@@ -1,6 +1,6 @@
 //! What to know about the largest value of a fatigue criterion, and of a cycle, before it is trusted.
 
-use stickslip_mechanics::fatigue::{Criterion, Ratings, Worst};
+use stickslip_mechanics::fatigue::{Criterion, Measure, Ratings, Worst};
 use stickslip_mechanics::{Contact, Move, in_unit};
 use stickslip_wire::fretting::FrettingTask;
 use stickslip_wire::subsurface::Places;
@@ -168,8 +168,8 @@ pub(super) fn beyond_model(
     if bulk > 0.0 && bulk < LEAST_STRESS {
         messages.push(format!("the bulk stress reaches {} alone: is it in Pa, rather than MPa?", in_unit(bulk, "Pa")));
     }
-    for (name, asked) in NAMES.into_iter().zip(task.criteria) {
-        let Some((criterion, Some(limit))) = asked else { continue };
+    for (name, asked) in NAMES.into_iter().zip(task.measures) {
+        let Some((Measure::Stress(criterion), Some(limit))) = asked else { continue };
         if matches!(criterion, Criterion::FatemiSocie { .. }) {
             // A strain.
             continue;

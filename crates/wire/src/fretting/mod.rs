@@ -150,12 +150,8 @@ pub struct FrettingTask {
     pub places: Places,
     /// The bulk stress.
     pub bulk: Option<fatigue::Bulk>,
-    /// The criteria of stress that are asked for, in the order of the reply, with their limits.
-    pub criteria: [Option<(Criterion, Option<f64>)>; 5],
-    /// Ruiz's parameters, with the limit of the first.
-    pub ruiz: Option<SurfaceCriterion>,
-    /// The friction work, with its limit.
-    pub friction_work: Option<SurfaceCriterion>,
+    /// What is computed, with limits, by the order of the reply.
+    pub measures: [Option<(Measure, Option<f64>)>; 8],
     /// Places whose stresses over the cycle are asked for.
     pub stress_paths: Vec<usize>,
     /// The error that is accepted.
@@ -172,22 +168,11 @@ impl FrettingTask {
     /// How many criteria search for a critical plane.
     #[must_use]
     pub fn planes(&self) -> usize {
-        let has_plane = |criterion: &Criterion| {
-            use Criterion::{FatemiSocie, Findley, SmithWatsonTopper};
-            matches!(criterion, Findley { .. } | SmithWatsonTopper { .. } | FatemiSocie { .. })
+        use Criterion::{FatemiSocie, Findley, SmithWatsonTopper};
+        let has_plane = |measure: &Measure| {
+            matches!(measure, Measure::Stress(Findley { .. } | SmithWatsonTopper { .. } | FatemiSocie { .. }))
         };
-        self.criteria.iter().flatten().filter(|(criterion, _)| has_plane(criterion)).count()
-    }
-
-    /// What is computed, with limits, by the order of the reply.
-    #[must_use]
-    pub fn measures(&self) -> [Option<(Measure, Option<f64>)>; 8] {
-        let [crossland, dang_van, findley, swt, fatemi_socie] =
-            self.criteria.map(|asked| asked.map(|(criterion, limit)| (Measure::Stress(criterion), limit)));
-        let surface = |asked: Option<SurfaceCriterion>, measure| asked.map(|asked| (measure, asked.limit));
-        let ruiz_tension = self.ruiz.map(|_| (Measure::RuizTension, None));
-        let (ruiz, work) = (surface(self.ruiz, Measure::Ruiz), surface(self.friction_work, Measure::FrictionWork));
-        [crossland, dang_van, findley, swt, fatemi_socie, ruiz, ruiz_tension, work]
+        self.measures.iter().flatten().filter(|(measure, _)| has_plane(measure)).count()
     }
 }
 
@@ -234,7 +219,7 @@ impl Document for FrettingRequest {
         }
         let youngs_modulus = self.contact.material.youngs_modulus(self.body);
         let poisson = asked.as_ref().map_or(0.0, |asked| asked.poisson_ratio);
-        let criteria = self.criteria.check((youngs_modulus, poisson), at("criteria"), faults);
+        let measures = self.criteria.check((youngs_modulus, poisson), at("criteria"), faults);
         let stress_paths = self.stress_paths.unwrap_or_default();
         Limit::check(&PATHS, &stress_paths, at("stress_paths"), faults);
         if let Some(asked) = &asked {
@@ -255,9 +240,7 @@ impl Document for FrettingRequest {
             body: (asked.side, asked.poisson_ratio),
             places: asked.places,
             bulk,
-            criteria,
-            ruiz: self.criteria.ruiz,
-            friction_work: self.criteria.friction_work,
+            measures,
             stress_paths,
             tolerance,
         });
@@ -266,13 +249,13 @@ impl Document for FrettingRequest {
 }
 
 impl Criteria {
-    /// The criteria of stress for a body, whose Young's modulus may be unknown.
+    /// What they compute in a body, whose Young's modulus may be unknown, with limits.
     fn check(
         &self,
         (youngs_modulus, poisson): (Option<f64>, f64),
         at: JsonPath<'_>,
         faults: &mut Faults,
-    ) -> [Option<(Criterion, Option<f64>)>; 5] {
+    ) -> [Option<(Measure, Option<f64>)>; 8] {
         if *self == Criteria::default() {
             let names = "`crossland`, `dang_van`, `findley`, `swt`, `fatemi_socie`, `ruiz`, `friction_work`";
             faults.add(at, format_args!("empty: give at least one of {names}"));
@@ -293,19 +276,23 @@ impl Criteria {
             given.or(youngs_modulus).unwrap_or(1.0)
         };
         self.check_members(at, faults);
+        let stress = |criterion, limit| (Measure::Stress(criterion), limit);
         [
-            self.crossland.map(|asked| (Criterion::Crossland { alpha: asked.alpha }, asked.limit)),
-            self.dang_van.map(|asked| (Criterion::DangVan { alpha: asked.alpha }, asked.limit)),
-            self.findley.map(|asked| (Criterion::Findley { k: asked.k }, asked.limit)),
+            self.crossland.map(|asked| stress(Criterion::Crossland { alpha: asked.alpha }, asked.limit)),
+            self.dang_van.map(|asked| stress(Criterion::DangVan { alpha: asked.alpha }, asked.limit)),
+            self.findley.map(|asked| stress(Criterion::Findley { k: asked.k }, asked.limit)),
             self.swt.map(|asked| {
                 let youngs_modulus = modulus(asked.youngs_modulus, "swt", faults);
-                (Criterion::SmithWatsonTopper { youngs_modulus, poisson }, asked.limit)
+                stress(Criterion::SmithWatsonTopper { youngs_modulus, poisson }, asked.limit)
             }),
             self.fatemi_socie.map(|asked| {
                 let youngs_modulus = modulus(asked.youngs_modulus, "fatemi_socie", faults);
                 let FatemiSocie { k, r#yield: yield_stress, limit, .. } = asked;
-                (Criterion::FatemiSocie { k, yield_stress, youngs_modulus, poisson }, limit)
+                stress(Criterion::FatemiSocie { k, yield_stress, youngs_modulus, poisson }, limit)
             }),
+            self.ruiz.map(|asked| (Measure::Ruiz, asked.limit)),
+            self.ruiz.map(|_| (Measure::RuizTension, None)),
+            self.friction_work.map(|asked| (Measure::FrictionWork, asked.limit)),
         ]
     }
 
