@@ -5,6 +5,8 @@
 //! round, so that a busy machine slows them alike. The load comes from plain sockets, because it shares the processors
 //! with the service. Another build, whose path is in `OTHER_BUILD`, takes its turns too.
 
+#[path = "../tests/common/port.rs"]
+mod port;
 #[allow(dead_code, reason = "the benchmark uses a part of it")]
 #[path = "../tests/common/postgres.rs"]
 mod postgres;

@@ -5,6 +5,8 @@
 //! and the moves beyond it, half as many as there can be; and the same without a snapshot, from the first move on.
 //! Before that, how much the process grows by sessions that are stored and not cached.
 
+#[path = "../tests/common/port.rs"]
+mod port;
 // Made for the tests, of which this uses a part.
 #[allow(dead_code)]
 #[path = "../tests/common/postgres.rs"]

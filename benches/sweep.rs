@@ -5,6 +5,8 @@
 //! them bound to one core.
 
 mod load;
+#[path = "../tests/common/port.rs"]
+mod port;
 #[allow(dead_code, reason = "the benchmark uses a part of it")]
 #[path = "../tests/common/postgres.rs"]
 mod postgres;

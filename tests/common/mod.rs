@@ -4,6 +4,7 @@
 
 pub mod kill;
 pub mod pictures;
+pub mod port;
 pub mod postgres;
 pub mod process;
 pub mod prometheus;

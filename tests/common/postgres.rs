@@ -6,6 +6,7 @@ use std::process::{Child, Command, Stdio};
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU32, Ordering};
 
+use tokio::net::TcpSocket;
 use tokio_postgres::NoTls;
 
 const MISSING: &str = "this test needs PostgreSQL: `./check` installs it, or on Debian `apt-get install postgresql`";
@@ -16,6 +17,7 @@ pub struct Cluster {
     programs: PathBuf,
     owner: Option<(u32, u32)>,
     port: u16,
+    _reserved: TcpSocket,
     // Its standard input ends when this process does, and then it clears up.
     _janitor: Child,
 }
@@ -31,7 +33,7 @@ impl Cluster {
     pub fn start() -> Cluster {
         let programs = programs();
         let owner = owner();
-        let port = std::net::TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port();
+        let (port, reserved) = super::port::reserve();
         let folder = std::env::temp_dir().join(format!("stickslip-postgres-{}-{port}", std::process::id()));
         std::fs::create_dir_all(&folder).unwrap();
         if let Some((user, group)) = owner {
@@ -50,7 +52,7 @@ impl Cluster {
             .stderr(Stdio::null())
             .spawn()
             .unwrap();
-        let cluster = Cluster { folder, programs, owner, port, _janitor: janitor };
+        let cluster = Cluster { folder, programs, owner, port, _reserved: reserved, _janitor: janitor };
         let data = cluster.data();
         cluster.run("initdb", &["-D", &data, "-U", "stickslip", "-A", "trust", "-E", "UTF8", "--locale=C", "-N"]);
         cluster.resume();

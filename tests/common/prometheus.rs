@@ -4,6 +4,7 @@ use std::process::{Child, Command, Stdio};
 
 use serde_json::json;
 use tempfile::TempDir;
+use tokio::net::TcpSocket;
 
 /// The message if it is not installed.
 pub const MISSING: &str =
@@ -14,6 +15,7 @@ pub struct Prometheus {
     child: Child,
     /// Where it answers.
     pub base: String,
+    _reserved: TcpSocket,
     _folder: TempDir,
 }
 
@@ -25,7 +27,7 @@ impl Prometheus {
         let file = folder.path().join("prometheus.json");
         // JSON is YAML.
         std::fs::write(&file, config.to_string()).unwrap();
-        let port = std::net::TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port();
+        let (port, reserved) = super::port::reserve();
         let child = Command::new("prometheus")
             .arg(format!("--config.file={}", file.display()))
             .arg(format!("--storage.tsdb.path={}", folder.path().join("data").display()))
@@ -34,7 +36,7 @@ impl Prometheus {
             .stdout(Stdio::null())
             .spawn()
             .expect(MISSING);
-        Prometheus { child, base: format!("http://127.0.0.1:{port}"), _folder: folder }
+        Prometheus { child, base: format!("http://127.0.0.1:{port}"), _reserved: reserved, _folder: folder }
     }
 }
 
