@@ -17,6 +17,7 @@ pub struct Cluster {
     programs: PathBuf,
     owner: Option<(u32, u32)>,
     port: u16,
+    // Keeps the port while the server is not yet there, or away.
     _reserved: TcpSocket,
     // Its standard input ends when this process does, and then it clears up.
     _janitor: Child,

@@ -15,6 +15,7 @@ pub struct Prometheus {
     child: Child,
     /// Where it answers.
     pub base: String,
+    // Keeps the port while the server is not yet there, or away.
     _reserved: TcpSocket,
     _folder: TempDir,
 }
