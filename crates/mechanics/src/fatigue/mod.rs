@@ -8,8 +8,7 @@
 //! stress\] | Pa |
 //! | Findley (1959) | max over planes of \[tau_a + k max sigma_n\] | Pa |
 //! | Smith, Watson & Topper (1970) | max over planes of max sigma_n (range of eps_n)/2; zero without tension | Pa |
-//! | Fatemi & Socie (1988) | max over planes of gamma_a (1 + k max sigma_n/sigma_y), gamma_a = tau_a/G, no factor below
-//! zero | – |
+//! | Fatemi & Socie (1988) | max over planes of gamma_a max(0, 1 + k max sigma_n/sigma_y), gamma_a = tau_a/G | – |
 //!
 //! Tresca shear is half the difference of the outer principal stresses; sigma_n and eps_n are the normal stress and
 //! strain of a plane; tau_a is the radius of the smallest circle around the path of the shear stress in the plane.
