@@ -165,6 +165,7 @@ impl Jobs {
                 answer => Ok(answer?),
             };
         }
+        // Without it, as after a client that has hung up, the workers find the job within a second.
         self.common.new.notify_waiters();
         Ok(reply)
     }

@@ -23,6 +23,7 @@ use super::group::{GroupResult, lock_or_join, may_join};
 use super::loaded::LoadedSession;
 use super::observations::Observations;
 use super::replay::Replay;
+use super::run_to_end::run_to_end;
 use super::{ATTEMPTS, SessionError, written};
 
 /// Bytes that moves take, with their records and the reply; rather too many than too few.
@@ -112,7 +113,7 @@ impl Mover {
                     Box::pin(Observations::of(&self.replay).observed(&mut guard, &mut live, &records, &stop)).await?;
             }
             // Until the store has answered the new state is in doubt. What the guard holds meanwhile is the state
-            // before, or nothing: if the store fails or the client hangs up, the next request asks the store.
+            // before, or nothing: if the store fails, the next request asks the store.
             let moves = records.len() as u64;
             let receipt = request.receipt(&reply);
             let added = Usage::of(0, moves * move_bytes, receipt.as_ref());
@@ -120,15 +121,22 @@ impl Mover {
                 drop(reservation);
                 reservation = self.replay.reserve_storage(added).await?;
             }
-            let stored = self.replay.common.store.append(guard.id(), sequence, records, receipt);
-            match stored.instrument(otlp::part!("store")).await {
-                Ok(()) => {
-                    self.replay.common.metrics.moves.inc_by(moves);
+            let common = Arc::clone(&self.replay.common);
+            let append = async move {
+                let stored = common.store.append(guard.id(), sequence, records, receipt);
+                let stored = stored.instrument(otlp::part!("store")).await;
+                if stored.is_ok() {
+                    common.metrics.moves.inc_by(moves);
                     reservation.used(added);
-                    self.replay.common.snapshots.offer(&mut live);
+                    common.snapshots.offer(&mut live);
                     guard.live = Some(live);
-                    return Ok(reply);
                 }
+                (guard, reservation, stored)
+            };
+            let stored;
+            (guard, reservation, stored) = run_to_end(append).await;
+            match stored {
+                Ok(()) => return Ok(reply),
                 Err(error @ (StoreError::NotFound | StoreError::Expired(_))) => {
                     return Err(self.replay.store_failure(&mut guard, error));
                 }

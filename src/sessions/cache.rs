@@ -294,6 +294,11 @@ impl Guard {
         self.lock.key.1
     }
 
+    /// Ends the use of the session and leaves it in this state.
+    pub(super) fn finish(mut self, live: Box<LoadedSession>) {
+        self.live = Some(live);
+    }
+
     /// Takes the moves at the head of the queue, at most so many, up to whatever else waits there.
     pub(super) fn take_moves(&self, most: usize) -> Vec<WaitingMove> {
         let mut queues = self.lock.cache.queues.lock();

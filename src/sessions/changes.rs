@@ -14,6 +14,7 @@ use stickslip_wire::{ForkRequest, SessionReply};
 
 use super::loaded::LoadedSession;
 use super::replay::Replay;
+use super::run_to_end::run_to_end;
 use super::{ATTEMPTS, SessionError, written};
 
 /// Changes of the sessions of a tenant, but for their moves.
@@ -45,12 +46,16 @@ impl Changes {
             let added = Usage::of(1, live.stored_bytes(), receipt.as_ref());
             let reservation = self.replay.reserve_storage(added).await?;
             // A request that finds the new session in the store waits until it is cached.
-            let mut guard = self.replay.common.cache.lock(&self.replay.tenant, live.session.id).await?;
-            let stored = self.replay.common.store.create(live.session.clone(), receipt);
-            stored.instrument(otlp::part!("store")).await?;
-            reservation.used(added);
-            guard.live = Some(Box::new(live));
-            Ok(reply)
+            let guard = self.replay.common.cache.lock(&self.replay.tenant, live.session.id).await?;
+            let common = Arc::clone(&self.replay.common);
+            let create = async move {
+                let stored = common.store.create(live.session.clone(), receipt);
+                stored.instrument(otlp::part!("store")).await?;
+                reservation.used(added);
+                guard.finish(Box::new(live));
+                Ok::<_, StoreError>(reply)
+            };
+            Ok(run_to_end(create).await?)
         });
         answer_once(&request, create).await
     }
@@ -65,7 +70,7 @@ impl Changes {
             // A tenant at its quota is refused before its past is read.
             drop(self.replay.reserve_storage(Usage::of(1, CONTACT_BYTES, None)).await?);
             let mut guard = self.replay.lock(id).await?;
-            let (mut copy, _held) = self.replay.after(&mut guard, asked.sequence).await?;
+            let (mut copy, held) = self.replay.after(&mut guard, asked.sequence).await?;
             let now = Timestamp::now();
             copy.session = Session {
                 id: Uuid::now_v7(),
@@ -81,15 +86,19 @@ impl Changes {
             let moves = copy.session.sequence * self.replay.common.store.move_bytes();
             let added = Usage::of(1, copy.stored_bytes() + moves + extent.snapshot, receipt.as_ref());
             let reservation = self.replay.reserve_storage(added).await?;
-            let mut new = self.replay.common.cache.lock(&self.replay.tenant, copy.session.id).await?;
+            let new = self.replay.common.cache.lock(&self.replay.tenant, copy.session.id).await?;
             // The original may have moved on meanwhile in another process: its past stays what it was.
-            let stored = self.replay.common.store.fork(id, copy.session.clone(), receipt);
-            match stored.instrument(otlp::part!("store")).await {
-                Ok(()) => {
-                    reservation.used(added);
-                    new.live = Some(copy);
-                    Ok(reply)
-                }
+            let common = Arc::clone(&self.replay.common);
+            let fork = async move {
+                let _held = held;
+                let stored = common.store.fork(id, copy.session.clone(), receipt);
+                stored.instrument(otlp::part!("store")).await?;
+                reservation.used(added);
+                new.finish(copy);
+                Ok(())
+            };
+            match run_to_end(fork).await {
+                Ok(()) => Ok(reply),
                 Err(error @ (StoreError::NotFound | StoreError::Expired(_))) => {
                     Err(self.replay.store_failure(&mut guard, error))
                 }
@@ -127,12 +136,13 @@ impl Changes {
                 let reservation = self.replay.reserve_storage(added).await?;
                 // The reply shows the sequence, and the client may expect one: both hold only as long as no other
                 // process moves it.
-                let stored = self.replay.common.store.rename(id, label.clone(), reply.sequence, receipt);
-                match stored.instrument(otlp::part!("store")).await {
-                    Ok(()) => {
-                        reservation.used(added);
-                        return Ok(reply);
-                    }
+                let (common, label, at) = (Arc::clone(&self.replay.common), label.clone(), reply.sequence);
+                let rename = async move {
+                    let stored = common.store.rename(id, label, at, receipt);
+                    stored.instrument(otlp::part!("store")).await.inspect(|()| reservation.used(added))
+                };
+                match run_to_end(rename).await {
+                    Ok(()) => return Ok(reply),
                     Err(StoreError::Stale { found }) => overtaken = found,
                     Err(error) => return Err(self.replay.store_failure(&mut guard, error)),
                 }
@@ -154,14 +164,20 @@ impl Changes {
         };
         let mut at = expected.unwrap_or(found);
         for _ in 0..ATTEMPTS {
-            let deleted = self.replay.common.store.delete(id, at).instrument(otlp::part!("store"));
-            match (deleted.await, expected) {
-                (Ok(()), _) => {
+            let Replay { tenant, common } = self.replay.clone();
+            let delete = async move {
+                let deleted = common.store.delete(id, at).instrument(otlp::part!("store")).await;
+                if deleted.is_ok() {
                     guard.live = None;
-                    let bytes = CONTACT_BYTES + at * self.replay.common.store.move_bytes();
-                    self.replay.common.usage.give_back(&self.replay.tenant, Usage::of(1, bytes, None));
-                    return Ok(());
+                    let bytes = CONTACT_BYTES + at * common.store.move_bytes();
+                    common.usage.give_back(&tenant, Usage::of(1, bytes, None));
                 }
+                (guard, deleted)
+            };
+            let deleted;
+            (guard, deleted) = run_to_end(delete).await;
+            match (deleted, expected) {
+                (Ok(()), _) => return Ok(()),
                 (Err(StoreError::Stale { found }), Some(expected)) => {
                     return Err(SessionError::Stale { expected, found });
                 }

@@ -3,8 +3,8 @@
 //! Moves of one session queue at its lock in the order of their arrival, and those that wait together are made together
 //! (`group`); sessions do not wait for each other. A move is computed, appended to the store, and only then visible: a
 //! read shows a state that is stored. A client that hangs up while its move is computed leaves no trace; one that hangs
-//! up later has its move stored or not, as a client that loses its connection must expect, and the next request asks
-//! the store.
+//! up later has its move stored or not, as a client that loses its connection must expect. What follows from a stored
+//! change, in the cache and in the quotas, is done without the client (`run_to_end`).
 //!
 //! Other processes may work on the same store. A cached state is always one that the session has been in, so that
 //! the moves stored after it lead to the current one: a read applies them first, and a move whose sequence another
@@ -33,6 +33,7 @@ mod observations;
 mod profiles;
 mod replay;
 mod replay_cost;
+mod run_to_end;
 mod snapshot;
 mod storage_reservation;
 mod trace;

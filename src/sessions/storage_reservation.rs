@@ -179,8 +179,8 @@ impl StorageReservation {
         self.reserved.bytes
     }
 
-    /// The change has been stored, and has added so much.
-    pub(super) fn used(self, added: Usage) {
+    /// A change has been stored, and has added so much.
+    pub(super) fn used(&self, added: Usage) {
         let mut known = self.client.known.lock();
         known.stored = sum(known.stored, added);
     }

@@ -168,7 +168,28 @@ struct OpenJob {
     claimed: BTreeSet<u64>,
 }
 
+/// What a change that is durable means for the queue. Whoever makes it durable applies it, because its caller may have
+/// left by then.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum QueueChange {
+    /// There is a new job with so many chunks.
+    Add(Uuid, u64),
+    /// The result of a chunk is stored.
+    Finish(Claim),
+    /// A job has failed or is deleted.
+    Remove(Uuid),
+}
+
 impl ChunkQueue {
+    /// Follows a durable change.
+    pub(super) fn follow(&self, change: QueueChange) {
+        match change {
+            QueueChange::Add(job, chunks) => self.add_job(job, 0..chunks),
+            QueueChange::Finish(claim) => self.finish(claim),
+            QueueChange::Remove(job) => self.remove_job(job),
+        }
+    }
+
     /// Adds a job with its unfinished chunks.
     pub(super) fn add_job(&self, id: Uuid, waiting: impl Iterator<Item = u64>) {
         self.open.lock().insert(id, OpenJob { waiting: waiting.collect(), claimed: BTreeSet::new() });

@@ -13,6 +13,7 @@ mod frozen;
 mod gaps;
 mod groups;
 mod guarantees;
+mod hang_ups;
 mod locks;
 mod migrations;
 mod order;

@@ -7,6 +7,7 @@ use jiff::Timestamp;
 use rusqlite::{Connection, params};
 use uuid::Uuid;
 
+use crate::store::jobs::QueueChange;
 use crate::store::rows::{RowReader as _, tenant};
 use crate::store::{RECEIPT_LIFETIME, Receipt, Record, Session, Snapshot};
 
@@ -65,6 +66,8 @@ pub(super) enum Done {
     Made(u64),
     /// This many contacts are deleted; their moves are removed later.
     Removed(u64),
+    /// It is made, and the queue of chunks follows.
+    Queued(QueueChange),
     /// The fork has begun; copying goes on in small steps.
     Copying(Arc<Fork>, Copying),
 }

@@ -8,7 +8,9 @@ use jiff::Timestamp;
 use rusqlite::{Connection, params};
 use uuid::Uuid;
 
-use crate::store::jobs::{ChunkQueue, ChunkResult, Claim, JOB_LIFETIME, JOB_TIME_LIMIT, Job, JobLimits, JobStore};
+use crate::store::jobs::{
+    ChunkQueue, ChunkResult, Claim, JOB_LIFETIME, JOB_TIME_LIMIT, Job, JobLimits, JobStore, QueueChange,
+};
 use crate::store::rows::{self, RowReader as _};
 use crate::store::{Receipt, Result, StoreError, Tenant};
 
@@ -31,7 +33,7 @@ impl Transaction<'_> {
         let (points, chunk) = (to_integer(job.points)?, to_integer(job.chunk)?);
         let (bytes, cost) = (to_integer(job.bytes)?, to_integer(job.cost)?);
         execute(database, sql, params![id, tenant, created_at, points, chunk, bytes, cost, request])?;
-        Ok(Done::Made(0))
+        Ok(Done::Queued(QueueChange::Add(job.id, job.chunks())))
     }
 
     fn save_chunk(&self, claim: Claim, result: &ChunkResult) -> Result<Done, Fault> {
@@ -48,29 +50,30 @@ impl Transaction<'_> {
             let now = to_nanoseconds(Timestamp::now())?;
             execute(self.database, sql, [number, points, failed, now])?;
         }
-        Ok(Done::Made(0))
+        Ok(Done::Queued(QueueChange::Finish(claim)))
     }
 
     fn fail_job(&self, id: Uuid, error: &str) -> Result<Done, Fault> {
         let sql = "UPDATE jobs SET finished_at = ?2, error = ?3 WHERE id = ?1 AND finished_at IS NULL";
         let now = to_nanoseconds(Timestamp::now())?;
         execute(self.database, sql, params![id.to_string(), now, error])?;
-        Ok(Done::Made(0))
+        Ok(Done::Queued(QueueChange::Remove(id)))
     }
 
     fn delete_job(&self, id: Uuid) -> Result<Done, Fault> {
         match execute(self.database, "DELETE FROM jobs WHERE id = ?1", [id.to_string()])? {
             0 => Err(StoreError::NotFound.into()),
-            _ => Ok(Done::Made(0)),
+            _ => Ok(Done::Queued(QueueChange::Remove(id))),
         }
     }
 
     /// Deletes an expired job, if there is one; returns their number. One at a time: their results are large.
     fn purge_job(&self) -> Result<Done, Fault> {
         let sql = "DELETE FROM jobs WHERE number =
-                       (SELECT number FROM jobs WHERE finished_at < ?1 OR created_at < ?2 LIMIT 1)";
-        let deleted = execute(self.database, sql, [JOB_LIFETIME, JOB_TIME_LIMIT].map(nanoseconds_ago))?;
-        Ok(Done::Made(deleted as u64))
+                       (SELECT number FROM jobs WHERE finished_at < ?1 OR created_at < ?2 LIMIT 1)
+                   RETURNING id";
+        let deleted = first(self.database, sql, [JOB_LIFETIME, JOB_TIME_LIMIT].map(nanoseconds_ago), |row| row.uuid())?;
+        Ok(deleted.map_or(Done::Made(0), |id| Done::Queued(QueueChange::Remove(id))))
     }
 }
 
@@ -98,10 +101,7 @@ impl SqliteStore {
 #[async_trait]
 impl JobStore for SqliteStore {
     async fn create_job(&self, job: Job, request: String, limits: JobLimits, receipt: Option<Receipt>) -> Result<()> {
-        let (id, chunks) = (job.id, job.chunks());
-        self.change(1, [], receipt, move |transaction| transaction.create_job(&job, &request, limits)).await?;
-        self.queue.add_job(id, 0..chunks);
-        Ok(())
+        self.change(1, [], receipt, move |transaction| transaction.create_job(&job, &request, limits)).await.map(drop)
     }
 
     async fn job(&self, id: Uuid) -> Result<Job> {
@@ -140,20 +140,11 @@ impl JobStore for SqliteStore {
     }
 
     async fn save_chunk(&self, claim: Claim, result: ChunkResult) -> Result<()> {
-        let saved = self
-            .change(1, [claim.job], None, move |transaction| transaction.save_chunk(claim, &result))
-            .await
-            .map(drop);
-        if matches!(saved, Ok(()) | Err(StoreError::NotFound)) {
-            self.queue.finish(claim);
-        }
-        saved
+        self.change(1, [claim.job], None, move |transaction| transaction.save_chunk(claim, &result)).await.map(drop)
     }
 
     async fn fail_job(&self, id: Uuid, error: String) -> Result<()> {
-        self.change(1, [id], None, move |transaction| transaction.fail_job(id, &error)).await?;
-        self.queue.remove_job(id);
-        Ok(())
+        self.change(1, [id], None, move |transaction| transaction.fail_job(id, &error)).await.map(drop)
     }
 
     async fn chunks(&self, id: Uuid, first: u64, limit: usize) -> Result<Vec<Vec<u8>>> {
@@ -167,10 +158,6 @@ impl JobStore for SqliteStore {
     }
 
     async fn delete_job(&self, id: Uuid) -> Result<()> {
-        self.change(1, [id], None, move |transaction| transaction.delete_job(id)).await?;
-        self.queue.remove_job(id);
-        // The writer has woken the listeners before the claims were removed.
-        self.changes.wake(id);
-        Ok(())
+        self.change(1, [id], None, move |transaction| transaction.delete_job(id)).await.map(drop)
     }
 }

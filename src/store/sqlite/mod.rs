@@ -62,7 +62,7 @@ pub struct SqliteStore {
     readers: Readers,
     changes: Arc<Changes>,
     commits: Arc<Commits>,
-    queue: ChunkQueue,
+    queue: Arc<ChunkQueue>,
     probe: Probe,
     /// Why nothing can be changed, if the disk was full at start.
     full: Option<String>,
@@ -88,7 +88,9 @@ impl SqliteStore {
         let readers = Readers::new(path.to_owned(), Arc::clone(&files), Some(Arc::clone(&lock)), false);
         let mut store = SqliteStore::reading(readers, None);
         jobs::restore_queue(&database, &store.queue).map_err(|error| error.to_string())?;
-        let writer = Writer::new(database, files, Arc::clone(&store.changes), Arc::clone(&store.commits));
+        let (changes, queue, commits) =
+            (Arc::clone(&store.changes), Arc::clone(&store.queue), Arc::clone(&store.commits));
+        let writer = Writer::new(database, files, changes, queue, commits);
         let writer = writer.map_err(|error| error.to_string())?;
         let (sender, requests) = mpsc::channel(QUEUE);
         let thread = std::thread::Builder::new().name("sqlite-writer".to_owned()).spawn(move || {
@@ -103,7 +105,7 @@ impl SqliteStore {
     /// A store without a writer.
     fn reading(readers: Readers, full: Option<String>) -> SqliteStore {
         let (changes, commits) = (Arc::default(), Arc::new(Commits::new("sqlite")));
-        let (queue, probe) = (ChunkQueue::default(), Probe::default());
+        let (queue, probe) = (Arc::default(), Probe::default());
         SqliteStore { requests: None, writer: None, readers, changes, commits, queue, probe, full }
     }
 

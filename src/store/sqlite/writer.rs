@@ -13,6 +13,7 @@ use rusqlite::config::DbConfig;
 use tokio::sync::mpsc::error::TryRecvError;
 use tokio::sync::{mpsc, oneshot};
 
+use crate::store::jobs::ChunkQueue;
 use crate::store::{Changes, Commits, Result, StoreError, batch};
 
 use super::change::{Change, Done, SequenceCache, Transaction};
@@ -40,6 +41,7 @@ pub(super) struct Writer {
     /// The files that it writes to.
     files: Arc<OpenFiles>,
     changes: Arc<Changes>,
+    queue: Arc<ChunkQueue>,
     cache: SequenceCache,
     commits: Arc<Commits>,
     /// A number that no session has had.
@@ -65,6 +67,7 @@ impl Writer {
         database: Connection,
         files: Arc<OpenFiles>,
         changes: Arc<Changes>,
+        queue: Arc<ChunkQueue>,
         commits: Arc<Commits>,
     ) -> rusqlite::Result<Writer> {
         // Forks that a crash has left incomplete are abandoned.
@@ -77,6 +80,7 @@ impl Writer {
             database,
             files,
             changes,
+            queue,
             cache: SequenceCache::new(CACHED),
             commits,
             next_number: highest + 1,
@@ -174,6 +178,10 @@ impl Writer {
             Ok(Done::Removed(count)) => {
                 self.unowned = true;
                 count
+            }
+            Ok(Done::Queued(change)) => {
+                self.queue.follow(change);
+                1
             }
             Ok(Done::Copying(fork, copying)) => return self.forks.push_back((fork, copying, request)),
         };

@@ -2,11 +2,13 @@
 
 use serde_json::{Value, json};
 use tempfile::tempdir;
+use tokio::io::AsyncWriteExt as _;
 use tokio_postgres::NoTls;
 
 use super::long;
 use crate::common::postgres::Cluster;
 use crate::common::process::Process;
+use crate::common::raw::{Service, post};
 use crate::common::{PATIENCE, Server, run, until};
 
 /// Enough points that a process can be killed in the middle of them.
@@ -143,4 +145,42 @@ async fn results_are_gone_after_a_day_and_jobs_that_do_not_end_after_a_week() {
     }
     assert_eq!(server.job(&paths[1]).await["state"], json!("done"));
     tokio::time::timeout(PATIENCE, process.stop()).await.expect("it does not stop");
+}
+
+/// Another program has locked the file, so that the clients hang up after their jobs have been sent to the store and
+/// before they are stored.
+#[tokio::test(flavor = "multi_thread")]
+async fn a_job_whose_client_hangs_up_before_the_reply_runs_to_its_end() {
+    const PENDING: &str = "stickslip_store_pending_changes{store=\"sqlite\"} ";
+    let folder = tempdir().unwrap();
+    let file = folder.path().join("jobs.db");
+    let service = Service::start_on(&format!("sqlite:{}", file.display()), &[]);
+    let server = Server::at(&format!("http://{}", service.address));
+    let pending = async || {
+        let page = server.get("/metrics").await.text().await.unwrap();
+        page.lines().find_map(|line| line.strip_prefix(PENDING)).unwrap().to_owned()
+    };
+    let mut other = rusqlite::Connection::open(&file).unwrap();
+    let sweep = super::small_job();
+    for key in ["first", "second"] {
+        let lock = other.transaction_with_behavior(rusqlite::TransactionBehavior::Immediate).unwrap();
+        let request =
+            post("/sweep", &sweep.to_string()).replacen("host:", &format!("idempotency-key: {key}\r\nhost:"), 1);
+        let mut client = service.connect_from("127.0.0.1").await.unwrap();
+        client.write_all(request.as_bytes()).await.unwrap();
+        until("its job waits to be stored", async || (pending().await == "1").then_some(())).await;
+        drop(client);
+        until("the server has noticed", async || (pending().await == "0").then_some(())).await;
+        drop(lock);
+        let headers = [("idempotency-key", key)];
+        let again = async || {
+            let response = server.send(reqwest::Method::POST, "/sweep", Some(&sweep.to_string()), &headers).await;
+            // The writer refuses changes for a moment if the lock was held for long.
+            Some(response).filter(|response| response.status() == 202)
+        };
+        let again = until("the job is stored", again).await;
+        server.job_result(again.headers()["location"].to_str().unwrap()).await;
+    }
+    let listed = server.get("/jobs").await.json::<Value>().await.unwrap();
+    assert_eq!(listed["items"].as_array().unwrap().len(), 2);
 }

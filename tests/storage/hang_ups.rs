@@ -1,0 +1,460 @@
+//! Clients that hang up at any moment of a change: what follows from its commit is done all the same. Every request is
+//! dropped after each number of awaits, over a store that yields before each change and between its commit and its
+//! answer.
+
+use crate::common;
+
+use std::future::poll_fn;
+use std::pin::pin;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::task::Poll;
+use std::time::Duration;
+
+use async_trait::async_trait;
+use common::kill::exact;
+use common::postgres::Cluster;
+use common::{ball, create, until};
+use jiff::Timestamp;
+use serde_json::json;
+use stickslip::admission::{Capacity, Pool, QuotaLimits};
+use stickslip::jobs::{JobError, Jobs, LEASE};
+use stickslip::sessions::{CAPACITY, SessionError, Sessions};
+use stickslip::simulation::Sweep;
+use stickslip::store::{
+    Changes, ChunkResult, Claim, Extent, IsSmall, Job, JobLimits, JobStore, MemoryStore, PostgresStore, Receipt,
+    Record, Reply, RequestKey, Session, Snapshot, SqliteStore, Store, StoreError, Tenant, Usage, Whole,
+};
+use stickslip_wire::{
+    Document as _, ForkRequest, JobState, Move, MoveRequest, PrepareAnew, SessionSummary, SweepRequest,
+};
+use tempfile::tempdir;
+use tokio::task::yield_now;
+use uuid::Uuid;
+
+type Stored<T = ()> = Result<T, StoreError>;
+
+/// A store that yields around each change.
+struct Yielding {
+    inner: Arc<dyn Store>,
+    /// Whether it refuses to count what a tenant has stored.
+    uncountable: AtomicBool,
+}
+
+/// A change, with awaits before it is sent and between its commit and its answer.
+async fn around<T>(change: impl Future<Output = T>) -> T {
+    yield_now().await;
+    let answer = change.await;
+    yield_now().await;
+    yield_now().await;
+    answer
+}
+
+#[async_trait]
+impl Store for Yielding {
+    async fn ready(&self) -> Stored {
+        self.inner.ready().await
+    }
+
+    async fn create(&self, session: Session, receipt: Option<Receipt>) -> Stored {
+        around(self.inner.create(session, receipt)).await
+    }
+
+    async fn extent(&self, id: Uuid) -> Stored<Extent> {
+        self.inner.extent(id).await
+    }
+
+    async fn load(&self, id: Uuid, is_small: IsSmall) -> Stored<(Extent, Option<Whole>)> {
+        self.inner.load(id, is_small).await
+    }
+
+    async fn usage(&self, tenant: &Tenant) -> Stored<Usage> {
+        if self.uncountable.load(Ordering::SeqCst) {
+            return Err(StoreError::Unavailable("it does not count".to_owned()));
+        }
+        self.inner.usage(tenant).await
+    }
+
+    fn move_bytes(&self) -> u64 {
+        self.inner.move_bytes()
+    }
+
+    async fn find(&self, id: Uuid) -> Stored<Session> {
+        self.inner.find(id).await
+    }
+
+    async fn list(
+        &self,
+        tenant: Option<Tenant>,
+        label: Option<String>,
+        after: Option<Uuid>,
+        limit: usize,
+    ) -> Stored<Vec<SessionSummary>> {
+        self.inner.list(tenant, label, after, limit).await
+    }
+
+    async fn rename(&self, id: Uuid, label: Option<String>, expected: u64, receipt: Option<Receipt>) -> Stored {
+        around(self.inner.rename(id, label, expected, receipt)).await
+    }
+
+    async fn append(&self, id: Uuid, expected: u64, records: Vec<Record>, receipt: Option<Receipt>) -> Stored {
+        around(self.inner.append(id, expected, records, receipt)).await
+    }
+
+    async fn history(&self, id: Uuid, after: u64, limit: usize) -> Stored<Vec<Record>> {
+        self.inner.history(id, after, limit).await
+    }
+
+    async fn count_moves(&self, id: Uuid, end: u64) -> Stored<u64> {
+        self.inner.count_moves(id, end).await
+    }
+
+    async fn fork(&self, id: Uuid, copy: Session, receipt: Option<Receipt>) -> Stored {
+        around(self.inner.fork(id, copy, receipt)).await
+    }
+
+    async fn delete(&self, id: Uuid, expected: u64) -> Stored {
+        around(self.inner.delete(id, expected)).await
+    }
+
+    async fn receipt(&self, key: &str) -> Stored<Option<Receipt>> {
+        self.inner.receipt(key).await
+    }
+
+    async fn snapshot(&self, id: Uuid) -> Stored<Option<Snapshot>> {
+        self.inner.snapshot(id).await
+    }
+
+    async fn save_snapshot(&self, id: Uuid, snapshot: Snapshot) -> Stored {
+        around(self.inner.save_snapshot(id, snapshot)).await
+    }
+
+    async fn purge_expired(&self, idle_since: Option<Timestamp>) -> Stored<u64> {
+        self.inner.purge_expired(idle_since).await
+    }
+
+    fn changes(&self) -> &Changes {
+        self.inner.changes()
+    }
+}
+
+#[async_trait]
+impl JobStore for Yielding {
+    async fn create_job(&self, job: Job, request: String, limits: JobLimits, receipt: Option<Receipt>) -> Stored {
+        around(self.inner.create_job(job, request, limits, receipt)).await
+    }
+
+    async fn job(&self, id: Uuid) -> Stored<Job> {
+        self.inner.job(id).await
+    }
+
+    async fn jobs(&self, tenant: Tenant) -> Stored<Vec<Job>> {
+        self.inner.jobs(tenant).await
+    }
+
+    async fn job_request(&self, id: Uuid) -> Stored<String> {
+        self.inner.job_request(id).await
+    }
+
+    async fn claim(&self, owner: Uuid, after: Option<Uuid>, lease: Duration) -> Stored<Option<Claim>> {
+        self.inner.claim(owner, after, lease).await
+    }
+
+    async fn renew(&self, claim: Claim, lease: Duration) -> Stored<bool> {
+        self.inner.renew(claim, lease).await
+    }
+
+    async fn release(&self, claim: Claim) -> Stored {
+        self.inner.release(claim).await
+    }
+
+    async fn save_chunk(&self, claim: Claim, result: ChunkResult) -> Stored {
+        around(self.inner.save_chunk(claim, result)).await
+    }
+
+    async fn fail_job(&self, id: Uuid, error: String) -> Stored {
+        around(self.inner.fail_job(id, error)).await
+    }
+
+    async fn chunks(&self, id: Uuid, first: u64, limit: usize) -> Stored<Vec<Vec<u8>>> {
+        self.inner.chunks(id, first, limit).await
+    }
+
+    async fn delete_job(&self, id: Uuid) -> Stored {
+        around(self.inner.delete_job(id)).await
+    }
+}
+
+/// The answer to a request, unless it is still pending after so many awaits: then it is dropped.
+async fn dropped_after<T>(awaits: usize, request: impl Future<Output = T>) -> Option<T> {
+    let (mut request, mut left) = (pin!(request), awaits);
+    poll_fn(|context| match request.as_mut().poll(context) {
+        Poll::Ready(answer) => Poll::Ready(Some(answer)),
+        Poll::Pending if left == 0 => Poll::Ready(None),
+        Poll::Pending => {
+            left -= 1;
+            Poll::Pending
+        }
+    })
+    .await
+}
+
+/// Long enough for most changes under way to end. Nothing depends on it: a check that comes too early finds no fault.
+async fn pause() {
+    tokio::time::sleep(Duration::from_millis(5)).await;
+}
+
+fn keyed(key: String) -> Option<RequestKey> {
+    Some(RequestKey { key, fingerprint: [7; 32] })
+}
+
+async fn count(store: &dyn Store) -> usize {
+    store.list(None, None, None, 10_000).await.unwrap().len()
+}
+
+fn is_gone<T>(found: &Stored<T>) -> bool {
+    matches!(found, Err(StoreError::NotFound))
+}
+
+/// Whatever a client hangs up in, its retry gets the reply to the one change that was made, and the cached state is the
+/// stored one.
+async fn keys_replay_and_the_cache_is_true(store: Arc<Yielding>) {
+    let pool = Pool::with_defaults();
+    let fresh = || Sessions::new(store.clone(), pool.clone(), CAPACITY);
+    let (sessions, mut made) = (fresh(), count(&*store).await);
+    let new = || create().check().unwrap();
+    let contact = sessions.changes().create(new(), None).await.unwrap().created.unwrap();
+    made += 1;
+    for awaits in 0.. {
+        let key = |what: &str| keyed(format!("{what}-{awaits}"));
+        let step = |to: f64| MoveRequest::from(Move::displacement(to * 1e-9)).check().unwrap();
+        let label = Some(format!("label {awaits}"));
+        let (moves, changes) = (sessions.moves(), sessions.changes());
+        let fork = || ForkRequest { label: Some("fork".to_owned()), sequence: None };
+        let at = sessions.get(contact).await.unwrap().sequence;
+
+        let firsts: [Option<Result<Reply, SessionError>>; 4] = [
+            dropped_after(awaits, changes.create(new(), key("create"))).await,
+            dropped_after(awaits, moves.apply(contact, step(1.0 + awaits as f64), None, key("move"))).await,
+            dropped_after(awaits, changes.fork(contact, fork(), key("fork"))).await,
+            dropped_after(awaits, changes.rename(contact, label.clone(), None, key("rename"))).await,
+        ];
+        let again = [
+            changes.create(new(), key("create")).await.unwrap(),
+            moves.apply(contact, step(1.0 + awaits as f64), None, key("move")).await.unwrap(),
+            changes.fork(contact, fork(), key("fork")).await.unwrap(),
+            changes.rename(contact, label.clone(), None, key("rename")).await.unwrap(),
+        ];
+        let mut all = true;
+        for (first, again) in firsts.into_iter().zip(&again) {
+            match first {
+                Some(first) => assert_eq!(first.unwrap(), *again),
+                None => all = false,
+            }
+        }
+        made += 2;
+        assert_eq!(count(&*store).await, made, "after {awaits} awaits");
+        let now = sessions.get(contact).await.unwrap();
+        assert_eq!((now.sequence, &now.label), (at + 1, &label), "after {awaits} awaits");
+
+        // Without a key it is made or not; what is shown is what is stored.
+        let first = dropped_after(awaits, moves.apply(contact, step(-1.0 - awaits as f64), None, None)).await;
+        all &= first.is_some();
+        let now = sessions.get(contact).await.unwrap();
+        assert!((at + 1..=at + 2).contains(&now.sequence));
+        assert_eq!(exact(&now), exact(&fresh().get(contact).await.unwrap()));
+        if all {
+            println!("dropped after 0 to {awaits} awaits");
+            break;
+        }
+    }
+}
+
+/// A deleted contact is not cached, whether its client has waited for the reply or not.
+async fn what_is_deleted_is_not_cached(store: Arc<Yielding>) {
+    for awaits in 0.. {
+        let sessions = Sessions::new(store.clone(), Pool::with_defaults(), CAPACITY);
+        let id = sessions.changes().create(create().check().unwrap(), None).await.unwrap().created.unwrap();
+        assert_eq!(sessions.held().1, 1);
+        let first = dropped_after(awaits, sessions.changes().delete(id, None)).await;
+        pause().await;
+        if is_gone(&store.find(id).await) {
+            until("the cache forgets it", async || (sessions.held() == (0, 0)).then_some(())).await;
+        }
+        if first.is_some() {
+            break;
+        }
+    }
+}
+
+/// The quota counts what is stored: no more fits after clients have hung up in making contacts, and no less after they
+/// have hung up in deleting some. The store counts once; from then on the server must know by itself.
+async fn quotas_count_what_is_stored(store: Arc<Yielding>) {
+    const MORE: usize = 40;
+    let limit = count(&*store).await + MORE;
+    let quotas = QuotaLimits { contacts: limit, ..QuotaLimits::default() };
+    let pool = Pool::new(Capacity { quotas, ..Capacity::default() });
+    let sessions = Sessions::new(store.clone(), pool, CAPACITY);
+    let changes = sessions.changes();
+    let make = || changes.create(create().check().unwrap(), None);
+    let mut ids = vec![make().await.unwrap().created.unwrap()];
+    store.uncountable.store(true, Ordering::SeqCst);
+    let fill = async |ids: &mut Vec<Uuid>| {
+        until("the quota is full", async || {
+            while let Ok(reply) = make().await {
+                ids.extend(reply.created);
+            }
+            let stored = count(&*store).await;
+            assert!(stored <= limit, "{stored} contacts, {limit} are allowed");
+            (stored == limit).then_some(())
+        })
+        .await;
+    };
+    for awaits in 0..MORE / 2 {
+        if dropped_after(awaits, make()).await.is_some() {
+            break;
+        }
+        pause().await;
+    }
+    fill(&mut ids).await;
+    for awaits in 0..MORE / 2 {
+        let Some(id) = ids.pop() else { break };
+        if dropped_after(awaits, sessions.changes().delete(id, None)).await.is_some() {
+            break;
+        }
+        pause().await;
+    }
+    fill(&mut ids).await;
+    store.uncountable.store(false, Ordering::SeqCst);
+}
+
+const LIMITS: JobLimits = JobLimits { jobs: 10_000, bytes: 1_000_000, cost: 1_000_000 };
+
+/// Whether a worker could claim a chunk.
+async fn is_claimable(store: &dyn Store) -> bool {
+    store.claim(Uuid::now_v7(), None, LEASE).await.unwrap().is_some()
+}
+
+/// A chunk is no longer claimed once its result is stored, its job has failed or is deleted; and a new job is claimed.
+async fn claims_follow_what_is_stored(store: Arc<Yielding>) {
+    let job = || Job {
+        id: Uuid::now_v7(),
+        tenant: Tenant::default(),
+        created_at: Timestamp::now(),
+        finished_at: None,
+        error: None,
+        points: 2,
+        chunk: 1,
+        done: 0,
+        failed: 0,
+        bytes: 1,
+        cost: 1,
+    };
+    let result = ChunkResult { points: 1, failed: 0, content: vec![1] };
+    for awaits in 0.. {
+        let (new, mut all) = (job(), true);
+        all &= dropped_after(awaits, store.create_job(new.clone(), String::new(), LIMITS, None)).await.is_some();
+        pause().await;
+        if is_gone(&store.job(new.id).await) {
+            // Refused if the first is stored late.
+            let _ = store.create_job(new.clone(), String::new(), LIMITS, None).await;
+        }
+        let claim =
+            async || store.claim(Uuid::now_v7(), None, LEASE).await.unwrap().filter(|claim| claim.job == new.id);
+        let claims = [until("it is claimed", claim).await, until("it is claimed", claim).await];
+        assert!(!is_claimable(&*store).await);
+        let let_go = async |claim: Claim| {
+            until("it lets go", async || (!store.renew(claim, LEASE).await.unwrap()).then_some(())).await;
+        };
+
+        all &= dropped_after(awaits, store.save_chunk(claims[0], result.clone())).await.is_some();
+        pause().await;
+        if store.job(new.id).await.unwrap().done == 1 {
+            let_go(claims[0]).await;
+        }
+        all &= dropped_after(awaits, store.fail_job(new.id, "no use".to_owned())).await.is_some();
+        pause().await;
+        if store.job(new.id).await.unwrap().finished_at.is_some() {
+            let_go(claims[1]).await;
+        }
+        store.delete_job(new.id).await.unwrap();
+
+        let deleted = job();
+        store.create_job(deleted.clone(), String::new(), LIMITS, None).await.unwrap();
+        let claim = store.claim(Uuid::now_v7(), None, LEASE).await.unwrap().unwrap();
+        all &= dropped_after(awaits, store.delete_job(deleted.id)).await.is_some();
+        pause().await;
+        if is_gone(&store.job(deleted.id).await) {
+            let_go(claim).await;
+            until("none is left", async || (!is_claimable(&*store).await).then_some(())).await;
+        } else {
+            // Refused if the first has been made late.
+            let _ = store.delete_job(deleted.id).await;
+        }
+        if all {
+            break;
+        }
+    }
+}
+
+/// A sweep of two points that is a job.
+fn sweep() -> Sweep {
+    let request = json!({
+        "base": {"contact": ball(), "path": {"displacement": [1e-7]}},
+        "axes": [{"pointer": "/contact/friction", "values": [0.1, 0.2]}],
+        "outputs": ["/steps/0/force"], "job": true
+    });
+    let request: SweepRequest = serde_json::from_value(request).unwrap();
+    Sweep::plan(request.check().unwrap(), &PrepareAnew).unwrap()
+}
+
+/// Every stored job runs to its end, and a retry gets the job that is stored.
+async fn stored_jobs_run_to_their_end(store: Arc<Yielding>) {
+    let jobs = Jobs::new(store.clone(), Pool::with_defaults());
+    let working = tokio::spawn(jobs.clone().work(LEASE));
+    let (sweep, mut ids) = (sweep(), Vec::new());
+    for awaits in 0.. {
+        let start = || jobs.start(&sweep, keyed(format!("sweep-{awaits}")));
+        let first: Option<Result<Reply, JobError>> = dropped_after(awaits, start()).await;
+        let again = start().await.unwrap();
+        ids.push(again.created.unwrap());
+        if let Some(first) = first {
+            assert_eq!(first.unwrap(), again);
+            break;
+        }
+    }
+    let listed = jobs.list(None).await.unwrap().items;
+    assert_eq!(listed.iter().map(|job| job.id).collect::<Vec<_>>(), ids);
+    for id in ids {
+        let ended = async || Some(jobs.get(id).await.unwrap()).filter(|job| job.state != JobState::Running);
+        assert_eq!(until("the job ends", ended).await.state, JobState::Done);
+    }
+    jobs.end();
+    working.await.unwrap();
+}
+
+async fn all_of_it(store: Arc<dyn Store>) {
+    let store = Arc::new(Yielding { inner: store, uncountable: AtomicBool::new(false) });
+    keys_replay_and_the_cache_is_true(store.clone()).await;
+    what_is_deleted_is_not_cached(store.clone()).await;
+    quotas_count_what_is_stored(store.clone()).await;
+    claims_follow_what_is_stored(store.clone()).await;
+    stored_jobs_run_to_their_end(store).await;
+}
+
+#[tokio::test]
+async fn no_step_after_a_commit_in_memory_needs_its_client() {
+    all_of_it(Arc::new(MemoryStore::new())).await;
+}
+
+#[tokio::test]
+async fn no_step_after_a_commit_in_a_file_needs_its_client() {
+    let folder = tempdir().unwrap();
+    all_of_it(Arc::new(SqliteStore::open(&folder.path().join("hang_ups.db")).unwrap())).await;
+}
+
+#[tokio::test]
+async fn no_step_after_a_commit_in_a_database_needs_its_client() {
+    let url = Cluster::shared().database().await;
+    all_of_it(Arc::new(PostgresStore::open(&url).await.unwrap())).await;
+}
