@@ -13,6 +13,7 @@ use uuid::Uuid;
 use super::parameters::{MOVE_NUMBER, described};
 use super::problem::{Code, Problem};
 use super::state::App;
+use crate::sessions::Expected;
 
 /// Characters of an idempotency key.
 const KEY_LENGTH: usize = 255;
@@ -38,10 +39,11 @@ pub struct JobPath {
 #[into_params(parameter_in = Header)]
 pub struct IfMatch {
     /// The sequence that the contact must have, in quotes: an `ETag` of it. If it has another one, nothing changes and
-    /// the answer is 412.
+    /// the answer is 412. With the checksum of a label behind a dot, as `GET /contacts/{id}` gives it, the label must be
+    /// the same too; `.00000000` is that of no label.
     #[param(rename = "If-Match", value_type = Option<String>, nullable = false,
         pattern = r#"^("[0-9]{1,19}(\.[0-9a-f]{8})?"|\*)$"#)]
-    pub sequence: Option<u64>,
+    pub expected: Option<Expected>,
 }
 
 /// The name of a request that may have to be repeated.
@@ -111,18 +113,27 @@ impl FromRequestParts<Arc<App>> for IfMatch {
 
     async fn from_request_parts(parts: &mut Parts, _: &Arc<App>) -> Result<Self, Problem> {
         let Some(value) = parts.headers.get(header::IF_MATCH) else {
-            return Ok(IfMatch { sequence: None });
+            return Ok(IfMatch { expected: None });
         };
         let text = value.to_str().unwrap_or_default().trim();
         let tag = text.strip_prefix('"').and_then(|rest| rest.strip_suffix('"'));
-        // The tag of a contact with a label goes on behind a dot.
-        let sequence = tag.map(|tag| tag.split_once('.').map_or(tag, |(sequence, _)| sequence).parse::<u64>());
-        match (text, sequence) {
-            ("*", _) => Ok(IfMatch { sequence: None }),
-            (_, Some(Ok(sequence))) => Ok(IfMatch { sequence: Some(sequence) }),
+        match (text, tag.and_then(expected)) {
+            ("*", _) => Ok(IfMatch { expected: None }),
+            (_, Some(expected)) => Ok(IfMatch { expected: Some(expected) }),
             _ => Err(Problem::new(Code::InvalidInput, "If-Match must be a sequence in quotes, such as \"3\", or *")),
         }
     }
+}
+
+/// The version that a tag names: a sequence, and the checksum of a label behind a dot if it has one.
+fn expected(tag: &str) -> Option<Expected> {
+    let (sequence, label) = tag.split_once('.').map_or((tag, None), |(sequence, label)| (sequence, Some(label)));
+    let is_checksum = |label: &&str| label.len() == 8 && label.bytes().all(|digit| digit.is_ascii_hexdigit());
+    let label = match label {
+        Some(label) => Some(u32::from_str_radix(Some(label).filter(is_checksum)?, 16).ok()?),
+        None => None,
+    };
+    Some(Expected { sequence: sequence.parse().ok()?, label })
 }
 
 impl IdempotencyKey {

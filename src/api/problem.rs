@@ -191,7 +191,7 @@ impl From<SessionError> for Problem {
         match error {
             SessionError::NotFound(_) => Problem::new(Code::ContactNotFound, detail),
             SessionError::OtherDefinition(_) => Problem::at(Code::InvalidInput, "/contact", detail),
-            SessionError::Stale { .. } => Problem::new(Code::StaleSequence, detail),
+            SessionError::Stale { .. } | SessionError::Relabelled { .. } => Problem::new(Code::StaleSequence, detail),
             SessionError::Overtaken { .. } => Problem::new(Code::Conflict, detail),
             SessionError::NoSuchMove { .. } => Problem::at(Code::InvalidInput, "/sequence", detail),
             SessionError::Ahead { .. } => Problem::at(Code::InvalidInput, "/Last-Event-ID", detail),

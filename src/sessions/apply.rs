@@ -19,6 +19,7 @@ use stickslip_wire::{Plan, RelaxReply, limits};
 use super::attempt::{Done, PIECES_OF_A_MOVE, attempt};
 use super::cache::Guard;
 use super::changes::answer_once;
+use super::expected::Expected;
 use super::group::{GroupResult, lock_or_join, may_join};
 use super::loaded::LoadedSession;
 use super::observations::Observations;
@@ -52,7 +53,7 @@ impl Mover {
         &self,
         id: Uuid,
         advance: Advance,
-        expected: Option<u64>,
+        expected: Option<Expected>,
         key: Option<RequestKey>,
     ) -> Result<Reply, SessionError> {
         let request = self.replay.request(key);
@@ -63,7 +64,7 @@ impl Mover {
         &self,
         id: Uuid,
         advance: Arc<Advance>,
-        expected: Option<u64>,
+        expected: Option<Expected>,
         request: &IdempotentRequest<'_>,
     ) -> Result<Reply, SessionError> {
         // A client that hangs up in the queue leaves it.
@@ -79,8 +80,8 @@ impl Mover {
         let move_bytes = self.replay.common.store.move_bytes();
         let mut reservation =
             self.replay.reserve_storage(Usage::of(0, advance.plan.length() as u64 * move_bytes, None)).await?;
-        // A cached state may be behind the store. A refusal counts only once the state has caught up.
-        let mut caught_up = guard.live.is_none();
+        // A cached state may be behind the store, and its label too. A refusal counts only once the state has caught up.
+        let mut caught_up = guard.live.is_none() || expected.is_some_and(|expected| expected.label.is_some());
         let mut found = 0;
         for _ in 0..ATTEMPTS {
             // Again, because the same request, sent twice, may have been done here or elsewhere while this one waited.
@@ -90,12 +91,12 @@ impl Mover {
             let live =
                 if caught_up { self.replay.current(&mut guard).await? } else { self.replay.cached(&mut guard).await? };
             let sequence = live.session.sequence;
-            if let Some(expected) = expected.filter(|expected| *expected != sequence) {
+            if let Some(Err(refusal)) = expected.map(|it| it.check(sequence, live.session.label.as_deref())) {
                 if !caught_up {
                     caught_up = true;
                     continue;
                 }
-                return Err(SessionError::Stale { expected, found: sequence });
+                return Err(refusal);
             }
             stop.count(std::mem::take(&mut guard.loading));
             let (mut live, Done { records, mut reply }) = match self.compute(&advance, &mut guard, &stop).await {
@@ -159,14 +160,15 @@ impl Mover {
         &self,
         id: Uuid,
         relaxation: Relaxation,
-        expected: Option<u64>,
+        expected: Option<Expected>,
     ) -> Result<(u64, Vec<u8>, Reservation), SessionError> {
         let task = relaxation.task;
         let (stop, _raised_at_the_end) = self.replay.common.pool.deadline();
         let held = self.replay.common.pool.reserve(task.bytes()).await?;
         let (contact, sequence, state) = self.replay.copy(id, None, &stop).await?;
-        if let Some(expected) = expected.filter(|expected| *expected != sequence) {
-            return Err(SessionError::Stale { expected, found: sequence });
+        if let Some(expected) = expected {
+            let label = if expected.label.is_some() { self.replay.extent(id).await?.label } else { None };
+            expected.check(sequence, label.as_deref())?;
         }
         let cost = task.cost(contact.profile(), contact.memory_depth());
         let work = move || {

@@ -27,6 +27,7 @@ use stickslip_mechanics::Profile;
 use stickslip_wire::session::Advance;
 
 use super::SessionError;
+use super::expected::Expected;
 use super::loaded::LoadedSession;
 use super::storage_reservation::StorageReservation;
 
@@ -63,8 +64,8 @@ struct Waiter {
 /// A move that may be made by whoever has the session.
 pub(super) struct WaitingMove {
     pub(super) advance: Arc<Advance>,
-    /// The sequence that the client expects.
-    pub(super) expected: Option<u64>,
+    /// What the client expects the session to be.
+    pub(super) expected: Option<Expected>,
     pub(super) by: Option<Arc<str>>,
     pub(super) reservation: StorageReservation,
     pub(super) span: Span,

@@ -12,6 +12,7 @@ use crate::store::{CONTACT_BYTES, IdempotentRequest, Reply, RequestKey, Session,
 use stickslip_wire::session::Creation;
 use stickslip_wire::{ForkRequest, SessionReply};
 
+use super::expected::Expected;
 use super::loaded::LoadedSession;
 use super::replay::Replay;
 use super::run_to_end::run_to_end;
@@ -117,7 +118,7 @@ impl Changes {
         &self,
         id: Uuid,
         label: Option<String>,
-        expected: Option<u64>,
+        expected: Option<Expected>,
         key: Option<RequestKey>,
     ) -> Result<Reply, SessionError> {
         let request = self.replay.request(key);
@@ -126,19 +127,20 @@ impl Changes {
             let mut overtaken = 0;
             for _ in 0..ATTEMPTS {
                 let now = self.replay.current(&mut guard).await?.reply();
-                if let Some(expected) = expected.filter(|expected| *expected != now.sequence) {
-                    return Err(SessionError::Stale { expected, found: now.sequence });
+                if let Some(expected) = expected {
+                    expected.check(now.sequence, now.label.as_deref())?;
                 }
+                let before = now.label.clone();
                 let renamed = SessionReply { label: label.clone(), ..now };
                 let reply = Reply { created: None, sequence: renamed.sequence, body: written(&renamed)? };
                 let receipt = request.receipt(&reply);
                 let added = Usage::of(0, 0, receipt.as_ref());
                 let reservation = self.replay.reserve_storage(added).await?;
-                // The reply shows the sequence, and the client may expect one: both hold only as long as no other
-                // process moves it.
+                // The reply shows the sequence, and the client may expect it and the label: both hold only as long as
+                // no other process changes them.
                 let (common, label, at) = (Arc::clone(&self.replay.common), label.clone(), reply.sequence);
                 let rename = async move {
-                    let stored = common.store.rename(id, label, at, receipt);
+                    let stored = common.store.rename(id, before, label, at, receipt);
                     stored.instrument(otlp::part!("store")).await.inspect(|()| reservation.used(added))
                 };
                 match run_to_end(rename).await {
@@ -156,13 +158,17 @@ impl Changes {
     ///
     /// # Errors
     /// [`SessionError`]; it is still there then.
-    pub async fn delete(&self, id: Uuid, expected: Option<u64>) -> Result<(), SessionError> {
+    pub async fn delete(&self, id: Uuid, expected: Option<Expected>) -> Result<(), SessionError> {
         let mut guard = self.replay.lock(id).await?;
         let found = match &guard.live {
-            Some(live) => live.session.sequence,
-            None => self.replay.extent(id).await?.sequence,
+            Some(live) if expected.is_none_or(|expected| expected.label.is_none()) => live.session.sequence,
+            _ => {
+                let stored = self.replay.extent(id).await?;
+                expected.map_or(Ok(()), |expected| expected.check(stored.sequence, stored.label.as_deref()))?;
+                stored.sequence
+            }
         };
-        let mut at = expected.unwrap_or(found);
+        let mut at = expected.map_or(found, |expected| expected.sequence);
         for _ in 0..ATTEMPTS {
             let Replay { tenant, common } = self.replay.clone();
             let delete = async move {
@@ -179,7 +185,7 @@ impl Changes {
             match (deleted, expected) {
                 (Ok(()), _) => return Ok(()),
                 (Err(StoreError::Stale { found }), Some(expected)) => {
-                    return Err(SessionError::Stale { expected, found });
+                    return Err(SessionError::Stale { expected: expected.sequence, found });
                 }
                 (Err(StoreError::Stale { found }), None) => at = found,
                 (Err(error), _) => return Err(self.replay.store_failure(&mut guard, error)),

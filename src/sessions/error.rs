@@ -28,6 +28,12 @@ pub enum SessionError {
         /// The present sequence.
         found: u64,
     },
+    /// The label is not the one that the client expects.
+    #[error("the label of the contact, which is at sequence {found}, has changed")]
+    Relabelled {
+        /// The present sequence.
+        found: u64,
+    },
     /// Other processes have moved the session on, again and again.
     #[error("other requests keep moving the contact, which is now at sequence {found}: try again")]
     Overtaken {

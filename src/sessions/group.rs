@@ -22,6 +22,7 @@ use stickslip_wire::{Plan, limits};
 use super::SessionError;
 use super::attempt::{Done, PIECES_OF_A_MOVE, attempt};
 use super::cache::{Guard, WaitingMove};
+use super::expected::Expected;
 use super::loaded::LoadedSession;
 use super::replay::Replay;
 
@@ -58,7 +59,7 @@ pub(super) async fn lock_or_join(
     by: Option<&Arc<str>>,
     id: Uuid,
     advance: &Arc<Advance>,
-    expected: Option<u64>,
+    expected: Option<Expected>,
 ) -> Result<GroupResult, SessionError> {
     match replay.common.cache.try_lock(&replay.tenant, id) {
         Some(guard) => Ok(GroupResult::Locked(guard)),
@@ -72,7 +73,7 @@ async fn join_queue(
     by: Option<&Arc<str>>,
     id: Uuid,
     advance: &Arc<Advance>,
-    expected: Option<u64>,
+    expected: Option<Expected>,
 ) -> Result<GroupResult, SessionError> {
     let reservation = replay.reserve_storage(Usage::of(0, replay.common.store.move_bytes(), None)).await?;
     let (advance, by) = (Arc::clone(advance), by.cloned());
@@ -166,7 +167,7 @@ impl Group {
             let mut outcomes = Vec::with_capacity(asked.len());
             for (advance, expected, by, span) in asked {
                 // A refusal counts only once the store has been asked, which its client does alone.
-                let joins = expected.is_none_or(|expected| expected == live.session.sequence)
+                let joins = expected.is_none_or(|expected| expected == live.session.sequence.into())
                     && live.contact.memory_depth() + PIECES_OF_A_MOVE <= limits::MEMORY_DEPTH;
                 let done = joins.then(|| span.in_scope(|| attempt(&mut live, &advance, by.as_ref(), &stop)));
                 outcomes.push(match done.transpose() {

@@ -321,9 +321,16 @@ pub trait Store: JobStore {
         limit: usize,
     ) -> Result<Vec<SessionSummary>>;
 
-    /// Gives a session that is at sequence `expected` another label, or none, and stores the receipt with it. Its
-    /// sequence and its times stay.
-    async fn rename(&self, id: Uuid, label: Option<String>, expected: u64, receipt: Option<Receipt>) -> Result<()>;
+    /// Gives a session that is at sequence `expected` and has the label `from` the label `to`, or none, and stores the
+    /// receipt with it. Its sequence and its times stay. [`StoreError::Stale`] also if it has another label.
+    async fn rename(
+        &self,
+        id: Uuid,
+        from: Option<String>,
+        to: Option<String>,
+        expected: u64,
+        receipt: Option<Receipt>,
+    ) -> Result<()>;
 
     /// Appends moves to a session that is at sequence `expected`, all or none of them, and the receipt with them. The
     /// records are numbered from `expected + 1`.

@@ -5,9 +5,9 @@ use crate::common;
 use std::sync::Arc;
 use std::time::Duration;
 
-use common::{Server, ball, create, problem, until};
+use common::{Server, ball, create, problem, until, with};
 use futures::future::join_all;
-use reqwest::{Method, StatusCode};
+use reqwest::{Method, Response, StatusCode};
 use serde_json::{Value, json};
 use stickslip::admission::{Capacity, Pool};
 use stickslip::sessions::{CAPACITY, Sessions};
@@ -238,6 +238,70 @@ async fn a_stale_sequence_is_refused_and_changes_nothing() {
     assert_eq!((now.sequence, now.label), (1, None));
     let any = server.send(Method::DELETE, &format!("/contacts/{id}"), None, &[("if-match", "*")]).await;
     assert_eq!(any.status(), StatusCode::NO_CONTENT);
+}
+
+#[tokio::test]
+async fn a_tag_with_a_label_compares_the_label_too() {
+    let server = Server::start().await;
+    let id = server.post("/contacts", &with(ball(), "/label", json!("a"))).await.json::<Value>().await.unwrap();
+    let target = format!("/contacts/{}", id["id"].as_str().unwrap());
+    let tag_of = |response: &Response| response.headers()["etag"].to_str().unwrap().to_owned();
+    let shown = async || tag_of(&server.get(&target).await);
+    let rename = async |tag: &str, label: Value| {
+        let body = json!({"label": label}).to_string();
+        server.send(Method::PATCH, &target, Some(&body), &[("if-match", tag)]).await
+    };
+    // Of two clients with one tag the second has not seen the label that it would replace.
+    let first = shown().await;
+    let renamed = rename(&first, json!("b")).await;
+    assert_eq!((renamed.status().as_u16(), tag_of(&renamed)), (200, shown().await));
+    let steps = json!({"path": {"displacement": [1e-8]}}).to_string();
+    let measured = json!({"observations": [{"displacement": 1e-8, "force": 0.1}]}).to_string();
+    let asked = |tag: String| {
+        let (server, target, steps, measured) = (&server, &target, &steps, &measured);
+        async move {
+            let send = async |method, path: &str, body: &str| {
+                server.send(method, &format!("{target}{path}"), Some(body), &[("if-match", &*tag)]).await
+            };
+            [
+                send(Method::PATCH, "", "{\"label\": \"c\"}").await,
+                send(Method::POST, "/relax", "{\"reversals\": 2, \"dry_run\": true}").await,
+                send(Method::POST, "/relax", "{\"reversals\": 2}").await,
+                send(Method::POST, "/move", "{\"displacement\": 1e-8}").await,
+                send(Method::POST, "/path", steps).await,
+                send(Method::POST, "/observations", measured).await,
+                send(Method::DELETE, "", "").await,
+            ]
+        }
+    };
+    for refused in asked(first).await {
+        let refused = problem(refused).await;
+        assert_eq!((refused.status, refused.code.as_str()), (412, "stale_sequence"), "{}", refused.detail);
+    }
+    let now: Value = server.get(&target).await.json().await.unwrap();
+    assert_eq!((&now["label"], &now["sequence"]), (&json!("b"), &json!(0)));
+    // The sequence alone does not compare the label, and there is a checksum of no label.
+    assert_eq!(rename("\"0\"", json!(null)).await.status(), 200);
+    assert_eq!(rename("\"0.00000000\"", json!("d")).await.status(), 200);
+    assert_eq!(rename("\"0.00000000\"", json!("e")).await.status(), 412);
+    for wrong in ["\"0.\"", "\"0.xyz\"", "\"0.123456789\"", "\"0.+1234567\"", "\".00000000\""] {
+        assert_eq!(rename(wrong, json!("e")).await.status(), 422, "{wrong}");
+    }
+    // The tag that is shown serves for everything.
+    let [renamed, dry, ..] = asked(shown().await).await;
+    assert_eq!((renamed.status().as_u16(), dry.status().as_u16()), (200, 412));
+    let [_, dry, relaxed, ..] = asked(shown().await).await;
+    assert_eq!((dry.status().as_u16(), relaxed.status().as_u16()), (200, 200));
+    for (method, path, body) in [
+        (Method::POST, "/move", "{\"displacement\": 1e-8}"),
+        (Method::POST, "/path", &steps),
+        (Method::POST, "/observations", &measured),
+        (Method::DELETE, "", ""),
+    ] {
+        let tag = shown().await;
+        let reply = server.send(method, &format!("{target}{path}"), Some(body), &[("if-match", &*tag)]).await;
+        assert!(reply.status().is_success(), "{path}: {}", reply.text().await.unwrap());
+    }
 }
 
 #[tokio::test]

@@ -29,7 +29,7 @@ async fn made(sessions: &Sessions) -> Uuid {
 }
 
 async fn moved(sessions: &Sessions, id: Uuid, step: Move, expected: Option<u64>) -> Result<Reply, SessionError> {
-    sessions.moves().apply(id, MoveRequest::from(step).check().unwrap(), expected, None).await
+    sessions.moves().apply(id, MoveRequest::from(step).check().unwrap(), expected.map(Into::into), None).await
 }
 
 fn commits(store: &SqliteStore) -> u64 {

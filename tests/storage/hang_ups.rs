@@ -93,8 +93,15 @@ impl Store for Yielding {
         self.inner.list(tenant, label, after, limit).await
     }
 
-    async fn rename(&self, id: Uuid, label: Option<String>, expected: u64, receipt: Option<Receipt>) -> Stored {
-        around(self.inner.rename(id, label, expected, receipt)).await
+    async fn rename(
+        &self,
+        id: Uuid,
+        from: Option<String>,
+        to: Option<String>,
+        expected: u64,
+        receipt: Option<Receipt>,
+    ) -> Stored {
+        around(self.inner.rename(id, from, to, expected, receipt)).await
     }
 
     async fn append(&self, id: Uuid, expected: u64, records: Vec<Record>, receipt: Option<Receipt>) -> Stored {

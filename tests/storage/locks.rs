@@ -206,7 +206,7 @@ async fn changes_that_wait_for_rows_hold_no_connection() {
     other.query("SELECT id FROM contacts WHERE id = ANY($1) FOR UPDATE", &[&ids]).await.unwrap();
     other.query("SELECT id FROM jobs WHERE id = $1 FOR UPDATE", &[&job.id]).await.unwrap();
     let held = async {
-        let renamed = join_all(ids.iter().map(|id| store.rename(*id, Some("new".to_owned()), 0, None)));
+        let renamed = join_all(ids.iter().map(|id| store.rename(*id, None, Some("new".to_owned()), 0, None)));
         let deleted = join_all(ids.iter().map(|id| store.delete(*id, 0)));
         let saved = futures::future::join3(
             store.save_chunk(claim, result()),
@@ -238,7 +238,7 @@ async fn changes_that_wait_for_rows_hold_no_connection() {
         other.batch_execute("COMMIT").await.unwrap();
     };
     let (renamed, deleted, saved, ()) = futures::join!(
-        store.rename(ids[0], Some("new".to_owned()), 0, Some(receipt("name", None, 0))),
+        store.rename(ids[0], None, Some("new".to_owned()), 0, Some(receipt("name", None, 0))),
         store.delete(ids[1], 0),
         store.save_chunk(claim, result()),
         free

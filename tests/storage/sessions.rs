@@ -13,13 +13,13 @@ use jiff::{SignedDuration, Timestamp};
 use reqwest::Method;
 use serde_json::json;
 use stickslip::admission::Pool;
-use stickslip::sessions::Sessions;
+use stickslip::sessions::{Expected, SessionError, Sessions, label_checksum};
 use stickslip::store::{MemoryStore, Snapshot, SqliteStore, Store};
 use stickslip_mechanics::Contact;
 use stickslip_wire::client::{Client, Event, Options};
 use stickslip_wire::{
-    CreateRequest, EndReason, Faults, ForkRequest, JsonPath, Move, Path, PathRequest, PrepareAnew, State, Steps,
-    StressRequest,
+    CreateRequest, Document as _, EndReason, Faults, ForkRequest, JsonPath, Move, Path, PathRequest, PrepareAnew,
+    State, Steps, StressRequest,
 };
 use uuid::Uuid;
 
@@ -335,4 +335,27 @@ async fn processes_that_share_a_store_see_each_others_moves() {
     // Deleted there, it is gone here.
     there.delete(id, &options).await.unwrap();
     assert_eq!(here.contact(id).await.unwrap_err().problem().unwrap().status, 404);
+}
+
+/// Two processes on one store know nothing of each other: the store decides.
+#[tokio::test]
+async fn of_two_that_rename_by_one_tag_one_wins() {
+    let folder = tempfile::tempdir().unwrap();
+    let store = Arc::new(SqliteStore::open(&folder.path().join("labels.db")).unwrap());
+    let [here, there] = [(); 2].map(|()| Sessions::new(store.clone(), Pool::with_defaults(), 1 << 20));
+    let id = here.changes().create(create().check().unwrap(), None).await.unwrap().created.unwrap();
+    let mut label: Option<String> = None;
+    for round in 0..30 {
+        let expected = Some(Expected { sequence: 0, label: Some(label_checksum(label.as_deref())) });
+        let [one, other] = ["here", "there"].map(|name| Some(format!("{name} {round}")));
+        let (these, those) = (here.changes(), there.changes());
+        let (first, second) = futures::join!(
+            these.rename(id, one.clone(), expected, None),
+            those.rename(id, other.clone(), expected, None)
+        );
+        let (won, lost) = if first.is_ok() { (one, second) } else { (other, first) };
+        assert!(matches!(lost, Err(SessionError::Relabelled { found: 0 })), "{lost:?}");
+        label = won;
+        assert_eq!(here.get(id).await.unwrap().label, label);
+    }
 }

@@ -3,6 +3,7 @@
 use super::prelude::*;
 use crate::api::extract::OptionalBody;
 use crate::api::parameters::{IDENTIFIER, Text};
+use crate::sessions::label_checksum;
 use stickslip_wire::session::LABEL;
 use stickslip_wire::{
     ContactDefinition, CreateRequest, ForkRequest, NewSession, RenameRequest, SessionPage, SessionReply,
@@ -71,13 +72,13 @@ pub async fn get_contact(
     _: CheckedQuery<()>,
 ) -> Result<Response, Problem> {
     let session = app.sessions.get(id).await?;
-    reply::versioned(&headers, &tag(&session), &session)
+    reply::versioned(&headers, &tag(session.sequence, session.label.as_deref()), &session)
 }
 
 /// The version of a contact: its sequence, and a checksum of its label if it has one, which changes without a move.
-fn tag(session: &SessionReply) -> String {
-    let label = session.label.as_ref().map(|label| format!(".{:08x}", crc32fast::hash(label.as_bytes())));
-    Format::Columns.tag(&format!("{}{}", session.sequence, label.unwrap_or_default()))
+fn tag(sequence: u64, label: Option<&str>) -> String {
+    let checksum = label.map(|_| format!(".{:08x}", label_checksum(label)));
+    Format::Columns.tag(&format!("{sequence}{}", checksum.unwrap_or_default()))
 }
 
 /// Rename a contact
@@ -88,15 +89,19 @@ fn tag(session: &SessionReply) -> String {
     patch, path = "/contacts/{id}", tag = "contacts", params(ContactPath, IfMatch, IdempotencyKey),
     request_body = RenameRequest,
     responses((status = 200, description = "The contact and its state", body = SessionReply,
-        headers(("ETag" = String, description = "Its sequence in quotes"))))
+        headers(("ETag" = String, description = "Its sequence, and a checksum of its label behind a dot if it has one, \
+            in quotes"))))
 )]
 pub async fn rename_contact(
     TenantApp(app): TenantApp,
     ContactPath { id }: ContactPath,
-    IfMatch { sequence }: IfMatch,
+    IfMatch { expected }: IfMatch,
     request: CheckedBody<RenameRequest>,
 ) -> Result<Response, Problem> {
-    Ok(reply::of_change(app.sessions.changes().rename(id, request.body.label, sequence, request.key).await?))
+    let label = request.body.label;
+    let reply = app.sessions.changes().rename(id, label.clone(), expected, request.key).await?;
+    let tag = tag(reply.sequence, label.as_deref());
+    Ok(reply::tagged(reply::of_change(reply), &tag))
 }
 
 /// Delete a contact
@@ -109,9 +114,9 @@ pub async fn rename_contact(
 pub async fn delete_contact(
     TenantApp(app): TenantApp,
     ContactPath { id }: ContactPath,
-    IfMatch { sequence }: IfMatch,
+    IfMatch { expected }: IfMatch,
 ) -> Result<StatusCode, Problem> {
-    app.sessions.changes().delete(id, sequence).await?;
+    app.sessions.changes().delete(id, expected).await?;
     Ok(StatusCode::NO_CONTENT)
 }
 

@@ -1,7 +1,7 @@
 //! `/contacts/{id}/move`, `/contacts/{id}/path` and `/contacts/{id}/relax`: contacts are moved.
 
 use super::prelude::*;
-use crate::sessions::bytes_of_moves;
+use crate::sessions::{Expected, bytes_of_moves};
 use stickslip_wire::session::Advance;
 use stickslip_wire::{Document, MoveReply, MoveRequest, PathReply, PathRequest, RelaxReply, RelaxRequest};
 
@@ -24,10 +24,10 @@ use stickslip_wire::{Document, MoveReply, MoveRequest, PathReply, PathRequest, R
 pub async fn move_contact(
     TenantApp(app): TenantApp,
     ContactPath { id }: ContactPath,
-    IfMatch { sequence }: IfMatch,
+    IfMatch { expected }: IfMatch,
     request: CheckedBody<MoveRequest>,
 ) -> Result<Response, Problem> {
-    advance(&app, id, sequence, request).await
+    advance(&app, id, expected, request).await
 }
 
 /// Follow a path
@@ -50,10 +50,10 @@ pub async fn move_contact(
 pub async fn follow_path(
     TenantApp(app): TenantApp,
     ContactPath { id }: ContactPath,
-    IfMatch { sequence }: IfMatch,
+    IfMatch { expected }: IfMatch,
     request: CheckedBody<PathRequest>,
 ) -> Result<Response, Problem> {
-    advance(&app, id, sequence, request).await
+    advance(&app, id, expected, request).await
 }
 
 /// Relax a contact
@@ -74,26 +74,26 @@ pub async fn follow_path(
 pub async fn relax_contact(
     TenantApp(app): TenantApp,
     ContactPath { id }: ContactPath,
-    IfMatch { sequence }: IfMatch,
+    IfMatch { expected }: IfMatch,
     request: CheckedBody<RelaxRequest>,
 ) -> Result<Response, Problem> {
     let CheckedBody { body, key, mut held } = request;
     if body.dry_run {
-        let (sequence, body, memory) = app.sessions.moves().dry_run_relax(id, body, sequence).await?;
+        let (sequence, body, memory) = app.sessions.moves().dry_run_relax(id, body, expected).await?;
         return Ok(reply::holding(reply::at_sequence(sequence, body), memory));
     }
     let advance = Advance::from(body);
     held.resize(&app.pool, bytes_of_moves(&advance)).await?;
-    Ok(held.on(reply::of_change(app.sessions.moves().apply(id, advance, sequence, key).await?)))
+    Ok(held.on(reply::of_change(app.sessions.moves().apply(id, advance, expected, key).await?)))
 }
 
 /// Moves a contact by a checked body.
 pub(super) async fn advance<T: Document<Checked = Advance>>(
     app: &App,
     id: Uuid,
-    sequence: Option<u64>,
+    expected: Option<Expected>,
     CheckedBody { body, key, mut held }: CheckedBody<T>,
 ) -> Result<Response, Problem> {
     held.resize(&app.pool, bytes_of_moves(&body)).await?;
-    Ok(held.on(reply::of_change(app.sessions.moves().apply(id, body, sequence, key).await?)))
+    Ok(held.on(reply::of_change(app.sessions.moves().apply(id, body, expected, key).await?)))
 }

@@ -26,10 +26,10 @@ use super::prelude::*;
 pub async fn follow_bench(
     TenantApp(app): TenantApp,
     ContactPath { id }: ContactPath,
-    IfMatch { sequence }: IfMatch,
+    IfMatch { expected }: IfMatch,
     request: CheckedBody<ObservationsRequest>,
 ) -> Result<Response, Problem> {
-    advance(&app, id, sequence, request).await
+    advance(&app, id, expected, request).await
 }
 
 /// Get the measured friction of a contact

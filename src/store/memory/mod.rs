@@ -196,8 +196,22 @@ impl Store for MemoryStore {
         Ok(found.take(limit).map(summary).collect())
     }
 
-    async fn rename(&self, id: Uuid, label: Option<String>, expected: u64, receipt: Option<Receipt>) -> Result<()> {
-        self.change(receipt, |inner| inner.at(id, expected).map(|stored| stored.session.label = label))
+    async fn rename(
+        &self,
+        id: Uuid,
+        from: Option<String>,
+        to: Option<String>,
+        expected: u64,
+        receipt: Option<Receipt>,
+    ) -> Result<()> {
+        self.change(receipt, |inner| {
+            let session = &mut inner.at(id, expected)?.session;
+            if session.label != from {
+                return Err(StoreError::Stale { found: expected });
+            }
+            session.label = to;
+            Ok(())
+        })
     }
 
     async fn append(&self, id: Uuid, expected: u64, records: Vec<Record>, receipt: Option<Receipt>) -> Result<()> {

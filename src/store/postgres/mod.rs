@@ -222,8 +222,15 @@ impl Store for PostgresStore {
         found.iter().map(|row| rows::summary(&mut reader(row))).collect()
     }
 
-    async fn rename(&self, id: Uuid, label: Option<String>, expected: u64, receipt: Option<Receipt>) -> Result<()> {
-        self.pool.rename(id, label, expected, receipt).await
+    async fn rename(
+        &self,
+        id: Uuid,
+        from: Option<String>,
+        to: Option<String>,
+        expected: u64,
+        receipt: Option<Receipt>,
+    ) -> Result<()> {
+        self.pool.rename(id, (from, to), expected, receipt).await
     }
 
     async fn append(&self, id: Uuid, expected: u64, records: Vec<Record>, receipt: Option<Receipt>) -> Result<()> {

@@ -162,21 +162,25 @@ FROM contacts WHERE tenant = $4 AND id > $1
     AND ($3::text IS NULL OR strpos(lower(label COLLATE "C"), lower($3 COLLATE "C")) > 0)
 ORDER BY id LIMIT $2"#;
 
-/// Names a session that is at a sequence, and keeps the receipt. Returns, if the session exists, whether it was at that
-/// sequence and free, and its sequence.
+/// Names a session that is at a sequence and has a label, perhaps the new one by an earlier attempt, and keeps the
+/// receipt. Returns, if the session exists, whether it was like that and free, its sequence, and whether it has one of
+/// the labels.
 pub(super) const RENAME: &str = "
 WITH held AS (
-    SELECT id FROM contacts WHERE id = $1 AND sequence = $3 FOR NO KEY UPDATE SKIP LOCKED
+    SELECT id FROM contacts
+    WHERE id = $1 AND sequence = $3 AND (label IS NOT DISTINCT FROM $4 OR label IS NOT DISTINCT FROM $2)
+    FOR NO KEY UPDATE SKIP LOCKED
 ), renamed AS (
     UPDATE contacts SET label = $2 FROM held WHERE contacts.id = held.id RETURNING contacts.id
 ), kept AS (
     INSERT INTO receipts (key, fingerprint, created, sequence, body)
     SELECT receipt.key, receipt.fingerprint, receipt.created, receipt.sequence, receipt.body
-    FROM unnest($4::uuid[], $5::text[], $6::bytea[], $7::uuid[], $8::bigint[], $9::bytea[])
+    FROM unnest($5::uuid[], $6::text[], $7::bytea[], $8::uuid[], $9::bigint[], $10::bytea[])
         AS receipt (contact, key, fingerprint, created, sequence, body)
     JOIN renamed ON renamed.id = receipt.contact
 )
-SELECT held.id IS NOT NULL, contacts.sequence
+SELECT held.id IS NOT NULL, contacts.sequence,
+    contacts.label IS NOT DISTINCT FROM $4 OR contacts.label IS NOT DISTINCT FROM $2
 FROM contacts LEFT JOIN held ON held.id = contacts.id WHERE contacts.id = $1";
 
 /// The sequence of a contact, and some of its moves beside it: in one statement, so that both are of one state of the

@@ -43,16 +43,20 @@ impl ClientPool {
     pub(super) async fn rename(
         &self,
         id: Uuid,
-        label: Option<String>,
+        (from, to): (Option<String>, Option<String>),
         expected: u64,
         receipt: Option<Receipt>,
     ) -> Result<()> {
         let receipts = self.free_key(id, receipt.as_ref()).await?;
         let (sent, sequence) = (InDoubt::default(), to_bigint(expected));
-        let parameters: [Parameter<'_>; 3] = [&id, &label, &sequence];
+        let parameters: [Parameter<'_>; 4] = [&id, &to, &sequence, &from];
         let parameters: Vec<_> = parameters.into_iter().chain(receipts.parameters()).collect();
         let renamed = with_retries!(self, ANSWER, connection => async {
-            done_at(&sent.answered(rows(connection, sql::RENAME, &parameters)).await?, expected)
+            let found = sent.answered(rows(connection, sql::RENAME, &parameters)).await?;
+            match found.first().map(|row| row.get(2)) {
+                Some(false) => Ok(Err(StoreError::Stale { found: from_bigint(found[0].get(1)) })),
+                _ => done_at(&found, expected),
+            }
         });
         match renamed {
             // It may have been made before the connection was lost, and the contact moved since.

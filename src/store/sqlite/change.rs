@@ -9,7 +9,7 @@ use uuid::Uuid;
 
 use crate::store::jobs::QueueChange;
 use crate::store::rows::{RowReader as _, tenant};
-use crate::store::{RECEIPT_LIFETIME, Receipt, Record, Session, Snapshot};
+use crate::store::{RECEIPT_LIFETIME, Receipt, Record, Session, Snapshot, StoreError};
 
 use super::columns::{
     CONTACTS, MOVE_COLUMNS, all, clamped_nanoseconds, execute, first, insert_move, nanoseconds_ago, to_integer,
@@ -106,10 +106,18 @@ impl Transaction<'_> {
         Ok(begun.map_or(Done::Made(0), |copying| Done::Copying(Arc::clone(fork), copying)))
     }
 
-    pub(super) fn rename(&self, id: Uuid, label: Option<&str>, expected: u64) -> Result<Done, Fault> {
+    pub(super) fn rename(
+        &self,
+        id: Uuid,
+        (from, to): (Option<&str>, Option<&str>),
+        expected: u64,
+    ) -> Result<Done, Fault> {
         let number = number_at(self.database, id, expected)?;
-        execute(self.database, "UPDATE contacts SET label = ?2 WHERE number = ?1", params![number, label])?;
-        Ok(Done::Made(0))
+        let sql = "UPDATE contacts SET label = ?3 WHERE number = ?1 AND label IS ?2";
+        match execute(self.database, sql, params![number, from, to])? {
+            0 => Err(StoreError::Stale { found: expected }.into()),
+            _ => Ok(Done::Made(0)),
+        }
     }
 
     pub(super) fn delete(&mut self, id: Uuid, expected: u64) -> Result<Done, Fault> {

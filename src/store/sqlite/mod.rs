@@ -202,10 +202,17 @@ impl Store for SqliteStore {
         self.readers.read(move |database| read::list(database, tenant.as_ref(), label.as_deref(), after, limit)).await
     }
 
-    async fn rename(&self, id: Uuid, label: Option<String>, expected: u64, receipt: Option<Receipt>) -> Result<()> {
-        self.change(1, [], receipt, move |transaction| transaction.rename(id, label.as_deref(), expected))
-            .await
-            .map(drop)
+    async fn rename(
+        &self,
+        id: Uuid,
+        from: Option<String>,
+        to: Option<String>,
+        expected: u64,
+        receipt: Option<Receipt>,
+    ) -> Result<()> {
+        let rename =
+            move |transaction: &mut Transaction<'_>| transaction.rename(id, (from.as_deref(), to.as_deref()), expected);
+        self.change(1, [], receipt, rename).await.map(drop)
     }
 
     async fn append(&self, id: Uuid, expected: u64, records: Vec<Record>, receipt: Option<Receipt>) -> Result<()> {

@@ -61,9 +61,11 @@ pub async fn a_label_changes_alone_and_finds_its_session(store: &dyn Store) {
         });
         listed.iter().any(|item| item.id == made.id)
     };
+    let mut before = made.label.clone();
     for label in [Some("50 %_ Ärger of A.B\\C"), None, Some("")] {
         let label = label.map(str::to_owned);
-        store.rename(made.id, label.clone(), 2, None).await.unwrap();
+        store.rename(made.id, before, label.clone(), 2, None).await.unwrap();
+        before = label.clone();
         let renamed = Session { label: label.clone(), ..made.clone() };
         assert_eq!(exact(&store.find(made.id).await.unwrap()), exact(&renamed));
         let extent = store.extent(made.id).await.unwrap();
@@ -83,16 +85,17 @@ pub async fn a_label_changes_alone_and_finds_its_session(store: &dyn Store) {
         }
         assert_eq!(found("").await, label.is_some());
     }
-    let nobody = store.rename(Uuid::now_v7(), Some("nobody".to_owned()), 0, None).await;
+    let nobody = store.rename(Uuid::now_v7(), None, Some("nobody".to_owned()), 0, None).await;
     assert!(matches!(nobody, Err(StoreError::NotFound)));
     // A key that is taken refuses it, and it takes its key.
-    store.rename(made.id, Some("first".to_owned()), 2, Some(receipt("naming", None, 2))).await.unwrap();
-    let twice = store.rename(made.id, Some("second".to_owned()), 2, Some(receipt("naming", None, 2))).await;
+    let [first, second, late] = ["first", "second", "late"].map(|label| Some(label.to_owned()));
+    store.rename(made.id, before, first.clone(), 2, Some(receipt("naming", None, 2))).await.unwrap();
+    let twice = store.rename(made.id, first.clone(), second.clone(), 2, Some(receipt("naming", None, 2))).await;
     assert!(matches!(twice, Err(StoreError::KeyTaken)), "{twice:?}");
-    // At another sequence it changes nothing, and takes no key.
-    for wrong in [1, 3] {
-        let late = store.rename(made.id, Some("late".to_owned()), wrong, Some(receipt("late", None, 2))).await;
-        assert!(matches!(late, Err(StoreError::Stale { found: 2 })), "{late:?}");
+    // At another sequence, or with another label, it changes nothing, and takes no key.
+    for (wrong, from) in [(1, &first), (3, &first), (2, &second), (2, &None)] {
+        let refused = store.rename(made.id, from.clone(), late.clone(), wrong, Some(receipt("late", None, 2))).await;
+        assert!(matches!(refused, Err(StoreError::Stale { found: 2 })), "{refused:?}");
     }
     assert!(store.receipt("late").await.unwrap().is_none());
     assert_eq!(store.extent(made.id).await.unwrap().label.as_deref(), Some("first"));
