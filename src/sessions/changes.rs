@@ -61,6 +61,36 @@ impl Changes {
         answer_once(&request, create).await
     }
 
+    /// The reply to an earlier request with this key.
+    ///
+    /// # Errors
+    /// A key of another request, or a failure of the store.
+    pub async fn earlier_reply(&self, key: RequestKey) -> Result<Option<Reply>, SessionError> {
+        Ok(self.replay.request(Some(key)).earlier_reply().await?)
+    }
+
+    /// Keeps the reply to a request that stores nothing else, within the quotas of the tenant. Returns the reply that
+    /// is kept: that to the same request, sent twice, if it was faster.
+    ///
+    /// # Errors
+    /// A key of another request, a quota, or a failure of the store.
+    pub async fn keep_reply(&self, key: RequestKey, body: Vec<u8>) -> Result<Reply, SessionError> {
+        let request = self.replay.request(Some(key));
+        let reply = Reply { created: None, sequence: 0, body };
+        let Some(receipt) = request.receipt(&reply) else { return Ok(reply) };
+        let added = Usage::of(0, 0, Some(&receipt));
+        let reservation = self.replay.reserve_storage(added).await?;
+        let common = Arc::clone(&self.replay.common);
+        let keep = async move {
+            let stored = common.store.keep(receipt).instrument(otlp::part!("store"));
+            stored.await.inspect(|()| reservation.used(added))
+        };
+        match run_to_end(keep).await {
+            Ok(()) => Ok(reply),
+            Err(error) => Ok(request.after_refusal(error).await?),
+        }
+    }
+
     /// Makes a session with the same moves, or with the first of them.
     ///
     /// # Errors

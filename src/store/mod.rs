@@ -352,6 +352,9 @@ pub trait Store: JobStore {
     /// Deletes a session that is at sequence `expected`, and its moves.
     async fn delete(&self, id: Uuid, expected: u64) -> Result<()>;
 
+    /// Stores the receipt of a request that changes nothing else.
+    async fn keep(&self, receipt: Receipt) -> Result<()>;
+
     /// The receipt for an idempotency key, if the key has been used within [`RECEIPT_LIFETIME`].
     async fn receipt(&self, key: &str) -> Result<Option<Receipt>>;
 

@@ -124,6 +124,10 @@ impl Store for Yielding {
         around(self.inner.delete(id, expected)).await
     }
 
+    async fn keep(&self, receipt: Receipt) -> Stored {
+        around(self.inner.keep(receipt)).await
+    }
+
     async fn receipt(&self, key: &str) -> Stored<Option<Receipt>> {
         self.inner.receipt(key).await
     }

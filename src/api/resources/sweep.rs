@@ -8,17 +8,21 @@ use super::jobs::{self, TableQuery};
 use super::prelude::*;
 use crate::api::params::{Prefer, accepts_events};
 use crate::jobs::AT_ONCE;
-use crate::simulation::{Failure, Sweep};
+use crate::simulation::{Failure, Sweep, SweepResult};
 use stickslip_wire::{JobReply, SweepReply, SweepRequest};
 
 /// Bytes of a number of the table while it is computed.
 const NUMBER_BYTES: usize = 16;
+/// The most numbers of a table that is kept for a retry as a whole.
+const KEPT_NUMBERS: usize = 65_536;
 
 /// Run a sweep
 ///
 /// Runs `POST /simulate` for each combination of the values of up to three axes, and returns a table of the outputs. A
 /// point without an answer is a row of `null` and is listed among the failures. A small sweep is answered at once. A
 /// large one becomes a job: 202 with the URL of the job in `Location` or, with `Accept: text/event-stream`, its events.
+/// A retry with the same `Idempotency-Key` gets the numbers of the first attempt, or its job. With a key, a table of more
+/// than 65536 numbers is the result of a job.
 #[utoipa::path(
     post, path = "/sweep", tag = "simulation", params(TableQuery, Prefer, IdempotencyKey), request_body = SweepRequest,
     responses(
@@ -38,6 +42,11 @@ pub async fn run_sweep(
     let (CheckedQuery(query), events) = (query?, accepts_events(&headers));
     let format = if events { Format::Columns } else { Format::chosen(query.format, &headers, &Format::TABLES)? };
     let CheckedBody { body: checked, key, mut held } = body;
+    let changes = app.sessions.changes();
+    let earlier = match &key {
+        Some(key) => changes.earlier_reply(key.clone()).await?,
+        None => None,
+    };
     let wants_job = checked.request.job || respond_async || events;
     let (stop, _guard) = app.pool.deadline();
     let (cost, profiles) = (Sweep::planning_cost(&checked), app.sessions.profiles(&stop));
@@ -46,7 +55,10 @@ pub async fn run_sweep(
         stop.check().map_err(|interrupted| Failure::interrupted(interrupted, "/base/contact/profile"))?;
     }
     let sweep = planned?;
-    if wants_job || sweep.cost() > AT_ONCE {
+    let numbers = sweep.numbers(sweep.points());
+    let is_large = sweep.cost() > AT_ONCE || key.is_some() && numbers > KEPT_NUMBERS;
+    let is_job = earlier.as_ref().map_or(wants_job || is_large, |reply| reply.created.is_some());
+    if is_job {
         let made = app.jobs.start(&sweep, key).await?;
         let id = made.created.unwrap_or(Uuid::nil());
         if events {
@@ -62,10 +74,22 @@ pub async fn run_sweep(
         return Ok(response);
     }
     let (stop, _guard) = app.pool.deadline();
-    let table_bytes = NUMBER_BYTES * sweep.numbers(sweep.points());
+    let table_bytes = NUMBER_BYTES * numbers;
     held.resize(&app.pool, sweep.bytes(app.pool.capacity().threads) + table_bytes).await?;
     let sweep = Arc::new(sweep);
-    let result = app.jobs.at_once(&sweep, &stop).await?;
+    let result = match earlier.and_then(|reply| SweepResult::from_bytes(&reply.body, numbers)) {
+        Some(earlier) => earlier,
+        None => {
+            let result = app.jobs.at_once(&sweep, &stop).await?;
+            match key {
+                Some(key) => {
+                    let kept = changes.keep_reply(key, result.to_bytes()).await?;
+                    SweepResult::from_bytes(&kept.body, numbers).unwrap_or(result)
+                }
+                None => result,
+            }
+        }
+    };
     held.resize(&app.pool, table_bytes).await?;
     let table = Body::from_stream(futures::stream::iter(result.table(sweep.checked()).blocks(format)));
     Ok(held.on(format.reply(table)))

@@ -267,6 +267,10 @@ impl Store for MemoryStore {
         Ok(())
     }
 
+    async fn keep(&self, receipt: Receipt) -> Result<()> {
+        self.change(Some(receipt), |_| Ok(()))
+    }
+
     async fn receipt(&self, key: &str) -> Result<Option<Receipt>> {
         let mut inner = self.inner.lock();
         inner.receipts.purge();

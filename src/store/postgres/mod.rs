@@ -263,6 +263,10 @@ impl Store for PostgresStore {
         Ok(())
     }
 
+    async fn keep(&self, receipt: Receipt) -> Result<()> {
+        self.pool.keep(&receipt).await
+    }
+
     async fn receipt(&self, key: &str) -> Result<Option<Receipt>> {
         let row = self.pool.row(sql::RECEIPT, &[&key, &RECEIPT_LIFETIME.as_secs_f64()]).await?;
         row.map(|row| rows::receipt(key, &mut reader(&row))).transpose()

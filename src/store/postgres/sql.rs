@@ -183,6 +183,13 @@ SELECT held.id IS NOT NULL, contacts.sequence,
     contacts.label IS NOT DISTINCT FROM $4 OR contacts.label IS NOT DISTINCT FROM $2
 FROM contacts LEFT JOIN held ON held.id = contacts.id WHERE contacts.id = $1";
 
+/// Keeps a receipt alone.
+pub(super) const KEEP: &str = "
+INSERT INTO receipts (key, fingerprint, created, sequence, body)
+SELECT receipt.key, receipt.fingerprint, receipt.created, receipt.sequence, receipt.body
+FROM unnest($1::uuid[], $2::text[], $3::bytea[], $4::uuid[], $5::bigint[], $6::bytea[])
+    AS receipt (contact, key, fingerprint, created, sequence, body)";
+
 /// The sequence of a contact, and some of its moves beside it: in one statement, so that both are of one state of the
 /// database.
 pub(super) const HISTORY: &str = "

@@ -69,6 +69,16 @@ impl ClientPool {
         }
     }
 
+    /// [`crate::store::Store::keep`]: made twice, if its connection is lost, the second one finds its own key taken.
+    pub(super) async fn keep(&self, receipt: &Receipt) -> Result<()> {
+        let receipts = self.free_key(Uuid::nil(), Some(receipt)).await?;
+        let parameters = receipts.parameters();
+        match with_retries!(self, ANSWER, connection => rows(connection, sql::KEEP, &parameters)) {
+            Ok(_) => Ok(()),
+            Err(error) => Err(self.key_taken_or(Some(receipt), error).await?),
+        }
+    }
+
     /// The columns of a receipt for a change of what has this identifier. Makes room for its key, if that is kept for a
     /// request from long ago.
     pub(super) async fn free_key(&self, id: Uuid, receipt: Option<&Receipt>) -> Result<Receipts> {

@@ -239,6 +239,10 @@ impl Store for SqliteStore {
         self.change(1, [id], None, move |transaction| transaction.delete(id, expected)).await.map(drop)
     }
 
+    async fn keep(&self, receipt: Receipt) -> Result<()> {
+        self.change(1, [], Some(receipt), |_| Ok(Done::Made(0))).await.map(drop)
+    }
+
     async fn receipt(&self, key: &str) -> Result<Option<Receipt>> {
         let key = key.to_owned();
         self.readers.read(move |database| read::receipt(database, &key)).await

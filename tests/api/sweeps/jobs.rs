@@ -1,13 +1,17 @@
 //! Jobs: how they are requested, watched, bounded and cancelled.
 
 use std::collections::BTreeSet;
+use std::sync::Arc;
 
 use futures::StreamExt as _;
 use reqwest::Method;
 use serde_json::{Value, json};
+use stickslip::admission::{Capacity, Pool, QuotaLimits};
+use stickslip::sessions::{CAPACITY, Sessions};
+use stickslip::store::MemoryStore;
 
 use super::{base, long, small_job};
-use crate::common::{PATIENCE, Server, ball, problem, until};
+use crate::common::{PATIENCE, Server, ball, problem, until, with};
 
 /// The events of a stream to its end: names and data.
 async fn events(response: reqwest::Response) -> Vec<(String, Value)> {
@@ -145,6 +149,76 @@ async fn a_retry_with_the_same_key_makes_no_second_job() {
     }
     assert_eq!(ids.len(), 2);
     assert_eq!(problem(send(&long(100_000), "one").await).await.code, "idempotency_key_reused");
+}
+
+/// Its outputs include the time that it has taken, which no other computation repeats.
+#[tokio::test]
+async fn a_sweep_answered_at_once_honours_its_key() {
+    let server = Server::start().await;
+    let mut sweep = small_job();
+    sweep["job"] = json!(false);
+    sweep["outputs"] = json!(["/residual/max", "/accuracy/compute_time"]);
+    let ask = async |key: &str, sweep: &Value, path: &str, header: (&str, &str)| {
+        let headers = [("idempotency-key", key), header];
+        server.send(Method::POST, path, Some(&sweep.to_string()), &headers).await
+    };
+    let plain = ("accept", "*/*");
+    let first = ask("small", &sweep, "/sweep", plain).await;
+    assert_eq!(first.status(), 200);
+    let first = first.text().await.unwrap();
+    // Also to one that would rather have a job, and in another format.
+    for header in [plain, ("prefer", "respond-async")] {
+        let again = ask("small", &sweep, "/sweep", header).await;
+        assert_eq!((again.status().as_u16(), again.text().await.unwrap()), (200, first.clone()), "{header:?}");
+    }
+    let rows = ask("small", &sweep, "/sweep?format=rows", plain).await.json::<Vec<Value>>().await.unwrap();
+    let first: Value = serde_json::from_str(&first).unwrap();
+    for (index, row) in rows.iter().enumerate() {
+        for (name, value) in row.as_object().unwrap() {
+            assert_eq!(*value, first["columns"][name][index], "{name}");
+        }
+    }
+    // Another request may not have its key, and it may not have that of another one.
+    let other = with(sweep.clone(), "/axes/0/values/0", json!(0.15));
+    assert_eq!(problem(ask("small", &other, "/sweep", plain).await).await.code, "idempotency_key_reused");
+    assert_eq!(problem(ask("small", &ball(), "/contacts", plain).await).await.code, "idempotency_key_reused");
+    assert_eq!(ask("contact", &ball(), "/contacts", plain).await.status(), 201);
+    assert_eq!(problem(ask("contact", &sweep, "/sweep", plain).await).await.code, "idempotency_key_reused");
+    // A retry of a job gets the job, whatever it prefers.
+    let job = ask("job", &sweep, "/sweep", ("prefer", "respond-async")).await;
+    let again = ask("job", &sweep, "/sweep", plain).await;
+    assert_eq!((job.status().as_u16(), again.status().as_u16()), (202, 202));
+    assert_eq!(job.headers()["location"], again.headers()["location"]);
+    // What is too large to be kept for a retry becomes a job, whose result is kept.
+    let mut large = long(70_000);
+    large["base"]["path"] = json!({"displacement": [1e-7]});
+    assert_eq!(server.post("/sweep", &large).await.status(), 200);
+    assert_eq!(ask("large", &large, "/sweep", plain).await.status(), 202);
+}
+
+#[tokio::test]
+async fn tables_that_are_kept_for_retries_count_against_the_quota() {
+    let quotas = QuotaLimits { store_bytes: 2_000, ..QuotaLimits::default() };
+    let pool = Pool::new(Capacity { quotas, ..Capacity::default() });
+    let sessions = Sessions::new(Arc::new(MemoryStore::new()), pool.clone(), CAPACITY);
+    let server = Server::over(sessions, pool).await;
+    let mut sweep = small_job();
+    sweep["job"] = json!(false);
+    let ask = async |key: String| {
+        let headers = [("idempotency-key", &*key)];
+        server.send(Method::POST, "/sweep", Some(&sweep.to_string()), &headers).await
+    };
+    let mut kept = 0;
+    let refused = loop {
+        let response = ask(format!("{kept:0>200}")).await;
+        if response.status() != 200 {
+            break problem(response).await;
+        }
+        kept += 1;
+        assert!(kept < 4, "{kept} replies of some 700 bytes");
+    };
+    assert_eq!((refused.code.as_str(), kept > 0), ("quota_exceeded", true));
+    assert_eq!(server.post("/sweep", &sweep).await.status(), 200, "nothing is kept without a key");
 }
 
 #[tokio::test(flavor = "multi_thread")]

@@ -26,6 +26,10 @@ pub async fn a_receipt_is_returned_as_it_was_stored(store: &dyn Store) {
     let forked = receipt("forked", Some(copy.id), 1);
     store.fork(made.id, copy, Some(forked.clone())).await.unwrap();
     assert_eq!(store.receipt("forked").await.unwrap(), Some(forked));
+    let alone = receipt("alone", None, 0);
+    store.keep(alone.clone()).await.unwrap();
+    assert_eq!(store.receipt("alone").await.unwrap(), Some(alone.clone()));
+    assert!(matches!(store.keep(alone).await, Err(StoreError::KeyTaken)));
     // A retry gets its reply even when the session is deleted.
     store.delete(made.id, 1).await.unwrap();
     assert_eq!(store.receipt("moved").await.unwrap(), Some(moved));
@@ -43,6 +47,7 @@ pub async fn a_taken_key_refuses_every_change_and_changes_nothing(store: &dyn St
         store.append(id, 2, vec![record(3)], again()).await,
         store.create(fresh.clone(), again()).await,
         store.fork(id, copy.clone(), again()).await,
+        store.keep(receipt("taken", None, 3)).await,
     ] {
         assert!(matches!(refused, Err(StoreError::KeyTaken)), "{refused:?}");
     }
