@@ -40,6 +40,9 @@ pub use sqlite::SqliteStore;
 /// How long a reply is kept for retries with the same idempotency key.
 pub const RECEIPT_LIFETIME: std::time::Duration = std::time::Duration::from_secs(24 * 60 * 60);
 
+/// How long a store knows of a session that it has expired. Later it is as if it had never been there.
+pub const EXPIRED_LIFETIME: std::time::Duration = std::time::Duration::from_secs(30 * 24 * 60 * 60);
+
 /// Who owns sessions: a key of one tenant gives no access to those of others. Without keys there is one tenant, without
 /// a name.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
@@ -238,7 +241,7 @@ pub enum StoreError {
     /// The session was not found.
     #[error("there is no such contact")]
     NotFound,
-    /// There was such a session, of this tenant; it has expired.
+    /// There was such a session, of this tenant; it has expired, within [`EXPIRED_LIFETIME`].
     #[error("the contact has expired")]
     Expired(Tenant),
     /// The session has another sequence than expected.
@@ -366,8 +369,8 @@ pub trait Store: JobStore {
     async fn save_snapshot(&self, id: Uuid, snapshot: Snapshot) -> Result<()>;
 
     /// Deletes receipts older than [`RECEIPT_LIFETIME`], jobs past their time, and, where `idle_since` is given, the
-    /// sessions that have not moved since. Those are [`StoreError::Expired`] from then on. Returns how many sessions
-    /// expired.
+    /// sessions that have not moved since. Those are [`StoreError::Expired`] for [`EXPIRED_LIFETIME`] from then on.
+    /// Returns how many sessions expired.
     async fn purge_expired(&self, idle_since: Option<Timestamp>) -> Result<u64>;
 
     /// Wakes those who wait for changes, whichever process on the same storage makes them.

@@ -5,8 +5,8 @@ use crate::fixtures::soon;
 
 use std::sync::Arc;
 
-use common::create;
 use common::postgres::Cluster;
+use common::{create, until};
 use futures::future::join_all;
 use jiff::Timestamp;
 use stickslip::store::{PostgresStore, Receipt, Record, Reply, RequestKey, Session, Store, StoreError, Tenant};
@@ -214,6 +214,65 @@ async fn a_key_may_be_used_again_after_its_time() {
     store.purge_expired(None).await.unwrap();
     cluster.execute(name, &older(1)).await;
     assert_eq!(store.receipt("key").await.unwrap(), None);
+}
+
+#[tokio::test]
+async fn a_contact_that_expired_a_month_ago_leaves_nothing() {
+    let cluster = Cluster::shared();
+    let url = cluster.database().await;
+    let store = PostgresStore::open(&url).await.unwrap();
+    let (old, young) = (session(), session());
+    for idle in [&old, &young] {
+        store.create(idle.clone(), None).await.unwrap();
+    }
+    assert_eq!(store.purge_expired(Some(Timestamp::now())).await.unwrap(), 2);
+    let name = url.rsplit('/').next().unwrap();
+    let age = |days: u32| format!("UPDATE expired SET at = now() - INTERVAL '{days} days' WHERE id = '{}'", old.id);
+    for (days, is_kept) in [(29, true), (31, false)] {
+        cluster.execute(name, &age(days)).await;
+        store.purge_expired(None).await.unwrap();
+        let found = store.find(old.id).await;
+        assert!(
+            matches!(&found, Err(StoreError::Expired(_)) if is_kept)
+                || matches!(found, Err(StoreError::NotFound) if !is_kept)
+        );
+    }
+    assert!(matches!(store.find(young.id).await, Err(StoreError::Expired(_))));
+}
+
+/// The database counts how often it uses an index, and how many updates change no column of an index.
+#[tokio::test]
+async fn idle_contacts_are_found_by_an_index_that_moves_leave_alone() {
+    const MOVES: u64 = 200;
+    let cluster = Cluster::shared();
+    let url = cluster.database().await;
+    let store = PostgresStore::open(&url).await.unwrap();
+    let (client, connection) = tokio_postgres::connect(&url, NoTls).await.unwrap();
+    tokio::spawn(connection);
+    let counted = async |sql: &str| client.query_one(sql, &[]).await.unwrap().get::<_, i64>(0);
+    let fresh = Session { updated_at: Timestamp::now(), ..session() };
+    store.create(fresh.clone(), None).await.unwrap();
+    for sequence in 0..MOVES {
+        let step = Record { at: Timestamp::now(), ..record(sequence + 1, 1e-9) };
+        store.append(fresh.id, sequence, vec![step], None).await.unwrap();
+    }
+    let kept = "SELECT n_tup_hot_upd FROM pg_stat_user_tables WHERE relname = 'contacts'";
+    // Most of them: some find no room in their page.
+    until("the moves are counted", async || (counted(kept).await > MOVES as i64 / 2).then_some(())).await;
+
+    let copies =
+        "INSERT INTO contacts (id, label, definition, sequence, created_at, created_ns, updated_at, updated_ns, tenant)
+        SELECT gen_random_uuid(), label, definition, sequence, created_at, created_ns, now(), updated_ns, tenant
+        FROM contacts, generate_series(1, 5000)";
+    client.batch_execute(copies).await.unwrap();
+    client.batch_execute("ANALYZE contacts").await.unwrap();
+    let used = "SELECT idx_scan FROM pg_stat_user_indexes WHERE indexrelname = 'contacts_by_activity'";
+    let read = async || {
+        let limit = Timestamp::now() - jiff::SignedDuration::from_hours(24);
+        assert_eq!(store.purge_expired(Some(limit)).await.unwrap(), 0);
+        (counted(used).await > 0).then_some(())
+    };
+    until("the index is used", read).await;
 }
 
 #[tokio::test]

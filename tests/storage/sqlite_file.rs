@@ -2,7 +2,7 @@
 //! read.
 
 use crate::common;
-use crate::fixtures::{along, keyed, url};
+use crate::fixtures::{along, keyed, session, url};
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -11,8 +11,10 @@ use std::path::Path;
 use common::create;
 use common::kill::{PATIENCE, exact, history};
 use common::process::{Process, refused};
+use futures::future::join_all;
+use jiff::Timestamp;
 use rusqlite::Connection;
-use stickslip::store::{SqliteStore, Store as _, StoreError};
+use stickslip::store::{Session, SqliteStore, Store as _, StoreError};
 use stickslip_wire::Move;
 use stickslip_wire::client::Options;
 use tempfile::tempdir;
@@ -179,6 +181,27 @@ async fn receipts_are_gone_after_a_day() {
         statement.query_map([], |row| row.get(0)).unwrap().collect::<Result<_, _>>().unwrap()
     };
     assert_eq!(keys(), ["old", "young"]);
+}
+
+#[tokio::test]
+async fn a_contact_that_expired_a_month_ago_leaves_nothing() {
+    let folder = tempdir().unwrap();
+    let path = folder.path().join("expired.db");
+    let store = SqliteStore::open(&path).unwrap();
+    let idle: Vec<Session> = (0..2_500).map(|_| session(None)).collect();
+    join_all(idle.iter().map(|idle| store.create(idle.clone(), None))).await;
+    assert_eq!(store.purge_expired(Some(Timestamp::now())).await.unwrap(), 2_500);
+    let database = Connection::open(&path).unwrap();
+    let day = 24 * 3600 * 1_000_000_000_i64;
+    let age = "UPDATE expired SET at = at - ?1 WHERE id <> ?2";
+    database.execute(age, (29 * day, idle[0].id.to_string())).unwrap();
+    store.purge_expired(None).await.unwrap();
+    assert!(matches!(store.find(idle[7].id).await, Err(StoreError::Expired(_))));
+    database.execute(age, (2 * day, idle[0].id.to_string())).unwrap();
+    store.purge_expired(None).await.unwrap();
+    assert!(matches!(store.find(idle[0].id).await, Err(StoreError::Expired(_))));
+    assert!(matches!(store.find(idle[7].id).await, Err(StoreError::NotFound)));
+    assert_eq!(database.query_row("SELECT count(*) FROM expired", [], |row| row.get::<_, i64>(0)).unwrap(), 1);
 }
 
 #[tokio::test]

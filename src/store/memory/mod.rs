@@ -8,6 +8,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use async_trait::async_trait;
+use hashlink::LinkedHashMap;
 use jiff::Timestamp;
 use parking_lot::Mutex;
 use uuid::Uuid;
@@ -18,12 +19,14 @@ use jobs::StoredJob;
 
 use super::jobs::ChunkQueue;
 use super::{
-    CONTACT_BYTES, Changes, Extent, RECEIPT_LIFETIME, RECORD_BYTES, Receipt, Record, Result, Session, Snapshot, Store,
-    StoreError, Tenant, Usage,
+    CONTACT_BYTES, Changes, EXPIRED_LIFETIME, Extent, RECEIPT_LIFETIME, RECORD_BYTES, Receipt, Record, Result, Session,
+    Snapshot, Store, StoreError, Tenant, Usage,
 };
 
 /// Bytes of replies kept for retries. Beyond that the oldest are deleted early, because memory is bounded.
 const RECEIPT_BYTES: u64 = 256 * 1024 * 1024;
+/// Expired sessions that are remembered, of some hundred bytes each. Beyond that the oldest are forgotten early.
+const EXPIRED_MARKS: usize = 100_000;
 
 /// Sessions in a map.
 #[derive(Default)]
@@ -40,7 +43,7 @@ struct Inner {
     sessions: BTreeMap<Uuid, Stored>,
     receipts: Receipts,
     // Only what expired: a deleted session leaves nothing behind.
-    expired: HashMap<Uuid, Tenant>,
+    expired: Expired,
     jobs: HashMap<Uuid, StoredJob>,
 }
 
@@ -59,6 +62,20 @@ struct Receipts {
     // In the order of arrival, which is that of expiry.
     arrivals: VecDeque<(Instant, String)>,
     bytes: u64,
+}
+
+/// Sessions that have expired, with the time and the tenant, in the order of their expiry.
+#[derive(Default)]
+struct Expired(LinkedHashMap<Uuid, (Instant, Tenant)>);
+
+impl Expired {
+    fn purge(&mut self) {
+        while let Some((_, (at, _))) = self.0.front()
+            && (at.elapsed() >= EXPIRED_LIFETIME || self.0.len() > EXPIRED_MARKS)
+        {
+            self.0.pop_front();
+        }
+    }
 }
 
 impl MemoryStore {
@@ -81,7 +98,7 @@ impl MemoryStore {
 impl Inner {
     /// Why there is no such session, if there is none.
     fn missing(&self, id: Uuid) -> StoreError {
-        self.expired.get(&id).cloned().map_or(StoreError::NotFound, StoreError::Expired)
+        self.expired.0.get(&id).map_or(StoreError::NotFound, |(_, tenant)| StoreError::Expired(tenant.clone()))
     }
 
     fn get(&self, id: Uuid) -> Result<&Stored> {
@@ -294,15 +311,17 @@ impl Store for MemoryStore {
         self.purge_jobs();
         let mut inner = self.inner.lock();
         inner.receipts.purge();
+        inner.expired.purge();
         let Some(since) = idle_since else { return Ok(0) };
         let idle = inner.sessions.values().filter(|stored| stored.session.updated_at < since);
         let idle: Vec<Uuid> = idle.map(|stored| stored.session.id).collect();
         for id in &idle {
             if let Some(stored) = inner.sessions.remove(id) {
-                inner.expired.insert(*id, stored.session.tenant);
+                inner.expired.0.insert(*id, (Instant::now(), stored.session.tenant));
             }
             self.changes.wake(*id);
         }
+        inner.expired.purge();
         Ok(idle.len() as u64)
     }
 
@@ -313,8 +332,10 @@ impl Store for MemoryStore {
 
 #[cfg(test)]
 mod tests {
-    use super::{RECEIPT_BYTES, Receipts};
-    use crate::store::{Receipt, Reply, RequestKey};
+    use super::{EXPIRED_MARKS, Expired, RECEIPT_BYTES, Receipts};
+    use crate::store::{EXPIRED_LIFETIME, Receipt, Reply, RequestKey, Tenant};
+    use std::time::Instant;
+    use uuid::Uuid;
 
     fn receipt(key: &str, bytes: usize) -> Receipt {
         let request = RequestKey { key: key.to_owned(), fingerprint: [0; 32] };
@@ -330,5 +351,17 @@ mod tests {
         assert!(!receipts.by_key.contains_key("a"));
         assert!(receipts.check_free(Some(&receipt("c", 0))).is_err() && receipts.bytes <= RECEIPT_BYTES);
         assert_eq!(receipts.arrivals.len(), receipts.by_key.len());
+    }
+
+    #[test]
+    fn what_expired_long_ago_and_more_than_fits_is_forgotten() {
+        let (mut expired, now) = (Expired::default(), Instant::now());
+        let ids: Vec<Uuid> = (0..EXPIRED_MARKS as u128 + 2).map(Uuid::from_u128).collect();
+        let mut insert = |id: Uuid, at| drop(expired.0.insert(id, (at, Tenant::default())));
+        // Where the clock of the machine is younger than that, only the number counts.
+        insert(ids[0], now.checked_sub(EXPIRED_LIFETIME).unwrap_or(now));
+        ids[1..].iter().for_each(|id| insert(*id, now));
+        expired.purge();
+        assert_eq!(expired.0.keys().copied().collect::<Vec<_>>(), ids[2..]);
     }
 }

@@ -5,8 +5,12 @@ use tokio_postgres::{Client, Error};
 use crate::store::schema::{self, SchemaError};
 
 /// The migrations, oldest first: each leads from one version of the tables to the next.
-pub const MIGRATIONS: &[&str] =
-    &[include_str!("schema_1.sql"), include_str!("schema_2.sql"), include_str!("schema_3.sql")];
+pub const MIGRATIONS: &[&str] = &[
+    include_str!("schema_1.sql"),
+    include_str!("schema_2.sql"),
+    include_str!("schema_3.sql"),
+    include_str!("schema_4.sql"),
+];
 
 /// Held while tables are migrated, so that of several replicas that start together one does it: "stickslip" in ASCII,
 /// shortened to eight letters.

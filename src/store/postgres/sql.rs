@@ -271,8 +271,17 @@ DELETE FROM receipts WHERE key IN (
     SELECT key FROM receipts WHERE created_at <= now() - $1::double precision * INTERVAL '1 second'
     ORDER BY created_at LIMIT $2 FOR UPDATE SKIP LOCKED)";
 
+/// Marks of sessions that expired long ago, likewise.
+pub(super) const PURGE_MARKS: &str = "
+DELETE FROM expired WHERE id IN (
+    SELECT id FROM expired WHERE at <= now() - $1::double precision * INTERVAL '1 second'
+    ORDER BY at LIMIT $2 FOR UPDATE SKIP LOCKED)";
+
+/// Sessions that have not moved since. Their order makes use of the index.
 pub(super) const IDLE: &str = "
-SELECT id FROM contacts WHERE (updated_at, updated_ns) < ($1, $2) LIMIT $3";
+SELECT id FROM contacts
+WHERE active_hour <= $1::timestamptz AT TIME ZONE 'UTC' AND (updated_at, updated_ns) < ($1, $2)
+ORDER BY active_hour LIMIT $3";
 
 /// Deletes those of the sessions that are still idle. What another replica moves or deletes meanwhile is left to it.
 pub(super) fn purge_idle(announces: bool) -> String {

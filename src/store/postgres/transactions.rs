@@ -13,7 +13,7 @@ use tokio_postgres::error::SqlState;
 use tokio_postgres::{IsolationLevel, Row};
 use uuid::Uuid;
 
-use crate::store::{RECEIPT_LIFETIME, Receipt, Result, Session, Snapshot, StoreError, Tenant};
+use crate::store::{EXPIRED_LIFETIME, RECEIPT_LIFETIME, Receipt, Result, Session, Snapshot, StoreError, Tenant};
 
 use super::client_pool::{
     ANSWER, ClientPool, LONG_ANSWER, Parameter, execute, long_rows, rows, try_once, with_retries,
@@ -22,7 +22,7 @@ use super::columns::{Receipts, Sessions, from_bigint, split_time, to_bigint};
 use super::fault::Fault;
 use super::sql;
 
-/// Receipts that one statement deletes.
+/// Receipts, or marks of expired sessions, that one statement deletes.
 const RECEIPTS: i64 = 1_000;
 /// Sessions that one transaction deletes; each may have many moves.
 const IDLE: usize = 50;
@@ -158,6 +158,10 @@ impl ClientPool {
         let lifetime = RECEIPT_LIFETIME.as_secs_f64();
         let which: [Parameter<'_>; 2] = [&lifetime, &RECEIPTS];
         let purge = async |connection: &Object| execute(connection, sql::PURGE_RECEIPTS, &which).await;
+        while to_bigint(with_retries!(self, ANSWER, connection => purge(connection))?) == RECEIPTS {}
+        let lifetime = EXPIRED_LIFETIME.as_secs_f64();
+        let which: [Parameter<'_>; 2] = [&lifetime, &RECEIPTS];
+        let purge = async |connection: &Object| execute(connection, sql::PURGE_MARKS, &which).await;
         while to_bigint(with_retries!(self, ANSWER, connection => purge(connection))?) == RECEIPTS {}
         let Some((since, since_ns)) = idle_since.map(split_time) else {
             return Ok(Vec::new());

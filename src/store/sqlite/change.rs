@@ -9,7 +9,7 @@ use uuid::Uuid;
 
 use crate::store::jobs::QueueChange;
 use crate::store::rows::{RowReader as _, tenant};
-use crate::store::{RECEIPT_LIFETIME, Receipt, Record, Session, Snapshot, StoreError};
+use crate::store::{EXPIRED_LIFETIME, RECEIPT_LIFETIME, Receipt, Record, Session, Snapshot, StoreError};
 
 use super::columns::{
     CONTACTS, MOVE_COLUMNS, all, clamped_nanoseconds, execute, first, insert_move, nanoseconds_ago, to_integer,
@@ -22,7 +22,9 @@ use super::statements::{check_key, insert_receipt, insert_session, number_at};
 
 /// Receipts that one change looks at.
 const RECEIPTS_AT_ONCE: i64 = 256;
-/// Bytes of their replies that it deletes, roughly.
+/// Marks of expired sessions that it deletes.
+const MARKS_AT_ONCE: i64 = 1_000;
+/// Bytes of replies that it deletes, roughly.
 const RECEIPT_BYTES_AT_ONCE: i64 = 4 * 1024 * 1024;
 
 /// Numbers and sequences of contacts that have moved lately, as the transaction under way leaves them: what the writer,
@@ -136,8 +138,9 @@ impl Transaction<'_> {
         Ok(Done::Made(0))
     }
 
-    /// Deletes expired receipts; returns 1 if there may be more of them.
-    pub(super) fn purge_receipts(&self) -> Result<Done, Fault> {
+    /// Deletes receipts past their time, and marks of sessions that expired long ago; returns 1 if there may be more of
+    /// them.
+    pub(super) fn purge_records(&self) -> Result<Done, Fault> {
         let cutoff = nanoseconds_ago(RECEIPT_LIFETIME);
         let sql = "SELECT number, at, length(body) FROM receipts ORDER BY number LIMIT ?1";
         let oldest: Vec<(i64, i64, i64)> =
@@ -152,7 +155,11 @@ impl Transaction<'_> {
         if let Some(last) = last {
             execute(self.database, "DELETE FROM receipts WHERE number <= ?1", [last])?;
         }
-        Ok(Done::Made(u64::from(count == RECEIPTS_AT_ONCE || bytes > RECEIPT_BYTES_AT_ONCE)))
+        let sql = "DELETE FROM expired WHERE id IN (SELECT id FROM expired WHERE at <= ?1 LIMIT ?2)";
+        let marks = execute(self.database, sql, [nanoseconds_ago(EXPIRED_LIFETIME), MARKS_AT_ONCE])?;
+        let is_full =
+            count == RECEIPTS_AT_ONCE || bytes > RECEIPT_BYTES_AT_ONCE || to_integer(marks as u64)? == MARKS_AT_ONCE;
+        Ok(Done::Made(u64::from(is_full)))
     }
 
     /// Expires those of the sessions that still exist and have not moved since; returns their number.

@@ -257,7 +257,7 @@ impl Store for SqliteStore {
     }
 
     async fn purge_expired(&self, idle_since: Option<Timestamp>) -> Result<u64> {
-        while self.change(1, [], None, |transaction| transaction.purge_receipts()).await? > 0 {}
+        while self.change(1, [], None, |transaction| transaction.purge_records()).await? > 0 {}
         self.purge_jobs().await?;
         let Some(since) = idle_since else { return Ok(0) };
         let (mut expired, mut next) = (0, Some(0));

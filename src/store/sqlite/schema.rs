@@ -13,8 +13,12 @@ pub(super) const APPLICATION: i32 = 0x7374_636b;
 pub(super) const IN_USE: i32 = 0x7374_636f;
 
 /// The migrations, oldest first: each leads from one version of the tables to the next.
-pub const MIGRATIONS: &[&str] =
-    &[include_str!("schema_1.sql"), include_str!("schema_2.sql"), include_str!("schema_3.sql")];
+pub const MIGRATIONS: &[&str] = &[
+    include_str!("schema_1.sql"),
+    include_str!("schema_2.sql"),
+    include_str!("schema_3.sql"),
+    include_str!("schema_4.sql"),
+];
 
 pub(super) fn mark(connection: &Connection, application: i32) -> rusqlite::Result<()> {
     connection.pragma_update(None, "application_id", application)
