@@ -100,7 +100,10 @@ impl FromRequestParts<Arc<App>> for JobPath {
 /// The identifier in the path. A text that is not a UUID cannot name anything, so it is "not found" rather than
 /// invalid.
 async fn identifier(parts: &mut Parts, app: &Arc<App>, kind: Code, noun: &str) -> Result<Uuid, Problem> {
-    let missing = |id: &str| Problem::new(kind, format!("there is no {noun} {id}"));
+    let missing = |id: &str| {
+        let shown: String = id.chars().take(40).collect();
+        Problem::new(kind, format!("there is no {noun} {shown}"))
+    };
     match Path::<String>::from_request_parts(parts, app).await {
         Ok(Path(id)) => Uuid::parse_str(&id).map_err(|_| missing(&id)),
         // Percent signs that do not decode.

@@ -150,6 +150,44 @@ async fn work_is_bounded() {
 }
 
 #[tokio::test]
+async fn a_long_text_in_the_head_does_not_come_back_whole() {
+    let server = Server::start().await;
+    let (id, long) = (server.contact().await, "x".repeat(30_000));
+    let moved = format!("/contacts/{id}/move");
+    for (method, path) in [
+        (Method::GET, format!("/contacts/{long}")),
+        (Method::DELETE, format!("/contacts/{long}")),
+        (Method::GET, format!("/contacts/{long}/stress?points=5")),
+        (Method::GET, format!("/jobs/{long}")),
+        (Method::GET, format!("/problems/{long}")),
+        (Method::GET, format!("/{long}")),
+        (Method::GET, format!("/contacts?{long}=1")),
+        (Method::GET, format!("/contacts?after={long}")),
+        (Method::GET, format!("/contacts?label={long}")),
+        (Method::GET, format!("/contacts/{id}/history?format={long}")),
+        (Method::GET, format!("/contacts/{id}/stress?points={long}")),
+        (Method::GET, format!("/contacts/{id}/stress?points=5&fields={long}")),
+    ] {
+        let refused = server.send(method, &path, None, &[]).await;
+        assert!(refused.status().is_client_error(), "{}", &path[..40]);
+        let text = refused.text().await.unwrap();
+        assert!(text.len() < 2_000, "{} bytes: {}", text.len(), &text[..200]);
+    }
+    for name in ["if-match", "idempotency-key", "content-encoding"] {
+        let refused = server.send(Method::POST, &moved, Some("{\"force\": 1}"), &[(name, &long)]).await;
+        assert!(refused.status().is_client_error(), "{name}");
+        let text = refused.text().await.unwrap();
+        assert!(text.len() < 2_000, "{name}: {} bytes", text.len());
+    }
+    for (name, of) in [("accept", "stress?points=5"), ("last-event-id", "events")] {
+        let refused = server.send(Method::GET, &format!("/contacts/{id}/{of}"), None, &[(name, &long)]).await;
+        assert!(refused.status().is_client_error(), "{name}");
+        let text = refused.text().await.unwrap();
+        assert!(text.len() < 2_000, "{name}: {} bytes", text.len());
+    }
+}
+
+#[tokio::test]
 async fn the_envelope_is_checked_too() {
     let server = Server::start().await;
     let id = server.contact().await;
