@@ -51,7 +51,8 @@ pub struct IfMatch {
 #[into_params(parameter_in = Header)]
 pub struct IdempotencyKey {
     /// A name of your choice for this request. A repetition with the same name and body within 24 hours changes nothing
-    /// and gets the first reply again; with another body it is refused.
+    /// and gets the first reply again; with another body it is refused. A server with the store `memory:` forgets the
+    /// oldest replies earlier once they take more than 256 MiB.
     #[param(rename = "Idempotency-Key", nullable = false, min_length = 1, max_length = 255, pattern = "^[!-~]+$")]
     pub key: Option<String>,
 }

@@ -53,9 +53,9 @@ impl ClientPool {
         let parameters: Vec<_> = parameters.into_iter().chain(receipts.parameters()).collect();
         let renamed = with_retries!(self, ANSWER, connection => async {
             let found = sent.answered(rows(connection, sql::RENAME, &parameters)).await?;
-            match found.first().map(|row| row.get(2)) {
-                Some(false) => Ok(Err(StoreError::Stale { found: from_bigint(found[0].get(1)) })),
-                _ => done_at(&found, expected),
+            match found.first().filter(|row| !row.get::<_, bool>(2)) {
+                Some(relabelled) => Ok(Err(StoreError::Stale { found: from_bigint(relabelled.get(1)) })),
+                None => done_at(&found, expected),
             }
         });
         match renamed {
