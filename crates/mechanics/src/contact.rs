@@ -176,12 +176,18 @@ impl Contact {
     /// # Ok::<(), Error>(())
     /// ```
     pub fn pressed(&self, normal_force: f64) -> Result<Contact, Error> {
+        let contact = self.pressed_without_summary(normal_force)?;
+        let initial = contact.summary();
+        Ok(Contact { initial, ..contact })
+    }
+
+    /// [`Contact::pressed`] but for the summary, which takes a search for the largest pressure.
+    pub(super) fn pressed_without_summary(&self, normal_force: f64) -> Result<Contact, Error> {
         let normal_force = range::check_normal_force(normal_force)?;
         let indentation = self.indentation_for(normal_force);
         range::PRELOAD_INDENTATION.check(indentation.value())?;
         self.check_indentation(indentation.value())?;
-        let edge = self.profile.point(indentation);
-        let initial = ContactSummary::of(&self.profile, &self.elasticity, self.friction, &edge, normal_force);
+        let initial = ContactSummary { normal_force, ..self.initial };
         Ok(self.clone().at_rest(indentation, initial))
     }
 }

@@ -1,7 +1,7 @@
 //! What is asked for beside steady cycles: the load that damps most, and the response of a mass.
 
 use stickslip_mechanics::Contact;
-use stickslip_mechanics::cycle::{Drive, Resonator, SteadyCycle, best_load as best_of};
+use stickslip_mechanics::cycle::{Drive, Resonator, best_load as best_of, work_under_load};
 use stickslip_wire::reply::finite;
 use stickslip_wire::{BestLoad, BestLoadStudy, FrequencyResponse, LoadCurve, Resonance, ResonancePoint, Warning};
 
@@ -22,17 +22,24 @@ pub fn best_load(
     study: BestLoadStudy,
     stop: &Stop,
 ) -> Result<Option<BestLoad>, Failure> {
-    stop.check()?;
-    let Ok(Some(best)) = best_of(contact, drive, compliance) else { return Ok(None) };
-    let curve = study.points.map(|points| {
-        let normal_force: Vec<f64> =
-            (1..=points).map(|index| CURVE_END * best.normal_force * index as f64 / points as f64).collect();
-        let work = |&load: &f64| {
-            let pressed = contact.pressed(load).ok()?;
-            SteadyCycle::driven(&pressed, drive, compliance).ok().map(|cycle| cycle.dissipated_energy())
-        };
-        LoadCurve { dissipated_energy: normal_force.iter().map(work).collect(), normal_force }
-    });
+    let best = match best_of(contact, drive, compliance, &|| stop.check().is_ok()) {
+        Ok(Some(best)) => best,
+        Ok(None) | Err(_) => {
+            stop.check()?;
+            return Ok(None);
+        }
+    };
+    let mut curve = None;
+    if let Some(points) = study.points {
+        let load = |index: usize| CURVE_END * best.normal_force * index as f64 / points as f64;
+        let normal_force: Vec<f64> = (1..=points).map(load).collect();
+        let mut dissipated_energy = Vec::with_capacity(points);
+        for &load in &normal_force {
+            stop.check()?;
+            dissipated_energy.push(work_under_load(contact, load, drive, compliance).ok());
+        }
+        curve = Some(LoadCurve { normal_force, dissipated_energy });
+    }
     Ok(Some(BestLoad { normal_force: best.normal_force, dissipated_energy: best.dissipated_energy, curve }))
 }
 

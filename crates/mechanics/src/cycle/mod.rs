@@ -23,7 +23,7 @@ mod response;
 mod sphere_harmonics;
 mod steady_motion;
 
-pub use best_load::{BestLoad, best_load};
+pub use best_load::{BestLoad, best_load, work_under_load};
 pub use harmonics::{Harmonic, Harmonics};
 pub use lap::OscillatingCycle;
 pub use oscillating::{OscillatingLoad, Oscillation};

@@ -407,7 +407,7 @@ fn no_load_does_more_work_than_the_best() {
             (Drive::Displacement(0.9 * full), 0.5 * full / limit),
             (Drive::Force(0.5 * limit), 0.0),
         ] {
-            let best = best_load(&virgin, drive, compliance).unwrap().unwrap();
+            let best = best_load(&virgin, drive, compliance, &|| true).unwrap().unwrap();
             for index in 1..400 {
                 // From a hundredth of it to a hundred times it.
                 let load = best.normal_force * 10_f64.powf(4.0 * f64::from(index) / 400.0 - 2.0);
