@@ -175,7 +175,7 @@ fn row(solver: Named, task: &Task<'_>, truth: &Answer, reference: &Reference) ->
     let begin = Instant::now();
     let found = match solver {
         Named::Exact => answer(|| contact(setup.clone(), "/contact"), task),
-        Named::Springs(springs) => answer(|| spring_foundation(setup, plan, springs.count), task),
+        Named::Springs(springs) => answer(|| spring_foundation(setup, plan, springs.count, task.stop), task),
     };
     let (found, refused) = match found {
         Ok(found) => (Some(found), None),
@@ -222,7 +222,8 @@ fn answer<S: Solver>(start: impl Fn() -> Result<S, Failure>, task: &Task<'_>) ->
         let push = |_, solver: &S| forces.push(solver.state().force);
         follow(&mut solver, plan, task.protocol, *tolerance, task.stop, push)?;
         let shears = stresses(&solver, task.sampling, task.stop)?.shear.unwrap_or_default();
-        let estimate = solver.accuracy();
+        let estimate = solver.accuracy(&|| task.stop.check().is_ok());
+        task.stop.check()?;
         times.push(run.elapsed().as_secs_f64());
         if times.len() == MAX_RUNS || begin.elapsed() >= REPEAT_UNTIL {
             times.sort_by(f64::total_cmp);

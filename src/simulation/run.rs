@@ -29,7 +29,7 @@ const AS_ASKED: &str = "as asked for";
 pub fn simulate(simulation: &Simulation, stop: &Stop) -> Result<SimulateReply, Failure> {
     let timer = Timer::start(stop);
     if let Some(wire::Solver::Springs(wire::Springs { count })) = simulation.solver {
-        let springs = spring_foundation(&simulation.setup, &simulation.plan, count)?;
+        let springs = spring_foundation(&simulation.setup, &simulation.plan, count, stop)?;
         return run(springs, simulation, timer, AS_ASKED, stop);
     }
     simulate_on(contact(simulation.setup.clone(), "/contact")?, simulation, timer, stop)
@@ -91,6 +91,7 @@ pub(super) fn run<S: Solver>(
     let below = below.map(|task| subsurface(solver.exact(), task, stop)).transpose()?;
     let (subsurface, subsurface_error) = below.unzip();
     let mut accuracy = Accuracy { subsurface_error, ..accuracy(&solver, timer, reason) };
+    stop.check()?;
     let path_error = path_error.max(solver.path_error());
     accuracy.force_error += path_error - solver.path_error();
     // A table, which may have noise, has no vertical edge.
@@ -125,14 +126,15 @@ pub fn contact(setup: SharedSetup, base: &str) -> Result<Contact, Failure> {
 /// A foundation of this many springs, as wide as the path needs.
 ///
 /// # Errors
-/// As [`contact()`], for a definition at `/contact`.
-pub fn spring_foundation(setup: &SharedSetup, plan: &Plan, count: usize) -> Result<Springs, Failure> {
+/// As [`contact()`], for a definition at `/contact`, and if the work was ended.
+pub fn spring_foundation(setup: &SharedSetup, plan: &Plan, count: usize, stop: &Stop) -> Result<Springs, Failure> {
     let start = contact(setup.clone(), "/contact")?;
+    let go_on = || stop.check().is_ok();
     // Only what has a normal target reaches further, and the law of equal peaks has none.
-    let moves = moves(plan, &start, None)?.map(|step| step.step());
-    let springs =
-        springs::largest_contact_radius(setup, moves).and_then(|reach| Springs::new(setup.clone(), count, reach));
-    springs.map_err(refused_at("/contact", setup.preload))
+    let moves = moves(plan, &start, None)?.take_while(|_| go_on()).map(|step| step.step());
+    let springs = springs::largest_contact_radius(setup, moves)
+        .and_then(|reach| Springs::new_while(setup.clone(), count, reach, &go_on));
+    springs.map_err(|error| refused_at("/contact", setup.preload)(error).unless_interrupted(stop, ""))
 }
 
 /// What the mechanics refuses of a definition at the JSON pointer `base`, whose preload this is.
@@ -243,8 +245,8 @@ pub fn follow<S: Solver>(
 
 /// Radii times pieces between two checks of the flag: some milliseconds.
 const TERMS_PER_CHECK: usize = 1 << 17;
-/// The least and the most radii between two checks. What they share is made once for all of them.
-const RADII_PER_CHECK: (usize, usize) = (64, 512);
+/// The most radii between two checks.
+const RADII_PER_CHECK: usize = 512;
 
 /// The requested stresses.
 ///
@@ -253,9 +255,8 @@ const RADII_PER_CHECK: (usize, usize) = (64, 512);
 pub fn stresses<S: Solver>(solver: &S, sampling: &Sampling, stop: &Stop) -> Result<Stress, Failure> {
     needs_stress_field(solver.exact(), "/stress")?;
     let radius = sampling.radii(solver.state().contact_radius);
-    let (least, most) = RADII_PER_CHECK;
-    // Springs have no pieces, and each radius costs as many terms as there are springs.
-    let at_once = TERMS_PER_CHECK.checked_div(solver.depth()).map_or(least, |radii| radii.clamp(least, most));
+    let (terms, least) = solver.terms();
+    let at_once = (TERMS_PER_CHECK / terms.max(1)).clamp(least, RADII_PER_CHECK);
     let along = |field: Field| -> Result<Option<Vec<Option<f64>>>, Failure> {
         if !sampling.fields.contains(&field) {
             return Ok(None);

@@ -30,6 +30,12 @@ pub trait Solver {
         self.exact().memory_depth()
     }
 
+    /// Terms of a field at one radius, and how many radii are at least evaluated together: what they share is made once
+    /// for all of them.
+    fn terms(&self) -> (usize, usize) {
+        (self.depth(), 64)
+    }
+
     /// A field at each of the radii, m: a stress, Pa, or a displacement, m. Not a number for the slip outside the
     /// contact.
     fn field(&self, field: Field, radii: &[f64]) -> Vec<f64> {
@@ -67,8 +73,8 @@ pub trait Solver {
         self.exact().residual_while(go_on)
     }
 
-    /// Estimated errors of force and stress, relative to μ F_N and μ p_max.
-    fn accuracy(&self) -> ErrorEstimate {
+    /// Estimated errors of force and stress, relative to μ F_N and μ p_max; of no use once `go_on` has ended it.
+    fn accuracy(&self, _go_on: &dyn Fn() -> bool) -> ErrorEstimate {
         self.exact().accuracy()
     }
 
@@ -95,8 +101,8 @@ impl Solver for Springs {
         self.virgin()
     }
 
-    fn apply(&mut self, step: &Move, _tolerance: f64, _go_on: &dyn Fn() -> bool) -> Result<(), Error> {
-        self.apply(step)
+    fn apply(&mut self, step: &Move, _tolerance: f64, go_on: &dyn Fn() -> bool) -> Result<(), Error> {
+        self.apply_while(step, go_on)
     }
 
     fn state(&self) -> State {
@@ -105,6 +111,10 @@ impl Solver for Springs {
 
     fn depth(&self) -> usize {
         0
+    }
+
+    fn terms(&self) -> (usize, usize) {
+        (self.state().memory_depth, 1)
     }
 
     fn field(&self, field: Field, radii: &[f64]) -> Vec<f64> {
@@ -130,11 +140,11 @@ impl Solver for Springs {
     }
 
     fn residual(&self, go_on: &dyn Fn() -> bool) -> Option<Residual> {
-        go_on().then(|| self.residual())
+        self.residual_while(go_on)
     }
 
-    fn accuracy(&self) -> ErrorEstimate {
-        self.accuracy()
+    fn accuracy(&self, go_on: &dyn Fn() -> bool) -> ErrorEstimate {
+        self.accuracy_while(go_on)
     }
 
     fn path_error(&self) -> f64 {

@@ -33,7 +33,7 @@ impl Timer<'_> {
 
 /// Which solver answered, how well, and how long it took.
 pub fn accuracy<S: Solver>(solver: &S, timer: Timer<'_>, reason: &str) -> Accuracy {
-    let estimate = solver.accuracy();
+    let estimate = solver.accuracy(&|| timer.stop.check().is_ok());
     let assumed = assumption(solver.exact().profile()).map(|(_, assumed)| format!("; {assumed}"));
     Accuracy {
         solver: S::KIND,

@@ -205,7 +205,7 @@ fn preparation_of_every_kind_can_be_ended_at_any_of_its_checks() {
     let falling = json!({"type": "tabulated", "r": part["r"],
         "z": part["z"].as_array().unwrap().iter().map(|z| -0.5 * number(z)).collect::<Vec<_>>()});
     let sum = json!({"type": "sum", "parts": [part, falling]});
-    // A table whose slope falls in the end; one whose slope never does is prepared where contacts reach.
+    // A table whose slope falls in the end; one whose slope never does is prepared where its contact reaches.
     let radii: Vec<f64> = (0..300).map(|index| 1e-6 * f64::from(index)).collect();
     let heights: Vec<f64> = radii.iter().map(|r| 50.0 * r * r / (1.0 + (r / 4e-4).powi(2))).collect();
     let dome = json!({"type": "tabulated", "r": radii, "z": heights});
@@ -215,6 +215,7 @@ fn preparation_of_every_kind_can_be_ended_at_any_of_its_checks() {
         (load_curve(500), 1),
         (with(ball(), "/profile", sum), 40),
         (with(ball(), "/profile", dome), 20),
+        (table(300, 1), 10),
     ];
     for (contact, least) in kinds {
         let request: SimulateRequest = serde_json::from_value(moved(&contact)).unwrap();

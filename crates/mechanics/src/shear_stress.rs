@@ -6,6 +6,11 @@
 use super::contact::Contact;
 use super::profile::{Ring, StressRadius};
 
+/// Terms of stresses that are summed between two questions whether to go on.
+const TERMS_PER_QUESTION: usize = 1 << 20;
+/// The fewest radii that are summed together: what they share is made once for all of them.
+const FEWEST_AT_ONCE: usize = 64;
+
 /// A local extremum of the shear stress.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Peak {
@@ -138,10 +143,19 @@ impl Contact {
         let spikes = self.profile.singular_radii().into_iter().filter(|&radius| radius <= edge).chain([edge]);
         let mut radii: Vec<StressRadius> = [0.0].into_iter().chain(spikes).map(StressRadius::new).collect();
         let others = radii.len();
-        let found = self.extrema(keep_going)?;
+        let found = self.extrema(&keep_going)?;
         radii.extend(found.places);
-        // All at once, and by what the search has made: what the rings add up to from afar is found once.
-        let shears = found.sum.map_or_else(|| self.shears_at(&radii), |sum| self.shears_of(sum.sums(&radii)));
+        let rings: Vec<_> = self.shear_rings().rev().collect();
+        let at_once = (TERMS_PER_QUESTION / rings.len().max(1)).max(FEWEST_AT_ONCE);
+        let mut shears = Vec::with_capacity(radii.len());
+        for some in radii.chunks(at_once) {
+            if !keep_going() {
+                return None;
+            }
+            // By what the search has made: what the rings add up to from afar is found once.
+            let sums = found.sum.as_ref().map(|sum| sum.sums(some));
+            shears.extend(self.shears_of(sums.unwrap_or_else(|| self.profile.kernel_sums_at(&rings, some))));
+        }
         let peak = |(place, &shear): (&StressRadius, &f64)| Peak { radius: place.radius, shear };
         let peaks = radii[others..].iter().zip(&shears[others..]).map(peak).collect();
         Some(Residual::of(shears[0], peaks, shears[1..others].iter().all(|shear| shear.is_finite())))

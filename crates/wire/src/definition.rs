@@ -153,7 +153,14 @@ impl ContactDefinition {
         }
         self.check_members(at, faults);
         let preload = self.preload.check(at.member("preload"), faults);
-        Some(Setup { profile: profile?, elasticity: elasticity?, friction: self.friction, preload })
+        let (profile, elasticity) = (profile?, elasticity?);
+        if faults.is_empty()
+            && let Err(error) = profile.prepare_for(&preload, &elasticity, &|| profiles.keep_going())
+        {
+            faults.unanswerable(place, error);
+            return None;
+        }
+        Some(Setup { profile, elasticity, friction: self.friction, preload })
     }
 
     /// The JSON pointer, in a definition with this preload, to the quantity that the mechanics refuses. A preload can

@@ -55,11 +55,12 @@ pub use sum::Sum;
 pub use tabulated::{InterpolationError, Tabulated};
 
 use super::error::Error;
-use super::range;
+use super::{Elasticity, Preload, range};
 use crate::numerics::double_double::DoubleDouble;
 use asperities::Count;
 use shape::{End, Falls, KernelOrder, Shape, ShapeFacts};
 use span::{Span, SpanEnds};
+use tabulated::Reach;
 
 /// The enum of all families and `each!`, which evaluates an expression for whichever family a profile is of.
 macro_rules! profile {
@@ -139,6 +140,32 @@ impl Profile {
             _ => return Ok(()),
         };
         Err(Error::NoStressField { profile })
+    }
+
+    /// Prepares what a contact with this preload needs, while `keep_going` returns true: of a table whose slope never
+    /// falls, the part that the contact reaches. Without it that is prepared when it is first needed.
+    ///
+    /// # Errors
+    /// [`Error::Interrupted`] once `keep_going` has returned false.
+    ///
+    /// ```
+    #[doc = include_str!("../example.txt")]
+    /// assert!(setup.profile.prepare_for(&setup.preload, &setup.elasticity, &|| true).is_ok());
+    /// # Ok::<(), Error>(())
+    /// ```
+    pub fn prepare_for(
+        &self,
+        preload: &Preload,
+        elasticity: &Elasticity,
+        keep_going: &dyn Fn() -> bool,
+    ) -> Result<(), Error> {
+        let Profile::Tabulated(table) = self else { return Ok(()) };
+        let reach = match *preload {
+            Preload::NormalForce(force) => Reach::Load(force / (2.0 * elasticity.e_star())),
+            Preload::Indentation(depth) => Reach::Level(depth),
+            Preload::ContactRadius(radius) => Reach::Radius(radius),
+        };
+        table.build_up_to(reach, keep_going)
     }
 
     /// g(x), m, for a radius x >= 0, m.

@@ -34,6 +34,12 @@ impl Springs {
     /// ```
     #[must_use]
     pub fn accuracy(&self) -> ErrorEstimate {
+        self.accuracy_while(&|| true)
+    }
+
+    /// The same, but of no use once `keep_going` has returned false, which is asked at each radius that is compared.
+    #[must_use]
+    pub fn accuracy_while(&self, keep_going: &dyn Fn() -> bool) -> ErrorEstimate {
         let figures = self.normal.summary();
         let edge = self.contact_radius();
         let relative = |error: f64, unit: f64| if unit > 0.0 { error / unit } else { 0.0 };
@@ -44,7 +50,8 @@ impl Springs {
         let normal = self.virgin.friction * (self.normal_force() - figures.normal_force).abs();
         let force = differences.fold(normal.max(self.force_bound(&bends)), f64::max) + misplaced * edge;
         let stress = if self.resolves_a_radius(edge) {
-            self.off_kinks(edge, NEAREST * self.spacing).map(|at| self.stress_doubt(at, &bends)).fold(0.0, f64::max)
+            let radii = self.off_kinks(edge, NEAREST * self.spacing).take_while(|_| keep_going());
+            radii.map(|at| self.stress_doubt(at, &bends)).fold(0.0, f64::max)
         } else {
             self.friction_bound(edge)
         };
@@ -140,7 +147,7 @@ impl Springs {
     }
 
     /// Error of the displacement, m, under a prescribed force: the change that a force within its error bound makes.
-    pub(super) fn misplacement(&self, displacement: f64) -> f64 {
+    pub(super) fn misplacement(&self, displacement: f64, keep_going: &dyn Fn() -> bool) -> f64 {
         let moved = displacement - self.displacement;
         let scale = self.virgin.scale();
         let mut after = self.clone();
@@ -155,7 +162,7 @@ impl Springs {
                 .fold(0.0, f64::max)
         };
         let change = |target: f64, sign: f64| {
-            self.displacement_for(target).map_or(sign * room(sign), |found| found - self.displacement)
+            self.displacement_for(target, keep_going).map_or(sign * room(sign), |found| found - self.displacement)
         };
         (change(force + error, 1.0) - moved).abs().max((change(force - error, -1.0) - moved).abs())
     }

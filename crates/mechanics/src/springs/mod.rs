@@ -8,6 +8,7 @@ mod estimate;
 mod shear_evaluation;
 mod stress;
 
+use std::cell::Cell;
 use std::sync::Arc;
 
 pub use shear_evaluation::ShearEvaluation;
@@ -52,6 +53,9 @@ struct Spring {
     carried: f64,
 }
 
+/// Springs that are placed between two questions whether to go on.
+const SPRINGS_PER_QUESTION: usize = 1024;
+
 /// The largest contact radius, m, on a path, as far as the contact can follow it.
 ///
 /// # Errors
@@ -94,31 +98,54 @@ impl Springs {
     /// # Errors
     /// Those of [`Contact::new`], and [`Error::OutOfRange`] by [`range::SPRING_COUNT`].
     pub fn new<P: Into<Arc<Profile>>>(setup: Setup<P>, count: usize, reach: f64) -> Result<Springs, Error> {
+        Springs::new_while(setup, count, reach, &|| true)
+    }
+
+    /// The same while `keep_going` returns true, which is asked every thousand springs.
+    ///
+    /// # Errors
+    /// As [`Springs::new`], and [`Error::Interrupted`].
+    pub fn new_while<P: Into<Arc<Profile>>>(
+        setup: Setup<P>,
+        count: usize,
+        reach: f64,
+        keep_going: &dyn Fn() -> bool,
+    ) -> Result<Springs, Error> {
         range::SPRING_COUNT.check(count as f64)?;
         let setup = setup.shared();
         setup.profile.check_stress_field()?;
-        let mut fine = Springs::one_row(setup.clone(), count, reach)?;
+        let mut fine = Springs::one_row(setup.clone(), count, reach, keep_going)?;
         // Kinks fall elsewhere between the springs of each: one of them has a spring at the centre, the other has none.
         let half = count.div_ceil(2).max(2);
         let more = (2 * count).div_ceil(3).max(3);
         for fewer in [half, if more % 2 == half % 2 { more + 1 } else { more }] {
-            fine.coarser.push(Springs::one_row(setup.clone(), fewer, reach)?);
+            fine.coarser.push(Springs::one_row(setup.clone(), fewer, reach, keep_going)?);
         }
         Ok(fine)
     }
 
-    fn one_row(setup: Setup<Arc<Profile>>, count: usize, reach: f64) -> Result<Springs, Error> {
+    fn one_row(
+        setup: Setup<Arc<Profile>>,
+        count: usize,
+        reach: f64,
+        keep_going: &dyn Fn() -> bool,
+    ) -> Result<Springs, Error> {
         let contact = Contact::new(setup)?;
         let ContactSummary { indentation, contact_radius, .. } = contact.initial_summary();
         let spacing = 2.0 * reach / count as f64;
         let first = if count.is_multiple_of(2) { 0.5 } else { 0.0 };
-        let springs = (0..count.div_ceil(2))
-            .map(|index| {
-                let radius = (index as f64 + first) * spacing;
-                let weight = if radius > 0.0 { 2.0 } else { 1.0 };
-                Spring { radius, level: contact.profile.level(radius), weight, carried: 0.0 }
-            })
-            .collect();
+        let spring = |index: usize| {
+            let radius = (index as f64 + first) * spacing;
+            let weight = if radius > 0.0 { 2.0 } else { 1.0 };
+            Spring { radius, level: contact.profile.level(radius), weight, carried: 0.0 }
+        };
+        let mut springs = Vec::with_capacity(count.div_ceil(2));
+        for index in 0..count.div_ceil(2) {
+            if index % SPRINGS_PER_QUESTION == 0 && !keep_going() {
+                return Err(Error::Interrupted);
+            }
+            springs.push(spring(index));
+        }
         Ok(Springs {
             normal: contact.clone(),
             virgin: contact,
@@ -152,6 +179,14 @@ impl Springs {
     /// # Errors
     /// As [`Contact::apply`].
     pub fn apply(&mut self, step: &Move) -> Result<(), Error> {
+        self.apply_while(step, &|| true)
+    }
+
+    /// The same while `keep_going` returns true, which is asked at each step of the search for a force.
+    ///
+    /// # Errors
+    /// As [`Springs::apply`], and [`Error::Interrupted`].
+    pub fn apply_while(&mut self, step: &Move, keep_going: &dyn Fn() -> bool) -> Result<(), Error> {
         match (step.normal, step.tangential) {
             (Some(Normal::NormalForce(_)), Some(_)) => {
                 return Err(Error::Unsupported(UnsupportedMove::NormalForceWithTangentialTarget));
@@ -165,15 +200,19 @@ impl Springs {
         if step.normal.is_some() {
             normal.apply(&Move { tangential: None, ..*step })?;
         }
-        let displacement = self.target(step)?;
-        if let Some(Tangential::Force(_)) = step.tangential {
-            self.misplaced = self.misplaced.max(self.misplacement(displacement));
+        let displacement = self.target(step, keep_going)?;
+        let is_force = matches!(step.tangential, Some(Tangential::Force(_)));
+        let misplaced = if is_force { self.misplacement(displacement, keep_going) } else { 0.0 };
+        // Near the limit of friction a coarser row may hold less than the force.
+        let coarser = self.coarser.iter().map(|coarse| coarse.target(step, keep_going).unwrap_or(displacement));
+        let coarser: Vec<f64> = coarser.collect();
+        if is_force && !keep_going() {
+            return Err(Error::Interrupted);
         }
+        self.misplaced = self.misplaced.max(misplaced);
         self.normal = normal;
         let indentation = self.normal.indentation();
-        for coarse in &mut self.coarser {
-            // Near the limit of friction a coarser row may hold less than the force.
-            let displacement = coarse.target(step).unwrap_or(displacement);
+        for (coarse, displacement) in self.coarser.iter_mut().zip(coarser) {
             coarse.advance(indentation, displacement);
         }
         self.advance(indentation, displacement);
@@ -181,12 +220,14 @@ impl Springs {
     }
 
     /// The displacement, m, to which a move leads.
-    fn target(&self, step: &Move) -> Result<f64, Error> {
+    fn target(&self, step: &Move, keep_going: &dyn Fn() -> bool) -> Result<f64, Error> {
         let base = |value: f64| if step.relative { value } else { 0.0 };
         match step.tangential {
             None => Ok(self.displacement),
             Some(Tangential::Displacement(target)) => range::DISPLACEMENT.check(base(self.displacement) + target),
-            Some(Tangential::Force(target)) => self.displacement_for(range::FORCE.check(base(self.force()) + target)?),
+            Some(Tangential::Force(target)) => {
+                self.displacement_for(range::FORCE.check(base(self.force()) + target)?, keep_going)
+            }
         }
     }
 
@@ -238,7 +279,7 @@ impl Springs {
     }
 
     /// The displacement, m, that gives a tangential force, N: bisected, since the force only grows with it.
-    fn displacement_for(&self, target: f64) -> Result<f64, Error> {
+    fn displacement_for(&self, target: f64, keep_going: &dyn Fn() -> bool) -> Result<f64, Error> {
         let limit = self.virgin.friction * self.normal_force();
         if target.abs() >= limit {
             let way = (target - self.force()).abs();
@@ -257,8 +298,12 @@ impl Springs {
                 .sum()
         };
         let widest = 2.0 * scale * self.indentation;
-        let [_, change] = turning([-widest, widest], |change| force_at(change) >= target);
-        Ok(self.displacement + change)
+        let stopped = Cell::new(false);
+        let [_, change] = turning([-widest, widest], |change| {
+            stopped.set(stopped.get() || !keep_going());
+            stopped.get() || force_at(change) >= target
+        });
+        if stopped.get() { Err(Error::Interrupted) } else { Ok(self.displacement + change) }
     }
 
     fn in_contact(&self) -> impl Iterator<Item = &Spring> {

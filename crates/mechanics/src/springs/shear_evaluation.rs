@@ -36,7 +36,7 @@ impl Springs {
         reach: f64,
     ) -> Result<Springs, Error> {
         range::SPRING_COUNT.check(count as f64)?;
-        Springs::one_row(setup.shared(), count, reach)
+        Springs::one_row(setup.shared(), count, reach, &|| true)
     }
 
     /// Shear stress, Pa, at each of `radii`, m.

@@ -86,21 +86,19 @@ impl Springs {
         touched.then(|| self.displacement - self.surface_displacement(radius))
     }
 
-    /// The extrema of the shear stress, as far as the springs resolve them.
-    #[must_use]
-    pub fn residual(&self) -> Residual {
+    /// The extrema of the shear stress, as far as the springs resolve them, while `keep_going` returns true, which is
+    /// asked at each radius that is compared. `None` if it returned false.
+    pub fn residual_while(&self, keep_going: &dyn Fn() -> bool) -> Option<Residual> {
         let count = self.in_contact().count();
         let stride = count.div_ceil(SCAN).max(1);
-        let samples: Vec<Peak> = self
-            .in_contact()
-            .step_by(stride)
-            .map(|spring| Peak { radius: spring.radius, shear: self.shear(spring.radius) })
-            .collect();
+        let sample =
+            |spring: &Spring| keep_going().then(|| Peak { radius: spring.radius, shear: self.shear(spring.radius) });
+        let samples: Vec<Peak> = self.in_contact().step_by(stride).map(sample).collect::<Option<_>>()?;
         let peaks: Vec<Peak> = samples
             .windows(3)
             .filter(|near| (near[1].shear - near[0].shear) * (near[2].shear - near[1].shear) < 0.0)
             .map(|near| near[1])
             .collect();
-        Residual::of(self.shear(0.0), peaks, self.shear(self.contact_radius()).is_finite())
+        Some(Residual::of(self.shear(0.0), peaks, self.shear(self.contact_radius()).is_finite()))
     }
 }

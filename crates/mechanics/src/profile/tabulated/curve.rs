@@ -33,6 +33,17 @@ struct Reached {
     load: f64,
 }
 
+/// How far panels are to reach.
+#[derive(Clone, Copy, Debug)]
+pub(in super::super) enum Reach {
+    /// Beyond a radius, m.
+    Radius(f64),
+    /// Beyond a level, m.
+    Level(f64),
+    /// Beyond a load, m^2.
+    Load(f64),
+}
+
 /// A curve.
 #[derive(Debug)]
 pub(super) struct TableCurve {
@@ -67,7 +78,8 @@ impl TableCurve {
             reached: OnceLock::new(),
             panels: OnceLock::new(),
         };
-        if knots.windows(2).all(|pair| pair[1].slope >= pair[0].slope) {
+        // In a sum the whole curve is asked for in any case.
+        if !whole && knots.windows(2).all(|pair| pair[1].slope >= pair[0].slope) {
             let halved = |segments: &usize| Some(segments / 2).filter(|half| *half >= FEWEST.max(flat));
             let mut stages: Vec<Stage> = std::iter::successors(Some(all), halved).map(stage).collect();
             stages.reverse();
@@ -106,25 +118,37 @@ impl TableCurve {
         stage.panels.get_or_init(|| Panels::new(build::panels(&self.knots[..=stage.segments], true, &|| true)))
     }
 
-    /// The panels of the first stage that goes beyond something.
-    fn first(&self, beyond: impl Fn(&Stage) -> bool) -> &Panels {
+    /// Builds the panels that reach beyond something, while `keep_going` returns true, which is asked at every cell.
+    ///
+    /// # Errors
+    /// [`Error::Interrupted`] once it has returned false.
+    pub(super) fn build_up_to(&self, reach: Reach, keep_going: &dyn Fn() -> bool) -> Result<(), Error> {
+        let stage = &self.stages[self.first(reach)];
+        if stage.panels.get().is_none() {
+            let built = build::panels(&self.knots[..=stage.segments], true, keep_going);
+            if built.stopped {
+                return Err(Error::Interrupted);
+            }
+            // Another thread may have been quicker, with the same panels.
+            let _ = stage.panels.set(Panels::new(built));
+        }
+        Ok(())
+    }
+
+    /// The first stage that goes beyond something.
+    fn first(&self, reach: Reach) -> usize {
+        let beyond = |stage: &Stage| match reach {
+            Reach::Radius(radius) => radius < stage.radius,
+            Reach::Level(level) => level < (1.0 - ROUNDING) * self.reached(stage).level,
+            Reach::Load(load) => load < (1.0 - ROUNDING) * self.reached(stage).load,
+        };
         let last = self.stages.len() - 1;
-        self.panels(self.stages[..last].iter().position(beyond).unwrap_or(last))
+        self.stages[..last].iter().position(beyond).unwrap_or(last)
     }
 
-    /// Panels that reach beyond a radius, m, all of them if none does.
-    pub(super) fn up_to(&self, radius: f64) -> &Panels {
-        self.first(|stage| radius < stage.radius)
-    }
-
-    /// Panels that reach beyond a level, m.
-    pub(super) fn up_to_level(&self, level: f64) -> &Panels {
-        self.first(|stage| level < (1.0 - ROUNDING) * self.reached(stage).level)
-    }
-
-    /// Panels that reach beyond a load, m^2.
-    pub(super) fn up_to_load(&self, load: f64) -> &Panels {
-        self.first(|stage| load < (1.0 - ROUNDING) * self.reached(stage).load)
+    /// Panels that reach beyond something, all of them if none does.
+    pub(super) fn up_to(&self, reach: Reach) -> &Panels {
+        self.panels(self.first(reach))
     }
 
     /// What the curve reaches where a stage ends. With f' = s + C (x - k) above the knot k, theta = asin(x/r) and

@@ -33,6 +33,7 @@ use super::shape::{End, Falls, KernelOrder, Shape, ShapeFacts, span};
 use super::smooth_coordinate::SmoothCoordinate;
 use super::{DoubleDouble, Error, Moments, Point, Profile, Ring, Span, SpanEnds, StressRadius, range};
 use crate::numerics::multipole::Multipole;
+pub(super) use curve::Reach;
 use curve::TableCurve;
 pub(super) use displacement::displacements;
 pub use interpolation_error::InterpolationError;
@@ -146,6 +147,14 @@ impl Tabulated {
         })
     }
 
+    /// Builds the curve as far as this, while `keep_going` returns true, which is asked every few points.
+    ///
+    /// # Errors
+    /// [`Error::Interrupted`] once it has returned false.
+    pub(super) fn build_up_to(&self, reach: Reach, keep_going: &dyn Fn() -> bool) -> Result<(), Error> {
+        self.curve.build_up_to(reach, keep_going)
+    }
+
     /// The radius of a flat core, m.
     pub(super) fn flat_radius(&self) -> f64 {
         self.curve.flat_radius()
@@ -167,7 +176,7 @@ impl Tabulated {
 
     /// Radii, m, increasing, between which g' cannot hide a fall.
     pub(super) fn slope_check_radii(&self) -> impl Iterator<Item = f64> {
-        let panels = &self.curve.up_to(self.end).panels;
+        let panels = &self.curve.up_to(Reach::Radius(self.end)).panels;
         panels.iter().flat_map(|panel| panel.slope_check_places().into_iter().map(|t| panel.radius_at(t)))
     }
 
@@ -180,12 +189,12 @@ impl Tabulated {
 
     /// Adds what the radii of a span are from afar to sources over their squares, m^2.
     pub(super) fn add_sources(&self, span: &Span, sources: &mut Multipole) {
-        self.curve.up_to(span.outer_radius).add_sources(span, sources);
+        self.curve.up_to(Reach::Radius(span.outer_radius)).add_sources(span, sources);
     }
 
     /// [`Tabulated::weighted_panels`] of spans.
     pub(super) fn panels_over(&self, spans: &[(Span, f64)], radii: usize) -> Option<WeightedPanels<'_>> {
-        WeightedPanels::new(self.curve.up_to(spans.last()?.0.outer_radius), spans, radii)
+        WeightedPanels::new(self.curve.up_to(Reach::Radius(spans.last()?.0.outer_radius)), spans, radii)
     }
 }
 
@@ -193,7 +202,7 @@ impl Tabulated {
 macro_rules! by_panels {
     ($($method:ident($($argument:ident: $Type:ty),*) -> $Result:ty, up to $radius:expr;)+) => {
         $(fn $method(&self, $($argument: $Type),*) -> $Result {
-            self.curve.up_to($radius).$method($($argument),*)
+            self.curve.up_to(Reach::Radius($radius)).$method($($argument),*)
         })+
     };
 }
@@ -209,27 +218,27 @@ impl Shape for Tabulated {
     }
 
     fn moments(&self, span: &Span, _top: f64) -> Moments {
-        self.curve.up_to(span.outer_radius).moments(span)
+        self.curve.up_to(Reach::Radius(span.outer_radius)).moments(span)
     }
 
     fn square(&self, level: DoubleDouble) -> DoubleDouble {
         if level.value() <= 0.0 {
             return DoubleDouble::square_of(self.flat_radius());
         }
-        self.curve.up_to_level(level.value()).square(level)
+        self.curve.up_to(Reach::Level(level.value())).square(level)
     }
 
     fn indentation_for(&self, load: f64) -> f64 {
-        self.curve.up_to_load(load).indentation_for(load)
+        self.curve.up_to(Reach::Load(load)).indentation_for(load)
     }
 
     fn kernel(&self, order: KernelOrder, at: &StressRadius, span: &Span) -> f64 {
         let kernel = if order == KernelOrder::Value { Kernel::Root } else { Kernel::RootSlope };
-        self.curve.up_to(span.outer_radius).sum(kernel, at, span)
+        self.curve.up_to(Reach::Radius(span.outer_radius)).sum(kernel, at, span)
     }
 
     fn falls(&self, inner: f64, outer: f64) -> Falls {
-        Falls { least: self.curve.up_to(outer).least_fall(inner, outer), concavely: false }
+        Falls { least: self.curve.up_to(Reach::Radius(outer)).least_fall(inner, outer), concavely: false }
     }
 
     fn surface_slope(&self, r: f64) -> f64 {

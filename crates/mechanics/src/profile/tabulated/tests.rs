@@ -36,7 +36,7 @@ fn table(idle: u32) -> Profile {
 
 /// All panels of a table.
 fn all(table: &Tabulated) -> &Panels {
-    table.curve.up_to(table.end)
+    table.curve.up_to(super::Reach::Radius(table.end))
 }
 
 fn worst(pairs: &[(f64, f64)]) -> f64 {
