@@ -272,7 +272,7 @@ impl Contact {
         let request = wire::parse::<CycleRequest>(Value::Object(body).to_string().as_bytes())?;
         let checked = request.check_with(&Ready(&self.setup.profile, stop))?;
         if checked.2.map.is_some() {
-            return Ok(Shown::in_format(Format::Columns).write(&Cycle::run(checked, stop)?)?);
+            return Ok(Shown::in_format(Format::Columns).write(&Cycle::run(checked, stop)?, stop)??);
         }
         self.compute(checked.2, stop)
     }
@@ -280,7 +280,7 @@ impl Contact {
     fn compute<T: OnContact>(&self, task: T, stop: &Stop) -> Result<Vec<u8>, Problem> {
         let shown = Shown::in_format(Format::Columns);
         let outcome = task.run(self.state.clone(), self.made.len() as u64, stop)?;
-        Ok(shown.write(&outcome)?)
+        Ok(shown.write(&outcome, stop)??)
     }
 }
 

@@ -167,7 +167,7 @@ async fn run<C: Computation>(
     let cost = C::cost(&task).saturating_add(shown.format.cost());
     let work = move || {
         let outcome = otlp::part!("solve").in_scope(|| C::run(task, &stop))?;
-        Ok::<_, Problem>(shown.write(&outcome)?)
+        Ok::<_, Problem>(shown.write(&outcome, &stop)??)
     };
     Ok(held.on(written::<C>(app.pool.run(cost, work).await??, &shown)))
 }

@@ -290,12 +290,18 @@ impl Shown {
     /// Writes a result; only the table or picture that this needs is made.
     ///
     /// # Errors
-    /// [`Unwritable`], which is a fault of the service.
-    pub fn write<O: Outcome>(&self, outcome: &O) -> Result<Vec<u8>, Unwritable> {
+    /// [`Failure`] if `stop` has ended it; within, [`Unwritable`], which is a fault of the service.
+    pub fn write<O: Outcome>(&self, outcome: &O, stop: &Stop) -> Result<Result<Vec<u8>, Unwritable>, Failure> {
         if self.format == Format::Columns && self.indented {
-            return serde_json::to_vec_pretty(outcome.reply()).map_err(Unwritable::new);
+            return Ok(serde_json::to_vec_pretty(outcome.reply()).map_err(Unwritable::new));
         }
-        self.format.write(outcome.length(), outcome.reply(), || outcome.picture(self), || outcome.table(self))
+        let (picture, table) = (|| outcome.picture(self), || outcome.table(self));
+        let go_on = || stop.check().is_ok();
+        let written = self.format.write(outcome.length(), outcome.reply(), picture, table, &go_on);
+        if written.is_err() {
+            stop.check()?;
+        }
+        Ok(written)
     }
 }
 
@@ -354,5 +360,5 @@ pub fn compute(name: &str, body: &[u8], shown: Shown, stop: &Stop) -> Result<Vec
 fn compute_by<C: Computation>(body: &[u8], shown: Shown, stop: &Stop) -> Result<Vec<u8>, ComputeError> {
     let task = simulation::check(wire::parse::<C::Request>(body)?, stop, stop)??;
     C::check_shown(&task, &shown).map_err(|fault| Rejection::Invalid(vec![fault]))?;
-    Ok(shown.write(&C::run(task, stop)?)?)
+    Ok(shown.write(&C::run(task, stop)?, stop)??)
 }

@@ -4,6 +4,7 @@
 mod table;
 
 use std::fmt::Display;
+use std::io;
 
 use serde::Serialize;
 
@@ -109,24 +110,25 @@ impl Format {
     /// A document in this format, about `length` bytes long as JSON; only the plot or table that this needs is made.
     ///
     /// # Errors
-    /// [`Unwritable`], which is a fault of the service.
+    /// [`Unwritable`], which is a fault of the service, or because `keep_going` has returned false.
     pub fn write<'p, P: Picture>(
         self,
         length: usize,
         document: &impl Serialize,
         picture: impl FnOnce() -> Option<P>,
         table: impl FnOnce() -> Option<Table<'p>>,
+        keep_going: &dyn Fn() -> bool,
     ) -> Result<Vec<u8>, Unwritable> {
         if self == Format::Columns {
-            return json(length, document);
+            return json_while(length, document, keep_going);
         }
         let _span = otlp::part!("write").entered();
         let none = || Unwritable::new(format_args!("it has no {}", self.name()));
         if self.is_plot() {
             let picture = picture().ok_or_else(none)?;
-            if self == Format::Svg { picture.svg() } else { picture.png() }.map_err(Unwritable::new)
+            if self == Format::Svg { picture.svg() } else { picture.png(keep_going) }.map_err(Unwritable::new)
         } else {
-            table().ok_or_else(none)?.write(self).map_err(Unwritable::new)
+            table().ok_or_else(none)?.write(self, keep_going).map_err(Unwritable::new)
         }
     }
 }
@@ -151,8 +153,47 @@ impl Unwritable {
 /// # Errors
 /// [`Unwritable`], which is a fault of the service.
 pub fn json(capacity: usize, value: &impl Serialize) -> Result<Vec<u8>, Unwritable> {
+    json_while(capacity, value, &|| true)
+}
+
+/// The same while `keep_going` returns true, which is asked every [`PIECE`].
+fn json_while(capacity: usize, value: &impl Serialize, keep_going: &dyn Fn() -> bool) -> Result<Vec<u8>, Unwritable> {
     let _span = otlp::part!("write").entered();
-    let mut text = Vec::with_capacity(capacity);
+    let mut text = StoppableText { text: Vec::with_capacity(capacity), question: PIECE, keep_going };
     serde_json::to_writer(&mut text, value).map_err(Unwritable::new)?;
-    Ok(text)
+    Ok(text.text)
+}
+
+/// Bytes of a text that are written between two questions whether to go on.
+const PIECE: usize = 256 * 1024;
+
+/// A text that cannot be written any more once `keep_going` has returned false.
+struct StoppableText<'a> {
+    text: Vec<u8>,
+    /// The length from which it is asked next.
+    question: usize,
+    keep_going: &'a dyn Fn() -> bool,
+}
+
+impl io::Write for StoppableText<'_> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.write_all(bytes)?;
+        Ok(bytes.len())
+    }
+
+    #[inline]
+    fn write_all(&mut self, bytes: &[u8]) -> io::Result<()> {
+        self.text.extend_from_slice(bytes);
+        if self.text.len() >= self.question {
+            self.question = self.text.len() + PIECE;
+            if !(self.keep_going)() {
+                return Err(io::Error::other("it was ended"));
+            }
+        }
+        Ok(())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
 }

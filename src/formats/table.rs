@@ -144,13 +144,21 @@ impl<'a> Table<'a> {
         Table::new(rows, columns, ["{".to_owned(), "}".to_owned()])
     }
 
-    /// All of the table in a format.
+    /// All of the table in a format, while `keep_going` returns true, which is asked at each block.
     ///
     /// # Errors
-    /// The error of the Arrow library; none for a table whose columns have different names.
-    pub fn write(self, format: Format) -> Result<Vec<u8>, ArrowError> {
-        let rows = self.rows.max(1);
-        self.in_blocks(format, rows).collect::<Result<Vec<_>, _>>().map(|blocks| blocks.concat())
+    /// The error of the Arrow library, none for a table whose columns have different names; or that it was ended.
+    pub fn write(self, format: Format, keep_going: &dyn Fn() -> bool) -> Result<Vec<u8>, ArrowError> {
+        // Arrow has one batch of all rows.
+        let size = if format == Format::Arrow { self.rows.max(1) } else { BLOCK };
+        let mut text = Vec::new();
+        for block in self.in_blocks(format, size) {
+            if !keep_going() {
+                return Err(ArrowError::ExternalError("it was ended".into()));
+            }
+            text.append(&mut block?);
+        }
+        Ok(text)
     }
 
     /// The same block by block.

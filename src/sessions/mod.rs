@@ -224,7 +224,7 @@ impl Sessions {
         let work = move || {
             let _state = state;
             let outcome = otlp::part!("solve").in_scope(|| task.run(contact, sequence, &stop))?;
-            Ok::<_, SessionError>(shown.write(&outcome)?)
+            Ok::<_, SessionError>(shown.write(&outcome, &stop)??)
         };
         Ok((sequence, self.replay.common.pool.run(cost, work).await??, held))
     }

@@ -41,7 +41,7 @@ pub async fn get_cycles(
     }
     let memory = app.pool.reserve(last * CYCLE_BYTES + format.bytes(0, 0)).await?;
     let (sequence, page) = app.sessions.cycles().newest(id, last).await?;
-    let write = move || format.write(CAPACITY, &page, || Some(plot(id, &page)), || Some(table(&page)));
+    let write = move || format.write(CAPACITY, &page, || Some(plot(id, &page)), || Some(table(&page)), &|| true);
     let body = app.pool.run(format.cost(), write).await??;
     let tag = format.tag(&sequence.to_string());
     Ok(reply::holding(reply::tagged(format.reply(body), &tag), memory))

@@ -14,6 +14,7 @@ use super::prelude::*;
 use crate::api::formats::TableStream;
 use crate::api::query::{Moves, MovesQuery};
 use crate::formats::{CAPACITY, Table, Unwritable};
+use crate::simulation::Failure;
 
 /// Moves that are read at once.
 const PAGE: usize = 500;
@@ -77,7 +78,15 @@ pub(super) async fn reply<T: MoveSeries>(
         HeaderValue::from_str(&format!("</contacts/{id}/{}?{query}>; rel=\"next\"", T::NAME)).ok()
     });
     let page = shown.page(&app, id, after, moves, format).await?;
-    let write = move || format.write(CAPACITY, &page, || Some(T::plot(id, &page)), || Some(shown.table(&page)));
+    let (stop, _raised_at_the_end) = app.pool.deadline();
+    let write = move || {
+        let (plot, table) = (|| Some(T::plot(id, &page)), || Some(shown.table(&page)));
+        let written = format.write(CAPACITY, &page, plot, table, &|| stop.check().is_ok());
+        if written.is_err() {
+            stop.check().map_err(Failure::from)?;
+        }
+        Ok::<_, Problem>(written?)
+    };
     let mut response = reply::tagged(format.reply(app.pool.run(format.cost(), write).await??), &tag);
     response.headers_mut().extend(next.map(|next| (header::LINK, next)));
     Ok(reply::holding(response, memory))

@@ -62,11 +62,15 @@ pub(super) fn svg(picture: &(impl Picture + ?Sized)) -> Result<Vec<u8>, Box<dyn 
     Ok(text.replace("<polyline ", "<polyline stroke-linejoin=\"round\" ").into_bytes())
 }
 
-/// A picture as rows of pixels of three bytes.
-pub(super) fn pixels(picture: &(impl Picture + ?Sized)) -> Result<Vec<u8>, Box<dyn Error>> {
+/// A picture as rows of pixels of three bytes, while `keep_going` returns true.
+pub(super) fn pixels(
+    picture: &(impl Picture + ?Sized),
+    keep_going: &dyn Fn() -> bool,
+) -> Result<Vec<u8>, Box<dyn Error>> {
     let (width, height) = picture.size();
     let mut pixels = vec![0; 3 * width as usize * height as usize];
-    let area = RoundJoins(BitMapBackend::with_buffer(&mut pixels, (width, height))).into_drawing_area();
+    let backend = BitMapBackend::with_buffer(&mut pixels, (width, height));
+    let area = RoundJoins { pixels: backend, keep_going }.into_drawing_area();
     prepare(picture, &area)?;
     drop(area);
     Ok(pixels)
@@ -316,7 +320,7 @@ mod tests {
 
     #[test]
     fn nothing_is_drawn_beyond_the_data_at_a_sharp_corner() {
-        let file = comb(false).png().unwrap();
+        let file = comb(false).png(&|| true).unwrap();
         let mut reader = png::Decoder::new(std::io::Cursor::new(file)).read_info().unwrap();
         let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
         reader.next_frame(&mut pixels).unwrap();

@@ -160,12 +160,14 @@ pub trait Picture {
         draw::svg(self).map_err(|fault| fault.to_string())
     }
 
-    /// It as a PNG file.
+    /// It as a PNG file, while `keep_going` returns true, which is asked at each piece of a line.
     ///
     /// # Errors
-    /// A sentence for the log, if the drawing fails.
-    fn png(&self) -> Result<Vec<u8>, String> {
-        draw::pixels(self).and_then(|pixels| png::encode(&pixels, self.size())).map_err(|fault| fault.to_string())
+    /// A sentence for the log, if the drawing fails or was ended.
+    fn png(&self, keep_going: &dyn Fn() -> bool) -> Result<Vec<u8>, String> {
+        draw::pixels(self, keep_going)
+            .and_then(|pixels| png::encode(&pixels, self.size()))
+            .map_err(|fault| fault.to_string())
     }
 }
 

@@ -5,7 +5,11 @@ use plotters::prelude::{BitMapBackend, DrawingBackend};
 use plotters_backend::{BackendColor, BackendCoord, BackendStyle, DrawingErrorKind};
 
 /// The backend of pixels, but for its lines: what is not forwarded here is made of what is, as by that backend itself.
-pub(super) struct RoundJoins<'a>(pub(super) BitMapBackend<'a>);
+pub(super) struct RoundJoins<'a> {
+    pub(super) pixels: BitMapBackend<'a>,
+    /// Asked at each straight piece of a wide line; false ends the drawing with an error.
+    pub(super) keep_going: &'a dyn Fn() -> bool,
+}
 
 type Drawn<'a> = Result<(), DrawingErrorKind<<BitMapBackend<'a> as DrawingBackend>::ErrorType>>;
 
@@ -13,23 +17,23 @@ impl<'a> DrawingBackend for RoundJoins<'a> {
     type ErrorType = <BitMapBackend<'a> as DrawingBackend>::ErrorType;
 
     fn get_size(&self) -> (u32, u32) {
-        self.0.get_size()
+        self.pixels.get_size()
     }
 
     fn ensure_prepared(&mut self) -> Drawn<'a> {
-        self.0.ensure_prepared()
+        self.pixels.ensure_prepared()
     }
 
     fn present(&mut self) -> Drawn<'a> {
-        self.0.present()
+        self.pixels.present()
     }
 
     fn draw_pixel(&mut self, point: BackendCoord, colour: BackendColor) -> Drawn<'a> {
-        self.0.draw_pixel(point, colour)
+        self.pixels.draw_pixel(point, colour)
     }
 
     fn draw_line<S: BackendStyle>(&mut self, from: BackendCoord, to: BackendCoord, style: &S) -> Drawn<'a> {
-        self.0.draw_line(from, to, style)
+        self.pixels.draw_line(from, to, style)
     }
 
     fn draw_rect<S: BackendStyle>(
@@ -39,30 +43,34 @@ impl<'a> DrawingBackend for RoundJoins<'a> {
         style: &S,
         fill: bool,
     ) -> Drawn<'a> {
-        self.0.draw_rect(upper_left, bottom_right, style, fill)
+        self.pixels.draw_rect(upper_left, bottom_right, style, fill)
     }
 
     fn draw_path<S: BackendStyle, I: IntoIterator<Item = BackendCoord>>(&mut self, path: I, style: &S) -> Drawn<'a> {
         let width = style.stroke_width();
         // What is thin has no joins that can be seen, and where colours mix each pixel may be drawn only once.
         if width < 3 || style.color().alpha < 1.0 {
-            return self.0.draw_path(path, style);
+            return self.pixels.draw_path(path, style);
         }
         let mut last: Option<BackendCoord> = None;
         for point in path {
             if last == Some(point) {
                 continue;
             }
-            if let Some(from) = last {
-                self.0.draw_path([from, point], style)?;
+            if !(self.keep_going)() {
+                // The errors of that backend itself cannot be made here.
+                return Err(DrawingErrorKind::FontError("the drawing was ended".into()));
             }
-            self.0.draw_circle(point, width / 2, &style.color(), true)?;
+            if let Some(from) = last {
+                self.pixels.draw_path([from, point], style)?;
+            }
+            self.pixels.draw_circle(point, width / 2, &style.color(), true)?;
             last = Some(point);
         }
         Ok(())
     }
 
     fn blit_bitmap(&mut self, position: BackendCoord, size: (u32, u32), source: &[u8]) -> Drawn<'a> {
-        self.0.blit_bitmap(position, size, source)
+        self.pixels.blit_bitmap(position, size, source)
     }
 }
