@@ -36,8 +36,8 @@ struct Flag {
     started: OnceLock<Instant>,
     // Nanoseconds for which the work has given way to others since, which do not count either.
     waited: AtomicU64,
-    // Work for the same request before that counts for the deadline.
-    spent: Duration,
+    // Nanoseconds of work for the same request under other flags that counts for the deadline.
+    spent: AtomicU64,
     // Nanoseconds of all work for it before, under flags of its own.
     before: AtomicU64,
 }
@@ -51,8 +51,8 @@ impl Stop {
     /// in all. The default flag is never raised.
     #[must_use]
     pub fn within(allowed: Duration, spent: Duration) -> (Stop, StopOnDrop) {
-        let stop = Stop(Arc::new(Flag { allowed: Some(allowed), spent, ..Flag::default() }));
-        stop.count(spent);
+        let stop = Stop(Arc::new(Flag { allowed: Some(allowed), ..Flag::default() }));
+        stop.charge(spent);
         (stop.clone(), StopOnDrop(stop))
     }
 
@@ -75,12 +75,19 @@ impl Stop {
         self.0.allowed
     }
 
-    /// Counts work that has been done for the same request under other flags, as time that the request took.
+    /// Counts work that has been done for the same request under other flags: as time that the request took, and for
+    /// its deadline.
+    pub fn charge(&self, work: Duration) {
+        self.count(work);
+        self.0.spent.fetch_add(work.as_nanos() as u64, Ordering::Relaxed);
+    }
+
+    /// Counts work as time that the request took. For the deadline it counts by the checks of this flag.
     pub fn count(&self, work: Duration) {
         self.0.before.fetch_add(work.as_nanos() as u64, Ordering::Relaxed);
     }
 
-    /// The work that has been counted by [`Stop::count`].
+    /// The work that has been counted by [`Stop::count`] and [`Stop::charge`].
     #[must_use]
     pub fn before(&self) -> Duration {
         Duration::from_nanos(self.0.before.load(Ordering::Relaxed))
@@ -117,7 +124,8 @@ impl Stop {
             self.0.started.get_or_init(|| Instant::now().checked_sub(waited).unwrap_or_else(Instant::now));
             return Ok(());
         };
-        let worked = (self.0.spent + started.elapsed()).saturating_sub(self.waited());
+        let spent = Duration::from_nanos(self.0.spent.load(Ordering::Relaxed));
+        let worked = (spent + started.elapsed()).saturating_sub(self.waited());
         if worked >= allowed { Err(Interrupted::TimeLimit(allowed)) } else { Ok(()) }
     }
 }

@@ -197,6 +197,7 @@ impl From<SessionError> for Problem {
             SessionError::Ahead { .. } => Problem::at(Code::InvalidInput, "/Last-Event-ID", detail),
             SessionError::TooManyStreams => Problem::new(Code::Overloaded, detail),
             SessionError::Store(StoreError::KeyReused) => Problem::new(Code::IdempotencyKeyReused, detail),
+            SessionError::Loading { .. } => Problem::new(Code::TooMuchWork, detail),
             SessionError::Failure(failure) => failure.into(),
             SessionError::Rejected(rejection) => rejection.into(),
             SessionError::Pool(error) => error.into(),

@@ -98,7 +98,7 @@ impl Mover {
                 }
                 return Err(refusal);
             }
-            stop.count(std::mem::take(&mut guard.loading));
+            stop.charge(std::mem::take(&mut guard.loading));
             let (mut live, Done { records, mut reply }) = match self.compute(&advance, &mut guard, &stop).await {
                 Ok(done) => done,
                 Err(SessionError::Failure(_) | SessionError::Rejected(_))

@@ -42,7 +42,9 @@ impl ClosedCycles {
         let (virgin, sequence, known) = {
             let mut guard = self.replay.lock(id).await?;
             let live = self.replay.current(&mut guard).await?;
-            (live.contact.virgin(), live.session.sequence, live.cycles.clone())
+            let known = (live.contact.virgin(), live.session.sequence, live.cycles.clone());
+            stop.charge(guard.loading);
+            known
         };
         let log = match known {
             Some(known) if known.sequence == sequence => known,
@@ -73,7 +75,9 @@ impl ClosedCycles {
         let (virgin, known) = {
             let mut guard = self.replay.lock(id).await?;
             let live = self.replay.current(&mut guard).await?;
-            (live.contact.virgin(), live.log_for(after))
+            let known = (live.contact.virgin(), live.log_for(after));
+            stop.charge(guard.loading);
+            known
         };
         let mut log = match known {
             Some(known) if known.sequence >= after => known,

@@ -1,5 +1,7 @@
 //! Errors of operations on sessions.
 
+use std::time::Duration;
+
 use uuid::Uuid;
 
 use crate::admission::PoolError;
@@ -60,6 +62,18 @@ pub enum SessionError {
     /// The mechanics has no answer, or the client no longer waits for it.
     #[error(transparent)]
     Failure(#[from] simulation::Failure),
+    /// Replaying the moves of the session, which is not cached, takes longer than one request may. What has been
+    /// replayed is kept.
+    #[error(
+        "the contact is being loaded, which takes longer than the {} s that are allowed: {replayed} of its moves have \
+         been replayed, and the next request goes on from there; send this one again", allowed.as_secs_f64()
+    )]
+    Loading {
+        /// Moves that have been replayed.
+        replayed: u64,
+        /// How long work may take.
+        allowed: Duration,
+    },
     /// The request does not fit the definition of the contact.
     #[error(transparent)]
     Rejected(#[from] Rejection),

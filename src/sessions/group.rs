@@ -88,7 +88,7 @@ async fn join_queue(
     if let Ok((lock, own)) = locked {
         let guard = lock.guard();
         // If the state is there, and no other process is likely to move the session first.
-        let is_own = guard.live.as_ref().is_some_and(|live| !live.shared);
+        let is_own = guard.live.as_ref().is_some_and(|live| !live.shared && !live.is_behind);
         let others = if is_own { guard.take_moves(GROUP - 1) } else { Vec::new() };
         if others.is_empty() {
             return Ok(GroupResult::Locked(guard));

@@ -31,6 +31,8 @@ pub(super) struct LoadedSession {
     pub(super) replay_cost: ReplayCost,
     /// Whether other processes have been seen to move it, so that a move is likely to come too late.
     pub(super) shared: bool,
+    /// Whether replaying its moves was stopped here, so that more of them are stored.
+    pub(super) is_behind: bool,
     /// The closed cycles of its past, once they have been asked for.
     pub(super) cycles: Option<Arc<CycleLog>>,
     /// The same up to an earlier move: up to the page of the history that was read last.
@@ -64,8 +66,9 @@ impl LoadedSession {
         let derived = Derived { summary: contact.initial_summary().into(), warnings: present_warnings(&contact) };
         let derived = Arc::new(derived);
         let replay_cost = ReplayCost::default();
+        let (shared, is_behind) = (false, false);
         let (cycles, past_cycles, estimated) = (None, None, None);
-        Ok(LoadedSession { session, derived, contact, replay_cost, shared: false, cycles, past_cycles, estimated })
+        Ok(LoadedSession { session, derived, contact, replay_cost, shared, is_behind, cycles, past_cycles, estimated })
     }
 
     /// The same of a session as it is stored, or why its definition is invalid.

@@ -102,13 +102,15 @@ impl Observations {
     /// # Errors
     /// [`SessionError::NotFound`] or [`SessionError::Expired`], or a failure of the store or of the pool.
     pub async fn friction(&self, id: Uuid) -> Result<FrictionReply, SessionError> {
-        let (stop, _raised_at_the_end) = self.cycles.replay.common.pool.deadline();
-        let stop = stop.child_deadline(Some(TIME));
+        let (request, _raised_at_the_end) = self.cycles.replay.common.pool.deadline();
+        let stop = request.child_deadline(Some(TIME));
         // The lock is held for copies alone, so that the session can move on meanwhile.
         let (virgin, sequence, known, mut estimated) = {
             let mut guard = self.cycles.replay.lock(id).await?;
             let live = self.cycles.replay.current(&mut guard).await?;
-            (live.contact.virgin(), live.session.sequence, live.cycles.clone(), live.estimated)
+            let known = (live.contact.virgin(), live.session.sequence, live.cycles.clone(), live.estimated);
+            request.charge(guard.loading);
+            known
         };
         let (log, seen) = self.cycles.read_states(id, sequence, known, &virgin, &stop).await?;
         if seen.is_ok() {

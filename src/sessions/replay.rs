@@ -1,11 +1,11 @@
 //! The lock of a session, and its state: as it is cached, or by its newest snapshot and the moves after it.
 
 use std::sync::Arc;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use uuid::Uuid;
 
-use crate::admission::{Reservation, Stop};
+use crate::admission::{Interrupted, Reservation, Stop};
 use crate::simulation::bytes::EXPANSION;
 use crate::simulation::cost::Work;
 use crate::simulation::{Failure, Timer};
@@ -18,6 +18,7 @@ use stickslip_wire::{ContactDefinition, limits};
 use super::cache::Guard;
 use super::loaded::LoadedSession;
 use super::profiles::Profiles;
+use super::snapshot::Snapshots;
 use super::storage_reservation::StorageReservation;
 use super::{Common, SessionError};
 
@@ -31,6 +32,8 @@ pub(super) const PIECE_BYTES: usize = 96;
 const COPIES: usize = 3;
 /// Bytes of a definition that holds no table.
 const SHORT_DEFINITION: u64 = 1_024;
+/// Work between two snapshots of a replay, which is lost where the client hangs up.
+const KEPT_EVERY: Duration = Duration::from_secs(1);
 /// Moves that are read together with the session that made them: with their records they take less than a small
 /// request.
 const SMALL_HISTORY: u64 = 64;
@@ -64,7 +67,7 @@ impl Replay {
     /// The session as it is cached, or else as it is stored. Other processes may have moved or deleted it since: the
     /// result is to be checked against the store.
     pub(super) async fn cached<'a>(&self, guard: &'a mut Guard) -> Result<&'a mut LoadedSession, SessionError> {
-        if guard.live.is_none() {
+        if guard.live.as_ref().is_none_or(|live| live.is_behind) {
             // In a box, so that a request whose session is cached is not as large as one that has to load it.
             Box::pin(self.load(guard)).await?;
         }
@@ -101,22 +104,32 @@ impl Replay {
             let page = page.map_err(|error| self.store_failure(guard, error))?;
             let is_last = page.len() < limit;
             if let Some(live) = guard.live.take_if(|_| !page.is_empty()) {
-                guard.live = Some(self.follow(guard, live, page).await?);
+                let (live, followed) = self.follow(guard, live, page).await?;
+                guard.live = Some(live);
+                followed?;
                 moved = true;
             }
             if is_last {
                 break;
             }
         }
-        if let Some(live) = guard.live.as_mut().filter(|_| moved) {
-            live.shared = true;
-            self.common.snapshots.offer(live);
+        if let Some(live) = &mut guard.live {
+            // Of moves that this process began to replay nobody says that another has made them since.
+            live.shared |= moved && !live.is_behind;
+            live.is_behind = false;
+            if moved {
+                self.common.snapshots.offer(live);
+            }
         }
         Ok(moved)
     }
 
-    /// Loads a session that is not cached from the store.
+    /// Loads a session that is not cached from the store, or goes on where an earlier request has been stopped. What
+    /// has been replayed when the time is up stays in the guard.
     async fn load(&self, guard: &mut Guard) -> Result<(), SessionError> {
+        if guard.live.is_some() {
+            return self.catch_up(guard, u64::MAX).await.map(drop);
+        }
         let (id, begin) = (guard.id(), Instant::now());
         let (extent, whole) = match self.common.store.load(id, is_small).await {
             Ok((extent, whole)) if extent.tenant == self.tenant => (extent, whole),
@@ -124,7 +137,7 @@ impl Replay {
             Err(error) => return Err(self.store_error(id, error)),
         };
         guard.held = self.common.pool.reserve_states(bytes_to_load(&extent)).await?;
-        let (mut live, updated_at) = match whole {
+        let ((mut live, followed), updated_at) = match whole {
             Some(Whole { session, moves }) => {
                 let updated_at = session.updated_at;
                 let first = self.first_state(guard, session).await?;
@@ -141,32 +154,39 @@ impl Replay {
                 (self.replayed(guard, session, snapshot, last).await?, updated_at)
             }
         };
-        live.session.updated_at = updated_at;
+        if followed.is_ok() {
+            live.session.updated_at = updated_at;
+        }
         self.common.snapshots.offer(&mut live);
         // The state, and a copy of it, which shares the profile.
         guard.held.shrink(2 * live.bytes() + live.shape_bytes());
         guard.live = Some(live);
+        followed?;
         self.common.metrics.open.observe(begin.elapsed().as_secs_f64());
         Ok(())
     }
 
-    /// A stored session after its move `last`, from its snapshot on.
+    /// A stored session after its move `last`, from its snapshot on, or as far as [`Replay::follow`] came.
     async fn replayed(
         &self,
         guard: &mut Guard,
         session: Session,
         snapshot: Result<Option<Snapshot>, StoreError>,
         last: u64,
-    ) -> Result<Box<LoadedSession>, SessionError> {
+    ) -> Result<(Box<LoadedSession>, Result<(), SessionError>), SessionError> {
         let id = session.id;
         let mut live = self.first_state(guard, session).await?;
         (live.contact, live.session.sequence) =
             self.common.snapshots.load(&mut guard.loading, snapshot, live.contact, last).await?;
         while live.session.sequence < last {
             let page = self.page(id, live.session.sequence, last).await?;
-            live = self.follow(guard, live, page).await?;
+            let followed;
+            (live, followed) = self.follow(guard, live, page).await?;
+            if followed.is_err() {
+                return Ok((live, followed));
+            }
         }
-        Ok(live)
+        Ok((live, Ok(())))
     }
 
     /// A copy of the session after so many of its moves, or after all of them, and the memory of a state that is made
@@ -200,7 +220,9 @@ impl Replay {
             return Ok((now.clone(), held));
         }
         let snapshot = self.common.store.snapshot(id).await;
-        Ok((self.replayed(guard, session, snapshot, wanted).await?, held))
+        let (copy, followed) = self.replayed(guard, session, snapshot, wanted).await?;
+        followed?;
+        Ok((copy, held))
     }
 
     /// The first of the moves of a session after the move `after`, up to the move `last`, which is after it: as many as
@@ -220,7 +242,7 @@ impl Replay {
     /// The state of a stored session before its first move. The sequence of the session is that of the store.
     async fn first_state(&self, guard: &mut Guard, session: Session) -> Result<Box<LoadedSession>, SessionError> {
         let id = session.id;
-        let (stop, _raised_at_the_end) = self.common.pool.deadline();
+        let (stop, _raised_at_the_end) = self.common.pool.deadline_after(guard.loading);
         let profiles = Profiles::new(&self.common, &stop);
         let cost = profiles.cost_of(&session.definition.defined_profile(""))?;
         let work = move || {
@@ -231,36 +253,43 @@ impl Replay {
             }
             Ok::<_, Failure>((first, timer.elapsed()))
         };
-        let (first, work) = self.common.pool.run(cost, work).await??;
-        guard.loading += work;
+        let first;
+        (first, guard.loading) = self.common.pool.run(cost, work).await??;
         first.map_err(|error| damaged(id, &error))
     }
 
+    /// Makes the moves of a page, as work of the request: the deadline and a client that hangs up end it. Every now and
+    /// then, and at the end, what has been replayed is offered to the store as a snapshot.
+    ///
+    /// # Errors
+    /// Within, beside the state after as many of the moves as time allowed: [`SessionError::Loading`].
     async fn follow(
         &self,
         guard: &mut Guard,
         mut live: Box<LoadedSession>,
         page: Vec<Record>,
-    ) -> Result<Box<LoadedSession>, SessionError> {
+    ) -> Result<(Box<LoadedSession>, Result<(), SessionError>), SessionError> {
         let curved = page.iter().filter(|record| record.step.is_curved()).count();
         let id = live.session.id;
         let cost = Work { moves: page.len(), curved, ..Work::default() }.cost(live.contact.profile());
-        let replayed = self.common.pool.run(cost, move || {
-            let begin = Instant::now();
-            for record in &page {
-                live.contact.apply_within(&record.step.step(), record.tolerance)?;
-                live.session.sequence = record.sequence;
-                live.session.updated_at = record.at;
-            }
-            let work = begin.elapsed();
-            live.replay_cost.add(page.len(), work);
-            Ok((live, work))
-        });
-        let (live, work) = replayed.await?.map_err(|error: stickslip_mechanics::Error| {
+        let (stop, _raised_at_the_end) = self.common.pool.deadline_after(guard.loading);
+        let common = Arc::clone(&self.common);
+        let replay = move || {
+            let timer = Timer::start(&stop);
+            let followed = replay(&mut live, &page, &stop, timer, &common.snapshots);
+            (live, followed, timer.elapsed())
+        };
+        let (live, followed, loading) = self.common.pool.run(cost, replay).await?;
+        guard.loading = loading;
+        let followed = followed.map_err(|error: stickslip_mechanics::Error| {
             damaged(id, &format_args!("a stored move cannot be made again: {error}"))
         })?;
-        guard.loading += work;
-        Ok(live)
+        let replayed = live.session.sequence;
+        let stopped = |interrupted| match interrupted {
+            Interrupted::TimeLimit(allowed) => SessionError::Loading { replayed, allowed },
+            Interrupted::Abandoned => Failure::from(interrupted).into(),
+        };
+        Ok((live, followed.map_err(stopped)))
     }
 
     /// A copy of the contact, which `said` to have this definition, with its sequence and memory for it; `stop` counts
@@ -279,7 +308,7 @@ impl Replay {
         let (contact, sequence) = (live.contact.memory_bytes(), live.session.sequence);
         let mut held = self.reserve_copy(&mut guard, contact).await?;
         held.shrink(contact);
-        stop.count(guard.loading);
+        stop.charge(guard.loading);
         let live = guard.live.as_ref().ok_or(SessionError::NotFound(id))?;
         Ok((live.contact.clone(), sequence, held))
     }
@@ -326,6 +355,44 @@ impl Replay {
             other => SessionError::Store(other),
         }
     }
+}
+
+/// Makes stored moves, until the flag ends it or one cannot be made. A state is offered as a snapshot whenever
+/// [`KEPT_EVERY`] has been worked since the last, and where the flag ends it: a client that has hung up has nobody left
+/// to keep it.
+fn replay(
+    live: &mut LoadedSession,
+    page: &[Record],
+    stop: &Stop,
+    timer: Timer<'_>,
+    snapshots: &Snapshots,
+) -> Result<Result<(), Interrupted>, stickslip_mechanics::Error> {
+    let (mut moves, mut since) = (0, timer.elapsed());
+    for record in page {
+        let checked = match live.contact.apply_while(&record.step.step(), record.tolerance, &|| stop.check().is_ok()) {
+            Ok(()) => {
+                live.session.sequence = record.sequence;
+                live.session.updated_at = record.at;
+                moves += 1;
+                stop.check()
+            }
+            // It has changed nothing.
+            Err(stickslip_mechanics::Error::Interrupted) => stop.check().and(Err(Interrupted::Abandoned)),
+            Err(error) => return Err(error),
+        };
+        let worked = timer.elapsed().saturating_sub(since);
+        if checked.is_err() || worked >= KEPT_EVERY {
+            live.replay_cost.add(moves, worked);
+            snapshots.offer(live);
+            (moves, since) = (0, timer.elapsed());
+        }
+        if checked.is_err() {
+            live.is_behind = true;
+            return Ok(checked);
+        }
+    }
+    live.replay_cost.add(moves, timer.elapsed().saturating_sub(since));
+    Ok(Ok(()))
 }
 
 /// Whether a session takes so little that it may be read before memory is reserved for it.

@@ -46,12 +46,14 @@ pub async fn trace(
     let _held = replay.common.pool.reserve(2 * PIECE_BYTES * pieces).await?;
     let initial = {
         let mut guard = replay.lock(id).await?;
-        replay.current(&mut guard).await?.contact.virgin()
+        let initial = replay.current(&mut guard).await?.contact.virgin();
+        stop.charge(guard.loading);
+        initial
     };
     let snapshot = replay.common.store.snapshot(id).await;
-    // A trace does not say how long it took.
-    let loading = &mut Duration::default();
-    let (mut contact, mut at) = replay.common.snapshots.load(loading, snapshot, initial, after).await?;
+    let mut loading = Duration::ZERO;
+    let (mut contact, mut at) = replay.common.snapshots.load(&mut loading, snapshot, initial, after).await?;
+    stop.charge(loading);
     while at < last {
         let records = replay.page(id, at, last).await?;
         let end = at + records.len() as u64;

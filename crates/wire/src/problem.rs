@@ -119,7 +119,8 @@ codes! {
         "springs cannot follow this move: leave `solver` out";
     /// The request takes longer than a server computes for one.
     TooMuchWork = 422 "too_much_work": "The request takes too long",
-        "ask for less at a time: fewer springs, moves or points";
+        "ask for less at a time: fewer springs, moves or points. If `detail` says that the contact is being \
+            [loaded](overload.md#work-that-ends), send the request again";
     /// The idempotency key belongs to another request.
     IdempotencyKeyReused = 422 "idempotency_key_reused": "The idempotency key belongs to another request",
         "the key belongs to another request: choose a new one";
