@@ -9,6 +9,7 @@
 
 mod activity;
 mod bodies;
+mod chunks;
 mod limiter;
 mod own_hosts;
 mod proxies;

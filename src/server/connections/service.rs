@@ -87,7 +87,7 @@ impl Service {
         request.extensions_mut().insert(RequestClient { address, body_time: self.body_time });
         let client = Client::of_address(address);
         let fault = in_progress.0.head_fault().or_else(|| ambiguity(&request));
-        // Only the HTTP library knows where chunks end, and what follows them has not been inspected.
+        // A proxy may see the end of the chunks elsewhere, and what follows them has not been inspected.
         let mut last = fault.is_some() || request.headers().contains_key(header::TRANSFER_ENCODING);
         // Of a head that can be read in two ways nobody knows where the body ends. A client that is not asked for its
         // body sends none.

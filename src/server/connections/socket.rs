@@ -2,6 +2,7 @@
 //! first byte, and hands on nothing beyond a request until its reply is done.
 
 use std::io::{self, IoSlice};
+use std::mem::MaybeUninit;
 use std::pin::Pin;
 use std::sync::Arc;
 use std::task::{Context, Poll, Waker, ready};
@@ -9,7 +10,14 @@ use std::task::{Context, Poll, Waker, ready};
 use tokio::io::{AsyncRead, AsyncWrite, ReadBuf};
 
 use super::ConnectionActivity;
+use super::chunks::ChunkEnd;
 use super::smuggling::{BodyLength, RequestSmugglingGuard};
+
+/// Bytes beyond a request that are read while it is served. They wait in [`Socket`], so that they are a part of what a
+/// connection may take.
+const AHEAD: usize = 16 * 1024;
+/// Bytes of them that are read at a time.
+const PART: usize = 1024;
 
 /// The stream of a connection.
 #[derive(Debug)]
@@ -17,7 +25,7 @@ pub struct Socket<S> {
     stream: S,
     activity: Arc<ConnectionActivity>,
     expected: Expected,
-    /// Received beyond the present request, at most one read.
+    /// Received beyond the present request: up to one read while it arrived, and up to [`AHEAD`] while it waits.
     held: Vec<u8>,
     /// Waits for the end of the reply.
     waiting: Option<Waker>,
@@ -29,9 +37,11 @@ enum Expected {
     Head(RequestSmugglingGuard),
     /// A body with this many bytes to come.
     Body(u64),
-    /// A later request, which must wait for the reply.
+    /// A body in chunks, after which the reply closes the connection.
+    Chunks(ChunkEnd),
+    /// What follows the request, which must wait for the reply.
     Next,
-    /// The last request of the connection.
+    /// A request that is refused by its head, the last of the connection.
     Last,
 }
 
@@ -63,8 +73,7 @@ impl<S> Socket<S> {
                     self.expected = match body {
                         BodyLength::Bytes(0) => Expected::Next,
                         BodyLength::Bytes(length) => Expected::Body(length),
-                        // The reply closes the connection, so that the end of the chunks need not be found twice.
-                        BodyLength::Chunked => Expected::Last,
+                        BodyLength::Chunked => Expected::Chunks(ChunkEnd::default()),
                     };
                 }
                 Err(fault) => {
@@ -77,6 +86,13 @@ impl<S> Socket<S> {
         match &mut self.expected {
             Expected::Head(_) | Expected::Last => bytes.len(),
             Expected::Next => taken,
+            Expected::Chunks(chunks) => {
+                let part = chunks.find(&bytes[taken..]);
+                if part.is_some() {
+                    self.expected = Expected::Next;
+                }
+                taken + part.unwrap_or(rest)
+            }
             Expected::Body(left) => {
                 let part = usize::try_from(*left).unwrap_or(usize::MAX).min(rest);
                 *left -= part as u64;
@@ -89,11 +105,34 @@ impl<S> Socket<S> {
     }
 }
 
+impl<S: AsyncRead + Unpin> Socket<S> {
+    /// Reads on while what follows the request waits for the reply, so that a client that hangs up is noticed: it is
+    /// ready then, without bytes, whereupon the HTTP library drops the request. Of a client that sends more than
+    /// [`AHEAD`] it is not noticed.
+    fn poll_hung_up(&mut self, cx: &mut Context<'_>) -> Poll<io::Result<()>> {
+        self.waiting = Some(cx.waker().clone());
+        let mut bytes = [MaybeUninit::uninit(); PART];
+        while self.held.len() < AHEAD {
+            let room = bytes.len().min(AHEAD - self.held.len());
+            let mut part = ReadBuf::uninit(&mut bytes[..room]);
+            ready!(Pin::new(&mut self.stream).poll_read(cx, &mut part))?;
+            if part.filled().is_empty() {
+                return Poll::Ready(Ok(()));
+            }
+            self.held.extend_from_slice(part.filled());
+        }
+        Poll::Pending
+    }
+}
+
 impl<S: AsyncRead + Unpin> AsyncRead for Socket<S> {
     fn poll_read(self: Pin<&mut Self>, cx: &mut Context<'_>, buffer: &mut ReadBuf<'_>) -> Poll<io::Result<()>> {
         let this = self.get_mut();
         if matches!(this.expected, Expected::Next) && this.activity.is_idle() {
             this.expected = Expected::Head(RequestSmugglingGuard::default());
+        }
+        if matches!(this.expected, Expected::Next) && !this.held.is_empty() {
+            return this.poll_hung_up(cx);
         }
         let before = buffer.filled().len();
         let mut held = std::mem::take(&mut this.held);
@@ -111,11 +150,7 @@ impl<S: AsyncRead + Unpin> AsyncRead for Socket<S> {
         }
         this.held = held;
         buffer.set_filled(before + taken);
-        if taken == 0 && received > 0 {
-            this.waiting = Some(cx.waker().clone());
-            return Poll::Pending;
-        }
-        Poll::Ready(Ok(()))
+        if taken == 0 && received > 0 { this.poll_hung_up(cx) } else { Poll::Ready(Ok(())) }
     }
 }
 
