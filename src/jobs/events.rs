@@ -22,6 +22,8 @@ struct Follower {
     id: Uuid,
     last: Option<JobReply>,
     listener: Listener,
+    /// Whether the last attempt to read it has failed.
+    has_failed: bool,
     _share: Share,
 }
 
@@ -37,7 +39,7 @@ impl Jobs {
         let listener = listener.ok_or(JobError::TooManyStreams)?;
         self.find_own(id).await?;
         let (jobs, last) = (self.clone(), None);
-        let follower = Follower { jobs, id, last, listener, _share: share };
+        let follower = Follower { jobs, id, last, listener, has_failed: false, _share: share };
         Ok(futures::stream::unfold(Some(follower), async |follower| Some(follower?.next().await)))
     }
 
@@ -60,9 +62,20 @@ impl Follower {
             match self.jobs.get(self.id).await {
                 Ok(job) if self.last.as_ref() != Some(&job) => break StreamEvent::State(job),
                 Err(JobError::NotFound(_)) => break StreamEvent::End(EndReason::Deleted),
-                // Whether it was woken or not, it reads again.
-                Ok(_) | Err(_) => drop(timeout(LONGEST_WAIT, self.listener.wait()).await),
+                Ok(_) => self.has_failed = false,
+                Err(JobError::Store(error)) if error.is_transient() => {
+                    if !self.has_failed {
+                        tracing::warn!(job = %self.id, %error, "events wait for what cannot be read for now");
+                    }
+                    self.has_failed = true;
+                }
+                Err(error) => {
+                    tracing::error!(job = %self.id, %error, "events end: the job cannot be read");
+                    break StreamEvent::End(EndReason::Failed);
+                }
             }
+            // Whether it was woken or not, it reads again.
+            let _ = timeout(LONGEST_WAIT, self.listener.wait()).await;
         };
         self.last = if let StreamEvent::State(job) = &event { Some(job.clone()) } else { None };
         let runs = self.last.as_ref().is_some_and(|job| job.state == JobState::Running);

@@ -32,6 +32,7 @@ const CONNECTION = {
   deleted: "deleted",
   expired: "expired",
   damaged: "damaged",
+  failed: "not readable",
   refused: "not allowed",
 };
 /** The tabs that do not follow the present state, so that it does not stand beside them. */

@@ -10,7 +10,8 @@ use std::time::Duration;
 use futures::Stream;
 use uuid::Uuid;
 
-use crate::admission::{Quota, Share};
+use crate::admission::{PoolError, Quota, Share};
+use crate::simulation::{Cause, Failure};
 use crate::store::{Listener, StoreError, StreamEvent};
 use stickslip_wire::{EndReason, HistoryPage, StateEvent};
 
@@ -22,8 +23,11 @@ use super::{SessionError, Sessions};
 pub const STREAMS: usize = 1_000;
 /// Moves that a listener reads at a time.
 const PAGE: usize = 80;
-/// How long a listener waits for an unreachable store before it tries again.
+/// How long a listener waits before it tries again what may succeed later, as where the store is unreachable.
 const RETRY_DELAY: Duration = Duration::from_secs(1);
+
+/// Attempts in a row to mark the cycles of a page that may take as long as a request may.
+const LONG_ATTEMPTS: u32 = 100;
 
 struct Follower {
     history: History,
@@ -33,6 +37,8 @@ struct Follower {
     seen: u64,
     ready: VecDeque<StateEvent>,
     listener: Listener,
+    /// Attempts in a row that have failed.
+    failures: u32,
     _share: Share,
 }
 
@@ -66,7 +72,7 @@ pub async fn events(
         }
     };
     let (history, cycles) = (sessions.history(), sessions.cycles());
-    let follower = Follower { history, cycles, id, seen, ready, listener, _share: share };
+    let follower = Follower { history, cycles, id, seen, ready, listener, failures: 0, _share: share };
     Ok(futures::stream::unfold(Some(follower), async |follower| Some(follower?.next().await)))
 }
 
@@ -76,6 +82,18 @@ impl Follower {
         let mut page = self.history.own_page(self.id, self.seen, PAGE).await?;
         self.cycles.mark(self.id, &mut page).await?;
         Ok(page)
+    }
+
+    /// Whether the same attempt, after this error, may succeed later.
+    fn may_succeed_later(&self, error: &SessionError) -> bool {
+        match error {
+            SessionError::Store(error) => error.is_transient(),
+            SessionError::Pool(error) => *error != PoolError::Panicked,
+            SessionError::Loading { .. } => true,
+            // The states that have been read for the cycles are kept, so that the next attempt comes farther.
+            SessionError::Failure(Failure { cause: Cause::TooLong { .. }, .. }) => self.failures < LONG_ATTEMPTS,
+            _ => false,
+        }
     }
 
     /// The next event, and what follows it unless it is the last.
@@ -88,8 +106,12 @@ impl Follower {
                 break StreamEvent::State(event);
             }
             match self.page().await {
-                Ok(page) if page.items.is_empty() => self.listener.wait().await,
+                Ok(page) if page.items.is_empty() => {
+                    self.failures = 0;
+                    self.listener.wait().await;
+                }
                 Ok(page) => {
+                    self.failures = 0;
                     self.seen = page.items.last().map_or(self.seen, |item| item.sequence);
                     let id = self.id;
                     self.ready.extend(page.items.into_iter().map(|item| StateEvent {
@@ -108,7 +130,17 @@ impl Follower {
                     tracing::error!(%contact, what, "events end: what is stored of the contact is damaged");
                     break StreamEvent::End(EndReason::Damaged);
                 }
-                Err(_) => self.listener.pause(RETRY_DELAY).await,
+                Err(error) if self.may_succeed_later(&error) => {
+                    if self.failures == 0 {
+                        tracing::warn!(contact = %self.id, %error, "events wait for what cannot be read for now");
+                    }
+                    self.failures += 1;
+                    self.listener.pause(RETRY_DELAY).await;
+                }
+                Err(error) => {
+                    tracing::error!(contact = %self.id, %error, "events end: what comes next cannot be read");
+                    break StreamEvent::End(EndReason::Failed);
+                }
             }
         };
         let ended = matches!(event, StreamEvent::End(_));

@@ -5,6 +5,7 @@ use crate::common;
 use crate::fixtures::{along, url};
 
 use std::path::Path;
+use std::time::Duration;
 
 use common::kill::Random;
 use common::postgres::Cluster;
@@ -146,4 +147,22 @@ async fn a_snapshot_of_moves_that_are_not_stored_is_not_believed() {
     let process = Process::start(&url(&path)).await;
     let server = Server::at(&process.base);
     assert_eq!(problem(server.get(&format!("/contacts/{id}")).await).await.code, "damaged_contact");
+}
+
+#[tokio::test]
+async fn events_that_can_never_be_read_end_by_a_reason_and_a_line_of_the_log() {
+    let folder = tempdir().unwrap();
+    let (path, log) = (folder.path().join("unreadable.db"), folder.path().join("log"));
+    let process = Process::start_with(&["--log", "warn", "--store", &url(&path)], &log).await;
+    let id = moved(&process.client).await;
+    let statement = "UPDATE moves SET regime = 'unknown' WHERE sequence = 7";
+    assert_eq!(Connection::open(&path).unwrap().execute(statement, []).unwrap(), 1);
+    let mut events = Box::pin(process.client.events(id, Some(0)).await.unwrap());
+    let last = tokio::time::timeout(Duration::from_secs(60), events.next()).await.expect("it tries for ever");
+    assert_eq!(last.unwrap().unwrap(), Event::End(EndReason::Failed));
+    assert!(events.next().await.is_none());
+    process.stop().await;
+    let lines = std::fs::read_to_string(log).unwrap();
+    let named = |line: &&str| line.contains("events end") && line.contains("ERROR") && line.contains(&id.to_string());
+    assert_eq!(lines.lines().filter(named).count(), 1, "{lines}");
 }

@@ -48,5 +48,7 @@ pub enum EndReason {
     Stopping = "stopping",
     /// What is stored of the contact is damaged: there are moves that cannot be shown.
     Damaged = "damaged",
+    /// The server cannot read what comes next; the operator finds the cause in the log.
+    Failed = "failed",
 }
 }
