@@ -13,3 +13,4 @@ mod profiles;
 mod quotas;
 mod soak;
 mod soak_round;
+mod stops;
