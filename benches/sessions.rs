@@ -119,7 +119,7 @@ fn opening(criterion: &mut Criterion) {
             if turns == 0 {
                 // Bytes that are no snapshot are ignored.
                 let nothing = Snapshot { sequence: session.sequence + 1, state: Vec::new() };
-                runtime.block_on(store.save_snapshot(id, nothing)).expect("it is there");
+                runtime.block_on(store.save_snapshot(id, nothing, None)).expect("it is there");
                 group.bench_function(format!("{name}, without a snapshot"), |bencher| {
                     bencher.iter(|| runtime.block_on(cold.get(id)).expect("it is there"));
                 });

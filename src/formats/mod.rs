@@ -120,7 +120,9 @@ impl Format {
         keep_going: &dyn Fn() -> bool,
     ) -> Result<Vec<u8>, Unwritable> {
         if self == Format::Columns {
-            return json_while(length, document, keep_going);
+            // One that is known to be short is written sooner than anybody could ask.
+            let is_short = length > CAPACITY && length < PIECE;
+            return if is_short { json(length, document) } else { json_while(length, document, keep_going) };
         }
         let _span = otlp::part!("write").entered();
         let none = || Unwritable::new(format_args!("it has no {}", self.name()));
@@ -153,7 +155,10 @@ impl Unwritable {
 /// # Errors
 /// [`Unwritable`], which is a fault of the service.
 pub fn json(capacity: usize, value: &impl Serialize) -> Result<Vec<u8>, Unwritable> {
-    json_while(capacity, value, &|| true)
+    let _span = otlp::part!("write").entered();
+    let mut text = Vec::with_capacity(capacity);
+    serde_json::to_writer(&mut text, value).map_err(Unwritable::new)?;
+    Ok(text)
 }
 
 /// The same while `keep_going` returns true, which is asked every [`PIECE`].

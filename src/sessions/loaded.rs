@@ -33,6 +33,8 @@ pub(super) struct LoadedSession {
     pub(super) shared: bool,
     /// Whether replaying its moves was stopped here, so that more of them are stored.
     pub(super) is_behind: bool,
+    /// The move of a stored snapshot that cannot be read: another engine has made it, or it is damaged.
+    pub(super) unreadable: Option<u64>,
     /// The closed cycles of its past, once they have been asked for.
     pub(super) cycles: Option<Arc<CycleLog>>,
     /// The same up to an earlier move: up to the page of the history that was read last.
@@ -66,9 +68,20 @@ impl LoadedSession {
         let derived = Derived { summary: contact.initial_summary().into(), warnings: present_warnings(&contact) };
         let derived = Arc::new(derived);
         let replay_cost = ReplayCost::default();
-        let (shared, is_behind) = (false, false);
+        let (shared, is_behind, unreadable) = (false, false, None);
         let (cycles, past_cycles, estimated) = (None, None, None);
-        Ok(LoadedSession { session, derived, contact, replay_cost, shared, is_behind, cycles, past_cycles, estimated })
+        Ok(LoadedSession {
+            session,
+            derived,
+            contact,
+            replay_cost,
+            shared,
+            is_behind,
+            unreadable,
+            cycles,
+            past_cycles,
+            estimated,
+        })
     }
 
     /// The same of a session as it is stored, or why its definition is invalid.

@@ -194,9 +194,9 @@ impl Sessions {
         let definition = {
             let mut guard = self.replay.lock(id).await?;
             // It does not depend on the state, which is not loaded for it.
-            match guard.live {
-                Some(_) => Arc::clone(&self.replay.current(&mut guard).await?.session.definition),
-                None => self.replay.find_own(id).await?.definition,
+            match &guard.live {
+                Some(live) if !live.is_behind => Arc::clone(&self.replay.current(&mut guard).await?.session.definition),
+                _ => self.replay.find_own(id).await?.definition,
             }
         };
         let points = definition.profile.points();

@@ -176,7 +176,7 @@ impl Replay {
     ) -> Result<(Box<LoadedSession>, Result<(), SessionError>), SessionError> {
         let id = session.id;
         let mut live = self.first_state(guard, session).await?;
-        (live.contact, live.session.sequence) =
+        (live.contact, live.session.sequence, live.unreadable) =
             self.common.snapshots.load(&mut guard.loading, snapshot, live.contact, last).await?;
         while live.session.sequence < last {
             let page = self.page(id, live.session.sequence, last).await?;

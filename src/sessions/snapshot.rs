@@ -42,32 +42,32 @@ impl Snapshots {
         let Ok(permit) = self.permits.clone().try_acquire_owned() else { return };
         live.replay_cost = ReplayCost::default();
         let (store, contact) = (self.store.clone(), live.contact.clone());
-        let (id, sequence) = (live.session.id, live.session.sequence);
+        let (id, sequence, unreadable) = (live.session.id, live.session.sequence, live.unreadable.take());
         tokio::spawn(async move {
             let _permit = permit;
             let Ok(state) = tokio::task::spawn_blocking(move || with_checksum(&contact)).await else { return };
             // The session is unaffected: only the next replay is longer.
-            if let Err(error) = store.save_snapshot(id, Snapshot { sequence, state }).await {
+            if let Err(error) = store.save_snapshot(id, Snapshot { sequence, state }, unreadable).await {
                 tracing::warn!(%id, sequence, %error, "a snapshot was not stored");
             }
         });
     }
 
-    /// The contact after some stored move and the number of that move; `initial` and 0 if there is no snapshot to read.
-    /// `loading` is increased by the time that it takes.
+    /// The contact after some stored move and the number of that move; `initial` and 0 if there is no snapshot to read,
+    /// and the number of the move of one that is there all the same. `loading` is increased by the time that it takes.
     pub(super) async fn load(
         &self,
         loading: &mut Duration,
         snapshot: Result<Option<Snapshot>, StoreError>,
         initial: Contact,
         last: u64,
-    ) -> Result<(Contact, u64), SessionError> {
+    ) -> Result<(Contact, u64, Option<u64>), SessionError> {
         let snapshot = match snapshot {
             Ok(Some(snapshot)) if snapshot.sequence <= last => snapshot,
-            Ok(_) => return Ok((initial, 0)),
+            Ok(_) => return Ok((initial, 0, None)),
             Err(error) => {
                 tracing::warn!(%error, "a snapshot was not read");
-                return Ok((initial, 0));
+                return Ok((initial, 0, None));
             }
         };
         // Reading a byte is below a nanosecond.
@@ -75,8 +75,8 @@ impl Snapshots {
         let read = self.pool.run(cost, move || {
             let begin = Instant::now();
             let read = match checked(&snapshot.state).and_then(|state| initial.unpack(state)) {
-                Some(contact) => (contact, snapshot.sequence),
-                None => (initial, 0),
+                Some(contact) => (contact, snapshot.sequence, None),
+                None => (initial, 0, Some(snapshot.sequence)),
             };
             (read, begin.elapsed())
         });

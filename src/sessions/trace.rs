@@ -52,7 +52,7 @@ pub async fn trace(
     };
     let snapshot = replay.common.store.snapshot(id).await;
     let mut loading = Duration::ZERO;
-    let (mut contact, mut at) = replay.common.snapshots.load(&mut loading, snapshot, initial, after).await?;
+    let (mut contact, mut at, _) = replay.common.snapshots.load(&mut loading, snapshot, initial, after).await?;
     stop.charge(loading);
     while at < last {
         let records = replay.page(id, at, last).await?;

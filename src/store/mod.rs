@@ -372,9 +372,9 @@ pub trait Store: JobStore {
     /// The newest snapshot of a session, if there is one.
     async fn snapshot(&self, id: Uuid) -> Result<Option<Snapshot>>;
 
-    /// Stores a snapshot in place of an older one. Does nothing where the session is gone or a newer snapshot is
-    /// stored.
-    async fn save_snapshot(&self, id: Uuid, snapshot: Snapshot) -> Result<()>;
+    /// Stores a snapshot in place of an older one, or of that of the move `unreadable`, whatever move that is. Does
+    /// nothing where the session is gone or a newer snapshot is stored.
+    async fn save_snapshot(&self, id: Uuid, snapshot: Snapshot, unreadable: Option<u64>) -> Result<()>;
 
     /// Deletes receipts older than [`RECEIPT_LIFETIME`], jobs past their time, and, where `idle_since` is given, the
     /// sessions that have not moved since. Those are [`StoreError::Expired`] for [`EXPIRED_LIFETIME`] from then on.

@@ -9,7 +9,7 @@ use crate::common::raw::{Service, get, post};
 use crate::common::{ball, long_moves, long_simulation, of, until, with};
 use jiff::Timestamp;
 use serde_json::{Value, json};
-use stickslip::store::{Record, Session, SqliteStore, Store as _, Tenant};
+use stickslip::store::{Record, Session, Snapshot, SqliteStore, Store as _, Tenant};
 use stickslip_wire::{CreateRequest, Document as _, Move, State};
 use tempfile::TempDir;
 use tokio::io::{AsyncReadExt as _, AsyncWriteExt as _};
@@ -264,9 +264,12 @@ async fn what_has_been_replayed_for_a_client_that_leaves_is_kept() {
     let folder = TempDir::new().unwrap();
     let file = folder.path().join("contacts.db");
     let id = stored(&file, LONG).await;
+    // Another engine has left a snapshot of its last move, which is of no use to this one.
+    let foreign = Snapshot { sequence: LONG, state: b"another engine".to_vec() };
+    SqliteStore::open(&file).unwrap().save_snapshot(id, foreign, None).await.unwrap();
     let kept = async || {
         let snapshot = SqliteStore::open_to_read(&file).unwrap().snapshot(id).await.unwrap();
-        snapshot.map(|snapshot| snapshot.sequence)
+        snapshot.map(|snapshot| snapshot.sequence).filter(|sequence| *sequence < LONG)
     };
     let service = on(&file, &[]);
     leave(&service, "loading", &get(&format!("/contacts/{id}")), 50).await;

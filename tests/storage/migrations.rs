@@ -40,7 +40,7 @@ async fn fill(store: &dyn Store) -> [Uuid; 3] {
     let mut awkward = record(4);
     (awkward.step.force, awkward.state.force, awkward.state.elastic_energy) = (Some(-0.0), -0.0, 5e-324);
     store.append(made.id, 3, vec![awkward], Some(receipt("kept", None, 4))).await.unwrap();
-    store.save_snapshot(made.id, snapshot(4)).await.unwrap();
+    store.save_snapshot(made.id, snapshot(4), None).await.unwrap();
     let fork = stickslip::store::Session { sequence: 4, tenant: Tenant::new("lab"), ..session(None) };
     store.fork(made.id, fork.clone(), None).await.unwrap();
     let idle = stickslip::store::Session { updated_at: jiff::Timestamp::UNIX_EPOCH, ..session(None) };

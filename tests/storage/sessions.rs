@@ -128,14 +128,14 @@ async fn a_snapshot_is_read_where_it_is_sound_and_ignored_where_it_is_not() {
     damaged[taken.state.len() / 2] ^= 0x10;
     let cut = taken.state[..taken.state.len() - 8].to_vec();
     for (sequence, state) in [(401, damaged), (402, cut), (403, Vec::new())] {
-        store.save_snapshot(other, Snapshot { sequence, state }).await.unwrap();
+        store.save_snapshot(other, Snapshot { sequence, state }, None).await.unwrap();
         assert_eq!(store.snapshot(other).await.unwrap().unwrap().sequence, sequence);
         assert_eq!(client.contact(other).await.unwrap(), truth);
     }
     // A sound one is not compared with the moves: that would be the replay that it spares.
     let third = client.create(&create(), &options).await.unwrap().id;
     client.apply(third, &Move::displacement(1e-9).into(), &options).await.unwrap();
-    store.save_snapshot(third, Snapshot { sequence: 1, state: taken.state }).await.unwrap();
+    store.save_snapshot(third, Snapshot { sequence: 1, state: taken.state }, None).await.unwrap();
     let (found, expected) = (client.contact(third).await.unwrap(), client.contact(one).await.unwrap());
     assert_eq!((found.sequence, bits(&found.state)), (1, bits(&expected.state)));
 }

@@ -298,9 +298,13 @@ impl Store for MemoryStore {
         self.inner.lock().get(id).map(|stored| stored.snapshot.clone())
     }
 
-    async fn save_snapshot(&self, id: Uuid, snapshot: Snapshot) -> Result<()> {
+    async fn save_snapshot(&self, id: Uuid, snapshot: Snapshot, unreadable: Option<u64>) -> Result<()> {
         if let Some(stored) = self.inner.lock().sessions.get_mut(&id)
-            && stored.snapshot.as_ref().is_none_or(|older| older.sequence < snapshot.sequence)
+            && stored
+                .snapshot
+                .as_ref()
+                .map(|other| other.sequence)
+                .is_none_or(|other| other < snapshot.sequence || Some(other) == unreadable)
         {
             stored.snapshot = Some(snapshot);
         }

@@ -280,8 +280,8 @@ impl Store for PostgresStore {
         found.map(|row| rows::snapshot(&mut reader(&row))).transpose()
     }
 
-    async fn save_snapshot(&self, id: Uuid, snapshot: Snapshot) -> Result<()> {
-        self.pool.save_snapshot(id, snapshot).await
+    async fn save_snapshot(&self, id: Uuid, snapshot: Snapshot, unreadable: Option<u64>) -> Result<()> {
+        self.pool.save_snapshot(id, snapshot, unreadable).await
     }
 
     async fn purge_expired(&self, idle_since: Option<Timestamp>) -> Result<u64> {

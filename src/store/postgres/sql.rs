@@ -212,7 +212,7 @@ pub(super) const SNAPSHOT: &str = "SELECT sequence, state FROM snapshots WHERE c
 pub(super) const SAVE_SNAPSHOT: &str = "
 INSERT INTO snapshots (contact, sequence, state) SELECT id, $2::bigint, $3::bytea FROM contacts WHERE id = $1
 ON CONFLICT (contact) DO UPDATE SET sequence = excluded.sequence, state = excluded.state
-WHERE snapshots.sequence < excluded.sequence";
+WHERE snapshots.sequence < excluded.sequence OR snapshots.sequence = $4::bigint";
 
 /// Makes a session with the first `$2` moves of `$1` and with its snapshot, if that is not after them, unless there are
 /// fewer; and keeps the receipt. Returns the sequence of `$1` and how many of these moves there are. No lock is needed:

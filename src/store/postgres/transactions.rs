@@ -143,10 +143,11 @@ impl ClientPool {
         }
     }
 
-    pub(super) async fn save_snapshot(&self, id: Uuid, snapshot: Snapshot) -> Result<()> {
+    pub(super) async fn save_snapshot(&self, id: Uuid, snapshot: Snapshot, unreadable: Option<u64>) -> Result<()> {
+        let (sequence, unreadable) = (to_bigint(snapshot.sequence), unreadable.map(to_bigint));
         with_retries!(self, ANSWER, connection => async {
             let statement = connection.prepare_cached(sql::SAVE_SNAPSHOT).await?;
-            match connection.execute(&statement, &[&id, &to_bigint(snapshot.sequence), &snapshot.state]).await {
+            match connection.execute(&statement, &[&id, &sequence, &snapshot.state, &unreadable]).await {
                 // The session has just been deleted.
                 Err(error) if error.code() == Some(&SqlState::FOREIGN_KEY_VIOLATION) => Ok(()),
                 other => Ok(other.map(drop)?),

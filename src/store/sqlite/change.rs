@@ -129,12 +129,13 @@ impl Transaction<'_> {
         Ok(Done::Removed(0))
     }
 
-    pub(super) fn save_snapshot(&self, id: Uuid, snapshot: &Snapshot) -> Result<Done, Fault> {
+    pub(super) fn save_snapshot(&self, id: Uuid, snapshot: &Snapshot, unreadable: Option<u64>) -> Result<Done, Fault> {
         let sql = "INSERT INTO snapshots (contact, sequence, state)
                    SELECT number, ?2, ?3 FROM contacts WHERE id = ?1
                    ON CONFLICT (contact) DO UPDATE SET sequence = excluded.sequence, state = excluded.state
-                   WHERE excluded.sequence > snapshots.sequence";
-        execute(self.database, sql, params![id.to_string(), to_integer(snapshot.sequence)?, snapshot.state])?;
+                   WHERE excluded.sequence > snapshots.sequence OR snapshots.sequence = ?4";
+        let (sequence, unreadable) = (to_integer(snapshot.sequence)?, unreadable.map(to_integer).transpose()?);
+        execute(self.database, sql, params![id.to_string(), sequence, snapshot.state, unreadable])?;
         Ok(Done::Made(0))
     }
 

@@ -252,8 +252,9 @@ impl Store for SqliteStore {
         self.readers.read(move |database| read::snapshot(database, id)).await
     }
 
-    async fn save_snapshot(&self, id: Uuid, snapshot: Snapshot) -> Result<()> {
-        self.change(1, [], None, move |transaction| transaction.save_snapshot(id, &snapshot)).await.map(drop)
+    async fn save_snapshot(&self, id: Uuid, snapshot: Snapshot, unreadable: Option<u64>) -> Result<()> {
+        let save = move |transaction: &mut Transaction<'_>| transaction.save_snapshot(id, &snapshot, unreadable);
+        self.change(1, [], None, save).await.map(drop)
     }
 
     async fn purge_expired(&self, idle_since: Option<Timestamp>) -> Result<u64> {

@@ -122,7 +122,7 @@ pub async fn moves_are_appended_at_the_expected_sequence_alone(store: &dyn Store
 
 pub async fn a_fork_shares_the_past_and_nothing_else(store: &dyn Store) {
     let (original, past) = stored(store, 5).await;
-    store.save_snapshot(original.id, snapshot(4)).await.unwrap();
+    store.save_snapshot(original.id, snapshot(4), None).await.unwrap();
     let copy = Session { sequence: 5, label: None, ..session(None) };
     let late = Session { sequence: 6, ..session(None) };
     let refused = store.fork(original.id, late.clone(), None).await;
@@ -192,7 +192,7 @@ pub async fn a_long_past_is_forked_and_deleted_while_others_move(store: Arc<dyn 
 
 pub async fn what_is_deleted_is_gone(store: &dyn Store) {
     let (session, _) = stored(store, 2).await;
-    store.save_snapshot(session.id, snapshot(2)).await.unwrap();
+    store.save_snapshot(session.id, snapshot(2), None).await.unwrap();
     assert!(matches!(store.delete(session.id, 1).await, Err(StoreError::Stale { found: 2 })));
     assert_eq!(store.history(session.id, 0, 10).await.unwrap().len(), 2);
     store.delete(session.id, 2).await.unwrap();
@@ -208,8 +208,13 @@ pub async fn what_is_deleted_is_gone(store: &dyn Store) {
 pub async fn the_newest_snapshot_is_kept(store: &dyn Store) {
     let (session, _) = stored(store, 9).await;
     for (given, kept) in [(3, 3), (7, 7), (5, 7), (9, 9)] {
-        store.save_snapshot(session.id, snapshot(given)).await.unwrap();
+        store.save_snapshot(session.id, snapshot(given), None).await.unwrap();
         assert_eq!(store.snapshot(session.id).await.unwrap(), Some(snapshot(kept)));
     }
-    store.save_snapshot(Uuid::now_v7(), snapshot(1)).await.unwrap();
+    // One that cannot be read is in nobody's way.
+    for (unreadable, kept) in [(7, 9), (9, 4)] {
+        store.save_snapshot(session.id, snapshot(4), Some(unreadable)).await.unwrap();
+        assert_eq!(store.snapshot(session.id).await.unwrap(), Some(snapshot(kept)));
+    }
+    store.save_snapshot(Uuid::now_v7(), snapshot(1), None).await.unwrap();
 }

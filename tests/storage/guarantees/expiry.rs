@@ -17,7 +17,7 @@ pub async fn idle_sessions_expire_and_the_others_stay(store: &dyn Store) {
     }
     store.append(moved_then.id, 0, vec![Record { at: old(1), ..record(1) }], None).await.unwrap();
     store.append(moved_since.id, 0, records(0, 1), None).await.unwrap();
-    store.save_snapshot(moved_then.id, snapshot(1)).await.unwrap();
+    store.save_snapshot(moved_then.id, snapshot(1), None).await.unwrap();
     let copy = Session { sequence: 1, ..session(None) };
     store.fork(moved_then.id, copy.clone(), None).await.unwrap();
     let (fresh, _) = stored(store, 0).await;

@@ -106,7 +106,7 @@ pub async fn what_a_tenant_takes_is_counted_apart_and_given_back(store: &dyn Sto
         let moved = usage().await;
         assert_eq!(added(created, moved), (0, MOVES * store.move_bytes()));
 
-        store.save_snapshot(made.id, snapshot(MOVES)).await.unwrap();
+        store.save_snapshot(made.id, snapshot(MOVES), None).await.unwrap();
         let saved = usage().await;
         assert_eq!(added(moved, saved), (0, snapshot(MOVES).state.len() as u64));
 

@@ -120,7 +120,7 @@ impl DrivenMass<'_> {
             if taken > most {
                 return Err(Unfinished::NotFound);
             }
-            if (taken as usize).is_multiple_of(64) && !(self.keep_going)() {
+            if (taken as usize).is_multiple_of(8) && !(self.keep_going)() {
                 return Err(Unfinished::Interrupted);
             }
             let whole = step.min(end - motion.angle);

@@ -54,7 +54,7 @@ impl Oscillation {
     /// # Errors
     /// [`Error::OutOfRange`] if the normal force would fall below zero or the indentation leave its range,
     /// [`Error::ForceExceedsFriction`] where friction does not hold a driven force, [`Error::Interrupted`] if
-    /// `keep_going` returned false: it is asked once a cycle.
+    /// `keep_going` returned false: it is asked at each step.
     ///
     /// ```
     #[doc = include_str!("../example.txt")]
@@ -148,12 +148,9 @@ impl Oscillation {
         let mut moving = contact.clone().unmoved();
         self.step_to(contact, &mut moving, 0.0, None)?;
         let unit = self.force_unit(contact);
-        let (mut before, mut end) = self.lap(contact, &mut moving, steps, count)?;
+        let (mut before, mut end) = self.lap(contact, &mut moving, (steps, count), keep_going)?;
         for _ in 1..CYCLES {
-            if !keep_going() {
-                return Err(Error::Interrupted);
-            }
-            let (mut lap, ends) = self.lap(contact, &mut moving, steps, count)?;
+            let (mut lap, ends) = self.lap(contact, &mut moving, (steps, count), keep_going)?;
             let most = (4.0 * unit * lap.displacement_amplitude).max(f64::MIN_POSITIVE);
             let work = (lap.dissipated_energy - before.dissipated_energy).abs() / most;
             lap.error = work.max((ends - end).abs() / unit.max(f64::MIN_POSITIVE));
@@ -170,12 +167,15 @@ impl Oscillation {
         &self,
         contact: &Contact,
         moving: &mut Contact,
-        steps: usize,
-        count: usize,
+        (steps, count): (usize, usize),
+        keep_going: &dyn Fn() -> bool,
     ) -> Result<(OscillatingCycle, f64), Error> {
         let start = moving.dissipated;
         let (mut states, mut answers) = (vec![moving.state()], Vec::with_capacity(steps / 2));
         for index in 1..=steps / 2 {
+            if !keep_going() {
+                return Err(Error::Interrupted);
+            }
             let angle = |step: usize| TAU * step as f64 / steps as f64;
             let (from, to) = (angle(2 * index - 2), angle(2 * index));
             let mut here = from;

@@ -103,6 +103,7 @@ impl Resonator {
                 keep_going,
             };
             let start = mass.balance_of_first(contact);
+            keep_going().then_some(())?;
             if mass.ratio > QUASI_STATIC {
                 return Some(mass.quasi_static(contact).unwrap_or(start));
             }
@@ -117,11 +118,16 @@ impl Resonator {
 
 impl DrivenMass<'_> {
     /// The balance of the first harmonic alone: (a - M w^2 U0)^2 + b^2 = P^2 with the first harmonic a cos(th) + b
-    /// sin(th) of the force in a cycle of the amplitude U0. Its error is not known.
+    /// sin(th) of the force in a cycle of the amplitude U0. Its error is not known. Of no use once `keep_going` has
+    /// returned false.
     fn balance_of_first(&self, contact: &Contact) -> Response {
         let first = |amplitude: f64| SteadyCycle::of(contact, amplitude).harmonics(1).harmonics[0];
         let lag = |amplitude: f64, force: Harmonic| [force.in_phase - self.inertia * amplitude, -force.quadrature];
         let lack = |logarithm: f64| {
+            // Ends the search at once: the result is of no use any more.
+            if !(self.keep_going)() {
+                return 0.0;
+            }
             let [carried, lost] = lag(logarithm.exp(), first(logarithm.exp()));
             carried.hypot(lost) - self.drive_force
         };

@@ -365,7 +365,7 @@ mod tests {
         let section = section(landscape);
         let (width, height) = section.extent_in_pixels();
         let left = (SIZE.0 - LEFT - width - SCALE) / 2 + LEFT;
-        let drawn = pixels(&section).unwrap();
+        let drawn = pixels(&section, &|| true).unwrap();
         let range = extent(section.values.1.iter().map(|value| value / 1e6));
         let levels = Levels::of(range);
         let fine = levels.step / SHADES as f64;
