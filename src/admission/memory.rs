@@ -1,10 +1,29 @@
 //! Memory for bodies, work and replies: reserved before it is used, so that its sum is bounded.
 //!
-//! Large needs wait in a line. Small ones have a share beside it, so that they do not wait behind the large ones.
+//! A request has one reservation, which is resized as its needs become known. Most of the memory is ordinary: shared
+//! by all. Beside it each [`Stage`] has a reserve, which belongs to one request at a time: that one has the turn.
+//!
+//! # Why requests never wait for each other in a circle
+//!
+//! Whoever waits for memory waits for the turn too, in the order of arrival, and takes what comes first. The request
+//! that has the turn finds in the reserve all that its stage may still ask for, so that it never waits for memory. What
+//! else requests wait for comes in one order, and nobody waits for what comes before something that it holds:
+//!
+//! 1. the turn of a body, while its client sends the rest, which has a time limit;
+//! 2. the permit of a request;
+//! 3. the turn of work;
+//! 4. the lock of a contact;
+//! 5. memory for states that are loaded or copied ([`Pool::reserve_states`]);
+//! 6. a thread of the solver, the store, or the client that reads a reply, each of which has a time limit.
+//!
+//! So the request that holds what comes last goes on, and then the one before it. Memory that a request can do without
+//! is not waited for at all ([`Pool::try_reserve`]).
+//!
+//! Small needs have a share of their own, so that they do not wait behind large ones.
 
 use std::sync::Arc;
 
-use tokio::sync::OwnedSemaphorePermit;
+use tokio::sync::{OwnedSemaphorePermit, Semaphore};
 
 use super::{Capacity, Pool, PoolError};
 
@@ -12,12 +31,12 @@ use super::{Capacity, Pool, PoolError};
 pub const BYTES: usize = 512 * 1024 * 1024;
 /// Bytes that one request takes at most, whatever it asks for: measured, with a margin.
 pub const LARGEST: usize = 256 * 1024 * 1024;
+/// Bytes of the largest body.
+pub const LARGEST_BODY: usize = 16 * 1024 * 1024;
 /// Reservations up to this are not counted: the number of requests bounds them.
 pub const UNCOUNTED: usize = 16 * 1024;
 
-/// The divisor of the bytes of work that gives those of the states that work loads and copies, which come on top. A
-/// request that holds memory for its body waits for memory for a state; one that holds memory for a state waits for
-/// none, so that requests never wait for each other in a circle.
+/// The divisor of the bytes of work that gives those of the states that work loads and copies, which come on top.
 pub const STATES_SHARE: usize = 4;
 
 /// The divisor of the bytes of work that gives those beside them for small reservations, so that these do not wait
@@ -29,7 +48,33 @@ pub const SMALL: usize = 1024 * 1024;
 /// Bytes are counted in units of this size.
 pub(super) const UNIT: usize = 1024;
 
+/// What a request needs memory for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stage {
+    /// Its body, while that arrives.
+    Body,
+    /// All that comes then.
+    Work,
+}
+
 impl Capacity {
+    /// Bytes of the reserve of a stage: as many as one request takes there at most.
+    #[must_use]
+    pub fn reserve_bytes(&self, stage: Stage) -> usize {
+        let largest = match stage {
+            Stage::Body => LARGEST_BODY,
+            Stage::Work => LARGEST,
+        };
+        largest.min(self.bytes)
+    }
+
+    /// Bytes of bodies, work and replies at most: the ordinary ones, the reserves, and those for small needs.
+    #[must_use]
+    pub fn work_bytes(&self) -> usize {
+        let reserves = self.reserve_bytes(Stage::Body) + self.reserve_bytes(Stage::Work);
+        self.bytes.saturating_add(reserves).saturating_add(self.small_bytes())
+    }
+
     /// Bytes of the states that work loads and copies at a time.
     #[must_use]
     pub fn state_bytes(&self) -> usize {
@@ -43,52 +88,131 @@ impl Capacity {
     }
 }
 
+/// The memory of a pool.
+#[derive(Debug)]
+pub(super) struct Memory {
+    capacity: Capacity,
+    ordinary: Arc<Semaphore>,
+    small: Arc<Semaphore>,
+    states: Arc<Semaphore>,
+    body: Reserve,
+    work: Reserve,
+}
+
+/// The reserve of a stage.
+#[derive(Debug)]
+struct Reserve {
+    /// One permit.
+    turn: Arc<Semaphore>,
+    /// Taken by whoever has the turn.
+    units: Arc<Semaphore>,
+}
+
+impl Memory {
+    pub(super) fn new(capacity: Capacity) -> Memory {
+        let units = |bytes: usize| Arc::new(Semaphore::new((bytes / UNIT).clamp(1, u32::MAX as usize)));
+        let reserve =
+            |stage| Reserve { turn: Arc::new(Semaphore::new(1)), units: units(capacity.reserve_bytes(stage)) };
+        Memory {
+            capacity,
+            ordinary: units(capacity.bytes),
+            small: units(capacity.small_bytes()),
+            states: units(capacity.state_bytes()),
+            body: reserve(Stage::Body),
+            work: reserve(Stage::Work),
+        }
+    }
+
+    fn reserve(&self, stage: Stage) -> &Reserve {
+        match stage {
+            Stage::Body => &self.body,
+            Stage::Work => &self.work,
+        }
+    }
+
+    /// Bytes that are reserved.
+    pub(super) fn taken(&self) -> usize {
+        let taken =
+            |bytes: usize, semaphore: &Semaphore| (bytes / UNIT).max(1).saturating_sub(semaphore.available_permits());
+        let of = |stage| taken(self.capacity.reserve_bytes(stage), &self.reserve(stage).units);
+        UNIT * (taken(self.capacity.bytes, &self.ordinary)
+            + taken(self.capacity.small_bytes(), &self.small)
+            + of(Stage::Body)
+            + of(Stage::Work))
+    }
+}
+
 /// Reserved bytes, held until dropped; none if they are too few to be counted.
 #[derive(Debug, Default)]
 pub struct Reservation {
-    work: Option<OwnedSemaphorePermit>,
+    /// Ordinary ones, or those of states.
+    shared: Option<OwnedSemaphorePermit>,
     /// Of those for small reservations.
     small: Option<OwnedSemaphorePermit>,
+    turn: Option<Turn>,
+}
+
+/// The turn of a stage.
+#[derive(Debug)]
+struct Turn {
+    stage: Stage,
+    /// Of its reserve. Dropped before the turn: the next one finds all of it.
+    units: Option<OwnedSemaphorePermit>,
+    _turn: OwnedSemaphorePermit,
 }
 
 impl Reservation {
-    fn of_work(permit: OwnedSemaphorePermit) -> Reservation {
-        Reservation { work: Some(permit), small: None }
+    fn of_shared(permit: OwnedSemaphorePermit) -> Reservation {
+        Reservation { shared: Some(permit), ..Reservation::default() }
     }
 
-    /// This and another one, as one.
+    /// This and one that was not waited for, as one.
     #[must_use]
-    pub fn with(self, other: Reservation) -> Reservation {
-        let both = |one: Option<OwnedSemaphorePermit>, other: Option<OwnedSemaphorePermit>| match (one, other) {
-            (Some(mut permit), Some(more)) => {
-                permit.merge(more);
-                Some(permit)
-            }
-            (one, other) => one.or(other),
-        };
-        Reservation { work: both(self.work, other.work), small: both(self.small, other.small) }
+    pub fn with(mut self, other: Reservation) -> Reservation {
+        self.add(other);
+        self
     }
 
-    /// Gives back all but this many bytes.
+    fn add(&mut self, other: Reservation) {
+        merge(&mut self.shared, other.shared);
+        merge(&mut self.small, other.small);
+        self.turn = other.turn.or(self.turn.take());
+    }
+
+    /// Gives back all but this many bytes, those of a reserve first.
     pub fn shrink(&mut self, bytes: usize) {
-        let kept = bytes.div_ceil(UNIT);
-        let keep = |permit: &mut Option<OwnedSemaphorePermit>, kept: usize| {
+        let mut kept = bytes.div_ceil(UNIT);
+        let reserved = self.turn.as_mut().map(|turn| &mut turn.units);
+        for permit in [&mut self.shared, &mut self.small].into_iter().chain(reserved) {
             if let Some(permit) = permit {
                 drop(permit.split(permit.num_permits().saturating_sub(kept)));
             }
-        };
-        keep(&mut self.small, kept.saturating_sub(held(&self.work)));
-        keep(&mut self.work, kept);
+            kept = kept.saturating_sub(held(permit));
+        }
+        self.turn.take_if(|turn| held(&turn.units) == 0);
     }
 
     /// Whether it is large enough to be counted.
     #[must_use]
     pub fn is_counted(&self) -> bool {
-        self.units() > 0
+        self.bytes() > 0
     }
 
-    fn units(&self) -> usize {
-        held(&self.work) + held(&self.small)
+    /// Bytes that are counted.
+    #[must_use]
+    pub fn bytes(&self) -> usize {
+        UNIT * (self.lasting_units() + self.turn.as_ref().map_or(0, |turn| held(&turn.units)))
+    }
+
+    /// Units that are not of a reserve.
+    fn lasting_units(&self) -> usize {
+        held(&self.shared) + held(&self.small)
+    }
+
+    /// Units that it has in a stage: those of the reserve of another are to be given back.
+    fn units(&self, stage: Stage) -> usize {
+        let turn = self.turn.as_ref().filter(|turn| turn.stage == stage);
+        self.lasting_units() + turn.map_or(0, |turn| held(&turn.units))
     }
 }
 
@@ -96,8 +220,16 @@ fn held(permit: &Option<OwnedSemaphorePermit>) -> usize {
     permit.as_ref().map_or(0, OwnedSemaphorePermit::num_permits)
 }
 
+fn merge(permit: &mut Option<OwnedSemaphorePermit>, more: Option<OwnedSemaphorePermit>) {
+    match (permit.as_mut(), more) {
+        (Some(permit), Some(more)) => permit.merge(more),
+        (None, more) => *permit = more,
+        (Some(_), None) => {}
+    }
+}
+
 impl Pool {
-    /// Reserves bytes, but at most [`LARGEST`] and all that there are.
+    /// Reserves bytes, but at most [`LARGEST`] and all that there are, for a request that has no reservation yet.
     ///
     /// # Errors
     /// As [`Pool::wait`].
@@ -108,7 +240,7 @@ impl Pool {
     }
 
     /// Reserves bytes for all the states that a piece of work loads or copies, but at most all that there are for
-    /// states. Nothing else may be waited for until they are released, except a thread.
+    /// states. Nothing else may be waited for until they are released, except a thread and the store.
     ///
     /// # Errors
     /// As [`Pool::wait`].
@@ -116,39 +248,87 @@ impl Pool {
         if bytes <= UNCOUNTED {
             return Ok(Reservation::default());
         }
-        let wanted = bytes.div_ceil(UNIT).min((self.0.capacity.state_bytes() / UNIT).max(1));
-        self.permits(&self.0.states, wanted as u32).await.map(Reservation::of_work)
+        let wanted = bytes.div_ceil(UNIT).min((self.capacity().state_bytes() / UNIT).max(1));
+        self.permits(&self.memory().states, wanted as u32).await.map(Reservation::of_shared)
     }
 
     /// Reserves bytes if they are free now.
     #[must_use]
     pub fn try_reserve(&self, bytes: usize) -> Option<Reservation> {
         let units = u32::try_from(bytes.div_ceil(UNIT)).ok()?;
-        Arc::clone(&self.0.units).try_acquire_many_owned(units).ok().map(Reservation::of_work)
+        Arc::clone(&self.memory().ordinary).try_acquire_many_owned(units).ok().map(Reservation::of_shared)
     }
 
-    /// Grows or shrinks a reservation. A small one never waits behind a large one.
+    /// Grows or shrinks the reservation of a request. It may hold no lock of a contact when it grows.
     ///
     /// # Errors
     /// As [`Pool::wait`]; the reservation is unchanged then.
     pub async fn resize(&self, reservation: &mut Reservation, bytes: usize) -> Result<(), PoolError> {
+        self.resize_in(Stage::Work, reservation, bytes).await
+    }
+
+    /// The same for a body that is still arriving.
+    ///
+    /// # Errors
+    /// As [`Pool::resize`].
+    pub async fn resize_in(&self, stage: Stage, reservation: &mut Reservation, bytes: usize) -> Result<(), PoolError> {
         if bytes <= UNCOUNTED {
             *reservation = Reservation::default();
             return Ok(());
         }
-        let most = (self.0.capacity.bytes.min(LARGEST) / UNIT).clamp(1, u32::MAX as usize);
-        let wanted = bytes.div_ceil(UNIT).min(most);
-        let Some(more) = wanted.checked_sub(reservation.units()).filter(|more| *more > 0) else {
+        let (memory, capacity) = (self.memory(), self.capacity());
+        let wanted = bytes.div_ceil(UNIT).min((capacity.reserve_bytes(stage) / UNIT).max(1));
+        let Some(more) = wanted.checked_sub(reservation.units(stage)).filter(|more| *more > 0) else {
             reservation.shrink(wanted * UNIT);
+            // Others wait for the turn: it is given up as soon as it can be done without.
+            if let Some(turn) = &reservation.turn
+                && let Some(ordinary) = self.try_reserve(UNIT * held(&turn.units))
+            {
+                reservation.turn = None;
+                reservation.add(ordinary);
+            }
             return Ok(());
         };
-        let small = wanted <= self.0.capacity.small_bytes().min(SMALL) / UNIT;
-        let more = match Arc::clone(&self.0.units).try_acquire_many_owned(more as u32) {
-            Ok(permit) => Reservation::of_work(permit),
-            Err(_) if small => Reservation { work: None, small: Some(self.permits(&self.0.small, more as u32).await?) },
-            Err(_) => Reservation::of_work(self.permits(&self.0.units, more as u32).await?),
+        let reserve = |more: usize| {
+            let units = Arc::clone(&memory.reserve(stage).units).try_acquire_many_owned(more as u32);
+            // Nobody else takes of them, and nobody has more than there are.
+            units.map_err(|_| PoolError::Busy)
         };
-        *reservation = std::mem::take(reservation).with(more);
+        if let Some(turn) = reservation.turn.as_mut().filter(|turn| turn.stage == stage) {
+            merge(&mut turn.units, Some(reserve(more)?));
+            return Ok(());
+        }
+        if let Ok(permit) = Arc::clone(&memory.ordinary).try_acquire_many_owned(more as u32) {
+            reservation.turn = None;
+            reservation.add(Reservation::of_shared(permit));
+            return Ok(());
+        }
+        let is_small = wanted <= capacity.small_bytes().min(SMALL) / UNIT;
+        let shared = if is_small { &memory.small } else { &memory.ordinary };
+        let fits = is_small || more <= capacity.bytes / UNIT;
+        // In a box, so that a request that need not wait is not as large as one that does.
+        let got = Box::pin(self.wait(async {
+            tokio::select! {
+                biased;
+                permit = Arc::clone(shared).acquire_many_owned(more as u32), if fits => {
+                    let permit = permit.ok();
+                    let got = if is_small {
+                        Reservation { small: permit, ..Reservation::default() }
+                    } else {
+                        Reservation { shared: permit, ..Reservation::default() }
+                    };
+                    Ok(got)
+                }
+                turn = Arc::clone(&memory.reserve(stage).turn).acquire_owned() => {
+                    let turn = turn.map_err(|_| PoolError::Busy)?;
+                    let turn = Turn { stage, units: Some(reserve(more)?), _turn: turn };
+                    Ok(Reservation { turn: Some(turn), ..Reservation::default() })
+                }
+            }
+        }))
+        .await??;
+        reservation.turn = None;
+        reservation.add(got);
         Ok(())
     }
 }

@@ -18,7 +18,7 @@ use tracing::Span;
 use crate::metrics::{Counted, SECONDS, SHORT_SECONDS, metrics};
 
 use super::fair_scheduler::{FairScheduler, INTERACTIVE, Kind, SolverSlot};
-use super::memory::{BYTES, UNIT};
+use super::memory::{BYTES, Memory};
 use super::stop::{LONGEST_WORK, Stop, StopOnDrop};
 use super::{Client, Quota, QuotaExceeded, QuotaLimits, Quotas, Share};
 
@@ -65,16 +65,14 @@ impl Default for Capacity {
 
 /// The permits of the resources. Clones share it.
 #[derive(Clone, Debug)]
-pub struct Pool(pub(super) Arc<Shared>);
+pub struct Pool(Arc<Shared>);
 
 #[derive(Debug)]
-pub(super) struct Shared {
-    pub(super) capacity: Capacity,
+struct Shared {
+    capacity: Capacity,
     threads: FairScheduler,
     requests: Arc<Semaphore>,
-    pub(super) units: Arc<Semaphore>,
-    pub(super) small: Arc<Semaphore>,
-    pub(super) states: Arc<Semaphore>,
+    memory: Memory,
     queue: Arc<Semaphore>,
     quotas: Quotas,
     meters: Arc<PoolMeters>,
@@ -139,9 +137,7 @@ impl Pool {
             capacity,
             threads: FairScheduler::new(capacity.threads),
             requests: semaphore(capacity.requests),
-            units: semaphore((capacity.bytes / UNIT).min(u32::MAX as usize)),
-            small: semaphore(capacity.small_bytes() / UNIT),
-            states: semaphore(capacity.state_bytes() / UNIT),
+            memory: Memory::new(capacity),
             queue: semaphore(capacity.queue),
             quotas: Quotas::new(capacity.quotas),
             meters: Arc::default(),
@@ -158,6 +154,10 @@ impl Pool {
     #[must_use]
     pub fn capacity(&self) -> &Capacity {
         &self.0.capacity
+    }
+
+    pub(super) fn memory(&self) -> &Memory {
+        &self.0.memory
     }
 
     /// What each client may have.
@@ -184,9 +184,7 @@ impl Pool {
             threads: self.0.threads.taken(),
             requests: taken(self.0.capacity.requests, &self.0.requests),
             waiting: taken(self.0.capacity.queue, &self.0.queue),
-            bytes: UNIT
-                * (taken(self.0.capacity.bytes / UNIT, &self.0.units)
-                    + taken(self.0.capacity.small_bytes() / UNIT, &self.0.small)),
+            bytes: self.0.memory.taken(),
         }
     }
 

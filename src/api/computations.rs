@@ -12,6 +12,7 @@ use serde_json::{Map, Value, json};
 use utoipa::{PartialSchema, ToSchema};
 use uuid::Uuid;
 
+use crate::admission::Reservation;
 use crate::computations::{Computation, FromStored, OnContact, Outcome, Shown, Task, Visitor, each};
 use crate::formats::Format;
 use crate::otlp;
@@ -146,12 +147,13 @@ async fn answer_stored<C: FromStored>(
     request: CheckedBody<C::Request>,
 ) -> Result<Response, Problem> {
     let shown = shown::<C>(query, &headers)?;
-    match C::stored(request.body) {
+    let CheckedBody { body, mut held, .. } = request;
+    match C::stored(body) {
         Ok((id, said, task)) => {
-            let (_, body, memory) = app.sessions.compute_on(id, said, task, shown).await?;
-            Ok(reply::holding(written::<C>(body, &shown), memory))
+            let (_, body) = app.sessions.compute_on(id, said, task, shown, &mut held.memory).await?;
+            Ok(held.on(written::<C>(body, &shown)))
         }
-        Err(task) => run::<C>(&app, task, shown, request.held).await,
+        Err(task) => run::<C>(&app, task, shown, held).await,
     }
 }
 
@@ -184,7 +186,7 @@ pub async fn get_of_contact<T: OnContact>(
     let format = Format::chosen(format, headers, &Format::ALL)?;
     match unchanged(app, id, headers, format).await? {
         Some(unchanged) => Ok(unchanged),
-        None => of_contact(app, id, format, task).await,
+        None => of_contact(app, id, format, task, Reservation::default()).await,
     }
 }
 
@@ -197,10 +199,17 @@ pub async fn unchanged(app: &App, id: Uuid, headers: &HeaderMap, format: Format)
     Ok(reply::is_current(headers, &tag).then(|| reply::not_modified(&tag)))
 }
 
-/// The reply of a computation on a stored contact, with the sequence of the contact as its version.
-pub async fn of_contact<T: OnContact>(app: &App, id: Uuid, format: Format, task: T) -> Result<Response, Problem> {
+/// The reply of a computation on a stored contact, with the sequence of the contact as its version, for a request that
+/// has reserved this memory so far.
+pub async fn of_contact<T: OnContact>(
+    app: &App,
+    id: Uuid,
+    format: Format,
+    task: T,
+    mut memory: Reservation,
+) -> Result<Response, Problem> {
     let shown = Shown::in_format(format);
     task.check_shown(&shown)?;
-    let (sequence, body, memory) = app.sessions.compute_on(id, None, task, shown).await?;
+    let (sequence, body) = app.sessions.compute_on(id, None, task, shown, &mut memory).await?;
     Ok(reply::holding(reply::tagged(format.reply(body), &format.tag(&sequence.to_string())), memory))
 }

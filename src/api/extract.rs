@@ -14,9 +14,8 @@ use sha2::{Digest as _, Sha256};
 use tokio::time::{Instant, timeout};
 
 use crate::admission::{
-    INLINE, Nanoseconds, Pool, PoolError, Quota, RequestPermit, Reservation, Stop, StopOnDrop, UNCOUNTED,
+    INLINE, Nanoseconds, Pool, PoolError, Quota, RequestPermit, Reservation, Stage, Stop, StopOnDrop, UNCOUNTED,
 };
-use crate::computations::files;
 use crate::otlp;
 use crate::server::RequestClient;
 use crate::server::limits::DISCARDED;
@@ -41,7 +40,7 @@ pub struct CheckedBody<T: Document, const OPTIONAL: bool = false> {
 
 /// The resources that a request holds: its permit until it is answered, and memory until the client has the reply.
 pub struct HeldResources {
-    memory: Reservation,
+    pub memory: Reservation,
     _permit: RequestPermit,
     /// The work of its check.
     spent: Duration,
@@ -98,7 +97,7 @@ impl<T: Document + 'static, const OPTIONAL: bool> FromRequest<Arc<App>> for Chec
         let length = bytes.len();
         let cost = if length > cost::INLINE_BODY { INLINE } else { 0 };
         if cost > 0 {
-            app.pool.resize(&mut memory, length.saturating_mul(bytes::EXPANSION)).await?;
+            app.pool.resize(&mut memory, length.saturating_mul(bytes::PARSED)).await?;
         }
         let (stop, _guard) = app.pool.deadline();
         let profiles = app.sessions.profiles(&stop);
@@ -120,7 +119,7 @@ impl<T: Document + 'static, const OPTIONAL: bool> FromRequest<Arc<App>> for Chec
             ReadBody::Checked(body) => body,
             ReadBody::Unprepared(document, cost) => {
                 let shape = document.profile().map_or(0, |defined| bytes::of_shape(defined.profile));
-                app.pool.resize(&mut memory, shape.max(length.saturating_mul(bytes::EXPANSION))).await?;
+                app.pool.resize(&mut memory, shape + length.saturating_mul(bytes::PARSED)).await?;
                 let work = move || otlp::part!("prepare").in_scope(|| profiles.check(document));
                 app.pool.run(cost, work).await???
             }
@@ -147,9 +146,9 @@ impl FromRequest<Arc<App>> for FileBody {
             let detail = format!("Content-Type must be one of {}", FILE_TYPES.join(", "));
             return Err(Problem::new(Code::UnsupportedMediaType, detail));
         }
-        let (_, bytes, mut memory, permit) = receive(request, FILE_LIMIT, &app.pool).await?;
-        app.pool.resize(&mut memory, bytes.len().saturating_mul(files::EXPANSION)).await?;
-        Ok(FileBody { bytes, held: HeldResources { memory, _permit: permit, spent: Duration::ZERO } })
+        let (_, file, mut memory, permit) = receive(request, FILE_LIMIT, &app.pool).await?;
+        app.pool.resize(&mut memory, file.len().saturating_mul(bytes::PARSED)).await?;
+        Ok(FileBody { bytes: file, held: HeldResources { memory, _permit: permit, spent: Duration::ZERO } })
     }
 }
 
@@ -202,7 +201,7 @@ async fn receive(
                 if room > UNCOUNTED {
                     share.resize(room).map_err(PoolError::Quota)?;
                 }
-                pool.resize(&mut memory, room).await?;
+                pool.resize_in(Stage::Body, &mut memory, room).await?;
                 bytes.reserve_exact(room - bytes.len());
             }
             bytes.extend_from_slice(&chunk);

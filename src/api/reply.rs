@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use axum::body::Body;
+use axum::body::{Body, HttpBody as _};
 use axum::http::{HeaderMap, HeaderValue, StatusCode, header};
 use axum::response::{IntoResponse, Response};
 
@@ -74,9 +74,13 @@ pub fn of_change(reply: Reply) -> Response {
     response
 }
 
-/// A reply whose memory stays reserved until it is sent.
-pub fn holding(mut response: Response, held: Reservation) -> Response {
+/// A reply whose memory stays reserved until it is sent: that of its text, as what it was made of is gone.
+pub fn holding(mut response: Response, mut held: Reservation) -> Response {
     if held.is_counted() {
+        if let Some(length) = response.body().size_hint().exact() {
+            // A text that grows by doubling.
+            held.shrink(usize::try_from(length).unwrap_or(usize::MAX).saturating_mul(2));
+        }
         // In an `Arc`, because extensions must be `Clone`.
         response.extensions_mut().insert(Arc::new(held));
     }

@@ -9,9 +9,6 @@ use stickslip_wire::{FileColumn, FilePreview, LoopFileReply, ScanFileReply, limi
 
 use crate::admission::Nanoseconds;
 
-/// Bytes that a byte of a file may become: a short number with its separator, as a cell, in a column and as JSON, in
-/// texts and columns that grow by doubling.
-pub const EXPANSION: usize = 32;
 /// The time that a byte of a file takes.
 const BYTE_COST: Nanoseconds = 100;
 

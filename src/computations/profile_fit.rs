@@ -14,15 +14,13 @@ use stickslip_wire::{ContactDefinition, Profile, ProfileFitReply, ProfileFitRequ
 use super::loop_fit::{Points, clamped};
 use super::{About, Computation, Example, Outcome, Route, Shown, example};
 use crate::admission::{Nanoseconds, Stop};
-use crate::formats::{Column, STRESS_ROW, Table};
+use crate::formats::{Column, Table};
+use crate::simulation::bytes::{ROW, WORKSPACE};
 use crate::simulation::{Failure, HUGE_TABLE_RADIUS, quantity};
 
 /// Time of a fit, and for each of its points.
 const SCAN_COST: Nanoseconds = 100_000_000;
 const SCAN_POINT_COST: Nanoseconds = 4_000;
-/// Bytes of a fit with its reply, and for each of its points.
-const SCAN_BYTES: usize = 4 * 1024 * 1024;
-const SCAN_POINT_BYTES: usize = 256;
 /// How far the strokes of outliers reach at most, in standard deviations of the residual.
 const LARGEST_RESIDUAL: f64 = 10.0;
 /// Rows of the table, at most.
@@ -74,11 +72,11 @@ impl Computation for FitProfile {
     }
 
     fn bytes(task: &ProfileFitTask) -> usize {
-        SCAN_BYTES + SCAN_POINT_BYTES * task.points.len()
+        WORKSPACE + ROW * task.points.len()
     }
 
     fn rows(_: &ProfileFitTask) -> (usize, usize) {
-        (ROWS, STRESS_ROW)
+        (ROWS, ROW)
     }
 
     fn cost(task: &ProfileFitTask) -> Nanoseconds {

@@ -8,7 +8,7 @@ use stickslip_wire::{Peak, Residual, Sampling};
 
 use super::{OnContact, Outcome, Shown};
 use crate::admission::{Nanoseconds, Stop};
-use crate::formats::{Column, STRESS_ROW, Table};
+use crate::formats::{Column, Table};
 use crate::simulation::cost::Work;
 use crate::simulation::{self, Failure, bytes};
 
@@ -38,7 +38,7 @@ impl OnContact for ResidualTask {
     }
 
     fn rows(&self) -> (usize, usize) {
-        (ASSUMED_PEAKS, STRESS_ROW)
+        (ASSUMED_PEAKS, bytes::ROW)
     }
 
     fn cost(&self, profile: &Profile, depth: usize) -> Nanoseconds {

@@ -9,7 +9,7 @@ use stickslip_wire::{ContactDefinition, Fault, Field, Sampling, SimulateReply, S
 use super::{About, Choice, Computation, Example, Outcome, Route, Shown, example, example_contact, residual, stress};
 use crate::admission::{Nanoseconds, Stop};
 use crate::formats::{Column, Table};
-use crate::simulation::bytes::{NUMBER_LENGTH, STATE_BYTES, STATE_LENGTH, of_simulation};
+use crate::simulation::bytes::{NUMBER_LENGTH, OBJECT, STATE_LENGTH, of_simulation};
 use crate::simulation::{self, Failure, cost};
 
 /// What a reply has besides states and stresses, bytes of JSON.
@@ -88,7 +88,7 @@ impl Computation for Simulate {
 
     fn rows(task: &Simulation) -> (usize, usize) {
         let radii = task.stress.as_ref().map_or(0, Sampling::length);
-        ((2 * task.plan.length()).max(radii), STATE_BYTES)
+        ((2 * task.plan.length()).max(radii), OBJECT)
     }
 
     fn cost(task: &Simulation) -> Nanoseconds {

@@ -8,7 +8,7 @@ use stickslip_wire::{Field, Sampling, StressReply};
 
 use super::{OnContact, Outcome, Shown};
 use crate::admission::{Nanoseconds, Stop};
-use crate::formats::{Column, STRESS_ROW, Table};
+use crate::formats::{Column, Table};
 use crate::simulation::cost::Work;
 use crate::simulation::{self, Failure, bytes};
 
@@ -38,7 +38,7 @@ impl OnContact for StressTask {
     }
 
     fn rows(&self) -> (usize, usize) {
-        (self.sampling.length(), STRESS_ROW)
+        (self.sampling.length(), bytes::ROW)
     }
 
     fn cost(&self, profile: &Profile, depth: usize) -> Nanoseconds {

@@ -12,7 +12,7 @@ use stickslip_wire::{Accuracy, ContactDefinition, Fault, SimulateRequest, Steps,
 
 use super::{About, Computation, Example, OnContact, Outcome, Shown, example};
 use crate::admission::{Nanoseconds, Stop};
-use crate::formats::{Column, Format, SUBSURFACE_ROW, Table};
+use crate::formats::{Column, Format, Table};
 use crate::simulation::{
     self, Failure, Timer, accuracy, bulk_warning, bytes, cost, needs_stress_field, present_warnings,
 };
@@ -96,7 +96,7 @@ impl OnContact for SubsurfaceTask {
     }
 
     fn rows(&self) -> (usize, usize) {
-        (self.places.count(), SUBSURFACE_ROW)
+        (self.places.count(), bytes::PLACE_ROW)
     }
 
     fn check_shown(&self, shown: &Shown) -> Result<(), Fault> {

@@ -14,10 +14,6 @@ use stickslip_report::plot::Picture;
 
 pub use table::{Block, Cells, Column, Table, TableStream};
 
-/// Bytes of a row of stresses in the longest of the formats.
-pub const STRESS_ROW: usize = 256;
-/// Bytes of a row of stresses below the surface, likewise.
-pub const SUBSURFACE_ROW: usize = 640;
 /// Bytes that a plot takes while it is drawn: its pixels, and the outlines of a rough field.
 const PLOT: usize = 32 * 1024 * 1024;
 

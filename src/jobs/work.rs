@@ -8,11 +8,12 @@ use uuid::Uuid;
 
 use crate::admission::{Client, INLINE, Kind, PoolError, Stop};
 use crate::metrics::Counted;
+use crate::simulation::bytes::NUMBER;
 use crate::simulation::{Sweep, SweepError, SweepResult};
 use crate::store::{ChunkResult, Claim, Job, StoreError, Tenant};
 use stickslip_wire::{self as wire, SweepRequest};
 
-use super::{JobError, Jobs, NUMBER_BYTES, store_error};
+use super::{JobError, Jobs, store_error};
 
 /// Chunks that a process works on at a time: while one is being stored, the threads compute the other.
 const CHUNKS_AT_A_TIME: usize = 2;
@@ -102,7 +103,7 @@ impl Jobs {
         let first = claim.chunk * job.chunk;
         let points = to_usize(first)..to_usize(job.points.min(first + job.chunk));
         let pool = &self.common.pool;
-        let bytes = sweep.bytes(pool.capacity().threads) + 4 * NUMBER_BYTES * sweep.numbers(points.len());
+        let bytes = sweep.bytes(pool.capacity().threads) + NUMBER * sweep.numbers(points.len());
         let _held = pool.reserve(bytes).await?;
         let Some(rows) = self.rows(claim, sweep, points.clone(), (job.tenant.clone(), lease)).await? else {
             return self.common.store.release(claim).await.map_err(store_error(claim.job));

@@ -9,7 +9,7 @@ use uuid::Uuid;
 use crate::admission::{Reservation, Stop};
 use crate::computations::{OnContact as _, dry_run_relax};
 use crate::otlp;
-use crate::simulation::bytes::{RECORD_BYTES, of_moves, of_stress};
+use crate::simulation::bytes::{of_moves, of_records, of_stress};
 use crate::simulation::cost::Work;
 use crate::store::{IdempotentRequest, Reply, RequestKey, StoreError, Usage};
 use stickslip_wire::protocol::Relaxation;
@@ -33,7 +33,7 @@ pub fn bytes_of_moves(advance: &Advance) -> usize {
     let radii = advance.stress.as_ref().map_or(0, |stress| stress.length());
     advance.relax.map_or(0, |relax| relax.task.bytes())
         + of_moves(&advance.plan, advance.steps)
-        + advance.plan.length() * RECORD_BYTES
+        + of_records(advance.plan.length())
         + of_stress(radii)
 }
 
@@ -151,8 +151,8 @@ impl Mover {
         Err(SessionError::Overtaken { found })
     }
 
-    /// What [`Mover::apply`] would do to relax a session at the sequence that the client expects; nothing
-    /// changes.
+    /// What [`Mover::apply`] would do to relax a session at the sequence that the client expects; nothing changes. The
+    /// memory of the request becomes what that takes.
     ///
     /// # Errors
     /// [`SessionError`].
@@ -161,10 +161,11 @@ impl Mover {
         id: Uuid,
         relaxation: Relaxation,
         expected: Option<Expected>,
-    ) -> Result<(u64, Vec<u8>, Reservation), SessionError> {
+        memory: &mut Reservation,
+    ) -> Result<(u64, Vec<u8>), SessionError> {
         let task = relaxation.task;
         let (stop, _raised_at_the_end) = self.replay.common.pool.deadline();
-        let held = self.replay.common.pool.reserve(task.bytes()).await?;
+        self.replay.common.pool.resize(memory, task.bytes()).await?;
         let (contact, sequence, state) = self.replay.copy(id, None, &stop).await?;
         if let Some(expected) = expected {
             let label = if expected.label.is_some() { self.replay.extent(id).await?.label } else { None };
@@ -176,7 +177,7 @@ impl Mover {
             let (steps, protocol) = dry_run_relax(contact, &relaxation, &stop)?;
             written(&RelaxReply { id, sequence, dry_run: true, steps, protocol })
         };
-        Ok((sequence, self.replay.common.pool.run(cost, work).await??, held))
+        Ok((sequence, self.replay.common.pool.run(cost, work).await??))
     }
 
     /// Computes the moves. The guard keeps the state before them, or, if it has been used up, nothing.

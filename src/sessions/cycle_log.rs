@@ -7,6 +7,7 @@ use crate::store::RECORD_BYTES;
 use stickslip_wire::{State, limits};
 
 use super::cycle_scan::{ClosedCycle, CycleScan};
+use super::replay::PAGE;
 
 /// Looking at one recorded state.
 pub(super) const STATE_COST: Nanoseconds = 50;
@@ -60,8 +61,20 @@ impl CycleLog {
 
     /// Bytes that it and so many records take while they are looked at.
     pub(super) fn bytes_with(&self, records: usize) -> usize {
-        let newest = 2 * limits::CYCLES.end() * size_of::<ClosedCycle>();
-        self.scan.heap_bytes_after(records) + newest + records * RECORD_BYTES
+        self.bytes_of_log(records) + records * RECORD_BYTES
+    }
+
+    /// Bytes that it takes while it grows by so many states.
+    fn bytes_of_log(&self, states: usize) -> usize {
+        self.scan.heap_bytes_after(states) + 2 * limits::CYCLES.end() * size_of::<ClosedCycle>()
+    }
+
+    /// Bytes that it takes to know all cycles up to a move, with the records that are read for it.
+    pub(super) fn bytes_to_read(known: Option<&CycleLog>, sequence: u64) -> usize {
+        let new = sequence.saturating_sub(known.map_or(0, |known| known.sequence));
+        let new = usize::try_from(new).unwrap_or(usize::MAX);
+        let page = new.min(PAGE) * RECORD_BYTES;
+        known.map_or_else(|| CycleLog::default().bytes_of_log(new), |known| known.bytes_of_log(new)) + page
     }
 
     /// Gives back the memory that it does not use.

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use uuid::Uuid;
 
-use crate::admission::{Interrupted, Stop};
+use crate::admission::{Interrupted, Reservation, Stop};
 use crate::simulation::Failure;
 use crate::simulation::cost::Work;
 use stickslip_mechanics::cycle::SteadyCycle;
@@ -31,12 +31,18 @@ pub struct ClosedCycles {
 }
 
 impl ClosedCycles {
-    /// The `last` newest closed cycles of a session, and its sequence.
+    /// The `last` newest closed cycles of a session, and its sequence. The memory of the request is more for as long as
+    /// they are looked for.
     ///
     /// # Errors
     /// [`SessionError::NotFound`] or [`SessionError::Expired`], a failure of the store or of the pool, or
     /// [`SessionError::Failure`] if it takes too long.
-    pub async fn newest(&self, id: Uuid, last: usize) -> Result<(u64, CyclePage), SessionError> {
+    pub async fn newest(
+        &self,
+        id: Uuid,
+        last: usize,
+        memory: &mut Reservation,
+    ) -> Result<(u64, CyclePage), SessionError> {
         let (stop, _guard) = self.replay.common.pool.deadline();
         // The lock is held for copies alone, so that the session can move on meanwhile.
         let (virgin, sequence, known) = {
@@ -50,7 +56,7 @@ impl ClosedCycles {
             Some(known) if known.sequence == sequence => known,
             known => {
                 let known = known.filter(|known| known.sequence < sequence);
-                let log = self.look_on(id, sequence, known, &virgin, (&stop, LAST)).await?;
+                let log = self.look_on(id, sequence, known, &virgin, (&stop, LAST), memory).await?;
                 self.keep(id, &log).await?;
                 log
             }
@@ -65,11 +71,11 @@ impl ClosedCycles {
         Ok((sequence, CyclePage { items }))
     }
 
-    /// Adds to the moves of a page the cycles that they closed.
+    /// Adds to the moves of a page the cycles that they closed. The memory of the request is more meanwhile.
     ///
     /// # Errors
     /// As [`ClosedCycles::newest`].
-    pub async fn mark(&self, id: Uuid, page: &mut HistoryPage) -> Result<(), SessionError> {
+    pub async fn mark(&self, id: Uuid, page: &mut HistoryPage, memory: &mut Reservation) -> Result<(), SessionError> {
         let Some(after) = page.items.first().map(|item| item.sequence - 1) else { return Ok(()) };
         let (stop, _guard) = self.replay.common.pool.deadline();
         let (virgin, known) = {
@@ -81,9 +87,10 @@ impl ClosedCycles {
         };
         let mut log = match known {
             Some(known) if known.sequence >= after => known,
-            known => self.look_on(id, after, known, &virgin, (&stop, MARKED)).await?,
+            known => self.look_on(id, after, known, &virgin, (&stop, MARKED), memory).await?,
         };
-        let _held = self.replay.common.pool.reserve(log.bytes_with(PAGE)).await?;
+        let (pool, before) = (&self.replay.common.pool, memory.bytes());
+        pool.resize(memory, before + log.bytes_with(PAGE)).await?;
         let states: Vec<(u64, State)> = page.items.iter().map(|item| (item.sequence, item.state)).collect();
         let cost = Work { moves: CYCLE_MOVES * states.len(), ..Work::default() }.cost(virgin.profile());
         let look = move || {
@@ -96,7 +103,8 @@ impl ClosedCycles {
             let cycles = states.into_iter().map(&mut answer).collect::<Result<Vec<_>, _>>()?;
             Ok::<_, SessionError>((log, cycles))
         };
-        let (log, cycles) = self.replay.common.pool.run(cost, look).await??;
+        let (log, cycles) = pool.run(cost, look).await??;
+        pool.resize(memory, before).await?;
         page.items.iter_mut().zip(cycles).for_each(|(item, cycle)| item.cycle = cycle);
         self.keep(id, &log).await
     }
@@ -110,8 +118,9 @@ impl ClosedCycles {
         known: Option<Arc<CycleLog>>,
         virgin: &Contact,
         (stop, place): (&Stop, &str),
+        memory: &mut Reservation,
     ) -> Result<Arc<CycleLog>, SessionError> {
-        let (log, seen) = self.read_states(id, sequence, known, virgin, stop).await?;
+        let (log, seen) = self.read_states(id, sequence, known, virgin, stop, Some(memory)).await?;
         if let Err(interrupted) = seen {
             self.keep(id, &log).await?;
             return Err(Failure::interrupted(interrupted, place).into());
@@ -119,7 +128,8 @@ impl ClosedCycles {
         Ok(log)
     }
 
-    /// Looks at the states up to the move `sequence` that are not in `known`, as far as the time lasts.
+    /// Looks at the states up to the move `sequence` that are not in `known`, as far as the time lasts. The memory of the
+    /// request is more meanwhile; without any, that has been reserved.
     pub(super) async fn read_states(
         &self,
         id: Uuid,
@@ -127,19 +137,21 @@ impl ClosedCycles {
         known: Option<Arc<CycleLog>>,
         virgin: &Contact,
         stop: &Stop,
+        mut memory: Option<&mut Reservation>,
     ) -> Result<(Arc<CycleLog>, Result<(), Interrupted>), SessionError> {
         let known = match known {
             Some(known) if known.sequence == sequence => return Ok((known, Ok(()))),
             known => known,
         };
-        let bytes = known.as_ref().map_or_else(|| CycleLog::default().bytes_with(PAGE), |known| known.bytes_with(PAGE));
-        let mut held = self.replay.common.pool.reserve(bytes).await?;
+        let (pool, before) = (&self.replay.common.pool, memory.as_ref().map_or(0, |memory| memory.bytes()));
         let mut log = known.map_or_else(|| CycleLog::new(&virgin.state().into()), Arc::unwrap_or_clone);
         while log.sequence < sequence {
             if let Err(interrupted) = stop.check() {
                 return Ok((Arc::new(log), Err(interrupted)));
             }
-            self.replay.common.pool.resize(&mut held, log.bytes_with(PAGE)).await?;
+            if let Some(memory) = &mut memory {
+                pool.resize(memory, before + log.bytes_with(PAGE)).await?;
+            }
             let records = self.replay.page(id, log.sequence, sequence).await?;
             let cost = STATE_COST * records.len() as u64;
             let look = move || {
@@ -148,9 +160,12 @@ impl ClosedCycles {
                 }
                 log
             };
-            log = self.replay.common.pool.run(cost, look).await?;
+            log = pool.run(cost, look).await?;
         }
         log.shrink();
+        if let Some(memory) = memory {
+            pool.resize(memory, before).await?;
+        }
         Ok((Arc::new(log), Ok(())))
     }
 

@@ -10,7 +10,7 @@ use std::time::Duration;
 use futures::Stream;
 use uuid::Uuid;
 
-use crate::admission::{PoolError, Quota, Share};
+use crate::admission::{PoolError, Quota, Reservation, Share};
 use crate::simulation::{Cause, Failure};
 use crate::store::{Listener, StoreError, StreamEvent};
 use stickslip_wire::{EndReason, HistoryPage, StateEvent};
@@ -80,7 +80,7 @@ impl Follower {
     /// The moves beyond those that have been read.
     async fn page(&self) -> Result<HistoryPage, SessionError> {
         let mut page = self.history.own_page(self.id, self.seen, PAGE).await?;
-        self.cycles.mark(self.id, &mut page).await?;
+        self.cycles.mark(self.id, &mut page, &mut Reservation::default()).await?;
         Ok(page)
     }
 

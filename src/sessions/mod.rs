@@ -200,13 +200,13 @@ impl Sessions {
             }
         };
         let points = definition.profile.points();
-        let held = self.replay.common.pool.reserve(points * bytes::WRITTEN_POINT_BYTES).await?;
+        let held = self.replay.common.pool.reserve(bytes::of_definition(points)).await?;
         let work = move || written(&*definition);
         Ok((self.replay.common.pool.run(cost::writing_table(points), work).await??, held))
     }
 
     /// The reply of a computation on a session, which `said` to have this definition, with the sequence that it belongs
-    /// to and the memory that it takes.
+    /// to. The memory of the request becomes what that takes.
     ///
     /// # Errors
     /// [`SessionError`], among them [`SessionError::OtherDefinition`].
@@ -216,9 +216,10 @@ impl Sessions {
         said: Option<ContactDefinition>,
         task: T,
         shown: Shown,
-    ) -> Result<(u64, Vec<u8>, Reservation), SessionError> {
+        memory: &mut Reservation,
+    ) -> Result<(u64, Vec<u8>), SessionError> {
         let (stop, _guard) = self.replay.common.pool.deadline();
-        let held = self.replay.common.pool.reserve(task.bytes() + shown.bytes(task.rows())).await?;
+        self.replay.common.pool.resize(memory, task.bytes() + shown.bytes(task.rows())).await?;
         let (contact, sequence, state) = self.replay.copy(id, said, &stop).await?;
         let cost = task.cost(contact.profile(), contact.memory_depth()).saturating_add(shown.format.cost());
         let work = move || {
@@ -226,7 +227,7 @@ impl Sessions {
             let outcome = otlp::part!("solve").in_scope(|| task.run(contact, sequence, &stop))?;
             Ok::<_, SessionError>(shown.write(&outcome, &stop)??)
         };
-        Ok((sequence, self.replay.common.pool.run(cost, work).await??, held))
+        Ok((sequence, self.replay.common.pool.run(cost, work).await??))
     }
 
     /// The stresses below the surface that a request asks for, checked against the definition of the session.

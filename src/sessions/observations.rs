@@ -10,7 +10,8 @@ use std::time::Duration;
 
 use uuid::Uuid;
 
-use crate::admission::{Nanoseconds, Stop};
+use crate::admission::{Nanoseconds, Reservation, Stop};
+use crate::simulation::bytes::ROW;
 use crate::store::{self, StoreError};
 use stickslip_measured::loops::{Error, Known, LoopFit, Noise, Note, Parameter, Record, Start, Task, fit};
 use stickslip_mechanics::{Contact, range};
@@ -37,8 +38,6 @@ const FIT_COST: Nanoseconds = 500_000;
 const POINT_COST: Nanoseconds = 10_000;
 /// Time to write one observation as JSON.
 const WRITING_COST: Nanoseconds = 240;
-/// Bytes of a fit for each of its points.
-const POINT_BYTES: usize = 256;
 /// Indentations are the same load if they agree to this part.
 const SAME_LOAD: f64 = 1e-12;
 
@@ -112,8 +111,10 @@ impl Observations {
             request.charge(guard.loading);
             known
         };
-        let (log, seen) = self.cycles.read_states(id, sequence, known, &virgin, &stop).await?;
+        let memory = &mut Reservation::default();
+        let (log, seen) = self.cycles.read_states(id, sequence, known, &virgin, &stop, Some(memory)).await?;
         if seen.is_ok() {
+            self.cycles.replay.common.pool.resize(memory, bytes_of_fit(sequence)).await?;
             estimated = self.estimate(id, &log, &virgin, estimated, &[], &stop).await?;
         }
         let mut guard = self.cycles.replay.lock(id).await?;
@@ -144,7 +145,6 @@ impl Observations {
         if moves >= *limits::PATH_MOVES.end() {
             return Ok(unknown);
         }
-        let _held = self.cycles.replay.common.pool.reserve(moves * POINT_BYTES + PAGE * store::RECORD_BYTES).await?;
         let mut cycle = MeasuredCycle::default();
         let stored = to.min(log.sequence - new.len() as u64);
         let mut read = from.saturating_sub(1);
@@ -176,7 +176,8 @@ impl Observations {
     }
 
     /// The reply to observations that have led to `live` and are not stored yet. The guard has the state before them.
-    /// If the estimate of the friction takes too long, it is the one before.
+    /// If the estimate of the friction takes too long, or there is no memory for it now, it is the one before: nobody
+    /// waits for memory while he has the lock of a contact.
     pub(super) async fn observed(
         &self,
         guard: &mut Guard,
@@ -187,25 +188,30 @@ impl Observations {
         let id = guard.id();
         let (virgin, before) = (live.contact.virgin(), live.session.sequence - records.len() as u64);
         let stop = stop.child_deadline(Some(TIME));
-        let (mut log, seen) = self.cycles.read_states(id, before, live.cycles.take(), &virgin, &stop).await?;
-        // It is not read again if these observations are overtaken.
-        if let Some(live) = &mut guard.live {
+        let (pool, known) = (&self.cycles.replay.common.pool, live.cycles.take());
+        let bytes = CycleLog::bytes_to_read(known.as_deref(), live.session.sequence);
+        if let Some(_held) = pool.try_reserve(bytes + bytes_of_fit(live.session.sequence)) {
+            let (mut log, seen) = self.cycles.read_states(id, before, known, &virgin, &stop, None).await?;
+            // It is not read again if these observations are overtaken.
+            if let Some(live) = &mut guard.live {
+                live.keep_log(&log);
+            }
+            if seen.is_ok() {
+                let states: Vec<_> = records.iter().map(|record| (record.sequence, record.state)).collect();
+                let look = move || {
+                    let own = Arc::make_mut(&mut log);
+                    for (sequence, state) in states {
+                        own.push(sequence, &state);
+                    }
+                    log
+                };
+                log = pool.run(STATE_COST * records.len() as u64, look).await?;
+                live.estimated = self.estimate(id, &log, &virgin, live.estimated, records, &stop).await?;
+            }
             live.keep_log(&log);
+        } else if let Some(known) = &known {
+            live.keep_log(known);
         }
-        if seen.is_ok() {
-            let _held = self.cycles.replay.common.pool.reserve(log.bytes_with(records.len())).await?;
-            let states: Vec<_> = records.iter().map(|record| (record.sequence, record.state)).collect();
-            let look = move || {
-                let own = Arc::make_mut(&mut log);
-                for (sequence, state) in states {
-                    own.push(sequence, &state);
-                }
-                log
-            };
-            log = self.cycles.replay.common.pool.run(STATE_COST * records.len() as u64, look).await?;
-            live.estimated = self.estimate(id, &log, &virgin, live.estimated, records, &stop).await?;
-        }
-        live.keep_log(&log);
         let items = records.iter().filter_map(|record| {
             let observed = record.observation()?;
             Some(ObservedMove {
@@ -219,6 +225,12 @@ impl Observations {
         let reply = ObservationsReply { id, sequence: live.session.sequence, items: items.collect(), friction };
         self.cycles.replay.common.pool.run(WRITING_COST * records.len() as u64, move || written(&reply)).await?
     }
+}
+
+/// Bytes that a fit to a cycle of a session takes, with the records that it is read from.
+fn bytes_of_fit(sequence: u64) -> usize {
+    let moves = usize::try_from(sequence).unwrap_or(usize::MAX);
+    moves.min(*limits::PATH_MOVES.end()) * ROW + moves.min(PAGE) * store::RECORD_BYTES
 }
 
 /// The coefficient of friction of a cycle with its 95 % interval, if the cycle determines it; nothing at all if the

@@ -6,7 +6,6 @@ use std::time::{Duration, Instant};
 use uuid::Uuid;
 
 use crate::admission::{Interrupted, Reservation, Stop};
-use crate::simulation::bytes::EXPANSION;
 use crate::simulation::cost::Work;
 use crate::simulation::{Failure, Timer};
 use crate::store::{
@@ -30,6 +29,9 @@ const PIECES: usize = 4;
 pub(super) const PIECE_BYTES: usize = 96;
 /// A state that grows has room for up to twice its pieces; a copy has none to spare.
 const COPIES: usize = 3;
+/// Bytes that a byte of a definition becomes while it is read and prepared: a point of a table is a few digits, and then
+/// a series.
+const PREPARED: usize = 100;
 /// Bytes of a definition that holds no table.
 const SHORT_DEFINITION: u64 = 1_024;
 /// Work between two snapshots of a replay, which is lost where the client hangs up.
@@ -410,7 +412,7 @@ fn bytes_to_load(extent: &Extent) -> usize {
     let definition = if extent.definition > SHORT_DEFINITION { number(extent.definition) } else { 0 };
     (COPIES * PIECE_BYTES * pieces)
         .saturating_add(number(extent.snapshot) + page)
-        .saturating_add(definition.saturating_mul(EXPANSION))
+        .saturating_add(definition.saturating_mul(PREPARED))
 }
 
 /// A session that cannot be replayed from what is stored.

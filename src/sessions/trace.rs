@@ -4,24 +4,23 @@ use std::time::Duration;
 
 use uuid::Uuid;
 
-use crate::admission::Stop;
+use crate::admission::{Reservation, Stop};
 use crate::simulation::Failure;
+use crate::simulation::bytes::ROW;
 use crate::simulation::cost::Work;
-use crate::store::Record;
+use crate::store::{RECORD_BYTES, Record};
 use stickslip_mechanics::Contact;
 use stickslip_wire::{HistoryItem, LoopPage, limits};
 
 use super::SessionError;
 use super::history::History;
-use super::replay::{PIECE_BYTES, damaged};
+use super::replay::{PAGE, PIECE_BYTES, damaged};
 
-/// Bytes of a point in the longest of the formats, with the room that growing texts and columns take.
-const POINT: usize = 512;
 /// JSON pointer to the number of points.
 const POINTS: &str = "/points_per_move";
 
 /// The loop through the earlier moves `past`, of which the first follows the move `after`, with `points` points per
-/// move.
+/// move. The memory of the request is more while it is traced.
 ///
 /// # Errors
 /// [`SessionError::NotFound`] or [`SessionError::Expired`], a failure of the store or of the pool, or
@@ -32,6 +31,7 @@ pub async fn trace(
     after: u64,
     past: &[HistoryItem],
     points: usize,
+    memory: &mut Reservation,
 ) -> Result<LoopPage, SessionError> {
     let mut page = LoopPage::after(after);
     let (Some(last), true) = (past.last().map(|item| item.sequence), points > 1) else {
@@ -43,7 +43,8 @@ pub async fn trace(
     let (stop, _guard) = replay.common.pool.deadline();
     // A move is assumed to leave one piece of slip history.
     let pieces = usize::try_from(after).unwrap_or(usize::MAX).min(limits::MEMORY_DEPTH);
-    let _held = replay.common.pool.reserve(2 * PIECE_BYTES * pieces).await?;
+    let before = memory.bytes();
+    replay.common.pool.resize(memory, before + 2 * PIECE_BYTES * pieces + PAGE * RECORD_BYTES).await?;
     let initial = {
         let mut guard = replay.lock(id).await?;
         let initial = replay.current(&mut guard).await?.contact.virgin();
@@ -77,13 +78,14 @@ pub async fn trace(
         (contact, page) = replay.common.pool.run(price, work).await??;
         at = end;
     }
+    replay.common.pool.resize(memory, before).await?;
     Ok(page)
 }
 
 /// Bytes that a loop of this many points takes.
 #[must_use]
 pub fn bytes_of_trace(points: usize) -> usize {
-    points * POINT
+    points * 2 * ROW
 }
 
 /// Applies an earlier move, after adding the points on its way to the page.

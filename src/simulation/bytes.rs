@@ -1,31 +1,30 @@
 //! Estimates of the memory that a request takes; rather too many bytes than too few.
+//!
+//! All of them are sums of a few classes. `cargo test --test service largest_requests -- --nocapture` prints what the
+//! largest request of each endpoint takes.
 
 use stickslip_wire::simulate::Simulation;
 use stickslip_wire::subsurface::SubsurfaceTask;
 use stickslip_wire::{self as wire, Plan, Solver, Steps};
 
-/// Bytes that a byte of a long body or definition may become while it is parsed: a point of a table is a few digits,
-/// and then a series.
-pub const EXPANSION: usize = 100;
-/// One move while it is made, and the piece of slip history that it leaves.
-pub(crate) const MOVE_BYTES: usize = 256;
-/// One state in a reply, and as JSON in a text that grows by doubling.
-pub(crate) const STATE_BYTES: usize = 768;
-/// One move on its way to the store.
-pub(crate) const RECORD_BYTES: usize = 512;
-/// One radius with all fields, likewise.
-const RADIUS_BYTES: usize = 320;
-/// One point of a table: its two numbers, and the series that the mechanics makes between it and the next. The process
-/// grows by 2700 to 3800.
-const POINT_BYTES: usize = 4_096;
-/// One asperity: its numbers twice, and its share of the clusters.
-const ASPERITY_BYTES: usize = 128;
-/// One point of a load curve: its numbers, and two pieces of the curve with their moments.
-const CURVE_POINT_BYTES: usize = 512;
-/// One point of a table written as JSON, in a text that grows by doubling.
-pub const WRITTEN_POINT_BYTES: usize = 128;
-/// One spring.
-pub(crate) const SPRING_BYTES: usize = 64;
+/// Bytes that a byte of a body becomes while it is parsed. `{}` and a comma become a move, which is some 26 bytes for
+/// each of theirs.
+pub const PARSED: usize = 32;
+/// A number of a reply: itself, perhaps in two documents, and its text, which grows by doubling.
+pub(crate) const NUMBER: usize = 64;
+/// A row of a few numbers that are computed with: a move and the slip history that it leaves, a point of a measurement
+/// and its row in a fit, an asperity and its share of the clusters.
+pub(crate) const ROW: usize = 256;
+/// An object of a reply, such as a state: itself, and its text, which grows by doubling.
+pub(crate) const OBJECT: usize = 1_024;
+/// A place in depth with all its stresses as a row of a table.
+pub(crate) const PLACE_ROW: usize = 10 * NUMBER;
+/// A point of a table, with the series that the mechanics makes between it and the next. The process grows by 2700 to
+/// 3800.
+const SERIES: usize = 4_096;
+/// What an optimisation takes, whatever its size.
+pub(crate) const WORKSPACE: usize = 4 * 1024 * 1024;
+
 /// A number as JSON, with its comma.
 pub(crate) const NUMBER_LENGTH: usize = 24;
 /// A state as JSON.
@@ -34,25 +33,38 @@ pub(crate) const STATE_LENGTH: usize = 512;
 /// Bytes that stresses at this many radii take, as numbers and as JSON.
 #[must_use]
 pub fn of_stress(radii: usize) -> usize {
-    radii * RADIUS_BYTES
+    // The radius, and four fields.
+    radii * 5 * NUMBER
 }
 
 /// Bytes of moves: themselves, the slip history that they leave, and the states after them if they are requested.
 pub(crate) fn of_moves(plan: &Plan, steps: Steps) -> usize {
-    let shown = if steps == Steps::All { STATE_BYTES } else { 0 };
-    plan.length() * (MOVE_BYTES + shown)
+    let shown = if steps == Steps::All { OBJECT } else { 0 };
+    plan.length() * (ROW + shown)
+}
+
+/// Bytes of moves on their way to the store.
+pub(crate) fn of_records(moves: usize) -> usize {
+    moves * 2 * ROW
 }
 
 /// Bytes that a shape takes: the series that the mechanics makes of tables, the clusters of asperities.
 #[must_use]
 pub fn of_shape(profile: &wire::Profile) -> usize {
     match profile {
-        wire::Profile::Tabulated(table) => table.r.len() * POINT_BYTES,
+        wire::Profile::Tabulated(table) => table.r.len() * SERIES,
         wire::Profile::Sum(sum) => sum.parts.iter().map(of_shape).sum(),
-        wire::Profile::Asperities(asperities) => asperities.gaps.len() * ASPERITY_BYTES,
-        wire::Profile::LoadCurve(curve) => curve.indentation.len() * CURVE_POINT_BYTES,
+        wire::Profile::Asperities(asperities) => asperities.gaps.len() * ROW,
+        // Two pieces of the curve with their moments.
+        wire::Profile::LoadCurve(curve) => curve.indentation.len() * 2 * ROW,
         _ => 0,
     }
+}
+
+/// Bytes of the definition of a contact as JSON, of which the profile has so many points.
+#[must_use]
+pub fn of_definition(points: usize) -> usize {
+    points * 2 * NUMBER
 }
 
 /// Bytes that a simulation takes, with its reply; rather too many than too few.
@@ -60,7 +72,7 @@ pub fn of_shape(profile: &wire::Profile) -> usize {
 pub fn of_simulation(simulation: &Simulation) -> usize {
     let radii = simulation.stress.as_ref().map_or(0, |stress| stress.length());
     let springs = match simulation.solver {
-        Some(Solver::Springs(springs)) => springs.count * SPRING_BYTES,
+        Some(Solver::Springs(springs)) => springs.count * NUMBER,
         _ => 0,
     };
     of_moves(&simulation.plan, simulation.steps)
@@ -73,5 +85,5 @@ pub fn of_simulation(simulation: &Simulation) -> usize {
 /// Bytes that stresses below the surface take, with their reply.
 #[must_use]
 pub fn of_subsurface(task: &SubsurfaceTask) -> usize {
-    task.places.count() * task.columns() * (size_of::<Option<f64>>() + 2 * NUMBER_LENGTH)
+    task.places.count() * task.columns() * NUMBER
 }

@@ -7,12 +7,15 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, mpsc};
 use std::time::Duration;
 
+use futures::future::join_all;
 use stickslip::admission::{
-    Capacity, Client, INLINE, Interrupted, Kind, LONGEST_WORK, Nanoseconds, Pool, PoolError, Quota, QuotaLimits, Stop,
+    Capacity, Client, INLINE, Interrupted, Kind, LONGEST_WORK, Nanoseconds, Pool, PoolError, Quota, QuotaLimits,
+    Reservation, Stage, Stop,
 };
 use stickslip::simulation::cost::Work;
 use stickslip_mechanics::profile::Cone;
 use stickslip_mechanics::{Profile, Sphere};
+use tokio::sync::Mutex as AsyncMutex;
 use tokio::task::JoinHandle;
 use tokio::time::{sleep, timeout};
 
@@ -42,17 +45,25 @@ async fn bytes_are_reserved_once() {
     let pool = small();
     let mut first = pool.reserve(80 * UNIT).await.unwrap();
     let second = pool.reserve(90 * UNIT).await.unwrap();
+    // The reserve is as large as all that there is, and for one at a time.
+    let turn = pool.reserve(60 * UNIT).await.unwrap();
     assert_eq!(pool.reserve(60 * UNIT).await.unwrap_err(), PoolError::Busy);
     pool.resize(&mut first, 30 * UNIT).await.unwrap();
-    assert_eq!(pool.taken().bytes, 120 * UNIT);
+    assert_eq!(pool.taken().bytes, 180 * UNIT);
     let third = pool.reserve(60 * UNIT).await.unwrap();
     assert_eq!(pool.resize(&mut first, 60 * UNIT).await.unwrap_err(), PoolError::Busy);
-    assert_eq!(pool.taken().bytes, 180 * UNIT);
-    drop((first, second, third));
-    // A request for more than there is gets everything, alone.
-    let all = pool.reserve(1_000 * UNIT).await.unwrap();
-    assert_eq!(pool.taken().bytes, 200 * UNIT);
-    drop(all);
+    assert_eq!(pool.taken().bytes, 240 * UNIT);
+    drop(turn);
+    // Whoever has the turn finds all that it asks for.
+    pool.resize(&mut first, 60 * UNIT).await.unwrap();
+    pool.resize(&mut first, 1_000 * UNIT).await.unwrap();
+    assert_eq!(pool.taken().bytes, 350 * UNIT);
+    // It gives up the turn as soon as there is as much beside it.
+    drop((second, third));
+    pool.resize(&mut first, 150 * UNIT).await.unwrap();
+    let other = pool.reserve(200 * UNIT).await.unwrap();
+    assert_eq!(pool.taken().bytes, 350 * UNIT);
+    drop((first, other));
     assert_eq!(pool.taken().bytes, 0);
 }
 
@@ -61,24 +72,59 @@ async fn small_needs_do_not_wait_behind_large_ones() {
     let pool = Pool::new(Capacity { bytes: 200 * UNIT, ..Capacity::default() });
     let small = 20 * UNIT;
     let first = pool.reserve(150 * UNIT).await.unwrap();
+    let turn = pool.reserve(100 * UNIT).await.unwrap();
     let mut large = pin!(pool.reserve(100 * UNIT));
     assert!(futures::poll!(large.as_mut()).is_pending());
     let mut beside = pool.reserve(small).await.unwrap();
     // They have a share, and no more.
     let mut next = pin!(pool.reserve(small));
     assert!(futures::poll!(next.as_mut()).is_pending());
-    assert!(pool.taken().bytes <= 200 * UNIT + pool.capacity().small_bytes());
+    assert!(pool.taken().bytes <= pool.capacity().work_bytes());
     pool.resize(&mut beside, 0).await.unwrap();
     let next = next.await.unwrap();
-    drop(first);
+    drop((first, turn));
     let large = large.await.unwrap();
     assert_eq!(pool.taken().bytes, 120 * UNIT);
     // What is reserved in both ways is one.
-    let mut both = next.with(pool.reserve(30 * UNIT).await.unwrap());
+    let mut both = next.with(pool.try_reserve(30 * UNIT).unwrap());
     pool.resize(&mut both, 25 * UNIT).await.unwrap();
     assert_eq!(pool.taken().bytes, 125 * UNIT);
     drop((both, large));
     assert_eq!(pool.taken().bytes, 0);
+}
+
+/// What a request does one after the other: its body arrives and doubles, it gets its permit, is parsed, asks for what its
+/// work takes, locks its contact, and loads it.
+async fn request(pool: &Pool, locks: &[AsyncMutex<()>], number: usize) -> Result<(), PoolError> {
+    let need = |stage: usize| UNIT * (20 + (number * 37 + stage * 53) % 180);
+    let pause = async || sleep(Duration::from_millis(1)).await;
+    let mut memory = Reservation::default();
+    for bytes in [need(0) / 4, need(0) / 2, need(0)] {
+        pool.resize_in(Stage::Body, &mut memory, bytes).await?;
+        pause().await;
+    }
+    let _permit = pool.admit_request().await?;
+    for stage in 1..4 {
+        pool.resize(&mut memory, need(stage)).await?;
+        pause().await;
+    }
+    let _lock = pool.wait(locks[number % locks.len()].lock()).await?;
+    let _state = pool.reserve_states(need(4)).await?;
+    pause().await;
+    assert!(pool.taken().bytes <= pool.capacity().work_bytes());
+    Ok(())
+}
+
+/// Were some of them to wait for each other, they would wait until they are refused.
+#[tokio::test]
+async fn requests_never_wait_for_each_other_in_a_circle() {
+    for requests in [1, 2, 3, 50] {
+        let pool = Pool::new(Capacity { requests, bytes: 200 * UNIT, wait: PATIENCE, ..Capacity::default() });
+        let locks = [const { AsyncMutex::const_new(()) }; 3];
+        let all = join_all((0..80).map(|number| request(&pool, &locks, number))).await;
+        assert_eq!(all.iter().filter(|done| done.is_err()).count(), 0, "{requests} at a time");
+        assert_eq!((pool.taken().bytes, pool.taken().waiting), (0, 0));
+    }
 }
 
 #[test]

@@ -4,13 +4,14 @@ use super::prelude::*;
 use crate::api::extract::OptionalBody;
 use crate::api::parameters::{IDENTIFIER, Text};
 use crate::sessions::label_checksum;
+use crate::simulation::bytes::OBJECT;
 use stickslip_wire::session::LABEL;
 use stickslip_wire::{
     ContactDefinition, CreateRequest, ForkRequest, NewSession, RenameRequest, SessionPage, SessionReply,
 };
 
-/// Bytes of an item in a list of contacts.
-const SUMMARY_BYTES: usize = 2_048;
+/// Bytes of an item in a list of contacts, with a label of the longest kind.
+const SUMMARY_BYTES: usize = 2 * OBJECT;
 
 /// Create a contact
 ///

@@ -6,9 +6,7 @@ use stickslip_wire::{Cycle, CyclePage, limits};
 use super::move_series::curve;
 use super::prelude::*;
 use crate::formats::{CAPACITY, Column, Table};
-
-/// Bytes of a cycle in the longest of the formats.
-const CYCLE_BYTES: usize = 1_024;
+use crate::simulation::bytes::OBJECT;
 
 parameters! {
     pub struct CyclesQuery {
@@ -39,8 +37,8 @@ pub async fn get_cycles(
     if let Some(unchanged) = computations::unchanged(&app, id, &headers, format).await? {
         return Ok(unchanged);
     }
-    let memory = app.pool.reserve(last * CYCLE_BYTES + format.bytes(0, 0)).await?;
-    let (sequence, page) = app.sessions.cycles().newest(id, last).await?;
+    let mut memory = app.pool.reserve(last * OBJECT + format.bytes(0, 0)).await?;
+    let (sequence, page) = app.sessions.cycles().newest(id, last, &mut memory).await?;
     let write = move || format.write(CAPACITY, &page, || Some(plot(id, &page)), || Some(table(&page)), &|| true);
     let body = app.pool.run(format.cost(), write).await??;
     let tag = format.tag(&sequence.to_string());

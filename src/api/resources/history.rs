@@ -5,6 +5,7 @@ use stickslip_wire::{Cycle, HistoryPage, ObservedForce, State};
 
 use super::move_series::{self, ITEM_BYTES, MoveSeries};
 use super::prelude::*;
+use crate::admission::Reservation;
 use crate::api::parameters::FLAG;
 use crate::api::query::MovesQuery;
 use crate::computations::state_columns;
@@ -73,9 +74,10 @@ impl MoveSeries for History {
         _: u64,
         mut moves: HistoryPage,
         format: Format,
+        memory: &mut Reservation,
     ) -> Result<HistoryPage, Problem> {
         if self.cycles && !format.is_plot() {
-            app.sessions.cycles().mark(id, &mut moves).await?;
+            app.sessions.cycles().mark(id, &mut moves, memory).await?;
         }
         Ok(moves)
     }

@@ -5,6 +5,7 @@ use stickslip_wire::{HistoryPage, LoopPage, ObservedForce, limits};
 
 use super::move_series::{self, ITEM_BYTES, MoveSeries};
 use super::prelude::*;
+use crate::admission::Reservation;
 use crate::api::query::MovesQuery;
 use crate::formats::{Column, Table};
 use crate::sessions::{bytes_of_trace, trace};
@@ -62,8 +63,16 @@ impl MoveSeries for Loop {
         format!("&points_per_move={}", self.points_per_move)
     }
 
-    async fn page(&self, app: &App, id: Uuid, after: u64, moves: HistoryPage, _: Format) -> Result<LoopPage, Problem> {
-        let page = trace(&app.sessions.history(), id, after, &moves.items, self.points_per_move).await?;
+    async fn page(
+        &self,
+        app: &App,
+        id: Uuid,
+        after: u64,
+        moves: HistoryPage,
+        _: Format,
+        memory: &mut Reservation,
+    ) -> Result<LoopPage, Problem> {
+        let page = trace(&app.sessions.history(), id, after, &moves.items, self.points_per_move, memory).await?;
         Ok(LoopPage { next: moves.next, ..page })
     }
 

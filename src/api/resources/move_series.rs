@@ -11,15 +11,17 @@ use stickslip_report::plot::{Axis, Colour, Curve, Panel, Plot};
 use stickslip_wire::HistoryPage;
 
 use super::prelude::*;
+use crate::admission::Reservation;
 use crate::api::formats::TableStream;
 use crate::api::query::{Moves, MovesQuery};
 use crate::formats::{CAPACITY, Table, Unwritable};
 use crate::simulation::Failure;
+use crate::simulation::bytes::OBJECT;
 
 /// Moves that are read at once.
 const PAGE: usize = 500;
-/// Bytes of an item of a history.
-pub(super) const ITEM_BYTES: usize = 2_048;
+/// Bytes of an item of a history: the move and the state after it.
+pub(super) const ITEM_BYTES: usize = 2 * OBJECT;
 
 pub(super) trait MoveSeries: Clone + Send + Sync + 'static {
     type Page: Serialize + Send + 'static;
@@ -36,7 +38,8 @@ pub(super) trait MoveSeries: Clone + Send + Sync + 'static {
     /// Its own part of the query of the next page.
     fn parameters(&self) -> String;
 
-    /// The document of these moves, which come after another one, for a reply in this format.
+    /// The document of these moves, which come after another one, for a reply in this format. The memory of the request
+    /// is more while it is made.
     fn page(
         &self,
         app: &App,
@@ -44,6 +47,7 @@ pub(super) trait MoveSeries: Clone + Send + Sync + 'static {
         after: u64,
         moves: HistoryPage,
         format: Format,
+        memory: &mut Reservation,
     ) -> impl Future<Output = Result<Self::Page, Problem>> + Send;
 
     fn plot(id: Uuid, page: &Self::Page) -> Plot;
@@ -67,7 +71,7 @@ pub(super) async fn reply<T: MoveSeries>(
         Moves::Newest(limit) => (history.sequence(id).await?.saturating_sub(limit as u64), limit),
         Moves::All => return all(app, id, headers, format, shown).await,
     };
-    let memory = app.pool.reserve(shown.bytes(limit) + format.bytes(0, 0)).await?;
+    let mut memory = app.pool.reserve(shown.bytes(limit) + format.bytes(0, 0)).await?;
     let moves = history.page(id, after, limit).await?;
     let tag = format.tag(&(version(&moves, after) + shown.marking()));
     if reply::is_current(headers, &tag) {
@@ -77,7 +81,7 @@ pub(super) async fn reply<T: MoveSeries>(
         let query = format!("after={next}&limit={limit}{}&format={}", shown.parameters(), format.name());
         HeaderValue::from_str(&format!("</contacts/{id}/{}?{query}>; rel=\"next\"", T::NAME)).ok()
     });
-    let page = shown.page(&app, id, after, moves, format).await?;
+    let page = shown.page(&app, id, after, moves, format, &mut memory).await?;
     let (stop, _raised_at_the_end) = app.pool.deadline();
     let write = move || {
         let (plot, table) = (|| Some(T::plot(id, &page)), || Some(shown.table(&page)));
@@ -114,8 +118,8 @@ async fn all<T: MoveSeries>(
     }
     app.sessions.history().check_complete(id, end).await?;
     let memory = app.pool.reserve(shown.bytes(PAGE)).await?;
-    let mut table =
-        WholeTable { app, id, shown, format, stream: TableStream::new(format), end, after: 0, is_done: false };
+    let stream = TableStream::new(format);
+    let mut table = WholeTable { app, id, shown, format, stream, end, after: 0, is_done: false, memory };
     // Before the reply begins, which cannot be taken back.
     let first = table.next().await?;
     let rest = stream::try_unfold(table, async |mut table| {
@@ -126,7 +130,7 @@ async fn all<T: MoveSeries>(
         Ok(Some((block, table)))
     });
     let body = Body::from_stream(stream::iter([Ok(first)]).chain(rest));
-    Ok(reply::holding(reply::tagged(format.reply(body), &tag), memory))
+    Ok(reply::tagged(format.reply(body), &tag))
 }
 
 /// The table of the moves 1 to `end`, while it is written.
@@ -140,13 +144,15 @@ struct WholeTable<T> {
     /// The last move that has been written.
     after: u64,
     is_done: bool,
+    memory: Reservation,
 }
 
 impl<T: MoveSeries> WholeTable<T> {
     async fn next(&mut self) -> Result<Vec<u8>, Problem> {
         let limit = PAGE.min(usize::try_from(self.end - self.after).unwrap_or(PAGE));
         let moves = self.app.sessions.history().page(self.id, self.after, limit).await?;
-        let page = self.shown.page(&self.app, self.id, self.after, moves, self.format).await?;
+        let memory = &mut self.memory;
+        let page = self.shown.page(&self.app, self.id, self.after, moves, self.format, memory).await?;
         let mut block = self.stream.push(&self.shown.table(&page)).map_err(Unwritable::new)?;
         self.after += limit as u64;
         self.is_done = self.after >= self.end;

@@ -79,8 +79,8 @@ pub async fn relax_contact(
 ) -> Result<Response, Problem> {
     let CheckedBody { body, key, mut held } = request;
     if body.dry_run {
-        let (sequence, body, memory) = app.sessions.moves().dry_run_relax(id, body, expected).await?;
-        return Ok(reply::holding(reply::at_sequence(sequence, body), memory));
+        let (sequence, body) = app.sessions.moves().dry_run_relax(id, body, expected, &mut held.memory).await?;
+        return Ok(held.on(reply::at_sequence(sequence, body)));
     }
     let advance = Advance::from(body);
     held.resize(&app.pool, bytes_of_moves(&advance)).await?;

@@ -40,6 +40,7 @@ pub async fn compute_subsurface_stress(
 ) -> Result<Response, Problem> {
     let CheckedQuery(query) = query?;
     let format = Format::chosen(query.format, &headers, &Format::ALL)?;
-    let task = app.sessions.subsurface_task(id, request.body).await?;
-    computations::of_contact(&app, id, format, task).await
+    let CheckedBody { body, held, .. } = request;
+    let task = app.sessions.subsurface_task(id, body).await?;
+    computations::of_contact(&app, id, format, task, held.memory).await
 }

@@ -8,11 +8,10 @@ use super::jobs::{self, TableQuery};
 use super::prelude::*;
 use crate::api::params::{Prefer, accepts_events};
 use crate::jobs::AT_ONCE;
+use crate::simulation::bytes::NUMBER;
 use crate::simulation::{Failure, Sweep, SweepResult};
 use stickslip_wire::{JobReply, SweepReply, SweepRequest};
 
-/// Bytes of a number of the table while it is computed.
-const NUMBER_BYTES: usize = 16;
 /// The most numbers of a table that is kept for a retry as a whole.
 const KEPT_NUMBERS: usize = 65_536;
 
@@ -74,7 +73,7 @@ pub async fn run_sweep(
         return Ok(response);
     }
     let (stop, _guard) = app.pool.deadline();
-    let table_bytes = NUMBER_BYTES * numbers;
+    let table_bytes = NUMBER * numbers;
     held.resize(&app.pool, sweep.bytes(app.pool.capacity().threads) + table_bytes).await?;
     let sweep = Arc::new(sweep);
     let result = match earlier.and_then(|reply| SweepResult::from_bytes(&reply.body, numbers)) {

@@ -14,7 +14,7 @@ use stickslip_wire::{ContactDefinition, CycleReply, CycleRequest, Harmonic, Stea
 use super::{About, Computation, Example, OnContact, Outcome, Route, Shown, Task, example};
 use crate::admission::{Nanoseconds, Stop};
 use crate::formats::{Column, Table};
-use crate::simulation::bytes::{NUMBER_LENGTH, STATE_LENGTH, of_shape};
+use crate::simulation::bytes::{NUMBER, NUMBER_LENGTH, OBJECT, ROW, STATE_LENGTH, of_shape};
 use crate::simulation::cost::{RADIUS_COST, on_profile};
 use crate::simulation::{Failure, Timer, contact};
 
@@ -31,12 +31,6 @@ const STEPPED_CYCLE_COST: u64 = 15_000_000;
 /// The same driven by a force or through a machine, where what is left falls with the square of the step alone and each
 /// step searches for a force.
 const SEARCHED_CYCLE_COST: u64 = 100_000_000;
-/// One steady cycle as numbers, and as JSON in a text that grows by doubling.
-const CYCLE_BYTES: usize = 1_536;
-/// One harmonic, likewise.
-const HARMONIC_BYTES: usize = 256;
-/// The friction work per area at one radius, likewise.
-const DENSITY_BYTES: usize = 128;
 /// Points of each branch of a steady loop in a plot.
 const BRANCH_POINTS: usize = 200;
 
@@ -122,8 +116,8 @@ impl OnContact for CycleTask {
 
     fn bytes(&self) -> usize {
         let curve = self.best_load.map_or(0, |study| study.points.unwrap_or(0));
-        self.rows() * (CYCLE_BYTES + self.harmonics * HARMONIC_BYTES + (self.radii() + curve) * DENSITY_BYTES)
-            + frequencies(self) * CYCLE_BYTES
+        self.rows() * (2 * OBJECT + self.harmonics * ROW + (self.radii() + curve) * 2 * NUMBER)
+            + frequencies(self) * 2 * OBJECT
     }
 
     fn rows(&self) -> (usize, usize) {

@@ -14,9 +14,9 @@ use stickslip_wire::{ContactDefinition, Fault, FrettingReply, FrettingRequest};
 use super::subsurface::column_table;
 use super::{About, Choice, Computation, Example, Outcome, Route, Shown, Task, example};
 use crate::admission::{Nanoseconds, Stop};
-use crate::formats::{SUBSURFACE_ROW, Table};
+use crate::formats::Table;
 use crate::simulation::Failure;
-use crate::simulation::bytes::{NUMBER_LENGTH, of_shape};
+use crate::simulation::bytes::{NUMBER, NUMBER_LENGTH, PLACE_ROW, of_shape};
 use crate::simulation::cost::{KINK_COST, MOVE_COST, PLACE_COST};
 
 /// One instant of a curved move, with the mesh of the many pieces that it leaves.
@@ -105,8 +105,8 @@ impl Computation for Fretting {
         let columns = task.measures.iter().flatten().count();
         let path = size_of::<Stress>() + 8 * 2 * NUMBER_LENGTH;
         let instants = task.plan.length() * ASSUMED_INSTANTS;
-        task.places.count() * (3 + columns) * (size_of::<f64>() + size_of::<Option<f64>>() + 2 * NUMBER_LENGTH)
-            + SEARCHED_PLACES * (4 + columns) * size_of::<f64>()
+        task.places.count() * (3 + columns) * NUMBER
+            + SEARCHED_PLACES * (4 + columns) * NUMBER
             + task.stress_paths.len() * instants * path
             + fatigue::MOST_BYTES
             + fatigue::FIELD_BYTES
@@ -114,7 +114,7 @@ impl Computation for Fretting {
     }
 
     fn rows((.., task): &Task<Self>) -> (usize, usize) {
-        (task.places.count(), SUBSURFACE_ROW)
+        (task.places.count(), PLACE_ROW)
     }
 
     /// Of the criteria at some places and of the search beside them, or of a search for the worst places.

@@ -10,16 +10,13 @@ use stickslip_wire::{FitReply, FitRequest};
 
 use super::{About, Computation, Example, Outcome, Route, Shown, example};
 use crate::admission::{Nanoseconds, Stop};
-use crate::formats::{Column, STRESS_ROW, Table};
+use crate::formats::{Column, Table};
 use crate::simulation::Failure;
-use crate::simulation::bytes::of_shape;
+use crate::simulation::bytes::{ROW, WORKSPACE, of_shape};
 
 /// Time of a fit to loops, and for each of their points.
 const FIT_COST: Nanoseconds = 100_000_000;
 const FIT_POINT_COST: Nanoseconds = 100_000;
-/// Bytes of a fit to loops with its reply, and for each of their points.
-const FIT_BYTES: usize = 4 * 1024 * 1024;
-const FIT_POINT_BYTES: usize = 256;
 
 /// Friction and stiffness from measured loops.
 pub struct FitLoops;
@@ -66,11 +63,11 @@ impl Computation for FitLoops {
     }
 
     fn bytes(task: &FitTask) -> usize {
-        FIT_BYTES + FIT_POINT_BYTES * task.points() + of_shape(&task.definition.profile)
+        WORKSPACE + ROW * task.points() + of_shape(&task.definition.profile)
     }
 
     fn rows(task: &FitTask) -> (usize, usize) {
-        (task.points(), STRESS_ROW)
+        (task.points(), ROW)
     }
 
     fn cost(task: &FitTask) -> Nanoseconds {

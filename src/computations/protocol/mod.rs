@@ -12,7 +12,7 @@ use stickslip_wire::{ContactDefinition, ProtocolReply, ProtocolRequest, limits};
 
 use super::{About, Computation, Example, FromStored, OnContact, Plain, Route, Task, example, example_contact};
 use crate::admission::{Nanoseconds, Stop};
-use crate::simulation::bytes::{MOVE_BYTES, RECORD_BYTES, STATE_BYTES, of_shape};
+use crate::simulation::bytes::{NUMBER, OBJECT, ROW, of_records, of_shape};
 use crate::simulation::cost::{MOVE_COST, Work, on_profile};
 use crate::simulation::{Cause, Failure, contact};
 use design::{Subject, protocol};
@@ -25,11 +25,6 @@ const TABLE: u64 = 50;
 const PROTOCOL_COST: u64 = 200_000;
 /// Reversals that a target is assumed to need.
 const ASSUMED_REVERSALS: usize = 100;
-/// One reversal of a protocol in a reply: its displacement, and a peak for each of three laws, as JSON in a text that
-/// grows by doubling.
-const REVERSAL_BYTES: usize = 1_024;
-/// One trial of a protocol with errors.
-const SAMPLE_BYTES: usize = 16;
 
 /// A path of few reversals that leaves little shear stress.
 pub struct FindProtocol;
@@ -122,7 +117,8 @@ impl OnContact for ProtocolTask {
     fn bytes(&self) -> usize {
         let most = reversals(self, *limits::PROTOCOL_REVERSALS.end());
         let tried = self.robustness.map_or(0, |robustness| robustness.samples);
-        (most + 2) * (REVERSAL_BYTES + MOVE_BYTES + STATE_BYTES + RECORD_BYTES) + tried * SAMPLE_BYTES
+        // A reversal in a reply: its displacement, a peak for each of three laws, and a state.
+        (most + 2) * (2 * OBJECT + ROW) + of_records(most + 2) + tried * NUMBER
     }
 
     fn cost(&self, profile: &Profile, depth: usize) -> Nanoseconds {

@@ -16,10 +16,6 @@ use stickslip_wire::{
     Sampling, SimulateReply, SimulateRequest, State, Steps, Stress, parse_value,
 };
 
-/// Bytes that a value in a body takes once it is parsed, for each byte that it is written with; twice, as it is turned
-/// into a request.
-const VALUE_BYTES: usize = 32;
-
 impl Sweep {
     /// The cost of [`Sweep::plan`]: above all of the profile, which each corner may have its own of.
     #[must_use]
@@ -61,7 +57,7 @@ impl Sweep {
             document["contact"]["profile"] = shared::placeholder();
         }
         sweep.base = document;
-        sweep.bytes += written * VALUE_BYTES;
+        sweep.bytes += written * bytes::PARSED;
         Ok(sweep)
     }
 
