@@ -101,11 +101,12 @@ class Client(Engine):
         """The contact of an identifier."""
         return RemoteContact(self, id, self.request("GET", f"/contacts/{id}/definition").json())
 
-    def contacts(self, label: str | None = None) -> Iterator[results.SessionSummary]:
-        """All contacts, oldest first; of a label alone, if one is given."""
+    def contacts(self, label: str | None = None, *, newest_first: bool = False) -> Iterator[results.SessionSummary]:
+        """All contacts, oldest or newest first; of a label alone, if one is given."""
         after: str | None = None
+        order = "newest" if newest_first else None
         while True:
-            page = self.request("GET", "/contacts", params=members(label=label, after=after)).json()
+            page = self.request("GET", "/contacts", params=members(label=label, order=order, after=after)).json()
             yield from (parse(results.SessionSummary, item) for item in page["items"])
             after = page["next"]
             if after is None:

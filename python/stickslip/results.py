@@ -1296,7 +1296,7 @@ class ScanResidual(Result):
 
 
 class SessionPage(Result):
-    """A page of contacts, oldest first."""
+    """A page of contacts, in the order that the query asks for."""
 
     items: list[SessionSummary]
     """The contacts."""

@@ -34,6 +34,8 @@ def test_contact_is_moved_read_renamed_and_deleted(api: ss.Client) -> None:
     assert len(contact.loop(points_per_move=5).to_frame()) > 10
     assert contact.rename("other").label == "other"
     assert contact.id in [one.id for one in api.contacts(label="other")]
+    newest = [one.id for one in api.contacts(newest_first=True)]
+    assert newest == [one.id for one in api.contacts()][::-1]
     assert api.open(contact.id).state.document == contact.state.document
     contact.observe([{"displacement": "10 nm", "force": 0.2}])
     contact.delete()

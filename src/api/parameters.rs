@@ -12,7 +12,7 @@ use uuid::Uuid;
 
 use stickslip_mechanics::range::Range;
 use stickslip_wire::limits::{Array, Characters, Limit};
-use stickslip_wire::{Faults, Field, JobState, JsonPath};
+use stickslip_wire::{ContactOrder, Faults, Field, JobState, JsonPath};
 
 use super::formats::Format;
 use super::problem::Problem;
@@ -265,8 +265,14 @@ pub const fn words<V>(values: &'static [V], name: fn(V) -> &'static str) -> Choi
     Choice { values, name, schema }
 }
 
-pub const JOB_STATE: Choice<JobState> =
-    Choice { values: &JobState::ALL, name: JobState::name, schema: |names| json!({"type": "string", "enum": names}) };
+/// One of these words, of which there will be no others.
+const fn closed<V>(values: &'static [V], name: fn(V) -> &'static str) -> Choice<V> {
+    Choice { values, name, schema: |names| json!({"type": "string", "enum": names}) }
+}
+
+pub const JOB_STATE: Choice<JobState> = closed(&JobState::ALL, JobState::name);
+
+pub const CONTACT_ORDER: Choice<ContactOrder> = closed(&ContactOrder::ALL, ContactOrder::name);
 
 impl<V: Copy> Choice<V> {
     fn names(&self) -> Vec<&'static str> {

@@ -156,6 +156,10 @@ async fn serve_connection<S: AsyncRead + AsyncWrite + Unpin>(
             }
             _ = closing.changed(), if !shutting_down => {
                 shutting_down = true;
+                // The library waits for the rest of a head. A spare connection is for health checks, which are over.
+                if spare && activity.try_close() {
+                    break;
+                }
                 connection.as_mut().graceful_shutdown();
             }
             () = check.as_mut() => match activity.next_check(&limits) {

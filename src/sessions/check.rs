@@ -7,7 +7,7 @@ use std::fmt;
 
 use uuid::Uuid;
 
-use crate::store::{Record, Snapshot, Store, StoreError};
+use crate::store::{Page, Record, Snapshot, Store, StoreError};
 use stickslip_mechanics::Contact;
 use stickslip_wire::{Move, PrepareAnew, State};
 
@@ -80,7 +80,7 @@ impl fmt::Display for Checked {
 pub async fn count_moves(store: &dyn Store) -> Result<u64, StoreError> {
     let (mut moves, mut after) = (0_u64, None);
     loop {
-        let page = store.list(None, None, after, SESSIONS).await?;
+        let page = store.list(None, None, Page::oldest(after, SESSIONS)).await?;
         let Some(last) = page.last() else { return Ok(moves) };
         after = Some(last.id);
         moves = page.iter().fold(moves, |moves, session| moves.saturating_add(session.sequence));
@@ -104,7 +104,7 @@ pub async fn check(
     }
     let mut after = None;
     loop {
-        let page = match store.list(None, None, after, SESSIONS).await {
+        let page = match store.list(None, None, Page::oldest(after, SESSIONS)).await {
             Ok(page) => page,
             Err(error) => {
                 check.unreadable(None, "the rest of the contacts", error)?;

@@ -48,7 +48,7 @@ use crate::computations::{OnContact, Shown};
 use crate::formats;
 use crate::otlp;
 use crate::simulation::{bytes, cost};
-use crate::store::{Listeners, Store, Tenant};
+use crate::store::{Listeners, Page, Store, Tenant};
 use stickslip_wire::subsurface::SubsurfaceTask;
 use stickslip_wire::{ContactDefinition, SessionPage, SessionReply, SubsurfaceRequest};
 
@@ -240,19 +240,16 @@ impl Sessions {
         Ok(request.of_contact(&self.replay.current(&mut guard).await?.session.definition)?)
     }
 
-    /// A page of sessions, oldest first; of those alone whose label contains `label`.
+    /// A page of sessions; of those alone whose label contains `label`.
     ///
     /// # Errors
-    /// A failure of the store.
-    pub async fn list(
-        &self,
-        label: Option<String>,
-        after: Option<Uuid>,
-        limit: usize,
-    ) -> Result<SessionPage, SessionError> {
+    /// A failure of the store, or of the pool if the store does not find it in time.
+    pub async fn list(&self, label: Option<String>, page: Page) -> Result<SessionPage, SessionError> {
+        let limit = page.limit;
         // One more than requested shows whether there is a next page.
-        let mut found =
-            self.replay.common.store.list(Some(self.replay.tenant.clone()), label, after, limit + 1).await?;
+        let page = Page { limit: limit + 1, ..page };
+        let common = &self.replay.common;
+        let mut found = common.pool.wait(common.store.list(Some(self.replay.tenant.clone()), label, page)).await??;
         let more = found.len() > limit;
         found.truncate(limit);
         let next = found.last().filter(|_| more).map(|session| session.id);

@@ -25,7 +25,7 @@ use async_trait::async_trait;
 use jiff::Timestamp;
 use uuid::Uuid;
 
-use stickslip_wire::{ContactDefinition, Move, ObservedForce, SessionSummary, State};
+use stickslip_wire::{ContactDefinition, ContactOrder, Move, ObservedForce, SessionSummary, State};
 
 pub use changes::Changes;
 pub use commits::Commits;
@@ -199,6 +199,25 @@ pub struct Extent {
     pub snapshot: u64,
 }
 
+/// A page of sessions.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Page {
+    /// By the identifiers, which rise with the time at which a session is made.
+    pub order: ContactOrder,
+    /// The session that it comes after, in this order; it begins with the first if there is none.
+    pub after: Option<Uuid>,
+    /// As many sessions at most.
+    pub limit: usize,
+}
+
+impl Page {
+    /// The oldest first.
+    #[must_use]
+    pub fn oldest(after: Option<Uuid>, limit: usize) -> Page {
+        Page { order: ContactOrder::Oldest, after, limit }
+    }
+}
+
 /// Says of a session whether it may be read at once.
 pub type IsSmall = fn(&Extent) -> bool;
 
@@ -321,16 +340,11 @@ pub trait Store: JobStore {
     /// The session.
     async fn find(&self, id: Uuid) -> Result<Session>;
 
-    /// At most `limit` sessions of a tenant, or of all tenants, with identifiers greater than `after`, in order; of
-    /// those alone whose label contains `label`, whatever the case of ASCII letters. Without their definitions: a page
-    /// of those could be larger than the memory.
-    async fn list(
-        &self,
-        tenant: Option<Tenant>,
-        label: Option<String>,
-        after: Option<Uuid>,
-        limit: usize,
-    ) -> Result<Vec<SessionSummary>>;
+    /// A page of the sessions of a tenant, or of all tenants, by their identifiers; of those alone whose label contains
+    /// `label`, whatever the case of ASCII letters. Without their definitions: a page of those could be larger than the
+    /// memory. A search for a label may read all labels of a tenant: few run at a time, and one that nobody waits for
+    /// any more ends.
+    async fn list(&self, tenant: Option<Tenant>, label: Option<String>, page: Page) -> Result<Vec<SessionSummary>>;
 
     /// Gives a session that is at sequence `expected` and has the label `from` the label `to`, or none, and stores the
     /// receipt with it. Its sequence and its times stay. [`StoreError::Stale`] also if it has another label.

@@ -5,7 +5,7 @@ use crate::common;
 use std::sync::Arc;
 use std::time::Duration;
 
-use common::{Server, ball, create, problem, until, with};
+use common::{Server, ball, create, good, problem, until, with};
 use futures::future::join_all;
 use reqwest::{Method, Response, StatusCode};
 use serde_json::{Value, json};
@@ -150,6 +150,31 @@ async fn a_fork_begins_after_any_move_and_is_what_the_contact_was_then() {
         assert_eq!((refused.status, refused.errors[0].pointer.as_str()), (422, "/sequence"), "{wrong}");
     }
     assert_eq!(client.contacts(None, None).await.unwrap().items.len(), 6);
+}
+
+#[tokio::test]
+async fn the_newest_contacts_are_listed_first_where_that_is_asked_for() {
+    let server = Server::start().await;
+    let mut made = Vec::new();
+    for _ in 0..5 {
+        made.push(server.client.create(&create(), &Options::default()).await.unwrap().id);
+    }
+    let (mut seen, mut after) = (Vec::new(), None);
+    loop {
+        let page = server.client.newest_contacts(after, Some(2)).await.unwrap();
+        seen.extend(page.items.into_iter().map(|item| item.id));
+        after = page.next;
+        if after.is_none() {
+            break;
+        }
+    }
+    made.reverse();
+    assert_eq!(seen, made);
+    let oldest = good(server.get("/contacts?order=oldest").await).await;
+    assert_eq!(oldest, good(server.get("/contacts").await).await);
+    assert_eq!(oldest["items"][0]["id"], made[4].to_string());
+    let refused = problem(server.get("/contacts?order=latest").await).await;
+    assert!(refused.errors[0].detail.contains("`oldest`, `newest`"), "{refused:?}");
 }
 
 #[tokio::test]

@@ -3,6 +3,7 @@
 use std::time::Duration;
 
 use crate::common::raw::{PATIENCE, Service, post};
+use crate::common::until;
 use tokio::io::{AsyncReadExt as _, AsyncWriteExt as _};
 use tokio::net::TcpStream;
 use tokio::time::{sleep, timeout};
@@ -52,4 +53,24 @@ async fn what_takes_longer_is_refused() {
         "{reply}"
     );
     assert!(reply.to_lowercase().contains("retry-after: "), "{reply}");
+}
+
+/// A connection beyond the limit is kept for a health check, and never ends its head.
+#[tokio::test]
+async fn a_spare_connection_does_not_hold_up_the_stop() {
+    let service = Service::start(&["--max-connections", "1", "--log", "debug"]);
+    let taken = TcpStream::connect(service.address).await.unwrap();
+    let mut spare = TcpStream::connect(service.address).await.unwrap();
+    spare.write_all(b"GET /healthz HT").await.unwrap();
+    // This one came later and is served: those before it have been accepted.
+    let health = service.ask("127.0.0.1", &crate::common::raw::get("/healthz")).await.unwrap();
+    assert_eq!(health.statuses, [200], "{}", health.text);
+    drop(taken);
+    service.terminate();
+    let mut nothing = Vec::new();
+    timeout(PATIENCE, spare.read_to_end(&mut nothing)).await.unwrap().unwrap();
+    assert!(nothing.is_empty());
+    until("the server stops", async || service.log().contains("stopping").then_some(())).await;
+    let log = service.log();
+    assert!(!log.contains("taken too long") && !log.contains("have been closed"), "{log}");
 }

@@ -6,7 +6,9 @@
 use std::fs;
 
 use rusqlite::Connection;
-use stickslip::store::{ChunkResult, Job, JobLimits, PostgresStore, SqliteStore, Store, Tenant, postgres, sqlite};
+use stickslip::store::{
+    ChunkResult, Job, JobLimits, Page, PostgresStore, SqliteStore, Store, Tenant, postgres, sqlite,
+};
 use tempfile::tempdir;
 use tokio_postgres::{Client, NoTls};
 use uuid::Uuid;
@@ -79,7 +81,7 @@ async fn content(store: &dyn Store, [made, fork, job]: [Uuid; 3]) -> String {
             store.history(fork, 0, 10).await.unwrap(),
             store.snapshot(fork).await.unwrap(),
         ),
-        (store.list(None, None, None, 10).await.unwrap(), store.receipt("kept").await.unwrap().unwrap()),
+        (store.list(None, None, Page::oldest(None, 10)).await.unwrap(), store.receipt("kept").await.unwrap().unwrap()),
         (store.job(job).await.unwrap(), store.job_request(job).await.unwrap(), store.chunks(job, 0, 10).await.unwrap()),
         store.check_integrity().await.unwrap(),
     ))

@@ -9,7 +9,7 @@ use common::postgres::Cluster;
 use common::{create, until};
 use futures::future::join_all;
 use jiff::Timestamp;
-use stickslip::store::{PostgresStore, Receipt, Record, Reply, RequestKey, Session, Store, StoreError, Tenant};
+use stickslip::store::{Page, PostgresStore, Receipt, Record, Reply, RequestKey, Session, Store, StoreError, Tenant};
 use stickslip_wire::{ContactDefinition, Move, Regime, State};
 use tokio_postgres::{Client, NoTls};
 use uuid::Uuid;
@@ -292,7 +292,7 @@ async fn several_sweep_at_once_and_each_idle_session_goes_once() {
     assert_eq!(swept.into_iter().map(Result::unwrap).sum::<u64>(), 230);
     assert!(matches!(stores[1].find(idle[7].id).await, Err(StoreError::Expired(_))));
     assert!(matches!(stores[2].append(idle[7].id, 0, vec![record(1, 1.0)], None).await, Err(StoreError::Expired(_))));
-    let left = stores[1].list(None, None, None, 1000).await.unwrap();
+    let left = stores[1].list(None, None, Page::oldest(None, 1000)).await.unwrap();
     assert_eq!(left.into_iter().map(|one| one.id).collect::<Vec<_>>(), [fresh.id]);
 }
 

@@ -10,10 +10,10 @@ use uuid::Uuid;
 
 use crate::files::{LoopFileHints, ScanFileHints};
 use crate::{
-    AccuracyReply, AccuracyRequest, ContactDefinition, CreateRequest, CycleDrive, CyclePage, CycleReply, CycleRequest,
-    EndEvent, EndReason, FitReply, FitRequest, ForkRequest, FrettingReply, FrettingRequest, FrictionReply, HistoryPage,
-    JobList, JobReply, JobState, LoopFileReply, LoopPage, Machine, MoveReply, MoveRequest, NewSession,
-    ObservationsReply, ObservationsRequest, PathReply, PathRequest, ProblemDocument, ProfileFitReply,
+    AccuracyReply, AccuracyRequest, ContactDefinition, ContactOrder, CreateRequest, CycleDrive, CyclePage, CycleReply,
+    CycleRequest, EndEvent, EndReason, FitReply, FitRequest, ForkRequest, FrettingReply, FrettingRequest,
+    FrictionReply, HistoryPage, JobList, JobReply, JobState, LoopFileReply, LoopPage, Machine, MoveReply, MoveRequest,
+    NewSession, ObservationsReply, ObservationsRequest, PathReply, PathRequest, ProblemDocument, ProfileFitReply,
     ProfileFitRequest, ProtocolReply, ProtocolRequest, RelaxReply, RelaxRequest, RenameRequest, Residual,
     ScanFileReply, SessionPage, SessionReply, SimulateReply, SimulateRequest, StateEvent, StressReply, StressRequest,
     SubsurfaceReply, SubsurfaceRequest, SweepReply, SweepRequest, WorkDensity,
@@ -175,6 +175,12 @@ impl Client {
         limit: Option<usize>,
     ) -> Result<SessionPage, Error> {
         let call = self.call(Method::GET, "/contacts").query(&[("label", label)]);
+        json(call.query(&[("after", after)]).query(&[("limit", limit)])).await
+    }
+
+    /// `GET /contacts?order=newest`: a page of the newest, beyond the `next` of the page before.
+    pub async fn newest_contacts(&self, after: Option<Uuid>, limit: Option<usize>) -> Result<SessionPage, Error> {
+        let call = self.call(Method::GET, "/contacts").query(&[("order", ContactOrder::Newest.name())]);
         json(call.query(&[("after", after)]).query(&[("limit", limit)])).await
     }
 

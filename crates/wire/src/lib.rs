@@ -78,8 +78,8 @@ pub use profile_fit::{ProfileFitReply, ProfileFitRequest};
 pub use protocol::{ProtocolReply, ProtocolRequest, RelaxReply, RelaxRequest};
 pub use reply::{Accuracy, ContactSummary, Peak, Protocol, Regime, Residual, SolverKind, State, Warning};
 pub use session::{
-    CreateRequest, ForkRequest, MoveReply, MoveRequest, NewSession, PathReply, PathRequest, RenameRequest, SessionPage,
-    SessionReply, SessionSummary, StressReply,
+    ContactOrder, CreateRequest, ForkRequest, MoveReply, MoveRequest, NewSession, PathReply, PathRequest,
+    RenameRequest, SessionPage, SessionReply, SessionSummary, StressReply,
 };
 pub use simulate::{SimulateReply, SimulateRequest, Solver, Springs, Steps};
 pub use stress::{Field, Points, Sampling, Stress, StressRequest};

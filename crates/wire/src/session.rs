@@ -8,6 +8,7 @@ use uuid::Uuid;
 use stickslip_mechanics::DEFAULT_TOLERANCE;
 
 use super::check::{Faults, JsonPath};
+use super::choice::words;
 use super::definition::{ContactDefinition, DefinedProfile, Material, Preload, SharedSetup};
 use super::document::Document;
 use super::limits::{Characters, Limited as _, Tolerance};
@@ -103,6 +104,16 @@ pub struct RenameRequest {
 }
 }
 
+words! {
+/// The order of a list of contacts.
+pub enum ContactOrder {
+    /// The oldest first.
+    Oldest = "oldest",
+    /// The newest first.
+    Newest = "newest",
+}
+}
+
 replies! {
 /// A contact that has just been made.
 pub struct NewSession {
@@ -152,7 +163,7 @@ pub struct SessionSummary {
     pub updated_at: Timestamp,
 }
 
-/// A page of contacts, oldest first.
+/// A page of contacts, in the order that the query asks for.
 pub struct SessionPage {
     /// The contacts.
     pub items: Vec<SessionSummary>,

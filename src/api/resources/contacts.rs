@@ -2,12 +2,13 @@
 
 use super::prelude::*;
 use crate::api::extract::OptionalBody;
-use crate::api::parameters::{IDENTIFIER, Text};
+use crate::api::parameters::{CONTACT_ORDER, IDENTIFIER, Text};
 use crate::sessions::label_checksum;
 use crate::simulation::bytes::OBJECT;
+use crate::store::Page;
 use stickslip_wire::session::LABEL;
 use stickslip_wire::{
-    ContactDefinition, CreateRequest, ForkRequest, NewSession, RenameRequest, SessionPage, SessionReply,
+    ContactDefinition, ContactOrder, CreateRequest, ForkRequest, NewSession, RenameRequest, SessionPage, SessionReply,
 };
 
 /// Bytes of an item in a list of contacts, with a label of the longest kind.
@@ -35,7 +36,9 @@ parameters! {
         /// Those alone whose label contains this text. Upper and lower case are the same for the letters A to Z; the
         /// empty text finds all that have a label.
         label: Option<String> = Text(LABEL);
-        /// The `next` of the previous page.
+        /// The order: `oldest` or `newest` first.
+        order: ContactOrder = CONTACT_ORDER, or ContactOrder::Oldest;
+        /// The `next` of the previous page, in the same order.
         after: Option<Uuid> = IDENTIFIER;
         /// How many contacts at most.
         limit: usize = count(&PAGE), or DEFAULT_PAGE;
@@ -44,17 +47,18 @@ parameters! {
 
 /// List contacts
 ///
-/// A page of contacts, oldest first.
+/// A page of contacts, the oldest first or the newest.
 #[utoipa::path(
     get, path = "/contacts", tag = "contacts", params(ListQuery),
     responses((status = 200, description = "A page of contacts", body = SessionPage))
 )]
 pub async fn list_contacts(
     TenantApp(app): TenantApp,
-    CheckedQuery(ListQuery { label, limit, after }): CheckedQuery<ListQuery>,
+    CheckedQuery(ListQuery { label, order, after, limit }): CheckedQuery<ListQuery>,
 ) -> Result<Response, Problem> {
     let memory = app.pool.reserve(limit * SUMMARY_BYTES).await?;
-    Ok(reply::holding(reply::json(reply::written(&app.sessions.list(label, after, limit).await?)?), memory))
+    let page = app.sessions.list(label, Page { order, after, limit }).await?;
+    Ok(reply::holding(reply::json(reply::written(&page)?), memory))
 }
 
 /// Get a contact

@@ -13,16 +13,18 @@ use jiff::Timestamp;
 use parking_lot::Mutex;
 use uuid::Uuid;
 
-use stickslip_wire::SessionSummary;
+use stickslip_wire::{ContactOrder, SessionSummary};
 
 use jobs::StoredJob;
 
 use super::jobs::ChunkQueue;
 use super::{
-    CONTACT_BYTES, Changes, EXPIRED_LIFETIME, Extent, RECEIPT_LIFETIME, RECORD_BYTES, Receipt, Record, Result, Session,
-    Snapshot, Store, StoreError, Tenant, Usage,
+    CONTACT_BYTES, Changes, EXPIRED_LIFETIME, Extent, Page, RECEIPT_LIFETIME, RECORD_BYTES, Receipt, Record, Result,
+    Session, Snapshot, Store, StoreError, Tenant, Usage,
 };
 
+/// Sessions that a list looks at before others have their turn.
+const SEARCHED: usize = 1_000;
 /// Bytes of replies kept for retries. Beyond that the oldest are deleted early, because memory is bounded.
 const RECEIPT_BYTES: u64 = 256 * 1024 * 1024;
 /// Expired sessions that are remembered, of some hundred bytes each. Beyond that the oldest are forgotten early.
@@ -194,23 +196,41 @@ impl Store for MemoryStore {
         self.inner.lock().get(id).map(|stored| stored.session.clone())
     }
 
-    async fn list(
-        &self,
-        tenant: Option<Tenant>,
-        label: Option<String>,
-        after: Option<Uuid>,
-        limit: usize,
-    ) -> Result<Vec<SessionSummary>> {
+    async fn list(&self, tenant: Option<Tenant>, label: Option<String>, page: Page) -> Result<Vec<SessionSummary>> {
         let wanted = label.map(|label| label.to_ascii_lowercase());
-        let is_labelled = |wanted: &str, session: &Session| {
-            session.label.as_ref().is_some_and(|label| label.to_ascii_lowercase().contains(wanted))
+        let is_wanted = |session: &Session| {
+            tenant.as_ref().is_none_or(|tenant| session.tenant == *tenant)
+                && wanted.as_ref().is_none_or(|wanted| {
+                    session.label.as_ref().is_some_and(|label| label.to_ascii_lowercase().contains(wanted))
+                })
         };
-        let inner = self.inner.lock();
-        let sessions = inner.sessions.range((after.map_or(Unbounded, Excluded), Unbounded));
-        let sessions = sessions.map(|(_, stored)| &stored.session);
-        let own = sessions.filter(|session| tenant.as_ref().is_none_or(|tenant| session.tenant == *tenant));
-        let found = own.filter(|session| wanted.as_ref().is_none_or(|wanted| is_labelled(wanted, session)));
-        Ok(found.take(limit).map(summary).collect())
+        let (mut found, mut after) = (Vec::new(), page.after);
+        loop {
+            let seen = {
+                let inner = self.inner.lock();
+                let beyond = after.map_or(Unbounded, Excluded);
+                let rest: Box<dyn Iterator<Item = &Stored>> = match page.order {
+                    ContactOrder::Oldest => Box::new(inner.sessions.range((beyond, Unbounded)).map(|(_, it)| it)),
+                    ContactOrder::Newest => Box::new(inner.sessions.range((Unbounded, beyond)).rev().map(|(_, it)| it)),
+                };
+                let mut seen = 0;
+                for stored in rest.take(SEARCHED) {
+                    if found.len() == page.limit {
+                        return Ok(found);
+                    }
+                    (seen, after) = (seen + 1, Some(stored.session.id));
+                    if is_wanted(&stored.session) {
+                        found.push(summary(&stored.session));
+                    }
+                }
+                seen
+            };
+            if seen < SEARCHED {
+                return Ok(found);
+            }
+            // Others have the sessions, and the thread, between two parts of a long search.
+            tokio::task::yield_now().await;
+        }
     }
 
     async fn rename(

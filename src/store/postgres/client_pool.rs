@@ -5,8 +5,10 @@ use std::time::{Duration, Instant};
 use deadpool_postgres::{
     GenericClient, Hook, HookError, Manager, ManagerConfig, Object, Pool, RecyclingMethod, Runtime,
 };
+use tokio::sync::Semaphore;
 use tokio_postgres::Row;
 use tokio_postgres::types::ToSql;
+use tokio_postgres_rustls::MakeRustlsConnect;
 
 use crate::store::{Result, StoreError};
 
@@ -16,6 +18,8 @@ use super::sql;
 
 /// Connections of the pool. Reads are short; more would only make the database switch between them.
 const CONNECTIONS: usize = 8;
+/// Searches among them at a time.
+const SEARCHES: usize = 2;
 /// How long a call waits for a free connection, or for a new one.
 const PATIENCE_FOR_CONNECTION: Duration = Duration::from_secs(5);
 /// How long an answer may take: longer than the database itself allows a statement, so that the database gives up first
@@ -74,6 +78,27 @@ pub(super) struct ClientPool {
     /// Whether the database has notifications.
     pub(super) announces: bool,
     pool: Pool,
+    /// For searches, so that other reads never wait behind them.
+    searches: Semaphore,
+}
+
+/// A statement that is ended when this is dropped. Its connection is closed then: the end may come later.
+struct Search {
+    connection: Option<Object>,
+    tls: MakeRustlsConnect,
+}
+
+impl Drop for Search {
+    fn drop(&mut self) {
+        if let Some(connection) = self.connection.take() {
+            let (client, tls) = (Object::take(connection), self.tls.clone());
+            tokio::spawn(async move {
+                if let Err(error) = client.cancel_token().cancel_query(tls).await {
+                    tracing::debug!(%error, "a search was not ended");
+                }
+            });
+        }
+    }
 }
 
 impl ClientPool {
@@ -93,7 +118,8 @@ impl ClientPool {
             .post_create(prepare)
             .build();
         let pool = pool.map_err(|error| StoreError::Failed(format!("no pool of connections: {error}")))?;
-        Ok(ClientPool { target, outage: Outage::default(), announces, pool })
+        let searches = Semaphore::new(SEARCHES);
+        Ok(ClientPool { target, outage: Outage::default(), announces, pool, searches })
     }
 
     pub(super) async fn connection(&self) -> Result<Object, Fault> {
@@ -117,6 +143,34 @@ impl ClientPool {
     /// The rows of a statement that only reads, or that may be repeated.
     pub(super) async fn rows(&self, statement: &str, parameters: &[Parameter<'_>]) -> Result<Vec<Row>> {
         with_retries!(self, ANSWER, connection => rows(connection, statement, parameters))
+    }
+
+    /// The same for a statement that may read much: few at a time, and the database is told to end one that nobody waits
+    /// for any more.
+    pub(super) async fn search(&self, statement: &str, parameters: &[Parameter<'_>]) -> Result<Vec<Row>> {
+        let mut tries = Tries::default();
+        loop {
+            let _permit = self.searches.acquire().await;
+            let fault = match self.search_once(statement, parameters).await {
+                Ok(found) => {
+                    self.outage.end();
+                    return Ok(found);
+                }
+                Err(fault) => fault,
+            };
+            tries.retry_or_fail(&self.outage, fault).await?;
+        }
+    }
+
+    async fn search_once(&self, statement: &str, parameters: &[Parameter<'_>]) -> Result<Vec<Row>, Fault> {
+        let mut search = Search { connection: Some(self.connection().await?), tls: self.target.tls.clone() };
+        let Some(connection) = &search.connection else { return Ok(Vec::new()) };
+        let found = self.answer(ANSWER, rows(connection, statement, parameters)).await;
+        if !matches!(found, Err(Fault::Lost(_))) {
+            // It goes back to the others.
+            search.connection = None;
+        }
+        found
     }
 
     /// The first of these rows.

@@ -33,14 +33,14 @@ use tokio::time::timeout;
 use tokio_postgres::Row;
 use uuid::Uuid;
 
-use stickslip_wire::SessionSummary;
+use stickslip_wire::{ContactOrder, SessionSummary};
 
 use super::probe::Probe;
 use super::rows;
 use super::schema::SchemaError;
 use super::{
-    CONTACT_BYTES, Changes, Commits, Extent, RECEIPT_LIFETIME, RECEIPT_OVERHEAD, Receipt, Record, Result, Session,
-    Snapshot, Store, StoreError, Tenant, Usage,
+    CONTACT_BYTES, Changes, Commits, Extent, Page, RECEIPT_LIFETIME, RECEIPT_OVERHEAD, Receipt, Record, Result,
+    Session, Snapshot, Store, StoreError, Tenant, Usage,
 };
 
 use client_pool::{ANSWER, ClientPool};
@@ -206,19 +206,17 @@ impl Store for PostgresStore {
         }
     }
 
-    async fn list(
-        &self,
-        tenant: Option<Tenant>,
-        label: Option<String>,
-        after: Option<Uuid>,
-        limit: usize,
-    ) -> Result<Vec<SessionSummary>> {
-        // No session has the nil identifier, which is the lowest.
-        let (after, limit) = (after.unwrap_or_default(), to_bigint(limit as u64));
-        let found = match tenant {
-            None => self.pool.rows(sql::LIST, &[&after, &limit, &label]).await?,
-            Some(tenant) => self.pool.rows(sql::LIST_OF_TENANT, &[&after, &limit, &label, &tenant.name()]).await?,
-        };
+    async fn list(&self, tenant: Option<Tenant>, label: Option<String>, page: Page) -> Result<Vec<SessionSummary>> {
+        // No session has the nil identifier, which is the lowest, or the highest.
+        let after = page.after.unwrap_or(match page.order {
+            ContactOrder::Oldest => Uuid::nil(),
+            ContactOrder::Newest => Uuid::max(),
+        });
+        let sql = sql::list(tenant.is_some(), label.is_some(), page.order);
+        let (limit, name) = (to_bigint(page.limit as u64), tenant.as_ref().map_or("", Tenant::name));
+        let which: [client_pool::Parameter<'_>; 4] = [&after, &limit, &label, &name];
+        let found =
+            if label.is_some() { self.pool.search(&sql, &which).await? } else { self.pool.rows(&sql, &which).await? };
         found.iter().map(|row| rows::summary(&mut reader(row))).collect()
     }
 

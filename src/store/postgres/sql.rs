@@ -1,5 +1,7 @@
 //! Every statement that is sent, by name. `docs/postgres.md` says which features of the database they need.
 
+use stickslip_wire::ContactOrder;
+
 // The channel of notifications of changes.
 macro_rules! channel {
     () => {
@@ -150,17 +152,29 @@ pub(super) const SEQUENCE: &str = "SELECT sequence FROM contacts WHERE id = $1";
 
 pub(super) const EXPIRED: &str = "SELECT tenant FROM expired WHERE id = $1";
 
-/// In the collation C, `lower` changes ASCII letters alone.
-pub(super) const LIST: &str = r#"
-SELECT id, label, sequence, created_at, created_ns, updated_at, updated_ns
-FROM contacts WHERE id > $1 AND ($3::text IS NULL OR strpos(lower(label COLLATE "C"), lower($3 COLLATE "C")) > 0)
-ORDER BY id LIMIT $2"#;
-
-pub(super) const LIST_OF_TENANT: &str = r#"
-SELECT id, label, sequence, created_at, created_ns, updated_at, updated_ns
-FROM contacts WHERE tenant = $4 AND id > $1
-    AND ($3::text IS NULL OR strpos(lower(label COLLATE "C"), lower($3 COLLATE "C")) > 0)
-ORDER BY id LIMIT $2"#;
+/// A page of sessions beyond the identifier `$1`, at most `$2`: of the tenant `$4`, or of all; of those whose label
+/// contains `$3`, or of all.
+pub(super) fn list(of_tenant: bool, labelled: bool, order: ContactOrder) -> String {
+    let (beyond, order) = match order {
+        ContactOrder::Oldest => (">", "ORDER BY id"),
+        ContactOrder::Newest => ("<", "ORDER BY id DESC"),
+    };
+    let tenant = if of_tenant { "tenant = $4" } else { "$4::text = ''" };
+    let which = format!("{tenant} AND id {beyond} $1");
+    let which = if labelled {
+        // The labels are in the index. In the collation C, `lower` changes ASCII letters alone.
+        format!(
+            r#"id IN (SELECT id FROM contacts WHERE {which} AND label IS NOT NULL
+                AND strpos(lower(label COLLATE "C"), lower($3::text COLLATE "C")) > 0 {order} LIMIT $2)"#
+        )
+    } else {
+        format!("{which} AND $3::text IS NULL")
+    };
+    format!(
+        "SELECT id, label, sequence, created_at, created_ns, updated_at, updated_ns FROM contacts
+        WHERE {which} {order} LIMIT $2"
+    )
+}
 
 /// Names a session that is at a sequence and has a label, perhaps the new one by an earlier attempt, and keeps the
 /// receipt. Returns, if the session exists, whether it was like that and free, its sequence, and whether it has one of

@@ -33,8 +33,8 @@ use uuid::Uuid;
 use super::jobs::ChunkQueue;
 use super::probe::Probe;
 use super::{
-    Changes, Commits, Extent, IsSmall, Receipt, Record, Result, Session, Snapshot, Store, StoreError, Tenant, Usage,
-    Whole,
+    Changes, Commits, Extent, IsSmall, Page, Receipt, Record, Result, Session, Snapshot, Store, StoreError, Tenant,
+    Usage, Whole,
 };
 use crate::metrics::Counted;
 use change::{Change, Done, Transaction};
@@ -192,14 +192,10 @@ impl Store for SqliteStore {
         self.readers.read(move |database| read::find(database, id)).await
     }
 
-    async fn list(
-        &self,
-        tenant: Option<Tenant>,
-        label: Option<String>,
-        after: Option<Uuid>,
-        limit: usize,
-    ) -> Result<Vec<SessionSummary>> {
-        self.readers.read(move |database| read::list(database, tenant.as_ref(), label.as_deref(), after, limit)).await
+    async fn list(&self, tenant: Option<Tenant>, label: Option<String>, page: Page) -> Result<Vec<SessionSummary>> {
+        let is_search = label.is_some();
+        let list = move |database: &_| read::list(database, tenant.as_ref(), label.as_deref(), page);
+        if is_search { self.readers.search(list).await } else { self.readers.read(list).await }
     }
 
     async fn rename(

@@ -6,10 +6,10 @@ use uuid::Uuid;
 
 use crate::store::rows::{self, RowReader as _};
 use crate::store::{
-    CONTACT_BYTES, Extent, IsSmall, RECEIPT_LIFETIME, RECEIPT_OVERHEAD, Receipt, Record, Session, Snapshot, Tenant,
-    Usage, Whole,
+    CONTACT_BYTES, Extent, IsSmall, Page, RECEIPT_LIFETIME, RECEIPT_OVERHEAD, Receipt, Record, Session, Snapshot,
+    Tenant, Usage, Whole,
 };
-use stickslip_wire::SessionSummary;
+use stickslip_wire::{ContactOrder, SessionSummary};
 
 use super::columns::{
     CONTACTS, MOVE_COLUMNS, SUMMARY_COLUMNS, all, clamped_nanoseconds, first, nanoseconds_ago, record, to_integer,
@@ -81,24 +81,27 @@ pub(super) fn list(
     database: &Connection,
     tenant: Option<&Tenant>,
     label: Option<&str>,
-    after: Option<Uuid>,
-    limit: usize,
+    page: Page,
 ) -> Result<Vec<SessionSummary>, Fault> {
-    // Every identifier comes after the empty text.
-    let after = after.map_or_else(String::new, |id| id.to_string());
-    let limit = to_integer(limit as u64)?;
-    // SQLite lowers ASCII letters alone.
-    let labelled = "(?3 IS NULL OR instr(lower(c.label), lower(?3)) > 0)";
-    let page = |which: &str| {
-        format!("SELECT {SUMMARY_COLUMNS} FROM {CONTACTS} WHERE {which} AND {labelled} ORDER BY c.id LIMIT ?2")
+    let after = page.after.map(|id| id.to_string());
+    // Every identifier comes after the empty text and before this letter.
+    let (after, beyond, order) = match page.order {
+        ContactOrder::Oldest => (after.unwrap_or_default(), ">", ""),
+        ContactOrder::Newest => (after.unwrap_or_else(|| "g".to_owned()), "<", "DESC"),
     };
-    Ok(match tenant {
-        None => all(database, &page("c.id > ?1"), params![after, limit, label], |row| rows::summary(row)),
-        Some(tenant) => {
-            let which = params![after, limit, label, tenant.name()];
-            all(database, &page("c.id > ?1 AND c.tenant = ?4"), which, |row| rows::summary(row))
-        }
-    }?)
+    let of_tenant = if tenant.is_some() { "AND c.tenant = ?4" } else { "AND ?4 = ''" };
+    // SQLite lowers ASCII letters alone. The index holds the lowered labels, so that no row is read for another label.
+    let labelled = match label {
+        Some(_) => "AND c.label IS NOT NULL AND instr(lower(c.label), lower(?3)) > 0",
+        None => "AND ?3 IS NULL",
+    };
+    let sql = format!(
+        "SELECT {SUMMARY_COLUMNS} FROM {CONTACTS} WHERE c.id {beyond} ?1 {of_tenant} {labelled}
+         ORDER BY c.id {order} LIMIT ?2"
+    );
+    let tenant = tenant.map_or("", Tenant::name);
+    let which = params![after, to_integer(page.limit as u64)?, label, tenant];
+    Ok(all(database, &sql, which, |row| rows::summary(row))?)
 }
 
 pub(super) fn history(database: &Connection, id: Uuid, after: u64, limit: usize) -> Result<Vec<Record>, Fault> {

@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use parking_lot::Mutex;
 use percent_encoding::{NON_ALPHANUMERIC, percent_encode};
-use rusqlite::{Connection, OpenFlags};
+use rusqlite::{Connection, InterruptHandle, OpenFlags};
 use tokio::sync::Semaphore;
 use tokio::task::spawn_blocking;
 
@@ -20,13 +20,33 @@ use super::{BUSY, STILL_BUSY};
 
 /// Reads at a time; more would only slow each other down.
 const READERS: usize = 4;
+/// Searches among them at a time, so that other reads never wait behind searches.
+const SEARCHES: usize = 2;
 /// Statements that a connection keeps prepared.
 const STATEMENTS: usize = 32;
 
 /// Connections that can only read, made when they are first needed.
 pub(super) struct Readers {
     permits: Arc<Semaphore>,
+    searches: Arc<Semaphore>,
     idle: Arc<Idle>,
+}
+
+/// A search that somebody waits for. Without him it ends.
+struct Search(Arc<Mutex<SearchState>>);
+
+// Locked for a moment. The handle is there while the search runs, so that nothing else on its connection is interrupted.
+enum SearchState {
+    Wanted(Option<InterruptHandle>),
+    Abandoned,
+}
+
+impl Drop for Search {
+    fn drop(&mut self) {
+        if let SearchState::Wanted(Some(running)) = std::mem::replace(&mut *self.0.lock(), SearchState::Abandoned) {
+            running.interrupt();
+        }
+    }
 }
 
 /// The idle connections, and what is needed to open more.
@@ -47,7 +67,8 @@ impl Readers {
     pub(super) fn new(path: PathBuf, files: Arc<OpenFiles>, lock: Option<Arc<File>>, immutable: bool) -> Readers {
         let (connections, locked) = (Mutex::default(), AtomicBool::new(false));
         let idle = Idle { connections, path, files, immutable, locked, _lock: lock };
-        Readers { permits: Arc::new(Semaphore::new(READERS)), idle: Arc::new(idle) }
+        let [permits, searches] = [READERS, SEARCHES].map(|number| Arc::new(Semaphore::new(number)));
+        Readers { permits, searches, idle: Arc::new(idle) }
     }
 
     /// Runs a query in one transaction, on the blocking pool.
@@ -74,6 +95,31 @@ impl Readers {
             Ok(Err(Fault::Sqlite(error))) => Err(store_error(&error, Stage::Before)),
             Err(_) => Err(StoreError::Failed("a read of the database panicked".to_owned())),
         }
+    }
+
+    /// The same for a query that may read much. It is interrupted when nobody waits for it any more.
+    pub(super) async fn search<T: Send + 'static>(
+        &self,
+        question: impl FnOnce(&Connection) -> Result<T, Fault> + Send + 'static,
+    ) -> Result<T> {
+        let permit = Arc::clone(&self.searches).acquire_owned().await;
+        let state = Arc::new(Mutex::new(SearchState::Wanted(None)));
+        let _search = Search(Arc::clone(&state));
+        self.read(move |database| {
+            let _permit = permit;
+            match &mut *state.lock() {
+                SearchState::Wanted(running) => *running = Some(database.get_interrupt_handle()),
+                SearchState::Abandoned => {
+                    return Err(Fault::Refused(StoreError::Unavailable("nobody waits for this search".to_owned())));
+                }
+            }
+            let found = question(database);
+            if let SearchState::Wanted(running) = &mut *state.lock() {
+                *running = None;
+            }
+            found
+        })
+        .await
     }
 
     pub(super) fn close(&self) {
@@ -114,4 +160,55 @@ pub(super) fn open_immutable(path: &Path) -> rusqlite::Result<Connection> {
     let name = percent_encode(path.as_os_str().as_bytes(), NON_ALPHANUMERIC);
     let flags = OpenFlags::SQLITE_OPEN_READ_ONLY | OpenFlags::SQLITE_OPEN_NO_MUTEX | OpenFlags::SQLITE_OPEN_URI;
     Connection::open_with_flags(format!("file:{name}?immutable=1"), flags)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+    use std::time::Duration;
+
+    use rusqlite::Connection;
+    use tokio::sync::oneshot;
+    use tokio::time::timeout;
+
+    use super::{OpenFiles, Readers, SEARCHES};
+
+    const PATIENCE: Duration = Duration::from_secs(60);
+    const ENDLESS: &str = "WITH RECURSIVE numbers (n) AS (SELECT 1 UNION ALL SELECT n + 1 FROM numbers)
+        SELECT count(*) FROM numbers";
+
+    #[tokio::test]
+    async fn a_search_ends_when_nobody_waits_for_it_and_others_are_read_meanwhile() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("numbers.db");
+        Connection::open(&path).unwrap().execute_batch("PRAGMA journal_mode = WAL; CREATE TABLE t (n)").unwrap();
+        let readers =
+            Arc::new(Readers::new(path.clone(), Arc::new(OpenFiles::at([path.as_path()]).unwrap()), None, false));
+        let count = |database: &Connection| Ok(database.query_row("SELECT count(*) FROM t", [], |row| row.get(0))?);
+        // More than run at a time, so that some wait and are given up before they begin.
+        for _ in 0..2 {
+            let mut searches = Vec::new();
+            for number in 0..2 * SEARCHES {
+                let (begin, begun) = oneshot::channel();
+                let readers = Arc::clone(&readers);
+                searches.push(tokio::spawn(async move {
+                    let endless = move |database: &Connection| {
+                        let _ = begin.send(());
+                        Ok(database.query_row(ENDLESS, [], |row| row.get::<_, i64>(0))?)
+                    };
+                    readers.search(endless).await
+                }));
+                if number < SEARCHES {
+                    timeout(PATIENCE, begun).await.expect("it begins").unwrap();
+                }
+            }
+            assert_eq!(
+                timeout(PATIENCE, readers.read::<i64>(count)).await.expect("searches hold up reads").unwrap(),
+                0
+            );
+            searches.iter().for_each(|search| search.abort());
+            let found = timeout(PATIENCE, readers.search::<i64>(count)).await;
+            assert_eq!(found.expect("a search goes on that nobody waits for").unwrap(), 0);
+        }
+    }
 }

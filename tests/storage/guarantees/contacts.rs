@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use futures::future::join_all;
-use stickslip::store::{Session, Store, StoreError};
-use stickslip_wire::SessionSummary;
+use stickslip::store::{Page, Session, Store, StoreError};
+use stickslip_wire::{ContactOrder, SessionSummary};
 use uuid::Uuid;
 
 use crate::common::kill::exact;
@@ -38,25 +38,39 @@ pub async fn sessions_are_listed_in_order_and_by_pages(store: &dyn Store) {
         let Session { id, label, sequence, created_at, updated_at, .. } = stored(store, moves).await.0;
         made.push(SessionSummary { id, label, sequence, created_at, updated_at });
     }
-    let (mut seen, mut after): (Vec<SessionSummary>, _) = (Vec::new(), Some(before));
-    loop {
-        let page = store.list(None, None, after, 2).await.unwrap();
-        assert!(page.len() <= 2);
-        let Some(last) = page.last() else { break };
-        after = Some(last.id);
-        seen.extend(page);
+    for order in ContactOrder::ALL {
+        // By the labels that they have, or by all.
+        for label in [None, Some(String::new())] {
+            let mut after = if order == ContactOrder::Oldest { Some(before) } else { None };
+            let mut seen: Vec<SessionSummary> = Vec::new();
+            loop {
+                let page = store.list(None, label.clone(), Page { order, after, limit: 2 }).await.unwrap();
+                assert!(page.len() <= 2);
+                // Older ones are of other tests.
+                after = page.last().map(|last| last.id).filter(|last| *last > before);
+                seen.extend(page.into_iter().filter(|item| item.id > before));
+                if after.is_none() {
+                    break;
+                }
+            }
+            let mut wanted = made.clone();
+            wanted.retain(|item| label.is_none() || item.label.is_some());
+            if order == ContactOrder::Newest {
+                wanted.reverse();
+            }
+            assert_eq!(exact(&seen), exact(&wanted), "{order:?} {label:?}");
+        }
     }
-    assert_eq!(exact(&seen), exact(&made));
-    assert!(store.list(None, None, None, 1).await.unwrap()[0].id <= made[0].id);
+    assert!(store.list(None, None, Page::oldest(None, 1)).await.unwrap()[0].id <= made[0].id);
 }
 
 pub async fn a_label_changes_alone_and_finds_its_session(store: &dyn Store) {
     let (made, past) = stored(store, 2).await;
     let tenant = Some(made.tenant.clone());
     let found = async |label: &str| {
-        let listed = store.list(None, Some(label.to_owned()), None, 1_000).await.unwrap();
+        let listed = store.list(None, Some(label.to_owned()), Page::oldest(None, 1_000)).await.unwrap();
         assert_eq!(listed.iter().any(|item| item.id == made.id), {
-            let own = store.list(tenant.clone(), Some(label.to_owned()), None, 1_000).await.unwrap();
+            let own = store.list(tenant.clone(), Some(label.to_owned()), Page::oldest(None, 1_000)).await.unwrap();
             own.iter().any(|item| item.id == made.id)
         });
         listed.iter().any(|item| item.id == made.id)
@@ -201,7 +215,7 @@ pub async fn what_is_deleted_is_gone(store: &dyn Store) {
     assert!(matches!(store.snapshot(session.id).await, Err(StoreError::NotFound)));
     assert!(matches!(store.append(session.id, 2, records(2, 3), None).await, Err(StoreError::NotFound)));
     assert!(matches!(store.delete(session.id, 2).await, Err(StoreError::NotFound)));
-    let listed = store.list(None, None, None, 1_000).await.unwrap();
+    let listed = store.list(None, None, Page::oldest(None, 1_000)).await.unwrap();
     assert!(listed.iter().all(|found| found.id != session.id));
 }
 

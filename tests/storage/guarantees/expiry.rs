@@ -1,7 +1,7 @@
 //! Expiry: contacts that have not moved for long expire, and nothing else does.
 
 use jiff::{SignedDuration, Timestamp};
-use stickslip::store::{Record, Session, Store, StoreError};
+use stickslip::store::{Page, Record, Session, Store, StoreError};
 
 use crate::fixtures::{receipt, record, records, session, snapshot, stored};
 
@@ -41,7 +41,7 @@ pub async fn idle_sessions_expire_and_the_others_stay(store: &dyn Store) {
     }
     assert_eq!(store.history(copy.id, 0, 10).await.unwrap().len(), 1);
     assert!(matches!(store.find(deleted.id).await, Err(StoreError::NotFound)));
-    let listed = store.list(None, None, None, 1_000).await.unwrap();
+    let listed = store.list(None, None, Page::oldest(None, 1_000)).await.unwrap();
     assert!(listed.iter().all(|found| found.id != idle.id && found.id != moved_then.id));
 }
 

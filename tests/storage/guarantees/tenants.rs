@@ -1,7 +1,7 @@
 //! Tenants: a contact names its owner, and lists are separate.
 
 use jiff::{SignedDuration, Timestamp};
-use stickslip::store::{Receipt, RequestKey, Session, Store, StoreError, Tenant, Usage};
+use stickslip::store::{Page, Receipt, RequestKey, Session, Store, StoreError, Tenant, Usage};
 use uuid::Uuid;
 
 use crate::common::kill::exact;
@@ -33,7 +33,7 @@ pub async fn a_session_is_its_tenants_for_ever(store: &dyn Store) {
         let own = made.iter().filter(|(owner, _)| tenant.is_none_or(|tenant| owner == tenant)).map(|(_, id)| *id);
         let (mut seen, mut after) = (Vec::new(), Some(before));
         loop {
-            let page = store.list(tenant.cloned(), None, after, 3).await.unwrap();
+            let page = store.list(tenant.cloned(), None, Page::oldest(after, 3)).await.unwrap();
             assert!(page.len() <= 3);
             let Some(last) = page.last() else { break };
             after = Some(last.id);
@@ -41,7 +41,7 @@ pub async fn a_session_is_its_tenants_for_ever(store: &dyn Store) {
         }
         assert_eq!(seen, own.collect::<Vec<_>>(), "{tenant:?}");
     }
-    assert!(store.list(Some(Tenant::new("nobody")), None, None, 10).await.unwrap().is_empty());
+    assert!(store.list(Some(Tenant::new("nobody")), None, Page::oldest(None, 10)).await.unwrap().is_empty());
 }
 
 pub async fn a_request_for_an_expired_contact_gets_its_tenant(store: &dyn Store) {
