@@ -70,7 +70,7 @@ impl Capacity {
 
     /// Bytes of bodies, work and replies at most: the ordinary ones, the reserves, and those for small needs.
     #[must_use]
-    pub fn work_bytes(&self) -> usize {
+    pub fn reservable_bytes(&self) -> usize {
         let reserves = self.reserve_bytes(Stage::Body) + self.reserve_bytes(Stage::Work);
         self.bytes.saturating_add(reserves).saturating_add(self.small_bytes())
     }

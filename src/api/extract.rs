@@ -97,7 +97,7 @@ impl<T: Document + 'static, const OPTIONAL: bool> FromRequest<Arc<App>> for Chec
         let length = bytes.len();
         let cost = if length > cost::INLINE_BODY { INLINE } else { 0 };
         if cost > 0 {
-            app.pool.resize(&mut memory, length.saturating_mul(bytes::PARSED)).await?;
+            app.pool.resize(&mut memory, length.saturating_mul(T::PARSED)).await?;
         }
         let (stop, _guard) = app.pool.deadline();
         let profiles = app.sessions.profiles(&stop);
@@ -119,7 +119,7 @@ impl<T: Document + 'static, const OPTIONAL: bool> FromRequest<Arc<App>> for Chec
             ReadBody::Checked(body) => body,
             ReadBody::Unprepared(document, cost) => {
                 let shape = document.profile().map_or(0, |defined| bytes::of_shape(defined.profile));
-                app.pool.resize(&mut memory, shape + length.saturating_mul(bytes::PARSED)).await?;
+                app.pool.resize(&mut memory, shape + length.saturating_mul(T::PARSED)).await?;
                 let work = move || otlp::part!("prepare").in_scope(|| profiles.check(document));
                 app.pool.run(cost, work).await???
             }
@@ -147,7 +147,7 @@ impl FromRequest<Arc<App>> for FileBody {
             return Err(Problem::new(Code::UnsupportedMediaType, detail));
         }
         let (_, file, mut memory, permit) = receive(request, FILE_LIMIT, &app.pool).await?;
-        app.pool.resize(&mut memory, file.len().saturating_mul(bytes::PARSED)).await?;
+        app.pool.resize(&mut memory, file.len().saturating_mul(bytes::READ)).await?;
         Ok(FileBody { bytes: file, held: HeldResources { memory, _permit: permit, spent: Duration::ZERO } })
     }
 }

@@ -17,7 +17,7 @@ use stickslip_wire::{
 
 use super::{About, Computation, Example, Plain, Route, example, example_contact};
 use crate::admission::{Nanoseconds, Stop};
-use crate::simulation::bytes::{NUMBER, of_moves, of_shape, of_stress};
+use crate::simulation::bytes::{SPRING, of_moves, of_shape, of_stress};
 use crate::simulation::cost::{Work, of_springs};
 use crate::simulation::{Cause, Failure, Solver, contact, equal_peaks, follow, spring_foundation, stresses};
 
@@ -101,7 +101,7 @@ impl Computation for CompareSolvers {
             + 2 * size_of::<f64>() * task.plan.length()
             + 2 * of_stress(task.sampling.length())
             + of_shape(&task.definition.profile)
-            + task.springs().max().unwrap_or(0) * NUMBER
+            + task.springs().max().unwrap_or(0) * SPRING
     }
 
     /// Each solver once, and the reference.

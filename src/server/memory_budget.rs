@@ -26,7 +26,7 @@ pub fn memory(connections: &ConnectionLimits, capacity: &Capacity, cache: u64, w
     let requests = (capacity.requests + capacity.queue) as u64;
     PROGRAM
         .saturating_add(cache)
-        .saturating_add(capacity.work_bytes() as u64)
+        .saturating_add(capacity.reservable_bytes() as u64)
         .saturating_add(capacity.state_bytes() as u64)
         .saturating_add(connection.saturating_mul((connections.most + SPARE_CONNECTIONS) as u64))
         .saturating_add(REQUEST.saturating_mul(requests))

@@ -7,14 +7,16 @@ use stickslip_wire::simulate::Simulation;
 use stickslip_wire::subsurface::SubsurfaceTask;
 use stickslip_wire::{self as wire, Plan, Solver, Steps};
 
-/// Bytes that a byte of a body becomes while it is parsed. `{}` and a comma become a move, which is some 26 bytes for
-/// each of theirs.
-pub const PARSED: usize = 32;
+/// Bytes that a byte of a file or of a JSON value takes once it is read: a short number with its separator, as a cell, in
+/// a column and as JSON. That of a body is [`PARSED`](stickslip_wire::Document::PARSED).
+pub const READ: usize = 32;
 /// A number of a reply: itself, perhaps in two documents, and its text, which grows by doubling.
 pub(crate) const NUMBER: usize = 64;
 /// A row of a few numbers that are computed with: a move and the slip history that it leaves, a point of a measurement
 /// and its row in a fit, an asperity and its share of the clusters.
 pub(crate) const ROW: usize = 256;
+/// A spring.
+pub(crate) const SPRING: usize = 2 * NUMBER;
 /// An object of a reply, such as a state: itself, and its text, which grows by doubling.
 pub(crate) const OBJECT: usize = 1_024;
 /// A place in depth with all its stresses as a row of a table.
@@ -72,7 +74,7 @@ pub fn of_definition(points: usize) -> usize {
 pub fn of_simulation(simulation: &Simulation) -> usize {
     let radii = simulation.stress.as_ref().map_or(0, |stress| stress.length());
     let springs = match simulation.solver {
-        Some(Solver::Springs(springs)) => springs.count * NUMBER,
+        Some(Solver::Springs(springs)) => springs.count * SPRING,
         _ => 0,
     };
     of_moves(&simulation.plan, simulation.steps)

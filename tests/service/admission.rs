@@ -79,7 +79,7 @@ async fn small_needs_do_not_wait_behind_large_ones() {
     // They have a share, and no more.
     let mut next = pin!(pool.reserve(small));
     assert!(futures::poll!(next.as_mut()).is_pending());
-    assert!(pool.taken().bytes <= pool.capacity().work_bytes());
+    assert!(pool.taken().bytes <= pool.capacity().reservable_bytes());
     pool.resize(&mut beside, 0).await.unwrap();
     let next = next.await.unwrap();
     drop((first, turn));
@@ -111,7 +111,7 @@ async fn request(pool: &Pool, locks: &[AsyncMutex<()>], number: usize) -> Result
     let _lock = pool.wait(locks[number % locks.len()].lock()).await?;
     let _state = pool.reserve_states(need(4)).await?;
     pause().await;
-    assert!(pool.taken().bytes <= pool.capacity().work_bytes());
+    assert!(pool.taken().bytes <= pool.capacity().reservable_bytes());
     Ok(())
 }
 

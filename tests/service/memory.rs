@@ -70,7 +70,7 @@ async fn cold_contacts_that_are_asked_for_at_once_stay_within_the_memory_bound()
     );
     // What this store keeps comes on top of the bound. The program is there before the contacts are asked for, and so
     // is what the store keeps; and these requests take nothing of the bytes of work.
-    let allowed = bound - memory_budget::PROGRAM as usize - capacity.bytes;
+    let allowed = bound - memory_budget::PROGRAM as usize - capacity.reservable_bytes();
     assert!(peak - before < allowed, "{peak} after {before}: more than {allowed} beside");
 }
 

@@ -106,8 +106,8 @@ async fn two_thousand_slow_clients_use_little_memory_and_delay_no_others() {
     join_all(slow).await;
     let capacity = Capacity::default();
     // Beside what the bound allows for large bodies, of which there are none here.
-    let allowed =
-        memory_budget::memory(&ConnectionLimits::default(), &capacity, 16 << 20, false) as usize - capacity.bytes;
+    let allowed = memory_budget::memory(&ConnectionLimits::default(), &capacity, 16 << 20, false) as usize
+        - capacity.reservable_bytes();
     let peak = service.peak();
     println!("{SLOW} slow clients: at most {} MiB, {} KiB each", peak / MIB, peak / 1024 / SLOW);
     assert!(peak < allowed && peak < 150 * MIB, "{peak} of {allowed}");
@@ -227,11 +227,13 @@ async fn large_bodies_wait_for_memory_or_are_refused() {
         "--max-body-bytes-per-client",
         "1GiB",
     ]);
-    // Each becomes some 200 MiB while it is parsed.
+    // Each becomes some 200 MiB while it is parsed, or would become more.
     let moves = vec!["{}"; 2_700_000].join(",");
-    let body = format!("{{\"contact\":{},\"path\":{{\"moves\":[{moves}]}}}}", ball());
-    let request = post("/simulate", &body);
-    let answers = join_all((0..60).map(|_| service.ask(FLOOD, &request))).await;
+    let simulation = post("/simulate", &format!("{{\"contact\":{},\"path\":{{\"moves\":[{moves}]}}}}", ball()));
+    let objects = vec![r#"{"":0}"#; 1_100_000].join(",");
+    let sweep = post("/sweep", &format!("{{\"base\":{{\"path\":[{objects}]}},\"axes\":[],\"outputs\":[]}}"));
+    let request = |number| if number % 2 == 0 { &simulation } else { &sweep };
+    let answers = join_all((0..60).map(|number| service.ask(FLOOD, request(number)))).await;
     let (mut refused, mut read) = (0, 0);
     for answer in answers.into_iter().flatten() {
         match answer.statuses[..] {

@@ -1,25 +1,43 @@
 //! Any JSON value whose objects have no repeated members, and JSON pointers into it: the base of a sweep.
 
+use std::cell::Cell;
 use std::fmt;
 
-use serde::de::{Error, MapAccess, SeqAccess, Visitor};
+use serde::de::{DeserializeSeed, Error, MapAccess, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize};
 use serde_json::{Map, Number, Value};
 
 use super::check::escaped;
+use super::limits;
 
 /// A JSON value without repeated members.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(transparent)]
 pub struct JsonValue(pub Value);
 
+/// Objects of a value at most: as many as a path has moves, and those around them. One takes some 700 bytes, however short
+/// it is.
+const OBJECTS: usize = *limits::PATH_MOVES.end() + 1_000;
+
 impl<'de> Deserialize<'de> for JsonValue {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        deserializer.deserialize_any(JsonValueVisitor).map(JsonValue)
+        JsonValueVisitor { objects: &Cell::new(0) }.deserialize(deserializer).map(JsonValue)
     }
 }
 
-struct JsonValueVisitor;
+#[derive(Clone, Copy)]
+struct JsonValueVisitor<'a> {
+    /// The objects so far.
+    objects: &'a Cell<usize>,
+}
+
+impl<'de> DeserializeSeed<'de> for JsonValueVisitor<'_> {
+    type Value = Value;
+
+    fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<Value, D::Error> {
+        deserializer.deserialize_any(self)
+    }
+}
 
 /// Methods for values without members or elements.
 macro_rules! plain {
@@ -30,7 +48,7 @@ macro_rules! plain {
     };
 }
 
-impl<'de> Visitor<'de> for JsonValueVisitor {
+impl<'de> Visitor<'de> for JsonValueVisitor<'_> {
     type Value = Value;
 
     fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -49,19 +67,23 @@ impl<'de> Visitor<'de> for JsonValueVisitor {
 
     fn visit_seq<A: SeqAccess<'de>>(self, mut elements: A) -> Result<Value, A::Error> {
         let mut values = Vec::new();
-        while let Some(JsonValue(value)) = elements.next_element()? {
+        while let Some(value) = elements.next_element_seed(self)? {
             values.push(value);
         }
         Ok(Value::Array(values))
     }
 
     fn visit_map<A: MapAccess<'de>>(self, mut members: A) -> Result<Value, A::Error> {
+        self.objects.set(self.objects.get() + 1);
+        if self.objects.get() > OBJECTS {
+            return Err(A::Error::custom(format_args!("more than the {OBJECTS} objects that are allowed")));
+        }
         let mut values = Map::new();
         while let Some(name) = members.next_key::<String>()? {
             if values.contains_key(&name) {
                 return Err(A::Error::custom(format_args!("duplicate field `{name}`")));
             }
-            let JsonValue(value) = members.next_value()?;
+            let value = members.next_value_seed(self)?;
             values.insert(name, value);
         }
         Ok(Value::Object(values))

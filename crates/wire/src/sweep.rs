@@ -155,6 +155,9 @@ enum Values {
 impl Document for SweepRequest {
     type Checked = CheckedSweep;
 
+    /// The base is a tree of values, twice while it is checked, and a small object takes 700 bytes there.
+    const PARSED: usize = 200;
+
     fn checked(self, _: &dyn Prepare, faults: &mut Faults) -> Option<Self::Checked> {
         let at = JsonPath::Root.member("axes");
         let mut axes = Vec::new();

@@ -57,7 +57,7 @@ impl Sweep {
             document["contact"]["profile"] = shared::placeholder();
         }
         sweep.base = document;
-        sweep.bytes += written * bytes::PARSED;
+        sweep.bytes += written * bytes::READ;
         Ok(sweep)
     }
 
