@@ -4,6 +4,7 @@ use crate::common;
 use crate::fixtures::soon;
 
 use std::sync::Arc;
+use std::time::{Duration, Instant};
 
 use common::postgres::Cluster;
 use common::{create, until};
@@ -294,6 +295,38 @@ async fn several_sweep_at_once_and_each_idle_session_goes_once() {
     assert!(matches!(stores[2].append(idle[7].id, 0, vec![record(1, 1.0)], None).await, Err(StoreError::Expired(_))));
     let left = stores[1].list(None, None, Page::oldest(None, 1000)).await.unwrap();
     assert_eq!(left.into_iter().map(|one| one.id).collect::<Vec<_>>(), [fresh.id]);
+}
+
+#[tokio::test]
+async fn a_search_that_nobody_waits_for_any_more_is_ended_by_the_database() {
+    let url = Cluster::shared().database().await;
+    let store = Arc::new(PostgresStore::open(&url).await.unwrap());
+    let made = session();
+    for other in [made.clone(), session(), session()] {
+        store.create(other, None).await.unwrap();
+    }
+    let client = connected(&url).await;
+    // From now on a contact takes three seconds to read.
+    let slow = "ALTER TABLE contacts RENAME TO quick;
+        CREATE VIEW contacts AS SELECT quick.* FROM quick, LATERAL (SELECT pg_sleep(3), quick.id) AS pause";
+    client.batch_execute(slow).await.unwrap();
+    let running = "SELECT count(*) FROM pg_stat_activity
+        WHERE datname = current_database() AND state = 'active' AND query LIKE '%strpos%' AND pid <> pg_backend_pid()";
+    let running = async || client.query_one(running, &[]).await.unwrap().get::<_, i64>(0);
+    let search = || {
+        let store = Arc::clone(&store);
+        tokio::spawn(async move { store.list(None, Some("nothing".to_owned()), Page::oldest(None, 10)).await })
+    };
+    let searches = [search(), search(), search()];
+    until("two of them run", async || (running().await == 2).then_some(())).await;
+    searches.iter().for_each(|search| search.abort());
+    let given_up = Instant::now();
+    until("none runs", async || (running().await == 0).then_some(())).await;
+    // By themselves they would end after nine seconds.
+    assert!(given_up.elapsed() < Duration::from_secs(6), "{:?}", given_up.elapsed());
+    client.batch_execute("DROP VIEW contacts; ALTER TABLE quick RENAME TO contacts").await.unwrap();
+    let found = soon(store.list(None, Some("KUGEL".to_owned()), Page::oldest(None, 10))).await.unwrap();
+    assert!(found.len() == 3 && found[0].id == made.id);
 }
 
 #[tokio::test]
