@@ -239,6 +239,15 @@ impl Pool {
         Ok(reservation)
     }
 
+    /// The same for work in the background, which may take long and leaves the reserve to requests.
+    ///
+    /// # Errors
+    /// As [`Pool::wait`].
+    pub async fn reserve_in_background(&self, bytes: usize) -> Result<Reservation, PoolError> {
+        let units = bytes.div_ceil(UNIT).min((self.capacity().reserve_bytes(Stage::Work) / UNIT).max(1));
+        self.permits(&self.memory().ordinary, units as u32).await.map(Reservation::of_shared)
+    }
+
     /// Reserves bytes for all the states that a piece of work loads or copies, but at most all that there are for
     /// states. Nothing else may be waited for until they are released, except a thread and the store.
     ///

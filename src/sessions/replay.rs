@@ -138,6 +138,8 @@ impl Replay {
             Ok(_) => return Err(SessionError::NotFound(id)),
             Err(error) => return Err(self.store_error(id, error)),
         };
+        // Nobody waits for this memory while he has some of it.
+        guard.held = Reservation::default();
         guard.held = self.common.pool.reserve_states(bytes_to_load(&extent)).await?;
         let ((mut live, followed), updated_at) = match whole {
             Some(Whole { session, moves }) => {

@@ -17,7 +17,7 @@ pub struct JsonValue(pub Value);
 
 /// Objects of a value at most: as many as a path has moves, and those around them. One takes some 700 bytes, however short
 /// it is.
-const OBJECTS: usize = *limits::PATH_MOVES.end() + 1_000;
+const OBJECTS: usize = limits::PATH_MOVES.end().saturating_add(1_000);
 
 impl<'de> Deserialize<'de> for JsonValue {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
@@ -74,7 +74,7 @@ impl<'de> Visitor<'de> for JsonValueVisitor<'_> {
     }
 
     fn visit_map<A: MapAccess<'de>>(self, mut members: A) -> Result<Value, A::Error> {
-        self.objects.set(self.objects.get() + 1);
+        self.objects.set(self.objects.get().saturating_add(1));
         if self.objects.get() > OBJECTS {
             return Err(A::Error::custom(format_args!("more than the {OBJECTS} objects that are allowed")));
         }
