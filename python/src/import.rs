@@ -4,17 +4,12 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use serde::Serialize;
 use stickslip::computations::files;
-use stickslip_measured::import::{Force, ImportError, Length, LoopHints, ScanHints};
+use stickslip_measured::import::{Dimension, ImportError, LoopHints, ScanHints, UnitHint};
 
-/// The unit of a symbol, if one is given.
-fn unit<U>(symbol: Option<&str>, find: fn(&str) -> Option<U>, allowed: &[&str]) -> PyResult<Option<U>> {
-    let Some(symbol) = symbol else { return Ok(None) };
-    let unknown = || PyValueError::new_err(format!("`{symbol}` is none of {}", allowed.join(", ")));
-    find(symbol).map(Some).ok_or_else(unknown)
-}
-
-fn length(symbol: Option<&str>) -> PyResult<Option<Length>> {
-    unit(symbol, files::length, &Length::ALL.map(Length::symbol))
+/// The unit of this dimension that a text names, if one is given.
+fn unit(text: Option<&str>, dimension: Dimension) -> PyResult<Option<UnitHint>> {
+    let of = |text| UnitHint::of(text, dimension).map_err(|error| PyValueError::new_err(error.to_string()));
+    text.map(of).transpose()
 }
 
 fn written(read: Result<impl Serialize, ImportError>) -> PyResult<String> {
@@ -31,7 +26,7 @@ pub fn read_scan(
     height: Option<&str>,
     spacing: Option<f64>,
 ) -> PyResult<String> {
-    let (lateral, height) = (length(lateral)?, length(height)?);
+    let (lateral, height) = (unit(lateral, Dimension::LENGTH)?, unit(height, Dimension::LENGTH)?);
     written(files::scan(content, ScanHints { lateral, height, spacing, ..ScanHints::default() }))
 }
 
@@ -49,8 +44,8 @@ pub fn read_loop(
     displacement_unit: Option<&str>,
     force_unit: Option<&str>,
 ) -> PyResult<String> {
-    let displacement_unit = length(displacement_unit)?;
-    let force_unit = unit(force_unit, files::force, &Force::ALL.map(Force::symbol))?;
-    let hints = LoopHints { displacement, force, time, load, displacement_unit, force_unit };
+    let displacement_unit = unit(displacement_unit, Dimension::LENGTH)?;
+    let force_unit = unit(force_unit, Dimension::FORCE)?;
+    let hints = LoopHints { displacement, force, time, load, displacement_unit, force_unit, ..LoopHints::default() };
     written(files::measured_loop(content, &hints))
 }

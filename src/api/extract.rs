@@ -147,7 +147,7 @@ impl FromRequest<Arc<App>> for FileBody {
             return Err(Problem::new(Code::UnsupportedMediaType, detail));
         }
         let (_, file, mut memory, permit) = receive(request, FILE_LIMIT, &app.pool).await?;
-        app.pool.resize(&mut memory, file.len().saturating_mul(bytes::READ)).await?;
+        app.pool.resize(&mut memory, files::memory(&file)).await?;
         Ok(FileBody { bytes: file, held: HeldResources { memory, _permit: permit, spent: Duration::ZERO } })
     }
 }

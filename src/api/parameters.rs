@@ -310,9 +310,9 @@ impl Kind<String> for Text {
 
 /// A value that reads itself.
 pub struct Plain<V> {
-    expected: &'static str,
-    schema: fn() -> Value,
-    parse: fn(&str) -> Option<V>,
+    pub expected: &'static str,
+    pub schema: fn() -> Value,
+    pub parse: fn(&str) -> Option<V>,
 }
 
 /// The number of a move.

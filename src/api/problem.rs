@@ -125,7 +125,8 @@ impl From<ImportError> for Problem {
     fn from(error: ImportError) -> Self {
         let place = |name: &str, number: Option<usize>| number.map_or_else(String::new, |at| format!("/{name}/{at}"));
         let pointer = place("line", error.line) + &place("column", error.column);
-        Problem::at(Code::InvalidInput, pointer, error.to_string())
+        let code = if error.unknown_unit.is_some() { Code::UnknownUnit } else { Code::InvalidInput };
+        Problem::at(code, pointer, error.to_string())
     }
 }
 

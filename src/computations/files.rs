@@ -5,17 +5,32 @@ use stickslip_measured::import::{
 };
 use stickslip_wire::fit::{FitUnits, ForceUnit, MeasuredLoop};
 use stickslip_wire::profile_fit::{LengthUnit, LineScan, MapScan, PointScan, ScanData, ScanUnits};
-use stickslip_wire::{FileColumn, FilePreview, LoopFileReply, ScanFileReply, limits};
+use stickslip_wire::{FileColumn, FilePreview, LoopFileReply, RowsLeftOut, ScanFileReply, limits};
 
 use crate::admission::Nanoseconds;
+use crate::simulation::bytes;
 
-/// The time that a byte of a file takes.
+/// The time that a byte of a text takes.
 const BYTE_COST: Nanoseconds = 100;
+/// The same of a spreadsheet, which is compressed: the importer bounds what it unpacks to by its length.
+const PACKED: [usize; 2] = [4, 10];
+/// Lines that are left out and listed.
+const LINES_LISTED: usize = 100;
 
-/// The time that reading so many bytes takes.
+/// The bytes that reading a file may take.
 #[must_use]
-pub fn cost(bytes: usize) -> Nanoseconds {
-    BYTE_COST.saturating_mul(bytes as u64)
+pub fn memory(file: &[u8]) -> usize {
+    file.len().saturating_mul(bytes::READ).saturating_mul(if is_packed(file) { PACKED[0] } else { 1 })
+}
+
+/// The time that reading a file takes.
+#[must_use]
+pub fn cost(file: &[u8]) -> Nanoseconds {
+    BYTE_COST.saturating_mul(file.len().saturating_mul(if is_packed(file) { PACKED[1] } else { 1 }) as u64)
+}
+
+fn is_packed(file: &[u8]) -> bool {
+    file.starts_with(b"PK")
 }
 
 /// The document of a scan, thinned to as many heights as one may have.
@@ -51,18 +66,6 @@ pub fn measured_loop(bytes: &[u8], hints: &LoopHints) -> Result<LoopFileReply, I
     Ok(LoopFileReply { measured, units, preview: preview(found.preview) })
 }
 
-/// The unit of length of this symbol.
-#[must_use]
-pub fn length(symbol: &str) -> Option<Length> {
-    Length::ALL.into_iter().find(|unit| unit.symbol() == symbol)
-}
-
-/// The unit of force of this symbol.
-#[must_use]
-pub fn force(symbol: &str) -> Option<Force> {
-    Force::ALL.into_iter().find(|unit| unit.symbol() == symbol)
-}
-
 fn length_unit(unit: Length) -> Option<LengthUnit> {
     LengthUnit::ALL.into_iter().find(|one| one.name() == unit.symbol())
 }
@@ -75,14 +78,19 @@ fn preview(preview: Preview) -> FilePreview {
     let column = |column: ColumnUse| FileColumn {
         name: column.name,
         quantity: column.quantity.map(str::to_owned),
-        unit: column.unit.map(str::to_owned),
+        unit: column.unit,
         assumed: column.is_assumed,
+        left_out: column.left_out,
     };
     FilePreview {
-        encoding: preview.encoding.to_owned(),
+        encoding: preview.encoding,
         separator: preview.separator.to_owned(),
         decimal_mark: if preview.has_decimal_commas { "," } else { "." }.to_owned(),
         rows: preview.rows,
+        rows_left_out: RowsLeftOut {
+            count: preview.rows_left_out.len(),
+            lines: preview.rows_left_out.into_iter().take(LINES_LISTED).collect(),
+        },
         header: preview.header,
         columns: preview.columns.into_iter().map(column).collect(),
         thinned: preview.thinned,

@@ -95,16 +95,17 @@ async fn every_endpoint_answers_the_client() {
 
     let matrix = b"1 2 3 4\n5 6 7 8\n2 4 6 8\n1 3 5 7\n".to_vec();
     let [lateral, height] = [LengthUnit::Millimetre, LengthUnit::Micrometre].map(Some);
-    let read = client.read_scan(matrix, &ScanFileHints { lateral, height, spacing: Some(0.5) }).await.unwrap();
+    let [wide, high] = ["mm", "micrometres"].map(|unit| Some(unit.to_owned()));
+    let hints = ScanFileHints { lateral: wide, height: high, spacing: Some(0.5), ..Default::default() };
+    let read = client.read_scan(matrix, &hints).await.unwrap();
     assert_eq!((read.units, read.preview.rows), (ScanUnits { lateral, height }, 4));
     assert!(matches!(read.scan, ScanData::Map(map) if (map.dx, map.dy) == (0.5, 0.5)));
     let text = "Force (N);Displacement (um);Other\n0;0;3\n1;2;5\n".to_owned().into_bytes();
     let read = client.read_loop(text.clone(), &LoopFileHints::default()).await.unwrap();
     assert_eq!((read.measured.displacement, read.measured.force), (vec![0.0, 2.0], vec![0.0, 1.0]));
-    let other =
-        LoopFileHints { force: Some("3".into()), force_unit: Some(ForceUnit::Kilonewton), ..Default::default() };
+    let other = LoopFileHints { force: Some("3".into()), force_unit: Some("kN".into()), ..Default::default() };
     let read = client.read_loop(text, &other).await.unwrap();
-    assert_eq!((read.measured.force, read.units.force), (vec![3.0, 5.0], other.force_unit));
+    assert_eq!((read.measured.force, read.units.force), (vec![3.0, 5.0], Some(ForceUnit::Kilonewton)));
     let refused = client.read_loop(b"a;b".to_vec(), &LoopFileHints::default()).await.unwrap_err();
     assert_eq!(refused.problem().unwrap().code, "invalid_input");
 

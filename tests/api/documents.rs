@@ -53,10 +53,32 @@ fn every_kind_of_fault_is_found_at_its_place() {
 
 #[test]
 fn a_broken_end_is_not_json_even_after_an_unknown_member() {
-    for body in ["", "{", r#"{"colour": 1"#, r#"{"contact": 1} x"#, "\u{feff}{}", "NaN"] {
+    for body in ["", "{", r#"{"colour": 1"#, r#"{"contact": 1} x"#, "\u{feff}", "{\u{feff}}", "NaN"] {
         assert!(matches!(parse::<SimulateRequest>(body.as_bytes()), Err(Rejection::NotJson(_))), "{body}");
     }
     assert!(matches!(parse::<SimulateRequest>(b"{\"\xff\": 1}"), Err(Rejection::NotJson(_))));
+}
+
+#[test]
+fn a_byte_order_mark_is_read_and_what_is_not_a_number_is_refused_with_a_hint() {
+    let body = with(r#"{"type":"sphere","radius":0.01}"#, r#"{"moves":[{"force":1}]}"#);
+    let read = |text: &str| parse::<SimulateRequest>(text.as_bytes());
+    assert_eq!(format!("{:?}", read(&format!("\u{feff}{body}")).unwrap()), format!("{:?}", read(&body).unwrap()));
+    for value in ["NaN", "nan", "Infinity", "-Infinity", "inf", "-inf"] {
+        for place in ["", "\n\n  "] {
+            let Err(Rejection::NotJson(detail)) = read(&body.replace("0.01", &format!("{place}{value}"))) else {
+                panic!("{value}");
+            };
+            assert!(detail.contains("write `null` where one is missing"), "{value}: {detail}");
+        }
+    }
+    for value in ["nil", "N", "x", "0.01,,"] {
+        let Err(Rejection::NotJson(detail)) = read(&body.replace("0.01", value)) else { panic!("{value}") };
+        assert!(!detail.contains("null"), "{value}: {detail}");
+    }
+    let wide: Vec<u8> = format!("\u{feff}{body}").encode_utf16().flat_map(u16::to_le_bytes).collect();
+    let Err(Rejection::NotJson(detail)) = parse::<SimulateRequest>(&wide) else { panic!() };
+    assert!(detail.contains("UTF-16"), "{detail}");
 }
 
 const EXTREMES: [u64; 9] =

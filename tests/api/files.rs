@@ -88,8 +88,8 @@ async fn what_is_wrong_with_a_file_is_said_by_line_and_column() {
         ("/files/scan", "x,z\n1,2\n3,4,5\n", "/line/3", "has 3 columns, and the first 2"),
         ("/files/scan", "", "", "no rows of numbers"),
         ("/files/loop", "a;b;c\n1;2;3\n", "", "no column `displacement` among 3 columns with a, b, c"),
-        ("/files/loop?force=9", "1;2\n3;4\n", "", "no column `displacement`"),
-        ("/files/scan?height=inch", "1;2\n", "/height", "one of"),
+        ("/files/loop?force=9", "1;2\n3;4\n", "", "no column `9` among 2 columns with no names"),
+        ("/files/scan?height=V", "1;2\n", "/height", "not a unit of length"),
         ("/files/scan?spacing=-1", "1;2\n", "/spacing", "out of range"),
     ] {
         let refused = read(&server, path, text).await;

@@ -41,6 +41,7 @@ mod fretting;
 mod fretting_picture;
 mod fuzz_bodies;
 mod fuzz_http;
+mod lab_files;
 mod limiting_cases;
 mod load_curves;
 mod logs;

@@ -3,23 +3,32 @@
 use serde::Serialize;
 use utoipa::ToSchema;
 
-use crate::fit::{FitUnits, ForceUnit, MeasuredLoop};
-use crate::profile_fit::{LengthUnit, ScanData, ScanUnits};
+use crate::fit::{FitUnits, MeasuredLoop};
+use crate::profile_fit::{ScanData, ScanUnits};
 use crate::request::replies;
 
-/// What is known of a scan beside its file: the query of `POST /files/scan`.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+/// What is known of a scan beside its file: the query of `POST /files/scan`. Units are texts such as `um`, `mil` or
+/// `10^-6 m`; a column is its number, from 1 on, or the beginning of its name in the header.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct ScanFileHints {
     /// The unit of places, in place of the one that the file names.
-    pub lateral: Option<LengthUnit>,
+    pub lateral: Option<String>,
     /// The unit of heights, likewise.
-    pub height: Option<LengthUnit>,
+    pub height: Option<String>,
     /// The distance of neighbours in a matrix of heights, in the unit of places, in place of that of the header.
     pub spacing: Option<f64>,
+    /// The column of places along the line, or along the one axis.
+    pub x: Option<String>,
+    /// The column of places along the other axis.
+    pub y: Option<String>,
+    /// The column of heights.
+    pub z: Option<String>,
+    /// The sheet of a spreadsheet, by its name or its number from 1 on.
+    pub sheet: Option<String>,
 }
 
-/// What is known of a loop beside its file: the query of `POST /files/loop`. A column is its number, from 1 on, or the
-/// beginning of its name in the header.
+/// What is known of a loop beside its file: the query of `POST /files/loop`. Units are texts such as `um`, `mil` or
+/// `10^-6 m`; a column is its number, from 1 on, or the beginning of its name in the header.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct LoopFileHints {
     /// The column of displacements.
@@ -31,9 +40,15 @@ pub struct LoopFileHints {
     /// The column of loads.
     pub load: Option<String>,
     /// The unit of displacements, in place of the one that the header names.
-    pub displacement_unit: Option<LengthUnit>,
+    pub displacement_unit: Option<String>,
     /// The unit of forces, likewise.
-    pub force_unit: Option<ForceUnit>,
+    pub force_unit: Option<String>,
+    /// The unit of times, likewise.
+    pub time_unit: Option<String>,
+    /// The unit of loads, likewise.
+    pub load_unit: Option<String>,
+    /// The sheet of a spreadsheet, by its name or its number from 1 on.
+    pub sheet: Option<String>,
 }
 
 replies! {
@@ -123,7 +138,7 @@ pub struct LoopInFile {
 replies! {
 /// How a file was read.
 pub struct FilePreview {
-    /// The encoding, such as `UTF-8` or `UTF-16LE`.
+    /// The encoding, such as `UTF-8` or `UTF-16LE`, or the kind of a spreadsheet.
     pub encoding: String,
     /// What separates the columns: `semicolon`, `tab`, `white_space` or `comma`.
     pub separator: String,
@@ -131,11 +146,13 @@ pub struct FilePreview {
     pub decimal_mark: String,
     /// Number of rows of numbers.
     pub rows: usize,
+    /// Lines that are not in the reply: headers, remarks, and rows without a number that they need.
+    pub rows_left_out: RowsLeftOut,
     /// The first lines before the numbers.
     pub header: Vec<String>,
-    /// The columns in order; none of a matrix of heights.
+    /// The columns in order, with what each was taken for; none of a matrix of heights.
     pub columns: Vec<FileColumn>,
-    /// Every how manyth row, and column of a matrix, is in the reply; 1 if all are.
+    /// The stride: one row in so many, and one column of a matrix, is in the reply; 1 if all are.
     pub thinned: usize,
     /// What was taken for what, in sentences.
     pub reading: Vec<String>,
@@ -145,12 +162,25 @@ pub struct FilePreview {
 pub struct FileColumn: Eq {
     /// Its name in the header, if it has one.
     pub name: Option<String>,
-    /// What it was taken for: `x`, `y`, `z`, `displacement`, `force`, `time` or `normal_force`; `null` if it was not
-    /// used.
+    /// What it was taken for: `x`, `y`, `z`, `displacement`, `force`, `time` or `normal_force`; `null` if it was left
+    /// out.
     pub quantity: Option<String>,
-    /// The symbol of its unit; `null` if it was not used.
+    /// Its unit in the file, by its symbol (`um`) or as the file names it (`mil`); `null` if it was left out. The
+    /// numbers of the reply are in `units`.
     pub unit: Option<String>,
     /// Whether neither the file nor the query names that unit.
     pub assumed: bool,
+    /// Why it was left out.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub left_out: Option<String>,
+}
+
+/// Lines of a file that are not in the reply.
+pub struct RowsLeftOut: Eq {
+    /// How many there are.
+    pub count: usize,
+    /// Their numbers from 1 on, of the first 100.
+    pub lines: Vec<usize>,
 }
 }

@@ -58,7 +58,7 @@ pub use cycle::{
 pub use definition::{Body, BodyName, ContactDefinition, DefinedProfile, Effective, ElasticBody, Material, Preload};
 pub use document::{Document, read};
 pub use event::{EndEvent, EndReason, StateEvent};
-pub use files::{FileColumn, FilePreview, LoopFileReply, ScanFileReply};
+pub use files::{FileColumn, FilePreview, LoopFileReply, RowsLeftOut, ScanFileReply};
 pub use fit::{FitReply, FitRequest};
 pub use fretting::{
     BulkCycle, Criteria, FatemiSocie, Findley, FrettingReply, FrettingRequest, Largest, Rating, StrainBased,

@@ -9,11 +9,18 @@ use super::check::{Fault, Rejection, escaped};
 /// Longest detail or pointer of a fault: both can quote the body, which may be long.
 const LONGEST_TEXT: usize = 400;
 
-/// Parses a body.
+/// How a body in UTF-8 may begin, and how one in UTF-16 does.
+const MARK: &[u8] = b"\xef\xbb\xbf";
+const WIDE_MARKS: [&[u8]; 2] = [b"\xff\xfe", b"\xfe\xff"];
+/// Values that are no JSON, in lower case and without a sign.
+const NOT_NUMBERS: [&str; 3] = ["nan", "inf", "infinity"];
+
+/// Parses a body, which may begin with a byte order mark.
 ///
 /// # Errors
 /// [`Rejection::NotJson`] if it is not JSON, [`Rejection::Invalid`] with one fault if it is not the expected document.
 pub fn parse<T: DeserializeOwned>(body: &[u8]) -> Result<T, Rejection> {
+    let body = body.strip_prefix(MARK).unwrap_or(body);
     let mut json = serde_json::Deserializer::from_slice(body);
     let mut track = Track::new();
     let parsed = T::deserialize(Deserializer::new(&mut json, &mut track));
@@ -39,8 +46,30 @@ pub fn parse_value<T: DeserializeOwned>(value: &Value) -> Result<T, Fault> {
 }
 
 fn well_formed(body: &[u8]) -> Result<(), String> {
+    if WIDE_MARKS.iter().any(|mark| body.starts_with(mark)) {
+        return Err("the body is in UTF-16: send it in UTF-8".to_owned());
+    }
     let text = std::str::from_utf8(body).map_err(|error| error.to_string())?;
-    serde_json::from_str::<IgnoredAny>(text).map(|_| ()).map_err(|error| error.to_string())
+    serde_json::from_str::<IgnoredAny>(text).map(|_| ()).map_err(|error| {
+        let line = text.lines().nth(error.line().saturating_sub(1)).unwrap_or("");
+        let hint = if is_not_a_number(line, error.column()) {
+            ": only finite numbers are JSON, write `null` where one is missing"
+        } else {
+            ""
+        };
+        format!("{error}{hint}")
+    })
+}
+
+/// Whether the word around a column of a line, from 1 on, stands for a number that is not finite.
+fn is_not_a_number(line: &str, column: usize) -> bool {
+    let bytes = line.as_bytes();
+    let is_letter = |index: &usize| bytes.get(*index).is_some_and(u8::is_ascii_alphabetic);
+    let at = column.saturating_sub(1).min(bytes.len());
+    let start = (0..at).rev().take_while(is_letter).last().unwrap_or(at);
+    let start = if is_letter(&start) { start } else { start + 1 };
+    let end = (start..bytes.len()).take_while(is_letter).last().map_or(start, |last| last + 1);
+    line.get(start..end).is_some_and(|word| NOT_NUMBERS.contains(&word.to_lowercase().as_str()))
 }
 
 /// The fault that a message of serde describes.

@@ -102,6 +102,9 @@ codes! {
     /// Something in the request is missing, unknown, of the wrong type or out of range, whatever the state of the
     /// server. Each fault comes with a pointer to its place.
     InvalidInput = 422 "invalid_input": "The request is invalid", "`errors` names each fault and what is allowed";
+    /// A file names a unit that is not in the table of units, or one of something else than is needed there.
+    UnknownUnit = 422 "unknown_unit": "A unit of the file is not known",
+        "correct the header of the file, or name the unit in the query: [units](measured-surfaces.md#units)";
     /// The request is valid, but no state carries the tangential force that it asks for.
     ForceExceedsFriction = 422 "force_exceeds_friction": "The tangential force is not below the friction limit",
         "the force must stay below μ F_N, which `detail` gives";

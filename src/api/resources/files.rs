@@ -4,22 +4,35 @@ use std::sync::Arc;
 
 use axum::extract::State;
 use serde::Serialize;
+use serde_json::json;
 
-use stickslip_measured::import::{Force, ImportError, Length, LoopHints, ScanHints};
+use stickslip_measured::import::{Dimension, ImportError, LoopHints, ScanHints, UnitHint};
 use stickslip_mechanics::range::{Quantity, Range};
 use stickslip_wire::limits::Characters;
 use stickslip_wire::{LoopFileReply, ScanFileReply};
 
 use super::prelude::*;
 use crate::api::extract::FileBody;
-use crate::api::parameters::{Choice, Text, number, words};
+use crate::api::parameters::{Plain, Text, number};
 use crate::computations::files;
 use crate::formats;
 
-/// Units by their symbols.
-const LENGTH: Choice<Length> = words(&Length::ALL, Length::symbol);
-const FORCE: Choice<Force> =
-    words(&[Force::Newton, Force::Millinewton, Force::Micronewton, Force::Kilonewton], Force::symbol);
+/// Units of the table. The document lists symbols; the words and other spellings of the table are taken too.
+const LENGTH: Plain<UnitHint> = Plain {
+    expected: "a unit of length, such as `um`, `mil` or `10^-6 m`",
+    schema: || json!({"type": "string", "pattern": "^(m|cm|mm|um|nm|pm|angstrom|in|mil|uin|ft)$"}),
+    parse: |text| UnitHint::of(text, Dimension::LENGTH).ok(),
+};
+const FORCE: Plain<UnitHint> = Plain {
+    expected: "a unit of force, such as `mN`, `lbf` or `10^-3 N`",
+    schema: || json!({"type": "string", "pattern": "^(N|mN|uN|nN|kN|gf|kgf|lbf|ozf)$"}),
+    parse: |text| UnitHint::of(text, Dimension::FORCE).ok(),
+};
+const TIME: Plain<UnitHint> = Plain {
+    expected: "a unit of time, such as `ms` or `min`",
+    schema: || json!({"type": "string", "pattern": "^(s|ms|us|ns|min|h)$"}),
+    parse: |text| UnitHint::of(text, Dimension::TIME).ok(),
+};
 /// A column by its name or number.
 const COLUMN: Text = Text(Characters(100));
 /// The distance of neighbours in a matrix, in its unit.
@@ -35,11 +48,20 @@ parameters! {
     /// What is known of a scan beside its file.
     pub struct ScanFileQuery {
         /// The unit of places; without it the one that the header names, or m.
-        lateral: Option<Length> = LENGTH;
+        lateral: Option<UnitHint> = LENGTH;
         /// The unit of heights, likewise.
-        height: Option<Length> = LENGTH;
+        height: Option<UnitHint> = LENGTH;
         /// The distance of neighbours in a matrix of heights, in the unit of places; without it that of the header.
         spacing: Option<f64> = Number { is_checked: true, ..number(&SPACING) };
+        /// The column of places along the line, or along the one axis, by its number from 1 on or the beginning of its
+        /// name in the header; without it the one that is called so, or the first.
+        x: Option<String> = COLUMN;
+        /// The column of places along the other axis, likewise.
+        y: Option<String> = COLUMN;
+        /// The column of heights, likewise; the last.
+        z: Option<String> = COLUMN;
+        /// The sheet of a spreadsheet, by its name or its number from 1 on; without it the first with numbers.
+        sheet: Option<String> = COLUMN;
     }
 }
 
@@ -56,17 +78,25 @@ parameters! {
         /// The column of loads, whose mean is the load if they are constant; without it the one that is called so.
         load: Option<String> = COLUMN;
         /// The unit of displacements; without it the one that the header names, or m.
-        displacement_unit: Option<Length> = LENGTH;
+        displacement_unit: Option<UnitHint> = LENGTH;
         /// The unit of forces; without it the one that the header names, or N.
-        force_unit: Option<Force> = FORCE;
+        force_unit: Option<UnitHint> = FORCE;
+        /// The unit of times; without it the one that the header names, or s.
+        time_unit: Option<UnitHint> = TIME;
+        /// The unit of loads; without it the one that the header names, or N.
+        load_unit: Option<UnitHint> = FORCE;
+        /// The sheet of a spreadsheet, by its name or its number from 1 on; without it the first with numbers.
+        sheet: Option<String> = COLUMN;
     }
 }
 
 /// Read a scan from a file
 ///
 /// Takes a file of an instrument as it is, and replies with the members of the body of `POST /profiles/fit`, and with
-/// what was taken for what. Two columns are x and z of a line, three are x, y and z, and more are a matrix, as Gwyddion
-/// exports it; Zygo's text format is known by its first line. A file with more heights than a scan may have is thinned.
+/// what was taken for what. Columns and units are found by the header; without one, two columns are x and z of a line,
+/// three are x, y and z, and more are a matrix, as Gwyddion exports it. Zygo's text format, ISO 25178-71 and grids are
+/// known by their first line. A unit that is named and not known is refused with the code `unknown_unit`, its line and
+/// its column. A file with more heights than a scan may have is thinned.
 /// The body may also be sent as `text/csv` or `text/plain`.
 #[utoipa::path(
     post, path = "/files/scan", tag = "simulation", params(ScanFileQuery),
@@ -79,16 +109,17 @@ pub async fn read_scan_file(
     query: Result<CheckedQuery<ScanFileQuery>, Problem>,
     body: FileBody,
 ) -> Result<Response, Problem> {
-    let CheckedQuery(ScanFileQuery { lateral, height, spacing }) = query?;
-    let hints = ScanHints { lateral, height, spacing, most: 0 };
+    let CheckedQuery(ScanFileQuery { lateral, height, spacing, x, y, z, sheet }) = query?;
+    let hints = ScanHints { lateral, height, spacing, x, y, z, sheet, most: 0 };
     answer(&app, body, move |bytes| files::scan(bytes, hints)).await
 }
 
 /// Read a measured loop from a file
 ///
 /// Takes a file of a bench as it is, with a row for each point, and replies with one of the `loops` of the body of
-/// `POST /fit`, its `units`, and what was taken for what. Columns and units are found by the header. The body may also
-/// be sent as `text/csv` or `text/plain`.
+/// `POST /fit`, its `units`, and what was taken for what. Columns and units are found by the header. A unit that is
+/// named and not known is refused with the code `unknown_unit`, its line and its column. The body may also be sent as
+/// `text/csv` or `text/plain`.
 #[utoipa::path(
     post, path = "/files/loop", tag = "simulation", params(LoopFileQuery),
     request_body(content = String, content_type = "application/octet-stream",
@@ -100,8 +131,11 @@ pub async fn read_loop_file(
     query: Result<CheckedQuery<LoopFileQuery>, Problem>,
     body: FileBody,
 ) -> Result<Response, Problem> {
-    let CheckedQuery(LoopFileQuery { displacement, force, time, load, displacement_unit, force_unit }) = query?;
-    let hints = LoopHints { displacement, force, time, load, displacement_unit, force_unit };
+    let CheckedQuery(query) = query?;
+    let LoopFileQuery { displacement, force, time, load, displacement_unit, force_unit, time_unit, load_unit, sheet } =
+        query;
+    let units = LoopHints { displacement_unit, force_unit, time_unit, load_unit, ..LoopHints::default() };
+    let hints = LoopHints { displacement, force, time, load, sheet, ..units };
     answer(&app, body, move |bytes| files::measured_loop(bytes, &hints)).await
 }
 
@@ -110,7 +144,7 @@ async fn answer<R: Serialize>(
     FileBody { bytes, held }: FileBody,
     read: impl FnOnce(&[u8]) -> Result<R, ImportError> + Send + 'static,
 ) -> Result<Response, Problem> {
-    let cost = files::cost(bytes.len());
+    let cost = files::cost(&bytes);
     let work = move || Ok::<_, Problem>(formats::json(bytes.len(), &read(&bytes)?)?);
     let text = app.pool.run(cost, work).await??;
     Ok(held.on(reply::json(text)))

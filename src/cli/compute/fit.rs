@@ -4,11 +4,11 @@ use std::path::{Path, PathBuf};
 
 use crate::computations::files;
 use clap::{Args, Command};
-use stickslip_measured::import::{Force, Length, LoopHints};
+use stickslip_measured::import::{LoopHints, UnitHint};
 use stickslip_wire::fit::{FitParameter, KnownValue, KnownValues, LoopStart, MeasuredLoop};
 use stickslip_wire::{self as wire, ContactDefinition, FitRequest};
 
-use super::{Body, Flags, member, one_of};
+use super::{Body, Flags, force, length, member, one_of, time};
 use crate::cli::io::read;
 use crate::cli::refusal::Refusal;
 
@@ -28,15 +28,24 @@ pub struct FitFlags {
     /// The column of forces, likewise; the second.
     #[arg(long, value_name = "COLUMN")]
     force: Option<String>,
-    /// The column of times, s, if there is one.
+    /// The column of times, if there is one; without it the one that is called so.
     #[arg(long, value_name = "COLUMN")]
     time: Option<String>,
     /// The unit of displacements; without it the one that the header names, or m.
-    #[arg(long, value_parser = one_of(&Length::ALL, Length::symbol))]
-    displacement_unit: Option<Length>,
+    #[arg(long, value_name = "UNIT", value_parser = length)]
+    displacement_unit: Option<UnitHint>,
     /// The unit of forces; without it the one that the header names, or N.
-    #[arg(long, value_parser = one_of(&Force::ALL, Force::symbol))]
-    force_unit: Option<Force>,
+    #[arg(long, value_name = "UNIT", value_parser = force)]
+    force_unit: Option<UnitHint>,
+    /// The unit of times; without it the one that the header names, or s.
+    #[arg(long, value_name = "UNIT", value_parser = time)]
+    time_unit: Option<UnitHint>,
+    /// The unit of loads; without it the one that the header names, or N.
+    #[arg(long, value_name = "UNIT", value_parser = force)]
+    load_unit: Option<UnitHint>,
+    /// The sheet of a spreadsheet, by its name or its number; without it the first with numbers.
+    #[arg(long)]
+    sheet: Option<String>,
     /// The column of loads, if there is one; without it the one that is called so.
     #[arg(long, value_name = "COLUMN")]
     load: Option<String>,
@@ -81,8 +90,11 @@ impl FitFlags {
             force: self.force.clone(),
             time: self.time.clone(),
             load: self.load.clone(),
-            displacement_unit: self.displacement_unit,
-            force_unit: self.force_unit,
+            displacement_unit: self.displacement_unit.clone(),
+            force_unit: self.force_unit.clone(),
+            time_unit: self.time_unit.clone(),
+            load_unit: self.load_unit.clone(),
+            sheet: self.sheet.clone(),
         };
         let found = files::measured_loop(content, &hints).map_err(|error| Refusal::of_file(file, error))?;
         let normal_force = self.normal_force.or(found.measured.normal_force);

@@ -14,6 +14,7 @@ use clap::error::{Error, ErrorKind};
 use clap::{Arg, ArgAction, ArgMatches, Args, Command, FromArgMatches, Subcommand};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
+use stickslip_measured::import::{Dimension, UnitHint, UnknownUnit};
 
 use super::io::{json, parsed, print, read, say, write};
 use super::refusal::Refusal;
@@ -52,7 +53,7 @@ impl Body {
     ) -> Result<Body, Refusal> {
         let file = file.unwrap_or(Path::new("-"));
         let text = read(file)?;
-        if text.trim_ascii_start().starts_with(b"{") {
+        if text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&text).trim_ascii_start().starts_with(b"{") {
             return Ok(Body { text, ..Body::default() });
         }
         let (request, reading) = made(&text, file)?;
@@ -68,6 +69,21 @@ fn one_of<V: Clone + Send + Sync>(
     let names = values.iter().cloned().map(name);
     let found = move |chosen: String| values.iter().find(|value| name((*value).clone()) == chosen).cloned();
     PossibleValuesParser::new(names).try_map(move |chosen| found(chosen).ok_or("not possible"))
+}
+
+/// Parses a unit of length of the table.
+fn length(text: &str) -> Result<UnitHint, UnknownUnit> {
+    UnitHint::of(text, Dimension::LENGTH)
+}
+
+/// Parses a unit of force of the table.
+fn force(text: &str) -> Result<UnitHint, UnknownUnit> {
+    UnitHint::of(text, Dimension::FORCE)
+}
+
+/// Parses a unit of time of the table.
+fn time(text: &str) -> Result<UnitHint, UnknownUnit> {
+    UnitHint::of(text, Dimension::TIME)
 }
 
 /// Flags of a computation beside those that all have.

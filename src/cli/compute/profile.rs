@@ -4,11 +4,11 @@ use std::path::{Path, PathBuf};
 
 use crate::computations::files;
 use clap::{Args, Command};
-use stickslip_measured::import::{Length, ScanHints};
+use stickslip_measured::import::{ScanHints, UnitHint};
 use stickslip_wire::profile_fit::{ScanLoad, ScanOrientation, Smoothing};
 use stickslip_wire::{self as wire, Profile, ProfileFitRequest};
 
-use super::{Body, Flags, member, one_of};
+use super::{Body, Flags, length, member};
 use crate::cli::io::read;
 use crate::cli::refusal::Refusal;
 
@@ -16,14 +16,27 @@ use crate::cli::refusal::Refusal;
 #[derive(Args)]
 pub struct ProfileFlags {
     /// The unit of places in a file of columns; without it the one that the header names, or m.
-    #[arg(long, value_parser = one_of(&Length::ALL, Length::symbol))]
-    lateral: Option<Length>,
+    #[arg(long, value_name = "UNIT", value_parser = length)]
+    lateral: Option<UnitHint>,
     /// The unit of heights in a file of columns, likewise.
-    #[arg(long, value_parser = one_of(&Length::ALL, Length::symbol))]
-    height: Option<Length>,
+    #[arg(long, value_name = "UNIT", value_parser = length)]
+    height: Option<UnitHint>,
     /// The distance of neighbours in a matrix of heights, in the unit of places.
     #[arg(long)]
     spacing: Option<f64>,
+    /// The column of places along the line, or along the one axis, by its number or its name in the header; without it
+    /// the one that is called so, or the first.
+    #[arg(long, value_name = "COLUMN")]
+    x: Option<String>,
+    /// The column of places along the other axis, likewise.
+    #[arg(long, value_name = "COLUMN")]
+    y: Option<String>,
+    /// The column of heights, likewise; the last.
+    #[arg(long, value_name = "COLUMN")]
+    z: Option<String>,
+    /// The sheet of a spreadsheet, by its name or its number; without it the first with numbers.
+    #[arg(long)]
+    sheet: Option<String>,
     /// A file with the `material`, `friction` and `preload` under which to compute the contact of a file of columns.
     #[arg(long)]
     load: Option<PathBuf>,
@@ -47,7 +60,16 @@ impl Flags for ProfileFlags {
 
 impl ProfileFlags {
     fn of_columns(&self, content: &[u8], file: &Path) -> Result<(ProfileFitRequest, Vec<String>), Refusal> {
-        let hints = ScanHints { lateral: self.lateral, height: self.height, spacing: self.spacing, most: 0 };
+        let hints = ScanHints {
+            lateral: self.lateral.clone(),
+            height: self.height.clone(),
+            spacing: self.spacing,
+            x: self.x.clone(),
+            y: self.y.clone(),
+            z: self.z.clone(),
+            sheet: self.sheet.clone(),
+            most: 0,
+        };
         let found = files::scan(content, hints).map_err(|error| Refusal::of_file(file, error))?;
         let load = |file: &PathBuf| Ok::<_, Refusal>(wire::parse::<ScanLoad>(&read(file)?)?);
         let load = self.load.as_ref().map(load).transpose()?;

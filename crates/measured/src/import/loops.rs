@@ -1,20 +1,25 @@
 //! A loop in a file: displacement and force, and perhaps the time and the load.
 
-use super::encoding::decode;
-use super::preview::Preview;
-use super::sheet::{ImportError, Sheet};
-use super::units::{Force, Length, Time};
+use super::clock;
+use super::columns::{Needed, UnitHint};
+use super::error::ImportError;
+use super::label::Mention;
+use super::labview::{self, Clock};
+use super::names::{Meaning, meaning};
+use super::preview::{ColumnUnit, Preview, said_of};
+use super::sheet::Sheet;
+use super::source::Source;
+use super::units::{Force, Length};
 
 /// How much a load may differ from its mean and still be constant, as a part of it.
 const CONSTANT: f64 = 0.05;
-
-/// What headers call the columns, in lower case: the beginning of a word, or a whole word of up to two letters.
-const DISPLACEMENTS: [&str; 6] = ["displacement", "position", "stroke", "deflection", "u", "x"];
-const FORCES: [&str; 8] = ["force", "friction", "tangential", "lateral force", "shear force", "fx", "ft", "f"];
-const TIMES: [&str; 2] = ["time", "t"];
-const LOADS: [&str; 4] = ["normal", "load", "fn", "fz"];
 /// Names that a refusal lists.
 const LISTED: usize = 12;
+
+const DISPLACEMENT: Needed = Needed::length("displacement_unit");
+const FORCE: Needed = Needed::force("force_unit");
+const TIME: Needed = Needed::time("time_unit");
+const LOAD: Needed = Needed::force("load_unit");
 
 /// A column by its number from 1 on, or by its name in the header, of which the beginning is enough.
 pub type ColumnName = String;
@@ -31,9 +36,15 @@ pub struct LoopHints {
     /// The column of loads.
     pub load: Option<ColumnName>,
     /// The unit of displacements.
-    pub displacement_unit: Option<Length>,
+    pub displacement_unit: Option<UnitHint>,
     /// The unit of forces.
-    pub force_unit: Option<Force>,
+    pub force_unit: Option<UnitHint>,
+    /// The unit of times.
+    pub time_unit: Option<UnitHint>,
+    /// The unit of loads.
+    pub load_unit: Option<UnitHint>,
+    /// The sheet of a spreadsheet, by its name or its number from 1 on; without it the first with numbers.
+    pub sheet: Option<String>,
 }
 
 /// What was read from a file.
@@ -55,123 +66,361 @@ pub struct LoopFile {
     pub preview: Preview,
 }
 
-/// Reads a loop from columns of text; a row that lacks one of its numbers is a gap.
+/// Reads a loop from columns of text or of a spreadsheet; a row that lacks one of its numbers is a gap.
 ///
 /// # Errors
-/// [`ImportError`] if the bytes are no such table, or if a column is not found, with the names of those that are there.
+/// [`ImportError`] if the bytes are no such table, if a column is not found, with the names of those that are there, or
+/// if a unit is not known.
 pub fn read_loop(bytes: &[u8], hints: &LoopHints) -> Result<LoopFile, ImportError> {
-    let (text, encoding) = decode(bytes);
-    let sheet = Sheet::parse(&text)?;
-    let is_nameless = sheet.width() == 2 && called(&sheet, &FORCES).is_none();
-    let (displacement, force) = match (&hints.displacement, &hints.force) {
-        (None, None) if is_nameless => (0, 1),
-        (displacement, force) => (
-            column(&sheet, displacement.as_deref(), "displacement", &DISPLACEMENTS)?,
-            column(&sheet, force.as_deref(), "force", &FORCES)?,
-        ),
+    let source = Source::of(bytes, hints.sheet.as_deref())?;
+    let mut sheet = Sheet::parse(&source.text)?;
+    let ticks = labview::describe(&mut sheet);
+    sheet.check_names()?;
+    let columns = Columns::of(&sheet, hints)?;
+    let mut preview = Preview::of(&sheet, &source);
+    let displacement = DISPLACEMENT.unit(&sheet, columns.displacement, hints.displacement_unit.as_ref())?;
+    let force = FORCE.unit(&sheet, columns.force, hints.force_unit.as_ref())?;
+    let mut numeric = vec![columns.displacement, columns.force];
+    numeric.extend(columns.load);
+    numeric.extend(columns.time.filter(|time| !sheet.is_text[*time]));
+    let mut found = sheet.numbers(&numeric)?;
+    preview.written(&sheet, found.has_decimal_commas);
+    let said = |needed: Needed, column: usize, quantity: &str, unit: &ColumnUnit, hint: Option<&UnitHint>| {
+        needed.sentence(&sheet, column, &format!("The {quantity}"), unit, hint)
     };
-    let free = |index: &usize| *index != displacement && *index != force;
-    let time = match &hints.time {
-        Some(name) => Some(column(&sheet, Some(name), "time", &TIMES)?),
-        None => called(&sheet, &TIMES).filter(free),
-    };
-    let load = match &hints.load {
-        Some(name) => Some(column(&sheet, Some(name), "load", &LOADS)?),
-        None => called(&sheet, &LOADS).filter(free),
-    };
+    preview.take(columns.displacement, "displacement", &displacement);
+    preview.take(columns.force, "force", &force);
+    let hint = hints.displacement_unit.as_ref();
+    preview.reading.push(said(DISPLACEMENT, columns.displacement, "displacement", &displacement, hint));
+    preview.reading.push(said(FORCE, columns.force, "force", &force, hints.force_unit.as_ref()));
+    let times = times(&sheet, &columns, hints, ticks, &numeric, &mut found.columns, &mut preview)?;
+    let loads = columns.load.map_or_else(Vec::new, |_| std::mem::take(&mut found.columns[2]));
+
     let mut file = LoopFile {
         displacement: Vec::new(),
         force: Vec::new(),
-        time: time.map(|_| Vec::new()),
+        time: times.as_ref().map(|_| Vec::new()),
         load: None,
-        displacement_unit: hints.displacement_unit.or(sheet.unit(displacement, Length::named)).unwrap_or(Length::Metre),
-        force_unit: hints.force_unit.or(sheet.unit(force, Force::named)).unwrap_or(Force::Newton),
-        preview: Preview::of(&sheet, encoding),
+        displacement_unit: Length::nearest(displacement.unit),
+        force_unit: Force::nearest(force.unit),
+        preview: Preview::default(),
     };
-    let time_unit = time.and_then(|time| sheet.unit(time, Time::named)).unwrap_or(Time::Second);
-    let mut loads = Vec::new();
-    for row in sheet.rows() {
-        let at = time.map_or(Some(0.0), |time| row[time]);
-        let (Some(u), Some(f), Some(at)) = (row[displacement], row[force], at) else { continue };
-        file.displacement.push(u);
-        file.force.push(f);
-        file.time.iter_mut().for_each(|times| times.push(at * time_unit.factor()));
-        loads.extend(load.and_then(|load| row[load]));
+    let (length_unit, in_force_unit) = (file.displacement_unit.unit(), file.force_unit.unit());
+    let mut gaps = Vec::new();
+    let mut kept = Vec::new();
+    let remarks = found.remarks;
+    for row in 0..sheet.len() {
+        let at = times.as_ref().map_or(Some(0.0), |times| times[row]);
+        let (Some(u), Some(f), Some(at)) = (found.columns[0][row], found.columns[1][row], at) else {
+            if remarks.binary_search(&sheet.line(row)).is_err() {
+                gaps.push(sheet.line(row));
+            }
+            continue;
+        };
+        file.displacement.push(displacement.unit.convert(u, length_unit));
+        file.force.push(force.unit.convert(f, in_force_unit));
+        file.time.iter_mut().for_each(|times| times.push(at));
+        kept.extend(loads.get(row).copied().flatten());
     }
-    let gaps = sheet.lines.len() - file.displacement.len();
-    let preview = &mut file.preview;
-    let title =
-        |index: usize| sheet.name(index).map_or_else(|| format!("column {}", index + 1), |name| format!("`{name}`"));
-    let mut said = |quantity: &'static str, index: usize, unit: &'static str, is_assumed: bool| {
-        preview.take(index, quantity, unit, is_assumed);
-        preview.reading.push(format!("The {quantity} is {}, in {unit}.", title(index)));
-    };
-    let is_assumed = hints.displacement_unit.or(sheet.unit(displacement, Length::named)).is_none();
-    said("displacement", displacement, file.displacement_unit.symbol(), is_assumed);
-    let is_assumed = hints.force_unit.or(sheet.unit(force, Force::named)).is_none();
-    said("force", force, file.force_unit.symbol(), is_assumed);
-    if let Some(index) = time {
-        let is_rising = file.time.as_ref().is_some_and(|times| times.is_sorted_by(|one, next| one < next));
-        if is_rising || hints.time.is_some() {
-            said("time", index, time_unit.symbol(), sheet.unit(index, Time::named).is_none());
-        } else {
-            file.time = None;
-            preview.reading.push(format!("{} is the time, and not used, because it does not rise.", title(index)));
+    preview.leave_out_rows(&remarks, "they hold texts in place of numbers");
+    let lack = if gaps.len() == 1 { "it lacks a number and is a gap" } else { "they lack a number and are gaps" };
+    preview.leave_out_rows(&gaps, lack);
+    if let Some(column) = columns.load {
+        file.load = load(&sheet, column, hints, &kept, &mut preview)?;
+    }
+    for column in 0..sheet.width {
+        if preview.columns.get(column).is_some_and(|used| used.quantity.is_none() && used.left_out.is_none()) {
+            preview.leave_out(column, reason(&sheet, column));
         }
     }
-    if let Some(index) = load.filter(|_| !loads.is_empty()) {
-        let unit = sheet.unit(index, Force::named).unwrap_or(Force::Newton);
-        let mean = loads.iter().sum::<f64>() / loads.len() as f64;
-        let is_constant = loads.iter().all(|one| (one - mean).abs() <= CONSTANT * mean.abs());
-        file.load = Some(mean * unit.factor()).filter(|load| is_constant && *load > 0.0);
-        if file.load.is_some() {
-            preview.take(index, "normal_force", unit.symbol(), sheet.unit(index, Force::named).is_none());
-        }
-        let kept = if file.load.is_some() { "its mean is the load" } else { "not used, because it is not constant" };
-        preview.reading.push(format!("{} is the load, in {}: {kept}.", title(index), unit.symbol()));
-    }
-    if gaps > 0 {
-        preview.reading.push(format!("{gaps} rows lack a number and are gaps."));
-    }
+    preview.reading.extend(source.remark);
+    file.preview = preview;
     Ok(file)
 }
 
-/// The index of a column by its number from 1 on, or by its name in the header.
-fn find(sheet: &Sheet, name: &str) -> Option<usize> {
-    if let Ok(number) = name.parse::<usize>() {
-        return number.checked_sub(1).filter(|index| *index < sheet.width());
-    }
-    let name = name.to_lowercase();
-    sheet.names().find_map(|names| {
-        let names: Vec<String> = names.iter().map(|name| name.to_lowercase()).collect();
-        let equal = names.iter().position(|one| *one == name);
-        equal.or_else(|| names.iter().position(|one| one.starts_with(&name)))
-    })
-}
-
-/// The index of the column that a header calls by one of some names, the first of them first.
-fn called(sheet: &Sheet, names: &[&str]) -> Option<usize> {
-    sheet.names().find_map(|cells| {
-        let cells: Vec<String> = cells.iter().map(|cell| cell.trim().to_lowercase()).collect();
-        let is = |cell: &str, name: &str| {
-            let end = cell.strip_prefix(name).and_then(|rest| rest.chars().next());
-            cell.starts_with(name) && (name.len() > 2 || !end.is_some_and(char::is_alphanumeric))
+/// The times of the rows, s: of a column of numbers or dates, or of the ticks of LabVIEW's header.
+fn times(
+    sheet: &Sheet<'_>,
+    columns: &Columns,
+    hints: &LoopHints,
+    ticks: Option<Clock>,
+    numeric: &[usize],
+    found: &mut [Vec<Option<f64>>],
+    preview: &mut Preview,
+) -> Result<Option<Vec<Option<f64>>>, ImportError> {
+    let Some(column) = columns.time else {
+        let of = |Clock { start, step }: Clock| (0..sheet.len()).map(|row| Some(start + step * row as f64)).collect();
+        if let Some(Clock { step, .. }) = ticks {
+            preview.reading.push(format!("The rows are {step} s apart, by the header."));
+        }
+        return Ok(ticks.map(of));
+    };
+    let is_wanted = hints.time.is_some();
+    let title = sheet.title(column);
+    let (times, unit, said) = if let Some(index) = numeric.iter().position(|one| *one == column) {
+        let unit = TIME.unit(sheet, column, hints.time_unit.as_ref())?;
+        let times = std::mem::take(&mut found[index]);
+        let times: Vec<_> = times.into_iter().map(|time| time.map(|time| unit.unit.to_si(time))).collect();
+        let said = TIME.sentence(sheet, column, "The time", &unit, hints.time_unit.as_ref());
+        (times, unit, said)
+    } else {
+        let Some(times) = clock::seconds(sheet.texts(column)) else {
+            if is_wanted {
+                return Err(ImportError::of_file(format!("{title} is neither a number nor a date that is known here")));
+            }
+            preview.leave_out(column, "dates that are not understood, or that may be read in two ways");
+            return Ok(None);
         };
-        names.iter().find_map(|name| cells.iter().position(|cell| is(cell, name)))
-    })
+        let unit = ColumnUnit { is_assumed: false, ..TIME.beside(None) };
+        (times, unit, format!("The time is {title}, dates and times of day, in s from the first."))
+    };
+    if is_rising(&times) || is_wanted {
+        preview.take(column, "time", &unit);
+        preview.reading.push(said);
+        return Ok(Some(times));
+    }
+    preview.leave_out(column, "times that do not rise");
+    preview.reading.push(format!("{title} is the time, and not used, because it does not rise."));
+    Ok(None)
 }
 
-/// The column of this name or number or, without one, that which is called like the quantity.
-fn column(sheet: &Sheet, name: Option<&str>, quantity: &str, names: &[&str]) -> Result<usize, ImportError> {
-    let found = name.map_or_else(|| called(sheet, names), |name| find(sheet, name));
-    found.ok_or_else(|| {
-        let cells = sheet.names().next().map_or("no names".to_owned(), |names| {
-            let more = if names.len() > LISTED { ", …" } else { "" };
-            names[..names.len().min(LISTED)].join(", ").to_lowercase() + more
-        });
-        let name: String = name.unwrap_or(quantity).chars().take(40).collect();
-        ImportError::of_file(format!("there is no column `{name}` among {} columns with {cells}", sheet.width()))
-    })
+fn is_rising(times: &[Option<f64>]) -> bool {
+    times.iter().flatten().is_sorted_by(|one, next| one < next)
+}
+
+/// The mean load, N, if the loads are constant. A load that is negative throughout is one in the other direction.
+fn load(
+    sheet: &Sheet<'_>,
+    column: usize,
+    hints: &LoopHints,
+    loads: &[f64],
+    preview: &mut Preview,
+) -> Result<Option<f64>, ImportError> {
+    let unit = LOAD.unit(sheet, column, hints.load_unit.as_ref())?;
+    let title = sheet.title(column);
+    if loads.is_empty() {
+        preview.leave_out(column, "loads that are all missing");
+        return Ok(None);
+    }
+    let mean = loads.iter().sum::<f64>() / loads.len() as f64;
+    let is_constant = loads.iter().all(|one| (one - mean).abs() <= CONSTANT * mean.abs());
+    let said = match (is_constant, mean) {
+        (true, 0.0) => "not used, because it is zero",
+        (true, ..0.0) => "it is negative throughout, so its amount is the load",
+        (true, _) => "its mean is the load",
+        (false, _) => "not used, because it is not constant",
+    };
+    preview.reading.push(format!("{title} is the load, in {}: {said}.", unit.text));
+    let load = Some(unit.unit.to_si(mean.abs())).filter(|load| is_constant && *load > 0.0);
+    match load {
+        Some(_) => preview.take(column, "normal_force", &unit),
+        None => preview.leave_out(column, if is_constant { "a load of zero" } else { "a load that is not constant" }),
+    }
+    Ok(load)
+}
+
+/// Why a column is left out.
+fn reason(sheet: &Sheet<'_>, column: usize) -> String {
+    let meaning = meaning(&sheet.labels[column].name);
+    let other = match meaning {
+        Meaning::Displacement(_) => Some((DISPLACEMENT, "another displacement: choose it by `displacement`")),
+        Meaning::Force(_) => Some((FORCE, "another force: choose it by `force`")),
+        Meaning::Time => Some((TIME, "another time: choose it by `time`")),
+        Meaning::Load => Some((LOAD, "another load: choose it by `load`")),
+        _ => None,
+    };
+    if sheet.is_text[column] {
+        return "text".to_owned();
+    }
+    match other {
+        Some((needed, _)) if needed.excludes(&sheet.labels[column].unit) => {
+            said_of(&sheet.labels[column].unit).unwrap_or_default()
+        }
+        Some((_, reason)) => reason.to_owned(),
+        None => meaning.reason().to_owned(),
+    }
+}
+
+/// Which column is what.
+struct Columns {
+    displacement: usize,
+    force: usize,
+    time: Option<usize>,
+    load: Option<usize>,
+}
+
+impl Columns {
+    fn of(sheet: &Sheet<'_>, hints: &LoopHints) -> Result<Columns, ImportError> {
+        let wanted = |name: &Option<String>| {
+            name.as_ref().map(|name| sheet.find(name).ok_or_else(|| no_column(sheet, name))).transpose()
+        };
+        let (named_displacement, named_force) = (wanted(&hints.displacement)?, wanted(&hints.force)?);
+        let (time, load) = (wanted(&hints.time)?, wanted(&hints.load)?);
+        let taken: Vec<usize> = [named_displacement, named_force, time, load].into_iter().flatten().collect();
+        let by_name = |rank: fn(Meaning) -> Option<u8>, needed: Needed, hint: bool, quantity: &'static str| {
+            Candidates { sheet, taken: &taken, rank, needed, has_unit_hint: hint, quantity }
+        };
+        let mut displacement = named_displacement;
+        if displacement.is_none() {
+            let hint = hints.displacement_unit.is_some();
+            displacement = by_name(displacement_rank, DISPLACEMENT, hint, "displacement").best()?;
+        }
+        let mut force = named_force;
+        if force.is_none() {
+            let hint = hints.force_unit.is_some();
+            force = by_name(force_rank, FORCE, hint, "force").best()?;
+        }
+        // Two columns of which names say nothing, or of which one is known.
+        let is_open = |column: &usize| {
+            !sheet.is_text[*column]
+                && meaning_of(sheet, *column) == Meaning::Unknown
+                && ![displacement, force].contains(&Some(*column))
+                && !taken.contains(column)
+        };
+        let numeric = sheet.is_text.iter().filter(|is_text| !**is_text).count();
+        let mut open = (0..sheet.width).filter(is_open);
+        let mut positional = |found: Option<usize>| found.or_else(|| if numeric == 2 { open.next() } else { None });
+        let displacement = positional(displacement).ok_or_else(|| no_column(sheet, "displacement"))?;
+        let force = positional(force).ok_or_else(|| no_column(sheet, "force"))?;
+        let free = |column: &usize| *column != displacement && *column != force;
+        let time = match time {
+            None => by_name(time_rank, TIME, hints.time_unit.is_some(), "time").first(),
+            time => time,
+        };
+        let load = match load {
+            None => by_name(load_rank, LOAD, hints.load_unit.is_some(), "load").first(),
+            load => load,
+        };
+        let load = load.filter(|load| free(load) && !sheet.is_text[*load]);
+        Ok(Columns { displacement, force, time: time.filter(free), load })
+    }
+}
+
+fn displacement_rank(meaning: Meaning) -> Option<u8> {
+    if let Meaning::Displacement(rank) = meaning { Some(rank) } else { None }
+}
+
+fn force_rank(meaning: Meaning) -> Option<u8> {
+    match meaning {
+        Meaning::Force(rank) => Some(rank),
+        Meaning::Friction => Some(2),
+        _ => None,
+    }
+}
+
+fn time_rank(meaning: Meaning) -> Option<u8> {
+    (meaning == Meaning::Time).then_some(0)
+}
+
+fn load_rank(meaning: Meaning) -> Option<u8> {
+    (meaning == Meaning::Load).then_some(0)
+}
+
+/// The meaning of a column; none for one without a name.
+fn meaning_of(sheet: &Sheet<'_>, column: usize) -> Meaning {
+    let label = &sheet.labels[column];
+    let is_nameless = label.name.is_empty() && (label.unit != Mention::Absent || !sheet.has_names());
+    if is_nameless { Meaning::Unknown } else { meaning(&label.name) }
+}
+
+/// The columns that may be a quantity.
+struct Candidates<'a> {
+    sheet: &'a Sheet<'a>,
+    taken: &'a [usize],
+    rank: fn(Meaning) -> Option<u8>,
+    needed: Needed,
+    has_unit_hint: bool,
+    quantity: &'static str,
+}
+
+impl Candidates<'_> {
+    /// Those with their rank: by name, or by the unit alone.
+    fn ranked(&self) -> Vec<(u8, usize)> {
+        let free = (0..self.sheet.width).filter(|column| !self.taken.contains(column));
+        let named = |column: usize| Some(((self.rank)(meaning_of(self.sheet, column))?, column));
+        let named: Vec<_> = free.clone().filter_map(named).collect();
+        if !named.is_empty() {
+            return named;
+        }
+        let has_unit = |column: &usize| {
+            let unit = &self.sheet.labels[*column].unit;
+            let is_unit = matches!(unit, Mention::Known(unit, _) if unit.dimension == self.needed.dimension);
+            is_unit && meaning_of(self.sheet, *column) == Meaning::Unknown
+        };
+        free.filter(has_unit).map(|column| (0, column)).collect()
+    }
+
+    fn fits(&self, column: usize) -> bool {
+        self.has_unit_hint || !self.needed.excludes(&self.sheet.labels[column].unit)
+    }
+
+    /// The first of those that fit: one with its unit, or with numbers, or with dates that rise.
+    fn first(&self) -> Option<usize> {
+        let ranked = self.ranked();
+        let mut fitting = ranked.iter().map(|(_, column)| *column).filter(|column| self.fits(*column));
+        let known = fitting.clone().find(|column| matches!(self.sheet.labels[*column].unit, Mention::Known(..)));
+        let numeric = fitting.clone().find(|column| !self.sheet.is_text[*column]);
+        let rises = |column: &usize| {
+            let seconds = clock::seconds(self.sheet.texts(*column)).unwrap_or_default();
+            !seconds.is_empty() && is_rising(&seconds)
+        };
+        known.or(numeric).or_else(|| fitting.clone().find(rises)).or_else(|| fitting.next())
+    }
+
+    /// The one that fits best.
+    ///
+    /// # Errors
+    /// [`ImportError`] if two fit equally, if none has a unit of the quantity, or if it may be a coefficient.
+    fn best(&self) -> Result<Option<usize>, ImportError> {
+        let mut ranked = self.ranked();
+        ranked.retain(|(_, column)| !self.sheet.is_text[*column]);
+        ranked.sort_unstable();
+        let fitting: Vec<_> = ranked.iter().filter(|(_, column)| self.fits(*column)).collect();
+        let Some((rank, column)) = fitting.first() else {
+            return match ranked.first() {
+                // Its unit is the fault.
+                Some((_, column)) => self.needed.unit(self.sheet, *column, None).map(|_| Some(*column)),
+                None => Ok(None),
+            };
+        };
+        let sheet = self.sheet;
+        let quantity = self.quantity;
+        if let Some((_, other)) = fitting.get(1).filter(|(other, _)| other == rank) {
+            return Err(ImportError::of_file(format!(
+                "{} (column {}) and {} (column {}) may both be the {quantity}: choose one by `{quantity}`",
+                sheet.title(*column),
+                column + 1,
+                sheet.title(*other),
+                other + 1
+            )));
+        }
+        let is_named = self.has_unit_hint || sheet.labels[*column].unit != Mention::Absent;
+        if meaning_of(sheet, *column) == Meaning::Friction && !is_named {
+            let title = sheet.title(*column);
+            return Err(ImportError::of_file(format!(
+                "{title} (column {}) may be a force or a coefficient: name the unit of the force by `force_unit`",
+                column + 1
+            )));
+        }
+        Ok(Some(*column))
+    }
+}
+
+fn no_column(sheet: &Sheet<'_>, name: &str) -> ImportError {
+    let names = if sheet.has_names() {
+        let names: Vec<&str> = (0..sheet.width).map(|column| sheet.name(column).unwrap_or("")).collect();
+        let more = if names.len() > LISTED { ", …" } else { "" };
+        names[..names.len().min(LISTED)].join(", ").to_lowercase() + more
+    } else {
+        "no names".to_owned()
+    };
+    let name: String = name.chars().take(40).collect();
+    let advice = if ["displacement", "force"].contains(&name.as_str()) {
+        format!(": choose it by `{name}`, with its name or number")
+    } else {
+        String::new()
+    };
+    ImportError::of_file(format!("there is no column `{name}` among {} columns with {names}{advice}", sheet.width))
 }
 
 #[cfg(test)]
@@ -191,7 +440,7 @@ mod tests {
             assert_eq!((file.displacement_unit, file.force_unit), (Length::Micrometre, Force::Millinewton));
             assert!((file.load.unwrap() - 10.0).abs() < 1e-12, "{:?}", file.load);
             assert!(
-                file.preview.reading.iter().any(|said| said.contains("1 rows lack a number")),
+                file.preview.reading.iter().any(|said| said.contains("lacks a number and is a gap")),
                 "{:?}",
                 file.preview.reading
             );
@@ -204,7 +453,8 @@ mod tests {
         let file = file.unwrap();
         assert_eq!((&file.displacement, &file.force), (&vec![2.0, 4.0], &vec![3.0, 5.0]));
         assert_eq!((file.time, file.load), (Some(vec![1e-3, 2e-3]), Some(9.0)));
-        let uses: Vec<_> = file.preview.columns.iter().map(|column| (column.quantity, column.unit)).collect();
+        let uses: Vec<_> =
+            file.preview.columns.iter().map(|column| (column.quantity, column.unit.as_deref())).collect();
         let used = |quantity, unit| (Some(quantity), Some(unit));
         assert_eq!(
             uses,
@@ -222,6 +472,26 @@ mod tests {
         let file = read_loop(b"displacement,force,load\n1,2,3\n2,3,6\n", &LoopHints::default()).unwrap();
         assert_eq!(file.load, None);
         assert!(file.preview.reading.last().unwrap().contains("not constant"), "{:?}", file.preview.reading);
+    }
+
+    #[test]
+    fn remains_of_a_unit_are_refused_where_the_column_is_used() {
+        for (header, text) in [
+            ("Displacement ( m);Force (N)", " m"),
+            ("Displacement_in;Force (N)", "in"),
+            ("x (um);FORCE (MN)", "FORCE (MN)"),
+        ] {
+            let error = read_loop(format!("{header}\n1;2\n3;4\n").as_bytes(), &LoopHints::default()).unwrap_err();
+            assert_eq!(error.unknown_unit.as_deref(), Some(text), "{error}");
+        }
+        let found = read_loop(b"Displacement (um);Force (N);Load (?N)\n1;2;3\n3;4;3\n", &LoopHints::default());
+        assert_eq!(found.unwrap_err().column, Some(3));
+    }
+
+    #[test]
+    fn the_time_is_the_column_of_dates_and_times_that_rises() {
+        let text = "Date;Time;x;F\n2026-06-01;10:00:00;1;2\n2026-06-01;10:00:01.5;3;4\n";
+        assert_eq!(read_loop(text.as_bytes(), &LoopHints::default()).unwrap().time, Some(vec![0.0, 1.5]));
     }
 
     #[test]

@@ -1,22 +1,45 @@
 //! A scan in a file: heights along a line, at points, or in a matrix.
 
-use super::encoding::decode;
-use super::preview::Preview;
-use super::sheet::{ImportError, Sheet};
+use super::columns::{Needed, UnitHint};
+use super::error::ImportError;
+use super::grid;
+use super::label::Mention;
+use super::loops::ColumnName;
+use super::names::{Axis, axis};
+use super::number::{Mark, number};
+use super::preview::{ColumnUnit, Preview};
+use super::sheet::Sheet;
+use super::source::Source;
 use super::units::Length;
 
-/// Most columns of a list of places and heights; wider tables are matrices.
+/// Most columns of a list of places and heights without names; wider tables are matrices.
 const MOST_COLUMNS: usize = 3;
 
+/// Numbers that stand for no height, by custom: of grids, and the ends of whole numbers.
+const FILLS: [f64; 8] = [-9999.0, -99999.0, -999.0, 9999.0, 99999.0, -32768.0, 32767.0, -2_147_483_648.0];
+/// How many times the range of the heights such a number is away from them.
+const FAR: f64 = 10.0;
+
+pub(super) const LATERAL: Needed = Needed::length("lateral");
+pub(super) const HEIGHT: Needed = Needed::length("height");
+
 /// What is known of a scan beside its file. It precedes what the file says.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct ScanHints {
     /// The unit of places.
-    pub lateral: Option<Length>,
+    pub lateral: Option<UnitHint>,
     /// The unit of heights.
-    pub height: Option<Length>,
+    pub height: Option<UnitHint>,
     /// The distance of neighbours in a matrix, in the unit of places.
     pub spacing: Option<f64>,
+    /// The column of places along the line, or along the one axis.
+    pub x: Option<ColumnName>,
+    /// The column of places along the other axis.
+    pub y: Option<ColumnName>,
+    /// The column of heights.
+    pub z: Option<ColumnName>,
+    /// The sheet of a spreadsheet, by its name or its number from 1 on; without it the first with numbers.
+    pub sheet: Option<String>,
     /// The largest number of heights; a file with more is thinned. Zero: no bound.
     pub most: usize,
 }
@@ -64,143 +87,389 @@ pub struct ScanFile {
     pub preview: Preview,
 }
 
-/// Reads a scan: two columns are x and z of a line, three are x, y and z, and more are a matrix, as Gwyddion exports
-/// it. The text format of Zygo's instruments is known by its first line.
+/// Reads a scan: columns with places and heights, by their names or in the order x, z or x, y, z; or a matrix of heights,
+/// as Gwyddion exports it. The text formats of Zygo's instruments, of ISO 25178-71 and of grids (ESRI, Surfer) are known
+/// by their first line.
 ///
 /// # Errors
 /// [`ImportError`] if the bytes are no such table, by line and column.
 pub fn read_scan(bytes: &[u8], hints: &ScanHints) -> Result<ScanFile, ImportError> {
-    let (text, encoding) = decode(bytes);
-    let sheet = Sheet::parse(&text)?;
-    let preview = Preview::of(&sheet, encoding);
-    match sheet.width() {
-        MOST_COLUMNS if sheet.header.first().is_some_and(|line| line.trim().starts_with("Zygo")) => {
-            zygo(&sheet, hints, preview)
-        }
-        width if width <= MOST_COLUMNS => columns(&sheet, hints, preview),
-        _ => matrix(&sheet, hints, preview),
+    let source = Source::of(bytes, hints.sheet.as_deref())?;
+    if let Some(grid) = grid::read(&source, hints) {
+        return grid;
     }
-}
-
-/// The unit of a column, and a sentence that says where it comes from.
-fn unit_of(sheet: &Sheet, column: usize, name: &str, hint: Option<Length>) -> (Length, String) {
-    let said = sheet.unit(column, Length::named);
-    let title = sheet.name(column).map_or_else(|| format!("column {}", column + 1), |title| format!("`{title}`"));
-    let unit = hint.or(said).unwrap_or(Length::Metre);
-    let why = match (hint, said) {
-        (Some(hint), Some(said)) if hint != said => format!(", as was asked, and not in {}", said.symbol()),
-        (None, None) => ", because nothing names another unit".to_owned(),
-        _ => String::new(),
+    let sheet = Sheet::parse(&source.text)?;
+    let preview = Preview::of(&sheet, &source);
+    let is_zygo = sheet.header.first().is_some_and(|(_, line)| line.starts_with("Zygo"));
+    let mut file = if is_zygo && sheet.width == MOST_COLUMNS {
+        zygo(&sheet, hints, preview)?
+    } else if let Some(columns) = Columns::of(&sheet, hints)? {
+        list(&sheet, hints, &columns, preview)?
+    } else {
+        matrix(&sheet, hints, preview)?
     };
-    (unit, format!("{name} is {title}, in {}{why}.", unit.symbol()))
+    file.preview.reading.extend(source.remark);
+    Ok(file)
 }
 
-/// The rows of a list that are kept, and every how manyth that is.
-fn kept<'a>(sheet: &'a Sheet, hints: &ScanHints, preview: &mut Preview) -> Vec<(usize, &'a [Option<f64>])> {
-    let rows = sheet.lines.len();
-    let every = if hints.most == 0 { 1 } else { rows.div_ceil(hints.most).max(1) };
-    if every > 1 {
-        preview.thinned = every;
-        preview.reading.push(format!("Thinned {every} times, to {} of {rows} heights.", rows.div_ceil(every)));
-    }
-    sheet.numbered().step_by(every).collect()
+/// Which column is what, and why others are left out.
+struct Columns {
+    x: usize,
+    y: Option<usize>,
+    z: usize,
+    left_out: Vec<(usize, &'static str)>,
 }
 
-fn place(line: usize, row: &[Option<f64>], column: usize) -> Result<f64, ImportError> {
-    row[column].ok_or_else(|| ImportError::at(line, column + 1, "a place is missing"))
-}
-
-fn columns(sheet: &Sheet, hints: &ScanHints, mut preview: Preview) -> Result<ScanFile, ImportError> {
-    let last = sheet.width() - 1;
-    let (lateral, of_x) = unit_of(sheet, 0, "x", hints.lateral);
-    let (height, of_z) = unit_of(sheet, last, "z", hints.height);
-    let is_assumed = |column, hint: Option<Length>| hint.or(sheet.unit(column, Length::named)).is_none();
-    preview.take(0, "x", lateral.symbol(), is_assumed(0, hints.lateral));
-    preview.take(last, "z", height.symbol(), is_assumed(last, hints.height));
-    preview.reading.push(of_x);
-    if last == 2 {
-        let (other, of_y) = unit_of(sheet, 1, "y", hints.lateral);
-        if other != lateral {
-            let units = format!("x is in {} and y in {}: give one unit of places", lateral.symbol(), other.symbol());
-            return Err(ImportError::of_file(units));
+impl Columns {
+    /// The columns of a list; none if the table is a matrix.
+    fn of(sheet: &Sheet<'_>, hints: &ScanHints) -> Result<Option<Columns>, ImportError> {
+        let wanted = |name: &Option<String>| {
+            let missing = |name: &str| {
+                let name: String = name.chars().take(40).collect();
+                ImportError::of_file(format!("there is no column `{name}` among {} columns", sheet.width))
+            };
+            name.as_ref().map(|name| sheet.find(name).ok_or_else(|| missing(name))).transpose()
+        };
+        let (mut x, mut y, mut z) = (wanted(&hints.x)?, wanted(&hints.y)?, wanted(&hints.z)?);
+        let is_wanted = x.is_some() || z.is_some();
+        let axes: Vec<Axis> = (0..sheet.width).map(|column| axis_of(sheet, column)).collect();
+        let is_list = axes.contains(&Axis::Z) && axes.contains(&Axis::X);
+        let numeric = sheet.is_text.iter().filter(|is_text| !**is_text).count();
+        let known = axes.iter().filter(|axis| matches!(axis, Axis::X | Axis::Y | Axis::Z | Axis::Unknown)).count();
+        if numeric > MOST_COLUMNS && known > MOST_COLUMNS && !is_list && !is_wanted {
+            return Ok(None);
         }
-        preview.take(1, "y", lateral.symbol(), is_assumed(1, hints.lateral));
-        preview.reading.push(of_y);
+        sheet.check_names()?;
+        let mut left_out: Vec<(usize, &'static str)> = Vec::new();
+        let mut open: Vec<usize> = Vec::new();
+        for column in 0..sheet.width {
+            if [x, y, z].contains(&Some(column)) {
+                continue;
+            }
+            match axes[column] {
+                _ if sheet.is_text[column] => left_out.push((column, "text")),
+                Axis::Left(reason) => left_out.push((column, reason)),
+                _ => open.push(column),
+            }
+        }
+        // A row number without a name: no surface is measured at 1, 2, 3 along a line that is nowhere else.
+        if !sheet.has_names() && open.len() == MOST_COLUMNS && open[0] == 0 && counts_rows(sheet)? {
+            left_out.push((open.remove(0), "a number of rows"));
+        }
+        // A column with the unit of something else is no place and no height while there are others.
+        let excluded = |column: &usize| {
+            let hint = if axes[*column] == Axis::Z { &hints.height } else { &hints.lateral };
+            hint.is_none() && LATERAL.excludes(&sheet.labels[*column].unit)
+        };
+        let fitting: Vec<usize> = open.iter().copied().filter(|column| !excluded(column)).collect();
+        let lacking = 2 - usize::from(x.is_some()) - usize::from(z.is_some());
+        if fitting.len() >= lacking && axes_are_there(&fitting, &axes, x, z) {
+            left_out.extend(open.iter().filter(|column| excluded(column)).map(|column| (*column, "no length")));
+            open = fitting;
+        }
+        let mut take = |wanted: &mut Option<usize>, axis: Axis| {
+            if wanted.is_none() {
+                *wanted = open.iter().copied().find(|column| axes[*column] == axis);
+                open.retain(|column| Some(*column) != *wanted);
+            }
+        };
+        take(&mut x, Axis::X);
+        take(&mut z, Axis::Z);
+        take(&mut y, Axis::Y);
+        if x.is_none() {
+            take(&mut x, Axis::Unknown);
+        }
+        if let Some(other) =
+            open.iter().find(|column| axes[**column] == Axis::X).filter(|_| y.is_none() && hints.x.is_none())
+        {
+            return Err(ImportError::of_file(format!(
+                "{} (column {}) and {} (column {}) may both be the place along the line: choose one by `x`",
+                x.map_or_else(String::new, |x| sheet.title(x)),
+                x.unwrap_or(0) + 1,
+                sheet.title(*other),
+                other + 1
+            )));
+        }
+        if z.is_none() {
+            z = open.pop();
+        }
+        // The other of three columns without a name that says otherwise.
+        let is_place = |column: &usize| {
+            axes[*column] == Axis::Unknown && (!is_list || matches!(sheet.labels[*column].unit, Mention::Known(..)))
+        };
+        if y.is_none() && open.len() == 1 && !is_wanted && is_place(&open[0]) {
+            y = open.pop();
+        }
+        let heights = open.iter().filter(|column| axes[**column] == Axis::Z).copied().collect::<Vec<_>>();
+        left_out.extend(open.into_iter().map(|column| {
+            let reason = if heights.contains(&column) { "another height: choose it by `z`" } else { "not needed" };
+            (column, reason)
+        }));
+        match (x, z) {
+            (Some(x), Some(z)) if x != z && y != Some(x) && y != Some(z) => Ok(Some(Columns { x, y, z, left_out })),
+            _ => Err(ImportError::of_file(format!(
+                "a line needs two columns of numbers, places and heights, and {}: choose them by `x` and `z`",
+                if x.is_none() && z.is_none() { "neither is here" } else { "one of them is not here" }
+            ))),
+        }
     }
-    preview.reading.push(of_z);
-    let rows = kept(sheet, hints, &mut preview);
-    let axis = |column: usize| rows.iter().map(|(line, row)| place(*line, row, column)).collect::<Result<Vec<_>, _>>();
-    let z = rows.iter().map(|(_, row)| row[last]).collect();
-    let places =
-        if last == 1 { Places::Line { x: axis(0)?, z } } else { Places::Points { x: axis(0)?, y: axis(1)?, z } };
+}
+
+/// What a column is called; nothing if it has no name.
+fn axis_of(sheet: &Sheet<'_>, column: usize) -> Axis {
+    let label = &sheet.labels[column];
+    let is_nameless = label.name.is_empty() && (label.unit != Mention::Absent || !sheet.has_names());
+    if is_nameless { Axis::Unknown } else { axis(&label.name) }
+}
+
+/// Whether places and heights are still among these columns.
+fn axes_are_there(fitting: &[usize], axes: &[Axis], x: Option<usize>, z: Option<usize>) -> bool {
+    let has = |wanted: Axis| fitting.iter().any(|column| axes[*column] == wanted);
+    let had = |wanted: Axis| axes.contains(&wanted);
+    (x.is_some() || has(Axis::X) || !had(Axis::X)) && (z.is_some() || has(Axis::Z) || !had(Axis::Z))
+}
+
+/// Whether the first column counts the rows, from 0 or 1 on.
+fn counts_rows(sheet: &Sheet<'_>) -> Result<bool, ImportError> {
+    let numbers = sheet.numbers(&[0])?.columns.remove(0);
+    let first = numbers.first().copied().flatten().filter(|first| [0.0, 1.0].contains(first));
+    let counts = |first: f64| numbers.iter().enumerate().all(|(row, number)| *number == Some(first + row as f64));
+    Ok(numbers.len() > 2 && first.is_some_and(counts))
+}
+
+/// The rows of a list that are kept, and the stride.
+fn stride(rows: usize, hints: &ScanHints, preview: &mut Preview) -> usize {
+    let stride = if hints.most == 0 { 1 } else { rows.div_ceil(hints.most).max(1) };
+    if stride > 1 {
+        preview.thinned = stride;
+        preview.reading.push(format!("Thinned {stride} times, to {} of {rows} heights.", rows.div_ceil(stride)));
+    }
+    stride
+}
+
+/// The places and heights of some columns, the heights last, each in its unit.
+struct Heights {
+    axes: Vec<Vec<f64>>,
+    z: Vec<Option<f64>>,
+}
+
+/// Reads the columns of places and, last, of heights. A row without any number is left out.
+fn heights(
+    sheet: &Sheet<'_>,
+    columns: &[usize],
+    hints: &ScanHints,
+    preview: &mut Preview,
+) -> Result<Heights, ImportError> {
+    let found = sheet.numbers(columns)?;
+    preview.written(sheet, found.has_decimal_commas);
+    let mut z = found.columns;
+    let mut last = z.pop().unwrap_or_default();
+    let fill = fill_value(sheet, last.iter().copied().flatten(), preview);
+    last.iter_mut().filter(|height| height.is_some() && **height == fill).for_each(|height| *height = None);
+    let is_empty = |row: &usize| last[*row].is_none() && z.iter().all(|axis| axis[*row].is_none());
+    let empty: Vec<usize> = (0..sheet.len()).filter(is_empty).collect();
+    let lines: Vec<usize> = empty.iter().map(|row| sheet.line(*row)).collect();
+    preview.leave_out_rows(&lines, "they have no number");
+    let rows: Vec<usize> = (0..sheet.len()).filter(|row| empty.binary_search(row).is_err()).collect();
+    let step = stride(rows.len(), hints, preview);
+    let rows: Vec<usize> = rows.into_iter().step_by(step).collect();
+    let place = |row: usize, axis: usize| {
+        let missing = || ImportError::at(sheet.line(row), columns[axis] + 1, "a place is missing");
+        z[axis][row].ok_or_else(missing)
+    };
+    let axes = (0..z.len()).map(|axis| rows.iter().map(|row| place(*row, axis)).collect::<Result<Vec<f64>, _>>());
+    let axes = axes.collect::<Result<Vec<_>, _>>()?;
+    let z: Vec<Option<f64>> = rows.iter().map(|row| last[*row]).collect();
+    say_missing(z.iter().filter(|height| height.is_none()).count(), preview);
+    Ok(Heights { axes, z })
+}
+
+/// Says how many heights are missing.
+pub(super) fn say_missing(missing: usize, preview: &mut Preview) {
+    match missing {
+        0 => {}
+        1 => preview.reading.push("1 height is missing.".to_owned()),
+        _ => preview.reading.push(format!("{missing} heights are missing.")),
+    }
+}
+
+/// The number that stands where nothing was measured: the one that the header names, or a customary one that is far from
+/// all heights.
+fn fill_value(sheet: &Sheet<'_>, heights: impl Iterator<Item = f64> + Clone, preview: &mut Preview) -> Option<f64> {
+    let keys = ["nodata", "fillvalue", "missingvalue", "invalidvalue", "badvalue", "blankvalue", "fehlwert"];
+    let named = sheet.header.iter().find_map(|(_, line)| {
+        let plain: String = line.to_lowercase().chars().filter(|letter| !" _-".contains(*letter)).collect();
+        keys.iter()
+            .any(|key| plain.starts_with(key))
+            .then(|| line.split([' ', '\t', '=', ':', ';', ',']).next_back())?
+    });
+    if let Some(value) = named.and_then(|value| number(value, Mark::Point)) {
+        preview.reading.push(format!("{value} stands where a height is missing, by the header."));
+        return Some(value);
+    }
+    let is = |height: f64, value: f64| height.to_bits() == value.to_bits();
+    let is_far = |value: f64| {
+        let others = heights.clone().filter(|height| !is(*height, value));
+        let ends = |(low, high): (f64, f64), height: f64| (low.min(height), high.max(height));
+        let (low, high) = others.fold((f64::INFINITY, f64::NEG_INFINITY), ends);
+        high > low && (low - value).max(value - high) > FAR * (high - low)
+    };
+    let is_there = |value: f64| heights.clone().any(|height| is(height, value));
+    let value = FILLS.into_iter().find(|value| is_there(*value) && is_far(*value))?;
+    preview.reading.push(format!(
+        "{value} is taken for a missing height: it is customary for that, and more than {FAR} times as far from all \
+         others as they are from each other."
+    ));
+    Some(value)
+}
+
+fn list(
+    sheet: &Sheet<'_>,
+    hints: &ScanHints,
+    columns: &Columns,
+    mut preview: Preview,
+) -> Result<ScanFile, ImportError> {
+    let Columns { x, y, z, left_out } = columns;
+    let x_unit = LATERAL.unit(sheet, *x, hints.lateral.as_ref())?;
+    let y_unit = y.map(|y| LATERAL.unit(sheet, y, hints.lateral.as_ref())).transpose()?;
+    let z_unit = HEIGHT.unit(sheet, *z, hints.height.as_ref())?;
+    let places: Vec<(usize, &'static str, &ColumnUnit)> =
+        std::iter::once((*x, "x", &x_unit)).chain(y.iter().zip(&y_unit).map(|(y, unit)| (*y, "y", unit))).collect();
+    for (column, name, unit) in &places {
+        preview.take(*column, name, unit);
+        preview.reading.push(LATERAL.sentence(sheet, *column, name, unit, hints.lateral.as_ref()));
+    }
+    preview.take(*z, "z", &z_unit);
+    preview.reading.push(HEIGHT.sentence(sheet, *z, "z", &z_unit, hints.height.as_ref()));
+    for (column, reason) in left_out {
+        preview.leave_out(*column, *reason);
+        if *reason != "text" {
+            let name = sheet.name(*column).map_or_else(String::new, |name| format!(", `{name}`,"));
+            preview.reading.push(format!("Column {}{name} is left out: {reason}.", column + 1));
+        }
+    }
+    let order: Vec<usize> = places.iter().map(|(column, ..)| *column).chain([*z]).collect();
+    let Heights { mut axes, z } = heights(sheet, &order, hints, &mut preview)?;
+    let (lateral, height) = (Length::nearest(x_unit.unit), Length::nearest(z_unit.unit));
+    for (axis, (_, _, unit)) in axes.iter_mut().zip(&places) {
+        axis.iter_mut().for_each(|place| *place = unit.unit.convert(*place, lateral.unit()));
+    }
+    let z = z.into_iter().map(|height_of| height_of.map(|value| z_unit.unit.convert(value, height.unit()))).collect();
+    let other = (axes.len() > 1).then(|| axes.pop()).flatten();
+    let x = axes.pop().unwrap_or_default();
+    let places = match other {
+        Some(y) => Places::Points { x, y, z },
+        None => Places::Line { x, z },
+    };
     Ok(ScanFile { places, lateral, height, preview })
 }
 
 /// A text of Zygo's MetroPro: pixels and heights in micrometres; the seventh number of the eighth line is the size of a
 /// pixel in metres.
-fn zygo(sheet: &Sheet, hints: &ScanHints, mut preview: Preview) -> Result<ScanFile, ImportError> {
-    let size = sheet.header.get(7).and_then(|line| line.split_whitespace().nth(6)?.parse::<f64>().ok());
-    let in_hint = hints.spacing.map(|spacing| spacing * hints.lateral.unwrap_or(Length::Metre).factor());
+fn zygo(sheet: &Sheet<'_>, hints: &ScanHints, mut preview: Preview) -> Result<ScanFile, ImportError> {
+    let size = sheet.header.get(7).and_then(|(_, line)| line.split_whitespace().nth(6)?.parse::<f64>().ok());
+    let in_hint = hints.spacing.map(|spacing| LATERAL.beside(hints.lateral.as_ref()).unit.to_si(spacing));
     let pixel = in_hint.or(size.filter(|size| *size > 0.0)).ok_or_else(|| {
         ImportError::of_file("the size of a pixel is not in the header of this export: give the distance of neighbours")
     })?;
-    let height = hints.height.unwrap_or(Length::Micrometre);
-    let micrometres = pixel / Length::Micrometre.factor();
-    preview.reading.push(format!("Zygo's text format: x and y are pixels of {micrometres:.6} um."));
-    preview.reading.push(format!("z is column 3, in {}.", height.symbol()));
-    for (column, quantity) in ["x", "y"].into_iter().enumerate() {
-        preview.take(column, quantity, "pixel", false);
-    }
-    preview.take(2, "z", height.symbol(), false);
-    let rows = kept(sheet, hints, &mut preview);
-    let axis = |column: usize| {
-        rows.iter().map(|(line, row)| Ok(pixel * place(*line, row, column)?)).collect::<Result<Vec<_>, ImportError>>()
+    let unit = match &hints.height {
+        Some(_) => HEIGHT.beside(hints.height.as_ref()),
+        None => HEIGHT.named("um", None, None)?,
     };
-    let z = rows.iter().map(|(_, row)| row[2]).collect();
-    Ok(ScanFile { places: Places::Points { x: axis(0)?, y: axis(1)?, z }, lateral: Length::Metre, height, preview })
+    let height = Length::nearest(unit.unit);
+    preview.reading.push(format!("Zygo's text format: x and y are pixels of {:.6} um.", pixel * 1e6));
+    preview.reading.push(format!("z is column 3, in {}.", unit.text));
+    for (column, quantity) in ["x", "y"].into_iter().enumerate() {
+        preview.take(column, quantity, &ColumnUnit { text: "pixel".to_owned(), ..unit.clone() });
+    }
+    preview.take(2, "z", &unit);
+    let Heights { mut axes, z } = heights(sheet, &[0, 1, 2], hints, &mut preview)?;
+    axes.iter_mut().flatten().for_each(|place| *place *= pixel);
+    let z = z.into_iter().map(|value| value.map(|value| unit.unit.convert(value, height.unit()))).collect();
+    let (y, x) = (axes.pop().unwrap_or_default(), axes.pop().unwrap_or_default());
+    Ok(ScanFile { places: Places::Points { x, y, z }, lateral: Length::Metre, height, preview })
 }
 
-/// A number and a unit behind a name in the header, as in `Width: 10.0 um`.
-fn measure(sheet: &Sheet, name: &str) -> Option<(f64, Length)> {
-    let line = sheet.header.iter().find_map(|line| line.trim().strip_prefix(name))?;
-    let value = line.trim_start_matches([':', '=', ' ', '\t']);
-    let number = value.split_whitespace().next()?.replace(',', ".").parse().ok()?;
-    Some((number, Length::named(value)?))
+/// A line of the header that begins with one of some names: its number, and what stands behind the name.
+fn field<'a>(sheet: &'a Sheet<'_>, names: &[&str]) -> Option<(usize, &'a str)> {
+    sheet.header.iter().find_map(|(line, text)| {
+        let rest = names.iter().find_map(|name| text.strip_prefix(name))?;
+        Some((*line, rest.strip_prefix([':', '='])?.trim()))
+    })
+}
+
+/// A length in the header, as in `Width: 10.0 um`.
+fn measure(sheet: &Sheet<'_>, names: &[&str]) -> Result<Option<(f64, ColumnUnit)>, ImportError> {
+    let Some((line, value)) = field(sheet, names) else { return Ok(None) };
+    let (digits, unit) = value.split_once(char::is_whitespace).unwrap_or((value, ""));
+    let mark = if digits.contains(',') { Mark::Comma } else { Mark::Point };
+    match number(digits, mark).filter(|size| *size > 0.0) {
+        Some(size) if !unit.is_empty() => Ok(Some((size, LATERAL.named(unit.trim(), Some(line), None)?))),
+        _ => Ok(None),
+    }
 }
 
 /// A matrix of heights: its size from the header, or the distance of neighbours from a hint.
-fn matrix(sheet: &Sheet, hints: &ScanHints, mut preview: Preview) -> Result<ScanFile, ImportError> {
-    let (rows, width) = (sheet.lines.len(), sheet.width());
-    let (lateral, dx, dy, why) = match (hints.spacing, measure(sheet, "Width"), measure(sheet, "Height")) {
-        (Some(spacing), ..) => {
-            let unit = hints.lateral.unwrap_or(Length::Metre);
-            (unit, spacing, spacing, format!("Neighbours are {spacing} {} apart, as was asked.", unit.symbol()))
-        }
-        (None, Some((wide, unit)), Some((high, other))) => {
-            let (dx, dy) = (wide / width as f64, high * other.factor() / unit.factor() / rows as f64);
-            (unit, dx, dy, format!("{wide} {} by {high} {}, from the header.", unit.symbol(), other.symbol()))
-        }
-        _ => {
+fn matrix(sheet: &Sheet<'_>, hints: &ScanHints, mut preview: Preview) -> Result<ScanFile, ImportError> {
+    let (rows, width) = (sheet.len(), sheet.width);
+    preview.columns.clear();
+    let (lateral, dx, dy, why) = if let Some(spacing) = hints.spacing {
+        let unit = LATERAL.beside(hints.lateral.as_ref());
+        let lateral = Length::nearest(unit.unit);
+        let step = unit.unit.convert(spacing, lateral.unit());
+        (lateral, step, step, format!("Neighbours are {spacing} {} apart, as was asked.", unit.text))
+    } else {
+        let (wide, high) = (measure(sheet, &["Width", "Breite"])?, measure(sheet, &["Height", "H\u{f6}he"])?);
+        let (Some((wide, unit)), Some((high, other))) = (wide, high) else {
             return Err(ImportError::of_file(format!(
                 "{width} columns are a matrix of heights: give the distance of its neighbours, or its `Width` and \
-                 `Height` in the header"
+                 `Height` in the header; or choose the columns of a line by `x` and `z`"
             )));
-        }
+        };
+        let lateral = Length::nearest(unit.unit);
+        let dx = unit.unit.convert(wide, lateral.unit()) / width as f64;
+        let dy = other.unit.convert(high, lateral.unit()) / rows as f64;
+        (lateral, dx, dy, format!("{wide} {} by {high} {}, from the header.", unit.text, other.text))
     };
-    let said = sheet.header.iter().find_map(|line| line.trim().strip_prefix("Value units"));
-    let height = hints.height.or_else(|| Length::named(said?)).unwrap_or(Length::Metre);
-    preview.reading.push(format!("A matrix of {width} x {rows} heights in {}.", height.symbol()));
+    let unit = match field(sheet, &["Value units", "Werteinheit", "Werteinheiten"]) {
+        Some((line, text)) if hints.height.is_none() => HEIGHT.named(text, Some(line), None)?,
+        _ => HEIGHT.beside(hints.height.as_ref()),
+    };
+    let height = Length::nearest(unit.unit);
+    let columns = sheet.numbers(&(0..width).collect::<Vec<_>>())?;
+    let fill = fill_value(sheet, columns.columns.iter().flatten().copied().flatten(), &mut preview);
+    preview.written(sheet, columns.has_decimal_commas);
+    let why_height = if unit.is_assumed { ", because nothing names another unit" } else { "" };
+    preview.reading.push(format!("A matrix of {width} x {rows} heights in {}{why_height}.", unit.text));
     preview.reading.push(why);
-    let every = thinning(width, rows, hints.most);
-    let z: Vec<Vec<Option<f64>>> =
-        sheet.rows().step_by(every).map(|row| row.iter().copied().step_by(every).collect()).collect();
-    if every > 1 {
-        let kept = format!("{} x {}", z[0].len(), z.len());
-        preview.thinned = every;
-        preview.reading.push(format!("Thinned {every} times along both sides, to {kept} heights."));
-    }
-    let step = every as f64;
+    let value = |row: usize, column: usize| {
+        columns.columns[column][row]
+            .filter(|value| Some(*value) != fill)
+            .map(|value| unit.unit.convert(value, height.unit()))
+    };
+    let z = thinned(rows, width, hints.most, value, &mut preview);
+    let step = preview.thinned as f64;
     Ok(ScanFile { places: Places::Map { dx: step * dx, dy: step * dy, z }, lateral, height, preview })
+}
+
+/// The heights of a matrix, thinned along both sides to no more than `most`.
+pub(super) fn thinned(
+    rows: usize,
+    width: usize,
+    most: usize,
+    value: impl Fn(usize, usize) -> Option<f64>,
+    preview: &mut Preview,
+) -> Vec<Vec<Option<f64>>> {
+    let stride = thinning(width, rows, most);
+    let row = |row: usize| (0..width).step_by(stride).map(|column| value(row, column)).collect();
+    let z: Vec<Vec<Option<f64>>> = (0..rows).step_by(stride).map(row).collect();
+    if stride > 1 {
+        let kept = format!("{} x {}", z[0].len(), z.len());
+        preview.thinned = stride;
+        preview.reading.push(format!("Thinned {stride} times along both sides, to {kept} heights."));
+    }
+    say_missing(z.iter().flatten().filter(|height| height.is_none()).count(), preview);
+    z
 }
 
 /// The smallest step with which a matrix has no more heights than that.
@@ -211,7 +480,8 @@ fn thinning(width: usize, rows: usize, most: usize) -> usize {
 
 #[cfg(test)]
 mod tests {
-    use super::{Length, Places, Preview, ScanFile, ScanHints, read_scan};
+    use super::super::units::Dimension;
+    use super::{Length, Places, Preview, ScanFile, ScanHints, UnitHint, read_scan};
 
     fn read(text: &str) -> ScanFile {
         read_scan(text.as_bytes(), &ScanHints::default()).unwrap_or_else(|error| panic!("{text}: {error}"))
@@ -232,6 +502,8 @@ mod tests {
         }
         let points = Places::Points { x: vec![1.0], y: vec![2.0], z: vec![Some(3.0)] };
         assert_eq!(read("x,y,z\n1,2,3").places, points);
+        // Both axes are in the unit of the first.
+        assert_eq!(read("x [mm],y [cm],z [nm]\n1,0.2,3\n").places, points);
     }
 
     #[test]
@@ -250,7 +522,7 @@ mod tests {
         let plain = read("1;2\n");
         assert_eq!((plain.lateral, plain.height), (Length::Metre, Length::Metre));
         assert!(plain.preview.reading[1].contains("because nothing names another unit"), "{:?}", plain.preview.reading);
-        let hints = ScanHints { height: Some(Length::Millimetre), ..ScanHints::default() };
+        let hints = ScanHints { height: UnitHint::of("mm", Dimension::LENGTH).ok(), ..ScanHints::default() };
         let hinted = read_scan(b"X [um];Z [nm]\n1;2\n", &hints).unwrap();
         assert_eq!((hinted.lateral, hinted.height), (Length::Micrometre, Length::Millimetre));
         assert!(hinted.preview.reading[2].contains("as was asked, and not in nm"), "{:?}", hinted.preview.reading);
@@ -264,7 +536,6 @@ mod tests {
             ("a header\n", "no rows"),
             ("1\n2\n", "1 columns"),
             ("1,2\n,2\n", "line 2, column 1: a place is missing"),
-            ("x [um],y [mm],z [nm]\n1,2,3\n", "x is in um and y in mm"),
             ("1 2 3 4\n5 6 7 8\n", "4 columns are a matrix of heights"),
         ] {
             let error = read_scan(text.as_bytes(), &ScanHints::default()).unwrap_err().to_string();
@@ -305,10 +576,22 @@ mod tests {
     }
 
     #[test]
+    fn a_number_that_stands_for_no_height_is_missing_if_it_is_declared_or_far_from_all() {
+        let heights = |text: &str| match read(text).places {
+            Places::Line { z, .. } => z,
+            other => panic!("{other:?}"),
+        };
+        let (some, all) = (vec![Some(-1.5), Some(2.0), None], vec![Some(-9000.0), Some(-8000.0), Some(-9999.0)]);
+        assert_eq!(heights("x;z\n1;-1.5\n2;2\n3;-9999\n"), some);
+        assert_eq!(heights("x;z\n1;-9000\n2;-8000\n3;-9999\n"), all);
+        assert_eq!(heights("NODATA_value 77\nx z\n1 -1.5\n2 2\n3 77\n"), some);
+    }
+
+    #[test]
     fn a_preview_says_how_the_file_is_written() {
         let Preview { encoding, separator, has_decimal_commas, rows, header, columns, .. } =
             read("Line 7\nX [um];Z [nm]\n12\n1,5;2\n3,5;No Data\n").preview;
-        assert_eq!((encoding, separator, has_decimal_commas, rows), ("UTF-8", "semicolon", true, 2));
+        assert_eq!((encoding.as_str(), separator, has_decimal_commas, rows), ("UTF-8", "semicolon", true, 2));
         assert_eq!(header, ["Line 7", "X [um];Z [nm]", "12"]);
         assert_eq!(
             columns.iter().map(|column| column.name.as_deref()).collect::<Vec<_>>(),

@@ -1,279 +1,547 @@
-//! Columns of numbers in a text, with the lines before them.
+//! A table of numbers in a text: its separator, its header, its rows.
 
-use std::borrow::Cow;
-use std::fmt;
-
-use super::units::is_symbol;
+use super::error::ImportError;
+use super::label::{Label, Mention};
+use super::lines::{Separator, lines};
+use super::names::{Axis, Meaning, axis, meaning};
+use super::number::{Evidence, Mark, is_missing, is_no_value, number, shape, unquoted};
 
 /// Lines before the numbers; a text with more has none.
 const MOST_HEADER: usize = 10_000;
 /// Lines above the numbers that may name the columns.
 const NAMING: usize = 100;
-
-/// Marks of a missing number, in lower case.
-const MISSING: [&str; 13] =
-    ["", "nan", "null", "bad", "---", "nodata", "n/a", "na", "#n/a", "*****", "missing", "void", "invalid"];
-
-/// The mark with a blank in it.
-const NO_DATA: &str = "no data";
+/// Lines that are looked at for the separator: the first, and others evenly over the text.
+const SAMPLE: usize = 400;
+/// Columns of a list with names; wider tables are matrices.
+const MOST_NAMED: usize = 1000;
 /// Why a single column is no scan and no loop.
 const ONE_COLUMN: &str = "1 columns: a scan has x and z or x, y and z, and a loop displacement and force";
 
-/// What is wrong with a file, and where.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct ImportError {
-    /// The line, from 1 on, if one is at fault.
-    pub line: Option<usize>,
-    /// The column of numbers in it, from 1 on, if one is at fault.
-    pub column: Option<usize>,
-    /// What is wrong with it.
-    pub fault: String,
+/// A row: its line from 1 on, and its place in the text.
+#[derive(Clone, Copy)]
+struct Row {
+    line: u32,
+    start: u32,
+    end: u32,
 }
-
-impl ImportError {
-    pub(super) fn of_file(fault: impl Into<String>) -> ImportError {
-        ImportError { line: None, column: None, fault: fault.into() }
-    }
-
-    pub(super) fn at(line: usize, column: usize, fault: impl Into<String>) -> ImportError {
-        ImportError { line: Some(line), column: Some(column), fault: fault.into() }
-    }
-}
-
-impl fmt::Display for ImportError {
-    fn fmt(&self, text: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match (self.line, self.column) {
-            (Some(line), Some(column)) => write!(text, "line {line}, column {column}: {}", self.fault),
-            (Some(line), None) => write!(text, "line {line} {}", self.fault),
-            _ => text.write_str(&self.fault),
-        }
-    }
-}
-
-impl std::error::Error for ImportError {}
 
 /// A table of numbers.
-pub(super) struct Sheet {
-    /// The lines before the numbers, without the marks of a comment.
-    pub(super) header: Vec<String>,
-    /// The numbers row by row; `None` is a missing one.
-    cells: Vec<Option<f64>>,
+pub(super) struct Sheet<'a> {
+    text: &'a str,
+    /// The lines before the numbers with their numbers, without the marks of a comment.
+    pub(super) header: Vec<(usize, &'a str)>,
+    rows: Vec<Row>,
     /// How many columns there are.
-    width: usize,
-    /// The line of each row, from 1 on.
-    pub(super) lines: Vec<usize>,
-    /// What separates the numbers of the first row: `semicolon`, `tab`, `white_space` or `comma`.
-    pub(super) separator: &'static str,
-    /// Whether numbers have decimal commas.
-    pub(super) has_decimal_commas: bool,
+    pub(super) width: usize,
+    /// Whether a column holds texts, such as dates or remarks, and no numbers.
+    pub(super) is_text: Vec<bool>,
+    /// Lines with text that are no rows: headers and remarks.
+    pub(super) left_out: Vec<usize>,
+    /// What separates the columns.
+    pub(super) separator: Separator,
+    /// The line that names the columns, and what it says of each.
+    names_line: Option<usize>,
+    pub(super) labels: Vec<Label>,
+    /// The line that names the units of the columns apart from their names.
+    units_line: Option<usize>,
+    /// Why the names of the columns are not known, if a line names other columns than there are.
+    misnamed: Option<ImportError>,
 }
 
-impl Sheet {
+/// The numbers of some columns, and whether they have decimal commas.
+pub(super) struct Numbers {
+    /// Column by column; `None` is a missing number.
+    pub(super) columns: Vec<Vec<Option<f64>>>,
+    pub(super) has_decimal_commas: bool,
+    /// Rows without a number in any of them because they hold other texts.
+    pub(super) remarks: Vec<usize>,
+}
+
+impl<'a> Sheet<'a> {
     /// The table in a text.
-    pub(super) fn parse(text: &str) -> Result<Sheet, ImportError> {
-        let mut sheet = Sheet {
-            header: Vec::new(),
-            cells: Vec::new(),
-            width: 0,
-            lines: Vec::new(),
-            separator: "",
-            has_decimal_commas: false,
+    pub(super) fn parse(text: &'a str) -> Result<Sheet<'a>, ImportError> {
+        let all: Vec<Row> = rows_of(text)?;
+        // What stands before a line with a number sign alone is the header of Zygo's export, whatever numbers it has.
+        let is_zygo = text.trim_start_matches('\u{feff}').starts_with("Zygo");
+        let marked = |row: &Row| is_zygo && line_of(text, *row).trim() == "#";
+        let begin = all.iter().position(marked).map_or(0, |index| index + 1);
+        let Some(found) = Dialect::of(text, &all[begin..]) else {
+            return Err(no_table(text, &all));
         };
-        let mut has_column = false;
-        // What keeps the first line that begins with a number from being a row of them.
-        let mut spoilt = None;
-        // What stands before a line with a number sign alone is a header, whatever numbers it has.
-        let begin = text.lines().position(|line| line.trim() == "#").map_or(0, |index| index + 1);
-        for (index, line) in text.lines().enumerate() {
-            let line = line.trim_matches([' ', '\r', '\u{feff}']);
-            let is_comment = line.starts_with(['#', '%']);
-            if line.trim().is_empty() || (is_comment && sheet.width > 0) {
+        let mut sheet = Sheet {
+            text,
+            header: Vec::new(),
+            rows: Vec::new(),
+            width: found.width,
+            is_text: found.is_text,
+            left_out: Vec::new(),
+            separator: found.separator,
+            names_line: None,
+            labels: Vec::new(),
+            units_line: None,
+            misnamed: None,
+        };
+        let mut spoilt = Vec::new();
+        let mut cells = Vec::new();
+        let mut widest = 0;
+        for (index, row) in all.iter().enumerate() {
+            let line = line_of(text, *row);
+            if line.trim().is_empty() {
                 continue;
             }
-            let cells = Cells::of(line);
-            let numbers = if is_comment || index < begin { Err(0) } else { cells.numbers() };
-            match numbers {
-                // Before the numbers, a number alone is a count or a size.
-                Ok(row) if row.len() > 1 && (sheet.width == 0 || row.len() == sheet.width) => {
-                    if sheet.width == 0 {
-                        (sheet.width, sheet.separator) = (row.len(), cells.separator);
-                    }
-                    sheet.has_decimal_commas |= cells.has_decimal_commas;
-                    sheet.cells.extend(row);
-                    sheet.lines.push(index + 1);
+            let is_comment = is_comment(line);
+            sheet.separator.split(line, &mut cells);
+            let kind = if is_comment || index < begin { RowKind::Text } else { sheet.kind(&cells) };
+            let number = row.line as usize;
+            match kind {
+                RowKind::Numbers => {
+                    sheet.check_width(number, &cells)?;
+                    widest = widest.max(cells.iter().rposition(|cell| !cell.is_empty()).map_or(0, |last| last + 1));
+                    sheet.rows.push(*row);
                 }
-                Ok(row) if sheet.width > 0 => {
-                    let fault = format!("has {} columns, and the first {}", row.len(), sheet.width);
-                    return Err(ImportError { line: Some(index + 1), column: None, fault });
+                RowKind::Missing if !sheet.rows.is_empty() => sheet.rows.push(*row),
+                RowKind::Spoilt(_) if !sheet.rows.is_empty() => {
+                    sheet.check_width(number, &cells)?;
+                    sheet.rows.push(*row);
                 }
-                _ if sheet.width == 0 => {
-                    has_column |= numbers.is_ok();
-                    if let (None, Err(column @ 1..)) = (&spoilt, &numbers) {
-                        spoilt = Some(cells.fault(index + 1, *column));
+                _ if sheet.rows.is_empty() => {
+                    if let RowKind::Spoilt(column) = kind {
+                        spoilt.push((number, column, cells.len(), cells.get(column).copied().unwrap_or("").to_owned()));
                     }
                     if sheet.header.len() == MOST_HEADER {
                         break;
                     }
-                    sheet.header.push(line.trim_start_matches(['#', '%']).to_owned());
+                    sheet.left_out.push(number);
+                    sheet.header.push((number, line.trim_start_matches(['#', '%']).trim()));
                 }
-                // A mark of the end, after the numbers.
-                _ if line == "#" => {}
-                Ok(_) => {}
-                Err(column) => return Err(cells.fault(index + 1, column)),
+                _ => sheet.left_out.push(number),
             }
         }
-        match (sheet.width, spoilt) {
-            (0, Some(error)) => Err(error),
-            (0, None) if has_column => Err(ImportError::of_file(ONE_COLUMN)),
-            (0, None) => Err(ImportError::of_file("there are no rows of numbers")),
-            _ => Ok(sheet),
+        if sheet.rows.is_empty() {
+            return Err(no_table(text, &all));
+        }
+        // A separator at the end of each line is no column.
+        sheet.width = widest.min(sheet.width).max(1);
+        sheet.is_text.truncate(sheet.width);
+        if sheet.width < 2 {
+            return Err(ImportError::of_file(ONE_COLUMN));
+        }
+        sheet.name_columns();
+        sheet.check_header(&spoilt)?;
+        Ok(sheet)
+    }
+
+    /// What a line is.
+    fn kind(&self, cells: &[&str]) -> RowKind {
+        let (mut numbers, mut missing, mut first_text) = (0, 0, None);
+        for (column, cell) in cells.iter().enumerate() {
+            let is_text_column = self.is_text.get(column).copied().unwrap_or(false);
+            if shape(cell).is_some() {
+                numbers += usize::from(!is_text_column);
+            } else if is_missing(cell) {
+                missing += 1;
+            } else if !is_text_column && column < self.width {
+                first_text = first_text.or(Some(column));
+            }
+        }
+        match (numbers, first_text) {
+            (0, Some(_)) => RowKind::Text,
+            (0, None) if missing > 0 => RowKind::Missing,
+            (0, None) => RowKind::Text,
+            // Before the numbers, a number alone is a count or a size.
+            (1, None) if cells.len() == 1 && self.width > 1 => {
+                if self.rows.is_empty() {
+                    RowKind::Text
+                } else {
+                    RowKind::Numbers
+                }
+            }
+            (_, None) => RowKind::Numbers,
+            (_, Some(column)) => RowKind::Spoilt(column),
         }
     }
 
-    /// How many columns there are.
-    pub(super) fn width(&self) -> usize {
-        self.width
+    fn check_width(&self, line: usize, cells: &[&str]) -> Result<(), ImportError> {
+        let surplus = cells.get(self.width..).unwrap_or(&[]);
+        // Remarks behind the last column, and last columns of text that are left out.
+        let lacking = self.is_text.get(cells.len()..).unwrap_or(&[]);
+        if surplus.iter().all(|cell| shape(cell).is_none()) && lacking.iter().all(|is_text| *is_text) {
+            return Ok(());
+        }
+        let others = if self.rows.is_empty() { "most rows have" } else { "the first" };
+        Err(ImportError::at_line(line, format!("has {} columns, and {others} {}", cells.len(), self.width)))
     }
 
-    /// The rows.
-    pub(super) fn rows(&self) -> impl Iterator<Item = &[Option<f64>]> {
-        self.cells.chunks_exact(self.width.max(1))
+    /// Refuses a line above the numbers that looks like a row of them.
+    fn check_header(&self, spoilt: &[(usize, usize, usize, String)]) -> Result<(), ImportError> {
+        for (line, column, cells, text) in spoilt {
+            // Above the names stand keys with numbers, as in `Samples;41`.
+            let has_digits = text.contains(|letter: char| letter.is_ascii_digit());
+            let is_above = self.names_line.map_or(!has_digits, |names| *line < names);
+            let is_key = *column == 0 && text.starts_with(char::is_alphabetic) && is_above;
+            if is_key || *cells < 2 {
+                continue;
+            }
+            return Err(not_a_number(*line, *column, text));
+        }
+        Ok(())
     }
 
-    /// The rows, with the line of each.
-    pub(super) fn numbered(&self) -> impl Iterator<Item = (usize, &[Option<f64>])> {
-        self.lines.iter().copied().zip(self.rows())
+    /// Finds the lines of the header that name the columns and their units.
+    fn name_columns(&mut self) {
+        self.labels = (0..self.width).map(|_| Label::of("")).collect();
+        if self.width > MOST_NAMED {
+            return;
+        }
+        let mut lines = self.header.iter().rev().take(NAMING).filter_map(|(line, text)| {
+            let cells = self.cells_of_names(text)?;
+            Some((*line, cells))
+        });
+        let is_units = |cells: &[String]| {
+            let mentions: Vec<Mention> =
+                cells.iter().filter(|cell| !cell.is_empty()).map(|cell| Label::of_unit(cell)).collect();
+            mentions.iter().any(|one| matches!(one, Mention::Known(..)))
+                && mentions
+                    .iter()
+                    .zip(cells.iter().filter(|cell| !cell.is_empty()))
+                    .all(|(one, cell)| matches!(one, Mention::Known(..)) || cell.chars().count() < 4 && !is_named(cell))
+        };
+        let mut first = lines.next();
+        let mut units = None;
+        if let Some((line, cells)) = first.take_if(|(_, cells)| is_units(cells)) {
+            let above = lines.next();
+            // A line of single letters alone names the columns.
+            if above.is_none() && cells.iter().all(|cell| cell.chars().count() < 2) {
+                first = Some((line, cells));
+            } else {
+                (first, units) = (above, Some((line, cells)));
+            }
+        }
+        let mut names = first;
+        if names.as_ref().is_some_and(|(_, cells)| !cells.iter().any(|cell| is_named(cell))) {
+            // Types, sources or remarks below the names; and prose above them.
+            names = lines.find(|(_, cells)| cells.iter().filter(|cell| is_named(cell)).count() > 1).or(names);
+        }
+        drop(lines);
+        if let Some((line, cells)) = names {
+            self.names_line = Some(line);
+            self.labels = cells.iter().take(self.width).map(|cell| Label::of(cell)).collect();
+        } else if units.is_none() {
+            self.misnamed = self.other_names();
+        }
+        if let Some((line, cells)) = units {
+            self.units_line = Some(line);
+            for (label, cell) in self.labels.iter_mut().zip(cells) {
+                if label.unit == Mention::Absent {
+                    label.unit = Label::of_unit(&cell);
+                }
+            }
+        }
     }
 
-    /// The cells of each line of the header that has as many as there are columns, the line above the numbers first:
-    /// what stands further up is more likely a comment.
-    pub(super) fn names(&self) -> impl Iterator<Item = Vec<String>> {
-        self.header
+    /// The cells of a line of the header, if it has as many as there are columns: in the way of the rows, or in another.
+    fn cells_of_names(&self, text: &str) -> Option<Vec<String>> {
+        let others = Separator::ALL.into_iter().filter(|other| *other != self.separator);
+        let mut cells = Vec::new();
+        for separator in std::iter::once(self.separator).chain(others) {
+            separator.split(text, &mut cells);
+            let mut names: Vec<String> = cells.iter().map(|cell| unquoted(cell).to_owned()).collect();
+            if separator == Separator::WhiteSpace {
+                names = with_units(names);
+            }
+            while names.len() > self.width && names.last().is_some_and(|last| is_remark_name(last)) {
+                names.pop();
+            }
+            if names.len() == self.width && names.iter().any(|name| !name.is_empty()) {
+                return Some(names);
+            }
+        }
+        None
+    }
+
+    /// The fault of a line right above the numbers that names other columns than there are.
+    fn other_names(&self) -> Option<ImportError> {
+        let (line, text) = self.header.last()?;
+        let mut cells = Vec::new();
+        Separator::ALL.into_iter().find_map(|separator| {
+            separator.split(text, &mut cells);
+            let names = if separator == Separator::WhiteSpace {
+                with_units(cells.iter().map(|cell| (*cell).to_owned()).collect())
+            } else {
+                cells.iter().map(|cell| (*cell).to_owned()).collect()
+            };
+            let named = names.iter().filter(|name| is_named(name)).count();
+            let fault = format!("names {} columns, and the rows have {}", names.len(), self.width);
+            (named > 1 && names.len() != self.width).then(|| ImportError::at_line(*line, fault))
+        })
+    }
+
+    /// Refuses a header that names other columns than there are.
+    pub(super) fn check_names(&self) -> Result<(), ImportError> {
+        self.misnamed.clone().map_or(Ok(()), Err)
+    }
+
+    /// How many rows there are.
+    pub(super) fn len(&self) -> usize {
+        self.rows.len()
+    }
+
+    /// The line of each row.
+    pub(super) fn line(&self, row: usize) -> usize {
+        self.rows[row].line as usize
+    }
+
+    /// The line that names a column, or its unit.
+    pub(super) fn line_of_unit(&self, column: usize) -> Option<usize> {
+        let is_apart =
+            self.units_line.is_some() && matches!(Label::of(&self.labels[column].text).unit, Mention::Absent);
+        if is_apart { self.units_line } else { self.names_line }
+    }
+
+    /// The name of a column, if it has one.
+    pub(super) fn name(&self, column: usize) -> Option<&str> {
+        self.labels.get(column).map(|label| label.text.as_str()).filter(|text| !text.is_empty())
+    }
+
+    /// Whether any column has a name.
+    pub(super) fn has_names(&self) -> bool {
+        self.labels.iter().any(|label| !label.text.is_empty())
+    }
+
+    /// The column in a sentence.
+    pub(super) fn title(&self, column: usize) -> String {
+        self.name(column).map_or_else(|| format!("column {}", column + 1), |name| format!("`{name}`"))
+    }
+
+    /// The index of a column by its number from 1 on, or by its name in the header, of which the beginning is enough.
+    pub(super) fn find(&self, name: &str) -> Option<usize> {
+        if let Ok(number) = name.parse::<usize>() {
+            return number.checked_sub(1).filter(|index| *index < self.width);
+        }
+        let name = name.to_lowercase();
+        let names: Vec<String> = self.labels.iter().map(|label| label.text.to_lowercase()).collect();
+        let equal = names.iter().position(|one| *one == name);
+        let bare = || self.labels.iter().position(|label| label.name.to_lowercase() == name);
+        equal.or_else(bare).or_else(|| names.iter().position(|one| one.starts_with(&name)))
+    }
+
+    /// The texts of a column, with the index of each row.
+    pub(super) fn texts(&self, column: usize) -> impl Iterator<Item = &'a str> {
+        let mut cells = Vec::new();
+        self.rows.iter().map(move |row| {
+            self.separator.split(line_of(self.text, *row), &mut cells);
+            cells.get(column).map_or("", |cell| unquoted(cell))
+        })
+    }
+
+    /// The numbers of some columns.
+    ///
+    /// # Errors
+    /// [`ImportError`] at a cell that is no number, or a number that can be read in two ways.
+    pub(super) fn numbers(&self, columns: &[usize]) -> Result<Numbers, ImportError> {
+        let mut cells = Vec::new();
+        let mut evidence = vec![Evidence::default(); columns.len()];
+        for (row, place) in self.rows.iter().enumerate() {
+            self.separator.split(line_of(self.text, *place), &mut cells);
+            for (evidence, column) in evidence.iter_mut().zip(columns) {
+                evidence.add(row, cells.get(*column).copied().unwrap_or(""));
+            }
+        }
+        let has = |mark: Mark| evidence.iter().any(|one| one.has_decimal(mark));
+        let others = match (has(Mark::Point), has(Mark::Comma)) {
+            (true, false) => Some(Mark::Point),
+            (false, true) => Some(Mark::Comma),
+            _ => None,
+        };
+        let mut marks = Vec::new();
+        for (evidence, column) in evidence.iter().zip(columns) {
+            marks.push(evidence.mark(others).map_err(|row| self.ambiguous(row, *column))?);
+        }
+        let mut found = Numbers {
+            columns: columns.iter().map(|_| Vec::with_capacity(self.rows.len())).collect(),
+            has_decimal_commas: marks.iter().zip(&evidence).any(|(mark, one)| *mark == Mark::Comma && !one.is_empty()),
+            remarks: Vec::new(),
+        };
+        for (index, place) in self.rows.iter().enumerate() {
+            self.separator.split(line_of(self.text, *place), &mut cells);
+            let mut fault = None;
+            let mut numbers = 0;
+            for ((values, column), mark) in found.columns.iter_mut().zip(columns).zip(&marks) {
+                let cell = cells.get(*column).copied().unwrap_or("");
+                let value = number(cell, *mark);
+                numbers += usize::from(value.is_some());
+                if value.is_none() && !is_missing(cell) {
+                    fault = fault.or(Some((*column, cell)));
+                }
+                values.push(value.filter(|value| !is_no_value(*value)));
+            }
+            match fault {
+                Some((column, cell)) if numbers > 0 || columns.len() == 1 => {
+                    return Err(not_a_number(self.line(index), column, cell));
+                }
+                Some(_) => {
+                    found.columns.iter_mut().for_each(|values| *values.last_mut().expect("just added") = None);
+                    found.remarks.push(self.line(index));
+                }
+                None => {}
+            }
+        }
+        Ok(found)
+    }
+
+    fn ambiguous(&self, row: usize, column: usize) -> ImportError {
+        let cell = self.texts(column).nth(row).unwrap_or("");
+        let fault = format!(
+            "`{cell:.40}` may have thousands or decimals behind its mark: write the numbers without separators of \
+             thousands"
+        );
+        ImportError::at(self.line(row), column + 1, fault)
+    }
+}
+
+enum RowKind {
+    Numbers,
+    /// Marks of missing numbers alone.
+    Missing,
+    /// Numbers with a text in this column, which has numbers elsewhere.
+    Spoilt(usize),
+    Text,
+}
+
+/// How a text is written.
+struct Dialect {
+    separator: Separator,
+    width: usize,
+    is_text: Vec<bool>,
+}
+
+impl Dialect {
+    /// The separator and the number of columns with which most lines are rows of numbers.
+    fn of(text: &str, all: &[Row]) -> Option<Dialect> {
+        let stride = all.len().div_ceil(SAMPLE).max(1);
+        let chosen = |index: usize| index < SAMPLE || index % stride == 0 || index + 3 > all.len();
+        let sample: Vec<&str> = all
             .iter()
-            .rev()
-            .take(NAMING)
-            .map(|line| Cells::of_names(line))
-            .filter(|names| names.len() == self.width())
-    }
-
-    /// The name of a column in the header, as it stands there.
-    pub(super) fn name(&self, column: usize) -> Option<String> {
-        self.names().find_map(|names| names.get(column).filter(|name| !name.is_empty() && !is_symbol(name)).cloned())
-    }
-
-    /// What a unit is called in any line of the header that names the columns.
-    pub(super) fn unit<U>(&self, column: usize, named: impl Fn(&str) -> Option<U>) -> Option<U> {
-        self.names().find_map(|names| named(names.get(column)?))
-    }
-
-    /// How the numbers are written, in words.
-    pub(super) fn format(&self) -> String {
-        let point = if self.has_decimal_commas { "decimal commas" } else { "decimal points" };
-        let separator = match self.separator {
-            "semicolon" => "semicolons",
-            "tab" => "tabulators",
-            "comma" => "commas",
-            _ => "white space",
-        };
-        format!("{} rows of {} columns, separated by {separator}, {point}", self.lines.len(), self.width)
-    }
-}
-
-/// A line, split.
-struct Cells<'a> {
-    fields: Vec<Cow<'a, str>>,
-    separator: &'static str,
-    has_decimal_commas: bool,
-}
-
-impl<'a> Cells<'a> {
-    /// The cells of a line of numbers.
-    fn of(line: &'a str) -> Cells<'a> {
-        if let Some(joined) = without_blanks(line) {
-            let Cells { fields, separator, has_decimal_commas } = Cells::of(&joined);
-            let fields = fields.into_iter().map(|field| Cow::Owned(field.into_owned())).collect();
-            return Cells { fields, separator, has_decimal_commas };
-        }
-        let (fields, separator): (Vec<&str>, _) = if line.contains(';') {
-            (line.split(';').collect(), "semicolon")
-        } else if line.contains('\t') {
-            (line.split('\t').collect(), "tab")
-        } else {
-            let words: Vec<&str> = line.split_whitespace().collect();
-            if words.len() < 2 || words.iter().any(|word| word.ends_with(',') || word.starts_with(',')) {
-                let fields = line.split(',').map(|field| Cow::Borrowed(trimmed(field))).collect();
-                return Cells { fields, separator: "comma", has_decimal_commas: false };
+            .enumerate()
+            .filter(|(index, _)| chosen(*index))
+            .map(|(_, row)| line_of(text, *row))
+            .filter(|line| !line.trim().is_empty() && !is_comment(line))
+            .collect();
+        let mut best: Option<(i64, Separator, usize)> = None;
+        let mut cells = Vec::new();
+        for separator in Separator::ALL {
+            // Of each width the number of lines and their score: the width of most lines is that of the rows.
+            let mut widths: Vec<(usize, usize, i64)> = Vec::new();
+            for line in &sample {
+                separator.split(line, &mut cells);
+                let numbers = cells.iter().filter(|cell| shape(cell).is_some()).count() as i64;
+                let texts = cells.iter().filter(|cell| shape(cell).is_none() && !is_missing(cell)).count() as i64;
+                let score = 2 * numbers - texts;
+                if numbers < 2 || score < 1 {
+                    continue;
+                }
+                match widths.iter_mut().find(|(width, ..)| *width == cells.len()) {
+                    Some((_, lines, sum)) => (*lines, *sum) = (*lines + 1, *sum + score),
+                    None => widths.push((cells.len(), 1, score)),
+                }
             }
-            (words, "white_space")
-        };
-        let has_decimal_commas = fields.iter().any(|field| field.contains(','));
-        let pointed = |field: &'a str| match trimmed(field) {
-            field if field.contains(',') => Cow::Owned(field.replace(',', ".")),
-            field => Cow::Borrowed(field),
-        };
-        Cells { fields: fields.into_iter().map(pointed).collect(), separator, has_decimal_commas }
-    }
-
-    /// The cells of a line of names.
-    fn of_names(line: &str) -> Vec<String> {
-        let separator = [';', '\t', ','].into_iter().find(|separator| line.contains(*separator));
-        match separator {
-            Some(separator) => line.split(separator).map(|name| trimmed(name).to_owned()).collect(),
-            None => words_with_units(line),
+            let most = widths.iter().map(|(_, lines, _)| *lines).max();
+            // White space also parts what other separators do, and words of the header besides.
+            let least = |score: i64| if separator == Separator::WhiteSpace { score + score / 10 } else { score };
+            if let Some((width, _, score)) = widths.iter().find(|(_, lines, _)| Some(*lines) == most)
+                && best.is_none_or(|(most, ..)| *score > least(most))
+            {
+                best = Some((*score, separator, *width));
+            }
         }
-    }
-
-    /// What is wrong with the cell of this index, in this line from 1 on.
-    fn fault(&self, line: usize, column: usize) -> ImportError {
-        let cell = self.fields.get(column).map_or("", Cow::as_ref);
-        ImportError::at(line, column + 1, format!("`{cell:.40}` is not a number"))
-    }
-
-    /// The numbers of the cells, or the index of the first that is none. A line of marks alone has none.
-    fn numbers(&self) -> Result<Vec<Option<f64>>, usize> {
-        let value = |(index, field): (usize, &Cow<'_, str>)| match field.parse::<f64>() {
-            Ok(value) if value.is_finite() => Ok(Some(value)),
-            _ if MISSING.contains(&field.to_lowercase().as_str()) => Ok(None),
-            _ => match field.replace('−', "-").parse::<f64>() {
-                Ok(value) if value.is_finite() => Ok(Some(value)),
-                _ => Err(index),
-            },
-        };
-        let row: Vec<Option<f64>> = self.fields.iter().enumerate().map(value).collect::<Result<_, _>>()?;
-        if row.iter().any(Option::is_some) { Ok(row) } else { Err(0) }
+        let (_, separator, width) = best?;
+        let mut counts = vec![(0_usize, 0_usize); width];
+        for line in &sample {
+            separator.split(line, &mut cells);
+            if cells.len() != width || cells.iter().filter(|cell| shape(cell).is_some()).count() < 2 {
+                continue;
+            }
+            for ((numbers, texts), cell) in counts.iter_mut().zip(&cells) {
+                *numbers += usize::from(shape(cell).is_some());
+                *texts += usize::from(shape(cell).is_none() && !is_missing(cell));
+            }
+        }
+        let is_text = counts.into_iter().map(|(numbers, texts)| texts > numbers).collect();
+        Some(Dialect { separator, width, is_text })
     }
 }
 
-/// The words of a line; a unit in brackets belongs to the word before it.
-fn words_with_units(line: &str) -> Vec<String> {
+fn rows_of(text: &str) -> Result<Vec<Row>, ImportError> {
+    let too_long = |_| ImportError::of_file("the file is too long: more than 4 GiB of text");
+    u32::try_from(text.len()).map_err(too_long)?;
+    let place = |line: &str| line.as_ptr() as usize - text.as_ptr() as usize;
+    let row = |(number, line): (usize, &str)| {
+        let start = place(line);
+        Row { line: number as u32, start: start as u32, end: (start + line.len()) as u32 }
+    };
+    Ok(lines(text).map(row).collect())
+}
+
+fn line_of(text: &str, row: Row) -> &str {
+    text[row.start as usize..row.end as usize].trim_matches([' ', '\u{feff}'])
+}
+
+/// Whether a line is a comment; errors of spreadsheets, such as `#N/A`, begin with the same sign.
+fn is_comment(line: &str) -> bool {
+    let first = line.split([';', '\t', ',', ' ']).next().unwrap_or("");
+    line.starts_with(['#', '%']) && !(first.len() > 1 && is_missing(first))
+}
+
+/// Whether a column of this name holds remarks, and may be absent in the rows.
+fn is_remark_name(name: &str) -> bool {
+    let name = name.to_lowercase();
+    name.is_empty() || ["comment", "kommentar", "remark", "bemerkung", "note"].iter().any(|word| name.starts_with(word))
+}
+
+/// Whether a cell names a quantity of a scan or a loop.
+fn is_named(cell: &str) -> bool {
+    let label = Label::of(cell);
+    label.name.starts_with(char::is_alphabetic)
+        && !label.name.contains(['=', ':'])
+        && (!matches!(meaning(&label.name), Meaning::Unknown | Meaning::Other)
+            || !matches!(axis(&label.name), Axis::Unknown))
+}
+
+/// The words of a line of names; a unit in brackets belongs to the word before it.
+fn with_units(words: Vec<String>) -> Vec<String> {
     let mut names: Vec<String> = Vec::new();
-    for word in line.split_whitespace() {
+    for word in words {
+        let is_open = names.last().is_some_and(|name| {
+            name.matches(['[', '(']).count() > name.matches([']', ')']).count() || name.ends_with('/')
+        });
         match names.last_mut() {
-            Some(name) if word.starts_with(['[', '(', '/']) => *name = format!("{name} {word}"),
-            _ => names.push(word.to_owned()),
+            Some(name) if is_open || word.starts_with(['[', '(', '/']) => *name = format!("{name} {word}"),
+            _ => names.push(word),
         }
     }
     names
 }
 
-fn trimmed(cell: &str) -> &str {
-    cell.trim().trim_matches('"')
+fn not_a_number(line: usize, column: usize, cell: &str) -> ImportError {
+    ImportError::at(line, column + 1, format!("`{:.40}` is not a number", unquoted(cell)))
 }
 
-/// A line whose marks of missing numbers have no blank in them any more, if it has such marks, in whatever case.
-fn without_blanks(line: &str) -> Option<String> {
-    let find = |text: &str| {
-        let is_mark = |place: &usize| {
-            let mark = text.as_bytes().get(*place..*place + NO_DATA.len());
-            mark.is_some_and(|mark| mark.eq_ignore_ascii_case(NO_DATA.as_bytes()))
-        };
-        text.match_indices(['n', 'N']).map(|(place, _)| place).find(is_mark)
-    };
-    let (mut joined, mut rest) = (String::new(), line);
-    while let Some(place) = find(rest) {
-        joined.push_str(&rest[..place]);
-        joined.push_str("nodata");
-        rest = &rest[place + NO_DATA.len()..];
+/// Why a text has no table: at the first line that begins with a number.
+fn no_table(text: &str, all: &[Row]) -> ImportError {
+    let mut cells = Vec::new();
+    let mut has_column = false;
+    for row in all.iter().take(MOST_HEADER) {
+        let line = line_of(text, *row);
+        for separator in Separator::ALL {
+            separator.split(line, &mut cells);
+            if cells.len() > 1 && shape(cells[0]).is_some() && !is_comment(line) {
+                let fault = cells.iter().position(|cell| shape(cell).is_none() && !is_missing(cell));
+                if let Some(column) = fault {
+                    return not_a_number(row.line as usize, column, cells[column]);
+                }
+            }
+        }
+        has_column |= shape(line).is_some();
     }
-    (!joined.is_empty()).then(|| joined + rest)
+    ImportError::of_file(if has_column { ONE_COLUMN } else { "there are no rows of numbers" })
 }

@@ -1,0 +1,179 @@
+//! What was written is what is read, whatever the spelling.
+
+use std::f64::consts::TAU;
+
+use fastrand::Rng;
+use stickslip_measured::import::{LoopHints, Places, ScanHints, read_loop, read_scan};
+
+use super::for_cases;
+use super::writer::{CHARSETS, Charset, FORCES, LENGTHS, MISSING, Style, TIMES, one, shuffled};
+
+/// Rows of a table.
+const ROWS: usize = 24;
+/// Names of the quantities, the plainest first; and columns that are none of them, with a unit of theirs.
+const DISPLACEMENT: &[&str] = &[
+    "Displacement",
+    "Linear Position",
+    "Position",
+    "Weg",
+    "Schwingweg",
+    "Relative displacement",
+    "X Position",
+    "Slip",
+];
+const FORCE: &[&str] =
+    &["Friction force", "Force", "Reibkraft", "Tangentialkraft", "Fx", "Ff", "Traction Force", "Kraft"];
+const LOAD: &[&str] = &["Normal force", "Fn", "Normalkraft", "Load", "Applied load", "Fz"];
+const TIME: &[&str] = &["Time", "Zeit", "Elapsed time", "t"];
+const OTHERS: &[(&str, &str)] = &[
+    ("Friction coefficient", "-"),
+    ("COF", ""),
+    ("Reibwert", ""),
+    ("Displacement command", "mm"),
+    ("Sollweg", "um"),
+    ("Force setpoint", "N"),
+    ("Velocity", "mm/s"),
+    ("Cycle", ""),
+    ("Index", ""),
+    ("Penetration depth", "um"),
+    ("Verschleiss", "um"),
+    ("Temperature", ""),
+    ("Contact potential", "mV"),
+    ("Distance", "m"),
+];
+
+fn is_near(found: f64, expected: f64) -> bool {
+    (found - expected).abs() <= 1e-12 * expected.abs().max(1e-12)
+}
+
+/// A character set that has the micro sign as the spelling of its units has it.
+fn charset(random: &mut Rng) -> Charset {
+    one(CHARSETS, random)
+}
+
+#[test]
+fn a_loop_is_what_was_written_in_any_unit_encoding_order_and_separator() {
+    for_cases(1500, |random| {
+        let style = Style::of(random);
+        let (length, force, time) = (one(LENGTHS, random), one(FORCES, random), one(TIMES, random));
+        let load_unit = one(FORCES, random);
+        let load = if random.bool() { 12.5 } else { -12.5 };
+        let mut columns: Vec<(String, Box<dyn Fn(usize) -> f64>)> = vec![
+            (style.named(one(DISPLACEMENT, random), length.0), Box::new(move |row| displacement(row) / length.1)),
+            (style.named(one(FORCE, random), force.0), Box::new(move |row| tangential(row) / force.1)),
+        ];
+        let has_time = random.bool();
+        if has_time {
+            columns.push((style.named(one(TIME, random), time.0), Box::new(move |row| 0.25 * row as f64 / time.1)));
+        }
+        let has_load = random.bool();
+        if has_load {
+            columns.push((style.named(one(LOAD, random), load_unit.0), Box::new(move |_| load / load_unit.1)));
+        }
+        for _ in 0..random.usize(..3) {
+            let (name, unit) = one(OTHERS, random);
+            let scale = 1.0 + random.f64();
+            columns.push((style.named(name, unit), Box::new(move |row| scale * (row % 7) as f64)));
+        }
+        let order = shuffled(columns.len(), random);
+        let names: Vec<String> = order.iter().map(|index| columns[*index].0.clone()).collect();
+        let mut rows: Vec<Vec<String>> =
+            (0..ROWS).map(|row| order.iter().map(|index| style.number((columns[*index].1)(row))).collect()).collect();
+        // A number that is missing where it is needed makes a gap; in the first half of the file there are none.
+        let gap = random.bool().then(|| ROWS / 2 + random.usize(..ROWS / 2));
+        if let Some(gap) = gap {
+            let place = order.iter().position(|index| *index == random.usize(..2)).unwrap_or(0);
+            let is_needed = order[place] < 2;
+            let mark = one(MISSING, random);
+            let is_blank = style.separator == ' ' && mark.is_empty();
+            rows[gap][place] =
+                if is_blank || !is_needed { style.number((columns[order[place]].1)(gap)) } else { mark.to_owned() };
+        }
+        let (text, first) = style.table(&names, &rows);
+        let charset = charset(random);
+        let bytes = charset.encode(&text);
+        let found =
+            read_loop(&bytes, &LoopHints::default()).unwrap_or_else(|error| panic!("{error}\n{charset:?}\n{text}"));
+        let kept: Vec<usize> = (0..ROWS)
+            .filter(|row| {
+                let lacks = |cell: &String| MISSING.contains(&cell.as_str());
+                !rows[*row].iter().any(lacks)
+            })
+            .collect();
+        let said = || format!("{charset:?} {found:?}\n{text}");
+        assert_eq!(found.displacement.len(), kept.len(), "{}", said());
+        let (u_factor, f_factor) = (found.displacement_unit.unit().to_si(1.0), found.force_unit.unit().to_si(1.0));
+        for (index, row) in kept.iter().enumerate() {
+            assert!(is_near(found.displacement[index] * u_factor, displacement(*row)), "row {row}: {}", said());
+            assert!(is_near(found.force[index] * f_factor, tangential(*row)), "row {row}: {}", said());
+            if let Some(times) = &found.time {
+                assert!(is_near(times[index], 0.25 * *row as f64), "row {row}: {}", said());
+            }
+        }
+        assert_eq!(found.time.is_some(), has_time, "{}", said());
+        assert_eq!(found.load.is_some(), has_load, "{}", said());
+        assert!(found.load.is_none_or(|load| is_near(load, 12.5)), "{}", said());
+        // Every line is a row of the reply or is counted.
+        assert_eq!(kept.len() + found.preview.rows_left_out.len(), first - 1 + ROWS, "{}", said());
+        let used = found.preview.columns.iter().filter(|column| column.quantity.is_some()).count();
+        let reasons = found.preview.columns.iter().filter(|column| column.left_out.is_some()).count();
+        assert_eq!(
+            (used, used + reasons),
+            (2 + usize::from(has_time) + usize::from(has_load), columns.len()),
+            "{}",
+            said()
+        );
+    });
+}
+
+fn displacement(row: usize) -> f64 {
+    3e-7 * (TAU * row as f64 / ROWS as f64).cos() + 1.7e-8
+}
+
+fn tangential(row: usize) -> f64 {
+    2.5 * (TAU * row as f64 / ROWS as f64).sin() + 0.31
+}
+
+#[test]
+fn a_scan_is_what_was_written_in_any_unit_encoding_order_and_separator() {
+    for_cases(1500, |random| {
+        let style = Style::of(random);
+        let (lateral, height) = (one(LENGTHS, random), one(LENGTHS, random));
+        let place = |row: usize| 5e-6 * (row as f64 - 11.3);
+        let height_of = |row: usize| -place(row).powi(2) / 0.016 - 1e-9;
+        let x = one(&["x", "X", "Position", "Lateral", "Weg", "Scan length", "Distance"], random);
+        let z = one(&["z", "Z", "Height", "Total Profile", "Profil", "Depth", "raw"], random);
+        let mut names = vec![style.named(x, lateral.0), style.named(z, height.0)];
+        let has_index = random.bool();
+        if has_index {
+            names.push(style.named(one(&["Index", "Nr.", "Point"], random), ""));
+        }
+        let order = shuffled(names.len(), random);
+        let names: Vec<String> = order.iter().map(|index| names[*index].clone()).collect();
+        let missing = random.usize(1..ROWS - 1);
+        let mark = one(&MISSING[1..], random);
+        let rows: Vec<Vec<String>> = (0..ROWS)
+            .map(|row| {
+                let cells = [
+                    style.number(place(row) / lateral.1),
+                    if row == missing { mark.to_owned() } else { style.number(height_of(row) / height.1) },
+                    (row + 1).to_string(),
+                ];
+                order.iter().map(|index| cells[*index].clone()).collect()
+            })
+            .collect();
+        let (text, first) = style.table(&names, &rows);
+        let charset = charset(random);
+        let found = read_scan(&charset.encode(&text), &ScanHints::default());
+        let found = found.unwrap_or_else(|error| panic!("{error}\n{charset:?}\n{text}"));
+        let said = || format!("{charset:?} {found:?}\n{text}");
+        let Places::Line { x, z } = &found.places else { panic!("{}", said()) };
+        assert_eq!((x.len(), found.preview.rows_left_out.len()), (ROWS, first - 1), "{}", said());
+        let (x_factor, z_factor) = (found.lateral.unit().to_si(1.0), found.height.unit().to_si(1.0));
+        for row in 0..ROWS {
+            assert!(is_near(x[row] * x_factor, place(row)), "row {row}: {}", said());
+            assert_eq!(z[row].is_none(), row == missing, "row {row}: {}", said());
+            assert!(z[row].is_none_or(|z| is_near(z * z_factor, height_of(row))), "row {row}: {}", said());
+        }
+    });
+}
