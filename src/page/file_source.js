@@ -17,8 +17,8 @@ export function fileSource(kind, control, query, taken, fresh) {
     const number = (latest += 1);
     reading = new Promise((resolve) => setTimeout(resolve, rest)).then(async () => {
       if (number !== latest || !body().size) return;
-      const asked = new URLSearchParams(query());
-      const [reply, error] = await call("POST", `/files/${kind}?${asked}`, body()).then(
+      const ask = async () => call("POST", `/files/${kind}?${new URLSearchParams(query())}`, body());
+      const [reply, error] = await ask().then(
         (reply) => [reply],
         (error) => [null, error],
       );
@@ -48,7 +48,12 @@ export function fileSource(kind, control, query, taken, fresh) {
     open(event.dataTransfer.files[0]);
   });
   const input = el("input", { type: "file", onchange: (event) => open(event.target.files[0]) });
-  return { input, open, read, settled: () => reading };
+  const settled = async () => {
+    let read;
+    do await (read = reading);
+    while (read !== reading);
+  };
+  return { input, open, read, settled };
 }
 
 /** What a reply took for what, without how the text is written, or what is wrong with the file. */
@@ -64,37 +69,55 @@ export function chooseUnit(select, symbol) {
   if (option) select.value = option.value;
 }
 
-/** Columns and units of a loop: fields for them, the query that asks for what they say, and what shows those of a reply. */
+/** The power of ten of a unit in which a reply has its numbers. */
+export const powerOfUnit = (symbol) => [...LENGTH, ...FORCE].find(([text]) => text.replace("µ", "u") === symbol)[1];
+
+/** Columns and units of a loop, as the file says unless somebody chooses otherwise: fields for that, the query that asks for
+ *  it, and what shows those of a reply. */
 export function loopColumns(prefix) {
-  const unitOf = (name, units, usual) =>
-    el(
+  const QUANTITIES = { displacement: LENGTH, force: FORCE, time: null };
+  const [columns, units, asRead] = [{}, {}, {}];
+  for (const [name, offered] of Object.entries(QUANTITIES)) {
+    columns[name] = el("input", { type: "text", autocomplete: "off", size: 12, "aria-label": `Column of ${prefix}${name}` });
+    if (!offered) continue;
+    asRead[name] = el("option", { value: "" });
+    units[name] = el(
       "select",
       { "aria-label": `Unit of ${prefix}${name}` },
-      units.map(([text, power]) => el("option", { value: power, selected: text === usual }, text)),
+      asRead[name],
+      offered.map(([text, power]) => el("option", { value: power }, text)),
     );
-  const columnOf = (name, number) =>
-    el("input", { type: "number", min: 0, max: 99, value: String(number), "aria-label": `Column of ${prefix}${name}` });
-  const units = { displacement: unitOf("displacement", LENGTH, "µm"), force: unitOf("force", FORCE, "N") };
-  const columns = { displacement: columnOf("displacement", 1), force: columnOf("force", 2), time: columnOf("time", 0) };
+  }
   const query = () => ({
     ...Object.fromEntries(
       Object.entries(columns)
-        .filter(([, { value }]) => Number(value) > 0)
-        .map(([name, { value }]) => [name, value]),
+        .map(([name, { value }]) => [name, value.trim()])
+        .filter(([, column]) => column && column !== "0"),
     ),
-    displacement_unit: symbolOf(units.displacement),
-    force_unit: symbolOf(units.force),
+    ...Object.fromEntries(
+      Object.entries(units)
+        .filter(([, { value }]) => value !== "")
+        .map(([name, unit]) => [`${name}_unit`, symbolOf(unit)]),
+    ),
   });
-  const show = ({ preview }) => {
-    columns.time.value = "0";
-    for (const [index, { quantity, unit, assumed }] of preview.columns.entries()) {
-      if (quantity in columns) columns[quantity].value = String(index + 1);
-      if (quantity in units && !assumed) chooseUnit(units[quantity], unit);
+  const show = (reply) => {
+    for (const [name, box] of Object.entries(columns)) {
+      const index = reply?.preview.columns.findIndex(({ quantity }) => quantity === name) ?? -1;
+      const { unit, assumed } = reply?.preview.columns[index] ?? {};
+      box.placeholder = index < 0 ? (name === "time" ? "none" : "by its name") : `${index + 1}, as read`;
+      if (name in asRead && (!reply || units[name].value === ""))
+        asRead[name].textContent = unit ? `${unit}${assumed ? ", assumed" : ", as read"}` : "as the file says";
     }
   };
-  const row = (title, name) => el("div", { class: "row" }, el("label", {}, `${title}: column `, columns[name]), units[name]);
+  /** As the file says, for another file. */
+  const reset = () => {
+    for (const control of [...Object.values(columns), ...Object.values(units)]) control.value = "";
+    show();
+  };
+  reset();
+  const row = (title, name) =>
+    el("div", { class: "row" }, el("label", {}, `${title}: column `, columns[name]), ...(name in units ? [units[name]] : []));
   const rows = [row("Displacement", "displacement"), row("Force", "force")];
   const time = row("Time, for a drift (0: none)", "time");
-  const power = (name) => Number(units[name].value);
-  return { query, show, rows, time, columns, units, power };
+  return { query, show, reset, rows, time, hasTime: () => columns.time.value.trim() !== "0" };
 }

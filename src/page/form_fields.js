@@ -1,6 +1,6 @@
 // Fields of a form: a label, a value with its unit, and the fault that the service finds in it.
 import { el, withSubscripts } from "./dom.js";
-import { parseNumber } from "./units.js";
+import { numberMistake, parseNumber } from "./units.js";
 
 let count = 0;
 
@@ -31,16 +31,21 @@ class Field {
   }
 }
 
+/** A box for a number. */
+export const numberBox = (attributes) =>
+  el("input", { type: "text", inputmode: "decimal", autocomplete: "off", spellcheck: "false", ...attributes });
+
+/** The number in a box that is not a field of a form; an error says what is wrong with it. */
+export function numberIn(box) {
+  const mistake = numberMistake(box.value);
+  if (mistake) throw new Error(mistake);
+  return parseNumber(box.value);
+}
+
 /** A number with its unit. */
 export class NumberField extends Field {
   constructor(form, pointer, { label, units, unit, value, optional = false }) {
-    const control = el("input", {
-      type: "text",
-      inputmode: "decimal",
-      autocomplete: "off",
-      spellcheck: "false",
-      value: value ?? "",
-    });
+    const control = numberBox({ value: value ?? "" });
     const choice =
       units &&
       el(
@@ -59,7 +64,7 @@ export class NumberField extends Field {
     const text = this.control.value.trim();
     if (this.isLeftOut) return undefined;
     if (text === "") return this.isOptional ? undefined : "A number is missing here.";
-    return typeof parseNumber(text) === "string" ? "This must be a number, without its unit." : undefined;
+    return numberMistake(text);
   }
 
   /** In SI. */

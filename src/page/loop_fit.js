@@ -2,7 +2,6 @@
 import { call } from "./api.js";
 import { Chart } from "./chart.js";
 import { el, notice, withdrawNotice } from "./dom.js";
-import { symbolOf } from "./file_source.js";
 import { Fields, NumberField } from "./form_fields.js";
 import { FORCE, LENGTH } from "./form_options.js";
 import { loopRecord } from "./loop_record.js";
@@ -105,13 +104,12 @@ export function fittedLoop(model) {
   const request = () => {
     const given = known.filter(({ value }) => value.value !== undefined);
     // All records are in the units of the first.
-    const [{ units }] = records;
-    const powers = { displacement: Number(units.displacement.value), force: Number(units.force.value) };
+    const units = records[0].units();
     const told = noises.filter(([, field]) => field.value !== undefined);
     return {
       contact: model.definition,
-      loops: records.map((record) => record.value(powers)),
-      units: { displacement: symbolOf(units.displacement), force: symbolOf(units.force) },
+      loops: records.map((record) => record.value(units)),
+      units,
       free: boxes.filter(([box]) => box.checked).map(([box]) => box.name),
       known: given.length
         ? Object.fromEntries(given.map(({ name, value, error }) => [name, { value: value.value, standard_error: error.value }]))
@@ -184,6 +182,8 @@ export function fittedLoop(model) {
       const first = form.check();
       if (first) return first.control.focus();
       await Promise.all(records.map((record) => record.settled()));
+      const question = records.map((record) => record.question()).find((asked) => asked !== undefined);
+      if (question) return void (form.rest.textContent = question);
       show(await call("POST", "/fit", request(), model.signal));
       form.clear();
       withdrawNotice();

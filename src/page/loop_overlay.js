@@ -1,7 +1,7 @@
 // What is drawn over the loop of a contact: a loop that a bench has measured, from a file, and the loop of another contact.
 import { call, follow, pages } from "./api.js";
 import { debounce, el, notice } from "./dom.js";
-import { fileSource, loopColumns, readingText } from "./file_source.js";
+import { fileSource, loopColumns, powerOfUnit, readingText } from "./file_source.js";
 
 /** Moves of the other contact, and contacts to choose from. */
 const [MOVES, CHOICES] = [1000, 200];
@@ -37,19 +37,20 @@ function measuredFile(loop, changed) {
   const said = el("p", { class: "note", id: "overlay-said", "aria-live": "polite" });
   let name = "";
   let points = [];
-  let isChosen = false;
   const taken = (reply, error) => {
-    if (reply && !isChosen) columns.show(reply);
+    if (reply) columns.show(reply);
     const { displacement = [], force = [] } = reply?.loop ?? {};
-    const [u, f] = [10 ** columns.power("displacement"), 10 ** columns.power("force")];
-    points = displacement.map((value, index) => [value * u, force[index] * f]);
-    said.textContent = reply ? `${points.length} points of ${name}.` : `${name}: ${readingText(reply, error)}`;
+    const factor = (quantity) => 10 ** powerOfUnit(reply.units[quantity]);
+    points = displacement.map((value, index) => [value * factor("displacement"), force[index] * factor("force")]);
+    const unnamed = (reply?.preview.columns ?? []).filter(({ quantity, assumed }) => quantity in reply.units && assumed);
+    const assumed = unnamed.map(({ quantity, unit }) => ` Nothing says the unit of the ${quantity}: ${unit} is assumed.`);
+    said.textContent = reply ? `${points.length} points of ${name}.${assumed.join("")}` : `${name}: ${readingText(reply, error)}`;
     changed();
   };
-  const source = fileSource("loop", el("textarea", {}), () => (isChosen ? columns.query() : {}), taken, () => {});
+  const source = fileSource("loop", el("textarea", {}), columns.query, taken, columns.reset);
   const open = (chosen) => {
     if (!chosen) return;
-    [name, isChosen] = [chosen.name, false];
+    name = chosen.name;
     one.opened();
     source.open(chosen);
   };
@@ -57,10 +58,6 @@ function measuredFile(loop, changed) {
   const clear = () => {
     [name, points, input.value, said.textContent] = ["", [], "", ""];
     changed();
-  };
-  const chosen = () => {
-    isChosen = true;
-    if (name) source.read();
   };
   const mark = (is) => loop.element.classList.toggle("dropping", is);
   loop.element.addEventListener("dragover", (event) => {
@@ -78,7 +75,7 @@ function measuredFile(loop, changed) {
     {},
     el("legend", {}, "A measured loop, chosen or dropped on the plot"),
     el("label", {}, "File ", input),
-    el("div", { onchange: chosen }, ...columns.rows),
+    el("div", { onchange: () => name && source.read() }, ...columns.rows),
     el("button", { type: "button", class: "quiet", onclick: clear }, "Clear"),
     said,
   );

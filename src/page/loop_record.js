@@ -1,6 +1,6 @@
 // One record of a bench in the form of a fit: its text or file, which columns it has, and what else is known of it.
 import { el } from "./dom.js";
-import { fileSource, loopColumns, readingText } from "./file_source.js";
+import { fileSource, loopColumns, powerOfUnit, readingText } from "./file_source.js";
 import { Choice, NumberField, TextField } from "./form_fields.js";
 import { FORCE } from "./form_options.js";
 
@@ -27,19 +27,12 @@ export function loopRecord(form, index) {
   const weight = optional("weight", "Weight beside the other records");
   const said = el("p", { class: "note", "aria-live": "polite" });
   let found = null;
-  // The header says what is what until somebody chooses otherwise.
-  let isChosen = false;
   const taken = (reply, error) => {
     found = reply;
     said.textContent = readingText(reply, error);
-    if (reply && !isChosen) columns.show(reply);
+    if (reply) columns.show(reply);
   };
-  const fresh = () => (isChosen = false);
-  const source = fileSource("loop", text.control, () => (isChosen ? columns.query() : {}), taken, fresh);
-  const chosen = () => {
-    isChosen = true;
-    source.read();
-  };
+  const source = fileSource("loop", text.control, columns.query, taken, columns.reset);
   const element = el(
     "fieldset",
     { class: "record" },
@@ -47,25 +40,33 @@ export function loopRecord(form, index) {
     text.element,
     el("label", {}, "or a file ", source.input),
     said,
-    el("div", { onchange: chosen }, ...columns.rows, columns.time),
+    el("div", { onchange: () => source.read() }, ...columns.rows, columns.time),
     start.element,
     el("details", {}, el("summary", {}, "Load and weight"), load.element, weight.element),
   );
-  /** The record in units of these powers of ten. */
-  const value = (powers) => {
+  const units = () => found?.units ?? { displacement: "um", force: "N" };
+  /** The record in these units. */
+  const value = (wanted) => {
     const { displacement = [], force = [], time, normal_force } = found?.loop ?? {};
     const scaled = (name, values) => {
-      const factor = 10 ** (columns.power(name) - powers[name]);
+      const factor = 10 ** (powerOfUnit(units()[name]) - powerOfUnit(wanted[name]));
       return factor === 1 ? values : values.map((value) => value * factor);
     };
     return {
       displacement: scaled("displacement", displacement),
       force: scaled("force", force),
-      time: Number(columns.columns.time.value) > 0 ? time : undefined,
+      time: columns.hasTime() ? time : undefined,
       ...(start.value === "unknown" ? {} : { start: start.value }),
       normal_force: load.value ?? normal_force,
       weight: weight.value,
     };
   };
-  return { element, value, units: columns.units, settled: source.settled };
+  /** What has to be asked before the record can be fitted, if anything has. */
+  const question = () => {
+    const unnamed = (found?.preview.columns ?? []).filter(({ quantity, assumed }) => quantity in units() && assumed);
+    return unnamed.length
+      ? `Record ${index + 1}: nothing says the unit of the ${unnamed.map(({ quantity }) => quantity).join(", nor of the ")}: choose it.`
+      : undefined;
+  };
+  return { element, value, units, question, settled: source.settled };
 }

@@ -1,7 +1,8 @@
-// The controls that move a contact: a number in a unit, and a slider. Both send when one commits to a value, and say before what
-// they will send.
+// The controls that move a contact: a number in a unit, and a slider. Both say what they will send; Enter sends it, or the mouse
+// or finger that releases the slider.
 import { el, withSubscripts } from "./dom.js";
-import { formatQuantity, inPower, parseNumber, powerOf, unitScale } from "./units.js";
+import { numberBox } from "./form_fields.js";
+import { formatQuantity, inPower, numberMistake, parseNumber, powerOf, unitScale } from "./units.js";
 
 const POSITIONS = 2000;
 
@@ -10,14 +11,16 @@ const POWERS = { m: [0, -3, -6, -9, -12], N: [3, 0, -3, -6, -9] };
 
 /** A slider with a box and its unit. `limits` gives the ends for a state, `send` a new value in SI. */
 export function moveControl({ name, label, unit, limits, value, send }) {
-  const slider = el("input", { type: "range", id: `slide-${name}`, min: 0, max: POSITIONS, "aria-label": `${label}, slider` });
-  const box = el("input", {
-    type: "text",
-    inputmode: "decimal",
-    id: `box-${name}`,
-    autocomplete: "off",
-    "aria-describedby": `to-send-${name} fault-${name}`,
+  const described = { "aria-describedby": `to-send-${name} fault-${name}` };
+  const slider = el("input", {
+    type: "range",
+    id: `slide-${name}`,
+    min: 0,
+    max: POSITIONS,
+    "aria-label": `${label}, slider`,
+    ...described,
   });
+  const box = numberBox({ id: `box-${name}`, ...described });
   const automatic = el("option", { value: "" });
   const choice = el(
     "select",
@@ -30,6 +33,7 @@ export function moveControl({ name, label, unit, limits, value, send }) {
   let shown = null;
   let ends = [-1, 1];
   let fitting = 0;
+  let isPressed = false;
   let isDragged = false;
   let isEdited = false;
 
@@ -68,12 +72,23 @@ export function moveControl({ name, label, unit, limits, value, send }) {
   slider.addEventListener("input", () => {
     isDragged = true;
     box.value = display(sliderValue());
-    toSend.textContent = `Release to send ${formatQuantity(sliderValue(), unit)}.`;
+    const amount = formatQuantity(sliderValue(), unit);
+    slider.setAttribute("aria-valuetext", formatQuantity(sliderValue(), unit, 6));
+    toSend.textContent = isPressed ? `Release to send ${amount}.` : `Enter sends ${amount}.`;
   });
-  slider.addEventListener("change", () => commit(sliderValue()));
-  // Let go where it was taken, it has nothing to send.
-  slider.addEventListener("pointerup", () => setTimeout(() => isDragged && revert()));
-  slider.addEventListener("pointercancel", revert);
+  // Each arrow key is a change as well, but the contact must not stop at every step.
+  slider.addEventListener("change", () => isPressed && commit(sliderValue()));
+  slider.addEventListener("pointerdown", () => {
+    isPressed = true;
+  });
+  const released = () => {
+    isPressed = false;
+    // Let go where it was taken, it has nothing to send.
+    if (isDragged) revert();
+  };
+  slider.addEventListener("pointerup", () => setTimeout(released));
+  slider.addEventListener("pointercancel", released);
+  slider.addEventListener("blur", () => isDragged && revert());
   box.addEventListener("input", () => {
     // What is typed stays in the unit that it was typed in.
     choice.value = String(power());
@@ -81,18 +96,30 @@ export function moveControl({ name, label, unit, limits, value, send }) {
     showFault();
     const amount = parseNumber(box.value, power());
     if (amount === undefined) toSend.textContent = "";
-    else if (typeof amount === "string") toSend.textContent = "This is no number.";
+    else if (typeof amount === "string") toSend.textContent = numberMistake(box.value);
     else toSend.textContent = `Enter sends ${box.value.trim()} ${choice.selectedOptions[0].textContent} = ${amount} ${unit}.`;
   });
-  box.addEventListener("change", () => {
+  const enter = () => {
+    if (isDragged) return commit(sliderValue());
     const amount = parseNumber(box.value, power());
-    if (isEdited && amount !== undefined) commit(amount);
-  });
-  box.addEventListener("keydown", (event) => {
-    if (event.key !== "Escape") return;
-    showFault();
-    revert();
-  });
+    if (!isEdited || amount === undefined) return;
+    if (typeof amount === "number") commit(amount);
+    else {
+      toSend.textContent = "";
+      showFault(numberMistake(box.value));
+    }
+  };
+  for (const control of [slider, box])
+    control.addEventListener("keydown", (event) => {
+      if (event.key === "Enter") {
+        // The key is not one for a dialog that it opens.
+        event.preventDefault();
+        if (!event.repeat) enter();
+      } else if (event.key === "Escape") {
+        showFault();
+        revert();
+      }
+    });
   choice.addEventListener("change", revert);
 
   /** Shows a state, but changes neither a slider that is being dragged nor a number that is being typed. */

@@ -1,7 +1,7 @@
 // The part of the form for the shape of the indenter; a sum contains several shapes.
 import { el } from "./dom.js";
 import { chooseUnit, fileSource, readingText } from "./file_source.js";
-import { Choice, NumberField, TextField } from "./form_fields.js";
+import { Choice, NumberField, TextField, numberBox, numberIn } from "./form_fields.js";
 import { COLUMNS, PROFILES, WITHOUT_STRESS } from "./form_options.js";
 import { scanFit } from "./scan_fit.js";
 import { inPower } from "./units.js";
@@ -70,36 +70,49 @@ function columns(form, at, changed, body, type) {
   text.control.value = example;
   const said = el("p", { class: "note", "aria-live": "polite" });
   const isScan = type === "tabulated";
-  const spacing = el("input", { type: "number", min: 0, step: "any", "aria-label": "Distance of neighbours in a map" });
+  const spacing = numberBox({ "aria-label": "Distance of neighbours in a map" });
   let found = null;
-  let isChosen = false;
+  /** The lists of units in which somebody chose, or of which the file says nothing: they count, and not the file. */
+  const chosen = new Set();
+  // Two lengths are read as a line of a scan, a length and a force as a loop.
+  const [kind, quantities, hints] =
+    type === "load_curve"
+      ? ["loop", ["displacement", "force"], ["displacement_unit", "force_unit"]]
+      : ["scan", ["x", "z"], ["lateral", "height"]];
+  const unitsOf = ({ units }) => (kind === "scan" ? [units.lateral, units.height] : [units.displacement, units.force]);
   const powers = () => units.map((unit) => Number(unit.value));
   const symbols = () => units.map((unit) => unit.selectedOptions[0].text.replace("µ", "u"));
-  // Any other table is two columns of numbers, whatever they are of.
   const query = () => {
-    if (!isScan) return { displacement: 1, force: 2 };
-    const [lateral, height] = symbols();
-    return { ...(isChosen ? { lateral, height } : {}), ...(Number(spacing.value) > 0 ? { spacing: spacing.value } : {}) };
+    const given = hints.map((name, index) => [name, chosen.has(units[index]) ? symbols()[index] : undefined]);
+    const more = kind === "loop" ? { displacement: 1, force: 2 } : { spacing: numberIn(spacing) };
+    return Object.fromEntries([...given, ...Object.entries(more)].filter(([, hint]) => hint !== undefined));
   };
   const taken = (reply, error) => {
     found = reply;
-    const isAssumed = (name) => reply.preview.columns.some(({ quantity, assumed }) => quantity === name && assumed);
-    if (isScan && reply && !isChosen) {
-      if (!isAssumed("x")) chooseUnit(units[0], reply.units.lateral);
-      if (!isAssumed("z")) chooseUnit(units[1], reply.units.height);
+    const unnamed = [];
+    for (const [index, unit] of units.entries()) {
+      if (!reply || chosen.has(unit)) continue;
+      const isAssumed = reply.preview.columns.some(({ quantity, assumed }) => quantity === quantities[index] && assumed);
+      if (isAssumed) unnamed.push(unit);
+      else chooseUnit(unit, unitsOf(reply)[index]);
+    }
+    // Once more with the units that stand here, so that what is said of the file is in them.
+    if (unnamed.length) {
+      for (const unit of unnamed) chosen.add(unit);
+      return void source.read();
     }
     said.textContent = error || isScan ? readingText(reply, error) : "";
     changed();
   };
-  const source = fileSource(isScan ? "scan" : "loop", text.control, query, taken, () => (isChosen = false));
-  const chosen = () => {
-    isChosen = true;
-    if (isScan) source.read();
+  const source = fileSource(kind, text.control, query, taken, () => chosen.clear());
+  const choose = ({ target }) => {
+    if (units.includes(target)) chosen.add(target);
+    source.read();
   };
   /** The two columns as they were read; those of a scan of a surface are none. */
   const pair = () => {
-    const { x, z } = found?.scan?.line ?? {};
-    return isScan ? [x ?? [], z ?? []] : [found?.loop.displacement ?? [], found?.loop.force ?? []];
+    const { x = [], z = [] } = found?.scan?.line ?? {};
+    return kind === "scan" ? [x, z] : [found?.loop.displacement ?? [], found?.loop.force ?? []];
   };
   // The power goes to the digits, so that 10 mm are 0.01 m to the last bit.
   const inMetres = (value, power) => (value === null ? null : Number(inPower(value, -power, 17)));
@@ -120,7 +133,7 @@ function columns(form, at, changed, body, type) {
   body.append(
     text.element,
     said,
-    el("div", { class: "row", onchange: chosen }, ...described.map(([, name], index) => el("label", {}, name, units[index]))),
+    el("div", { class: "row", onchange: choose }, ...described.map(([, name], index) => el("label", {}, name, units[index]))),
     el(
       "p",
       { class: "note" },
@@ -129,7 +142,7 @@ function columns(form, at, changed, body, type) {
   );
   if (isScan) {
     const label = el("label", {}, "Distance of neighbours in a map, if its header does not say ", spacing);
-    body.append(el("p", { class: "row", onchange: chosen }, label), scanFit(source, scan, write));
+    body.append(el("p", { class: "row", onchange: choose }, label), scanFit(source, scan, write));
   }
   form.settle(source.settled);
   source.read();

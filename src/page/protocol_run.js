@@ -1,7 +1,8 @@
 // Runs a protocol on a contact, move by move: reversals of falling amplitude that reduce its shear stress.
 import { call, offered } from "./api.js";
 import { el, pause, withSubscripts } from "./dom.js";
-import { formatNumber, formatQuantity } from "./units.js";
+import { numberBox, numberIn } from "./form_fields.js";
+import { formatNumber, formatQuantity, parseNumber } from "./units.js";
 
 export const PROTOCOLS = { falling_amplitude: "Falling amplitude (linear)", equal_peaks: "Equal peaks (for this shape)" };
 /** The protocol that the service computes from the present state of a contact. */
@@ -20,7 +21,7 @@ export function protocolCard(model) {
     { id: "protocol" },
     Object.entries(PROTOCOLS).map(([key, text]) => el("option", { value: key }, text)),
   );
-  const count = el("input", { id: "reversals", type: "number", min: 1, max: 1000, value: "20" });
+  const count = numberBox({ id: "reversals", value: "20" });
   const bar = el("progress", { id: "progress", max: 1, value: 0, "aria-label": "Progress of the run" });
   const status = el("p", { class: "status", role: "status", id: "run-status" });
   const start = el("button", { class: "primary", id: "run" }, "Run");
@@ -42,18 +43,19 @@ export function protocolCard(model) {
   offered("/contacts/{id}/relax").then((is) => {
     if (is) kind.append(el("option", { value: RELAX }, "Least stress, from the present state"));
   });
-  const path = () => ({ [kind.value]: { reversals: Number(count.value) } });
+  const path = () => ({ [kind.value]: { reversals: parseNumber(count.value) } });
   const requestOfRun = () =>
     kind.value === RELAX
-      ? { method: "POST", path: relax, body: { reversals: Number(count.value) } }
+      ? { method: "POST", path: relax, body: { reversals: parseNumber(count.value) } }
       : { method: "POST", path: `/contacts/${id}/path`, body: { path: path(), steps: "last" } };
   const displacements = async () => {
     if (kind.value === RELAX)
-      return (await call("POST", relax, { reversals: Number(count.value), dry_run: true }, signal)).path.displacement;
+      return (await call("POST", relax, { reversals: parseNumber(count.value), dry_run: true }, signal)).path.displacement;
     const { steps } = await call("POST", "/simulate", { contact: virginContact(model), path: path() }, signal);
     return steps.map((step) => step.displacement);
   };
   const run = async () => {
+    numberIn(count);
     const before = await remaining();
     const turns = await displacements();
     bar.max = turns.length;

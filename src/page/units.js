@@ -58,11 +58,23 @@ export function formatInterval(ends, unit, digits = 4) {
   return `${low} to ${high} ${scale.unit}`.trim();
 }
 
-/** The text of a field in units of 10^power: a number in SI units, or the text itself for the service to refuse. */
+/** A comma before three digits: it separates thousands for some readers, and decimals for others. */
+const ONE_COMMA = /^[+-]?[1-9]\d{0,2},\d{3}(?:e[+-]?\d+)?$/i;
+
+/** What is wrong with the text of a number, in words; nothing where it is a number or empty. */
+export function numberMistake(text) {
+  const trimmed = text.trim().replace("−", "-");
+  if (ONE_COMMA.test(trimmed)) return `Write ${trimmed.replace(",", ".")} or ${trimmed.replace(",", "")}: ${trimmed} may be either.`;
+  const isNumber = typeof parseNumber(trimmed) !== "string";
+  return isNumber ? undefined : "This must be a number, without its unit and without separators of thousands.";
+}
+
+/** The text of a field in units of 10^power: a number in SI units, or the text itself if it is no number, or may be two. */
 export function parseNumber(text, power = 0) {
-  const trimmed = text.trim().replace("−", "-").replace(",", ".");
+  const trimmed = text.trim().replace("−", "-");
   if (trimmed === "") return undefined;
-  const parts = trimmed.match(/^([+-]?(?:\d+\.?\d*|\.\d+))(?:e([+-]?\d+))?$/i);
+  const number = ONE_COMMA.test(trimmed) ? "" : trimmed.replace(",", ".");
+  const parts = number.match(/^([+-]?(?:\d+\.?\d*|\.\d+))(?:e([+-]?\d+))?$/i);
   // The power goes to the digits, so that 10 mm are 0.01 m to the last bit.
   return parts ? Number(`${parts[1]}e${Number(parts[2] ?? 0) + power}`) : trimmed;
 }

@@ -219,7 +219,7 @@ async fn it_fits_small_windows_and_dark_rooms_and_needs_no_mouse() {
     assert!(off < 2.0, "marked {off} pixels beside the pointer");
 
     // By keyboard: a slider moves the contact, and a plot reads its values.
-    browser.press("#slide-displacement", "\u{e014}").await;
+    browser.press("#slide-displacement", "\u{e014}\u{e007}").await;
     browser.until("document.querySelector('.badge.on') !== null").await;
     let arrived = async {
         while server.client.contact(session.id).await.unwrap().sequence < 8 {
@@ -749,6 +749,18 @@ async fn a_pasted_loop_becomes_friction_and_a_contact() {
              '{column}'; field.dispatchEvent(new Event('change', {{ bubbles: true }})); }})() ?? null"
         );
         browser.value(&place).await;
+    }
+    // Nor does anything say their units: they are asked for, and not taken for metres.
+    browser.until("document.querySelector('#loop-card').innerText.includes('The force is column 3, in N')").await;
+    browser.click("#fit-loop").await;
+    let question = "Record 1: nothing says the unit of the displacement, nor of the force: choose it.";
+    browser.until(&format!("document.querySelector('#loop-card').innerText.includes({question:?})")).await;
+    for (name, power) in [("displacement", -6), ("force", 0)] {
+        let unit = format!(
+            "(() => {{ const unit = document.querySelector('[aria-label=\"Unit of {name}\"]'); unit.value = '{power}'; \
+             unit.dispatchEvent(new Event('change', {{ bubbles: true }})); }})() ?? null"
+        );
+        browser.value(&unit).await;
     }
     browser.until("document.querySelector('#loop-card').innerText.includes('The force is column 3, in N.')").await;
     browser.click("[name=machine_compliance]").await;

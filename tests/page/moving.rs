@@ -6,7 +6,7 @@ use tempfile::tempdir;
 
 use crate::browser::Browser;
 use crate::common::{Binary, create, until};
-use crate::{ball, moved};
+use crate::{E_STAR, ball, hertz, moved};
 
 /// The number and the unit that a control shows.
 fn shown(name: &str) -> String {
@@ -14,6 +14,11 @@ fn shown(name: &str) -> String {
         "document.querySelector('#box-{name}').value + ' ' + \
          document.querySelector('#unit-{name}').selectedOptions[0].textContent"
     )
+}
+
+/// What a control says is wrong.
+fn fault(name: &str) -> String {
+    format!("document.querySelector('#fault-{name}').innerText")
 }
 
 async fn displacement(server: &Binary, session: &stickslip_wire::NewSession) -> (u64, f64) {
@@ -53,7 +58,21 @@ async fn a_typed_number_keeps_its_unit_and_is_shown_before_it_is_sent() {
     browser.until(&format!("({}) === '4.9 µm' && {note} === ''", shown("displacement"))).await;
     assert_eq!(displacement(&server, &session).await.0, 2);
 
-    // A slider sends once, where it is let go; by keyboard each step.
+    // One comma before three digits may separate thousands or decimals: the page asks, and sends nothing.
+    browser.write("#box-displacement", "1,000").await;
+    browser.press("#box-displacement", "\u{e007}").await;
+    browser.until(&format!("{} === 'Write 1.000 or 1000: 1,000 may be either.'", fault("displacement"))).await;
+    // Nor does a number that is left without Enter move the contact.
+    browser.write("#box-displacement", "1.000").await;
+    browser
+        .until(&format!("{note} === 'Enter sends 1.000 µm = 0.000001 m.' && {} === ''", fault("displacement")))
+        .await;
+    browser.press("#slide-displacement", "\u{e00c}").await;
+    browser.press("#box-displacement", "\u{e00c}").await;
+    browser.until(&format!("({}) === '4.9 µm'", shown("displacement"))).await;
+    assert_eq!(displacement(&server, &session).await.0, 2);
+
+    // A slider sends once, where it is let go.
     browser.drag("#slide-displacement", 0.97, 0.6).await;
     browser
         .until(
@@ -64,13 +83,18 @@ async fn a_typed_number_keeps_its_unit_and_is_shown_before_it_is_sent() {
     let (sequence, dragged) = displacement(&server, &session).await;
     assert_eq!(sequence, 3);
     assert!(dragged > 0.0 && dragged < 4e-6, "{dragged}");
-    // It stands at its end, which is the displacement itself.
-    browser.press("#slide-displacement", "\u{e012}").await;
-    let stepped = async || (displacement(&server, &session).await.0 == 4).then_some(());
-    until("the key moves the contact", stepped).await;
+    // By keyboard it sends by Enter, however many keys it takes to get there.
+    browser.press("#slide-displacement", "\u{e012}\u{e012}\u{e012}").await;
+    browser.until(&format!("{note}.startsWith('Enter sends ')")).await;
+    assert_eq!(displacement(&server, &session).await.0, 3, "no key of the slider sends");
+    browser.press("#slide-displacement", "\u{e00c}").await;
+    browser.until(&format!("{note} === ''")).await;
+    browser.press("#slide-displacement", "\u{e012}\u{e012}\u{e012}\u{e007}").await;
+    let sent = async || (displacement(&server, &session).await.0 == 4).then_some(());
+    until("Enter moves the contact", sent).await;
 
     // A fault goes when the state has changed otherwise, and the number with it.
-    let fault = "document.querySelector('#fault-force').innerText";
+    let fault = fault("force");
     browser.write("#box-force", "50").await;
     browser.press("#box-force", "\u{e007}").await;
     browser
@@ -87,6 +111,59 @@ async fn a_typed_number_keeps_its_unit_and_is_shown_before_it_is_sent() {
         !document.querySelector('#box-force').hasAttribute('aria-invalid')"
         ))
         .await;
+    browser.stayed_quiet_and_at(&server.address, &["status of 422"]).await;
+    browser.close().await;
+}
+
+#[tokio::test]
+async fn every_field_asks_what_a_comma_before_three_digits_separates() {
+    let server = Binary::start(&[]);
+    let session = ball(&server).await;
+    moved(&server, &session, &[0.9, -0.7]).await;
+    let browser = Browser::start(1280, 900, false).await;
+    browser.page.goto(&format!("{}/#/new", server.address)).await.unwrap();
+    browser.find("form.create input[inputmode=decimal]").await;
+    let boxes = "[...document.querySelectorAll('form.create .field input[inputmode=decimal]')]";
+    let faults = format!("{boxes}.map((box) => box.closest('.field').querySelector('.fault').innerText)");
+    for (typed, question) in [
+        ("1,000", "Write 1.000 or 1000: 1,000 may be either."),
+        ("−12,345e-3", "Write -12.345e-3 or -12345e-3: -12,345e-3 may be either."),
+        ("1,000,000", "This must be a number, without its unit and without separators of thousands."),
+        ("1.000,5", "This must be a number, without its unit and without separators of thousands."),
+    ] {
+        let write = format!(
+            "{boxes}.map((box) => {{ box.value = {typed:?}; \
+             box.dispatchEvent(new Event('input', {{ bubbles: true }})); }}).length"
+        );
+        assert_eq!(browser.value(&write).await, 5);
+        browser.until(&format!("{faults}.every((fault) => fault === {question:?})")).await;
+    }
+    browser.click("#create").await;
+    // These are one number each: thousands have three digits in a group, and no group begins with 0.
+    browser.write("form .card:first-child input", "12,5").await;
+    let figures = "document.querySelector('.derived').innerText";
+    for (at, typed) in [(1, "210"), (2, "0,300"), (3, "0,3"), (4, "1000,000e-2")] {
+        browser.value(&format!("{boxes}[{at}].focus() ?? null")).await;
+        browser.value(&format!("{boxes}[{at}].select() ?? null")).await;
+        browser.page.active_element().await.unwrap().send_keys(typed).await.unwrap();
+    }
+    browser.until(&format!("{figures}.includes({:?})", hertz(10.0, 0.0125, E_STAR))).await;
+    assert_eq!(server.client.contacts(None, None).await.unwrap().items.len(), 1, "the form waited for an answer");
+
+    let contact = format!("{}/#/contacts/{}", server.address, session.id);
+    for (tab, field, act, said) in
+        [("/residual", "#reversals", "#run", "#run-status"), ("", "#back-to", "#go-back", "#notice")]
+    {
+        browser.page.goto(&format!("{contact}{tab}")).await.unwrap();
+        browser.until("document.querySelector('.badge.on') !== null").await;
+        browser.write(field, "1,000").await;
+        browser.click(act).await;
+        browser.until(&format!("document.querySelector('{said}').innerText.endsWith('1,000 may be either.')")).await;
+        // No number is read by the language of the browser.
+        assert_eq!(browser.value("document.querySelectorAll('input[type=number]').length").await, 0);
+    }
+    assert_eq!(displacement(&server, &session).await.0, 2);
+    assert_eq!(server.client.contacts(None, None).await.unwrap().items.len(), 1);
     browser.stayed_quiet_and_at(&server.address, &["status of 422"]).await;
     browser.close().await;
 }
