@@ -23,6 +23,8 @@ pub struct Cycle {
     saved: Vec<(usize, Contact)>,
     /// The parts of each move after which its effect is not smooth in the part.
     turns: Vec<Vec<f64>>,
+    /// Whether each move leads anywhere, beyond rounding.
+    has_length: Vec<bool>,
 }
 
 /// A straight part of a move.
@@ -74,8 +76,11 @@ impl Cycle {
         }
         match open {
             Some((quantity, drift)) => Err(Error::OpenCycle { quantity, drift }),
-            None => Cycle { start: here, moves: moves.to_vec(), chords: vec![], saved: vec![], turns: vec![] }
-                .traced(keep_going),
+            None => {
+                let moves = moves.to_vec();
+                Cycle { start: here, moves, chords: vec![], saved: vec![], turns: vec![], has_length: vec![] }
+                    .traced(keep_going)
+            }
         }
     }
 
@@ -100,6 +105,7 @@ impl Cycle {
         }
         let every = 1 + self.chords.len() / (held - self.moves.len() + 1);
         self.turns = vec![Vec::new(); self.moves.len()];
+        let mut lengths = vec![[0.0; 2]; self.moves.len()];
         let mut slipped = false;
         for (index, chord) in self.chords.iter().enumerate() {
             if !keep_going() {
@@ -116,8 +122,13 @@ impl Cycle {
                 turns.push(chord.from);
             }
             slipped = chord.front.is_finite();
+            let start = here.path_point();
+            lengths[chord.step][0] += (chord.end.displacement - start.displacement).value().abs();
+            lengths[chord.step][1] += (chord.end.indentation - start.indentation).value().abs();
             here.advance(&chord.end);
         }
+        let longest = lengths.iter().fold([0.0_f64; 2], |most, of| [most[0].max(of[0]), most[1].max(of[1])]);
+        self.has_length = lengths.iter().map(|of| (0..2).any(|axis| of[axis] > CLOSED * longest[axis])).collect();
         Ok(self)
     }
 
@@ -135,6 +146,11 @@ impl Cycle {
     /// The number of moves.
     pub(super) fn moves(&self) -> usize {
         self.moves.len()
+    }
+
+    /// Whether a move leads anywhere, or none does: of one that holds a force, rounding alone is left.
+    pub(super) fn has_length(&self, step: usize) -> bool {
+        self.has_length[step] || !self.has_length.contains(&true)
     }
 
     /// The parts of a move, above 0 and below 1, after which its effect on every place is not smooth.
@@ -197,7 +213,8 @@ impl Cycle {
         } else {
             here.advance(&chord.end);
         }
-        let prescribed = if chord.from > 0.0 || chord.to < 1.0 || part <= 0.0 || part >= 1.0 {
+        let is_whole = chord.from <= 0.0 && chord.to >= 1.0;
+        let prescribed = if !is_whole || !self.has_length[step] || part <= 0.0 || part >= 1.0 {
             part
         } else {
             self.prescribed_part(step, part, &here)

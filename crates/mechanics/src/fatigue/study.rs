@@ -268,10 +268,12 @@ impl<'a> Study<'a> {
     }
 
     fn prescribed(&self, Instant { step, part }: Instant) -> Instant {
-        if part > 0.0 {
-            Instant { step, part: self.cycle.state(step, part).1 }
+        let part = if part > 0.0 { self.cycle.state(step, part).1 } else { 0.0 };
+        if part > SAME_INSTANT {
+            Instant { step, part }
         } else {
-            Instant { step: step.checked_sub(1).unwrap_or(self.cycle.moves() - 1), part: 1.0 }
+            let before = self.steps().rfind(|other| *other < step).or_else(|| self.steps().next_back());
+            Instant { step: before.unwrap_or(step), part: 1.0 }
         }
     }
 
@@ -301,6 +303,12 @@ impl<'a> Study<'a> {
         Allowance { stress: allowed.stress.max(self.rounding()), ..allowed }
     }
 
+    /// The moves over which something changes: a bulk stress goes on while the contact is held.
+    fn steps(&self) -> impl DoubleEndedIterator<Item = usize> {
+        let goes_on = self.bulk.is_some_and(|bulk| bulk.amplitude != 0.0);
+        (0..self.cycle.moves()).filter(move |step| goes_on || self.cycle.has_length(*step))
+    }
+
     /// What a criterion is resolved to, by the tolerance.
     fn resolved(&self, index: usize) -> f64 {
         self.reference[index].max(LEAST * self.measures[index].sensitivity(self.stress) * self.stress)
@@ -321,7 +329,7 @@ impl<'a> Study<'a> {
         let near = passes && place[2] <= DEEP * self.radius;
         let level = self.cycle.start().profile().level(radius);
         let mut stretches = Vec::new();
-        for step in 0..self.cycle.moves() {
+        for step in self.steps() {
             let turns = self.cycle.turns(step);
             let passes = if near && level.is_finite() { self.cycle.passes(step, level) } else { Vec::new() };
             let mut ends: Vec<(f64, bool)> = turns.iter().map(|part| (*part, true)).collect();

@@ -312,6 +312,54 @@ fn a_bulk_stress_moves_the_largest_instant() {
     assert!((angle.cos() - 1.0).abs() < 1e-6, "{at:?}");
 }
 
+/// A move to where the contact is changes no value, and no instant is named in it. A bulk stress goes on meanwhile.
+#[test]
+fn a_move_without_length_is_no_instant_but_time_for_a_bulk_stress() {
+    let contact = steel(sphere(0.01), 0.3, 1e-4);
+    let slip = contact.gross_slip_displacement();
+    let full = 0.3 * contact.normal_force();
+    let mut random = Random(11);
+    for case in 0..cases(12) {
+        let moves: Vec<Move> = (0..4)
+            .map(|turn| if turn % 2 == 0 { 1.0 } else { -1.0 })
+            .map(|sign| match case % 2 {
+                0 => push(sign * full * random.within(0.2, 0.9)),
+                _ => displace(sign * slip * random.within(0.2, 1.5)),
+            })
+            .collect();
+        // Which of the moves each of the longer path is, the ones without length with that before.
+        let origin: Vec<usize> = (0..4).flat_map(|step| vec![step; 1 + (random.bits() % 3) as usize]).collect();
+        let held: Vec<Move> = origin.iter().map(|step| moves[*step]).collect();
+        let first = |step: usize| origin.iter().position(|other| *other == step).unwrap();
+        let places = [[0.9e-4, 0.0, 0.0], [-0.8e-4, 0.0, 2e-5], [0.3e-4, 0.2e-4, 5e-5]];
+        let [alone, with] = [&moves, &held].map(|moves| {
+            let cycle = Cycle::new(&contact, moves, &|| true).unwrap();
+            rated(&cycle, of_stress(), 1e-4, &places)
+        });
+        for (one, other) in alone.largest.iter().zip(&with.largest) {
+            let [one, other] = [one, other].map(|largest| largest.unwrap().rated);
+            assert!((one.value - other.value).abs() <= one.error + other.error, "{one:?} {other:?}");
+            if let Some(at) = other.at {
+                assert_eq!(at.step, first(origin[at.step]), "{at:?} of {origin:?}");
+                assert!(at.part > 1e-12 && at.part <= 1.0, "{at:?}");
+            }
+        }
+
+        // The bulk stress is largest in the middle of a move that holds the contact.
+        let hold = (0..held.len()).find(|step| *step > 0 && origin[*step] == origin[*step - 1]);
+        let Some(hold) = hold else { continue };
+        let phase = -std::f64::consts::TAU * (hold as f64 + 0.5) / held.len() as f64;
+        let bulk = Bulk { mean: 0.0, amplitude: 1e8, phase };
+        let cycle = Cycle::new(&contact, &held, &|| true).unwrap();
+        let mut study = Study::new(&cycle, BODY, Some(bulk), vec![crossland(0.3)], 1e-6, &|| true).unwrap();
+        let found = study.rate_all(&[[0.0, 0.0, 1.0]]).unwrap().largest[0].unwrap().rated;
+        let truth = 1e8 / 3f64.sqrt() + 0.3 * 1e8 / 3.0;
+        assert!((found.value / truth - 1.0).abs() <= 1e-5, "{found:?} {truth:e}");
+        let at = found.at.unwrap();
+        assert!(at.step == hold && (at.part - 0.5).abs() < 1e-2, "{at:?} in {hold}");
+    }
+}
+
 #[test]
 fn an_infinite_stress_is_no_number() {
     for profile in [Profile::Cone(Cone::new(0.05).unwrap()), Profile::FlatPunch(FlatPunch::new(1e-4).unwrap())] {
