@@ -16,6 +16,7 @@ use tokio::time::{Instant, timeout};
 use crate::admission::{
     INLINE, Nanoseconds, Pool, PoolError, Quota, RequestPermit, Reservation, Stage, Stop, StopOnDrop, UNCOUNTED,
 };
+use crate::computations::files;
 use crate::otlp;
 use crate::server::RequestClient;
 use crate::server::limits::DISCARDED;

@@ -35,13 +35,22 @@ pub struct Problem {
     cause: Option<String>,
     /// When to try again, if that may help.
     retry_after: Duration,
+    /// Whether a change may have been stored nevertheless.
+    in_doubt: bool,
 }
 
 impl Problem {
     /// A problem of this code, with what happened this time.
     #[must_use]
     pub fn new(code: Code, detail: impl Into<String>) -> Problem {
-        Problem { code, detail: detail.into(), errors: Vec::new(), cause: None, retry_after: limits::RETRY_AFTER }
+        let (detail, retry_after) = (detail.into(), limits::RETRY_AFTER);
+        Problem { code, detail, errors: Vec::new(), cause: None, retry_after, in_doubt: false }
+    }
+
+    /// A problem after which a change may have been stored; the document says so of a request that changes something.
+    #[must_use]
+    pub fn in_doubt(code: Code, detail: impl Into<String>) -> Problem {
+        Problem { in_doubt: true, ..Problem::new(code, detail) }
     }
 
     /// A problem with one place in the request.
@@ -77,10 +86,15 @@ impl Problem {
         self.code
     }
 
-    /// The document that the client gets.
+    /// The document that the client gets for a request that changes something, or only reads.
     #[must_use]
-    pub fn document(self, request_id: &str) -> ProblemDocument {
-        ProblemDocument::new(self.code, self.detail, self.errors, request_id)
+    pub fn document(self, request_id: &str, changes: bool) -> ProblemDocument {
+        let advice = match (self.in_doubt, changes) {
+            (false, _) => "",
+            (true, true) => ": the change may have been stored; repeat it with the same Idempotency-Key, or read first",
+            (true, false) => ": nothing has changed, try again",
+        };
+        ProblemDocument::new(self.code, self.detail + advice, self.errors, request_id)
     }
 }
 
@@ -218,8 +232,7 @@ impl From<SessionError> for Problem {
                 Problem::new(Code::StorageUnavailable, advice).because(detail)
             }
             SessionError::Store(StoreError::Unavailable(_)) => {
-                let advice = "the change may or may not be stored; retry with the same Idempotency-Key, or look";
-                Problem::new(Code::StorageUnavailable, advice).because(detail)
+                Problem::in_doubt(Code::StorageUnavailable, "the storage cannot be reached").because(detail)
             }
             SessionError::Store(_) | SessionError::Unwritable(_) | SessionError::Broken(_) => Problem::internal(detail),
         }

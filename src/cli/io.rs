@@ -53,7 +53,7 @@ pub fn write(write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(),
 
 /// A problem as the message of an error: the document that the service would send, or two lines for readers.
 pub fn fault(error: impl Into<Problem>, as_json: bool) -> String {
-    let document = error.into().document("command line");
+    let document = error.into().document("command line", false);
     if as_json {
         return json(&document);
     }

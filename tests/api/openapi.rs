@@ -158,6 +158,118 @@ async fn every_example_works_unchanged() {
     assert!(sent >= 10, "{sent} examples");
 }
 
+/// Whether a schema allows a value, as far as members, alternatives and ranges of numbers go.
+fn allows(document: &Value, schema: &Value, value: &Value) -> bool {
+    let allowed = |schema: &Value| allows(document, schema, value);
+    let all = |name: &str| schema[name].as_array().into_iter().flatten();
+    let number = |name: &str| schema[name].as_f64().zip(value.as_f64());
+    let named = schema["properties"].as_object();
+    reference(schema).is_none_or(|name| allowed(&document["components"]["schemas"][name]))
+        && all("required").all(|name| value.get(name.as_str().unwrap()).is_some())
+        && named.into_iter().flatten().all(|(name, member)| {
+            value.get(name).filter(|inner| !inner.is_null()).is_none_or(|inner| allows(document, member, inner))
+        })
+        && value.as_object().is_none_or(|members| {
+            schema["additionalProperties"] != false
+                || members.keys().all(|name| named.is_some_and(|named| named.contains_key(name)))
+        })
+        && value.as_array().into_iter().flatten().all(|item| allows(document, &schema["items"], item))
+        && (schema["enum"].is_null() || all("enum").any(|one| one == value))
+        && all("allOf").all(allowed)
+        && ["anyOf", "oneOf"].iter().all(|name| schema[*name].is_null() || all(name).any(allowed))
+        && (schema["not"].is_null() || !allowed(&schema["not"]))
+        && number("minimum").is_none_or(|(end, sent)| sent >= end)
+        && number("maximum").is_none_or(|(end, sent)| sent <= end)
+        && number("exclusiveMinimum").is_none_or(|(end, sent)| sent > end)
+        && number("exclusiveMaximum").is_none_or(|(end, sent)| sent < end)
+}
+
+/// The ends of the ranges of numbers in a document, but of the counts, which may be too much work.
+fn ends(document: &Value) -> Vec<f64> {
+    let mut ends = vec![0.0];
+    walk(document, &mut |node| {
+        if node["type"] == "number" {
+            ends.extend([&node["minimum"], &node["maximum"]].into_iter().filter_map(Value::as_f64));
+        }
+    });
+    ends.sort_by(f64::total_cmp);
+    ends.dedup();
+    ends
+}
+
+/// The places of the numbers in a value; of a list those of its first two elements.
+fn numbers(value: &Value, at: &str, found: &mut Vec<String>) {
+    match value {
+        Value::Number(_) => found.push(at.to_owned()),
+        Value::Object(members) => members.iter().for_each(|(name, one)| numbers(one, &format!("{at}/{name}"), found)),
+        Value::Array(items) => (0..items.len().min(2)).for_each(|i| numbers(&items[i], &format!("{at}/{i}"), found)),
+        _ => {}
+    }
+}
+
+#[tokio::test]
+async fn what_is_refused_for_one_number_alone_is_not_allowed_by_the_document() {
+    let document = document();
+    let (server, ends) = (Server::start().await, ends(&document["components"]["schemas"]));
+    let contact = server.contact().await;
+    let (mut sent, mut allowed_and_refused) = (0, Vec::new());
+    for (path, method, operation) in operations(&document).filter(|(_, method, _)| *method == "post") {
+        let content = &operation["requestBody"]["content"]["application/json"];
+        let named = content["examples"].as_object().into_iter().flat_map(|named| named.values());
+        for example in named.map(|named| &named["value"]).chain(content.get("example")) {
+            let mut places = Vec::new();
+            numbers(example, "", &mut places);
+            for place in places.iter().filter(|place| example.pointer(place).is_some_and(Value::is_f64)) {
+                let with = |end: f64| {
+                    let mut body = example.clone();
+                    *body.pointer_mut(place).unwrap() = json!(end);
+                    body
+                };
+                let allowed: Vec<f64> =
+                    ends.iter().copied().filter(|end| allows(&document, &content["schema"], &with(*end))).collect();
+                for end in
+                    [allowed.first(), allowed.iter().find(|end| **end == 0.0), allowed.last()].into_iter().flatten()
+                {
+                    let response = server.post(&path.replace("{id}", &contact), &with(*end)).await;
+                    sent += 1;
+                    if response.status() != 422 {
+                        continue;
+                    }
+                    let refusal = common::problem(response).await;
+                    allowed_and_refused.extend(refusal.errors.into_iter().filter(|fault| {
+                        let of_itself = fault.detail.contains(&format!(" = {end:?} is out of range"))
+                            || fault.detail.contains(&format!(" = {end} is out of range"))
+                            || ["is no ", "lies above", "without friction"]
+                                .iter()
+                                .any(|text| fault.detail.contains(text));
+                        // What a target reaches depends on the profile.
+                        fault.pointer == *place && of_itself && place != "/target"
+                    }));
+                }
+            }
+        }
+    }
+    assert!(sent > 200, "{sent}");
+    assert!(allowed_and_refused.is_empty(), "{allowed_and_refused:#?}");
+}
+
+/// A client that may try again is told when.
+#[test]
+fn every_refusal_that_passes_says_when_to_try_again() {
+    let document = document();
+    let mut found = 0;
+    for (path, method, operation) in operations(&document) {
+        for status in ["429", "503"] {
+            let response = &operation["responses"][status];
+            if response.is_object() {
+                assert!(response["headers"]["Retry-After"].is_object(), "{method} {path} {status}");
+                found += 1;
+            }
+        }
+    }
+    assert!(found > 70, "{found}");
+}
+
 /// A reply without what differs from call to call: identifiers, instants, and measured times.
 fn settle(name: &str, value: &mut Value) {
     match value {

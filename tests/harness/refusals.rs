@@ -9,7 +9,7 @@ use stickslip::api::problem::Code;
 pub fn check(body: &[u8], problem: Problem) {
     let code = problem.code();
     assert!(!matches!(code, Code::Internal | Code::Overloaded), "{problem:?}");
-    let document = problem.document("fuzz");
+    let document = problem.document("fuzz", false);
     assert!((400..500).contains(&document.status), "{document:?}");
     assert!(!document.detail.is_empty() && !document.detail.contains("NaN"), "{document:?}");
     let parsed = serde_json::from_slice::<Value>(body);

@@ -20,13 +20,21 @@ fn beside(path: &Path, ending: &str) -> PathBuf {
 
 /// Every change and every question is refused, and the service is not ready.
 async fn is_unavailable(server: &Server, id: &str) {
-    for refusal in [
-        server.post(&format!("/contacts/{id}/move"), &json!({"force": 0.3})).await,
-        server.post("/contacts", &ball()).await,
-        server.get(&format!("/contacts/{id}")).await,
-        server.get(&format!("/contacts/{id}/history")).await,
+    for (changes, refusal) in [
+        (true, server.post(&format!("/contacts/{id}/move"), &json!({"force": 0.3})).await),
+        (true, server.post("/contacts", &ball()).await),
+        (false, server.get(&format!("/contacts/{id}")).await),
+        (false, server.get(&format!("/contacts/{id}/history")).await),
+        (
+            false,
+            server.post(&format!("/contacts/{id}/subsurface"), &json!({"body": "first", "points": [[0, 0, 0]]})).await,
+        ),
     ] {
-        assert_eq!(problem(refusal).await.code, "storage_unavailable");
+        let refusal = problem(refusal).await;
+        assert_eq!(refusal.code, "storage_unavailable");
+        // Only a change may have been stored.
+        let told = ["may have been stored", "nothing has changed"].map(|text| refusal.detail.contains(text));
+        assert_eq!(told, [changes, !changes], "{refusal:?}");
     }
     until("it is not ready", async || (server.get("/readyz").await.status() == 503).then_some(())).await;
 }

@@ -53,14 +53,14 @@ macro_rules! codes {
 
 codes! {
     /// The body is not JSON. What is JSON but wrong in itself is [`Code::InvalidInput`], as its syntax is not to blame.
-    NotJson = 400 "not_json": "The body is not JSON", "the body is not JSON: mend it";
+    NotJson = 400 "not_json": "The body is not JSON", "the body is not valid JSON";
     /// A proxy might read the head of the request in another way than this server.
     AmbiguousRequest = 400 "ambiguous_request": "The head of the request is ambiguous",
         "the head can be read in two ways (two lengths, two keys, no host): a proxy or a client is at fault";
     /// The request has no key, or one that is not known.
     Unauthorized = 401 "unauthorized": "A key is needed", "send a key: `Authorization: Bearer KEY`";
     /// The key does not allow it. What belongs to another tenant does not exist: [`Code::ContactNotFound`].
-    Forbidden = 403 "forbidden": "The key does not allow this", "the key has not the role that this needs";
+    Forbidden = 403 "forbidden": "The key does not allow this", "the role of this key does not allow this";
     /// The service has no keys, and the request names a host that is not its own, or comes from a page of another site.
     ForeignOrigin = 403 "foreign_origin": "The request comes from another site",
         "call the service by an address or a name of its own, or have its operator add yours: \
@@ -82,7 +82,7 @@ codes! {
     /// The request is sound, but the present state of the contact forbids it; [`Code::StaleSequence`] if the client has
     /// said which state it expects.
     Conflict = 409 "conflict": "The state of the contact forbids this",
-        "the contact does not allow it as it stands: its memory is full, or others moved it all the time";
+        "the contact does not allow it as it stands: its memory is full, or other clients kept moving it";
     /// The result of a job that has not ended, and may yet have one.
     JobNotDone = 409 "job_not_done": "The job has not ended",
         "the job has not ended: wait for its events, or ask again";
@@ -93,7 +93,7 @@ codes! {
         "it was idle for longer than `--expire-after`: make a new one";
     /// The contact is not at the sequence that `If-Match` names.
     StaleSequence = 412 "stale_sequence": "The contact has moved on",
-        "it is not where `If-Match` says: look, then decide";
+        "the contact has changed since: read it, then decide";
     /// The body is too large.
     TooLarge = 413 "too_large": "The body is too large", "bodies have at most 8 MiB, files of instruments 16 MiB";
     /// The body is not declared as JSON.
@@ -135,7 +135,7 @@ codes! {
         "`detail` names the [quota](overload.md#quotas): end, close or delete something, or wait as long as \
             `Retry-After` says";
     /// A fault of this program. Its cause goes to the log; the client gets the identifier of the request.
-    Internal = 500 "internal": "The server has failed", "a fault of the server: tell its operator the `request_id`";
+    Internal = 500 "internal": "The server has failed", "a fault of the server: tell its operator the `request_id`; a change may have been stored";
     /// What is stored of the contact is not what has been stored: moves are missing, or cannot be made again.
     DamagedContact = 500 "damaged_contact": "The stored contact is damaged",
         "moves of the contact are missing in the store: its operator must restore it; other contacts are not affected";
@@ -143,10 +143,10 @@ codes! {
     Overloaded = 503 "overloaded": "The server is busy", "wait as long as `Retry-After` says, and repeat";
     /// The server stops before the request is done.
     Stopping = 503 "stopping": "The server is stopping",
-        "repeat elsewhere or later, with the same `Idempotency-Key`: it may have been stored";
+        "repeat elsewhere or later, with the same `Idempotency-Key`: a change may have been stored";
     /// The storage cannot be reached. Nothing has been acknowledged, and a retry is welcome.
     StorageUnavailable = 503 "storage_unavailable": "The storage cannot be reached",
-        "repeat with the same `Idempotency-Key`: it may have been stored";
+        "repeat with the same `Idempotency-Key`: a change may have been stored, unless `detail` says that nothing has changed";
     /// The storage has no room. Nothing has been acknowledged.
     StorageFull = 507 "storage_full": "The server has no room left", "the operator must make room; nothing has changed";
 }

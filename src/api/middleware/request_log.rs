@@ -10,12 +10,15 @@ use axum::extract::{MatchedPath, Request};
 use axum::http::{HeaderValue, Method, StatusCode, header};
 use axum::middleware::Next;
 use axum::response::{IntoResponse as _, Response};
+use stickslip_wire::ProblemDocument;
 use tokio::sync::watch;
 use tracing::field::{Empty, display};
 use tracing::{Instrument as _, Span, info_span};
 use tracing_opentelemetry::OpenTelemetrySpanExt as _;
 use uuid::Uuid;
 
+use crate::access::Role;
+use crate::api::facts::Need;
 use crate::api::limits;
 use crate::api::middleware::access_control::Caller;
 use crate::api::middleware::request_id::{self, REQUEST_ID};
@@ -90,8 +93,7 @@ pub async fn log_request(
         response = next.run(request).instrument(span) => response,
         // Or else, like its service, it is gone.
         Ok(_) = stops.wait_for(|stops| *stops) => {
-            Problem::new(Code::Stopping, "the server stops before this is done: it may have been \
-                stored").into_response()
+            Problem::in_doubt(Code::Stopping, "the server stops before this is done").into_response()
         }
     };
     let made = response.headers().get(header::LOCATION).and_then(|location| location.to_str().ok());
@@ -101,7 +103,8 @@ pub async fn log_request(
     let code = problem.as_ref().map(|problem| problem.code().as_str());
     let cause = problem.as_ref().and_then(Problem::cause).map(str::to_owned);
     if let Some(problem) = problem {
-        response = with_document(response, problem, id);
+        let changes = crate::api::need(method.as_str(), route.unwrap_or_default()) == Need::Key(Role::Write);
+        response = with_document(response, problem.document(id, changes));
     }
     let kind = match route {
         Some(routes::PAGE | routes::PAGE_FILES) => security_headers::Kind::Page,
@@ -209,9 +212,8 @@ fn foreign(response: &Response) -> Option<Problem> {
 }
 
 /// The response with the document as its body; other headers, such as `Allow`, stay.
-fn with_document(response: Response, problem: Problem, id: &str) -> Response {
+fn with_document(response: Response, document: ProblemDocument) -> Response {
     let (mut parts, _) = response.into_parts();
-    let document = problem.document(id);
     parts.headers.remove(header::CONTENT_LENGTH);
     parts.headers.insert(header::CONTENT_TYPE, HeaderValue::from_static(MEDIA_TYPE));
     parts.status = StatusCode::from_u16(document.status).unwrap_or(parts.status);

@@ -34,8 +34,9 @@ fn introduction() -> String {
         "Frictional contact of two elastic bodies, with memory: tangential displacement, force, slip and stress along \
          any path, exactly. All quantities are in SI units. Positive displacement gives positive force and positive \
          shear stress. Numbers that are infinite are `null`.\n\nEvery refusal is a problem document (RFC 9457, \
-         `{MEDIA_TYPE}`) with a JSON pointer to each fault. A failed call changes nothing, and a read never \
-         does.\n\nThe work for a request ends when its client hangs up, and at the deadline of the server (422 \
+         `{MEDIA_TYPE}`) with a JSON pointer to each fault. A refused call has changed nothing, but after \
+         `internal`, `stopping` and `storage_unavailable` a change may have been stored; a read never changes \
+         anything.\n\nThe work for a request ends when its client hangs up, and at the deadline of the server (422 \
          `too_much_work`). Loading a contact is a part of it, and what has been loaded is kept for the next \
          request.\n\nLimits: a body has at most {} bytes, a path {} moves, a stress request {} radii, the memory of a \
          contact {} pieces, a page {} items; the springs of the spring foundation times moves and stress points are at \

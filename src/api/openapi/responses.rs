@@ -62,7 +62,7 @@ fn write_headers(responses: &mut Value) {
     for (status, response) in responses.as_object_mut().into_iter().flatten() {
         let header = match status.as_str() {
             "401" => ("WWW-Authenticate", text("`Bearer`")),
-            "503" => {
+            "429" | "503" => {
                 ("Retry-After", json!({"description": "Seconds to wait", "schema": {"type": "integer", "minimum": 0}}))
             }
             _ => continue,

@@ -4,6 +4,7 @@
 use serde_json::{Map, Value, json};
 
 use stickslip_mechanics::range;
+use stickslip_wire::fit::FitParameter;
 
 pub fn write(document: &mut Value) {
     if let Some(Value::Object(schemas)) = document.pointer_mut("/components/schemas") {
@@ -98,7 +99,13 @@ fn write_exclusions(schemas: &mut Map<String, Value>) {
     let named = json!({"required": ["start"], "properties": {"start": {"required": ["contact_id"],
         "description": "One that names a contact."}}});
     let nowhere = json!({"not": {"anyOf": [have(&["contact"]), named]}});
-    let protocol = json!([aims[0], aims[1], nowhere]);
+    // Without friction there is nothing to reduce, and no loop to fit.
+    let friction = json!({"maximum": 0, "description": "None."});
+    let contact = json!({"required": ["friction"], "properties": {"friction": friction},
+        "description": "One without friction."});
+    let frictionless = json!({"required": ["contact"], "properties": {"contact": contact}});
+    let protocol = json!([aims[0], aims[1], nowhere, frictionless]);
+    let fit = json!([frictionless]);
     let one_of = |names: &[&str]| json!([have(names), none(names)]);
     let (cycles, oscillation) = (one_of(&targets[..2]), one_of(&targets[2..]));
     for (schema, wrong) in [
@@ -108,6 +115,7 @@ fn write_exclusions(schemas: &mut Map<String, Value>) {
         ("WorkDensity", &places),
         ("RelaxRequest", &aims),
         ("ProtocolRequest", &protocol),
+        ("FitRequest", &fit),
         ("CyclicPath", &cycles),
         ("NormalOscillation", &oscillation),
     ] {
@@ -115,13 +123,21 @@ fn write_exclusions(schemas: &mut Map<String, Value>) {
     }
 }
 
-/// Quantities that are either zero or not too small, and counts that are even.
+/// Quantities that are either zero or not too small, counts that are even, and ranges of one use of a type.
 fn write_gaps(schemas: &mut Map<String, Value>) {
     let gap = |least: f64| json!({"exclusiveMinimum": 0, "exclusiveMaximum": least});
     for schema in ["ContactDefinition", "CreateRequest", "ScanLoad"] {
         schemas[schema]["properties"]["friction"]["not"] = gap(range::MIN_POSITIVE_FRICTION);
     }
     schemas["CyclicPath"]["properties"]["points_per_cycle"]["multipleOf"] = json!(2);
+    for parameter in FitParameter::ALL {
+        let range = parameter.range();
+        let value = json!({"not": {"minimum": range.min, "maximum": range.max}, "description": "Out of its range."});
+        schemas["KnownValues"]["properties"][parameter.name()]["not"] =
+            json!({"required": ["value"], "properties": {"value": value}});
+    }
+    // No place is above the surface.
+    schemas["SubsurfacePlane"]["properties"]["z"]["items"]["minimum"] = json!(0);
     for choice in schemas["Preload"]["oneOf"].as_array_mut().into_iter().flatten() {
         if let Some(force) = choice["properties"].get_mut("normal_force") {
             force["not"] = gap(range::MIN_POSITIVE_NORMAL_FORCE);
