@@ -24,7 +24,7 @@ mod _native {
     #[pymodule_export]
     use super::contacts::Contacts;
     #[pymodule_export]
-    use super::import::{read_loop, read_scan};
+    use super::import::{quantity, read_loop, read_scan};
     #[pymodule_export]
     use super::problem::Problem;
     #[pymodule_export]

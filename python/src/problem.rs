@@ -14,7 +14,7 @@ const REQUEST_ID: &str = "in process";
 pub fn refused(error: impl Into<api::Problem>) -> PyErr {
     let problem: api::Problem = error.into();
     let cause = problem.cause().map(str::to_owned);
-    let mut document = problem.document(REQUEST_ID);
+    let mut document = problem.document(REQUEST_ID, false);
     if let Some(cause) = cause {
         document.detail = cause;
     }

@@ -6,8 +6,16 @@ def main(arguments: list[str]) -> int: ...
 def compute(name: str, body: bytes, format: str = "columns") -> bytes: ...
 def names() -> list[tuple[str, str | None]]: ...
 def openapi() -> str: ...
+def quantity(text: str, needed: str | None = None) -> float | None: ...
 def read_scan(
-    content: bytes, lateral: str | None = None, height: str | None = None, spacing: float | None = None
+    content: bytes,
+    lateral: str | None = None,
+    height: str | None = None,
+    spacing: float | None = None,
+    x: str | None = None,
+    y: str | None = None,
+    z: str | None = None,
+    sheet: str | None = None,
 ) -> str: ...
 def read_loop(
     content: bytes,
@@ -17,6 +25,9 @@ def read_loop(
     load: str | None = None,
     displacement_unit: str | None = None,
     force_unit: str | None = None,
+    time_unit: str | None = None,
+    load_unit: str | None = None,
+    sheet: str | None = None,
 ) -> str: ...
 
 class Contact:

@@ -9,7 +9,7 @@ from typing import Any, Protocol, TypeAlias, Union, runtime_checkable
 import numpy as np
 from numpy.typing import NDArray
 
-from . import units
+from . import quantities
 from .errors import Fault, InvalidInput
 
 #: A number in SI units, or one with its unit: "20 um", a quantity of pint.
@@ -47,9 +47,9 @@ def to_document(value: Any, name: str = "", parent: str = "", place: str = "") -
     if isinstance(value, float):
         return _finite(value, place)
     if isinstance(value, str):
-        if name in units.TEXTS:
+        if name in quantities.TEXTS:
             return value
-        found = units.from_text(value, units.unit_of(name, parent), place)
+        found = quantities.from_text(value, quantities.unit_of(name, parent), place)
         return value if found is None else found
     if isinstance(value, np.ndarray | np.generic):
         if not np.issubdtype(value.dtype, np.number):
@@ -64,7 +64,7 @@ def to_document(value: Any, name: str = "", parent: str = "", place: str = "") -
     if isinstance(value, HasDocument):
         return to_document(value.document(), name, parent, place)
     if isinstance(value, HasUnit):
-        return to_document(units.from_pint(value, units.unit_of(name, parent), place))
+        return to_document(quantities.from_pint(value, quantities.unit_of(name, parent), place))
     return value
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 import os
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
@@ -15,6 +15,7 @@ import numpy as np
 from . import _native
 from .contact import guarded
 from .documents import Document
+from .errors import InvalidInput
 from .result import Floats
 
 #: The most heights that a fit takes.
@@ -28,6 +29,10 @@ class Scan:
     scan: Document
     units: dict[str, str]
     reading: tuple[str, ...]
+    #: What each column was taken for, with its `name`, `quantity`, `unit`, or why it was `left_out`; none of a matrix.
+    columns: tuple[Document, ...] = ()
+    #: The lines that are not in the scan: their `count`, and the first of their numbers as `lines`.
+    rows_left_out: Document = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -37,31 +42,51 @@ class Loop:
     loop: Document
     units: dict[str, str]
     reading: tuple[str, ...]
+    #: What each column was taken for, with its `name`, `quantity`, `unit`, or why it was `left_out`.
+    columns: tuple[Document, ...] = ()
+    #: The lines that are not in the loop: their `count`, and the first of their numbers as `lines`.
+    rows_left_out: Document = field(default_factory=dict)
 
 
 def _content(source: str | os.PathLike[str] | bytes) -> bytes:
     return source if isinstance(source, bytes) else Path(source).read_bytes()
 
 
+def _read(read: Any, source: str | os.PathLike[str] | bytes, hints: dict[str, Any]) -> Document:
+    """What the importer of the service finds in a file; a column may be given by its number."""
+    texts = {name: str(hint) if isinstance(hint, int) and name != "spacing" else hint for name, hint in hints.items()}
+    found: Document = json.loads(guarded(lambda: read(_content(source), **texts)))
+    return found
+
+
+def _seen(preview: Document) -> tuple[tuple[str, ...], tuple[Document, ...], Document]:
+    return tuple(preview["reading"]), tuple(preview["columns"]), preview["rows_left_out"]
+
+
 def read_scan(source: str | os.PathLike[str] | bytes, **hints: Any) -> Scan:
     """Reads a scan from a file or from its bytes.
 
-    Hints precede the header: `lateral` and `height` are units ("um"), `spacing` is the distance of neighbours in a
-    matrix, in the unit of places. What is no text in columns is read by SurfaceTopography, with the units that the
+    Hints precede the header: `lateral` and `height` are units ("um", "mil", "10^-6 m"), `x`, `y` and `z` columns by
+    name or number, `sheet` that of a spreadsheet, `spacing` the distance of neighbours in a matrix, in the unit of
+    places. What is neither columns of text nor a spreadsheet is read by SurfaceTopography, with the units that the
     file has (`pip install "stickslip[scans]"`).
+
+    Raises:
+        InvalidInput: with the line, the column and the word that is not understood; `unknown_unit` for a unit.
     """
     try:
-        found = json.loads(guarded(lambda: _native.read_scan(_content(source), **hints)))
-    except ValueError as refusal:
-        if isinstance(source, bytes):
+        found = _read(_native.read_scan, source, hints)
+    except InvalidInput as refusal:
+        # A fault in a line of columns is one in any program.
+        if isinstance(source, bytes) or refusal.pointer != "":
             raise
         if find_spec("SurfaceTopography") is None:
-            raise ValueError(f'{refusal} (pip install "stickslip[scans]" reads other formats of instruments)') from None
+            raise
         return _by_surface_topography(Path(source), refusal)
-    return Scan(found["scan"], found["units"], tuple(found["preview"]["reading"]))
+    return Scan(found["scan"], found["units"], *_seen(found["preview"]))
 
 
-def _by_surface_topography(path: Path, refusal: ValueError) -> Scan:
+def _by_surface_topography(path: Path, refusal: InvalidInput) -> Scan:
     """The first channel of a file, in micrometres; of a map too large for a fit every second, third and so on."""
     from SurfaceTopography import open_topography
     from SurfaceTopography.Exceptions import CannotDetectFileFormat
@@ -69,10 +94,12 @@ def _by_surface_topography(path: Path, refusal: ValueError) -> Scan:
     try:
         reader = open_topography(str(path))
     except CannotDetectFileFormat:
-        raise ValueError(f"{refusal}; nor is it a file of an instrument that SurfaceTopography knows") from None
+        detail = f"{refusal.detail}; nor is it a file of an instrument that SurfaceTopography knows"
+        raise InvalidInput(refusal.code, detail) from None
     read = reader.topography()
     if read.unit is None or read.physical_sizes is None:
-        raise ValueError(f"{path.name} has no {'unit' if read.unit is None else 'size'}: export it with its scales")
+        detail = f"{path.name} has no {'unit' if read.unit is None else 'size'}: export it with its scales"
+        raise InvalidInput("invalid_input", detail)
     topography = read.to_unit("um")
     heights: Floats = np.ma.filled(np.ma.asarray(topography.heights(), dtype=float), np.nan)
     if topography.dim == 1:
@@ -101,7 +128,11 @@ def read_loop(source: str | os.PathLike[str] | bytes, **hints: Any) -> Loop:
     """Reads a loop from a file or from its bytes.
 
     Hints precede the header: `displacement`, `force`, `time` and `load` are columns by name or number,
-    `displacement_unit` and `force_unit` are units ("um", "mN").
+    `displacement_unit`, `force_unit`, `time_unit` and `load_unit` units ("um", "lbf", "min"), `sheet` is that of a
+    spreadsheet.
+
+    Raises:
+        InvalidInput: with the line, the column and the word that is not understood; `unknown_unit` for a unit.
     """
-    found = json.loads(guarded(lambda: _native.read_loop(_content(source), **hints)))
-    return Loop(found["loop"], found["units"], tuple(found["preview"]["reading"]))
+    found = _read(_native.read_loop, source, hints)
+    return Loop(found["loop"], found["units"], *_seen(found["preview"]))

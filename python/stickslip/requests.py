@@ -8,6 +8,7 @@ from typing import Any, TypeAlias
 from .bodies import elastic_body
 from .documents import Document, HasDocument
 from .extras import CRITERIA
+from .quantities import from_text
 
 #: A number of points, or the document of a request for stresses.
 Stress: TypeAlias = int | Mapping[str, Any] | None
@@ -127,4 +128,17 @@ def loops(given: Any, units: Any) -> tuple[list[Any], Any]:
     ):
         return [{"displacement": given[0], "force": given[1]}], units
     several = [loops(one, units) for one in given]
-    return [one for found, _ in several for one in found], next((unit for _, unit in several if unit), units)
+    named = [unit for _, unit in several if unit]
+    if any(unit != named[0] for unit in named):
+        # A request has one pair of units for all of its loops.
+        return [_in_si(one, unit) for found, unit in several for one in found], None
+    return [one for found, _ in several for one in found], named[0] if named else units
+
+
+def _in_si(loop: Any, units: Any) -> Any:
+    """A loop with its displacements and forces in SI units."""
+    factors = {name: from_text(f"1 {unit}", None, f"/units/{name}") for name, unit in (units or {}).items()}
+    return {
+        name: [value * factors[name] for value in column] if name in factors else column
+        for name, column in loop.items()
+    }

@@ -13,7 +13,7 @@ import pytest
 
 import stickslip as ss
 from conftest import ROOT
-from stickslip import _native, client, profiles, results, units
+from stickslip import _native, client, profiles, quantities, results
 
 HERE = Path(__file__).resolve().parents[1]
 GENERATOR = HERE / "tools" / "generate.py"
@@ -97,7 +97,7 @@ def test_units_of_members_are_those_that_the_document_states(openapi: dict[str, 
         if schema.get("additionalProperties") is not False:
             continue
         for name, member in schema.get("properties", {}).items():
-            unit = units.MEMBERS.get(name)
+            unit = quantities.MEMBERS.get(name)
             found = stated.search(member.get("description", ""))
             if unit and found and member.get("type") in ("number", "array"):
                 assert found[1].replace("degrees", "deg") == unit, name

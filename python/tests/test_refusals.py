@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import stickslip as ss
+from stickslip import requests
 from stickslip.documents import to_document
 
 STEEL = ss.Body(2.1e11, 0.3)
@@ -111,8 +112,52 @@ def test_quantities_of_pint() -> None:
         to_document({"radius": 3 * unit.N})
 
 
+@pytest.mark.parametrize(
+    ("text", "value"),
+    [
+        ("3 micrometers", 3e-6),
+        ("2 mil", 5.08e-5),
+        ("0.5 in", 0.0127),
+        ("7 10^-6 m", 7e-6),
+        ("4 \u338d", None),
+        ("5 \u339b", 5e-6),
+        ("6 Âµm", 6e-6),
+        ("8 angstrom", 8e-10),
+        ("1 ?m", None),
+        ("1 V", None),
+        ("1,000 um", None),
+        ("1 um um", None),
+        ("1 xyz", None),
+    ],
+)
+def test_texts_are_read_by_the_units_of_the_engine_or_refused_by_name(text: str, value: float | None) -> None:
+    if value is not None:
+        assert to_document({"radius": text}) == {"radius": pytest.approx(value, rel=1e-15)}
+        return
+    for name in ("radius", "no_such_member"):
+        if text == "1 V" and name == "no_such_member":
+            continue
+        with pytest.raises(ss.InvalidInput) as refused:
+            to_document({name: text})
+        assert refused.value.code == "unknown_unit"
+        assert refused.value.pointer == f"/{name}"
+        assert text.split(" ", 1)[1].split(" ")[0] in str(refused.value)
+
+
 def test_labels_are_texts() -> None:
-    assert to_document({"label": "10 N", "type": "sphere"}) == {"label": "10 N", "type": "sphere"}
+    texts = {"label": "10 N", "type": "sphere", "at": "2026-11-26T08:00:00Z"}
+    assert to_document(texts) == texts
+
+
+def test_loops_in_different_units_are_fitted_together_in_si_units() -> None:
+    rows = [(0.1 * k, 0.5 * k) for k in range(20)]
+    micro = ss.read_loop(("d (um);f (N)\n" + "\n".join(f"{d};{f}" for d, f in rows)).encode())
+    milli = ss.read_loop(("d (mm);f (mN)\n" + "\n".join(f"{d / 1e3};{f * 1e3}" for d, f in rows)).encode())
+    found, units = requests.loops([micro, milli], None)
+    assert units is None
+    for name in ("displacement", "force"):
+        assert found[0][name] == pytest.approx(found[1][name], rel=1e-12)
+    assert found[0]["displacement"][1] == pytest.approx(1e-7)
 
 
 def test_loops_and_scans_are_read_in_any_encoding() -> None:

@@ -59,8 +59,37 @@ export function fileSource(kind, control, query, taken, fresh) {
 /** What a reply took for what, without how the text is written, or what is wrong with the file. */
 export function readingText(reply, error) {
   const text = reply ? reply.preview.reading.slice(1).join(" ") : (error.errors?.[0]?.detail ?? error.message);
-  return text.replace(/`([^`]*)`/g, "“$1”");
+  return plain(text.replace(/name the unit by `[^`]*`/, "choose the unit below"));
 }
+
+/** What a quantity of a reply is called. */
+const NAMES = { x: "place x", y: "place y", z: "height", normal_force: "normal load" };
+/** Columns that are shown one by one. */
+const MOST_COLUMNS = 40;
+
+/** A table of what each column of a file was taken for, with the lines that were left out; `show` fills it from a reply, or
+ *  empties it. */
+export function columnsTable() {
+  const rows = el("tbody", {});
+  const rest = el("p", { class: "note" });
+  const head = el("tr", {}, ["Column", "Name in the file", "Taken for"].map((name) => el("th", { scope: "col" }, name)));
+  const element = el("div", { class: "columns", hidden: true }, el("table", {}, el("thead", {}, head), rows), rest);
+  const taken = ({ quantity, unit, assumed, left_out: reason }) =>
+    quantity ? `${NAMES[quantity] ?? quantity}, in ${unit}${assumed ? ", which nothing names" : ""}` : `left out: ${plain(reason ?? "")}`;
+  const row = (column, index) =>
+    el("tr", { class: column.quantity ? false : "faint" }, [index + 1, column.name ?? "–", taken(column)].map((cell) => el("td", {}, String(cell))));
+  const show = (reply) => {
+    const { columns = [], rows_left_out: left = { count: 0, lines: [] } } = reply?.preview ?? {};
+    element.hidden = !columns.length && !left.count;
+    rows.replaceChildren(...columns.slice(0, MOST_COLUMNS).map(row));
+    const more = columns.length > MOST_COLUMNS ? `${columns.length - MOST_COLUMNS} more columns are not shown. ` : "";
+    const lines = left.lines.slice(0, 10).join(", ") + (left.count > 10 ? ` and ${left.count - 10} more` : "");
+    rest.textContent = more + (left.count ? `Lines that are not in it: ${lines}.` : "");
+  };
+  return { element, show };
+}
+
+const plain = (text) => text.replace(/`([^`]*)`/g, "“$1”");
 
 /** The symbol of a unit in the API, and the option of a list of units that has it. */
 export const symbolOf = (select) => select.selectedOptions[0].textContent.replace("µ", "u");

@@ -22,7 +22,7 @@ export function goBack(model) {
     }
   };
   const undo = el("button", { type: "button", id: "undo", onclick: () => to(() => sequence() - 1) }, "Undo");
-  const box = numberBox({ id: "back-to", value: "0", "aria-label": "Move to go back to" });
+  const box = numberBox({ id: "back-to", size: 5, value: "0", "aria-label": "Move to go back to" });
   const go = el("button", { id: "go-back" }, "Back to move");
   const begin = (event) => {
     event.preventDefault();

@@ -1,7 +1,7 @@
 // What is drawn over the loop of a contact: a loop that a bench has measured, from a file, and the loop of another contact.
 import { call, follow, pages } from "./api.js";
 import { debounce, el, notice } from "./dom.js";
-import { fileSource, loopColumns, powerOfUnit, readingText } from "./file_source.js";
+import { columnsTable, fileSource, loopColumns, powerOfUnit, readingText } from "./file_source.js";
 
 /** Moves of the other contact, and contacts to choose from. */
 const [MOVES, CHOICES] = [1000, 200];
@@ -35,10 +35,12 @@ function measuredFile(loop, changed) {
   const one = { opened: () => {} };
   const columns = loopColumns("measured ");
   const said = el("p", { class: "note", id: "overlay-said", "aria-live": "polite" });
+  const table = columnsTable();
   let name = "";
   let points = [];
   const taken = (reply, error) => {
-    if (reply) columns.show(reply);
+    columns.show(reply);
+    table.show(reply);
     const { displacement = [], force = [] } = reply?.loop ?? {};
     const factor = (quantity) => 10 ** powerOfUnit(reply.units[quantity]);
     points = displacement.map((value, index) => [value * factor("displacement"), force[index] * factor("force")]);
@@ -57,6 +59,7 @@ function measuredFile(loop, changed) {
   const input = el("input", { type: "file", id: "overlay-file", onchange: (event) => open(event.target.files[0]) });
   const clear = () => {
     [name, points, input.value, said.textContent] = ["", [], "", ""];
+    table.show();
     changed();
   };
   const mark = (is) => loop.element.classList.toggle("dropping", is);
@@ -75,6 +78,7 @@ function measuredFile(loop, changed) {
     {},
     el("legend", {}, "A measured loop, chosen or dropped on the plot"),
     el("label", {}, "File ", input),
+    table.element,
     el("div", { onchange: () => name && source.read() }, ...columns.rows),
     el("button", { type: "button", class: "quiet", onclick: clear }, "Clear"),
     said,

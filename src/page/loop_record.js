@@ -1,6 +1,6 @@
 // One record of a bench in the form of a fit: its text or file, which columns it has, and what else is known of it.
 import { el } from "./dom.js";
-import { fileSource, loopColumns, powerOfUnit, readingText } from "./file_source.js";
+import { columnsTable, fileSource, loopColumns, powerOfUnit, readingText } from "./file_source.js";
 import { Choice, NumberField, TextField } from "./form_fields.js";
 import { FORCE } from "./form_options.js";
 
@@ -26,11 +26,13 @@ export function loopRecord(form, index) {
   const load = optional("normal_force", "Load, if not that of the contact", { units: FORCE, unit: "N" });
   const weight = optional("weight", "Weight beside the other records");
   const said = el("p", { class: "note", "aria-live": "polite" });
+  const table = columnsTable();
   let found = null;
   const taken = (reply, error) => {
     found = reply;
     said.textContent = readingText(reply, error);
-    if (reply) columns.show(reply);
+    columns.show(reply);
+    table.show(reply);
   };
   const source = fileSource("loop", text.control, columns.query, taken, columns.reset);
   const element = el(
@@ -40,6 +42,7 @@ export function loopRecord(form, index) {
     text.element,
     el("label", {}, "or a file ", source.input),
     said,
+    table.element,
     el("div", { onchange: () => source.read() }, ...columns.rows, columns.time),
     start.element,
     el("details", {}, el("summary", {}, "Load and weight"), load.element, weight.element),

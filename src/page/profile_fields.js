@@ -1,6 +1,6 @@
 // The part of the form for the shape of the indenter; a sum contains several shapes.
 import { el } from "./dom.js";
-import { chooseUnit, fileSource, readingText } from "./file_source.js";
+import { chooseUnit, columnsTable, fileSource, readingText } from "./file_source.js";
 import { Choice, NumberField, TextField, numberBox, numberIn } from "./form_fields.js";
 import { COLUMNS, PROFILES, WITHOUT_STRESS } from "./form_options.js";
 import { scanFit } from "./scan_fit.js";
@@ -69,8 +69,9 @@ function columns(form, at, changed, body, type) {
   const text = new TextField(form, at, label, el("textarea", { rows: 8, spellcheck: "false", value: "" }));
   text.control.value = example;
   const said = el("p", { class: "note", "aria-live": "polite" });
+  const table = columnsTable();
   const isScan = type === "tabulated";
-  const spacing = numberBox({ "aria-label": "Distance of neighbours in a map" });
+  const spacing = numberBox({ size: 8, "aria-label": "Distance of neighbours in a map" });
   let found = null;
   /** The lists of units in which somebody chose, or of which the file says nothing: they count, and not the file. */
   const chosen = new Set();
@@ -101,6 +102,7 @@ function columns(form, at, changed, body, type) {
       for (const unit of unnamed) chosen.add(unit);
       return void source.read();
     }
+    table.show(reply);
     said.textContent = error || isScan ? readingText(reply, error) : "";
     changed();
   };
@@ -133,6 +135,7 @@ function columns(form, at, changed, body, type) {
   body.append(
     text.element,
     said,
+    table.element,
     el("div", { class: "row", onchange: choose }, ...described.map(([, name], index) => el("label", {}, name, units[index]))),
     el(
       "p",

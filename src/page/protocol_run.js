@@ -21,7 +21,7 @@ export function protocolCard(model) {
     { id: "protocol" },
     Object.entries(PROTOCOLS).map(([key, text]) => el("option", { value: key }, text)),
   );
-  const count = numberBox({ id: "reversals", value: "20" });
+  const count = numberBox({ id: "reversals", size: 6, value: "20" });
   const bar = el("progress", { id: "progress", max: 1, value: 0, "aria-label": "Progress of the run" });
   const status = el("p", { class: "status", role: "status", id: "run-status" });
   const start = el("button", { class: "primary", id: "run" }, "Run");

@@ -5,6 +5,7 @@ mod browser;
 #[path = "../common/mod.rs"]
 mod common;
 mod comparing;
+mod files;
 mod journeys;
 mod moving;
 mod plots;
