@@ -180,6 +180,11 @@ impl Profile {
         Shape::slope(self, radius)
     }
 
+    /// dg/dt (pure number) at several t = sqrt(x^2 - b^2), m, above a kink b = `base`, m, or above zero.
+    pub(super) fn slopes_above<const N: usize>(&self, base: f64, t: [f64; N]) -> [f64; N] {
+        Shape::slopes(self, base, t)
+    }
+
     /// The largest radius below `radius`, m, at which g is not analytic; zero, the tip, if there is none.
     pub(super) fn kink_below(&self, radius: f64) -> f64 {
         Shape::kink_below(self, radius)

@@ -2,11 +2,14 @@
 //! gathered in a tree so that a distant point sees many panels as one.
 //!
 //! The stress at a point is a sum of smooth functions of t against dy = g'(t) dt, with a branch point at t = r + i z.
-//! Panels are halved where the rule misses the rise of g, which is known, and again near the branch point: never is
-//! one longer than its distance from there. A panel touches the branch point only at the surface; there t - r = s^2
+//! g' has a branch point of its own at the kink b below a panel, which lies beside r if the point is next to a rim.
+//! Over s = sqrt(t - b) it is gone, and the branch point of the stress is at s = sqrt(r + i z - b). Panels of s are
+//! halved where the rule misses the rise of g, which is known, and again near the branch point: never is one longer
+//! than its distance from there. A panel touches the branch point only at the surface; there s - sqrt(r - b) = +-xi^2
 //! takes the root away. Over a tree's node that is half as long as its distance, 16 Chebyshev points stand for all
 //! below it: what they leave is 8^-16.
 
+use super::complex::Complex;
 use crate::numerics::chebyshev::{self, SIXTEEN};
 use crate::numerics::cluster_tree::{Cluster, ClusterTree};
 use crate::numerics::gauss;
@@ -36,12 +39,13 @@ pub(super) struct Source {
 /// A stretch of radii over which g is analytic and the shear has one slope.
 #[derive(Clone, Copy, Debug)]
 struct MeshPanel {
+    /// The ends, m.
     low: f64,
     high: f64,
+    /// The kink at or below the lower end, m: g is a function of the root s of the distance from it.
+    base: f64,
     /// -dw/dy.
     share: f64,
-    /// Whether g goes like the root of t - low at the lower end.
-    rooted: bool,
 }
 
 /// What stands for the panels of a stretch where it is far.
@@ -59,14 +63,6 @@ pub(super) struct Mesh {
     tree: ClusterTree<Stretch>,
     /// Levels at a vertical edge.
     edge: Option<Source>,
-}
-
-/// Gauss's rule over a panel, in the root of t - low if `rooted`.
-fn rule(low: f64, high: f64, rooted: bool) -> impl Iterator<Item = (f64, f64)> {
-    let length = high - low;
-    gauss::TWELVE_POINTS.into_iter().map(move |(at, weight)| {
-        if rooted { (low + length * at * at, 2.0 * length * at * weight) } else { (low + length * at, length * weight) }
-    })
 }
 
 /// Distance of a stretch from the branch point.
@@ -92,40 +88,52 @@ impl Mesh {
             Some(halves) => Stretch::of_both(halves),
             None => {
                 let (MeshPanel { low, high, .. }, sources) = &panels[items.start];
-                Stretch { low: *low, high: *high, sources: sources.clone() }
+                Stretch { low: low / radius, high: high / radius, sources: sources.clone() }
             }
         });
         let panels = panels.into_iter().map(|(panel, _)| panel).collect();
         Mesh { panels, tree, edge: Some(edge).filter(|edge| edge.normal > 0.0) }
     }
 
-    /// Calls `visit(t - r, source)` for all that acts at the distance r from the axis and the depth z, over the contact
-    /// radius.
+    /// Calls `visit(t - r, source)` for all that acts at the distance `from_axis`, m, from the axis and the depth z,
+    /// over the contact radius.
     pub(super) fn visit(
         &self,
         profile: &Profile,
         radius: f64,
-        (r, z): (f64, f64),
+        (from_axis, z): (f64, f64),
         mut visit: impl FnMut(f64, &Source),
     ) {
+        let r = from_axis / radius;
         let mut nears = Vec::with_capacity(4);
         let mut far = |cluster: &Cluster<Stretch>| {
             let Stretch { low, high, sources } = &cluster.sources;
-            let (length, away) = (high - low, distance(*low, *high, r, z));
-            let times = if cluster.halves.is_some() { 2.0 } else { 1.0 };
-            // A rise at one radius lies somewhere within the rounding of that radius, where it is no peak.
-            let (within, taken) = (length <= 0.0 && away <= 0.0, away >= times * length);
-            if taken && !within {
+            let taken = match cluster.halves {
+                Some(_) => distance(*low, *high, r, z) >= 2.0 * (high - low),
+                None => {
+                    let panel = &self.panels[cluster.items.start];
+                    // A rise at one radius lies somewhere within the rounding of that radius, where it is no peak.
+                    if panel.low < panel.high {
+                        panel.seen_from(radius, from_axis, z).is_far()
+                    } else {
+                        distance(*low, *high, r, z) > 0.0
+                    }
+                }
+            };
+            if taken {
                 sources.iter().for_each(|source| visit(source.t - r, source));
             }
             taken
         };
         self.tree.visit(0..self.panels.len(), &mut far, &mut |items| nears.push(items.start));
         for index in nears {
-            near(profile, radius, &self.panels[index], (r, z), &mut visit);
+            let panel = &self.panels[index];
+            if panel.low < panel.high {
+                panel.seen_from(radius, from_axis, z).visit(profile, radius, r, &mut visit);
+            }
         }
         if let Some(edge) = &self.edge {
-            visit(edge.t - r, edge);
+            visit((radius - from_axis) / radius, edge);
         }
     }
 }
@@ -172,40 +180,46 @@ impl Resolution<'_> {
     fn push_rise(&mut self, radius: f64, share: f64, rise: f64) {
         let t = radius / self.radius;
         let source = Source { t, normal: rise, tangential: rise * share };
-        self.panels.push((MeshPanel { low: t, high: t, share, rooted: false }, vec![source]));
+        self.panels.push((MeshPanel { low: radius, high: radius, base: radius, share }, vec![source]));
     }
 
     /// Appends the panels of a stretch of radii, m.
     fn resolve(&mut self, (low, high): (f64, f64), share: f64, depth: usize) {
         let (profile, radius) = (self.profile, self.radius);
+        let panel = MeshPanel { low, high, base: profile.kink_below(high), share };
         let top = profile.level(high);
         let rise = top - profile.level(low);
-        let middle = 0.5 * (low + high);
+        let ends = panel.ends(radius);
+        let middle = 0.5 * (ends.0 + ends.1);
+        let middle = panel.base + radius * middle * middle;
         let last = depth == 0 || self.spare == 0 || middle <= low || middle >= high;
-        let ends = (low / radius, high / radius);
-        for rooted in [false, true] {
-            let mut sources = sources(profile, radius, ends, rooted, share);
-            let sum: f64 = sources.iter().map(|source| source.normal).sum();
-            if last && !(sum > 0.0 && sum.is_finite()) {
-                self.push_rise(middle, share, rise);
-                return;
-            }
-            // Rounding of the level, which has no digits left where it underflows, and of the radii where g is steep.
-            let steepest = profile.slope(radius * sources[0].t).max(profile.slope(radius * sources[11].t));
-            let levels = 4.0 * f64::EPSILON * profile.cancellation(high) * top + 1e-13 * rise;
-            let noise = levels + 4.0 * f64::EPSILON * high * steepest + self.slack + f64::MIN_POSITIVE;
-            let off = (sum - rise).abs();
-            if last || sum.is_finite() && off <= noise {
-                if rise > 0.0 && sum > 0.0 && (last || off > levels) {
-                    // The rise is known better than what the rule makes of it.
-                    for source in &mut sources {
-                        source.normal *= rise / sum;
-                        source.tangential *= rise / sum;
-                    }
+        let length = ends.1 - ends.0;
+        let s = gauss::TWELVE_POINTS.map(|(at, _)| ends.0 + length * at);
+        let mut sources = panel.sources(profile, radius, s);
+        let steepest = [0, 11].map(|i| sources[i].normal / (2.0 * radius * s[i])).into_iter().fold(0.0, f64::max);
+        for (source, (_, weight)) in sources.iter_mut().zip(gauss::TWELVE_POINTS) {
+            source.normal *= length * weight;
+            source.tangential *= length * weight;
+        }
+        let sum: f64 = sources.iter().map(|source| source.normal).sum();
+        if last && !(sum > 0.0 && sum.is_finite()) {
+            self.push_rise(0.5 * (low + high), share, rise);
+            return;
+        }
+        // Rounding of the level, which has no digits left where it underflows, and of the radii where g is steep.
+        let levels = 4.0 * f64::EPSILON * profile.cancellation(high) * top + 1e-13 * rise;
+        let noise = levels + 4.0 * f64::EPSILON * high * steepest + self.slack + f64::MIN_POSITIVE;
+        let off = (sum - rise).abs();
+        if last || sum.is_finite() && off <= noise {
+            if rise > 0.0 && sum > 0.0 && (last || off > levels) {
+                // The rise is known better than what the rule makes of it.
+                for source in &mut sources {
+                    source.normal *= rise / sum;
+                    source.tangential *= rise / sum;
                 }
-                self.panels.push((MeshPanel { low: ends.0, high: ends.1, share, rooted }, sources));
-                return;
             }
+            self.panels.push((panel, sources.to_vec()));
+            return;
         }
         self.spare -= 1;
         self.resolve((middle, high), share, depth - 1);
@@ -213,13 +227,93 @@ impl Resolution<'_> {
     }
 }
 
-fn sources(profile: &Profile, radius: f64, (low, high): (f64, f64), rooted: bool, share: f64) -> Vec<Source> {
-    rule(low, high, rooted)
-        .map(|(t, weight)| {
-            let normal = radius * weight * profile.slope(radius * t);
-            Source { t, normal, tangential: normal * share }
+impl MeshPanel {
+    /// s at both ends, over the root of the contact radius.
+    fn ends(&self, radius: f64) -> (f64, f64) {
+        (((self.low - self.base) / radius).sqrt(), ((self.high - self.base) / radius).sqrt())
+    }
+
+    /// The slopes per s at several s.
+    fn sources<const N: usize>(&self, profile: &Profile, radius: f64, s: [f64; N]) -> [Source; N] {
+        let base = self.base / radius;
+        // t^2 - b^2 = s^2 (2 b + s^2), over whose root g is smooth, and known to all digits next to the kink.
+        let roots = s.map(|s| (2.0 * base + s * s).sqrt());
+        let slopes: [_; N] = profile.slopes_above(self.base, std::array::from_fn(|i| radius * s[i] * roots[i]));
+        std::array::from_fn(|i| {
+            let t = base + s[i] * s[i];
+            let normal = radius * slopes[i] * 2.0 * t / roots[i];
+            Source { t, normal, tangential: normal * self.share }
         })
-        .collect()
+    }
+
+    fn seen_from(&self, radius: f64, from_axis: f64, z: f64) -> SeenPanel<'_> {
+        let beyond = (from_axis - self.base) / radius;
+        let origin = beyond.max(0.0).sqrt();
+        let branch = Complex::new(beyond, z).root();
+        let sum = Complex::new(branch.re + origin, branch.im);
+        let branch = if beyond > 0.0 { Complex::new(0.0, z) * sum.inverse() } else { branch };
+        // The difference of two s has its digits from that of their radii.
+        let (low, high) = self.ends(radius);
+        let from_origin = |end: f64, s: f64| {
+            if beyond > 0.0 { (end - from_axis) / radius / (s + origin) } else { s }
+        };
+        let (low, high) = (from_origin(self.low, low), from_origin(self.high, high));
+        SeenPanel { panel: self, origin, gap: (-beyond).max(0.0), branch, low, high }
+    }
+}
+
+/// A panel as a place sees it, over s less its value at the radius of the place.
+struct SeenPanel<'a> {
+    panel: &'a MeshPanel,
+    /// s at the radius of the place; zero where that is below the kink.
+    origin: f64,
+    /// How far the radius of the place is below the kink, over the contact radius.
+    gap: f64,
+    /// Where the stress has its branch point.
+    branch: Complex,
+    low: f64,
+    high: f64,
+}
+
+impl SeenPanel<'_> {
+    /// Whether the rule holds over a part.
+    fn resolves(&self, low: f64, high: f64) -> bool {
+        distance(low, high, self.branch.re, self.branch.im) >= high - low
+    }
+
+    fn is_far(&self) -> bool {
+        self.resolves(self.low, self.high)
+    }
+
+    /// Visits the sources in ever shorter parts towards the branch point.
+    fn visit(&self, profile: &Profile, radius: f64, r: f64, visit: &mut impl FnMut(f64, &Source)) {
+        let mut rule = |nodes: [(f64, f64); 12]| {
+            let sources = self.panel.sources(profile, radius, nodes.map(|(at, _)| self.origin + at));
+            for ((at, weight), Source { normal, tangential, .. }) in nodes.into_iter().zip(sources) {
+                let offset = self.gap + at * (2.0 * self.origin + at);
+                let source = Source { t: r + offset, normal: weight * normal, tangential: weight * tangential };
+                visit(offset, &source);
+            }
+        };
+        let at_surface = self.branch.im <= 0.0;
+        let mut parts = vec![(self.low, self.high)];
+        while let Some((low, high)) = parts.pop() {
+            let length = high - low;
+            if self.resolves(low, high) {
+                rule(gauss::TWELVE_POINTS.map(|(at, weight)| (low + length * at, length * weight)));
+            } else if low < 0.0 && high > 0.0 {
+                parts.extend([(low, 0.0), (0.0, high)]);
+            } else if at_surface && self.origin <= 0.0 && low == 0.0 && (length * length <= r || r <= 0.0) {
+                rule(gauss::TWELVE_POINTS.map(|(at, weight)| (length * at, length * weight)));
+            } else if at_surface && (low == 0.0 || high == 0.0) && 2.0 * length <= self.origin {
+                let side = if low == 0.0 { length } else { -length };
+                rule(gauss::TWELVE_POINTS.map(|(at, weight)| (side * at * at, 2.0 * length * at * weight)));
+            } else {
+                let middle = 0.5 * (low + high);
+                parts.extend([(low, middle), (middle, high)]);
+            }
+        }
+    }
 }
 
 impl Stretch {
@@ -245,30 +339,4 @@ fn condense(low: f64, high: f64, all: &[Source]) -> Vec<Source> {
     let weights = SIXTEEN.weights(&normal).into_iter().zip(SIXTEEN.weights(&tangential));
     let source = |(t, (normal, tangential))| Source { t, normal, tangential };
     SIXTEEN.places(low, high).into_iter().zip(weights).map(source).collect()
-}
-
-/// Visits the sources of a panel too long for its distance from the branch point, in ever shorter parts.
-fn near(profile: &Profile, radius: f64, panel: &MeshPanel, (r, z): (f64, f64), visit: &mut impl FnMut(f64, &Source)) {
-    let mut source = |offset: f64, weight: f64| {
-        let t = r + offset;
-        let normal = radius * weight * profile.slope(radius * t);
-        visit(offset, &Source { t, normal, tangential: normal * panel.share });
-    };
-    // Ends as offsets from r, which keep their digits near it.
-    let mut parts = vec![(panel.low - r, panel.high - r, panel.rooted)];
-    while let Some((low, high, rooted)) = parts.pop() {
-        let length = high - low;
-        let touches = z <= 0.0 && (low == 0.0 || (high == 0.0 && !rooted)) && (length <= r || r <= 0.0);
-        if distance(low, high, 0.0, z) >= length {
-            rule(low, high, rooted).for_each(|(offset, weight)| source(offset, weight));
-        } else if low < 0.0 && high > 0.0 {
-            parts.extend([(low, 0.0, rooted), (0.0, high, false)]);
-        } else if touches {
-            let side = if low == 0.0 { 1.0 } else { -1.0 };
-            rule(0.0, length, true).for_each(|(offset, weight)| source(side * offset, weight));
-        } else {
-            let middle = 0.5 * (low + high);
-            parts.extend([(low, middle, rooted), (middle, high, false)]);
-        }
-    }
 }

@@ -118,7 +118,7 @@ impl Subsurface {
         let place = DeepPlace { r: r / radius, z: if surface { 0.0 } else { z / radius }, poisson: self.poisson };
         let (normal, tangential) = match &self.kinks {
             Some(kinks) if place.r.hypot(place.z) < FAR => kinks.functions(&place),
-            _ => self.integrated(&place),
+            _ => self.integrated(&place, r),
         };
         let (pressed, dragged) = self.units;
         let stress = Stress::of(
@@ -130,15 +130,15 @@ impl Subsurface {
         if surface { self.of_surface(r, stress) } else { stress }
     }
 
-    /// The ten functions by quadrature over the radius.
-    fn integrated(&self, place: &DeepPlace) -> (NormalKernels, TangentialKernels) {
+    /// The ten functions by quadrature over the radius, at a place this far from the axis, m.
+    fn integrated(&self, place: &DeepPlace, from_axis: f64) -> (NormalKernels, TangentialKernels) {
         let (mut normal, mut tangential) = ([0.0; 4], [0.0; 6]);
         let radius = self.contact.contact_radius();
         let mesh = self.mesh.get_or_init(|| {
             let rings = self.contact.shear_rings().collect::<Vec<_>>();
             Mesh::new(self.contact.profile(), &rings, radius, self.contact.accuracy().stress_error)
         });
-        mesh.visit(self.contact.profile(), radius, (place.r, place.z), |offset, source| {
+        mesh.visit(self.contact.profile(), radius, (from_axis, place.z), |offset, source| {
             let (p, q) = place.kernels(offset);
             for (sum, value) in normal.iter_mut().zip(p) {
                 *sum += source.normal * value;

@@ -36,6 +36,7 @@ mod springs;
 mod springs_estimate;
 mod steep_powers;
 mod subsurface;
+mod subsurface_kinks;
 mod sums_of_tables;
 mod support;
 mod tables;
