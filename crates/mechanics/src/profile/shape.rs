@@ -168,10 +168,18 @@ pub(super) trait Shape: Sized {
         Falls { least, concavely: false }
     }
 }
+
+/// The largest kink below the outer end of a span, m; zero, the tip, if there is none. By the square of the end, since
+/// a radius just beyond a kink may be rounded onto it.
+pub(super) fn kink_under<S: Shape>(shape: &S, square: DoubleDouble, radius: f64) -> f64 {
+    let kink = shape.kink_below(radius.next_up());
+    if DoubleDouble::square_of(kink) < square { kink } else { shape.kink_below(kink) }
+}
+
 /// The outermost interval of a span without a kink, as such and as a span, and what is left inside it.
 pub(super) fn outermost_interval<S: Shape>(shape: &S, span: &Span) -> (SmoothInterval, Span, Option<Span>) {
     let ShapeFacts { ceiling, power, analytic_tip, .. } = shape.facts();
-    let base = shape.kink_below(span.outer_radius);
+    let base = kink_under(shape, span.outer, span.outer_radius);
     let square = DoubleDouble::square_of(base);
     let (Some(outer), rest) = (span.above(square, base), span.below(square, base)) else {
         return (SmoothInterval::new(span, 0.0, 0.0, ceiling, power), *span, None);

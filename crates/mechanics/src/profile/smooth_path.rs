@@ -19,6 +19,8 @@ struct Path {
     high: f64,
     v_low: f64,
     v_high: f64,
+    /// t + v at the inner end.
+    start: f64,
     length: f64,
 }
 
@@ -41,7 +43,7 @@ impl Path {
         let steps = gap / (v_low + v_high) + gap / (low + high);
         // At r = b in a profile that is smooth there, what lies this near to b adds nothing.
         let start = if low + v_low > 0.0 { low + v_low } else { 1e-17 * (high + v_high) };
-        Some(Path { kappa, low, high, v_low, v_high, length: (steps / start).ln_1p() })
+        Some(Path { kappa, low, high, v_low, v_high, start, length: (steps / start).ln_1p() })
     }
 
     /// K by one panel over a short path, the family's gamma side by side.
@@ -56,14 +58,9 @@ impl Path {
     }
 
     fn by_rule<const N: usize>(&self, family: &impl SmoothCoordinate, rule: &[(f64, f64); N]) -> Option<f64> {
-        let end = self.high + self.v_high;
-        let t = exp_m1(rule.map(|(u, _)| self.length * u)).map(|growth| {
-            let here = end / (1.0 + growth);
-            let other = self.kappa / here;
-            let drop = 0.5 * growth / (1.0 + growth) * (end - other);
-            let t = if drop < 0.5 * self.high { self.high - drop } else { 0.5 * (here + other) };
-            t.max(self.low)
-        });
+        let growth = exp_m1(rule.map(|(u, _)| self.length * u));
+        // The points of a rule are the same from either end.
+        let t: [_; N] = std::array::from_fn(|index| self.place(growth[index], growth[N - 1 - index]).0);
         let slopes = family.slopes_at(t)?;
         Some(self.length * slopes.iter().zip(rule).map(|(slope, (_, weight))| slope * weight).sum::<f64>())
     }
@@ -77,13 +74,22 @@ impl Path {
             ceiling
         };
         along_strip(self.length, power.max(1.0).recip(), room, |s| {
+            let (t, drop) = self.place(s.exp_m1(), (self.length - s).exp_m1());
             let here = end * (-s).exp();
-            let other = self.kappa / here;
-            let drop = -0.5 * (-s).exp_m1() * (end - other);
-            // Far below the outer end the difference has lost its digits, and the sum of the two has not.
-            let t = if drop < 0.5 * self.high { self.high - drop } else { 0.5 * (here + other) };
-            f(t.max(self.low), (0.5 * (here - other)).max(self.v_low), drop)
+            f(t, (0.5 * (here - self.kappa / here)).max(self.v_low), drop)
         })
+    }
+
+    /// t, and how far that is below the outer end, where t + v is 1/(1 + `shrunk`) of its value at the outer end and 1
+    /// + `grown` times that at the inner one.
+    fn place(&self, shrunk: f64, grown: f64) -> (f64, f64) {
+        let end = self.high + self.v_high;
+        let here = end / (1.0 + shrunk);
+        let other = self.kappa / here;
+        let drop = 0.5 * shrunk / (1.0 + shrunk) * (end - other);
+        // Far below the outer end the difference has lost its digits, and what t has gained on the inner one has not.
+        let t = if drop < 0.5 * self.high { self.high - drop } else { self.low + 0.5 * grown * (self.start - other) };
+        (t.max(self.low), drop)
     }
 }
 

@@ -28,7 +28,7 @@ use std::ops::Range;
 
 #[cfg(test)]
 use super::call_count;
-use super::shape::{KernelOrder, Shape, ShapeFacts, span};
+use super::shape::{KernelOrder, Shape, ShapeFacts, kink_under, span};
 use super::{DoubleDouble, Ring, Span, StressRadius};
 use crate::numerics::chebyshev::counted;
 use crate::numerics::multipole::Multipole;
@@ -184,7 +184,7 @@ impl<'a, S: Shape> SmoothPieces<'a, S> {
             return None;
         }
         while outer > floor {
-            let kink = shape.kink_below(radius);
+            let kink = kink_under(shape, outer, radius);
             let base = DoubleDouble::square_of(kink);
             let room = (ceiling - radius) * (ceiling + radius);
             let low = larger(floor, base);

@@ -71,16 +71,16 @@ impl Sum {
         2.0 * growth(&|part| part.level(x)).max(growth(&|part| part.slope(x)))
     }
 
-    /// The radius from which what lies beyond it must be known on its own: the kink that a radius is little beyond, or,
-    /// where the radius is little below the end of a part that is vertical there, one some units in the last place
-    /// below it.
-    fn counted_from(&self, radius: f64) -> Option<f64> {
+    /// The radius from which what lies beyond it must be known on its own: the kink that the radius of a level is
+    /// little beyond, or, where the radius is little below the end of a part that is vertical there, one some units in
+    /// the last place below it. A radius just below a kink may be rounded onto it, which the level is not.
+    fn counted_from(&self, radius: f64, level: f64) -> Option<f64> {
         if radius > (1.0 - NEAR) * self.facts.ceiling {
             return Some(radius * (1.0 - 8.0 * f64::EPSILON));
         }
         let above = self.kinks.partition_point(|&kink| kink <= radius);
-        let kink = *self.kinks.get(above.checked_sub(1)?)?;
-        (radius - kink < NEAR * kink).then_some(kink)
+        let mut near = self.kinks[..above].iter().copied().rev().take_while(|kink| radius - kink < NEAR * kink);
+        near.find(|&kink| self.level(kink) < level)
     }
 
     /// The stretch from a radius outward whose squares differ by `gap`.
@@ -159,7 +159,7 @@ impl Shape for Sum {
         let radius = self.radius(level.value());
         let plain = DoubleDouble::square_of(radius);
         let at_rim = self.rim.is_some_and(|(_, top)| level.value() >= top);
-        let Some(base) = self.counted_from(radius).filter(|_| !at_rim) else { return plain };
+        let Some(base) = self.counted_from(radius, level.value()).filter(|_| !at_rim) else { return plain };
         let above = (level - DoubleDouble::from(self.level(base))).value();
         if above <= 0.0 {
             return plain;
@@ -170,7 +170,11 @@ impl Shape for Sum {
             let steepness = Shape::slope(self, span.outer_radius) / (2.0 * span.outer_radius);
             (rise - above, if steepness.is_finite() { steepness } else { rise / gap })
         });
-        Sum::beyond(base, gap).outer
+        let found = Sum::beyond(base, gap).outer;
+        // A level that the next kink does not exceed is not reached beyond it, where g may rise like a root.
+        let next = self.kinks.get(self.kinks.partition_point(|&kink| kink <= base));
+        let next = next.filter(|&&next| found > DoubleDouble::square_of(next) && self.level(next) >= level.value());
+        next.map_or(found, |&next| DoubleDouble::square_of(next))
     }
 
     fn load(&self, radius: f64) -> f64 {
@@ -187,7 +191,7 @@ impl Shape for Sum {
         let radius = |part: &Profile, load: f64| part.radius(part.indentation_for(load));
         let found = self.inverse(load, radius, Shape::load, |x| x * Shape::slope(self, x));
         let mut level = self.level(found);
-        if load > 0.0 && self.counted_from(found).is_some() {
+        if load > 0.0 && self.counted_from(found, f64::INFINITY).is_some() {
             // int_0^d X dy, whose slope X hardly changes here.
             let core = self.radius(0.0);
             let point = |level: f64| {

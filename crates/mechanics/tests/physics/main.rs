@@ -21,6 +21,7 @@ mod fretting;
 mod hard_cases;
 mod laws;
 mod load_curves;
+mod many_radii;
 mod minimax;
 mod open_gaps;
 mod packed;
