@@ -42,7 +42,7 @@ pub(super) struct Node {
 
 /// How fast an integrand changes along its path.
 struct Change {
-    /// At a distance s below the top ln t has fallen by at least rate s + bend s^2/2.
+    /// At a distance s below the top ln t falls by rate + bend s per s, at the most near enough to the top.
     rate: f64,
     bend: f64,
     /// How many factors of the integrand change like g.
@@ -87,8 +87,17 @@ impl SmoothInterval {
     }
 
     /// Visits panel after panel from `top` down over `length`, in t or in an angle that t follows.
-    fn sweep(&self, singular: Singular, top: f64, length: f64, change: Change, mut visit: impl FnMut(f64, f64)) {
+    /// `t_at` is t at a distance from the top.
+    fn sweep(
+        &self,
+        (singular, top, length): (Singular, f64, f64),
+        change: Change,
+        t_at: impl Fn(f64) -> f64,
+        mut visit: impl FnMut(f64, f64),
+    ) {
         let (rate, bend) = (self.power * change.rate, self.power * change.bend);
+        // x^2, by which a power has fallen: above a kink t falls sooner.
+        let square = |done: f64| self.base * self.base + t_at(done).powi(2);
         let mut done = 0.0;
         while done < length {
             let (high, left) = (top - done, length - done);
@@ -99,7 +108,7 @@ impl SmoothInterval {
             }
             let mut panel = singular.panel(high, left);
             // Panels that the singularities alone shape suffice for a parabola, and where a power counts no longer.
-            if self.power > PARABOLA && done * (rate + 0.5 * bend * done) < 40.0 {
+            if self.power > PARABOLA && self.power * (square(0.0) / square(done)).ln() < 80.0 {
                 if self.power > 10.0 {
                     // A steep power is followed by no more than a factor e^5 at a time.
                     let steep = rate + bend * done;
@@ -121,7 +130,8 @@ impl SmoothInterval {
     pub(super) fn rise(&self, gamma: impl Fn(f64) -> f64) -> f64 {
         let mut sum = 0.0;
         let change = Change { rate: self.high.recip(), bend: 0.0, factors: 1.0, least: 0.0 };
-        self.sweep(self.singular, self.high, self.drop, change, |dt, weight| {
+        let t_at = |dt: f64| self.high - dt;
+        self.sweep((self.singular, self.high, self.drop), change, t_at, |dt, weight| {
             sum += weight * gamma((self.high - dt).max(0.0));
         });
         sum
@@ -134,7 +144,8 @@ impl SmoothInterval {
         }
         let (mut first, mut second) = (0.0, 0.0);
         let change = Change { rate: self.high.recip(), bend: 0.0, factors: 2.0, least: 0.0 };
-        self.sweep(self.singular, self.high, self.drop, change, |dt, weight| {
+        let t_at = |dt: f64| self.high - dt;
+        self.sweep((self.singular, self.high, self.drop), change, t_at, |dt, weight| {
             let t = (self.high - dt).max(0.0);
             let h = rise(Node { t, dt });
             let area = weight * h * self.stretch(t);
@@ -175,7 +186,8 @@ impl SmoothInterval {
         let mut total = 0.0;
         // A power of the sine is a sum of waves no shorter than that power has them.
         let change = Change { rate: w_top / top, bend: 1.0, factors: 1.0, least: 1.0 };
-        self.sweep(singular, top.atan2(w_top), angle, change, |turn, weight| {
+        let t_at = |turn: f64| top * turn.cos() - w_top * turn.sin();
+        self.sweep((singular, top.atan2(w_top), angle), change, t_at, |turn, weight| {
             let half = (0.5 * turn).sin();
             let dt = 2.0 * top * half * half + w_top * turn.sin();
             let t = (top - dt).max(0.0);

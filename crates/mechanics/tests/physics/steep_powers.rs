@@ -7,6 +7,7 @@ use proptest::prelude::*;
 use stickslip_mechanics::profile::{PowerLaw, Sum, TruncatedCone};
 use stickslip_mechanics::{Contact, Elasticity, Preload, Profile, Setup};
 
+use crate::subsurface_kinks::gauss;
 use crate::support::quadrature::integral;
 use crate::support::{config, displace, sphere};
 
@@ -178,6 +179,73 @@ proptest! {
             slide * FirstLoading::ratio() * depth);
         for place in places {
             loading.displacements_agree(place * loading.edge);
+        }
+    }
+}
+
+/// int_0^1 of a smooth f by two hundred panels.
+fn panels(f: impl Fn(f64) -> f64) -> f64 {
+    let rule = gauss(24);
+    let panel = |index: u32| rule.iter().map(|(u, weight)| weight * f((f64::from(index) + u) / 200.0)).sum::<f64>();
+    (0..200).map(panel).sum::<f64>() / 200.0
+}
+
+proptest! {
+    #![proptest_config(config(200))]
+
+    /// A power above a kink: there g changes with x^n, not with the n-th power of the distance from the kink.
+    #[test]
+    fn force_and_work_of_a_steep_power_beside_a_rim_are_their_integrals(
+        power in 8.0..130.0_f64,
+        flat_share in 0.01..0.99_f64,
+        slope in 1e-3..0.3_f64,
+        slide in 0.3..1.5_f64,
+    ) {
+        // Both parts have risen alike at the edge, 1 m; the indenter then moves beyond gross slip or short of it.
+        let flat = flat_share;
+        let t_of = |x: f64| ((x - flat) * (x + flat)).max(0.0).sqrt();
+        let cone = |x: f64| slope * x * t_of(x).atan2(flat);
+        let scale = cone(1.0);
+        let unit = Profile::PowerLaw(PowerLaw::new(power, 1e-3).unwrap()).level(1.0) / 1e-3;
+        let parts = vec![
+            Profile::PowerLaw(PowerLaw::new(power, scale / unit).unwrap()),
+            Profile::TruncatedCone(TruncatedCone::new(slope, flat).unwrap()),
+        ];
+        let g = |x: f64| scale * x.powf(power) + cone(x);
+        let depth = 2.0 * scale;
+        let setup = Setup {
+            profile: Profile::Sum(Sum::new(parts).unwrap()),
+            elasticity: Elasticity::effective(E_STAR, G_STAR).unwrap(),
+            friction: FRICTION,
+            preload: Preload::ContactRadius(1.0),
+        };
+        let mut contact = Contact::new(setup).unwrap();
+        let (ratio, position) = (FirstLoading::ratio(), slide * depth);
+        contact.apply(&displace(ratio * position)).unwrap();
+        // Over the coordinate in which both parts are smooth, from the stick radius or from the rim to the edge.
+        let stick = if slide < 1.0 { radius_of(g, depth - position, 1.0) } else { 0.0 };
+        let over = |low: f64, high: f64, f: &dyn Fn(f64) -> f64| {
+            if low >= flat {
+                let (from, to) = (t_of(low), t_of(high));
+                (to - from) * panels(|u| {
+                    let t = from + (to - from) * u;
+                    let x = t.hypot(flat);
+                    f(x) * t / x
+                })
+            } else {
+                (high - low) * panels(|u| f(low + (high - low) * u))
+            }
+        };
+        let slipped = |f: &dyn Fn(f64) -> f64| {
+            if stick < flat { over(stick, flat, f) + over(flat, 1.0, f) } else { over(stick, 1.0, f) }
+        };
+        let bound = |x: f64| depth - g(x);
+        let force = 2.0 * G_STAR * ratio * (position.min(depth) * stick + slipped(&bound));
+        let work = 2.0 * G_STAR * ratio * ratio * slipped(&|x| (position - bound(x)) * bound(x));
+        let state = contact.state();
+        for (found, expected, what) in [(state.force, force, "force"), (state.dissipated_energy, work, "work")] {
+            let error = (found / expected - 1.0).abs();
+            prop_assert!(error < 2e-12, "{what} of the power {power}: {found:e} is not {expected:e}, {error:e}");
         }
     }
 }
