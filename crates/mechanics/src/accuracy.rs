@@ -42,31 +42,35 @@ impl Contact {
     /// ```
     #[must_use]
     pub fn accuracy(&self) -> ErrorEstimate {
-        let finite = |value: f64| if value.is_finite() { value } else { 0.0 };
+        // Without a load there is nothing to err; with one, an error that is not known is the largest number.
+        let pressed = self.normal_force() > 0.0;
+        let known = |value: f64| if pressed && !value.is_nan() { value.min(f64::MAX) } else { 0.0 };
         let carried = self.friction * self.normal_force();
         let summed = self.force_unit() * self.history.force_size();
         let terms = if carried > 0.0 { summed / carried } else { 0.0 };
         let (radius, indentation) = (self.contact_radius(), self.indentation());
         // Where g is steep, a rounded radius moves the indentation by this many units.
         let steepness = radius * self.profile.slope(radius) / indentation;
-        let steepness = finite(steepness).clamp(0.0, MAX_STEEPNESS);
+        let steepness = known(steepness).clamp(0.0, MAX_STEEPNESS);
         let mean_pressure = mean_pressure(self.normal_force(), radius);
         let doubt = self.profile.interpolation_error(radius);
         let kernel =
             self.elasticity.e_star() / std::f64::consts::PI * (self.path_kernel + 2.0 * doubt.kernel) / mean_pressure;
-        let kernel = finite(kernel);
+        let kernel = known(kernel);
         let unit_of_load = 2.0 * self.elasticity.e_star() / self.normal_force();
-        let moved = finite(unit_of_load * radius * self.indentation_error);
-        let unresolved = moved + if doubt.load > 0.0 { finite(unit_of_load * self.load_error()) } else { 0.0 };
+        let moved = known(unit_of_load * radius * self.indentation_error);
+        let unresolved = moved + if doubt.load > 0.0 { known(unit_of_load * self.load_error()) } else { 0.0 };
         let unit = f64::EPSILON * self.profile.cancellation(radius);
+        let force_error = unit * (2.0 + 6.0 * terms + steepness) + self.path_error + unresolved;
+        let stress_error = unit * (4.0 + 12.0 * terms + 2.0 * steepness)
+            + self.path_error
+            + unresolved
+            + STRESS_OF_MOVED * moved
+            + kernel;
         ErrorEstimate {
             path_error: self.path_error,
-            force_error: unit * (2.0 + 6.0 * terms + steepness) + self.path_error + unresolved,
-            stress_error: unit * (4.0 + 12.0 * terms + 2.0 * steepness)
-                + self.path_error
-                + unresolved
-                + STRESS_OF_MOVED * moved
-                + kernel,
+            force_error: force_error.min(f64::MAX),
+            stress_error: stress_error.min(f64::MAX),
         }
     }
 

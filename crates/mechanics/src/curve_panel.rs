@@ -67,6 +67,9 @@ fn slips((advance, rise): (DoubleDouble, DoubleDouble), sign: f64, noise: f64) -
     (advance * sign - rise).value() > noise
 }
 
+/// How far into a ring, from its outer end, its kernel is asked for where it is infinite at the inner one.
+const BESIDE: f64 = 0.999;
+
 impl Contact {
     /// The displacement, scaled, m, at which a contact that does not slip has the tangential force `target`, N, on a
     /// path straight in (F_x, d); `None` where it slips, or on another path.
@@ -180,7 +183,14 @@ impl Contact {
         // A chord of half the depth is off the parabola's slope by a half of bend times the depth at its ends, and the
         // elbow by a sixth more.
         let kernel = self.profile.kernel(&StressRadius::of_point(&ring.inner), ring);
-        // At the tip of a cone it is infinite, and so is the stress itself.
-        panel.kernel = if kernel.is_finite() { (bend * ring.depth).abs() / 1.5 * kernel } else { 0.0 };
+        let kernel = if kernel.is_finite() {
+            kernel
+        } else {
+            // At the tip of a cone or at a rim it is infinite, and so is the stress itself: the error is that of the
+            // stress beside it.
+            let beside = BESIDE * ring.inner.radius + (1.0 - BESIDE) * ring.outer.radius;
+            self.profile.kernel(&StressRadius::new(beside), ring)
+        };
+        panel.kernel = (bend * ring.depth).abs() / 1.5 * kernel;
     }
 }

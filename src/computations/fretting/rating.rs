@@ -101,9 +101,9 @@ pub fn rate(setup: SharedSetup, task: &FrettingTask, stop: &Stop) -> Result<Fret
     Ok(reply)
 }
 
-/// An error over a value; one of zero has no share that it errs by.
+/// An error over a value, the largest number where that is not known; a value of zero has no share that it errs by.
 fn relative(error: f64, value: f64) -> f64 {
-    finite(error / value.abs()).unwrap_or(0.0)
+    if value.abs() > 0.0 { (error / value.abs()).min(f64::MAX) } else { 0.0 }
 }
 
 fn refused(error: Error, stop: &Stop) -> Failure {

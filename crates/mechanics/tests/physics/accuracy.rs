@@ -149,6 +149,36 @@ fn estimates_of_paths_straight_in_a_force_are_honest() {
 }
 
 #[test]
+fn chords_from_the_tip_of_a_cone_leave_an_error_of_the_stress() {
+    // The kernel of what the first pair of chords touches is infinite at the tip.
+    let setup = Setup {
+        profile: Profile::Cone(Cone::new(0.1).unwrap()),
+        elasticity: Elasticity::effective(1e6, 8e5).unwrap(),
+        friction: 0.5,
+        preload: Preload::ContactRadius(1.0),
+    };
+    let mut lifted = Contact::new(setup).unwrap();
+    let (load, full) = (lifted.normal_force(), lifted.gross_slip_displacement());
+    lifted.apply(&Move { normal: Some(Normal::Indentation(-0.01)), ..Move::default() }).unwrap();
+    let curve = Move {
+        tangential: Some(Tangential::Displacement(0.5 * full)),
+        normal: Some(Normal::NormalForce(load)),
+        relative: false,
+    };
+    let (mut coarse, mut fine) = (lifted.clone(), lifted);
+    coarse.apply_within(&curve, 1e-3).unwrap();
+    fine.apply_within(&curve, 1e-8).unwrap();
+    let mut stresses = Honesty::new("shear stress after a curved path from the tip of a cone");
+    let (estimate, unit) = (coarse.accuracy().stress_error, 0.5 * load / std::f64::consts::PI);
+    for step in 1..200 {
+        let radius = 0.005 * f64::from(step);
+        let error = (coarse.shear(radius) - fine.shear(radius)).abs() / unit;
+        stresses.compare(&format!("at {radius:.3}"), error, estimate + fine.accuracy().stress_error);
+    }
+    stresses.close();
+}
+
+#[test]
 fn energies_and_displacements_of_paths_straight_in_a_force_are_as_good_as_the_forces() {
     let mut random = Random(11);
     let mut compared = 0;
