@@ -6,9 +6,10 @@
 //! and keep their digits.
 //!
 //! F_N is exact at the points, and between them it errs by some h times the error of X in the gap of the width h, which
-//! is what [`open_gaps`](super::open_gaps) leave open. Up to the first point d1 it is F_N (d/d1)^n times ln(d1/d) times
-//! the error of the exponent n, for which the change of n over an e-fold of d beyond the first point stands. The
-//! factors are fitted to random curves (`tests/physics/open_gaps.rs`).
+//! is what [`open_gaps`](super::open_gaps) leave open. Up to the first point d1 it is F_N (d/d1)^n times (d1/d)^e - 1,
+//! where e is the error of the exponent n, for which the change of n over an e-fold of d beyond the first point stands;
+//! F_N is convex, and so no larger than its chord from zero. The factors are fitted to random curves
+//! (`tests/physics/open_gaps.rs`).
 
 use std::sync::Arc;
 
@@ -56,12 +57,14 @@ struct Curve {
     exponent_error: f64,
 }
 
-/// A gap between two points: the levels of both, m, and the error of X in it, m.
+/// A gap between two points: the levels of both, m, the error of X in it, m, and by how much the mean of X exceeds that
+/// of the gap before, m.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct CurveGap {
     low: f64,
     high: f64,
     radius: f64,
+    rise: f64,
 }
 
 /// An end of a straight piece.
@@ -158,7 +161,12 @@ fn gaps(points: &[(f64, f64)], exponent_error: f64) -> Vec<CurveGap> {
     let mut radii = open_slopes(points, 0);
     radii[0] = OF_EXPONENT * exponent_error * points[1].1 / points[1].0;
     radii[1] = radii[1].max(radii[0]);
-    points.windows(2).zip(radii).map(|(pair, radius)| CurveGap { low: pair[0].0, high: pair[1].0, radius }).collect()
+    let gap = |(index, radius): (usize, f64)| {
+        let (low, high) = (points[index], points[index + 1]);
+        let before = if index > 0 { secant(points[index - 1], low) } else { 0.0 };
+        CurveGap { low: low.0, high: high.0, radius, rise: (secant(low, high) - before).max(0.0) }
+    };
+    radii.into_iter().enumerate().map(gap).collect()
 }
 
 impl Curve {
@@ -337,13 +345,18 @@ impl CurveFamily for LoadCurve {
         let (load, error) = if level < first.level {
             let power = curve.exponent + 1.0;
             let (share, above) = (level / first.level, (first.level / level).ln());
-            let load = first.load * share.powf(power) * (curve.exponent_error * above).min(1.0);
+            let load = first.load * share.powf(power);
+            // Another exponent makes another power; at most the load is that of the chord from zero.
+            let most = (first.load * share - load).max(load);
+            let load = (load * (curve.exponent_error * above).exp_m1()).min(most);
             let scale = first.load / first.level * share.powf(curve.exponent);
             (load, scale * (1.0 + power * above) * curve.exponent_error)
         } else {
             let index = curve.gaps.partition_point(|gap| gap.high < level).min(curve.gaps.len() - 1);
             let gap = curve.gaps[index];
-            (OF_LOAD * gap.radius * (level.min(gap.high) - gap.low), OF_RADIUS * gap.radius)
+            // A convex curve lies between the chord of a gap and that of the gap before, drawn on.
+            let load = (OF_LOAD * gap.radius).min(gap.rise);
+            (load * (level.min(gap.high) - gap.low), OF_RADIUS * gap.radius)
         };
         // Where X hardly rises, a radius says little of the level.
         let level = if error > 0.0 { (error / self.rate(level)).min(level) } else { 0.0 };
