@@ -176,6 +176,11 @@ fn warning(note: Note) -> Warning {
             "the residual is not noise: the contact has another friction law, shape or load, or the bench \
              another error. The standard errors are too small",
         ),
+        Note::NotConverged => (
+            "not_converged",
+            "the search for the best values ended before it had found them: values and intervals are those of where it \
+             stopped. Free fewer parameters, or give known ones",
+        ),
     };
     Warning::new(code, message)
 }

@@ -9,6 +9,8 @@ use stickslip_mechanics::range;
 
 /// Rounds of weights, each with a search of its own; a safeguard.
 const MOST_ROUNDS: usize = 8;
+/// What a search may still gain where it has ended, in variances of the residual: a tenth of a standard error.
+const SETTLED: f64 = 0.01;
 /// A noise that changes by less than this share is known.
 const SAME_NOISE: f64 = 1e-2;
 /// Residuals below this share of the force are rounding, and leave no point out.
@@ -30,6 +32,8 @@ pub(super) struct Fitted {
     pub(super) force_noise: f64,
     /// Columns that lie at a bound.
     pub(super) bound: Vec<usize>,
+    /// Whether the search has ended at a minimum, not at its bound of evaluations.
+    pub(super) converged: bool,
 }
 
 impl Fitted {
@@ -44,7 +48,14 @@ pub(super) fn fit(data: &Data, noise: Option<f64>, proceed: &dyn Fn() -> bool) -
     let force = data.records.iter().map(|record| record.half_force).fold(0.0, f64::max);
     let ones = vec![1.0; data.samples()];
     let values = start::best(data, noise.unwrap_or(0.01 * force).max(LEAST_NOISE * force), proceed)?;
-    let mut fitted = Fitted { values, factors: Vec::new(), cost: f64::INFINITY, force_noise: 0.0, bound: Vec::new() };
+    let mut fitted = Fitted {
+        values,
+        factors: Vec::new(),
+        cost: f64::INFINITY,
+        force_noise: 0.0,
+        bound: Vec::new(),
+        converged: true,
+    };
     for robust in [true, false] {
         let control = if robust { Control::rough(proceed) } else { Control::exact(proceed) };
         let mut weights: Option<Vec<f64>> = None;
@@ -100,6 +111,12 @@ pub(super) fn fit(data: &Data, noise: Option<f64>, proceed: &dyn Fn() -> bool) -
                 break;
             }
         }
+    }
+    // From a minimum a new search gains nothing.
+    let (values, cost, bound) = within_bounds(data, &fitted.values, &fitted.factors, &[], &Control::rough(proceed))?;
+    if cost < fitted.cost {
+        let converged = fitted.cost - cost <= SETTLED * (cost / fitted.used().max(1) as f64).max(1.0);
+        fitted = Fitted { values, cost, bound, converged, ..fitted };
     }
     Ok(fitted)
 }

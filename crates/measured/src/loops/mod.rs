@@ -225,6 +225,7 @@ pub fn fit(task: &Task, proceed: &dyn Fn() -> bool) -> Result<LoopFit, Error> {
         // Rounding keeps its sign for long stretches too.
         (noisy || (!residual.runs.random && residual.rms > ROUNDING * force && !is_quantised), Note::NotCoulomb),
         (is_quantised, Note::Quantised),
+        (!fitted.converged, Note::NotConverged),
     ];
     Ok(LoopFit {
         estimates,

@@ -72,4 +72,6 @@ pub enum Note {
     Quantised,
     /// The residual is no noise: friction is not Coulomb's, or the contact is another one.
     NotCoulomb,
+    /// The search ended before its minimum: values and intervals are those of where it stopped.
+    NotConverged,
 }
