@@ -1189,7 +1189,11 @@ class Residual(Result):
     """The extrema of the shear stress of a contact."""
 
     peaks: list[Peak]
-    """All local extrema strictly between centre and edge, from the centre outwards, at their exact positions."""
+    """The local extrema strictly between centre and edge, from the centre outwards, each with its position to round-
+    off. Where the history does not say how often the stress turns between two of its kinks, the derivative of the
+    stress is sampled there, and two extrema closer together than the samples could be missed; dense searches have
+    found none that was.
+    """
 
     centre: float | None = None
     """Shear stress in the centre, Pa, positive as a positive displacement causes it; `null` where it is infinite."""
@@ -1217,8 +1221,10 @@ class Resonance(Result):
     """Frequency of small oscillations, Hz."""
 
     points: list[ResonancePoint]
-    """The steady oscillation at each frequency, in the order of the frequencies. There is one only: the contact's
-    friction lets no two motions of a mass draw apart.
+    """The steady oscillation at each frequency, in the order of the frequencies. There is one only where something
+    slips in each period, as under every face that is not flat: friction draws any two motions of the mass together.
+    A flat face that sticks throughout adds no damping; the oscillation given is then the one with the period of the
+    force, beside which a free oscillation may persist.
     """
 
 
@@ -1720,7 +1726,7 @@ class Warning(Result):
     """A name for programs: `dundurs_beta`, `large_contact`, `slip_direction`, `noisy_table`, `tolerance_not_met`,
     `units`, `interaction_neglected`, `load_curve_alone`, `elliptic_slip`, `bulk_shift_neglected`; of fits also
     `many_outliers`, `short_scan`, `machine_compliance_unknown`, `partial_slip_only`, `beyond_gross_slip`,
-    `first_branch_unknown`, `not_coulomb`.
+    `first_branch_unknown`, `not_coulomb`, `not_converged`.
     """
 
     message: str

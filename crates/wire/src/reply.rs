@@ -74,7 +74,10 @@ replies! {
 pub struct Residual: Default {
     /// Shear stress in the centre, Pa, positive as a positive displacement causes it; `null` where it is infinite.
     pub centre: Option<f64>,
-    /// All local extrema strictly between centre and edge, from the centre outwards, at their exact positions.
+    /// The local extrema strictly between centre and edge, from the centre outwards, each with its position to
+    /// round-off. Where the history does not say how often the stress turns between two of its kinks, the derivative
+    /// of the stress is sampled there, and two extrema closer together than the samples could be missed; dense
+    /// searches have found none that was.
     pub peaks: Vec<Peak>,
     /// Largest magnitude of the shear stress over the whole contact, centre included, Pa; `null` where it is infinite.
     pub max: Option<f64>,
@@ -142,7 +145,7 @@ pub struct Warning: Eq {
     /// A name for programs: `dundurs_beta`, `large_contact`, `slip_direction`, `noisy_table`, `tolerance_not_met`,
     /// `units`, `interaction_neglected`, `load_curve_alone`, `elliptic_slip`, `bulk_shift_neglected`; of fits also
     /// `many_outliers`, `short_scan`, `machine_compliance_unknown`, `partial_slip_only`, `beyond_gross_slip`,
-    /// `first_branch_unknown`, `not_coulomb`.
+    /// `first_branch_unknown`, `not_coulomb`, `not_converged`.
     pub code: String,
     /// An explanation for people.
     pub message: String,

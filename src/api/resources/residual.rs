@@ -19,7 +19,7 @@ parameters! {
 
 /// Get the residual stress of a contact
 ///
-/// All extrema of the shear stress in its present state, at their exact positions.
+/// The extrema of the shear stress in its present state, with their positions to round-off.
 #[utoipa::path(
     get, path = "/contacts/{id}/residual", tag = "contacts", params(ContactPath, ResidualQuery),
     responses((status = 200, description = "The extrema of the shear stress in its present state", body = Residual,

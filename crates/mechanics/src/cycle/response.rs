@@ -2,9 +2,11 @@
 //!
 //! M U'' + F(U) = P cos(w t), F with the exact slip history. A contact at constant load is a row of springs with
 //! sliders, and two motions of a mass on such a row never draw apart: with the difference of the speeds dV and of the
-//! forces of the springs df_i, d/dt (M dV^2/2 + sum df_i^2/(2 k_i)) = -sum df_i (slip_1 - slip_2)_i/k_i <= 0. So there
-//! is one steady oscillation at each frequency, whatever the start, and half a period later it is its own mirror image.
-//! (Caughey 1960 found this of bilinear hysteresis: the curve leans to lower frequencies and does not fold.)
+//! forces of the springs df_i, d/dt (M dV^2/2 + sum df_i^2/(2 k_i)) = -sum df_i (slip_1 - slip_2)_i/k_i <= 0. Where
+//! springs slip in each period they draw together: there is one steady oscillation at each frequency, whatever the
+//! start, and half a period later it is its own mirror image. (Caughey 1960 found this of bilinear hysteresis: the
+//! curve leans to lower frequencies and does not fold.) Where nothing slips, under a flat face that sticks, the mass
+//! swings without damping and keeps any free oscillation; the motion with the period of the force is given.
 //!
 //! It is found by `steady_motion` from the balance of the first harmonic alone, which takes U for a cosine.
 

@@ -5,6 +5,8 @@
 //! sign on both sides, where f' jumps tau itself is; everywhere else tau is smooth. So the derivative is sampled
 //! between these radii, ever closer to those it is infinite at, and an extremum is where its sign changes: within a
 //! interval a root, between two the radius they meet at. Signs alternate from one to the next, so none is found twice.
+//! That none is missed is proven where [`settled`] knows the sign, or that it changes once; elsewhere it rests on the
+//! samples, and on the dense searches that they have been held against.
 
 mod derivative;
 mod interval;

@@ -33,8 +33,10 @@ replies! {
 pub struct Resonance {
     /// Frequency of small oscillations, Hz.
     pub natural_frequency: f64,
-    /// The steady oscillation at each frequency, in the order of the frequencies. There is one only: the contact's
-    /// friction lets no two motions of a mass draw apart.
+    /// The steady oscillation at each frequency, in the order of the frequencies. There is one only where something
+    /// slips in each period, as under every face that is not flat: friction draws any two motions of the mass
+    /// together. A flat face that sticks throughout adds no damping; the oscillation given is then the one with the
+    /// period of the force, beside which a free oscillation may persist.
     pub points: Vec<ResonancePoint>,
 }
 
