@@ -6,8 +6,11 @@ pub(crate) const OUTLIER: f64 = 5.0;
 pub(crate) const HUBER: f64 = 1.5;
 
 /// The median size of normal noise, and its 90th percentile, in standard deviations.
-pub(crate) const MEDIAN_SIZE: f64 = 0.6745;
+const MEDIAN_SIZE: f64 = 0.6745;
 const LARGE_SIZE: f64 = 1.6449;
+/// A share of the sizes that are no outliers for certain, and the size of normal noise below which it lies.
+const CORE: f64 = 0.6;
+const CORE_SIZE: f64 = 0.8416;
 
 /// The value below which a share of them lies; zero if there are none. Reorders.
 pub(crate) fn quantile(sizes: &mut [f64], share: f64) -> f64 {
@@ -24,4 +27,9 @@ pub(crate) fn median(sizes: &mut [f64]) -> f64 {
 /// may be outliers, and half of the residuals zero, as those of rounded heights can be.
 pub(crate) fn robust_deviation(sizes: &mut [f64]) -> f64 {
     (median(sizes) / MEDIAN_SIZE).max(quantile(sizes, 0.9) / LARGE_SIZE)
+}
+
+/// As [`robust_deviation`] where a third of the points may be outliers, at the cost of twice its variance.
+pub(crate) fn core_deviation(sizes: &mut [f64]) -> f64 {
+    quantile(sizes, CORE) / CORE_SIZE
 }

@@ -9,7 +9,6 @@ use super::Error;
 use super::curve::{Curve, equal_breaks, graded_breaks, interval};
 use super::normal_equations::{Equations, MOST_COLUMNS, Solution, Statistics};
 use super::smoothing::{self, Smoothing};
-use super::start;
 use super::{local_penalty, noise};
 use crate::robust::{self, HUBER, OUTLIER};
 
@@ -22,23 +21,32 @@ const POINTS_AT_TIP: usize = 3;
 const ROUNDS: usize = 2;
 /// The penalty from which those of single radii are sought, as a share of the one that is best for all.
 const FIRST_PENALTY: f64 = 1e-3;
+/// How much shorter a step of the axis is than the heights say, and how much so that there is none.
+const DAMPING: f64 = 1e-2;
+const FIXED: f64 = 1e9;
+/// How many times as far off as half of its ring a point may be.
+const AS_FAR: f64 = 4.0;
+/// Points that tell whether a ring is off as a whole, at least.
+const RING_POINTS: usize = 12;
 /// Steps of the axis in each.
 const AXIS_STEPS: usize = 5;
 /// Turns in which residuals are weighted, and all turns.
-const WEIGHTED_TURNS: usize = 4;
-const TURNS: usize = 25;
+const WEIGHTED_TURNS: std::ops::Range<usize> = 4..15;
+const TURNS: usize = 30;
+/// The change of the standard deviation of the noise that ends the first.
+const SETTLED: f64 = 0.9;
 /// The standard deviation, in units of the half extent, that the axis is expected to move by: it bounds a step where
 /// the scan says nothing.
 const LOOSE: f64 = 0.3;
 /// The standard deviation of a tilt, in the range of heights over the half extent.
 const STEEP: f64 = 0.2;
-/// The least gain in squares, over the variance of the noise and for each number, with which a tilt is believed.
-const TILT_GAIN: f64 = 9.0;
 
 /// The scan in units of its own: half its extent about its middle, and the range of its heights; the gap opens upward.
 pub(super) struct Scaled {
     pub(super) points: Vec<[f64; 3]>,
     pub(super) plane: bool,
+    /// Whether the height of each point is of the surface: what is far off all others is not.
+    pub(super) of_surface: Vec<bool>,
     /// The unit of height, m.
     pub(super) height: f64,
 }
@@ -70,37 +78,8 @@ pub(super) struct Fitted {
     pub(super) inflation: f64,
 }
 
-/// Fits the scan.
-pub(super) fn fit(scan: &Scaled, sought: &Sought, keep_going: &dyn Fn() -> bool) -> Result<Fitted, Error> {
-    let thinned = start::medians(&scan.points, scan.plane);
-    let axis = match sought.axis {
-        Some(axis) => axis,
-        None => {
-            let axis = start::axis(&thinned, scan.plane, keep_going);
-            if keep_going() { axis.ok_or(Error::Hollow)? } else { return Err(Error::Interrupted) }
-        }
-    };
-    let level = Turns::new(scan, sought, false, keep_going).run(axis)?;
-    if !sought.tilt {
-        return Ok(level);
-    }
-    // A tilt moves the axis of a parabola and changes nothing else: it is believed only where the scan shows it. Far
-    // from the level axis a tilt makes any convex flank a profile of one side: from there on it is not looked for.
-    let near = |tilted: &Fitted| (0..2).all(|index| (tilted.axis[index] - level.axis[index]).abs() < LOOSE);
-    let tilted = match Turns::new(scan, sought, true, keep_going).run(level.axis) {
-        Err(Error::Interrupted) => return Err(Error::Interrupted),
-        Ok(tilted) if near(&tilted) => tilted,
-        _ => return Ok(level),
-    };
-    let numbers = if scan.plane { 2.0 } else { 1.0 };
-    let most = OUTLIER * OUTLIER * tilted.variance;
-    let squares = |fitted: &Fitted| fitted.residuals.iter().map(|e| (e * e).min(most)).sum::<f64>();
-    let gain = (squares(&level) - squares(&tilted)) / (tilted.variance * tilted.inflation);
-    Ok(if gain > TILT_GAIN * numbers { tilted } else { level })
-}
-
 /// The turns of a fit with or without tilt.
-struct Turns<'a> {
+pub(super) struct Turns<'a> {
     scan: &'a Scaled,
     smoothing: Smoothing,
     /// Whether tilt and axis are columns of the equations.
@@ -110,37 +89,50 @@ struct Turns<'a> {
 }
 
 impl Turns<'_> {
-    fn new<'a>(scan: &'a Scaled, sought: &Sought, tilt: bool, keep_going: &'a dyn Fn() -> bool) -> Turns<'a> {
+    pub(super) fn new<'a>(
+        scan: &'a Scaled,
+        sought: &Sought,
+        tilt: bool,
+        keep_going: &'a dyn Fn() -> bool,
+    ) -> Turns<'a> {
         Turns { scan, smoothing: sought.smoothing, tilt, shift: sought.axis.is_none(), keep_going }
     }
 
-    fn run(&self, mut axis: [f64; 2]) -> Result<Fitted, Error> {
+    pub(super) fn run(&self, mut axis: [f64; 2]) -> Result<Fitted, Error> {
         let points = &self.scan.points;
-        let mut weights = vec![1.0; points.len()];
+        let mut weights: Vec<f64> =
+            self.scan.of_surface.iter().map(|of_surface| f64::from(u8::from(*of_surface))).collect();
         let (mut curve, mut parabola, mut penalty) = (None::<Curve>, 0.0, None);
         let (mut turn, mut deviation, mut before_step) = (0, 0.0, [0.0; 2]);
+        let (mut weighted, mut settled, mut unweighted) = (true, false, 0);
         loop {
             if !(self.keep_going)() {
                 return Err(Error::Interrupted);
             }
-            let equations = self.equations(axis, &weights, curve.as_ref(), parabola, deviation, None)?;
+            let mut equations = self.equations(axis, &weights, curve.as_ref(), parabola, deviation, None)?;
+            self.damp(&mut equations, DAMPING);
             let solution = match penalty {
                 Some(penalty) => equations.solve(penalty),
                 None => smoothing::choose(&equations, self.smoothing, self.scan.height),
             };
             let solution = solution.ok_or(Error::Scattered)?;
-            // Robust weights change what is noise: the smoothness is chosen again when they have settled.
-            penalty = (turn != 2).then_some(solution.penalty);
             let (tilt, step) = self.others(&solution, &equations);
             let found = equations.curve(&solution.unknowns, parabola);
             let moved = [axis[0] + step[0], axis[1] + step[1]];
             let residuals = self.residuals(moved, tilt, &found);
-            let sizes = &mut residuals.iter().map(|value| value.abs()).collect::<Vec<f64>>();
-            deviation = robust::robust_deviation(sizes).max(1e-12);
+            let sizes = residuals.iter().zip(&weights).filter(|(_, weight)| **weight > HUBER / OUTLIER);
+            let sizes = &mut sizes.map(|(value, _)| value.abs()).collect::<Vec<f64>>();
+            let (before_deviation, before_weighted) = (deviation, weighted);
+            weighted &= turn < WEIGHTED_TURNS.start || !settled && turn < WEIGHTED_TURNS.end;
+            deviation =
+                if weighted { robust::core_deviation(sizes) } else { robust::robust_deviation(sizes) }.max(1e-12);
             let before = weights.clone();
-            if turn < WEIGHTED_TURNS {
+            if weighted {
                 let huber = |value: &f64| (HUBER * deviation / value.abs()).min(1.0);
-                weights.iter_mut().zip(&residuals).for_each(|(weight, value)| *weight = huber(value));
+                let of_surface = self.scan.of_surface.iter();
+                for ((weight, value), _) in weights.iter_mut().zip(&residuals).zip(of_surface).filter(|(_, of)| **of) {
+                    *weight = huber(value);
+                }
             } else {
                 self.leave_out_outliers(&mut weights, &residuals, deviation, moved, &found);
             }
@@ -153,12 +145,17 @@ impl Turns<'_> {
             axis = moved;
             parabola = found.curvatures.iter().sum::<f64>() / found.curvatures.len() as f64;
             curve = Some(found);
+            // Robust weights change what is noise: the smoothness is chosen again when they have begun to, and when
+            // they have settled.
+            penalty = (turn != 2 && weighted == before_weighted).then_some(solution.penalty);
             turn += 1;
-            if turn > WEIGHTED_TURNS + 1 && still && changed * 10_000 <= points.len() || turn == TURNS {
+            settled = still && deviation > SETTLED * before_deviation;
+            unweighted += usize::from(!weighted);
+            if unweighted > 1 && still && changed * 10_000 <= points.len() || turn == TURNS {
                 break;
             }
         }
-        self.finish(axis, &weights, curve, parabola, deviation)
+        self.finish(axis, weights, curve, parabola, deviation)
     }
 
     /// The last solution: with a smoothness for each radius, and the axis that goes with it, as the correlation of the
@@ -166,12 +163,11 @@ impl Turns<'_> {
     fn finish(
         &self,
         mut axis: [f64; 2],
-        weights: &[f64],
+        mut weights: Vec<f64>,
         mut curve: Option<Curve>,
         parabola: f64,
         deviation: f64,
     ) -> Result<Fitted, Error> {
-        let kept: Vec<bool> = weights.iter().map(|weight| *weight > 0.5).collect();
         let mut breaks = None;
         let mut inflation = 1.0;
         let mut stiffness = None;
@@ -183,9 +179,9 @@ impl Turns<'_> {
                     return Err(Error::Interrupted);
                 }
                 let mut equations =
-                    self.equations(axis, weights, curve.as_ref(), parabola, deviation, breaks.as_ref())?;
+                    self.equations(axis, &weights, curve.as_ref(), parabola, deviation, breaks.as_ref())?;
                 if breaks.is_none() {
-                    breaks = Some(self.graded(&equations, axis, weights));
+                    breaks = Some(self.graded(&equations, axis, &weights));
                     continue;
                 }
                 match stiffness.take() {
@@ -206,13 +202,14 @@ impl Turns<'_> {
                 stiffness = Some(equations.stiffness);
                 curve = Some(found);
             };
+            let (equations, solution, tilt, found) = self.about(equations, solution, found, tilt, parabola);
             let residuals = self.residuals(axis, tilt, &found);
             let variance = solution.variance(equations.count);
             let of_kept: Vec<noise::Residual> = self
                 .places(axis)
                 .zip(&residuals)
-                .zip(&kept)
-                .filter(|(_, kept)| **kept)
+                .zip(&weights)
+                .filter(|(_, weight)| **weight > 0.5)
                 .map(|(((radius, [x, y]), &value), _)| {
                     // Three sectors against three: no tilt and no shift of the axis differs between them.
                     let side = (3.0 * y.atan2(x)).cos().signum();
@@ -227,7 +224,7 @@ impl Turns<'_> {
                 let without_scale = (0..equations.intervals)
                     .map(|row| other.as_ref().map_or(0.0, |other| other.unknowns[row] - solution.unknowns[row]))
                     .collect();
-                let curve = found;
+                let (curve, kept) = (found, weights.iter().map(|weight| *weight > 0.5).collect());
                 return Ok(Fitted {
                     axis,
                     tilt,
@@ -242,6 +239,8 @@ impl Turns<'_> {
                     inflation,
                 });
             }
+            // A curve that follows a tip or an edge distinguishes it from an outlier.
+            self.leave_out_outliers(&mut weights, &residuals, variance.sqrt(), axis, &found);
             curve = Some(found);
             stiffness = Some(equations.stiffness);
         }
@@ -277,6 +276,37 @@ impl Turns<'_> {
         graded_breaks(intervals, *radii.select_nth_unstable_by(POINTS_AT_TIP - 1, f64::total_cmp).1)
     }
 
+    /// The columns of the equations that are steps of the axis.
+    fn steps(&self, equations: &Equations) -> std::ops::Range<usize> {
+        let first = equations.intervals + 1 + if self.tilt { self.directions() } else { 0 };
+        first..equations.matrix.nrows().max(first)
+    }
+
+    /// Steps of the axis shorter by this share of what the heights say of each alone: a tilt undoes a step that the
+    /// heights hardly determine, and neither is to run away.
+    fn damp(&self, equations: &mut Equations, share: f64) {
+        for column in self.steps(equations) {
+            equations.matrix[(column, column)] *= 1.0 + share;
+        }
+    }
+
+    /// The solution about the axis as it is: with the covariance of one that may move the axis.
+    fn about(
+        &self,
+        mut equations: Equations,
+        solution: Solution,
+        found: Curve,
+        tilt: [f64; 2],
+        parabola: f64,
+    ) -> (Equations, Solution, [f64; 2], Curve) {
+        self.damp(&mut equations, FIXED);
+        let Some(mut fixed) = equations.solve(solution.penalty) else { return (equations, solution, tilt, found) };
+        fixed.inverse = solution.inverse;
+        let (tilt, _) = self.others(&fixed, &equations);
+        let found = equations.curve(&fixed.unknowns, parabola);
+        (equations, fixed, tilt, found)
+    }
+
     /// Whether a step of the axis is small beside its error.
     fn is_still(&self, step: [f64; 2], solution: &Solution, equations: &Equations, deviation: f64) -> bool {
         (0..2).all(|index| {
@@ -298,14 +328,23 @@ impl Turns<'_> {
     ) {
         let last = curve.curvatures.len() - 1;
         let rings: Vec<usize> = self.places(axis).map(|(r, _)| interval(&curve.breaks, r)).collect();
-        let mut sizes = vec![Vec::new(); last + 1];
-        for (&ring, value) in rings.iter().zip(residuals) {
-            sizes[ring].push(value.abs());
-        }
-        let of_ring = |sizes: &mut Vec<f64>| robust::median(sizes) / robust::MEDIAN_SIZE;
-        let most: Vec<f64> = sizes.iter_mut().map(|sizes| OUTLIER * of_ring(sizes).max(deviation)).collect();
-        for ((weight, value), ring) in weights.iter_mut().zip(residuals).zip(rings) {
-            *weight = f64::from(u8::from(value.abs() <= most[ring]));
+        let of_surface =
+            || rings.iter().zip(residuals).zip(&self.scan.of_surface).filter(|(_, of)| **of).map(|(it, _)| it);
+        let mut sizes: Vec<(usize, f64)> = of_surface().map(|(ring, value)| (*ring, value.abs())).collect();
+        sizes.sort_by_key(|(ring, _)| *ring);
+        let of_ring = |ring: usize| {
+            let (mut first, mut end) =
+                (sizes.partition_point(|(of, _)| *of < ring), sizes.partition_point(|(of, _)| *of <= ring));
+            // A ring of few points has those of its neighbours too: else half of it could be outliers by chance.
+            while end - first < RING_POINTS.min(sizes.len()) {
+                (first, end) = (first.saturating_sub(1), (end + 1).min(sizes.len()));
+            }
+            let sizes = &mut sizes[first..end].iter().map(|(_, size)| *size).collect::<Vec<f64>>();
+            robust::median(sizes)
+        };
+        let most: Vec<f64> = (0..=last).map(|ring| (OUTLIER * deviation).max(AS_FAR * of_ring(ring))).collect();
+        for (((weight, value), ring), of) in weights.iter_mut().zip(residuals).zip(rings).zip(&self.scan.of_surface) {
+            *weight = f64::from(u8::from(*of && value.abs() <= most[ring]));
         }
     }
 

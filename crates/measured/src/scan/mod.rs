@@ -4,17 +4,19 @@
 //! sometimes the wrong way up. The contact needs f(r) whose g rises, and g is made of slopes: 1 nm of noise between
 //! neighbouring points of a ball makes it fall. So f is fitted: a curve of piecewise constant curvature (`curve`), by
 //! penalised least squares (`normal_equations`, `smoothing`, `local_penalty`), about the axis that fits best (`start`,
-//! `fit`), without outliers (`noise`), among the curves whose g rises (`programme`). Standard errors follow from the
+//! `axis`, `fit`), without outliers (`noise`), among the curves whose g rises (`programme`). Standard errors follow from the
 //! covariance (F + penalty)^-1 s^2 of the curvatures (Nychka 1988: it contains the bias of the penalty, where that goes
 //! with the radius), s^2 being that of the noise times its inflation by correlation, by the delta method (`contact`).
 //!
 //! Lengths are in m throughout.
 
+mod axis;
 mod contact;
 mod curve;
 mod error;
 mod fit;
 mod local_penalty;
+mod missing;
 mod noise;
 mod normal_equations;
 mod programme;
@@ -55,29 +57,40 @@ pub enum Orientation {
 pub struct Scan {
     points: Vec<[f64; 3]>,
     plane: bool,
+    fill_values: usize,
 }
 
 impl Scan {
-    /// A scan along a line through the axis, of places and heights; points whose numbers are not finite are left out.
+    /// A scan along a line through the axis, of places and heights; points whose numbers are not finite are left out,
+    /// and those whose height is a fill value. An infinite height counts as one.
     #[must_use]
     pub fn line(points: impl IntoIterator<Item = [f64; 2]>) -> Scan {
-        let mut points: Vec<[f64; 3]> = finite(points.into_iter().map(|[x, z]| [x, 0.0, z]));
-        points.sort_by(|a, b| a[0].total_cmp(&b[0]));
-        Scan { points, plane: false }
+        let mut scan = Scan::measured(points.into_iter().map(|[x, z]| [x, 0.0, z]));
+        scan.points.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        scan
     }
 
-    /// A scan of an area, of places x, y and heights; points whose numbers are not finite are left out.
+    /// A scan of an area, of places x, y and heights, of which as many are left out as of a line.
     #[must_use]
     pub fn area(points: impl IntoIterator<Item = [f64; 3]>) -> Scan {
-        let points = finite(points);
+        let mut scan = Scan::measured(points);
         // Points on one line parallel to x determine one coordinate of the axis alone.
-        let plane = points.iter().any(|point| (point[1] - points[0][1]).abs() > 0.0);
-        Scan { points, plane }
+        scan.plane = scan.points.iter().any(|point| (point[1] - scan.points[0][1]).abs() > 0.0);
+        scan
     }
-}
 
-fn finite(points: impl IntoIterator<Item = [f64; 3]>) -> Vec<[f64; 3]> {
-    points.into_iter().filter(|point| point.iter().all(|value| value.is_finite())).collect()
+    fn measured(points: impl IntoIterator<Item = [f64; 3]>) -> Scan {
+        let mut fill_values = 0;
+        let mut finite = |point: &[f64; 3]| {
+            fill_values += usize::from(point[2].is_infinite());
+            point.iter().all(|value| value.is_finite())
+        };
+        let mut points: Vec<[f64; 3]> = points.into_iter().filter(|point| finite(point)).collect();
+        let (fills, all) = (missing::fill_values(&points), points.len());
+        points.retain(|point| fills.iter().all(|fill| fill.to_bits() != point[2].to_bits()));
+        fill_values += all - points.len();
+        Scan { points, plane: false, fill_values }
+    }
 }
 
 /// How a scan is fitted.
@@ -147,6 +160,10 @@ pub struct ScanFit {
     pub correlation_length: f64,
     /// How many points have a height.
     pub used: usize,
+    /// How many further ones have a fill value of the instrument in its place.
+    pub fill_values: usize,
+    /// How far the scan reaches to both sides of the axis, over half its extent.
+    pub overlap: f64,
     /// How many of them were left out.
     pub outliers: usize,
     /// The points that were fitted, thinned to [`DRAWN_POINTS`].
@@ -181,7 +198,7 @@ impl ScanFit {
             }
         }
         let sought = Sought { axis, tilt: options.level, smoothing: options.smoothing };
-        let fitted = fit::fit(&scaled, &sought, keep_going)?;
+        let fitted = axis::fit(&scaled, &sought, keep_going)?;
         result::finished(scan, &fitted, &scaled, &units)
     }
 
@@ -228,7 +245,10 @@ fn scaled(scan: &Scan, orientation: Option<Orientation>) -> Result<(Scaled, Unit
     let place = |point: &[f64; 3]| [(point[0] - middle[0]) / length, (point[1] - middle[1]) / length];
     let mut placed: Vec<[f64; 3]> = points.iter().map(|point| [place(point)[0], place(point)[1], point[2]]).collect();
     // The range of the medians: an instrument's mark of a missing height must not be the unit of all others.
-    let thinned = start::medians(&placed, scan.plane);
+    let of_surface = start::of_surface(&placed);
+    let surface: Vec<[f64; 3]> =
+        placed.iter().zip(&of_surface).filter(|(_, of_surface)| **of_surface).map(|(point, _)| *point).collect();
+    let thinned = start::medians(&surface, scan.plane);
     let (low, high) = thinned
         .iter()
         .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), point| (low.min(point[2]), high.max(point[2])));
@@ -244,5 +264,5 @@ fn scaled(scan: &Scan, orientation: Option<Orientation>) -> Result<(Scaled, Unit
     let sign = if orientation == Orientation::PeakDown { 1.0 } else { -1.0 };
     placed.iter_mut().for_each(|point| point[2] = sign * (point[2] - low) / height);
     let units = Units { middle: [middle[0], middle[1]], length, height, orientation };
-    Ok((Scaled { points: placed, plane: scan.plane, height }, units))
+    Ok((Scaled { points: placed, plane: scan.plane, of_surface, height }, units))
 }

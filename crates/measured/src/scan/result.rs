@@ -5,7 +5,9 @@ use stickslip_mechanics::profile::{Profile, Tabulated};
 
 use super::curve::Curve;
 use super::fit::{Fitted, Scaled};
-use super::{Column, DRAWN_POINTS, Error, Estimate, Orientation, Scan, ScanFit, Units, contact, noise, programme};
+use super::{
+    Column, DRAWN_POINTS, Error, Estimate, Orientation, Scan, ScanFit, Units, contact, noise, programme, start,
+};
 use crate::linear::dot;
 
 /// The least g'(x)/x over its mean, as much as the table needs to rise.
@@ -62,7 +64,7 @@ pub(super) fn finished(scan: &Scan, fitted: &Fitted, scaled: &Scaled, units: &Un
     let apex = Estimate { value: curve.curvatures[0], standard_error: variance_at_apex.sqrt() };
     let radius_of_curvature = (apex.value > 0.0 && apex.value * apex.value > variance_at_apex)
         .then(|| Estimate { value: 1.0 / apex.value, standard_error: apex.standard_error / (apex.value * apex.value) });
-    let (raw, left_out) = drawn(fitted, scaled, units);
+    let (raw, left_out) = drawn(fitted, scaled, units, &curve);
     let residuals: Vec<f64> =
         fitted.residuals.iter().zip(&fitted.kept).filter(|(_, kept)| **kept).map(|(e, _)| *e).collect();
     let sign = if units.orientation == Orientation::PeakDown { 1.0 } else { -1.0 };
@@ -76,6 +78,8 @@ pub(super) fn finished(scan: &Scan, fitted: &Fitted, scaled: &Scaled, units: &Un
         rms: (dot(&residuals, &residuals) / residuals.len() as f64).sqrt() * units.height,
         correlation_length: noise::correlation_lag(&residuals) * step(scan),
         used: fitted.kept.len(),
+        fill_values: scan.fill_values,
+        overlap: start::overlap(fitted.axis),
         outliers: fitted.kept.iter().filter(|kept| !**kept).count(),
         raw,
         left_out,
@@ -123,26 +127,25 @@ fn step(scan: &Scan) -> f64 {
     *steps.select_nth_unstable_by(middle, f64::total_cmp).1
 }
 
-/// The points as the curve sees them, fitted and left out.
-fn drawn(fitted: &Fitted, scaled: &Scaled, units: &Units) -> (Column, Column) {
-    let column = |wanted: bool| {
-        let mut chosen: Vec<[f64; 2]> = scaled
-            .points
-            .iter()
-            .zip(fitted.residuals.iter().zip(&fitted.kept))
-            .filter(|(_, (_, kept))| **kept == wanted)
-            .map(|(point, (residual, _))| {
-                let r = (point[0] - fitted.axis[0]).hypot(point[1] - fitted.axis[1]);
-                [r * units.length, (fitted.curve.height(r) - fitted.curve.offset + residual) * units.height]
-            })
-            .collect();
+/// The points that were fitted and those left out, above the zero of the curve of the table: with the mean of the
+/// heights that were fitted.
+fn drawn(fitted: &Fitted, scaled: &Scaled, units: &Units, table: &Curve) -> (Column, Column) {
+    let place = |(point, residual): (&[f64; 3], &f64)| {
+        let r = (point[0] - fitted.axis[0]).hypot(point[1] - fitted.axis[1]);
+        [r * units.length, (fitted.curve.height(r) + residual) * units.height]
+    };
+    let places: Vec<[f64; 2]> = scaled.points.iter().zip(&fitted.residuals).map(place).collect();
+    let of = |wanted: bool| {
+        let chosen = places.iter().zip(&fitted.kept).filter(move |(_, kept)| **kept == wanted);
+        chosen.map(|(place, _)| *place).collect::<Vec<[f64; 2]>>()
+    };
+    let kept = of(true);
+    let zero = kept.iter().map(|[r, height]| height - table.height(*r)).sum::<f64>() / kept.len() as f64;
+    let column = |mut chosen: Vec<[f64; 2]>| {
         chosen.sort_by(|a, b| a[0].total_cmp(&b[0]));
         let stride = chosen.len().div_ceil(DRAWN_POINTS).max(1);
-        let kept: Vec<&[f64; 2]> = chosen.iter().step_by(stride).collect();
-        Column {
-            radius: kept.iter().map(|point| point[0]).collect(),
-            height: kept.iter().map(|point| point[1]).collect(),
-        }
+        let (radius, height) = chosen.iter().step_by(stride).map(|[r, height]| (*r, height - zero)).unzip();
+        Column { radius, height }
     };
-    (column(true), column(false))
+    (column(kept), column(of(false)))
 }

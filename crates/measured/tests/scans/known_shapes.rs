@@ -21,6 +21,8 @@ fn line(noise: f64) -> Instrument {
         correlation: 1,
         outliers: 0.0,
         missing: 0.0,
+        dropouts: 0.0,
+        fill: 0.0,
         sign: 1.0,
     }
 }

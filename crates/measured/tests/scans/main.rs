@@ -2,6 +2,7 @@
 
 mod coverage;
 mod faults;
+mod given;
 mod known_shapes;
 mod synthetic;
 

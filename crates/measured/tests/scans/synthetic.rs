@@ -80,6 +80,9 @@ pub struct Instrument {
     /// Shares of outliers and of missing points.
     pub outliers: f64,
     pub missing: f64,
+    /// The share of points that have the fill value of the instrument, m, in place of a height.
+    pub dropouts: f64,
+    pub fill: f64,
     /// +1 where heights are those of the gap.
     pub sign: f64,
 }
@@ -103,6 +106,8 @@ impl Instrument {
                         self.noise.max(1e-9) * (20.0 + 1000.0 * random.f64()) * if random.bool() { 1.0 } else { -1.0 };
                 }
                 let height = if random.f64() < self.missing { f64::NAN } else { self.sign * height + 3e-6 };
+                let dropped = self.dropouts > 0.0 && random.f64() < self.dropouts;
+                let height = if dropped { self.fill } else { height };
                 points.push([x, y, height]);
             }
         }
