@@ -29,6 +29,8 @@ const ROWS: usize = 3 * DRAWN_POINTS;
 const TINY_RADIUS: f64 = 1e-9;
 /// The share of outliers beyond which a scan is called doubtful.
 const MANY_OUTLIERS: f64 = 0.05;
+/// How far a scan reaches to both sides of its axis, over half its extent, without the warning that it has one side.
+const ONE_SIDED: f64 = 0.25;
 /// The share of the scan beyond which a contact is near its edge.
 const NEAR_EDGE: f64 = 0.9;
 
@@ -246,6 +248,18 @@ fn warnings(fit: &ScanFit, contact: Option<&scan::ContactEstimate>) -> Vec<Warni
     if share > MANY_OUTLIERS {
         let message = format!("{:.1} % of the points were left out as outliers: look at the residual", 100.0 * share);
         warn("many_outliers", message);
+    }
+    if fit.fill_values > 0 {
+        let (count, verb) = (fit.fill_values, if fit.fill_values == 1 { " was" } else { "s were" });
+        warn("fill_values", format!("{count} height{verb} read as missing: a fill value of the instrument"));
+    }
+    if fit.overlap < ONE_SIDED {
+        let part = 100.0 * (1.0 - fit.overlap);
+        let message = format!(
+            "the axis is {part:.0} % of the way from the middle of the scan to its edge: a tilt would fit other axes as \
+             well; scan across the peak, or give `centre`"
+        );
+        warn("one_sided_scan", message);
     }
     if let Some(contact) = contact.filter(|contact| contact.contact_radius.value > NEAR_EDGE * reach) {
         let part = 100.0 * contact.contact_radius.value / reach;

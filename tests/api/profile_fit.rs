@@ -136,6 +136,28 @@ async fn a_scan_in_the_wrong_units_is_warned_of() {
 }
 
 #[tokio::test]
+async fn fill_values_are_missing_heights_and_a_scan_of_one_side_is_warned_of() {
+    let server = Server::start().await;
+    let expected = good(server.post("/profiles/fit", &line()).await).await;
+    let mut dropped = line();
+    for (index, value) in [-9999.0, 1.70141e38, 1e30, -32768.0].into_iter().enumerate() {
+        dropped["scan"]["line"]["z"][50 + 40 * index] = json!(value);
+    }
+    let fitted = good(server.post("/profiles/fit", &dropped).await).await;
+    let warning = &fitted["warnings"][0];
+    assert_eq!((&warning["code"], &fitted["residual"]["outliers"]), (&json!("fill_values"), &json!(0)));
+    assert!(warning["message"].as_str().unwrap().starts_with("4 heights were read as missing"), "{warning}");
+    let radius = |reply: &Value| number(&reply["radius_of_curvature"]["value"]);
+    assert!((radius(&fitted) / radius(&expected) - 1.0).abs() < 1e-3);
+    // The axis at a tenth of the scan from its edge.
+    let shifted: Vec<f64> = (0..401).map(|index| f64::from(index - 20)).collect();
+    let z: Vec<f64> = shifted.iter().map(|x| (x * 7.0).sin() / 2.0 - x * x / 20.0).collect();
+    let one_sided = json!({"scan": {"line": {"x": shifted, "z": z}}, "units": {"lateral": "um", "height": "nm"}});
+    let fitted = good(server.post("/profiles/fit", &one_sided).await).await;
+    assert_eq!(fitted["warnings"][0]["code"], "one_sided_scan", "{}", fitted["warnings"]);
+}
+
+#[tokio::test]
 async fn all_formats_have_the_points_of_the_reply() {
     let server = Server::start().await;
     let columns = good(server.post("/profiles/fit", &line()).await).await;

@@ -9,6 +9,9 @@ use crate::request::requests;
 
 /// A place or a height of a scan, in its unit.
 pub const SCAN_NUMBER: Range = Range { quantity: Quantity::Place, unit: "", min: -1e12, max: 1e12 };
+/// A height of this size or more is none, in whatever unit: instruments put 1e30, 1.70141e38 or the largest number of
+/// single precision for those that they have not measured.
+const FILL_VALUE: f64 = 1e29;
 /// The distance of neighbouring points of a map, in its unit.
 pub const SCAN_STEP: Range = Range { quantity: Quantity::Place, unit: "", min: 1e-9, max: 1e9 };
 
@@ -61,6 +64,18 @@ fn as_long(at: JsonPath<'_>, length: usize, first: usize, faults: &mut Faults) {
     }
 }
 
+/// Makes fill values missing heights, before their limits are checked: the places of those in the order of the points.
+fn take_fill_values<'a>(heights: impl Iterator<Item = &'a mut Option<f64>>) -> Vec<usize> {
+    let mut places = Vec::new();
+    for (place, height) in heights.enumerate() {
+        if height.is_some_and(|height| height.abs() >= FILL_VALUE) {
+            *height = None;
+            places.push(place);
+        }
+    }
+    places
+}
+
 impl ScanData {
     /// JSON pointer to its heights.
     pub(super) fn pointer(&self) -> &'static str {
@@ -71,11 +86,16 @@ impl ScanData {
         }
     }
 
-    /// Places and heights in m, `units` being those of the two; a missing height is NaN.
-    pub(super) fn check(self, units: [f64; 2], at: JsonPath<'_>, faults: &mut Faults) -> Option<Vec<[f64; 3]>> {
+    /// Places and heights in m, `units` being those of the two; a missing height is NaN, a fill value infinite.
+    pub(super) fn check(mut self, units: [f64; 2], at: JsonPath<'_>, faults: &mut Faults) -> Option<Vec<[f64; 3]>> {
         let [lateral, height] = units;
         let point = |x: f64, y: f64, z: Option<f64>| [x * lateral, y * lateral, z.map_or(f64::NAN, |z| z * height)];
-        faults.part(|faults| match self {
+        let fill_values = match &mut self {
+            ScanData::Line(scan) => take_fill_values(scan.z.iter_mut()),
+            ScanData::Map(scan) => take_fill_values(scan.z.iter_mut().flatten()),
+            ScanData::Points(scan) => take_fill_values(scan.z.iter_mut()),
+        };
+        let points: Option<Vec<[f64; 3]>> = faults.part(|faults| match self {
             ScanData::Line(scan) => {
                 let at = at.member("line");
                 scan.check_members(at, faults);
@@ -112,6 +132,14 @@ impl ScanData {
                 };
                 scan.z.into_iter().enumerate().flat_map(row).collect()
             }
+        });
+        points.map(|mut points| {
+            for place in fill_values {
+                if let Some(point) = points.get_mut(place) {
+                    point[2] = f64::INFINITY;
+                }
+            }
+            points
         })
     }
 }
