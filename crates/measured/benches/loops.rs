@@ -3,7 +3,7 @@
 use std::hint::black_box;
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use stickslip_measured::loops::{Noise, Parameter, Record, Start, Task, fit};
+use stickslip_measured::loops::{Known, Noise, Parameter, Record, Start, Task, fit};
 use stickslip_mechanics::profile::{Cone, ExactSphere, LoadCurve, PowerLaw, RoundedPunch, Tabulated};
 use stickslip_mechanics::{Contact, Elasticity, Move, Preload, Profile, Setup, Sphere, Tangential};
 
@@ -70,5 +70,43 @@ fn fits(criterion: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, fits);
+/// Steady cycles of a sine with 1 % of noise in the force and 0.5 % in the displacement; friction and modulus are sought.
+fn steady(points: usize, cycles: usize) -> Task {
+    let profile = Profile::Sphere(Sphere::new(RADIUS).expect("valid"));
+    let mut truth = contact(profile.clone(), 0.42);
+    let gross_slip = truth.gross_slip_displacement();
+    let mut random = fastrand::Rng::with_seed(1);
+    let mut noise = || (random.f64() + random.f64() + random.f64() - 1.5) * 2.0;
+    let (mut displacement, mut force) = (vec![], vec![]);
+    // The first cycle is run before the record begins.
+    for point in 0..points + points / cycles {
+        let turn = std::f64::consts::TAU * cycles as f64 * point as f64 / points as f64;
+        let place = 1.5 * gross_slip * (turn + 0.3).sin();
+        let tangential = Some(Tangential::Displacement(place));
+        truth.apply(&Move { tangential, ..Move::default() }).expect("a valid move");
+        if point >= points / cycles {
+            displacement.push(place + 0.005 * gross_slip * noise());
+            force.push(truth.force() + 0.04 * noise());
+        }
+    }
+    let start = Some(Start::Steady);
+    let record = Record { displacement, force, time: None, normal_force: None, start, weight: 1.0 };
+    let known = vec![Known { parameter: Parameter::MachineCompliance, value: 0.0, standard_error: 0.0 }];
+    let free = vec![Parameter::Friction, Parameter::GStar];
+    Task { contact: contact(profile, 0.3), records: vec![record], free, known, noise: Noise::default() }
+}
+
+fn sizes(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("fit of friction and modulus, noise of both columns");
+    group.sample_size(10);
+    for (points, cycles) in [(400, 4), (10_000, 10)] {
+        let task = steady(points, cycles);
+        group.bench_function(format!("{points} points, {cycles} cycles"), |bencher| {
+            bencher.iter(|| fit(black_box(&task), &|| true).expect("a fit"));
+        });
+    }
+    group.finish();
+}
+
+criterion_group!(benches, fits, sizes);
 criterion_main!(benches);

@@ -145,7 +145,8 @@ pub struct Warning: Eq {
     /// A name for programs: `dundurs_beta`, `large_contact`, `slip_direction`, `noisy_table`, `tolerance_not_met`,
     /// `units`, `interaction_neglected`, `load_curve_alone`, `elliptic_slip`, `bulk_shift_neglected`; of fits also
     /// `many_outliers`, `fill_values`, `one_sided_scan`, `short_scan`, `machine_compliance_unknown`,
-    /// `partial_slip_only`, `beyond_gross_slip`, `first_branch_unknown`, `not_coulomb`, `not_converged`.
+    /// `partial_slip_only`, `beyond_gross_slip`, `first_branch_unknown`, `turns_as_sampled`, `quantised`,
+    /// `not_coulomb`, `not_converged`.
     pub code: String,
     /// An explanation for people.
     pub message: String,

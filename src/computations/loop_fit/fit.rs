@@ -171,6 +171,11 @@ fn warning(note: Note) -> Warning {
             "the forces come in steps that are not small beside their noise: where the contact slides their rounding \
              does not average out. Standard errors and intervals are wider by what it may shift",
         ),
+        Note::TurnsAsSampled => (
+            "turns_as_sampled",
+            "a record has more turning points than can be fitted, and they do not repeat: they are taken where they \
+             were sampled, and the intervals leave out how far off that may be. Send fewer cycles",
+        ),
         Note::NotCoulomb => (
             "not_coulomb",
             "the residual is not noise: the contact has another friction law, shape or load, or the bench \

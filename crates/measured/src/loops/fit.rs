@@ -1,9 +1,9 @@
 //! The best values: robust against outliers first, least squares of what is left then, within the bounds of the
 //! parameters.
 
-use super::least_squares::{Control, Data};
-use super::record::{clamp_friction, stiffness};
-use super::{Error, Parameter, start};
+use super::least_squares::{Control, Data, Rows};
+use super::record::{Branches, clamp_friction, stiffness};
+use super::{Error, Noise, Parameter, start};
 use crate::robust::{HUBER, OUTLIER, robust_deviation};
 use stickslip_mechanics::range;
 
@@ -13,10 +13,20 @@ const MOST_ROUNDS: usize = 8;
 const SETTLED: f64 = 0.01;
 /// A noise that changes by less than this share is known.
 const SAME_NOISE: f64 = 1e-2;
+/// A fit whose sum of squares has moved by less than this is the same.
+const SAME_FIT: f64 = 1e-2;
 /// Residuals below this share of the force are rounding, and leave no point out.
 const ROUNDING: f64 = 1e-9;
 /// The least noise of a force, over the force.
 const LEAST_NOISE: f64 = 1e-14;
+/// The least variance of a force, over that of the residual.
+const LEAST_SHARE: f64 = 1e-4;
+/// Steps to the variances, each with the weights of the last.
+const VARIANCE_STEPS: usize = 10;
+/// Slopes that differ less than this, squared and relative, do not show which noise is that of the displacement.
+const LEAST_CONTRAST: f64 = 1e-3;
+/// A sample was not farther from where it was measured than this many standard deviations.
+const MOST_SHIFT: f64 = 3.0;
 /// A compliance below this share of the contact's is tried against none at all.
 const LEAST_COMPLIANCE: f64 = 1e-2;
 
@@ -30,6 +40,8 @@ pub(super) struct Fitted {
     pub(super) cost: f64,
     /// Standard deviation of the force, N.
     pub(super) force_noise: f64,
+    /// Variance of the displacement, over the largest that it may have.
+    pub(super) displacement_share: f64,
     /// Columns that lie at a bound.
     pub(super) bound: Vec<usize>,
     /// Whether the search has ended at a minimum, not at its bound of evaluations.
@@ -43,46 +55,50 @@ impl Fitted {
     }
 }
 
-/// Fits, with the noise of the force given or estimated.
-pub(super) fn fit(data: &Data, noise: Option<f64>, proceed: &dyn Fn() -> bool) -> Result<Fitted, Error> {
+/// Fits, with the noise of force and displacement given or estimated.
+pub(super) fn fit(data: &mut Data, noise: Noise, proceed: &dyn Fn() -> bool) -> Result<Fitted, Error> {
     let force = data.records.iter().map(|record| record.half_force).fold(0.0, f64::max);
     let ones = vec![1.0; data.samples()];
-    let values = start::best(data, noise.unwrap_or(0.01 * force).max(LEAST_NOISE * force), proceed)?;
+    let values = start::best(data, noise.force.unwrap_or(0.01 * force).max(LEAST_NOISE * force), proceed)?;
     let mut fitted = Fitted {
         values,
         factors: Vec::new(),
         cost: f64::INFINITY,
         force_noise: 0.0,
+        displacement_share: 1.0,
         bound: Vec::new(),
         converged: true,
     };
     for robust in [true, false] {
         let control = if robust { Control::rough(proceed) } else { Control::exact(proceed) };
-        let mut weights: Option<Vec<f64>> = None;
+        let (mut weights, mut last): (Option<Vec<f64>>, Option<Vec<f64>>) = (None, None);
         for _ in 0..MOST_ROUNDS {
             let rows = data.rows(&fitted.values, &ones);
+            let by_place = project(data, &fitted, &rows);
+            let rows =
+                if by_place.iter().any(|variance| *variance > 0.0) { data.rows(&fitted.values, &ones) } else { rows };
             let residual = &rows.residual.as_slice()[..ones.len()];
-            let spread: Vec<f64> = data
-                .records
-                .iter()
-                .flat_map(|record| std::iter::repeat_n(record.noise, record.samples.len()))
-                .zip(&rows.slopes)
-                .map(|(noise, slope)| (noise * slope).powi(2))
-                .collect();
-            let kept = |index: usize| weights.as_ref().is_none_or(|weights| robust || weights[index] > 0.0);
-            let total = if robust {
-                let mut sizes: Vec<f64> = residual.iter().map(|residual| residual.abs()).collect();
-                robust_deviation(&mut sizes).powi(2)
-            } else {
-                let of = |index: &usize| kept(*index);
-                let count = (0..ones.len()).filter(of).count();
-                let squares: f64 = (0..ones.len()).filter(of).map(|index| residual[index].powi(2)).sum();
-                squares / count.saturating_sub(data.layout.columns).max(1) as f64
+            let moved = last.as_ref().map_or(f64::INFINITY, |last| {
+                let change = |((now, last), factor): ((&f64, &f64), &f64)| ((now - last) * factor).powi(2);
+                residual.iter().zip(last).zip(&fitted.factors).map(change).sum()
+            });
+            last = Some(residual.to_vec());
+            let kept = |index: &usize| robust || weights.as_ref().is_none_or(|weights| weights[*index] > 0.0);
+            let squares = |index: usize| [residual[index].powi(2), by_place[index]];
+            let squares: Vec<[f64; 2]> = (0..ones.len()).filter(kept).map(squares).collect();
+            let freedom = squares.len().saturating_sub(data.layout.columns).max(1) as f64 / squares.len() as f64;
+            let given = noise.force.map(|noise| noise * noise);
+            let [own, share] =
+                variances(&squares, if robust { 1.0 } else { freedom }, given, noise.displacement.is_some());
+            let own = own.sqrt().max(LEAST_NOISE * force);
+            let deviation = |index: usize| (own * own + share * by_place[index]).sqrt();
+            // Of a fit that is not good, all points are not outliers.
+            let typical = {
+                let mut sizes: Vec<f64> =
+                    (0..ones.len()).map(|index| residual[index].abs() / deviation(index)).collect();
+                robust_deviation(&mut sizes).max(1.0)
             };
-            let by_place = spread.iter().sum::<f64>() / spread.len() as f64;
-            let own = noise.unwrap_or_else(|| (total - by_place).max(0.01 * total).sqrt()).max(LEAST_NOISE * force);
-            let deviation = |index: usize| (own * own + spread[index]).sqrt();
-            let limit = |index: usize| deviation(index).max(total.sqrt());
+            let limit = |index: usize| typical * deviation(index);
             let weight = |index: usize| {
                 let size = residual[index].abs();
                 if robust {
@@ -91,11 +107,13 @@ pub(super) fn fit(data: &Data, noise: Option<f64>, proceed: &dyn Fn() -> bool) -
                     f64::from(u8::from(size <= (OUTLIER * limit(index)).max(ROUNDING * force)))
                 }
             };
-            if robust || weights.is_none() {
+            let is_first = weights.is_none();
+            if robust || is_first {
                 weights = Some((0..ones.len()).map(weight).collect());
             }
-            let known = (fitted.force_noise / own - 1.0).abs() < SAME_NOISE;
-            fitted.force_noise = own;
+            // The first noise has outliers in it.
+            let known = !is_first && moved < SAME_FIT && (fitted.force_noise / own - 1.0).abs() < SAME_NOISE;
+            (fitted.force_noise, fitted.displacement_share) = (own, share);
             let of_record =
                 data.records.iter().flat_map(|record| std::iter::repeat_n(record.weight, record.samples.len()));
             fitted.factors = weights
@@ -119,6 +137,83 @@ pub(super) fn fit(data: &Data, noise: Option<f64>, proceed: &dyn Fn() -> bool) -
         fitted = Fitted { values, cost, bound, converged, ..fitted };
     }
     Ok(fitted)
+}
+
+/// Moves each sample to where its displacement most likely was, and returns the variance that the largest noise of the
+/// displacement gives its force, N^2.
+///
+/// Slope and gradient where the sample was measured depend on its noise, and would draw the fit to one side: so both
+/// are those of the point of the curve that is nearest in units of both noises (Deming 1943).
+fn project(data: &mut Data, fitted: &Fitted, rows: &Rows) -> Vec<f64> {
+    let of_record = |record: &Branches| std::iter::repeat_n(record.noise, record.samples.len());
+    let noises: Vec<f64> = data.records.iter().flat_map(of_record).collect();
+    let mut sizes: Vec<f64> = rows.residual.as_slice()[..noises.len()].iter().map(|residual| residual.abs()).collect();
+    let negligible = LEAST_SHARE.sqrt() * robust_deviation(&mut sizes);
+    if noises.iter().zip(&rows.slopes).all(|(noise, slope)| noise * slope <= negligible) {
+        return vec![0.0; noises.len()];
+    }
+    let ones = vec![1.0; noises.len()];
+    let slopes_beside = |sign: f64| {
+        let mut moved = data.clone();
+        moved.samples_mut().zip(&noises).for_each(|(sample, noise)| sample.shift += sign * noise);
+        moved.rows(&fitted.values, &ones).slopes
+    };
+    // Over the noise the slope has a mean, even where the contact begins to slide.
+    let (below, above) = (slopes_beside(-1.0), slopes_beside(1.0));
+    let slopes: Vec<f64> = (0..noises.len())
+        .map(|index| ((rows.slopes[index].powi(2) + below[index].powi(2) + above[index].powi(2)) / 3.0).sqrt())
+        .collect();
+    if fitted.force_noise > 0.0 {
+        for (index, sample) in data.samples_mut().enumerate() {
+            let (noise, slope) = (fitted.displacement_share.sqrt() * noises[index], slopes[index]);
+            let variance = fitted.force_noise.powi(2) + (noise * slope).powi(2);
+            let residual = rows.residual[index] + sample.by_shift;
+            let shift = noise * noise * slope * (slope * sample.shift - residual) / variance;
+            sample.shift = shift.clamp(-MOST_SHIFT * noise, MOST_SHIFT * noise);
+        }
+        let slopes = data.rows(&fitted.values, &ones).slopes;
+        data.samples_mut().zip(slopes).for_each(|(sample, slope)| sample.by_shift = slope * sample.shift);
+    }
+    slopes.iter().zip(&noises).map(|(slope, noise)| (slope * noise).powi(2)).collect()
+}
+
+/// The variance of the force, and the share of the largest variance of the displacement that there is: of residuals
+/// with a variance of a + b x, from pairs of their squares and x, by weighted least squares. `freedom` is the share of
+/// the residuals that the parameters leave.
+fn variances(pairs: &[[f64; 2]], freedom: f64, given: Option<f64>, share_known: bool) -> [f64; 2] {
+    let count = pairs.len() as f64;
+    let mut sizes: Vec<f64> = pairs.iter().map(|[square, _]| square.sqrt()).collect();
+    let total = robust_deviation(&mut sizes).powi(2) / freedom;
+    let by_place = pairs.iter().map(|[_, by_place]| by_place).sum::<f64>() / count;
+    let least = LEAST_SHARE * total;
+    let (mut own, mut share) = (given.unwrap_or_else(|| (total - by_place).max(0.01 * total)), 1.0);
+    if given.is_some() && share_known {
+        return [own, share];
+    }
+    for _ in 0..VARIANCE_STEPS {
+        let mut sums = [0.0; 5];
+        for &[square, x] in pairs {
+            let variance = (own + share * x).max(f64::MIN_POSITIVE);
+            let square = (square / variance / freedom).min(OUTLIER * OUTLIER);
+            let (a, b) = (1.0 / variance, x / variance);
+            for (sum, term) in sums.iter_mut().zip([a * a, a * b, b * b, a * square, b * square]) {
+                *sum += term;
+            }
+        }
+        let [aa, ab, bb, ay, by] = sums;
+        if !share_known {
+            let determinant = aa * bb - ab * ab;
+            let free = match given {
+                _ if bb <= 0.0 => 0.0,
+                Some(own) => (by - ab * own) / bb,
+                None if determinant > LEAST_CONTRAST * aa * bb => (aa * by - ab * ay) / determinant,
+                None => 1.0,
+            };
+            share = if free.is_finite() { free.clamp(0.0, 1.0) } else { 1.0 };
+        }
+        own = given.unwrap_or_else(|| ((ay - ab * share) / aa).max(least));
+    }
+    [own, share]
 }
 
 /// The minimum over all columns but those `held`, within the bounds of the parameters: values, cost, and the columns at

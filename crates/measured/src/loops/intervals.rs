@@ -16,6 +16,8 @@ const MET: f64 = 0.01;
 const MOST_GUESSED: f64 = 1.0;
 /// Steps to one end of an interval.
 const MOST_STEPS: usize = 16;
+/// The least factor of a step that has not come to the end.
+const LEAST_GROWTH: f64 = 1.2;
 /// An interval ends nowhere if it is wider than this factor to one side of a positive value, or this many standard
 /// errors.
 const WIDEST: f64 = 1e3;
@@ -115,7 +117,7 @@ pub(super) fn interval(
         // Steps with the roots of the rise below and above the quantile.
         let (mut low, mut high) = ((0.0, 0.0), None);
         let mut step = first.min(floor);
-        for _ in 0..MOST_STEPS {
+        for count in 0..MOST_STEPS {
             if step <= 0.0 {
                 *end = Some(at(0.0));
                 break;
@@ -127,7 +129,9 @@ pub(super) fn interval(
                 Err(_) => (from, f64::INFINITY),
             };
             let root = (cost - fitted.cost).max(0.0).sqrt();
-            if (root / quantile - 1.0).abs() < MET {
+            // A rise that is nearly there and levels off may be far from its end.
+            let is_end = count == 0 || high.is_some() || root >= quantile;
+            if is_end && (root / quantile - 1.0).abs() < MET {
                 *end = Some(at(sign * step));
                 break;
             }
@@ -151,7 +155,7 @@ pub(super) fn interval(
                     between.clamp(0.9 * low.0 + 0.1 * high.0, 0.1 * low.0 + 0.9 * high.0)
                 }
                 Some(high) => 0.5 * (low.0 + high.0),
-                None => (step * (quantile / root.max(0.25 * quantile)) * 1.02).min(floor).min(widest),
+                None => (step * (quantile / root.max(0.25 * quantile)).max(LEAST_GROWTH)).min(floor).min(widest),
             };
             *end = high.map(|high| at(sign * 0.5 * (low.0 + high.0)));
         }

@@ -5,13 +5,14 @@ use nalgebra::storage::Owned;
 use nalgebra::{DMatrix, DVector, Dyn};
 
 use super::model::{Layout, predict};
-use super::record::Branches;
+use super::record::{Branches, Sample};
 use super::{Error, Parameter};
 
-/// A value that is known beforehand, as one more measurement.
-#[derive(Clone, Copy, Debug)]
+/// A sum of columns that is known beforehand, as one more measurement.
+#[derive(Clone, Debug)]
 pub(super) struct Prior {
-    pub(super) column: usize,
+    /// Columns with their factors; that which it is about first.
+    pub(super) terms: Vec<(usize, f64)>,
     pub(super) value: f64,
     pub(super) standard_error: f64,
 }
@@ -24,6 +25,20 @@ pub(super) struct Data {
     pub(super) priors: Vec<Prior>,
     /// Sizes of the parameters, by which those that may change sign are scaled; one a column.
     pub(super) scales: Vec<f64>,
+}
+
+impl Prior {
+    /// Of one column.
+    pub(super) fn new(column: usize, value: f64, standard_error: f64) -> Prior {
+        Prior { terms: vec![(column, 1.0)], value, standard_error }
+    }
+
+    /// Gives its first column the value that agrees with the others.
+    pub(super) fn apply(&self, values: &mut [f64]) {
+        let (column, factor) = self.terms[0];
+        let others: f64 = self.terms[1..].iter().map(|(column, factor)| factor * values[*column]).sum();
+        values[column] = (self.value - others) / factor;
+    }
 }
 
 /// How far a search goes.
@@ -73,6 +88,10 @@ impl Data {
         self.records.iter().map(|record| record.samples.len()).sum()
     }
 
+    pub(super) fn samples_mut(&mut self) -> impl Iterator<Item = &mut Sample> {
+        self.records.iter_mut().flat_map(|record| &mut record.samples)
+    }
+
     /// Rows at these values, each sample's times its factor, which is one over its standard deviation, and zero where
     /// it is left out.
     pub(super) fn rows(&self, values: &[f64], factors: &[f64]) -> Rows {
@@ -92,8 +111,11 @@ impl Data {
             });
         }
         for prior in &self.priors {
-            residual[row] = (values[prior.column] - prior.value) / prior.standard_error;
-            jacobian[(row, prior.column)] = 1.0 / prior.standard_error;
+            let sum: f64 = prior.terms.iter().map(|(column, factor)| factor * values[*column]).sum();
+            residual[row] = (sum - prior.value) / prior.standard_error;
+            for (column, factor) in &prior.terms {
+                jacobian[(row, *column)] = factor / prior.standard_error;
+            }
             row += 1;
         }
         Rows { residual, jacobian, slopes }

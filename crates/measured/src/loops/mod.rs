@@ -3,8 +3,9 @@
 //! The forward model is the exact contact at constant load behind a machine spring, of any profile (`loading_curve`,
 //! `model`). Its parameters are fitted by least squares (Levenberg-Marquardt with the exact Jacobian, whose gradients
 //! are carried through the turning points; `least_squares`) after outliers have been found (Huber 1964; `fit`). Turning
-//! points come from the record (`reversals`, `record`), and are parameters themselves where the displacement is noisy.
-//! Intervals are those of the profile likelihood, since the linear ones are wrong by a factor of two for a loop in
+//! points lie between the samples of the record (`reversals`, `turns`, `record`): their places are parameters of the
+//! fit, of which the samples about them are what is known (`prepare`). Noise of the displacement moves each sample to
+//! the nearest point of the curve (`fit`). A drift that is sought is taken off before turns are sought. Intervals are those of the profile likelihood, since the linear ones are wrong by a factor of two for a loop in
 //! partial slip (`intervals`).
 //!
 //! A loop that stays in partial slip does not distinguish the compliance of the machine from that of the contact, and a
@@ -33,13 +34,14 @@ mod sampled_curve;
 mod start;
 #[cfg(test)]
 mod tests;
+mod turns;
 
 pub use error::Error;
 pub use parameter::Parameter;
 pub use result::{Curve, Estimate, Note, Residual, Runs};
 
 use loading_curve::LoadingCurve;
-use outcome::{Doubt, fitted_contact, left_over};
+use outcome::{Doubt, LeftOver, fitted_contact, left_over};
 use prepare::prepare;
 use record::Branches;
 use stickslip_mechanics::Contact;
@@ -48,12 +50,10 @@ use stickslip_mechanics::Contact;
 pub const FEWEST_POINTS: usize = 8;
 /// Points of a record that are used: of more, every second, third and so on, and the turning points.
 pub const MOST_POINTS: usize = 4_000;
-/// Turning points, in all records, up to which their places are refined where the displacement is noisy.
+/// Turning points, in all records, up to which each has a place of its own, unless a record repeats its cycle.
 pub const MOST_REFINED_TURNS: usize = 64;
-/// Points that the refinement of one turning point needs.
-const POINTS_PER_TURN: usize = 20;
-/// A turning point found in the noise is known to this many of its standard deviations.
-const TURN_ERROR: f64 = 2.0;
+/// Turning points of a record that repeats its cycle beyond which those of either side share their place.
+const FEW_TURNS: usize = 8;
 /// A residual of this share of the force is rounding.
 const ROUNDING: f64 = 1e-9;
 /// A residual of so many times the noise given is none.
@@ -181,14 +181,21 @@ pub struct LoopFit {
 /// # Errors
 /// [`Error`], which says what the records lack; [`Error::Interrupted`] as soon as `proceed` says no.
 pub fn fit(task: &Task, proceed: &dyn Fn() -> bool) -> Result<LoopFit, Error> {
-    let data = prepare(task, false)?;
     let steps: Vec<Option<f64>> = task.records.iter().map(quantised::step).collect();
     let step = steps.iter().flatten().copied().fold(0.0, f64::max);
     // Rounding is noise too.
-    let force_noise =
-        task.noise.force.map(|noise| if step > noise { noise.hypot(quantised::variance(step).sqrt()) } else { noise });
-    let fitted = fit::fit(&data, force_noise, proceed)?;
-    let (curves, residual, sticking) = left_over(&data, &fitted)?;
+    let rounded = |noise: f64| if step > noise { noise.hypot(quantised::variance(step).sqrt()) } else { noise };
+    let noise = Noise { force: task.noise.force.map(rounded), ..task.noise };
+    let mut data = prepare(task, false, None)?;
+    let mut fitted = fit::fit(&mut data, noise, proceed)?;
+    let mut drifts = None;
+    if let Some(column) = data.layout.column(Parameter::Drift) {
+        // Where the machine turns is seen after the drift is known.
+        drifts = Some(fitted.values[column]);
+        data = prepare(task, false, drifts)?;
+        fitted = fit::fit(&mut data, noise, proceed)?;
+    }
+    let LeftOver { curves, residual, sticking, excess } = left_over(&data, &fitted)?;
     let roundings = quantised::roundings(&steps, &curves);
     let is_quantised = roundings.iter().any(Option::is_some);
     let compliance = Parameter::MachineCompliance;
@@ -197,8 +204,8 @@ pub fn fit(task: &Task, proceed: &dyn Fn() -> bool) -> Result<LoopFit, Error> {
     let mut doubt = Doubt::new(task, &data, &fitted, &roundings, proceed)?;
     if compliance_unknown {
         // What a compliance that may be anything leaves open is open.
-        let wider = prepare(task, true)?;
-        let free = fit::fit(&wider, force_noise, proceed)?;
+        let mut wider = prepare(task, true, drifts)?;
+        let free = fit::fit(&mut wider, noise, proceed)?;
         let own = std::mem::replace(&mut doubt, Doubt::new(task, &wider, &free, &roundings, proceed)?);
         for (estimate, own) in doubt.estimates.iter_mut().zip(&own.estimates) {
             let ([low, high], value) = (estimate.interval, own.value);
@@ -208,9 +215,9 @@ pub fn fit(task: &Task, proceed: &dyn Fn() -> bool) -> Result<LoopFit, Error> {
     }
     let Doubt { estimates, correlations, identifiable } = doubt;
     let bench = data.layout.bench(&fitted.values);
-    let displacement_noise = data.records.iter().map(|record| record.noise).fold(0.0, f64::max);
+    let largest_noise = data.records.iter().map(|record| record.noise).fold(0.0, f64::max);
     let force = data.records.iter().map(|record| record.half_force).fold(0.0, f64::max);
-    let noisy = force_noise.is_some_and(|noise| noise > 0.0 && residual.rms > MORE_THAN_NOISE * noise);
+    let noisy = noise.force.is_some() && excess > MORE_THAN_NOISE;
     let steady_offset = task.free.contains(&Parameter::DisplacementOffset)
         && data.layout.column(Parameter::DisplacementOffset).is_none();
     let slides = |record: &Branches| {
@@ -226,13 +233,14 @@ pub fn fit(task: &Task, proceed: &dyn Fn() -> bool) -> Result<LoopFit, Error> {
         (noisy || (!residual.runs.random && residual.rms > ROUNDING * force && !is_quantised), Note::NotCoulomb),
         (is_quantised, Note::Quantised),
         (!fitted.converged, Note::NotConverged),
+        (data.records.iter().any(|record| record.turns[0].column.is_none()), Note::TurnsAsSampled),
     ];
     Ok(LoopFit {
         estimates,
         correlations,
         identifiable,
         residual,
-        noise: [fitted.force_noise, displacement_noise],
+        noise: [fitted.force_noise, largest_noise * fitted.displacement_share.sqrt()],
         curves,
         notes: notes.into_iter().filter_map(|(applies, note)| applies.then_some(note)).collect(),
         // A search that has run away has not found anything.

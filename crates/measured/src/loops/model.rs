@@ -102,10 +102,10 @@ pub(super) fn predict(
             walk.turn(&branches.turns[branch], branches.direction(branch));
             branch += 1;
         }
-        let place = walk.place(sample.displacement, sample.time, None, &mut place_by);
+        let place = walk.place(sample.displacement + sample.shift, sample.time, None, &mut place_by);
         let reached = walk.reached(place, branches.direction(branch));
         let mut predicted = walk.force(reached, (place, &place_by), branches.direction(branch), &mut gradient);
-        predicted.force += force_offset;
+        predicted.force += force_offset - sample.by_shift;
         if let Some(column) = layout.column(Parameter::ForceOffset) {
             gradient[column] += 1.0;
         }
@@ -114,12 +114,12 @@ pub(super) fn predict(
 }
 
 impl Walk<'_> {
-    /// The displacement of the machine behind a measured one, and its gradient.
-    fn place(&self, displacement: f64, time: f64, own: Option<usize>, by: &mut [f64]) -> f64 {
+    /// The displacement of the machine behind a measured one, and its gradient. A column of its own has no drift.
+    fn place(&self, displacement: f64, mut time: f64, own: Option<usize>, by: &mut [f64]) -> f64 {
         by.fill(0.0);
         let mut place = displacement;
         if let Some(column) = own {
-            place = self.values[column];
+            (place, time) = (self.values[column], 0.0);
             by[column] = 1.0;
         }
         for (parameter, factor) in [(Parameter::DisplacementOffset, 1.0), (Parameter::Drift, time)] {

@@ -78,12 +78,23 @@ fn middle(data: &Data) -> f64 {
     middles.sum::<f64>() / data.records.len() as f64
 }
 
-/// The records beside their fit, what is left, and the share of the points at which something sticks.
-pub(super) fn left_over(data: &Data, fitted: &Fitted) -> Result<(Vec<Curve>, Residual, f64), Error> {
+/// What a fit leaves.
+pub(super) struct LeftOver {
+    /// The records beside their fit.
+    pub(super) curves: Vec<Curve>,
+    pub(super) residual: Residual,
+    /// Share of the points at which something sticks.
+    pub(super) sticking: f64,
+    /// Root of the mean square of the residuals, each over its standard deviation.
+    pub(super) excess: f64,
+}
+
+/// The records beside their fit, and what is left.
+pub(super) fn left_over(data: &Data, fitted: &Fitted) -> Result<LeftOver, Error> {
     let ones = vec![1.0; data.samples()];
     let rows = data.rows(&fitted.values, &ones);
     let (mut curves, mut row) = (Vec::new(), 0);
-    let (mut squares, mut largest, mut used) = (0.0, 0.0_f64, 0);
+    let (mut squares, mut largest, mut used, mut relative) = (0.0, 0.0_f64, 0, 0.0);
     let (mut runs, mut expected, mut variance) = (0, 0.0, 0.0);
     for record in &data.records {
         let mut curve = Curve::default();
@@ -98,6 +109,7 @@ pub(super) fn left_over(data: &Data, fitted: &Fitted) -> Result<(Vec<Curve>, Res
             curve.branch.push(sample.branch);
             if kept {
                 squares += residual * residual;
+                relative += (residual * fitted.factors[row]).powi(2) / record.weight;
                 largest = largest.max(residual.abs());
                 used += 1;
                 let sign = usize::from(residual > 0.0);
@@ -122,7 +134,7 @@ pub(super) fn left_over(data: &Data, fitted: &Fitted) -> Result<(Vec<Curve>, Res
         runs: Runs { count: runs, expected, random },
     };
     let sticking = rows.slopes.iter().filter(|&&slope| slope > 0.0).count() as f64 / ones.len() as f64;
-    Ok((curves, residual, sticking))
+    Ok(LeftOver { curves, residual, sticking, excess: (relative / f64::from(used).max(1.0)).sqrt() })
 }
 
 /// The contact of the definition with the fitted values, at its own load.

@@ -2,14 +2,17 @@
 
 use super::least_squares::{Data, Prior, scales};
 use super::model::Layout;
-use super::record::Branches;
-use super::{Error, MOST_REFINED_TURNS, POINTS_PER_TURN, Parameter, Start, TURN_ERROR, Task, parameter};
+use super::record::{Branches, Turn, forms, times};
+use super::reversals::reversals;
+use super::{Error, FEW_TURNS, FEWEST_POINTS, MOST_REFINED_TURNS, Parameter, Record, Start, Task, parameter};
+use crate::robust::median;
 
-/// The data of a task; `with_compliance` seeks the compliance of the machine too.
+/// The data of a task; `with_compliance` seeks the compliance of the machine too, and `drift` is what is known of the
+/// drift, m/s.
 ///
 /// # Errors
 /// [`Error`], which names what the records lack.
-pub(super) fn prepare(task: &Task, with_compliance: bool) -> Result<Data, Error> {
+pub(super) fn prepare(task: &Task, with_compliance: bool, drift: Option<f64>) -> Result<Data, Error> {
     let Task { contact, records, free, known, noise } = task;
     if contact.friction() <= 0.0 || contact.normal_force() <= 0.0 {
         return Err(Error::NoContact { record: None });
@@ -38,7 +41,12 @@ pub(super) fn prepare(task: &Task, with_compliance: bool) -> Result<Data, Error>
         .any(|parameter| parameter.power_of_stiffness() != 0 || *parameter == Parameter::MachineCompliance);
     let mut prepared = Vec::with_capacity(records.len());
     for (index, record) in records.iter().enumerate() {
-        let branches = Branches::new(record, index, contact, noise.displacement)?;
+        let drift = match drift {
+            Some(drift) => drift,
+            None if parameters.contains(&Parameter::Drift) => drift_of_turns(record, noise.displacement),
+            None => held[Parameter::Drift as usize],
+        };
+        let branches = Branches::new(record, index, contact, noise.displacement, drift)?;
         branches.check(index, stiffness_sought && !with_compliance)?;
         prepared.push(branches);
     }
@@ -48,28 +56,76 @@ pub(super) fn prepare(task: &Task, with_compliance: bool) -> Result<Data, Error>
         .filter(|known| known.standard_error > 0.0)
         .filter_map(|known| {
             let column = layout.column(known.parameter)?;
-            Some(Prior { column, value: known.value, standard_error: known.standard_error })
+            Some(Prior::new(column, known.value, known.standard_error))
         })
         .collect();
-    let turns: usize = prepared.iter().filter(|record| record.noise > 0.0).map(|record| record.turns.len()).sum();
-    let samples: usize = prepared.iter().map(|record| record.samples.len()).sum();
-    if turns <= MOST_REFINED_TURNS && samples >= POINTS_PER_TURN * turns {
-        for record in prepared.iter_mut().filter(|record| record.noise > 0.0) {
-            refine_turns(record, &mut layout.columns, &mut priors);
+    let turns: usize = prepared.iter().map(|record| record.turns.len()).sum();
+    for record in &mut prepared {
+        if record.turns.len() > FEW_TURNS && record.repeats() {
+            refine_turns(record, &mut layout, &mut priors, true);
+        } else if turns <= MOST_REFINED_TURNS {
+            refine_turns(record, &mut layout, &mut priors, false);
         }
     }
     let scales = scales(&layout, &prepared);
     Ok(Data { records: prepared, layout, priors, scales })
 }
 
-/// Gives each turning point a column, from which it does not go far.
-fn refine_turns(record: &mut Branches, columns: &mut usize, priors: &mut Vec<Prior>) {
-    let Branches { turns, extremes, noise, .. } = record;
-    for turn in turns {
-        let place = *turn;
-        turn.column = Some(*columns);
-        extremes.iter_mut().filter(|extreme| **extreme == place).for_each(|extreme| extreme.column = turn.column);
-        priors.push(Prior { column: *columns, value: place.displacement, standard_error: TURN_ERROR * *noise });
-        *columns += 1;
+/// Gives each turning point a column, or one to all of either side, from which it does not go far; and one to the way
+/// from vertex to corner that all turns of the record have in common, in units of the width of the loop.
+fn refine_turns(record: &mut Branches, layout: &mut Layout, priors: &mut Vec<Prior>, shared: bool) {
+    let width = record.extremes[0].displacement - record.extremes[1].displacement;
+    let [share, share_error] = record.corner_share;
+    let first = layout.columns;
+    let of_turns = first + usize::from(record.turns.iter().any(|turn| turn.corner != 0.0));
+    if of_turns > first {
+        priors.push(Prior::new(first, width * share, width * share_error));
     }
+    let column = |turn: usize| of_turns + if shared { turn % 2 } else { turn };
+    let mut next = of_turns + if shared { 2 } else { record.turns.len() };
+    let drift = layout.column(Parameter::Drift);
+    let known = |turn: &Turn, column: usize| {
+        let (mut terms, mut value) = (vec![(column, 1.0)], turn.displacement);
+        if turn.corner != 0.0 {
+            terms.push((first, -turn.corner / width));
+            value -= share * turn.corner;
+        }
+        match drift {
+            Some(drift) => terms.push((drift, turn.time)),
+            None => value -= layout.held[Parameter::Drift as usize] * turn.time,
+        }
+        Prior { terms, value, standard_error: turn.error }
+    };
+    for extreme in &mut record.extremes {
+        let own = record.turns.iter().position(|turn| turn == extreme).map(column);
+        extreme.column = own.or_else(|| {
+            priors.push(known(extreme, next));
+            next += 1;
+            Some(next - 1)
+        });
+    }
+    for (place, turn) in record.turns.iter_mut().enumerate() {
+        priors.push(known(turn, column(place)));
+        turn.column = Some(column(place));
+    }
+    layout.columns = next;
+}
+
+/// The drift that turns of the same side show, m/s; zero if there are too few.
+fn drift_of_turns(record: &Record, noise: Option<f64>) -> f64 {
+    let (times, mut drift) = (times(record), 0.0);
+    if times.len() < FEWEST_POINTS {
+        return drift;
+    }
+    for _ in 0..2 {
+        let level: Vec<f64> = record.displacement.iter().zip(&times).map(|(u, time)| u - drift * time).collect();
+        let found = reversals(&level, noise);
+        let forms = forms(&times, &level, &found.at, found.noise);
+        let mut slopes: Vec<f64> = forms
+            .windows(3)
+            .map(|of| (of[2].vertex + of[2].corner - of[0].vertex - of[0].corner) / (2.0 * (of[2].time - of[0].time)))
+            .collect();
+        drift += median(&mut slopes);
+    }
+    drift
 }

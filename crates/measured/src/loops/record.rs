@@ -2,6 +2,7 @@
 
 use super::reversals::{Reversals, extent, reversals};
 use super::sampled_curve::SampledCurve;
+use super::turns::{Form, corner_share, form};
 use super::{Error, FEWEST_POINTS, MOST_POINTS, Record, Start};
 use crate::robust::{median, quantile};
 use stickslip_mechanics::{Contact, range};
@@ -16,6 +17,10 @@ const MOST_STIFFNESS_RATIO: f64 = 200.0;
 const SURELY: f64 = 5.0;
 /// Below this share of the force a loop has no width.
 const ROUNDING: f64 = 1e-9;
+/// A record may end short of a turn by this share of its last step.
+const END_SHARE: f64 = 0.5;
+/// Turns agree within this many standard deviations.
+const AGREE: f64 = 3.0;
 /// The stiffness after a reversal is that of this share of the branch.
 const FIRST_SHARE: f64 = 0.1;
 
@@ -25,6 +30,9 @@ pub(super) struct Sample {
     pub(super) displacement: f64,
     pub(super) force: f64,
     pub(super) time: f64,
+    /// How far the displacement most likely was from where it was measured, m, and what that makes in the force, N.
+    pub(super) shift: f64,
+    pub(super) by_shift: f64,
     /// Zero up to the first turning point, and so on.
     pub(super) branch: usize,
 }
@@ -32,9 +40,13 @@ pub(super) struct Sample {
 /// Where the displacement turns, or the record ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Turn {
+    /// As it would be measured, m.
     pub(super) displacement: f64,
     pub(super) time: f64,
-    /// Its column among the parameters, where the noise of the displacement leaves its place open.
+    /// What the corner of a turn is beyond its vertex, m, and how far the turn may be from either.
+    pub(super) corner: f64,
+    pub(super) error: f64,
+    /// Its column among the parameters.
     pub(super) column: Option<usize>,
 }
 
@@ -46,8 +58,12 @@ pub(super) struct Branches {
     pub(super) rising: bool,
     pub(super) start: Start,
     pub(super) weight: f64,
-    /// Standard deviation of the noise of the displacement, m.
+    /// Standard deviation of the noise of the displacement, m: as given, or the most that it may be.
     pub(super) noise: f64,
+    /// The drift of the displacement, m/s, as far as it was known before.
+    pub(super) drift: f64,
+    /// Where between vertex and corner the turns are, with its standard deviation.
+    pub(super) corner_share: [f64; 2],
     /// The highest and the lowest places, ends included.
     pub(super) extremes: [Turn; 2],
     /// The virgin contact at the load of the record.
@@ -63,9 +79,15 @@ pub(super) struct Branches {
 }
 
 impl Branches {
-    /// Finds the branches of a record, and thins it.
-    pub(super) fn new(record: &Record, index: usize, contact: &Contact, noise: Option<f64>) -> Result<Branches, Error> {
-        let Record { displacement, force, time, normal_force, start, weight } = record;
+    /// Finds the branches of a record of this drift, m/s, and thins it.
+    pub(super) fn new(
+        record: &Record,
+        index: usize,
+        contact: &Contact,
+        noise: Option<f64>,
+        drift: f64,
+    ) -> Result<Branches, Error> {
+        let Record { displacement, force, normal_force, start, weight, .. } = record;
         let contact = contact.pressed(normal_force.unwrap_or(contact.normal_force()))?;
         if contact.normal_force() <= 0.0 {
             return Err(Error::NoContact { record: Some(index) });
@@ -82,36 +104,57 @@ impl Branches {
         if high <= low {
             return Err(Error::ConstantForce { record: index });
         }
-        let Reversals { at, rising, noise } = reversals(displacement, noise);
+        let (times, drift) = (times(record), if record.time.is_some() { drift } else { 0.0 });
+        // A drift hides where the machine turns.
+        let level: Vec<f64> = displacement.iter().zip(&times).map(|(u, time)| u - drift * time).collect();
+        let Reversals { at, rising, noise } = reversals(&level, noise);
         if at.is_empty() {
             return Err(Error::SingleBranch { record: index });
         }
-        let time = |at: usize| time.as_ref().map_or(0.0, |time| time[at]);
-        let turn = |at: usize| Turn { displacement: displacement[at], time: time(at), column: None };
-        let turns: Vec<Turn> = at
+        let forms = forms(&times, &level, &at, noise);
+        let corner_share = corner_share(&forms, noise);
+        let time = |time: f64| if record.time.is_some() { time } else { 0.0 };
+        let turns: Vec<Turn> = forms
             .iter()
-            .map(|&at| {
-                if noise > 0.0 { Turn { displacement: vertex(displacement, at, noise), ..turn(at) } } else { turn(at) }
+            .map(|form| {
+                let corner = form.corner - form.vertex;
+                Turn {
+                    displacement: form.vertex + corner_share[0] * corner + drift * form.time,
+                    time: time(form.time),
+                    corner,
+                    error: form.error,
+                    column: None,
+                }
             })
             .collect();
-        let ends = [turn(0), turn(displacement.len() - 1)];
-        let by_place = |a: &&Turn, b: &&Turn| a.displacement.total_cmp(&b.displacement);
-        // An end within the noise of a turning point is not beyond it.
-        let beyond = |end: &Turn, sign: f64| {
-            turns.iter().all(|turn| sign * (end.displacement - turn.displacement) > 3.0 * noise)
-        };
-        let highest = turns.iter().chain(ends.iter().filter(|end| beyond(end, 1.0))).max_by(by_place);
-        let lowest = turns.iter().chain(ends.iter().filter(|end| beyond(end, -1.0))).min_by(by_place);
-        let (Some(&highest), Some(&lowest)) = (highest, lowest) else {
+        let last = displacement.len() - 1;
+        let ends = [(0, 1), (last, last - 1)].map(|(end, beside)| Turn {
+            displacement: displacement[end],
+            time: time(times[end]),
+            corner: 0.0,
+            error: noise.hypot(END_SHARE * (level[end] - level[beside])),
+            column: None,
+        });
+        let (Some(highest), Some(lowest)) =
+            (extreme(&turns, &ends, rising, drift, 1.0), extreme(&turns, &ends, rising, drift, -1.0))
+        else {
             return Err(Error::SingleBranch { record: index });
         };
+        let at = last_samples(&times, &forms);
         let every = displacement.len().div_ceil(MOST_POINTS);
         let mut samples = Vec::with_capacity(displacement.len() / every + at.len() + 1);
         let mut branch = 0;
         for (place, (&displacement, &force)) in displacement.iter().zip(force).enumerate() {
             let turning = at.get(branch) == Some(&place);
             if place % every == 0 || turning {
-                samples.push(Sample { displacement, force, time: time(place), branch });
+                samples.push(Sample {
+                    displacement,
+                    force,
+                    time: time(times[place]),
+                    shift: 0.0,
+                    by_shift: 0.0,
+                    branch,
+                });
             }
             branch += usize::from(turning);
         }
@@ -122,6 +165,8 @@ impl Branches {
             start: start.unwrap_or(Start::Steady),
             weight: *weight,
             noise,
+            drift,
+            corner_share,
             extremes: [highest, lowest],
             curve: SampledCurve::new(&contact),
             contact,
@@ -131,6 +176,14 @@ impl Branches {
         };
         found.stiffness = found.stiffness_after_reversals();
         Ok(found)
+    }
+
+    /// Whether the turns of either side agree.
+    pub(super) fn repeats(&self) -> bool {
+        self.turns.windows(3).all(|of| {
+            let way = of[2].displacement - of[0].displacement - self.drift * (of[2].time - of[0].time);
+            way.abs() <= AGREE * of[2].error.hypot(of[0].error)
+        })
     }
 
     /// 1 where a branch rises, -1 where it falls.
@@ -205,23 +258,49 @@ pub(super) fn stiffness(contact: &Contact) -> f64 {
     2.0 * contact.elasticity().g_star() * contact.contact_radius()
 }
 
-/// The extreme of a noisy displacement: the vertex of the parabola through the points about it that are within the
-/// noise.
-fn vertex(displacement: &[f64], at: usize, noise: f64) -> f64 {
-    let near = |index: &usize| (displacement[*index] - displacement[at]).abs() < 8.0 * noise;
-    let first = (0..at).rev().take_while(near).last().unwrap_or(at);
-    let last = (at..displacement.len()).take_while(near).last().unwrap_or(at);
-    let reach = (at - first).max(last - at).max(1) as f64;
-    let basis = |index: usize| {
-        let x = (index as f64 - at as f64) / reach;
-        nalgebra::Vector3::new(1.0, x, x * x)
+/// The times of a record, s, or the numbers of its points.
+pub(super) fn times(record: &Record) -> Vec<f64> {
+    record.time.clone().unwrap_or_else(|| (0..record.displacement.len()).map(|index| index as f64).collect())
+}
+
+/// The forms of all turns.
+pub(super) fn forms(times: &[f64], level: &[f64], at: &[usize], noise: f64) -> Vec<Form> {
+    let before = std::iter::once(0).chain(at.iter().copied());
+    let after = at.iter().copied().skip(1).chain(std::iter::once(level.len() - 1));
+    at.iter()
+        .zip(before.zip(after))
+        .map(|(&at, (before, after))| form(times, level, at, before..=after, noise))
+        .collect()
+}
+
+/// The last sample of each branch.
+fn last_samples(times: &[f64], forms: &[Form]) -> Vec<usize> {
+    let mut least = 0;
+    let last = |form: &Form| {
+        let at = times.partition_point(|time| *time <= form.time).saturating_sub(1).max(least);
+        least = at + 1;
+        at
     };
-    let normal: nalgebra::Matrix3<f64> = (first..=last).map(|index| basis(index) * basis(index).transpose()).sum();
-    let right: nalgebra::Vector3<f64> = (first..=last).map(|index| basis(index) * displacement[index]).sum();
-    let Some(inverse) = normal.try_inverse() else { return displacement[at] };
-    let fitted = inverse * right;
-    let vertex = fitted[0] - 0.25 * fitted[1] * fitted[1] / fitted[2];
-    if (vertex - displacement[at]).abs() <= 8.0 * noise { vertex } else { displacement[at] }
+    forms.iter().map(last).collect()
+}
+
+/// The outermost place in a direction, where a machine that repeats its cycle has turned before: of turns that agree
+/// the middle one, else the farthest, or an end of the record that is beyond all of them.
+fn extreme(turns: &[Turn], ends: &[Turn; 2], rising: bool, drift: f64, sign: f64) -> Option<Turn> {
+    let far = |turn: &Turn| sign * (turn.displacement - drift * turn.time);
+    let mut side: Vec<Turn> = turns.iter().skip(usize::from(rising == (sign < 0.0))).step_by(2).copied().collect();
+    side.sort_by(|a, b| far(a).total_cmp(&far(b)));
+    let beyond = |end: &&Turn| side.iter().all(|turn| far(end) - far(turn) > AGREE * turn.error.hypot(end.error));
+    let by_place = |a: &&Turn, b: &&Turn| far(a).total_cmp(&far(b));
+    let middle = side.get(side.len() / 2);
+    let agree = |farthest: &Turn| {
+        middle.is_some_and(|middle| far(farthest) - far(middle) <= AGREE * farthest.error.hypot(middle.error))
+    };
+    let of_turns = match side.last() {
+        Some(farthest) if agree(farthest) => middle,
+        farthest => farthest,
+    };
+    ends.iter().filter(beyond).max_by(by_place).or(of_turns).copied()
 }
 
 /// A positive friction that the mechanics accepts.

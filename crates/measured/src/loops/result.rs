@@ -68,6 +68,9 @@ pub enum Note {
     /// How a record began was not said or cannot be known: it is taken as a part of a steady loop, whose middle is its
     /// zero.
     FirstBranchUnknown,
+    /// A record has too many turning points that do not repeat: they are taken where they were sampled, as if that were
+    /// exact.
+    TurnsAsSampled,
     /// The forces come in steps that are not small beside the noise: standard errors and intervals are the wider.
     Quantised,
     /// The residual is no noise: friction is not Coulomb's, or the contact is another one.

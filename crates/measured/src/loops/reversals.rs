@@ -1,12 +1,11 @@
 //! Turning points of a displacement, found in its noise.
 
-use crate::robust::{median, robust_deviation};
+use crate::robust::robust_deviation;
 
 /// Swings smaller than this share of the range are no reversals.
 const LEAST_SWING: f64 = 1e-9;
-/// Reversals at more than one in so many points, most of them by less than [`SMALL_SWING`] of the range, are noise.
-const NOISY_EVERY: usize = 10;
-const SMALL_SWING: f64 = 0.05;
+/// Swings of more than this share of the range are reversals, whatever the noise.
+const LARGE_SWING: f64 = 0.2;
 /// A reversal is a swing of this many standard deviations of the noise.
 const SIGNIFICANT: f64 = 8.0;
 /// The standard deviation of fourth differences of white noise, over that of the noise: the root of the sum of the
@@ -20,7 +19,7 @@ pub(super) struct Reversals {
     pub(super) at: Vec<usize>,
     /// Whether the displacement rises first.
     pub(super) rising: bool,
-    /// Standard deviation of the noise of the displacement, m; zero where every branch runs one way.
+    /// Standard deviation of the noise of the displacement, m: as given, or the most that it may be.
     pub(super) noise: f64,
 }
 
@@ -32,18 +31,17 @@ pub(super) fn reversals(displacement: &[f64], noise: Option<f64>) -> Reversals {
         let (at, rising) = swings(displacement, least.max(SIGNIFICANT * noise));
         return Reversals { at, rising, noise };
     }
-    let (at, rising) = swings(displacement, least);
-    let mut sizes: Vec<f64> = at.windows(2).map(|pair| (displacement[pair[1]] - displacement[pair[0]]).abs()).collect();
-    let noisy = at.len() > displacement.len() / NOISY_EVERY && median(&mut sizes) < SMALL_SWING * (high - low);
-    if !noisy {
-        return Reversals { at, rising, noise: 0.0 };
-    }
+    // Of a smooth displacement that is sampled evenly, fourth differences show the noise alone; else they are larger.
     let mut differences: Vec<f64> = displacement
         .windows(5)
         .map(|u| (u[0] - 4.0 * u[1] + 6.0 * u[2] - 4.0 * u[3] + u[4]).abs() / FOURTH_DIFFERENCE)
         .collect();
     let noise = robust_deviation(&mut differences);
-    let (at, rising) = swings(displacement, SIGNIFICANT * noise);
+    let (mut at, mut rising) = swings(displacement, least);
+    let significant = (SIGNIFICANT * noise).min(LARGE_SWING * (high - low));
+    if at.windows(2).any(|pair| (displacement[pair[1]] - displacement[pair[0]]).abs() < significant) {
+        (at, rising) = swings(displacement, significant.max(least));
+    }
     Reversals { at, rising, noise }
 }
 

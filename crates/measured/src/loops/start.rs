@@ -76,9 +76,7 @@ fn guesses_of(data: &Data) -> Vec<Vec<f64>> {
                     }
                 };
             }
-            for prior in priors {
-                values[prior.column] = prior.value;
-            }
+            priors.iter().for_each(|prior| prior.apply(&mut values));
             guesses.push(values);
         }
     }

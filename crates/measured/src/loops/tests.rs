@@ -44,7 +44,7 @@ fn gradients_agree_with_differences() {
                 .to_vec();
         }
         let records = vec![record(way, Start::Virgin), record(0.8 * way, Start::Steady)];
-        let data = prepare(&Task { contact, records, free, known, noise: Noise::default() }, false).unwrap();
+        let data = prepare(&Task { contact, records, free, known, noise: Noise::default() }, false, None).unwrap();
         let factors = vec![1.0; data.samples()];
         let mut values: Vec<f64> = (0..data.layout.columns).map(|column| 1e-3 * data.scales[column]).collect();
         for (column, &parameter) in data.layout.parameters.iter().enumerate() {
@@ -57,7 +57,7 @@ fn gradients_agree_with_differences() {
                 _ => values[column],
             };
         }
-        data.priors.iter().for_each(|prior| values[prior.column] = prior.value);
+        data.priors.iter().for_each(|prior| prior.apply(&mut values));
         let rows = data.rows(&values, &factors);
         assert!(data.layout.columns > data.layout.parameters.len());
         for column in 0..data.layout.columns {
