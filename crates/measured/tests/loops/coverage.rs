@@ -117,6 +117,9 @@ fn intervals_cover_whatever_the_drive_the_sampling_and_the_noise() {
     for index in 0..DRIVES * records_of_each {
         let (scene, record) = scene(index);
         let found = scene.fitted(&bench, record);
+        if let Err(error) = &found {
+            println!("{error}: {scene:?}");
+        }
         for name in rows_of(&scene) {
             let row = rows.entry(name).or_default();
             row.records += 1;
@@ -137,6 +140,7 @@ fn intervals_cover_whatever_the_drive_the_sampling_and_the_noise() {
         }
     }
     println!("| records | number | friction | stiffness | compliance | drift | refused | `not_coulomb` |");
+    println!("|---|---|---|---|---|---|---|---|");
     rows.iter().for_each(|(name, row)| row.print(&name[1..]));
     for (name, row) in rows.iter().filter(|(name, _)| name.starts_with(['a', 'j'])) {
         assert!(row.intervals.iter().all(|intervals| intervals.widths.is_empty() || intervals.hold()), "{name}");
