@@ -231,6 +231,10 @@ impl Branches {
             let from = self.samples.partition_point(|sample| sample.branch < branch);
             let to = self.samples.partition_point(|sample| sample.branch <= branch);
             let points = &self.samples[from.saturating_sub(1)..to];
+            // A machine may rest before it turns back.
+            let before = |sample: &Sample| -self.direction(branch) * sample.displacement;
+            let turn = (0..points.len()).max_by(|a, b| before(&points[*a]).total_cmp(&before(&points[*b])));
+            let points = &points[turn.unwrap_or(0)..];
             let (Some(first), Some(last)) = (points.first(), points.last()) else { continue };
             let length = last.displacement - first.displacement;
             let near = |sample: &&Sample| {

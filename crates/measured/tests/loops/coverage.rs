@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 use stickslip_measured::loops::{Estimate, Note, Parameter, Record};
 
 use crate::bench::{Bench, Normal};
-use crate::scenes::{DRIVES, Scene};
+use crate::scenes::{DRIVES, Drive, Scene};
 
 fn bench() -> Bench {
     Bench { friction: 0.3, g_star: 9.5e10, ..Bench::default() }
@@ -165,5 +165,27 @@ fn a_mirrored_record_gives_the_mirrored_answer() {
             let error = one.standard_error.unwrap_or(one.value);
             assert!((one.value - sign * other.value).abs() < 0.01 * error, "{index} {one:?} {other:?}");
         }
+    }
+}
+
+/// Several samples at rest after a turn have no stiffness, which is no sign of another unit.
+#[test]
+fn a_coarse_drive_that_rests_at_its_turns_is_not_refused() {
+    let bench = bench();
+    for index in 0..60 {
+        let mut random = fastrand::Rng::with_seed(index);
+        let drive = Drive::Trapezoid(0.1 + 0.1 * random.f64());
+        let scene = Scene {
+            drive,
+            points: 30.0 + 10.0 * random.f64(),
+            phase: 0.0,
+            amplitude: 2.2,
+            noise: [0.001, 0.0],
+            drift: 0.0,
+            left_out: 0.0,
+            ..Scene::random(1, &mut random)
+        };
+        let record = scene.record(&bench, &mut Normal(random));
+        assert!(scene.fitted(&bench, record).is_ok(), "{scene:?}");
     }
 }
