@@ -275,29 +275,34 @@ class FileColumn(Result):
     assumed: bool
     """Whether neither the file nor the query names that unit."""
 
+    left_out: str | None = None
+    """Why it was left out."""
+
     name: str | None = None
     """Its name in the header, if it has one."""
 
     quantity: str | None = None
-    """What it was taken for: `x`, `y`, `z`, `displacement`, `force`, `time` or `normal_force`; `null` if it was not
-    used.
+    """What it was taken for: `x`, `y`, `z`, `displacement`, `force`, `time` or `normal_force`; `null` if it was left
+    out.
     """
 
     unit: str | None = None
-    """The symbol of its unit; `null` if it was not used."""
+    """Its unit in the file, by its symbol (`um`) or as the file names it (`mil`); `null` if it was left out. The
+    numbers of the reply are in `units`.
+    """
 
 
 class FilePreview(Result):
     """How a file was read."""
 
     columns: list[FileColumn]
-    """The columns in order; none of a matrix of heights."""
+    """The columns in order, with what each was taken for; none of a matrix of heights."""
 
     decimal_mark: str
     """What separates whole numbers from decimals: `.` or `,`."""
 
     encoding: str
-    """The encoding, such as `UTF-8` or `UTF-16LE`."""
+    """The encoding, such as `UTF-8` or `UTF-16LE`, or the kind of a spreadsheet."""
 
     header: list[str]
     """The first lines before the numbers."""
@@ -308,11 +313,14 @@ class FilePreview(Result):
     rows: int
     """Number of rows of numbers."""
 
+    rows_left_out: RowsLeftOut
+    """Lines that are not in the reply: headers, remarks, and rows without a number that they need."""
+
     separator: str
     """What separates the columns: `semicolon`, `tab`, `white_space` or `comma`."""
 
     thinned: int
-    """Every how manyth row, and column of a matrix, is in the reply; 1 if all are."""
+    """The stride: one row in so many, and one column of a matrix, is in the reply; 1 if all are."""
 
 
 class FitEstimate(Result):
@@ -1275,6 +1283,16 @@ class RobustnessReply(Result):
     """The standard error of the mean, a pure number."""
 
 
+class RowsLeftOut(Result):
+    """Lines of a file that are not in the reply."""
+
+    count: int
+    """How many there are."""
+
+    lines: list[int]
+    """Their numbers from 1 on, of the first 100."""
+
+
 class ScanFileReply(Result):
     """A scan that was read from a file. `scan` and `units` are members of the body of `POST /profiles/fit`."""
 
@@ -1798,6 +1816,7 @@ NAMES = [
     "Resonance",
     "ResonancePoint",
     "RobustnessReply",
+    "RowsLeftOut",
     "ScanFileReply",
     "ScanResidual",
     "SessionPage",

@@ -5,7 +5,7 @@ const PYTHON: &str = "the Python package reads it (`pip install \"stickslip[scan
 const TEXT: &str = "export its columns as text (CSV)";
 
 /// How a file begins, what it then is, and how it can be read.
-const BEGINNINGS: [(&[u8], &str, &str); 34] = [
+const BEGINNINGS: [(&[u8], &str, &str); 32] = [
     (b"DIGITAL SURF", "a surface of Digital Surf (.sur)", PYTHON),
     (b"DSCOMPRESSED", "a surface of Digital Surf (.sur)", PYTHON),
     (b"\x01\x00Directory", "a measurement of a Wyko or Bruker profiler (.opd)", PYTHON),
@@ -17,8 +17,6 @@ const BEGINNINGS: [(&[u8], &str, &str); 34] = [
     (b"\x88\x1b\x03\x70", "a measurement of a Zygo profiler (.dat)", PYTHON),
     (b"\x88\x1b\x03\x71", "a measurement of a Zygo profiler (.dat)", PYTHON),
     (b"VK4_", "a measurement of a Keyence microscope (.vk4)", PYTHON),
-    (b"VK6", "a measurement of a Keyence microscope (.vk6)", PYTHON),
-    (b"VK7", "a measurement of a Keyence microscope (.vk7)", PYTHON),
     (b"AliconaImaging", "a measurement of an Alicona microscope (.al3d)", PYTHON),
     (b"TDSm", "a file of LabVIEW (.tdms)", "export it as .lvm or CSV, or read it with npTDMS"),
     (b"MATLAB 5.0", "a file of MATLAB (.mat)", TEXT),

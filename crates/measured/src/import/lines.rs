@@ -103,7 +103,7 @@ pub(super) fn lines(text: &str) -> impl Iterator<Item = (usize, &str)> {
     let (mut start, mut number) = (0, 0);
     let one = move |start: usize| {
         let bytes = &text.as_bytes()[start..];
-        let length = memchr_line_end(bytes);
+        let length = line_end(bytes);
         let end = match bytes.get(length..) {
             Some([b'\r', b'\n', ..]) => length + 2,
             Some([_, ..]) => length + 1,
@@ -135,7 +135,7 @@ pub(super) fn lines(text: &str) -> impl Iterator<Item = (usize, &str)> {
     })
 }
 
-fn memchr_line_end(bytes: &[u8]) -> usize {
+fn line_end(bytes: &[u8]) -> usize {
     bytes.iter().position(|byte| matches!(byte, b'\n' | b'\r')).unwrap_or(bytes.len())
 }
 

@@ -3,6 +3,7 @@
 //! `STICKSLIP_TEST_CASES` repeats each test with so many cases.
 
 mod refusals;
+mod spreadsheets;
 mod truth;
 mod writer;
 
