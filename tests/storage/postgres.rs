@@ -315,7 +315,7 @@ async fn a_search_that_nobody_waits_for_any_more_is_ended_by_the_database() {
     let running = async || client.query_one(running, &[]).await.unwrap().get::<_, i64>(0);
     let search = || {
         let store = Arc::clone(&store);
-        tokio::spawn(async move { store.list(None, Some("nothing".to_owned()), Page::oldest(None, 10)).await })
+        tokio::spawn(async move { store.list(None, Some("kugel".to_owned()), Page::oldest(None, 10)).await })
     };
     let searches = [search(), search(), search()];
     until("two of them run", async || (running().await == 2).then_some(())).await;
