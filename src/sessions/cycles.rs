@@ -128,8 +128,8 @@ impl ClosedCycles {
         Ok(log)
     }
 
-    /// Looks at the states up to the move `sequence` that are not in `known`, as far as the time lasts. The memory of the
-    /// request is more meanwhile; without any, that has been reserved.
+    /// Looks at the states up to the move `sequence` that are not in `known`, as far as the time lasts. The memory of
+    /// the request is more meanwhile; without any, that has been reserved.
     pub(super) async fn read_states(
         &self,
         id: Uuid,

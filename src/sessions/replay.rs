@@ -29,8 +29,8 @@ const PIECES: usize = 4;
 pub(super) const PIECE_BYTES: usize = 96;
 /// A state that grows has room for up to twice its pieces; a copy has none to spare.
 const COPIES: usize = 3;
-/// Bytes that a byte of a definition becomes while it is read and prepared: a point of a table is a few digits, and then
-/// a series.
+/// Bytes that a byte of a definition becomes while it is read and prepared: a point of a table is a few digits, and
+/// then a series.
 const PREPARED: usize = 100;
 /// Bytes of a definition that holds no table.
 const SHORT_DEFINITION: u64 = 1_024;

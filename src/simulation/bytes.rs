@@ -7,8 +7,8 @@ use stickslip_wire::simulate::Simulation;
 use stickslip_wire::subsurface::SubsurfaceTask;
 use stickslip_wire::{self as wire, Plan, Solver, Steps};
 
-/// Bytes that a byte of a file or of a JSON value takes once it is read: a short number with its separator, as a cell, in
-/// a column and as JSON. That of a body is [`PARSED`](stickslip_wire::Document::PARSED).
+/// Bytes that a byte of a file or of a JSON value takes once it is read: a short number with its separator, as a cell,
+/// in a column and as JSON. That of a body is [`PARSED`](stickslip_wire::Document::PARSED).
 pub const READ: usize = 32;
 /// A number of a reply: itself, perhaps in two documents, and its text, which grows by doubling.
 pub(crate) const NUMBER: usize = 64;

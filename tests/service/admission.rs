@@ -93,8 +93,8 @@ async fn small_needs_do_not_wait_behind_large_ones() {
     assert_eq!(pool.taken().bytes, 0);
 }
 
-/// What a request does one after the other: its body arrives and doubles, it gets its permit, is parsed, asks for what its
-/// work takes, locks its contact, and loads it.
+/// What a request does one after the other: its body arrives and doubles, it gets its permit, is parsed, asks for what
+/// its work takes, locks its contact, and loads it.
 async fn request(pool: &Pool, locks: &[AsyncMutex<()>], number: usize) -> Result<(), PoolError> {
     let need = |stage: usize| UNIT * (20 + (number * 37 + stage * 53) % 180);
     let pause = async || sleep(Duration::from_millis(1)).await;

@@ -12,8 +12,8 @@ pub trait Document: DeserializeOwned + Send {
     /// The checked document.
     type Checked: Send + 'static;
 
-    /// Bytes that a byte of the body takes at most once it is parsed: measured, with a margin. `{}` and a comma become a
-    /// move, which is 26 bytes for each of theirs.
+    /// Bytes that a byte of the body takes at most once it is parsed: measured, with a margin. `{}` and a comma become
+    /// a move, which is 26 bytes for each of theirs.
     const PARSED: usize = 32;
 
     /// Checks every number against its range, and prepares the profile of the contact that the document defines. Faults

@@ -15,8 +15,8 @@ use super::limits;
 #[serde(transparent)]
 pub struct JsonValue(pub Value);
 
-/// Objects of a value at most: as many as a path has moves, and those around them. One takes some 700 bytes, however short
-/// it is.
+/// Objects of a value at most: as many as a path has moves, and those around them. One takes some 700 bytes, however
+/// short it is.
 const OBJECTS: usize = limits::PATH_MOVES.end().saturating_add(1_000);
 
 impl<'de> Deserialize<'de> for JsonValue {

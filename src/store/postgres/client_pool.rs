@@ -145,8 +145,8 @@ impl ClientPool {
         with_retries!(self, ANSWER, connection => rows(connection, statement, parameters))
     }
 
-    /// The same for a statement that may read much: few at a time, and the database is told to end one that nobody waits
-    /// for any more.
+    /// The same for a statement that may read much: few at a time, and the database is told to end one that nobody
+    /// waits for any more.
     pub(super) async fn search(&self, statement: &str, parameters: &[Parameter<'_>]) -> Result<Vec<Row>> {
         let mut tries = Tries::default();
         loop {

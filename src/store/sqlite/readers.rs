@@ -35,7 +35,8 @@ pub(super) struct Readers {
 /// A search that somebody waits for. Without him it ends.
 struct Search(Arc<Mutex<SearchState>>);
 
-// Locked for a moment. The handle is there while the search runs, so that nothing else on its connection is interrupted.
+// Locked for a moment. The handle is there while the search runs, so that nothing else on its connection is
+// interrupted.
 enum SearchState {
     Wanted(Option<InterruptHandle>),
     Abandoned,
