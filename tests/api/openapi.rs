@@ -125,7 +125,7 @@ async fn every_example_works_unchanged() {
     let document = document();
     let server = Server::start().await;
     let mut sent = 0;
-    for (path, method, operation) in operations(&document).filter(|(_, method, _)| *method == "post") {
+    for (path, _, operation) in operations(&document).filter(|(_, method, _)| *method == "post") {
         let content = &operation["requestBody"]["content"];
         if content["application/octet-stream"].is_object() {
             let text = content["application/octet-stream"]["example"]
@@ -213,7 +213,7 @@ async fn what_is_refused_for_one_number_alone_is_not_allowed_by_the_document() {
     let (server, ends) = (Server::start().await, ends(&document["components"]["schemas"]));
     let contact = server.contact().await;
     let (mut sent, mut allowed_and_refused) = (0, Vec::new());
-    for (path, method, operation) in operations(&document).filter(|(_, method, _)| *method == "post") {
+    for (path, _, operation) in operations(&document).filter(|(_, method, _)| *method == "post") {
         let content = &operation["requestBody"]["content"]["application/json"];
         let named = content["examples"].as_object().into_iter().flat_map(|named| named.values());
         for example in named.map(|named| &named["value"]).chain(content.get("example")) {

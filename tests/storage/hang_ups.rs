@@ -22,7 +22,7 @@ use stickslip::jobs::{JobError, Jobs, LEASE};
 use stickslip::sessions::{CAPACITY, SessionError, Sessions};
 use stickslip::simulation::Sweep;
 use stickslip::store::{
-    Changes, ChunkResult, Claim, Extent, IsSmall, Job, JobLimits, JobStore, MemoryStore, PostgresStore, Receipt,
+    Changes, ChunkResult, Claim, Extent, IsSmall, Job, JobLimits, JobStore, MemoryStore, Page, PostgresStore, Receipt,
     Record, Reply, RequestKey, Session, Snapshot, SqliteStore, Store, StoreError, Tenant, Usage, Whole,
 };
 use stickslip_wire::{
@@ -83,14 +83,8 @@ impl Store for Yielding {
         self.inner.find(id).await
     }
 
-    async fn list(
-        &self,
-        tenant: Option<Tenant>,
-        label: Option<String>,
-        after: Option<Uuid>,
-        limit: usize,
-    ) -> Stored<Vec<SessionSummary>> {
-        self.inner.list(tenant, label, after, limit).await
+    async fn list(&self, tenant: Option<Tenant>, label: Option<String>, page: Page) -> Stored<Vec<SessionSummary>> {
+        self.inner.list(tenant, label, page).await
     }
 
     async fn rename(
@@ -136,8 +130,8 @@ impl Store for Yielding {
         self.inner.snapshot(id).await
     }
 
-    async fn save_snapshot(&self, id: Uuid, snapshot: Snapshot) -> Stored {
-        around(self.inner.save_snapshot(id, snapshot)).await
+    async fn save_snapshot(&self, id: Uuid, snapshot: Snapshot, unreadable: Option<u64>) -> Stored {
+        around(self.inner.save_snapshot(id, snapshot, unreadable)).await
     }
 
     async fn purge_expired(&self, idle_since: Option<Timestamp>) -> Stored<u64> {
@@ -220,7 +214,7 @@ fn keyed(key: String) -> Option<RequestKey> {
 }
 
 async fn count(store: &dyn Store) -> usize {
-    store.list(None, None, None, 10_000).await.unwrap().len()
+    store.list(None, None, Page::oldest(None, 10_000)).await.unwrap().len()
 }
 
 fn is_gone<T>(found: &Stored<T>) -> bool {

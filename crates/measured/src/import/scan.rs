@@ -142,11 +142,11 @@ impl Columns {
         sheet.check_names()?;
         let mut left_out: Vec<(usize, &'static str)> = Vec::new();
         let mut open: Vec<usize> = Vec::new();
-        for column in 0..sheet.width {
+        for (column, axis) in axes.iter().enumerate().take(sheet.width) {
             if [x, y, z].contains(&Some(column)) {
                 continue;
             }
-            match axes[column] {
+            match *axis {
                 _ if sheet.is_text[column] => left_out.push((column, "text")),
                 Axis::Left(reason) => left_out.push((column, reason)),
                 _ => open.push(column),

@@ -419,7 +419,7 @@ impl Dialect {
     /// The separator and the number of columns with which most lines are rows of numbers.
     fn of(text: &str, all: &[Row]) -> Option<Dialect> {
         let stride = all.len().div_ceil(SAMPLE).max(1);
-        let chosen = |index: usize| index < SAMPLE || index % stride == 0 || index + 3 > all.len();
+        let chosen = |index: usize| index < SAMPLE || index.is_multiple_of(stride) || index + 3 > all.len();
         let sample: Vec<&str> = all
             .iter()
             .enumerate()

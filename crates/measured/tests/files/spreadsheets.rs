@@ -60,14 +60,19 @@ fn ods(rows: &str) -> Vec<u8> {
     ])
 }
 
-const CELL: &str = "<table:table-cell office:value-type=\"float\" office:value=\"1\"><text:p>1</text:p></table:table-cell>";
+const CELL: &str =
+    "<table:table-cell office:value-type=\"float\" office:value=\"1\"><text:p>1</text:p></table:table-cell>";
 
 #[test]
 fn a_row_is_a_line_and_an_error_a_missing_number() {
     let text = |cell: &str, text: &str| format!("<c r=\"{cell}\" t=\"inlineStr\"><is><t>{text}</t></is></c>");
     let mut rows = format!("<row r=\"3\">{}{}</row>", text("B3", "Force (N)"), text("A3", "Displacement (\u{b5}m)"));
     for row in 5..15 {
-        let force = if row == 9 { "<c r=\"B9\" t=\"e\"><v>#DIV/0!</v></c>".to_owned() } else { format!("<c r=\"B{row}\"><v>{row}.125</v></c>") };
+        let force = if row == 9 {
+            "<c r=\"B9\" t=\"e\"><v>#DIV/0!</v></c>".to_owned()
+        } else {
+            format!("<c r=\"B{row}\"><v>{row}.125</v></c>")
+        };
         rows += &format!("<row r=\"{row}\"><c r=\"A{row}\"><v>{row}</v></c>{force}</row>");
     }
     // Cells are in the order of their columns.
@@ -92,7 +97,11 @@ fn repeated_cells_and_rows_of_opendocument_are_what_they_stand_for() {
     let mut rows = "<table:table-row table:number-rows-repeated=\"2\"><table:table-cell/></table:table-row>".to_owned();
     for row in 0..12 {
         let empty = "<table:table-cell table:number-columns-repeated=\"3\"/>";
-        rows += &format!("<table:table-row>{empty}{}{}</table:table-row>", value(f64::from(row)), value(0.25 * f64::from(row)));
+        rows += &format!(
+            "<table:table-row>{empty}{}{}</table:table-row>",
+            value(f64::from(row)),
+            value(0.25 * f64::from(row))
+        );
     }
     rows += "<table:table-row table:number-rows-repeated=\"1048500\"><table:table-cell table:number-columns-repeated=\"16384\"/></table:table-row>";
     let hints = ScanHints { x: Some("4".to_owned()), z: Some("5".to_owned()), ..ScanHints::default() };
