@@ -42,6 +42,9 @@ const OTHERS: &[(&str, &str)] = &[
     ("Distance", "m"),
 ];
 
+/// A column: its name with its unit, and its number in each row.
+type Column = (String, Box<dyn Fn(usize) -> f64>);
+
 fn is_near(found: f64, expected: f64) -> bool {
     (found - expected).abs() <= 1e-12 * expected.abs().max(1e-12)
 }
@@ -58,7 +61,7 @@ fn a_loop_is_what_was_written_in_any_unit_encoding_order_and_separator() {
         let (length, force, time) = (one(LENGTHS, random), one(FORCES, random), one(TIMES, random));
         let load_unit = one(FORCES, random);
         let load = if random.bool() { 12.5 } else { -12.5 };
-        let mut columns: Vec<(String, Box<dyn Fn(usize) -> f64>)> = vec![
+        let mut columns: Vec<Column> = vec![
             (style.named(one(DISPLACEMENT, random), length.0), Box::new(move |row| displacement(row) / length.1)),
             (style.named(one(FORCE, random), force.0), Box::new(move |row| tangential(row) / force.1)),
         ];
