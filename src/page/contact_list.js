@@ -13,7 +13,7 @@ const PRELOADS = { normal_force: ["", "N"], indentation: ["d = ", "m"], contact_
 
 /** Shows the list in `main`, until `signal`. */
 export async function contactList(main, signal) {
-  const items = (await pages("/contacts", MOST)).reverse();
+  const items = await pages("/contacts?order=newest", MOST);
   const rows = el("ul", { class: "list" });
   const said = el("p", { class: "note", "aria-live": "polite" });
   // Shape and load of those rows alone that are looked at: a definition may be long.
@@ -29,12 +29,12 @@ export async function contactList(main, signal) {
     rows.replaceChildren(...found.slice(0, SHOWN).map(row));
     for (const one of rows.querySelectorAll(".shape")) seen.observe(one);
     const more = found.length > SHOWN ? `, the newest ${SHOWN} of which are shown` : "";
-    said.textContent = items.length ? `${found.length} of ${items.length} contacts${more}` : "";
+    said.textContent = items.length ? `${found.length} of ${items.length < MOST ? "" : "the newest "}${items.length} contacts${more}` : "";
   };
   const search = latestOnly(async (text) => {
     const wanted = text.trim();
     if (!wanted) return show(items);
-    const labelled = (await pages(`/contacts?label=${encodeURIComponent(wanted)}`, MOST)).reverse();
+    const labelled = await pages(`/contacts?order=newest&label=${encodeURIComponent(wanted)}`, MOST);
     const named = items.filter(({ id }) => id.startsWith(wanted.toLowerCase()));
     show([...named, ...labelled.filter(({ id }) => !named.some((one) => one.id === id))]);
   });

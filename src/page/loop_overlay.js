@@ -127,7 +127,7 @@ function otherContact(model, changed) {
   };
   one.list = async () => {
     one.list = () => {};
-    const items = (await pages("/contacts", 5 * MOVES)).reverse().slice(0, CHOICES);
+    const items = (await pages("/contacts?order=newest", CHOICES)).slice(0, CHOICES);
     for (const { id, label } of items)
       if (id !== model.id && ![...choice.options].some((option) => option.value === id))
         choice.append(el("option", { value: id }, label ?? `${id.slice(0, 8)}…`));
