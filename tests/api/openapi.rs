@@ -125,7 +125,7 @@ async fn every_example_works_unchanged() {
     let document = document();
     let server = Server::start().await;
     let mut sent = 0;
-    for (path, _, operation) in operations(&document).filter(|(_, method, _)| *method == "post") {
+    for (path, method, operation) in operations(&document).filter(|(_, method, _)| *method == "post") {
         let content = &operation["requestBody"]["content"];
         if content["application/octet-stream"].is_object() {
             let text = content["application/octet-stream"]["example"]

@@ -67,8 +67,8 @@ fn is_not_a_number(line: &str, column: usize) -> bool {
     let is_letter = |index: &usize| bytes.get(*index).is_some_and(u8::is_ascii_alphabetic);
     let at = column.saturating_sub(1).min(bytes.len());
     let start = (0..at).rev().take_while(is_letter).last().unwrap_or(at);
-    let start = if is_letter(&start) { start } else { start + 1 };
-    let end = (start..bytes.len()).take_while(is_letter).last().map_or(start, |last| last + 1);
+    let start = if is_letter(&start) { start } else { start.saturating_add(1) };
+    let end = (start..bytes.len()).take_while(is_letter).last().map_or(start, |last| last.saturating_add(1));
     line.get(start..end).is_some_and(|word| NOT_NUMBERS.contains(&word.to_lowercase().as_str()))
 }
 
