@@ -64,6 +64,7 @@ fn with_json_every_fault_is_a_problem_document() {
         path.to_str().unwrap().to_owned()
     };
     let cell = file("cell.csv", "X [um];Z [nm]\n1;2\n3;four\n");
+    let broken = file("broken.csv", "x [um];F [N]\n1;2\n3;four\n");
     let sound = file("sound.csv", "X [um];Z [nm]\n-2;-4\n-1;-1\n0;0\n1;-1\n2;-4\n");
     let contact = file("contact.json", r#"{"profile": {"type": "sphere", "radius": true}}"#);
     let load = file("load.json", r#"{"friction": "much"}"#);
@@ -73,7 +74,7 @@ fn with_json_every_fault_is_a_problem_document() {
     let absent = absent.to_str().unwrap();
     for (arguments, code, pointer) in [
         (&["profile", &cell] as &[&str], "invalid_input", Some("/line/3/column/2")),
-        (&["fit", &cell, "--contact", "examples/data/ball_contact.json"], "invalid_input", Some("/line/3/column/2")),
+        (&["fit", &broken, "--contact", "examples/data/ball_contact.json"], "invalid_input", Some("/line/3/column/2")),
         (&["fit", &sound], "invalid_input", None),
         (&["fit", &sound, "--contact", &contact], "invalid_input", Some("/profile/radius")),
         (&["fit", &sound, "--contact", absent], "invalid_input", None),
