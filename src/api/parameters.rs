@@ -310,8 +310,11 @@ impl Kind<String> for Text {
 
 /// A value that reads itself.
 pub struct Plain<V> {
+    /// What it is, for the text of a refusal.
     pub expected: &'static str,
+    /// Its schema in the document.
     pub schema: fn() -> Value,
+    /// Its value; none if the text is not one.
     pub parse: fn(&str) -> Option<V>,
 }
 
