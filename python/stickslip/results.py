@@ -1743,8 +1743,9 @@ class Warning(Result):
     code: str
     """A name for programs: `dundurs_beta`, `large_contact`, `slip_direction`, `noisy_table`, `tolerance_not_met`,
     `units`, `interaction_neglected`, `load_curve_alone`, `elliptic_slip`, `bulk_shift_neglected`; of fits also
-    `many_outliers`, `short_scan`, `machine_compliance_unknown`, `partial_slip_only`, `beyond_gross_slip`,
-    `first_branch_unknown`, `not_coulomb`, `not_converged`.
+    `many_outliers`, `fill_values`, `one_sided_scan`, `short_scan`, `machine_compliance_unknown`,
+    `partial_slip_only`, `beyond_gross_slip`, `first_branch_unknown`, `turns_as_sampled`, `quantised`,
+    `not_coulomb`, `not_converged`.
     """
 
     message: str
