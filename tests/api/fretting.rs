@@ -30,7 +30,7 @@ async fn a_cycle_in_partial_slip_has_its_published_values() {
     // The stresses over the cycle are those of the same path by themselves, at the instants that the place took.
     let path = &reply["stress_paths"][0];
     let instants = reply["instants"].as_u64().unwrap() as usize;
-    let end = path["part"].as_array().unwrap().iter().position(|part| part == &json!(1.0)).unwrap();
+    let end = path["part"].as_array().unwrap().iter().rposition(|part| part == &json!(1.0)).unwrap();
     let of_move = |step: usize| path["move"].as_array().unwrap().iter().filter(|at| **at == json!(step)).count();
     assert_eq!((0..4).map(of_move).max(), Some(instants));
     let asked = json!({

@@ -126,7 +126,8 @@ async fn a_scan_in_the_wrong_units_is_warned_of() {
     assert_eq!(short["warnings"][0]["code"], "short_scan");
     let mut spiked = line();
     for index in (5..400).step_by(13) {
-        spiked["scan"]["line"]["z"][index] = json!(1e4);
+        // Each at a height of its own: one that occurs often is a fill value.
+        spiked["scan"]["line"]["z"][index] = json!(1e4 + index as f64);
     }
     let spiked = good(server.post("/profiles/fit", &spiked).await).await;
     assert_eq!(
@@ -152,7 +153,8 @@ async fn fill_values_are_missing_heights_and_a_scan_of_one_side_is_warned_of() {
     // The axis at a tenth of the scan from its edge.
     let shifted: Vec<f64> = (0..401).map(|index| f64::from(index - 20)).collect();
     let z: Vec<f64> = shifted.iter().map(|x| (x * 7.0).sin() / 2.0 - x * x / 20.0).collect();
-    let one_sided = json!({"scan": {"line": {"x": shifted, "z": z}}, "units": {"lateral": "um", "height": "nm"}});
+    let one_sided = json!({"scan": {"line": {"x": shifted, "z": z}}, "level": false,
+        "units": {"lateral": "um", "height": "nm"}});
     let fitted = good(server.post("/profiles/fit", &one_sided).await).await;
     assert_eq!(fitted["warnings"][0]["code"], "one_sided_scan", "{}", fitted["warnings"]);
 }

@@ -666,7 +666,7 @@ async fn every_shape_body_and_preload_can_be_chosen() {
         browser.until("document.querySelector('#create') !== null").await;
         browser.choose(label, value).await;
         if value == "tabulated" {
-            browser.write("form textarea", "# µm\n0;0\n100;0,5\n200 2.0\n300, 4.5").await;
+            browser.write("form textarea", "# µm\n0;0\n100;0,5\n200;2,0\n300;4,5").await;
         }
         browser.click("#create").await;
         browser.until("location.hash.startsWith('#/contacts/') && document.querySelector('.badge.on') !== null").await;

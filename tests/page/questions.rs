@@ -110,7 +110,13 @@ async fn the_worst_place_is_found_without_a_grid_judged_and_marked() {
     let faults = "[...document.querySelectorAll('#crack-card .fault')].map((one) => one.innerText).filter(Boolean)";
     browser.until(&format!("{faults}.length === 2")).await;
     let said = browser.value(faults).await;
-    assert_eq!(said, json!(["This must be a number, without its unit.", "This must be a number, without its unit."]));
+    assert_eq!(
+        said,
+        json!([
+            "This must be a number, without its unit and without separators of thousands.",
+            "This must be a number, without its unit and without separators of thousands."
+        ])
+    );
     for (index, text) in [(1, "0.3"), (2, "200")] {
         browser.value(&format!("({limit}[{index}].value = {text:?}) && null")).await;
     }
@@ -346,7 +352,12 @@ async fn all_faults_of_a_new_contact_are_shown_at_once_in_words() {
                 one.querySelector('label').innerText.startsWith({label:?})).querySelector('.fault').innerText"
         )
     };
-    browser.until(&format!("{} === 'This must be a number, without its unit.'", fault("Radius"))).await;
+    browser
+        .until(&format!(
+            "{} === 'This must be a number, without its unit and without separators of thousands.'",
+            fault("Radius")
+        ))
+        .await;
     browser.until(&format!("{}.includes('out of range')", fault("Coefficient"))).await;
     browser.until(&format!("{} === 'A number is missing here.'", fault("Normal force"))).await;
     assert_eq!(server.client.contacts(None, None).await.unwrap().items.len(), 0);
