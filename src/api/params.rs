@@ -39,8 +39,8 @@ pub struct JobPath {
 #[into_params(parameter_in = Header)]
 pub struct IfMatch {
     /// The sequence that the contact must have, in quotes: an `ETag` of it. If it has another one, nothing changes and
-    /// the answer is 412. With the checksum of a label behind a dot, as `GET /contacts/{id}` gives it, the label must be
-    /// the same too; `.00000000` is that of no label.
+    /// the answer is 412. With the checksum of a label behind a dot, as `GET /contacts/{id}` gives it, the label must
+    /// be the same too; `.00000000` is that of no label.
     #[param(rename = "If-Match", value_type = Option<String>, nullable = false,
         pattern = r#"^("[0-9]{1,19}(\.[0-9a-f]{8})?"|\*)$"#)]
     pub expected: Option<Expected>,

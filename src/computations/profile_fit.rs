@@ -256,8 +256,8 @@ fn warnings(fit: &ScanFit, contact: Option<&scan::ContactEstimate>) -> Vec<Warni
     if fit.overlap < ONE_SIDED {
         let part = 100.0 * (1.0 - fit.overlap);
         let message = format!(
-            "the axis is {part:.0} % of the way from the middle of the scan to its edge: a tilt would fit other axes as \
-             well; scan across the peak, or give `centre`"
+            "the axis is {part:.0} % of the way from the middle of the scan to its edge: a tilt would fit other axes \
+             as well; scan across the peak, or give `centre`"
         );
         warn("one_sided_scan", message);
     }

@@ -80,7 +80,8 @@ impl Mover {
         let move_bytes = self.replay.common.store.move_bytes();
         let mut reservation =
             self.replay.reserve_storage(Usage::of(0, advance.plan.length() as u64 * move_bytes, None)).await?;
-        // A cached state may be behind the store, and its label too. A refusal counts only once the state has caught up.
+        // A cached state may be behind the store, and its label too. A refusal counts only once the state has caught
+        // up.
         let mut caught_up = guard.live.is_none() || expected.is_some_and(|expected| expected.label.is_some());
         let mut found = 0;
         for _ in 0..ATTEMPTS {

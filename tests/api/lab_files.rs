@@ -1,5 +1,6 @@
-//! Files as laboratories have them (`tests/lab_files`): each is read as what it is or refused at its place, over HTTP and
-//! on the command line. `list.json` beside them says what is right for each; the Python package is tested by the same list.
+//! Files as laboratories have them (`tests/lab_files`): each is read as what it is or refused at its place, over HTTP
+//! and on the command line. `list.json` beside them says what is right for each; the Python package is tested by the
+//! same list.
 
 use std::path::{Path, PathBuf};
 

@@ -7,8 +7,8 @@ use crate::common::Binary;
 
 const CARD: &str = "document.querySelector('#loop-card').innerText";
 /// The cells of the table of columns.
-const TABLE: &str = "[...document.querySelectorAll('#loop-card .columns tbody tr')].map((row) => [...row.cells].map((cell) \
-                     => cell.innerText).join(' | '))";
+const TABLE: &str = "[...document.querySelectorAll('#loop-card .columns tbody tr')].map((row) => [...row.cells].map(\
+                     (cell) => cell.innerText).join(' | '))";
 
 #[tokio::test]
 async fn the_columns_of_a_file_are_named_before_it_is_fitted_and_a_refused_unit_can_be_chosen() {

@@ -70,7 +70,8 @@ fn fits(criterion: &mut Criterion) {
     group.finish();
 }
 
-/// Steady cycles of a sine with 1 % of noise in the force and 0.5 % in the displacement; friction and modulus are sought.
+/// Steady cycles of a sine with 1 % of noise in the force and 0.5 % in the displacement; friction and modulus are
+/// sought.
 fn steady(points: usize, cycles: usize) -> Task {
     let profile = Profile::Sphere(Sphere::new(RADIUS).expect("valid"));
     let mut truth = contact(profile.clone(), 0.42);

@@ -135,7 +135,8 @@ codes! {
         "`detail` names the [quota](overload.md#quotas): end, close or delete something, or wait as long as \
             `Retry-After` says";
     /// A fault of this program. Its cause goes to the log; the client gets the identifier of the request.
-    Internal = 500 "internal": "The server has failed", "a fault of the server: tell its operator the `request_id`; a change may have been stored";
+    Internal = 500 "internal": "The server has failed",
+        "a fault of the server: tell its operator the `request_id`; a change may have been stored";
     /// What is stored of the contact is not what has been stored: moves are missing, or cannot be made again.
     DamagedContact = 500 "damaged_contact": "The stored contact is damaged",
         "moves of the contact are missing in the store: its operator must restore it; other contacts are not affected";
@@ -146,7 +147,8 @@ codes! {
         "repeat elsewhere or later, with the same `Idempotency-Key`: a change may have been stored";
     /// The storage cannot be reached. Nothing has been acknowledged, and a retry is welcome.
     StorageUnavailable = 503 "storage_unavailable": "The storage cannot be reached",
-        "repeat with the same `Idempotency-Key`: a change may have been stored, unless `detail` says that nothing has changed";
+        "repeat with the same `Idempotency-Key`: a change may have been stored, unless `detail` says that nothing has \
+         changed";
     /// The storage has no room. Nothing has been acknowledged.
     StorageFull = 507 "storage_full": "The server has no room left", "the operator must make room; nothing has changed";
 }

@@ -122,8 +122,9 @@ pub(super) fn meaning(name: &str) -> Meaning {
     } else if has("error err fehler std sd stdev sigma uncertainty max maximum min minimum peak amplitude pp range") {
         Meaning::Statistic
     } else if contains(
-        "temperatur humidity feuchte voltage spannung current resistance widerstand potential power leistung energy energie \
-         angle winkel torque drehmoment acoustic viscos comment kommentar remark bemerkung status note filmthick",
+        "temperatur humidity feuchte voltage spannung current resistance widerstand potential power leistung energy \
+         energie angle winkel torque drehmoment acoustic viscos comment kommentar remark bemerkung status \
+         note filmthick",
     ) || has("temp strom flag label film")
     {
         Meaning::Other
@@ -135,8 +136,8 @@ pub(super) fn meaning(name: &str) -> Meaning {
     {
         Meaning::Depth
     } else if contains(
-        "normalforce normalload normalkraft normallast appliedload anpress auflast prueflast pruefkraft druckkraft belastung \
-         axialforce axialload axialkraft verticalforce contactload contactforce preload vorlast deadweight",
+        "normalforce normalload normalkraft normallast appliedload anpress auflast prueflast pruefkraft druckkraft \
+         belastung axialforce axialload axialkraft verticalforce contactload contactforce preload vorlast deadweight",
     ) || has("normal load last fz fn nf")
         || words.joined.starts_with("forcez")
         || has("force kraft f") && has("z n normal vertical axial")
@@ -215,7 +216,8 @@ pub(super) fn axis(name: &str) -> Axis {
         return Axis::Left(Meaning::Index.reason());
     }
     let is_height = words.contains(
-        "height hoehe profil topogra elevation depth tiefe filtered gefiltert rauheit roughness waviness welligkeit surface",
+        "height hoehe profil topogra elevation depth tiefe filtered gefiltert rauheit roughness waviness welligkeit \
+         surface",
     ) || words.has("z raw roh deviation abweichung deflection");
     if words.has("y") {
         Axis::Y

@@ -87,9 +87,9 @@ pub struct ScanFile {
     pub preview: Preview,
 }
 
-/// Reads a scan: columns with places and heights, by their names or in the order x, z or x, y, z; or a matrix of heights,
-/// as Gwyddion exports it. The text formats of Zygo's instruments, of ISO 25178-71 and of grids (ESRI, Surfer) are known
-/// by their first line.
+/// Reads a scan: columns with places and heights, by their names or in the order x, z or x, y, z; or a matrix of
+/// heights, as Gwyddion exports it. The text formats of Zygo's instruments, of ISO 25178-71 and of grids (ESRI, Surfer)
+/// are known by their first line.
 ///
 /// # Errors
 /// [`ImportError`] if the bytes are no such table, by line and column.
@@ -293,8 +293,8 @@ pub(super) fn say_missing(missing: usize, preview: &mut Preview) {
     }
 }
 
-/// The number that stands where nothing was measured: the one that the header names, or a customary one that is far from
-/// all heights.
+/// The number that stands where nothing was measured: the one that the header names, or a customary one that is far
+/// from all heights.
 fn fill_value(sheet: &Sheet<'_>, heights: impl Iterator<Item = f64> + Clone, preview: &mut Preview) -> Option<f64> {
     let keys = ["nodata", "fillvalue", "missingvalue", "invalidvalue", "badvalue", "blankvalue", "fehlwert"];
     let named = sheet.header.iter().find_map(|(_, line)| {

@@ -239,7 +239,8 @@ impl<'a> Sheet<'a> {
         }
     }
 
-    /// The cells of a line of the header, if it has as many as there are columns: in the way of the rows, or in another.
+    /// The cells of a line of the header, if it has as many as there are columns: in the way of the rows, or in
+    /// another.
     fn cells_of_names(&self, text: &str) -> Option<Vec<String>> {
         let others = Separator::ALL.into_iter().filter(|other| *other != self.separator);
         let mut cells = Vec::new();

@@ -5,8 +5,9 @@
 //! are carried through the turning points; `least_squares`) after outliers have been found (Huber 1964; `fit`). Turning
 //! points lie between the samples of the record (`reversals`, `turns`, `record`): their places are parameters of the
 //! fit, of which the samples about them are what is known (`prepare`). Noise of the displacement moves each sample to
-//! the nearest point of the curve (`fit`). A drift that is sought is taken off before turns are sought. Intervals are those of the profile likelihood, since the linear ones are wrong by a factor of two for a loop in
-//! partial slip (`intervals`).
+//! the nearest point of the curve (`fit`). A drift that is sought is taken off before turns are sought. Intervals are
+//! those of the profile likelihood, since the linear ones are wrong by a factor of two for a loop in partial slip
+//! (`intervals`).
 //!
 //! A loop that stays in partial slip does not distinguish the compliance of the machine from that of the contact, and a
 //! fit that ignores the machine looks as good as one that does not. So a compliance that is neither sought nor known

@@ -4,9 +4,10 @@
 //! sometimes the wrong way up. The contact needs f(r) whose g rises, and g is made of slopes: 1 nm of noise between
 //! neighbouring points of a ball makes it fall. So f is fitted: a curve of piecewise constant curvature (`curve`), by
 //! penalised least squares (`normal_equations`, `smoothing`, `local_penalty`), about the axis that fits best (`start`,
-//! `axis`, `fit`), without outliers (`noise`), among the curves whose g rises (`programme`). Standard errors follow from the
-//! covariance (F + penalty)^-1 s^2 of the curvatures (Nychka 1988: it contains the bias of the penalty, where that goes
-//! with the radius), s^2 being that of the noise times its inflation by correlation, by the delta method (`contact`).
+//! `axis`, `fit`), without outliers (`noise`), among the curves whose g rises (`programme`). Standard errors follow
+//! from the covariance (F + penalty)^-1 s^2 of the curvatures (Nychka 1988: it contains the bias of the penalty, where
+//! that goes with the radius), s^2 being that of the noise times its inflation by correlation, by the delta method
+//! (`contact`).
 //!
 //! Lengths are in m throughout.
 

@@ -103,7 +103,8 @@ fn repeated_cells_and_rows_of_opendocument_are_what_they_stand_for() {
             value(0.25 * f64::from(row))
         );
     }
-    rows += "<table:table-row table:number-rows-repeated=\"1048500\"><table:table-cell table:number-columns-repeated=\"16384\"/></table:table-row>";
+    rows += "<table:table-row table:number-rows-repeated=\"1048500\">\
+             <table:table-cell table:number-columns-repeated=\"16384\"/></table:table-row>";
     let hints = ScanHints { x: Some("4".to_owned()), z: Some("5".to_owned()), ..ScanHints::default() };
     let found = read_scan(&ods(&rows), &hints).unwrap();
     let Places::Line { x, z } = found.places else { panic!("{:?}", found.places) };
@@ -117,8 +118,8 @@ fn spreadsheets_that_unpack_to_more_than_they_may_are_refused() {
     let padded = format!("<table:table-cell table:number-columns-repeated=\"16000\"/>{CELL}");
     let many = format!("<table:table-row table:number-rows-repeated=\"1000000\">{CELL}{CELL}</table:table-row>");
     let apart = format!(
-        "<table:table-row>{CELL}</table:table-row><table:table-row table:number-rows-repeated=\"900000\"><table:table-cell/>\
-         </table:table-row><table:table-row>{CELL}</table:table-row>"
+        "<table:table-row>{CELL}</table:table-row><table:table-row table:number-rows-repeated=\"900000\">\
+         <table:table-cell/></table:table-row><table:table-row>{CELL}</table:table-row>"
     );
     let far = "<row r=\"1048576\"><c r=\"A1048576\"><v>1</v></c></row>".to_owned();
     let wide = "<row r=\"1\"><c r=\"XFD1\"><v>1</v></c></row>".to_owned();

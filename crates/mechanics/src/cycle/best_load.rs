@@ -87,8 +87,8 @@ pub fn best_load(
     Ok((dissipated_energy > 0.0).then(|| BestLoad { normal_force: load(index), dissipated_energy }))
 }
 
-/// The friction work, J, that a drive does in a steady cycle on the bodies of `contact` under a normal force, N, through
-/// a machine of this compliance, m/N.
+/// The friction work, J, that a drive does in a steady cycle on the bodies of `contact` under a normal force, N,
+/// through a machine of this compliance, m/N.
 ///
 /// # Errors
 /// As [`SteadyCycle::driven`], and those of [`Contact::pressed`].
