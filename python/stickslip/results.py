@@ -1313,7 +1313,7 @@ class ScanResidual(Result):
     """Distance along the scan over which it is correlated, to 1/e, m."""
 
     outliers: int
-    """Points that were left out."""
+    """Points that were left out, fill values of the instrument among them."""
 
     rms: float
     """Root mean square of the points that were fitted, m: noise and roughness."""

@@ -41,7 +41,7 @@ pub struct Facts {
 
 /// Of what is computed or stored.
 const LIMITED: &[Refusal] = &[
-    ("429", "The client has as much of something as it may; try again after Retry-After"),
+    ("429", "The quota of the client is used up; try again after Retry-After"),
     ("422", "The request is invalid, or the mechanics has no answer to it"),
     ("503", "The server is busy; try again after Retry-After"),
 ];

@@ -220,7 +220,11 @@ fn reply(fit: ScanFit, contact: Option<scan::ContactEstimate>, line: bool) -> Pr
             Orientation::PeakUp => ScanOrientation::PeakUp,
             Orientation::PeakDown => ScanOrientation::PeakDown,
         },
-        residual: ScanResidual { rms: fit.rms, correlation_length: fit.correlation_length, outliers: fit.outliers },
+        residual: ScanResidual {
+            rms: fit.rms,
+            correlation_length: fit.correlation_length,
+            outliers: fit.outliers + fit.fill_values,
+        },
         raw: columns(&fit.raw),
         left_out: columns(&fit.left_out),
         used: columns(&fit.table),

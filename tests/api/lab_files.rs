@@ -48,14 +48,19 @@ fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/lab_files")
 }
 
-/// The entries of loops and scans; requests are tested with what they ask for.
-fn entries() -> Vec<Entry> {
+/// All entries.
+fn list() -> Vec<Entry> {
     let list: Vec<Entry> = serde_json::from_slice(&std::fs::read(folder().join("list.json")).unwrap()).unwrap();
     for file in std::fs::read_dir(folder()).unwrap() {
         let name = file.unwrap().file_name().into_string().unwrap();
         assert!(name == "list.json" || list.iter().any(|entry| entry.file == name), "{name} is not in the list");
     }
-    list.into_iter().filter(|entry| !entry.kind.ends_with("_request")).collect()
+    list
+}
+
+/// The entries of loops and scans.
+fn entries() -> Vec<Entry> {
+    list().into_iter().filter(|entry| !entry.kind.ends_with("_request")).collect()
 }
 
 impl Entry {
@@ -217,4 +222,33 @@ fn every_file_is_read_and_fitted_on_the_command_line_or_refused_at_its_place() {
             assert!(said.contains(text.as_str()), "{entry:?}: {said}");
         }
     }
+}
+
+#[tokio::test]
+async fn requests_find_the_truth() {
+    let server = Server::start().await;
+    let mut count = 0;
+    for Entry { file, kind, expected, .. } in list().into_iter().filter(|entry| entry.kind.ends_with("_request")) {
+        let request: Value = serde_json::from_slice(&std::fs::read(folder().join(&file)).unwrap()).unwrap();
+        let url = if kind == "fit_request" { "/fit" } else { "/profiles/fit" };
+        let fitted = good(server.post(url, &request).await).await;
+        for (name, truth) in expected {
+            let truth = number(&truth);
+            match name.as_str() {
+                "radius" => {
+                    let radius = &fitted["radius_of_curvature"];
+                    let error = number(&radius["value"]) - truth;
+                    assert!(error.abs() < 3.0 * number(&radius["standard_error"]), "{file}: {radius}");
+                }
+                "outliers" => assert_eq!(number(&fitted["residual"]["outliers"]).to_bits(), truth.to_bits(), "{file}"),
+                name => {
+                    let interval = &fitted["estimates"][name]["interval"];
+                    let (low, high) = (number(&interval[0]), number(&interval[1]));
+                    assert!(low <= truth && truth <= high, "{file}: {name} {interval} is not {truth}");
+                }
+            }
+        }
+        count += 1;
+    }
+    assert_eq!(count, 3);
 }

@@ -57,7 +57,7 @@ pub struct ScanResidual: Copy {
     pub rms: f64,
     /// Distance along the scan over which it is correlated, to 1/e, m.
     pub correlation_length: f64,
-    /// Points that were left out.
+    /// Points that were left out, fill values of the instrument among them.
     pub outliers: usize,
 }
 
