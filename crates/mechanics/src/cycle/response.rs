@@ -10,6 +10,7 @@
 //!
 //! It is found by `steady_motion` from the balance of the first harmonic alone, which takes U for a cosine.
 
+use std::cell::Cell;
 use std::f64::consts::TAU;
 
 use super::masing_loop::FirstLoading;
@@ -94,6 +95,12 @@ impl Resonator {
         keep_going: &dyn Fn() -> bool,
     ) -> Option<Vec<Response>> {
         let natural = self.natural_frequency(contact);
+        // Who has said no is not asked again.
+        let stopped = Cell::new(false);
+        let keep_going = &|| {
+            stopped.set(stopped.get() || !keep_going());
+            !stopped.get()
+        };
         let respond = |&frequency: &f64| {
             keep_going().then_some(())?;
             let mass = DrivenMass {
