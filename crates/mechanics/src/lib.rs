@@ -59,6 +59,7 @@
 //! | `numerics` | how are differences kept exact, roots found, functions integrated, and what is far away summed? |
 
 mod accuracy;
+mod cells;
 mod contact;
 mod curve_panel;
 mod curved_move;

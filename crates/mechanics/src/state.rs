@@ -110,7 +110,7 @@ impl Contact {
     #[must_use]
     pub fn state(&self) -> State {
         #[cfg(test)]
-        super::profile::call_count::add(|calls| &mut calls.states);
+        super::cells::call_count::add(|calls| &mut calls.states);
         let edge = self.history.edge();
         let scale = self.scale();
         let (stick_radius, regime) = self.stick();

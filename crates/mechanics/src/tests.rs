@@ -3,7 +3,7 @@
 
 use std::cell::Cell;
 
-use super::profile::call_count::{Calls, during, so_far};
+use super::cells::call_count::{Calls, during, so_far};
 use super::profile::{PowerLaw, RoundedPunch};
 use super::protocol::{equal_peaks, falling_amplitude};
 use super::{Contact, Elasticity, Move, Preload, Profile, Setup, Sphere, Tangential};

@@ -113,11 +113,6 @@ impl QuadraturePanel {
         }
     }
 
-    /// The number of its points.
-    pub(crate) fn points(self) -> usize {
-        2 * self.rule.len()
-    }
-
     /// The abscissae from the panel's top on, with their weights.
     pub(crate) fn nodes(self) -> impl Iterator<Item = (f64, f64)> {
         let lower = self.rule.iter().map(|&(u, weight)| (u, weight));

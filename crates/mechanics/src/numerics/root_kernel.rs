@@ -9,7 +9,7 @@
 use super::logarithm::ln_1p;
 
 /// The most terms of a series.
-pub(crate) const MOST_TERMS: usize = 41;
+pub(crate) const MOST_TERMS: usize = 48;
 /// 1/k, and one for zero.
 const SHARES: [f64; MOST_TERMS] = {
     let mut shares = [1.0; MOST_TERMS];

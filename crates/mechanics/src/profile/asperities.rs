@@ -12,8 +12,8 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use super::curve_family::CurveFamily;
-use super::moment_tree::MomentTree;
 use super::{DoubleDouble, Error, Moments, Ring, Sphere, range};
+use crate::cells::moment_tree::MomentTree;
 use crate::error::CurveFault;
 use crate::numerics::far_field::{FarField, Local};
 use crate::numerics::gauss::TWELVE_POINTS;

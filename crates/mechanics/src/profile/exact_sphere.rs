@@ -8,7 +8,7 @@
 
 use super::shallow_sphere::{self, LIMIT};
 use super::shape::{End, Falls, KernelOrder, Shape, ShapeFacts};
-use super::smooth_coordinate::{self, SmoothCoordinate};
+use super::smooth_path::{self, SmoothTip};
 use super::{DoubleDouble, Error, Moments, Ring, Span, StressRadius, range, slope_series};
 use crate::numerics::gauss::{Singular, along_strip};
 use crate::numerics::roots::{distance_below, increasing};
@@ -122,15 +122,7 @@ fn shortfall(s: f64) -> f64 {
     }
 }
 
-impl SmoothCoordinate for ExactSphere {
-    fn kink_radius(&self) -> f64 {
-        0.0
-    }
-
-    fn level_at(&self, t: f64) -> f64 {
-        self.level(t)
-    }
-
+impl SmoothTip for ExactSphere {
     fn slope_at(&self, t: f64) -> f64 {
         self.slope(t)
     }
@@ -146,14 +138,6 @@ impl SmoothCoordinate for ExactSphere {
         let sum =
             (1..=16).rev().map(f64::from).fold(0.0, |sum, k| square * (sum + 4.0 * k * (k + 1.0) / (2.0 * k + 1.0)));
         u * sum
-    }
-
-    fn rise_at(&self, t: f64, top: f64, dt: f64) -> f64 {
-        self.rise(&Span::under(DoubleDouble::square_of(top), top, dt * (t + top)))
-    }
-
-    fn upper_bound(&self, level: f64) -> f64 {
-        self.square(level.into()).value().sqrt()
     }
 
     fn ceiling(&self) -> f64 {
@@ -276,7 +260,7 @@ impl Shape for ExactSphere {
             // At the tip gamma/t is 2/R to the last digit below 1e-9 R.
             let tip = StressRadius::new(1e-9 * span.outer_radius);
             let at = if at.radius > 0.0 || span.inner_radius > 0.0 { at } else { &tip };
-            return smooth_coordinate::kernel(self, order, at, span);
+            return smooth_path::kernel(self, order, at, span);
         }
         let height = self.height_square(at.square).sqrt();
         let square_outer = self.height_square(span.outer);

@@ -14,9 +14,9 @@
 use std::sync::Arc;
 
 use super::curve_family::CurveFamily;
-use super::moment_tree::MomentTree;
 use super::open_gaps::open_slopes;
 use super::{DoubleDouble, Error, InterpolationError, Moments, Ring, range};
+use crate::cells::moment_tree::MomentTree;
 use crate::elasticity::Elasticity;
 use crate::error::CurveFault;
 use crate::numerics::gauss::QuadraturePanel;

@@ -11,8 +11,7 @@
 //! `curve_family::CurveFamily` instead.
 
 mod asperities;
-#[cfg(test)]
-pub(crate) mod call_count;
+mod celled;
 mod cone;
 mod curve_family;
 mod distant_rings;
@@ -22,11 +21,9 @@ mod exact_sphere;
 mod families;
 mod flat_punch;
 mod load_curve;
-mod moment_tree;
 mod open_gaps;
 mod polynomial;
 mod power_law;
-mod ring;
 pub(super) mod ring_nodes;
 pub(super) mod ring_quadrature;
 mod ring_sum;
@@ -35,31 +32,30 @@ mod rounded_punch;
 mod shallow_sphere;
 mod shape;
 mod slope_series;
-mod smooth_coordinate;
 mod smooth_interval;
 mod smooth_path;
 mod smooth_pieces;
-mod span;
 mod sphere;
 mod sum;
 mod tabulated;
 mod truncated_cone;
 mod truncated_sphere;
 
+pub use crate::cells::ring::{Moments, Point, Ring, StressRadius};
 pub use asperities::Asperities;
 pub use ellipsoid::{Direction, Ellipsoid};
 pub use load_curve::LoadCurve;
-pub use ring::{Moments, Point, Ring, StressRadius};
 pub(super) use ring_sum::{InwardSum, RingSum};
 pub use sum::Sum;
 pub use tabulated::{InterpolationError, Tabulated};
 
 use super::error::Error;
 use super::{Elasticity, Preload, range};
+use crate::cells::Cells;
+use crate::cells::span::Span;
 use crate::numerics::double_double::DoubleDouble;
 use asperities::Count;
 use shape::{End, Falls, KernelOrder, Shape, ShapeFacts};
-use span::{Span, SpanEnds};
 use tabulated::Reach;
 
 /// The enum of all families and `each!`, which evaluates an expression for whichever family a profile is of.
@@ -355,6 +351,9 @@ macro_rules! dispatch {
         impl Shape for Profile {
             fn slopes<const N: usize>(&self, base: f64, t: [f64; N]) -> [f64; N] {
                 each!(self, shape => Shape::slopes(shape, base, t))
+            }
+            fn celled(&self, radius: f64) -> Option<&Cells> {
+                each!(self, shape => Shape::celled(shape, radius))
             }
             $(fn $method(&self, $($argument: $Type),*) -> $Result {
                 each!(self, shape => Shape::$method(shape, $($argument),*))

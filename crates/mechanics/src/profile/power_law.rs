@@ -6,7 +6,7 @@
 //! 1e8 r on, where x^2 - r^2 is x^2 to round-off, in closed form.
 
 use super::shape::{Falls, KernelOrder, Shape, ShapeFacts};
-use super::smooth_coordinate::{self, SmoothCoordinate};
+use super::smooth_path::{self, SmoothTip};
 use super::{DoubleDouble, Error, Moments, Ring, Span, StressRadius, range, slope_series};
 use crate::numerics::gauss::{EIGHT_POINTS, Singular, first_and_second};
 use crate::numerics::logarithm::{exp_m1, ln_1p};
@@ -188,15 +188,7 @@ fn kappa(exponent: f64) -> f64 {
     share.value() * (std::f64::consts::PI * w).sqrt() * series
 }
 
-impl SmoothCoordinate for PowerLaw {
-    fn kink_radius(&self) -> f64 {
-        0.0
-    }
-
-    fn level_at(&self, t: f64) -> f64 {
-        self.level(t)
-    }
-
+impl SmoothTip for PowerLaw {
     fn slope_at(&self, t: f64) -> f64 {
         self.slope(t)
     }
@@ -215,15 +207,6 @@ impl SmoothCoordinate for PowerLaw {
 
     fn bend_below(&self, t: f64, outer: f64, drop: f64) -> f64 {
         (self.exponent - 2.0) * self.slope_below(t, outer, drop)
-    }
-
-    fn rise_at(&self, t: f64, top: f64, dt: f64) -> f64 {
-        let decades = if dt < 0.5 * top { -(-dt / top).ln_1p() } else { (top / t).ln() };
-        -self.level(top) * (-self.exponent * decades).exp_m1()
-    }
-
-    fn upper_bound(&self, level: f64) -> f64 {
-        self.radius(level)
     }
 
     fn power(&self) -> f64 {
@@ -363,14 +346,14 @@ impl Shape for PowerLaw {
             return slope_series::kernel(&series, order, at, span);
         }
         if order == KernelOrder::Slope {
-            return smooth_coordinate::kernel(self, order, at, span);
+            return smooth_path::kernel(self, order, at, span);
         }
         let far = FAR * at.radius;
         if (inner > 0.0 && span.inner_radius >= far) || at.square.value() <= 0.0 {
             return self.far(span);
         }
         let limit = DoubleDouble::square_of(far);
-        let near = span.below(limit, far).map_or(0.0, |span| smooth_coordinate::kernel(self, order, at, &span));
+        let near = span.below(limit, far).map_or(0.0, |span| smooth_path::kernel(self, order, at, &span));
         near + span.above(limit, far).map_or(0.0, |span| self.far(&span))
     }
 

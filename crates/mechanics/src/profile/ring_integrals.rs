@@ -1,14 +1,13 @@
 //! The integrals over rings of a profile: what moves, stresses and displacements are sums of. What a ring crosses at a
 //! vertical edge is added here, to what a family says of the face.
 
-#[cfg(test)]
-use super::call_count;
 use super::curve_family::CurveFamily;
 use super::ring_nodes::RingNodes;
 use super::ring_quadrature;
 use super::shape::{self, KernelOrder, Shape};
-use super::smooth_coordinate;
 use super::{Asperities, Count, Ellipsoid, Moments, Profile, Ring, Span, StressRadius};
+#[cfg(test)]
+use crate::cells::call_count;
 
 impl Profile {
     /// The load curve by which alone the contact is known, if it is.
@@ -87,12 +86,9 @@ impl Profile {
         #[cfg(test)]
         call_count::add(|calls| &mut calls.displacement_integral);
         let span = self.span(ring);
-        let face = match self {
-            // A flat core has no rings, and what lies beyond it rises in closed form from node to node.
-            Profile::TruncatedCone(flat) => smooth_coordinate::displacement_integral(flat, at, &span),
-            Profile::TruncatedSphere(flat) => smooth_coordinate::displacement_integral(flat, at, &span),
-            Profile::RoundedPunch(flat) => smooth_coordinate::displacement_integral(flat, at, &span),
-            _ => each!(self, shape => shape::displacement_integral(shape, at, &span)),
+        let face = match Shape::celled(self, span.outer_radius) {
+            Some(cells) => cells.displacement_integral(at, &span),
+            None => each!(self, shape => shape::displacement_integral(shape, at, &span)),
         };
         if span.edge > 0.0 { face + span.edge * span.arc(at) } else { face }
     }

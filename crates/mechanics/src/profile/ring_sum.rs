@@ -4,7 +4,7 @@
 //! |---|---|
 //! | [`SeriesRings`] | g' is a short power series in x |
 //! | [`SmoothPieces`] | short series resolve g between few kinks |
-//! | [`WeightedPanels`], [`SumFields`] | tables, and sums with them |
+//! | [`WeightedCells`], [`SumFields`] | tables, and sums with them |
 //! | ring by ring | few of either, and what has no series |
 //!
 //! The bench `shapes` has a row for each.
@@ -13,8 +13,11 @@ use super::shape::span;
 use super::slope_series::SeriesRings;
 use super::smooth_pieces::SmoothPieces;
 use super::sum::SumFields;
-use super::tabulated::{self, Kernel, SumAndSize, WeightedPanels};
+use super::tabulated;
 use super::{Profile, Ring, Span, StressRadius};
+use crate::cells::displacement::displacements;
+use crate::cells::field::{SumAndSize, WeightedCells};
+use crate::cells::kernel::Kernel;
 use crate::numerics::multipole::Multipole;
 
 /// What the derivative of a table's kernels counts for, in terms of a sum over rings.
@@ -61,14 +64,14 @@ impl Profile {
     ) -> Option<Vec<f64>> {
         let fields = self.table_fields(rings, radii.len())?;
         let edge = &rings.last()?.0.outer;
-        Some(tabulated::displacements(edge, ends, radii, |angle, radii| fields.sums(angle, radii)))
+        Some(displacements(edge, ends, radii, |angle, radii| fields.sums(angle, radii)))
     }
 
     /// What tables add to stresses and displacements over weighted rings, for sums at so many radii; `None` without a
     /// table.
     fn table_fields(&self, rings: &[(Ring, f64)], radii: usize) -> Option<TableFields<'_>> {
         match self {
-            Profile::Tabulated(table) => table.weighted_panels(rings, radii).map(TableFields::Panels),
+            Profile::Tabulated(table) => table.weighted_cells(rings, radii).map(TableFields::Cells),
             Profile::Sum(sum) => SumFields::new(sum, rings, radii).map(TableFields::Parts),
             _ => None,
         }
@@ -95,14 +98,14 @@ impl Profile {
 
 /// Tables over weighted rings.
 enum TableFields<'a> {
-    Panels(WeightedPanels<'a>),
+    Cells(WeightedCells<'a>),
     Parts(SumFields<'a>),
 }
 
 impl TableFields<'_> {
     fn sums(&self, kernel: Kernel, radii: &[StressRadius]) -> Vec<SumAndSize> {
         match self {
-            TableFields::Panels(panels) => panels.sums(kernel, radii),
+            TableFields::Cells(cells) => cells.sums(kernel, radii),
             TableFields::Parts(parts) => parts.sums(kernel, radii),
         }
     }

@@ -2,7 +2,8 @@
 
 use super::smooth_interval::{Node, SmoothInterval};
 use super::smooth_pieces::SmoothPieces;
-use super::{DoubleDouble, Moments, Ring, Span, SpanEnds, StressRadius};
+use super::{DoubleDouble, Moments, Ring, Span, StressRadius};
+use crate::cells::Cells;
 use crate::numerics::roots::increasing;
 
 /// Where contacts end.
@@ -33,6 +34,8 @@ pub(super) struct ShapeFacts {
     pub(super) curvature_radius: Option<f64>,
     /// Whether g'(x)/x does not rise anywhere; `false` is always safe.
     pub(super) kernel_falls: bool,
+    /// The radius, m, from which on it does not rise, where there is one.
+    pub(super) falls_from: Option<f64>,
     /// Whether g is analytic in x at the tip.
     pub(super) analytic_tip: bool,
     /// Whether stresses are analytic in r^2 at the centre.
@@ -54,6 +57,7 @@ impl Default for ShapeFacts {
             power: 2.0,
             curvature_radius: None,
             kernel_falls: false,
+            falls_from: None,
             analytic_tip: true,
             smooth_centre: true,
             smooth_tip: true,
@@ -94,6 +98,11 @@ pub(crate) struct Falls {
 /// The functions of one family, of which the first three are its own. Radii in m, levels in m; the caller adds what a
 /// span crosses at a vertical edge. What is not closed follows from g and g' by quadratures, roots and series.
 pub(super) trait Shape: Sized {
+    /// The cells that reach beyond a radius, m, where the family is made of them.
+    fn celled(&self, _radius: f64) -> Option<&Cells> {
+        None
+    }
+
     /// g(x).
     fn level(&self, radius: f64) -> f64;
 
@@ -163,8 +172,10 @@ pub(super) trait Shape: Sized {
     }
 
     /// See [`Falls`].
-    fn falls(&self, _inner: f64, outer: f64) -> Falls {
-        let least = if self.facts().kernel_falls { self.slope(outer) / outer } else { f64::NEG_INFINITY };
+    fn falls(&self, inner: f64, outer: f64) -> Falls {
+        let facts = self.facts();
+        let falls = facts.kernel_falls || facts.falls_from.is_some_and(|from| inner >= from);
+        let least = if falls { self.slope(outer) / outer } else { f64::NEG_INFINITY };
         Falls { least, concavely: false }
     }
 }
@@ -197,13 +208,12 @@ pub(super) fn outermost_interval<S: Shape>(shape: &S, span: &Span) -> (SmoothInt
 
 /// The stretch from a node of an interval up to the interval's outer end.
 pub(super) fn under(top: &Span, interval: &SmoothInterval, node: Node) -> Span {
-    let above = Some((interval.base, SpanEnds { low: node.t, high: interval.high, drop: node.dt }));
     if node.dt < 0.5 * interval.high {
-        return Span { above, ..Span::under(top.outer, top.outer_radius, node.dt * (interval.high + node.t)) };
+        return Span::under(top.outer, top.outer_radius, node.dt * (interval.high + node.t));
     }
     // Near the inner end its own square must be exact, not the difference from the outer one.
     let inner = DoubleDouble::square_of(interval.base) + DoubleDouble::square_of(node.t);
-    Span { inner, inner_radius: inner.value().sqrt(), gap: (top.outer - inner).value(), edge: 0.0, above, ..*top }
+    Span { inner, inner_radius: inner.value().sqrt(), gap: (top.outer - inner).value(), edge: 0.0, ..*top }
 }
 
 /// The span of a ring.

@@ -8,11 +8,11 @@
 
 use std::ops::Range;
 
-#[cfg(test)]
-use super::call_count;
 use super::distant_rings::DistantRings;
 use super::shape::KernelOrder;
 use super::{DoubleDouble, Ring, Span, StressRadius};
+#[cfg(test)]
+use crate::cells::call_count;
 use crate::numerics::root_kernel::{MOST_TERMS, Series, Stretch, kernels};
 
 /// Radii that are summed for side by side: roots and divisions take long, and one need not wait for another's.

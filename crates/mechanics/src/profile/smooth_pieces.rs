@@ -26,10 +26,10 @@ mod sampled_series;
 
 use std::ops::Range;
 
-#[cfg(test)]
-use super::call_count;
 use super::shape::{KernelOrder, Shape, ShapeFacts, kink_under, span};
 use super::{DoubleDouble, Ring, Span, StressRadius};
+#[cfg(test)]
+use crate::cells::call_count;
 use crate::numerics::chebyshev::counted;
 use crate::numerics::multipole::Multipole;
 use crate::numerics::root_kernel::KernelPair;

@@ -87,7 +87,7 @@ impl Sum {
     fn beyond(base: f64, gap: f64) -> Span {
         let inner = DoubleDouble::square_of(base);
         let outer = inner + DoubleDouble::from(gap);
-        Span { inner, outer, inner_radius: base, outer_radius: outer.value().sqrt(), gap, edge: 0.0, above: None }
+        Span { inner, outer, inner_radius: base, outer_radius: outer.value().sqrt(), gap, edge: 0.0 }
     }
 
     /// X(y), m.

@@ -387,7 +387,7 @@ fn many_radii_at_once_have_the_stress_of_each_alone() {
                 if alone.is_finite() {
                     worst.close(found, alone, unit.max(alone.abs()));
                 } else {
-                    assert_eq!(found.to_bits(), alone.to_bits(), "at {radius}");
+                    assert_eq!(found.to_bits(), alone.to_bits(), "at {radius} of {profile:?}");
                 }
             }
         }

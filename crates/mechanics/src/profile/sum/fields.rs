@@ -1,15 +1,16 @@
 //! Stresses and displacements of a sum with tables at many radii, since both are linear in g: each table goes through
 //! its panels once for all rings, and the kernels of the other parts are added by pieces, or ring by ring.
 
-use super::super::shape::span;
+use super::super::shape::{self, KernelOrder, Shape, span};
 use super::super::smooth_pieces::SmoothPieces;
-use super::super::tabulated::{Kernel, SumAndSize, WeightedPanels, add_to};
 use super::super::{Profile, Ring, Span, StressRadius};
 use super::Sum;
+use crate::cells::field::{SumAndSize, WeightedCells, add_to};
+use crate::cells::kernel::Kernel;
 
 /// The parts of a sum over weighted rings.
 pub(crate) struct SumFields<'a> {
-    tables: Vec<WeightedPanels<'a>>,
+    tables: Vec<WeightedCells<'a>>,
     /// The other parts, each with its pieces, if it has such.
     others: Vec<(&'a Profile, Option<SmoothPieces<'a, Profile>>)>,
     spans: Vec<(Span, f64)>,
@@ -23,7 +24,7 @@ impl SumFields<'_> {
         let spans: Vec<(Span, f64)> = rings.iter().map(|(ring, weight)| (span(sum, ring), *weight)).collect();
         for part in &sum.parts {
             match part {
-                Profile::Tabulated(table) => tables.push(table.panels_over(&spans, radii)?),
+                Profile::Tabulated(table) => tables.push(table.cells_over(&spans, radii)?),
                 other => others.push((other, pieces(other, &spans))),
             }
         }
@@ -55,9 +56,20 @@ impl SumFields<'_> {
     fn by_rings(&self, part: &Profile, kernel: Kernel, at: &StressRadius) -> SumAndSize {
         let mut sum = (0.0, 0.0);
         for (span, weight) in self.spans.iter().filter(|(_, weight)| weight.abs() > 0.0) {
-            add_to(&mut sum, weight * kernel.of_part(part, at, span));
+            add_to(&mut sum, weight * of_part(kernel, part, at, span));
         }
         sum
+    }
+}
+
+/// The sum of a kernel over a part of a sum.
+pub(super) fn of_part(kernel: Kernel, part: &Profile, at: &StressRadius, span: &Span) -> f64 {
+    match kernel {
+        Kernel::Root => Shape::kernel(part, KernelOrder::Value, at, span),
+        Kernel::RootSlope => Shape::kernel(part, KernelOrder::Slope, at, span),
+        Kernel::Arccos | Kernel::Arcsin => {
+            kernel.angle_sum(at, span, || (part.rise(span), shape::displacement_integral(part, at, span)))
+        }
     }
 }
 

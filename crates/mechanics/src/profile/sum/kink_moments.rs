@@ -1,9 +1,9 @@
 //! The moments of a sum between its kinks, kept so that those of a ring over many of them need not be found again.
 
-use super::super::moment_tree::MomentTree;
 use super::super::shape::{self, Shape};
 use super::super::{DoubleDouble, Error, Moments, Span};
 use super::Sum;
+use crate::cells::moment_tree::MomentTree;
 
 /// With fewer kinks than this nothing is kept.
 const FEW: usize = 4;
@@ -27,7 +27,7 @@ impl KinkMoments {
             }
             let [inner, outer] = [pair[0], pair[1]].map(DoubleDouble::square_of);
             let gap = (outer - inner).value();
-            let span = Span { inner, outer, inner_radius: pair[0], outer_radius: pair[1], gap, edge: 0.0, above: None };
+            let span = Span { inner, outer, inner_radius: pair[0], outer_radius: pair[1], gap, edge: 0.0 };
             Ok((shape::moments(sum, &span), sum.rise(&span)))
         };
         let stretches: Vec<_> = sum.kinks.windows(2).map(stretch).collect::<Result<_, Error>>()?;

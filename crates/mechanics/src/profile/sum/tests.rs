@@ -4,9 +4,9 @@ use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
 use super::super::shape::{self, Shape};
-use super::super::tabulated::Kernel;
 use super::super::{Cone, Moments, PowerLaw, Profile, Ring, RoundedPunch, Sphere, StressRadius, Tabulated};
 use super::{Sum, SumFields};
+use crate::cells::kernel::Kernel;
 
 /// Heights of uneven steps whose slope changes by any amount but falls nowhere.
 fn table(steps: &[(f64, f64)]) -> Profile {

@@ -1,4 +1,4 @@
-//! Builds the panels of a table from f', in a time that is proportional to the number of knots.
+//! Builds the cells of a table from f', in a time that is proportional to the number of knots.
 //!
 //! g'(x) = int_0^x (r f')' dr/sqrt(x^2 - r^2), and (r f')' = A + 2 C r in the segment between two knots. Segments are
 //! gathered in cells of a binary tree. What lies further below a cell than the cell is wide (in the square of the
@@ -16,9 +16,9 @@
 
 use std::ops::Range;
 
-use super::panel::KernelPanel;
+use super::DoubleDouble;
 use super::spline::SplineKnot;
-use super::{DoubleDouble, Moments};
+use crate::cells::{Cell, Powers};
 use crate::numerics::angle::{self, angles};
 use crate::numerics::chebyshev::{self, EIGHT, Points, SIXTEEN, TWELVE, TWENTY, TWENTY_FOUR};
 use crate::numerics::cluster_tree::ClusterTree;
@@ -30,6 +30,13 @@ use crate::numerics::roots::turning;
 const LEAF: usize = 8;
 /// The most that jumps of f'' may add to f' within a cell and what is near to it, over f' itself.
 const SMOOTH: f64 = 4.0;
+/// How far a cell may reach above a knot over the distance in t of the singularity below it, and how far the first of
+/// several does.
+const WIDEST: f64 = 1.1;
+const KINK: f64 = 0.6;
+/// The width of a further cell over its distance from the knot, in squares, and the least of the last one over the whole.
+const GROWTH: f64 = 0.5;
+const LEAST_CELL: f64 = 0.05;
 /// What may be left out of g' for a jump of f'', over f'.
 const NEGLIGIBLE: f64 = 1e-17;
 /// One over 3, 5, 7 and so on.
@@ -53,14 +60,14 @@ struct Segment {
     jump: f64,
 }
 
-/// A stretch of t still without its series.
+/// A stretch above a knot still without its series, by how far its inner end is beyond the knot and how wide it is, in
+/// squares of radii, m^2.
 #[derive(Clone, Copy)]
 struct Stretch {
     knot: usize,
     base: f64,
-    singularity: f64,
     low: f64,
-    high: f64,
+    width: f64,
 }
 
 /// What was built.
@@ -68,13 +75,7 @@ struct Stretch {
 pub(super) struct Built {
     /// From the first knot at which the surface leaves the plane, up to the last or, unless the whole curve is wanted,
     /// to where g falls.
-    pub(super) panels: Vec<KernelPanel>,
-    /// The moments and the depth of each.
-    pub(super) totals: Vec<(Moments, f64)>,
-    /// Level, load and the kernel at the centre at the end.
-    pub(super) level: DoubleDouble,
-    pub(super) load: DoubleDouble,
-    pub(super) centre: f64,
+    pub(super) cells: Vec<Cell>,
     /// The first radius at which g falls, if it does.
     pub(super) falls_at: Option<f64>,
     /// Whether the caller has ended it.
@@ -82,7 +83,7 @@ pub(super) struct Built {
 }
 
 /// The panels through knots, while `keep_going` returns true, which is asked at every cell.
-pub(super) fn panels(knots: &[SplineKnot], whole: bool, keep_going: &dyn Fn() -> bool) -> Built {
+pub(super) fn cells(knots: &[SplineKnot], whole: bool, keep_going: &dyn Fn() -> bool) -> Built {
     let mut before = 0.0;
     let segment = |pair: &[SplineKnot]| {
         let curvature = (pair[1].slope - pair[0].slope) / (pair[1].radius - pair[0].radius);
@@ -93,28 +94,24 @@ pub(super) fn panels(knots: &[SplineKnot], whole: bool, keep_going: &dyn Fn() ->
     };
     let segments: Vec<Segment> = knots.windows(2).map(segment).collect();
     let flat = segments.iter().take_while(|s| s.constant.abs() + s.curvature.abs() <= 0.0).count();
-    let cells = cells(&segments, keep_going);
+    let clusters = clusters(&segments, keep_going);
     let mut build = Build {
         segments: &segments,
         flat,
-        cells: &cells,
+        clusters: &clusters,
         whole,
         keep_going,
         points: 24,
-        built: Built {
-            panels: Vec::with_capacity(segments.len()),
-            totals: Vec::with_capacity(segments.len()),
-            ..Built::default()
-        },
+        built: Built { cells: Vec::with_capacity(segments.len()), ..Built::default() },
     };
-    if let Some(root) = cells.root() {
+    if let Some(root) = clusters.root() {
         build.visit(root, None, &[]);
     }
     build.built
 }
 
 /// The sources (r f')' dr of segments over X = -r^2, so that the radii of g lie below them.
-fn cells(segments: &[Segment], keep_going: &dyn Fn() -> bool) -> ClusterTree<Multipole> {
+fn clusters(segments: &[Segment], keep_going: &dyn Fn() -> bool) -> ClusterTree<Multipole> {
     ClusterTree::new(segments.len(), LEAF, |items, halves| {
         let (start, end) = (segments[items.start].start, segments[items.end - 1].end);
         let mut sources = Multipole::empty((-end * end, -start * start));
@@ -292,7 +289,7 @@ struct Build<'a> {
     segments: &'a [Segment],
     /// The first segment that is not flat.
     flat: usize,
-    cells: &'a ClusterTree<Multipole>,
+    clusters: &'a ClusterTree<Multipole>,
     whole: bool,
     keep_going: &'a dyn Fn() -> bool,
     /// How many places the next panel will likely need.
@@ -304,7 +301,7 @@ impl Build<'_> {
     /// Makes the panels of a cell, given what is far below a cell around it, and the cells nearer, from the centre
     /// outward.
     fn visit(&mut self, number: usize, around: Option<&CellField>, beside: &[usize]) {
-        let cell = self.cells.cluster(number);
+        let cell = self.clusters.cluster(number);
         self.built.stopped |= !(self.keep_going)();
         if cell.items.end <= self.flat || self.is_complete() || self.built.stopped {
             return;
@@ -319,7 +316,7 @@ impl Build<'_> {
         let (mut near, mut open): (Vec<usize>, Vec<usize>) = (Vec::new(), beside.iter().rev().copied().collect());
         let most = if cell.halves.is_none() { LEAF } else { cell.items.len() };
         while let Some(number) = open.pop() {
-            let source = self.cells.cluster(number);
+            let source = self.clusters.cluster(number);
             let is_beyond = low + source.sources.interval.0 >= high - low;
             if is_beyond && source.sources.is_far(-low) {
                 add_far(&source.sources, &places.squares, &mut sums);
@@ -338,7 +335,7 @@ impl Build<'_> {
             self.visit(outer, Some(&field), &near);
             return;
         }
-        let first = near.first().map_or(cell.items.start, |&first| self.cells.cluster(first).items.start);
+        let first = near.first().map_or(cell.items.start, |&first| self.clusters.cluster(first).items.start);
         let mut first = first.max(self.flat);
         let least = self.smooth_slope(first..cell.items.end).map(|slope| NEGLIGIBLE * slope);
         if least.is_some() && first > self.flat {
@@ -363,24 +360,26 @@ impl Build<'_> {
         (all.map(|(jump, r)| jump.abs() * (end.end - r)).sum::<f64>() <= SMOOTH * size).then_some(size)
     }
 
-    /// Adds the panels above a knot up to the t `high`, cut where the knot below it is too near for one series.
+    /// Adds the cells above a knot up to the t `high`: one, or several where the knot below it is too near for one series.
     fn add_stretches(&mut self, knot: usize, high: f64, sources: &NearSources) {
         let base = self.segments[knot].start;
-        let singularity = if knot > self.flat {
+        let singular = if knot > self.flat {
             let next = self.segments[knot - 1].start;
-            ((base - next) * (base + next)).sqrt()
+            (base - next) * (base + next)
         } else if base > 0.0 {
-            base
+            base * base
         } else {
             f64::INFINITY
         };
-        // Twenty-four terms suffice where the singularity is off the ellipse of half-axes that add up to four.
-        let fits = singularity + (high * high + singularity * singularity).sqrt() >= 2.2 * high;
-        let low = if fits { 0.0 } else { 0.4 * high };
-        if !fits {
-            self.add_stretches(knot, low, sources);
+        let whole = high * high;
+        let mut reached = if whole <= WIDEST * WIDEST * singular { whole } else { KINK * KINK * singular };
+        self.add_cell(&Stretch { knot, base, low: 0.0, width: reached }, sources);
+        while reached < whole {
+            let next =
+                if reached * (1.0 + GROWTH) < whole * (1.0 - LEAST_CELL) { reached * (1.0 + GROWTH) } else { whole };
+            self.add_cell(&Stretch { knot, base, low: reached, width: next - reached }, sources);
+            reached = next;
         }
-        self.add_panel(&Stretch { knot, base, singularity, low, high }, sources);
     }
 
     /// Whether g falls where the panels end.
@@ -388,32 +387,25 @@ impl Build<'_> {
         self.built.falls_at.is_some() && !self.whole
     }
 
-    /// Adds the panel of a stretch, up to where g falls unless the whole curve is wanted.
-    fn add_panel(&mut self, stretch: &Stretch, sources: &NearSources) {
+    /// Adds the cell of a stretch, up to where g falls unless the whole curve is wanted.
+    fn add_cell(&mut self, stretch: &Stretch, sources: &NearSources) {
         if self.is_complete() {
             return;
         }
-        let mut panel = self.panel(stretch, sources);
-        if let Some(t) = first_fall(&panel) {
-            self.built.falls_at.get_or_insert((stretch.base * stretch.base + t * t).sqrt());
+        let mut cell = self.cell(stretch, sources);
+        if let Some(zeta) = first_fall(&cell) {
+            self.built.falls_at.get_or_insert(cell.radius_at(zeta));
             if !self.whole {
-                if t <= stretch.low {
+                if zeta <= 0.0 {
                     return;
                 }
-                panel = self.panel(&Stretch { high: t, ..*stretch }, sources);
+                cell = self.cell(&Stretch { width: zeta * zeta, ..*stretch }, sources);
             }
         }
-        let ((moments, centre), depth) = (panel.totals(), panel.depth);
-        let built = &mut self.built;
-        (panel.level, panel.load, panel.centre) = (built.level.value(), built.load.value(), built.centre);
-        built.level = built.level + DoubleDouble::from(depth);
-        built.load = built.load + DoubleDouble::from(panel.radius * depth + moments.first);
-        built.centre += centre;
-        built.panels.push(panel);
-        built.totals.push((moments, depth));
+        self.built.cells.push(cell);
     }
 
-    fn panel(&mut self, stretch: &Stretch, sources: &NearSources) -> KernelPanel {
+    fn cell(&mut self, stretch: &Stretch, sources: &NearSources) -> Cell {
         let series = loop {
             let (series, resolved) = match self.points {
                 8 => self.series(stretch, sources, &EIGHT),
@@ -428,12 +420,19 @@ impl Build<'_> {
         };
         // Room for one more term than this one had.
         self.points = [8, 12, 16].into_iter().find(|points| series.len() + 3 <= *points).unwrap_or(24);
-        KernelPanel::new((stretch.base, stretch.singularity), (stretch.low, stretch.high), series)
+        let square = DoubleDouble::square_of(stretch.base) + DoubleDouble::from(stretch.low);
+        let kind = if stretch.low > 0.0 { Powers::Odd } else { Powers::All(1) };
+        Cell::new(stretch.base, square, stretch.width.sqrt(), &series, kind)
     }
 
     /// The series of q = g'/x over a stretch, by its values at so many points, and whether they resolve it.
     fn series<const N: usize>(&self, stretch: &Stretch, sources: &NearSources, points: &Points<N>) -> (Vec<f64>, bool) {
-        let places = Places::new(stretch.base, points.places(stretch.low, stretch.high).map(|t| t * t));
+        let above = if stretch.low > 0.0 {
+            points.places(0.0, stretch.width).map(|above| stretch.low + above)
+        } else {
+            points.places(0.0, stretch.width.sqrt()).map(|t| t * t)
+        };
+        let places = Places::new(stretch.base, above);
         let mut sums = [0.0; N];
         sources.far.add(&places.squares, &mut sums);
         let below = self.segments[sources.first.min(stretch.knot)..=stretch.knot].iter();
@@ -459,15 +458,15 @@ fn add_far(sources: &Multipole, squares: &[f64; 20], sums: &mut [f64; 20]) {
     }
 }
 
-/// The first t at which q is below zero by more than rounding could make it.
-fn first_fall(panel: &KernelPanel) -> Option<f64> {
-    if panel.surely_rises() {
+/// The first zeta at which q is below zero by more than rounding could make it.
+fn first_fall(cell: &Cell) -> Option<f64> {
+    if cell.surely_rises() {
         return None;
     }
-    let places = panel.slope_check_places();
-    let values: Vec<f64> = places.iter().map(|&t| panel.slope_over_radius(t)).collect();
+    let places = cell.slope_check_places();
+    let values: Vec<f64> = places.iter().map(|&zeta| cell.slope_over_radius(zeta)).collect();
     let size = values.iter().fold(0.0f64, |size, value| size.max(value.abs()));
     let index = values.iter().position(|&value| value < -1e-12 * size)?;
-    let Some(before) = index.checked_sub(1) else { return Some(panel.low) };
-    Some(turning([places[before], places[index]], |t| panel.slope_over_radius(t) < 0.0)[0])
+    let Some(before) = index.checked_sub(1) else { return Some(0.0) };
+    Some(turning([places[before], places[index]], |zeta| cell.slope_over_radius(zeta) < 0.0)[0])
 }

@@ -1,29 +1,29 @@
-//! The curve of a table by its knots, and its panels as far as they were asked for.
+//! The curve of a table by its knots, and its cells as far as they were asked for.
 //!
-//! Where f' does not fall from knot to knot, g falls nowhere, and what lies beyond a contact need not exist. The panels
+//! Where f' does not fall from knot to knot, g falls nowhere, and what lies beyond a contact need not exist. The cells
 //! are then built up to the knot in the middle, to that in the middle below it, and so on, each when first asked for.
 //! They are the same however far they reach, and which are taken depends on the radius, level or load alone, not on
 //! what was asked before.
 
 use std::sync::OnceLock;
 
-use super::panels::Panels;
 use super::spline::SplineKnot;
 use super::{DoubleDouble, Error, build};
+use crate::cells::Cells;
 
 /// Segments that are built at once however near a contact ends.
 const FEWEST: usize = 64;
 /// How much of a level or a load may be rounding.
 const ROUNDING: f64 = 1e-9;
 
-/// The panels up to a knot.
+/// The cells up to a knot.
 #[derive(Debug)]
 struct Stage {
     segments: usize,
     /// Radius of the knot, m.
     radius: f64,
     reached: OnceLock<Reached>,
-    panels: OnceLock<Panels>,
+    cells: OnceLock<Cells>,
 }
 
 /// Level, m, and load, m^2, at a radius.
@@ -76,7 +76,7 @@ impl TableCurve {
             segments,
             radius: knots[segments].radius,
             reached: OnceLock::new(),
-            panels: OnceLock::new(),
+            cells: OnceLock::new(),
         };
         // In a sum the whole curve is asked for in any case.
         if !whole && knots.windows(2).all(|pair| pair[1].slope >= pair[0].slope) {
@@ -85,12 +85,12 @@ impl TableCurve {
             stages.reverse();
             return Ok((TableCurve { flat, knots, stages }, None));
         }
-        let built = build::panels(&knots, whole, keep_going);
+        let built = build::cells(&knots, whole, keep_going);
         if built.stopped {
             return Err(Error::Interrupted);
         }
         let falls = built.falls_at;
-        let stages = vec![Stage { panels: OnceLock::from(Panels::new(built)), ..stage(all) }];
+        let stages = vec![Stage { cells: OnceLock::from(Cells::new(built.cells)), ..stage(all) }];
         Ok((TableCurve { flat, knots, stages }, falls))
     }
 
@@ -99,11 +99,11 @@ impl TableCurve {
         self.knots[self.flat.saturating_sub(1)].radius
     }
 
-    /// Where the panels end, m; `None` without panels.
+    /// Where the cells end, m; `None` without cells.
     pub(super) fn end(&self) -> Option<f64> {
         let last = &self.stages[self.stages.len() - 1];
-        match last.panels.get() {
-            Some(panels) => panels.panels.last().map(|panel| panel.end().1),
+        match last.cells.get() {
+            Some(cells) => (!cells.cells.is_empty()).then_some(cells.top.radius),
             None => (self.flat <= last.segments).then(|| {
                 let [start, end] = [last.segments - 1, last.segments].map(|knot| self.knots[knot].radius);
                 let high = ((end - start) * (end + start)).sqrt();
@@ -112,25 +112,25 @@ impl TableCurve {
         }
     }
 
-    /// The panels of a stage.
-    fn panels(&self, index: usize) -> &Panels {
+    /// The cells of a stage.
+    fn cells(&self, index: usize) -> &Cells {
         let stage = &self.stages[index];
-        stage.panels.get_or_init(|| Panels::new(build::panels(&self.knots[..=stage.segments], true, &|| true)))
+        stage.cells.get_or_init(|| Cells::new(build::cells(&self.knots[..=stage.segments], true, &|| true).cells))
     }
 
-    /// Builds the panels that reach beyond something, while `keep_going` returns true, which is asked at every cell.
+    /// Builds the cells that reach beyond something, while `keep_going` returns true, which is asked at every cluster.
     ///
     /// # Errors
     /// [`Error::Interrupted`] once it has returned false.
     pub(super) fn build_up_to(&self, reach: Reach, keep_going: &dyn Fn() -> bool) -> Result<(), Error> {
         let stage = &self.stages[self.first(reach)];
-        if stage.panels.get().is_none() {
-            let built = build::panels(&self.knots[..=stage.segments], true, keep_going);
+        if stage.cells.get().is_none() {
+            let built = build::cells(&self.knots[..=stage.segments], true, keep_going);
             if built.stopped {
                 return Err(Error::Interrupted);
             }
-            // Another thread may have been quicker, with the same panels.
-            let _ = stage.panels.set(Panels::new(built));
+            // Another thread may have been quicker, with the same cells.
+            let _ = stage.cells.set(Cells::new(built.cells));
         }
         Ok(())
     }
@@ -146,9 +146,9 @@ impl TableCurve {
         self.stages[..last].iter().position(beyond).unwrap_or(last)
     }
 
-    /// Panels that reach beyond something, all of them if none does.
-    pub(super) fn up_to(&self, reach: Reach) -> &Panels {
-        self.panels(self.first(reach))
+    /// Cells that reach beyond something, all of them if none does.
+    pub(super) fn up_to(&self, reach: Reach) -> &Cells {
+        self.cells(self.first(reach))
     }
 
     /// What the curve reaches where a stage ends. With f' = s + C (x - k) above the knot k, theta = asin(x/r) and
@@ -188,7 +188,7 @@ mod tests {
     use super::TableCurve;
 
     #[test]
-    fn panels_are_the_same_however_far_they_reach() {
+    fn cells_are_the_same_however_far_they_reach() {
         let radii: Vec<f64> = (0..700_u32).map(|index| 1e-6 * f64::from(index)).collect();
         for radius in [1e-3_f64, f64::INFINITY] {
             let height = |r: &f64| if radius.is_finite() { radius - (radius * radius - r * r).sqrt() } else { r * r };
@@ -196,14 +196,14 @@ mod tests {
             let (curve, falls) = TableCurve::new(knots, false, &|| true).unwrap();
             let last = curve.stages.len() - 1;
             assert!(last > 1 && falls.is_none(), "{radius}");
-            let all = curve.panels(last);
+            let all = curve.cells(last);
             assert_eq!(Some(all.top.radius), curve.end());
             for (index, stage) in curve.stages.iter().enumerate() {
-                let some = curve.panels(index);
-                assert!(all.panels.starts_with(&some.panels) && some.top.radius >= stage.radius.next_down());
+                let some = curve.cells(index);
+                assert!(all.cells.starts_with(&some.cells) && some.top.radius >= stage.radius.next_down());
                 let reached = curve.reached(stage);
-                assert!((reached.level / some.top.level - 1.0).abs() < 1e-12, "{radius} {index}");
-                assert!((reached.load / some.top.load - 1.0).abs() < 1e-12, "{radius} {index}");
+                assert!((reached.level / some.top.level.value() - 1.0).abs() < 1e-12, "{radius} {index}");
+                assert!((reached.load / some.top.load.value() - 1.0).abs() < 1e-12, "{radius} {index}");
             }
         }
     }

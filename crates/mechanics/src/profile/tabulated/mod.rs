@@ -10,39 +10,29 @@
 
 mod build;
 mod curve;
-mod displacement;
 mod interpolation_error;
-mod kernel;
-mod lookup;
-mod near_kernel;
 mod noise;
-mod panel;
-mod panel_powers;
-mod panel_sources;
-mod panels;
 mod spline;
 mod stated_error;
 #[cfg(test)]
 mod tests;
-mod weighted_panels;
 
 use std::sync::Arc;
 
 use super::super::error::TableFault;
 use super::shape::{End, Falls, KernelOrder, Shape, ShapeFacts, span};
-use super::smooth_coordinate::SmoothCoordinate;
-use super::{DoubleDouble, Error, Moments, Point, Profile, Ring, Span, SpanEnds, StressRadius, range};
+use super::{DoubleDouble, Error, Moments, Ring, Span, StressRadius, range};
+use crate::cells::Cells;
+use crate::cells::field::WeightedCells;
+use crate::cells::kernel::Kernel;
 use crate::numerics::multipole::Multipole;
 pub(super) use curve::Reach;
 use curve::TableCurve;
-pub(super) use displacement::displacements;
 pub use interpolation_error::InterpolationError;
 use interpolation_error::TableGap;
-pub(super) use kernel::Kernel;
 use spline::SplineKnot;
-pub(super) use weighted_panels::{SumAndSize, WeightedPanels, add_to};
 
-/// As many kernels, rings times radii, are summed sooner than panels are weighted for all of them.
+/// As many kernels, rings times radii, are summed sooner than cells are weighted for all of them.
 pub(super) const FEW: usize = 128;
 
 /// A tabulated profile.
@@ -176,15 +166,14 @@ impl Tabulated {
 
     /// Radii, m, increasing, between which g' cannot hide a fall.
     pub(super) fn slope_check_radii(&self) -> impl Iterator<Item = f64> {
-        let panels = &self.curve.up_to(Reach::Radius(self.end)).panels;
-        panels.iter().flat_map(|panel| panel.slope_check_places().into_iter().map(|t| panel.radius_at(t)))
+        let cells = &self.curve.up_to(Reach::Radius(self.end)).cells;
+        cells.iter().flat_map(|cell| cell.slope_check_places().into_iter().map(|zeta| cell.radius_at(zeta)))
     }
 
-    /// The kernels of rings from the centre outward, each with its weight, for sums at so many radii; `None` with
-    /// levels at a vertical edge.
-    pub(super) fn weighted_panels(&self, rings: &[(Ring, f64)], radii: usize) -> Option<WeightedPanels<'_>> {
+    /// The kernels of rings from the centre outward, each with its weight, for sums at so many radii.
+    pub(super) fn weighted_cells(&self, rings: &[(Ring, f64)], radii: usize) -> Option<WeightedCells<'_>> {
         let spans: Vec<(Span, f64)> = rings.iter().map(|(ring, weight)| (span(self, ring), *weight)).collect();
-        self.panels_over(&spans, radii)
+        self.cells_over(&spans, radii)
     }
 
     /// Adds what the radii of a span are from afar to sources over their squares, m^2.
@@ -192,14 +181,19 @@ impl Tabulated {
         self.curve.up_to(Reach::Radius(span.outer_radius)).add_sources(span, sources);
     }
 
-    /// [`Tabulated::weighted_panels`] of spans.
-    pub(super) fn panels_over(&self, spans: &[(Span, f64)], radii: usize) -> Option<WeightedPanels<'_>> {
-        WeightedPanels::new(self.curve.up_to(Reach::Radius(spans.last()?.0.outer_radius)), spans, radii)
+    /// int h dx/sqrt(r^2 - x^2), m, over what a span has below r, h the rise up to its outer end.
+    pub(super) fn displacement_integral(&self, at: &StressRadius, span: &Span) -> f64 {
+        self.curve.up_to(Reach::Radius(span.outer_radius)).displacement_integral(at, span)
+    }
+
+    /// [`Tabulated::weighted_cells`] of spans.
+    pub(super) fn cells_over(&self, spans: &[(Span, f64)], radii: usize) -> Option<WeightedCells<'_>> {
+        Some(WeightedCells::new(self.curve.up_to(Reach::Radius(spans.last()?.0.outer_radius)), spans, radii))
     }
 }
 
-/// Methods of [`Shape`] that the panels up to some radius have.
-macro_rules! by_panels {
+/// Methods of [`Shape`] that the cells up to some radius have.
+macro_rules! by_cells {
     ($($method:ident($($argument:ident: $Type:ty),*) -> $Result:ty, up to $radius:expr;)+) => {
         $(fn $method(&self, $($argument: $Type),*) -> $Result {
             self.curve.up_to(Reach::Radius($radius)).$method($($argument),*)
@@ -208,7 +202,11 @@ macro_rules! by_panels {
 }
 
 impl Shape for Tabulated {
-    by_panels! {
+    fn celled(&self, radius: f64) -> Option<&Cells> {
+        Some(self.curve.up_to(radius))
+    }
+
+    by_cells! {
         level(radius: f64) -> f64, up to radius;
         slope(radius: f64) -> f64, up to radius;
         load(radius: f64) -> f64, up to radius;

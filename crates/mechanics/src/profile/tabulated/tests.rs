@@ -1,9 +1,9 @@
 //! A table against the sum of a sphere and rounded punches that it is.
 
 use super::super::{Profile, Ring, RoundedPunch, Sphere, StressRadius, Sum};
-use super::panel::KernelPanel;
-use super::panels::{Panels, SpanParts};
 use super::*;
+use crate::cells::ring::Point;
+use crate::cells::{Cell, Cells, SpanParts};
 use crate::numerics::gauss;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
@@ -34,8 +34,8 @@ fn table(idle: u32) -> Profile {
     Profile::Tabulated(Tabulated::from_knots(knots, false, &|| true).unwrap())
 }
 
-/// All panels of a table.
-fn all(table: &Tabulated) -> &Panels {
+/// All cells of a table.
+fn all(table: &Tabulated) -> &Cells {
     table.curve.up_to(super::Reach::Radius(table.end))
 }
 
@@ -115,12 +115,14 @@ fn rings(table: &Tabulated, shares: &[(f64, f64)]) -> Vec<(Ring, f64)> {
     shares.windows(2).map(between).collect()
 }
 
-/// The kernel of a part of a panel as int q dv, v = sqrt(x^2 - r^2), by Gauss's rule on stretches that halve towards
+/// The kernel of a part of a cell as int q dv, v = sqrt(x^2 - r^2), by Gauss's rule on stretches that halve towards
 /// the lower end, where t may begin like a root of v.
-fn graded_kernel(panel: &KernelPanel, at: &StressRadius, span: &Span) -> f64 {
+fn graded_kernel(cell: &Cell, at: &StressRadius, span: &Span) -> f64 {
     let (inner, outer) = ((span.inner - at.square).value().max(0.0).sqrt(), (span.outer - at.square).value());
-    let kappa = (at.square - DoubleDouble::square_of(panel.base)).value();
-    let (mut sum, mut width) = (0.0, outer.max(0.0).sqrt() - inner);
+    let kappa = (at.square - cell.square).value();
+    // By the difference of the squares, which a thin part knows better than the roots do.
+    let gap = if inner > 0.0 { span.gap } else { outer };
+    let (mut sum, mut width) = (0.0, gap / (outer.max(0.0).sqrt() + inner));
     if outer <= 0.0 {
         return 0.0;
     }
@@ -128,7 +130,7 @@ fn graded_kernel(panel: &KernelPanel, at: &StressRadius, span: &Span) -> f64 {
         width *= 0.5;
         gauss::QuadraturePanel::fine(width).visit(|step, weight| {
             let v = inner + width + step;
-            sum += weight * panel.slope_over_radius((kappa + v * v).max(0.0).sqrt().clamp(panel.low, panel.high));
+            sum += weight * cell.slope_over_radius((kappa + v * v).max(0.0).sqrt().min(cell.high));
         });
     }
     sum
@@ -144,7 +146,7 @@ proptest! {
     })]
 
     #[test]
-    fn weighted_kernels_are_the_sums_of_those_of_panels(
+    fn weighted_kernels_are_the_sums_of_those_of_cells(
         steps in steps(),
         shares in prop::collection::vec((0.0..1.0_f64, -1.0..1.0_f64), 2..12),
         radii in prop::collection::vec(0.0..1.0_f64, 1..20),
@@ -152,37 +154,22 @@ proptest! {
         let table = uneven(&steps);
         let rings = rings(&table, &shares);
         let radii: Vec<StressRadius> = radii.iter().map(|share| StressRadius::new(share * table.end)).collect();
-        let by_panels = |at: &StressRadius, ring: &Ring| {
-            let panels = all(&table);
-            let SpanParts { low, whole, high } = panels.parts(&span(&table, ring));
-            let whole = whole.map(|index| (index, panels.span_of_panel(index)));
-            let kernel = |(index, span): (usize, Span)| graded_kernel(&panels.panels[index], at, &span);
+        let by_cells = |at: &StressRadius, ring: &Ring| {
+            let cells = all(&table);
+            let SpanParts { low, whole, high } = cells.parts(&span(&table, ring));
+            let whole = whole.map(|index| (index, cells.span_of_cell(index)));
+            let kernel = |(index, span): (usize, Span)| graded_kernel(&cells.cells[index], at, &span);
             low.into_iter().chain(whole).chain(high).map(kernel).sum::<f64>()
         };
-        let size: f64 = rings.iter().map(|(ring, _)| by_panels(&StressRadius::new(0.0), ring)).sum();
-        let sums = table.weighted_panels(&rings, radii.len()).unwrap().sums(Kernel::Root, &radii);
+        let size: f64 = rings.iter().map(|(ring, _)| by_cells(&StressRadius::new(0.0), ring)).sum();
+        let sums = table.weighted_cells(&rings, radii.len()).unwrap().sums(Kernel::Root, &radii);
         for (at, (sum, _)) in radii.iter().zip(sums) {
-            let exact: f64 = rings.iter().map(|(ring, weight)| weight * by_panels(at, ring)).sum();
+            let exact: f64 = rings.iter().map(|(ring, weight)| weight * by_cells(at, ring)).sum();
             prop_assert!((sum - exact).abs() <= 3e-14 * size, "{:e}: {sum:e} {exact:e}", at.radius);
             for (ring, _) in &rings {
-                let (kernel, exact) = (table.kernel(KernelOrder::Value, at, &span(&table, ring)), by_panels(at, ring));
+                let (kernel, exact) = (table.kernel(KernelOrder::Value, at, &span(&table, ring)), by_cells(at, ring));
                 prop_assert!((kernel - exact).abs() <= 3e-14 * size, "{:e}: {kernel:e} {exact:e}", at.radius);
             }
-        }
-    }
-
-    #[test]
-    fn moments_by_series_are_those_by_quadrature(
-        steps in steps(),
-        shares in prop::collection::vec((0.0..1.0_f64, 0.0..1.0_f64), 2..30),
-    ) {
-        let table = uneven(&steps);
-        for (ring, _) in rings(&table, &shares) {
-            let span = span(&table, &ring);
-            let Some(ours) = all(&table).moments_across(&span) else { continue };
-            let exact = all(&table).moments_by_quadrature(&span);
-            let error = worst(&[(ours.width, exact.width), (ours.first, exact.first), (ours.second, exact.second)]);
-            prop_assert!(error < 3e-14, "{:e} {:e}: {error:e}", ring.inner.radius, ring.outer.radius);
         }
     }
 
@@ -196,17 +183,5 @@ proptest! {
             let allowed = 1e-14 * level.value() + 1e-16 * table.level(table.end);
             prop_assert!((found - level.value()).abs() <= allowed, "{radius:e}: {found:e}");
         }
-    }
-}
-
-#[test]
-fn most_panels_of_a_smooth_table_take_the_short_way() {
-    for count in [100_u32, 1000, 10_000] {
-        let radii: Vec<f64> = (0..count).map(|index| 0.02 * f64::from(index) / f64::from(count)).collect();
-        let heights: Vec<f64> = radii.iter().map(|r| r * r / (1.0 + ((1.0 - r) * (1.0 + r)).sqrt())).collect();
-        let table = Tabulated::new(&radii, &heights).unwrap();
-        let panels = &all(&table).panels;
-        let long = panels.iter().filter(|panel| panel.powers().is_empty()).count();
-        assert!(100 * long < panels.len(), "{long} of {}", panels.len());
     }
 }

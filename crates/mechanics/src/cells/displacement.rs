@@ -1,4 +1,4 @@
-//! The displacement of the surface over the rings of a table, at many radii.
+//! The displacement of the surface over weighted rings of cells, at many radii.
 //!
 //! u = (2/pi) int v dx/sqrt(r^2 - x^2), v straight in g over each ring, becomes by parts a sum over the same sources dg
 //! as that of the stress, each with the weight dv/dg of its ring and an angle as kernel, which is smooth below r:
@@ -7,12 +7,13 @@
 
 use std::f64::consts::FRAC_2_PI;
 
+use super::field::SumAndSize;
 use super::kernel::Kernel;
-use super::{Point, StressRadius, SumAndSize};
+use super::ring::{Point, StressRadius};
 
 /// u, m, at each radius, by the weighted sums of an angle over the rings up to `edge`, and v at the centre and at the
 /// edge, m.
-pub(in super::super) fn displacements(
+pub(crate) fn displacements(
     edge: &Point,
     (centre, end): (f64, f64),
     radii: &[StressRadius],

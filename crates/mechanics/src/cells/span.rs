@@ -4,39 +4,29 @@
 //! a span carries the squares with twice the digits and their difference on its own, since that comes from the depth of
 //! the ring.
 
-use super::{DoubleDouble, Moments, Ring, StressRadius};
-
-/// A stretch in the coordinate t = sqrt(x^2 - b^2) above a kink at b, m.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct SpanEnds {
-    pub(super) low: f64,
-    pub(super) high: f64,
-    /// The difference of the two, to round-off of itself.
-    pub(super) drop: f64,
-}
+use super::ring::{Moments, Ring, StressRadius};
+use crate::numerics::double_double::DoubleDouble;
 
 /// The radii of a ring, and the levels it crosses at a vertical edge.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Span {
+pub(crate) struct Span {
     /// Square of the inner radius, m^2.
-    pub(super) inner: DoubleDouble,
+    pub(crate) inner: DoubleDouble,
     /// Square of the outer radius, m^2.
-    pub(super) outer: DoubleDouble,
+    pub(crate) outer: DoubleDouble,
     /// The inner radius, m.
-    pub(super) inner_radius: f64,
+    pub(crate) inner_radius: f64,
     /// The outer radius, m.
-    pub(super) outer_radius: f64,
+    pub(crate) outer_radius: f64,
     /// Difference of the squares, m^2, to round-off of itself.
-    pub(super) gap: f64,
+    pub(crate) gap: f64,
     /// Levels crossed at the outer radius, where the profile rises vertically, m.
-    pub(super) edge: f64,
-    /// Its ends above a kink, with that kink, m, where they are known.
-    pub(super) above: Option<(f64, SpanEnds)>,
+    pub(crate) edge: f64,
 }
 
 impl Span {
     /// The ring's radii, given the difference of their squares and the levels that a vertical edge takes.
-    pub(super) fn of(ring: &Ring, gap: f64, edge: f64) -> Span {
+    pub(crate) fn of(ring: &Ring, gap: f64, edge: f64) -> Span {
         Span {
             inner: ring.inner.square,
             outer: ring.outer.square,
@@ -44,30 +34,29 @@ impl Span {
             outer_radius: ring.outer.radius,
             gap,
             edge,
-            above: None,
         }
     }
 
     /// All radii below one.
-    pub(super) fn from_centre(radius: f64) -> Span {
+    pub(crate) fn from_centre(radius: f64) -> Span {
         let (inner, outer) = (DoubleDouble::ZERO, DoubleDouble::square_of(radius));
-        Span { inner, outer, inner_radius: 0.0, outer_radius: radius, gap: outer.value(), edge: 0.0, above: None }
+        Span { inner, outer, inner_radius: 0.0, outer_radius: radius, gap: outer.value(), edge: 0.0 }
     }
 
     /// The span that ends at `outer` and whose square is smaller by `gap` at its inner end.
-    pub(super) fn under(outer: DoubleDouble, outer_radius: f64, gap: f64) -> Span {
+    pub(crate) fn under(outer: DoubleDouble, outer_radius: f64, gap: f64) -> Span {
         let inner = outer - DoubleDouble::from(gap);
         let inner = if inner.value() > 0.0 { inner } else { DoubleDouble::ZERO };
-        Span { inner, outer, inner_radius: inner.value().sqrt(), outer_radius, gap, edge: 0.0, above: None }
+        Span { inner, outer, inner_radius: inner.value().sqrt(), outer_radius, gap, edge: 0.0 }
     }
 
     /// Difference of the radii, m.
-    pub(super) fn width(&self) -> f64 {
+    pub(crate) fn width(&self) -> f64 {
         if self.gap > 0.0 { self.gap / (self.inner_radius + self.outer_radius) } else { 0.0 }
     }
 
     /// Both squares less `square`. The two sides agree to round-off, and the difference is small where it ought to be.
-    pub(super) fn excess(&self, square: DoubleDouble) -> (f64, f64) {
+    pub(crate) fn excess(&self, square: DoubleDouble) -> (f64, f64) {
         let inner = self.inner - square;
         let outer =
             if inner.value() > -0.5 * self.gap { inner + DoubleDouble::from(self.gap) } else { self.outer - square };
@@ -75,31 +64,31 @@ impl Span {
     }
 
     /// What lies inside the radius whose square is given.
-    pub(super) fn below(&self, square: DoubleDouble, radius: f64) -> Option<Span> {
+    pub(crate) fn below(&self, square: DoubleDouble, radius: f64) -> Option<Span> {
         let (inner, outer) = self.excess(square);
         if inner >= 0.0 {
             None
         } else if outer <= 0.0 {
             Some(Span { edge: 0.0, ..*self })
         } else {
-            Some(Span { outer: square, outer_radius: radius, gap: -inner, edge: 0.0, above: None, ..*self })
+            Some(Span { outer: square, outer_radius: radius, gap: -inner, edge: 0.0, ..*self })
         }
     }
 
     /// What lies outside the radius whose square is given.
-    pub(super) fn above(&self, square: DoubleDouble, radius: f64) -> Option<Span> {
+    pub(crate) fn above(&self, square: DoubleDouble, radius: f64) -> Option<Span> {
         let (inner, outer) = self.excess(square);
         if outer <= 0.0 {
             None
         } else if inner >= 0.0 {
             Some(*self)
         } else {
-            Some(Span { inner: square, inner_radius: radius, gap: outer, above: None, ..*self })
+            Some(Span { inner: square, inner_radius: radius, gap: outer, ..*self })
         }
     }
 
     /// int dx/sqrt(r^2 - x^2) over the radii of the span below r (pure number).
-    pub(super) fn arc(&self, at: &StressRadius) -> f64 {
+    pub(crate) fn arc(&self, at: &StressRadius) -> f64 {
         let (inner, outer) = self.excess(at.square);
         if inner >= 0.0 {
             return 0.0;
@@ -115,7 +104,7 @@ impl Span {
 
 impl Moments {
     /// The moments of two adjacent rings together; `depth` is that of the outer one, which lifts all of the inner.
-    pub(super) fn stack(inner: Moments, outer: Moments, depth: f64) -> Moments {
+    pub(crate) fn stack(inner: Moments, outer: Moments, depth: f64) -> Moments {
         Moments {
             width: inner.width + outer.width,
             first: inner.first + depth * inner.width + outer.first,

@@ -2,15 +2,15 @@
 
 use std::ops::Range;
 
-use super::Moments;
+use super::ring::Moments;
 
 /// Moments and depth, m, of all runs of rings, as a binary tree with the leaves in its second half.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct MomentTree(Vec<(Moments, f64)>);
+pub(crate) struct MomentTree(Vec<(Moments, f64)>);
 
 impl MomentTree {
     /// The tree over rings from the centre outward, each with its depth, m.
-    pub(super) fn new(rings: impl ExactSizeIterator<Item = (Moments, f64)>) -> MomentTree {
+    pub(crate) fn new(rings: impl ExactSizeIterator<Item = (Moments, f64)>) -> MomentTree {
         let leaves = rings.len().next_power_of_two();
         let mut tree = vec![(Moments::default(), 0.0); 2 * leaves];
         for (leaf, ring) in tree[leaves..].iter_mut().zip(rings) {
@@ -23,7 +23,7 @@ impl MomentTree {
     }
 
     /// The rings first..last together.
-    pub(super) fn run(&self, first: usize, last: usize) -> (Moments, f64) {
+    pub(crate) fn run(&self, first: usize, last: usize) -> (Moments, f64) {
         let leaves = self.0.len() / 2;
         let (mut low, mut high) = (first + leaves, last + leaves);
         let (mut inner, mut outer) = ((Moments::default(), 0.0), (Moments::default(), 0.0));
@@ -42,7 +42,7 @@ impl MomentTree {
     }
 
     /// The moments of the rings `run` with those of what lies inside them and of what lies outside, of a depth, m.
-    pub(super) fn across(&self, run: Range<usize>, inside: Moments, (outside, depth): (Moments, f64)) -> Moments {
+    pub(crate) fn across(&self, run: Range<usize>, inside: Moments, (outside, depth): (Moments, f64)) -> Moments {
         join((inside, 0.0), join(self.run(run.start, run.end), (outside, depth))).0
     }
 }

@@ -1,6 +1,6 @@
 //! The arguments of the functions of a profile: levels, rings between two of them, and radii of stress.
 
-use super::DoubleDouble;
+use crate::numerics::double_double::DoubleDouble;
 
 /// A level, with the radius that belongs to it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -57,7 +57,7 @@ impl StressRadius {
     }
 
     /// The indices of radii from the smallest on: neighbours share what is near to them.
-    pub(super) fn rising(radii: &[StressRadius]) -> Vec<usize> {
+    pub(crate) fn rising(radii: &[StressRadius]) -> Vec<usize> {
         let mut order: Vec<usize> = (0..radii.len()).collect();
         order.sort_by(|&a, &b| radii[a].square.value().total_cmp(&radii[b].square.value()));
         order

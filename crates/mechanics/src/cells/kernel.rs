@@ -1,28 +1,28 @@
-//! What is summed over the sources dg of a table: a kernel of their radius x and of r, whole clusters at once where
-//! they are far.
+//! What is summed over the sources dg of cells: a kernel of their radius x and of r, whole clusters at once where they
+//! are far.
 //!
 //! Of X = x^2 = c + h xi the angles T below r have the derivative -+h/(2 sqrt(X (r^2 - X))) by xi, which is singular at
 //! X = 0 and at r^2. An interval that is as far from both as it is wide counts as far: a polynomial through the
 //! derivative at twenty Gauss points misses it by 0.1716^20 = 5e-16 of itself and a small factor (Trefethen 2008). T is
 //! its value at the centre and the primitive of that polynomial, whose parts the moments of the sources weigh
-//! ([`Multipole`]). In a panel that is near, int T dg is T at the lower end times the rise, -+ int h dx/sqrt(r^2 -
-//! x^2), h = g at the upper end less g.
+//! ([`Multipole`]). In a cell that is near, int T dg is T at the lower end times the rise, -+ int h dx/sqrt(r^2 - x^2),
+//! h = g at the upper end less g.
 
 use std::ops::Range;
 use std::sync::LazyLock;
 
 #[cfg(test)]
-use super::super::call_count;
-use super::super::shape::{self, KernelOrder, Shape};
-use super::super::smooth_coordinate;
-use super::panel::KernelPanel;
-use super::{Profile, Span, StressRadius, near_kernel};
+use super::call_count;
+use super::cell::Cell;
+use super::ring::StressRadius;
+use super::span::Span;
+use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::gauss;
 use crate::numerics::multipole::{Multipole, ORDERS, add_polynomials};
 
 /// A kernel.
 #[derive(Clone, Copy, PartialEq)]
-pub(in super::super) enum Kernel {
+pub(crate) enum Kernel {
     /// 1/sqrt(x^2 - r^2), of x beyond r: that of the stress.
     Root,
     /// Its derivative with respect to r^2.
@@ -39,9 +39,9 @@ impl Kernel {
         matches!(self, Kernel::Arccos | Kernel::Arcsin)
     }
 
-    /// Whether panels have a share at the radii in a panel.
-    pub(super) fn meets(self, panels: &Range<usize>, panel: usize) -> bool {
-        if self.is_angle() { panels.start <= panel } else { panels.end > panel }
+    /// Whether cells have a share at the radii in a cell.
+    pub(super) fn meets(self, cells: &Range<usize>, cell: usize) -> bool {
+        if self.is_angle() { cells.start <= cell } else { cells.end > cell }
     }
 
     /// Whether sources are far from a radius of this square.
@@ -59,34 +59,35 @@ impl Kernel {
         }
     }
 
-    /// The sum over a part of a panel.
-    pub(super) fn near(self, panel: &KernelPanel, at: &StressRadius, span: &Span) -> f64 {
+    /// The sum over a part of a cell.
+    pub(super) fn near(self, cell: &Cell, at: &StressRadius, span: &Span) -> f64 {
         match self {
-            Kernel::Root => by_powers(panel, KernelOrder::Value, at, span),
+            Kernel::Root => cell.kernel::<false>(at, span),
             Kernel::RootSlope => {
                 #[cfg(test)]
                 call_count::add(|calls| &mut calls.kernel_slope);
-                by_powers(panel, KernelOrder::Slope, at, span)
+                cell.kernel::<true>(at, span)
             }
-            Kernel::Arccos | Kernel::Arcsin => self.angle_sum(at, span, || {
-                (smooth_coordinate::rise(panel, span), smooth_coordinate::displacement_integral(panel, at, span))
-            }),
+            Kernel::Arccos | Kernel::Arcsin => {
+                self.angle_sum(at, span, || (cell.rise(cell.part(span)), cell.displacement_integral(at, span)))
+            }
         }
     }
 
-    /// The sum over a part of any profile.
-    pub(in super::super) fn of_part(self, part: &Profile, at: &StressRadius, span: &Span) -> f64 {
+    /// The kernel of one place, whose square, m^2, and radius, m, are given; zero where it has no share.
+    pub(super) fn of_place(self, square: DoubleDouble, radius: f64, at: &StressRadius) -> f64 {
+        let beyond = (square - at.square).value();
         match self {
-            Kernel::Root => Shape::kernel(part, KernelOrder::Value, at, span),
-            Kernel::RootSlope => Shape::kernel(part, KernelOrder::Slope, at, span),
-            Kernel::Arccos | Kernel::Arcsin => {
-                self.angle_sum(at, span, || (part.rise(span), shape::displacement_integral(part, at, span)))
-            }
+            Kernel::Root | Kernel::RootSlope if beyond < 0.0 => 0.0,
+            Kernel::Root => beyond.sqrt().recip(),
+            Kernel::RootSlope => 0.5 / (beyond * beyond.sqrt()),
+            Kernel::Arccos | Kernel::Arcsin if beyond > 0.0 => 0.0,
+            Kernel::Arccos | Kernel::Arcsin => self.angle(radius, -beyond),
         }
     }
 
     /// int T dg over a span, by its rise and its displacement integral.
-    fn angle_sum(self, at: &StressRadius, span: &Span, integrals: impl FnOnce() -> (f64, f64)) -> f64 {
+    pub(crate) fn angle_sum(self, at: &StressRadius, span: &Span, integrals: impl FnOnce() -> (f64, f64)) -> f64 {
         let below = (at.square - span.inner).value();
         if below <= 0.0 {
             return 0.0;
@@ -120,11 +121,6 @@ impl Kernel {
         let at_centre = squares.map(|square| self.angle(centre.sqrt(), square - centre) * sources.moments[0]);
         std::array::from_fn(|lane| at_centre[lane] + self.sign() * 0.5 * half * sums[lane])
     }
-}
-
-/// The kernel of a part of a panel by the powers of its slope where these serve, else by a quadrature.
-fn by_powers(panel: &KernelPanel, order: KernelOrder, at: &StressRadius, span: &Span) -> f64 {
-    near_kernel::kernel(panel, order, at, span).unwrap_or_else(|| smooth_coordinate::kernel(panel, order, at, span))
 }
 
 /// Gauss's points, and what turns moments into the weights there of a derivative: of each point and order, the part of

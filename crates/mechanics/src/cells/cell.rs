@@ -1,0 +1,477 @@
+//! A stretch of x^2 above its own inner end b, in the coordinate zeta = sqrt(x^2 - b^2), with a power series
+//!
+//! gamma(zeta) = dg/dzeta = sum of a_j u^j, u = zeta/h, 0 <= zeta <= h.
+//!
+//! If b is a kink of g, all powers count: a_0 is a jump of f', a_1 one of f'', and so on. If it is only a point of the
+//! grid, g'/x is analytic in x^2 and only odd powers count. The coefficients come from a Chebyshev series over 0..h, or
+//! over the squares. T_j(2u - 1) has coefficients up to 5.83^j, and the series falls like rho^-j, rho the sum of the
+//! half-axes of the largest ellipse about the cell without a singularity, so that the magnitudes of the terms add up to
+//! little more than gamma itself.
+
+use std::sync::LazyLock;
+
+use super::ring::{Moments, StressRadius};
+use super::span::Span;
+use crate::numerics::chebyshev::TWENTY_FOUR;
+use crate::numerics::double_double::DoubleDouble;
+use crate::numerics::gauss::{EIGHT_POINTS, TWELVE_POINTS, TWENTY_POINTS};
+use crate::numerics::multipole::Multipole;
+use crate::numerics::root_kernel::{MOST_TERMS, Series, Stretch, kernels};
+use crate::numerics::roots::{distance_below, within};
+
+/// The most terms of a Chebyshev series.
+const POINTS: usize = 24;
+/// The least kappa = r^2 - b^2 over the square of the outer end for which the antiderivative serves: below it, a rule of
+/// twelve points is exact to rounding (rho = 6.9), and the antiderivative would cancel.
+const LEAST_KAPPA: f64 = -2.0;
+/// Two ends whose squares differ by more than this share of the outer one have a difference with all its digits.
+const APART: f64 = 0.2;
+/// The share of a cell's width up to which eight points integrate the square of a rise.
+const NARROW: f64 = 0.25;
+
+/// The coefficients of T_k(2u - 1) in powers of u, a row for each order.
+static SHIFTED: LazyLock<[[f64; POINTS]; POINTS]> = LazyLock::new(|| {
+    let mut rows = [[0.0; POINTS]; POINTS];
+    (rows[0][0], rows[1][0], rows[1][1]) = (1.0, -1.0, 2.0);
+    for order in 2..POINTS {
+        for power in 0..=order {
+            let below = if power > 0 { rows[order - 1][power - 1] } else { 0.0 };
+            rows[order][power] = 2.0 * (2.0 * below - rows[order - 1][power]) - rows[order - 2][power];
+        }
+    }
+    rows
+});
+
+/// What gamma is a series of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Powers {
+    /// gamma over this power of zeta, in zeta: above a kink.
+    All(usize),
+    /// gamma/zeta, in zeta^2: above a point of the grid.
+    Odd,
+}
+
+/// A cell.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Cell {
+    /// The kink beneath it, m; zero, the centre, if there is none.
+    pub(crate) kink: f64,
+    /// b^2, m^2, and b, m.
+    pub(crate) square: DoubleDouble,
+    pub(crate) radius: f64,
+    /// h, m, and how much the radius grows, m.
+    pub(crate) high: f64,
+    pub(crate) width: f64,
+    /// How much g grows, m.
+    pub(crate) depth: f64,
+    /// g, m, int x dg, m^2, and the kernel at the centre, int dg/x, at b.
+    pub(crate) level: DoubleDouble,
+    pub(crate) load: DoubleDouble,
+    pub(crate) centre: f64,
+    /// a_j, and a_j/(j + 1), of which only odd ones may count.
+    powers: Box<[f64]>,
+    integrals: Box<[f64]>,
+    odd: bool,
+    /// p in gamma ~ zeta^(p - 1) at b.
+    order: f64,
+}
+
+/// A part of a cell, between two values of zeta, m, with their difference.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Part {
+    pub(crate) low: f64,
+    pub(crate) high: f64,
+    pub(crate) drop: f64,
+}
+
+impl Cell {
+    /// The cell of width `high` above the square `square`, by a Chebyshev series over 0..h in zeta, or over its square.
+    pub(crate) fn new(kink: f64, square: DoubleDouble, high: f64, series: &[f64], kind: Powers) -> Cell {
+        let mut plain = [0.0; POINTS];
+        for (order, (a, row)) in series.iter().zip(SHIFTED.iter()).enumerate() {
+            for (sum, c) in plain.iter_mut().zip(&row[..=order]) {
+                *sum += a * c;
+            }
+        }
+        let (first, step) = match kind {
+            Powers::All(power) => (power, 1),
+            Powers::Odd => (1, 2),
+        };
+        let unit = (0..first).fold(1.0, |unit, _| unit * high);
+        let count = series.len().max(1);
+        let mut powers = vec![0.0; first + step * (count - 1) + 1];
+        for (index, c) in plain[..count].iter().enumerate() {
+            powers[first + step * index] = unit * c;
+        }
+        let integrals: Box<[f64]> = powers.iter().enumerate().map(|(j, a)| a / (j + 1) as f64).collect();
+        let radius = square.value().sqrt();
+        let end = (square + DoubleDouble::square_of(high)).value().sqrt();
+        let mut cell = Cell {
+            kink,
+            square,
+            radius,
+            high,
+            width: high * high / (radius + end),
+            depth: 0.0,
+            level: DoubleDouble::ZERO,
+            load: DoubleDouble::ZERO,
+            centre: 0.0,
+            powers: powers.into(),
+            integrals,
+            odd: kind == Powers::Odd,
+            order: (first + 1) as f64,
+        };
+        cell.depth = cell.rise(cell.whole());
+        cell
+    }
+
+    /// All of it.
+    pub(crate) fn whole(&self) -> Part {
+        Part { low: 0.0, high: self.high, drop: self.high }
+    }
+
+    /// The square of the radius where it ends, m^2.
+    pub(crate) fn end(&self) -> DoubleDouble {
+        self.square + DoubleDouble::square_of(self.high)
+    }
+
+    /// zeta, m, of a square of a radius, m^2.
+    pub(crate) fn zeta(&self, square: DoubleDouble) -> f64 {
+        (square - self.square).value().max(0.0).sqrt().min(self.high)
+    }
+
+    /// The part of it that a span is, which lies inside it.
+    pub(crate) fn part(&self, span: &Span) -> Part {
+        let (below, above) = span.excess(self.square);
+        let (low, high) = (below.max(0.0).sqrt(), above.max(0.0).sqrt());
+        let gap = if below >= 0.0 { span.gap } else { above.max(0.0) };
+        Part { low, high, drop: if gap > 0.0 { gap / (low + high) } else { 0.0 } }
+    }
+
+    /// x, m.
+    pub(crate) fn radius_at(&self, zeta: f64) -> f64 {
+        (self.square.value() + zeta * zeta).sqrt()
+    }
+
+    /// gamma at several places side by side.
+    pub(crate) fn gammas<const N: usize>(&self, zeta: [f64; N]) -> [f64; N] {
+        let u = zeta.map(|zeta| zeta / self.high);
+        let mut sums = [0.0; N];
+        if self.odd {
+            let squares = u.map(|u| u * u);
+            for a in self.powers.iter().skip(1).step_by(2).rev() {
+                for lane in 0..N {
+                    sums[lane] = sums[lane] * squares[lane] + a;
+                }
+            }
+            for lane in 0..N {
+                sums[lane] *= u[lane];
+            }
+        } else {
+            for a in self.powers.iter().rev() {
+                for lane in 0..N {
+                    sums[lane] = sums[lane] * u[lane] + a;
+                }
+            }
+        }
+        sums
+    }
+
+    /// gamma at zeta.
+    pub(crate) fn gamma(&self, zeta: f64) -> f64 {
+        let [gamma] = self.gammas([zeta]);
+        gamma
+    }
+
+    /// g'(x)/x at zeta: infinite where f' jumps.
+    pub(crate) fn slope_over_radius(&self, zeta: f64) -> f64 {
+        if zeta > 0.0 {
+            self.gamma(zeta) / zeta
+        } else if self.powers[0].abs() > 0.0 {
+            f64::INFINITY
+        } else {
+            self.powers.get(1).map_or(0.0, |a| a / self.high)
+        }
+    }
+
+    /// The rises of g, m, from several places up to `high`, each this far below it: divided differences, so that each is
+    /// good to round-off of itself.
+    fn rises<const N: usize>(&self, low: [f64; N], high: f64, drop: [f64; N]) -> [f64; N] {
+        let inverse = self.high.recip();
+        let top = high * inverse;
+        let (mut value, mut differences) = (0.0, [0.0; N]);
+        if self.odd {
+            let (square, squares) = (top * top, low.map(|low| (low * inverse) * (low * inverse)));
+            for a in self.integrals.iter().skip(1).step_by(2).rev() {
+                for lane in 0..N {
+                    differences[lane] = differences[lane] * squares[lane] + value;
+                }
+                value = value * square + a;
+            }
+            return std::array::from_fn(|lane| {
+                drop[lane] * (high + low[lane]) * inverse * (value + squares[lane] * differences[lane])
+            });
+        }
+        let places = low.map(|low| low * inverse);
+        for a in self.integrals.iter().rev() {
+            for lane in 0..N {
+                differences[lane] = differences[lane] * places[lane] + value;
+            }
+            value = value * top + a;
+        }
+        std::array::from_fn(|lane| drop[lane] * (value + places[lane] * differences[lane]))
+    }
+
+    /// The rise of g over a part, m.
+    pub(crate) fn rise(&self, part: Part) -> f64 {
+        let [rise] = self.rises([part.low], part.high, [part.drop]);
+        rise
+    }
+
+    /// The rise of g, m, from b up to zeta.
+    pub(crate) fn rise_to(&self, zeta: f64) -> f64 {
+        self.rise(Part { low: 0.0, high: zeta, drop: zeta })
+    }
+
+    /// zeta, m, where g has risen by this much, m, from b on.
+    pub(crate) fn zeta_of(&self, rise: f64) -> f64 {
+        let share = (rise / self.depth).min(1.0).powf(self.order.recip());
+        within([0.0, self.high], share * self.high, |zeta| (self.rise_to(zeta) - rise, self.gamma(zeta)))
+    }
+
+    /// The difference of the squares, m^2, between two places at these squares above b^2 that the rise `depth`, m,
+    /// separates.
+    pub(crate) fn gap(&self, low: f64, high: f64, depth: f64) -> f64 {
+        let (plain, top) = (high - low, high.sqrt());
+        if plain > APART * high {
+            return plain;
+        }
+        let steep = self.gamma(top);
+        if steep <= 0.0 {
+            return plain;
+        }
+        let start = if plain > 1e-10 * high { plain / (top + low.sqrt()) } else { (depth / steep).min(0.5 * top) };
+        let mut flat = false;
+        let drop = distance_below(start, top, depth, |drop| {
+            let low = (top - drop).max(0.0);
+            let steep = self.gamma(low);
+            flat |= steep <= 0.0;
+            (self.rise(Part { low, high: top, drop }), steep)
+        });
+        if flat { plain } else { drop * (top + top - drop) }
+    }
+
+    /// int dx, int h dx and int h^2 dx over a part that is `width` wide in the radius, m, h the rise up to its outer end.
+    pub(crate) fn moments(&self, part: Part, width: f64) -> Moments {
+        if part.drop <= NARROW * self.high {
+            self.moments_by(&EIGHT_POINTS, part, width)
+        } else {
+            self.moments_by(&TWELVE_POINTS, part, width)
+        }
+    }
+
+    fn moments_by<const N: usize>(&self, rule: &[(f64, f64); N], part: Part, width: f64) -> Moments {
+        let drop = rule.map(|(share, _)| part.drop * share);
+        let low = drop.map(|drop| (part.high - drop).max(0.0));
+        let rises = self.rises(low, part.high, drop);
+        let (mut first, mut second) = (0.0, 0.0);
+        for lane in 0..N {
+            let area = rule[lane].1 * rises[lane] * self.stretch(low[lane]);
+            first += area;
+            second += area * rises[lane];
+        }
+        Moments { width, first: part.drop * first, second: part.drop * second }
+    }
+
+    /// dx/dzeta.
+    fn stretch(&self, zeta: f64) -> f64 {
+        if self.radius > 0.0 { zeta / self.radius_at(zeta) } else { 1.0 }
+    }
+
+    /// int x dg, m^2, from b up to zeta, m.
+    pub(crate) fn load_to(&self, zeta: f64) -> f64 {
+        let places = TWELVE_POINTS.map(|(share, _)| zeta * share);
+        let gammas = self.gammas(places);
+        let term = |lane: usize| TWELVE_POINTS[lane].1 * gammas[lane] * self.radius_at(places[lane]);
+        zeta * (0..TWELVE_POINTS.len()).map(term).sum::<f64>()
+    }
+
+    /// zeta, m, where int x dg from b on is this much, m^2, of the `whole` of the cell.
+    pub(crate) fn zeta_of_load(&self, load: f64, whole: f64) -> f64 {
+        let order = if self.radius > 0.0 { self.order } else { self.order + 1.0 };
+        let share = (load / whole).min(1.0).powf(order.recip());
+        within([0.0, self.high], share * self.high, |zeta| {
+            (self.load_to(zeta) - load, self.radius_at(zeta) * self.gamma(zeta))
+        })
+    }
+
+    /// The series over a part, in units of its outer end.
+    pub(crate) fn scaled(&self, high: f64) -> ([f64; MOST_TERMS], usize) {
+        let (mut terms, ratio) = ([0.0; MOST_TERMS], high / self.high);
+        let mut unit = 1.0;
+        for (term, a) in terms.iter_mut().zip(&self.powers) {
+            *term = unit * a;
+            unit *= ratio;
+        }
+        (terms, self.powers.len())
+    }
+
+    /// int gamma dzeta/sqrt(zeta^2 - kappa) over what a span, which lies inside the cell, has beyond r, kappa = r^2 -
+    /// b^2; or its derivative with respect to r^2, 1/m^2, from the right.
+    pub(crate) fn kernel<const SLOPE: bool>(&self, at: &StressRadius, span: &Span) -> f64 {
+        let (below, above) = span.excess(at.square);
+        if above <= 0.0 {
+            return 0.0;
+        }
+        let part = self.part(span);
+        let (terms, count) = self.scaled(part.high);
+        let series = Series { terms: &terms[..count], odd: self.odd };
+        let near = NearPart { cell: self, part, series };
+        let [kernel] = near.kernels::<1, SLOPE>([(at.square - self.square).value()], [below], [above], span.gap);
+        kernel
+    }
+
+    /// Adds its sources dg over x^2 from one value of zeta to another to a multipole.
+    pub(crate) fn add_sources(&self, sources: &mut Multipole, part: Part, weight: f64) {
+        let places = TWENTY_POINTS.map(|(share, _)| part.high - part.drop * share);
+        let gammas = self.gammas(places);
+        let offset = self.square.value() - sources.interval.0;
+        sources.add_sources(
+            &places.map(|zeta| offset + zeta * zeta),
+            &std::array::from_fn(|lane| weight * part.drop * TWENTY_POINTS[lane].1 * gammas[lane]),
+        );
+    }
+
+    /// int h dx/sqrt(r^2 - x^2), m, over what a span, which lies inside the cell, has below r, h the rise up to its outer
+    /// end: over the angle whose sine is zeta/tau, tau^2 = r^2 - b^2.
+    pub(crate) fn displacement_integral(&self, at: &StressRadius, span: &Span) -> f64 {
+        let (inner, outer) = span.excess(at.square);
+        if inner >= 0.0 || span.gap <= 0.0 {
+            return 0.0;
+        }
+        let part = self.part(span);
+        let tau_square = (at.square - self.square).value();
+        let (w_low, w_top) = ((-inner).sqrt(), (-outer).max(0.0).sqrt());
+        let (top, missing, gap) = if outer > 0.0 {
+            let tau = tau_square.sqrt();
+            (tau, outer / (part.high + tau), -inner)
+        } else {
+            (part.high, 0.0, span.gap)
+        };
+        let angle = (gap * tau_square / (top * w_low + part.low * w_top)).atan2(w_low * w_top + part.low * top);
+        let drops = TWENTY_POINTS.map(|(share, _)| {
+            let turn = angle * share;
+            let half = (0.5 * turn).sin();
+            2.0 * top * half * half + w_top * turn.sin()
+        });
+        let places = drops.map(|drop| (top - drop).max(0.0));
+        let rises = self.rises(places, part.high, drops.map(|drop| missing + drop));
+        let term = |lane: usize| TWENTY_POINTS[lane].1 * rises[lane] * self.stretch(places[lane]);
+        angle * (0..TWENTY_POINTS.len()).map(term).sum::<f64>()
+    }
+
+    /// A bound, 1/m^2, of the slope of g'/x over zeta.
+    pub(crate) fn steepest(&self) -> f64 {
+        let terms = self.powers.iter().enumerate().skip(2);
+        terms.map(|(j, a)| (j - 1) as f64 * a.abs()).sum::<f64>() / (self.high * self.high)
+    }
+
+    /// Whether the terms of g'/x beyond the first cannot make it fall below zero.
+    pub(crate) fn surely_rises(&self) -> bool {
+        self.powers.get(1).is_some_and(|first| {
+            self.powers[0] >= 0.0
+                && self.powers[2..].iter().map(|a| if *a < 0.0 { -a } else { 0.0 }).sum::<f64>() < *first
+        })
+    }
+
+    /// Values of zeta, m, increasing, between which g'/x cannot hide a fall.
+    pub(crate) fn slope_check_places(&self) -> Vec<f64> {
+        let mut places = TWENTY_FOUR.places(0.0, self.high).to_vec();
+        places.extend([0.0, self.high]);
+        places.sort_by(f64::total_cmp);
+        places
+    }
+
+    /// Whether f' jumps at b.
+    pub(crate) fn jumps(&self) -> bool {
+        self.powers[0].abs() > 0.0
+    }
+
+    /// Whether the series takes only odd powers.
+    pub(crate) fn odd(&self) -> bool {
+        self.odd
+    }
+}
+
+/// A part of a cell whose kernels at several radii are asked for, with its series in units of its outer end.
+#[derive(Clone, Copy)]
+pub(crate) struct NearPart<'a> {
+    pub(crate) cell: &'a Cell,
+    pub(crate) part: Part,
+    pub(crate) series: Series<'a>,
+}
+
+impl NearPart<'_> {
+    /// The kernels at radii of these kappa, by how far the squares of the part's ends lie beyond theirs, m^2, and the
+    /// difference of the two.
+    pub(crate) fn kernels<const N: usize, const SLOPE: bool>(
+        &self,
+        kappa: [f64; N],
+        below: [f64; N],
+        above: [f64; N],
+        gap: f64,
+    ) -> [f64; N] {
+        let Part { low, high, .. } = self.part;
+        if kappa.iter().all(|&kappa| kappa < LEAST_KAPPA * high * high) {
+            return self.by_rule::<N, SLOPE>(kappa);
+        }
+        let unit = high.recip();
+        let share = unit * unit;
+        let mut stretch = Stretch {
+            kappa: kappa.map(|kappa| kappa * share),
+            low: [low * unit; N],
+            high: 1.0,
+            v_low: [0.0; N],
+            v_high: [0.0; N],
+            gap: [gap * share; N],
+        };
+        for lane in 0..N {
+            let above = if above[lane] > 0.0 { above[lane] } else { 0.0 };
+            stretch.v_high[lane] = above.sqrt() * unit;
+            if below[lane] > 0.0 {
+                stretch.v_low[lane] = below[lane].sqrt() * unit;
+            } else {
+                stretch.low[lane] = if kappa[lane] > 0.0 { kappa[lane].sqrt() * unit } else { 0.0 };
+                stretch.gap[lane] = above * share;
+            }
+        }
+        let (mut values, slopes) = kernels::<N, SLOPE>(self.series, &stretch);
+        if SLOPE {
+            values = slopes.map(|slope| slope * share);
+        }
+        if kappa.iter().any(|&kappa| kappa < LEAST_KAPPA * high * high) {
+            let far = self.by_rule::<N, SLOPE>(kappa);
+            for lane in 0..N {
+                if kappa[lane] < LEAST_KAPPA * high * high {
+                    values[lane] = far[lane];
+                }
+            }
+        }
+        values
+    }
+
+    fn by_rule<const N: usize, const SLOPE: bool>(&self, kappa: [f64; N]) -> [f64; N] {
+        let Part { high, drop, .. } = self.part;
+        let places = TWELVE_POINTS.map(|(share, _)| high - drop * share);
+        let gammas = self.cell.gammas(places);
+        let mut sums = [0.0; N];
+        for (index, (_, weight)) in TWELVE_POINTS.iter().enumerate() {
+            let (square, term) = (places[index] * places[index], weight * drop * gammas[index]);
+            for lane in 0..N {
+                let distance = square - kappa[lane];
+                sums[lane] += term / if SLOPE { 2.0 * distance * distance.sqrt() } else { distance.sqrt() };
+            }
+        }
+        sums
+    }
+}

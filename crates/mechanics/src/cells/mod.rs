@@ -1,0 +1,349 @@
+//! The engine under every profile: g as a sequence of [`Cell`]s, and every integral of it by one set of rules.
+//!
+//! A shape, a sum and a table differ in what gives gamma at the points of their cells ([`grid`]); from there on level,
+//! radius, load, moments, kernels and displacements follow here, by the cells up to some radius ([`Cells`]), built when
+//! a contact first reaches them ([`stages`]). Many rings at many radii go through a tree of multipoles ([`field`]).
+
+#[cfg(test)]
+pub(crate) mod call_count;
+mod cell;
+pub(crate) mod displacement;
+pub(crate) mod field;
+pub(crate) mod grid;
+pub(crate) mod kernel;
+mod lookup;
+pub(crate) mod moment_tree;
+pub(crate) mod ring;
+pub(crate) mod span;
+pub(crate) mod stages;
+
+use std::ops::Range;
+use std::sync::OnceLock;
+
+pub(crate) use cell::{Cell, NearPart, Powers};
+
+use crate::numerics::cluster_tree::{Cluster, ClusterTree};
+use crate::numerics::double_double::DoubleDouble;
+use crate::numerics::multipole::Multipole;
+use kernel::Kernel;
+use lookup::Lookup;
+use moment_tree::MomentTree;
+use ring::{Moments, Point, Ring, StressRadius};
+use span::Span;
+
+/// A bound of int dzeta/sqrt(zeta^2 - kappa) over any cell, for any radius that is further from its inner end than e^-36
+/// of the cell: it is ln(2 t/s), or less.
+const LOGARITHM: f64 = 40.0;
+/// Of a ring thinner than this share of its square, what lies inside a border of two cells is found from its depth.
+const THIN: f64 = 1e-3;
+
+/// A stretch within the cell of this index.
+pub(crate) type CellPart = (usize, Span);
+
+/// A span by the cells that it lies in.
+pub(crate) struct SpanParts {
+    /// What it has of its innermost cell, if that is not all.
+    pub(crate) low: Option<CellPart>,
+    /// The whole cells.
+    pub(crate) whole: Range<usize>,
+    /// What it has of its outermost cell.
+    pub(crate) high: Option<CellPart>,
+}
+
+/// Where cells end: square of the radius, m^2, radius, m, level, m, load, m^2, and the kernel at the centre.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Top {
+    pub(crate) square: DoubleDouble,
+    pub(crate) radius: f64,
+    pub(crate) level: DoubleDouble,
+    pub(crate) load: DoubleDouble,
+    centre: f64,
+}
+
+/// Cells from the centre, or from the end of a flat, outward, each of which begins where the one before it ends.
+#[derive(Debug)]
+pub(crate) struct Cells {
+    pub(crate) cells: Vec<Cell>,
+    by_radius: Lookup,
+    by_level: Lookup,
+    /// Moments and depth of all runs of cells.
+    tree: MomentTree,
+    /// The kernel's sources, made when a stress is first asked for.
+    sources: OnceLock<ClusterTree<Multipole>>,
+    /// Where g is not analytic, m.
+    kinks: Vec<f64>,
+    /// The sums of [`Cell::steepest`] before each cell, made when first asked for.
+    steepest: OnceLock<Vec<f64>>,
+    pub(crate) top: Top,
+}
+
+impl Cells {
+    /// By cells of which each ends at the square where the next begins. Levels and loads are counted from the first.
+    pub(crate) fn new(mut cells: Vec<Cell>) -> Cells {
+        let mut top = Top {
+            square: DoubleDouble::ZERO,
+            radius: 0.0,
+            level: DoubleDouble::ZERO,
+            load: DoubleDouble::ZERO,
+            centre: 0.0,
+        };
+        let mut totals = Vec::with_capacity(cells.len());
+        for cell in &mut cells {
+            (cell.level, cell.load, cell.centre) = (top.level, top.load, top.centre);
+            let moments = cell.moments(cell.whole(), cell.width);
+            totals.push((moments, cell.depth));
+            top.square = cell.end();
+            top.radius = top.square.value().sqrt();
+            top.level = top.level + DoubleDouble::from(cell.depth);
+            top.load = top.load + DoubleDouble::from(cell.radius * cell.depth + moments.first);
+            if top.centre < f64::INFINITY {
+                top.centre += cell.kernel::<false>(&StressRadius::new(0.0), &cell_span(cell, top.square, top.radius));
+            }
+        }
+        let mut kinks: Vec<f64> = cells.iter().map(|cell| cell.kink).filter(|&kink| kink > 0.0).collect();
+        kinks.dedup_by(|a, b| a.to_bits() == b.to_bits());
+        Cells {
+            by_radius: Lookup::new(cells.iter().map(|cell| cell.radius), top.radius),
+            by_level: Lookup::new(cells.iter().map(|cell| cell.level.value()), top.level.value()),
+            tree: MomentTree::new(totals.into_iter()),
+            sources: OnceLock::new(),
+            kinks,
+            steepest: OnceLock::new(),
+            top,
+            cells,
+        }
+    }
+
+    /// The kernel's sources g' dx over x^2.
+    pub(crate) fn sources(&self) -> &ClusterTree<Multipole> {
+        self.sources.get_or_init(|| {
+            ClusterTree::new(self.cells.len(), 1, |items, halves| {
+                let last = &self.cells[items.end - 1];
+                let end = self.cells.get(items.end).map_or(self.top.square, |next| next.square);
+                let mut sources = Multipole::empty((self.cells[items.start].square.value(), end.value()));
+                match halves {
+                    Some(halves) => halves.into_iter().for_each(|half: &Multipole| sources.add(half, 1.0)),
+                    None => last.add_sources(&mut sources, last.whole(), 1.0),
+                }
+                sources
+            })
+        })
+    }
+
+    /// Adds the sources of a span to those of its squares.
+    pub(crate) fn add_sources(&self, span: &Span, sources: &mut Multipole) {
+        let SpanParts { low, whole, high } = self.parts(span);
+        for (index, part) in low.into_iter().chain(high) {
+            let cell = &self.cells[index];
+            cell.add_sources(sources, cell.part(&part), 1.0);
+        }
+        let mut add = |cluster: &Cluster<Multipole>| {
+            sources.add(&cluster.sources, 1.0);
+            true
+        };
+        self.sources().visit(whole, &mut add, &mut |_| {});
+    }
+
+    /// g, m, at a radius, m.
+    pub(crate) fn level(&self, radius: f64) -> f64 {
+        if radius >= self.top.radius {
+            return self.top.level.value();
+        }
+        let cell = &self.cells[self.find(radius)];
+        (cell.level + DoubleDouble::from(cell.rise_to(cell.zeta(DoubleDouble::square_of(radius))))).value()
+    }
+
+    /// g' at a radius, m.
+    pub(crate) fn slope(&self, radius: f64) -> f64 {
+        let cell = &self.cells[self.find(radius)];
+        if radius < cell.radius {
+            return 0.0;
+        }
+        cell.slope_over_radius(cell.zeta(DoubleDouble::square_of(radius))) * radius
+    }
+
+    /// X(y)^2, m^2.
+    pub(crate) fn square(&self, level: DoubleDouble) -> DoubleDouble {
+        if level >= self.top.level {
+            return self.top.square;
+        }
+        let cell = &self.cells[self.by_level.holding(level.value())];
+        let rest = (level - cell.level).value();
+        if rest <= 0.0 {
+            return cell.square;
+        }
+        cell.square + DoubleDouble::square_of(cell.zeta_of(rest))
+    }
+
+    /// int x dg, m^2, up to a radius, m.
+    pub(crate) fn load(&self, radius: f64) -> f64 {
+        if radius >= self.top.radius {
+            return self.top.load.value();
+        }
+        let cell = &self.cells[self.find(radius)];
+        (cell.load + DoubleDouble::from(cell.load_to(cell.zeta(DoubleDouble::square_of(radius))))).value()
+    }
+
+    /// The level, m, up to which int X dy is this load, m^2.
+    pub(crate) fn indentation_for(&self, load: f64) -> f64 {
+        if load <= 0.0 {
+            return 0.0;
+        }
+        let Top { radius, level, load: most, .. } = self.top;
+        if load >= most.value() {
+            return level.value() + (load - most.value()) / radius;
+        }
+        let index = self.cells.partition_point(|cell| cell.load.value() <= load).saturating_sub(1);
+        let cell = &self.cells[index];
+        let whole = self.cells.get(index + 1).map_or(self.top.load, |next| next.load) - cell.load;
+        let rest = (DoubleDouble::from(load) - cell.load).value();
+        let zeta = cell.zeta_of_load(rest, whole.value());
+        (cell.level + DoubleDouble::from(cell.rise_to(zeta))).value()
+    }
+
+    /// The rise of g over a span, m.
+    pub(crate) fn rise(&self, span: &Span) -> f64 {
+        let SpanParts { low, whole, high } = self.parts(span);
+        let part = |(index, span): CellPart| {
+            let cell = &self.cells[index];
+            cell.rise(cell.part(&span))
+        };
+        let between = self.tree.run(whole.start, whole.end).1;
+        low.map_or(0.0, part) + high.map_or(0.0, part) + between
+    }
+
+    /// The difference of the squares, m^2, of the ends of a ring of this depth, m.
+    pub(crate) fn gap(&self, ring: &Ring, depth: f64) -> f64 {
+        let outer = if ring.outer.square > self.top.square {
+            Point { square: self.top.square, radius: self.top.radius, level: self.top.level }
+        } else {
+            ring.outer
+        };
+        let index = self.find(ring.inner.radius);
+        let cell = &self.cells[index];
+        let low = (ring.inner.square - cell.square).value().max(0.0);
+        if let Some(next) = self.cells.get(index + 1).filter(|next| next.square < outer.square) {
+            let plain = (outer.square - ring.inner.square).value();
+            if plain > THIN * outer.square.value() {
+                return plain;
+            }
+            // Each side from its own distance to the border, which a difference of squares may have lost.
+            let whole = cell.high * cell.high;
+            let inside = cell.gap(low, whole, (next.level - ring.inner.level).value().max(0.0));
+            return inside + (outer.square - next.square).value();
+        }
+        cell.gap(low, (outer.square - cell.square).value().max(0.0), depth)
+    }
+
+    /// The largest kink below a radius, m; zero if there is none.
+    pub(crate) fn kink_below(&self, radius: f64) -> f64 {
+        let above = self.kinks.partition_point(|&kink| kink < radius);
+        above.checked_sub(1).map_or(0.0, |index| self.kinks[index])
+    }
+
+    /// The moments over a span.
+    pub(crate) fn moments(&self, span: &Span) -> Moments {
+        let SpanParts { low, whole, high } = self.parts(span);
+        let part = |(index, span): CellPart| {
+            let cell = &self.cells[index];
+            let part = cell.part(&span);
+            (cell.moments(part, span.width()), cell.rise(part))
+        };
+        if whole.is_empty() && low.is_none() {
+            return high.map(part).unwrap_or_default().0;
+        }
+        self.tree.across(whole, low.map(part).unwrap_or_default().0, high.map(part).unwrap_or_default())
+    }
+
+    /// A lower bound, 1/m, of -2 v dK/d(r^2), K the kernel up to `outer`, m, from r = `inner`, m, on.
+    pub(crate) fn least_fall(&self, inner: f64, outer: f64) -> f64 {
+        // 2 v int q' dt is v int (dq/dzeta) dzeta/sqrt(zeta^2 - kappa), summed over the cells.
+        let (first, last) = (self.find(inner), self.find(outer));
+        if self.cells[first..=last].iter().any(Cell::jumps) {
+            return f64::NEG_INFINITY;
+        }
+        let sums = self.steepest.get_or_init(|| {
+            let next = |sum: &mut f64, cell: &Cell| Some(std::mem::replace(sum, *sum + cell.steepest()));
+            self.cells.iter().scan(0.0, next).collect()
+        });
+        let steepest = sums[last] + self.cells[last].steepest() - sums[first];
+        self.slope(outer) / outer - ((outer - inner) * (outer + inner)).sqrt() * LOGARITHM * steepest
+    }
+
+    /// The cell that holds a radius, m.
+    pub(crate) fn find(&self, radius: f64) -> usize {
+        self.by_radius.holding(radius)
+    }
+
+    /// The parts of a span; none of what lies in a flat core.
+    pub(crate) fn parts(&self, span: &Span) -> SpanParts {
+        let first = &self.cells[0];
+        let Some(span) = &span.above(first.square, first.radius) else {
+            return SpanParts { low: None, whole: 0..0, high: None };
+        };
+        let outer = self.by_radius.ending_at(span.outer_radius);
+        let inner = self.find(span.inner_radius).min(outer);
+        if inner == outer {
+            return SpanParts { low: None, whole: outer..outer, high: Some((outer, *span)) };
+        }
+        let (this, next) = (&self.cells[inner], &self.cells[inner + 1]);
+        let whole = span.inner <= this.square;
+        let low = if whole { None } else { span.below(next.square, next.radius).map(|span| (inner, span)) };
+        let top = &self.cells[outer];
+        let high = span.above(top.square, top.radius).map(|span| (outer, span));
+        SpanParts { low, whole: if whole { inner } else { inner + 1 }..outer, high }
+    }
+
+    /// A cell as a span, up to the very square where the next one begins.
+    pub(crate) fn span_of_cell(&self, index: usize) -> Span {
+        let (square, radius) =
+            self.cells.get(index + 1).map_or((self.top.square, self.top.radius), |next| (next.square, next.radius));
+        cell_span(&self.cells[index], square, radius)
+    }
+
+    /// The sum of a kernel of what lies beyond r over a span.
+    pub(crate) fn sum(&self, kernel: Kernel, at: &StressRadius, span: &Span) -> f64 {
+        let Some(span) = span.above(at.square, at.radius) else { return 0.0 };
+        let SpanParts { low, whole, high } = self.parts(&span);
+        let part = |(index, span): CellPart| kernel.near(&self.cells[index], at, &span);
+        let between = if kernel == Kernel::Root && at.radius <= 0.0 && whole.start == 0 {
+            self.cells.get(whole.end).map_or(self.top.centre, |cell| cell.centre)
+        } else if whole.is_empty() {
+            0.0
+        } else {
+            let (square, mut far, mut near) = (at.square.value(), 0.0, 0.0);
+            self.sources().visit(
+                whole,
+                &mut |cluster| {
+                    let is_far = kernel.is_far(&cluster.sources, square);
+                    if is_far {
+                        far += kernel.far(&cluster.sources, [square])[0];
+                    }
+                    is_far
+                },
+                &mut |cells| near += cells.map(|index| part((index, self.span_of_cell(index)))).sum::<f64>(),
+            );
+            near + far
+        };
+        low.into_iter().chain(high).map(part).sum::<f64>() + between
+    }
+
+    /// int (h + what lies above) dx/sqrt(r^2 - x^2), m, over what a span has below r, h the rise up to its outer end.
+    pub(crate) fn displacement_integral(&self, at: &StressRadius, span: &Span) -> f64 {
+        let SpanParts { low, whole, high } = self.parts(span);
+        let whole = whole.rev().map(|index| (index, self.span_of_cell(index)));
+        let (mut sum, mut above) = (0.0, 0.0);
+        for (index, part) in high.into_iter().chain(whole).chain(low) {
+            let cell = &self.cells[index];
+            sum += cell.displacement_integral(at, &part) + above * part.arc(at);
+            above += cell.rise(cell.part(&part));
+        }
+        sum
+    }
+}
+
+/// A cell as a span that ends at this square.
+fn cell_span(cell: &Cell, outer: DoubleDouble, outer_radius: f64) -> Span {
+    let gap = (outer - cell.square).value();
+    Span { inner: cell.square, outer, inner_radius: cell.radius, outer_radius, gap, edge: 0.0 }
+}
