@@ -51,6 +51,17 @@ pub(crate) enum Powers {
     Odd,
 }
 
+impl Powers {
+    /// Those of the sum of two functions.
+    pub(crate) fn and(self, other: Powers) -> Powers {
+        match (self, other) {
+            (Powers::Odd, Powers::Odd) => Powers::Odd,
+            (Powers::Odd, Powers::All(power)) | (Powers::All(power), Powers::Odd) => Powers::All(power.min(1)),
+            (Powers::All(one), Powers::All(other)) => Powers::All(one.min(other)),
+        }
+    }
+}
+
 /// A cell.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Cell {

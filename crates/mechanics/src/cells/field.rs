@@ -9,7 +9,7 @@
 //! at each cluster three runs part. Those from which it is far take its moments, side by side; those beyond it are
 //! done; the others go on to its halves.
 
-use std::ops::Range;
+use std::ops::{Deref, Range};
 
 #[cfg(test)]
 use super::call_count;
@@ -34,9 +34,26 @@ const FEW_CELLS: usize = 2;
 /// A stretch within the cell of this index, and its weight.
 type Part = (usize, Span, f64);
 
+/// Cells that a profile keeps, or that were made for one sum.
+pub(crate) enum Source<'a> {
+    Kept(&'a Cells),
+    Own(Box<Cells>),
+}
+
+impl Deref for Source<'_> {
+    type Target = Cells;
+
+    fn deref(&self) -> &Cells {
+        match self {
+            Source::Kept(cells) => cells,
+            Source::Own(cells) => cells,
+        }
+    }
+}
+
 /// Cells by their weights.
 pub(crate) struct WeightedCells<'a> {
-    cells: &'a Cells,
+    cells: Source<'a>,
     /// Runs of cells that lie in one ring, and its weight, from the centre outward.
     runs: Vec<(Range<usize>, f64)>,
     /// The parts of cells that rings cut, by their cells.
@@ -67,7 +84,7 @@ pub(crate) type SumAndSize = (f64, f64);
 
 impl WeightedCells<'_> {
     /// The cells of spans from the centre outward, each with its weight, for sums at so many radii.
-    pub(crate) fn new<'a>(cells: &'a Cells, spans: &[(Span, f64)], radii: usize) -> WeightedCells<'a> {
+    pub(crate) fn new<'a>(cells: Source<'a>, spans: &[(Span, f64)], radii: usize) -> WeightedCells<'a> {
         let (mut runs, mut parts) = (Vec::with_capacity(spans.len()), Vec::with_capacity(2 * spans.len()));
         let mut rim: Option<Rim> = None;
         for (span, weight) in spans {
@@ -88,10 +105,15 @@ impl WeightedCells<'_> {
             parts.extend(high.map(|(index, span)| (index, span, *weight)));
         }
         let mut weighted = WeightedCells { cells, runs, parts, own: Vec::new(), rim };
-        if let Some(root) = cells.sources().root() {
+        if let Some(root) = weighted.cells.sources().root() {
             weighted.gather(root, radii >= MANY);
         }
         weighted
+    }
+
+    /// How many parts of cells rings cut.
+    pub(crate) fn parts(&self) -> usize {
+        self.parts.len()
     }
 
     /// The weight of each of these cells, if they have one; zero outside the rings.
@@ -122,12 +144,14 @@ impl WeightedCells<'_> {
             return;
         }
         let is_small = cluster.items.len() <= FEW_CELLS;
+        // Wider than it is far from the centre, it is far from no radius, and neither is a cluster that holds it.
+        let wanted = (all || is_small) && cluster.sources.is_far(0.0);
+        let interval = cluster.sources.interval;
         if let Some(halves) = cluster.halves.filter(|_| !is_small) {
             halves.into_iter().for_each(|half| self.gather(half, all));
         }
-        // Wider than it is far from the centre, it is far from no radius, and neither is a cluster that holds it.
-        if (all || is_small) && cluster.sources.is_far(0.0) {
-            let mut sources = Multipole::empty(cluster.sources.interval);
+        if wanted {
+            let mut sources = Multipole::empty(interval);
             self.add_cluster(number, &mut sources);
             self.own.push((number, sources));
         }

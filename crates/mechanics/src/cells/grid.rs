@@ -35,6 +35,22 @@ pub(crate) struct Kink {
     pub(crate) powers: Powers,
 }
 
+/// The kinks of several profiles added up. A kink within another profile keeps the least power of the two.
+pub(crate) fn united(parts: impl Iterator<Item = Vec<Kink>>) -> Vec<Kink> {
+    let mut kinks: Vec<Kink> = parts.flatten().collect();
+    kinks.sort_by(|a, b| a.radius.total_cmp(&b.radius));
+    let mut united: Vec<Kink> = Vec::with_capacity(kinks.len());
+    for kink in kinks {
+        match united.last_mut() {
+            Some(last) if last.radius.to_bits() == kink.radius.to_bits() => last.powers = last.powers.and(kink.powers),
+            // What lies beneath goes on as an odd function of zeta.
+            Some(_) => united.push(Kink { powers: Powers::All(1).and(kink.powers), ..kink }),
+            None => united.push(kink),
+        }
+    }
+    united
+}
+
 /// gamma at several t, m, above `base`, m, of what begins at the kink `own`, m, by its gamma above that: zero below it.
 pub(crate) fn above<const N: usize>(
     own: f64,
@@ -69,33 +85,41 @@ pub(crate) trait Grid {
     fn gammas<const N: usize>(&self, base: f64, t: [f64; N]) -> [f64; N];
 }
 
-/// The first `count` cells of a profile, or fewer where they come to its end at the radius `end`, m.
-pub(crate) fn cells(grid: &impl Grid, end: f64, count: usize) -> Cells {
+/// The first `count` cells of a profile from the radius `start`, m, outward, or fewer where they come to its end, whose
+/// square, m^2, is given.
+pub(crate) fn cells(grid: &impl Grid, start: f64, end: DoubleDouble, count: usize) -> Cells {
     let kinks = grid.kinks();
-    let mut cells: Vec<Cell> = Vec::new();
-    let last = DoubleDouble::square_of(end);
+    let ceiling = grid.ceiling();
+    let room = |square: DoubleDouble| {
+        let distance = (DoubleDouble::square_of(ceiling) - square).value();
+        if ceiling < f64::INFINITY { BELOW_CEILING * distance } else { f64::INFINITY }
+    };
+    let (mut cells, start): (Vec<Cell>, _) = (Vec::new(), DoubleDouble::square_of(start));
     for (index, kink) in kinks.iter().enumerate() {
         let base = DoubleDouble::square_of(kink.radius);
-        let top = kinks.get(index + 1).map_or(last, |next| DoubleDouble::square_of(next.radius));
+        let next = kinks.get(index + 1).map(|next| DoubleDouble::square_of(next.radius));
+        let top = next.filter(|next| *next < end).unwrap_or(end);
+        if top <= base || top <= start {
+            continue;
+        }
         let whole = (top - base).value();
-        let ceiling = grid.ceiling();
-        let room = |square: DoubleDouble| BELOW_CEILING * (DoubleDouble::square_of(ceiling) - square).value();
-        let room = |square: DoubleDouble| if ceiling < f64::INFINITY { room(square) } else { f64::INFINITY };
-        let singular = if let Some(below) = index.checked_sub(1) {
-            (base - DoubleDouble::square_of(kinks[below].radius)).value()
-        } else if kink.radius > 0.0 {
-            base.value()
-        } else {
-            f64::INFINITY
-        };
         let fits = |width: f64| if whole - width > NARROWEST * top.value() { width } else { whole };
-        let widest = if whole <= WIDEST * WIDEST * singular { whole } else { fits(KINK * KINK * singular) };
-        let mut reached = widest.min(room(base));
-        cells.push(first_cell(grid, kink, base, reached.sqrt()));
+        let mut reached = (start - base).value();
+        if reached <= 0.0 {
+            let singular = if let Some(below) = index.checked_sub(1) {
+                (base - DoubleDouble::square_of(kinks[below].radius)).value()
+            } else if kink.radius > 0.0 {
+                base.value()
+            } else {
+                f64::INFINITY
+            };
+            let widest = if whole <= WIDEST * WIDEST * singular { whole } else { fits(KINK * KINK * singular) };
+            reached = widest.min(fits(room(base)));
+            cells.push(first_cell(grid, kink, base, reached.sqrt()));
+        }
         while whole - reached > 0.0 && cells.len() < count {
             let square = base + DoubleDouble::from(reached);
-            let width = (GROWTH * reached).min(room(square));
-            let next = fits(reached + width);
+            let next = fits(reached + (GROWTH * reached).min(room(square)));
             cells.push(smooth_cell(grid, kink.radius, square, (reached, next - reached)));
             reached = next;
         }
@@ -103,7 +127,6 @@ pub(crate) fn cells(grid: &impl Grid, end: f64, count: usize) -> Cells {
             break;
         }
     }
-    cells.truncate(count);
     Cells::new(cells)
 }
 

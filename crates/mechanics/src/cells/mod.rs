@@ -71,7 +71,7 @@ pub(crate) struct Cells {
     /// The kernel's sources, made when a stress is first asked for.
     sources: OnceLock<ClusterTree<Multipole>>,
     /// Where g is not analytic, m.
-    kinks: Vec<f64>,
+    pub(crate) kinks: Vec<f64>,
     /// The sums of [`Cell::steepest`] before each cell, made when first asked for.
     steepest: OnceLock<Vec<f64>>,
     pub(crate) top: Top,
@@ -160,6 +160,17 @@ impl Cells {
             return 0.0;
         }
         cell.slope_over_radius(cell.zeta(DoubleDouble::square_of(radius))) * radius
+    }
+
+    /// gamma at several t = sqrt(x^2 - base^2), m, side by side.
+    pub(crate) fn slopes<const N: usize>(&self, base: f64, t: [f64; N]) -> [f64; N] {
+        let square = DoubleDouble::square_of(base);
+        t.map(|t| {
+            let above = DoubleDouble::square_of(t);
+            let cell = &self.cells[self.find((square + above).value().sqrt())];
+            let zeta_square = ((square - cell.square) + above).value();
+            if zeta_square > 0.0 { cell.slope_over_radius(zeta_square.sqrt().min(cell.high)) * t } else { 0.0 }
+        })
     }
 
     /// X(y)^2, m^2.
@@ -277,8 +288,8 @@ impl Cells {
 
     /// The parts of a span; none of what lies in a flat core.
     pub(crate) fn parts(&self, span: &Span) -> SpanParts {
-        let first = &self.cells[0];
-        let Some(span) = &span.above(first.square, first.radius) else {
+        let beyond_flat = |first: &Cell| span.above(first.square, first.radius);
+        let Some(span) = &self.cells.first().and_then(beyond_flat) else {
             return SpanParts { low: None, whole: 0..0, high: None };
         };
         let outer = self.by_radius.ending_at(span.outer_radius);

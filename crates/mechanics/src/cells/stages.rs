@@ -8,9 +8,9 @@ use std::sync::{Arc, OnceLock};
 
 use super::Cells;
 
-/// How many stages there are, and the cells in the first, twice as many as which each further one has: they reach 1e38
-/// times the first radius.
-const STAGES: usize = 7;
+/// How many stages there are, and the cells in the first, twice as many as which each further one has. The last one has
+/// all.
+const STAGES: usize = 8;
 const FIRST: usize = 8;
 /// How much of a level or a load may be rounding.
 const ROUNDING: f64 = 1e-9;
@@ -37,7 +37,7 @@ impl Stages {
         Stages((0..STAGES).map(|_| OnceLock::new()).collect())
     }
 
-    /// The first stage of which something holds, else the last; `build` makes so many cells.
+    /// The first stage of which something holds, else the last; `build` makes at most so many cells.
     fn first(&self, build: impl Fn(usize) -> Cells, holds: impl Fn(&Cells) -> bool) -> &Cells {
         let last = self.0.len() - 1;
         for (index, stage) in self.0[..last].iter().enumerate() {
@@ -46,7 +46,7 @@ impl Stages {
                 return cells;
             }
         }
-        self.0[last].get_or_init(|| build(FIRST << last))
+        self.0[last].get_or_init(|| build(usize::MAX))
     }
 
     /// Cells that reach beyond a radius, m; all of them if none does.

@@ -5,7 +5,8 @@
 use std::f64::consts::FRAC_PI_2;
 
 use super::shape::{KernelOrder, Shape, ShapeFacts};
-use super::{DoubleDouble, Error, Moments, Ring, Span, StressRadius, range, slope_series};
+use super::{DoubleDouble, Error, Kink, Moments, Ring, Span, StressRadius, range, slope_series};
+use crate::cells::Powers;
 
 /// A cone.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -88,6 +89,10 @@ impl Shape for Cone {
             if inner > 0.0 { (span.inner_radius, inner.sqrt(), span.gap) } else { (at.radius, 0.0, outer) };
         let step = gap / (low + span.outer_radius) + gap / (v_low + outer.sqrt());
         self.rise * (step / (low + v_low)).ln_1p()
+    }
+
+    fn kinks(&self) -> Vec<Kink> {
+        vec![Kink { radius: 0.0, powers: Powers::All(0) }]
     }
 
     fn surface_slope(&self, _r: f64) -> f64 {

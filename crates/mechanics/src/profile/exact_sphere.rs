@@ -9,7 +9,8 @@
 use super::shallow_sphere::{self, LIMIT};
 use super::shape::{End, Falls, KernelOrder, Shape, ShapeFacts};
 use super::smooth_path::{self, SmoothTip};
-use super::{DoubleDouble, Error, Moments, Ring, Span, StressRadius, range, slope_series};
+use super::{DoubleDouble, Error, Kink, Moments, Ring, Span, StressRadius, range, slope_series};
+use crate::cells::Powers;
 use crate::numerics::gauss::{Singular, along_strip};
 use crate::numerics::roots::{distance_below, increasing};
 
@@ -279,6 +280,10 @@ impl Shape for ExactSphere {
             angle / s.cosh()
         });
         stretch * length + curved
+    }
+
+    fn kinks(&self) -> Vec<Kink> {
+        vec![Kink { radius: 0.0, powers: Powers::Odd }]
     }
 
     fn falls(&self, inner: f64, outer: f64) -> Falls {

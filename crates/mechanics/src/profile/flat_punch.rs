@@ -47,7 +47,7 @@ impl Shape for FlatPunch {
     }
 
     fn facts(&self) -> ShapeFacts {
-        ShapeFacts { rim: Some(self.radius), ..ShapeFacts::default() }
+        ShapeFacts { rim: Some(self.radius), by_series: false, ..ShapeFacts::default() }
     }
 
     fn moments(&self, _span: &Span, _top: f64) -> Moments {

@@ -7,7 +7,8 @@
 
 use super::shape::{Falls, KernelOrder, Shape, ShapeFacts};
 use super::smooth_path::{self, SmoothTip};
-use super::{DoubleDouble, Error, Moments, Ring, Span, StressRadius, range, slope_series};
+use super::{DoubleDouble, Error, Kink, Moments, Ring, Span, StressRadius, range, slope_series};
+use crate::cells::Powers;
 use crate::numerics::gauss::{EIGHT_POINTS, Singular, first_and_second};
 use crate::numerics::logarithm::{exp_m1, ln_1p};
 
@@ -355,6 +356,12 @@ impl Shape for PowerLaw {
         let limit = DoubleDouble::square_of(far);
         let near = span.below(limit, far).map_or(0.0, |span| smooth_path::kernel(self, order, at, &span));
         near + span.above(limit, far).map_or(0.0, |span| self.far(&span))
+    }
+
+    fn kinks(&self) -> Vec<Kink> {
+        // Of an uneven power no cell begins at the tip.
+        let powers = if self.facts().smooth_tip { Powers::Odd } else { Powers::All(0) };
+        vec![Kink { radius: 0.0, powers }]
     }
 
     fn surface_slope(&self, r: f64) -> f64 {

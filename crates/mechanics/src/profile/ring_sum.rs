@@ -3,29 +3,32 @@
 //! | way | of |
 //! |---|---|
 //! | [`SeriesRings`] | g' is a short power series in x |
-//! | [`SmoothPieces`] | short series resolve g between few kinks |
-//! | [`WeightedCells`], [`SumFields`] | tables, and sums with them |
-//! | ring by ring | few of either, and what has no series |
+//! | [`WeightedCells`] | all that has cells, kept with the profile or made for one sum |
+//! | ring by ring | few of either, the tip of an uneven power, and what has no series |
 //!
 //! The bench `shapes` has a row for each.
 
-use super::shape::span;
+use super::celled;
+use super::shape::{CLEAR, Shape, span};
 use super::slope_series::SeriesRings;
-use super::smooth_pieces::SmoothPieces;
-use super::sum::SumFields;
-use super::tabulated;
-use super::{Profile, Ring, Span, StressRadius};
+use super::{Point, Profile, Ring, Span, StressRadius};
+#[cfg(test)]
+use crate::cells::call_count;
 use crate::cells::displacement::displacements;
-use crate::cells::field::{SumAndSize, WeightedCells};
+use crate::cells::field::{Source, SumAndSize, WeightedCells};
 use crate::cells::kernel::Kernel;
 use crate::numerics::multipole::Multipole;
 
-/// What the derivative of a table's kernels counts for, in terms of a sum over rings.
-const PANEL_TERMS: usize = 8;
-/// As many kernels, rings times radii, are summed sooner than pieces are made of the rings.
-const FEW_FOR_PIECES: usize = 40;
+/// What the derivative of a cell's kernels counts for, in terms of a sum over rings.
+const CELL_TERMS: usize = 8;
+/// Terms of derivatives before the next question whether to go on.
+const BETWEEN_QUESTIONS: usize = 4096;
+/// As many kernels, rings times radii, are summed sooner than cells are weighted for all of them.
+const FEW: usize = 40;
 /// Few extrema are as near to the centre as this part of the radius of the core.
 const CORE: f64 = 0.1;
+/// The smallest radius, over that of the edge, that cells reach down to at a tip that is not smooth.
+const INNERMOST: f64 = 1e-3;
 /// Rings are summed by themselves from afar too, if the squares of their ends differ by less than this share.
 const THIN: f64 = 1e-3;
 
@@ -62,19 +65,27 @@ impl Profile {
         ends: (f64, f64),
         radii: &[StressRadius],
     ) -> Option<Vec<f64>> {
-        let fields = self.table_fields(rings, radii.len())?;
         let edge = &rings.last()?.0.outer;
-        Some(displacements(edge, ends, radii, |angle, radii| fields.sums(angle, radii)))
+        let cells =
+            WeightedCells::new(Source::Kept(Shape::celled(self, edge.radius)?), &self.spans(rings), radii.len());
+        #[cfg(test)]
+        radii.iter().for_each(|_| call_count::add(|calls| &mut calls.displacement_integral));
+        Some(displacements(edge, ends, radii, |angle, radii| cells.sums(angle, radii)))
     }
 
-    /// What tables add to stresses and displacements over weighted rings, for sums at so many radii; `None` without a
-    /// table.
-    fn table_fields(&self, rings: &[(Ring, f64)], radii: usize) -> Option<TableFields<'_>> {
-        match self {
-            Profile::Tabulated(table) => table.weighted_cells(rings, radii).map(TableFields::Cells),
-            Profile::Sum(sum) => SumFields::new(sum, rings, radii).map(TableFields::Parts),
-            _ => None,
+    /// The spans of weighted rings.
+    fn spans(&self, rings: &[(Ring, f64)]) -> Vec<(Span, f64)> {
+        rings.iter().map(|(ring, weight)| (span(self, ring), *weight)).collect()
+    }
+
+    /// The cells up to an edge, best for radii of at least `least`, m, and the radius, m, that they reach down to.
+    fn cells_within(&self, edge: &Point, least: f64) -> Option<(Source<'_>, f64)> {
+        if let Some(cells) = Shape::celled(self, edge.radius) {
+            return Some((Source::Kept(cells), 0.0));
         }
+        let innermost = if self.facts().smooth_tip { 0.0 } else { (CLEAR * least).max(INNERMOST * edge.radius) };
+        let cells = celled::between(self, innermost, (edge.square, edge.radius))?;
+        Some((Source::Own(Box::new(cells)), innermost))
     }
 
     /// The coefficients of g'(a xi) = sum of c_k xi^k, `a` being a radius, m, none of them negative; `None` where that
@@ -96,77 +107,67 @@ impl Profile {
     }
 }
 
-/// Tables over weighted rings.
-enum TableFields<'a> {
-    Cells(WeightedCells<'a>),
-    Parts(SumFields<'a>),
-}
-
-impl TableFields<'_> {
-    fn sums(&self, kernel: Kernel, radii: &[StressRadius]) -> Vec<SumAndSize> {
-        match self {
-            TableFields::Cells(cells) => cells.sums(kernel, radii),
-            TableFields::Parts(parts) => parts.sums(kernel, radii),
-        }
-    }
-}
-
 /// A weighted sum of kernels.
-pub(crate) struct RingSum<'a>(Way<'a>);
-
-enum Way<'a> {
-    Pieces(SmoothPieces<'a, Profile>),
-    Tables(TableFields<'a>),
+pub(crate) struct RingSum<'a> {
+    profile: &'a Profile,
     /// From the centre outward.
-    Rings(&'a Profile, Vec<(Ring, f64)>),
+    rings: Vec<(Ring, f64)>,
+    /// Cells for radii from this one on, m.
+    cells: Option<(WeightedCells<'a>, f64)>,
 }
 
 impl<'a> RingSum<'a> {
     /// Of rings from the centre outward, for so many radii, the best for those of at least `least`, m.
     fn new(profile: &'a Profile, rings: &[(Ring, f64)], radii: usize, least: f64) -> RingSum<'a> {
-        let kernels = radii.saturating_mul(rings.len());
-        let pieces = (kernels > FEW_FOR_PIECES).then(|| SmoothPieces::new(profile, rings, least));
-        if let Some(pieces) = pieces.flatten() {
-            return RingSum(Way::Pieces(pieces));
-        }
-        let fields = (kernels > tabulated::FEW).then(|| profile.table_fields(rings, radii));
-        RingSum(fields.flatten().map_or_else(|| Way::Rings(profile, rings.to_vec()), Way::Tables))
+        let many = radii.saturating_mul(rings.len()) > FEW;
+        let edge = rings.last().filter(|_| many).map(|(ring, _)| ring.outer);
+        let cells = edge.and_then(|edge| profile.cells_within(&edge, least));
+        let weighted = |cells| WeightedCells::new(cells, &profile.spans(rings), radii);
+        let cells = cells.map(|(cells, innermost)| (weighted(cells), innermost));
+        RingSum { profile, rings: rings.to_vec(), cells }
     }
 
     /// The sum at each radius.
     pub(crate) fn sums(&self, radii: &[StressRadius]) -> Vec<f64> {
-        match &self.0 {
-            Way::Pieces(pieces) => pieces.sums(radii),
-            Way::Tables(fields) => fields.sums(Kernel::Root, radii).into_iter().map(|(sum, _)| sum).collect(),
-            Way::Rings(profile, rings) => {
-                let kernel = |at, (ring, weight): &(Ring, f64)| weight * profile.kernel(at, ring);
-                radii.iter().map(|at| beyond(rings, at).map(|ring| kernel(at, ring)).sum()).collect()
-            }
+        let mut sums: Vec<f64> = match &self.cells {
+            Some((cells, _)) => cells.sums(Kernel::Root, radii).into_iter().map(|(sum, _)| sum).collect(),
+            None => vec![0.0; radii.len()],
+        };
+        let kernel = |at, (ring, weight): &(Ring, f64)| weight * self.profile.kernel(at, ring);
+        for (at, sum) in radii.iter().zip(&mut sums).filter(|(at, _)| self.is_ring_by_ring(at)) {
+            *sum = beyond(&self.rings, at).map(|ring| kernel(at, ring)).sum();
         }
+        sums
     }
 
     /// Its derivative with respect to r^2, 1/m^2, at each radius, with the sum of the sizes of what it adds up from.
     /// `goes_on` is called with how many terms follow; once it is false, derivatives are zero.
     pub(crate) fn slopes(&self, radii: &[StressRadius], goes_on: impl Fn(usize) -> bool) -> Vec<SumAndSize> {
-        match &self.0 {
-            Way::Pieces(pieces) => pieces.slopes(radii, goes_on),
-            Way::Tables(_) if !goes_on(PANEL_TERMS * radii.len()) => vec![(0.0, 0.0); radii.len()],
-            Way::Tables(fields) => fields.sums(Kernel::RootSlope, radii),
-            Way::Rings(profile, rings) => {
-                let add = |at, sum: SumAndSize, (ring, weight): &(Ring, f64)| {
-                    let term = weight * profile.kernel_slope(at, ring);
-                    (sum.0 + term, sum.1 + term.abs())
-                };
-                let of = |at| {
-                    if goes_on(rings.len()) {
-                        beyond(rings, at).fold((0.0, 0.0), |sum, ring| add(at, sum, ring))
-                    } else {
-                        (0.0, 0.0)
-                    }
-                };
-                radii.iter().map(of).collect()
+        let zero = (0.0, 0.0);
+        let mut sums = Vec::with_capacity(radii.len());
+        let terms = CELL_TERMS + self.cells.as_ref().map_or(0, |(cells, _)| cells.parts());
+        for radii in radii.chunks(BETWEEN_QUESTIONS.div_ceil(terms)) {
+            match &self.cells {
+                Some((cells, _)) if goes_on(terms * radii.len()) => sums.extend(cells.sums(Kernel::RootSlope, radii)),
+                _ => sums.resize(sums.len() + radii.len(), zero),
             }
         }
+        let add = |at, sum: SumAndSize, (ring, weight): &(Ring, f64)| {
+            let term = weight * self.profile.kernel_slope(at, ring);
+            (sum.0 + term, sum.1 + term.abs())
+        };
+        for (at, sum) in radii.iter().zip(&mut sums).filter(|(at, _)| self.is_ring_by_ring(at)) {
+            *sum = zero;
+            if goes_on(self.rings.len()) {
+                *sum = beyond(&self.rings, at).fold(zero, |sum, ring| add(at, sum, ring));
+            }
+        }
+        sums
+    }
+
+    /// Whether cells do not serve a radius.
+    fn is_ring_by_ring(&self, at: &StressRadius) -> bool {
+        self.cells.as_ref().is_none_or(|(_, innermost)| at.radius < *innermost)
     }
 }
 
@@ -180,71 +181,55 @@ fn beyond<'r>(rings: &'r [(Ring, f64)], at: &StressRadius) -> impl Iterator<Item
 pub(crate) struct InwardSum<'a> {
     profile: &'a Profile,
     rings: Vec<InwardRing>,
-    /// What is quicker than the rings, if anything.
-    pieces: Option<SmoothPieces<'a, Profile>>,
+    /// What is quicker than the profile's own kernels, if anything, and from which radius on, m.
+    cells: Option<(Source<'a>, f64)>,
 }
 
 struct InwardRing {
     ring: Ring,
+    span: Span,
     weight: f64,
     /// What stands for it from afar, where that is quicker.
     far: Option<Multipole>,
 }
 
 impl<'a> InwardSum<'a> {
-    /// No rings yet, of about so many inside an edge at a radius, m.
-    pub(crate) fn new(profile: &'a Profile, edge: f64, rings: usize) -> InwardSum<'a> {
+    /// No rings yet, of about so many inside an edge.
+    pub(crate) fn new(profile: &'a Profile, edge: &Point, rings: usize) -> InwardSum<'a> {
         // The kernels of a cone and of a parabola are quicker still.
-        let quick = profile.slope_series(edge).is_some_and(|series| series.len() <= 2);
-        let pieces = (!quick).then(|| SmoothPieces::within(profile, edge, 0.0, rings));
-        InwardSum { profile, rings: Vec::with_capacity(rings), pieces }
+        let quick = profile.slope_series(edge.radius).is_some_and(|series| series.len() <= 2);
+        let cells = if quick { None } else { profile.cells_within(edge, 0.0) };
+        InwardSum { profile, rings: Vec::with_capacity(rings), cells }
     }
 
     /// Adds a ring that ends where the last begins.
     pub(crate) fn add(&mut self, ring: Ring, weight: f64) {
         let span = span(self.profile, &ring);
-        if self.pieces.as_mut().is_some_and(|pieces| pieces.add(&span, weight).is_none()) {
-            self.pieces = None;
-        }
-        self.rings.push(InwardRing { ring, weight, far: far_sources(self.profile, &span) });
+        // The rounding of their squares would count for thin rings, which hold few kinks.
+        let thick = span.edge <= 0.0 && (span.outer - span.inner).value() > THIN * span.outer.value();
+        let far =
+            self.cells.as_ref().filter(|(_, innermost)| thick && span.inner_radius >= *innermost).map(|(cells, _)| {
+                let mut sources = Multipole::empty((span.inner.value(), span.outer.value()));
+                cells.add_sources(&span, &mut sources);
+                sources
+            });
+        self.rings.push(InwardRing { ring, span, weight, far });
     }
 
     /// The sum at a radius.
     pub(crate) fn at(&self, at: &StressRadius) -> f64 {
-        if let Some(pieces) = &self.pieces {
-            return pieces.sum(at);
-        }
         let square = at.square.value();
-        let kernel = |InwardRing { ring, weight, far }: &InwardRing| {
+        let near = self.cells.as_ref().filter(|(_, innermost)| at.radius >= *innermost);
+        let kernel = |InwardRing { ring, span, weight, far }: &InwardRing| {
             weight
-                * match far.as_ref().filter(|far| far.is_far(square)) {
-                    Some(far) => far.potentials([square])[0],
-                    None => self.profile.kernel(at, ring),
+                * match (far.as_ref().filter(|far| far.is_far(square)), near) {
+                    (Some(far), _) => far.potentials([square])[0],
+                    (None, Some((cells, _))) if span.edge <= 0.0 => cells.sum(Kernel::Root, at, span),
+                    _ => self.profile.kernel(at, ring),
                 }
         };
         self.rings.iter().map(kernel).sum()
     }
-}
-
-/// What stands from afar for a ring of a table, or of a sum with tables, in which there may be many knots.
-fn far_sources(profile: &Profile, span: &Span) -> Option<Multipole> {
-    let mut sources = Multipole::empty((span.inner.value(), span.outer.value()));
-    let parts = match profile {
-        Profile::Tabulated(_) => std::slice::from_ref(profile),
-        Profile::Sum(sum) if sum.parts().iter().any(|part| matches!(part, Profile::Tabulated(_))) => sum.parts(),
-        _ => return None,
-    };
-    // The rounding of their squares would count for thin rings, which hold few knots.
-    if span.edge > 0.0 || (span.outer - span.inner).value() <= THIN * span.outer.value() {
-        return None;
-    }
-    for part in parts {
-        match part {
-            Profile::Tabulated(table) => table.add_sources(span, &mut sources),
-            other => SmoothPieces::of_span(other, span, span.inner_radius)?.add_sources(&mut sources),
-        }
-    }
-    Some(sources)
 }
 
 #[cfg(test)]
@@ -263,7 +248,7 @@ mod tests {
             let ends = [edge, edge * (1.0 - width), edge * (1.0 - 2.0 * width)];
             let points = ends.map(|level| table.point(DoubleDouble::from(level)));
             let rings = [(Ring::between(points[1], points[0]), 1.0), (Ring::between(points[2], points[1]), -0.4)];
-            let mut sum = InwardSum::new(&table, points[0].radius, rings.len());
+            let mut sum = InwardSum::new(&table, &points[0], rings.len());
             for (ring, weight) in &rings {
                 sum.add(*ring, *weight);
             }

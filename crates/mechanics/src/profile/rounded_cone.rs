@@ -8,7 +8,7 @@ use super::celled::by_cells;
 use super::shape::ShapeFacts;
 use super::{Error, range};
 use crate::cells::Powers;
-use crate::cells::grid::{Grid, Kink, above};
+use crate::cells::grid::{Kink, above};
 use crate::cells::stages::Stages;
 use crate::numerics::angle::angles;
 
@@ -31,13 +31,13 @@ impl RoundedCone {
     }
 }
 
-impl Grid for RoundedCone {
+by_cells!(RoundedCone {
     fn kinks(&self) -> Vec<Kink> {
         let kink = |radius, powers| Kink { radius, powers };
         vec![kink(0.0, Powers::Odd), kink(self.tip_radius, Powers::All(1))]
     }
 
-    fn gammas<const N: usize>(&self, base: f64, t: [f64; N]) -> [f64; N] {
+    fn slopes<const N: usize>(&self, base: f64, t: [f64; N]) -> [f64; N] {
         let (slope, b) = (self.slope, self.tip_radius);
         if base < b {
             return t.map(|t| 2.0 * slope / b * t);
@@ -50,9 +50,7 @@ impl Grid for RoundedCone {
             })
         })
     }
-}
 
-by_cells!(RoundedCone {
     fn facts(&self) -> ShapeFacts {
         ShapeFacts { kernel_falls: true, ..ShapeFacts::default() }
     }

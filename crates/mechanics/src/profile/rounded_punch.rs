@@ -8,7 +8,7 @@ use super::celled::by_cells;
 use super::shape::{Falls, ShapeFacts};
 use super::{Error, range};
 use crate::cells::Powers;
-use crate::cells::grid::{Grid, Kink, above};
+use crate::cells::grid::{Kink, above};
 use crate::cells::stages::Stages;
 use crate::numerics::angle::angles;
 
@@ -32,12 +32,12 @@ impl RoundedPunch {
     }
 }
 
-impl Grid for RoundedPunch {
+by_cells!(RoundedPunch {
     fn kinks(&self) -> Vec<Kink> {
         vec![Kink { radius: self.flat_radius, powers: Powers::All(2) }]
     }
 
-    fn gammas<const N: usize>(&self, base: f64, t: [f64; N]) -> [f64; N] {
+    fn slopes<const N: usize>(&self, base: f64, t: [f64; N]) -> [f64; N] {
         let b = self.flat_radius;
         above(b, base, t, |t| {
             let (_, lacking) = angles(t.map(|t| t / b));
@@ -47,9 +47,7 @@ impl Grid for RoundedPunch {
             })
         })
     }
-}
 
-by_cells!(RoundedPunch {
     fn falls(&self, inner: f64, outer: f64) -> Falls {
         let t_of = |x: f64| ((x - self.flat_radius) * (x + self.flat_radius)).max(0.0).sqrt();
         let (low, high) = (t_of(inner), t_of(outer));

@@ -1,9 +1,11 @@
 //! The functions that a family must provide, and those that follow for all families.
 
+use super::celled;
 use super::smooth_interval::{Node, SmoothInterval};
-use super::smooth_pieces::SmoothPieces;
 use super::{DoubleDouble, Moments, Ring, Span, StressRadius};
 use crate::cells::Cells;
+use crate::cells::grid::Kink;
+use crate::cells::kernel::Kernel;
 use crate::numerics::roots::increasing;
 
 /// Where contacts end.
@@ -78,6 +80,11 @@ impl ShapeFacts {
     }
 }
 
+/// Cells reach down to this share of the least radius, whose square has digits that it has lost itself, and at a tip that
+/// is not smooth to this share of the outer one.
+pub(super) const CLEAR: f64 = 0.9;
+const TIP: f64 = 1e-12;
+
 /// What is asked of a kernel.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum KernelOrder {
@@ -115,6 +122,11 @@ pub(super) trait Shape: Sized {
     /// What holds for all of it.
     fn facts(&self) -> ShapeFacts {
         ShapeFacts::default()
+    }
+
+    /// Where g is not analytic, from the innermost on, where the surface leaves the plane.
+    fn kinks(&self) -> Vec<Kink> {
+        Vec::new()
     }
 
     /// The largest kink below `radius`; zero, the tip, if there is none.
@@ -263,13 +275,13 @@ pub(super) fn displacement_integral<S: Shape>(shape: &S, at: &StressRadius, span
     sum
 }
 
-/// [`Shape::kernel`] by series.
+/// [`Shape::kernel`] by cells of its own.
 fn kernel<S: Shape>(shape: &S, order: KernelOrder, at: &StressRadius, span: &Span) -> f64 {
-    let Some(pieces) = SmoothPieces::of_span(shape, span, at.radius) else { return f64::NAN };
-    match order {
-        KernelOrder::Value => pieces.sum(at),
-        KernelOrder::Slope => pieces.slopes(&[*at], |_| true)[0].0,
-    }
+    let start = if shape.facts().smooth_tip { 0.0 } else { (CLEAR * at.radius).max(TIP * span.outer_radius) };
+    let start = if span.inner_radius > start { 0.5 * span.inner_radius } else { start };
+    let cells = celled::between(shape, start, (span.outer, span.outer_radius));
+    let kernel = if order == KernelOrder::Value { Kernel::Root } else { Kernel::RootSlope };
+    cells.map_or(f64::NAN, |cells| cells.sum(kernel, at, span))
 }
 
 /// [`Shape::gap`] by Newton's steps.

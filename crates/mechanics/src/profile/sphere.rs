@@ -4,7 +4,8 @@
 //! rounded radii (Hertz 1881; Popov & Hess 2015).
 
 use super::shape::{Falls, KernelOrder, Shape, ShapeFacts};
-use super::{DoubleDouble, Error, Moments, Ring, Span, StressRadius, range};
+use super::{DoubleDouble, Error, Kink, Moments, Ring, Span, StressRadius, range};
+use crate::cells::Powers;
 
 /// A paraboloid of revolution.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -114,6 +115,10 @@ impl Shape for Sphere {
     fn facts(&self) -> ShapeFacts {
         let curvature_radius = Some(self.curvature_radius);
         ShapeFacts { curvature_radius, kernel_falls: true, ..ShapeFacts::default() }
+    }
+
+    fn kinks(&self) -> Vec<Kink> {
+        vec![Kink { radius: 0.0, powers: Powers::Odd }]
     }
 
     fn falls(&self, _inner: f64, _outer: f64) -> Falls {

@@ -6,17 +6,18 @@
 //! falls.
 
 mod build;
-mod fields;
-mod kink_moments;
 #[cfg(test)]
 mod tests;
 
+use super::celled::OfShape;
 use super::polynomial::Polynomial;
 use super::shape::{self, Falls, KernelOrder, Shape, ShapeFacts};
 use super::{DoubleDouble, Moments, Point, Profile, Ring, Span, StressRadius};
+use crate::cells::Cells;
+use crate::cells::grid::{self, Kink};
+use crate::cells::kernel::Kernel;
+use crate::cells::stages::Stages;
 use crate::numerics::roots::increasing;
-pub(crate) use fields::SumFields;
-use kink_moments::KinkMoments;
 
 /// How far beyond a kink, or below a vertical end, relative to its radius, a radius still lacks digits that a level
 /// has.
@@ -40,8 +41,8 @@ pub struct Sum {
     facts: ShapeFacts,
     /// g, where it is one.
     polynomial: Option<Polynomial>,
-    /// Of many kinks that a contact can reach.
-    kink_moments: Option<KinkMoments>,
+    /// Its cells, and the square of the radius where they end, m^2; none where a part has no series at its tip.
+    stages: Option<(Stages, DoubleDouble)>,
 }
 
 impl PartialEq for Sum {
@@ -101,6 +102,12 @@ impl Sum {
         }
     }
 
+    /// The first cells of it.
+    fn cells(&self, count: usize) -> Cells {
+        let end = self.stages.as_ref().map_or(DoubleDouble::ZERO, |(_, end)| *end);
+        grid::cells(&OfShape(self), 0.0, end, count)
+    }
+
     fn total(&self, f: impl Fn(&Profile) -> f64) -> f64 {
         self.parts.iter().map(f).sum()
     }
@@ -134,9 +141,20 @@ impl Sum {
 }
 
 impl Shape for Sum {
+    fn celled(&self, radius: f64) -> Option<&Cells> {
+        self.stages.as_ref().map(|(stages, _)| stages.up_to(radius, |count| self.cells(count)))
+    }
+
+    fn kinks(&self) -> Vec<Kink> {
+        grid::united(self.parts.iter().map(Shape::kinks))
+    }
+
     fn level(&self, radius: f64) -> f64 {
         if let Some(polynomial) = &self.polynomial {
             return polynomial.level(radius);
+        }
+        if let Some(cells) = self.celled(radius) {
+            return cells.level(radius);
         }
         self.total(|part| part.level(radius))
     }
@@ -156,6 +174,9 @@ impl Shape for Sum {
     }
 
     fn square(&self, level: DoubleDouble) -> DoubleDouble {
+        if let Some((stages, _)) = &self.stages {
+            return stages.up_to_level(level.value(), |count| self.cells(count)).square(level);
+        }
         let radius = self.radius(level.value());
         let plain = DoubleDouble::square_of(radius);
         let at_rim = self.rim.is_some_and(|(_, top)| level.value() >= top);
@@ -178,10 +199,16 @@ impl Shape for Sum {
     }
 
     fn load(&self, radius: f64) -> f64 {
+        if let Some(cells) = self.celled(radius) {
+            return cells.load(radius);
+        }
         self.total(|part| part.load(radius))
     }
 
     fn indentation_for(&self, load: f64) -> f64 {
+        if let Some((stages, _)) = &self.stages {
+            return stages.up_to_load(load, |count| self.cells(count)).indentation_for(load);
+        }
         if let Some((rim, top)) = self.rim {
             let face = self.load(rim);
             if load >= face {
@@ -214,21 +241,24 @@ impl Shape for Sum {
     }
 
     fn rise(&self, span: &Span) -> f64 {
+        if let Some(cells) = self.celled(span.outer_radius) {
+            return cells.rise(span);
+        }
         self.polynomial.map_or_else(|| self.total(|part| part.rise(span)), |polynomial| polynomial.rise(span))
     }
 
     fn gap(&self, ring: &Ring, depth: f64) -> f64 {
+        if let Some(cells) = self.celled(ring.outer.radius) {
+            return cells.gap(ring, depth);
+        }
         self.polynomial.map_or_else(|| shape::gap(self, ring, depth), |polynomial| polynomial.gap(ring, depth))
     }
 
     fn moments(&self, span: &Span, _top: f64) -> Moments {
-        match &self.polynomial {
-            Some(polynomial) => polynomial.moments(span),
-            None => {
-                let kept = self.kink_moments.as_ref().and_then(|kept| kept.across(self, span));
-                kept.unwrap_or_else(|| shape::moments(self, span))
-            }
+        if let Some(cells) = self.celled(span.outer_radius) {
+            return cells.moments(span);
         }
+        self.polynomial.map_or_else(|| shape::moments(self, span), |polynomial| polynomial.moments(span))
     }
 
     fn facts(&self) -> ShapeFacts {
@@ -241,6 +271,9 @@ impl Shape for Sum {
     }
 
     fn kernel(&self, order: KernelOrder, at: &StressRadius, span: &Span) -> f64 {
+        if let Some(cells) = self.celled(span.outer_radius) {
+            return cells.sum(if order == KernelOrder::Value { Kernel::Root } else { Kernel::RootSlope }, at, span);
+        }
         self.total(|part| Shape::kernel(part, order, at, span))
     }
 

@@ -7,7 +7,7 @@ use super::celled::by_cells;
 use super::shape::ShapeFacts;
 use super::{Error, range};
 use crate::cells::Powers;
-use crate::cells::grid::{Grid, Kink, above};
+use crate::cells::grid::{Kink, above};
 use crate::cells::stages::Stages;
 use crate::numerics::angle::angles;
 
@@ -30,21 +30,19 @@ impl TruncatedCone {
     }
 }
 
-impl Grid for TruncatedCone {
+by_cells!(TruncatedCone {
     fn kinks(&self) -> Vec<Kink> {
         vec![Kink { radius: self.flat_radius, powers: Powers::All(0) }]
     }
 
-    fn gammas<const N: usize>(&self, base: f64, t: [f64; N]) -> [f64; N] {
+    fn slopes<const N: usize>(&self, base: f64, t: [f64; N]) -> [f64; N] {
         let b = self.flat_radius;
         above(b, base, t, |t| {
             let (angle, _) = angles(t.map(|t| t / b));
             std::array::from_fn(|lane| self.slope * (t[lane] * angle[lane] + b) / (b * b + t[lane] * t[lane]).sqrt())
         })
     }
-}
 
-by_cells!(TruncatedCone {
     fn facts(&self) -> ShapeFacts {
         ShapeFacts { singular: Some(self.flat_radius), falls_from: Some(self.flat_radius), ..ShapeFacts::default() }
     }

@@ -7,7 +7,7 @@ use super::celled::by_cells;
 use super::shape::ShapeFacts;
 use super::{Error, range};
 use crate::cells::Powers;
-use crate::cells::grid::{Grid, Kink, above};
+use crate::cells::grid::{Kink, above};
 use crate::cells::stages::Stages;
 
 /// A paraboloid with a flat end.
@@ -29,18 +29,16 @@ impl TruncatedSphere {
     }
 }
 
-impl Grid for TruncatedSphere {
+by_cells!(TruncatedSphere {
     fn kinks(&self) -> Vec<Kink> {
         vec![Kink { radius: self.flat_radius, powers: Powers::All(0) }]
     }
 
-    fn gammas<const N: usize>(&self, base: f64, t: [f64; N]) -> [f64; N] {
+    fn slopes<const N: usize>(&self, base: f64, t: [f64; N]) -> [f64; N] {
         let b = self.flat_radius;
         above(b, base, t, |t| t.map(|t| (b * b + 2.0 * t * t) / ((b * b + t * t).sqrt() * self.curvature_radius)))
     }
-}
 
-by_cells!(TruncatedSphere {
     fn facts(&self) -> ShapeFacts {
         ShapeFacts {
             curvature_radius: Some(self.curvature_radius),

@@ -99,7 +99,7 @@ impl Problem<'_> {
 
     /// No kinks yet.
     fn edge_alone(&self) -> VirginStrokes<'_> {
-        let beyond = InwardSum::new(self.profile, self.edge.radius, self.reversals);
+        let beyond = InwardSum::new(self.profile, &self.edge, self.reversals);
         VirginStrokes { problem: self, kinks: Vec::with_capacity(self.reversals), beyond, excess: None }
     }
 

@@ -4,7 +4,7 @@ use super::super::{
     Cone, DoubleDouble, ExactSphere, PowerLaw, Profile, Ring, RoundedCone, RoundedPunch, Sphere, StressRadius, Sum,
     TruncatedCone, TruncatedSphere,
 };
-use super::{KernelOrder, Moments, Shape, ShapeFacts, displacement_integral, span};
+use super::{KernelOrder, Kink, Moments, Shape, ShapeFacts, displacement_integral, span};
 
 fn power(exponent: f64) -> Profile {
     Profile::PowerLaw(PowerLaw::new(exponent, 0.2).unwrap())
@@ -32,6 +32,10 @@ impl Shape for Plain<'_> {
 
     fn facts(&self) -> ShapeFacts {
         Shape::facts(self.0)
+    }
+
+    fn kinks(&self) -> Vec<Kink> {
+        Shape::kinks(self.0)
     }
 
     fn kink_below(&self, radius: f64) -> f64 {

@@ -4,8 +4,13 @@ use super::super::polynomial::Polynomial;
 use super::super::shape::{End, Shape, ShapeFacts};
 use super::super::{Error, Profile, Tabulated, range};
 use super::Sum;
-use super::kink_moments::KinkMoments;
+use crate::cells::grid;
+use crate::cells::stages::Stages;
+use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::roots::turning;
+
+/// How near to its equator, over its radius, the cells of a sum with an exact sphere may end.
+const DEEPEST: f64 = 0.9;
 
 /// The radius of a flat core, m.
 fn flat_radius(part: &Profile) -> f64 {
@@ -24,7 +29,7 @@ fn facts_of(parts: &[Profile]) -> ShapeFacts {
         analytic_tip: facts().all(|part| part.analytic_tip),
         smooth_centre: facts().all(|part| part.smooth_centre),
         smooth_tip: facts().all(|part| part.smooth_tip),
-        by_series: facts().all(|part| part.by_series),
+        by_series: parts.iter().all(|part| matches!(part, Profile::FlatPunch(_)) || part.facts().by_series),
         ..ShapeFacts::default()
     };
     sum.ending(facts().filter_map(|part| part.known_to).reduce(|a, b| if b.radius < a.radius { b } else { a }))
@@ -64,7 +69,7 @@ impl Sum {
             bracket: None,
             facts: facts_of(&flat),
             polynomial: Polynomial::of(&flat),
-            kink_moments: None,
+            stages: None,
             parts: flat,
             kinks,
         };
@@ -86,8 +91,22 @@ impl Sum {
             sum.bracket = Some((flat_radius, rim));
         }
         sum.kinks.retain(|&kink| kink <= rim);
-        sum.kink_moments = KinkMoments::of(&sum, keep_going)?;
+        sum.stages = sum.cells_end().filter(|_| sum.polynomial.is_none()).map(|end| (Stages::new(), end));
         Ok(sum)
+    }
+
+    /// The square, m^2, where its cells end; `None` where a part has no series at its tip, or where a radius loses the
+    /// digits of a level beside the end of a sphere.
+    fn cells_end(&self) -> Option<DoubleDouble> {
+        let end =
+            self.facts.rim.unwrap_or(grid::ENDLESS).min(self.facts.known_to.map_or(f64::INFINITY, |end| end.radius));
+        let has_series = |part: &Profile| match part {
+            Profile::PowerLaw(_) => false,
+            Profile::ExactSphere(_) => end < DEEPEST * part.facts().ceiling,
+            _ => true,
+        };
+        let rises = !Shape::kinks(self).is_empty();
+        (rises && self.parts.iter().all(has_series)).then(|| DoubleDouble::square_of(end))
     }
 
     /// The first radius below `rim` at which the sum falls, where a part of it does, m.

@@ -20,20 +20,15 @@ mod tests;
 use std::sync::Arc;
 
 use super::super::error::TableFault;
-use super::shape::{End, Falls, KernelOrder, Shape, ShapeFacts, span};
-use super::{DoubleDouble, Error, Moments, Ring, Span, StressRadius, range};
-use crate::cells::Cells;
-use crate::cells::field::WeightedCells;
+use super::shape::{End, Falls, KernelOrder, Shape, ShapeFacts};
+use super::{DoubleDouble, Error, Kink, Moments, Ring, Span, StressRadius, range};
 use crate::cells::kernel::Kernel;
-use crate::numerics::multipole::Multipole;
+use crate::cells::{Cells, Powers};
 pub(super) use curve::Reach;
 use curve::TableCurve;
 pub use interpolation_error::InterpolationError;
 use interpolation_error::TableGap;
 use spline::SplineKnot;
-
-/// As many kernels, rings times radii, are summed sooner than cells are weighted for all of them.
-pub(super) const FEW: usize = 128;
 
 /// A tabulated profile.
 #[derive(Clone, Debug, PartialEq)]
@@ -169,27 +164,6 @@ impl Tabulated {
         let cells = &self.curve.up_to(Reach::Radius(self.end)).cells;
         cells.iter().flat_map(|cell| cell.slope_check_places().into_iter().map(|zeta| cell.radius_at(zeta)))
     }
-
-    /// The kernels of rings from the centre outward, each with its weight, for sums at so many radii.
-    pub(super) fn weighted_cells(&self, rings: &[(Ring, f64)], radii: usize) -> Option<WeightedCells<'_>> {
-        let spans: Vec<(Span, f64)> = rings.iter().map(|(ring, weight)| (span(self, ring), *weight)).collect();
-        self.cells_over(&spans, radii)
-    }
-
-    /// Adds what the radii of a span are from afar to sources over their squares, m^2.
-    pub(super) fn add_sources(&self, span: &Span, sources: &mut Multipole) {
-        self.curve.up_to(Reach::Radius(span.outer_radius)).add_sources(span, sources);
-    }
-
-    /// int h dx/sqrt(r^2 - x^2), m, over what a span has below r, h the rise up to its outer end.
-    pub(super) fn displacement_integral(&self, at: &StressRadius, span: &Span) -> f64 {
-        self.curve.up_to(Reach::Radius(span.outer_radius)).displacement_integral(at, span)
-    }
-
-    /// [`Tabulated::weighted_cells`] of spans.
-    pub(super) fn cells_over(&self, spans: &[(Span, f64)], radii: usize) -> Option<WeightedCells<'_>> {
-        Some(WeightedCells::new(self.curve.up_to(Reach::Radius(spans.last()?.0.outer_radius)), spans, radii))
-    }
 }
 
 /// Methods of [`Shape`] that the cells up to some radius have.
@@ -239,6 +213,17 @@ impl Shape for Tabulated {
         Falls { least: self.curve.up_to(Reach::Radius(outer)).least_fall(inner, outer), concavely: false }
     }
 
+    fn kinks(&self) -> Vec<Kink> {
+        let kink = |radius| Kink { radius, powers: Powers::All(1) };
+        let knots = self.curve.up_to(Reach::Radius(self.end)).kinks.iter().map(|&radius| kink(radius));
+        let tip = (self.flat_radius() <= 0.0).then(|| Kink { radius: 0.0, powers: Powers::Odd });
+        tip.into_iter().chain(knots).collect()
+    }
+
+    fn slopes<const N: usize>(&self, base: f64, t: [f64; N]) -> [f64; N] {
+        self.curve.up_to(Reach::Radius(self.end)).slopes(base, t)
+    }
+
     fn surface_slope(&self, r: f64) -> f64 {
         let index = self.radii.partition_point(|point| *point < r).clamp(1, self.radii.len() - 1);
         (self.heights[index] - self.heights[index - 1]) / (self.radii[index] - self.radii[index - 1])
@@ -247,6 +232,6 @@ impl Shape for Tabulated {
     fn facts(&self) -> ShapeFacts {
         let end = End { radius: self.end, falls: self.falls.is_some_and(|radius| radius >= self.end) };
         let limit = Some(End { radius: self.falls.unwrap_or(self.end), falls: self.falls.is_some() });
-        ShapeFacts { limit, known_to: Some(end), rim: Some(self.end), by_series: false, ..ShapeFacts::default() }
+        ShapeFacts { limit, known_to: Some(end), rim: Some(self.end), ..ShapeFacts::default() }
     }
 }

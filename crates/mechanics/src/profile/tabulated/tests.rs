@@ -1,7 +1,10 @@
 //! A table against the sum of a sphere and rounded punches that it is.
 
+use super::super::shape::span;
 use super::super::{Profile, Ring, RoundedPunch, Sphere, StressRadius, Sum};
 use super::*;
+use crate::cells::field::{Source, WeightedCells};
+use crate::cells::kernel::Kernel;
 use crate::cells::ring::Point;
 use crate::cells::{Cell, Cells, SpanParts};
 use crate::numerics::gauss;
@@ -162,7 +165,8 @@ proptest! {
             low.into_iter().chain(whole).chain(high).map(kernel).sum::<f64>()
         };
         let size: f64 = rings.iter().map(|(ring, _)| by_cells(&StressRadius::new(0.0), ring)).sum();
-        let sums = table.weighted_cells(&rings, radii.len()).unwrap().sums(Kernel::Root, &radii);
+        let spans: Vec<(Span, f64)> = rings.iter().map(|(ring, weight)| (span(&table, ring), *weight)).collect();
+        let sums = WeightedCells::new(Source::Kept(all(&table)), &spans, radii.len()).sums(Kernel::Root, &radii);
         for (at, (sum, _)) in radii.iter().zip(sums) {
             let exact: f64 = rings.iter().map(|(ring, weight)| weight * by_cells(at, ring)).sum();
             prop_assert!((sum - exact).abs() <= 3e-14 * size, "{:e}: {sum:e} {exact:e}", at.radius);
