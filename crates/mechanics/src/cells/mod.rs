@@ -230,7 +230,9 @@ impl Cells {
         } else {
             ring.outer
         };
-        let index = self.find(ring.inner.radius);
+        let mut index = self.find(ring.inner.radius);
+        index += usize::from(self.cells.get(index + 1).is_some_and(|next| next.square <= ring.inner.square));
+        index -= usize::from(index > 0 && self.cells[index].square > ring.inner.square);
         let cell = &self.cells[index];
         let low = (ring.inner.square - cell.square).value().max(0.0);
         if let Some(next) = self.cells.get(index + 1).filter(|next| next.square < outer.square) {
@@ -292,8 +294,15 @@ impl Cells {
         let Some(span) = &self.cells.first().and_then(beyond_flat) else {
             return SpanParts { low: None, whole: 0..0, high: None };
         };
-        let outer = self.by_radius.ending_at(span.outer_radius);
-        let inner = self.find(span.inner_radius).min(outer);
+        // By the squares: a radius just beyond a border may be rounded onto it, or to its other side.
+        let begins = |index: usize| self.cells.get(index).map(|cell| cell.square);
+        let mut outer = self.by_radius.ending_at(span.outer_radius);
+        outer += usize::from(begins(outer + 1).is_some_and(|square| square < span.outer));
+        outer -= usize::from(outer > 0 && begins(outer).is_some_and(|square| square >= span.outer));
+        let mut inner = self.find(span.inner_radius);
+        inner += usize::from(begins(inner + 1).is_some_and(|square| square <= span.inner));
+        inner -= usize::from(inner > 0 && begins(inner).is_some_and(|square| square > span.inner));
+        let inner = inner.min(outer);
         if inner == outer {
             return SpanParts { low: None, whole: outer..outer, high: Some((outer, *span)) };
         }

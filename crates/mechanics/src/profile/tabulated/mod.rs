@@ -177,7 +177,7 @@ macro_rules! by_cells {
 
 impl Shape for Tabulated {
     fn celled(&self, radius: f64) -> Option<&Cells> {
-        Some(self.curve.up_to(radius))
+        Some(self.curve.up_to(Reach::Radius(radius)))
     }
 
     by_cells! {
