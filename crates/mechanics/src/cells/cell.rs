@@ -21,8 +21,8 @@ use crate::numerics::roots::{distance_below, within};
 
 /// The most terms of a Chebyshev series.
 const POINTS: usize = 24;
-/// The least kappa = r^2 - b^2 over the square of the outer end for which the antiderivative serves: below it, a rule of
-/// twelve points is exact to rounding (rho = 6.9), and the antiderivative would cancel.
+/// The least kappa = r^2 - b^2 over the square of the outer end for which the antiderivative serves: below it, a rule
+/// of twelve points is exact to rounding (rho = 6.9), and the antiderivative would cancel.
 const LEAST_KAPPA: f64 = -2.0;
 /// Two ends whose squares differ by more than this share of the outer one have a difference with all its digits.
 const APART: f64 = 0.2;
@@ -205,8 +205,8 @@ impl Cell {
         }
     }
 
-    /// The rises of g, m, from several places up to `high`, each this far below it: divided differences, so that each is
-    /// good to round-off of itself.
+    /// The rises of g, m, from several places up to `high`, each this far below it: divided differences, so that each
+    /// is good to round-off of itself.
     fn rises<const N: usize>(&self, low: [f64; N], high: f64, drop: [f64; N]) -> [f64; N] {
         let inverse = self.high.recip();
         let top = high * inverse;
@@ -272,7 +272,8 @@ impl Cell {
         if flat { plain } else { drop * (top + top - drop) }
     }
 
-    /// int dx, int h dx and int h^2 dx over a part that is `width` wide in the radius, m, h the rise up to its outer end.
+    /// int dx, int h dx and int h^2 dx over a part that is `width` wide in the radius, m, h the rise up to its outer
+    /// end.
     pub(crate) fn moments(&self, part: Part, width: f64) -> Moments {
         if part.drop <= NARROW * self.high {
             self.moments_by(&EIGHT_POINTS, part, width)
@@ -353,8 +354,8 @@ impl Cell {
         );
     }
 
-    /// int h dx/sqrt(r^2 - x^2), m, over what a span, which lies inside the cell, has below r, h the rise up to its outer
-    /// end: over the angle whose sine is zeta/tau, tau^2 = r^2 - b^2.
+    /// int h dx/sqrt(r^2 - x^2), m, over what a span, which lies inside the cell, has below r, h the rise up to its
+    /// outer end: over the angle whose sine is zeta/tau, tau^2 = r^2 - b^2.
     pub(crate) fn displacement_integral(&self, at: &StressRadius, span: &Span) -> f64 {
         let (inner, outer) = span.excess(at.square);
         if inner >= 0.0 || span.gap <= 0.0 {

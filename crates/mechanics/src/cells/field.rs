@@ -1,9 +1,9 @@
 //! Sums of kernels over cells, weighted by the rings they lie in, at many radii.
 //!
-//! A cell that lies in one ring has that ring's weight, and so has a cluster of such cells: what it does from afar is its
-//! own sources times the weight. The few cells that rings cut are cut with them, and only the clusters that hold one, or
-//! cells of several rings, get moments of their own; for a few radii only the small ones among them. So a state costs in
-//! proportion to the number of its rings and not to that of the cells.
+//! A cell that lies in one ring has that ring's weight, and so has a cluster of such cells: what it does from afar is
+//! its own sources times the weight. The few cells that rings cut are cut with them, and only the clusters that hold
+//! one, or cells of several rings, get moments of their own; for a few radii only the small ones among them. So a state
+//! costs in proportion to the number of its rings and not to that of the cells.
 //!
 //! Radii go through the tree together, in such an order that a cluster is far from the first of them and near the last:
 //! at each cluster three runs part. Those from which it is far take its moments, side by side; those beyond it are

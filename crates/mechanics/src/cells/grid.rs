@@ -2,9 +2,9 @@
 //!
 //! Above a kink k, with s the distance in t = sqrt(x^2 - k^2) of the next singularity beneath it, one cell up to 0.6 s
 //! has twenty-four Chebyshev points: the ellipse about it through +-i s has rho = 7.1, and as many terms leave 1e-20.
-//! From there on each cell is half as wide in x^2 as it is far from k^2: the singularity lies two widths below it, rho =
-//! 9.9, and sixteen points leave 1e-16. Where the next kink is no further than 1.1 s, one cell reaches it: rho = 4.2, and
-//! 1e-15. No cell is wider than a quarter of its distance from the ceiling.
+//! From there on each cell is half as wide in x^2 as it is far from k^2: the singularity lies two widths below it, rho
+//! = 9.9, and sixteen points leave 1e-16. Where the next kink is no further than 1.1 s, one cell reaches it: rho = 4.2,
+//! and 1e-15. No cell is wider than a quarter of its distance from the ceiling.
 
 use super::{Cell, Cells, Powers};
 use crate::numerics::chebyshev::{SIXTEEN, TWENTY_FOUR, counted};
@@ -80,8 +80,8 @@ pub(crate) trait Grid {
         f64::INFINITY
     }
 
-    /// gamma = dg/dt at several t = sqrt(x^2 - base^2), m, above `base`, m: one of its kinks, or of those of a sum that it
-    /// is a part of.
+    /// gamma = dg/dt at several t = sqrt(x^2 - base^2), m, above `base`, m: one of its kinks, or of those of a sum that
+    /// it is a part of.
     fn gammas<const N: usize>(&self, base: f64, t: [f64; N]) -> [f64; N];
 }
 
@@ -147,7 +147,8 @@ fn first_cell(grid: &impl Grid, kink: &Kink, square: DoubleDouble, high: f64) ->
     Cell::new(kink.radius, square, high, counted(&terms, NEGLIGIBLE), kink.powers)
 }
 
-/// A cell above the kink `base`, m, whose inner end lies `below` beyond the kink and that is `width` wide, in squares, m^2.
+/// A cell above the kink `base`, m, whose inner end lies `below` beyond the kink and that is `width` wide, in squares,
+/// m^2.
 fn smooth_cell(grid: &impl Grid, base: f64, square: DoubleDouble, (below, width): (f64, f64)) -> Cell {
     let t = SIXTEEN.places(0.0, width).map(|above| (below + above).sqrt());
     let gammas = grid.gammas(base, t);

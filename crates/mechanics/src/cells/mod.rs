@@ -31,8 +31,8 @@ use moment_tree::MomentTree;
 use ring::{Moments, Point, Ring, StressRadius};
 use span::Span;
 
-/// A bound of int dzeta/sqrt(zeta^2 - kappa) over any cell, for any radius that is further from its inner end than e^-36
-/// of the cell: it is ln(2 t/s), or less.
+/// A bound of int dzeta/sqrt(zeta^2 - kappa) over any cell, for any radius that is further from its inner end than
+/// e^-36 of the cell: it is ln(2 t/s), or less.
 const LOGARITHM: f64 = 40.0;
 /// Of a ring thinner than this share of its square, what lies inside a border of two cells is found from its depth.
 const THIN: f64 = 1e-3;

@@ -1,8 +1,8 @@
 //! Cells as far as contacts have reached: those up to some radius, up to a larger one, and so on, each built when first
 //! asked for.
 //!
-//! The cells of a stage begin those of the next, and which stage is taken depends on the radius, level or load alone, not
-//! on what was asked before: so results are the same whatever came first.
+//! The cells of a stage begin those of the next, and which stage is taken depends on the radius, level or load alone,
+//! not on what was asked before: so results are the same whatever came first.
 
 use std::sync::{Arc, OnceLock};
 
@@ -15,7 +15,8 @@ const FIRST: usize = 8;
 /// How much of a level or a load may be rounding.
 const ROUNDING: f64 = 1e-9;
 
-/// The stages of a profile. A clone shares them, and they take no part in a comparison: they follow from the parameters.
+/// The stages of a profile. A clone shares them, and they take no part in a comparison: they follow from the
+/// parameters.
 #[derive(Clone)]
 pub(crate) struct Stages(Arc<[OnceLock<Cells>]>);
 

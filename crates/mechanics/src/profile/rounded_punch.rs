@@ -1,8 +1,8 @@
 //! Flat punch with a rounded edge, f = (r - b)^2/(2R) for r > b: g = (x/R)(t - b phi), phi = atan(t/b), t = sqrt(x^2 -
 //! b^2).
 //!
-//! gamma = dg/dt = (t/(R x))(2t - b phi) (Schubert 1942; Ciavarella 1999). All stays positive through t - b phi = b (u -
-//! atan u), u = t/b.
+//! gamma = dg/dt = (t/(R x))(2t - b phi) (Schubert 1942; Ciavarella 1999). All stays positive through t - b phi = b (u
+//! - atan u), u = t/b.
 
 use super::celled::by_cells;
 use super::shape::{Falls, ShapeFacts};

@@ -80,8 +80,8 @@ impl ShapeFacts {
     }
 }
 
-/// Cells reach down to this share of the least radius, whose square has digits that it has lost itself, and at a tip that
-/// is not smooth to this share of the outer one.
+/// Cells reach down to this share of the least radius, whose square has digits that it has lost itself, and at a tip
+/// that is not smooth to this share of the outer one.
 pub(super) const CLEAR: f64 = 0.9;
 const TIP: f64 = 1e-12;
 

@@ -1,7 +1,7 @@
 //! The kernels of families without a kink but at the tip, over a path on which both root singularities are gone.
 //!
-//! With v = sqrt(x^2 - r^2), K = int g' dx/v = int g' ds, where x + v = const e^s, so x = r cosh s: in s the integrand is
-//! analytic for |Im s| < pi/2 (the substitution is elementary; for the profiles see Popov & Hess 2015, chapter 3).
+//! With v = sqrt(x^2 - r^2), K = int g' dx/v = int g' ds, where x + v = const e^s, so x = r cosh s: in s the integrand
+//! is analytic for |Im s| < pi/2 (the substitution is elementary; for the profiles see Popov & Hess 2015, chapter 3).
 
 use super::shape::KernelOrder;
 use super::{Span, StressRadius};

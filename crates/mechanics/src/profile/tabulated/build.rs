@@ -34,7 +34,8 @@ const SMOOTH: f64 = 4.0;
 /// several does.
 const WIDEST: f64 = 1.1;
 const KINK: f64 = 0.6;
-/// The width of a further cell over its distance from the knot, in squares, and the least of the last one over the whole.
+/// The width of a further cell over its distance from the knot, in squares, and the least of the last one over the
+/// whole.
 const GROWTH: f64 = 0.5;
 const LEAST_CELL: f64 = 0.05;
 /// What may be left out of g' for a jump of f'', over f'.
@@ -360,7 +361,8 @@ impl Build<'_> {
         (all.map(|(jump, r)| jump.abs() * (end.end - r)).sum::<f64>() <= SMOOTH * size).then_some(size)
     }
 
-    /// Adds the cells above a knot up to the t `high`: one, or several where the knot below it is too near for one series.
+    /// Adds the cells above a knot up to the t `high`: one, or several where the knot below it is too near for one
+    /// series.
     fn add_stretches(&mut self, knot: usize, high: f64, sources: &NearSources) {
         let base = self.segments[knot].start;
         let singular = if knot > self.flat {

@@ -216,7 +216,7 @@ impl Shape for Tabulated {
     fn kinks(&self) -> Vec<Kink> {
         let kink = |radius| Kink { radius, powers: Powers::All(1) };
         let knots = self.curve.up_to(Reach::Radius(self.end)).kinks.iter().map(|&radius| kink(radius));
-        let tip = (self.flat_radius() <= 0.0).then(|| Kink { radius: 0.0, powers: Powers::Odd });
+        let tip = (self.flat_radius() <= 0.0).then_some(Kink { radius: 0.0, powers: Powers::Odd });
         tip.into_iter().chain(knots).collect()
     }
 
