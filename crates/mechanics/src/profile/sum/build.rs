@@ -105,7 +105,7 @@ impl Sum {
             Profile::ExactSphere(_) => end < DEEPEST * part.facts().ceiling,
             _ => true,
         };
-        let rises = !Shape::kinks(self).is_empty();
+        let rises = Shape::kinks(self).first().is_some_and(|kink| kink.radius < end);
         (rises && self.parts.iter().all(has_series)).then(|| DoubleDouble::square_of(end))
     }
 

@@ -4,7 +4,9 @@ use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
 use super::super::shape::{self, KernelOrder, Shape};
-use super::super::{Cone, Moments, PowerLaw, Profile, Ring, RoundedPunch, Sphere, StressRadius, Tabulated};
+use super::super::{
+    Cone, FlatPunch, Moments, PowerLaw, Profile, Ring, RoundedPunch, Sphere, StressRadius, Tabulated, TruncatedCone,
+};
 use super::Sum;
 
 /// Heights of uneven steps whose slope changes by any amount but falls nowhere.
@@ -77,5 +79,18 @@ proptest! {
                 prop_assert!((found - expected).abs() <= 1e-13 * size, "at {at:?}: {found:e} instead of {expected:e}");
             }
         }
+    }
+}
+
+#[test]
+fn a_punch_that_ends_inside_all_flats_of_a_sum_is_a_punch() {
+    let flat = |radius| Profile::TruncatedCone(TruncatedCone::new(0.1, radius).unwrap());
+    let punch = || Profile::FlatPunch(FlatPunch::new(1e-3).unwrap());
+    for radius in [1e-3, 2e-3] {
+        let sum = Profile::Sum(Sum::new(vec![flat(radius), punch()]).unwrap());
+        let ring = |profile: &Profile| Ring::between(profile.point(0.0.into()), profile.point(1e-6.into()));
+        assert_eq!(sum.moments(&ring(&sum)), punch().moments(&ring(&punch())));
+        let at = StressRadius::new(5e-4);
+        assert!((sum.kernel(&at, &ring(&sum)) / punch().kernel(&at, &ring(&punch())) - 1.0).abs() < 1e-15);
     }
 }
