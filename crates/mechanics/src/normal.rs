@@ -177,7 +177,7 @@ pub(super) fn max_pressure(profile: &Profile, elasticity: &Elasticity, edge: &Po
     if edge.level.value() > 0.0 && spikes.map(at).any(f64::is_infinite) {
         return None;
     }
-    if profile.kernel_falls() || profile.falls(0.0, edge.radius).least > 0.0 {
+    if profile.falls(0.0, edge.radius) {
         return Some(at(0.0));
     }
     // A scan, then a search about its largest value: a profile that is steep outside has its maximum off the

@@ -11,8 +11,9 @@
 use std::sync::LazyLock;
 
 use super::ring::{Moments, StressRadius};
+use super::shape::Powers;
 use super::span::Span;
-use crate::numerics::chebyshev::TWENTY_FOUR;
+use crate::numerics::chebyshev::{Points, TWENTY_FOUR};
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::gauss::{EIGHT_POINTS, TWELVE_POINTS, TWENTY_POINTS};
 use crate::numerics::multipole::Multipole;
@@ -21,6 +22,8 @@ use crate::numerics::roots::{distance_below, within};
 
 /// The most terms of a Chebyshev series.
 const POINTS: usize = 24;
+/// Points at which a slope is bounded.
+static SLOPES: LazyLock<Points<64>> = LazyLock::new(Points::new);
 /// The least kappa = r^2 - b^2 over the square of the outer end for which the antiderivative serves: below it, a rule
 /// of twelve points is exact to rounding (rho = 6.9), and the antiderivative would cancel.
 const LEAST_KAPPA: f64 = -2.0;
@@ -41,26 +44,6 @@ static SHIFTED: LazyLock<[[f64; POINTS]; POINTS]> = LazyLock::new(|| {
     }
     rows
 });
-
-/// What gamma is a series of.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Powers {
-    /// gamma over this power of zeta, in zeta: above a kink.
-    All(usize),
-    /// gamma/zeta, in zeta^2: above a point of the grid.
-    Odd,
-}
-
-impl Powers {
-    /// Those of the sum of two functions.
-    pub(crate) fn and(self, other: Powers) -> Powers {
-        match (self, other) {
-            (Powers::Odd, Powers::Odd) => Powers::Odd,
-            (Powers::Odd, Powers::All(power)) | (Powers::All(power), Powers::Odd) => Powers::All(power.min(1)),
-            (Powers::All(one), Powers::All(other)) => Powers::All(one.min(other)),
-        }
-    }
-}
 
 /// A cell.
 #[derive(Clone, Debug, PartialEq)]
@@ -96,7 +79,8 @@ pub(crate) struct Part {
 }
 
 impl Cell {
-    /// The cell of width `high` above the square `square`, by a Chebyshev series over 0..h in zeta, or over its square.
+    /// The cell of width `high` above the square `square`, by the Chebyshev series over 0..1 of gamma over the least
+    /// power of u, in u or in its square.
     pub(crate) fn new(kink: f64, square: DoubleDouble, high: f64, series: &[f64], kind: Powers) -> Cell {
         let mut plain = [0.0; POINTS];
         for (order, (a, row)) in series.iter().zip(SHIFTED.iter()).enumerate() {
@@ -104,16 +88,21 @@ impl Cell {
                 *sum += a * c;
             }
         }
-        let (first, step) = match kind {
-            Powers::All(power) => (power, 1),
-            Powers::Odd => (1, 2),
-        };
-        let unit = (0..first).fold(1.0, |unit, _| unit * high);
+        let (first, step) = if let Powers::All(power) = kind { (power, 1) } else { (1, 2) };
         let count = series.len().max(1);
         let mut powers = vec![0.0; first + step * (count - 1) + 1];
         for (index, c) in plain[..count].iter().enumerate() {
-            powers[first + step * index] = unit * c;
+            powers[first + step * index] = *c;
         }
+        Cell::of(kink, square, high, powers, step == 2, first)
+    }
+
+    /// What stands for a tip, up to this radius, m, by its powers.
+    pub(crate) fn tip(radius: f64, powers: &[f64]) -> Cell {
+        Cell::of(0.0, DoubleDouble::ZERO, radius, powers.to_vec(), false, powers.len() - 1)
+    }
+
+    fn of(kink: f64, square: DoubleDouble, high: f64, powers: Vec<f64>, odd: bool, first: usize) -> Cell {
         let integrals: Box<[f64]> = powers.iter().enumerate().map(|(j, a)| a / (j + 1) as f64).collect();
         let radius = square.value().sqrt();
         let end = (square + DoubleDouble::square_of(high)).value().sqrt();
@@ -129,7 +118,7 @@ impl Cell {
             centre: 0.0,
             powers: powers.into(),
             integrals,
-            odd: kind == Powers::Odd,
+            odd,
             order: (first + 1) as f64,
         };
         cell.depth = cell.rise(cell.whole());
@@ -343,13 +332,12 @@ impl Cell {
         kernel
     }
 
-    /// Adds its sources dg over x^2 from one value of zeta to another to a multipole.
-    pub(crate) fn add_sources(&self, sources: &mut Multipole, part: Part, weight: f64) {
-        let places = TWENTY_POINTS.map(|(share, _)| part.high - part.drop * share);
-        let gammas = self.gammas(places);
-        let offset = self.square.value() - sources.interval.0;
+    /// Adds the sources dg over x^2 of a part to a multipole above whose lower end the part begins at `start`, m^2.
+    pub(crate) fn add_sources(&self, sources: &mut Multipole, start: f64, part: Part, weight: f64) {
+        let beyond = TWENTY_POINTS.map(|(share, _)| part.drop * (1.0 - share));
+        let gammas = self.gammas(beyond.map(|beyond| part.low + beyond));
         sources.add_sources(
-            &places.map(|zeta| offset + zeta * zeta),
+            &beyond.map(|beyond| start + beyond * (part.low + part.low + beyond)),
             &std::array::from_fn(|lane| weight * part.drop * TWENTY_POINTS[lane].1 * gammas[lane]),
         );
     }
@@ -382,10 +370,19 @@ impl Cell {
         angle * (0..TWENTY_POINTS.len()).map(term).sum::<f64>()
     }
 
-    /// A bound, 1/m^2, of the slope of g'/x over zeta.
+    /// A bound, 1/m^2, of how fast g'/x rises with zeta; zero where it only falls.
+    ///
+    /// A polynomial of degree d is no larger between N Chebyshev points than the middle of its values there plus half
+    /// their range over cos(pi d/2N) (Ehlich & Zeller 1964).
     pub(crate) fn steepest(&self) -> f64 {
-        let terms = self.powers.iter().enumerate().skip(2);
-        terms.map(|(j, a)| (j - 1) as f64 * a.abs()).sum::<f64>() / (self.high * self.high)
+        // Over u or over u^2, the polynomial in u or in its square.
+        let step = if self.odd { 2 } else { 1 };
+        let terms: Vec<f64> = (step + 1..self.powers.len()).step_by(step).map(|j| (j - 1) as f64 * self.powers[j]).collect();
+        let values = SLOPES.places(0.0, 1.0).map(|u| terms.iter().rev().fold(0.0, |sum, a| sum * u + a));
+        let (least, most) = values.iter().fold((f64::MAX, f64::MIN), |(a, b), &value| (a.min(value), b.max(value)));
+        let turn = std::f64::consts::FRAC_PI_2 * terms.len().saturating_sub(1) as f64 / values.len() as f64;
+        let polynomial = 0.5 * (least + most) + 0.5 * (most - least) / turn.cos();
+        (polynomial - self.powers[0]).max(0.0) / (self.high * self.high)
     }
 
     /// Whether the terms of g'/x beyond the first cannot make it fall below zero.

@@ -9,17 +9,17 @@
 //! at each cluster three runs part. Those from which it is far take its moments, side by side; those beyond it are
 //! done; the others go on to its halves.
 
-use std::ops::{Deref, Range};
+use std::ops::Range;
 
 #[cfg(test)]
 use super::call_count;
 use super::kernel::Kernel;
 use super::ring::StressRadius;
+use super::sources::Sources;
 use super::span::Span;
 use super::{Cell, Cells, NearPart, SpanParts};
-use crate::numerics::cluster_tree::Cluster;
+use crate::numerics::cluster_tree::{Cluster, ClusterTree};
 use crate::numerics::double_double::DoubleDouble;
-use crate::numerics::multipole::Multipole;
 use crate::numerics::root_kernel::Series;
 
 /// Radii side by side.
@@ -31,35 +31,23 @@ const MANY: usize = 64;
 /// The moments of a cluster of so many cells are made of what is in it at once, not half by half.
 const FEW_CELLS: usize = 2;
 
+/// The parts of a cell up to which each is summed on its own.
+const CROWD: usize = 8;
+
 /// A stretch within the cell of this index, and its weight.
 type Part = (usize, Span, f64);
 
-/// Cells that a profile keeps, or that were made for one sum.
-pub(crate) enum Source<'a> {
-    Kept(&'a Cells),
-    Own(Box<Cells>),
-}
-
-impl Deref for Source<'_> {
-    type Target = Cells;
-
-    fn deref(&self) -> &Cells {
-        match self {
-            Source::Kept(cells) => cells,
-            Source::Own(cells) => cells,
-        }
-    }
-}
-
 /// Cells by their weights.
 pub(crate) struct WeightedCells<'a> {
-    cells: Source<'a>,
+    cells: &'a Cells,
     /// Runs of cells that lie in one ring, and its weight, from the centre outward.
     runs: Vec<(Range<usize>, f64)>,
     /// The parts of cells that rings cut, by their cells.
     parts: Vec<Part>,
     /// The clusters that have moments of their own, by their numbers.
-    own: Vec<(usize, Multipole)>,
+    own: Vec<(usize, Sources)>,
+    /// The cells that many rings cut, by their numbers.
+    crowds: Vec<(usize, ClusterTree<Sources>)>,
     /// What rings cross at a vertical edge.
     rim: Option<Rim>,
 }
@@ -84,7 +72,7 @@ pub(crate) type SumAndSize = (f64, f64);
 
 impl WeightedCells<'_> {
     /// The cells of spans from the centre outward, each with its weight, for sums at so many radii.
-    pub(crate) fn new<'a>(cells: Source<'a>, spans: &[(Span, f64)], radii: usize) -> WeightedCells<'a> {
+    pub(crate) fn new<'a>(cells: &'a Cells, spans: &[(Span, f64)], radii: usize) -> WeightedCells<'a> {
         let (mut runs, mut parts) = (Vec::with_capacity(spans.len()), Vec::with_capacity(2 * spans.len()));
         let mut rim: Option<Rim> = None;
         for (span, weight) in spans {
@@ -104,7 +92,8 @@ impl WeightedCells<'_> {
             }
             parts.extend(high.map(|(index, span)| (index, span, *weight)));
         }
-        let mut weighted = WeightedCells { cells, runs, parts, own: Vec::new(), rim };
+        let mut weighted = WeightedCells { cells, runs, parts, own: Vec::new(), crowds: Vec::new(), rim };
+        weighted.crowds = weighted.crowds();
         if let Some(root) = weighted.cells.sources().root() {
             weighted.gather(root, radii >= MANY);
         }
@@ -136,6 +125,33 @@ impl WeightedCells<'_> {
         &self.parts[first..first + count]
     }
 
+    /// Clusters of the parts of each cell that many rings cut, over x^2 from their own inner ends on, so that rings
+    /// within a millionth of the edge keep their digits.
+    fn crowds(&self) -> Vec<(usize, ClusterTree<Sources>)> {
+        let cut = self.parts.chunk_by(|one, next| one.0 == next.0).filter(|parts| parts.len() > CROWD);
+        let clusters = |parts: &[Part]| {
+            let cell = &self.cells.cells[parts[0].0];
+            let tree = ClusterTree::new(parts.len(), CROWD / 2, |items, halves: Option<[&Sources; 2]>| {
+                let width = parts[items.clone()].iter().map(|(_, span, _)| span.gap).sum();
+                let (mut sources, mut start) = (Sources::empty(parts[items.start].1.inner, width), 0.0);
+                if let Some(halves) = halves {
+                    for half in halves {
+                        sources.add_beyond(start, half, 1.0);
+                        start += half.width();
+                    }
+                } else {
+                    for (_, span, weight) in &parts[items.clone()] {
+                        cell.add_sources(&mut sources.beyond, start, cell.part(span), *weight);
+                        start += span.gap;
+                    }
+                }
+                sources
+            });
+            (parts[0].0, tree)
+        };
+        cut.map(clusters).collect()
+    }
+
     /// Lists the moments of a cluster whose cells do not weigh alike, if it is small or `all` are wanted, after those
     /// below it.
     fn gather(&mut self, number: usize, all: bool) {
@@ -145,25 +161,25 @@ impl WeightedCells<'_> {
         }
         let is_small = cluster.items.len() <= FEW_CELLS;
         // Wider than it is far from the centre, it is far from no radius, and neither is a cluster that holds it.
-        let wanted = (all || is_small) && cluster.sources.is_far(0.0);
-        let interval = cluster.sources.interval;
+        let wanted = (all || is_small) && Kernel::Root.is_far(&cluster.sources, DoubleDouble::ZERO);
+        let (origin, width) = (cluster.sources.origin, cluster.sources.width());
         if let Some(halves) = cluster.halves.filter(|_| !is_small) {
             halves.into_iter().for_each(|half| self.gather(half, all));
         }
         if wanted {
-            let mut sources = Multipole::empty(interval);
+            let mut sources = Sources::empty(origin, width);
             self.add_cluster(number, &mut sources);
             self.own.push((number, sources));
         }
     }
 
     /// The moments that a cluster has of its own.
-    fn own(&self, number: usize) -> Option<&Multipole> {
+    fn own(&self, number: usize) -> Option<&Sources> {
         self.own.binary_search_by_key(&number, |own| own.0).ok().map(|index| &self.own[index].1)
     }
 
     /// Adds the weighted sources of a cluster.
-    fn add_cluster(&self, number: usize, sources: &mut Multipole) {
+    fn add_cluster(&self, number: usize, sources: &mut Sources) {
         let cluster = self.cells.sources().cluster(number);
         match (self.weight(&cluster.items), self.own(number), cluster.halves) {
             (Some(weight), _, _) if weight.abs() > 0.0 => sources.add(&cluster.sources, weight),
@@ -176,7 +192,7 @@ impl WeightedCells<'_> {
 
     /// Adds the sources of the parts of a cell. All but the first make the most of the cell: the first counts as what
     /// is left by them.
-    fn add_parts(&self, cluster: &Cluster<Multipole>, sources: &mut Multipole) {
+    fn add_parts(&self, cluster: &Cluster<Sources>, sources: &mut Sources) {
         let index = cluster.items.start;
         let (cell, parts) = (&self.cells.cells[index], self.parts_of(index));
         let covered = parts.windows(2).all(|pair| pair[0].1.outer == pair[1].1.inner)
@@ -188,7 +204,7 @@ impl WeightedCells<'_> {
         }
         for (_, span, weight) in parts {
             if (weight - base).abs() > 0.0 {
-                cell.add_sources(sources, cell.part(span), weight - base);
+                sources.add_part(cell, span.inner, cell.part(span), weight - base);
             }
         }
     }
@@ -199,7 +215,10 @@ impl WeightedCells<'_> {
         if kernel.is_angle() {
             order.reverse();
         }
-        let held = |&index: &usize| Held { at: radii[index], cell: self.cells.find(radii[index].radius) };
+        let held = |&index: &usize| {
+            let at = *self.cells.at_least(&radii[index]);
+            Held { at, cell: self.cells.find(at.radius) }
+        };
         let held: Vec<Held> = order.iter().map(held).collect();
         let (mut ordered, mut sums) = (vec![(0.0, 0.0); radii.len()], vec![(0.0, 0.0); radii.len()]);
         if let Some(root) = self.cells.sources().root() {
@@ -227,7 +246,7 @@ impl WeightedCells<'_> {
             None => self.own(number),
         };
         let far = sources.map_or(0, |sources| {
-            let far = radii.partition_point(|held| kernel.is_far(sources, held.at.square.value()));
+            let far = radii.partition_point(|held| kernel.is_far(sources, held.at.square));
             add_far(kernel, sources, weight.unwrap_or(1.0), &radii[..far], &mut sums[..far]);
             far
         });
@@ -245,8 +264,43 @@ impl WeightedCells<'_> {
             Some(whole) => whole,
             None => self.parts_of(index),
         };
-        let cell = &self.cells.cells[index];
-        for (_, span, weight) in parts.iter().filter(|part| part.2.abs() > 0.0) {
+        let crowd = self.crowds.iter().find(|crowd| whole.is_none() && crowd.0 == index && !kernel.is_angle());
+        match crowd.and_then(|(_, tree)| Some((tree, tree.root()?))) {
+            Some((tree, root)) => self.visit_crowd(tree, root, parts, kernel, radii, sums),
+            None => self.add_parts_near(parts, kernel, radii, sums),
+        }
+    }
+
+    /// Adds what a cluster of parts of a cell does at radii in rising order.
+    fn visit_crowd(
+        &self,
+        tree: &ClusterTree<Sources>,
+        number: usize,
+        parts: &[Part],
+        kernel: Kernel,
+        radii: &[Held],
+        sums: &mut [SumAndSize],
+    ) {
+        let Cluster { items, sources, halves } = tree.cluster(number);
+        let some = &parts[items.clone()];
+        let outer = some[some.len() - 1].1.outer;
+        let met = radii.partition_point(|held| held.at.square < outer);
+        let far = radii[..met].partition_point(|held| kernel.is_far(sources, held.at.square));
+        add_far(kernel, sources, 1.0, &radii[..far], &mut sums[..far]);
+        let (radii, sums) = (&radii[far..met], &mut sums[far..met]);
+        if radii.is_empty() {
+            return;
+        }
+        match halves {
+            Some(halves) => halves.iter().for_each(|&half| self.visit_crowd(tree, half, parts, kernel, radii, sums)),
+            None => self.add_parts_near(some, kernel, radii, sums),
+        }
+    }
+
+    /// Adds what parts of a cell do at radii that are near.
+    fn add_parts_near(&self, parts: &[Part], kernel: Kernel, radii: &[Held], sums: &mut [SumAndSize]) {
+        for (index, span, weight) in parts.iter().filter(|part| part.2.abs() > 0.0) {
+            let cell = &self.cells.cells[*index];
             match kernel {
                 Kernel::Root => add_near::<false>(cell, span, *weight, radii, sums),
                 Kernel::RootSlope => add_near::<true>(cell, span, *weight, radii, sums),
@@ -289,13 +343,13 @@ fn add_near<const SLOPE: bool>(cell: &Cell, span: &Span, weight: f64, radii: &[H
 }
 
 /// Adds what sources do at radii that are far from them.
-fn add_far(kernel: Kernel, sources: &Multipole, weight: f64, radii: &[Held], sums: &mut [SumAndSize]) {
+fn add_far(kernel: Kernel, sources: &Sources, weight: f64, radii: &[Held], sums: &mut [SumAndSize]) {
     for (radii, sums) in radii.chunks(LANES).zip(sums.chunks_mut(LANES)) {
         if let ([held], [sum]) = (radii, &mut *sums) {
-            add_to(sum, weight * kernel.far(sources, [held.at.square.value()])[0]);
+            add_to(sum, weight * kernel.far(sources, [held.at.square])[0]);
         } else {
             // Lanes left over repeat the last.
-            let squares: [f64; LANES] = std::array::from_fn(|lane| radii[lane.min(radii.len() - 1)].at.square.value());
+            let squares: [_; LANES] = std::array::from_fn(|lane| radii[lane.min(radii.len() - 1)].at.square);
             let far = kernel.far(sources, squares);
             sums.iter_mut().zip(far).for_each(|(sum, far)| add_to(sum, weight * far));
         }

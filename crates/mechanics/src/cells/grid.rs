@@ -1,13 +1,19 @@
-//! The cells of a profile that gives gamma above each of its kinks.
+//! The cells of a shape, by its gamma above each of its kinks.
 //!
 //! Above a kink k, with s the distance in t = sqrt(x^2 - k^2) of the next singularity beneath it, one cell up to 0.6 s
 //! has twenty-four Chebyshev points: the ellipse about it through +-i s has rho = 7.1, and as many terms leave 1e-20.
 //! From there on each cell is half as wide in x^2 as it is far from k^2: the singularity lies two widths below it, rho
 //! = 9.9, and sixteen points leave 1e-16. Where the next kink is no further than 1.1 s, one cell reaches it: rho = 4.2,
-//! and 1e-15. No cell is wider than a quarter of its distance from the ceiling.
+//! and 1e-15. A cell whose last terms are more than rounding is halved, however it came to be too wide: where g grows
+//! steeply, or beside a singularity above.
+//!
+//! At a tip where g is an uneven power no cell has a series, and where it is a steep one few points do. What lies so near to it that the difference is rounding
+//! is taken for a cone, or for a parabola, with the right end.
 
-use super::{Cell, Cells, Powers};
-use crate::numerics::chebyshev::{SIXTEEN, TWENTY_FOUR, counted};
+use super::ring::StressRadius;
+use super::shape::{Kink, Powers, Shape};
+use super::{Cell, Cells};
+use crate::numerics::chebyshev::{Points, SIXTEEN, TWENTY_FOUR, counted};
 use crate::numerics::double_double::DoubleDouble;
 
 /// The part of the distance to the next singularity that a cell above a kink covers, and the most that it does where it
@@ -16,96 +22,81 @@ const KINK: f64 = 0.6;
 const WIDEST: f64 = 1.1;
 /// The width of a cell over its distance from the kink beneath, in squares.
 const GROWTH: f64 = 0.5;
-/// The width of a cell over the distance of its inner end from the ceiling, in squares.
-const BELOW_CEILING: f64 = 0.25;
-/// The share of the largest below which the last terms of a series are rounding.
+/// The share of the largest below which the last terms of a series are rounding, and the one up to which they may be
+/// left out.
 const NEGLIGIBLE: f64 = 1e-17;
+const RESOLVED: f64 = 5e-16;
+/// Halving that makes the last terms smaller by less than this factor meets the rounding of gamma.
+const GAIN: f64 = 4.0;
+/// How many times more gamma may grow from the middle of a cell to its end than before, so that rules of twelve points
+/// follow the square of its integral: in t, and in squares. And the share of gamma from which on its growth counts.
+const WEAK: f64 = 1e-6;
+const STEEP: f64 = 40.0;
+const STEEP_IN_SQUARES: f64 = 8.0;
+/// The least whole power of a tip that is steeper.
+const STEEPEST: usize = 6;
 /// A cell narrower than this share of its square is not worth its border.
 const NARROWEST: f64 = 1e-13;
+/// The least radius of the first cell at an uneven tip over that of the least contact, and the share of g that may go
+/// wrong below it.
+const TIP: f64 = 1e-18;
+/// Cells between two questions whether to go on.
+const BETWEEN_QUESTIONS: usize = 64;
 
-/// Beyond every contact: where the cells of a profile without an end would end, m.
-pub(crate) const ENDLESS: f64 = 1e100;
-
-/// Where g is not analytic.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Kink {
-    /// Radius, m.
-    pub(crate) radius: f64,
-    /// What gamma is above it.
-    pub(crate) powers: Powers,
+/// A series that fits gamma over a cell, and how large its last terms are over what counts.
+struct Fit {
+    terms: Vec<f64>,
+    left: f64,
+    /// Whether gamma grows so fast that rules of a few points would not follow it.
+    steep: bool,
 }
 
-/// The kinks of several profiles added up. A kink within another profile keeps the least power of the two.
-pub(crate) fn united(parts: impl Iterator<Item = Vec<Kink>>) -> Vec<Kink> {
-    let mut kinks: Vec<Kink> = parts.flatten().collect();
-    kinks.sort_by(|a, b| a.radius.total_cmp(&b.radius));
-    let mut united: Vec<Kink> = Vec::with_capacity(kinks.len());
-    for kink in kinks {
-        match united.last_mut() {
-            Some(last) if last.radius.to_bits() == kink.radius.to_bits() => last.powers = last.powers.and(kink.powers),
-            // What lies beneath goes on as an odd function of zeta.
-            Some(_) => united.push(Kink { powers: Powers::All(1).and(kink.powers), ..kink }),
-            None => united.push(kink),
-        }
-    }
-    united
+/// What a cell is made of: the shape, the kink beneath, and what gamma counts for at the least.
+struct Above<'a, S: ?Sized> {
+    shape: &'a S,
+    kink: Kink,
+    base: DoubleDouble,
+    least: f64,
 }
 
-/// gamma at several t, m, above `base`, m, of what begins at the kink `own`, m, by its gamma above that: zero below it.
-pub(crate) fn above<const N: usize>(
-    own: f64,
-    base: f64,
-    t: [f64; N],
-    gammas: impl Fn([f64; N]) -> [f64; N],
-) -> [f64; N] {
-    let further = (base - own) * (base + own);
-    if further < 0.0 {
-        return [0.0; N];
-    }
-    if further <= 0.0 {
-        return gammas(t);
-    }
-    let places = t.map(|t| (t * t + further).sqrt());
-    let found = gammas(places);
-    std::array::from_fn(|lane| found[lane] * (t[lane] / places[lane]))
-}
-
-/// A profile between its kinks.
-pub(crate) trait Grid {
-    /// The kinks from the innermost on, where the surface leaves the plane.
-    fn kinks(&self) -> Vec<Kink>;
-
-    /// The radius, m, at which g ceases to be analytic, never reached by a contact.
-    fn ceiling(&self) -> f64 {
-        f64::INFINITY
-    }
-
-    /// gamma = dg/dt at several t = sqrt(x^2 - base^2), m, above `base`, m: one of its kinks, or of those of a sum that
-    /// it is a part of.
-    fn gammas<const N: usize>(&self, base: f64, t: [f64; N]) -> [f64; N];
-}
-
-/// The first `count` cells of a profile from the radius `start`, m, outward, or fewer where they come to its end, whose
-/// square, m^2, is given.
-pub(crate) fn cells(grid: &impl Grid, start: f64, end: DoubleDouble, count: usize) -> Cells {
-    let kinks = grid.kinks();
-    let ceiling = grid.ceiling();
-    let room = |square: DoubleDouble| {
-        let distance = (DoubleDouble::square_of(ceiling) - square).value();
-        if ceiling < f64::INFINITY { BELOW_CEILING * distance } else { f64::INFINITY }
-    };
-    let (mut cells, start): (Vec<Cell>, _) = (Vec::new(), DoubleDouble::square_of(start));
-    for (index, kink) in kinks.iter().enumerate() {
+/// The cells of a shape up to a radius `end`, m, of contacts from the radius `start`, m, on; `None` once `keep_going`
+/// has returned false.
+pub(super) fn cells<S: Shape + ?Sized>(
+    shape: &S,
+    (start, end): (f64, f64),
+    keep_going: &dyn Fn() -> bool,
+) -> Option<Cells> {
+    let kinks = shape.kinks();
+    let (mut cells, mut floor, end) = (Vec::new(), 0.0, DoubleDouble::square_of(end));
+    let least = shape.level(start) / start;
+    for (index, &kink) in kinks.iter().enumerate() {
         let base = DoubleDouble::square_of(kink.radius);
         let next = kinks.get(index + 1).map(|next| DoubleDouble::square_of(next.radius));
         let top = next.filter(|next| *next < end).unwrap_or(end);
-        if top <= base || top <= start {
-            continue;
+        if top <= base {
+            break;
         }
         let whole = (top - base).value();
         let fits = |width: f64| if whole - width > NARROWEST * top.value() { width } else { whole };
-        let mut reached = (start - base).value();
-        if reached <= 0.0 {
+        let above = Above { shape, kink, base, least };
+        let power = match kink.powers {
+            Powers::Uneven(power) => Some(power),
+            Powers::All(power) if power >= STEEPEST => Some((power + 1) as f64),
+            _ => None,
+        };
+        let mut reached = if let Some(power) = power {
+            let core = start * tip(power);
+            let width = fits(core * core);
+            let level = shape.level(width.sqrt());
+            if power < 2.0 {
+                cells.push(Cell::tip(width.sqrt(), &[level / width.sqrt()]));
+                // There arcosh(x/r) of the cone is n/(n - 1), as it is for the power n at the centre.
+                floor = if power > 1.0 { width.sqrt() / (power / (power - 1.0)).cosh() } else { 0.0 };
+            } else {
+                cells.push(Cell::tip(width.sqrt(), &[0.0, 2.0 * level / width.sqrt()]));
+            }
+            width
+        } else {
             let singular = if let Some(below) = index.checked_sub(1) {
                 (base - DoubleDouble::square_of(kinks[below].radius)).value()
             } else if kink.radius > 0.0 {
@@ -114,44 +105,84 @@ pub(crate) fn cells(grid: &impl Grid, start: f64, end: DoubleDouble, count: usiz
                 f64::INFINITY
             };
             let widest = if whole <= WIDEST * WIDEST * singular { whole } else { fits(KINK * KINK * singular) };
-            reached = widest.min(fits(room(base)));
-            cells.push(first_cell(grid, kink, base, reached.sqrt()));
+            let (cell, width) = above.first(widest);
+            cells.push(cell);
+            width
+        };
+        while whole - reached > 0.0 {
+            if cells.len() % BETWEEN_QUESTIONS == 0 && !keep_going() {
+                return None;
+            }
+            let (cell, next) = above.further(reached, fits(reached + GROWTH * reached) - reached);
+            cells.push(cell);
+            reached = fits(next);
         }
-        while whole - reached > 0.0 && cells.len() < count {
-            let square = base + DoubleDouble::from(reached);
-            let next = fits(reached + (GROWTH * reached).min(room(square)));
-            cells.push(smooth_cell(grid, kink.radius, square, (reached, next - reached)));
-            reached = next;
-        }
-        if cells.len() >= count {
-            break;
+        if !keep_going() {
+            return None;
         }
     }
-    Cells::new(cells)
+    Some(Cells { floor: StressRadius::new(floor), ..Cells::new(cells, end) })
 }
 
-fn first_cell(grid: &impl Grid, kink: &Kink, square: DoubleDouble, high: f64) -> Cell {
-    let terms = match kink.powers {
-        Powers::All(power) => {
-            let t = TWENTY_FOUR.places(0.0, high);
-            let gammas = grid.gammas(kink.radius, t);
-            TWENTY_FOUR
-                .terms(&std::array::from_fn(|lane| gammas[lane] / (0..power).fold(1.0, |unit, _| unit * t[lane])))
-        }
-        Powers::Odd => {
-            let t = TWENTY_FOUR.places(0.0, high * high).map(f64::sqrt);
-            let gammas = grid.gammas(kink.radius, t);
-            TWENTY_FOUR.terms(&std::array::from_fn(|lane| gammas[lane] / t[lane]))
-        }
-    };
-    Cell::new(kink.radius, square, high, counted(&terms, NEGLIGIBLE), kink.powers)
+/// The radius of what stands for an uneven tip over that of the least contact.
+fn tip(power: f64) -> f64 {
+    if power > 1.0 { f64::EPSILON.powf((power - 1.0).recip()).clamp(TIP, 0.5) } else { TIP }
 }
 
-/// A cell above the kink `base`, m, whose inner end lies `below` beyond the kink and that is `width` wide, in squares,
-/// m^2.
-fn smooth_cell(grid: &impl Grid, base: f64, square: DoubleDouble, (below, width): (f64, f64)) -> Cell {
-    let t = SIXTEEN.places(0.0, width).map(|above| (below + above).sqrt());
-    let gammas = grid.gammas(base, t);
-    let terms = SIXTEEN.terms(&std::array::from_fn(|lane| gammas[lane] / t[lane]));
-    Cell::new(base, square, width.sqrt(), counted(&terms, NEGLIGIBLE), Powers::Odd)
+impl<S: Shape + ?Sized> Above<'_, S> {
+    /// The cell above the kink, and its width in squares, m^2, at most this.
+    fn first(&self, widest: f64) -> (Cell, f64) {
+        let fit = |width: f64| {
+            let high = width.sqrt();
+            match self.kink.powers {
+                Powers::All(power) => {
+                    let power = power as i32;
+                    self.fit(&TWENTY_FOUR, STEEP, |u| (high * u, u.powi(power)))
+                }
+                _ => self.fit(&TWENTY_FOUR, STEEP_IN_SQUARES, |u| (high * u.sqrt(), u.sqrt())),
+            }
+        };
+        let (Fit { terms, .. }, width) = narrowed(widest, 0.25, fit);
+        (Cell::new(self.kink.radius, self.base, width.sqrt(), &terms, self.kink.powers), width)
+    }
+
+    /// The cell whose inner end lies `below` beyond the kink, in squares, m^2, at most so wide, and where it ends.
+    fn further(&self, below: f64, widest: f64) -> (Cell, f64) {
+        let fit = |width: f64| {
+            self.fit(&SIXTEEN, STEEP_IN_SQUARES, |u| {
+                let t = (below + width * u).sqrt();
+                (t, t / width.sqrt())
+            })
+        };
+        let (Fit { terms, .. }, width) = narrowed(widest, 0.5, fit);
+        let square = self.base + DoubleDouble::from(below);
+        (Cell::new(self.kink.radius, square, width.sqrt(), &terms, Powers::Odd), below + width)
+    }
+
+    /// The series over 0..1 of gamma over a divisor; a place gives t, m, and the divisor.
+    fn fit<const N: usize>(&self, points: &Points<N>, steep: f64, place: impl Fn(f64) -> (f64, f64)) -> Fit {
+        let places = points.places(0.0, 1.0).map(place);
+        let gammas = places.map(|(t, _)| self.shape.gamma(self.kink.radius, t));
+        let largest = gammas.iter().fold(self.least, |largest, gamma| largest.max(gamma.abs()));
+        let terms = points.terms(&std::array::from_fn(|lane| gammas[lane] / places[lane].1));
+        let size = terms.iter().fold(largest, |size, term| size.max(term.abs()));
+        let left = terms[N - 2..].iter().fold(0.0_f64, |left, term| left.max(term.abs()));
+        let left = if size > 0.0 { left / size } else { 0.0 };
+        let (outer, inner) = (gammas[0] - gammas[N / 2], gammas[N / 2] - gammas[N - 1]);
+        let steep = outer > steep * inner.abs() && outer > WEAK * largest;
+        Fit { terms: counted(&terms, NEGLIGIBLE).to_vec(), left, steep }
+    }
+}
+
+/// The fit over the widest cell that leaves rounding, each narrower by a factor than the one before, and its width.
+fn narrowed(widest: f64, factor: f64, fit: impl Fn(f64) -> Fit) -> (Fit, f64) {
+    let (mut width, mut best) = (widest, fit(widest));
+    while best.steep || best.left > RESOLVED {
+        let next = fit(factor * width);
+        if !best.steep && next.left * GAIN > best.left {
+            break;
+        }
+        (width, best) = (factor * width, next);
+    }
+    (best, width)
 }

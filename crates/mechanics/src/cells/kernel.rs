@@ -15,10 +15,11 @@ use std::sync::LazyLock;
 use super::call_count;
 use super::cell::Cell;
 use super::ring::StressRadius;
+use super::sources::Sources;
 use super::span::Span;
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::gauss;
-use crate::numerics::multipole::{Multipole, ORDERS, add_polynomials};
+use crate::numerics::multipole::{ORDERS, add_polynomials};
 
 /// A kernel.
 #[derive(Clone, Copy, PartialEq)]
@@ -44,18 +45,23 @@ impl Kernel {
         if self.is_angle() { cells.start <= cell } else { cells.end > cell }
     }
 
-    /// Whether sources are far from a radius of this square.
-    pub(super) fn is_far(self, sources: &Multipole, square: f64) -> bool {
-        let (low, high) = sources.interval;
-        if self.is_angle() { (square - high).min(low) >= high - low } else { sources.is_far(square) }
+    /// Whether sources are far from a radius of this square, m^2.
+    pub(crate) fn is_far(self, sources: &Sources, square: DoubleDouble) -> bool {
+        let (place, width) = (sources.place(square), sources.width());
+        if self.is_angle() {
+            (place - width).min(sources.origin.value()) >= width
+        } else {
+            sources.beyond.is_far(place)
+        }
     }
 
     /// The sums over sources that are far from radii of these squares.
-    pub(super) fn far<const N: usize>(self, sources: &Multipole, squares: [f64; N]) -> [f64; N] {
+    pub(crate) fn far<const N: usize>(self, sources: &Sources, squares: [DoubleDouble; N]) -> [f64; N] {
+        let places = squares.map(|square| sources.place(square));
         match self {
-            Kernel::Root => sources.potentials(squares),
-            Kernel::RootSlope => sources.potential_slopes(squares),
-            Kernel::Arccos | Kernel::Arcsin => self.far_angles(sources, squares),
+            Kernel::Root => sources.beyond.potentials(places),
+            Kernel::RootSlope => sources.beyond.potential_slopes(places),
+            Kernel::Arccos | Kernel::Arcsin => self.far_angles(sources, places),
         }
     }
 
@@ -75,7 +81,7 @@ impl Kernel {
     }
 
     /// The kernel of one place, whose square, m^2, and radius, m, are given; zero where it has no share.
-    pub(super) fn of_place(self, square: DoubleDouble, radius: f64, at: &StressRadius) -> f64 {
+    pub(crate) fn of_place(self, square: DoubleDouble, radius: f64, at: &StressRadius) -> f64 {
         let beyond = (square - at.square).value();
         match self {
             Kernel::Root | Kernel::RootSlope if beyond < 0.0 => 0.0,
@@ -107,18 +113,17 @@ impl Kernel {
         if self == Kernel::Arccos { -1.0 } else { 1.0 }
     }
 
-    fn far_angles<const N: usize>(self, sources: &Multipole, squares: [f64; N]) -> [f64; N] {
-        let (low, high) = sources.interval;
-        let (centre, half) = (0.5 * (low + high), 0.5 * (high - low));
+    fn far_angles<const N: usize>(self, sources: &Sources, places: [f64; N]) -> [f64; N] {
+        let (half, origin, moments) = (0.5 * sources.width(), sources.origin.value(), &sources.beyond.moments);
         let mut sums = [0.0; N];
         for (differences, place) in NODES.primitives.iter().zip(&NODES.places) {
-            let products: [f64; ORDERS] = std::array::from_fn(|order| differences[order] * sources.moments[order]);
-            let (x_square, share) = (centre + half * place, total(&products));
-            for (sum, square) in sums.iter_mut().zip(squares) {
-                *sum += share / (x_square * (square - x_square)).sqrt();
+            let products: [f64; ORDERS] = std::array::from_fn(|order| differences[order] * moments[order]);
+            let (beyond, share) = (half + half * place, total(&products));
+            for (sum, place) in sums.iter_mut().zip(places) {
+                *sum += share / ((origin + beyond) * (place - beyond)).sqrt();
             }
         }
-        let at_centre = squares.map(|square| self.angle(centre.sqrt(), square - centre) * sources.moments[0]);
+        let at_centre = places.map(|place| self.angle((origin + half).sqrt(), place - half) * moments[0]);
         std::array::from_fn(|lane| at_centre[lane] + self.sign() * 0.5 * half * sums[lane])
     }
 }

@@ -17,7 +17,7 @@ impl Lookup {
     pub(super) fn new(starts: impl Iterator<Item = f64>, end: f64) -> Lookup {
         let starts: Box<[f64]> = starts.collect();
         let mut lookup = Lookup { scale: starts.len() as f64 / end, starts, buckets: Box::default() };
-        let mut buckets = vec![lookup.starts.len(); lookup.starts.len() + 1];
+        let mut buckets = vec![lookup.starts.len(); lookup.starts.len().max(1) + 1];
         for index in (0..lookup.starts.len()).rev() {
             buckets[lookup.bucket(lookup.starts[index])] = index;
         }
@@ -31,7 +31,7 @@ impl Lookup {
     /// The bucket of a value: it does not fall with the value, however that is rounded.
     fn bucket(&self, value: f64) -> usize {
         // Rounds towards zero, and takes what is no number for zero.
-        ((value * self.scale) as usize).min(self.starts.len() - 1)
+        ((value * self.scale) as usize).min(self.starts.len().saturating_sub(1))
     }
 
     /// The panels that start in the same bucket: those before it start below the value, those after it above.

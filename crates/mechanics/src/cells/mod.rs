@@ -1,34 +1,37 @@
 //! The engine under every profile: g as a sequence of [`Cell`]s, and every integral of it by one set of rules.
 //!
-//! A shape, a sum and a table differ in what gives gamma at the points of their cells ([`grid`]); from there on level,
-//! radius, load, moments, kernels and displacements follow here, by the cells up to some radius ([`Cells`]), built when
-//! a contact first reaches them ([`stages`]). Many rings at many radii go through a tree of multipoles ([`field`]).
+//! Shapes, sums and tables differ in what gives gamma at the points of their cells ([`shape`], [`grid`]); from there on
+//! level, radius, load, moments, kernels and displacements follow here, by the cells up to some radius ([`Cells`]),
+//! built when a contact first reaches them ([`stages`]). Many rings at many radii go through a tree of multipoles
+//! ([`field`]).
 
 #[cfg(test)]
 pub(crate) mod call_count;
 mod cell;
 pub(crate) mod displacement;
 pub(crate) mod field;
-pub(crate) mod grid;
+mod grid;
 pub(crate) mod kernel;
 mod lookup;
 pub(crate) mod moment_tree;
 pub(crate) mod ring;
+pub(crate) mod shape;
+pub(crate) mod sources;
 pub(crate) mod span;
 pub(crate) mod stages;
 
 use std::ops::Range;
 use std::sync::OnceLock;
 
-pub(crate) use cell::{Cell, NearPart, Powers};
+pub(crate) use cell::{Cell, NearPart};
 
 use crate::numerics::cluster_tree::{Cluster, ClusterTree};
 use crate::numerics::double_double::DoubleDouble;
-use crate::numerics::multipole::Multipole;
 use kernel::Kernel;
 use lookup::Lookup;
 use moment_tree::MomentTree;
 use ring::{Moments, Point, Ring, StressRadius};
+use sources::Sources;
 use span::Span;
 
 /// A bound of int dzeta/sqrt(zeta^2 - kappa) over any cell, for any radius that is further from its inner end than
@@ -69,20 +72,23 @@ pub(crate) struct Cells {
     /// Moments and depth of all runs of cells.
     tree: MomentTree,
     /// The kernel's sources, made when a stress is first asked for.
-    sources: OnceLock<ClusterTree<Multipole>>,
+    sources: OnceLock<ClusterTree<Sources>>,
     /// Where g is not analytic, m.
     pub(crate) kinks: Vec<f64>,
     /// The sums of [`Cell::steepest`] before each cell, made when first asked for.
     steepest: OnceLock<Vec<f64>>,
+    /// The least radius at which a kernel is not that of the centre.
+    pub(crate) floor: StressRadius,
     pub(crate) top: Top,
 }
 
 impl Cells {
-    /// By cells of which each ends at the square where the next begins. Levels and loads are counted from the first.
-    pub(crate) fn new(mut cells: Vec<Cell>) -> Cells {
+    /// By cells of which each ends at the square where the next begins. Levels and loads are counted from the first;
+    /// without any, all up to the square `end`, m^2, is flat.
+    pub(crate) fn new(mut cells: Vec<Cell>, end: DoubleDouble) -> Cells {
         let mut top = Top {
-            square: DoubleDouble::ZERO,
-            radius: 0.0,
+            square: end,
+            radius: end.value().sqrt(),
             level: DoubleDouble::ZERO,
             load: DoubleDouble::ZERO,
             centre: 0.0,
@@ -109,39 +115,42 @@ impl Cells {
             sources: OnceLock::new(),
             kinks,
             steepest: OnceLock::new(),
+            floor: StressRadius::new(0.0),
             top,
             cells,
         }
     }
 
     /// The kernel's sources g' dx over x^2.
-    pub(crate) fn sources(&self) -> &ClusterTree<Multipole> {
+    pub(crate) fn sources(&self) -> &ClusterTree<Sources> {
         self.sources.get_or_init(|| {
             ClusterTree::new(self.cells.len(), 1, |items, halves| {
-                let last = &self.cells[items.end - 1];
+                let (first, last) = (&self.cells[items.start], &self.cells[items.end - 1]);
                 let end = self.cells.get(items.end).map_or(self.top.square, |next| next.square);
-                let mut sources = Multipole::empty((self.cells[items.start].square.value(), end.value()));
+                let mut sources = Sources::empty(first.square, (end - first.square).value());
                 match halves {
-                    Some(halves) => halves.into_iter().for_each(|half: &Multipole| sources.add(half, 1.0)),
-                    None => last.add_sources(&mut sources, last.whole(), 1.0),
+                    Some(halves) => halves.into_iter().for_each(|half| sources.add(half, 1.0)),
+                    None => sources.add_part(last, last.square, last.whole(), 1.0),
                 }
                 sources
             })
         })
     }
 
-    /// Adds the sources of a span to those of its squares.
-    pub(crate) fn add_sources(&self, span: &Span, sources: &mut Multipole) {
+    /// The sources of a span.
+    pub(crate) fn sources_of(&self, span: &Span) -> Sources {
+        let mut sources = Sources::empty(span.inner, span.gap);
         let SpanParts { low, whole, high } = self.parts(span);
         for (index, part) in low.into_iter().chain(high) {
             let cell = &self.cells[index];
-            cell.add_sources(sources, cell.part(&part), 1.0);
+            sources.add_part(cell, part.inner, cell.part(&part), 1.0);
         }
-        let mut add = |cluster: &Cluster<Multipole>| {
+        let mut add = |cluster: &Cluster<Sources>| {
             sources.add(&cluster.sources, 1.0);
             true
         };
         self.sources().visit(whole, &mut add, &mut |_| {});
+        sources
     }
 
     /// g, m, at a radius, m.
@@ -149,28 +158,26 @@ impl Cells {
         if radius >= self.top.radius {
             return self.top.level.value();
         }
-        let cell = &self.cells[self.find(radius)];
+        let Some(cell) = self.cells.get(self.find(radius)) else { return 0.0 };
         (cell.level + DoubleDouble::from(cell.rise_to(cell.zeta(DoubleDouble::square_of(radius))))).value()
     }
 
     /// g' at a radius, m.
     pub(crate) fn slope(&self, radius: f64) -> f64 {
-        let cell = &self.cells[self.find(radius)];
-        if radius < cell.radius {
-            return 0.0;
+        match self.cells.get(self.find(radius)) {
+            Some(cell) if radius >= cell.radius => {
+                cell.slope_over_radius(cell.zeta(DoubleDouble::square_of(radius))) * radius
+            }
+            _ => 0.0,
         }
-        cell.slope_over_radius(cell.zeta(DoubleDouble::square_of(radius))) * radius
     }
 
-    /// gamma at several t = sqrt(x^2 - base^2), m, side by side.
-    pub(crate) fn slopes<const N: usize>(&self, base: f64, t: [f64; N]) -> [f64; N] {
-        let square = DoubleDouble::square_of(base);
-        t.map(|t| {
-            let above = DoubleDouble::square_of(t);
-            let cell = &self.cells[self.find((square + above).value().sqrt())];
-            let zeta_square = ((square - cell.square) + above).value();
-            if zeta_square > 0.0 { cell.slope_over_radius(zeta_square.sqrt().min(cell.high)) * t } else { 0.0 }
-        })
+    /// gamma at t = sqrt(x^2 - base^2), m.
+    pub(crate) fn gamma(&self, base: f64, t: f64) -> f64 {
+        let (square, above) = (DoubleDouble::square_of(base), DoubleDouble::square_of(t));
+        let Some(cell) = self.cells.get(self.find((square + above).value().sqrt())) else { return 0.0 };
+        let zeta_square = ((square - cell.square) + above).value();
+        if zeta_square > 0.0 { cell.slope_over_radius(zeta_square.sqrt().min(cell.high)) * t } else { 0.0 }
     }
 
     /// X(y)^2, m^2.
@@ -178,12 +185,14 @@ impl Cells {
         if level >= self.top.level {
             return self.top.square;
         }
-        let cell = &self.cells[self.by_level.holding(level.value())];
+        let Some(cell) = self.cells.get(self.by_level.holding(level.value())) else { return self.top.square };
         let rest = (level - cell.level).value();
         if rest <= 0.0 {
             return cell.square;
         }
-        cell.square + DoubleDouble::square_of(cell.zeta_of(rest))
+        let square = cell.square + DoubleDouble::square_of(cell.zeta_of(rest));
+        // Without a kink below, x has all the digits that it needs, and the edge is where its radius is.
+        if cell.kink > 0.0 { square } else { DoubleDouble::square_of(square.value().sqrt()) }
     }
 
     /// int x dg, m^2, up to a radius, m.
@@ -191,7 +200,7 @@ impl Cells {
         if radius >= self.top.radius {
             return self.top.load.value();
         }
-        let cell = &self.cells[self.find(radius)];
+        let Some(cell) = self.cells.get(self.find(radius)) else { return 0.0 };
         (cell.load + DoubleDouble::from(cell.load_to(cell.zeta(DoubleDouble::square_of(radius))))).value()
     }
 
@@ -233,7 +242,7 @@ impl Cells {
         let mut index = self.find(ring.inner.radius);
         index += usize::from(self.cells.get(index + 1).is_some_and(|next| next.square <= ring.inner.square));
         index -= usize::from(index > 0 && self.cells[index].square > ring.inner.square);
-        let cell = &self.cells[index];
+        let Some(cell) = self.cells.get(index) else { return 0.0 };
         let low = (ring.inner.square - cell.square).value().max(0.0);
         if let Some(next) = self.cells.get(index + 1).filter(|next| next.square < outer.square) {
             let plain = (outer.square - ring.inner.square).value();
@@ -248,10 +257,14 @@ impl Cells {
         cell.gap(low, (outer.square - cell.square).value().max(0.0), depth)
     }
 
-    /// The largest kink below a radius, m; zero if there is none.
+    /// The kinks below a radius, m, above zero.
+    pub(crate) fn kinks_below(&self, radius: f64) -> &[f64] {
+        &self.kinks[..self.kinks.partition_point(|&kink| kink < radius)]
+    }
+
+    /// The largest of them; zero if there is none.
     pub(crate) fn kink_below(&self, radius: f64) -> f64 {
-        let above = self.kinks.partition_point(|&kink| kink < radius);
-        above.checked_sub(1).map_or(0.0, |index| self.kinks[index])
+        self.kinks_below(radius).last().copied().unwrap_or(0.0)
     }
 
     /// The moments over a span.
@@ -272,7 +285,9 @@ impl Cells {
     pub(crate) fn least_fall(&self, inner: f64, outer: f64) -> f64 {
         // 2 v int q' dt is v int (dq/dzeta) dzeta/sqrt(zeta^2 - kappa), summed over the cells.
         let (first, last) = (self.find(inner), self.find(outer));
-        if self.cells[first..=last].iter().any(Cell::jumps) {
+        // Where f' jumps beyond the inner radius g'/x rises to infinity.
+        let beyond = |cell: &&Cell| cell.radius > inner || self.cells[first].radius < cell.radius;
+        if self.cells.is_empty() || self.cells[first..=last.max(first)].iter().filter(beyond).any(Cell::jumps) {
             return f64::NEG_INFINITY;
         }
         let sums = self.steepest.get_or_init(|| {
@@ -321,8 +336,14 @@ impl Cells {
         cell_span(&self.cells[index], square, radius)
     }
 
+    /// The radius, or the least at which a kernel is not that of the centre.
+    pub(crate) fn at_least<'r>(&'r self, at: &'r StressRadius) -> &'r StressRadius {
+        if at.square < self.floor.square { &self.floor } else { at }
+    }
+
     /// The sum of a kernel of what lies beyond r over a span.
     pub(crate) fn sum(&self, kernel: Kernel, at: &StressRadius, span: &Span) -> f64 {
+        let at = self.at_least(at);
         let Some(span) = span.above(at.square, at.radius) else { return 0.0 };
         let SpanParts { low, whole, high } = self.parts(&span);
         let part = |(index, span): CellPart| kernel.near(&self.cells[index], at, &span);
@@ -331,13 +352,13 @@ impl Cells {
         } else if whole.is_empty() {
             0.0
         } else {
-            let (square, mut far, mut near) = (at.square.value(), 0.0, 0.0);
+            let (mut far, mut near) = (0.0, 0.0);
             self.sources().visit(
                 whole,
                 &mut |cluster| {
-                    let is_far = kernel.is_far(&cluster.sources, square);
+                    let is_far = kernel.is_far(&cluster.sources, at.square);
                     if is_far {
-                        far += kernel.far(&cluster.sources, [square])[0];
+                        far += kernel.far(&cluster.sources, [at.square])[0];
                     }
                     is_far
                 },

@@ -1,24 +1,33 @@
-//! Cells as far as contacts have reached: those up to some radius, up to a larger one, and so on, each built when first
-//! asked for.
+//! Cells as far as contacts have reached: those that serve contacts between two radii whose ratio is four, each built
+//! when first asked for.
 //!
-//! The cells of a stage begin those of the next, and which stage is taken depends on the radius, level or load alone,
-//! not on what was asked before: so results are the same whatever came first.
+//! Which stage is taken depends on the radius, level or load alone, not on what was asked before: so results are the
+//! same whatever came first.
 
 use std::sync::{Arc, OnceLock};
 
 use super::Cells;
+use super::shape::{Reach, Shape};
 
-/// How many stages there are, and the cells in the first, twice as many as which each further one has. The last one has
-/// all.
-const STAGES: usize = 8;
-const FIRST: usize = 8;
-/// How much of a level or a load may be rounding.
-const ROUNDING: f64 = 1e-9;
+/// The octaves of a stage.
+const OCTAVES: i32 = 2;
+/// The number of the lowest stage, far below every contact, and of the highest, far beyond.
+const LOWEST: i32 = -200;
+const HIGHEST: i32 = 25;
 
-/// The stages of a profile. A clone shares them, and they take no part in a comparison: they follow from the
-/// parameters.
+/// The stages of a shape. A clone shares them, and they take no part in a comparison: they follow from the parameters.
 #[derive(Clone)]
-pub(crate) struct Stages(Arc<[OnceLock<Cells>]>);
+pub(crate) struct Stages(Arc<OnceLock<Box<Stage>>>);
+
+/// One of them.
+struct Stage {
+    number: i32,
+    /// The levels, m, between which it serves.
+    levels: (f64, f64),
+    cells: Cells,
+    /// One that was built later.
+    next: OnceLock<Box<Stage>>,
+}
 
 impl std::fmt::Debug for Stages {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
@@ -35,33 +44,102 @@ impl PartialEq for Stages {
 impl Stages {
     /// Stages of which none is built.
     pub(crate) fn new() -> Stages {
-        Stages((0..STAGES).map(|_| OnceLock::new()).collect())
+        Stages(Arc::new(OnceLock::new()))
     }
 
-    /// The first stage of which something holds, else the last; `build` makes at most so many cells.
-    fn first(&self, build: impl Fn(usize) -> Cells, holds: impl Fn(&Cells) -> bool) -> &Cells {
-        let last = self.0.len() - 1;
-        for (index, stage) in self.0[..last].iter().enumerate() {
-            let cells = stage.get_or_init(|| build(FIRST << index));
-            if holds(cells) {
-                return cells;
+    /// The only one, which serves all contacts.
+    pub(crate) fn whole(cells: Cells) -> Stages {
+        let levels = (f64::NEG_INFINITY, f64::INFINITY);
+        let stage = Stage { number: i32::MAX, levels, cells, next: OnceLock::new() };
+        Stages(Arc::new(OnceLock::from(Box::new(stage))))
+    }
+
+    /// All cells, where there is but one stage.
+    pub(crate) fn everything(&self) -> Option<&Cells> {
+        self.0.get().filter(|stage| stage.number == i32::MAX).map(|stage| &stage.cells)
+    }
+
+    /// The cells of a shape that reach beyond something, or to its end; `None` once `keep_going` has returned false.
+    pub(crate) fn up_to<S: Shape + ?Sized>(
+        &self,
+        shape: &S,
+        reach: Reach,
+        keep_going: &dyn Fn() -> bool,
+    ) -> Option<&Cells> {
+        if let Some(cells) = self.everything() {
+            return Some(cells);
+        }
+        let end = shape.end().map_or(f64::INFINITY, |end| end.radius);
+        let last = number(end.next_down());
+        match reach {
+            Reach::Radius(radius) => self.stage(shape, number(radius).min(last), keep_going),
+            Reach::Level(level) => {
+                let serves = |stage: &&Stage| {
+                    stage.levels.0 <= level && (level < stage.levels.1 || stage.number == last)
+                };
+                if let Some(stage) = self.built().find(serves) {
+                    return Some(&stage.cells);
+                }
+                self.stage(shape, first_above(shape, last, |_| 1.0, level), keep_going)
+            }
+            Reach::Load(load) => {
+                // int x dg is no larger than x g.
+                let mut number = first_above(shape, last, |x| x, load);
+                loop {
+                    let cells = self.stage(shape, number, keep_going)?;
+                    if number >= last || load < cells.top.load.value() {
+                        return Some(cells);
+                    }
+                    number += 1;
+                }
             }
         }
-        self.0[last].get_or_init(|| build(usize::MAX))
     }
 
-    /// Cells that reach beyond a radius, m; all of them if none does.
-    pub(crate) fn up_to(&self, radius: f64, build: impl Fn(usize) -> Cells) -> &Cells {
-        self.first(build, |cells| radius < cells.top.radius)
+    fn built(&self) -> impl Iterator<Item = &Stage> {
+        std::iter::successors(self.0.get(), |stage| stage.next.get()).map(Box::as_ref)
     }
 
-    /// Cells that reach beyond a level, m.
-    pub(crate) fn up_to_level(&self, level: f64, build: impl Fn(usize) -> Cells) -> &Cells {
-        self.first(build, |cells| level < (1.0 - ROUNDING) * cells.top.level.value())
+    fn stage<S: Shape + ?Sized>(&self, shape: &S, number: i32, keep_going: &dyn Fn() -> bool) -> Option<&Cells> {
+        if let Some(stage) = self.built().find(|stage| stage.number == number) {
+            return Some(&stage.cells);
+        }
+        let (low, high) = (start(number), start(number + 1).min(shape.end().map_or(f64::INFINITY, |end| end.radius)));
+        let levels = (shape.level(low), shape.level(high));
+        let stage = Stage { number, levels, cells: shape.build((low, high), keep_going)?, next: OnceLock::new() };
+        let mut place = &*self.0;
+        let mut stage = Box::new(stage);
+        // Another thread may have put one there in the meantime, even the same.
+        while let Err(mine) = place.set(stage) {
+            stage = mine;
+            let there = place.get()?;
+            if there.number == number {
+                return Some(&there.cells);
+            }
+            place = &there.next;
+        }
+        place.get().map(|stage| &stage.cells)
     }
+}
 
-    /// Cells that reach beyond a load, m^2.
-    pub(crate) fn up_to_load(&self, load: f64, build: impl Fn(usize) -> Cells) -> &Cells {
-        self.first(build, |cells| load < (1.0 - ROUNDING) * cells.top.load.value())
+/// Where a stage starts, m.
+fn start(number: i32) -> f64 {
+    f64::from(OCTAVES * number).exp2()
+}
+
+/// The stage that serves contacts of a radius, m.
+fn number(radius: f64) -> i32 {
+    let exponent = ((radius.to_bits() >> 52) & 0x7ff) as i32 - 1023;
+    exponent.div_euclid(OCTAVES).clamp(LOWEST, HIGHEST)
+}
+
+/// The first stage up to `last` at whose end g times a weight exceeds a value.
+fn first_above<S: Shape + ?Sized>(shape: &S, last: i32, weight: impl Fn(f64) -> f64, value: f64) -> i32 {
+    let (mut low, mut high) = (LOWEST, last);
+    while low < high {
+        let middle = low + (high - low) / 2;
+        let end = start(middle + 1);
+        if weight(end) * shape.level(end) > value { high = middle } else { low = middle + 1 }
     }
+    low
 }

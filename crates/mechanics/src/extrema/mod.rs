@@ -5,8 +5,8 @@
 //! sign on both sides, where f' jumps tau itself is; everywhere else tau is smooth. So the derivative is sampled
 //! between these radii, ever closer to those it is infinite at, and an extremum is where its sign changes: within a
 //! interval a root, between two the radius they meet at. Signs alternate from one to the next, so none is found twice.
-//! That none is missed is proven where [`settled`] knows the sign, or that it changes once; elsewhere it rests on the
-//! samples, and on the dense searches that they have been held against.
+//! That none is missed is proven where [`settled`] knows the sign; elsewhere it rests on the samples, and on the dense
+//! searches that they have been held against.
 
 mod derivative;
 mod interval;
@@ -16,7 +16,6 @@ use super::profile::{RingSum, StressRadius};
 use super::{Contact, DoubleDouble};
 use derivative::{Derivative, NOISE, Pace};
 use interval::{EndBehaviour, KNOT_FLOOR, MAX_PLACE, Sample, StressInterval};
-use settled::Known;
 
 /// With more intervals than this between the knots of a table, each is sampled at its middle and its ends alone.
 const SPARSE_ABOVE: usize = 100;
@@ -49,9 +48,9 @@ impl Contact {
             if index == 0 { StressRadius::new(0.0) } else { StressRadius::of_point(&pieces[index].inner) }
         };
         let settled = self.settled();
-        let known: Vec<Known> = (0..pieces.len()).map(|index| settled.known(index, from(index).radius)).collect();
+        let known: Vec<bool> = (0..pieces.len()).map(|index| settled.known(index, from(index).radius)).collect();
         // A long table has many, which no settled interval needs.
-        let searched = known.iter().any(|known| *known != Known::Sign);
+        let searched = known.contains(&false);
         let knots = if searched { self.profile.knots_below(edge.radius) } else { Vec::new() };
         let singular = self.profile.singular_radii();
         let pace = Pace::new(&keep_going);
@@ -67,7 +66,7 @@ impl Contact {
                 // The rest is at a vertical edge.
                 break;
             }
-            if known[index] == Known::Sign {
+            if known[index] {
                 search.cross(&from, -bend);
                 continue;
             }
@@ -113,18 +112,11 @@ impl Contact {
                 }
                 // Beyond the last knot, what the flat or the bend inside it hides may be known.
                 let outermost = begins + position == ends;
-                let known = if !outermost {
-                    Known::Nothing
-                } else if position == 0 {
-                    known[index]
-                } else {
-                    settled.known(index, inner.radius)
-                };
-                let one_change = known == Known::OneChange;
-                if known == Known::Sign || one_change && start.1 * end.1 > 0.0 {
+                let known = outermost && position > 0 && settled.known(index, inner.radius);
+                if known {
                     search.cross(&inner, -bend);
                 } else {
-                    search.search_interval(&StressInterval { inner, outer, start, end, sparse, one_change });
+                    search.search_interval(&StressInterval { inner, outer, start, end, sparse });
                 }
                 (inner, start) = (outer, next);
             }
@@ -208,8 +200,7 @@ impl Search<'_, '_, '_> {
             if before.value * after.value < 0.0 {
                 let beyond = samples.get(index + 2).copied().filter(|sample| sample.place.is_finite());
                 self.find_root(interval, before, after, beyond);
-            } else if !interval.one_change
-                && let Some(&next) = samples.get(index + 2)
+            } else if let Some(&next) = samples.get(index + 2)
                 && after.value * next.value > 0.0
                 && before.place.is_finite()
                 && next.place.is_finite()

@@ -26,7 +26,7 @@ pub(crate) static TWENTY: LazyLock<Points<20>> = LazyLock::new(Points::new);
 pub(crate) static TWENTY_FOUR: LazyLock<Points<24>> = LazyLock::new(Points::new);
 
 impl<const N: usize> Points<N> {
-    fn new() -> Points<N> {
+    pub(crate) fn new() -> Points<N> {
         let cosine = |index: usize| (std::f64::consts::PI * (index % (4 * N)) as f64 / (2 * N) as f64).cos();
         let share = |order: usize| if order == 0 { 1.0 } else { 2.0 } / N as f64;
         Points {

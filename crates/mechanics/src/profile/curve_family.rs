@@ -7,8 +7,7 @@
 //! [`Profile::check_stress_field`](super::Profile) first.
 
 use super::ring_nodes::{DepthNode, RingNodes};
-use super::shape::{End, KernelOrder, Shape, ShapeFacts};
-use super::{DoubleDouble, InterpolationError, Moments, Point, Ring, Span, StressRadius};
+use super::{DoubleDouble, InterpolationError, Moments, Ring};
 
 /// Panels of the angle for the sums over a ring, at the least, and for each wave.
 const PANELS: usize = 512;
@@ -41,12 +40,6 @@ pub(super) trait CurveFamily {
         InterpolationError::default()
     }
 
-    /// The level with X.
-    fn point_at(&self, level: DoubleDouble) -> Point {
-        let radius = self.radius_at(level);
-        Point { level, radius, square: DoubleDouble::square_of(radius) }
-    }
-
     /// Nodes at even steps of the angle whose cosine is 1 - 2 h/depth, each with the width between its neighbours'
     /// midpoints.
     fn nodes_at(&self, ring: &Ring, panels: usize) -> Vec<DepthNode> {
@@ -69,50 +62,5 @@ pub(super) trait CurveFamily {
     fn ring_nodes(&self, ring: &Ring, turns: usize) -> RingNodes {
         let panels = PANELS.max(PANELS_A_WAVE * turns);
         RingNodes::Compared(self.nodes_at(ring, panels), self.nodes_at(ring, 2 * panels))
-    }
-}
-
-impl<C: CurveFamily> Shape for C {
-    fn level(&self, radius: f64) -> f64 {
-        self.level_of(radius)
-    }
-
-    fn slope(&self, radius: f64) -> f64 {
-        self.rate(self.level_of(radius)).recip()
-    }
-
-    fn square(&self, level: DoubleDouble) -> DoubleDouble {
-        DoubleDouble::square_of(self.radius_at(level))
-    }
-
-    fn load(&self, radius: f64) -> f64 {
-        let (zero, edge) = (DoubleDouble::ZERO, DoubleDouble::from(self.level_of(radius)));
-        let ring = Ring::between(self.point_at(zero), self.point_at(edge));
-        ring.inner.radius * ring.depth + self.moments_of(&ring).first
-    }
-
-    fn indentation_for(&self, load: f64) -> f64 {
-        self.indentation_of(load)
-    }
-
-    fn rise(&self, span: &Span) -> f64 {
-        self.level_of(span.outer_radius) - self.level_of(span.inner_radius)
-    }
-
-    fn gap(&self, ring: &Ring, _depth: f64) -> f64 {
-        (ring.outer.square - ring.inner.square).value()
-    }
-
-    fn kernel(&self, _order: KernelOrder, _at: &StressRadius, _span: &Span) -> f64 {
-        f64::NAN
-    }
-
-    fn surface_slope(&self, _r: f64) -> f64 {
-        f64::NAN
-    }
-
-    fn facts(&self) -> ShapeFacts {
-        ShapeFacts { by_series: false, ..ShapeFacts::default() }
-            .ending(self.end().map(|radius| End { radius, falls: false }))
     }
 }

@@ -1,7 +1,6 @@
 //! The table of the families, from which the enum, its dispatch and the JSON documents follow.
 
-/// The table of the families whose parameters are plain numbers: calls the macro `$callback` with all entries, after
-/// `$prefix`.
+/// The table of the families whose parameters are plain numbers: calls the macro `$callback` with all entries.
 ///
 /// An entry is a description, `module::Family`, the description and the name of its JSON document, and the parameters
 /// in the order of the constructor: a description with the unit, the name and the constant of [`range`](crate::range)
@@ -9,9 +8,8 @@
 /// as [`Tabulated`](crate::profile::Tabulated) and [`Sum`](crate::profile::Sum), are not in the table.
 #[macro_export]
 macro_rules! for_each_family {
-    ($callback:ident $($prefix:tt)*) => {
+    ($callback:ident) => {
         $callback! {
-            $($prefix)*
             /// Hertz's parabola z = r²/(2R), the shape that is meant by a sphere in contact mechanics.
             sphere::Sphere,
             /// A sphere in Hertz's approximation.

@@ -1,14 +1,15 @@
-//! Flat punch of radius b: X(y) = b for every level, so a ring has no width and its kernel is that of the vertical
-//! edge, depth/sqrt(b^2 - r^2) (Boussinesq 1885). The edge itself is treated in `profile/ring_integrals.rs`; the face
-//! is treated here.
+//! Flat punch of radius b: X(y) = b for every level, so that all of a ring lies at the vertical edge, where its kernel
+//! is depth/sqrt(b^2 - r^2) (Boussinesq 1885).
 
-use super::shape::{KernelOrder, Shape, ShapeFacts};
-use super::{DoubleDouble, Error, Moments, Span, StressRadius, range};
+use super::{Error, range};
+use crate::cells::shape::{End, EndKind, Kink, Shape};
+use crate::cells::stages::Stages;
 
 /// A cylinder pressed in with its flat end.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct FlatPunch {
     radius: f64,
+    stages: Stages,
 }
 
 impl FlatPunch {
@@ -17,48 +18,32 @@ impl FlatPunch {
     /// # Errors
     /// [`Error::OutOfRange`] by [`range::RADIUS`].
     pub fn new(radius: f64) -> Result<FlatPunch, Error> {
-        Ok(FlatPunch { radius: range::RADIUS.check(radius)? })
+        Ok(FlatPunch { radius: range::RADIUS.check(radius)?, stages: Stages::new() })
     }
 }
 
 impl Shape for FlatPunch {
-    fn level(&self, _radius: f64) -> f64 {
+    fn kinks(&self) -> Vec<Kink> {
+        Vec::new()
+    }
+
+    fn level(&self, _x: f64) -> f64 {
         0.0
     }
 
-    fn slope(&self, _radius: f64) -> f64 {
-        0.0
-    }
-
-    fn square(&self, _level: DoubleDouble) -> DoubleDouble {
-        DoubleDouble::square_of(self.radius)
-    }
-
-    fn load(&self, _radius: f64) -> f64 {
-        0.0
-    }
-
-    fn indentation_for(&self, load: f64) -> f64 {
-        load / self.radius
-    }
-
-    fn rise(&self, _span: &Span) -> f64 {
-        0.0
-    }
-
-    fn facts(&self) -> ShapeFacts {
-        ShapeFacts { rim: Some(self.radius), by_series: false, ..ShapeFacts::default() }
-    }
-
-    fn moments(&self, _span: &Span, _top: f64) -> Moments {
-        Moments::default()
-    }
-
-    fn kernel(&self, _order: KernelOrder, _at: &StressRadius, _span: &Span) -> f64 {
+    fn gamma(&self, _base: f64, _t: f64) -> f64 {
         0.0
     }
 
     fn surface_slope(&self, _r: f64) -> f64 {
         0.0
+    }
+
+    fn stages(&self) -> Option<&Stages> {
+        Some(&self.stages)
+    }
+
+    fn end(&self) -> Option<End> {
+        Some(End { radius: self.radius, kind: EndKind::Edge })
     }
 }

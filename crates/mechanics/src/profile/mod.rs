@@ -11,10 +11,8 @@
 //! `curve_family::CurveFamily` instead.
 
 mod asperities;
-mod celled;
 mod cone;
 mod curve_family;
-mod distant_rings;
 mod ellipsoid;
 mod exact_sphere;
 #[macro_use]
@@ -22,21 +20,18 @@ mod families;
 mod flat_punch;
 mod load_curve;
 mod open_gaps;
-mod polynomial;
 mod power_law;
 pub(super) mod ring_nodes;
 pub(super) mod ring_quadrature;
 mod ring_sum;
 mod rounded_cone;
 mod rounded_punch;
-mod shallow_sphere;
-mod shape;
-mod slope_series;
 mod smooth_interval;
-mod smooth_path;
 mod sphere;
 mod sum;
 mod tabulated;
+#[cfg(test)]
+mod tests;
 mod truncated_cone;
 mod truncated_sphere;
 
@@ -51,16 +46,15 @@ pub use tabulated::{InterpolationError, Tabulated};
 use super::error::Error;
 use super::{Elasticity, Preload, range};
 use crate::cells::Cells;
-use crate::cells::grid::Kink;
+use crate::cells::shape::{End, EndKind, Powers, Reach, Shape};
 use crate::cells::span::Span;
 use crate::numerics::double_double::DoubleDouble;
 use asperities::Count;
-use shape::{End, Falls, KernelOrder, Shape, ShapeFacts};
-use tabulated::Reach;
+use curve_family::CurveFamily;
 
-/// The enum of all families and `each!`, which evaluates an expression for whichever family a profile is of.
+/// The enum of all families.
 macro_rules! profile {
-    ($dollar:tt $(
+    ($(
         $(#[$about:meta])* $module:ident::$Family:ident,
         $(#[$about_document:meta])* $Document:ident { $($(#[$about_parameter:meta])* $parameter:ident: $RANGE:ident,)+ }
     )+) => {
@@ -95,24 +89,24 @@ macro_rules! profile {
             Ellipsoid(Ellipsoid),
         }
 
-        macro_rules! each {
-            ($dollar profile:expr, $dollar shape:ident => $dollar value:expr) => {
-                match $dollar profile {
-                    $(Profile::$Family($dollar shape) => $dollar value,)+
-                    Profile::Tabulated($dollar shape) => $dollar value,
-                    Profile::Sum($dollar shape) => $dollar value,
-                    Profile::Asperities(Asperities(Count::One($dollar shape))) => $dollar value,
-                    Profile::Asperities(Asperities(Count::Many($dollar shape))) => $dollar value,
-                    Profile::LoadCurve($dollar shape) => $dollar value,
-                    Profile::Ellipsoid(Ellipsoid { ball: $dollar shape, .. }) => $dollar value,
+        impl Profile {
+            /// It as a body of revolution; that of the same load curve where a ball has it, none where none has.
+            pub(crate) fn shape(&self) -> Option<&dyn Shape> {
+                match self {
+                    $(Profile::$Family(shape) => Some(shape),)+
+                    Profile::Tabulated(table) => Some(table),
+                    Profile::Sum(sum) => Some(sum),
+                    Profile::Asperities(Asperities(Count::One(ball))) | Profile::Ellipsoid(Ellipsoid { ball, .. }) => {
+                        Some(ball)
+                    }
+                    Profile::Asperities(Asperities(Count::Many(_))) | Profile::LoadCurve(_) => None,
                 }
-            };
+            }
         }
     };
 }
-for_each_family!(profile $);
+for_each_family!(profile);
 
-// Below the macro that it dispatches by.
 mod ring_integrals;
 
 impl Profile {
@@ -155,42 +149,82 @@ impl Profile {
         elasticity: &Elasticity,
         keep_going: &dyn Fn() -> bool,
     ) -> Result<(), Error> {
-        let Profile::Tabulated(table) = self else { return Ok(()) };
+        let Some(shape) = self.shape().filter(|shape| shape.stages().is_some()) else { return Ok(()) };
         let reach = match *preload {
             Preload::NormalForce(force) => Reach::Load(force / (2.0 * elasticity.e_star())),
             Preload::Indentation(depth) => Reach::Level(depth),
             Preload::ContactRadius(radius) => Reach::Radius(radius),
         };
-        table.build_up_to(reach, keep_going)
+        shape.cells_while(reach, keep_going).map(drop).ok_or(Error::Interrupted)
+    }
+
+    /// The parabola that it is, or whose load curve it has.
+    #[inline]
+    fn ball(&self) -> Option<&Sphere> {
+        match self {
+            Profile::Sphere(ball)
+            | Profile::Asperities(Asperities(Count::One(ball)))
+            | Profile::Ellipsoid(Ellipsoid { ball, .. }) => Some(ball),
+            _ => None,
+        }
+    }
+
+    /// The load curve by which alone the contact is known, if it is and no ball has it.
+    fn curve(&self) -> Option<&dyn CurveFamily> {
+        match self {
+            Profile::Asperities(Asperities(Count::Many(curve))) => Some(curve),
+            Profile::LoadCurve(curve) => Some(curve),
+            _ => None,
+        }
+    }
+
+    /// Its cells that reach beyond something, where it has any.
+    pub(crate) fn cells(&self, reach: Reach) -> Option<&Cells> {
+        self.shape()?.cells_while(reach, &|| true)
     }
 
     /// g(x), m, for a radius x >= 0, m.
     #[must_use]
     pub fn level(&self, radius: f64) -> f64 {
-        Shape::level(self, radius)
+        if let Some(curve) = self.curve() {
+            return curve.level_of(radius);
+        }
+        let closed = |shape: &dyn Shape| shape.level(radius.min(shape.end().map_or(f64::INFINITY, |end| end.radius)));
+        match self {
+            Profile::Tabulated(_) => self.cells(Reach::Radius(radius)).map_or(f64::NAN, |cells| cells.level(radius)),
+            _ => self.shape().map_or(f64::NAN, closed),
+        }
     }
 
     /// g'(x) (pure number), infinite where f' jumps.
     #[must_use]
     pub fn slope(&self, radius: f64) -> f64 {
-        Shape::slope(self, radius)
+        match (self.curve(), self.ball(), self.cells(Reach::Radius(radius))) {
+            (Some(curve), ..) => curve.rate(curve.level_of(radius)).recip(),
+            (_, Some(ball), _) => ball.slope(radius),
+            (.., cells) => cells.map_or(f64::NAN, |cells| cells.slope(radius)),
+        }
     }
 
     /// dg/dt (pure number) at several t = sqrt(x^2 - b^2), m, above a kink b = `base`, m, or above zero.
     pub(super) fn slopes_above<const N: usize>(&self, base: f64, t: [f64; N]) -> [f64; N] {
-        Shape::slopes(self, base, t)
+        let outer = base.hypot(t.iter().copied().fold(0.0, f64::max));
+        match (self.ball(), self.cells(Reach::Radius(outer))) {
+            (Some(ball), _) => t.map(|t| ball.slope(t)),
+            (_, cells) => t.map(|t| cells.map_or(f64::NAN, |cells| cells.gamma(base, t))),
+        }
     }
 
     /// The largest radius below `radius`, m, at which g is not analytic; zero, the tip, if there is none.
     pub(super) fn kink_below(&self, radius: f64) -> f64 {
-        Shape::kink_below(self, radius)
+        self.cells(Reach::Radius(radius)).map_or(0.0, |cells| cells.kink_below(radius))
     }
 
     /// X(y), m, for a level y >= 0, m; X(0) is the radius of a flat core. Beyond the end of the profile it stays at
     /// [`Profile::limit_radius`].
     #[must_use]
     pub fn radius(&self, level: f64) -> f64 {
-        Shape::square(self, level.into()).value().sqrt()
+        self.point(level.into()).radius
     }
 
     /// The level with its radius and that radius's square.
@@ -198,27 +232,62 @@ impl Profile {
     #[inline]
     pub fn point(&self, level: DoubleDouble) -> Point {
         // A move on a sphere is so short that a call counts.
-        let square = if let Profile::Sphere(sphere) = self { sphere.square(level) } else { Shape::square(self, level) };
+        if let Profile::Sphere(ball) = self { ball.point(level) } else { self.point_of_any(level) }
+    }
+
+    #[inline(never)]
+    fn point_of_any(&self, level: DoubleDouble) -> Point {
+        if let Some(ball) = self.ball() {
+            return ball.point(level);
+        }
+        let square = match self.curve() {
+            Some(curve) => DoubleDouble::square_of(curve.radius_at(level)),
+            None if level.value() <= 0.0 => DoubleDouble::square_of(self.flat_radius()),
+            None => {
+                self.cells(Reach::Level(level.value())).map_or(DoubleDouble::ZERO, |cells| cells.square(level))
+            }
+        };
         Point { level, radius: square.value().sqrt(), square }
+    }
+
+    /// Where the surface leaves the plane, m.
+    fn flat_radius(&self) -> f64 {
+        match self {
+            Profile::Tabulated(table) => table.flat_radius(),
+            _ => self.shape().map_or(0.0, |shape| {
+                let end = shape.end().map_or(0.0, |end| end.radius);
+                shape.kinks().first().map_or(end, |kink| kink.radius)
+            }),
+        }
     }
 
     /// The indentation d, m, at which int_0^d X(y) dy = F_N/(2 E*) = `load`, m^2.
     #[must_use]
     pub fn indentation_for(&self, load: f64) -> f64 {
-        Shape::indentation_for(self, load)
+        match (self.curve(), self.ball()) {
+            (Some(curve), _) => curve.indentation_of(load),
+            (_, Some(ball)) => ball.indentation_for(load),
+            _ => self.cells(Reach::Load(load)).map_or(f64::NAN, |cells| cells.indentation_for(load)),
+        }
     }
 
-    /// The radius, m, that every contact must stay below: where the exact sphere is vertical, where a table ends or its
-    /// g falls. A punch's edge is no such limit.
+    /// Where contacts end.
+    fn end(&self) -> Option<End> {
+        let unknown = |radius| End { radius, kind: EndKind::Unknown };
+        self.curve().map_or_else(|| self.shape()?.end(), |curve| curve.end().map(unknown))
+    }
+
+    /// The radius, m, that every contact must stay below: where a table ends or its g falls, nine tenths of an exact
+    /// sphere. A punch's edge is no such limit.
     #[must_use]
     pub fn limit_radius(&self) -> Option<f64> {
-        self.facts().limit.map(|end| end.radius)
+        self.end().filter(|end| end.kind != EndKind::Edge).map(|end| end.radius)
     }
 
     /// The radius, m, of a vertical edge, which the contact keeps under every higher load.
     #[must_use]
     pub fn rim_radius(&self) -> Option<f64> {
-        self.facts().rim
+        self.end().filter(|end| end.kind == EndKind::Edge).map(|end| end.radius)
     }
 
     /// Checks a contact radius and returns it.
@@ -227,11 +296,13 @@ impl Profile {
     /// If it is not below [`Profile::limit_radius`]: [`Error::NotConvexEnough`] where g falls from there on,
     /// [`Error::BeyondProfile`] where the profile ends.
     pub fn check_radius(&self, radius: f64) -> Result<f64, Error> {
-        match self.facts().limit {
-            Some(End { radius: limit, falls: true }) if radius >= limit => {
+        match self.end() {
+            Some(End { radius: limit, kind: EndKind::Fall }) if radius >= limit => {
                 Err(Error::NotConvexEnough { radius: limit })
             }
-            Some(End { radius: limit, falls: false }) if radius >= limit => Err(Error::BeyondProfile { radius, limit }),
+            Some(End { radius: limit, kind: EndKind::Unknown }) if radius >= limit => {
+                Err(Error::BeyondProfile { radius, limit })
+            }
             _ => Ok(radius),
         }
     }
@@ -254,32 +325,22 @@ impl Profile {
     /// ```
     #[must_use]
     pub fn surface_slope(&self, r: f64) -> f64 {
-        Shape::surface_slope(self, r)
+        self.shape().filter(|_| self.has_stress_field()).map_or(f64::NAN, |shape| shape.surface_slope(r))
     }
 
     /// The radius of curvature, m, where the shape is given by one: the smallest of a sum.
     #[must_use]
     pub fn curvature_radius(&self) -> Option<f64> {
-        self.facts().curvature_radius
+        self.shape()?.curvature_radius()
     }
 
-    /// Whether the kernel up to any radius falls with r, so that pressure does too. It lets the search for the peaks of
-    /// the shear stress skip intervals without any; `false` is always safe.
+    /// Whether the kernel up to c = `outer`, m, is known to fall with r from r = `inner`, m, on, so that pressure does
+    /// too.
     ///
-    /// K(r, c) = int g'(x)/x dv, v = sqrt(x^2 - r^2), over 0 to sqrt(c^2 - r^2): it falls wherever g'/x does not rise.
-    #[must_use]
-    pub fn kernel_falls(&self) -> bool {
-        self.facts().kernel_falls
-    }
-
-    /// What is known of the kernel up to c = `outer`, m, from r = `inner`, m, on. With q = g'/x as a function of x^2
-    /// and v = sqrt(c^2 - r^2), -2 v dK/d(r^2) is q(c^2) - 2 v int q'(r^2 + t^2) dt over t up to v: above zero the
-    /// kernel falls there.
-    ///
-    /// Where q neither falls nor bends upward, dK/d(r^2) falls all the way from `inner` to c, since its derivative with
-    /// respect to r^2 is int q'' dt - q'(c^2)/(2 v) - q(c^2)/(4 v^3).
-    pub(super) fn falls(&self, inner: f64, outer: f64) -> Falls {
-        Shape::falls(self, inner, outer)
+    /// With q = g'/x as a function of x^2 and v = sqrt(c^2 - r^2), -2 v dK/d(r^2) is q(c^2) - 2 v int q'(r^2 + t^2) dt
+    /// over t up to v.
+    pub(super) fn falls(&self, inner: f64, outer: f64) -> bool {
+        self.ball().is_some() || self.cells(Reach::Radius(outer)).is_some_and(|cells| cells.least_fall(inner, outer) > 0.0)
     }
 
     /// The radii, m, increasing, at which pressure and shear are infinite once the contact has grown over them: the tip
@@ -294,27 +355,28 @@ impl Profile {
     /// ```
     #[must_use]
     pub fn singular_radii(&self) -> Vec<f64> {
-        let Profile::Sum(sum) = self else { return self.facts().singular.into_iter().collect() };
-        let mut radii: Vec<f64> = sum.parts().iter().flat_map(Profile::singular_radii).collect();
-        radii.sort_by(f64::total_cmp);
-        radii.dedup_by(|a, b| a.to_bits() == b.to_bits());
-        radii
+        match self {
+            Profile::Tabulated(_) => Vec::new(),
+            _ => self.shape().map_or_else(Vec::new, |shape| {
+                shape.kinks().iter().filter(|kink| kink.powers.singular()).map(|kink| kink.radius).collect()
+            }),
+        }
     }
 
     /// The radii, m, above zero and below `radius` at which g is not analytic, increasing: ends of a flat, knots of a
     /// table. Stresses are log-infinite there, or their derivatives are.
     #[must_use]
     pub fn knots_below(&self, radius: f64) -> Vec<f64> {
-        let below = |knot: f64| Some(Shape::kink_below(self, knot)).filter(|&next| next > 0.0 && next < knot);
-        let mut knots: Vec<f64> = std::iter::successors(below(radius), |&knot| below(knot)).collect();
-        knots.reverse();
-        knots
+        self.cells(Reach::Radius(radius)).map_or_else(Vec::new, |cells| cells.kinks_below(radius).to_vec())
     }
 
     /// Whether stresses are analytic in r^2 at the centre if the surface slips there.
     #[must_use]
     pub fn smooth_centre(&self) -> bool {
-        self.facts().smooth_centre
+        let smooth = |powers| powers == Powers::Odd;
+        self.shape().is_some_and(|shape| {
+            shape.kinks().first().is_none_or(|kink| kink.radius > 0.0 || smooth(kink.powers))
+        })
     }
 
     /// The interpolation error of tables in a contact of this radius, m; zero for other profiles.
@@ -343,37 +405,4 @@ impl Profile {
             _ => None,
         }
     }
-}
-
-/// Implements [`Shape`] for [`Profile`] by the family's own methods.
-macro_rules! dispatch {
-    ($($method:ident($($argument:ident: $Type:ty),*) -> $Result:ty;)+) => {
-        impl Shape for Profile {
-            fn slopes<const N: usize>(&self, base: f64, t: [f64; N]) -> [f64; N] {
-                each!(self, shape => Shape::slopes(shape, base, t))
-            }
-            fn celled(&self, radius: f64) -> Option<&Cells> {
-                each!(self, shape => Shape::celled(shape, radius))
-            }
-            $(fn $method(&self, $($argument: $Type),*) -> $Result {
-                each!(self, shape => Shape::$method(shape, $($argument),*))
-            })+
-        }
-    };
-}
-dispatch! {
-    level(radius: f64) -> f64;
-    slope(radius: f64) -> f64;
-    surface_slope(r: f64) -> f64;
-    facts() -> ShapeFacts;
-    kinks() -> Vec<Kink>;
-    kink_below(radius: f64) -> f64;
-    square(level: DoubleDouble) -> DoubleDouble;
-    load(radius: f64) -> f64;
-    indentation_for(load: f64) -> f64;
-    rise(span: &Span) -> f64;
-    gap(ring: &Ring, depth: f64) -> f64;
-    moments(span: &Span, top: f64) -> Moments;
-    kernel(order: KernelOrder, at: &StressRadius, span: &Span) -> f64;
-    falls(inner: f64, outer: f64) -> Falls;
 }

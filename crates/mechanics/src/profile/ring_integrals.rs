@@ -1,24 +1,16 @@
-//! The integrals over rings of a profile: what moves, stresses and displacements are sums of. What a ring crosses at a
-//! vertical edge is added here, to what a family says of the face.
+//! The integrals over one ring of a profile: what moves, stresses and displacements are sums of. Those at a vertical
+//! edge are added here to those of the cells.
 
-use super::curve_family::CurveFamily;
 use super::ring_nodes::RingNodes;
 use super::ring_quadrature;
-use super::shape::{self, KernelOrder, Shape};
-use super::{Asperities, Count, Ellipsoid, Moments, Profile, Ring, Span, StressRadius};
+use super::{Moments, Profile, Ring, Span, StressRadius};
 #[cfg(test)]
 use crate::cells::call_count;
+use crate::cells::kernel::Kernel;
+use crate::cells::shape::Reach;
+use crate::numerics::double_double::DoubleDouble;
 
 impl Profile {
-    /// The load curve by which alone the contact is known, if it is.
-    pub(super) fn curve(&self) -> Option<&dyn CurveFamily> {
-        match self {
-            Profile::Asperities(Asperities(Count::Many(curve))) => Some(curve),
-            Profile::LoadCurve(curve) => Some(curve),
-            _ => None,
-        }
-    }
-
     /// The integrals over a ring, each to round-off of itself however thin the ring is.
     #[must_use]
     #[inline]
@@ -26,7 +18,7 @@ impl Profile {
         #[cfg(test)]
         call_count::add(|calls| &mut calls.moments);
         // As for a point; and the ring need not be written to memory.
-        if let Profile::Sphere(sphere) = self { sphere.moments_between(ring) } else { self.moments_of_any(ring) }
+        if let Profile::Sphere(ball) = self { ball.moments(ring) } else { self.moments_of_any(ring) }
     }
 
     #[inline(never)]
@@ -34,12 +26,31 @@ impl Profile {
         if let Some(curve) = self.curve() {
             return curve.moments_of(ring);
         }
-        each!(self, shape => shape::ring_moments(shape, ring))
+        if let Some(ball) = self.ball() {
+            return ball.moments(ring);
+        }
+        let span = self.span(ring);
+        let face = self.cells(Reach::Radius(span.outer_radius)).map_or_else(Moments::default, |c| c.moments(&span));
+        if span.edge > 0.0 { Moments::stack(face, Moments::default(), span.edge) } else { face }
     }
 
-    /// The span of a ring.
+    /// The span of a ring, with what it has of a vertical edge.
     pub(super) fn span(&self, ring: &Ring) -> Span {
-        each!(self, shape => shape::span(shape, ring))
+        if let Some(ball) = self.ball() {
+            return Span::of(ring, ball.gap(ring), 0.0);
+        }
+        let Some(cells) = self.cells(Reach::Radius(ring.outer.radius)) else {
+            return Span::of(ring, (ring.outer.square - ring.inner.square).value(), 0.0);
+        };
+        let (mut depth, mut edge, top) = (ring.depth, 0.0, cells.top.level);
+        if self.rim_radius().is_some_and(|rim| ring.outer.radius >= rim) {
+            if ring.inner.level >= top {
+                (depth, edge) = (0.0, depth);
+            } else if ring.outer.level > top {
+                (depth, edge) = ((top - ring.inner.level).value(), (ring.outer.level - top).value());
+            }
+        }
+        Span::of(ring, if depth > 0.0 { cells.gap(ring, depth) } else { 0.0 }, edge)
     }
 
     /// The levels of a ring that lie on a vertical edge, m.
@@ -52,7 +63,7 @@ impl Profile {
     pub(crate) fn ring_nodes(&self, ring: &Ring, total: f64, turns: usize) -> RingNodes {
         match self.curve() {
             Some(curve) => curve.ring_nodes(ring, turns),
-            None => each!(self, shape => ring_quadrature::nodes(shape, ring, total, turns)),
+            None => ring_quadrature::nodes(self, ring, total, turns),
         }
     }
 
@@ -63,9 +74,10 @@ impl Profile {
     pub fn kernel(&self, at: &StressRadius, ring: &Ring) -> f64 {
         #[cfg(test)]
         call_count::add(|calls| &mut calls.kernel);
-        let span = self.span(ring);
-        let face = Shape::kernel(self, KernelOrder::Value, at, &span);
-        if span.edge > 0.0 { face + edge(at, &span) } else { face }
+        match self.ball() {
+            Some(ball) => ball.kernel(at, ring),
+            None => self.sum_over(Kernel::Root, at, ring),
+        }
     }
 
     /// The derivative of [`Profile::kernel`] with respect to r^2, 1/m^2, taken from the right where r is the inner
@@ -74,9 +86,16 @@ impl Profile {
     pub fn kernel_slope(&self, at: &StressRadius, ring: &Ring) -> f64 {
         #[cfg(test)]
         call_count::add(|calls| &mut calls.kernel_slope);
+        match self.ball() {
+            Some(ball) => ball.kernel_slope(at, ring),
+            None => self.sum_over(Kernel::RootSlope, at, ring),
+        }
+    }
+
+    fn sum_over(&self, kernel: Kernel, at: &StressRadius, ring: &Ring) -> f64 {
         let span = self.span(ring);
-        let face = Shape::kernel(self, KernelOrder::Slope, at, &span);
-        if span.edge > 0.0 { face + edge_slope(at, &span) } else { face }
+        let face = self.cells(Reach::Radius(span.outer_radius)).map_or(f64::NAN, |cells| cells.sum(kernel, at, &span));
+        if span.edge > 0.0 { face + span.edge * kernel.of_place(span.outer, span.outer_radius, at) } else { face }
     }
 
     /// int (y_outer - g(x)) dx / sqrt(r^2 - x^2) over the radii x of the ring below r, m: the ring's share of the
@@ -86,9 +105,11 @@ impl Profile {
         #[cfg(test)]
         call_count::add(|calls| &mut calls.displacement_integral);
         let span = self.span(ring);
-        let face = match Shape::celled(self, span.outer_radius) {
-            Some(cells) => cells.displacement_integral(at, &span),
-            None => each!(self, shape => shape::displacement_integral(shape, at, &span)),
+        let face = match self.ball() {
+            Some(ball) => ball.displacement_integral(at, &span),
+            None => {
+                self.cells(Reach::Radius(span.outer_radius)).map_or(f64::NAN, |c| c.displacement_integral(at, &span))
+            }
         };
         if span.edge > 0.0 { face + span.edge * span.arc(at) } else { face }
     }
@@ -99,16 +120,25 @@ impl Profile {
     pub fn arc(&self, at: &StressRadius, ring: &Ring) -> f64 {
         self.span(ring).arc(at)
     }
-}
 
-/// The contribution of the levels at a vertical edge to a kernel.
-fn edge(at: &StressRadius, span: &Span) -> f64 {
-    let square = (span.outer - at.square).value();
-    if square < 0.0 { 0.0 } else { span.edge / square.sqrt() }
-}
+    /// The rise of g, m, from a radius up to a larger one, whose square is larger by `gap`, m^2.
+    pub(super) fn rise(&self, span: &Span) -> f64 {
+        match self.ball() {
+            Some(ball) => span.gap / ball.curvature_radius(),
+            None => self.cells(Reach::Radius(span.outer_radius)).map_or(f64::NAN, |cells| cells.rise(span)),
+        }
+    }
 
-/// Their contribution to its slope.
-fn edge_slope(at: &StressRadius, span: &Span) -> f64 {
-    let square = (span.outer - at.square).value();
-    if square < 0.0 { 0.0 } else { 0.5 * span.edge / square / square.sqrt() }
+    /// The kinks below a radius, m, from the outermost inward.
+    pub(super) fn kinks_inward(&self, radius: f64) -> impl Iterator<Item = f64> {
+        let cells = self.cells(Reach::Radius(radius));
+        cells.into_iter().flat_map(move |cells| cells.kinks_below(radius).iter().rev().copied())
+    }
+
+    /// The largest kink below the outer end of a span, m; zero, the tip, if there is none. By the square of the end,
+    /// since a radius just beyond a kink may be rounded onto it.
+    pub(super) fn kink_under(&self, span: &Span) -> f64 {
+        let below = |kink: &f64| DoubleDouble::square_of(*kink) < span.outer;
+        self.kinks_inward(span.outer_radius.next_up()).find(below).unwrap_or(0.0)
+    }
 }

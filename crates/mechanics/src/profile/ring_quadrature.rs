@@ -8,9 +8,8 @@
 use std::f64::consts::PI;
 
 use super::ring_nodes::{DepthNode, RingNodes};
-use super::shape::{Shape, outermost_interval, span, under};
-use super::smooth_interval::{Node, SmoothInterval};
-use super::{Ring, Span};
+use super::smooth_interval::{Node, SmoothInterval, outermost_interval, under};
+use super::{Profile, Ring, Span};
 use crate::numerics::gauss::QuadraturePanel;
 
 /// The share of a panel that must lie between it and a singularity for a rule of twenty points: rho = 2.6.
@@ -34,30 +33,29 @@ const VERY_MANY_KINKS: usize = 128;
 const FEW_PANELS: f64 = 8.0;
 
 /// The nodes of a ring for roots of h and of `total` - h, and waves up to cos(`turns` th), cos(th) = 1 - 2 h/total.
-pub(super) fn nodes(shape: &impl Shape, ring: &Ring, total: f64, turns: usize) -> RingNodes {
-    let span = span(shape, ring);
-    let kink_below = |radius: f64| Some(shape.kink_below(radius)).filter(|kink| *kink > 0.0);
-    let kinks = || std::iter::successors(kink_below(ring.outer.radius), |&kink| kink_below(kink));
+pub(super) fn nodes(profile: &Profile, ring: &Ring, total: f64, turns: usize) -> RingNodes {
+    let span = profile.span(ring);
+    let kinks = || profile.kinks_inward(ring.outer.radius);
     if kinks().take_while(|kink| *kink > ring.inner.radius).take(MOST_KINKS + 1).count() > MOST_KINKS {
         let parts = if kinks().take(VERY_MANY_KINKS).count() < VERY_MANY_KINKS { PANELS } else { FEW_PANELS };
-        return across(shape, &span, total, (PI / parts).min(COARSE_TURN / turns as f64));
+        return across(profile, &span, total, (PI / parts).min(COARSE_TURN / turns as f64));
     }
     let mut nodes = Vec::with_capacity(64);
     let mut above = span.edge;
     let mut rest = Some(span);
     while let Some(span) = rest.filter(|span| span.gap > 0.0) {
-        let (interval, outer, inner) = outermost_interval(shape, &span);
-        let depth = shape.rise(&outer);
+        let (interval, outer, inner) = outermost_interval(profile, &span);
+        let depth = profile.rise(&outer);
         let left = if inner.is_none() { total - ring.depth } else { total - above - depth };
         let mut add = |(node, weight): (Node, f64)| {
-            nodes.push(DepthNode { weight, depth: above + shape.rise(&under(&outer, &interval, node)) });
+            nodes.push(DepthNode { weight, depth: above + profile.rise(&under(&outer, &interval, node)) });
         };
         let SmoothInterval { low, high, drop, singular, power, .. } = interval;
         let foci = low.hypot(singular.below) + high.hypot(singular.below);
         if above.min(left) > FAR * power * depth && foci > CLEAR_FOCI * drop {
             QuadraturePanel::middling(drop).nodes().map(|(dt, share)| interval.node(dt, share)).for_each(&mut add);
         } else {
-            let mut ends = panels(shape, &interval, [above, depth, left], inner.is_none());
+            let mut ends = panels(profile, &interval, [above, depth, left], inner.is_none());
             split(&mut ends, FINE_TURN / (turns as f64 * power.max(1.0).sqrt()));
             angular_nodes(&interval, &ends, QuadraturePanel::fine).for_each(&mut add);
         }
@@ -68,10 +66,10 @@ pub(super) fn nodes(shape: &impl Shape, ring: &Ring, total: f64, turns: usize) -
 }
 
 /// The nodes of a span as if it had no kinks, by panels no wider than `widest`, and by halves of them.
-fn across(shape: &impl Shape, span: &Span, total: f64, widest: f64) -> RingNodes {
-    let interval = SmoothInterval::new(span, 0.0, f64::INFINITY, f64::INFINITY, shape.facts().power);
-    let depth = shape.rise(span);
-    let mut ends = panels(shape, &interval, [span.edge, depth, total - span.edge - depth], true);
+fn across(profile: &Profile, span: &Span, total: f64, widest: f64) -> RingNodes {
+    let interval = SmoothInterval::new(span, 0.0, f64::INFINITY, profile.growth(span.outer_radius));
+    let depth = profile.rise(span);
+    let mut ends = panels(profile, &interval, [span.edge, depth, total - span.edge - depth], true);
     split(&mut ends, widest);
     let nodes = |ends: &[f64]| {
         let (mut above, mut outer) = (span.edge, *span);
@@ -79,7 +77,7 @@ fn across(shape: &impl Shape, span: &Span, total: f64, widest: f64) -> RingNodes
             // From node to node, each of which lies below the one before.
             let here = Span::under(span.outer, span.outer_radius, node.dt * (2.0 * span.outer_radius - node.dt));
             let step = Span { inner: here.inner, inner_radius: here.inner_radius, ..outer };
-            above += shape.rise(&Span { gap: (step.outer - step.inner).value(), edge: 0.0, ..step });
+            above += profile.rise(&Span { gap: (step.outer - step.inner).value(), edge: 0.0, ..step });
             outer = Span { outer: here.inner, outer_radius: here.inner_radius, ..outer };
             DepthNode { weight, depth: above }
         };
@@ -108,7 +106,7 @@ fn angular_nodes<'a>(
 
 /// The ends of the panels of the angle from zero, the outer end, to pi. `levels` are the depth above the interval, that
 /// of the interval, and what `total` has left below it.
-fn panels(shape: &impl Shape, interval: &SmoothInterval, levels: [f64; 3], innermost: bool) -> Vec<f64> {
+fn panels(profile: &Profile, interval: &SmoothInterval, levels: [f64; 3], innermost: bool) -> Vec<f64> {
     let [above, depth, left] = levels;
     let SmoothInterval { base, high, drop, singular, power, low, .. } = *interval;
     let angle = |distance: f64| 2.0 * (distance.max(0.0) / drop).sqrt().asinh();
@@ -127,7 +125,7 @@ fn panels(shape: &impl Shape, interval: &SmoothInterval, levels: [f64; 3], inner
     }
     // What a power of t adds this near to its tip is round-off.
     let weak =
-        if shape.facts().analytic_tip || base > 0.0 { 0.0 } else { drop * ROUND_OFF.powf((power + 1.0).recip()) };
+        if profile.analytic_tip() || base > 0.0 { 0.0 } else { drop * ROUND_OFF.powf((power + 1.0).recip()) };
     let mut ends = vec![0.0, PI];
     approach(&mut ends, 0.0, angle(top));
     approach(&mut ends, PI, angle(bottom.max(weak)));

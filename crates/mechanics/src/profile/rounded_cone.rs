@@ -4,13 +4,9 @@
 //! There gamma = dg/dt = T (t/x) (2b/(x + t) + phi) (Ciavarella 1999; Popov & Hess 2015). f' bends but does not jump at
 //! b, so all stresses are finite.
 
-use super::celled::by_cells;
-use super::shape::ShapeFacts;
 use super::{Error, range};
-use crate::cells::Powers;
-use crate::cells::grid::{Kink, above};
+use crate::cells::shape::{Kink, Powers, Shape, above};
 use crate::cells::stages::Stages;
-use crate::numerics::angle::angles;
 
 /// A cone whose tip is a paraboloid.
 #[derive(Clone, Debug, PartialEq)]
@@ -31,31 +27,37 @@ impl RoundedCone {
     }
 }
 
-by_cells!(RoundedCone {
+impl Shape for RoundedCone {
     fn kinks(&self) -> Vec<Kink> {
         let kink = |radius, powers| Kink { radius, powers };
         vec![kink(0.0, Powers::Odd), kink(self.tip_radius, Powers::All(1))]
     }
 
-    fn slopes<const N: usize>(&self, base: f64, t: [f64; N]) -> [f64; N] {
+    fn level(&self, x: f64) -> f64 {
         let (slope, b) = (self.slope, self.tip_radius);
-        if base < b {
-            return t.map(|t| 2.0 * slope / b * t);
+        if x <= b {
+            return slope * x * (x / b);
         }
-        above(b, base, t, |t| {
-            let (angle, _) = angles(t.map(|t| t / b));
-            std::array::from_fn(|lane| {
-                let (t, x) = (t[lane], (b * b + t[lane] * t[lane]).sqrt());
-                slope * (t / x) * (2.0 * b / (x + t) + angle[lane])
-            })
-        })
+        let t = ((x - b) * (x + b)).sqrt();
+        slope * x * (b / (x + t) + t.atan2(b))
     }
 
-    fn facts(&self) -> ShapeFacts {
-        ShapeFacts { kernel_falls: true, ..ShapeFacts::default() }
+    fn gamma(&self, base: f64, t: f64) -> f64 {
+        let (slope, b) = (self.slope, self.tip_radius);
+        if base < b {
+            return 2.0 * slope / b * t;
+        }
+        above(b, base, t, |t| {
+            let x = b.hypot(t);
+            slope * (t / x) * (2.0 * b / (x + t) + t.atan2(b))
+        })
     }
 
     fn surface_slope(&self, r: f64) -> f64 {
         self.slope * (r / self.tip_radius).min(1.0)
     }
-});
+
+    fn stages(&self) -> Option<&Stages> {
+        Some(&self.stages)
+    }
+}

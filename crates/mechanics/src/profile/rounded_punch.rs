@@ -4,11 +4,8 @@
 //! gamma = dg/dt = (t/(R x))(2t - b phi) (Schubert 1942; Ciavarella 1999). All stays positive through t - b phi = b (u
 //! - atan u), u = t/b.
 
-use super::celled::by_cells;
-use super::shape::{Falls, ShapeFacts};
 use super::{Error, range};
-use crate::cells::Powers;
-use crate::cells::grid::{Kink, above};
+use crate::cells::shape::{Kink, Powers, Shape, above};
 use crate::cells::stages::Stages;
 use crate::numerics::angle::angles;
 
@@ -30,42 +27,38 @@ impl RoundedPunch {
             (range::FLAT_RADIUS.check(flat_radius)?, range::EDGE_RADIUS.check(edge_radius)?);
         Ok(RoundedPunch { flat_radius, edge_radius, stages: Stages::new() })
     }
+
+    /// t - b phi, m.
+    fn beyond_angle(&self, t: f64) -> f64 {
+        let (_, [difference]) = angles([t / self.flat_radius]);
+        self.flat_radius * difference
+    }
 }
 
-by_cells!(RoundedPunch {
+impl Shape for RoundedPunch {
     fn kinks(&self) -> Vec<Kink> {
         vec![Kink { radius: self.flat_radius, powers: Powers::All(2) }]
     }
 
-    fn slopes<const N: usize>(&self, base: f64, t: [f64; N]) -> [f64; N] {
+    fn level(&self, x: f64) -> f64 {
         let b = self.flat_radius;
-        above(b, base, t, |t| {
-            let (_, lacking) = angles(t.map(|t| t / b));
-            std::array::from_fn(|lane| {
-                let t = t[lane];
-                t * (t + b * lacking[lane]) / ((b * b + t * t).sqrt() * self.edge_radius)
-            })
-        })
+        if x > b { x / self.edge_radius * self.beyond_angle(((x - b) * (x + b)).sqrt()) } else { 0.0 }
     }
 
-    fn falls(&self, inner: f64, outer: f64) -> Falls {
-        let t_of = |x: f64| ((x - self.flat_radius) * (x + self.flat_radius)).max(0.0).sqrt();
-        let (low, high) = (t_of(inner), t_of(outer));
-        // dq/dt = (t gamma' - gamma)/t^2 <= 1/(R x), and the int dt/sqrt(t^2 - t_r^2) that goes with it is
-        // arcosh(t/t_r).
-        let width = ((outer - inner) * (outer + inner)).sqrt();
-        let rise = width * ((width + high) / low).ln() / (self.edge_radius * inner);
-        let least = if low > 0.0 { self.slope(outer) / outer - rise } else { f64::NEG_INFINITY };
-        // With u = t/b, R dq/d(u^2) = (1 + u phi)/(2 u (1 + u^2)^(3/2)) > 0, whose logarithm has the slope (phi + u/(1
-        // + u^2))/(1 + u phi) - 1/u - 3 u/(1 + u^2) < 0, since u phi + u^2/(1 + u^2) < 1 + u phi.
-        Falls { least, concavely: inner >= self.flat_radius }
+    fn gamma(&self, base: f64, t: f64) -> f64 {
+        let b = self.flat_radius;
+        above(b, base, t, |t| t / (b.hypot(t) * self.edge_radius) * (t + self.beyond_angle(t)))
     }
 
     fn surface_slope(&self, r: f64) -> f64 {
         (r - self.flat_radius).max(0.0) / self.edge_radius
     }
 
-    fn facts(&self) -> ShapeFacts {
-        ShapeFacts { curvature_radius: Some(self.edge_radius), ..ShapeFacts::default() }
+    fn stages(&self) -> Option<&Stages> {
+        Some(&self.stages)
     }
-});
+
+    fn curvature_radius(&self) -> Option<f64> {
+        Some(self.edge_radius)
+    }
+}

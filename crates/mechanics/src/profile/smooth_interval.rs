@@ -4,13 +4,9 @@
 //! x). The one thing asked of a profile is its rise from a radius up to the interval's outer end, to round-off of
 //! itself: then h = y_outer - g is a sum of positive terms and nothing cancels, however thin the ring.
 
-use std::f64::consts::FRAC_PI_2;
-
-use super::{DoubleDouble, Moments, Span, StressRadius};
-use crate::numerics::gauss::{QuadraturePanel, Singular};
-
-/// The power up to which no panel needs a longer rule than the singularities ask for.
-const PARABOLA: f64 = 2.0;
+use super::{DoubleDouble, Profile, Span};
+use crate::cells::shape::Powers;
+use crate::numerics::gauss::Singular;
 
 /// A stretch of radii in the coordinate t of the kink beneath it.
 #[derive(Clone, Copy)]
@@ -40,29 +36,14 @@ pub(super) struct Node {
     pub(super) dt: f64,
 }
 
-/// How fast an integrand changes along its path.
-struct Change {
-    /// At a distance s below the top ln t falls by rate + bend s per s, at the most near enough to the top.
-    rate: f64,
-    bend: f64,
-    /// How many factors of the integrand change like g.
-    factors: f64,
-    /// At s from where t would be zero ln t changes by no more than the larger of 1/s and this.
-    least: f64,
-}
-
 impl SmoothInterval {
     /// `span` above a kink at `base`. `singularity` is the distance in t to the next singularity beneath the kink,
     /// along the imaginary axis; g is analytic up to the radius `ceiling`.
-    pub(super) fn new(span: &Span, base: f64, singularity: f64, ceiling: f64, power: f64) -> SmoothInterval {
+    pub(super) fn new(span: &Span, base: f64, singularity: f64, power: f64) -> SmoothInterval {
         let (low, high) = span.excess(DoubleDouble::square_of(base));
         let (low, high) = (low.max(0.0).sqrt(), high.max(0.0).sqrt());
         let drop = if span.gap > 0.0 { span.gap / (low + high) } else { 0.0 };
-        // Far beyond the ceiling there is no contact, only steps of a search that has left the range: any finite value
-        // will do.
-        let above = ((ceiling - base) * (ceiling + base)).sqrt();
-        let above = if above > 0.99 * high { above } else { f64::INFINITY };
-        let singular = Singular { below: singularity, above };
+        let singular = Singular { below: singularity, above: f64::INFINITY };
         SmoothInterval {
             base,
             high,
@@ -85,114 +66,47 @@ impl SmoothInterval {
         let t = (self.high - dt).max(0.0);
         (Node { t, dt }, share * self.stretch(t))
     }
+}
 
-    /// Visits panel after panel from `top` down over `length`, in t or in an angle that t follows.
-    /// `t_at` is t at a distance from the top.
-    fn sweep(
-        &self,
-        (singular, top, length): (Singular, f64, f64),
-        change: Change,
-        t_at: impl Fn(f64) -> f64,
-        mut visit: impl FnMut(f64, f64),
-    ) {
-        let (rate, bend) = (self.power * change.rate, self.power * change.bend);
-        // x^2, by which a power has fallen: above a kink t falls sooner.
-        let square = |done: f64| self.base * self.base + t_at(done).powi(2);
-        let mut done = 0.0;
-        while done < length {
-            let (high, left) = (top - done, length - done);
-            if high <= 1e-14 * top {
-                // So low that any rule will do; `done` would soon stop growing.
-                QuadraturePanel::coarse(left).visit(|below, weight| visit(done + below, weight));
-                break;
-            }
-            let mut panel = singular.panel(high, left);
-            // Panels that the singularities alone shape suffice for a parabola, and where a power counts no longer.
-            if self.power > PARABOLA && self.power * (square(0.0) / square(done)).ln() < 80.0 {
-                if self.power > 10.0 {
-                    // A steep power is followed by no more than a factor e^5 at a time.
-                    let steep = rate + bend * done;
-                    // By the hypotenuse: below 1e-154 m the square of `steep` would overflow, and the loop would not
-                    // advance.
-                    let width = 10.0 / (steep + steep.hypot((10.0 * bend).sqrt()));
-                    if width > 0.0 && width < panel.width {
-                        panel = QuadraturePanel::fine(width);
-                    }
-                }
-                panel = panel.following(change.factors * self.power * panel.width * high.recip().max(change.least));
-            }
-            panel.visit(|below, weight| visit(done + below, weight));
-            done += panel.width;
-        }
+/// The outermost interval of a span without a kink, as such and as a span, and what is left inside it.
+pub(super) fn outermost_interval(profile: &Profile, span: &Span) -> (SmoothInterval, Span, Option<Span>) {
+    let base = profile.kink_under(span);
+    let power = profile.growth(span.outer_radius);
+    let square = DoubleDouble::square_of(base);
+    let (Some(outer), rest) = (span.above(square, base), span.below(square, base)) else {
+        return (SmoothInterval::new(span, 0.0, 0.0, power), *span, None);
+    };
+    let singularity = if base > 0.0 {
+        let next = profile.kink_below(base);
+        ((base - next) * (base + next)).sqrt()
+    } else if profile.analytic_tip() {
+        f64::INFINITY
+    } else {
+        0.0
+    };
+    (SmoothInterval::new(&outer, base, singularity, power), outer, rest)
+}
+
+/// The stretch from a node of an interval up to the interval's outer end.
+pub(super) fn under(top: &Span, interval: &SmoothInterval, node: Node) -> Span {
+    if node.dt < 0.5 * interval.high {
+        return Span::under(top.outer, top.outer_radius, node.dt * (interval.high + node.t));
+    }
+    // Near the inner end its own square must be exact, not the difference from the outer one.
+    let inner = DoubleDouble::square_of(interval.base) + DoubleDouble::square_of(node.t);
+    Span { inner, inner_radius: inner.value().sqrt(), gap: (top.outer - inner).value(), edge: 0.0, ..*top }
+}
+
+impl Profile {
+    /// x g'/g at a radius, m: g changes about as x to this power.
+    pub(super) fn growth(&self, radius: f64) -> f64 {
+        let level = self.level(radius);
+        if level > 0.0 { (radius * self.slope(radius) / level).clamp(1.0, 1e3) } else { 1.0 }
     }
 
-    /// int gamma dt.
-    pub(super) fn rise(&self, gamma: impl Fn(f64) -> f64) -> f64 {
-        let mut sum = 0.0;
-        let change = Change { rate: self.high.recip(), bend: 0.0, factors: 1.0, least: 0.0 };
-        let t_at = |dt: f64| self.high - dt;
-        self.sweep((self.singular, self.high, self.drop), change, t_at, |dt, weight| {
-            sum += weight * gamma((self.high - dt).max(0.0));
-        });
-        sum
-    }
-
-    /// int dx, int h dx and int h^2 dx with h the rise from x to the top of the interval.
-    pub(super) fn moments(&self, rise: impl Fn(Node) -> f64) -> Moments {
-        if self.gap <= 0.0 {
-            return Moments::default();
-        }
-        let (mut first, mut second) = (0.0, 0.0);
-        let change = Change { rate: self.high.recip(), bend: 0.0, factors: 2.0, least: 0.0 };
-        let t_at = |dt: f64| self.high - dt;
-        self.sweep((self.singular, self.high, self.drop), change, t_at, |dt, weight| {
-            let t = (self.high - dt).max(0.0);
-            let h = rise(Node { t, dt });
-            let area = weight * h * self.stretch(t);
-            first += area;
-            second += area * h;
-        });
-        Moments { width: self.gap / self.radii, first, second }
-    }
-
-    /// int (above + rise) dx / sqrt(r^2 - x^2) over the part of the interval below r, with t = tau sin(theta), tau^2 =
-    /// r^2 - k^2.
-    pub(super) fn displacement_integral(
-        &self,
-        span: &Span,
-        at: &StressRadius,
-        above: f64,
-        rise: impl Fn(Node) -> f64,
-    ) -> f64 {
-        let (inner, outer) = span.excess(at.square);
-        if inner >= 0.0 || self.gap <= 0.0 {
-            return 0.0;
-        }
-        let low = self.low;
-        let tau_square = (at.square - DoubleDouble::square_of(self.base)).value();
-        let (w_low, w_top) = ((-inner).sqrt(), (-outer).max(0.0).sqrt());
-        let (top, missing, gap) = if outer > 0.0 {
-            let tau = tau_square.sqrt();
-            (tau, outer / (self.high + tau), -inner)
-        } else {
-            (self.high, 0.0, self.gap)
-        };
-        let angle = (gap * tau_square / (top * w_low + low * w_top)).atan2(w_low * w_top + low * top);
-        let tau = tau_square.sqrt();
-        // A singularity on the axis of t lies beyond the top in theta, or beside pi/2, where it counts as half as far.
-        let beyond = self.singular.above / tau;
-        let beyond = if beyond < 1.0 { beyond.asin() } else { FRAC_PI_2 + 0.5 * beyond.acosh().min(3.0) };
-        let singular = Singular { below: (self.singular.below / tau).asinh(), above: beyond };
-        let mut total = 0.0;
-        // A power of the sine is a sum of waves no shorter than that power has them.
-        let change = Change { rate: w_top / top, bend: 1.0, factors: 1.0, least: 1.0 };
-        let t_at = |turn: f64| top * turn.cos() - w_top * turn.sin();
-        self.sweep((singular, top.atan2(w_top), angle), change, t_at, |turn, weight| {
-            let half = (0.5 * turn).sin();
-            let dt = 2.0 * top * half * half + w_top * turn.sin();
-            let t = (top - dt).max(0.0);
-            total += weight * (above + rise(Node { t, dt: missing + dt })) * self.stretch(t);
-        });
-        total
+    /// Whether g is analytic in x at the tip.
+    pub(super) fn analytic_tip(&self) -> bool {
+        let uneven = |powers| matches!(powers, Powers::Uneven(_));
+        self.shape().is_none_or(|shape| shape.kinks().first().is_none_or(|kink| !uneven(kink.powers)))
     }
 }

@@ -1,11 +1,21 @@
 //! Hertz's parabola f = r^2/(2R), the paper's sphere: g(x) = x^2/R, K(r, c) = (2/R) sqrt(c^2 - r^2).
 //!
 //! Everything follows from one difference, x_outer^2 - x_inner^2 = R (y_outer - y_inner), which is never taken between
-//! rounded radii (Hertz 1881; Popov & Hess 2015).
+//! rounded radii (Hertz 1881; Popov & Hess 2015). The forms are closed, so that no cells are made; as a part of a sum
+//! it is a shape like others.
 
-use super::shape::{Falls, KernelOrder, Shape, ShapeFacts};
-use super::{DoubleDouble, Error, Kink, Moments, Ring, Span, StressRadius, range};
-use crate::cells::Powers;
+use super::{DoubleDouble, Error, Moments, Point, Ring, Span, StressRadius, range};
+#[cfg(test)]
+use crate::cells::call_count;
+use crate::cells::field::SumAndSize;
+use crate::cells::shape::{Kink, Powers, Shape};
+use crate::cells::stages::Stages;
+use crate::numerics::gauss::TWELVE_POINTS;
+
+/// Radii that are summed for side by side.
+const LANES: usize = 8;
+/// Squares of radii that differ by less, over that of the outer one, have lost digits that the depth of their ring has.
+const THIN: f64 = 1e-3;
 
 /// A paraboloid of revolution.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,22 +32,45 @@ impl Sphere {
         Ok(Sphere { curvature_radius: range::RADIUS.check(radius)? })
     }
 
+    /// The same where R follows from other, checked numbers.
+    pub(super) fn of_curvature(radius: f64) -> Sphere {
+        Sphere { curvature_radius: radius }
+    }
+
     /// Curvature radius R, m.
     #[must_use]
     pub fn curvature_radius(&self) -> f64 {
         self.curvature_radius
     }
 
-    /// The moments of a ring, of which its depth and its two radii say all.
-    #[inline]
-    pub(super) fn moments_between(&self, ring: &Ring) -> Moments {
-        let gap = if ring.depth > 0.0 { self.curvature_radius * ring.depth } else { 0.0 };
-        let outer = ring.outer.radius;
-        self.moments_by_width(outer, if gap > 0.0 { gap / (ring.inner.radius + outer) } else { 0.0 })
+    /// g', m.
+    pub(super) fn slope(&self, radius: f64) -> f64 {
+        2.0 * radius / self.curvature_radius
     }
 
+    /// A level with its radius.
     #[inline]
-    fn moments_by_width(&self, outer: f64, width: f64) -> Moments {
+    pub(super) fn point(&self, level: DoubleDouble) -> Point {
+        let square = level * self.curvature_radius;
+        Point { level, radius: square.value().sqrt(), square }
+    }
+
+    /// The level at which int X dy is this load, m^2.
+    pub(super) fn indentation_for(&self, load: f64) -> f64 {
+        self.level((1.5 * load * self.curvature_radius).cbrt())
+    }
+
+    /// The difference of the squares of the radii of a ring, m^2.
+    #[inline]
+    pub(super) fn gap(&self, ring: &Ring) -> f64 {
+        if ring.depth > 0.0 { self.curvature_radius * ring.depth } else { 0.0 }
+    }
+
+    /// The moments of a ring, which follow from its depth and its two radii.
+    #[inline]
+    pub(super) fn moments(&self, ring: &Ring) -> Moments {
+        let (gap, outer) = (self.gap(ring), ring.outer.radius);
+        let width = if gap > 0.0 { gap / (ring.inner.radius + outer) } else { 0.0 };
         let area = width * width / self.curvature_radius;
         Moments {
             width,
@@ -48,80 +81,144 @@ impl Sphere {
         }
     }
 
-    /// The same where R follows from other, checked numbers.
-    pub(super) fn of_curvature(radius: f64) -> Sphere {
-        Sphere { curvature_radius: radius }
-    }
-}
-
-impl Shape for Sphere {
-    fn level(&self, radius: f64) -> f64 {
-        radius * radius / self.curvature_radius
+    /// The kernel of a ring.
+    pub(super) fn kernel(&self, at: &StressRadius, ring: &Ring) -> f64 {
+        self.share::<false>(&Span::of(ring, self.gap(ring), 0.0), at)
     }
 
-    fn slope(&self, radius: f64) -> f64 {
-        2.0 * radius / self.curvature_radius
+    /// Its derivative with respect to r^2, 1/m^2, from the right.
+    pub(super) fn kernel_slope(&self, at: &StressRadius, ring: &Ring) -> f64 {
+        self.share::<true>(&Span::of(ring, self.gap(ring), 0.0), at)
     }
 
-    fn slopes<const N: usize>(&self, _base: f64, t: [f64; N]) -> [f64; N] {
-        // g'/x is the same everywhere.
-        t.map(|t| self.slope(t))
-    }
-
-    fn square(&self, level: DoubleDouble) -> DoubleDouble {
-        level * self.curvature_radius
-    }
-
-    fn load(&self, radius: f64) -> f64 {
-        2.0 * radius * radius * radius / (3.0 * self.curvature_radius)
-    }
-
-    fn indentation_for(&self, load: f64) -> f64 {
-        let radius = (1.5 * load * self.curvature_radius).cbrt();
-        self.level(radius)
-    }
-
-    fn rise(&self, span: &Span) -> f64 {
-        span.gap / self.curvature_radius
-    }
-
-    fn gap(&self, _ring: &Ring, depth: f64) -> f64 {
-        self.curvature_radius * depth
-    }
-
-    fn moments(&self, span: &Span, _top: f64) -> Moments {
-        self.moments_by_width(span.outer_radius, span.width())
-    }
-
-    fn kernel(&self, order: KernelOrder, at: &StressRadius, span: &Span) -> f64 {
+    fn share<const SLOPE: bool>(&self, span: &Span, at: &StressRadius) -> f64 {
         let (inner, outer) = span.excess(at.square);
         if outer <= 0.0 {
             return 0.0;
         }
-        let outer = outer.sqrt();
-        let share = match (order, inner > 0.0) {
-            (KernelOrder::Value, true) => 2.0 * span.gap / (outer + inner.sqrt()),
-            (KernelOrder::Value, false) => 2.0 * outer,
-            (KernelOrder::Slope, true) => span.gap / (outer * inner.sqrt() * (outer + inner.sqrt())),
-            (KernelOrder::Slope, false) => -1.0 / outer,
+        let (low, high) = (inner.max(0.0).sqrt(), outer.sqrt());
+        difference::<SLOPE>(low, high, if inner > 0.0 { span.gap } else { outer }) * 2.0 / self.curvature_radius
+    }
+
+    /// The sums of the kernels, or of their derivatives with respect to r^2, of weighted rings from the centre outward,
+    /// at radii in rising order.
+    pub(super) fn sums<const SLOPE: bool>(&self, rings: &[(Ring, f64)], radii: &[StressRadius]) -> Vec<SumAndSize> {
+        let Some((outermost, _)) = rings.last() else { return vec![(0.0, 0.0); radii.len()] };
+        let ends: Vec<BallRing> = rings.iter().rev().map(|(ring, weight)| self.ball_ring(ring, *weight)).collect();
+        let edge = outermost.outer.square.parts();
+        let unit = 2.0 / self.curvature_radius;
+        let mut sums = Vec::with_capacity(radii.len());
+        for radii in radii.chunks(LANES) {
+            let square: [_; LANES] = std::array::from_fn(|lane| radii[lane.min(radii.len() - 1)].square.parts());
+            let least = square[0].0;
+            let excess = |end: (f64, f64)| square.map(|(high, low)| (end.0 - high) + (end.1 - low));
+            let (mut sum, mut size) = ([0.0; LANES], [0.0; LANES]);
+            let mut v_high = excess(edge).map(root_of);
+            for ring in &ends {
+                #[cfg(test)]
+                call_count::add(|calls| if SLOPE { &mut calls.kernel_slope } else { &mut calls.kernel });
+                let below = excess(ring.end);
+                let v_low = below.map(root_of);
+                if ring.thin {
+                    for lane in 0..LANES {
+                        if below[lane] > -0.5 * ring.gap {
+                            v_high[lane] = root_of(below[lane] + ring.gap);
+                        }
+                    }
+                }
+                for lane in 0..LANES {
+                    let gap = if below[lane] > 0.0 { ring.gap } else { v_high[lane] * v_high[lane] };
+                    let kernel = if v_high[lane] > 0.0 { difference::<SLOPE>(v_low[lane], v_high[lane], gap) } else { 0.0 };
+                    sum[lane] += ring.weight * kernel;
+                    if SLOPE {
+                        size[lane] += (ring.weight * kernel).abs();
+                    }
+                }
+                v_high = v_low;
+                if ring.end.0 < least {
+                    break;
+                }
+            }
+            sums.extend((0..radii.len()).map(|lane| (unit * sum[lane], unit * size[lane])));
+        }
+        sums
+    }
+
+    fn ball_ring(&self, ring: &Ring, weight: f64) -> BallRing {
+        let plain = (ring.outer.square - ring.inner.square).value();
+        let thin = plain <= THIN * ring.outer.square.value();
+        BallRing { end: ring.inner.square.parts(), gap: if thin { self.gap(ring) } else { plain }, thin, weight }
+    }
+
+    /// int (y_outer - g) dx/sqrt(r^2 - x^2), m, over the radii x of a ring below r: over the angle whose sine is x/r.
+    pub(super) fn displacement_integral(&self, at: &StressRadius, span: &Span) -> f64 {
+        let (inner, outer) = span.excess(at.square);
+        if inner >= 0.0 {
+            return 0.0;
+        }
+        let (angle, missing) = (span.arc(at), outer.max(0.0));
+        let (top, root) = (span.outer_radius.min(at.radius), (-outer).max(0.0).sqrt());
+        // r^2 (sin^2(a) - sin^2(a - b)) = r^2 sin(b) sin(2 a - b), and r sin(a) is the outer end.
+        let height = |turn: f64| {
+            let half = turn.sin();
+            half * (2.0 * top * root * turn.cos() + (top * top - root * root) * half)
         };
-        share / self.curvature_radius
+        let sum: f64 = TWELVE_POINTS.iter().map(|(share, weight)| weight * (missing + height(angle * share))).sum();
+        angle * sum / self.curvature_radius
+    }
+}
+
+/// A ring by its inner end, whose square, m^2, is given in both parts.
+struct BallRing {
+    end: (f64, f64),
+    /// Difference of the squares, m^2.
+    gap: f64,
+    /// Whether that has digits that the squares have lost.
+    thin: bool,
+    weight: f64,
+}
+
+/// The difference of two roots, given that of their squares; or its derivative with respect to r^2, from the right where
+/// the lower one is zero.
+#[inline]
+fn difference<const SLOPE: bool>(low: f64, high: f64, gap: f64) -> f64 {
+    if !SLOPE {
+        gap / (high + low)
+    } else if low > 0.0 {
+        0.5 * gap / (high * low * (high + low))
+    } else {
+        -0.5 / high
+    }
+}
+
+/// The root of a positive number, and zero of all else.
+fn root_of(square: f64) -> f64 {
+    (if square > 0.0 { square } else { 0.0 }).sqrt()
+}
+
+impl Shape for Sphere {
+    fn kinks(&self) -> Vec<Kink> {
+        vec![Kink { radius: 0.0, powers: Powers::Odd }]
+    }
+
+    fn level(&self, x: f64) -> f64 {
+        x * x / self.curvature_radius
+    }
+
+    fn gamma(&self, _base: f64, t: f64) -> f64 {
+        // g'/x is the same everywhere.
+        self.slope(t)
     }
 
     fn surface_slope(&self, r: f64) -> f64 {
         r / self.curvature_radius
     }
 
-    fn facts(&self) -> ShapeFacts {
-        let curvature_radius = Some(self.curvature_radius);
-        ShapeFacts { curvature_radius, kernel_falls: true, ..ShapeFacts::default() }
+    fn stages(&self) -> Option<&Stages> {
+        None
     }
 
-    fn kinks(&self) -> Vec<Kink> {
-        vec![Kink { radius: 0.0, powers: Powers::Odd }]
-    }
-
-    fn falls(&self, _inner: f64, _outer: f64) -> Falls {
-        Falls { least: 2.0 / self.curvature_radius, concavely: true }
+    fn curvature_radius(&self) -> Option<f64> {
+        Some(self.curvature_radius)
     }
 }

@@ -3,13 +3,9 @@
 //! gamma = dg/dt = T (phi t + b)/x (Shtaerman 1949; Popov & Hess 2015). f' jumps at b: pressure and shear are
 //! log-infinite there.
 
-use super::celled::by_cells;
-use super::shape::ShapeFacts;
 use super::{Error, range};
-use crate::cells::Powers;
-use crate::cells::grid::{Kink, above};
+use crate::cells::shape::{Kink, Powers, Shape, above};
 use crate::cells::stages::Stages;
-use crate::numerics::angle::angles;
 
 /// A truncated cone.
 #[derive(Clone, Debug, PartialEq)]
@@ -30,24 +26,26 @@ impl TruncatedCone {
     }
 }
 
-by_cells!(TruncatedCone {
+impl Shape for TruncatedCone {
     fn kinks(&self) -> Vec<Kink> {
         vec![Kink { radius: self.flat_radius, powers: Powers::All(0) }]
     }
 
-    fn slopes<const N: usize>(&self, base: f64, t: [f64; N]) -> [f64; N] {
+    fn level(&self, x: f64) -> f64 {
         let b = self.flat_radius;
-        above(b, base, t, |t| {
-            let (angle, _) = angles(t.map(|t| t / b));
-            std::array::from_fn(|lane| self.slope * (t[lane] * angle[lane] + b) / (b * b + t[lane] * t[lane]).sqrt())
-        })
+        if x > b { self.slope * x * ((x - b) * (x + b)).sqrt().atan2(b) } else { 0.0 }
     }
 
-    fn facts(&self) -> ShapeFacts {
-        ShapeFacts { singular: Some(self.flat_radius), falls_from: Some(self.flat_radius), ..ShapeFacts::default() }
+    fn gamma(&self, base: f64, t: f64) -> f64 {
+        let b = self.flat_radius;
+        above(b, base, t, |t| self.slope * (t * t.atan2(b) + b) / b.hypot(t))
     }
 
     fn surface_slope(&self, r: f64) -> f64 {
         if r > self.flat_radius { self.slope } else { 0.0 }
     }
-});
+
+    fn stages(&self) -> Option<&Stages> {
+        Some(&self.stages)
+    }
+}

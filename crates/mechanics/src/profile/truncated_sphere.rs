@@ -3,11 +3,8 @@
 //! gamma = dg/dt = (b^2 + 2 t^2)/(R x) (Ejike 1981; Popov & Hess 2015). f' jumps at b: pressure and shear are
 //! log-infinite there.
 
-use super::celled::by_cells;
-use super::shape::ShapeFacts;
 use super::{Error, range};
-use crate::cells::Powers;
-use crate::cells::grid::{Kink, above};
+use crate::cells::shape::{Kink, Powers, Shape, above};
 use crate::cells::stages::Stages;
 
 /// A paraboloid with a flat end.
@@ -29,26 +26,30 @@ impl TruncatedSphere {
     }
 }
 
-by_cells!(TruncatedSphere {
+impl Shape for TruncatedSphere {
     fn kinks(&self) -> Vec<Kink> {
         vec![Kink { radius: self.flat_radius, powers: Powers::All(0) }]
     }
 
-    fn slopes<const N: usize>(&self, base: f64, t: [f64; N]) -> [f64; N] {
+    fn level(&self, x: f64) -> f64 {
         let b = self.flat_radius;
-        above(b, base, t, |t| t.map(|t| (b * b + 2.0 * t * t) / ((b * b + t * t).sqrt() * self.curvature_radius)))
+        if x > b { x * ((x - b) * (x + b)).sqrt() / self.curvature_radius } else { 0.0 }
     }
 
-    fn facts(&self) -> ShapeFacts {
-        ShapeFacts {
-            curvature_radius: Some(self.curvature_radius),
-            singular: Some(self.flat_radius),
-            falls_from: Some(self.flat_radius),
-            ..ShapeFacts::default()
-        }
+    fn gamma(&self, base: f64, t: f64) -> f64 {
+        let b = self.flat_radius;
+        above(b, base, t, |t| (b * b + 2.0 * t * t) / (b.hypot(t) * self.curvature_radius))
     }
 
     fn surface_slope(&self, r: f64) -> f64 {
         if r > self.flat_radius { r / self.curvature_radius } else { 0.0 }
     }
-});
+
+    fn stages(&self) -> Option<&Stages> {
+        Some(&self.stages)
+    }
+
+    fn curvature_radius(&self) -> Option<f64> {
+        Some(self.curvature_radius)
+    }
+}

@@ -13,7 +13,7 @@ const TOLERANCE: f64 = 1e-12;
 /// How often a panel may be halved.
 const HALVINGS: u32 = 60;
 /// Below this radius, m, g is a power of x.
-const TIP: f64 = 1e-290;
+const TIP: f64 = 1e-100;
 
 /// s between two radii.
 pub(super) struct EqualPeakMeasure<'a> {

@@ -146,7 +146,7 @@ impl Problem<'_> {
     fn core(&self, strokes: &VirginStrokes<'_>) -> f64 {
         let sign = strokes.sign();
         let width = strokes.last().radius - self.cutoff;
-        let looks = if self.profile.kernel_falls() { 1 } else { CORE };
+        let looks = if self.profile.falls(0.0, self.edge.radius) { 1 } else { CORE };
         let value = |part: f64| sign * strokes.shear(&StressRadius::new(self.cutoff + width * part));
         let looked = (0..looks).map(|index| index as f64 / CORE as f64).map(|part| (part, value(part)));
         let (best, most) = looked.fold((0.0, f64::NEG_INFINITY), |a, b| if b.1 > a.1 { b } else { a });

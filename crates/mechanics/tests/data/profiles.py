@@ -230,7 +230,7 @@ def tabulate(profile, unit):
 
 def cases():
     yield sphere(0.01), 1e-4
-    for R, unit in ((0.01, 9e-3), (0.01, 3e-3), (0.01, 1e-17), (1e-9, 1e-10)):
+    for R, unit in ((0.01, 8.9e-3), (0.01, 3e-3), (0.01, 1e-17), (1e-9, 1e-10)):
         yield exact_sphere(R), unit
     yield cone(0.3), 1e-3
     for n in (0.5, 1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 17.0, 33.3):

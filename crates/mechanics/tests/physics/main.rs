@@ -11,7 +11,7 @@ mod digits;
 mod double_double;
 mod elasticity;
 mod equal_peaks;
-mod equator;
+mod exact_sphere;
 mod exactness;
 mod extrema;
 mod falling_reversals;

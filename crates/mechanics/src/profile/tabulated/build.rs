@@ -16,12 +16,13 @@
 
 use std::ops::Range;
 
-use super::DoubleDouble;
 use super::spline::SplineKnot;
-use crate::cells::{Cell, Powers};
+use crate::cells::Cell;
+use crate::cells::shape::Powers;
 use crate::numerics::angle::{self, angles};
 use crate::numerics::chebyshev::{self, EIGHT, Points, SIXTEEN, TWELVE, TWENTY, TWENTY_FOUR};
 use crate::numerics::cluster_tree::ClusterTree;
+use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::gauss::{EIGHT_POINTS, TWENTY_POINTS};
 use crate::numerics::multipole::Multipole;
 use crate::numerics::roots::turning;
@@ -423,8 +424,9 @@ impl Build<'_> {
         // Room for one more term than this one had.
         self.points = [8, 12, 16].into_iter().find(|points| series.len() + 3 <= *points).unwrap_or(24);
         let square = DoubleDouble::square_of(stretch.base) + DoubleDouble::from(stretch.low);
-        let kind = if stretch.low > 0.0 { Powers::Odd } else { Powers::All(1) };
-        Cell::new(stretch.base, square, stretch.width.sqrt(), &series, kind)
+        let (high, powers) = (stretch.width.sqrt(), if stretch.low > 0.0 { Powers::Odd } else { Powers::All(1) });
+        let series: Vec<f64> = series.into_iter().map(|term| high * term).collect();
+        Cell::new(stretch.base, square, high, &series, powers)
     }
 
     /// The series of q = g'/x over a stretch, by its values at so many points, and whether they resolve it.

@@ -20,11 +20,10 @@ mod tests;
 use std::sync::Arc;
 
 use super::super::error::TableFault;
-use super::shape::{End, Falls, KernelOrder, Shape, ShapeFacts};
-use super::{DoubleDouble, Error, Kink, Moments, Ring, Span, StressRadius, range};
-use crate::cells::kernel::Kernel;
-use crate::cells::{Cells, Powers};
-pub(super) use curve::Reach;
+use super::{Error, range};
+use crate::cells::Cells;
+use crate::cells::shape::{End, EndKind, Kink, Powers, Reach, Shape};
+use crate::cells::stages::Stages;
 use curve::TableCurve;
 pub use interpolation_error::InterpolationError;
 use interpolation_error::TableGap;
@@ -113,12 +112,13 @@ impl Tabulated {
     fn from_knots(knots: Vec<SplineKnot>, whole: bool, keep_going: &dyn Fn() -> bool) -> Result<Tabulated, Error> {
         let last = knots.len() - 1;
         let (curve, falls) = TableCurve::new(knots, whole, keep_going)?;
-        let Some(end) = curve.end() else {
+        let Some(curve) = curve else {
             return Err(match falls {
                 Some(radius) => Error::NotConvexEnough { radius },
                 None => Error::Table { fault: TableFault::HeightNeverRises, index: last },
             });
         };
+        let end = curve.end;
         Ok(Tabulated {
             radii: Vec::new(),
             heights: Vec::new(),
@@ -132,17 +132,19 @@ impl Tabulated {
         })
     }
 
-    /// Builds the curve as far as this, while `keep_going` returns true, which is asked every few points.
-    ///
-    /// # Errors
-    /// [`Error::Interrupted`] once it has returned false.
-    pub(super) fn build_up_to(&self, reach: Reach, keep_going: &dyn Fn() -> bool) -> Result<(), Error> {
-        self.curve.build_up_to(reach, keep_going)
-    }
-
     /// The radius of a flat core, m.
     pub(super) fn flat_radius(&self) -> f64 {
-        self.curve.flat_radius()
+        self.curve.flat_radius
+    }
+
+    /// Where the cells end, m: as part of a sum g may have fallen before.
+    pub(super) fn known_to(&self) -> f64 {
+        self.end
+    }
+
+    /// The first radius at which g falls, if it does, m.
+    pub(super) fn falls(&self) -> Option<f64> {
+        self.falls
     }
 
     /// The interpolation error in a contact of this radius, m.
@@ -161,67 +163,24 @@ impl Tabulated {
 
     /// Radii, m, increasing, between which g' cannot hide a fall.
     pub(super) fn slope_check_radii(&self) -> impl Iterator<Item = f64> {
-        let cells = &self.curve.up_to(Reach::Radius(self.end)).cells;
-        cells.iter().flat_map(|cell| cell.slope_check_places().into_iter().map(|zeta| cell.radius_at(zeta)))
+        let cells = self.cells_while(Reach::Radius(self.end), &|| true).into_iter().flat_map(|cells| &cells.cells);
+        cells.flat_map(|cell| cell.slope_check_places().into_iter().map(|zeta| cell.radius_at(zeta)))
     }
-}
-
-/// Methods of [`Shape`] that the cells up to some radius have.
-macro_rules! by_cells {
-    ($($method:ident($($argument:ident: $Type:ty),*) -> $Result:ty, up to $radius:expr;)+) => {
-        $(fn $method(&self, $($argument: $Type),*) -> $Result {
-            self.curve.up_to(Reach::Radius($radius)).$method($($argument),*)
-        })+
-    };
 }
 
 impl Shape for Tabulated {
-    fn celled(&self, radius: f64) -> Option<&Cells> {
-        Some(self.curve.up_to(Reach::Radius(radius)))
-    }
-
-    by_cells! {
-        level(radius: f64) -> f64, up to radius;
-        slope(radius: f64) -> f64, up to radius;
-        load(radius: f64) -> f64, up to radius;
-        kink_below(radius: f64) -> f64, up to radius;
-        rise(span: &Span) -> f64, up to span.outer_radius;
-        gap(ring: &Ring, depth: f64) -> f64, up to ring.outer.radius;
-    }
-
-    fn moments(&self, span: &Span, _top: f64) -> Moments {
-        self.curve.up_to(Reach::Radius(span.outer_radius)).moments(span)
-    }
-
-    fn square(&self, level: DoubleDouble) -> DoubleDouble {
-        if level.value() <= 0.0 {
-            return DoubleDouble::square_of(self.flat_radius());
-        }
-        self.curve.up_to(Reach::Level(level.value())).square(level)
-    }
-
-    fn indentation_for(&self, load: f64) -> f64 {
-        self.curve.up_to(Reach::Load(load)).indentation_for(load)
-    }
-
-    fn kernel(&self, order: KernelOrder, at: &StressRadius, span: &Span) -> f64 {
-        let kernel = if order == KernelOrder::Value { Kernel::Root } else { Kernel::RootSlope };
-        self.curve.up_to(Reach::Radius(span.outer_radius)).sum(kernel, at, span)
-    }
-
-    fn falls(&self, inner: f64, outer: f64) -> Falls {
-        Falls { least: self.curve.up_to(Reach::Radius(outer)).least_fall(inner, outer), concavely: false }
-    }
-
     fn kinks(&self) -> Vec<Kink> {
-        let kink = |radius| Kink { radius, powers: Powers::All(1) };
-        let knots = self.curve.up_to(Reach::Radius(self.end)).kinks.iter().map(|&radius| kink(radius));
-        let tip = (self.flat_radius() <= 0.0).then_some(Kink { radius: 0.0, powers: Powers::Odd });
-        tip.into_iter().chain(knots).collect()
+        let powers = |radius: f64| if radius > 0.0 { Powers::All(1) } else { Powers::Odd };
+        self.curve.knots().map(|radius| Kink { radius, powers: powers(radius) }).collect()
     }
 
-    fn slopes<const N: usize>(&self, base: f64, t: [f64; N]) -> [f64; N] {
-        self.curve.up_to(Reach::Radius(self.end)).slopes(base, t)
+    fn level(&self, x: f64) -> f64 {
+        self.curve.level(x)
+    }
+
+    fn gamma(&self, base: f64, t: f64) -> f64 {
+        let x = base.hypot(t);
+        self.cells_while(Reach::Radius(x), &|| true).map_or(0.0, |cells| cells.gamma(base, t))
     }
 
     fn surface_slope(&self, r: f64) -> f64 {
@@ -229,9 +188,16 @@ impl Shape for Tabulated {
         (self.heights[index] - self.heights[index - 1]) / (self.radii[index] - self.radii[index - 1])
     }
 
-    fn facts(&self) -> ShapeFacts {
-        let end = End { radius: self.end, falls: self.falls.is_some_and(|radius| radius >= self.end) };
-        let limit = Some(End { radius: self.falls.unwrap_or(self.end), falls: self.falls.is_some() });
-        ShapeFacts { limit, known_to: Some(end), rim: Some(self.end), ..ShapeFacts::default() }
+    fn stages(&self) -> Option<&Stages> {
+        Some(&self.curve.stages)
+    }
+
+    fn end(&self) -> Option<End> {
+        let kind = if self.falls.is_some() { EndKind::Fall } else { EndKind::Unknown };
+        Some(End { radius: self.falls.unwrap_or(self.end), kind })
+    }
+
+    fn build(&self, (_, end): (f64, f64), keep_going: &dyn Fn() -> bool) -> Option<Cells> {
+        self.curve.build(end, keep_going)
     }
 }

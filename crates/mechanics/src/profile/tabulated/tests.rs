@@ -1,12 +1,13 @@
 //! A table against the sum of a sphere and rounded punches that it is.
 
-use super::super::shape::span;
 use super::super::{Profile, Ring, RoundedPunch, Sphere, StressRadius, Sum};
 use super::*;
-use crate::cells::field::{Source, WeightedCells};
+use crate::cells::field::WeightedCells;
 use crate::cells::kernel::Kernel;
 use crate::cells::ring::Point;
+use crate::cells::span::Span;
 use crate::cells::{Cell, Cells, SpanParts};
+use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::gauss;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
@@ -39,7 +40,12 @@ fn table(idle: u32) -> Profile {
 
 /// All cells of a table.
 fn all(table: &Tabulated) -> &Cells {
-    table.curve.up_to(super::Reach::Radius(table.end))
+    table.cells_while(Reach::Radius(table.end), &|| true).unwrap()
+}
+
+/// int x dg, m^2.
+fn load(profile: &Profile, x: f64) -> f64 {
+    profile.cells(Reach::Radius(x)).unwrap().load(x)
 }
 
 fn worst(pairs: &[(f64, f64)]) -> f64 {
@@ -58,8 +64,8 @@ fn a_table_is_a_sum_of_rounded_punches() {
             pairs.push((table.level(x), y));
             pairs.push((table.slope(x), sum.slope(x)));
             pairs.push((table.radius(y), x));
-            pairs.push((Shape::load(&table, x), Shape::load(&sum, x)));
-            pairs.push((table.indentation_for(Shape::load(&sum, x)), y));
+            pairs.push((load(&table, x), load(&sum, x)));
+            pairs.push((table.indentation_for(load(&sum, x)), y));
         }
         assert!(worst(&pairs) < 3e-14, "{idle}: {:e}", worst(&pairs));
     }
@@ -111,7 +117,7 @@ fn rings(table: &Tabulated, shares: &[(f64, f64)]) -> Vec<(Ring, f64)> {
     shares.sort_by(|a, b| a.0.total_cmp(&b.0));
     let point = |share: f64| {
         let level = DoubleDouble::from(table.level(0.99 * share * table.end));
-        let square = table.square(level);
+        let square = all(table).square(level);
         Point { level, radius: square.value().sqrt(), square }
     };
     let between = |pair: &[(f64, f64)]| (Ring::between(point(pair[0].0), point(pair[1].0)), pair[1].1);
@@ -157,21 +163,22 @@ proptest! {
         let table = uneven(&steps);
         let rings = rings(&table, &shares);
         let radii: Vec<StressRadius> = radii.iter().map(|share| StressRadius::new(share * table.end)).collect();
+        let span = |ring: &Ring| Span::of(ring, all(&table).gap(ring, ring.depth), 0.0);
         let by_cells = |at: &StressRadius, ring: &Ring| {
             let cells = all(&table);
-            let SpanParts { low, whole, high } = cells.parts(&span(&table, ring));
+            let SpanParts { low, whole, high } = cells.parts(&span(ring));
             let whole = whole.map(|index| (index, cells.span_of_cell(index)));
             let kernel = |(index, span): (usize, Span)| graded_kernel(&cells.cells[index], at, &span);
             low.into_iter().chain(whole).chain(high).map(kernel).sum::<f64>()
         };
         let size: f64 = rings.iter().map(|(ring, _)| by_cells(&StressRadius::new(0.0), ring)).sum();
-        let spans: Vec<(Span, f64)> = rings.iter().map(|(ring, weight)| (span(&table, ring), *weight)).collect();
-        let sums = WeightedCells::new(Source::Kept(all(&table)), &spans, radii.len()).sums(Kernel::Root, &radii);
+        let spans: Vec<(Span, f64)> = rings.iter().map(|(ring, weight)| (span(ring), *weight)).collect();
+        let sums = WeightedCells::new(all(&table), &spans, radii.len()).sums(Kernel::Root, &radii);
         for (at, (sum, _)) in radii.iter().zip(sums) {
             let exact: f64 = rings.iter().map(|(ring, weight)| weight * by_cells(at, ring)).sum();
             prop_assert!((sum - exact).abs() <= 3e-14 * size, "{:e}: {sum:e} {exact:e}", at.radius);
             for (ring, _) in &rings {
-                let (kernel, exact) = (table.kernel(KernelOrder::Value, at, &span(&table, ring)), by_cells(at, ring));
+                let (kernel, exact) = (all(&table).sum(Kernel::Root, at, &span(ring)), by_cells(at, ring));
                 prop_assert!((kernel - exact).abs() <= 3e-14 * size, "{:e}: {kernel:e} {exact:e}", at.radius);
             }
         }
@@ -183,7 +190,7 @@ proptest! {
         for share in shares {
             let radius = share * table.end;
             let level = DoubleDouble::from(table.level(radius));
-            let found = table.level(table.square(level).value().sqrt());
+            let found = table.level(all(&table).square(level).value().sqrt());
             let allowed = 1e-14 * level.value() + 1e-16 * table.level(table.end);
             prop_assert!((found - level.value()).abs() <= allowed, "{radius:e}: {found:e}");
         }

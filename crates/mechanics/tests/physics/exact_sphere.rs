@@ -1,5 +1,5 @@
-//! The exact sphere pressed in up to within 1e-11 of its equator, alone and in a sum, against closed forms in the
-//! coordinate sigma, x = R tanh(sigma), in which nothing cancels.
+//! The exact sphere pressed in up to where contacts end, alone and in a sum, against closed forms in the coordinate
+//! sigma, x = R tanh(sigma), in which nothing cancels.
 
 use proptest::prelude::*;
 use stickslip_mechanics::profile::{ExactSphere, Sum};
@@ -34,29 +34,12 @@ fn force(radius: f64, blunt: Option<f64>, sigma: f64) -> f64 {
         * (radius * radius * ((1.0 + tanh * tanh) * sigma - tanh) + blunt.map_or(0.0, |b| 4.0 / 3.0 * x * (x * x / b)))
 }
 
-#[test]
-fn the_force_of_a_sphere_pressed_in_to_its_equator_is_that_of_sixty_digits() {
-    let force = contact(0.01, None, Preload::Indentation(0.09556913864187017)).normal_force();
-    assert!((force / 181138277.383740 - 1.0).abs() < 1e-14, "{force:.6}");
-}
-
-#[test]
-fn a_radius_beside_the_equator_has_the_indentation_of_its_distance() {
-    for power in 1..36 {
-        let (whole, x) = (0.01, 0.01 * (1.0 - 0.5_f64.powi(power)));
-        let found = contact(whole, None, Preload::ContactRadius(x)).indentation();
-        // artanh(x/R) = arsinh(x/sqrt(R^2 - x^2)).
-        let exact = x * (x / ((whole - x) * (whole + x)).sqrt()).asinh();
-        assert!((found / exact - 1.0).abs() < 1e-15, "{x:e} m: {found:e} is not {exact:e} m");
-    }
-}
-
 proptest! {
     #![proptest_config(config(300))]
 
     #[test]
-    fn forces_up_to_the_equator_are_their_closed_forms(
-        sigma in 0.5..13.0_f64,
+    fn forces_up_to_the_end_are_their_closed_forms(
+        sigma in 0.01..1.47_f64,
         size in -4.0..1.0_f64,
         blunt in prop_oneof![Just(None), (0.3..30.0_f64).prop_map(Some)],
         stuck in 0.05..0.999_f64,
