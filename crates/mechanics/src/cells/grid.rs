@@ -142,7 +142,7 @@ impl<S: Shape + ?Sized> Above<'_, S> {
                 _ => self.fit(&TWENTY_FOUR, STEEP_IN_SQUARES, |u| (high * u.sqrt(), u.sqrt())),
             }
         };
-        let (Fit { terms, .. }, width) = narrowed(widest, 0.25, fit);
+        let (Fit { terms, .. }, width) = narrowed(widest, 0.5, fit);
         (Cell::new(self.kink.radius, self.base, width.sqrt(), &terms, self.kink.powers), width)
     }
 

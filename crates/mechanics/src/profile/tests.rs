@@ -97,7 +97,7 @@ proptest! {
         let rise = |from: f64| between_kinks(profile, from, high, |kink, t| shape.gamma(kink, t));
         let close = |found: f64, exact: f64, allowed: f64| (found - exact).abs() <= allowed * exact.abs();
         let (depth, exact) = (ring.depth, rise(low));
-        let allowed = 1e-12 + 4e-16 * ring.outer.level.value() / depth;
+        let allowed = 1e-12 + 4e-15 * ring.outer.level.value() / depth;
         prop_assert!(close(depth, exact, allowed), "{profile:?} {low} {high}: depth {depth} is not {exact}");
         let moments = profile.moments(&ring);
         let rounding = 1e-11 + 1e-15 * high / (high - low).max(1e-18);

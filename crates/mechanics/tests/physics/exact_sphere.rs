@@ -39,7 +39,7 @@ proptest! {
 
     #[test]
     fn forces_up_to_the_end_are_their_closed_forms(
-        sigma in 0.01..1.47_f64,
+        sigma in 0.3..1.47_f64,
         size in -4.0..1.0_f64,
         blunt in prop_oneof![Just(None), (0.3..30.0_f64).prop_map(Some)],
         stuck in 0.05..0.999_f64,
