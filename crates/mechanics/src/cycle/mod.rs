@@ -15,12 +15,10 @@
 mod best_load;
 mod harmonics;
 mod lap;
-mod masing_harmonics;
 mod masing_loop;
 mod mass_motion;
 mod oscillating;
 mod response;
-mod sphere_harmonics;
 mod steady_motion;
 
 pub use best_load::{BestLoad, best_load, work_under_load};
