@@ -14,6 +14,7 @@ mod settled;
 
 use super::profile::{RingSum, StressRadius};
 use super::{Contact, DoubleDouble};
+use crate::numerics::roots::between;
 use derivative::{Derivative, NOISE, Pace};
 use interval::{EndBehaviour, KNOT_FLOOR, MAX_PLACE, Sample, StressInterval};
 use settled::Known;
@@ -24,12 +25,6 @@ const SPARSE_ABOVE: usize = 100;
 /// A root is known when its place is to this, relative to one more than it: the distance to the nearer end, to as much
 /// of itself. The stress at the extremum is then off by the square of this, which is far below its rounding.
 const RESOLUTION: f64 = 1e-12;
-/// A step of interpolation this short, likewise, ends at the root: its error is of third order, in steps of which this
-/// is the shortest.
-const LAST_STEP: f64 = 1e-7;
-/// After this many steps towards a root every second one halves the interval.
-const QUICK_STEPS: usize = 12;
-
 /// The extrema of the shear stress.
 pub(super) struct Extrema<'a> {
     /// Their radii, from the centre outward.
@@ -206,8 +201,7 @@ impl Search<'_, '_, '_> {
         for (index, pair) in samples.windows(2).enumerate() {
             let (before, after) = (pair[0], pair[1]);
             if before.value * after.value < 0.0 {
-                let beyond = samples.get(index + 2).copied().filter(|sample| sample.place.is_finite());
-                self.find_root(interval, before, after, beyond);
+                self.find_root(interval, before, after);
             } else if !interval.one_change
                 && let Some(&next) = samples.get(index + 2)
                 && after.value * next.value > 0.0
@@ -217,8 +211,8 @@ impl Search<'_, '_, '_> {
                 && let Some(dip) = self.dip(interval, before, next)
             {
                 // Two roots between samples of one sign.
-                self.find_root(interval, before, dip, None);
-                self.find_root(interval, dip, next, None);
+                self.find_root(interval, before, dip);
+                self.find_root(interval, dip, next);
             }
         }
     }
@@ -244,58 +238,19 @@ impl Search<'_, '_, '_> {
         None
     }
 
-    /// Finds the change of sign between two samples: inverse quadratic interpolation where it is safe, else halving
-    /// (Chandrupatla 1997). There is no value at an end that is infinitely far. A sample `beyond` them, if there is
-    /// one, is for the first step.
-    fn find_root(&mut self, interval: &StressInterval, from: Sample, to: Sample, beyond: Option<Sample>) {
-        let known = |sample: Sample| if sample.place.is_finite() { sample.value } else { f64::NAN };
-        // The last place and the one across the root from it.
-        let mut last = Sample { place: to.place.min(MAX_PLACE), value: known(to) };
-        let mut across = Sample { place: from.place.max(-MAX_PLACE), value: known(from) };
-        let mut share = beyond.and_then(|beyond| inverse_quadratic(last, across, beyond)).unwrap_or(0.5);
-        let sign = from.value.signum();
-        let mut last_is_low = false;
-        for step in 0.. {
-            let next = self.sample(interval, last.place + share * (across.place - last.place));
-            if next.value.abs() <= 0.0 {
-                // Beyond this it is lost in round-off.
-                (last, across) = (next, next);
-                break;
-            }
-            let low = next.value * sign > 0.0;
-            let third = if low == last_is_low { last } else { std::mem::replace(&mut across, last) };
-            (last, last_is_low) = (next, low);
-            let width = (across.place - last.place).abs();
-            let least = RESOLUTION * (1.0 + last.place.abs());
-            if width <= 2.0 * least {
-                break;
-            }
-            let halve = step > QUICK_STEPS && step % 2 == 0;
-            let quadratic = if halve { None } else { inverse_quadratic(last, across, third) };
-            if let Some(share) = quadratic.filter(|share| share * width <= LAST_STEP * (1.0 + last.place.abs())) {
-                last.place += share * (across.place - last.place);
-                across = last;
-                break;
-            }
-            // No step is so short that it could leave the root just beyond its end.
-            share = quadratic.map_or(0.5, |share| share.clamp(least / width, 1.0 - least / width));
-        }
-        let (low, high) = if last_is_low { (last.place, across.place) } else { (across.place, last.place) };
-        self.sign = -sign;
+    /// Finds the change of sign between two samples. At an end that is infinitely far the sign alone is known.
+    fn find_root(&mut self, interval: &StressInterval, from: Sample, to: Sample) {
+        let end = |sample: Sample, other: Sample| {
+            let size = if sample.place.is_finite() { sample.value.abs() } else { other.value.abs() };
+            (sample.place.clamp(-MAX_PLACE, MAX_PLACE), size.copysign(sample.value))
+        };
+        let ends = [end(from, to), end(to, from)];
+        let nearest = if ends[0].0 * ends[1].0 > 0.0 { ends[0].0.abs().min(ends[1].0.abs()) } else { 0.0 };
+        let root = between(ends, RESOLUTION * (1.0 + nearest), |place| self.sample(interval, place).value);
+        self.sign = -from.value.signum();
         // An extremum this near to the centre cannot be distinguished from the centre.
-        if interval.inner.square.value() > 0.0 || low > -MAX_PLACE {
-            self.places.push(interval.at(high));
+        if interval.inner.square.value() > 0.0 || root > 1.0 - MAX_PLACE {
+            self.places.push(interval.at(root));
         }
     }
-}
-
-/// Where inverse quadratic interpolation puts a root between `last` and `across`, as a share of the way; `None` where
-/// the curve through these and the `third` sample may not be monotone, or a value is unknown.
-fn inverse_quadratic(last: Sample, across: Sample, third: Sample) -> Option<f64> {
-    let (a, b, c) = (last.value, across.value, third.value);
-    let xi = (last.place - across.place) / (third.place - across.place);
-    let phi = (a - b) / (c - b);
-    let safe = phi * phi < xi && (1.0 - phi) * (1.0 - phi) < 1.0 - xi;
-    let beyond = (third.place - last.place) / (across.place - last.place);
-    safe.then(|| a / (b - a) * (c / (b - c)) + beyond * (a / (c - a)) * (b / (c - b)))
 }
