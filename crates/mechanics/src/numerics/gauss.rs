@@ -78,11 +78,6 @@ impl QuadraturePanel {
         QuadraturePanel { width, rule: &EIGHT }
     }
 
-    /// A panel by the rule of twelve points.
-    pub(crate) fn middling(width: f64) -> QuadraturePanel {
-        QuadraturePanel { width, rule: &TWELVE }
-    }
-
     /// A panel by the longer rule, for an integrand analytic far around.
     pub(crate) fn fine(width: f64) -> QuadraturePanel {
         QuadraturePanel { width, rule: &TWENTY }

@@ -24,8 +24,6 @@ mod load_curve;
 mod open_gaps;
 mod polynomial;
 mod power_law;
-pub(super) mod ring_nodes;
-pub(super) mod ring_quadrature;
 mod ring_sum;
 mod rounded_cone;
 mod rounded_punch;

@@ -2,8 +2,6 @@
 //! vertical edge is added here, to what a family says of the face.
 
 use super::curve_family::CurveFamily;
-use super::ring_nodes::RingNodes;
-use super::ring_quadrature;
 use super::shape::{self, KernelOrder, Shape};
 use super::{Asperities, Count, Ellipsoid, Moments, Profile, Ring, Span, StressRadius};
 #[cfg(test)]
@@ -45,15 +43,6 @@ impl Profile {
     /// The levels of a ring that lie on a vertical edge, m.
     pub(crate) fn edge_depth(&self, ring: &Ring) -> f64 {
         self.span(ring).edge
-    }
-
-    /// The nodes of a quadrature over the radii of a ring, for integrands with roots of the depth h below its outer
-    /// level and of `total` - h, and with waves in the angle whose cosine is 1 - 2 h/total, up to cos(`turns` th).
-    pub(crate) fn ring_nodes(&self, ring: &Ring, total: f64, turns: usize) -> RingNodes {
-        match self.curve() {
-            Some(curve) => curve.ring_nodes(ring, turns),
-            None => each!(self, shape => ring_quadrature::nodes(shape, ring, total, turns)),
-        }
     }
 
     /// int dy / sqrt(X(y)^2 - r^2) over the levels of the ring whose radius is above r (pure number): the ring's share

@@ -80,12 +80,6 @@ impl SmoothInterval {
         if self.base > 0.0 { t / (self.base * self.base + t * t).sqrt() } else { 1.0 }
     }
 
-    /// The node at `dt` below the top, and the share of the radii, m, of a share of t.
-    pub(super) fn node(&self, dt: f64, share: f64) -> (Node, f64) {
-        let t = (self.high - dt).max(0.0);
-        (Node { t, dt }, share * self.stretch(t))
-    }
-
     /// Visits panel after panel from `top` down over `length`, in t or in an angle that t follows.
     /// `t_at` is t at a distance from the top.
     fn sweep(
