@@ -58,7 +58,7 @@ pub struct ContactSummary {
 /// # Ok::<(), Error>(())
 /// ```
 impl ContactSummary {
-    /// What follows from an indentation and its normal force, N.
+    /// The summary of an indentation and its normal force, N.
     pub(super) fn of(
         profile: &Profile,
         elasticity: &Elasticity,
@@ -140,7 +140,7 @@ pub(super) fn indentation_at(profile: &Profile, radius: f64) -> Result<f64, Erro
         && radius >= rim
     {
         return Err(allowed(format!(
-            "below the radius of the punch, {} m, where it says nothing of the load",
+            "below the radius of the punch, {} m, from which on it does not determine the load",
             short(rim)
         )));
     }

@@ -5,7 +5,7 @@
 //!
 //! a_n = 4/(pi n) int sin(n th) dR, b_n = -4/(pi n) int cos(n th) dR,
 //!
-//! the even ones zero. What is straight, R = kappa S with the stiffness just after the reversal, gives kappa S0
+//! the even ones zero. The straight part, R = kappa S with the stiffness just after the reversal, gives kappa S0
 //! cos(th); only the rest, which goes with X(d) - X(y), is integrated, so that small cycles keep the digits of their
 //! higher harmonics. The integrand is smooth over the angle phi with s = s0 sin^2(phi/2), but for the tip and the kinks
 //! of the profile; panels shrink towards these.
@@ -101,10 +101,10 @@ impl SteadyCycle<'_> {
             return (ends, false);
         }
         let mut ends = vec![0.0, PI];
-        let stuck = ring.inner.level.value().max(0.0);
+        let core_level = ring.inner.level.value().max(0.0);
         if ring.depth > 0.0 {
             // The tip lies beyond the far end, at a distance along the imaginary axis.
-            approach(&mut ends, PI, 2.0 * (stuck / ring.depth).sqrt().asinh());
+            approach(&mut ends, PI, 2.0 * (core_level / ring.depth).sqrt().asinh());
         }
         for radius in kinks {
             let kink = angle((ring.outer.level - DoubleDouble::from(profile.level(radius))).value());

@@ -37,12 +37,12 @@ pub struct OscillatingLoad {
     pub phase: f64,
 }
 
-/// What is prescribed in a cycle, and what stands between it and the contact.
+/// Drive and load of a cycle, and the machine between drive and contact.
 #[derive(Clone, Copy, Debug)]
 pub struct Oscillation {
-    /// What is driven.
+    /// The drive.
     pub drive: Drive,
-    /// What the load does meanwhile.
+    /// The load meanwhile.
     pub load: OscillatingLoad,
     /// Compliance of the machine, m/N; zero for none.
     pub compliance: f64,

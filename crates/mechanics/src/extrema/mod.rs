@@ -29,7 +29,7 @@ const RESOLUTION: f64 = 1e-12;
 pub(super) struct Extrema<'a> {
     /// Their radii, from the centre outward.
     pub(super) places: Vec<StressRadius>,
-    /// What the derivative was summed up by, if it was asked for.
+    /// The sum that gave the derivative, if it was asked for.
     pub(super) sum: Option<RingSum<'a>>,
 }
 

@@ -24,10 +24,10 @@ use std::cell::LazyCell;
 use super::super::Contact;
 use super::super::profile::Ring;
 
-/// How much a share may grow outward by the rounding of levels: what the search takes for zero.
-const ROUNDED: f64 = super::NOISE;
+/// The growth of a share outward that the rounding of levels explains: as much as the search takes for zero.
+const SAME_SHARE: f64 = super::NOISE;
 
-/// What is known about the pieces from one of them outward.
+/// The order of bends and slopes from one piece outward.
 #[derive(Clone, Copy)]
 struct Outward {
     /// The bends alternate and do not grow.
@@ -36,7 +36,7 @@ struct Outward {
     slopes: bool,
 }
 
-/// What is known about the derivative in the ring of a piece, from a radius in it outward.
+/// Knowledge about the derivative in the ring of a piece, from a radius in it outward.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Known {
     /// It has the sign of the piece's slope.
@@ -47,14 +47,14 @@ pub(super) enum Known {
     Nothing,
 }
 
-/// The pieces of a slip history, and what is known about the bends and slopes from each outward.
+/// The pieces of a slip history, with the order of bends and slopes from each outward.
 pub(super) struct Settled<'a> {
     contact: &'a Contact,
     pieces: Vec<Outward>,
 }
 
 impl Settled<'_> {
-    /// What is known about the derivative in the ring of a piece from the radius `from`, m, on.
+    /// Knowledge about the derivative in the ring of a piece from the radius `from`, m, on.
     pub(super) fn known(&self, index: usize, from: f64) -> Known {
         let Outward { bends, slopes } = self.pieces[index];
         let profile = &self.contact.profile;
@@ -71,7 +71,7 @@ impl Settled<'_> {
 }
 
 impl Contact {
-    /// What is known about the bends and slopes of the slip history.
+    /// The order of the bends and slopes of the slip history.
     pub(super) fn settled(&self) -> Settled<'_> {
         let pieces = self.history.pieces();
         let slope = |index: usize| pieces.get(index).map_or(0.0, |piece| piece.line.slope.value());
@@ -93,7 +93,7 @@ impl Contact {
             beyond.slopes &= if last {
                 slope(index).abs() > 0.0
             } else {
-                let falls = index + 2 >= pieces.len() || share(index + 1) * (1.0 + ROUNDED) >= share(index + 2);
+                let falls = index + 2 >= pieces.len() || share(index + 1) * (1.0 + SAME_SHARE) >= share(index + 2);
                 slope(index) * slope(index + 1) < 0.0 && falls
             };
             settled[index] = Outward { slopes: beyond.slopes && !(last && upright), ..beyond };

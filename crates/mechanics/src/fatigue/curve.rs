@@ -19,14 +19,14 @@ pub(super) type StressSample = [f64; 9];
 
 /// The largest number of instants of a move at which a place is looked at.
 pub const MAX_INSTANTS: usize = 4096;
-/// So many of them are not exceeded by choice: what is left of the move then takes the fewest that it can.
+/// So many of them are not exceeded by choice: the rest of the move then takes the fewest that it can.
 const ENOUGH: usize = 1024;
 
 /// Halvings of a stretch of t.
 const DEPTH: u32 = 26;
-/// A finer polynomial that is not better than this part of a coarser one is no way to go on.
+/// Where a finer polynomial errs by more than this part of a coarser one, the stretch is halved.
 const SLOW: f64 = 0.3;
-/// What a finer polynomial leaves of what a coarser one did, at the least.
+/// The least part of the error of a coarser polynomial that a finer one is taken to leave.
 const GAIN: f64 = 0.03;
 /// The part of the stretch about a peak to which its place is narrowed down.
 const BRACKET: f64 = 1e-9;
@@ -64,7 +64,7 @@ pub(super) struct Arc {
     /// The samples at the points, and at the points half a step between them.
     samples: Vec<StressSample>,
     between: Vec<StressSample>,
-    /// The friction work per area over the friction, J/m^2, and what a coarser polynomial made of it.
+    /// The friction work per area over the friction, J/m^2, and the same by a coarser polynomial.
     work: [f64; 2],
     /// Whether the place is within the contact.
     pub(super) touched: bool,
@@ -127,7 +127,7 @@ impl Allowance {
         Allowance { stress: factor * self.stress, slip: factor * self.slip }
     }
 
-    /// The larger of both over what is allowed.
+    /// The larger of both over the allowance.
     fn over(self, allowed: Allowance) -> f64 {
         let share = |off: f64, most: f64| if off > 0.0 { off / most } else { 0.0 };
         share(self.stress, allowed.stress).max(share(self.slip, allowed.slip))

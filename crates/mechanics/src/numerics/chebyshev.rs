@@ -128,7 +128,8 @@ pub(crate) fn values<const N: usize>(series: &[f64], u: [f64; N]) -> [f64; N] {
 /// points of the one before it.
 pub(crate) const NESTED_STEPS: [usize; 4] = [4, 8, 16, 32];
 
-/// The weights of the values at the points of `NESTED_STEPS[level]`, one row for each of the points half a step between them.
+/// The weights of the values at the points of `NESTED_STEPS[level]`, one row for each of the points half a step between
+/// them.
 pub(crate) fn nested_midpoints(level: usize) -> &'static [Vec<f64>] {
     static ROWS: LazyLock<[Vec<Vec<f64>>; 4]> = LazyLock::new(|| {
         NESTED_STEPS.map(|n| (0..n).map(|j| nested_weights(n, (PI * (j as f64 + 0.5) / n as f64).cos())).collect())
@@ -136,8 +137,8 @@ pub(crate) fn nested_midpoints(level: usize) -> &'static [Vec<f64>] {
     &ROWS[level]
 }
 
-/// The weights of the values at the points of `NESTED_STEPS[level]` pairwise in the integral of the first function times the
-/// derivative of the second, in x: exact for the polynomials.
+/// The weights of the values at the points of `NESTED_STEPS[level]` pairwise in the integral of the first function
+/// times the derivative of the second, in x: exact for the polynomials.
 pub(crate) fn nested_products(level: usize) -> &'static [Vec<f64>] {
     static ROWS: LazyLock<[Vec<Vec<f64>>; 4]> = LazyLock::new(|| NESTED_STEPS.map(product_weights));
     &ROWS[level]

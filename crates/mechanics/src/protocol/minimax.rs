@@ -136,7 +136,7 @@ impl Problem<'_> {
         if at_low > 0.0 || low <= 0.0 {
             return None;
         }
-        // What is below the rounding of the stress is none.
+        // A difference below the rounding of the stress counts as zero.
         let rounded = |level| Some(missing(level)).filter(|value| value.abs() > 1e-15 * limit).unwrap_or(0.0);
         let level = between([(high, at_high), (low, at_low)], 2.0 * f64::EPSILON * high, rounded);
         Some(self.profile.point(DoubleDouble::from(level)))
@@ -189,7 +189,7 @@ impl Problem<'_> {
 }
 
 /// The smallest largest stress E that strokes keep to, and these strokes. `march` gives the strokes for an E, if there
-/// are any, and by how much what they leave exceeds it, over it: below zero where fewer strokes are enough. `None` if
+/// are any, and by how much their stress exceeds it, over it: below zero where fewer strokes are enough. `None` if
 /// it was stopped, or no E fits.
 ///
 /// Too large an E can be as wrong as too small a one if strokes are to end somewhere: with a `pace`, a factor, E is
