@@ -9,7 +9,7 @@ use super::profile::{Point, Ring, StressRadius};
 use super::range::Quantity;
 use super::unit_prefix::short;
 use super::{DoubleDouble, Elasticity, Error, Profile};
-use crate::numerics::roots::largest;
+use crate::numerics::roots::{largest, within};
 
 /// Radii of the first scan for the largest pressure.
 const PRESSURE_SCAN: usize = 64;
@@ -219,20 +219,9 @@ pub(super) fn depth_for(profile: &Profile, ring: &Ring, upward: bool, wanted: f6
         return 0.0;
     }
     let start_radius = if upward { ring.inner.radius } else { ring.outer.radius };
-    let mut depth = if start_radius > 0.0 { (wanted / start_radius).min(ring.depth) } else { ring.depth };
-    // Newton gains two thirds of the remaining logarithm a step at the worst (X ~ sqrt(y)); 200 steps span all doubles.
-    for _ in 0..200 {
+    let start = if start_radius > 0.0 { (wanted / start_radius).min(ring.depth) } else { ring.depth };
+    within([0.0, ring.depth], start, |depth| {
         let tried = part(depth);
-        let slope = if upward { tried.outer.radius } else { tried.inner.radius };
-        let step = (wanted - load(profile, &tried)) / slope;
-        let next = (depth + step).clamp(0.0, ring.depth);
-        let done = !next.is_finite() || (next - depth).abs() <= 2.0 * f64::EPSILON * depth;
-        if next.is_finite() {
-            depth = next;
-        }
-        if done {
-            break;
-        }
-    }
-    depth
+        (load(profile, &tried) - wanted, if upward { tried.outer.radius } else { tried.inner.radius })
+    })
 }
