@@ -53,13 +53,13 @@ impl Contact {
         let steepness = radius * self.profile.slope(radius) / indentation;
         let steepness = known(steepness).clamp(0.0, MAX_STEEPNESS);
         let mean_pressure = mean_pressure(self.normal_force(), radius);
-        let doubt = self.profile.interpolation_error(radius);
-        let kernel =
-            self.elasticity.e_star() / std::f64::consts::PI * (self.path_kernel + 2.0 * doubt.kernel) / mean_pressure;
+        let interpolation = self.profile.interpolation_error(radius);
+        let kernel = self.elasticity.e_star() / std::f64::consts::PI * (self.path_kernel + 2.0 * interpolation.kernel)
+            / mean_pressure;
         let kernel = known(kernel);
         let unit_of_load = 2.0 * self.elasticity.e_star() / self.normal_force();
         let moved = known(unit_of_load * radius * self.indentation_error);
-        let unresolved = moved + if doubt.load > 0.0 { known(unit_of_load * self.load_error()) } else { 0.0 };
+        let unresolved = moved + if interpolation.load > 0.0 { known(unit_of_load * self.load_error()) } else { 0.0 };
         let unit = f64::EPSILON * self.profile.cancellation(radius);
         let force_error = unit * (2.0 + 6.0 * terms + steepness) + self.path_error + unresolved;
         let stress_error = unit * (4.0 + 12.0 * terms + 2.0 * steepness)

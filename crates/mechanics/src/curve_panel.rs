@@ -130,7 +130,7 @@ impl Contact {
             self.bend_stuck(path, &mut panel, &ring, (whole.value(), bend));
             return panel;
         }
-        // The state at the end is that of the curve already. The friction work is not: what a level slips under the
+        // The state at the end is that of the curve already. The friction work is not: the slip of a level under the
         // bound d - y depends on int W dd, here that of the parabola.
         let area = bend * (first.abs().powi(3) + second.abs().powi(3)) / 6.0;
         let shift = DoubleDouble::from(-2.0 * area / rise.value().abs());

@@ -4,7 +4,7 @@
 //! is exact unless W - d or W + d turns between them, where slip begins or ends, or levels come into contact without
 //! slip, which keep the displacement gained since their touch. So the turns are searched for, and the stretches
 //! between them followed by pairs of chords, each with the integral of the curve (`curve_panel`): the errors of two
-//! pairs do not add up, and what a pair may be off in its middle falls with the cube of its length.
+//! pairs do not add up, and the error in the middle of a pair falls with the cube of its length.
 
 use std::ops::{Add, Mul, Sub};
 
@@ -17,7 +17,7 @@ use crate::numerics::roots::{largest, turning};
 pub const DEFAULT_TOLERANCE: f64 = 1e-10;
 /// The largest number of chords of one move: a bound on its time and on the pieces that it leaves.
 pub const MAX_CHORDS: usize = 1 << 16;
-/// Up to this many chords the tolerance holds: ten times what a load that rises from zero takes at the default.
+/// Up to this many chords the tolerance holds: ten times as many as a load that rises from zero takes at the default.
 const FULL_TOLERANCE_CHORDS: usize = MAX_CHORDS / 2;
 /// After every further interval of this many chords the tolerance is relaxed by a factor of eight, which halves the
 /// number that the rest of the move needs: a move ends within [`MAX_CHORDS`], and its actual error is reported.
@@ -35,7 +35,7 @@ const SAME_TURN: f64 = 1e-6;
 const TURN: f64 = 1e-7;
 const LIMIT: f64 = 1e-14;
 
-/// What a pair of chords leaves in the history, as long as it is not wiped out.
+/// The trace of a pair of chords in the history, as long as it is not wiped out.
 struct Trace {
     /// The level from which on it lies.
     inner: DoubleDouble,
@@ -94,7 +94,7 @@ impl Contact {
             let tolerance = tolerance * relaxation(chords);
             let (most, most_quadrature) = (PAIR_SHARE * tolerance, tolerance * (next - done).max(QUADRATURE_SHARE));
             if refinable && (within > most || quadrature > most_quadrature) {
-                // What a pair is off in its middle falls with the cube of its length.
+                // The error in the middle of a pair falls with the cube of its length.
                 let shorter = if within > most { 0.9 * (most / within).cbrt() } else { 0.5 };
                 step = (next - done) * shorter.clamp(0.02, 0.5);
                 continue;
@@ -118,7 +118,7 @@ impl Contact {
             chords += if straight { 1 } else { 2 };
             step *= 2.0;
         }
-        // Each pair has the integral of the curve, so what comes later finds the error of one pair at most: that in
+        // Each pair has the integral of the curve, so later moves find the error of one pair at most: that in
         // which its slip ends. The errors of the quadratures add up.
         self.path_error += traces.iter().fold(0.0, |most: f64, trace| most.max(trace.within));
         self.path_error += traces.iter().map(|trace| trace.quadrature).sum::<f64>();
@@ -182,8 +182,8 @@ impl Contact {
             TangentialPath::Displacement { from, to } => between(from, to, part),
             TangentialPath::Force { from, to } => {
                 let target = between(from, to, part);
-                let stuck = self.stuck_position(path, indentation, target);
-                self.unscaled(stuck.unwrap_or_else(|| self.position_for(indentation, normal_force, target)))
+                let held = self.stuck_position(path, indentation, target);
+                self.unscaled(held.unwrap_or_else(|| self.position_for(indentation, normal_force, target)))
             }
         };
         PathPoint { indentation, normal_force, displacement }

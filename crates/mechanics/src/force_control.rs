@@ -14,7 +14,7 @@ use super::{Contact, DoubleDouble};
 struct SlipFront {
     edge: Point,
     sign: f64,
-    /// Pieces that are still whole or cut at the edge; what lies beyond them slips.
+    /// Pieces that are still whole or cut at the edge; the rings beyond them slip.
     held: usize,
     /// int w dx that is still to be gained, m^2.
     missing: f64,

@@ -9,7 +9,7 @@ use super::profile::{Point, Ring, StressRadius};
 use super::range::Quantity;
 use super::unit_prefix::short;
 use super::{DoubleDouble, Elasticity, Error, Profile};
-use crate::numerics::roots::largest;
+use crate::numerics::roots::{largest, within};
 
 /// Radii of the first scan for the largest pressure.
 const PRESSURE_SCAN: usize = 64;
@@ -58,7 +58,7 @@ pub struct ContactSummary {
 /// # Ok::<(), Error>(())
 /// ```
 impl ContactSummary {
-    /// What follows from an indentation and its normal force, N.
+    /// The summary of an indentation and its normal force, N.
     pub(super) fn of(
         profile: &Profile,
         elasticity: &Elasticity,
@@ -140,7 +140,7 @@ pub(super) fn indentation_at(profile: &Profile, radius: f64) -> Result<f64, Erro
         && radius >= rim
     {
         return Err(allowed(format!(
-            "below the radius of the punch, {} m, where it says nothing of the load",
+            "below the radius of the punch, {} m, from which on it does not determine the load",
             short(rim)
         )));
     }
@@ -177,7 +177,7 @@ pub(super) fn max_pressure(profile: &Profile, elasticity: &Elasticity, edge: &Po
     if edge.level.value() > 0.0 && spikes.map(at).any(f64::is_infinite) {
         return None;
     }
-    if profile.falls(0.0, edge.radius) {
+    if profile.falls(0.0, edge.radius).least > 0.0 {
         return Some(at(0.0));
     }
     // A scan, then a search about its largest value: a profile that is steep outside has its maximum off the
@@ -219,20 +219,9 @@ pub(super) fn depth_for(profile: &Profile, ring: &Ring, upward: bool, wanted: f6
         return 0.0;
     }
     let start_radius = if upward { ring.inner.radius } else { ring.outer.radius };
-    let mut depth = if start_radius > 0.0 { (wanted / start_radius).min(ring.depth) } else { ring.depth };
-    // Newton gains two thirds of the remaining logarithm a step at the worst (X ~ sqrt(y)); 200 steps span all doubles.
-    for _ in 0..200 {
+    let start = if start_radius > 0.0 { (wanted / start_radius).min(ring.depth) } else { ring.depth };
+    within([0.0, ring.depth], start, |depth| {
         let tried = part(depth);
-        let slope = if upward { tried.outer.radius } else { tried.inner.radius };
-        let step = (wanted - load(profile, &tried)) / slope;
-        let next = (depth + step).clamp(0.0, ring.depth);
-        let done = !next.is_finite() || (next - depth).abs() <= 2.0 * f64::EPSILON * depth;
-        if next.is_finite() {
-            depth = next;
-        }
-        if done {
-            break;
-        }
-    }
-    depth
+        (load(profile, &tried) - wanted, if upward { tried.outer.radius } else { tried.inner.radius })
+    })
 }

@@ -8,7 +8,7 @@ use super::profile::{Ring, StressRadius};
 
 /// Terms of stresses that are summed between two questions whether to go on.
 const TERMS_PER_QUESTION: usize = 1 << 20;
-/// The fewest radii that are summed together: what they share is made once for all of them.
+/// The fewest radii that are summed together, because they share a preparation.
 const FEWEST_AT_ONCE: usize = 64;
 
 /// A local extremum of the shear stress.
@@ -157,7 +157,7 @@ impl Contact {
             if !keep_going() {
                 return None;
             }
-            // By what the search has made: what the rings add up to from afar is found once.
+            // By the sum that the search has made, so that the rings are gathered once.
             let sums = found.sum.as_ref().map(|sum| sum.sums(some));
             shears.extend(self.shears_of(sums.unwrap_or_else(|| self.profile.kernel_sums_at(&rings, some))));
         }

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::{Contact, Elasticity, Preload, Profile};
 
-/// What a contact is made of. Its profile is a [`Profile`], or an `Arc` of one that others share, because a table is
+/// The definition of a contact. Its profile is a [`Profile`], or an `Arc` of one that others share, because a table is
 /// large.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Setup<P = Profile> {

@@ -35,7 +35,7 @@ impl Contact {
     #[must_use]
     pub fn surface_displacements(&self, radii: &[f64]) -> Vec<f64> {
         let (edge, shift) = (self.history.edge(), self.history.shift().value());
-        // What the pieces carry is relative to the indenter.
+        // The displacements of the pieces are relative to the indenter.
         let moved = |radius: f64| {
             if radius > 0.0 { shift * FRAC_2_PI * arc_to(edge, &StressRadius::new(radius)) } else { shift }
         };

@@ -13,7 +13,7 @@ use std::sync::LazyLock;
 use super::ring::{Moments, StressRadius};
 use super::shape::Powers;
 use super::span::Span;
-use crate::numerics::chebyshev::{Points, TWENTY_FOUR};
+use crate::numerics::chebyshev::TWENTY_FOUR;
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::gauss::{EIGHT_POINTS, TWELVE_POINTS, TWENTY_POINTS};
 use crate::numerics::multipole::Multipole;
@@ -22,8 +22,6 @@ use crate::numerics::roots::{distance_below, within};
 
 /// The most terms of a Chebyshev series.
 const POINTS: usize = 24;
-/// Points at which a slope is bounded.
-static SLOPES: LazyLock<Points<64>> = LazyLock::new(Points::new);
 /// The least kappa = r^2 - b^2 over the square of the outer end for which the antiderivative serves: below it, a rule
 /// of twelve points is exact to rounding (rho = 6.9), and the antiderivative would cancel.
 const LEAST_KAPPA: f64 = -2.0;
@@ -233,10 +231,32 @@ impl Cell {
         self.rise(Part { low: 0.0, high: zeta, drop: zeta })
     }
 
+    /// The rise of g, m, from b up to zeta, and gamma there, side by side.
+    fn rise_and_gamma(&self, zeta: f64) -> (f64, f64) {
+        let u = zeta / self.high;
+        let (mut rise, mut gamma) = (0.0, 0.0);
+        if self.odd {
+            let square = u * u;
+            for (a, b) in self.integrals.iter().zip(&self.powers).skip(1).step_by(2).rev() {
+                rise = rise * square + a;
+                gamma = gamma * square + b;
+            }
+            return (zeta * u * rise, u * gamma);
+        }
+        for (a, b) in self.integrals.iter().zip(&self.powers).rev() {
+            rise = rise * u + a;
+            gamma = gamma * u + b;
+        }
+        (zeta * rise, gamma)
+    }
+
     /// zeta, m, where g has risen by this much, m, from b on.
     pub(crate) fn zeta_of(&self, rise: f64) -> f64 {
         let share = (rise / self.depth).min(1.0).powf(self.order.recip());
-        within([0.0, self.high], share * self.high, |zeta| (self.rise_to(zeta) - rise, self.gamma(zeta)))
+        within([0.0, self.high], share * self.high, |zeta| {
+            let (reached, gamma) = self.rise_and_gamma(zeta);
+            (reached - rise, gamma)
+        })
     }
 
     /// The difference of the squares, m^2, between two places at these squares above b^2 that the rise `depth`, m,
@@ -370,21 +390,6 @@ impl Cell {
         angle * (0..TWENTY_POINTS.len()).map(term).sum::<f64>()
     }
 
-    /// A bound, 1/m^2, of how fast g'/x rises with zeta; zero where it only falls.
-    ///
-    /// A polynomial of degree d is no larger between N Chebyshev points than the middle of its values there plus half
-    /// their range over cos(pi d/2N) (Ehlich & Zeller 1964).
-    pub(crate) fn steepest(&self) -> f64 {
-        // Over u or over u^2, the polynomial in u or in its square.
-        let step = if self.odd { 2 } else { 1 };
-        let terms: Vec<f64> = (step + 1..self.powers.len()).step_by(step).map(|j| (j - 1) as f64 * self.powers[j]).collect();
-        let values = SLOPES.places(0.0, 1.0).map(|u| terms.iter().rev().fold(0.0, |sum, a| sum * u + a));
-        let (least, most) = values.iter().fold((f64::MAX, f64::MIN), |(a, b), &value| (a.min(value), b.max(value)));
-        let turn = std::f64::consts::FRAC_PI_2 * terms.len().saturating_sub(1) as f64 / values.len() as f64;
-        let polynomial = 0.5 * (least + most) + 0.5 * (most - least) / turn.cos();
-        (polynomial - self.powers[0]).max(0.0) / (self.high * self.high)
-    }
-
     /// Whether the terms of g'/x beyond the first cannot make it fall below zero.
     pub(crate) fn surely_rises(&self) -> bool {
         self.powers.get(1).is_some_and(|first| {
@@ -404,6 +409,11 @@ impl Cell {
     /// Whether f' jumps at b.
     pub(crate) fn jumps(&self) -> bool {
         self.powers[0].abs() > 0.0
+    }
+
+    /// a_j.
+    pub(super) fn powers(&self) -> &[f64] {
+        &self.powers
     }
 
     /// Whether the series takes only odd powers.

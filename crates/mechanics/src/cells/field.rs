@@ -93,7 +93,9 @@ impl WeightedCells<'_> {
             parts.extend(high.map(|(index, span)| (index, span, *weight)));
         }
         let mut weighted = WeightedCells { cells, runs, parts, own: Vec::new(), crowds: Vec::new(), rim };
-        weighted.crowds = weighted.crowds();
+        if radii >= MANY {
+            weighted.crowds = weighted.crowds();
+        }
         if let Some(root) = weighted.cells.sources().root() {
             weighted.gather(root, radii >= MANY);
         }

@@ -9,6 +9,7 @@
 pub(crate) mod call_count;
 mod cell;
 pub(crate) mod displacement;
+pub(crate) mod falls;
 pub(crate) mod field;
 mod grid;
 pub(crate) mod kernel;
@@ -27,6 +28,7 @@ pub(crate) use cell::{Cell, NearPart};
 
 use crate::numerics::cluster_tree::{Cluster, ClusterTree};
 use crate::numerics::double_double::DoubleDouble;
+use falls::Steepness;
 use kernel::Kernel;
 use lookup::Lookup;
 use moment_tree::MomentTree;
@@ -34,9 +36,6 @@ use ring::{Moments, Point, Ring, StressRadius};
 use sources::Sources;
 use span::Span;
 
-/// A bound of int dzeta/sqrt(zeta^2 - kappa) over any cell, for any radius that is further from its inner end than
-/// e^-36 of the cell: it is ln(2 t/s), or less.
-const LOGARITHM: f64 = 40.0;
 /// Of a ring thinner than this share of its square, what lies inside a border of two cells is found from its depth.
 const THIN: f64 = 1e-3;
 
@@ -75,8 +74,8 @@ pub(crate) struct Cells {
     sources: OnceLock<ClusterTree<Sources>>,
     /// Where g is not analytic, m.
     pub(crate) kinks: Vec<f64>,
-    /// The sums of [`Cell::steepest`] before each cell, made when first asked for.
-    steepest: OnceLock<Vec<f64>>,
+    /// How steep the cells before each are, and all of them, made when first asked for.
+    steepness: OnceLock<Vec<Steepness>>,
     /// The least radius at which a kernel is not that of the centre.
     pub(crate) floor: StressRadius,
     pub(crate) top: Top,
@@ -114,7 +113,7 @@ impl Cells {
             tree: MomentTree::new(totals.into_iter()),
             sources: OnceLock::new(),
             kinks,
-            steepest: OnceLock::new(),
+            steepness: OnceLock::new(),
             floor: StressRadius::new(0.0),
             top,
             cells,
@@ -195,15 +194,6 @@ impl Cells {
         if cell.kink > 0.0 { square } else { DoubleDouble::square_of(square.value().sqrt()) }
     }
 
-    /// int x dg, m^2, up to a radius, m.
-    pub(crate) fn load(&self, radius: f64) -> f64 {
-        if radius >= self.top.radius {
-            return self.top.load.value();
-        }
-        let Some(cell) = self.cells.get(self.find(radius)) else { return 0.0 };
-        (cell.load + DoubleDouble::from(cell.load_to(cell.zeta(DoubleDouble::square_of(radius))))).value()
-    }
-
     /// The level, m, up to which int X dy is this load, m^2.
     pub(crate) fn indentation_for(&self, load: f64) -> f64 {
         if load <= 0.0 {
@@ -219,17 +209,6 @@ impl Cells {
         let rest = (DoubleDouble::from(load) - cell.load).value();
         let zeta = cell.zeta_of_load(rest, whole.value());
         (cell.level + DoubleDouble::from(cell.rise_to(zeta))).value()
-    }
-
-    /// The rise of g over a span, m.
-    pub(crate) fn rise(&self, span: &Span) -> f64 {
-        let SpanParts { low, whole, high } = self.parts(span);
-        let part = |(index, span): CellPart| {
-            let cell = &self.cells[index];
-            cell.rise(cell.part(&span))
-        };
-        let between = self.tree.run(whole.start, whole.end).1;
-        low.map_or(0.0, part) + high.map_or(0.0, part) + between
     }
 
     /// The difference of the squares, m^2, of the ends of a ring of this depth, m.
@@ -279,23 +258,6 @@ impl Cells {
             return high.map(part).unwrap_or_default().0;
         }
         self.tree.across(whole, low.map(part).unwrap_or_default().0, high.map(part).unwrap_or_default())
-    }
-
-    /// A lower bound, 1/m, of -2 v dK/d(r^2), K the kernel up to `outer`, m, from r = `inner`, m, on.
-    pub(crate) fn least_fall(&self, inner: f64, outer: f64) -> f64 {
-        // 2 v int q' dt is v int (dq/dzeta) dzeta/sqrt(zeta^2 - kappa), summed over the cells.
-        let (first, last) = (self.find(inner), self.find(outer));
-        // Where f' jumps beyond the inner radius g'/x rises to infinity.
-        let beyond = |cell: &&Cell| cell.radius > inner || self.cells[first].radius < cell.radius;
-        if self.cells.is_empty() || self.cells[first..=last.max(first)].iter().filter(beyond).any(Cell::jumps) {
-            return f64::NEG_INFINITY;
-        }
-        let sums = self.steepest.get_or_init(|| {
-            let next = |sum: &mut f64, cell: &Cell| Some(std::mem::replace(sum, *sum + cell.steepest()));
-            self.cells.iter().scan(0.0, next).collect()
-        });
-        let steepest = sums[last] + self.cells[last].steepest() - sums[first];
-        self.slope(outer) / outer - ((outer - inner) * (outer + inner)).sqrt() * LOGARITHM * steepest
     }
 
     /// The cell that holds a radius, m.

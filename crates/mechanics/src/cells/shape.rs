@@ -1,7 +1,7 @@
 //! A shape as its cells are made of it.
 
 use super::stages::Stages;
-use super::{Cells, grid};
+use super::Cells;
 
 /// What g is a series of, above a place where it is not analytic in x^2.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -134,12 +134,6 @@ pub(crate) trait Shape {
     /// A radius of curvature, m, where it is given by one.
     fn curvature_radius(&self) -> Option<f64> {
         None
-    }
-
-    /// Its cells between two radii, m, at the least, the inner one being the least of a contact that they serve;
-    /// `None` once `keep_going` has returned false.
-    fn build(&self, ends: (f64, f64), keep_going: &dyn Fn() -> bool) -> Option<Cells> {
-        grid::cells(self, ends, keep_going)
     }
 
     /// Its cells that reach beyond something, or to its end; `None` once `keep_going` has returned false.

@@ -37,19 +37,6 @@ impl Span {
         }
     }
 
-    /// All radii below one.
-    pub(crate) fn from_centre(radius: f64) -> Span {
-        let (inner, outer) = (DoubleDouble::ZERO, DoubleDouble::square_of(radius));
-        Span { inner, outer, inner_radius: 0.0, outer_radius: radius, gap: outer.value(), edge: 0.0 }
-    }
-
-    /// The span that ends at `outer` and whose square is smaller by `gap` at its inner end.
-    pub(crate) fn under(outer: DoubleDouble, outer_radius: f64, gap: f64) -> Span {
-        let inner = outer - DoubleDouble::from(gap);
-        let inner = if inner.value() > 0.0 { inner } else { DoubleDouble::ZERO };
-        Span { inner, outer, inner_radius: inner.value().sqrt(), outer_radius, gap, edge: 0.0 }
-    }
-
     /// Difference of the radii, m.
     pub(crate) fn width(&self) -> f64 {
         if self.gap > 0.0 { self.gap / (self.inner_radius + self.outer_radius) } else { 0.0 }

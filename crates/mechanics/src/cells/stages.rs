@@ -6,7 +6,7 @@
 
 use std::sync::{Arc, OnceLock};
 
-use super::Cells;
+use super::{Cells, grid};
 use super::shape::{Reach, Shape};
 
 /// The octaves of a stage.
@@ -106,7 +106,7 @@ impl Stages {
         }
         let (low, high) = (start(number), start(number + 1).min(shape.end().map_or(f64::INFINITY, |end| end.radius)));
         let levels = (shape.level(low), shape.level(high));
-        let stage = Stage { number, levels, cells: shape.build((low, high), keep_going)?, next: OnceLock::new() };
+        let stage = Stage { number, levels, cells: grid::cells(shape, (low, high), keep_going)?, next: OnceLock::new() };
         let mut place = &*self.0;
         let mut stage = Box::new(stage);
         // Another thread may have put one there in the meantime, even the same.

@@ -5,22 +5,25 @@
 //!
 //! a_n = 4/(pi n) int sin(n th) dR, b_n = -4/(pi n) int cos(n th) dR,
 //!
-//! the even ones zero. What is straight, R = kappa S with the stiffness just after the reversal, gives kappa S0
+//! the even ones zero. The straight part, R = kappa S with the stiffness just after the reversal, gives kappa S0
 //! cos(th); only the rest, which goes with X(d) - X(y), is integrated, so that small cycles keep the digits of their
 //! higher harmonics. The integrand is smooth over the angle phi with s = s0 sin^2(phi/2), but for the tip and the kinks
 //! of the profile; panels shrink towards these.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use super::{SteadyCycle, masing_harmonics};
+use super::SteadyCycle;
 use crate::normal::load;
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::gauss::QuadraturePanel;
 use crate::profile::Ring;
-use crate::profile::ring_quadrature::{approach, split};
 
 /// The turn of the highest harmonic that a panel of twenty points follows, rad.
 const TURN: f64 = 13.0;
+/// The share of a panel that must lie between it and a singularity for a rule of twenty points: rho = 2.6.
+const CLEARANCE: f64 = 0.56;
+/// The rest of the angle next to a singularity contributes its cube.
+const LEAST_PANEL: f64 = 1e-5;
 /// More kinks than this are not resolved one by one, but by so many panels as there are.
 const MOST_KINKS: usize = 8;
 const PANELS: f64 = 16.0;
@@ -63,21 +66,24 @@ impl SteadyCycle<'_> {
     #[must_use]
     pub fn harmonics(&self, count: usize) -> Harmonics {
         let branch = Branch::new(self);
-        let (sums, coarser) = if self.force_driven || self.compliance > 0.0 {
-            let (panels, resolved) = self.panels(count);
-            let sums = branch.integrate(&panels, count);
-            if resolved {
-                (sums, None)
-            } else {
-                let halves = panels.windows(2).flat_map(|pair| [pair[0], 0.5 * (pair[0] + pair[1])]).chain([PI]);
-                (branch.integrate(&halves.collect::<Vec<f64>>(), count), Some(sums))
-            }
+        let (panels, resolved) = self.panels(count);
+        let sums = branch.integrate(&panels, count, QuadraturePanel::fine);
+        // Where kinks are not resolved, halves of the panels give the result, and the difference its error.
+        let halves = panels.windows(2).flat_map(|pair| [pair[0], 0.5 * (pair[0] + pair[1])]).chain([PI]);
+        let (sums, coarser) = if resolved {
+            (sums, None)
         } else {
-            masing_harmonics::integrals(self, count)
+            (branch.integrate(&halves.collect::<Vec<f64>>(), count, QuadraturePanel::fine), Some(sums))
         };
         let off = coarser.iter().flatten().flatten().zip(sums.iter().flatten()).map(|(one, other)| (one - other).abs());
         let error = 4.0 / PI * off.fold(0.0, f64::max) / branch.answer.max(f64::MIN_POSITIVE);
         branch.harmonics(&sums, count, f64::EPSILON + error)
+    }
+
+    /// The harmonics by the shorter rule alone, for a start: right to some 1e-3, of unknown error.
+    pub(super) fn rough_harmonics(&self, count: usize) -> Vec<Harmonic> {
+        let (branch, (panels, _)) = (Branch::new(self), self.panels(count));
+        branch.harmonics(&branch.integrate(&panels, count, QuadraturePanel::coarse), count, f64::INFINITY).harmonics
     }
 
     /// The ends of the panels of the angle from 0 to pi, and whether they resolve every kink.
@@ -95,10 +101,10 @@ impl SteadyCycle<'_> {
             return (ends, false);
         }
         let mut ends = vec![0.0, PI];
-        let stuck = ring.inner.level.value().max(0.0);
+        let core_level = ring.inner.level.value().max(0.0);
         if ring.depth > 0.0 {
             // The tip lies beyond the far end, at a distance along the imaginary axis.
-            approach(&mut ends, PI, 2.0 * (stuck / ring.depth).sqrt().asinh());
+            approach(&mut ends, PI, 2.0 * (core_level / ring.depth).sqrt().asinh());
         }
         for radius in kinks {
             let kink = angle((ring.outer.level - DoubleDouble::from(profile.level(radius))).value());
@@ -148,13 +154,13 @@ impl<'a, 'b> Branch<'a, 'b> {
     }
 
     /// int sin(n th) dR and int cos(n th) dR for odd n up to `count`, without the straight part.
-    fn integrate(&self, ends: &[f64], count: usize) -> Vec<[f64; 2]> {
+    fn integrate(&self, ends: &[f64], count: usize, rule: fn(f64) -> QuadraturePanel) -> Vec<[f64; 2]> {
         let mut sums = vec![[0.0; 2]; count.div_ceil(2)];
         if self.cycle.ring.depth <= 0.0 || self.drive <= 0.0 {
             return sums;
         }
         for pair in ends.windows(2) {
-            QuadraturePanel::fine(pair[1] - pair[0]).visit(|offset, share| {
+            rule(pair[1] - pair[0]).visit(|offset, share| {
                 let ([sin, cos], weight) = self.at(pair[0] + offset);
                 // By the recurrence of two steps: cos((n + 2) th) = 2 cos(2 th) cos(n th) - cos((n - 2) th).
                 let double = 2.0 * (2.0 * cos * cos - 1.0);
@@ -185,14 +191,16 @@ impl<'a, 'b> Branch<'a, 'b> {
         let point = contact.profile.point(level);
         let (scale, unit) = (contact.scale(), contact.force_unit());
         let carried = |inner, outer| unit * load(&contact.profile, &Ring::between(inner, outer));
-        let forces = [carried(point, ring.outer), carried(ring.inner, point)];
+        let forces = if cycle.force_driven || cycle.compliance > 0.0 {
+            [carried(point, ring.outer), carried(ring.inner, point)]
+        } else {
+            [0.0; 2]
+        };
         let [gone, left] = if cycle.force_driven {
             forces
         } else {
-            [
-                scale * fallen + cycle.compliance * forces[0],
-                scale * standing + cycle.compliance * forces[1] + cycle.slide,
-            ]
+            let machine = forces.map(|force| cycle.compliance * force);
+            [scale * fallen + machine[0], scale * standing + machine[1] + cycle.slide]
         };
         let sides = [2.0 * (gone * left).max(0.0).sqrt() / drive, (left - gone) / drive];
         let stiffness = 2.0 * contact.elasticity.g_star() * point.radius;
@@ -207,5 +215,25 @@ impl<'a, 'b> Branch<'a, 'b> {
             -lost / (1.0 + cycle.compliance * cycle.tangent_stiffness())
         };
         (sides, rate * scale * ring.depth * sin * cos)
+    }
+}
+
+/// Divides panels, given by their ends in rising order, that are wider than `widest`.
+fn split(ends: &mut Vec<f64>, widest: f64) {
+    for index in (1..ends.len()).rev() {
+        let (low, high) = (ends[index - 1], ends[index]);
+        let parts = ((high - low) / widest).ceil() as usize;
+        let between = (1..parts).map(|part| low + (high - low) * part as f64 / parts as f64);
+        ends.splice(index..index, between);
+    }
+}
+
+/// Adds ends of panels that shrink to a quarter of each other towards `place`, down to a singularity at `distance` from
+/// it.
+fn approach(ends: &mut Vec<f64>, place: f64, distance: f64) {
+    let mut width = PI;
+    while CLEARANCE * width > distance && width > LEAST_PANEL {
+        width *= 0.25;
+        ends.extend([place - width, place + width].into_iter().filter(|end| (0.0..=PI).contains(end)));
     }
 }

@@ -1,4 +1,4 @@
-//! What follows from the states of a cycle that was stepped.
+//! The characteristic values of a cycle that was stepped, from its states.
 
 use std::f64::consts::TAU;
 

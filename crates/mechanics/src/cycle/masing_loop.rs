@@ -40,7 +40,7 @@ impl<'a> FirstLoading<'a> {
     }
 }
 
-/// What a contact remembers at constant load, as turning points of displacement, m, and force, N.
+/// The history of a contact at constant load, as turning points of displacement, m, and force, N.
 #[derive(Clone, Debug)]
 pub(super) struct MasingLoop {
     turns: Vec<(f64, f64)>,

@@ -26,7 +26,7 @@ const MOST_STEPS: f64 = 20_000.0;
 const EVENT: f64 = 1e-15;
 const LEAST_SPEED: f64 = 1e-6;
 /// Rounding of a step, over the displacements.
-const ROUNDING: f64 = 32.0 * f64::EPSILON;
+const STEP_ROUND_OFF: f64 = 32.0 * f64::EPSILON;
 
 /// Displacement, speed, and the integrals of U cos, U sin, F cos, F sin, F cos 3th, F sin 3th over the angle.
 const ROWS: usize = 8;
@@ -36,7 +36,7 @@ type StateRows = [f64; ROWS];
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Unfinished {
     Interrupted,
-    /// The steps did not suffice, or did not lead to what was sought.
+    /// The steps did not suffice, or did not lead to a steady motion.
     NotFound,
 }
 
@@ -54,7 +54,7 @@ pub(super) struct DrivenMass<'a> {
     pub(super) keep_going: &'a dyn Fn() -> bool,
 }
 
-/// The state of the mass, and what has been taken down on the way.
+/// The state of the mass, with the integrals and turning points of its way.
 #[derive(Clone, Debug)]
 pub(super) struct Motion {
     /// th, rad.
@@ -66,13 +66,13 @@ pub(super) struct Motion {
     branch: MasingLoop,
     /// The integrals of [`StateRows`] from the third on.
     pub(super) sums: [f64; ROWS - 2],
-    /// What displacement and speed may be off by, m: the estimated errors of all steps.
+    /// Errors of displacement and speed, m: the estimates of all steps, added up.
     pub(super) error: [f64; 2],
     /// The upper and the lower turning point farthest out, displacement and angle.
     pub(super) extremes: [Option<(f64, f64)>; 2],
 }
 
-/// What a trial step has led to.
+/// The result of a trial step.
 struct MotionTrial {
     change: StateRows,
     /// Of displacement and speed, m.
@@ -215,7 +215,7 @@ impl DrivenMass<'_> {
         let driven = self.drive_force / self.inertia * (motion.angle.cos() - (motion.angle - length).cos());
         let stiffness = (driven - (last - first)) / (moved * self.ratio * self.ratio);
         let soft = if stiffness.is_finite() { 1.0 - stiffness.clamp(0.0, 1.0) } else { 1.0 };
-        let rounding = ROUNDING * motion.displacement.abs();
+        let rounding = STEP_ROUND_OFF * motion.displacement.abs();
         motion.error[0] += trial.error[0] + rounding + motion.error[1] * length * soft;
         motion.error[1] += trial.error[1] + rounding * self.fastest();
     }

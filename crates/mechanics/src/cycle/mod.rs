@@ -1,4 +1,4 @@
-//! Steady cycles: what a contact does when it is moved back and forth again and again.
+//! Steady cycles of a contact that is moved back and forth again and again.
 //!
 //! At constant load the loop of a steady cycle is made of two branches, each the first loading curve at twice its size
 //! (Masing 1926). Over the level y the first loading to the displacement U0 slips the ring d* < y < d, d* = d - U0/m,
@@ -15,12 +15,10 @@
 mod best_load;
 mod harmonics;
 mod lap;
-mod masing_harmonics;
 mod masing_loop;
 mod mass_motion;
 mod oscillating;
 mod response;
-mod sphere_harmonics;
 mod steady_motion;
 
 pub use best_load::{BestLoad, best_load, work_under_load};
@@ -36,7 +34,7 @@ use super::{Contact, Error, Regime};
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::roots::within;
 
-/// What is prescribed as a cosine over a cycle: at the machine, if there is one.
+/// The quantity prescribed as a cosine over a cycle: at the machine, if there is one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Drive {
     /// Amplitude U0 of the displacement, m.

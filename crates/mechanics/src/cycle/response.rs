@@ -130,7 +130,7 @@ impl DrivenMass<'_> {
     /// sin(th) of the force in a cycle of the amplitude U0. Its error is not known. Of no use once `keep_going` has
     /// returned false.
     fn balance_of_first(&self, contact: &Contact) -> Response {
-        let first = |amplitude: f64| SteadyCycle::of(contact, amplitude).harmonics(1).harmonics[0];
+        let first = |amplitude: f64| SteadyCycle::of(contact, amplitude).rough_harmonics(1)[0];
         let lag = |amplitude: f64, force: Harmonic| [force.in_phase - self.inertia * amplitude, -force.quadrature];
         let lack = |logarithm: f64| {
             // Ends the search at once: the result is of no use any more.
@@ -184,7 +184,7 @@ impl DrivenMass<'_> {
 
 /// The third harmonic of a cycle over the first.
 fn third_over_first(cycle: &SteadyCycle<'_>) -> f64 {
-    let harmonics = cycle.harmonics(3).harmonics;
+    let harmonics = cycle.rough_harmonics(3);
     let size = |order: usize| harmonics[order - 1].in_phase.hypot(harmonics[order - 1].quadrature);
     if size(1) > 0.0 { size(3) / size(1) } else { 0.0 }
 }

@@ -15,7 +15,7 @@ use crate::numerics::broyden::{Matrix, inverse, product, updated};
 /// Steps of Broyden's method for one start, and halvings of a step that does not bring the end nearer.
 const STEPS: usize = 24;
 const HALVINGS: usize = 3;
-/// A step that leaves more than this of what the end is off by asks for a new Jacobian.
+/// A step that leaves more than this share of the residual asks for a new Jacobian.
 const SLOW: f64 = 0.3;
 /// The longest step, of the amplitude as a part of itself and of the instant, rad.
 const LONGEST: [f64; 2] = [0.3, 0.5];
@@ -32,12 +32,12 @@ const SHARE: f64 = 1e-1;
 const TIGHTER: f64 = 1e-2;
 const TIGHTENINGS: usize = 3;
 const LEAST: f64 = 1e-13;
-/// What the end of a motion that is not brought nearer by any step may be off by, in tolerances of a step.
-const LEFT: f64 = 1e3;
+/// The residual, in tolerances of a step, that is accepted where no step makes it smaller.
+const RESIDUAL: f64 = 1e3;
 
 type Attempt<T> = Result<T, Unfinished>;
 
-/// The inverse of the Jacobian of what the end is off by, and the derivatives of the first harmonic, cosine and sine.
+/// The inverse of the Jacobian of the residual, and the derivatives of the first harmonic, cosine and sine.
 #[derive(Clone, Copy)]
 struct Slopes {
     taken_at: [f64; 2],
@@ -45,7 +45,7 @@ struct Slopes {
     waves: Matrix,
 }
 
-/// A motion of half a period from a turning point, and what it is off by at the end, m: displacement and speed.
+/// A motion of half a period from a turning point, and its residual at the end, m: of displacement and speed.
 struct Tried {
     /// Amplitude, m, and angle of the turning point.
     from: [f64; 2],
@@ -108,7 +108,7 @@ impl DrivenMass<'_> {
         // A motion that went farther than it began has begun at another of its turning points.
         let farthest = found.motion.extremes.iter().flatten().fold(0.0_f64, |most, (place, _)| most.max(place.abs()));
         let amplitude = found.from[0];
-        if amplitude <= 0.0 || farthest > (1.0 + LEFT * step) * amplitude {
+        if amplitude <= 0.0 || farthest > (1.0 + RESIDUAL * step) * amplitude {
             return Err(Unfinished::NotFound);
         }
         let moved = [(amplitude / slopes.taken_at[0]).ln(), found.from[1] - slopes.taken_at[1]];
@@ -140,8 +140,8 @@ impl DrivenMass<'_> {
             }
             let Some(tried) = nearer else {
                 if fresh {
-                    // What no step makes smaller is the rounding of the motions.
-                    let rounded = self.size(here.off) <= LEFT * tolerance;
+                    // A residual that no step makes smaller is the rounding of the motions.
+                    let rounded = self.size(here.off) <= RESIDUAL * tolerance;
                     return rounded.then_some((here, slopes)).ok_or(Unfinished::NotFound);
                 }
                 (slopes, fresh) = (renewed(here.from)?, true);
@@ -168,7 +168,7 @@ impl DrivenMass<'_> {
         Ok(Tried { from, motion, off })
     }
 
-    /// The size of what a motion is off by, m.
+    /// The size of a residual, m.
     fn size(&self, off: [f64; 2]) -> f64 {
         off[0].hypot(off[1] / self.fastest())
     }
@@ -195,7 +195,7 @@ impl DrivenMass<'_> {
         Ok(Slopes { taken_at: middle.from, inverse, waves })
     }
 
-    /// What has been found, with its error: that of the motion and what it is off by, through the derivatives.
+    /// The response, with its error: that of the motion and its residual, through the derivatives.
     fn response(&self, found: &Tried, slopes: &Slopes) -> Response {
         let [cos, sin, force_cos, force_sin, third_cos, third_sin] = found.motion.sums.map(|sum| sum * 2.0 / PI);
         let [displaced, sped] = found.motion.error.map(|error| 2.0 * error);

@@ -5,7 +5,8 @@ use std::cell::{Cell, OnceCell};
 use super::super::Contact;
 use super::super::profile::{Ring, RingSum, StressRadius};
 
-/// A derivative below this share of what it is the sum of is zero: the kernels of some families are good to 1e-13.
+/// A derivative below this share of the terms that it is the sum of is zero: the kernels of some families are good to
+/// 1e-13.
 pub(super) const NOISE: f64 = 1e-12;
 
 /// Terms of the derivative between two questions whether to go on: a term takes up to a microsecond.
@@ -60,7 +61,7 @@ impl<'c, 'p> Derivative<'c, 'p> {
         Derivative { contact, pace, sum: OnceCell::new() }
     }
 
-    /// What it is summed up by, if it was asked for.
+    /// The sum that gave it, if it was asked for.
     pub(super) fn into_sum(self) -> Option<RingSum<'c>> {
         self.sum.into_inner()
     }
@@ -82,7 +83,7 @@ impl<'c, 'p> Derivative<'c, 'p> {
     }
 }
 
-/// A sum, or zero where what it adds up from leaves it no sign.
+/// A sum, or zero where its sign is lost in the round-off of its terms.
 fn significant(sum: f64, size: f64) -> f64 {
     if sum.is_infinite() || sum.abs() > NOISE * size { sum } else { 0.0 }
 }

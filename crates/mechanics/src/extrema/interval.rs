@@ -44,6 +44,8 @@ pub(super) struct StressInterval {
     pub(super) end: (EndBehaviour, f64),
     /// Smooth, one of many intervals: it gets a few samples only.
     pub(super) sparse: bool,
+    /// The derivative changes its sign once at most, to that of the end.
+    pub(super) one_change: bool,
 }
 
 /// The derivative at a place.
@@ -95,6 +97,11 @@ impl StressInterval {
             }
             places
         };
+        if self.one_change {
+            // As many as are found side by side.
+            let unknown = end == EndBehaviour::Logarithm && sign.abs() <= 0.0;
+            return [3.0].into_iter().chain(unknown.then_some(floor.max(4.0))).collect();
+        }
         match end {
             EndBehaviour::Smooth => vec![0.6, 1.6, 4.0],
             EndBehaviour::InverseRoot(beyond) => {

@@ -5,8 +5,8 @@
 //! sign on both sides, where f' jumps tau itself is; everywhere else tau is smooth. So the derivative is sampled
 //! between these radii, ever closer to those it is infinite at, and an extremum is where its sign changes: within a
 //! interval a root, between two the radius they meet at. Signs alternate from one to the next, so none is found twice.
-//! That none is missed is proven where [`settled`] knows the sign; elsewhere it rests on the samples, and on the dense
-//! searches that they have been held against.
+//! That none is missed is proven where [`settled`] knows the sign, or that it changes once; elsewhere it rests on the
+//! samples, and on the dense searches that they have been held against.
 
 mod derivative;
 mod interval;
@@ -14,8 +14,10 @@ mod settled;
 
 use super::profile::{RingSum, StressRadius};
 use super::{Contact, DoubleDouble};
+use crate::numerics::roots::between;
 use derivative::{Derivative, NOISE, Pace};
 use interval::{EndBehaviour, KNOT_FLOOR, MAX_PLACE, Sample, StressInterval};
+use settled::Known;
 
 /// With more intervals than this between the knots of a table, each is sampled at its middle and its ends alone.
 const SPARSE_ABOVE: usize = 100;
@@ -23,17 +25,11 @@ const SPARSE_ABOVE: usize = 100;
 /// A root is known when its place is to this, relative to one more than it: the distance to the nearer end, to as much
 /// of itself. The stress at the extremum is then off by the square of this, which is far below its rounding.
 const RESOLUTION: f64 = 1e-12;
-/// A step of interpolation this short, likewise, ends at the root: its error is of third order, in steps of which this
-/// is the shortest.
-const LAST_STEP: f64 = 1e-7;
-/// After this many steps towards a root every second one halves the interval.
-const QUICK_STEPS: usize = 12;
-
 /// The extrema of the shear stress.
 pub(super) struct Extrema<'a> {
     /// Their radii, from the centre outward.
     pub(super) places: Vec<StressRadius>,
-    /// What the derivative was summed up by, if it was asked for.
+    /// The sum that gave the derivative, if it was asked for.
     pub(super) sum: Option<RingSum<'a>>,
 }
 
@@ -48,9 +44,9 @@ impl Contact {
             if index == 0 { StressRadius::new(0.0) } else { StressRadius::of_point(&pieces[index].inner) }
         };
         let settled = self.settled();
-        let known: Vec<bool> = (0..pieces.len()).map(|index| settled.known(index, from(index).radius)).collect();
+        let known: Vec<Known> = (0..pieces.len()).map(|index| settled.known(index, from(index).radius)).collect();
         // A long table has many, which no settled interval needs.
-        let searched = known.contains(&false);
+        let searched = known.iter().any(|known| *known != Known::Sign);
         let knots = if searched { self.profile.knots_below(edge.radius) } else { Vec::new() };
         let singular = self.profile.singular_radii();
         let pace = Pace::new(&keep_going);
@@ -66,7 +62,7 @@ impl Contact {
                 // The rest is at a vertical edge.
                 break;
             }
-            if known[index] {
+            if known[index] == Known::Sign {
                 search.cross(&from, -bend);
                 continue;
             }
@@ -112,11 +108,18 @@ impl Contact {
                 }
                 // Beyond the last knot, what the flat or the bend inside it hides may be known.
                 let outermost = begins + position == ends;
-                let known = outermost && position > 0 && settled.known(index, inner.radius);
-                if known {
+                let known = if !outermost {
+                    Known::Nothing
+                } else if position == 0 {
+                    known[index]
+                } else {
+                    settled.known(index, inner.radius)
+                };
+                let one_change = known == Known::OneChange;
+                if known == Known::Sign || one_change && start.1 * end.1 > 0.0 {
                     search.cross(&inner, -bend);
                 } else {
-                    search.search_interval(&StressInterval { inner, outer, start, end, sparse });
+                    search.search_interval(&StressInterval { inner, outer, start, end, sparse, one_change });
                 }
                 (inner, start) = (outer, next);
             }
@@ -198,9 +201,9 @@ impl Search<'_, '_, '_> {
         for (index, pair) in samples.windows(2).enumerate() {
             let (before, after) = (pair[0], pair[1]);
             if before.value * after.value < 0.0 {
-                let beyond = samples.get(index + 2).copied().filter(|sample| sample.place.is_finite());
-                self.find_root(interval, before, after, beyond);
-            } else if let Some(&next) = samples.get(index + 2)
+                self.find_root(interval, before, after);
+            } else if !interval.one_change
+                && let Some(&next) = samples.get(index + 2)
                 && after.value * next.value > 0.0
                 && before.place.is_finite()
                 && next.place.is_finite()
@@ -208,8 +211,8 @@ impl Search<'_, '_, '_> {
                 && let Some(dip) = self.dip(interval, before, next)
             {
                 // Two roots between samples of one sign.
-                self.find_root(interval, before, dip, None);
-                self.find_root(interval, dip, next, None);
+                self.find_root(interval, before, dip);
+                self.find_root(interval, dip, next);
             }
         }
     }
@@ -235,58 +238,19 @@ impl Search<'_, '_, '_> {
         None
     }
 
-    /// Finds the change of sign between two samples: inverse quadratic interpolation where it is safe, else halving
-    /// (Chandrupatla 1997). There is no value at an end that is infinitely far. A sample `beyond` them, if there is
-    /// one, is for the first step.
-    fn find_root(&mut self, interval: &StressInterval, from: Sample, to: Sample, beyond: Option<Sample>) {
-        let known = |sample: Sample| if sample.place.is_finite() { sample.value } else { f64::NAN };
-        // The last place and the one across the root from it.
-        let mut last = Sample { place: to.place.min(MAX_PLACE), value: known(to) };
-        let mut across = Sample { place: from.place.max(-MAX_PLACE), value: known(from) };
-        let mut share = beyond.and_then(|beyond| inverse_quadratic(last, across, beyond)).unwrap_or(0.5);
-        let sign = from.value.signum();
-        let mut last_is_low = false;
-        for step in 0.. {
-            let next = self.sample(interval, last.place + share * (across.place - last.place));
-            if next.value.abs() <= 0.0 {
-                // Beyond this it is lost in round-off.
-                (last, across) = (next, next);
-                break;
-            }
-            let low = next.value * sign > 0.0;
-            let third = if low == last_is_low { last } else { std::mem::replace(&mut across, last) };
-            (last, last_is_low) = (next, low);
-            let width = (across.place - last.place).abs();
-            let least = RESOLUTION * (1.0 + last.place.abs());
-            if width <= 2.0 * least {
-                break;
-            }
-            let halve = step > QUICK_STEPS && step % 2 == 0;
-            let quadratic = if halve { None } else { inverse_quadratic(last, across, third) };
-            if let Some(share) = quadratic.filter(|share| share * width <= LAST_STEP * (1.0 + last.place.abs())) {
-                last.place += share * (across.place - last.place);
-                across = last;
-                break;
-            }
-            // No step is so short that it could leave the root just beyond its end.
-            share = quadratic.map_or(0.5, |share| share.clamp(least / width, 1.0 - least / width));
-        }
-        let (low, high) = if last_is_low { (last.place, across.place) } else { (across.place, last.place) };
-        self.sign = -sign;
+    /// Finds the change of sign between two samples. At an end that is infinitely far the sign alone is known.
+    fn find_root(&mut self, interval: &StressInterval, from: Sample, to: Sample) {
+        let end = |sample: Sample, other: Sample| {
+            let size = if sample.place.is_finite() { sample.value.abs() } else { other.value.abs() };
+            (sample.place.clamp(-MAX_PLACE, MAX_PLACE), size.copysign(sample.value))
+        };
+        let ends = [end(from, to), end(to, from)];
+        let nearest = if ends[0].0 * ends[1].0 > 0.0 { ends[0].0.abs().min(ends[1].0.abs()) } else { 0.0 };
+        let root = between(ends, RESOLUTION * (1.0 + nearest), |place| self.sample(interval, place).value);
+        self.sign = -from.value.signum();
         // An extremum this near to the centre cannot be distinguished from the centre.
-        if interval.inner.square.value() > 0.0 || low > -MAX_PLACE {
-            self.places.push(interval.at(high));
+        if interval.inner.square.value() > 0.0 || root > 1.0 - MAX_PLACE {
+            self.places.push(interval.at(root));
         }
     }
-}
-
-/// Where inverse quadratic interpolation puts a root between `last` and `across`, as a share of the way; `None` where
-/// the curve through these and the `third` sample may not be monotone, or a value is unknown.
-fn inverse_quadratic(last: Sample, across: Sample, third: Sample) -> Option<f64> {
-    let (a, b, c) = (last.value, across.value, third.value);
-    let xi = (last.place - across.place) / (third.place - across.place);
-    let phi = (a - b) / (c - b);
-    let safe = phi * phi < xi && (1.0 - phi) * (1.0 - phi) < 1.0 - xi;
-    let beyond = (third.place - last.place) / (across.place - last.place);
-    safe.then(|| a / (b - a) * (c / (b - c)) + beyond * (a / (c - a)) * (b / (c - b)))
 }

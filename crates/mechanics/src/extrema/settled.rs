@@ -1,4 +1,5 @@
-//! Intervals between kinks of the slip history in which the sign of d tau/d(r^2) is known without a search.
+//! Intervals between kinks of the slip history in which the sign of d tau/d(r^2) is known without a search, or has one
+//! change at most.
 //!
 //! With s_i the slope of the piece over the ring i and r in the ring j, whose outer end is c, d tau/d(r^2) is a
 //! positive factor times s_j D - sum over i > j of s_i R_i. D = -dK(r, c)/d(r^2) falls as c grows, and R_i = int dy/(2
@@ -12,15 +13,21 @@
 //!   the kernel up to c falls: v only grows outward, so each R_i outweighs the next, and the first of them has the sign
 //!   of s_j D.
 //!
-//! Whether a kernel falls is known from [`Profile::falls`](super::super::profile), once for all r of an interval.
+//! Whether a kernel falls is known from [`Falls::least`](super::super::cells::falls::Falls), once for all r of an interval.
+//! Where it may not, but g'/x rises ever less with x^2 ([`Falls::concavely`](super::super::cells::falls::Falls)), D grows
+//! with r. Then the derivative over that of the factor grows away from zero too, and changes its sign once at most, in
+//! the same two cases: dD/d(r^2) falls as c grows, as D does, by d^2 D/(d(r^2) dc) = -3 g'(c)/(4 v^5), and of the
+//! dR_i/d(r^2) = int 3 dy/(4 v^5) each outweighs the next.
+
+use std::cell::LazyCell;
 
 use super::super::Contact;
 use super::super::profile::Ring;
 
-/// How much a share may grow outward by the rounding of levels: what the search takes for zero.
-const ROUNDED: f64 = super::NOISE;
+/// The growth of a share outward that the rounding of levels explains: as much as the search takes for zero.
+const SAME_SHARE: f64 = super::NOISE;
 
-/// What is known about the pieces from one of them outward.
+/// The order of bends and slopes from one piece outward.
 #[derive(Clone, Copy)]
 struct Outward {
     /// The bends alternate and do not grow.
@@ -29,25 +36,42 @@ struct Outward {
     slopes: bool,
 }
 
-/// The pieces of a slip history, and what is known about the bends and slopes from each outward.
+/// Knowledge about the derivative in the ring of a piece, from a radius in it outward.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Known {
+    /// It has the sign of the piece's slope.
+    Sign,
+    /// It changes its sign once at most, to that of the piece's slope.
+    OneChange,
+    /// Nothing.
+    Nothing,
+}
+
+/// The pieces of a slip history, with the order of bends and slopes from each outward.
 pub(super) struct Settled<'a> {
     contact: &'a Contact,
     pieces: Vec<Outward>,
 }
 
 impl Settled<'_> {
-    /// Whether the derivative in the ring of a piece is known to have the sign of its slope from the radius `from`, m,
-    /// on.
-    pub(super) fn known(&self, index: usize, from: f64) -> bool {
+    /// Knowledge about the derivative in the ring of a piece from the radius `from`, m, on.
+    pub(super) fn known(&self, index: usize, from: f64) -> Known {
         let Outward { bends, slopes } = self.pieces[index];
         let profile = &self.contact.profile;
         let (outer, edge) = (self.contact.history.ring(index).outer.radius, self.contact.history.edge().radius);
-        bends && profile.falls(from, edge) || slopes && profile.falls(from, outer)
+        let to_edge = LazyCell::new(|| profile.falls(from, edge));
+        if bends && to_edge.least > 0.0 || slopes && profile.falls(from, outer).least > 0.0 {
+            Known::Sign
+        } else if (bends || slopes) && to_edge.concavely {
+            Known::OneChange
+        } else {
+            Known::Nothing
+        }
     }
 }
 
 impl Contact {
-    /// What is known about the bends and slopes of the slip history.
+    /// The order of the bends and slopes of the slip history.
     pub(super) fn settled(&self) -> Settled<'_> {
         let pieces = self.history.pieces();
         let slope = |index: usize| pieces.get(index).map_or(0.0, |piece| piece.line.slope.value());
@@ -69,7 +93,7 @@ impl Contact {
             beyond.slopes &= if last {
                 slope(index).abs() > 0.0
             } else {
-                let falls = index + 2 >= pieces.len() || share(index + 1) * (1.0 + ROUNDED) >= share(index + 2);
+                let falls = index + 2 >= pieces.len() || share(index + 1) * (1.0 + SAME_SHARE) >= share(index + 2);
                 slope(index) * slope(index + 1) < 0.0 && falls
             };
             settled[index] = Outward { slopes: beyond.slopes && !(last && upright), ..beyond };

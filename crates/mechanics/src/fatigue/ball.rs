@@ -16,7 +16,7 @@ pub struct Ball<const N: usize> {
 /// More steps than points ever need; a safeguard only.
 const MOST_STEPS: usize = 1000;
 /// A squared distance above the squared radius by less than this share is round-off.
-const ROUND_OFF: f64 = 8.0 * f64::EPSILON;
+const ON_SURFACE: f64 = 8.0 * f64::EPSILON;
 /// A point nearer than this to the flat through others, squared and relative to its distance, is taken as lying in it.
 const FLAT: f64 = 1e-30;
 
@@ -38,7 +38,7 @@ pub fn enclosing_ball<const N: usize>(points: &[[f64; N]]) -> Ball<N> {
     let mut support = vec![center];
     let mut farthest = farthest_from(&center, &points);
     for _ in 0..MOST_STEPS {
-        if farthest.1 <= reach * (1.0 + ROUND_OFF) {
+        if farthest.1 <= reach * (1.0 + ON_SURFACE) {
             break;
         }
         let next = Smallest::carried_by(farthest.0, &support);

@@ -1,15 +1,15 @@
-//! What a place goes through over a cycle, as a curve: polynomials between the instants that matter, refined where it
+//! The stress of a place over a cycle, as a curve: polynomials between the instants that matter, refined where it
 //! takes more.
 //!
 //! At the surface a stress has the edge of the contact or of the slip pass like a root of the time, in the depth z like
 //! a root of time + i z. So the parts between such instants are graded towards both ends: over an angle t with part =
-//! from + (to - from) (1 - cos t)/2 those roots are smooth. There polynomials through Chebyshev's points converge fast;
+//! from + (to - from) (1 - cos t)/2 those roots are smooth. There polynomials through Chebyshev points converge fast;
 //! each is compared with the one through half of its points, and a stretch of t is halved where that does not help.
 
 use std::cell::Cell;
 use std::f64::consts::PI;
 
-use super::chebyshev::{self, STEPS};
+use crate::numerics::chebyshev::{NESTED_STEPS, nested_midpoints, nested_point, nested_products, nested_weights};
 use crate::numerics::roots::largest;
 use crate::{Error, Stress};
 
@@ -19,14 +19,14 @@ pub(super) type StressSample = [f64; 9];
 
 /// The largest number of instants of a move at which a place is looked at.
 pub const MAX_INSTANTS: usize = 4096;
-/// So many of them are not exceeded by choice: what is left of the move then takes the fewest that it can.
+/// So many of them are not exceeded by choice: the rest of the move then takes the fewest that it can.
 const ENOUGH: usize = 1024;
 
 /// Halvings of a stretch of t.
 const DEPTH: u32 = 26;
-/// A finer polynomial that is not better than this part of a coarser one is no way to go on.
+/// Where a finer polynomial errs by more than this part of a coarser one, the stretch is halved.
 const SLOW: f64 = 0.3;
-/// What a finer polynomial leaves of what a coarser one did, at the least.
+/// The least part of the error of a coarser polynomial that a finer one is taken to leave.
 const GAIN: f64 = 0.03;
 /// The part of the stretch about a peak to which its place is narrowed down.
 const BRACKET: f64 = 1e-9;
@@ -64,16 +64,17 @@ pub(super) struct Arc {
     /// The samples at the points, and at the points half a step between them.
     samples: Vec<StressSample>,
     between: Vec<StressSample>,
-    /// The friction work per area over the friction, J/m^2, and what a coarser polynomial made of it.
+    /// The friction work per area over the friction, J/m^2, and the same by a coarser polynomial.
     work: [f64; 2],
     /// Whether the place is within the contact.
     pub(super) touched: bool,
 }
 
-/// The curve of a place.
+/// The curve of a place, or a list of samples.
 #[derive(Clone, Debug, Default)]
 pub(super) struct StressCurve {
-    pub(super) arcs: Vec<Arc>,
+    arcs: Vec<Arc>,
+    list: Vec<(Instant, StressSample)>,
     /// Estimated errors.
     pub(super) error: Allowance,
 }
@@ -101,7 +102,7 @@ pub(super) fn stress(sample: &StressSample) -> Stress {
     Stress { xx, yy, zz, xy, yz, xz }
 }
 
-/// What lies between two samples: stresses, by their norm, and slip.
+/// The distance of two samples: of the stresses, by their norm, and of the slip.
 fn distance(one: &StressSample, other: &StressSample) -> Allowance {
     let off: StressSample = std::array::from_fn(|i| one[i] - other[i]);
     Allowance { stress: stress(&off).norm().max(off[6].abs()).max(off[7].abs()), slip: off[8].abs() }
@@ -126,7 +127,7 @@ impl Allowance {
         Allowance { stress: factor * self.stress, slip: factor * self.slip }
     }
 
-    /// The larger of both over what is allowed.
+    /// The larger of both over the allowance.
     fn over(self, allowed: Allowance) -> f64 {
         let share = |off: f64, most: f64| if off > 0.0 { off / most } else { 0.0 };
         share(self.stress, allowed.stress).max(share(self.slip, allowed.slip))
@@ -134,6 +135,15 @@ impl Allowance {
 }
 
 impl StressCurve {
+    /// The stresses at the ends of some moves.
+    pub(super) fn of_list(path: &[Stress]) -> StressCurve {
+        let sample = |(step, stress): (usize, &Stress)| {
+            let [xx, yy, zz, xy, yz, xz] = stress.components();
+            (Instant { step, part: 1.0 }, [xx, yy, zz, xy, yz, xz, 0.0, 0.0, 0.0])
+        };
+        StressCurve { list: path.iter().enumerate().map(sample).collect(), ..StressCurve::default() }
+    }
+
     /// The curve over some stretches within an allowance, from what `sample` says of a move, a part of it and whether
     /// the instant belongs to many places: the components, and whether the place is in contact. `None` where one is
     /// infinite.
@@ -152,24 +162,24 @@ impl StressCurve {
             let mut parts = vec![([0.0, PI], 0)];
             while let Some((angles, depth)) = parts.pop() {
                 let mut at = |n: usize, j: usize| {
-                    let angle = 0.5 * ((angles[0] + angles[1]) + (angles[1] - angles[0]) * chebyshev::point(n, j));
+                    let angle = 0.5 * ((angles[0] + angles[1]) + (angles[1] - angles[0]) * nested_point(n, j));
                     taken.set(taken.get() + 1);
                     sample(stretch.step, stretch.part(angle), *shared)
                 };
-                let mut samples = Vec::with_capacity(STEPS[1] + 1);
+                let mut samples = Vec::with_capacity(NESTED_STEPS[1] + 1);
                 let mut touched = false;
-                for j in 0..=STEPS[0] {
-                    let (found, contact) = at(STEPS[0], j)?;
+                for j in 0..=NESTED_STEPS[0] {
+                    let (found, contact) = at(NESTED_STEPS[0], j)?;
                     // Its ends may be at the edge.
-                    touched |= 2 * j == STEPS[0] && contact;
+                    touched |= 2 * j == NESTED_STEPS[0] && contact;
                     samples.push(found);
                 }
                 let (mut level, mut before) = (0, None::<f64>);
                 let (off, good) = loop {
-                    let (n, finer) = (STEPS[level], STEPS[level + 1]);
+                    let (n, finer) = (NESTED_STEPS[level], NESTED_STEPS[level + 1]);
                     let mut off = Allowance::default();
                     let mut all = Vec::with_capacity(finer + 1);
-                    for (j, row) in chebyshev::between(level).iter().enumerate() {
+                    for (j, row) in nested_midpoints(level).iter().enumerate() {
                         let (found, _) = at(finer, 2 * j + 1)?;
                         off = off.most(distance(&found, &combined(row, &samples)));
                         all.extend([samples[j], found]);
@@ -187,7 +197,7 @@ impl StressCurve {
                     if share <= 1.0 || left.over(allowed) <= 0.3 {
                         break (left, true);
                     }
-                    if level + 1 == STEPS.len() || (level > 1 && gain > SLOW) || taken.get() >= ENOUGH {
+                    if level + 1 == NESTED_STEPS.len() || (level > 1 && gain > SLOW) || taken.get() >= ENOUGH {
                         break (off, false);
                     }
                     before = Some(share);
@@ -216,10 +226,11 @@ impl StressCurve {
 
     /// All samples that were taken, with their instants.
     pub(super) fn samples(&self) -> impl DoubleEndedIterator<Item = (Instant, &StressSample)> {
-        self.arcs.iter().flat_map(|arc| {
+        let of_arcs = self.arcs.iter().flat_map(|arc| {
             let n = arc.samples.len() - 1;
-            arc.samples.iter().enumerate().rev().map(move |(j, sample)| (arc.instant(chebyshev::point(n, j)), sample))
-        })
+            arc.samples.iter().enumerate().rev().map(move |(j, sample)| (arc.instant(nested_point(n, j)), sample))
+        });
+        self.list.iter().map(|(at, sample)| (*at, sample)).chain(of_arcs)
     }
 
     /// Friction work per area over the friction, J/m^2, and its estimated error.
@@ -235,6 +246,12 @@ impl StressCurve {
         mut value: impl FnMut(&StressSample) -> f64,
     ) -> Option<CurvePeak> {
         let mut best: Option<CurvePeak> = None;
+        for (at, sample) in &self.list {
+            let here = value(sample);
+            if best.is_none_or(|best| here > best.value) {
+                best = Some(CurvePeak { value: here, sample: *sample, at: *at });
+            }
+        }
         let mut brackets: Vec<(&Arc, usize, f64)> = Vec::new();
         for arc in self.arcs.iter().filter(|arc| wanted(arc)) {
             let count = arc.samples.len() + arc.between.len();
@@ -242,7 +259,7 @@ impl StressCurve {
             // Each peak between the points, as the farthest ones from a centre may lie on one arc and be alike.
             for (index, here) in values.iter().enumerate() {
                 if best.is_none_or(|best| *here > best.value) {
-                    let at = arc.instant(chebyshev::point(count - 1, index));
+                    let at = arc.instant(nested_point(count - 1, index));
                     best = Some(CurvePeak { value: *here, sample: *arc.dense(index), at });
                 }
                 let sides = [index.saturating_sub(1), (index + 1).min(count - 1)].map(|side| here - values[side]);
@@ -253,7 +270,7 @@ impl StressCurve {
         }
         for (arc, most, reach) in brackets {
             if best.is_some_and(|best| reach > best.value) {
-                let peak = arc.summit(most, &mut value);
+                let peak = arc.peak_beside(most, &mut value);
                 if best.is_none_or(|best| peak.value > best.value) {
                     best = Some(peak);
                 }
@@ -265,11 +282,11 @@ impl StressCurve {
 
 impl Arc {
     fn new(stretch: CurveStretch, angles: [f64; 2], samples: Vec<StressSample>, touched: bool, level: usize) -> Arc {
-        let between = chebyshev::between(level).iter().map(|row| combined(row, &samples)).collect();
+        let between = nested_midpoints(level).iter().map(|row| combined(row, &samples)).collect();
         let every = |n: usize| -> f64 {
-            let level = STEPS.iter().position(|steps| *steps == n).unwrap_or(0);
+            let level = NESTED_STEPS.iter().position(|steps| *steps == n).unwrap_or(0);
             let stride = (samples.len() - 1) / n;
-            let works = chebyshev::works(level).iter().enumerate();
+            let works = nested_products(level).iter().enumerate();
             let of = |(i, row): (usize, &Vec<f64>)| -> f64 {
                 let gained: f64 = row.iter().enumerate().map(|(j, weight)| weight * samples[j * stride][8]).sum();
                 samples[i * stride][6] * gained
@@ -293,13 +310,13 @@ impl Arc {
     }
 
     /// The peak next to one of the dense samples, by the golden section.
-    fn summit(&self, index: usize, value: &mut impl FnMut(&StressSample) -> f64) -> CurvePeak {
+    fn peak_beside(&self, index: usize, value: &mut impl FnMut(&StressSample) -> f64) -> CurvePeak {
         let n = self.samples.len() + self.between.len() - 1;
         let point = |index: usize| (PI * index as f64 / n as f64).cos();
         let (low, high) = (point((index + 1).min(n)), point(index.saturating_sub(1)));
         let mut best = CurvePeak { value: f64::NEG_INFINITY, sample: [0.0; 9], at: self.instant(0.0) };
         let mut look = |x: f64| {
-            let sample = combined(&chebyshev::weights(self.samples.len() - 1, x), &self.samples);
+            let sample = combined(&nested_weights(self.samples.len() - 1, x), &self.samples);
             let found = value(&sample);
             if found > best.value {
                 best = CurvePeak { value: found, sample, at: self.instant(x) };

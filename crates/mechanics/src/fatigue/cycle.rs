@@ -7,7 +7,7 @@ use crate::{Contact, DEFAULT_TOLERANCE, Error, Move, Normal, Tangential};
 
 /// A cycle is closed if it ends as near as this to where it began, relative to its largest displacement or indentation.
 const CLOSED: f64 = 1e-9;
-/// Under forces a contact can shake down over many cycles. One that has not after so many never will, or too late.
+/// Under forces a contact can shake down over many cycles. A drift after so many is reported as an open cycle.
 const MOST_LAPS: usize = 64;
 /// Bytes that the states and the chords of a cycle may take.
 pub const MOST_BYTES: usize = 32 * 1024 * 1024;
@@ -196,7 +196,7 @@ impl Cycle {
     }
 
     /// The contact after a part of a move, which is of the displacement or the indentation where the move is straight
-    /// in both, and the part of what the move prescribes.
+    /// in both, and the part of the prescribed quantity.
     pub(super) fn state(&self, step: usize, part: f64) -> (Contact, f64) {
         let earlier = |chord: &Chord| chord.step < step || chord.step == step && chord.to < part;
         let index = self.chords.partition_point(earlier).min(self.chords.len() - 1);
@@ -265,7 +265,7 @@ impl Cycle {
     }
 }
 
-/// Makes a move, unless the caller has lost interest: a straight move would not ask.
+/// Makes a move while `keep_going` returns true, which a straight move would not ask.
 fn follow(contact: &mut Contact, step: &Move, keep_going: &dyn Fn() -> bool) -> Result<(), Error> {
     if keep_going() { contact.apply_while(step, DEFAULT_TOLERANCE, keep_going) } else { Err(Error::Interrupted) }
 }

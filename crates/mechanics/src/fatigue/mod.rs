@@ -18,7 +18,6 @@
 //! each [`Measure`] of them at the instants that matter.
 
 mod ball;
-mod chebyshev;
 mod curve;
 mod cycle;
 mod planes;
@@ -31,9 +30,10 @@ use std::f64::consts::SQRT_2;
 use super::{Error, Stress, range};
 use ball::dot;
 pub use ball::{Ball, enclosing_ball};
+use curve::StressCurve;
 pub use curve::{Instant, MAX_INSTANTS};
 pub use cycle::{Cycle, MOST_BYTES};
-use planes::{Vector, axes, grid, peaks, unit};
+use planes::{Vector, axes, grid, unit};
 pub use rating::{Measure, Rated};
 pub use search::Worst;
 pub use study::{Bulk, FIELD_BYTES, Largest, Ratings, Study};
@@ -141,22 +141,8 @@ impl Criterion {
         if let Some(instant) = path.iter().position(|stress| !stress.is_finite()) {
             return Value { value: f64::INFINITY, plane: None, instant: Some(instant) };
         }
-        let (value, plane, instant) = match *self {
-            Criterion::Crossland { alpha } => {
-                let (_, amplitude) = deviator_ball(path);
-                let (instant, hydrostatic) = most(path.iter().map(Stress::hydrostatic));
-                (amplitude + alpha * hydrostatic, None, instant)
-            }
-            Criterion::DangVan { alpha } => {
-                let (center, _) = deviator_ball(path);
-                let (instant, sum) = most(
-                    path.iter().map(|stress| (*stress + center * -1.0).max_shear() + alpha * stress.hydrostatic()),
-                );
-                (sum, None, instant)
-            }
-            _ => self.on_worst_plane(path),
-        };
-        Value { value, plane, instant: Some(instant) }
+        let Rated { value, plane, at, .. } = Measure::Stress(*self).over(&StressCurve::of_list(path), 0.0, None);
+        Value { value, plane, instant: at.map(|at| at.step) }
     }
 
     /// Its value over finite stresses as [`Criterion::of`], but on the planes of the grid alone: lower by some per
@@ -181,12 +167,6 @@ impl Criterion {
         };
         tension.dedup_by(|one, other| dot(one, other).abs() > SAME_PLANE);
         tension
-    }
-
-    fn on_worst_plane(&self, path: &[Stress]) -> (f64, Option<[f64; 3]>, usize) {
-        let (value, normal) = peaks(&self.starts(path), |normal, bound| self.on_plane(path, normal, bound).0)[0];
-        let (_, instant) = self.on_plane(path, &normal, false);
-        (value, Some(upward(normal)), instant)
     }
 
     /// The value on one plane, or a bound of it, and the instant of the largest normal stress.
@@ -230,13 +210,6 @@ fn upward(normal: Vector) -> Vector {
 /// The largest of some values, at least one, and its index, the first of equal ones.
 fn most(values: impl Iterator<Item = f64>) -> (usize, f64) {
     values.enumerate().fold((0, f64::NEG_INFINITY), |most, next| if next.1 > most.1 { next } else { most })
-}
-
-/// The centre of the smallest ball around the deviators of a path, and sqrt(J2a): its radius over sqrt(2).
-fn deviator_ball(path: &[Stress]) -> (Stress, f64) {
-    let deviators: Vec<[f64; 5]> = path.iter().map(deviator).collect();
-    let Ball { center, radius } = enclosing_ball(&deviators);
-    (from_deviator(&center), radius / SQRT_2)
 }
 
 /// The stress of a deviator in that basis.

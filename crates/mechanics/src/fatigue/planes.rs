@@ -16,7 +16,7 @@ const GRID: f64 = PI / 36.0;
 const NEIGHBOURS: f64 = 1.3 * GRID;
 /// The search starts from so many planes of the grid at most.
 const MOST_STARTS: usize = 16;
-/// A plane lower than the largest by more than this share of the range over the grid is none to start from.
+/// A plane lower than the largest by more than this share of the range over the grid is not searched from.
 const SLACK: f64 = 0.1;
 /// One lower by less than this share, as much as the grid can be below a peak, is one even if a neighbour is higher,
 /// unless a search has ended near it: peaks can hide between the planes of the grid.

@@ -29,7 +29,7 @@ const NEAR_SURFACE: f64 = 4.0;
 const TOGETHER: f64 = 0.1;
 /// Planes are sought over samples that are apart by this part of the farthest two.
 const SEARCHED: f64 = 1.0 / 100.0;
-/// What the other samples may add to the value on a plane, over the range of the values on all.
+/// The most that the other samples add to the value on a plane, over the range of the values on all.
 const UNSEEN: f64 = 0.06;
 /// Peaks over all planes that are climbed.
 const CLIMBED: usize = 6;
@@ -39,7 +39,7 @@ const SAME_PEAK: f64 = 0.9999;
 const CLIMB_STEP: f64 = 0.02;
 const SETTLED: f64 = 1e-9;
 
-/// What is computed at a place.
+/// A quantity that is computed at a place.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Measure {
     /// A criterion of stress.
@@ -58,7 +58,7 @@ pub enum Measure {
 pub struct Rated {
     /// In the unit of the measure; infinite where a stress is, and no number below the surface if it is of the surface.
     pub value: f64,
-    /// The estimated distance from what it is over the whole cycle.
+    /// The estimated distance from the value over the whole cycle.
     pub error: f64,
     /// As [`Value::plane`](super::Value::plane).
     pub plane: Option<[f64; 3]>,
@@ -103,7 +103,8 @@ impl Measure {
                 } else {
                     let peak = peak_of(curve, |sample| tresca(sample, &ball, *alpha));
                     let allowed = curve.error.stress + outside;
-                    let error = (SHEAR_SHARE + alpha * HYDROSTATIC_SHARE) * allowed + wander(&ball, points, allowed);
+                    let error =
+                        (SHEAR_SHARE + alpha * HYDROSTATIC_SHARE) * allowed + drift_of_centre(&ball, points, allowed);
                     Rated { value: peak.value, error, plane: None, at: Some(peak.at) }
                 }
             }
@@ -145,7 +146,7 @@ fn tresca(sample: &StressSample, ball: &Ball<5>, alpha: f64) -> f64 {
     (stress + from_deviator(&ball.center) * -1.0).max_shear() + alpha * stress.hydrostatic()
 }
 
-/// The smallest ball around the deviators of a curve, the points that it was found from, and what is outside of it, Pa.
+/// The smallest ball around the deviators of a curve, its points, and how far the curve leaves it, Pa.
 fn deviator_ball(curve: &StressCurve) -> (Ball<5>, Vec<[f64; 5]>, f64) {
     let mut points: Vec<[f64; 5]> = curve.samples().map(|(_, sample)| deviator(&stress(sample))).collect();
     let (ball, outside) = grown(&mut points, |center| {
@@ -158,7 +159,7 @@ fn deviator_ball(curve: &StressCurve) -> (Ball<5>, Vec<[f64; 5]>, f64) {
 
 /// How far Tresca's shear stress about the centre may be off, Pa, if the points are by `error`: the sum of what it is
 /// between the centre and those of balls for which one part of the points at the surface lies so much farther out.
-fn wander(ball: &Ball<5>, mut points: Vec<[f64; 5]>, error: f64) -> f64 {
+fn drift_of_centre(ball: &Ball<5>, mut points: Vec<[f64; 5]>, error: f64) -> f64 {
     if ball.radius <= error {
         // No centre of the points as they are is farther away than the points may be.
         return ball.radius + error;
@@ -244,7 +245,7 @@ fn on_worst_plane(criterion: &Criterion, curve: &StressCurve, off: f64, near: Op
     for mut normal in normals {
         let mut value = f64::NEG_INFINITY;
         for round in 0..MOST_ROUNDS {
-            let at = witnesses(criterion, curve, &normal, &mut path);
+            let at = add_support_stresses(criterion, curve, &normal, &mut path);
             let (here, _) = criterion.on_plane(&path, &normal, false);
             if here > best.value {
                 best = Rated { value: here, plane: Some(upward(normal)), at: Some(at), ..best };
@@ -261,7 +262,12 @@ fn on_worst_plane(criterion: &Criterion, curve: &StressCurve, off: f64, near: Op
 }
 
 /// Adds the stresses that matter on a plane, and says when its normal stress is largest.
-fn witnesses(criterion: &Criterion, curve: &StressCurve, normal: &Vector, path: &mut Vec<Stress>) -> Instant {
+fn add_support_stresses(
+    criterion: &Criterion,
+    curve: &StressCurve,
+    normal: &Vector,
+    path: &mut Vec<Stress>,
+) -> Instant {
     let along = weights(normal, normal);
     let opening = peak_of(curve, |sample| resolved(&stress(sample), &along));
     path.push(stress(&opening.sample));
@@ -299,7 +305,7 @@ mod tests {
                 (0..9).map(|_| any(1.0)).map(|[a, b, c, d, e]| [a, flat * b, flat * c, flat * d, flat * e]).collect();
             let error = [1e-3, 1e-5, 1e-7][case % 7 % 3];
             let ball = enclosing_ball(&points);
-            let said = SHEAR_SHARE * error + wander(&ball, points.clone(), error);
+            let allowed = SHEAR_SHARE * error + drift_of_centre(&ball, points.clone(), error);
             for _ in 0..8 {
                 let moved = points.iter().map(|point| {
                     let off = any(error / 5f64.sqrt());
@@ -308,7 +314,7 @@ mod tests {
                 let center = enclosing_ball(&moved.collect::<Vec<[f64; 5]>>()).center;
                 let off = from_deviator(&std::array::from_fn(|i| center[i] - ball.center[i])).max_shear();
                 most = most.max(off / error);
-                assert!(off <= 3.0 * said, "{case}: {off:e} {said:e}");
+                assert!(off <= 3.0 * allowed, "{case}: {off:e} {allowed:e}");
             }
         }
         assert!(most > 3.0, "{most}");

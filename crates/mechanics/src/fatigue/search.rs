@@ -30,7 +30,7 @@ const SPARSE: usize = 3;
 /// Starts of a search for each measure, and the value of one over the best.
 const STARTS: usize = 5;
 const WORTH: f64 = 0.75;
-/// Nearer than this to a start, in contact radii, is no other start.
+/// Starts are at least this far apart, in contact radii.
 const APART: f64 = 0.2;
 /// The first steps along radius, over the contact radius, angle and depth, and how far they fall, first and at the best
 /// place.
@@ -39,7 +39,7 @@ const COARSE: f64 = 1.0 / 16.0;
 const FINE: f64 = 1.0 / 4096.0;
 /// How often a search may go on with another plane.
 const MOST_TURNS: usize = 3;
-/// What is gained in the last rounds of the search, times this, is what more rounds might gain.
+/// More rounds of the search are taken to gain this many times as much as the last ones.
 const LAST_GAINS: f64 = 2.0;
 
 /// A place of the largest value of a measure.
@@ -58,7 +58,7 @@ type Coordinates = [f64; 3];
 
 /// The value at a place of a search.
 #[derive(Clone, Copy)]
-struct Spot {
+struct Candidate {
     at: Coordinates,
     found: Rated,
     instants: usize,
@@ -84,17 +84,17 @@ impl Study<'_> {
         for (measure, known) in known.iter().enumerate() {
             let mut larger = self.unbounded(measure)?;
             if let (None, Some(start)) = (larger, self.best_starts(measure, &starts).first()) {
-                let spot = self.climb(measure, *start, (1.0, 1.0))?.0;
-                let margin = spot.found.error + self.tolerance * spot.found.value.abs();
-                larger = (spot.found.value - margin > *known).then(|| self.found_at(&spot));
+                let candidate = self.climb(measure, *start, (1.0, 1.0))?.0;
+                let margin = candidate.found.error + self.tolerance * candidate.found.value.abs();
+                larger = (candidate.found.value - margin > *known).then(|| self.found_at(&candidate));
             }
             places.push(larger);
         }
         Ok(places)
     }
 
-    fn found_at(&self, spot: &Spot) -> Worst {
-        Worst { place: self.place(spot.at), rated: self.rated(&spot.found), instants: spot.instants }
+    fn found_at(&self, candidate: &Candidate) -> Worst {
+        Worst { place: self.place(candidate.at), rated: self.rated(&candidate.found), instants: candidate.instants }
     }
 
     /// The radii, in contact radii, at which edges of the contact and of slip end, and kinks of the history lie.
@@ -165,16 +165,16 @@ impl Study<'_> {
         if let Some(unbounded) = self.unbounded(measure)? {
             return Ok(unbounded);
         }
-        let mut best: Option<Spot> = None;
+        let mut best: Option<Candidate> = None;
         for start in self.best_starts(measure, starts) {
-            let spot = self.climb(measure, start, (1.0, COARSE))?.0;
-            if best.is_none_or(|best| spot.found.value > best.found.value) {
-                best = Some(spot);
+            let candidate = self.climb(measure, start, (1.0, COARSE))?.0;
+            if best.is_none_or(|best| candidate.found.value > best.found.value) {
+                best = Some(candidate);
             }
         }
         let start = best.map_or([0.0; 3], |best| best.at);
-        let (spot, gained) = self.climb(measure, start, (COARSE, FINE))?;
-        let mut worst = self.found_at(&spot);
+        let (candidate, gained) = self.climb(measure, start, (COARSE, FINE))?;
+        let mut worst = self.found_at(&candidate);
         worst.rated.error += LAST_GAINS * gained;
         Ok(worst)
     }
@@ -202,22 +202,22 @@ impl Study<'_> {
         Self::unit_place(at).map(|part| self.radius * part)
     }
 
-    fn spot(&mut self, measure: usize, at: Coordinates, near: Option<Vector>) -> Result<Spot, Error> {
+    fn candidate_at(&mut self, measure: usize, at: Coordinates, near: Option<Vector>) -> Result<Candidate, Error> {
         let place = self.place(at);
         let (found, instants) = self.rate_one(measure, &place, near)?;
-        Ok(Spot { at, found, instants })
+        Ok(Candidate { at, found, instants })
     }
 
     /// Climbs along the coordinates in turn, in steps that are halved where none leads up, until they are so small: the
-    /// best place, and what the last two rounds have gained.
+    /// best place, and the gain of the last two rounds.
     fn climb(
         &mut self,
         measure: usize,
         start: Coordinates,
         (mut share, finest): (f64, f64),
-    ) -> Result<(Spot, f64), Error> {
+    ) -> Result<(Candidate, f64), Error> {
         let axes = if self.measures[measure].of_surface() { 2 } else { 3 };
-        let mut best = self.spot(measure, start, None)?;
+        let mut best = self.candidate_at(measure, start, None)?;
         let (mut gains, mut turns) = ([0.0; 2], 0);
         while share >= finest {
             let before = best.found.value;
@@ -226,8 +226,8 @@ impl Study<'_> {
                 let mut sides = [None; 2];
                 for (side, sign) in sides.iter_mut().zip([1.0, -1.0]) {
                     *side = self.step(measure, &middle, axis, sign * share * first_step)?;
-                    if let Some(spot) = side.filter(|spot| spot.found.value > best.found.value) {
-                        best = spot;
+                    if let Some(candidate) = side.filter(|candidate| candidate.found.value > best.found.value) {
+                        best = candidate;
                     }
                 }
                 if let [Some(right), Some(left)] = sides {
@@ -236,8 +236,8 @@ impl Study<'_> {
                     let vertex = if bend < 0.0 { -0.5 * rise / bend } else { 0.0 };
                     if vertex.abs() > 0.02 && vertex.abs() < 1.0 {
                         let length = vertex * share * first_step;
-                        let spot = self.step(measure, &middle, axis, length)?;
-                        best = spot.filter(|spot| spot.found.value > best.found.value).unwrap_or(best);
+                        let candidate = self.step(measure, &middle, axis, length)?;
+                        best = candidate.filter(|candidate| candidate.found.value > best.found.value).unwrap_or(best);
                     }
                 }
             }
@@ -248,7 +248,7 @@ impl Study<'_> {
             }
             if share < finest && best.found.plane.is_some() {
                 // Another plane may have overtaken the one that was followed.
-                let any = self.spot(measure, best.at, None)?;
+                let any = self.candidate_at(measure, best.at, None)?;
                 if any.found.value > best.found.value * (1.0 + 0.05 * self.tolerance) && turns < MOST_TURNS {
                     (share, turns) = (4.0 * finest, turns + 1);
                 }
@@ -259,14 +259,14 @@ impl Study<'_> {
     }
 
     /// The place a step along one coordinate away, unless it leaves the body or is the same.
-    fn step(&mut self, measure: usize, from: &Spot, axis: usize, length: f64) -> Result<Option<Spot>, Error> {
+    fn step(&mut self, measure: usize, from: &Candidate, axis: usize, length: f64) -> Result<Option<Candidate>, Error> {
         let mut at = from.at;
         let most = if axis == 1 { PI } else { f64::INFINITY };
         at[axis] = (at[axis] + length).clamp(0.0, most);
         if (at[axis] - from.at[axis]).abs() <= 0.0 {
             return Ok(None);
         }
-        let spot = self.spot(measure, at, from.found.plane)?;
-        Ok(Some(spot).filter(|spot| spot.found.value.is_finite()))
+        let candidate = self.candidate_at(measure, at, from.found.plane)?;
+        Ok(Some(candidate).filter(|candidate| candidate.found.value.is_finite()))
     }
 }

@@ -11,7 +11,7 @@ use super::{Cycle, Instant, Measure, Rated};
 use crate::subsurface::{Side, Subsurface};
 use crate::{Contact, Error, Profile, Stress};
 
-/// What a measure of the surface has below the surface: no value.
+/// The value of a measure of the surface below the surface.
 const NO_VALUE: Rated = Rated { value: f64::NAN, error: 0.0, plane: None, at: None };
 /// The part of the accepted error that the curve of a place may use.
 const CURVE_SHARE: f64 = 0.5;
@@ -21,11 +21,11 @@ const PRODUCT_SHARE: f64 = 0.2;
 /// what it was at the least.
 const FINER: f64 = 0.5;
 const FINEST: f64 = 1e-3;
-/// A criterion is resolved at the least to the tolerance times this share of what the largest stress would give.
+/// A criterion is resolved at the least to the tolerance times this share of its value under the largest stress.
 const LEAST: f64 = 1e-3;
-/// What rounding leaves of a stress, and what the chords of curved moves do, over the largest pressure.
-const ROUNDING: f64 = 1e-12;
-const CHORDS: f64 = 1e-6;
+/// The error of a stress by rounding, and by the chords of curved moves, over the largest pressure.
+const STRESS_ROUND_OFF: f64 = 1e-12;
+const CHORD_ERROR: f64 = 1e-6;
 /// Depth, in contact radii, below which the passing of an edge is as smooth as all else.
 const DEEP: f64 = 0.3;
 /// Instants closer than this, in parts of a move, are one.
@@ -71,7 +71,7 @@ pub struct Ratings {
 /// A field, and the part of the move as prescribed.
 type Field = Rc<(Subsurface, f64)>;
 
-/// What is asked of a cycle.
+/// Measures of a cycle in one of the bodies.
 pub struct Study<'a> {
     pub(super) cycle: &'a Cycle,
     body: (Side, f64),
@@ -227,7 +227,7 @@ impl<'a> Study<'a> {
                 }
             }
             let Some(curve) = curve else { return Ok((found, 1)) };
-            // The centre of a ball may be worse off than the stress is; what cannot be followed better is left.
+            // The centre of a ball may be worse off than the stress is; a curve that cannot be followed better is kept.
             let finer = (FINER / excess.max(1.0)).max(FINEST) * allowed.stress.min(curve.error.stress);
             if excess <= 1.0 || finer < self.rounding() || curve.error.stress > allowed.stress {
                 return Ok((found, curve.instants()));
@@ -309,14 +309,14 @@ impl<'a> Study<'a> {
         (0..self.cycle.moves()).filter(move |step| goes_on || self.cycle.has_length(*step))
     }
 
-    /// What a criterion is resolved to, by the tolerance.
+    /// The value over which the tolerance of a criterion counts.
     fn resolved(&self, index: usize) -> f64 {
         self.reference[index].max(LEAST * self.measures[index].sensitivity(self.stress) * self.stress)
     }
 
     /// The error of a stress, Pa, below which no curve is followed.
     fn rounding(&self) -> f64 {
-        self.stress * if self.cycle.is_curved() { CHORDS } else { ROUNDING }
+        self.stress * if self.cycle.is_curved() { CHORD_ERROR } else { STRESS_ROUND_OFF }
     }
 
     /// The curve of a place, m; `None` where a stress is infinite.
@@ -368,7 +368,7 @@ impl<'a> Study<'a> {
         Ok(field)
     }
 
-    /// What a place goes through at an instant, and whether it is in contact.
+    /// The sample of a place at an instant, and whether it is in contact.
     fn looked_at(
         &self,
         field: &Field,

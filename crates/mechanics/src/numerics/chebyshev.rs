@@ -5,6 +5,7 @@
 //! whose half-axes add up to rho half-widths, errs like rho^-n; so do its last coefficients, by which
 //! [`Points::resolve`] tells whether the points suffice.
 
+use std::f64::consts::PI;
 use std::sync::LazyLock;
 
 /// The part of the largest coefficient below which a last one is the rounding of the values.
@@ -27,7 +28,7 @@ pub(crate) static TWENTY_FOUR: LazyLock<Points<24>> = LazyLock::new(Points::new)
 
 impl<const N: usize> Points<N> {
     pub(crate) fn new() -> Points<N> {
-        let cosine = |index: usize| (std::f64::consts::PI * (index % (4 * N)) as f64 / (2 * N) as f64).cos();
+        let cosine = |index: usize| (PI * (index % (4 * N)) as f64 / (2 * N) as f64).cos();
         let share = |order: usize| if order == 0 { 1.0 } else { 2.0 } / N as f64;
         Points {
             cosines: std::array::from_fn(|index| cosine(2 * index + 1)),
@@ -123,9 +124,65 @@ pub(crate) fn values<const N: usize>(series: &[f64], u: [f64; N]) -> [f64; N] {
     b1
 }
 
+/// The numbers of steps between nested points, both ends among them, x = cos(pi j/n) from 1 down to -1: each has the
+/// points of the one before it.
+pub(crate) const NESTED_STEPS: [usize; 4] = [4, 8, 16, 32];
+
+/// The weights of the values at the points of `NESTED_STEPS[level]`, one row for each of the points half a step between
+/// them.
+pub(crate) fn nested_midpoints(level: usize) -> &'static [Vec<f64>] {
+    static ROWS: LazyLock<[Vec<Vec<f64>>; 4]> = LazyLock::new(|| {
+        NESTED_STEPS.map(|n| (0..n).map(|j| nested_weights(n, (PI * (j as f64 + 0.5) / n as f64).cos())).collect())
+    });
+    &ROWS[level]
+}
+
+/// The weights of the values at the points of `NESTED_STEPS[level]` pairwise in the integral of the first function
+/// times the derivative of the second, in x: exact for the polynomials.
+pub(crate) fn nested_products(level: usize) -> &'static [Vec<f64>] {
+    static ROWS: LazyLock<[Vec<Vec<f64>>; 4]> = LazyLock::new(|| NESTED_STEPS.map(product_weights));
+    &ROWS[level]
+}
+
+/// The nested point `j` of `n`.
+pub(crate) fn nested_point(n: usize, j: usize) -> f64 {
+    (PI * j as f64 / n as f64).cos()
+}
+
+/// The weights of the values at the points in the polynomial at x (Salzer 1972).
+pub(crate) fn nested_weights(n: usize, x: f64) -> Vec<f64> {
+    let mut found: Vec<f64> = Vec::with_capacity(n + 1);
+    for j in 0..=n {
+        let off = x - nested_point(n, j);
+        if off == 0.0 {
+            return (0..=n).map(|i| if i == j { 1.0 } else { 0.0 }).collect();
+        }
+        let sign = if j % 2 == 0 { 1.0 } else { -1.0 };
+        let share = if j == 0 || j == n { 0.5 } else { 1.0 };
+        found.push(sign * share / off);
+    }
+    let sum: f64 = found.iter().sum();
+    found.into_iter().map(|weight| weight / sum).collect()
+}
+
+/// By the coefficients of both polynomials: int T_m dT_k is 2 k^2/(k^2 - m^2) where m + k is odd, else zero.
+fn product_weights(n: usize) -> Vec<Vec<f64>> {
+    let cosines: Vec<f64> = (0..2 * n).map(|index| nested_point(n, index)).collect();
+    let half = |m: usize| if m == 0 || m == n { 0.5 } else { 1.0 };
+    let share = |m: usize, j: usize| 2.0 / n as f64 * half(m) * half(j) * cosines[m * j % (2 * n)];
+    let work = |m: usize, k: usize| {
+        let [m, k] = [m, k].map(|order| (order * order) as f64);
+        if (m + k) % 2.0 > 0.0 { 2.0 * k / (k - m) } else { 0.0 }
+    };
+    let sum = |term: &dyn Fn(usize) -> f64| (0..=n).map(term).sum::<f64>();
+    let rows = (0..=n).map(|m| (0..=n).map(|j| sum(&|k| work(m, k) * share(k, j))).collect());
+    let by_order: Vec<Vec<f64>> = rows.collect();
+    (0..=n).map(|i| (0..=n).map(|j| sum(&|m| share(m, i) * by_order[m][j])).collect()).collect()
+}
+
 #[cfg(test)]
 mod tests {
-    use super::{EIGHT, Points, TWENTY_FOUR, values};
+    use super::*;
 
     #[test]
     fn a_series_follows_an_exponential() {
@@ -137,5 +194,23 @@ mod tests {
             assert!((value - f64::exp(u)).abs() < 2e-15);
         }
         assert!(!Points::<8>::resolve(&EIGHT.series(&EIGHT.places(-1.0, 1.0).map(f64::exp))));
+    }
+
+    #[test]
+    fn polynomials_are_met_between_their_points_and_integrated_exactly() {
+        for (level, n) in NESTED_STEPS.into_iter().enumerate() {
+            let (f, g) = (|x: f64| 1.0 + x - 0.5 * x.powi(3), |x: f64| 0.3 * x + x.powi(4));
+            let values = |of: &dyn Fn(f64) -> f64| (0..=n).map(|j| of(nested_point(n, j))).collect::<Vec<f64>>();
+            let (first, second) = (values(&f), values(&g));
+            for (j, row) in nested_midpoints(level).iter().enumerate() {
+                let found: f64 = row.iter().zip(&second).map(|(weight, value)| weight * value).sum();
+                assert!((found - g((PI * (j as f64 + 0.5) / n as f64).cos())).abs() < 1e-14);
+            }
+            let work: f64 = (0..=n)
+                .map(|i| (0..=n).map(|j| nested_products(level)[i][j] * first[i] * second[j]).sum::<f64>())
+                .sum();
+            // int (1 + x - x^3/2)(0.3 + 4 x^3) dx over -1 to 1.
+            assert!((work - (0.6 + 8.0 / 5.0 - 4.0 / 7.0)).abs() < 1e-13, "{n}: {work}");
+        }
     }
 }

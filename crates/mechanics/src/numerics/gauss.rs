@@ -58,13 +58,6 @@ const TWENTY: [(f64, f64); 10] = [
     (0.461_736_739_433_251_35, 0.076_376_693_565_362_93),
 ];
 
-/// The integrals over 0..1 of a function and of its square, by its values at the points of a rule.
-pub(crate) fn first_and_second<const N: usize>(rule: &[(f64, f64); N], values: [f64; N]) -> (f64, f64) {
-    rule.iter()
-        .zip(values)
-        .fold((0.0, 0.0), |(first, second), (&(_, weight), h)| (first + weight * h, second + weight * h * h))
-}
-
 /// A stretch below the top of what is still to be integrated: its width and the rule for it.
 #[derive(Clone, Copy)]
 pub(crate) struct QuadraturePanel {
@@ -78,31 +71,9 @@ impl QuadraturePanel {
         QuadraturePanel { width, rule: &EIGHT }
     }
 
-    /// A panel by the rule of twelve points.
-    pub(crate) fn middling(width: f64) -> QuadraturePanel {
-        QuadraturePanel { width, rule: &TWELVE }
-    }
-
     /// A panel by the longer rule, for an integrand analytic far around.
     pub(crate) fn fine(width: f64) -> QuadraturePanel {
         QuadraturePanel { width, rule: &TWENTY }
-    }
-
-    /// The same panel by a rule that is long enough for an integrand whose derivative of any order m is at most
-    /// `growth`^m of itself, over the width: what Gauss's remainder leaves of it is round-off.
-    ///
-    /// That remainder is f^(2n) (n!)^4/((2n + 1) ((2n)!)^3) for n points (Abramowitz & Stegun 1964, 25.4.29): twelve
-    /// points follow a growth of eight, twenty one of twenty-four. A panel as wide as the singularities
-    /// allow leaves its rule nothing to spare for the growth, so that it gets the next longer one.
-    pub(crate) fn following(self, growth: f64) -> QuadraturePanel {
-        let rule: &Rule = if growth <= 1.0 {
-            self.rule
-        } else if growth <= 8.0 && self.rule.len() == EIGHT.len() {
-            &TWELVE
-        } else {
-            &TWENTY
-        };
-        QuadraturePanel { rule, ..self }
     }
 
     /// Calls `visit(distance below the panel's top, weight)` at every abscissa; the weights add up to the width.
@@ -118,92 +89,5 @@ impl QuadraturePanel {
         let lower = self.rule.iter().map(|&(u, weight)| (u, weight));
         let upper = self.rule.iter().rev().map(|&(u, weight)| (1.0 - u, weight));
         lower.chain(upper).map(move |(u, weight)| (self.width * u, self.width * weight))
-    }
-}
-
-/// Where an integrand fails to be analytic, seen from the axis of integration.
-#[derive(Clone, Copy)]
-pub(crate) struct Singular {
-    /// It is singular at zero plus and minus this times i.
-    pub(crate) below: f64,
-    /// It is singular at this point of the axis, above the panels.
-    pub(crate) above: f64,
-}
-
-impl Singular {
-    /// The panel that hangs from `top` and covers `left`, or what can be covered of it.
-    pub(crate) fn panel(&self, top: f64, left: f64) -> QuadraturePanel {
-        if top <= 0.0 {
-            // Only rounding leads here.
-            return QuadraturePanel { width: left, rule: &EIGHT };
-        }
-        let bottom = (top - left).max(0.0);
-        let foci = (bottom * bottom + self.below * self.below).sqrt() + (top * top + self.below * self.below).sqrt();
-        // Rounding may put the top on the singularity; the panels must get off it.
-        let room = (self.above - top).max(1e-9 * top);
-        if foci >= 5.05 * left && left <= 0.5 * room {
-            return QuadraturePanel { width: left, rule: &EIGHT };
-        }
-        if foci >= 2.45 * left && left <= 1.4 * room {
-            return QuadraturePanel { width: left, rule: &TWELVE };
-        }
-        let width = if foci >= 1.5 * left { left } else { left.min(0.8 * top) };
-        QuadraturePanel { width: width.min(4.0 * room), rule: &TWENTY }
-    }
-}
-
-/// int_0^length f(s) ds for an f analytic wherever |Im s| < pi/2 and, on the real axis, up to `room` beyond s = 0, with
-/// no faster change than by a factor e over `scale`. It ends early when the panels, taken from s = 0, no longer count:
-/// give first the end where f is large.
-pub(crate) fn along_strip(length: f64, scale: f64, room: f64, mut f: impl FnMut(f64) -> f64) -> f64 {
-    let widest = (8.0 * scale).min(3.0);
-    let room = room.max(1e-9);
-    let (mut total, mut done) = (0.0, 0.0);
-    while done < length {
-        let left = length - done;
-        let width = left.min(widest).min(4.0 * (room + done));
-        let within = |share: f64| width <= share && width <= 3.0 * share * scale && width <= share * (room + done);
-        let rule: &Rule = if within(0.6) {
-            &EIGHT
-        } else if within(1.4) {
-            &TWELVE
-        } else {
-            &TWENTY
-        };
-        let mut part = 0.0;
-        QuadraturePanel { width, rule }.visit(|s, weight| part += weight * f(done + s));
-        total += part;
-        if part.abs() * left < 1e-18 * total.abs() * width {
-            break;
-        }
-        done += width;
-    }
-    total
-}
-
-#[cfg(test)]
-mod tests {
-    use super::{Singular, along_strip};
-
-    #[test]
-    fn a_panel_as_wide_as_allowed_reaches_round_off() {
-        // int_0^1 dt / (0.9^2 + t^2), singular at +-0.9i.
-        let singular = Singular { below: 0.9, above: f64::INFINITY };
-        let (mut total, mut done) = (0.0, 0.0);
-        while done < 1.0 {
-            let panel = singular.panel(1.0 - done, 1.0 - done);
-            panel.visit(|t, weight| total += weight / (0.81 + (1.0 - done - t).powi(2)));
-            done += panel.width;
-        }
-        assert!((total - (1.0f64 / 0.9).atan() / 0.9).abs() < 4e-16);
-    }
-
-    #[test]
-    fn a_strip_of_any_length() {
-        for length in [1e-9f64, 0.5, 2.9, 7.0, 40.0] {
-            let exact = 2.0 * (0.5 * length).tanh().atan();
-            let ours = along_strip(length, 1.0, f64::INFINITY, |s| 1.0 / s.cosh());
-            assert!((ours / exact - 1.0).abs() < 1e-15, "{length}: {ours} {exact}");
-        }
     }
 }

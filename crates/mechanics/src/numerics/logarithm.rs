@@ -1,5 +1,5 @@
-//! ln(1 + z) and e^s - 1 of several numbers side by side, without a branch, so that the compiler makes them one
-//! calculation of all of them.
+//! ln(1 + z) of several numbers side by side, without a branch, so that the compiler makes them one calculation of all
+//! of them.
 
 /// One over the odd numbers from 21 down to 3.
 const SHARES: [f64; 10] = [
@@ -52,56 +52,9 @@ pub(crate) fn ln_1p<const N: usize>(z: [f64; N]) -> [f64; N] {
     series
 }
 
-/// One over 14, 13, and so on down to 2: the next term of e^r is below 1e-18 for |r| up to ln(2)/2.
-const RECIPROCALS: [f64; 13] = {
-    let mut recips = [0.5; 13];
-    let mut index = 0;
-    while index < recips.len() {
-        recips[index] = 1.0 / (14 - index) as f64;
-        index += 1;
-    }
-    recips
-};
-/// Added to a number, this rounds it to a whole one.
-const ROUNDING: f64 = 6_755_399_441_055_744.0;
-
-/// e^s - 1, to round-off of itself, for s from -700 to 700.
-pub(crate) fn exp_m1<const N: usize>(s: [f64; N]) -> [f64; N] {
-    let (mut power, mut rest, mut growth) = ([0.0; N], [0.0; N], [1.0; N]);
-    for lane in 0..N {
-        // s = k ln 2 + r.
-        let shifted = s[lane] * std::f64::consts::LOG2_E + ROUNDING;
-        let whole = shifted - ROUNDING;
-        rest[lane] = (s[lane] - whole * LN2.0) - whole * LN2.1;
-        power[lane] = f64::from_bits(shifted.to_bits().wrapping_shl(52).wrapping_add(ONE));
-    }
-    for recip in RECIPROCALS {
-        for lane in 0..N {
-            growth[lane] = 1.0 + growth[lane] * rest[lane] * recip;
-        }
-    }
-    for lane in 0..N {
-        growth[lane] = power[lane] * rest[lane] * growth[lane] + (power[lane] - 1.0);
-    }
-    growth
-}
-
 #[cfg(test)]
 mod tests {
-    use super::{exp_m1, ln_1p};
-
-    #[test]
-    fn exponentials_agree_with_those_of_the_standard_library_on_either_side_of_zero() {
-        let mut s = 1e-300;
-        while s < 700.0 {
-            for s in [s, -s] {
-                let ([found], expected) = (exp_m1([s]), f64::exp_m1(s));
-                assert!((found - expected).abs() <= 4.0 * f64::EPSILON * expected.abs(), "{s}: {found} {expected}");
-            }
-            s *= 1.0173;
-        }
-        assert_eq!(exp_m1([0.0]).map(f64::to_bits), [0.0_f64].map(f64::to_bits));
-    }
+    use super::ln_1p;
 
     #[test]
     fn logarithms_agree_with_those_of_the_standard_library_from_the_least_to_the_largest_number() {

@@ -3,25 +3,6 @@
 /// More steps than any of these functions takes; a safeguard only.
 const MOST_STEPS: usize = 200;
 
-/// The root of a convex increasing function that is not negative at `start`: Newton's steps then come down on it from
-/// above and cannot miss. `f` gives value and slope.
-pub(crate) fn descend(start: f64, f: impl Fn(f64) -> (f64, f64)) -> f64 {
-    let mut x = start;
-    for _ in 0..MOST_STEPS {
-        let (value, slope) = f(x);
-        let step = value / slope;
-        if !step.is_finite() {
-            break;
-        }
-        x -= step;
-        // Quadratic convergence: what is left after a step this small is below round-off.
-        if step <= 3e-9 * x {
-            break;
-        }
-    }
-    x.max(0.0)
-}
-
 /// The positive root of an increasing function: bracketed from `guess` by growing factors, then Newton's steps, and the
 /// geometric mean where one would leave the bracket or go far. `f` gives value and slope.
 pub(crate) fn increasing(guess: f64, f: impl Fn(f64) -> (f64, f64)) -> f64 {
@@ -173,7 +154,7 @@ pub(crate) fn largest([mut low, mut high]: [f64; 2], part: f64, mut f: impl FnMu
 
 #[cfg(test)]
 mod tests {
-    use super::{between, descend, distance_below, increasing, largest, turning, within};
+    use super::{between, distance_below, increasing, largest, turning, within};
 
     #[test]
     fn a_maximum_is_found_to_half_the_digits_of_its_place_and_all_of_its_value() {
@@ -244,11 +225,5 @@ mod tests {
             let found = increasing(1.0, |x| (x * x * x - root * root * root, 3.0 * x * x));
             assert!((found / root - 1.0).abs() < 4e-16, "{root}: {found}");
         }
-    }
-
-    #[test]
-    fn coming_down_on_a_cube_root() {
-        let found = descend(10.0, |x| (x * x * x - 2.0, 3.0 * x * x));
-        assert!((found - 2f64.cbrt()).abs() < 3e-16);
     }
 }

@@ -21,12 +21,9 @@ mod flat_punch;
 mod load_curve;
 mod open_gaps;
 mod power_law;
-pub(super) mod ring_nodes;
-pub(super) mod ring_quadrature;
 mod ring_sum;
 mod rounded_cone;
 mod rounded_punch;
-mod smooth_interval;
 mod sphere;
 mod sum;
 mod tabulated;
@@ -46,6 +43,7 @@ pub use tabulated::{InterpolationError, Tabulated};
 use super::error::Error;
 use super::{Elasticity, Preload, range};
 use crate::cells::Cells;
+use crate::cells::falls::Falls;
 use crate::cells::shape::{End, EndKind, Powers, Reach, Shape};
 use crate::cells::span::Span;
 use crate::numerics::double_double::DoubleDouble;
@@ -190,10 +188,7 @@ impl Profile {
             return curve.level_of(radius);
         }
         let closed = |shape: &dyn Shape| shape.level(radius.min(shape.end().map_or(f64::INFINITY, |end| end.radius)));
-        match self {
-            Profile::Tabulated(_) => self.cells(Reach::Radius(radius)).map_or(f64::NAN, |cells| cells.level(radius)),
-            _ => self.shape().map_or(f64::NAN, closed),
-        }
+        self.shape().map_or(f64::NAN, closed)
     }
 
     /// g'(x) (pure number), infinite where f' jumps.
@@ -334,13 +329,12 @@ impl Profile {
         self.shape()?.curvature_radius()
     }
 
-    /// Whether the kernel up to c = `outer`, m, is known to fall with r from r = `inner`, m, on, so that pressure does
-    /// too.
-    ///
-    /// With q = g'/x as a function of x^2 and v = sqrt(c^2 - r^2), -2 v dK/d(r^2) is q(c^2) - 2 v int q'(r^2 + t^2) dt
-    /// over t up to v.
-    pub(super) fn falls(&self, inner: f64, outer: f64) -> bool {
-        self.ball().is_some() || self.cells(Reach::Radius(outer)).is_some_and(|cells| cells.least_fall(inner, outer) > 0.0)
+    /// What is known of the kernel up to c = `outer`, m, from r = `inner`, m, on.
+    pub(super) fn falls(&self, inner: f64, outer: f64) -> Falls {
+        match (self.ball(), self.cells(Reach::Radius(outer))) {
+            (None, Some(cells)) => cells.falls(inner, outer),
+            (ball, _) => Falls { least: ball.map_or(f64::NAN, |ball| ball.slope(1.0)), concavely: true },
+        }
     }
 
     /// The radii, m, increasing, at which pressure and shear are infinite once the contact has grown over them: the tip

@@ -1,14 +1,12 @@
 //! The integrals over one ring of a profile: what moves, stresses and displacements are sums of. Those at a vertical
 //! edge are added here to those of the cells.
 
-use super::ring_nodes::RingNodes;
-use super::ring_quadrature;
 use super::{Moments, Profile, Ring, Span, StressRadius};
+use crate::cells::Cells;
 #[cfg(test)]
 use crate::cells::call_count;
 use crate::cells::kernel::Kernel;
 use crate::cells::shape::Reach;
-use crate::numerics::double_double::DoubleDouble;
 
 impl Profile {
     /// The integrals over a ring, each to round-off of itself however thin the ring is.
@@ -29,21 +27,24 @@ impl Profile {
         if let Some(ball) = self.ball() {
             return ball.moments(ring);
         }
-        let span = self.span(ring);
-        let face = self.cells(Reach::Radius(span.outer_radius)).map_or_else(Moments::default, |c| c.moments(&span));
+        let Some(cells) = self.cells(Reach::Radius(ring.outer.radius)) else { return Moments::default() };
+        let span = self.span_by(cells, ring);
+        let face = cells.moments(&span);
         if span.edge > 0.0 { Moments::stack(face, Moments::default(), span.edge) } else { face }
     }
 
     /// The span of a ring, with what it has of a vertical edge.
     pub(super) fn span(&self, ring: &Ring) -> Span {
-        if let Some(ball) = self.ball() {
-            return Span::of(ring, ball.gap(ring), 0.0);
+        match (self.ball(), self.cells(Reach::Radius(ring.outer.radius))) {
+            (Some(ball), _) => Span::of(ring, ball.gap(ring), 0.0),
+            (_, Some(cells)) => self.span_by(cells, ring),
+            _ => Span::of(ring, (ring.outer.square - ring.inner.square).value(), 0.0),
         }
-        let Some(cells) = self.cells(Reach::Radius(ring.outer.radius)) else {
-            return Span::of(ring, (ring.outer.square - ring.inner.square).value(), 0.0);
-        };
+    }
+
+    fn span_by(&self, cells: &Cells, ring: &Ring) -> Span {
         let (mut depth, mut edge, top) = (ring.depth, 0.0, cells.top.level);
-        if self.rim_radius().is_some_and(|rim| ring.outer.radius >= rim) {
+        if ring.outer.radius >= cells.top.radius && self.rim_radius().is_some() {
             if ring.inner.level >= top {
                 (depth, edge) = (0.0, depth);
             } else if ring.outer.level > top {
@@ -56,15 +57,6 @@ impl Profile {
     /// The levels of a ring that lie on a vertical edge, m.
     pub(crate) fn edge_depth(&self, ring: &Ring) -> f64 {
         self.span(ring).edge
-    }
-
-    /// The nodes of a quadrature over the radii of a ring, for integrands with roots of the depth h below its outer
-    /// level and of `total` - h, and with waves in the angle whose cosine is 1 - 2 h/total, up to cos(`turns` th).
-    pub(crate) fn ring_nodes(&self, ring: &Ring, total: f64, turns: usize) -> RingNodes {
-        match self.curve() {
-            Some(curve) => curve.ring_nodes(ring, turns),
-            None => ring_quadrature::nodes(self, ring, total, turns),
-        }
     }
 
     /// int dy / sqrt(X(y)^2 - r^2) over the levels of the ring whose radius is above r (pure number): the ring's share
@@ -119,26 +111,5 @@ impl Profile {
     #[must_use]
     pub fn arc(&self, at: &StressRadius, ring: &Ring) -> f64 {
         self.span(ring).arc(at)
-    }
-
-    /// The rise of g, m, from a radius up to a larger one, whose square is larger by `gap`, m^2.
-    pub(super) fn rise(&self, span: &Span) -> f64 {
-        match self.ball() {
-            Some(ball) => span.gap / ball.curvature_radius(),
-            None => self.cells(Reach::Radius(span.outer_radius)).map_or(f64::NAN, |cells| cells.rise(span)),
-        }
-    }
-
-    /// The kinks below a radius, m, from the outermost inward.
-    pub(super) fn kinks_inward(&self, radius: f64) -> impl Iterator<Item = f64> {
-        let cells = self.cells(Reach::Radius(radius));
-        cells.into_iter().flat_map(move |cells| cells.kinks_below(radius).iter().rev().copied())
-    }
-
-    /// The largest kink below the outer end of a span, m; zero, the tip, if there is none. By the square of the end,
-    /// since a radius just beyond a kink may be rounded onto it.
-    pub(super) fn kink_under(&self, span: &Span) -> f64 {
-        let below = |kink: &f64| DoubleDouble::square_of(*kink) < span.outer;
-        self.kinks_inward(span.outer_radius.next_up()).find(below).unwrap_or(0.0)
     }
 }

@@ -7,7 +7,6 @@ use super::{
     Cone, ExactSphere, FlatPunch, PowerLaw, Profile, Ring, RoundedCone, RoundedPunch, Sphere, StressRadius, Sum,
     Tabulated, TruncatedCone, TruncatedSphere,
 };
-use crate::cells::shape::Shape;
 use crate::numerics::gauss::QuadraturePanel;
 
 fn power(exponent: f64) -> Profile {

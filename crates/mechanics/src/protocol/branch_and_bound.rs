@@ -1,8 +1,8 @@
 //! A lower bound on the stress that a few reversals leave, by branch and bound over the radii of their kinks.
 //!
 //! After gross slip and N reversals the slip history is fixed by kinks a >= c_1 >= ... >= c_N. Fewer reversals are
-//! among these: two kinks at one radius cancel, and one at the innermost radius is none. The shear stress over G* m/pi
-//! is
+//! among these: two kinks at one radius cancel, and one at the innermost radius has no effect. The shear stress
+//! over G* m/pi is
 //!
 //! tau(r) = K(a, r) - 2 K(c_1, r) + 2 K(c_2, r) - ..., K(c, r) = int_r^c g'(x)/sqrt(x^2 - r^2) dx, zero for c <= r.
 //!
@@ -37,7 +37,7 @@ const BOXES_OF_ONE: usize = 5_000;
 /// The factor by which E rises until it is too large, and the relative width of the bracket that is close enough.
 const RISE: f64 = 1.25;
 const CLOSE: f64 = 1e-3;
-/// What the result is lowered by for rounding, relative to itself.
+/// The share by which the result is lowered for rounding.
 const MARGIN: f64 = 1e-7;
 
 /// A lower bound on the stress over G* m/pi from `cutoff`, m, on after this many reversals, not below the `known` one.

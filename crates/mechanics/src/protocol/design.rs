@@ -8,8 +8,8 @@ use super::{
     falling_amplitude, outermost_singular,
 };
 
-/// A displacement below this share of that of gross slip is zero but for rounding.
-const ROUNDED: f64 = 1e-9;
+/// A displacement, force or stress below this share of its unit is zero but for rounding.
+const NEGLIGIBLE: f64 = 1e-9;
 /// Up to this many reversals the strokes of a path with a prescribed end are sought in every way.
 const FEW: usize = 8;
 
@@ -110,7 +110,7 @@ impl EvaluationRange {
     /// The largest magnitude of the shear stress there, Pa; infinite if a vertical edge carries some.
     #[must_use]
     pub fn largest(&self, contact: &Contact, residual: &Residual) -> f64 {
-        if self.vertical && edge_load(contact) > ROUNDED {
+        if self.vertical && edge_load(contact) > NEGLIGIBLE {
             return f64::INFINITY;
         }
         let inside = residual.peaks.iter().filter(|peak| (self.from..=self.to).contains(&peak.radius));
@@ -129,7 +129,7 @@ fn edge_load(contact: &Contact) -> f64 {
     carried.abs() / (history.edge().level.value() - level)
 }
 
-/// What every candidate path has in common.
+/// The contact, the end and the range that all candidate paths share.
 struct DesignTask<'a> {
     contact: &'a Contact,
     reversals: usize,
@@ -164,7 +164,7 @@ pub fn design(
     let above = |quantity, value, why| Error::OutOfRange { quantity, value, allowed: format!("more than 0, as {why}") };
     contact.profile.check_stress_field()?;
     if contact.friction <= 0.0 {
-        return Err(above(Quantity::Friction, contact.friction, "nothing holds without friction"));
+        return Err(above(Quantity::Friction, contact.friction, "a contact without friction carries no shear stress"));
     }
     if contact.indentation() <= 0.0 {
         return Err(above(Quantity::Indentation, contact.indentation(), "bodies that do not touch carry no stress"));
@@ -234,8 +234,8 @@ impl DesignTask<'_> {
     /// The law of equal peaks from an amplitude on, which may be less than gross slip.
     fn equal_from(&self, first: f64) -> Vec<f64> {
         let (profile, full) = (&*self.contact.profile, self.contact.gross_slip_displacement());
-        let stuck = (1.0 - first.abs() / full).max(0.0);
-        let from = profile.radius(self.contact.indentation() * stuck).max(self.range.from);
+        let core_share = (1.0 - first.abs() / full).max(0.0);
+        let from = profile.radius(self.contact.indentation() * core_share).max(self.range.from);
         let spread = EqualPeakMeasure::new(profile, from, self.contact.contact_radius());
         let path = evenly_spread(self.contact, spread.as_ref(), self.reversals, first.abs());
         path.map(|target| first.signum() * target).collect()
@@ -265,11 +265,11 @@ impl DesignTask<'_> {
             let begun = self.after(&[first])?;
             // The first of the strokes goes back.
             let last = if self.reversals.is_multiple_of(2) { sign } else { -sign };
-            let strokes = self.relieved(&begun, self.reversals, last).into_iter();
+            let strokes = self.strokes_to_end(&begun, self.reversals, last).into_iter();
             paths.extend(strokes.map(|path| ([vec![first], path].concat(), first_move, None)));
         }
         for last in if free { &[1.0, -1.0][..] } else { &[] } {
-            for path in self.relieved(self.contact, self.reversals + 1, *last) {
+            for path in self.strokes_to_end(self.contact, self.reversals + 1, *last) {
                 let wiped = self.after(&path[..1])?.state().regime == Regime::GrossSlip;
                 paths.push((path, if wiped { FirstMove::GrossSlip } else { FirstMove::Partial }, None));
             }
@@ -284,11 +284,11 @@ impl DesignTask<'_> {
         for found in paths.into_iter().map(|(path, first_move, gap)| self.judge(path, first_move, gap)).chain(unloaded)
         {
             match found {
-                Ok(design) if best.as_ref().is_none_or(|best| design.largest < best.largest * (1.0 - ROUNDED)) => {
+                Ok(design) if best.as_ref().is_none_or(|best| design.largest < best.largest * (1.0 - NEGLIGIBLE)) => {
                     best = Some(design);
                 }
                 Err(Error::Interrupted) => return Err(Error::Interrupted),
-                // A law or construction that does not exist here is no candidate.
+                // Laws and constructions that do not exist here are skipped.
                 _ => {}
             }
         }
@@ -301,12 +301,12 @@ impl DesignTask<'_> {
         match self.end {
             PathEnd::Free => true,
             PathEnd::DisplacementZero => state.displacement.abs() <= 0.0,
-            PathEnd::ForceZero => state.force.abs() <= ROUNDED * self.contact.summary().gross_slip_force,
+            PathEnd::ForceZero => state.force.abs() <= NEGLIGIBLE * self.contact.summary().gross_slip_force,
         }
     }
 
-    /// Strokes by [`FromAnyState`], m, to the end, but for what it misses.
-    fn relieved(&self, from: &Contact, strokes: usize, last: f64) -> Vec<Vec<f64>> {
+    /// Strokes by [`FromAnyState`], m, to the end, which the last of them may miss.
+    fn strokes_to_end(&self, from: &Contact, strokes: usize, last: f64) -> Vec<Vec<f64>> {
         let found = FromAnyState::new(from, strokes, last, self.end, self.keep_going);
         let mut paths = found.map_or_else(Vec::new, |strokes| strokes.solve());
         paths.iter_mut().flatten().for_each(|position| *position *= from.scale());

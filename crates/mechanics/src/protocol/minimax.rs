@@ -136,7 +136,7 @@ impl Problem<'_> {
         if at_low > 0.0 || low <= 0.0 {
             return None;
         }
-        // What is below the rounding of the stress is none.
+        // A difference below the rounding of the stress counts as zero.
         let rounded = |level| Some(missing(level)).filter(|value| value.abs() > 1e-15 * limit).unwrap_or(0.0);
         let level = between([(high, at_high), (low, at_low)], 2.0 * f64::EPSILON * high, rounded);
         Some(self.profile.point(DoubleDouble::from(level)))
@@ -146,7 +146,7 @@ impl Problem<'_> {
     fn core(&self, strokes: &VirginStrokes<'_>) -> f64 {
         let sign = strokes.sign();
         let width = strokes.last().radius - self.cutoff;
-        let looks = if self.profile.falls(0.0, self.edge.radius) { 1 } else { CORE };
+        let looks = if self.profile.falls(0.0, self.edge.radius).least > 0.0 { 1 } else { CORE };
         let value = |part: f64| sign * strokes.shear(&StressRadius::new(self.cutoff + width * part));
         let looked = (0..looks).map(|index| index as f64 / CORE as f64).map(|part| (part, value(part)));
         let (best, most) = looked.fold((0.0, f64::NEG_INFINITY), |a, b| if b.1 > a.1 { b } else { a });
@@ -189,7 +189,7 @@ impl Problem<'_> {
 }
 
 /// The smallest largest stress E that strokes keep to, and these strokes. `march` gives the strokes for an E, if there
-/// are any, and by how much what they leave exceeds it, over it: below zero where fewer strokes are enough. `None` if
+/// are any, and by how much their stress exceeds it, over it: below zero where fewer strokes are enough. `None` if
 /// it was stopped, or no E fits.
 ///
 /// Too large an E can be as wrong as too small a one if strokes are to end somewhere: with a `pace`, a factor, E is

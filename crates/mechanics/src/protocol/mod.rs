@@ -103,7 +103,7 @@ pub fn equal_peaks(contact: &Contact, reversals: usize, cutoff_radius: Option<f6
         Some(given) => given,
         None => cutoff_of(singular, edge),
     };
-    // At the very radius where s diverges there is no law.
+    // From the radius where s diverges on the law is not defined.
     let spread =
         (singular.is_none() || cutoff > least).then(|| EqualPeakMeasure::new(&contact.profile, cutoff, edge)).flatten();
     // The first stroke is gross slip, which wipes out the history.

@@ -5,7 +5,7 @@
 //! mean of the bound at both ends, a quadratic in y; no instant is simulated. Every term is positive: nothing cancels
 //! however small the move. Works here are over 2 G* m^2, in m^3.
 
-use super::piece::{Line, Piece, ROUND_OFF, SAME_TURNING_POINT};
+use super::piece::{Line, Piece, SAME_TURNING_POINT, THINNEST_CORE};
 use crate::numerics::double_double::DoubleDouble;
 use crate::profile::{Moments, Point, Profile, Ring};
 
@@ -29,7 +29,7 @@ pub(super) struct Inward {
 }
 
 impl SlipRing {
-    /// What a piece says of the slip at its inner end.
+    /// The slip at the inner end of a piece.
     pub(super) fn inward(&self, piece: &Piece) -> Inward {
         let height = piece.inner.level - self.indentation;
         Inward { excess: (piece.start + self.shift).signed(self.sign) + height, height: height.value() }
@@ -42,7 +42,7 @@ impl SlipRing {
             return None;
         }
         // After constant load, slopes are -1, 0 or 1 and the division is a halving at most.
-        let stuck = match piece.line.slope.signed(self.sign).parts() {
+        let stuck_depth = match piece.line.slope.signed(self.sign).parts() {
             (slope, rest) if rest.abs() <= 0.0 && slope.abs() <= 0.0 => -inner_excess,
             (slope, rest) if rest.abs() <= 0.0 && slope >= 1.0 => (-inner_excess).halved(),
             _ => {
@@ -54,11 +54,11 @@ impl SlipRing {
             }
         };
         let core = piece.inner.level.value() <= 0.0;
-        let same = if core { ROUND_OFF } else { SAME_TURNING_POINT };
-        if stuck.value() <= same * -inward.height {
+        let same = if core { THINNEST_CORE } else { SAME_TURNING_POINT };
+        if stuck_depth.value() <= same * -inward.height {
             return None;
         }
-        let level = piece.inner.level + stuck;
+        let level = piece.inner.level + stuck_depth;
         Some(if level < outer.level { level } else { outer.level })
     }
 
@@ -89,7 +89,7 @@ pub(super) struct Unloading {
     /// Indentation at the start and at the end, m.
     pub(super) from: DoubleDouble,
     pub(super) to: DoubleDouble,
-    /// What the indenter advances meanwhile, scaled, m.
+    /// The advance of the indenter meanwhile, scaled, m.
     pub(super) advance: DoubleDouble,
     /// Turns a stored w - W into w at the start.
     pub(super) shift: DoubleDouble,
@@ -106,7 +106,7 @@ impl Unloading {
     ) -> f64 {
         let fall = self.from - self.to;
         let lowest = if self.to.value() > 0.0 { self.to } else { DoubleDouble::ZERO };
-        // What a point at y would carry at its lift-off: w - W, and where the indenter is by then.
+        // The displacement of a point at y at its lift-off, by w - W and the position of the indenter by then.
         let drift = self.advance.over(fall);
         let carried = |line: &Line, level: DoubleDouble| line.at(level) + self.shift + drift * (self.from - level);
         let (drift, fall) = (drift.value(), fall.value());

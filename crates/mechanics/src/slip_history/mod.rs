@@ -20,7 +20,7 @@ use super::profile::{Moments, Point, Profile, Ring};
 use crate::numerics::double_double::DoubleDouble;
 use friction_work::{SlipRing, Unloading};
 pub(super) use piece::{Line, Piece};
-use piece::{ROUND_OFF, SAME_TURNING_POINT, Sums, rise};
+use piece::{SAME_TURNING_POINT, Sums, THINNEST_CORE, rise};
 
 /// The largest share of a change of the load that may be rounding.
 const ROUNDED_SHARE: f64 = 1e-6;
@@ -66,7 +66,7 @@ impl SlipHistory {
         self.position
     }
 
-    /// W since the stack was begun: what turns a stored w - W into w.
+    /// W since the stack was begun: added to a stored w - W it gives w.
     pub(super) fn shift(&self) -> DoubleDouble {
         self.position - self.reference
     }
@@ -90,7 +90,7 @@ impl SlipHistory {
         -self.total.force.value()
     }
 
-    /// The sum of the magnitudes of what adds up to [`SlipHistory::force`], m^2.
+    /// The sum of the magnitudes of the terms of [`SlipHistory::force`], m^2.
     pub(super) fn force_size(&self) -> f64 {
         self.total.size
     }
@@ -116,7 +116,8 @@ impl SlipHistory {
         Ring::between(self.pieces[index].inner, outer)
     }
 
-    /// The friction work on what leaves the contact on the way to indentation `d1` and scaled displacement `w1`.
+    /// The friction work on the ring that leaves the contact on the way to indentation `d1` and scaled displacement
+    /// `w1`.
     fn unloading_work(&self, profile: &Profile, d1: DoubleDouble, w1: DoubleDouble) -> f64 {
         let (from, advance, shift) = (self.edge.level, w1 - self.position, self.shift());
         Unloading { from, to: d1, advance, shift }.work(profile, self.rings(), self.pieces.first())
@@ -309,10 +310,10 @@ impl SlipHistory {
 /// it has slid before does not count. A change of the load by a few units in the last place is followed exactly as
 /// given.
 fn round_off(indentation: DoubleDouble, shift: DoubleDouble, change: DoubleDouble) -> f64 {
-    (ROUND_OFF * (indentation.value() + shift.value().abs())).min(ROUNDED_SHARE * change.value().abs())
+    (THINNEST_CORE * (indentation.value() + shift.value().abs())).min(ROUNDED_SHARE * change.value().abs())
 }
 
-/// An excess over the bound up to this, m, is what rounding leaves of none; `change` is that of the move at the edge.
+/// An excess over the bound up to this, m, is rounding; `change` is that of the move at the edge.
 fn closes_at(indentation: DoubleDouble, shift: DoubleDouble, change: f64) -> f64 {
     (SAME_TURNING_POINT * (indentation.value() + shift.value().abs())).min(ROUNDED_SHARE * change)
 }

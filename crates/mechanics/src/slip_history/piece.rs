@@ -1,8 +1,8 @@
 //! One straight piece of the slip history, and the sums over the pieces.
 //!
-//! A piece keeps what a later move asks of it: the integrals over its ring, once they are known, and the value of its
-//! line at its inner end. It is popped with the ends that it has now, and both depend on these alone, so that they are
-//! the same to the last bit.
+//! A piece keeps the numbers that later moves need: the integrals over its ring, once they are known, and the value of
+//! its line at its inner end. It is popped with the ends that it has now, and both depend on these alone, so that they
+//! are the same to the last bit.
 
 use std::fmt;
 
@@ -11,7 +11,7 @@ use crate::profile::{Moments, Point, Profile, Ring};
 
 /// A stuck core thinner than this, relative to the indentation, is gross slip, because the displacement of gross slip
 /// is itself rounded. w at the edge is rounded by as much.
-pub(super) const ROUND_OFF: f64 = 2.0 * f64::EPSILON;
+pub(super) const THINNEST_CORE: f64 = 2.0 * f64::EPSILON;
 /// Two turning points closer than this, relative to their distance from the edge, are one: a level that is reached
 /// again differs in its last digits.
 pub(super) const SAME_TURNING_POINT: f64 = 1e-28;
@@ -64,7 +64,7 @@ pub(in super::super) struct Piece {
     pub(super) moments: Option<Moments>,
 }
 
-/// The state alone: what is kept for later moves says nothing more.
+/// The state alone: the numbers kept for later moves follow from it.
 impl fmt::Debug for Piece {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Piece { inner, line, start: _, below, moments: _ } = self;

@@ -18,16 +18,16 @@ use super::{
 };
 use crate::numerics::roots::turning;
 
-/// A slip up to this, relative to bound and move, is what the rounding of displacements leaves of none.
-const ROUNDED: f64 = 8.0 * f64::EPSILON;
+/// A slip up to this, relative to bound and move, is the rounding of displacements.
+const NO_SLIP: f64 = 8.0 * f64::EPSILON;
 
 /// A foundation of springs in contact.
 #[derive(Clone, Debug)]
 pub struct Springs {
     /// The exact contact that the foundation approximates, before its first move.
     virgin: Contact,
-    /// The exact normal contact along the path; it is never moved sideways.
-    normal: Contact,
+    /// The exact contact after the same moves.
+    exact: Contact,
     spacing: f64,
     springs: Vec<Spring>,
     displacement: f64,
@@ -35,13 +35,6 @@ pub struct Springs {
     dissipated: f64,
     slipped: bool,
     stick_radius: f64,
-    /// Error of the displacement under a prescribed force, m.
-    misplaced: f64,
-    /// The largest displacement from zero, and the least indentation, that the path has led to, m.
-    farthest: f64,
-    shallowest: f64,
-    /// The same contact on fewer springs, for the error estimate.
-    coarser: Vec<Springs>,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -114,22 +107,6 @@ impl Springs {
         range::SPRING_COUNT.check(count as f64)?;
         let setup = setup.shared();
         setup.profile.check_stress_field()?;
-        let mut fine = Springs::one_row(setup.clone(), count, reach, keep_going)?;
-        // Kinks fall elsewhere between the springs of each: one of them has a spring at the centre, the other has none.
-        let half = count.div_ceil(2).max(2);
-        let more = (2 * count).div_ceil(3).max(3);
-        for fewer in [half, if more % 2 == half % 2 { more + 1 } else { more }] {
-            fine.coarser.push(Springs::one_row(setup.clone(), fewer, reach, keep_going)?);
-        }
-        Ok(fine)
-    }
-
-    fn one_row(
-        setup: Setup<Arc<Profile>>,
-        count: usize,
-        reach: f64,
-        keep_going: &dyn Fn() -> bool,
-    ) -> Result<Springs, Error> {
         let contact = Contact::new(setup)?;
         let ContactSummary { indentation, contact_radius, .. } = contact.initial_summary();
         let spacing = 2.0 * reach / count as f64;
@@ -147,7 +124,7 @@ impl Springs {
             springs.push(spring(index));
         }
         Ok(Springs {
-            normal: contact.clone(),
+            exact: contact.clone(),
             virgin: contact,
             spacing,
             springs,
@@ -156,10 +133,6 @@ impl Springs {
             dissipated: 0.0,
             slipped: false,
             stick_radius: contact_radius,
-            misplaced: 0.0,
-            farthest: 0.0,
-            shallowest: indentation,
-            coarser: Vec::new(),
         })
     }
 
@@ -196,39 +169,23 @@ impl Springs {
             }
             _ => {}
         }
-        let mut normal = self.normal.clone();
-        if step.normal.is_some() {
-            normal.apply(&Move { tangential: None, ..*step })?;
-        }
-        let displacement = self.target(step, keep_going)?;
-        let is_force = matches!(step.tangential, Some(Tangential::Force(_)));
-        let misplaced = if is_force { self.misplacement(displacement, keep_going) } else { 0.0 };
-        // Near the limit of friction a coarser row may hold less than the force.
-        let coarser = self.coarser.iter().map(|coarse| coarse.target(step, keep_going).unwrap_or(displacement));
-        let coarser: Vec<f64> = coarser.collect();
-        if is_force && !keep_going() {
-            return Err(Error::Interrupted);
-        }
-        self.misplaced = self.misplaced.max(misplaced);
-        self.normal = normal;
-        let indentation = self.normal.indentation();
-        for (coarse, displacement) in self.coarser.iter_mut().zip(coarser) {
-            coarse.advance(indentation, displacement);
-        }
-        self.advance(indentation, displacement);
-        Ok(())
-    }
-
-    /// The displacement, m, to which a move leads.
-    fn target(&self, step: &Move, keep_going: &dyn Fn() -> bool) -> Result<f64, Error> {
-        let base = |value: f64| if step.relative { value } else { 0.0 };
-        match step.tangential {
-            None => Ok(self.displacement),
-            Some(Tangential::Displacement(target)) => range::DISPLACEMENT.check(base(self.displacement) + target),
+        let held = match step.tangential {
             Some(Tangential::Force(target)) => {
-                self.displacement_for(range::FORCE.check(base(self.force()) + target)?, keep_going)
+                let target = if step.relative { self.force() + target } else { target };
+                Some(self.displacement_for(range::FORCE.check(target)?, keep_going)?)
             }
+            _ => None,
+        };
+        match (self.exact.apply(step), held) {
+            // Near the limit of friction the springs may hold more than the exact contact.
+            (Err(Error::ForceExceedsFriction { .. }), Some(displacement)) => {
+                let tangential = Some(Tangential::Displacement(displacement));
+                self.exact.apply(&Move { tangential, ..Move::default() })?;
+            }
+            (applied, _) => applied?,
         }
+        self.advance(self.exact.indentation(), held.unwrap_or(self.exact.displacement()));
+        Ok(())
     }
 
     fn advance(&mut self, d1: f64, u1: f64) {
@@ -263,7 +220,7 @@ impl Springs {
                 spring.carried = trial;
             }
             // Where a loop closes, a spring comes back to its bound but for the last digits.
-            if slip > ROUNDED * (bound + (du * span).abs()) {
+            if slip > NO_SLIP * (bound + (du * span).abs()) {
                 self.slipped = true;
             } else {
                 stick_radius = stick_radius.max(spring.radius + 0.5 * self.spacing);
@@ -272,8 +229,6 @@ impl Springs {
         self.dissipated += work;
         self.indentation = d1;
         self.displacement = u1;
-        self.farthest = self.farthest.max(u1.abs());
-        self.shallowest = self.shallowest.min(d1);
         let radius = self.contact_radius();
         self.stick_radius = if self.slipped { stick_radius.min(radius) } else { radius };
     }

@@ -6,11 +6,10 @@
 //! difference and the integral as a sum, it is the direct discretisation of the formula.
 
 use std::f64::consts::PI;
-use std::sync::Arc;
 
 use super::super::DoubleDouble;
 use super::super::profile::Ring;
-use super::{Error, Profile, Setup, Springs, range};
+use super::Springs;
 
 /// The formula for the shear stress between the springs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -25,20 +24,6 @@ pub enum ShearEvaluation {
 }
 
 impl Springs {
-    /// As [`Springs::new`], but for [`Springs::accuracy`], which then estimates the error from second differences
-    /// alone: no coarser rows are kept.
-    ///
-    /// # Errors
-    /// As [`Springs::new`].
-    pub fn without_error_estimate<P: Into<Arc<Profile>>>(
-        setup: Setup<P>,
-        count: usize,
-        reach: f64,
-    ) -> Result<Springs, Error> {
-        range::SPRING_COUNT.check(count as f64)?;
-        Springs::one_row(setup.shared(), count, reach, &|| true)
-    }
-
     /// Shear stress, Pa, at each of `radii`, m.
     ///
     /// ```

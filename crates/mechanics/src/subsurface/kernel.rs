@@ -1,4 +1,4 @@
-//! What a unit of slope at one radius does to the stress at a point: ten functions of the point's distance from the
+//! The stress at a point by a unit of slope at one radius: ten functions of the point's distance from the
 //! axis and its depth.
 //!
 //! A displacement u(t) of the reduced problem acts on the half-space like line sources at the imaginary depth i t. With

@@ -17,14 +17,14 @@ use crate::profile::{Profile, Ring};
 
 /// Points that stand for all panels of a node.
 const CHEBYSHEV: usize = 16;
-/// Halvings of a panel at a kink of the profile: what is left of it is too short to matter.
+/// Halvings of a panel at a kink of the profile: the rest of it is too short to matter.
 const DEPTH: usize = 44;
-/// Panels that halving may add at most: where the rule still misses the rise, what it misses is the rounding of g.
+/// Panels that halving may add at most: where the rule still misses the rise, the difference is the rounding of g.
 const SPARE: usize = 1_024;
 /// Panels that are closer together, over their radius, have no room for points that stand for them.
 const CLOSEST: f64 = 1e-10;
-/// What the level at a rounded radius may miss of the true one, relative to it, where g is not steep.
-const ROUNDING: f64 = 1e-11;
+/// The error of the level at a rounded radius, relative to it, where g is not steep.
+const LEVEL_ERROR: f64 = 1e-11;
 /// A larger relative error of the stresses leaves no digit to resolve.
 const WORTHLESS: f64 = 1.0;
 
@@ -48,7 +48,7 @@ struct MeshPanel {
     share: f64,
 }
 
-/// What stands for the panels of a stretch where it is far.
+/// Sources in the place of the panels of a stretch that is far.
 #[derive(Clone, Debug)]
 struct Stretch {
     low: f64,
@@ -143,7 +143,7 @@ struct Resolution<'a> {
     profile: &'a Profile,
     /// Of the contact, m.
     radius: f64,
-    /// What the rule may miss of g beside its rounding, m.
+    /// The error of g that the rule may leave beside its rounding, m.
     slack: f64,
     /// How often a panel may still be halved.
     spare: usize,
@@ -156,7 +156,7 @@ impl Resolution<'_> {
         let profile = self.profile;
         let (inner, outer, top) = (ring.inner.radius, ring.outer.radius, ring.outer.level.value() - above);
         // Where g is steep a radius has too few digits for its level: all of it in a contact just wider than a flat.
-        let rounding = ROUNDING * (profile.cancellation(outer) * top + ring.depth) + self.slack;
+        let rounding = LEVEL_ERROR * (profile.cancellation(outer) * top + ring.depth) + self.slack;
         let beyond = top - profile.level(outer);
         if beyond.abs() > rounding {
             self.push_rise(outer, share, beyond);
@@ -212,7 +212,7 @@ impl Resolution<'_> {
         let off = (sum - rise).abs();
         if last || sum.is_finite() && off <= noise {
             if rise > 0.0 && sum > 0.0 && (last || off > levels) {
-                // The rise is known better than what the rule makes of it.
+                // The rise is known better than the rule gives it.
                 for source in &mut sources {
                     source.normal *= rise / sum;
                     source.tangential *= rise / sum;
@@ -327,7 +327,7 @@ impl Stretch {
     }
 }
 
-/// The sources at Chebyshev's points that act like `all` on every polynomial of less than the 16th degree.
+/// The sources at Chebyshev points that act like `all` on every polynomial of less than the 16th degree.
 fn condense(low: f64, high: f64, all: &[Source]) -> Vec<Source> {
     let half = 0.5 * (high - low);
     let [mut normal, mut tangential] = [[0.0; CHEBYSHEV]; 2];

@@ -25,7 +25,7 @@ pub use tensor::Stress;
 /// Distance from the centre of the contact, in contact radii, from which the closed form of the parabola would lose
 /// digits.
 const FAR: f64 = 8.0;
-/// What quadrature and closed form leave, over the unit pressure, as tests find it at the worst.
+/// The largest error of quadrature and closed form over the unit pressure that tests have found.
 const NUMERICAL: f64 = 4e-12;
 /// How many times the error of a traction the stress below it may err: its largest component under a unit traction.
 const GAIN: f64 = 4.0;

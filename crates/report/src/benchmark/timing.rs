@@ -73,7 +73,7 @@ fn exact(scene: &Scene, radii: &[f64]) -> io::Result<SolverRun> {
 fn springs_run(scene: &Scene, count: usize, kernel: ShearEvaluation, radii: &[f64]) -> io::Result<SolverRun> {
     timed(|| {
         let reach = springs::largest_contact_radius(&scene.setup, scene.moves())?;
-        let mut row = Springs::without_error_estimate(scene.setup.clone(), count, reach)?;
+        let mut row = Springs::new(scene.setup.clone(), count, reach)?;
         let forces: Result<_, Error> = scene.moves().map(|step| row.apply(&step).map(|()| row.force())).collect();
         Ok((forces?, row.shears_by(kernel, radii)))
     })

@@ -9,7 +9,6 @@
 //! does not.
 
 mod build;
-mod curve;
 mod interpolation_error;
 mod noise;
 mod spline;
@@ -17,14 +16,12 @@ mod stated_error;
 #[cfg(test)]
 mod tests;
 
-use std::sync::Arc;
-
 use super::super::error::TableFault;
 use super::{Error, range};
 use crate::cells::Cells;
-use crate::cells::shape::{End, EndKind, Kink, Powers, Reach, Shape};
+use crate::cells::shape::{End, EndKind, Kink, Powers, Shape};
 use crate::cells::stages::Stages;
-use curve::TableCurve;
+use crate::numerics::double_double::DoubleDouble;
 pub use interpolation_error::InterpolationError;
 use interpolation_error::TableGap;
 use spline::SplineKnot;
@@ -40,8 +37,9 @@ pub struct Tabulated {
     stated_errors: Vec<InterpolationError>,
     /// What its gaps leave open; none of a table without points.
     gaps: Vec<TableGap>,
-    curve: Arc<TableCurve>,
-    /// The last radius, m.
+    stages: Stages,
+    /// Where the surface leaves the plane, and the last radius, m.
+    flat_radius: f64,
     end: f64,
     /// The first radius at which g falls, if it does, m.
     falls: Option<f64>,
@@ -111,30 +109,35 @@ impl Tabulated {
     /// The profile whose slope is linear between knots, as far as g rises or `whole`.
     fn from_knots(knots: Vec<SplineKnot>, whole: bool, keep_going: &dyn Fn() -> bool) -> Result<Tabulated, Error> {
         let last = knots.len() - 1;
-        let (curve, falls) = TableCurve::new(knots, whole, keep_going)?;
-        let Some(curve) = curve else {
-            return Err(match falls {
+        let built = build::cells(&knots, whole, keep_going);
+        if built.stopped {
+            return Err(Error::Interrupted);
+        }
+        let Some(flat_radius) = built.cells.first().map(|cell| cell.radius) else {
+            return Err(match built.falls_at {
                 Some(radius) => Error::NotConvexEnough { radius },
                 None => Error::Table { fault: TableFault::HeightNeverRises, index: last },
             });
         };
-        let end = curve.end;
+        let cells = Cells::new(built.cells, DoubleDouble::ZERO);
+        let end = cells.top.radius;
         Ok(Tabulated {
             radii: Vec::new(),
             heights: Vec::new(),
             noise: 0.0,
             stated_errors: Vec::new(),
             gaps: Vec::new(),
-            curve: Arc::new(curve),
+            stages: Stages::whole(cells),
+            flat_radius,
             end,
             // A curve that was cut where g falls ends there, however that radius is rounded.
-            falls: falls.map(|radius| if whole { radius.min(end) } else { end }),
+            falls: built.falls_at.map(|radius| if whole { radius.min(end) } else { end }),
         })
     }
 
     /// The radius of a flat core, m.
     pub(super) fn flat_radius(&self) -> f64 {
-        self.curve.flat_radius
+        self.flat_radius
     }
 
     /// Where the cells end, m: as part of a sum g may have fallen before.
@@ -161,26 +164,32 @@ impl Tabulated {
         Some((self.noise * amplification, amplification))
     }
 
+    /// Its cells, all of them.
+    pub(super) fn all_cells(&self) -> Option<&Cells> {
+        self.stages.everything()
+    }
+
     /// Radii, m, increasing, between which g' cannot hide a fall.
     pub(super) fn slope_check_radii(&self) -> impl Iterator<Item = f64> {
-        let cells = self.cells_while(Reach::Radius(self.end), &|| true).into_iter().flat_map(|cells| &cells.cells);
+        let cells = self.all_cells().into_iter().flat_map(|cells| &cells.cells);
         cells.flat_map(|cell| cell.slope_check_places().into_iter().map(|zeta| cell.radius_at(zeta)))
     }
 }
 
 impl Shape for Tabulated {
     fn kinks(&self) -> Vec<Kink> {
-        let powers = |radius: f64| if radius > 0.0 { Powers::All(1) } else { Powers::Odd };
-        self.curve.knots().map(|radius| Kink { radius, powers: powers(radius) }).collect()
+        let kink = |radius: f64, powers| Kink { radius, powers };
+        let tip = (self.flat_radius <= 0.0).then_some(kink(0.0, Powers::Odd));
+        let knots = self.all_cells().into_iter().flat_map(|cells| &cells.kinks);
+        tip.into_iter().chain(knots.map(|&radius| kink(radius, Powers::All(1)))).collect()
     }
 
     fn level(&self, x: f64) -> f64 {
-        self.curve.level(x)
+        self.all_cells().map_or(0.0, |cells| cells.level(x))
     }
 
     fn gamma(&self, base: f64, t: f64) -> f64 {
-        let x = base.hypot(t);
-        self.cells_while(Reach::Radius(x), &|| true).map_or(0.0, |cells| cells.gamma(base, t))
+        self.all_cells().map_or(0.0, |cells| cells.gamma(base, t))
     }
 
     fn surface_slope(&self, r: f64) -> f64 {
@@ -189,15 +198,11 @@ impl Shape for Tabulated {
     }
 
     fn stages(&self) -> Option<&Stages> {
-        Some(&self.curve.stages)
+        Some(&self.stages)
     }
 
     fn end(&self) -> Option<End> {
         let kind = if self.falls.is_some() { EndKind::Fall } else { EndKind::Unknown };
         Some(End { radius: self.falls.unwrap_or(self.end), kind })
-    }
-
-    fn build(&self, (_, end): (f64, f64), keep_going: &dyn Fn() -> bool) -> Option<Cells> {
-        self.curve.build(end, keep_going)
     }
 }

@@ -40,12 +40,13 @@ fn table(idle: u32) -> Profile {
 
 /// All cells of a table.
 fn all(table: &Tabulated) -> &Cells {
-    table.cells_while(Reach::Radius(table.end), &|| true).unwrap()
+    table.all_cells().unwrap()
 }
 
 /// int x dg, m^2.
 fn load(profile: &Profile, x: f64) -> f64 {
-    profile.cells(Reach::Radius(x)).unwrap().load(x)
+    let ring = Ring::between(profile.point(0.0.into()), profile.point(profile.level(x).into()));
+    ring.inner.radius * ring.depth + profile.moments(&ring).first
 }
 
 fn worst(pairs: &[(f64, f64)]) -> f64 {

@@ -19,10 +19,10 @@ const FAR: f64 = 0.1;
 const NEAR: f64 = 1e-8;
 /// Of the fall that the tangents promise, the part that is enough.
 const ENOUGH: f64 = 0.1;
-/// What missing the end costs, over the largest stress of all sequences tried.
+/// The penalty on missing the end, over the largest stress of all sequences tried.
 const PENALTY: f64 = 10.0;
 
-/// A sequence of strokes as the search sees it: what it leaves, with the slopes by its unknowns.
+/// A sequence of strokes as the search sees it: its stresses, with the slopes by its unknowns.
 pub(super) struct Trial {
     /// The unknowns, the outermost first: none is above the one before, or outside 0 to 1.
     pub(super) levels: Vec<f64>,

@@ -1,8 +1,8 @@
 //! The best strokes from any state: alternating extrema outside a cut, the stress of the slip history inside it.
 //!
 //! The first stroke slips down to a cut, and the strokes after it to kinks ever nearer to the edge. For a largest
-//! stress E the kinks follow from the edge inwards as in `minimax`; they do not depend on what lies inside the cut. The
-//! cut is then where the whole inside stays lowest, or, where the end is prescribed, the one that leads there. E is
+//! stress E the kinks follow from the edge inwards as in `minimax`; they do not depend on the history inside the cut.
+//! The cut is then where the whole inside stays lowest, or, where the end is prescribed, the one that leads there. E is
 //! lowered until the inside would be above it.
 //!
 //! Inside a cut the history may be such that other sequences leave less: few strokes are also searched (`search`).
@@ -42,7 +42,7 @@ pub(super) struct FromAnyState<'a> {
     /// The level of the edge, and of what a last stroke takes off a vertical one: its height, else zero.
     edge: DoubleDouble,
     rim: f64,
-    /// The history from the centre outward, and what turns a line into w - W.
+    /// The history from the centre outward.
     history: Vec<(Ring, Line)>,
     /// The sampled radii, from the centre outward.
     samples: Vec<SampleRadius>,
@@ -104,27 +104,27 @@ impl<'a> FromAnyState<'a> {
     }
 
     /// w - W of the history at a level, for a last stroke forwards.
-    fn stuck(&self, level: DoubleDouble) -> f64 {
+    fn relative_displacement(&self, level: DoubleDouble) -> f64 {
         let line = self.history.iter().rfind(|(ring, _)| ring.inner.level <= level).map(|(_, line)| line);
         self.last * line.map_or(DoubleDouble::ZERO, |line| line.at(level) - self.reference).value()
     }
 
     /// Where the first stroke must lead to so that it slips down to a level.
     fn first_to(&self, level: DoubleDouble) -> f64 {
-        self.first * (self.edge - level).value() - self.stuck(level)
+        self.first * (self.edge - level).value() - self.relative_displacement(level)
     }
 
     /// int w dx at the end, m^2, for a cut at a point.
     fn carried(&self, kinks: &[Point], cut: &Point) -> f64 {
         let load = |ring: &Ring| load(self.problem.profile, ring);
         let inside = self.inside(cut);
-        let whole = self.history[..inside.whole].iter().map(|(ring, line)| (*ring, self.pull(line)));
+        let whole = self.history[..inside.whole].iter().map(|(ring, line)| (*ring, self.stress_weight(line)));
         let kept: f64 = whole.chain(inside.part).map(|(ring, slope)| slope * load(&ring)).sum();
         self.problem.sum_down_to(*cut, kinks, load) + kept
     }
 
     /// The stress of a piece of the history over its kernel, for a last stroke forwards.
-    fn pull(&self, line: &Line) -> f64 {
+    fn stress_weight(&self, line: &Line) -> f64 {
         -self.last * line.slope.value()
     }
 
@@ -132,7 +132,7 @@ impl<'a> FromAnyState<'a> {
     fn inside(&self, cut: &Point) -> Inside {
         let whole = self.history.partition_point(|(ring, _)| ring.inner.level < cut.level).saturating_sub(1);
         let part = self.history.get(whole).filter(|(ring, _)| ring.inner.level < cut.level);
-        Inside { whole, part: part.map(|(ring, line)| (Ring::between(ring.inner, *cut), self.pull(line))) }
+        Inside { whole, part: part.map(|(ring, line)| (Ring::between(ring.inner, *cut), self.stress_weight(line))) }
     }
 
     /// The residual of the end with a cut at a level, in the direction of the first stroke: it falls as the cut goes

@@ -45,8 +45,8 @@ impl FromAnyState<'_> {
         (points, cut)
     }
 
-    /// What a sequence of the search leaves, with the slopes by its unknowns. That of the kernel by the level of a kink
-    /// is 1/sqrt(X^2 - r^2), and that of the load carried is X.
+    /// The stresses of a sequence of the search, with the slopes by its unknowns. That of the kernel by the level of a
+    /// kink is 1/sqrt(X^2 - r^2), and that of the load carried is X.
     fn trial(&self, levels: Vec<f64>, slides: bool) -> Trial {
         let (problem, edge) = (&self.problem, self.problem.edge.level.value());
         let profile = problem.profile;
