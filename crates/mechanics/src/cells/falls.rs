@@ -69,7 +69,7 @@ impl Cells {
 impl Cell {
     /// A bound, 1/m^2, of how fast q rises with zeta; zero where it only falls.
     fn steepest(&self) -> f64 {
-        let (_, most) = self.bounds(|j| j - 1.0);
+        let (_, most) = bounds(&self.slopes(|j| j - 1.0));
         // The jump of f' makes q fall by its share at the least.
         (most - self.powers()[0]).max(0.0) / (self.high * self.high)
     }
@@ -77,22 +77,32 @@ impl Cell {
     /// Whether q neither falls nor bends upward over x^2.
     fn rises_concavely(&self) -> bool {
         let size: f64 = NOISE * self.powers().iter().map(|a| a.abs()).sum::<f64>();
-        !self.jumps() && self.bounds(|j| j - 1.0).0 >= -size && self.bounds(|j| (j - 1.0) * (j - 3.0)).1 <= size
+        // Without the powers of u that all terms share, of which none changes a sign.
+        let shared = |terms: Vec<f64>| {
+            let first = terms.iter().position(|term| term.abs() > size).unwrap_or(terms.len());
+            bounds(&terms[first..])
+        };
+        !self.jumps()
+            && shared(self.slopes(|j| j - 1.0)).0 >= -size
+            && shared(self.slopes(|j| (j - 1.0) * (j - 3.0))).1 <= size
     }
 
-    /// Bounds of the sum of a_j u^(j - 2) from j = 2 on, each with a factor.
-    ///
-    /// A polynomial of degree d is no further from the middle of its values at N Chebyshev points than half their range
-    /// over cos(pi d/2N) (Ehlich & Zeller 1964).
-    fn bounds(&self, factor: impl Fn(f64) -> f64) -> (f64, f64) {
-        // A polynomial in u, or u times one in its square.
+    /// The terms a_j u^(j - 2) from j = 2 on, each with a factor: a polynomial in u, or u times one in its square.
+    fn slopes(&self, factor: impl Fn(f64) -> f64) -> Vec<f64> {
         let step = if self.odd() { 2 } else { 1 };
         let powers = self.powers();
-        let terms: Vec<f64> = (step + 1..powers.len()).step_by(step).map(|j| factor(j as f64) * powers[j]).collect();
-        let values = POINTS.places(0.0, 1.0).map(|u| terms.iter().rev().fold(0.0, |sum, a| sum * u + a));
-        let (least, most) = values.iter().fold((f64::MAX, f64::MIN), |(a, b), &value| (a.min(value), b.max(value)));
-        let turn = std::f64::consts::FRAC_PI_2 * terms.len().saturating_sub(1) as f64 / values.len() as f64;
-        let (middle, half) = (0.5 * (least + most), 0.5 * (most - least) / turn.cos());
-        (middle - half, middle + half)
+        (step + 1..powers.len()).step_by(step).map(|j| factor(j as f64) * powers[j]).collect()
     }
+}
+
+/// Bounds of a polynomial between zero and one.
+///
+/// One of degree d is no further from the middle of its values at N Chebyshev points than half their range over cos(pi
+/// d/2N) (Ehlich & Zeller 1964).
+fn bounds(terms: &[f64]) -> (f64, f64) {
+    let values = POINTS.places(0.0, 1.0).map(|u| terms.iter().rev().fold(0.0, |sum, a| sum * u + a));
+    let (least, most) = values.iter().fold((f64::MAX, f64::MIN), |(a, b), &value| (a.min(value), b.max(value)));
+    let turn = std::f64::consts::FRAC_PI_2 * terms.len().saturating_sub(1) as f64 / values.len() as f64;
+    let (middle, half) = (0.5 * (least + most), 0.5 * (most - least) / turn.cos());
+    (middle - half, middle + half)
 }

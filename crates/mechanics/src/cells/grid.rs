@@ -24,15 +24,20 @@ const WIDEST: f64 = 1.1;
 const GROWTH: f64 = 0.5;
 /// The share of the largest below which the last terms of a series are rounding, and the one up to which they may be
 /// left out.
-const NEGLIGIBLE: f64 = 1e-17;
+const NEGLIGIBLE: f64 = 1e-16;
 const RESOLVED: f64 = 5e-16;
+/// The differences of values, over the largest, that rounding makes of a constant.
+const CONSTANT: f64 = 1e-15;
 /// Halving that makes the last terms smaller by less than this factor meets the rounding of gamma.
 const GAIN: f64 = 4.0;
-/// How many times more gamma may grow from the middle of a cell to its end than before, so that rules of twelve points
-/// follow the square of its integral: in t, and in squares. And the share of gamma from which on its growth counts.
-const WEAK: f64 = 1e-6;
+/// How many times more gamma may grow in the outer half of a cell than in its inner half so that rules of twelve points
+/// follow the square of its integral, in t and in squares, and the share of gamma from which on this counts.
 const STEEP: f64 = 40.0;
 const STEEP_IN_SQUARES: f64 = 8.0;
+const WEAK: f64 = 1e-6;
+/// The order of a series in t from which on these rules do not follow, and the share that may be left there.
+const FOLLOWED: usize = 11;
+const UNFOLLOWED: f64 = 1e-7;
 /// The least whole power of a tip that is steeper.
 const STEEPEST: usize = 6;
 /// A cell narrower than this share of its square is not worth its border.
@@ -51,12 +56,11 @@ struct Fit {
     steep: bool,
 }
 
-/// What a cell is made of: the shape, the kink beneath, and what gamma counts for at the least.
+/// What a cell is made of: the shape and the kink beneath.
 struct Above<'a, S: ?Sized> {
     shape: &'a S,
     kink: Kink,
     base: DoubleDouble,
-    least: f64,
 }
 
 /// The cells of a shape up to a radius `end`, m, of contacts from the radius `start`, m, on; `None` once `keep_going`
@@ -68,7 +72,6 @@ pub(super) fn cells<S: Shape + ?Sized>(
 ) -> Option<Cells> {
     let kinks = shape.kinks();
     let (mut cells, mut floor, end) = (Vec::new(), 0.0, DoubleDouble::square_of(end));
-    let least = shape.level(start) / start;
     for (index, &kink) in kinks.iter().enumerate() {
         let base = DoubleDouble::square_of(kink.radius);
         let next = kinks.get(index + 1).map(|next| DoubleDouble::square_of(next.radius));
@@ -78,7 +81,7 @@ pub(super) fn cells<S: Shape + ?Sized>(
         }
         let whole = (top - base).value();
         let fits = |width: f64| if whole - width > NARROWEST * top.value() { width } else { whole };
-        let above = Above { shape, kink, base, least };
+        let above = Above { shape, kink, base };
         let power = match kink.powers {
             Powers::Uneven(power) => Some(power),
             Powers::All(power) if power >= STEEPEST => Some((power + 1) as f64),
@@ -114,6 +117,10 @@ pub(super) fn cells<S: Shape + ?Sized>(
                 return None;
             }
             let (cell, next) = above.further(reached, fits(reached + GROWTH * reached) - reached);
+            if !cell.depth.is_finite() {
+                // No contact is so large.
+                break;
+            }
             cells.push(cell);
             reached = fits(next);
         }
@@ -137,9 +144,9 @@ impl<S: Shape + ?Sized> Above<'_, S> {
             match self.kink.powers {
                 Powers::All(power) => {
                     let power = power as i32;
-                    self.fit(&TWENTY_FOUR, STEEP, |u| (high * u, u.powi(power)))
+                    self.fit(&TWENTY_FOUR, |u| (high * u, u.powi(power)))
                 }
-                _ => self.fit(&TWENTY_FOUR, STEEP_IN_SQUARES, |u| (high * u.sqrt(), u.sqrt())),
+                _ => self.fit(&TWENTY_FOUR, |u| (high * u.sqrt(), u.sqrt())),
             }
         };
         let (Fit { terms, .. }, width) = narrowed(widest, 0.5, fit);
@@ -149,7 +156,7 @@ impl<S: Shape + ?Sized> Above<'_, S> {
     /// The cell whose inner end lies `below` beyond the kink, in squares, m^2, at most so wide, and where it ends.
     fn further(&self, below: f64, widest: f64) -> (Cell, f64) {
         let fit = |width: f64| {
-            self.fit(&SIXTEEN, STEEP_IN_SQUARES, |u| {
+            self.fit(&SIXTEEN, |u| {
                 let t = (below + width * u).sqrt();
                 (t, t / width.sqrt())
             })
@@ -160,16 +167,27 @@ impl<S: Shape + ?Sized> Above<'_, S> {
     }
 
     /// The series over 0..1 of gamma over a divisor; a place gives t, m, and the divisor.
-    fn fit<const N: usize>(&self, points: &Points<N>, steep: f64, place: impl Fn(f64) -> (f64, f64)) -> Fit {
+    fn fit<const N: usize>(&self, points: &Points<N>, place: impl Fn(f64) -> (f64, f64)) -> Fit {
         let places = points.places(0.0, 1.0).map(place);
         let gammas = places.map(|(t, _)| self.shape.gamma(self.kink.radius, t));
-        let largest = gammas.iter().fold(self.least, |largest, gamma| largest.max(gamma.abs()));
-        let terms = points.terms(&std::array::from_fn(|lane| gammas[lane] / places[lane].1));
-        let size = terms.iter().fold(largest, |size, term| size.max(term.abs()));
+        let largest = gammas.iter().fold(0.0_f64, |largest, gamma| largest.max(gamma.abs()));
+        let values: [f64; N] = std::array::from_fn(|lane| gammas[lane] / places[lane].1);
+        let (least, most) = values.iter().fold((f64::MAX, f64::MIN), |(a, b), &value| (a.min(value), b.max(value)));
+        if most - least <= CONSTANT * most {
+            return Fit { terms: vec![0.5 * (least + most)], left: 0.0, steep: false };
+        }
+        let terms = points.terms(&values);
+        let size = terms.iter().fold(0.0_f64, |size, term| size.max(term.abs()));
         let left = terms[N - 2..].iter().fold(0.0_f64, |left, term| left.max(term.abs()));
         let left = if size > 0.0 { left / size } else { 0.0 };
         let (outer, inner) = (gammas[0] - gammas[N / 2], gammas[N / 2] - gammas[N - 1]);
-        let steep = outer > steep * inner.abs() && outer > WEAK * largest;
+        let grows = |times: f64| outer > times * inner.abs() && outer > WEAK * largest;
+        let steep = if N > 16 && self.kink.powers != Powers::Odd {
+            grows(STEEP) || terms[FOLLOWED].abs() > UNFOLLOWED * size
+        } else {
+            grows(STEEP_IN_SQUARES)
+        };
+        let steep = steep || !largest.is_finite();
         Fit { terms: counted(&terms, NEGLIGIBLE).to_vec(), left, steep }
     }
 }
@@ -177,7 +195,7 @@ impl<S: Shape + ?Sized> Above<'_, S> {
 /// The fit over the widest cell that leaves rounding, each narrower by a factor than the one before, and its width.
 fn narrowed(widest: f64, factor: f64, fit: impl Fn(f64) -> Fit) -> (Fit, f64) {
     let (mut width, mut best) = (widest, fit(widest));
-    while best.steep || best.left > RESOLVED {
+    while (best.steep || best.left > RESOLVED) && width > NARROWEST * widest {
         let next = fit(factor * width);
         if !best.steep && next.left * GAIN > best.left {
             break;

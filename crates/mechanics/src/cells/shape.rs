@@ -3,6 +3,10 @@
 use super::stages::Stages;
 use super::Cells;
 
+/// The uneven power from which on what is not analytic beside a lower power is rounding: the terms of a Chebyshev series
+/// of t^(n - 1) fall like j^(1 - 2 n).
+const SMOOTH: f64 = 14.0;
+
 /// What g is a series of, above a place where it is not analytic in x^2.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Powers {
@@ -18,6 +22,10 @@ impl Powers {
     /// Those of the sum of two functions.
     pub(super) fn and(self, other: Powers) -> Powers {
         match (self, other) {
+            (Powers::Uneven(one), Powers::Uneven(other)) => Powers::Uneven(one.min(other)),
+            (Powers::Uneven(power), other) | (other, Powers::Uneven(power)) if power >= SMOOTH => {
+                other.and(Powers::All(SMOOTH as usize - 1))
+            }
             (Powers::Uneven(power), other) | (other, Powers::Uneven(power)) => Powers::Uneven(power.min(other.of_g())),
             (Powers::Odd, Powers::Odd) => Powers::Odd,
             (Powers::Odd, Powers::All(power)) | (Powers::All(power), Powers::Odd) => Powers::All(power.min(1)),

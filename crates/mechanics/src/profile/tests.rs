@@ -138,3 +138,35 @@ fn a_punch_that_ends_inside_all_flats_of_a_sum_is_a_punch() {
         assert!((sum.kernel(&at, &ring(&sum)) / punch().kernel(&at, &ring(&punch())) - 1.0).abs() < 1e-15);
     }
 }
+
+#[test]
+fn what_is_said_to_rise_concavely_does() {
+    let punch = || Profile::RoundedPunch(RoundedPunch::new(0.2, 1.0).unwrap());
+    let sphere = || Profile::Sphere(Sphere::new(1.0).unwrap());
+    let mut profiles: Vec<Profile> = [1.3, 1.9, 2.0, 2.1, 2.7, 3.0, 3.9, 4.0, 4.1, 6.0].map(power).into();
+    profiles.extend([sphere(), punch(), sum(vec![punch(), power(3.0), sphere()]), sum(vec![punch(), power(6.0)])]);
+    profiles.push(Profile::TruncatedCone(TruncatedCone::new(0.1, 0.1).unwrap()));
+    profiles.push(Profile::TruncatedSphere(TruncatedSphere::new(1.0, 0.1).unwrap()));
+    let mut claims = 0;
+    for profile in profiles {
+        for inner in [0.0, 0.1, 0.2, 0.3] {
+            if !profile.falls(inner, 1.0).concavely {
+                continue;
+            }
+            claims += 1;
+            let ratio = |index: u32| {
+                let x = (inner * inner + 1e-3 * f64::from(index)).sqrt();
+                profile.slope(x) / x
+            };
+            for index in 1..1000 {
+                let [low, middle, high] = [index, index + 1, index + 2].map(ratio);
+                let noise = 1e-13 * high;
+                assert!(middle - low >= -noise, "{profile:?} falls beyond {inner} at {index}");
+                assert!(high - middle <= middle - low + noise, "{profile:?} bends upward beyond {inner} at {index}");
+            }
+        }
+    }
+    // The six powers from two to four and the sphere; the punch and its sum with a cubic and a sphere from their
+    // flat on.
+    assert_eq!(claims, 7 * 4 + 2 * 2);
+}
