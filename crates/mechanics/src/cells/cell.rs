@@ -27,8 +27,10 @@ const POINTS: usize = 24;
 const LEAST_KAPPA: f64 = -2.0;
 /// Two ends whose squares differ by more than this share of the outer one have a difference with all its digits.
 const APART: f64 = 0.2;
-/// The share of a cell's width up to which eight points integrate the square of a rise.
+/// The share of a cell's width up to which eight points integrate the square of a rise: in squares of what is further
+/// from its singularities than in t.
 const NARROW: f64 = 0.25;
+const NARROW_IN_SQUARES: f64 = 0.5;
 
 /// The coefficients of T_k(2u - 1) in powers of u, a row for each order.
 static SHIFTED: LazyLock<[[f64; POINTS]; POINTS]> = LazyLock::new(|| {
@@ -65,7 +67,7 @@ pub(crate) struct Cell {
     integrals: Box<[f64]>,
     odd: bool,
     /// p in gamma ~ zeta^(p - 1) at b.
-    order: f64,
+    order: i32,
 }
 
 /// A part of a cell, between two values of zeta, m, with their difference.
@@ -117,7 +119,7 @@ impl Cell {
             powers: powers.into(),
             integrals,
             odd,
-            order: (first + 1) as f64,
+            order: first as i32 + 1,
         };
         cell.depth = cell.rise(cell.whole());
         cell
@@ -252,7 +254,7 @@ impl Cell {
 
     /// zeta, m, where g has risen by this much, m, from b on.
     pub(crate) fn zeta_of(&self, rise: f64) -> f64 {
-        let share = (rise / self.depth).min(1.0).powf(self.order.recip());
+        let share = root((rise / self.depth).min(1.0), self.order);
         within([0.0, self.high], share * self.high, |zeta| {
             let (reached, gamma) = self.rise_and_gamma(zeta);
             (reached - rise, gamma)
@@ -284,7 +286,7 @@ impl Cell {
     /// int dx, int h dx and int h^2 dx over a part that is `width` wide in the radius, m, h the rise up to its outer
     /// end.
     pub(crate) fn moments(&self, part: Part, width: f64) -> Moments {
-        if part.drop <= NARROW * self.high {
+        if part.drop <= if self.odd { NARROW_IN_SQUARES } else { NARROW } * self.high {
             self.moments_by(&EIGHT_POINTS, part, width)
         } else {
             self.moments_by(&TWELVE_POINTS, part, width)
@@ -319,8 +321,8 @@ impl Cell {
 
     /// zeta, m, where int x dg from b on is this much, m^2, of the `whole` of the cell.
     pub(crate) fn zeta_of_load(&self, load: f64, whole: f64) -> f64 {
-        let order = if self.radius > 0.0 { self.order } else { self.order + 1.0 };
-        let share = (load / whole).min(1.0).powf(order.recip());
+        let order = if self.radius > 0.0 { self.order } else { self.order + 1 };
+        let share = root((load / whole).min(1.0), order);
         within([0.0, self.high], share * self.high, |zeta| {
             (self.load_to(zeta) - load, self.radius_at(zeta) * self.gamma(zeta))
         })
@@ -419,6 +421,16 @@ impl Cell {
     /// Whether the series takes only odd powers.
     pub(crate) fn odd(&self) -> bool {
         self.odd
+    }
+}
+
+/// The root of this order.
+fn root(share: f64, order: i32) -> f64 {
+    match order {
+        1 => share,
+        2 => share.sqrt(),
+        3 => share.cbrt(),
+        _ => share.powf(f64::from(order).recip()),
     }
 }
 
