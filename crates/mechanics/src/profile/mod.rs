@@ -238,9 +238,7 @@ impl Profile {
         let square = match self.curve() {
             Some(curve) => DoubleDouble::square_of(curve.radius_at(level)),
             None if level.value() <= 0.0 => DoubleDouble::square_of(self.flat_radius()),
-            None => {
-                self.cells(Reach::Level(level.value())).map_or(DoubleDouble::ZERO, |cells| cells.square(level))
-            }
+            None => self.cells(Reach::Level(level.value())).map_or(DoubleDouble::ZERO, |cells| cells.square(level)),
         };
         Point { level, radius: square.value().sqrt(), square }
     }
@@ -368,9 +366,8 @@ impl Profile {
     #[must_use]
     pub fn smooth_centre(&self) -> bool {
         let smooth = |powers| powers == Powers::Odd;
-        self.shape().is_some_and(|shape| {
-            shape.kinks().first().is_none_or(|kink| kink.radius > 0.0 || smooth(kink.powers))
-        })
+        self.shape()
+            .is_some_and(|shape| shape.kinks().first().is_none_or(|kink| kink.radius > 0.0 || smooth(kink.powers)))
     }
 
     /// The interpolation error of tables in a contact of this radius, m; zero for other profiles.
