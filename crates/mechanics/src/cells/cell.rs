@@ -27,10 +27,8 @@ const POINTS: usize = 24;
 const LEAST_KAPPA: f64 = -2.0;
 /// Two ends whose squares differ by more than this share of the outer one have a difference with all its digits.
 const APART: f64 = 0.2;
-/// The share of a cell's width up to which eight points integrate the square of a rise: in squares of what is further
-/// from its singularities than in t.
+/// The share of a cell's width up to which eight points integrate the square of a rise.
 const NARROW: f64 = 0.25;
-const NARROW_IN_SQUARES: f64 = 0.5;
 
 /// The coefficients of T_k(2u - 1) in powers of u, a row for each order.
 static SHIFTED: LazyLock<[[f64; POINTS]; POINTS]> = LazyLock::new(|| {
@@ -286,7 +284,7 @@ impl Cell {
     /// int dx, int h dx and int h^2 dx over a part that is `width` wide in the radius, m, h the rise up to its outer
     /// end.
     pub(crate) fn moments(&self, part: Part, width: f64) -> Moments {
-        if part.drop <= if self.odd { NARROW_IN_SQUARES } else { NARROW } * self.high {
+        if part.drop <= NARROW * self.high {
             self.moments_by(&EIGHT_POINTS, part, width)
         } else {
             self.moments_by(&TWELVE_POINTS, part, width)
