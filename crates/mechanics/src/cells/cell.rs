@@ -260,10 +260,10 @@ impl Cell {
     }
 
     /// The difference of the squares, m^2, between two places at these squares above b^2 that the rise `depth`, m,
-    /// separates.
-    pub(crate) fn gap(&self, low: f64, high: f64, depth: f64) -> f64 {
+    /// separates; by the rise alone where the squares are `rounded`.
+    pub(crate) fn gap(&self, low: f64, high: f64, depth: f64, rounded: bool) -> f64 {
         let (plain, top) = (high - low, high.sqrt());
-        if plain > APART * high {
+        if plain > APART * high && !rounded {
             return plain;
         }
         let steep = self.gamma(top);
