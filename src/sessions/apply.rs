@@ -20,7 +20,6 @@ use super::attempt::{Done, PIECES_OF_A_MOVE, attempt};
 use super::cache::Guard;
 use super::changes::answer_once;
 use super::expected::Expected;
-use super::group::{GroupResult, lock_or_join, may_join};
 use super::loaded::LoadedSession;
 use super::observations::Observations;
 use super::replay::Replay;
@@ -68,14 +67,7 @@ impl Mover {
         request: &IdempotentRequest<'_>,
     ) -> Result<Reply, SessionError> {
         // A client that hangs up in the queue leaves it.
-        let mut guard = if !request.has_key() && may_join(&advance) {
-            match lock_or_join(&self.replay, self.by.as_ref(), id, &advance, expected).await? {
-                GroupResult::Locked(guard) => guard,
-                GroupResult::Answered(answer) => return answer,
-            }
-        } else {
-            self.replay.lock(id).await?
-        };
+        let mut guard = self.replay.lock(id).await?;
         let (stop, _raised_at_the_end) = self.replay.common.pool.deadline();
         let move_bytes = self.replay.common.store.move_bytes();
         let mut reservation =

@@ -47,7 +47,7 @@ impl Changes {
             let added = Usage::of(1, live.stored_bytes(), receipt.as_ref());
             let reservation = self.replay.reserve_storage(added).await?;
             // A request that finds the new session in the store waits until it is cached.
-            let guard = self.replay.common.cache.lock(&self.replay.tenant, live.session.id).await?;
+            let guard = self.replay.common.cache.lock(&self.replay.tenant, live.session.id).await;
             let common = Arc::clone(&self.replay.common);
             let create = async move {
                 let stored = common.store.create(live.session.clone(), receipt);
@@ -117,7 +117,7 @@ impl Changes {
             let moves = copy.session.sequence * self.replay.common.store.move_bytes();
             let added = Usage::of(1, copy.stored_bytes() + moves + extent.snapshot, receipt.as_ref());
             let reservation = self.replay.reserve_storage(added).await?;
-            let new = self.replay.common.cache.lock(&self.replay.tenant, copy.session.id).await?;
+            let new = self.replay.common.cache.lock(&self.replay.tenant, copy.session.id).await;
             // The original may have moved on meanwhile in another process: its past stays what it was.
             let common = Arc::clone(&self.replay.common);
             let fork = async move {

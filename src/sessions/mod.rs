@@ -1,8 +1,7 @@
 //! Living contacts: one writer for each, a cache of states, and a replay of the moves if a state is not cached.
 //!
-//! Moves of one session queue at its lock in the order of their arrival, and those that wait together are made together
-//! (`group`); sessions do not wait for each other. A move is computed, appended to the store, and only then visible: a
-//! read shows a state that is stored. A client that hangs up while its move is computed leaves no trace; one that hangs
+//! Moves of one session wait for its lock in the order of their arrival; sessions do not wait for each other. A move is
+//! computed, appended to the store, and only then visible: a read shows a state that is stored. A client that hangs up while its move is computed leaves no trace; one that hangs
 //! up later has its move stored or not, as a client that loses its connection must expect. What follows from a stored
 //! change, in the cache and in the quotas, is done without the client (`run_to_end`).
 //!
@@ -26,7 +25,6 @@ mod error;
 mod events;
 mod expected;
 mod expiry;
-mod group;
 mod history;
 mod loaded;
 mod metrics;

@@ -62,7 +62,7 @@ impl Replay {
     pub(super) async fn lock(&self, id: Uuid) -> Result<Guard, SessionError> {
         match self.common.cache.try_lock(&self.tenant, id) {
             Some(guard) => Ok(guard),
-            None => Box::pin(self.common.pool.wait(self.common.cache.lock(&self.tenant, id))).await?,
+            None => Ok(Box::pin(self.common.pool.wait(self.common.cache.lock(&self.tenant, id))).await?),
         }
     }
 
