@@ -3,7 +3,6 @@
 pub mod connections;
 pub mod fd_limit;
 pub mod limits;
-pub mod machine_memory;
 pub mod memory_budget;
 pub mod tls;
 

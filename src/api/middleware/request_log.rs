@@ -42,7 +42,8 @@ struct RequestGuard<'a> {
     caller: Caller,
     /// The contact that it would change.
     contact: Option<Uuid>,
-    endpoint: &'a Endpoint,
+    metrics: &'a RequestMetrics,
+    endpoint: Endpoint<'a>,
     span: Span,
     answered: bool,
 }
@@ -67,7 +68,8 @@ pub async fn log_request(
         request.extensions_mut().insert(Arc::clone(metrics));
     }
     let endpoint = metrics.endpoint(route, &method);
-    let _in_flight = Counted::by(&endpoint.in_flight);
+    let in_flight = metrics.in_flight(endpoint);
+    let _in_flight = Counted::by(&in_flight);
     let traceparent = traceparent.as_ref().and_then(|value| value.to_str().ok());
     let span = span(&request, route.unwrap_or(NO_ROUTE), id);
     let client = request.extensions().get::<RequestClient>().map(|client| client.address);
@@ -84,6 +86,7 @@ pub async fn log_request(
         client,
         caller,
         contact,
+        metrics,
         endpoint,
         span: span.clone(),
         answered: false,
@@ -169,7 +172,7 @@ impl RequestGuard<'_> {
     fn answer(&mut self, status: StatusCode, code: Option<&str>, cause: Option<&str>) {
         self.answered = true;
         let (time, status) = (self.start.elapsed(), status.as_u16());
-        self.endpoint.answered(status, time);
+        self.metrics.answered(self.endpoint, status, time);
         self.span.record("http.response.status_code", status);
         self.span.record("error.type", code);
         if status >= 500 {
@@ -189,7 +192,7 @@ impl Drop for RequestGuard<'_> {
     fn drop(&mut self) {
         if !self.answered {
             let time = self.start.elapsed();
-            self.endpoint.answered(ABANDONED, time);
+            self.metrics.answered(self.endpoint, ABANDONED, time);
             self.span.record("http.response.status_code", ABANDONED);
             line!(info, self, ABANDONED, time, "the client left");
         }
