@@ -1,5 +1,6 @@
 //! HTTP: `router` is the table of contents; each resource has a file; [`problem`] says which error to use when.
 
+mod accept;
 mod computations;
 mod extract;
 mod facts;
