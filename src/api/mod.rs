@@ -117,10 +117,7 @@ fn with_middleware(routes: Router, access: Access, observed: Observed) -> Router
 /// The OpenAPI document, as `/openapi.json` serves it and `stickslip openapi` prints it.
 pub fn document() -> &'static str {
     static DOCUMENT: OnceLock<String> = OnceLock::new();
-    DOCUMENT.get_or_init(|| {
-        let Routes { router, facts } = described("");
-        openapi::complete(router.get_openapi(), &facts)
-    })
+    DOCUMENT.get_or_init(|| openapi::text(described("").router.into_openapi()))
 }
 
 fn facts() -> &'static FactsOfRoutes {
