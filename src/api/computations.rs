@@ -20,11 +20,11 @@ use crate::computations::{Computation, FromStored, OnContact, Outcome, Route, Sh
 use crate::formats::Format;
 use crate::otlp;
 
+use super::checked_query::CheckedQuery;
 use super::extract::{CheckedBody, HeldResources};
 use super::facts::{Facts, Routes};
-use super::parameters::{Kind as _, QueryParams, QueryReader, described, formats, words};
 use super::problem::Problem;
-use super::query::CheckedQuery;
+use super::query_parameters::{Kind as _, QueryParams, QueryReader, described, formats, words};
 use super::reply;
 use super::state::{App, TenantApp};
 

@@ -1,18 +1,18 @@
 //! HTTP: `router` is the table of contents; each resource has a file; [`problem`] says which error to use when.
 
 mod accept;
+mod checked_query;
 mod computations;
 mod extract;
 mod facts;
 pub mod formats;
-pub mod limits;
 pub mod middleware;
 mod openapi;
-mod parameters;
-mod params;
+mod path_and_headers;
 pub mod problem;
-mod query;
+mod query_parameters;
 mod reply;
+pub mod request_limits;
 mod request_metrics;
 mod resources;
 mod routes;

@@ -5,8 +5,8 @@ use sysinfo::{MemoryRefreshKind, Process, ProcessRefreshKind, ProcessesToUpdate,
 use crate::admission::Capacity;
 use crate::sessions::STREAMS;
 
+use crate::server::connection_limits::SPARE_CONNECTIONS;
 use crate::server::connections::ConnectionLimits;
-use crate::server::limits::SPARE_CONNECTIONS;
 
 const KIB: u64 = 1024;
 

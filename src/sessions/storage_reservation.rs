@@ -12,7 +12,7 @@ use parking_lot::Mutex;
 use crate::admission::{Pool, PoolError, Quota};
 use crate::store::{Store, StoreError, Tenant, Usage};
 
-use super::SessionError;
+use super::error::SessionError;
 
 /// How long a count is taken to hold.
 const RECOUNT: Duration = Duration::from_secs(60);

@@ -9,7 +9,7 @@ mod batch;
 pub mod changes;
 pub mod commits;
 pub mod idempotency;
-pub mod jobs;
+pub mod job_store;
 pub mod listeners;
 pub mod memory;
 pub mod open;
@@ -30,7 +30,7 @@ use stickslip_wire::{ContactDefinition, ContactOrder, Move, ObservedForce, Sessi
 pub use changes::Changes;
 pub use commits::Commits;
 pub use idempotency::IdempotentRequest;
-pub use jobs::{ChunkResult, Claim, Job, JobLimits, JobStore};
+pub use job_store::{ChunkResult, Claim, Job, JobLimits, JobStore};
 pub use listeners::{Listener, Listeners, StreamEvent};
 pub use memory::MemoryStore;
 pub use open::{OpenError, backup, open, open_to_read};

@@ -19,11 +19,11 @@ use uuid::Uuid;
 
 use crate::access::Role;
 use crate::api::facts::Need;
-use crate::api::limits;
 use crate::api::middleware::access_control::Caller;
 use crate::api::middleware::request_id::{self, REQUEST_ID};
 use crate::api::middleware::security_headers;
 use crate::api::problem::{Code, MEDIA_TYPE, Problem};
+use crate::api::request_limits;
 use crate::api::request_metrics::{ABANDONED, Endpoint, RequestMetrics};
 use crate::api::routes;
 use crate::metrics::Counted;
@@ -60,7 +60,7 @@ pub async fn log_request(
     let id = request_id.to_str().unwrap_or_default();
     let method = request.method().clone();
     let traceparent =
-        request.headers().get("traceparent").filter(|value| value.len() <= limits::REQUEST_ID_LENGTH).cloned();
+        request.headers().get("traceparent").filter(|value| value.len() <= request_limits::REQUEST_ID_LENGTH).cloned();
     // The route rather than the path: it holds no identifier, and cannot be made up by clients.
     let route = request.extensions().get::<MatchedPath>().cloned();
     let route = route.as_ref().map(MatchedPath::as_str);

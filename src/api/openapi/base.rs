@@ -6,9 +6,9 @@ use utoipa::openapi::security::{HttpAuthScheme, HttpBuilder, SecurityScheme};
 use stickslip_wire::{EndEvent, JobEndEvent, ProblemDocument, limits, profile};
 
 use crate::access::Role;
-use crate::api::limits::BODY_LIMIT;
+use crate::api::checked_query::PAGE;
 use crate::api::problem::MEDIA_TYPE;
-use crate::api::query::PAGE;
+use crate::api::request_limits::BODY_LIMIT;
 
 #[derive(OpenApi)]
 #[openapi(

@@ -15,7 +15,7 @@ use utoipa::openapi::{Content, Header, Object, OpenApi, Ref, RefOr, Required, Re
 use crate::api::facts::{Facts, Need, Refusal};
 use crate::api::problem::MEDIA_TYPE;
 use crate::formats::Format;
-use crate::server::limits::HEAD;
+use crate::server::connection_limits::HEAD;
 
 /// Of every operation with a body.
 const OF_BODIES: &[Refusal] = &[

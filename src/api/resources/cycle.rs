@@ -7,7 +7,7 @@ use stickslip_wire::{Amplitudes, CycleDrive, CycleReply, JsonPath, WorkDensity};
 
 use super::prelude::*;
 use super::stress::QUERY_RADII;
-use crate::api::parameters::{List, number};
+use crate::api::query_parameters::{List, number};
 
 parameters! {
     pub struct CycleQuery {

@@ -13,7 +13,7 @@ use stickslip_wire::{LoopFileReply, ScanFileReply};
 
 use super::prelude::*;
 use crate::api::extract::FileBody;
-use crate::api::parameters::{Plain, Text, number};
+use crate::api::query_parameters::{Plain, Text, number};
 use crate::computations::files;
 use crate::formats;
 

@@ -13,7 +13,7 @@ use tokio::time::Instant;
 
 use super::{ConnectionActivity, ConnectionLimits, is_trusted};
 use crate::admission::Client;
-use crate::server::limits::{LEAST_WAIT, SPARE_CONNECTIONS};
+use crate::server::connection_limits::{LEAST_WAIT, SPARE_CONNECTIONS};
 
 /// The divisor of all connections that gives the number freed at a time, so that the search costs little for each.
 const FREED_SHARE: usize = 16;

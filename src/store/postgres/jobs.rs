@@ -9,7 +9,7 @@ use async_trait::async_trait;
 use deadpool_postgres::Object;
 use uuid::Uuid;
 
-use crate::store::jobs::{ChunkResult, Claim, JOB_LIFETIME, JOB_TIME_LIMIT, Job, JobLimits, JobStore};
+use crate::store::job_store::{ChunkResult, Claim, JOB_LIFETIME, JOB_TIME_LIMIT, Job, JobLimits, JobStore};
 use crate::store::rows as read;
 use crate::store::{Receipt, Result, StoreError, Tenant};
 

@@ -9,6 +9,15 @@ macro_rules! channel {
     };
 }
 
+// The columns of a move beside its contact and its stamp, in the order of `rows::record`.
+macro_rules! move_columns {
+    () => {
+        "sequence, at, at_ns, target_displacement, target_force, target_indentation, target_normal_force, relative, \
+         tolerance, displacement, force, indentation, normal_force, contact_radius, stick_radius, regime, \
+         dissipated_energy, elastic_energy, memory_depth, observed_force, observed_at, made_by"
+    };
+}
+
 // A statement that returns its `found`, and announces the identifiers in another part of it: as many as fit into the
 // payload of one notification.
 macro_rules! announcing {
@@ -61,15 +70,16 @@ WITH locked AS (
     WHERE contacts.id = locked.id
     RETURNING contacts.id
 ), moved AS (
-    INSERT INTO moves (contact, sequence, target_displacement, target_force, target_indentation, target_normal_force,
-        relative, tolerance, displacement, force, indentation, normal_force, contact_radius, stick_radius, regime,
-        dissipated_energy, elastic_energy, memory_depth, at, at_ns, observed_force, observed_at, made_by, stamp)
+    INSERT INTO moves (contact, ",
+    move_columns!(),
+    ", stamp)
     SELECT move.*
-    FROM unnest($6::uuid[], $7::bigint[], $8::double precision[], $9::double precision[], $10::double precision[],
-        $11::double precision[], $12::boolean[], $13::double precision[], $14::double precision[],
+    FROM unnest($6::uuid[], $7::bigint[], $8::timestamptz[], $9::smallint[], $10::double precision[],
+        $11::double precision[], $12::double precision[], $13::double precision[], $14::boolean[],
         $15::double precision[], $16::double precision[], $17::double precision[], $18::double precision[],
-        $19::double precision[], $20::text[], $21::double precision[], $22::double precision[], $23::bigint[],
-        $24::timestamptz[], $25::smallint[], $26::double precision[], $27::bigint[], $28::text[], $29::bigint[])
+        $19::double precision[], $20::double precision[], $21::double precision[], $22::text[],
+        $23::double precision[], $24::double precision[], $25::bigint[], $26::double precision[], $27::bigint[],
+        $28::text[], $29::bigint[])
         AS move (contact)
     JOIN won ON won.id = move.contact
 ), made AS (
@@ -193,14 +203,16 @@ FROM unnest($1::uuid[], $2::text[], $3::bytea[], $4::uuid[], $5::bigint[], $6::b
 
 /// The sequence of a contact, and some of its moves beside it: in one statement, so that both are of one state of the
 /// database.
-pub(super) const HISTORY: &str = "
+pub(super) const HISTORY: &str = concat!(
+    "
 SELECT contacts.sequence, past.*
 FROM contacts LEFT JOIN LATERAL (
-SELECT sequence, at, at_ns, target_displacement, target_force, target_indentation, target_normal_force, relative,
-    tolerance, displacement, force, indentation, normal_force, contact_radius, stick_radius, regime, dissipated_energy,
-    elastic_energy, memory_depth, observed_force, observed_at, made_by
+SELECT ",
+    move_columns!(),
+    "
 FROM moves WHERE contact = $1 AND sequence > $2 ORDER BY sequence LIMIT $3) AS past ON true
-WHERE contacts.id = $1 ORDER BY past.sequence";
+WHERE contacts.id = $1 ORDER BY past.sequence"
+);
 
 pub(super) const COUNT_MOVES: &str = "SELECT count(*) FROM moves WHERE contact = $1 AND sequence <= $2";
 
@@ -218,7 +230,8 @@ WHERE snapshots.sequence < excluded.sequence OR snapshots.sequence = $4::bigint"
 /// Makes a session with the first `$2` moves of `$1` and with its snapshot, if that is not after them, unless there are
 /// fewer; and keeps the receipt. Returns the sequence of `$1` and how many of these moves there are. No lock is needed:
 /// moves are only appended.
-pub(super) const FORK: &str = "
+pub(super) const FORK: &str = concat!(
+    "
 WITH source AS (
     SELECT sequence, (SELECT count(*) FROM moves WHERE contact = $1 AND sequence <= $2) AS moves
     FROM contacts WHERE id = $1
@@ -230,12 +243,12 @@ WITH source AS (
     JOIN source ON source.sequence >= $2 AND source.moves = $2
     RETURNING id
 ), past AS (
-    INSERT INTO moves (contact, sequence, target_displacement, target_force, target_indentation, target_normal_force,
-        relative, tolerance, displacement, force, indentation, normal_force, contact_radius, stick_radius, regime,
-        dissipated_energy, elastic_energy, memory_depth, at, at_ns, observed_force, observed_at, made_by, stamp)
-    SELECT made.id, sequence, target_displacement, target_force, target_indentation, target_normal_force,
-        relative, tolerance, displacement, force, indentation, normal_force, contact_radius, stick_radius, regime,
-        dissipated_energy, elastic_energy, memory_depth, at, at_ns, observed_force, observed_at, made_by, stamp
+    INSERT INTO moves (contact, ",
+    move_columns!(),
+    ", stamp)
+    SELECT made.id, ",
+    move_columns!(),
+    ", stamp
     FROM moves, made WHERE moves.contact = $1 AND moves.sequence <= $2
 ), state AS (
     INSERT INTO snapshots (contact, sequence, state)
@@ -247,7 +260,8 @@ WITH source AS (
         AS receipt (contact, key, fingerprint, created, sequence, body)
     JOIN made ON made.id = receipt.contact
 )
-SELECT source.sequence, source.moves FROM source";
+SELECT source.sequence, source.moves FROM source"
+);
 
 /// Deletes a session that is at a sequence, with its moves, which have all been committed then. Returns, if the session
 /// exists, whether it was at that sequence and free, and its sequence.

@@ -7,7 +7,7 @@ use jiff::Timestamp;
 use rusqlite::{Connection, params};
 use uuid::Uuid;
 
-use crate::store::jobs::QueueChange;
+use crate::store::job_store::QueueChange;
 use crate::store::rows::{RowReader as _, tenant};
 use crate::store::{EXPIRED_LIFETIME, RECEIPT_LIFETIME, Receipt, Record, Session, Snapshot, StoreError};
 

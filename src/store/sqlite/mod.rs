@@ -30,7 +30,7 @@ use jiff::Timestamp;
 use tokio::sync::{mpsc, oneshot};
 use uuid::Uuid;
 
-use super::jobs::ChunkQueue;
+use super::job_store::ChunkQueue;
 use super::probe::Probe;
 use super::{
     Changes, Commits, Extent, IsSmall, Page, Receipt, Record, Result, Session, Snapshot, Store, StoreError, Tenant,

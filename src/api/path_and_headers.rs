@@ -11,8 +11,8 @@ use utoipa::openapi::path::{Parameter, ParameterIn};
 use uuid::Uuid;
 
 use super::accept::{NAMED, admission, list_members};
-use super::parameters::{MOVE_NUMBER, described};
 use super::problem::{Code, Problem};
+use super::query_parameters::{MOVE_NUMBER, described};
 use super::state::App;
 use crate::sessions::Expected;
 

@@ -112,10 +112,10 @@ macro_rules! parameters {
             $($(#[doc = $doc])* pub $member: $type,)*
         }
 
-        impl $crate::api::parameters::QueryParams for $name {
-            fn take(query: &mut $crate::api::parameters::QueryReader, _: &axum::http::HeaderMap) -> Option<$name> {
+        impl $crate::api::query_parameters::QueryParams for $name {
+            fn take(query: &mut $crate::api::query_parameters::QueryReader, _: &axum::http::HeaderMap) -> Option<$name> {
                 Some($name {
-                    $($member: $crate::api::parameters::Kind::read(&$kind, stringify!($member), query)
+                    $($member: $crate::api::query_parameters::Kind::read(&$kind, stringify!($member), query)
                         $(.unwrap_or($default))?,)*
                 })
             }
@@ -128,7 +128,7 @@ macro_rules! parameters {
                 vec![$({
                     let default: Option<serde_json::Value> = None$(.or(Some(serde_json::json!($default))))?;
                     let description = [$($doc),*].map(str::trim).join(" ");
-                    $crate::api::parameters::described(stringify!($member), description, &$kind, default)
+                    $crate::api::query_parameters::described(stringify!($member), description, &$kind, default)
                 }),*]
             }
         }
