@@ -113,7 +113,10 @@ macro_rules! parameters {
         }
 
         impl $crate::api::query_parameters::QueryParams for $name {
-            fn take(query: &mut $crate::api::query_parameters::QueryReader, _: &axum::http::HeaderMap) -> Option<$name> {
+            fn take(
+                query: &mut $crate::api::query_parameters::QueryReader,
+                _: &axum::http::HeaderMap,
+            ) -> Option<$name> {
                 Some($name {
                     $($member: $crate::api::query_parameters::Kind::read(&$kind, stringify!($member), query)
                         $(.unwrap_or($default))?,)*
@@ -229,7 +232,7 @@ impl Kind<Vec<f64>> for List {
     }
 }
 
-/// Fields of stresses, likewise.
+/// Fields of stresses, with commas between them, or given one by one.
 pub struct Fields;
 
 impl Kind<Vec<Field>> for Fields {
@@ -308,7 +311,7 @@ impl Kind<String> for Text {
     }
 }
 
-/// A value that reads itself.
+/// A value with a parser of its own.
 pub struct Plain<V> {
     /// What it is, for the text of a refusal.
     pub expected: &'static str,

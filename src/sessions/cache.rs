@@ -6,7 +6,7 @@
 //! identifiers that do not exist leave nothing behind, and a million idle sessions take space in the store alone.
 //!
 //! A profile that is kept counts once, however many states and requests have it. It is used whenever one of these
-//! states is, so that it goes after them; and one that somebody has stays, because to forget it would free nothing.
+//! states is, so that it goes after them. A profile in use stays, because dropping it would free nothing.
 
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -121,7 +121,7 @@ impl Cache {
         self.capacity
     }
 
-    /// Bytes of the cached states, with those in use, and of the profiles, and how many states nobody uses.
+    /// Bytes of the states, cached or in use, and of the profiles; and the number of cached states.
     pub(super) fn held(&self) -> (usize, usize) {
         let cached = self.cached.lock();
         (cached.bytes, cached.items.len() - cached.addresses.len())

@@ -1,5 +1,5 @@
-//! What the sessions of a tenant share: the store, the pool, the cache with its locks. Handles on the sessions of a tenant
-//! are this, each with a part of its methods.
+//! The context of the sessions of a tenant: the store, the pool, and the cache with its locks. Every handle on these
+//! sessions holds one.
 
 use std::ops::Deref;
 use std::sync::Arc;
@@ -85,7 +85,7 @@ impl TenantContext {
         }
     }
 
-    /// What can be known of a session without reading it, if it belongs to the tenant.
+    /// The size of a session, with its tenant and label, if it belongs to the tenant.
     pub(super) async fn extent(&self, id: Uuid) -> Result<Extent, SessionError> {
         match self.store.extent(id).await {
             Ok(extent) if extent.tenant == self.tenant => Ok(extent),

@@ -18,7 +18,7 @@ use super::cycle_scan::{Answer, ClosedCycle};
 use super::error::SessionError;
 use super::replay::PAGE;
 
-/// Moves whose cost that of a steady cycle is like.
+/// The cost of a steady cycle, in moves.
 const CYCLE_MOVES: usize = 4;
 /// JSON pointer to the number of cycles.
 const LAST: &str = "/last";
@@ -110,8 +110,8 @@ impl ClosedCycles {
         self.keep(id, &log).await
     }
 
-    /// Looks at the states up to the move `sequence` that are not in `known`. What has been seen when the time is up is
-    /// left with the session, so that another try comes farther; `place` is then refused.
+    /// Looks at the states up to the move `sequence` that are not in `known`. The log at the deadline is kept
+    /// with the session, so that the next request continues from it; `place` is then refused.
     async fn look_on(
         &self,
         id: Uuid,
@@ -170,7 +170,7 @@ impl ClosedCycles {
         Ok((Arc::new(log), Ok(())))
     }
 
-    /// Leaves what has been found with the session if that has come as far.
+    /// Keeps a log with the cached session, unless the log is ahead of the session.
     async fn keep(&self, id: Uuid, log: &Arc<CycleLog>) -> Result<(), SessionError> {
         let mut guard = self.context.lock(id).await?;
         if let Some(live) = guard.live.as_mut().filter(|live| live.session.sequence >= log.sequence) {

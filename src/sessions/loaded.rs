@@ -87,7 +87,7 @@ impl LoadedSession {
         })
     }
 
-    /// The same of a session as it is stored, or why its definition is invalid.
+    /// The same of a stored session, or the reason why its definition is invalid.
     pub(super) fn of_stored(session: Session, profiles: &dyn Prepare) -> Result<LoadedSession, String> {
         let mut faults = Faults::default();
         let setup = session.definition.check(JsonPath::Root, profiles, &mut faults);

@@ -1,9 +1,10 @@
 //! Living contacts: one writer for each, a cache of states, and a replay of the moves if a state is not cached.
 //!
 //! Moves of one session wait for its lock in the order of their arrival; sessions do not wait for each other. A move is
-//! computed, appended to the store, and only then visible: a read shows a state that is stored. A client that hangs up while its move is computed leaves no trace; one that hangs
-//! up later has its move stored or not, as a client that loses its connection must expect. What follows from a stored
-//! change, in the cache and in the quotas, is done without the client (`run_to_end`).
+//! computed, appended to the store, and only then visible: a read shows a stored state. A client that hangs up while
+//! its move is computed leaves no trace; one that hangs up later has its move stored or not, as a client that loses its
+//! connection must expect. The consequences of a stored change, in the cache and in the quotas, need no client
+//! (`run_to_end`).
 //!
 //! Other processes may work on the same store. A cached state is always one that the session has been in, so that
 //! the moves stored after it lead to the current one: a read applies them first, and a move whose sequence another

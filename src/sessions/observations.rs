@@ -177,8 +177,8 @@ impl Observations {
     }
 
     /// The reply to observations that have led to `live` and are not stored yet. The guard has the state before them.
-    /// If the estimate of the friction takes too long, or there is no memory for it now, it is the one before: nobody
-    /// waits for memory while he has the lock of a contact.
+    /// If the estimate of the friction takes too long, or there is no memory for it now, it is the one before: a
+    /// request that has the lock of a contact never waits for memory.
     pub(super) async fn observed(
         &self,
         guard: &mut Guard,

@@ -1,4 +1,4 @@
-//! The state of a session: as it is cached, or by its newest snapshot and the moves after it.
+//! The state of a session: the cached one, or a replay of its newest snapshot and the moves after it.
 
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -39,7 +39,7 @@ const KEPT_EVERY: Duration = Duration::from_secs(1);
 const SMALL_HISTORY: u64 = 64;
 
 impl TenantContext {
-    /// The session as it is cached, or else as it is stored. Other processes may have moved or deleted it since: the
+    /// The cached session, or the stored one. Other processes may have moved or deleted it since: the
     /// result is to be checked against the store.
     pub(super) async fn cached<'a>(&self, guard: &'a mut Guard) -> Result<&'a mut LoadedSession, SessionError> {
         if guard.live.as_ref().is_none_or(|live| live.is_behind) {
@@ -50,7 +50,7 @@ impl TenantContext {
         guard.live.as_deref_mut().ok_or(SessionError::NotFound(id))
     }
 
-    /// The session as it is stored: with what other processes have done to it up to now.
+    /// The stored session, with the changes that other processes have made up to now.
     pub(super) async fn current<'a>(&self, guard: &'a mut Guard) -> Result<&'a mut LoadedSession, SessionError> {
         if let Some(cached) = guard.live.as_ref().map(|live| live.session.sequence) {
             let stored = self.store.extent(guard.id()).await;
@@ -111,7 +111,7 @@ impl TenantContext {
             Ok(_) => return Err(SessionError::NotFound(id)),
             Err(error) => return Err(self.store_error(id, error)),
         };
-        // Nobody waits for this memory while he has some of it.
+        // A request that has some of this memory never waits for more of it.
         guard.held = Reservation::default();
         guard.held = self.pool.reserve_states(bytes_to_load(&extent)).await?;
         let ((mut live, followed), updated_at) = match whole {
@@ -170,8 +170,8 @@ impl TenantContext {
     /// for it.
     ///
     /// # Errors
-    /// [`SessionError::NoSuchMove`] if it has made fewer, and as [`TenantContext::current`]; but what is damaged after the
-    /// last of so many moves is none.
+    /// [`SessionError::NoSuchMove`] if it has made fewer, and as [`TenantContext::current`]; damage after
+    /// the last of so many moves is no error.
     pub(super) async fn after(
         &self,
         guard: &mut Guard,
@@ -236,7 +236,7 @@ impl TenantContext {
     }
 
     /// Makes the moves of a page, as work of the request: the deadline and a client that hangs up end it. Every now and
-    /// then, and at the end, what has been replayed is offered to the store as a snapshot.
+    /// then, and at the end, the replayed state is offered to the store as a snapshot.
     ///
     /// # Errors
     /// Within, beside the state after as many of the moves as time allowed: [`SessionError::Loading`].
@@ -290,8 +290,8 @@ impl TenantContext {
         Ok((live.contact.clone(), sequence, held))
     }
 
-    /// Memory for a copy of the state in a guard: that of a state which was brought from the store has it already, so
-    /// that nobody waits for memory while he holds some.
+    /// Memory for a copy of the state in a guard. Loading a state from the store has reserved it already, so that no
+    /// request waits for memory while it holds some.
     pub(super) async fn reserve_copy(&self, guard: &mut Guard, bytes: usize) -> Result<Reservation, SessionError> {
         if guard.held.is_counted() {
             return Ok(std::mem::take(&mut guard.held));
@@ -301,8 +301,8 @@ impl TenantContext {
 }
 
 /// Makes stored moves, until the flag ends it or one cannot be made. A state is offered as a snapshot whenever
-/// [`KEPT_EVERY`] has been worked since the last, and where the flag ends it: a client that has hung up has nobody left
-/// to keep it.
+/// [`KEPT_EVERY`] has been worked since the last, and where the flag ends it: after the client has hung up, no request
+/// keeps the state.
 fn replay(
     live: &mut LoadedSession,
     page: &[Record],
@@ -356,7 +356,7 @@ fn bytes_to_load(extent: &Extent) -> usize {
         .saturating_add(definition.saturating_mul(PREPARED))
 }
 
-/// A session that cannot be replayed from what is stored.
+/// A session that cannot be replayed from its stored moves.
 pub(super) fn damaged(contact: Uuid, why: &dyn std::fmt::Display) -> SessionError {
     StoreError::Damaged { contact, what: why.to_string() }.into()
 }

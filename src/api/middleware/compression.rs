@@ -1,5 +1,5 @@
-//! Compression of replies by gzip or zstd, as `Accept-Encoding` says. The tag of a compressed reply is weak: its version
-//! is that of the plain one, and its bytes are not (RFC 9110, 8.8.1).
+//! Compression of replies by gzip or zstd, as `Accept-Encoding` says. The tag of a compressed reply is weak: it has the
+//! version of the plain reply, and other bytes (RFC 9110, 8.8.1).
 
 use std::sync::Arc;
 

@@ -94,7 +94,7 @@ pub async fn log_request(
     let mut response = tokio::select! {
         biased;
         response = next.run(request).instrument(span) => response,
-        // Or else, like its service, it is gone.
+        // Otherwise the service has been stopped.
         Ok(_) = stops.wait_for(|stops| *stops) => {
             Problem::in_doubt(Code::Stopping, "the server stops before this is done").into_response()
         }

@@ -42,7 +42,7 @@ pub enum Kind {
     Data,
     /// The API documentation page, which is public and may be cached.
     Docs,
-    /// The web page, likewise.
+    /// The web page, which is public and may be cached.
     Page,
 }
 

@@ -19,8 +19,8 @@ use crate::api::request_limits::BODY_LIMIT;
     tags(
         (name = "simulation", description = "A path from beginning to end, in one call"),
         (name = "protocols", description = "How to move so that little shear stress remains"),
-        (name = "contacts", description = "Contacts that live on the server and remember"),
-        (name = "jobs", description = "Sweeps that go on after they have been asked for"),
+        (name = "contacts", description = "Stored contacts with their history"),
+        (name = "jobs", description = "Background sweeps"),
         (name = "service", description = "Health, and this document")
     )
 )]

@@ -14,7 +14,7 @@ parameters! {
         /// Amplitudes of the displacement, m, separated by commas or given one by one: of the indenter or, with
         /// `machine_stiffness`, of the machine. Give this or `force`.
         displacement: Option<Vec<f64>> = List(Array(QUERY_RADII, Range { min: 0.0, ..range::DISPLACEMENT }));
-        /// Amplitudes of the tangential force, N, likewise.
+        /// Amplitudes of the tangential force, N, separated by commas or given one by one.
         force: Option<Vec<f64>> = List(Array(QUERY_RADII, Range { min: 0.0, ..range::FORCE }));
         /// Radii for the friction work per area, m, separated by commas or given one by one. Give this or `points`, or
         /// neither.

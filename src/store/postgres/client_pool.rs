@@ -143,8 +143,8 @@ impl ClientPool {
         with_retries!(self, ANSWER, connection => rows(connection, statement, parameters))
     }
 
-    /// The same for a statement that may read much: few at a time, and the database is told to end one that nobody
-    /// waits for any more.
+    /// The same for a statement that may read much: few run at a time, and the database ends one whose client has
+    /// left.
     pub(super) async fn search(&self, statement: &str, parameters: &[Parameter<'_>]) -> Result<Vec<Row>> {
         let mut tries = Tries::default();
         loop {
@@ -238,7 +238,7 @@ pub(super) async fn long_rows(
     Ok(rows)
 }
 
-/// Whether the row that a statement is about exists, by the first column of what it returns: whether it was free.
+/// Whether the row of a statement exists. The first returned column says whether no other transaction held it.
 pub(super) fn existed(rows: &[Row]) -> Result<bool, Fault> {
     match rows.first().map(|row| row.get(0)) {
         Some(false) => Err(Fault::locked()),
@@ -246,7 +246,7 @@ pub(super) fn existed(rows: &[Row]) -> Result<bool, Fault> {
     }
 }
 
-/// The number of rows that a statement has changed, likewise.
+/// The number of rows that a statement has changed.
 pub(super) async fn execute(
     client: &impl GenericClient,
     statement: &str,

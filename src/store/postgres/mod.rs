@@ -1,10 +1,10 @@
 //! PostgreSQL, shared by many processes: all of them read what one has acknowledged.
 //!
-//! Moves and new sessions queue at a writer, which sends what has gathered as one transaction in one round trip. The
+//! Moves and new sessions queue at a writer, which sends the waiting requests as one transaction in one round trip. The
 //! sequence of a contact decides which of several processes that move it at once wins; the primary key of the moves is
 //! a second barrier. A change whose contact another transaction holds waits apart from the others. Everything else goes
-//! through a pool of connections. A lost connection is replaced, and what is safe to repeat is repeated for a while;
-//! then the callers get an error.
+//! through a pool of connections. A lost connection is replaced, and statements that are safe to repeat are repeated
+//! for a while; then the callers get an error.
 //!
 //! `docs/postgres.md` describes the tables and what the database must support.
 
@@ -154,7 +154,7 @@ impl From<SchemaError<tokio_postgres::Error>> for Fault {
 /// Bytes that a move takes in the table, with the longest name of a key, and in its index.
 const MOVE_BYTES: u64 = 320;
 
-/// The definition of a session as it is stored: exactly the JSON that it was.
+/// The definition of a session, as exactly the JSON that is stored.
 fn definition(session: &Session) -> Result<String> {
     let written = serde_json::to_string(&*session.definition);
     written.map_err(|error| StoreError::Failed(format!("a definition cannot be written: {error}")))

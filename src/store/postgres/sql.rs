@@ -22,11 +22,11 @@ macro_rules! move_columns {
 // payload of one notification.
 macro_rules! announcing {
     ($changed:literal, $($statement:expr),+) => {
-        concat!($($statement,)+ ", told AS (
+        concat!($($statement,)+ ", announced AS (
     SELECT count(pg_notify('", channel!(), "', ids)) FROM (
         SELECT string_agg(id::text, ',') AS ids
         FROM (SELECT id, row_number() OVER () / 200 AS page FROM ", $changed, ") AS numbered GROUP BY page) AS paged
-) SELECT found.* FROM found, told")
+) SELECT found.* FROM found, announced")
     };
 }
 
@@ -105,8 +105,8 @@ pub(super) const PROBE_NOTIFY: &str = concat!("SELECT pg_notify('", channel!(), 
 
 pub(super) const LISTEN: &str = concat!("LISTEN ", channel!());
 
-/// The outcome of a request: the sequence of its session, whose it was if it has expired, whether its key is taken, and
-/// the stamp of its last move.
+/// The outcome of a request: the sequence of its session, the tenant of an expired one, whether the key is taken, and
+/// the stamp of the last move.
 pub(super) const OUTCOME: &str = "
 SELECT (SELECT sequence FROM contacts WHERE id = $1),
     (SELECT tenant FROM expired WHERE id = $1),
@@ -123,7 +123,7 @@ pub(super) const PROBE: &str = "
 INSERT INTO receipts (key, fingerprint, sequence, body) VALUES ('', '', 0, '')
 ON CONFLICT (key) DO UPDATE SET created_at = now()";
 
-/// Asks for nothing but an answer.
+/// Checks that the database answers.
 pub(super) const PING: &str = "";
 
 pub(super) const FIND: &str = "
@@ -135,9 +135,8 @@ SELECT tenant, sequence, label, octet_length(definition)::bigint,
     coalesce((SELECT octet_length(state) FROM snapshots WHERE contact = contacts.id), 0)::bigint
 FROM contacts WHERE id = $1";
 
-/// What is stored for a tenant: how many contacts and bytes. A contact takes `$2` of them besides its definition and
-/// its snapshot, a move `$3`, and a receipt `$4`. The lengths are known without reading what is stored apart from its
-/// row.
+/// The contacts and bytes of a tenant. A contact takes `$2` bytes besides its definition and its snapshot, a move `$3`,
+/// and a receipt `$4`. The lengths of values that are stored apart from their rows are known without reading them.
 pub(super) const USAGE: &str = "
 SELECT count(*), coalesce(sum($2::bigint + octet_length(definition) + $3::bigint * sequence
         + coalesce((SELECT octet_length(state) FROM snapshots WHERE contact = contacts.id), 0)), 0)::bigint
@@ -286,7 +285,7 @@ DELETE FROM receipts WHERE key IN (
     SELECT key FROM receipts WHERE created_at <= now() - $1::double precision * INTERVAL '1 second'
     ORDER BY created_at LIMIT $2 FOR UPDATE SKIP LOCKED)";
 
-/// Marks of sessions that expired long ago, likewise.
+/// Marks of sessions that expired long ago, some at a time. What another replica is deleting is left to it.
 pub(super) const PURGE_MARKS: &str = "
 DELETE FROM expired WHERE id IN (
     SELECT id FROM expired WHERE at <= now() - $1::double precision * INTERVAL '1 second'
@@ -298,7 +297,7 @@ SELECT id FROM contacts
 WHERE active_hour <= $1::timestamptz AT TIME ZONE 'UTC' AND (updated_at, updated_ns) < ($1, $2)
 ORDER BY active_hour LIMIT $3";
 
-/// Deletes those of the sessions that are still idle. What another replica moves or deletes meanwhile is left to it.
+/// Deletes the sessions that are still idle. Sessions that another replica moves or deletes meanwhile are skipped.
 pub(super) const PURGE_IDLE: &str = announcing!(
     "found",
     "

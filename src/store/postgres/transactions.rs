@@ -79,8 +79,8 @@ impl ClientPool {
         }
     }
 
-    /// The columns of a receipt for a change of what has this identifier. Makes room for its key, if that is kept for a
-    /// request from long ago.
+    /// The columns of a receipt for a change of the contact or job with this identifier. Deletes an expired receipt
+    /// with the same key.
     pub(super) async fn free_key(&self, id: Uuid, receipt: Option<&Receipt>) -> Result<Receipts> {
         let mut receipts = Receipts::default();
         if let Some(receipt) = receipt {

@@ -75,7 +75,7 @@ pub(super) enum Done {
 }
 
 impl Transaction<'_> {
-    /// Writes what is there already: a change like any other for the disk.
+    /// Writes a row again with its own values: for the disk, a change like any other.
     pub(super) fn probe(&self) -> Result<Done, Fault> {
         schema::mark(self.database, schema::IN_USE)?;
         Ok(Done::Made(0))
