@@ -19,15 +19,15 @@ use crate::admission::{
 use crate::computations::files;
 use crate::otlp;
 use crate::server::RequestClient;
-use crate::server::limits::DISCARDED;
+use crate::server::connection_limits::DISCARDED;
 use crate::simulation::{bytes, cost};
 use crate::store::RequestKey;
 use stickslip_wire::{self as wire, Document};
 
-use super::limits::{BODY_LIMIT, FILE_LIMIT};
-use super::params::IdempotencyKey;
+use super::path_and_headers::IdempotencyKey;
 use super::problem::{Code, Problem};
 use super::reply;
+use super::request_limits::{BODY_LIMIT, FILE_LIMIT};
 use super::state::App;
 
 /// A checked body, and the headers that make the request safe to repeat. If it is `OPTIONAL`, no body at all counts as

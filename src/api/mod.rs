@@ -1,17 +1,18 @@
 //! HTTP: `router` is the table of contents; each resource has a file; [`problem`] says which error to use when.
 
+mod accept;
+mod checked_query;
 mod computations;
 mod extract;
 mod facts;
 pub mod formats;
-pub mod limits;
 pub mod middleware;
 mod openapi;
-mod parameters;
-mod params;
+mod path_and_headers;
 pub mod problem;
-mod query;
+mod query_parameters;
 mod reply;
+pub mod request_limits;
 mod request_metrics;
 mod resources;
 mod routes;
@@ -116,10 +117,7 @@ fn with_middleware(routes: Router, access: Access, observed: Observed) -> Router
 /// The OpenAPI document, as `/openapi.json` serves it and `stickslip openapi` prints it.
 pub fn document() -> &'static str {
     static DOCUMENT: OnceLock<String> = OnceLock::new();
-    DOCUMENT.get_or_init(|| {
-        let Routes { router, facts } = described("");
-        openapi::complete(router.get_openapi(), &facts)
-    })
+    DOCUMENT.get_or_init(|| openapi::text(described("").router.into_openapi()))
 }
 
 fn facts() -> &'static FactsOfRoutes {

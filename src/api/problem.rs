@@ -18,7 +18,7 @@ use crate::store::StoreError;
 use stickslip_measured::import::ImportError;
 use stickslip_wire::{Fault, ProblemDocument, Rejection};
 
-use crate::api::limits;
+use crate::api::request_limits;
 
 pub use stickslip_wire::Code;
 
@@ -43,7 +43,7 @@ impl Problem {
     /// A problem of this code, with what happened this time.
     #[must_use]
     pub fn new(code: Code, detail: impl Into<String>) -> Problem {
-        let (detail, retry_after) = (detail.into(), limits::RETRY_AFTER);
+        let (detail, retry_after) = (detail.into(), request_limits::RETRY_AFTER);
         Problem { code, detail, errors: Vec::new(), cause: None, retry_after, in_doubt: false }
     }
 

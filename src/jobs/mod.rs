@@ -20,7 +20,7 @@ use crate::admission::{INLINE, Kind, Nanoseconds, Pool, Stop};
 use crate::metrics::metrics;
 use crate::simulation::cost::MARGIN;
 use crate::simulation::{Sweep, SweepResult};
-use crate::store::jobs::JOB_LIFETIME;
+use crate::store::job_store::JOB_LIFETIME;
 use crate::store::{IdempotentRequest, Job, JobLimits, Listeners, Reply, RequestKey, Store, StoreError, Tenant};
 use stickslip_wire::sweep::CheckedSweep;
 use stickslip_wire::{self as wire, JobList, JobProgress, JobReply, JobState, SweepRequest};

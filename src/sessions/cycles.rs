@@ -12,12 +12,13 @@ use stickslip_mechanics::{Contact, Move, Normal};
 use stickslip_wire::reply::finite;
 use stickslip_wire::{Cycle, CyclePage, HistoryPage, State};
 
-use super::SessionError;
+use super::context::TenantContext;
 use super::cycle_log::{CycleLog, STATE_COST};
 use super::cycle_scan::{Answer, ClosedCycle};
-use super::replay::{PAGE, Replay};
+use super::error::SessionError;
+use super::replay::PAGE;
 
-/// Moves whose cost that of a steady cycle is like.
+/// The cost of a steady cycle, in moves.
 const CYCLE_MOVES: usize = 4;
 /// JSON pointer to the number of cycles.
 const LAST: &str = "/last";
@@ -27,7 +28,7 @@ const MARKED: &str = "/cycles";
 /// The closed cycles of the sessions of a tenant.
 #[derive(Clone)]
 pub struct ClosedCycles {
-    pub(super) replay: Replay,
+    pub(super) context: TenantContext,
 }
 
 impl ClosedCycles {
@@ -43,11 +44,11 @@ impl ClosedCycles {
         last: usize,
         memory: &mut Reservation,
     ) -> Result<(u64, CyclePage), SessionError> {
-        let (stop, _guard) = self.replay.common.pool.deadline();
+        let (stop, _guard) = self.context.pool.deadline();
         // The lock is held for copies alone, so that the session can move on meanwhile.
         let (virgin, sequence, known) = {
-            let mut guard = self.replay.lock(id).await?;
-            let live = self.replay.current(&mut guard).await?;
+            let mut guard = self.context.lock(id).await?;
+            let live = self.context.current(&mut guard).await?;
             let known = (live.contact.virgin(), live.session.sequence, live.cycles.clone());
             stop.charge(guard.loading);
             known
@@ -67,7 +68,7 @@ impl ClosedCycles {
             let newest = log.newest.range(log.newest.len().saturating_sub(last)..);
             newest.map(|cycle| answered(cycle, &virgin, (&stop, LAST))).collect::<Result<_, _>>()
         };
-        let items = self.replay.common.pool.run(cost, answers).await??;
+        let items = self.context.pool.run(cost, answers).await??;
         Ok((sequence, CyclePage { items }))
     }
 
@@ -77,10 +78,10 @@ impl ClosedCycles {
     /// As [`ClosedCycles::newest`].
     pub async fn mark(&self, id: Uuid, page: &mut HistoryPage, memory: &mut Reservation) -> Result<(), SessionError> {
         let Some(after) = page.items.first().map(|item| item.sequence - 1) else { return Ok(()) };
-        let (stop, _guard) = self.replay.common.pool.deadline();
+        let (stop, _guard) = self.context.pool.deadline();
         let (virgin, known) = {
-            let mut guard = self.replay.lock(id).await?;
-            let live = self.replay.current(&mut guard).await?;
+            let mut guard = self.context.lock(id).await?;
+            let live = self.context.current(&mut guard).await?;
             let known = (live.contact.virgin(), live.log_for(after));
             stop.charge(guard.loading);
             known
@@ -89,7 +90,7 @@ impl ClosedCycles {
             Some(known) if known.sequence >= after => known,
             known => self.look_on(id, after, known, &virgin, (&stop, MARKED), memory).await?,
         };
-        let (pool, before) = (&self.replay.common.pool, memory.bytes());
+        let (pool, before) = (&self.context.pool, memory.bytes());
         pool.resize(memory, before + log.bytes_with(PAGE)).await?;
         let states: Vec<(u64, State)> = page.items.iter().map(|item| (item.sequence, item.state)).collect();
         let cost = Work { moves: CYCLE_MOVES * states.len(), ..Work::default() }.cost(virgin.profile());
@@ -109,8 +110,8 @@ impl ClosedCycles {
         self.keep(id, &log).await
     }
 
-    /// Looks at the states up to the move `sequence` that are not in `known`. What has been seen when the time is up is
-    /// left with the session, so that another try comes farther; `place` is then refused.
+    /// Looks at the states up to the move `sequence` that are not in `known`. The log at the deadline is kept
+    /// with the session, so that the next request continues from it; `place` is then refused.
     async fn look_on(
         &self,
         id: Uuid,
@@ -143,7 +144,7 @@ impl ClosedCycles {
             Some(known) if known.sequence == sequence => return Ok((known, Ok(()))),
             known => known,
         };
-        let (pool, before) = (&self.replay.common.pool, memory.as_ref().map_or(0, |memory| memory.bytes()));
+        let (pool, before) = (&self.context.pool, memory.as_ref().map_or(0, |memory| memory.bytes()));
         let mut log = known.map_or_else(|| CycleLog::new(&virgin.state().into()), Arc::unwrap_or_clone);
         while log.sequence < sequence {
             if let Err(interrupted) = stop.check() {
@@ -152,7 +153,7 @@ impl ClosedCycles {
             if let Some(memory) = &mut memory {
                 pool.resize(memory, before + log.bytes_with(PAGE)).await?;
             }
-            let records = self.replay.page(id, log.sequence, sequence).await?;
+            let records = self.context.page(id, log.sequence, sequence).await?;
             let cost = STATE_COST * records.len() as u64;
             let look = move || {
                 for record in records {
@@ -169,9 +170,9 @@ impl ClosedCycles {
         Ok((Arc::new(log), Ok(())))
     }
 
-    /// Leaves what has been found with the session if that has come as far.
+    /// Keeps a log with the cached session, unless the log is ahead of the session.
     async fn keep(&self, id: Uuid, log: &Arc<CycleLog>) -> Result<(), SessionError> {
-        let mut guard = self.replay.lock(id).await?;
+        let mut guard = self.context.lock(id).await?;
         if let Some(live) = guard.live.as_mut().filter(|live| live.session.sequence >= log.sequence) {
             live.keep_log(log);
         }

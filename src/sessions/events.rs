@@ -16,8 +16,9 @@ use crate::store::{Listener, StoreError, StreamEvent};
 use stickslip_wire::{EndReason, HistoryPage, StateEvent};
 
 use super::cycles::ClosedCycles;
+use super::error::SessionError;
+use super::handle::Sessions;
 use super::history::History;
-use super::{SessionError, Sessions};
 
 /// Clients that may listen at a time.
 pub const STREAMS: usize = 1_000;
@@ -53,9 +54,9 @@ pub async fn events(
     id: Uuid,
     after: Option<u64>,
 ) -> Result<impl Stream<Item = StreamEvent<StateEvent>> + Send + use<>, SessionError> {
-    let share = sessions.replay.common.pool.share_of(Quota::Streams)?;
+    let share = sessions.context.pool.share_of(Quota::Streams)?;
     // Every later change wakes the listener, so that none can fall between the first read and the first wait.
-    let listener = sessions.replay.common.listeners.listen(sessions.replay.common.store.changes(), id);
+    let listener = sessions.context.listeners.listen(sessions.context.store.changes(), id);
     let listener = listener.ok_or(SessionError::TooManyStreams)?;
     let session = sessions.get(id).await?;
     let found = session.sequence;

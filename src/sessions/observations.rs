@@ -21,11 +21,12 @@ use stickslip_wire::{
 };
 
 use super::cache::Guard;
+use super::context::TenantContext;
 use super::cycle_log::{CycleLog, STATE_COST};
 use super::cycles::ClosedCycles;
-use super::loaded::{Estimated, LoadedSession};
-use super::replay::{PAGE, Replay};
-use super::{SessionError, written};
+use super::error::SessionError;
+use super::loaded::{Estimated, LoadedSession, written};
+use super::replay::PAGE;
 
 /// Moves that a cycle must have.
 const MOVES: u64 = 8;
@@ -92,8 +93,8 @@ pub struct Observations {
 }
 
 impl Observations {
-    pub(super) fn of(replay: &Replay) -> Observations {
-        Observations { cycles: ClosedCycles { replay: replay.clone() } }
+    pub(super) fn of(context: &TenantContext) -> Observations {
+        Observations { cycles: ClosedCycles { context: context.clone() } }
     }
 
     /// The friction of a session by its observations.
@@ -101,12 +102,12 @@ impl Observations {
     /// # Errors
     /// [`SessionError::NotFound`] or [`SessionError::Expired`], or a failure of the store or of the pool.
     pub async fn friction(&self, id: Uuid) -> Result<FrictionReply, SessionError> {
-        let (request, _raised_at_the_end) = self.cycles.replay.common.pool.deadline();
+        let (request, _raised_at_the_end) = self.cycles.context.pool.deadline();
         let stop = request.child_deadline(Some(TIME));
         // The lock is held for copies alone, so that the session can move on meanwhile.
         let (virgin, sequence, known, mut estimated) = {
-            let mut guard = self.cycles.replay.lock(id).await?;
-            let live = self.cycles.replay.current(&mut guard).await?;
+            let mut guard = self.cycles.context.lock(id).await?;
+            let live = self.cycles.context.current(&mut guard).await?;
             let known = (live.contact.virgin(), live.session.sequence, live.cycles.clone(), live.estimated);
             request.charge(guard.loading);
             known
@@ -114,10 +115,10 @@ impl Observations {
         let memory = &mut Reservation::default();
         let (log, seen) = self.cycles.read_states(id, sequence, known, &virgin, &stop, Some(memory)).await?;
         if seen.is_ok() {
-            self.cycles.replay.common.pool.resize(memory, bytes_of_fit(sequence)).await?;
+            self.cycles.context.pool.resize(memory, bytes_of_fit(sequence)).await?;
             estimated = self.estimate(id, &log, &virgin, estimated, &[], &stop).await?;
         }
-        let mut guard = self.cycles.replay.lock(id).await?;
+        let mut guard = self.cycles.context.lock(id).await?;
         if let Some(live) = guard.live.as_mut().filter(|live| live.session.sequence == sequence) {
             live.keep_log(&log);
             live.estimated = estimated;
@@ -149,7 +150,7 @@ impl Observations {
         let stored = to.min(log.sequence - new.len() as u64);
         let mut read = from.saturating_sub(1);
         while read < stored {
-            let page = match self.cycles.replay.page(id, read, stored).await {
+            let page = match self.cycles.context.page(id, read, stored).await {
                 // A store behind the cached state: the append that follows says so.
                 Err(SessionError::Store(StoreError::Damaged { .. })) if !new.is_empty() => return Ok(unknown),
                 page => page?,
@@ -165,7 +166,7 @@ impl Observations {
         }
         let (virgin, stop) = (virgin.clone(), stop.clone());
         let fit = move || fitted(virgin, cycle, &stop);
-        let friction = self.cycles.replay.common.pool.run(FIT_COST + POINT_COST * moves as u64, fit).await?;
+        let friction = self.cycles.context.pool.run(FIT_COST + POINT_COST * moves as u64, fit).await?;
         Ok(match friction {
             Some(friction) => {
                 let friction = friction.map(|(value, interval)| FrictionEstimate { value, interval, from, to });
@@ -176,8 +177,8 @@ impl Observations {
     }
 
     /// The reply to observations that have led to `live` and are not stored yet. The guard has the state before them.
-    /// If the estimate of the friction takes too long, or there is no memory for it now, it is the one before: nobody
-    /// waits for memory while he has the lock of a contact.
+    /// If the estimate of the friction takes too long, or there is no memory for it now, it is the one before: a
+    /// request that has the lock of a contact never waits for memory.
     pub(super) async fn observed(
         &self,
         guard: &mut Guard,
@@ -188,7 +189,7 @@ impl Observations {
         let id = guard.id();
         let (virgin, before) = (live.contact.virgin(), live.session.sequence - records.len() as u64);
         let stop = stop.child_deadline(Some(TIME));
-        let (pool, known) = (&self.cycles.replay.common.pool, live.cycles.take());
+        let (pool, known) = (&self.cycles.context.pool, live.cycles.take());
         let bytes = CycleLog::bytes_to_read(known.as_deref(), live.session.sequence);
         if let Some(_held) = pool.try_reserve(bytes + bytes_of_fit(live.session.sequence)) {
             let (mut log, seen) = self.cycles.read_states(id, before, known, &virgin, &stop, None).await?;
@@ -223,7 +224,7 @@ impl Observations {
         });
         let friction = live.estimated.and_then(|estimated| estimated.friction);
         let reply = ObservationsReply { id, sequence: live.session.sequence, items: items.collect(), friction };
-        self.cycles.replay.common.pool.run(WRITING_COST * records.len() as u64, move || written(&reply)).await?
+        self.cycles.context.pool.run(WRITING_COST * records.len() as u64, move || written(&reply)).await?
     }
 }
 

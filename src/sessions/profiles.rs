@@ -11,8 +11,8 @@ use stickslip_mechanics::{Elasticity, Profile};
 use stickslip_wire::profile::{SumProfile, TabulatedProfile};
 use stickslip_wire::{self as wire, DefinedProfile, Document, Prepare, Rejection};
 
-use super::Common;
 use super::cache::ProfileKey;
+use super::context::Common;
 
 /// The shared profiles, for work that ends when its flag is raised.
 #[derive(Clone)]

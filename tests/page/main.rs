@@ -846,8 +846,8 @@ async fn its_files_are_those_of_the_source_and_are_sent_once() {
         assert!(again.bytes().await.unwrap().is_empty());
         tags.push(tag);
     }
-    assert_eq!(tags[0], tags[2]);
-    assert_ne!(tags[0], tags[1], "two forms of a file are two things to a cache");
+    // Weak, because it is that of two forms.
+    assert!(tags.iter().all(|tag| tag == tags[0] && tag.as_bytes().starts_with(b"W/")), "{tags:?}");
     let unknown = http.get(format!("{}/page/..%2Fmain.rs", server.address)).send().await.unwrap();
     assert_eq!(common::problem(unknown).await.code, "not_found");
 }

@@ -10,7 +10,7 @@ use crate::common::{ball, create, long_moves, long_simulation};
 use futures::future::join_all;
 use serde_json::json;
 use stickslip::admission::Capacity;
-use stickslip::server::limits::SPARE_CONNECTIONS;
+use stickslip::server::connection_limits::SPARE_CONNECTIONS;
 use stickslip::server::{ConnectionLimits, memory_budget};
 use stickslip_wire::Move;
 use stickslip_wire::client::Options;

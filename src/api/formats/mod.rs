@@ -1,6 +1,6 @@
 //! What a request gets of [`crate::formats`]: the choice by the query or by `Accept`, and the reply.
 
-mod accept;
+mod choice;
 
 use axum::body::Body;
 use axum::http::{HeaderValue, header};

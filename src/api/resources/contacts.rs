@@ -2,7 +2,7 @@
 
 use super::prelude::*;
 use crate::api::extract::OptionalBody;
-use crate::api::parameters::{CONTACT_ORDER, IDENTIFIER, Text};
+use crate::api::query_parameters::{CONTACT_ORDER, IDENTIFIER, Text};
 use crate::sessions::label_checksum;
 use crate::simulation::bytes::OBJECT;
 use crate::store::Page;

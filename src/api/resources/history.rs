@@ -6,8 +6,8 @@ use stickslip_wire::{Cycle, HistoryPage, ObservedForce, State};
 use super::move_series::{self, ITEM_BYTES, MoveSeries};
 use super::prelude::*;
 use crate::admission::Reservation;
-use crate::api::parameters::FLAG;
-use crate::api::query::MovesQuery;
+use crate::api::checked_query::MovesQuery;
+use crate::api::query_parameters::FLAG;
 use crate::computations::state_columns;
 use crate::formats::{Cells, Column, Table};
 

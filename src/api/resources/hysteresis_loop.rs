@@ -6,7 +6,7 @@ use stickslip_wire::{HistoryPage, LoopPage, ObservedForce, limits};
 use super::move_series::{self, ITEM_BYTES, MoveSeries};
 use super::prelude::*;
 use crate::admission::Reservation;
-use crate::api::query::MovesQuery;
+use crate::api::checked_query::MovesQuery;
 use crate::formats::{Column, Table};
 use crate::sessions::{bytes_of_trace, trace};
 

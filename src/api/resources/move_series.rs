@@ -12,8 +12,8 @@ use stickslip_wire::HistoryPage;
 
 use super::prelude::*;
 use crate::admission::Reservation;
+use crate::api::checked_query::{Moves, MovesQuery};
 use crate::api::formats::TableStream;
-use crate::api::query::{Moves, MovesQuery};
 use crate::formats::{CAPACITY, Table, Unwritable};
 use crate::simulation::Failure;
 use crate::simulation::bytes::OBJECT;

@@ -6,7 +6,7 @@ use axum::body::Body;
 
 use super::jobs::{self, TableQuery};
 use super::prelude::*;
-use crate::api::params::{Prefer, accepts_events};
+use crate::api::path_and_headers::{Prefer, accepts_events};
 use crate::jobs::AT_ONCE;
 use crate::simulation::bytes::NUMBER;
 use crate::simulation::{Failure, Sweep, SweepResult};

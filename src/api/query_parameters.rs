@@ -112,10 +112,13 @@ macro_rules! parameters {
             $($(#[doc = $doc])* pub $member: $type,)*
         }
 
-        impl $crate::api::parameters::QueryParams for $name {
-            fn take(query: &mut $crate::api::parameters::QueryReader, _: &axum::http::HeaderMap) -> Option<$name> {
+        impl $crate::api::query_parameters::QueryParams for $name {
+            fn take(
+                query: &mut $crate::api::query_parameters::QueryReader,
+                _: &axum::http::HeaderMap,
+            ) -> Option<$name> {
                 Some($name {
-                    $($member: $crate::api::parameters::Kind::read(&$kind, stringify!($member), query)
+                    $($member: $crate::api::query_parameters::Kind::read(&$kind, stringify!($member), query)
                         $(.unwrap_or($default))?,)*
                 })
             }
@@ -128,7 +131,7 @@ macro_rules! parameters {
                 vec![$({
                     let default: Option<serde_json::Value> = None$(.or(Some(serde_json::json!($default))))?;
                     let description = [$($doc),*].map(str::trim).join(" ");
-                    $crate::api::parameters::described(stringify!($member), description, &$kind, default)
+                    $crate::api::query_parameters::described(stringify!($member), description, &$kind, default)
                 }),*]
             }
         }
@@ -229,7 +232,7 @@ impl Kind<Vec<f64>> for List {
     }
 }
 
-/// Fields of stresses, likewise.
+/// Fields of stresses, with commas between them, or given one by one.
 pub struct Fields;
 
 impl Kind<Vec<Field>> for Fields {
@@ -308,7 +311,7 @@ impl Kind<String> for Text {
     }
 }
 
-/// A value that reads itself.
+/// A value with a parser of its own.
 pub struct Plain<V> {
     /// What it is, for the text of a refusal.
     pub expected: &'static str,

@@ -11,8 +11,8 @@ use axum::http::request::Parts;
 use stickslip_wire::{Fault, JsonPath, Rejection};
 
 use super::formats::Format;
-use super::parameters::{MOVE_NUMBER, Number, QueryParams, QueryReader, count, parameters};
 use super::problem::Problem;
+use super::query_parameters::{MOVE_NUMBER, Number, QueryParams, QueryReader, count, parameters};
 use super::state::App;
 
 /// Items of a page.

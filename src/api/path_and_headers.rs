@@ -10,8 +10,9 @@ use utoipa::IntoParams;
 use utoipa::openapi::path::{Parameter, ParameterIn};
 use uuid::Uuid;
 
-use super::parameters::{MOVE_NUMBER, described};
+use super::accept::{NAMED, admission, list_members};
 use super::problem::{Code, Problem};
+use super::query_parameters::{MOVE_NUMBER, described};
 use super::state::App;
 use crate::sessions::Expected;
 
@@ -40,9 +41,9 @@ pub struct JobPath {
 pub struct IfMatch {
     /// The sequence that the contact must have, in quotes: an `ETag` of it. If it has another one, nothing changes and
     /// the answer is 412. With the checksum of a label behind a dot, as `GET /contacts/{id}` gives it, the label must
-    /// be the same too; `.00000000` is that of no label.
+    /// be the same too; `.00000000` is that of no label. The `W/` of a compressed reply may stand before it.
     #[param(rename = "If-Match", value_type = Option<String>, nullable = false,
-        pattern = r#"^("[0-9]{1,19}(\.[0-9a-f]{8})?"|\*)$"#)]
+        pattern = r#"^((W/)?"[0-9]{1,19}(\.[0-9a-f]{8})?"|\*)$"#)]
     pub expected: Option<Expected>,
 }
 
@@ -120,7 +121,9 @@ impl FromRequestParts<Arc<App>> for IfMatch {
             return Ok(IfMatch { expected: None });
         };
         let text = value.to_str().unwrap_or_default().trim();
-        let tag = text.strip_prefix('"').and_then(|rest| rest.strip_suffix('"'));
+        // A version is the same version in a compressed reply.
+        let tag = text.strip_prefix("W/").unwrap_or(text);
+        let tag = tag.strip_prefix('"').and_then(|rest| rest.strip_suffix('"'));
         match (text, tag.and_then(expected)) {
             ("*", _) => Ok(IfMatch { expected: None }),
             (_, Some(expected)) => Ok(IfMatch { expected: Some(expected) }),
@@ -175,21 +178,16 @@ impl FromRequestParts<Arc<App>> for Prefer {
     type Rejection = Infallible;
 
     async fn from_request_parts(parts: &mut Parts, _: &Arc<App>) -> Result<Self, Infallible> {
-        let is_async = |preference: &str| without_parameters(preference).eq_ignore_ascii_case("respond-async");
+        let is_async = |preference: &str| {
+            let name = preference.split(';').next().unwrap_or_default();
+            name.trim().eq_ignore_ascii_case("respond-async")
+        };
         Ok(Prefer { respond_async: list_members(&parts.headers, "prefer").any(is_async) })
     }
 }
 
 /// Whether the client asks for server-sent events.
 pub fn accepts_events(headers: &HeaderMap) -> bool {
-    list_members(headers, "accept").any(|range| without_parameters(range).eq_ignore_ascii_case("text/event-stream"))
-}
-
-/// The members of a comma-separated header, which may itself occur several times.
-pub fn list_members<'h>(headers: &'h HeaderMap, name: &'static str) -> impl Iterator<Item = &'h str> {
-    headers.get_all(name).iter().filter_map(|line| line.to_str().ok()).flat_map(|line| line.split(','))
-}
-
-fn without_parameters(member: &str) -> &str {
-    member.split(';').next().unwrap_or_default().trim()
+    let admission = admission(headers, "accept", "text/event-stream");
+    admission.is_some_and(|admission| admission.rank == NAMED && admission.quality > 0.0)
 }
