@@ -115,6 +115,22 @@ fn a_sweep_prints_its_document_with_json() {
 }
 
 #[test]
+fn a_body_is_read_from_standard_input_and_a_refusal_is_a_failure() {
+    let simulated = |force: f64| {
+        let body = tempfile::NamedTempFile::new().unwrap();
+        std::fs::write(&body, json!({"contact": ball(), "path": {"force": [force]}}).to_string()).unwrap();
+        let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_stickslip"));
+        command.args(["simulate", "-"]).stdin(body.reopen().unwrap()).output().unwrap()
+    };
+    let (good, bad) = (simulated(1.0), simulated(3.0));
+    let reply: Value = serde_json::from_slice(&good.stdout).unwrap();
+    assert!(good.status.success() && (reply["steps"][0]["force"].as_f64().unwrap() - 1.0).abs() < 1e-12, "{reply}");
+    let problem: ProblemDocument = serde_json::from_slice(&bad.stderr).unwrap();
+    assert_eq!((bad.status.code(), problem.code.as_str()), (Some(1), "force_exceeds_friction"));
+    assert_eq!(problem.errors[0].pointer, "/path/force/0");
+}
+
+#[test]
 fn an_address_in_use_names_the_remedy() {
     let taken = TcpListener::bind("127.0.0.1:0").unwrap();
     let address = taken.local_addr().unwrap().to_string();

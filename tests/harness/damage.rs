@@ -25,36 +25,16 @@ pub enum Damage {
     Remove(usize),
 }
 
-const WORDS: [&str; 24] = [
-    "null",
-    "true",
-    "{}",
-    "[]",
-    "\"rigid\"",
-    "\"exact\"",
-    "1e999",
-    "-1e999",
-    "1e-999",
-    "-0.0",
-    "5e-324",
-    "1e308",
-    "0",
-    "-1",
-    "9007199254740993",
-    "18446744073709551616",
-    "0.1",
-    "1e-15",
-    "\"\"",
-    "\"a/b~c\"",
-    "\"\\u0000\"",
-    "[[]]",
-    "{\"displacement\":1e-7}",
-    "[0,1e-9,1e-9]",
-];
+/// Values to put in, and words to insert.
+const WORDS: &str = r#"
+    null true {} [] "rigid" "exact" 1e999 -1e999 1e-999 -0.0 5e-324 1e308 0 -1 9007199254740993
+    18446744073709551616 0.1 1e-15 "" "a/b~c" "\u0000" [[]] {"displacement":1e-7} [0,1e-9,1e-9]
+"#;
 
-fn damage() -> impl Strategy<Value = Damage> {
+/// Any damage.
+pub fn damage() -> impl Strategy<Value = Damage> {
     let place = || 0.0..1.0_f64;
-    let word = || select(WORDS.to_vec());
+    let word = || select(WORDS.split_whitespace().collect::<Vec<_>>());
     prop_oneof![
         2 => (place(), any::<u8>()).prop_map(|(place, byte)| Damage::Byte(place, byte)),
         1 => (place(), 1..20_usize).prop_map(|(place, length)| Damage::Cut(place, length)),
@@ -75,7 +55,8 @@ pub fn damaged() -> impl Strategy<Value = Vec<u8>> {
 }
 
 impl Damage {
-    fn apply(&self, mut text: Vec<u8>) -> Vec<u8> {
+    /// The text with this damage.
+    pub fn apply(&self, mut text: Vec<u8>) -> Vec<u8> {
         let length = text.len();
         let at = |place: f64| ((place * length as f64) as usize).min(length.saturating_sub(1));
         match *self {
@@ -173,33 +154,12 @@ fn change(value: &mut Value, left: &mut usize, by: &mut Option<Value>) -> bool {
 
 /// Random bytes, and words of JSON in random order.
 pub fn raw() -> impl Strategy<Value = Vec<u8>> {
-    const NAMES: [&str; 24] = [
-        "{",
-        "}",
-        "[",
-        "]",
-        ":",
-        ",",
-        "\"contact\"",
-        "\"profile\"",
-        "\"type\"",
-        "\"sphere\"",
-        "\"radius\"",
-        "\"material\"",
-        "\"effective\"",
-        "\"friction\"",
-        "\"preload\"",
-        "\"path\"",
-        "\"moves\"",
-        "\"stress\"",
-        "\"sum\"",
-        "\"parts\"",
-        "\"tabulated\"",
-        "\"r\"",
-        "\"z\"",
-        "\"force\"",
-    ];
-    let soup = prop_oneof![3 => select(NAMES.to_vec()), 1 => select(WORDS.to_vec())];
+    const NAMES: &str = r#"
+        { } [ ] : , "contact" "profile" "type" "sphere" "radius" "material" "effective" "friction" "preload"
+        "path" "moves" "stress" "sum" "parts" "tabulated" "r" "z" "force"
+    "#;
+    let among = |words: &'static str| select(words.split_whitespace().collect::<Vec<_>>());
+    let soup = prop_oneof![3 => among(NAMES), 1 => among(WORDS)];
     prop_oneof![
         prop::collection::vec(any::<u8>(), 0..200),
         prop::collection::vec(soup, 0..60).prop_map(|words| words.concat().into_bytes()),
