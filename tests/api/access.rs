@@ -9,7 +9,7 @@ use common::openapi::{document, examples, operations, with_query};
 use common::postgres::Cluster;
 use common::process::Process;
 use common::tables::same_numbers;
-use common::{ball, problem, until};
+use common::{ball, problem, run, until};
 use reqwest::{Method, Response};
 use serde_json::{Value, json};
 use stickslip::access::{Keys, Role, new_key, new_key_until};
@@ -244,8 +244,11 @@ async fn seen(response: Response, id: Uuid) -> (u16, Vec<(String, String)>, Stri
     (status, headers, text.replace(&request_id, "REQUEST").replace(&id.to_string(), "ID"))
 }
 
-/// Requests about a contact, good and bad: method, route, body and header.
-fn attempts(document: &Value) -> Vec<(String, String, Option<Value>, Option<(&'static str, &'static str)>)> {
+/// A request: method, route, body and header.
+type Attempt = (String, String, Option<Value>, Option<(&'static str, &'static str)>);
+
+/// Requests about a contact, good and bad.
+fn attempts(document: &Value) -> Vec<Attempt> {
     let mut all = Vec::new();
     for (method, route, _) in endpoints().into_iter().filter(|(_, route, _)| route.contains("{id}")) {
         let tags =
@@ -451,9 +454,7 @@ async fn a_key_with_an_end_counts_until_then() {
 #[test]
 fn the_command_line_makes_keys_with_several_roles_an_end_and_a_note() {
     let made = |more: &[&str]| {
-        let mut command = common::clean(std::process::Command::new(env!("CARGO_BIN_EXE_stickslip")));
-        command.args(["key", "new", "--name", "a", "--tenant", "lab"]).args(more);
-        let output = common::process::ended(&mut command);
+        let output = run(&[&["key", "new", "--name", "a", "--tenant", "lab"], more].concat());
         let text = String::from_utf8([output.stdout, output.stderr].concat()).unwrap();
         if output.status.success() { Ok(text) } else { Err(text) }
     };

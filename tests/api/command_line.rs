@@ -6,7 +6,7 @@ use std::net::TcpListener;
 use serde_json::{Value, json};
 use stickslip_wire::ProblemDocument;
 
-use crate::common::{ball, run};
+use crate::common::{ball, binary, run};
 
 fn printed(arguments: &[&str]) -> String {
     let output = run(arguments);
@@ -119,8 +119,7 @@ fn a_body_is_read_from_standard_input_and_a_refusal_is_a_failure() {
     let simulated = |force: f64| {
         let body = tempfile::NamedTempFile::new().unwrap();
         std::fs::write(&body, json!({"contact": ball(), "path": {"force": [force]}}).to_string()).unwrap();
-        let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_stickslip"));
-        command.args(["simulate", "-"]).stdin(body.reopen().unwrap()).output().unwrap()
+        binary(&["simulate", "-"]).stdin(body.reopen().unwrap()).output().unwrap()
     };
     let (good, bad) = (simulated(1.0), simulated(3.0));
     let reply: Value = serde_json::from_slice(&good.stdout).unwrap();

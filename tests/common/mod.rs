@@ -131,16 +131,23 @@ impl Binary {
 
     /// The same at an address.
     pub fn at(address: &str, store: &str, arguments: &[&str]) -> Binary {
-        let mut command = clean(Command::new(env!("CARGO_BIN_EXE_stickslip")));
-        command.args(["--listen", address, "--store", store]).args(arguments).stderr(Stdio::piped());
+        let mut command = binary(&["--listen", address, "--store", store]);
+        command.args(arguments).stderr(Stdio::piped());
         let (child, address) = process::listening(command);
         Binary { child, client: Client::new(&*address), address }
     }
 }
 
-/// The output of the binary with these arguments, after it has exited by itself.
+/// The binary with these arguments, and without the settings of the environment.
+pub fn binary(arguments: &[&str]) -> Command {
+    let mut command = clean(Command::new(env!("CARGO_BIN_EXE_stickslip")));
+    command.args(arguments);
+    command
+}
+
+/// Its output, after it has exited by itself.
 pub fn run(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_stickslip")).args(arguments).output().unwrap()
+    binary(arguments).output().unwrap()
 }
 
 impl Drop for Binary {

@@ -36,9 +36,8 @@ impl Process {
 
     /// Starts a server with these arguments, and its log in a file.
     pub async fn start_with(arguments: &[&str], log: &Path) -> Process {
-        let mut command = super::clean(Command::new(env!("CARGO_BIN_EXE_stickslip")));
-        command.args(["serve", "--listen", "127.0.0.1:0"]).args(arguments);
-        command.stderr(std::fs::File::create(log).unwrap());
+        let mut command = super::binary(&["serve", "--listen", "127.0.0.1:0"]);
+        command.args(arguments).stderr(std::fs::File::create(log).unwrap());
         Process::of(command).await
     }
 

@@ -2,7 +2,6 @@
 
 use std::fs::File;
 use std::net::SocketAddr;
-use std::process::Command;
 use std::time::Duration;
 
 use stickslip_wire::client::Client;
@@ -45,9 +44,8 @@ impl Service {
     /// The same with a store.
     pub fn start_on(store: &str, arguments: &[&str]) -> Service {
         let folder = tempfile::tempdir().unwrap();
-        let mut command = super::clean(Command::new(env!("CARGO_BIN_EXE_stickslip")));
-        command.args(["serve", "--listen", "127.0.0.1:0", "--store", store]).args(arguments);
-        command.stderr(File::create(folder.path().join("log")).unwrap());
+        let mut command = super::binary(&["serve", "--listen", "127.0.0.1:0", "--store", store]);
+        command.args(arguments).stderr(File::create(folder.path().join("log")).unwrap());
         let process = Process::at_once(command);
         let address = process.base.trim_start_matches("http://").parse().unwrap();
         Service { client: process.client.clone(), process, folder, address }
