@@ -250,12 +250,14 @@ async fn a_retry_gets_the_first_reply_again() {
     let server = Server::start().await;
     let id = server.contact().await;
     let (contact, ball) = (format!("/contacts/{id}"), ball().to_string());
-    let (moved, path, fork) = (format!("{contact}/move"), format!("{contact}/path"), format!("{contact}/fork"));
+    let [moved, path, fork, observed] =
+        ["move", "path", "fork", "observations"].map(|change| format!("{contact}/{change}"));
     for (key, target, body) in [
         ("one", "/contacts", &*ball),
         ("two", &*moved, r#"{"displacement": 1e-7}"#),
         ("three", &*path, r#"{"path": {"displacement": [2e-8, 3e-8]}}"#),
         ("four", &*fork, "{}"),
+        ("five", &*observed, r#"{"observations": [{"displacement": 1e-7, "force": 1.2}]}"#),
     ] {
         let headers = [("idempotency-key", key)];
         let first = server.send(Method::POST, target, Some(body), &headers).await;
@@ -272,7 +274,7 @@ async fn a_retry_gets_the_first_reply_again() {
         assert_eq!((other.status, other.code.as_str()), (422, "idempotency_key_reused"));
     }
     let shown: Value = server.get(&contact).await.json().await.unwrap();
-    assert_eq!(shown["sequence"], 3);
+    assert_eq!(shown["sequence"], 4);
     assert_eq!(server.client.contacts(None, None).await.unwrap().items.len(), 3);
 
     // The retry gets its reply even when the contact is deleted.

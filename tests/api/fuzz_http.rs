@@ -14,15 +14,16 @@ use std::time::Instant;
 use futures::future::join_all;
 use percent_encoding::{NON_ALPHANUMERIC, utf8_percent_encode};
 use proptest::strategy::{Strategy as _, ValueTree as _};
+use proptest::test_runner::TestRunner;
 use reqwest::{Method, Response};
 use serde::de::IgnoredAny;
-use serde_json::Value;
+use serde_json::{Value, json};
 use stickslip_wire::ProblemDocument;
 use stickslip_wire::client::Options;
 
 use crate::common::kill::Random;
 use crate::common::openapi::{document, examples, operations};
-use crate::common::raw::{PATIENCE, Service};
+use crate::common::raw::{PATIENCE, Service, get, post};
 use crate::common::{ball, create};
 use crate::damage::damage;
 use crate::fuzz_bodies::{case_count, runner, seed};
@@ -113,10 +114,10 @@ fn request(document: &Value, contacts: &[String], number: u64, random: &mut Rand
         let mut bytes = example.as_str().map_or_else(|| example.to_string(), str::to_owned).into_bytes();
         let mut runner = runner(seed(), number);
         for _ in 0..random.below(4) {
-            match example {
-                Value::String(_) => damage_bytes(&mut bytes, random),
-                _ => bytes = damage().new_tree(&mut runner).unwrap().current().apply(bytes),
-            }
+            bytes = match example {
+                Value::String(_) => damaged(bytes, &mut runner, random),
+                _ => damage().new_tree(&mut runner).unwrap().current().apply(bytes),
+            };
         }
         let text = String::from_utf8_lossy(&bytes).into_owned();
         body_alone &= example.is_object() && serde_json::from_str::<Value>(&text).is_ok_and(|body| body.is_object());
@@ -235,12 +236,9 @@ async fn bytes_on_the_socket() {
     let service = service();
     let id = service.client.create(&create(), &Options::default()).await.unwrap().id;
     let sound = [
-        crate::common::raw::post(
-            "/simulate",
-            &serde_json::json!({"contact": ball(), "path": {"force": [0.1]}}).to_string(),
-        ),
-        crate::common::raw::post(&format!("/contacts/{id}/move"), r#"{"displacement": 1e-8}"#),
-        crate::common::raw::get(&format!("/contacts/{id}/stress?points=5")),
+        post("/simulate", &json!({"contact": ball(), "path": {"force": [0.1]}}).to_string()),
+        post(&format!("/contacts/{id}/move"), r#"{"displacement": 1e-8}"#),
+        get(&format!("/contacts/{id}/stress?points=5")),
         "POST /simulate HTTP/1.1\r\nhost: localhost\r\ncontent-type: application/json\r\ntransfer-encoding: \
          chunked\r\n\r\n5\r\n{\"a\":\r\n2\r\n1}\r\n0\r\n\r\n"
             .to_owned(),
@@ -250,8 +248,9 @@ async fn bytes_on_the_socket() {
         if random.below(6) == 0 {
             bytes = (0..random.below(3_000)).map(|_| random.next() as u8).collect();
         }
+        let mut runner = runner(seed(), number);
         for _ in 0..1 + random.below(4) {
-            damage_bytes(&mut bytes, random);
+            bytes = damaged(bytes, &mut runner, random);
         }
         let answer = service.send_all(&bytes).await;
         let shown = || format!("case {number}: {}", String::from_utf8_lossy(&bytes));
@@ -267,33 +266,16 @@ async fn bytes_on_the_socket() {
     assert_log_is_clean(&service);
 }
 
-fn damage_bytes(bytes: &mut Vec<u8>, random: &mut Random) {
-    let place = random.below(bytes.len().max(1) as u64) as usize;
-    let end = (place + 1 + random.below(40) as usize).min(bytes.len());
-    match random.below(7) {
-        _ if place >= bytes.len() => bytes.push(random.next() as u8),
-        0 => bytes[place] = random.next() as u8,
-        1 => bytes[place] ^= 1 << random.below(8),
-        2 => drop(bytes.drain(place..end)),
-        3 => {
-            let twin = bytes[place..end].to_vec();
-            bytes.splice(place..place, twin);
-        }
-        4 => bytes.truncate(place),
-        5 => {
-            let words: [&[u8]; 9] = [
-                b"\r\n",
-                b"\n",
-                b"\0",
-                b"\r\nContent-Length: 3",
-                b"\r\nTransfer-Encoding: chunked",
-                b"%00",
-                b" ",
-                b"\r\n\r\n",
-                b"\r\nExpect: 100-continue",
-            ];
-            bytes.splice(place..place, pick(&words, random).iter().copied());
-        }
-        _ => bytes.splice(place..place, std::iter::repeat_n(b'a', 40_000)).for_each(drop),
+/// A damage of the harness, or of those that a head and the end of a message can have.
+fn damaged(mut bytes: Vec<u8>, runner: &mut TestRunner, random: &mut Random) -> Vec<u8> {
+    const WORDS: &str = "\r\n|\n|\0|\r\nContent-Length: 3|\r\nTransfer-Encoding: chunked|%00| |\r\n\r\n|\
+        \r\nExpect: 100-continue";
+    let place = random.below(bytes.len() as u64 + 1) as usize;
+    match random.below(6) {
+        0 => bytes.truncate(place),
+        1 => drop(bytes.splice(place..place, std::iter::repeat_n(b'a', 40_000))),
+        2 => drop(bytes.splice(place..place, pick(&WORDS.split('|').collect::<Vec<_>>(), random).bytes())),
+        _ => return damage().new_tree(runner).unwrap().current().apply(bytes),
     }
+    bytes
 }

@@ -76,15 +76,13 @@ impl Damage {
             }
             Damage::Replace(index, word) => {
                 if let (Ok(mut document), Ok(word)) = (serde_json::from_slice(&text), serde_json::from_str(word)) {
-                    let count = count(&document);
-                    change(&mut document, &mut (index % count), &mut Some(word));
+                    change(&mut document, index, Some(word));
                     text = document.to_string().into_bytes();
                 }
             }
             Damage::Remove(index) => {
                 if let Ok(mut document) = serde_json::from_slice(&text) {
-                    let count = count(&document);
-                    change(&mut document, &mut (index % count), &mut None);
+                    change(&mut document, index, None);
                     text = document.to_string().into_bytes();
                 }
             }
@@ -108,48 +106,33 @@ fn numbers(text: &[u8]) -> Vec<std::ops::Range<usize>> {
     found
 }
 
-fn count(value: &Value) -> usize {
-    1 + match value {
-        Value::Array(elements) => elements.iter().map(count).sum(),
-        Value::Object(members) => members.values().map(count).sum(),
-        _ => 0,
-    }
+/// The pointers of all values of a document.
+fn places(value: &Value) -> Vec<String> {
+    let inner: Vec<(String, &Value)> = match value {
+        Value::Array(elements) => elements.iter().enumerate().map(|(at, one)| (at.to_string(), one)).collect(),
+        Value::Object(members) => members.iter().map(|(name, member)| (name.clone(), member)).collect(),
+        _ => Vec::new(),
+    };
+    let within = |(name, value): (String, &Value)| {
+        places(value).into_iter().map(|below| format!("/{name}{below}")).collect::<Vec<_>>()
+    };
+    std::iter::once(String::new()).chain(inner.into_iter().flat_map(within)).collect()
 }
 
-/// Replaces the value at index `left` of a depth-first walk, or removes it if `by` is `None`; true once that is done.
-fn change(value: &mut Value, left: &mut usize, by: &mut Option<Value>) -> bool {
-    if *left == 0 {
-        *value = by.take().unwrap_or(Value::Null);
-        return true;
+/// Replaces the n-th value of a document, or removes it.
+fn change(document: &mut Value, index: usize, by: Option<Value>) {
+    let places = places(document);
+    let place = &places[index % places.len()];
+    if let Some(by) = by {
+        document.pointer_mut(place).into_iter().for_each(|value| *value = by.clone());
+        return;
     }
-    *left -= 1;
-    match value {
-        Value::Array(elements) => {
-            for index in 0..elements.len() {
-                if *left == 0 && by.is_none() {
-                    elements.remove(index);
-                    return true;
-                }
-                if change(&mut elements[index], left, by) {
-                    return true;
-                }
-            }
-        }
-        Value::Object(members) => {
-            let names: Vec<String> = members.keys().cloned().collect();
-            for name in names {
-                if *left == 0 && by.is_none() {
-                    members.remove(&name);
-                    return true;
-                }
-                if members.get_mut(&name).is_some_and(|member| change(member, left, by)) {
-                    return true;
-                }
-            }
-        }
+    let (parent, name) = place.rsplit_once('/').unwrap_or_default();
+    match document.pointer_mut(parent) {
+        Some(Value::Object(members)) => drop(members.remove(name)),
+        Some(Value::Array(elements)) if !name.is_empty() => drop(elements.remove(name.parse().unwrap())),
         _ => {}
     }
-    false
 }
 
 /// Random bytes, and words of JSON in random order.
