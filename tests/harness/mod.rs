@@ -1,6 +1,5 @@
 //! What must hold for any bytes as the body of `POST /simulate`: shared by `tests/api/fuzz_bodies.rs` and `fuzz/`.
 
-mod balance;
 mod laws;
 mod refusals;
 

@@ -8,7 +8,7 @@ use crate::freezing_proxy::{FreezingProxy, Silence};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use common::postgres::Cluster;
+use common::postgres::{Cluster, connected};
 use common::{Server, ball, until};
 use futures::future::join_all;
 use reqwest::{Method, StatusCode};
@@ -16,19 +16,13 @@ use serde_json::{Value, json};
 use stickslip::admission::{Capacity, Pool, QuotaLimits};
 use stickslip::sessions::{CAPACITY, Sessions};
 use stickslip::store::{ChunkResult, Job, JobLimits, JobStore as _, PostgresStore, Session, Store, StoreError, Tenant};
-use tokio_postgres::{Client, NoTls};
+use tokio_postgres::Client;
 use uuid::Uuid;
 
 /// How long the answer of a frozen replica is waited for: longer than a database may be silent in a short statement.
 const UNANSWERED: Duration = Duration::from_secs(30);
 /// Rounds of other clients' requests beside a lock.
 const ROUNDS: usize = 20;
-
-async fn connected(url: &str) -> Client {
-    let (client, connection) = tokio_postgres::connect(url, NoTls).await.unwrap();
-    tokio::spawn(connection);
-    client
-}
 
 async fn stored(store: &PostgresStore) -> Uuid {
     let new = session(None);
