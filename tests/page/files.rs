@@ -51,7 +51,7 @@ async fn the_columns_of_a_file_are_named_before_it_is_fitted_and_a_refused_unit_
                   '1'; box.dispatchEvent(new Event('change', { bubbles: true })); })() ?? null";
     browser.value(column).await;
     browser.until(&format!("{TABLE}.some((row) => row.includes('displacement, in mil'))")).await;
-    browser.click("#fit-loop").await;
+    browser.click("#compute-loop").await;
     let friction = "[...document.querySelectorAll('#loop-estimates div')].find((row) => \
                     row.innerText.includes('friction'))?.innerText ?? ''";
     browser.until(&format!("({friction}).includes('0.3 (95 %')")).await;

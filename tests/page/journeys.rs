@@ -74,7 +74,7 @@ async fn loop_a_file_of_a_bench_becomes_the_coefficient_of_friction() {
     browser.until("document.querySelector('#loop-card').innerText.includes('The force is “Force (N)”, in N.')").await;
     browser.click("[name=machine_compliance]").await;
     browser.click("[name=drift]").await;
-    browser.click("#fit-loop").await;
+    browser.click("#compute-loop").await;
     let found = "document.querySelector('#loop-estimates').innerText.replaceAll('\\n', ' ')";
     browser.until(&format!("{found}.includes('friction μ 0.42')")).await;
     // The file was made with a friction of 0.42; all that was asked for has an interval.
@@ -98,7 +98,7 @@ async fn crack_a_file_of_a_contact_becomes_the_margin_of_a_criterion() {
     let limit = "[...document.querySelectorAll('#crack-card fieldset')].find((one) => \
                  one.innerText.includes('Findley')).querySelectorAll('input')[2]";
     browser.value(&format!("({limit}.value = '400') && null")).await;
-    browser.click("#search-crack").await;
+    browser.click("#compute-crack").await;
     browser.until("document.querySelector('#verdict-findley .good') !== null").await;
     let amplitude: f64 = format!("{:.2e}", 0.5 * session.contact.gross_slip_displacement).parse().unwrap();
     let mut contact = crate::common::ball();

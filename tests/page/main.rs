@@ -170,9 +170,7 @@ async fn it_fits_small_windows_and_dark_rooms_and_needs_no_mouse() {
                 browser.until("document.querySelectorAll('.plot .slipping').length === 1").await;
             }
             // What is folded must fit, be readable, and have names too.
-            browser
-                .value("document.querySelectorAll('details:not(.menu)').forEach((one) => one.open = true) ?? null")
-                .await;
+            browser.value("document.querySelectorAll('details').forEach((one) => one.open = true) ?? null").await;
             browser.until("document.documentElement.scrollWidth <= innerWidth").await;
             assert_eq!(axe::serious(&browser).await, [""; 0], "{view} {name}");
             if view.starts_with(&contact) {
@@ -278,7 +276,7 @@ async fn a_path_of_cycles_runs_from_the_page_and_says_its_work_or_its_fault() {
     let session = ball(&server).await;
     let browser = Browser::start(1280, 900, false).await;
     browser.page.goto(&format!("{}/#/contacts/{}", server.address, session.id)).await.unwrap();
-    browser.click("#run-path").await;
+    browser.click("#compute-path").await;
     let status = "document.querySelector('#path-status').innerText";
     browser.until(&format!("{status}.startsWith('Done')")).await;
     // Five cycles with the two moves of each, and the first to a turn.
@@ -287,12 +285,13 @@ async fn a_path_of_cycles_runs_from_the_page_and_says_its_work_or_its_fault() {
     let turn = now.state.displacement / session.contact.gross_slip_displacement;
     assert!((turn - 0.5).abs() < 1e-3, "{turn}");
 
-    browser.write("#path", r#"{"cycles": {"displacement": 1e-7, "count": 0}}"#).await;
-    browser.click("#run-path").await;
-    browser.until(&format!("{status}.startsWith('/path/cycles/count')")).await;
-    browser.write("#path", "up and down").await;
-    browser.click("#run-path").await;
-    browser.until(&format!("{status}.includes('not JSON')")).await;
+    browser.write("#path-card textarea", r#"{"cycles": {"displacement": 1e-7, "count": 0}}"#).await;
+    browser.click("#compute-path").await;
+    let fault = "document.querySelector('#path-card .fault').innerText";
+    browser.until(&format!("{fault}.startsWith('cycles/count')")).await;
+    browser.write("#path-card textarea", "up and down").await;
+    browser.click("#compute-path").await;
+    browser.until(&format!("{fault}.includes('not JSON')")).await;
     assert_eq!(server.client.contact(session.id).await.unwrap().sequence, 11);
     // Chromium logs each refusal.
     browser.stayed_quiet_and_at(&server.address, &["status of 422"]).await;
@@ -368,7 +367,7 @@ async fn the_steady_cycle_follows_the_slider() {
     // Dragged to the end and back to the middle, it ends with what belongs there.
     browser.drag("#slide-displacement", 0.2, 0.99).await;
     browser.until(&format!("{card}.includes('slides in each stroke')")).await;
-    browser.click("button[id=run-path]").await;
+    browser.click("button[id=compute-path]").await;
     browser.until(&format!("{card}.includes('inside, the surfaces stick')")).await;
     moved(&server, &session, &[0.0]).await;
     browser.until(&format!("{card}.includes('Pull') && !{card}.includes('J')")).await;
@@ -603,7 +602,7 @@ async fn what_is_on_screen_can_be_taken_away() {
     browser.press("#plot-loop svg", "0").await;
     browser.until(&format!("{ticks} === {all}")).await;
     for (entry, name) in [(4, "loop.png"), (5, "loop.svg"), (6, "loop.csv")] {
-        browser.click(&format!("#plot-loop .menu button:nth-of-type({entry})")).await;
+        browser.click(&format!("#plot-loop .menu [popover] button:nth-of-type({entry})")).await;
         let file = saved(&folder.path().join(name)).await;
         let text = String::from_utf8_lossy(&file);
         match name {
@@ -619,7 +618,7 @@ async fn what_is_on_screen_can_be_taken_away() {
             _ => assert_eq!(text.lines().count(), 3, "{text}"),
         }
     }
-    browser.click("#plot-above .menu button:nth-of-type(5)").await;
+    browser.click("#plot-above .menu [popover] button:nth-of-type(5)").await;
     let drawing = String::from_utf8(saved(&folder.path().join("above.svg")).await).unwrap();
     // The colours go up to the largest stress that is there.
     let state = reqwest::get(format!("{}/contacts/{}/stress?points=2&residual=true", server.address, session.id)).await;
@@ -629,7 +628,7 @@ async fn what_is_on_screen_can_be_taken_away() {
     assert!(drawing.contains(&format!(">τ: −{number} to +{number} {unit}<")), "{most}");
     assert!(drawing.contains("<stop") && drawing.contains("rgb(") && !drawing.contains("oklab("));
     // The commands are those of this contact, and they work.
-    browser.click(".copying button").await;
+    browser.click(".copying [popover] button").await;
     let commands = browser.value("document.querySelector('#code textarea').value").await;
     let commands = commands.as_str().unwrap();
     let last = commands.split("\n\n").last().unwrap();
@@ -741,8 +740,8 @@ async fn a_pasted_loop_becomes_friction_and_a_contact() {
     let rows = table.lines().filter(|line| line.starts_with(|first: char| first.is_ascii_digit()));
     pasted(&browser, "textarea[name=loop]", &rows.collect::<Vec<_>>().join("\n")).await;
     browser.until("document.querySelector('#loop-card').innerText.includes('no column “displacement”')").await;
-    browser.click("#fit-loop").await;
-    let card = "document.querySelector('#fit-loop').closest('.card')";
+    browser.click("#compute-loop").await;
+    let card = "document.querySelector('#compute-loop').closest('.card')";
     browser.until(&format!("[...{card}.querySelectorAll('.fault')].some((one) => one.innerText.length > 20)")).await;
     for (name, column) in [("displacement", "2"), ("force", "3")] {
         let place = format!(
@@ -753,7 +752,7 @@ async fn a_pasted_loop_becomes_friction_and_a_contact() {
     }
     // Nor does anything say their units: they are asked for, and not taken for metres.
     browser.until("document.querySelector('#loop-card').innerText.includes('The force is column 3, in N')").await;
-    browser.click("#fit-loop").await;
+    browser.click("#compute-loop").await;
     let question = "Record 1: nothing says the unit of the displacement, nor of the force: choose it.";
     browser.until(&format!("document.querySelector('#loop-card').innerText.includes({question:?})")).await;
     for (name, power) in [("displacement", -6), ("force", 0)] {
@@ -765,7 +764,7 @@ async fn a_pasted_loop_becomes_friction_and_a_contact() {
     }
     browser.until("document.querySelector('#loop-card').innerText.includes('The force is column 3, in N.')").await;
     browser.click("[name=machine_compliance]").await;
-    browser.click("#fit-loop").await;
+    browser.click("#compute-loop").await;
     browser.until("document.querySelector('#loop-estimates').innerText.includes('friction μ')").await;
     browser.until("document.querySelectorAll('#plot-fit path.line').length === 2").await;
     assert_eq!(browser.value("document.querySelector('#loop-warnings').children.length").await, 0);
@@ -817,7 +816,7 @@ async fn it_asks_for_a_key_where_one_is_needed_and_finds_by_label() {
     browser.click(".list a").await;
     browser.until("document.querySelector('.badge.on') !== null").await;
     // The key stays in this tab, and out of what is copied.
-    browser.click(".copying button").await;
+    browser.click(".copying [popover] button").await;
     let commands = browser.value("document.querySelector('#code textarea').value").await;
     let commands = commands.as_str().unwrap();
     assert!(commands.contains("Bearer $STICKSLIP_KEY") && !commands.contains(&new.key), "{commands}");

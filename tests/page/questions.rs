@@ -44,7 +44,8 @@ async fn each_tab_has_an_address_that_survives_reload_back_and_links() {
     // One menu has what the nine pairs of buttons had, and the files of the plots of its tab.
     let menus = "document.querySelectorAll('.copying').length";
     assert_eq!(browser.value(menus).await, 1);
-    let entries = "[...document.querySelectorAll('.copying button')].map((one) => one.ariaLabel ?? one.textContent)";
+    let entries = "[...document.querySelectorAll('.copying [popover] button')].map((one) => one.ariaLabel ?? \
+                   one.textContent)";
     let entries: Vec<String> = serde_json::from_value(browser.value(entries).await).unwrap();
     assert_eq!(entries[..3], ["Copy as curl", "Copy as Python", "Copy link"]);
     assert!(entries[3..].iter().any(|entry| entry.ends_with("as CSV")), "{entries:?}");
@@ -106,7 +107,7 @@ async fn the_worst_place_is_found_without_a_grid_judged_and_marked() {
     for (index, text) in [(1, "much"), (2, "300 MPa")] {
         browser.value(&format!("({limit}[{index}].value = {text:?}) && null")).await;
     }
-    browser.click("#search-crack").await;
+    browser.click("#compute-crack").await;
     let faults = "[...document.querySelectorAll('#crack-card .fault')].map((one) => one.innerText).filter(Boolean)";
     browser.until(&format!("{faults}.length === 2")).await;
     let said = browser.value(faults).await;
@@ -124,7 +125,7 @@ async fn the_worst_place_is_found_without_a_grid_judged_and_marked() {
     browser.value("(document.querySelector('#crack-card details').open = true) && null").await;
     let bulk = "[...document.querySelectorAll('#crack-card details input')]";
     browser.value(&format!("({bulk}[0].value = '50', {bulk}[1].value = '40', null)")).await;
-    browser.click("#search-crack").await;
+    browser.click("#compute-crack").await;
     browser.until("document.querySelector('#plot-crack .shade') !== null").await;
 
     let amplitude: f64 = 0.5 * session.contact.gross_slip_displacement;
@@ -246,7 +247,7 @@ async fn damping_and_residual_stress_have_what_the_service_can_do() {
     browser.value("(document.querySelector('#search-card details').open = true) && null").await;
     let error = "document.querySelectorAll('#search-card details input')[0]";
     browser.value(&format!("({error}.value = '1') && null")).await;
-    browser.click("#find-protocol").await;
+    browser.click("#compute-search").await;
     let found = "document.querySelector('#search-figures').innerText.replaceAll('\\n', ' ')";
     let reply = asked("/protocols", &json!({"contact": contact, "target": 0.2})).await;
     browser.until(&format!("{found}.includes('Reversals {} ')", reply["reversals"])).await;
@@ -422,7 +423,7 @@ async fn pictures_of_the_documentation() {
     opened(&browser, &server, &session, "/crack").await;
     let limit = "[...document.querySelectorAll('#crack-card fieldset')][0].querySelectorAll('input')[2]";
     browser.value(&format!("({limit}.value = '300') && null")).await;
-    browser.click("#search-crack").await;
+    browser.click("#compute-crack").await;
     browser.until("document.querySelector('#plot-crack .shade') !== null").await;
     browser.picture("crack").await;
     browser.look(390, 844, false).await;
