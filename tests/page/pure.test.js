@@ -42,7 +42,7 @@ test("what is no number, or may be two, is said in words", () => {
 });
 
 test("numbers have a true minus, raised powers and the prefix that fits", () => {
-  assert.equal(units.formatNumber(1.06103e-5), "1.061 × 10⁻⁵");
+  assert.equal(units.formatNumber(1.06149e-5), "1.061 × 10⁻⁵");
   assert.equal(units.formatNumber(-0.25), "−0.25");
   assert.equal(units.formatNumber(null), "∞");
   assert.equal(units.formatQuantity(1.60244e-7, "m"), "160.2 nm");
@@ -67,12 +67,16 @@ test("a value is shown in a unit as one would type it", () => {
 
 test("an axis leads from values to pixels and back, with round numbers", () => {
   const axis = new Axis({ label: "Displacement U", unit: "m" });
+  const texts = () =>
+    axis
+      .ticks(80)
+      .map(([, text]) => text)
+      .join();
+  axis.fit([0, 8e-9], 0, 400);
+  assert.equal(texts(), "0,2,4,6,8");
   axis.fit([-2e-7, 3e-7], 60, 460);
   assert.equal(axis.title(), "Displacement U (nm)");
-  assert.deepEqual(
-    axis.ticks(80).map(([, text]) => text),
-    ["−200", "−100", "0", "100", "200", "300"],
-  );
+  assert.equal(texts(), "−200,−100,0,100,200,300");
   for (const value of [-2e-7, 0, 1.7e-7]) assert.ok(Math.abs(axis.back(axis.at(value)) - value) < 1e-20);
   const log = new Axis({ label: "Amplitude", unit: "m", log: true });
   log.fit([1e-9, 1e-4], 400, 20);
