@@ -1,5 +1,5 @@
-//! The service stickslip: frictional contact of two elastic bodies, exact and with all of its history, over HTTP. The
-//! physics is in `stickslip-mechanics`, the JSON types are in `stickslip-wire`. A module imports only from those below
+//! The service stickslip: frictional contact of two elastic bodies, exact and with all of its history, over HTTP. What
+//! it computes is in `stickslip-compute`, the JSON types are in `stickslip-wire`. A module imports only from those below
 //! it here.
 //!
 //! [`cli`] is the command line, which the binary and the Python package call.
@@ -15,13 +15,6 @@
 //! [`sessions`] are the contacts that live on the server: a cache over the store, one writer at a time each, replay,
 //! retries.
 //!
-//! [`computations`] are what takes a document and gives one without storing anything, each with its name, cost, table
-//! and picture, in one list.
-//!
-//! [`simulation`] is what they share with stored contacts: solvers on their paths, stresses, warnings, sweeps, costs.
-//!
-//! [`formats`] writes tables and pictures.
-//!
 //! [`admission`] gives permits for solver threads, places and memory, and ends work that takes too long or is not
 //! waited for.
 //!
@@ -35,13 +28,10 @@ pub mod access;
 pub mod admission;
 pub mod api;
 pub mod cli;
-pub mod computations;
-pub mod formats;
 pub mod jobs;
 pub mod metrics;
 pub mod otlp;
 pub mod server;
 pub mod sessions;
-pub mod simulation;
 pub mod store;
 mod unverified_tls;

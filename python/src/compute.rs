@@ -4,8 +4,8 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 use stickslip::api;
-use stickslip::computations::{self, Shown};
-use stickslip::formats::Format;
+use stickslip_compute::computations::{self, Shown};
+use stickslip_compute::formats::Format;
 
 use super::interrupt::interruptible;
 use super::problem::refused;

@@ -7,10 +7,10 @@ use pyo3::exceptions::PyIndexError;
 use pyo3::prelude::*;
 use pyo3::types::PyByteArray;
 use serde_json::json;
-use stickslip::admission::Stop;
 use stickslip::api::Problem;
 use stickslip::api::problem::Code;
-use stickslip::simulation;
+use stickslip_compute::Stop;
+use stickslip_compute::simulation::{self, Anew};
 use stickslip_mechanics::range::{self, Range};
 use stickslip_mechanics::{Contact, Error, Move, Normal, Tangential};
 use stickslip_wire::session::Creation;
@@ -138,8 +138,8 @@ impl Contacts {
 }
 
 /// The first of the contacts.
-fn first(body: &[u8], stop: &Stop) -> Result<Contact, Problem> {
-    let Creation { setup, .. } = simulation::check(wire::parse::<CreateRequest>(body)?, stop, stop)??;
+fn first(body: &[u8], stop: &dyn Stop) -> Result<Contact, Problem> {
+    let Creation { setup, .. } = simulation::check(wire::parse::<CreateRequest>(body)?, &Anew(stop), stop)??;
     Ok(simulation::contact(setup, "")?)
 }
 

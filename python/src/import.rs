@@ -4,7 +4,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use serde::Serialize;
 use stickslip::api;
-use stickslip::computations::files;
+use stickslip_compute::computations::files;
 use stickslip_measured::import::{Dimension, ImportError, LoopHints, ScanHints, Unit, UnitHint};
 use stickslip_wire::Code;
 

@@ -9,12 +9,12 @@ use axum::http::{HeaderValue, StatusCode, header};
 use axum::response::{IntoResponse, Response};
 
 use crate::admission::PoolError;
-use crate::computations::ComputeError;
-use crate::formats::Unwritable;
 use crate::jobs::JobError;
 use crate::sessions::SessionError;
-use crate::simulation::{Cause, Failure, SweepError};
 use crate::store::StoreError;
+use stickslip_compute::computations::ComputeError;
+use stickslip_compute::formats::Unwritable;
+use stickslip_compute::simulation::{Cause, Failure};
 use stickslip_measured::import::ImportError;
 use stickslip_wire::{Fault, ProblemDocument, Rejection};
 
@@ -191,8 +191,8 @@ impl From<JobError> for Problem {
             JobError::LongPoint { .. } => Problem::at(Code::TooMuchWork, "/base", detail),
             JobError::TooMuch { .. } => Problem::at(Code::TooMuchWork, "/axes", detail),
             JobError::TooManyStreams => Problem::new(Code::Overloaded, detail),
-            JobError::Sweep(SweepError::Failure(failure)) => failure.into(),
-            JobError::Sweep(SweepError::Pool(error)) | JobError::Pool(error) => error.into(),
+            JobError::Failure(failure) => failure.into(),
+            JobError::Pool(error) => error.into(),
             JobError::TooMany { retry_after, .. } => Problem { retry_after, ..Problem::new(Code::TooManyJobs, detail) },
             JobError::Store(error) => SessionError::Store(error).into(),
             JobError::Broken(_) => Problem::internal(detail),

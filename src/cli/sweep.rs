@@ -10,10 +10,10 @@ use stickslip_wire::{self as wire, SweepRequest};
 use super::io::{json, read, write};
 use super::progress;
 use super::refusal::Refusal;
-use crate::admission::{SolverSlot, Stop};
 use crate::api::Problem;
-use crate::formats::Format;
-use crate::simulation::{Sweep as Plan, SweepResult};
+use stickslip_compute::Flag;
+use stickslip_compute::formats::Format;
+use stickslip_compute::simulation::{Anew, Sweep as Plan, SweepResult};
 
 /// The sweep, and how to run it.
 #[derive(Args)]
@@ -38,18 +38,18 @@ impl Sweep {
     }
 
     fn printed(&self) -> Result<(), Refusal> {
-        let plan = wire::read::<SweepRequest>(&read(&self.file)?).and_then(|sweep| Plan::plan(sweep, &Stop::default()));
+        let plan =
+            wire::read::<SweepRequest>(&read(&self.file)?).and_then(|sweep| Plan::plan(sweep, &Anew(&Flag::default())));
         let plan = plan.map_err(Problem::from)?;
         let cores = std::thread::available_parallelism().map_or(1, usize::from);
         let threads = self.threads.unwrap_or(cores).max(1);
-        let (points, outputs) = (plan.points(), plan.numbers(1));
+        let points = plan.points();
         let (mut result, mut done) = (SweepResult::default(), 0);
         let bar = progress::bar(points as u64, "points");
         while done < points {
-            let slots = (0..threads).map(|_| SolverSlot::alone()).collect();
-            let slice = plan.slice(done..points, slots, &Stop::default(), None);
+            let slice = plan.slice(done..points, vec![(); threads], &Flag::default(), None);
             result.append(slice.map_err(Problem::from)?);
-            done = result.values.len() / outputs;
+            done = plan.points_of(&result);
             bar.set_position(done as u64);
         }
         bar.finish_and_clear();

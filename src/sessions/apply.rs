@@ -6,12 +6,13 @@ use std::sync::Arc;
 use tracing::Instrument as _;
 use uuid::Uuid;
 
-use crate::admission::{Reservation, Stop};
-use crate::computations::{OnContact as _, dry_run_relax};
+use crate::admission::{Deadline, Reservation};
 use crate::otlp;
-use crate::simulation::bytes::{of_moves, of_records, of_stress};
-use crate::simulation::cost::Work;
 use crate::store::{IdempotentRequest, Reply, RequestKey, StoreError, Usage};
+use stickslip_compute::Stop as _;
+use stickslip_compute::computations::{OnContact as _, dry_run_relax};
+use stickslip_compute::simulation::bytes::{of_moves, of_records, of_stress};
+use stickslip_compute::simulation::cost::Work;
 use stickslip_wire::protocol::Relaxation;
 use stickslip_wire::session::Advance;
 use stickslip_wire::{Plan, RelaxReply, limits};
@@ -99,7 +100,7 @@ impl Mover {
                 }
                 return Err(refusal);
             }
-            stop.charge(std::mem::take(&mut guard.loading));
+            stop.flag().charge(std::mem::take(&mut guard.loading));
             let (mut live, Done { records, mut reply }) = match self.compute(&advance, &mut guard, &stop).await {
                 Ok(done) => done,
                 Err(SessionError::Failure(_) | SessionError::Rejected(_))
@@ -186,7 +187,7 @@ impl Mover {
         &self,
         advance: &Arc<Advance>,
         guard: &mut Guard,
-        stop: &Stop,
+        stop: &Deadline,
     ) -> Result<(Box<LoadedSession>, Done), SessionError> {
         let depth = guard.live.as_ref().map_or(0, |live| live.contact.memory_depth());
         // A single move that the mechanics refuses has changed nothing, so that it needs no copy to fall back on; and a

@@ -4,10 +4,10 @@ use std::sync::Arc;
 
 use jiff::Timestamp;
 
-use crate::admission::Stop;
-use crate::computations::{Moved, make_moves, shown_states};
+use crate::admission::Deadline;
 use crate::otlp;
 use crate::store::{Measured, Record, Reply};
+use stickslip_compute::computations::{Moved, make_moves, shown_states};
 use stickslip_wire::session::Advance;
 use stickslip_wire::{MoveReply, Observation, PathReply, Plan, RelaxReply, State, Steps};
 
@@ -29,7 +29,7 @@ pub(super) fn attempt(
     live: &mut LoadedSession,
     advance: &Advance,
     by: Option<&Arc<str>>,
-    stop: &Stop,
+    stop: &Deadline,
 ) -> Result<Done, SessionError> {
     let solving = otlp::part!("solve").entered();
     let now = Timestamp::now();

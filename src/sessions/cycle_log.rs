@@ -2,8 +2,8 @@
 
 use std::collections::VecDeque;
 
-use crate::admission::Nanoseconds;
 use crate::store::RECORD_BYTES;
+use stickslip_compute::Nanoseconds;
 use stickslip_wire::{State, limits};
 
 use super::cycle_scan::{ClosedCycle, CycleScan};

@@ -4,9 +4,10 @@ use std::sync::Arc;
 
 use uuid::Uuid;
 
-use crate::admission::{Interrupted, Reservation, Stop};
-use crate::simulation::Failure;
-use crate::simulation::cost::Work;
+use crate::admission::{Deadline, Reservation};
+use stickslip_compute::simulation::Failure;
+use stickslip_compute::simulation::cost::Work;
+use stickslip_compute::{Interrupted, Stop};
 use stickslip_mechanics::cycle::SteadyCycle;
 use stickslip_mechanics::{Contact, Move, Normal};
 use stickslip_wire::reply::finite;
@@ -49,7 +50,7 @@ impl ClosedCycles {
             let mut guard = self.replay.lock(id).await?;
             let live = self.replay.current(&mut guard).await?;
             let known = (live.contact.virgin(), live.session.sequence, live.cycles.clone());
-            stop.charge(guard.loading);
+            stop.flag().charge(guard.loading);
             known
         };
         let log = match known {
@@ -82,7 +83,7 @@ impl ClosedCycles {
             let mut guard = self.replay.lock(id).await?;
             let live = self.replay.current(&mut guard).await?;
             let known = (live.contact.virgin(), live.log_for(after));
-            stop.charge(guard.loading);
+            stop.flag().charge(guard.loading);
             known
         };
         let mut log = match known {
@@ -117,7 +118,7 @@ impl ClosedCycles {
         sequence: u64,
         known: Option<Arc<CycleLog>>,
         virgin: &Contact,
-        (stop, place): (&Stop, &str),
+        (stop, place): (&Deadline, &str),
         memory: &mut Reservation,
     ) -> Result<Arc<CycleLog>, SessionError> {
         let (log, seen) = self.read_states(id, sequence, known, virgin, stop, Some(memory)).await?;
@@ -136,7 +137,7 @@ impl ClosedCycles {
         sequence: u64,
         known: Option<Arc<CycleLog>>,
         virgin: &Contact,
-        stop: &Stop,
+        stop: &dyn Stop,
         mut memory: Option<&mut Reservation>,
     ) -> Result<(Arc<CycleLog>, Result<(), Interrupted>), SessionError> {
         let known = match known {
@@ -180,7 +181,7 @@ impl ClosedCycles {
 }
 
 /// A row of the reply; `virgin` is the contact before its first move.
-fn answered(cycle: &ClosedCycle, virgin: &Contact, (stop, place): (&Stop, &str)) -> Result<Cycle, SessionError> {
+fn answered(cycle: &ClosedCycle, virgin: &Contact, (stop, place): (&Deadline, &str)) -> Result<Cycle, SessionError> {
     stop.check().map_err(|interrupted| Failure::interrupted(interrupted, place))?;
     let amplitude = cycle.displacement_amplitude;
     let (force_amplitude, dissipated_energy, sliding_ratio) = match cycle.answer {

@@ -5,9 +5,9 @@ use std::time::Duration;
 use uuid::Uuid;
 
 use crate::admission::PoolError;
-use crate::formats::Unwritable;
-use crate::simulation;
 use crate::store::StoreError;
+use stickslip_compute::formats::Unwritable;
+use stickslip_compute::simulation;
 use stickslip_wire::Rejection;
 
 /// Why an operation on a session failed. Nothing has changed then.

@@ -11,8 +11,8 @@ use futures::Stream;
 use uuid::Uuid;
 
 use crate::admission::{PoolError, Quota, Reservation, Share};
-use crate::simulation::{Cause, Failure};
 use crate::store::{Listener, StoreError, StreamEvent};
+use stickslip_compute::simulation::{Cause, Failure};
 use stickslip_wire::{EndReason, HistoryPage, StateEvent};
 
 use super::cycles::ClosedCycles;

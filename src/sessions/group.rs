@@ -14,8 +14,8 @@ use uuid::Uuid;
 
 use crate::admission::Client;
 use crate::otlp;
-use crate::simulation::cost::Work;
 use crate::store::{Reply, StoreError, Usage};
+use stickslip_compute::simulation::cost::Work;
 use stickslip_wire::session::Advance;
 use stickslip_wire::{Plan, limits};
 

@@ -3,8 +3,8 @@
 use std::cmp::Ordering;
 use std::sync::Arc;
 
-use crate::simulation::{self, bytes, present_warnings};
 use crate::store::{CONTACT_BYTES, Reply, Session};
+use stickslip_compute::simulation::{self, bytes, present_warnings};
 use stickslip_mechanics::Contact;
 use stickslip_wire::definition::SharedSetup;
 use stickslip_wire::{ContactSummary, Faults, FrictionEstimate, JsonPath, NewSession, Prepare, SessionReply, Warning};

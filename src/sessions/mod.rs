@@ -31,7 +31,6 @@ mod history;
 mod loaded;
 mod metrics;
 mod observations;
-mod profiles;
 mod replay;
 mod replay_cost;
 mod run_to_end;
@@ -43,12 +42,13 @@ use std::sync::Arc;
 
 use uuid::Uuid;
 
-use crate::admission::{Pool, Reservation, Stop};
-use crate::computations::{OnContact, Shown};
-use crate::formats;
+use crate::admission::{Deadline, Pool, Reservation};
 use crate::otlp;
-use crate::simulation::{bytes, cost};
 use crate::store::{Listeners, Page, Store, Tenant};
+use stickslip_compute::computations::{OnContact, Shown};
+use stickslip_compute::formats;
+use stickslip_compute::simulation::{ProfileCache, ProfileKey, Profiles, bytes, cost};
+use stickslip_mechanics::Profile;
 use stickslip_wire::subsurface::SubsurfaceTask;
 use stickslip_wire::{ContactDefinition, SessionPage, SessionReply, SubsurfaceRequest};
 
@@ -65,7 +65,6 @@ pub use expiry::run_expiry_loop;
 pub use history::History;
 pub use metrics::{Readings, SessionMetrics};
 pub use observations::Observations;
-pub use profiles::Profiles;
 use replay::Replay;
 use snapshot::Snapshots;
 use storage_reservation::UsageByTenant;
@@ -90,6 +89,28 @@ struct Common {
     listeners: Listeners,
     metrics: SessionMetrics,
     usage: UsageByTenant,
+}
+
+impl Common {
+    fn profiles(self: &Arc<Common>, stop: &Deadline) -> Profiles<Deadline> {
+        Profiles::new(self.clone(), stop.clone(), self.pool.capacity().deadline)
+    }
+}
+
+/// The profiles that requests share are kept in the cache of the states, within one bound.
+impl ProfileCache for Common {
+    fn holds(&self, key: &ProfileKey) -> bool {
+        self.cache.profile(key).is_some()
+    }
+
+    fn get(&self, key: &ProfileKey) -> Option<Arc<Profile>> {
+        self.cache.profile(key).inspect(|_| self.metrics.profiles_shared.inc())
+    }
+
+    fn keep(&self, key: ProfileKey, profile: Arc<Profile>, bytes: usize) -> Arc<Profile> {
+        self.metrics.profiles_prepared.inc();
+        self.cache.keep_profile(key, profile, bytes)
+    }
 }
 
 impl Sessions {
@@ -148,8 +169,8 @@ impl Sessions {
 
     /// The shared profiles, for work that ends when this flag is raised.
     #[must_use]
-    pub fn profiles(&self, stop: &Stop) -> Profiles {
-        Profiles::new(&self.replay.common, stop)
+    pub fn profiles(&self, stop: &Deadline) -> Profiles<Deadline> {
+        self.replay.common.profiles(stop)
     }
 
     /// Ends all events, present and future: the process is about to stop.
@@ -225,7 +246,7 @@ impl Sessions {
         let work = move || {
             let _state = state;
             let outcome = otlp::part!("solve").in_scope(|| task.run(contact, sequence, &stop))?;
-            Ok::<_, SessionError>(shown.write(&outcome, &stop)??)
+            Ok::<_, SessionError>(otlp::part!("write").in_scope(|| shown.write(&outcome, &stop))??)
         };
         Ok((sequence, self.replay.common.pool.run(cost, work).await??))
     }
@@ -275,5 +296,5 @@ impl Sessions {
 const REPLY: usize = 768;
 
 fn written(reply: &impl serde::Serialize) -> Result<Vec<u8>, SessionError> {
-    Ok(formats::json(REPLY, reply)?)
+    Ok(otlp::part!("write").in_scope(|| formats::json(REPLY, reply))?)
 }

@@ -10,12 +10,12 @@ use std::time::Duration;
 
 use uuid::Uuid;
 
-use crate::admission::{Nanoseconds, Reservation, Stop};
-use crate::simulation::bytes::ROW;
+use crate::admission::{Deadline, Reservation};
 use crate::store::{self, StoreError};
+use stickslip_compute::simulation::bytes::ROW;
+use stickslip_compute::{Nanoseconds, Part, Stop};
 use stickslip_measured::loops::{Error, Known, LoopFit, Noise, Note, Parameter, Record, Start, Task, fit};
-use stickslip_mechanics::{Contact, range};
-use stickslip_report::plot::in_unit;
+use stickslip_mechanics::{Contact, in_unit, range};
 use stickslip_wire::{
     Faults, FrictionEstimate, FrictionReply, JsonPath, Observation, ObservationsReply, ObservedMove, Rejection, limits,
 };
@@ -102,17 +102,17 @@ impl Observations {
     /// [`SessionError::NotFound`] or [`SessionError::Expired`], or a failure of the store or of the pool.
     pub async fn friction(&self, id: Uuid) -> Result<FrictionReply, SessionError> {
         let (request, _raised_at_the_end) = self.cycles.replay.common.pool.deadline();
-        let stop = request.child_deadline(Some(TIME));
+        let stop = Arc::new(Part::of(request.clone(), Some(TIME)));
         // The lock is held for copies alone, so that the session can move on meanwhile.
         let (virgin, sequence, known, mut estimated) = {
             let mut guard = self.cycles.replay.lock(id).await?;
             let live = self.cycles.replay.current(&mut guard).await?;
             let known = (live.contact.virgin(), live.session.sequence, live.cycles.clone(), live.estimated);
-            request.charge(guard.loading);
+            request.flag().charge(guard.loading);
             known
         };
         let memory = &mut Reservation::default();
-        let (log, seen) = self.cycles.read_states(id, sequence, known, &virgin, &stop, Some(memory)).await?;
+        let (log, seen) = self.cycles.read_states(id, sequence, known, &virgin, &*stop, Some(memory)).await?;
         if seen.is_ok() {
             self.cycles.replay.common.pool.resize(memory, bytes_of_fit(sequence)).await?;
             estimated = self.estimate(id, &log, &virgin, estimated, &[], &stop).await?;
@@ -134,7 +134,7 @@ impl Observations {
         virgin: &Contact,
         earlier: Option<Estimated>,
         new: &[store::Record],
-        stop: &Stop,
+        stop: &Arc<Part<Deadline>>,
     ) -> Result<Option<Estimated>, SessionError> {
         let Some((from, to)) = newest_large(log) else { return Ok(None) };
         if let Some(earlier) = earlier.filter(|earlier| (earlier.from, earlier.to) == (from, to)) {
@@ -163,8 +163,8 @@ impl Observations {
         if !rest.all(|record| cycle.push(record)) {
             return Ok(unknown);
         }
-        let (virgin, stop) = (virgin.clone(), stop.clone());
-        let fit = move || fitted(virgin, cycle, &stop);
+        let (virgin, stop) = (virgin.clone(), Arc::clone(stop));
+        let fit = move || fitted(virgin, cycle, &*stop);
         let friction = self.cycles.replay.common.pool.run(FIT_COST + POINT_COST * moves as u64, fit).await?;
         Ok(match friction {
             Some(friction) => {
@@ -183,15 +183,15 @@ impl Observations {
         guard: &mut Guard,
         live: &mut LoadedSession,
         records: &[store::Record],
-        stop: &Stop,
+        stop: &Deadline,
     ) -> Result<Vec<u8>, SessionError> {
         let id = guard.id();
         let (virgin, before) = (live.contact.virgin(), live.session.sequence - records.len() as u64);
-        let stop = stop.child_deadline(Some(TIME));
+        let stop = Arc::new(Part::of(stop.clone(), Some(TIME)));
         let (pool, known) = (&self.cycles.replay.common.pool, live.cycles.take());
         let bytes = CycleLog::bytes_to_read(known.as_deref(), live.session.sequence);
         if let Some(_held) = pool.try_reserve(bytes + bytes_of_fit(live.session.sequence)) {
-            let (mut log, seen) = self.cycles.read_states(id, before, known, &virgin, &stop, None).await?;
+            let (mut log, seen) = self.cycles.read_states(id, before, known, &virgin, &*stop, None).await?;
             // It is not read again if these observations are overtaken.
             if let Some(live) = &mut guard.live {
                 live.keep_log(&log);
@@ -235,7 +235,7 @@ fn bytes_of_fit(sequence: u64) -> usize {
 
 /// The coefficient of friction of a cycle with its 95 % interval, if the cycle determines it; nothing at all if the
 /// time is up.
-fn fitted(virgin: Contact, cycle: MeasuredCycle, stop: &Stop) -> Option<Option<(f64, [f64; 2])>> {
+fn fitted(virgin: Contact, cycle: MeasuredCycle, stop: &dyn Stop) -> Option<Option<(f64, [f64; 2])>> {
     let MeasuredCycle { displacement, force, load } = cycle;
     let normal_force = load.map(|(_, normal_force)| normal_force);
     let record = Record { displacement, force, time: None, normal_force, start: Some(Start::Steady), weight: 1.0 };

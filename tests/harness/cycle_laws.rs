@@ -2,8 +2,8 @@
 
 use std::f64::consts::PI;
 
-use stickslip::admission::{Nanoseconds, Stop};
-use stickslip::computations::{Computation as _, Cycle, Outcome as _};
+use stickslip_compute::computations::{Computation as _, Cycle, Outcome as _};
+use stickslip_compute::{Flag, Nanoseconds};
 use stickslip_mechanics::cycle::Drive;
 use stickslip_wire::cycle::{CycleRequest, CycleTask};
 use stickslip_wire::{CycleReply, Document as _, SteadyCycle, parse};
@@ -34,7 +34,7 @@ pub fn examine(body: &[u8]) -> Outcome {
         return Outcome::TooExpensive;
     }
     let (.., task) = checked.clone();
-    match Cycle::run(checked, &Stop::default()) {
+    match Cycle::run(checked, &Flag::default()) {
         Ok(found) => {
             laws(&task, found.reply());
             Outcome::Answered

@@ -3,8 +3,8 @@
 use proptest::prelude::*;
 use proptest::sample::{select, subsequence};
 use serde_json::{Value, json};
-use stickslip::admission::{Nanoseconds, Stop};
-use stickslip::computations::{Computation as _, FitLoops};
+use stickslip_compute::computations::{Computation as _, FitLoops};
+use stickslip_compute::{Flag, Nanoseconds};
 use stickslip_wire::fit::{FitParameter, FitRequest};
 use stickslip_wire::{CreateRequest, Document as _, FitReply, parse};
 
@@ -96,7 +96,7 @@ pub fn examine(body: &[u8]) -> Outcome {
     if FitLoops::cost(&task) > MAX_COST {
         return Outcome::TooExpensive;
     }
-    match FitLoops::run(task, &Stop::default()) {
+    match FitLoops::run(task, &Flag::default()) {
         Ok(reply) => {
             laws(&reply);
             Outcome::Answered

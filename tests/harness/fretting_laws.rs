@@ -1,7 +1,7 @@
 //! What must hold for any body of `POST /fretting`.
 
-use stickslip::admission::{Nanoseconds, Stop};
-use stickslip::computations::{Computation as _, Fretting, Outcome as _};
+use stickslip_compute::computations::{Computation as _, Fretting, Outcome as _};
+use stickslip_compute::{Flag, Nanoseconds};
 use stickslip_mechanics::fatigue::MAX_INSTANTS;
 use stickslip_wire::fretting::{FrettingRequest, FrettingTask};
 use stickslip_wire::{Document as _, FrettingReply, parse};
@@ -29,7 +29,7 @@ pub fn examine(body: &[u8]) -> Outcome {
     }
     let (_, setup, task) = checked.clone();
     let spiked = setup.profile.rim_radius().is_some() || !setup.profile.singular_radii().is_empty();
-    match Fretting::run(checked, &Stop::default()) {
+    match Fretting::run(checked, &Flag::default()) {
         Ok(found) => {
             laws(&task, found.reply(), spiked);
             Outcome::Answered

@@ -15,10 +15,10 @@ use futures::StreamExt as _;
 use futures::future::join_all;
 use reqwest::{Method, StatusCode};
 use serde_json::{Value, json};
-use stickslip::admission::Stop;
 use stickslip::sessions::CAPACITY;
-use stickslip::simulation;
 use stickslip::store::PostgresStore;
+use stickslip_compute::Flag;
+use stickslip_compute::simulation;
 use stickslip_wire::client::{Client, Error, Event, Options};
 use stickslip_wire::{self as wire, ForkRequest, HistoryItem, Move, MoveReply, SimulateRequest, State};
 use uuid::Uuid;
@@ -140,7 +140,7 @@ fn replay(past: &[HistoryItem]) -> Vec<State> {
     let moves: Vec<Move> = past.iter().map(|item| item.step).collect();
     let request = json!({"contact": ball(), "path": {"moves": moves}});
     let request = wire::read::<SimulateRequest>(request.to_string().as_bytes()).unwrap();
-    simulation::simulate(&request, &Stop::default()).unwrap().steps
+    simulation::simulate(&request, &Flag::default()).unwrap().steps
 }
 
 #[tokio::test]

@@ -1,34 +1,25 @@
-//! The choice of a format: by `?format=`, or else by `Accept`.
+//! The choice of a format by `Accept`.
 
 use axum::http::{HeaderMap, header};
 
 use super::Format;
 use crate::api::problem::{Code, Problem};
 
-impl Format {
-    /// The format that the query names, or the one out of `formats` that `Accept` prefers.
-    ///
-    /// # Errors
-    /// [`Code::NotAcceptable`] if `Accept` admits none of them.
-    pub fn chosen(named: Option<Format>, headers: &HeaderMap, formats: &[Format]) -> Result<Format, Problem> {
-        if let Some(format) = named {
-            return Ok(format);
-        }
-        let accepted: Vec<&str> =
-            headers.get_all(header::ACCEPT).iter().filter_map(|line| line.to_str().ok()).collect();
-        let accepted = accepted.join(",");
-        if accepted.trim().is_empty() {
-            return Ok(Format::Columns);
-        }
-        let weighed = formats.iter().map(|format| (quality(&accepted, format.media_type()), *format));
-        // Of equals the first.
-        let best = weighed.reduce(|best, next| if next.0 > best.0 { next } else { best });
-        best.filter(|(quality, _)| *quality > 0.0).map(|(_, format)| format).ok_or_else(|| {
-            let known: Vec<String> =
-                formats.iter().map(|format| format!("{} (`?format={}`)", format.media_type(), format.name())).collect();
-            Problem::new(Code::NotAcceptable, format!("Accept must admit one of {}", known.join(", ")))
-        })
+/// The format out of `formats` that `Accept` prefers.
+pub(super) fn preferred(headers: &HeaderMap, formats: &[Format]) -> Result<Format, Problem> {
+    let accepted: Vec<&str> = headers.get_all(header::ACCEPT).iter().filter_map(|line| line.to_str().ok()).collect();
+    let accepted = accepted.join(",");
+    if accepted.trim().is_empty() {
+        return Ok(Format::Columns);
     }
+    let weighed = formats.iter().map(|format| (quality(&accepted, format.media_type()), *format));
+    // Of equals the first.
+    let best = weighed.reduce(|best, next| if next.0 > best.0 { next } else { best });
+    best.filter(|(quality, _)| *quality > 0.0).map(|(_, format)| format).ok_or_else(|| {
+        let known: Vec<String> =
+            formats.iter().map(|format| format!("{} (`?format={}`)", format.media_type(), format.name())).collect();
+        Problem::new(Code::NotAcceptable, format!("Accept must admit one of {}", known.join(", ")))
+    })
 }
 
 /// The weight that `Accept` gives a media type, 0 to 1: that of the most specific range that it falls in (RFC 9110,

@@ -5,7 +5,7 @@ use serde_json::{Map, Value, json};
 use super::operations;
 use super::refusals::refusal;
 use crate::api::facts::FactsOfRoutes;
-use crate::formats::Format;
+use stickslip_compute::formats::Format;
 
 /// Replies of the program by operation: `UPDATE=1 cargo test --test api shows_a_reply` prints them anew.
 const EXAMPLES: &str = include_str!("../../../openapi/examples.json");

@@ -5,7 +5,7 @@ pub(super) use axum::response::{IntoResponse as _, Response};
 pub(super) use uuid::Uuid;
 
 pub(super) use crate::api::extract::CheckedBody;
-pub(super) use crate::api::formats::Format;
+pub(super) use crate::api::formats::{Format, Negotiated as _};
 pub(super) use crate::api::parameters::{Number, QueryParams, QueryReader, count, formats, parameters};
 pub(super) use crate::api::params::{ContactPath, IdempotencyKey, IfMatch};
 pub(super) use crate::api::problem::{Code, Problem};

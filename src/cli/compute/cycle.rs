@@ -9,7 +9,7 @@ use stickslip_wire::{Faults, FrettingMap, JsonPath, LoadSpan};
 use super::{Body, Flags};
 use crate::cli::io::{parsed, read};
 use crate::cli::refusal::Refusal;
-use crate::formats::Format;
+use stickslip_compute::formats::Format;
 
 /// What to make of the body.
 #[derive(Args)]

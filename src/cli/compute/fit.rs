@@ -2,8 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::computations::files;
 use clap::{Args, Command};
+use stickslip_compute::computations::files;
 use stickslip_measured::import::{LoopHints, UnitHint};
 use stickslip_wire::fit::{FitParameter, KnownValue, KnownValues, LoopStart, MeasuredLoop};
 use stickslip_wire::{self as wire, ContactDefinition, FitRequest};

@@ -19,10 +19,10 @@ use stickslip_measured::import::{Dimension, UnitHint, UnknownUnit};
 use super::io::{json, parsed, print, read, say, write};
 use super::refusal::Refusal;
 use super::summary::summary;
-use crate::admission::Stop;
 use crate::api::Problem;
-use crate::computations::{About, Shown, compute, entries};
-use crate::formats::Format;
+use stickslip_compute::Flag;
+use stickslip_compute::computations::{About, Shown, compute, entries};
+use stickslip_compute::formats::Format;
 
 /// A computation, and the flags that it is called with.
 pub struct Compute {
@@ -197,7 +197,7 @@ impl Compute {
             choice.words.iter().copied().find(|known| known == chosen)
         });
         let shown = Shown { format, choice, indented: true };
-        let reply = compute(about.name, &body.text, shown, &Stop::default());
+        let reply = compute(about.name, &body.text, shown, &Flag::default());
         // A program that asked for JSON gets the problem document of a fault alone.
         if reply.is_ok() || !wants_json {
             say(file.unwrap_or(Path::new("-")), &body.reading);

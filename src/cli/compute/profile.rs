@@ -2,8 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::computations::files;
 use clap::{Args, Command};
+use stickslip_compute::computations::files;
 use stickslip_measured::import::{ScanHints, UnitHint};
 use stickslip_wire::profile_fit::{ScanLoad, ScanOrientation, Smoothing};
 use stickslip_wire::{self as wire, Profile, ProfileFitRequest};
