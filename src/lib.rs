@@ -21,8 +21,8 @@
 //! [`store`] stores what must survive: definitions, moves, snapshots, jobs, and replies for retries. It knows no
 //! physics.
 //!
-//! [`metrics`] are counters, gauges and histograms; [`otlp`] sends traces. Every module may use both, and TLS to
-//! servers that need not be verified.
+//! [`metrics`] are counters, gauges and histograms; [`otlp`] sends traces; a [`tenant`] is whom keys, quotas and what is
+//! stored belong to. Every module may use them, and TLS to servers that need not be verified.
 
 pub mod access;
 pub mod admission;
@@ -34,4 +34,5 @@ pub mod otlp;
 pub mod server;
 pub mod sessions;
 pub mod store;
+pub mod tenant;
 mod unverified_tls;

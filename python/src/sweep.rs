@@ -3,7 +3,7 @@
 use pyo3::exceptions::PyIndexError;
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
-use stickslip::api::Problem;
+use stickslip_compute::Refusal;
 use stickslip_compute::Stop;
 use stickslip_compute::simulation::{self, Anew};
 use stickslip_wire::sweep::indices;
@@ -48,7 +48,7 @@ impl Sweep {
         let result =
             interruptible(py, |stop| self.plan.compute(0..self.plan.points(), threads, stop))?.map_err(refused)?;
         let blocks = result.table(self.plan.checked()).blocks(format).collect::<Result<Vec<_>, _>>();
-        let blocks = blocks.map_err(|error| refused(Problem::internal(error.to_string())))?;
+        let blocks = blocks.map_err(|error| refused(Refusal::internal(error.to_string())))?;
         Ok(PyBytes::new(py, &blocks.concat()))
     }
 

@@ -7,11 +7,11 @@ use clap::Args;
 use clap::builder::PossibleValuesParser;
 use stickslip_wire::{self as wire, SweepRequest};
 
+use super::command_error::CommandError;
 use super::io::{json, read, write};
 use super::progress;
-use super::refusal::Refusal;
-use crate::api::Problem;
 use stickslip_compute::Flag;
+use stickslip_compute::Refusal;
 use stickslip_compute::formats::Format;
 use stickslip_compute::simulation::{Anew, Sweep as Plan, SweepResult};
 
@@ -34,13 +34,13 @@ pub struct Sweep {
 impl Sweep {
     /// Computes and prints the table, with progress on a terminal.
     pub fn run(&self) -> Result<(), String> {
-        self.printed().map_err(|refusal| refusal.message(self.json))
+        self.printed().map_err(|error| error.message(self.json))
     }
 
-    fn printed(&self) -> Result<(), Refusal> {
+    fn printed(&self) -> Result<(), CommandError> {
         let plan =
             wire::read::<SweepRequest>(&read(&self.file)?).and_then(|sweep| Plan::plan(sweep, &Anew(&Flag::default())));
-        let plan = plan.map_err(Problem::from)?;
+        let plan = plan.map_err(Refusal::from)?;
         let cores = std::thread::available_parallelism().map_or(1, usize::from);
         let threads = self.threads.unwrap_or(cores).max(1);
         let points = plan.points();
@@ -48,7 +48,7 @@ impl Sweep {
         let bar = progress::bar(points as u64, "points");
         while done < points {
             let slice = plan.slice(done..points, vec![(); threads], &Flag::default(), None);
-            result.append(slice.map_err(Problem::from)?);
+            result.append(slice.map_err(Refusal::from)?);
             done = plan.points_of(&result);
             bar.set_position(done as u64);
         }

@@ -1,7 +1,6 @@
 //! The largest memory use of the process, as it follows from its limits.
 
-use crate::admission::Capacity;
-use crate::sessions::STREAMS;
+use crate::admission::{Capacity, STREAMS};
 
 use crate::server::connections::ConnectionLimits;
 use crate::server::limits::SPARE_CONNECTIONS;

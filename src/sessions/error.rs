@@ -57,7 +57,7 @@ pub enum SessionError {
         found: u64,
     },
     /// The limit of clients that listen to events is reached.
-    #[error("{} clients listen to events, which is the limit", super::STREAMS)]
+    #[error("{} clients listen to events, which is the limit", crate::admission::STREAMS)]
     TooManyStreams,
     /// The mechanics has no answer, or the client no longer waits for it.
     #[error(transparent)]

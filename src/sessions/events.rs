@@ -19,8 +19,6 @@ use super::cycles::ClosedCycles;
 use super::history::History;
 use super::{SessionError, Sessions};
 
-/// Clients that may listen at a time.
-pub const STREAMS: usize = 1_000;
 /// Moves that a listener reads at a time.
 const PAGE: usize = 80;
 /// How long a listener waits before it tries again what may succeed later, as where the store is unreachable.

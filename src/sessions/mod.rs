@@ -19,8 +19,6 @@ mod attempt;
 mod cache;
 mod changes;
 mod check;
-mod cycle_log;
-mod cycle_scan;
 mod cycles;
 mod error;
 mod events;
@@ -42,7 +40,7 @@ use std::sync::Arc;
 
 use uuid::Uuid;
 
-use crate::admission::{Deadline, Pool, Reservation};
+use crate::admission::{Deadline, Pool, Reservation, STREAMS};
 use crate::otlp;
 use crate::store::{Listeners, Page, Store, Tenant};
 use stickslip_compute::computations::{OnContact, Shown};
@@ -59,7 +57,7 @@ pub use changes::Changes;
 pub use check::{CheckEvent, Checked, Finding, check, count_moves};
 pub use cycles::ClosedCycles;
 pub use error::SessionError;
-pub use events::{STREAMS, events};
+pub use events::events;
 pub use expected::{Expected, label_checksum};
 pub use expiry::run_expiry_loop;
 pub use history::History;

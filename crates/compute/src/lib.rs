@@ -8,13 +8,15 @@
 //!
 //! [`formats`] writes tables and pictures.
 //!
-//! Long work asks its [`Stop`] whether to go on. What work costs is estimated in [`Nanoseconds`].
+//! Long work asks its [`Stop`] whether to go on. A [`Refusal`] says why there is no reply. What work costs is estimated in [`Nanoseconds`].
 
 pub mod computations;
 pub mod formats;
+mod refusal;
 pub mod simulation;
 mod stop;
 
+pub use refusal::Refusal;
 pub use stop::{Flag, Interrupted, LONGEST_WORK, Part, Stop};
 
 /// Estimated nanoseconds of work.

@@ -231,7 +231,7 @@ mod tests {
 
     use stickslip_plot::Picture as _;
 
-    /// All but those of protocols, which take long. `cargo run --release -- figures --out docs/figures` draws them
+    /// All but those of protocols, which take long. `cargo run --release -p stickslip-report -- figures` draws them
     /// anew.
     #[test]
     fn the_figures_of_the_documentation_are_those_that_are_drawn() {

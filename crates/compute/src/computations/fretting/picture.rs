@@ -1,7 +1,7 @@
 //! The picture of one fatigue criterion: a map over a grid of places, or a curve over a line.
 
 use stickslip_plot::{Axis, Band, Colour, ContactEdge, Curve, Drawing, Panel, Peak, Plot, Section, on_axis};
-use stickslip_wire::fretting::FrettingTask;
+use stickslip_wire::fretting::{CRITERIA, FrettingTask};
 use stickslip_wire::subsurface::{Places, SubsurfaceLine};
 use stickslip_wire::{BodyName, Fault, FrettingReply, Largest};
 
@@ -9,28 +9,21 @@ use crate::computations::Shown;
 use crate::computations::subsurface::{COORDINATES, over_plane, shown_axes};
 
 /// The criteria by their names in the reply, in its order.
-pub const NAMES: [&str; 8] =
-    ["crossland", "dang_van", "findley", "swt", "fatemi_socie", "ruiz", "ruiz_tension", "friction_work"];
+pub const NAMES: [&str; CRITERIA.len()] = {
+    let mut names = [""; CRITERIA.len()];
+    let mut index = 0;
+    while index < names.len() {
+        names[index] = CRITERIA[index].0;
+        index += 1;
+    }
+    names
+};
 const EDGE: &str = "edge of the contact at the preload";
 /// A place is in a plane to this part of its distance from the origin.
 const SAME_PLANE: f64 = 1e-9;
 
 /// Why some places have no picture.
 const NO_PICTURE: &str = "places without an order have no picture: ask for a `plane`, the `surface` or a `line`";
-
-/// What a picture calls a criterion.
-fn title(criterion: &str) -> &'static str {
-    match criterion {
-        "crossland" => "Crossland",
-        "dang_van" => "Dang Van",
-        "findley" => "Findley",
-        "swt" => "Smith-Watson-Topper",
-        "fatemi_socie" => "Fatemi-Socie",
-        "ruiz" => "Ruiz, shear stress times slip",
-        "ruiz_tension" => "Ruiz, with tension",
-        _ => "Friction work per cycle",
-    }
-}
 
 /// The name of the criterion that a picture shows: the one that the query names, or the only one that the request asks
 /// for. `None` in a format that shows all.
@@ -68,7 +61,7 @@ pub fn plot(reply: &FrettingReply, task: &FrettingTask, criterion: &str) -> Draw
         None => Default::default(),
     };
     let body = BodyName::from(task.body.0).name();
-    let name = title(criterion);
+    let name = CRITERIA.into_iter().find(|(name, ..)| *name == criterion).map_or("", |(.., title)| title);
     let title = format!("{name}, {body} body");
     let radius = reply.contact.contact_radius;
     if let Places::Line(line) = &task.places {

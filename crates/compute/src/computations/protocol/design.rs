@@ -1,7 +1,8 @@
 //! The path of a law, the stress that it leaves, and what the other laws would leave.
 
 use stickslip_mechanics::protocol::{
-    AmplitudeLaw, Design, EvaluationRange, ExecutionErrors, FirstMove, PathEnd, PathStart, design, lower_bound, trials,
+    AmplitudeLaw, Design, EvaluationRange, ExecutionErrors, Fewest, FirstMove, PathEnd, PathStart, Spread, design,
+    fewest, lower_bound, trials,
 };
 use stickslip_mechanics::range::Quantity;
 use stickslip_mechanics::{Contact, Error, Setup};
@@ -15,9 +16,6 @@ use stickslip_wire::{Residual, limits};
 
 use crate::Stop;
 use crate::simulation::{Failure, Timer, accuracy, present_warnings};
-
-/// How many smaller numbers of reversals are checked after bisection.
-const FEWER: usize = 3;
 
 /// A contact for which a protocol is designed, and the start of the reversals.
 pub struct Subject<'a> {
@@ -59,40 +57,15 @@ impl Subject<'_> {
         stop: &dyn Stop,
     ) -> Result<(usize, Design), Failure> {
         let most = *limits::PROTOCOL_REVERSALS.end();
-        let mut low = 0;
-        let mut high = 1;
-        let mut found = loop {
-            let design = self.design(kind, high, end, stop)?;
-            if design.largest <= largest {
-                break design;
-            }
-            if high == most {
-                let error = Error::OutOfRange {
-                    quantity: Quantity::ProtocolTarget,
-                    value: target,
-                    allowed: format!("what {most} reversals reach, {:.3e}, or more", target * design.largest / largest),
-                };
-                return Err(Failure::at("/target", error));
-            }
-            (low, high) = (high, (2 * high).min(most));
-        };
-        while high - low > 1 {
-            let middle = low + (high - low) / 2;
-            let design = self.design(kind, middle, end, stop)?;
-            if design.largest <= largest {
-                (high, found) = (middle, design);
-            } else {
-                low = middle;
+        match fewest(largest, most, |reversals| self.design(kind, reversals, end, stop))? {
+            Fewest::Found(reversals, design) => Ok((reversals, design)),
+            Fewest::OutOfReach(design) => {
+                let least = target * design.largest / largest;
+                let allowed = format!("what {most} reversals reach, {least:.3e}, or more");
+                let error = Error::OutOfRange { quantity: Quantity::ProtocolTarget, value: target, allowed };
+                Err(Failure::at("/target", error))
             }
         }
-        // On some shapes fewer reversals leave less stress: check a few smaller numbers too.
-        for fewer in (high.saturating_sub(FEWER).max(1)..high).rev().skip(1) {
-            let design = self.design(kind, fewer, end, stop)?;
-            if design.largest <= largest {
-                (high, found) = (fewer, design);
-            }
-        }
-        Ok((high, found))
     }
 }
 
@@ -230,14 +203,11 @@ fn robustness(
     let found = trials(&make, path, &ExecutionErrors { amplitude, friction, seed }, samples, &|| stop.check().is_ok());
     let refused = |error| Failure::at("/robustness", error).unless_interrupted(stop, "/robustness/samples");
     let found = found.map_err(refused)?;
-    let count = found.len() as f64;
-    let mean = found.iter().sum::<f64>() / count;
-    let variance = found.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / (count - 1.0).max(1.0);
-    let rank = (0.95 * count).ceil() as usize;
+    let Spread { mean, standard_error, percentile_95 } = Spread::of(&found);
     Ok(RobustnessReply {
         samples,
         mean: finite(mean / unit),
-        standard_error: finite((variance / count).sqrt() / unit),
-        percentile_95: found.get(rank.max(1) - 1).and_then(|value| finite(value / unit)),
+        standard_error: finite(standard_error / unit),
+        percentile_95: percentile_95.and_then(|value| finite(value / unit)),
     })
 }

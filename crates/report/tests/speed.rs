@@ -1,15 +1,20 @@
-//! `stickslip report`: its columns, and errors of the expected order. No assertion depends on a time.
+//! `stickslip-report speed`: its columns, and errors of the expected order. No assertion depends on a time.
+
+use std::process::{Command, Output};
 
 use serde_json::{Value, json};
 
 const SCENES: &str = "first_loading,reversals_20,oblique,cone,power_4,exact_sphere";
 
+fn speed(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_stickslip-report")).arg("speed").args(arguments).output().unwrap()
+}
+
 #[test]
 fn the_report_finds_the_known_orders_of_error() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().to_str().unwrap();
-    let output =
-        crate::common::run(&["report", "--out", out, "--scenes", SCENES, "--largest", "1000", "--budget", "3600"]);
+    let output = speed(&["--out", out, "--scenes", SCENES, "--largest", "1000", "--budget", "3600"]);
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let read = |name: &str| std::fs::read_to_string(folder.path().join(name)).unwrap();
     let report: Value = serde_json::from_str(&read("report.json")).unwrap();
@@ -70,8 +75,7 @@ fn the_report_finds_the_known_orders_of_error() {
 fn solvers_without_time_left_are_listed_and_not_estimated() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().to_str().unwrap();
-    let output =
-        crate::common::run(&["report", "--out", out, "--scenes", "reversal", "--largest", "100", "--budget", "0"]);
+    let output = speed(&["--out", out, "--scenes", "reversal", "--largest", "100", "--budget", "0"]);
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let report: Value =
         serde_json::from_str(&std::fs::read_to_string(folder.path().join("report.json")).unwrap()).unwrap();
@@ -95,9 +99,8 @@ fn solvers_without_time_left_are_listed_and_not_estimated() {
 fn a_python_that_does_not_exist_is_named() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().to_str().unwrap();
-    let arguments =
-        ["report", "--out", out, "--scenes", "reversal", "--largest", "10", "--external", "/no/such/python"];
-    let output = crate::common::run(&arguments);
+    let arguments = ["--out", out, "--scenes", "reversal", "--largest", "10", "--external", "/no/such/python"];
+    let output = speed(&arguments);
     assert!(!output.status.success());
     assert!(String::from_utf8_lossy(&output.stderr).contains("/no/such/python does not run"));
 }
@@ -105,7 +108,7 @@ fn a_python_that_does_not_exist_is_named() {
 #[test]
 fn an_unknown_scene_is_refused_by_name() {
     let folder = tempfile::tempdir().unwrap();
-    let output = crate::common::run(&["report", "--out", folder.path().to_str().unwrap(), "--scenes", "third_loading"]);
+    let output = speed(&["--out", folder.path().to_str().unwrap(), "--scenes", "third_loading"]);
     assert!(!output.status.success());
     let said = String::from_utf8_lossy(&output.stderr);
     assert!(said.contains("third_loading") && said.contains("first_loading"), "{said}");

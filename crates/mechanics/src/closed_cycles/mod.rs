@@ -10,40 +10,90 @@
 //! had slipped the other way before. That holds if the stroke that led to its first turning point was as long at the
 //! same load. Of any other cycle only what was recorded is known.
 
+mod log;
+
 use std::collections::VecDeque;
 
-use stickslip_wire::{Regime, State, limits};
+use super::cycle::SteadyCycle;
+use super::{Contact, Error, Move, Normal, Regime, State};
+
+pub use log::CycleLog;
 
 /// Displacements are the same turning point, and indentations the same load, if they agree to this part of the range or
 /// of the indentation.
 const TIE: f64 = 1e-12;
-/// Turning points that are kept: of more nested cycles than a contact itself remembers, the outermost are forgotten.
-const DEPTH: usize = limits::MEMORY_DEPTH;
+/// Turning points that are kept: of more nested cycles, the outermost are forgotten.
+const DEPTH: usize = 200_000;
 
 /// A closed cycle.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct ClosedCycle {
+pub struct ClosedCycle {
     /// The move after which it began.
-    pub(super) from: u64,
+    pub from: u64,
     /// The move that closed it.
-    pub(super) to: u64,
+    pub to: u64,
     /// Half the distance of its turning points, m.
-    pub(super) displacement_amplitude: f64,
-    pub(super) answer: Answer,
+    pub displacement_amplitude: f64,
+    /// What is known of the force in it.
+    pub answer: Answer,
+}
+
+impl ClosedCycle {
+    /// The cycle with its forces and its friction work; `virgin` is the contact before its first move.
+    ///
+    /// # Errors
+    /// That of a move to the indentation of the cycle, which none has that the contact has been at.
+    pub fn loop_of(&self, virgin: &Contact) -> Result<Loop, Error> {
+        let indentation = match self.answer {
+            Answer::Recorded { force_amplitude, dissipated_energy } => {
+                return Ok(Loop { force_amplitude, dissipated_energy, sliding_ratio: None });
+            }
+            Answer::Steady { indentation } => indentation,
+        };
+        let mut contact = virgin.clone();
+        if (indentation - virgin.indentation()).abs() > 0.0 {
+            contact.apply(&Move { normal: Some(Normal::Indentation(indentation)), ..Move::default() })?;
+        }
+        let steady = SteadyCycle::of(&contact, self.displacement_amplitude);
+        Ok(Loop {
+            force_amplitude: steady.force_amplitude(),
+            dissipated_energy: steady.dissipated_energy(),
+            sliding_ratio: steady.sliding_ratio(),
+        })
+    }
+}
+
+/// The loop of force over displacement of a closed cycle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Loop {
+    /// Half the range of the forces, N.
+    pub force_amplitude: f64,
+    /// Friction work, J.
+    pub dissipated_energy: f64,
+    /// The part of the displacement for which the contact slides as a whole, where it is known.
+    pub sliding_ratio: Option<f64>,
 }
 
 /// What is known of the force in a cycle.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Answer {
+pub enum Answer {
     /// It is a steady cycle at an indentation, m: all follows from that and the amplitude.
-    Steady { indentation: f64 },
+    Steady {
+        /// Of all of it, m.
+        indentation: f64,
+    },
     /// Half the range of the recorded forces, N, and the recorded friction work without that of inner cycles, J.
-    Recorded { force_amplitude: f64, dissipated_energy: f64 },
+    Recorded {
+        /// Half the range of the forces, N.
+        force_amplitude: f64,
+        /// Friction work, J.
+        dissipated_energy: f64,
+    },
 }
 
 /// A path up to its last state.
 #[derive(Clone, Debug, Default)]
-pub(super) struct CycleScan {
+pub struct CycleScan {
     /// Where the path began, m, infinite after gross slip; `None` while the bodies are apart.
     start: Option<f64>,
     /// The turning points that are remembered, and the last state, which may become one.
@@ -88,7 +138,7 @@ struct ConstantLoad {
 impl CycleScan {
     /// Adds the next state, and hands the cycles that it closes to `found`, inner ones first. The first state is that
     /// before the first move.
-    pub(super) fn push(&mut self, sequence: u64, state: &State, mut found: impl FnMut(ClosedCycle)) {
+    pub fn push(&mut self, sequence: u64, state: &State, mut found: impl FnMut(ClosedCycle)) {
         // A contact without load has no memory either.
         if state.indentation <= 0.0 {
             *self = CycleScan::default();
@@ -122,18 +172,20 @@ impl CycleScan {
     }
 
     /// Bytes on the heap.
-    pub(super) fn heap_bytes(&self) -> usize {
+    #[must_use]
+    pub fn heap_bytes(&self) -> usize {
         self.points.capacity() * size_of::<Point>()
     }
 
     /// Bytes on the heap after this many more states at the most, while they grow.
-    pub(super) fn heap_bytes_after(&self, states: usize) -> usize {
+    #[must_use]
+    pub fn heap_bytes_after(&self, states: usize) -> usize {
         // A deque doubles, and copies itself to do so.
         3 * self.points.capacity().max(self.points.len().saturating_add(states).min(DEPTH + 2)) * size_of::<Point>()
     }
 
     /// Gives the room that is not needed back.
-    pub(super) fn shrink(&mut self) {
+    pub fn shrink(&mut self) {
         self.points.shrink_to_fit();
     }
 
