@@ -18,8 +18,8 @@ use std::time::{Duration, Instant};
 use load::{Connection, Process, serve};
 use serde_json::json;
 use stickslip_compute::Flag;
-use stickslip_compute::simulation::{Anew, Sweep, SweepResult, simulate};
-use stickslip_wire::{self as wire, SimulateRequest, SweepRequest};
+use stickslip_compute::simulation::{Sweep, SweepResult, simulate};
+use stickslip_wire::{self as wire, PrepareAnew, SimulateRequest, SweepRequest};
 
 const POINTS: usize = 1_000_000;
 /// Number of single simulations of a thread, for comparison.
@@ -44,7 +44,7 @@ fn request() -> String {
 
 fn plan() -> Sweep {
     let draft = wire::read::<SweepRequest>(request().as_bytes()).expect("a valid sweep");
-    Sweep::plan(draft, &Anew(&Flag::default())).expect("a sweep with outputs")
+    Sweep::plan(draft, &PrepareAnew).expect("a sweep with outputs")
 }
 
 /// The time of so many simulations on each of the threads at once: what the machine can do.

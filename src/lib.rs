@@ -1,6 +1,6 @@
 //! The service stickslip: frictional contact of two elastic bodies, exact and with all of its history, over HTTP. What
-//! it computes is in `stickslip-compute`, the JSON types are in `stickslip-wire`. A module imports only from those below
-//! it here.
+//! it computes is in `stickslip-compute`, the JSON types are in `stickslip-wire`. A module imports only from those
+//! below it here.
 //!
 //! [`cli`] is the command line, which the binary and the Python package call.
 //!
@@ -21,8 +21,8 @@
 //! [`store`] stores what must survive: definitions, moves, snapshots, jobs, and replies for retries. It knows no
 //! physics.
 //!
-//! [`metrics`] are counters, gauges and histograms; [`otlp`] sends traces; a [`tenant`] is whom keys, quotas and what is
-//! stored belong to. Every module may use them, and TLS to servers that need not be verified.
+//! [`metrics`] are counters, gauges and histograms; [`otlp`] sends traces; a [`tenant`] is whom keys, quotas and what
+//! is stored belong to. Every module may use them, and TLS to servers that need not be verified.
 
 pub mod access;
 pub mod admission;

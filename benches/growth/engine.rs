@@ -5,9 +5,9 @@ use std::hint::black_box;
 
 use serde_json::json;
 use stickslip_compute::Flag;
-use stickslip_compute::simulation::{Anew, Sweep, SweepResult};
+use stickslip_compute::simulation::{Sweep, SweepResult};
 use stickslip_mechanics::Contact;
-use stickslip_wire::{self as wire, SweepRequest};
+use stickslip_wire::{self as wire, PrepareAnew, SweepRequest};
 
 use crate::law::{fit, seconds};
 use crate::scenes::{contact, radii, reversed, shapes, slide, sphere, table};
@@ -121,6 +121,6 @@ fn sweeps() {
 
 fn sweep(request: &str, points: usize) -> SweepResult {
     let draft = wire::read::<SweepRequest>(request.as_bytes()).expect("a valid sweep");
-    let sweep = Sweep::plan(draft, &Anew(&Flag::default())).expect("a sweep with outputs");
+    let sweep = Sweep::plan(draft, &PrepareAnew).expect("a sweep with outputs");
     sweep.compute(0..points, 1, &Flag::default()).expect("it is not stopped")
 }

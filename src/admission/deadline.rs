@@ -17,8 +17,8 @@ pub struct Deadline(Arc<Flag>);
 pub struct StopOnDrop(Deadline);
 
 impl Deadline {
-    /// One that ends the work when the guard is dropped, or after work that has taken `spent` before has taken `allowed`
-    /// in all.
+    /// One that ends the work when the guard is dropped, or when it has taken `allowed` in all, of which `spent` was
+    /// before.
     #[must_use]
     pub fn within(allowed: Duration, spent: Duration) -> (Deadline, StopOnDrop) {
         let (deadline, guard) = Deadline::of(Flag::within(Some(allowed)));

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use clap::builder::PossibleValuesParser;
-use stickslip_wire::{self as wire, SweepRequest};
+use stickslip_wire::{self as wire, PrepareAnew, SweepRequest};
 
 use super::command_error::CommandError;
 use super::io::{json, read, write};
@@ -13,7 +13,7 @@ use super::progress;
 use stickslip_compute::Flag;
 use stickslip_compute::Refusal;
 use stickslip_compute::formats::Format;
-use stickslip_compute::simulation::{Anew, Sweep as Plan, SweepResult};
+use stickslip_compute::simulation::{Sweep as Plan, SweepResult};
 
 /// The sweep, and how to run it.
 #[derive(Args)]
@@ -38,8 +38,7 @@ impl Sweep {
     }
 
     fn printed(&self) -> Result<(), CommandError> {
-        let plan =
-            wire::read::<SweepRequest>(&read(&self.file)?).and_then(|sweep| Plan::plan(sweep, &Anew(&Flag::default())));
+        let plan = wire::read::<SweepRequest>(&read(&self.file)?).and_then(|sweep| Plan::plan(sweep, &PrepareAnew));
         let plan = plan.map_err(Refusal::from)?;
         let cores = std::thread::available_parallelism().map_or(1, usize::from);
         let threads = self.threads.unwrap_or(cores).max(1);

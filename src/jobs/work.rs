@@ -9,10 +9,9 @@ use uuid::Uuid;
 use crate::admission::{Client, Deadline, INLINE, Kind, PoolError};
 use crate::metrics::Counted;
 use crate::store::{ChunkResult, Claim, Job, StoreError, Tenant};
-use stickslip_compute::Flag;
 use stickslip_compute::simulation::bytes::NUMBER;
-use stickslip_compute::simulation::{Anew, Sweep, SweepResult};
-use stickslip_wire::{self as wire, SweepRequest};
+use stickslip_compute::simulation::{Sweep, SweepResult};
+use stickslip_wire::{self as wire, PrepareAnew, SweepRequest};
 
 use super::{JobError, Jobs, store_error};
 
@@ -124,7 +123,7 @@ impl Jobs {
         let checked = self.common.pool.run(INLINE, read).await?;
         let plan = |checked| async {
             let cost = Sweep::planning_cost(&checked);
-            let plan = self.common.pool.run(cost, move || Sweep::plan(checked, &Anew(&Flag::default())));
+            let plan = self.common.pool.run(cost, move || Sweep::plan(checked, &PrepareAnew));
             Client::Tenant(job.tenant.clone()).serve(plan).await
         };
         let sweep = match checked {

@@ -1,5 +1,5 @@
-//! A document in, a document out: everything that the service computes, without HTTP, storage or async. The service, its
-//! command line and the Python package call it.
+//! A document in, a document out: what the service computes, without HTTP, storage or async. The service, its command
+//! line and the Python package call it.
 //!
 //! [`computations`] are what takes a document and gives one, each with its name, cost, table and picture, in one list;
 //! and the moves of a contact.
@@ -8,7 +8,8 @@
 //!
 //! [`formats`] writes tables and pictures.
 //!
-//! Long work asks its [`Stop`] whether to go on. A [`Refusal`] says why there is no reply. What work costs is estimated in [`Nanoseconds`].
+//! Long work asks its [`Stop`] whether to go on. A [`Refusal`] says why there is no reply. What work costs is estimated
+//! in [`Nanoseconds`].
 
 pub mod computations;
 pub mod formats;

@@ -7,22 +7,22 @@
 pub mod bytes;
 pub mod cost;
 mod prepare;
-mod profiles;
+mod prepared_profiles;
 mod run;
 mod solver;
 mod stated_accuracy;
-mod subsurface;
+mod stress_below;
 mod sweep;
 #[cfg(test)]
 mod tests;
 mod warnings;
 
 pub use prepare::{Anew, check, cost_of_preparation};
-pub use profiles::{ProfileCache, ProfileKey, Profiles};
+pub use prepared_profiles::{ProfileCache, ProfileKey, Profiles};
 pub use run::{contact, cycle_moves, equal_peaks, follow, refused_at, residual, simulate, spring_foundation, stresses};
 pub use solver::Solver;
 pub use stated_accuracy::{Timer, accuracy};
-pub use subsurface::subsurface;
+pub use stress_below::subsurface;
 pub use sweep::{Sweep, SweepResult, Worker};
 pub use warnings::{
     FarMove, HUGE_TABLE_RADIUS, MAX_SLOPE, bulk_warning, excess_error, new_warnings, present_warnings, warnings_at,

@@ -14,7 +14,7 @@ use stickslip_wire::{
 use super::{
     Cause, Failure, Solver, cost, needs_stress_field, quantity,
     stated_accuracy::{Timer, accuracy},
-    subsurface::subsurface,
+    stress_below::subsurface,
     warnings::{FarMove, bulk_warning, excess_error, stress_warning, warnings_at},
 };
 use crate::{LONGEST_WORK, Stop};
