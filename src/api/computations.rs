@@ -16,13 +16,13 @@ use utoipa::{PartialSchema, ToSchema};
 use uuid::Uuid;
 
 use crate::admission::Reservation;
-use crate::computations::{Computation, FromStored, OnContact, Outcome, Route, Shown, Task, Visitor};
-use crate::formats::Format;
 use crate::otlp;
+use stickslip_compute::computations::{Computation, FromStored, OnContact, Outcome, Route, Shown, Task, Visitor};
 
 use super::checked_query::CheckedQuery;
 use super::extract::{CheckedBody, HeldResources};
 use super::facts::{Facts, Routes};
+use super::formats::{Format, Negotiated as _};
 use super::problem::Problem;
 use super::query_parameters::{Kind as _, QueryParams, QueryReader, described, formats, words};
 use super::reply;
@@ -164,7 +164,7 @@ async fn run<C: Computation>(
     let cost = C::cost(&task).saturating_add(shown.format.cost());
     let work = move || {
         let outcome = otlp::part!("solve").in_scope(|| C::run(task, &stop))?;
-        Ok::<_, Problem>(shown.write(&outcome, &stop)??)
+        Ok::<_, Problem>(otlp::part!("write").in_scope(|| shown.write(&outcome, &stop))??)
     };
     Ok(held.on(written::<C>(app.pool.run(cost, work).await??, &shown)))
 }

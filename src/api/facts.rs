@@ -8,7 +8,7 @@ use utoipa_axum::router::{OpenApiRouter, UtoipaMethodRouter};
 use super::openapi;
 use super::state::App;
 use crate::access::Role;
-use crate::formats::Format;
+use stickslip_compute::formats::Format;
 
 /// What a request needs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

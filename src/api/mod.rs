@@ -33,10 +33,10 @@ use utoipa_axum::router::{OpenApiRouter, UtoipaMethodRouterExt as _};
 use utoipa_axum::routes;
 use utoipa_swagger_ui::{Config, SwaggerUi};
 
-use crate::computations::each;
-use crate::formats::Format;
 use crate::server::tls::Tls;
 use crate::server::{self, ConnectionLimiter, ConnectionLimits, Service};
+use stickslip_compute::computations::each;
+use stickslip_compute::formats::Format;
 
 use facts::{Facts, FactsOfRoutes, Routes};
 use middleware::{Observed, access_control, observe, security_headers};

@@ -7,8 +7,9 @@ use axum::http::{HeaderMap, HeaderValue, StatusCode, header};
 use axum::response::{IntoResponse, Response};
 
 use crate::admission::Reservation;
-use crate::formats;
+use crate::otlp;
 use crate::store::Reply;
+use stickslip_compute::formats;
 
 use super::accept::list_members;
 use super::problem::Problem;
@@ -94,5 +95,5 @@ pub fn holding(mut response: Response, mut held: Reservation) -> Response {
 /// # Errors
 /// [`Problem::internal`] if it cannot be written, which is a fault of the service.
 pub fn written(value: &impl serde::Serialize) -> Result<Vec<u8>, Problem> {
-    Ok(formats::json(formats::CAPACITY, value)?)
+    Ok(otlp::part!("write").in_scope(|| formats::json(formats::CAPACITY, value))?)
 }

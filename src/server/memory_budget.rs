@@ -2,8 +2,7 @@
 
 use sysinfo::{MemoryRefreshKind, Process, ProcessRefreshKind, ProcessesToUpdate, System, get_current_pid};
 
-use crate::admission::Capacity;
-use crate::sessions::STREAMS;
+use crate::admission::{Capacity, STREAMS};
 
 use crate::server::connection_limits::SPARE_CONNECTIONS;
 use crate::server::connections::ConnectionLimits;

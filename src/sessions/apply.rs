@@ -7,9 +7,10 @@ use tracing::Instrument as _;
 use uuid::Uuid;
 
 use crate::admission::Reservation;
-use crate::computations::{OnContact as _, dry_run_relax};
 use crate::otlp;
 use crate::store::{IdempotentRequest, Reply, RequestKey, StoreError, Usage};
+use stickslip_compute::Stop as _;
+use stickslip_compute::computations::{OnContact as _, dry_run_relax};
 use stickslip_wire::RelaxReply;
 use stickslip_wire::protocol::Relaxation;
 use stickslip_wire::session::Advance;
@@ -68,7 +69,7 @@ impl Mover {
                 return Ok(reply);
             }
             let sequence = self.load(&mut guard, expected, &mut is_current).await?;
-            stop.charge(std::mem::take(&mut guard.loading));
+            stop.flag().charge(std::mem::take(&mut guard.loading));
             let computed = match compute(&self.context, &mut guard, &advance, self.by.clone(), &stop).await {
                 Err(SessionError::Failure(_) | SessionError::Rejected(_))
                     if !is_current && Box::pin(self.context.catch_up(&mut guard, u64::MAX)).await? =>

@@ -20,6 +20,7 @@ use uuid::Uuid;
 
 use crate::admission::Reservation;
 use crate::store::Tenant;
+use stickslip_compute::simulation::ProfileKey;
 use stickslip_mechanics::Profile;
 
 use super::loaded::LoadedSession;
@@ -29,9 +30,6 @@ pub const CAPACITY: usize = 256 * 1024 * 1024;
 
 /// A session of a tenant. Under the identifier of another tenant's session a tenant finds neither a state nor a lock.
 type Key = (Tenant, Uuid);
-
-/// What distinguishes prepared profiles: a digest.
-pub(super) type ProfileKey = [u8; 32];
 
 /// States, profiles and locks.
 pub(super) struct Cache {

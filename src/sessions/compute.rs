@@ -4,12 +4,12 @@ use std::sync::Arc;
 
 use jiff::Timestamp;
 
-use crate::admission::{Reservation, Stop};
-use crate::computations::{Moved, OnContact as _, make_moves, shown_states};
+use crate::admission::{Deadline, Reservation};
 use crate::otlp;
-use crate::simulation::bytes::{of_moves, of_records, of_stress};
-use crate::simulation::cost::Work;
 use crate::store::{Measured, Record, Reply};
+use stickslip_compute::computations::{Moved, OnContact as _, make_moves, shown_states};
+use stickslip_compute::simulation::bytes::{of_moves, of_records, of_stress};
+use stickslip_compute::simulation::cost::Work;
 use stickslip_wire::session::Advance;
 use stickslip_wire::{MoveReply, Observation, PathReply, Plan, RelaxReply, State, Steps, limits};
 
@@ -50,7 +50,7 @@ pub(super) async fn compute(
     guard: &mut Guard,
     advance: &Arc<Advance>,
     by: Option<Arc<str>>,
-    stop: &Stop,
+    stop: &Deadline,
 ) -> Result<Computed, SessionError> {
     let depth = guard.live.as_ref().map_or(0, |live| live.contact.memory_depth());
     // A single move that the mechanics refuses has changed nothing, so that it needs no copy to fall back on; and a
@@ -98,7 +98,7 @@ fn make(
     live: &mut LoadedSession,
     advance: &Advance,
     by: Option<&Arc<str>>,
-    stop: &Stop,
+    stop: &Deadline,
 ) -> Result<(Vec<Record>, Reply), SessionError> {
     let solving = otlp::part!("solve").entered();
     let now = Timestamp::now();

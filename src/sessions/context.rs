@@ -6,12 +6,13 @@ use std::sync::Arc;
 
 use uuid::Uuid;
 
-use crate::admission::Pool;
+use crate::admission::{Deadline, Pool, STREAMS};
 use crate::store::{Extent, IdempotentRequest, Listeners, RequestKey, Session, Store, StoreError, Tenant, Usage};
+use stickslip_compute::simulation::{ProfileCache, ProfileKey, Profiles};
+use stickslip_mechanics::Profile;
 
 use super::cache::{Cache, Guard};
 use super::error::SessionError;
-use super::events::STREAMS;
 use super::metrics::SessionMetrics;
 use super::snapshot::Snapshots;
 use super::storage_reservation::{StorageReservation, UsageByTenant};
@@ -66,7 +67,28 @@ impl Common {
     }
 }
 
+/// The profiles that requests share are kept in the cache of the states, within one bound.
+impl ProfileCache for Common {
+    fn holds(&self, key: &ProfileKey) -> bool {
+        self.cache.profile(key).is_some()
+    }
+
+    fn get(&self, key: &ProfileKey) -> Option<Arc<Profile>> {
+        self.cache.profile(key).inspect(|_| self.metrics.profiles_shared.inc())
+    }
+
+    fn keep(&self, key: ProfileKey, profile: Arc<Profile>, bytes: usize) -> Arc<Profile> {
+        self.metrics.profiles_prepared.inc();
+        self.cache.keep_profile(key, profile, bytes)
+    }
+}
+
 impl TenantContext {
+    /// The shared profiles, for work that ends when this flag is raised.
+    pub(super) fn profiles(&self, stop: &Deadline) -> Profiles<Deadline> {
+        Profiles::new(self.common.clone(), stop.clone(), self.pool.capacity().deadline)
+    }
+
     /// A request that may have been answered before.
     pub(super) fn request(&self, key: Option<RequestKey>) -> IdempotentRequest<'_> {
         IdempotentRequest::new(&*self.store, &self.tenant, key)

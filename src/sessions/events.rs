@@ -11,8 +11,8 @@ use futures::Stream;
 use uuid::Uuid;
 
 use crate::admission::{PoolError, Quota, Reservation, Share};
-use crate::simulation::{Cause, Failure};
 use crate::store::{Listener, StoreError, StreamEvent};
+use stickslip_compute::simulation::{Cause, Failure};
 use stickslip_wire::{EndReason, HistoryPage, StateEvent};
 
 use super::cycles::ClosedCycles;
@@ -20,8 +20,6 @@ use super::error::SessionError;
 use super::handle::Sessions;
 use super::history::History;
 
-/// Clients that may listen at a time.
-pub const STREAMS: usize = 1_000;
 /// Moves that a listener reads at a time.
 const PAGE: usize = 80;
 /// How long a listener waits before it tries again what may succeed later, as where the store is unreachable.

@@ -4,11 +4,11 @@ use std::sync::Arc;
 
 use uuid::Uuid;
 
-use crate::admission::{Pool, Reservation, Stop};
-use crate::computations::{OnContact, Shown};
+use crate::admission::{Deadline, Pool, Reservation};
 use crate::otlp;
-use crate::simulation::{bytes, cost};
 use crate::store::{Page, Store, Tenant};
+use stickslip_compute::computations::{OnContact, Shown};
+use stickslip_compute::simulation::{Profiles, bytes, cost};
 use stickslip_wire::subsurface::SubsurfaceTask;
 use stickslip_wire::{ContactDefinition, SessionPage, SessionReply, SubsurfaceRequest};
 
@@ -21,7 +21,6 @@ use super::history::History;
 use super::loaded::written;
 use super::metrics::Readings;
 use super::observations::Observations;
-use super::profiles::Profiles;
 
 /// The sessions of a tenant. Clones, and those of other tenants, are handles on the same.
 #[derive(Clone)]
@@ -78,8 +77,8 @@ impl Sessions {
 
     /// The shared profiles, for work that ends when this flag is raised.
     #[must_use]
-    pub fn profiles(&self, stop: &Stop) -> Profiles {
-        Profiles::new(&self.context.common, stop)
+    pub fn profiles(&self, stop: &Deadline) -> Profiles<Deadline> {
+        self.context.profiles(stop)
     }
 
     /// Ends all events, present and future: the process is about to stop.
@@ -157,7 +156,7 @@ impl Sessions {
         let work = move || {
             let _state = state;
             let outcome = otlp::part!("solve").in_scope(|| task.run(contact, sequence, &stop))?;
-            Ok::<_, SessionError>(shown.write(&outcome, &stop)??)
+            Ok::<_, SessionError>(otlp::part!("write").in_scope(|| shown.write(&outcome, &stop))??)
         };
         Ok((sequence, self.context.pool.run(cost, work).await??))
     }

@@ -3,14 +3,15 @@
 use std::cmp::Ordering;
 use std::sync::Arc;
 
-use crate::formats;
-use crate::simulation::{self, bytes, present_warnings};
+use crate::otlp;
 use crate::store::{CONTACT_BYTES, Reply, Session};
+use stickslip_compute::formats;
+use stickslip_compute::simulation::{self, bytes, present_warnings};
 use stickslip_mechanics::Contact;
+use stickslip_mechanics::closed_cycles::CycleLog;
 use stickslip_wire::definition::SharedSetup;
 use stickslip_wire::{ContactSummary, Faults, FrictionEstimate, JsonPath, NewSession, Prepare, SessionReply, Warning};
 
-use super::cycle_log::CycleLog;
 use super::error::SessionError;
 use super::replay_cost::ReplayCost;
 
@@ -99,7 +100,8 @@ impl LoadedSession {
     pub(super) fn bytes(&self) -> usize {
         let label = self.session.label.as_ref().map_or(0, String::capacity);
         let warnings: usize = self.derived.warnings.iter().map(|warning| warning.message.capacity()).sum();
-        let cycles: usize = [&self.cycles, &self.past_cycles].into_iter().flatten().map(|cycles| cycles.bytes()).sum();
+        let cycles: usize =
+            [&self.cycles, &self.past_cycles].into_iter().flatten().map(|cycles| cycles.memory_bytes()).sum();
         FIXED + self.contact.memory_bytes() + label + warnings + cycles
     }
 
@@ -160,5 +162,5 @@ impl LoadedSession {
 
 /// A reply as JSON.
 pub(super) fn written(reply: &impl serde::Serialize) -> Result<Vec<u8>, SessionError> {
-    Ok(formats::json(REPLY, reply)?)
+    Ok(otlp::part!("write").in_scope(|| formats::json(REPLY, reply))?)
 }

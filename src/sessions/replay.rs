@@ -5,10 +5,12 @@ use std::time::{Duration, Instant};
 
 use uuid::Uuid;
 
-use crate::admission::{Interrupted, Reservation, Stop};
-use crate::simulation::cost::Work;
-use crate::simulation::{Failure, Timer};
+use crate::admission::{Deadline, Reservation};
 use crate::store::{Extent, RECORD_BYTES, Record, Session, Snapshot, StoreError, Whole};
+use stickslip_compute::Interrupted;
+use stickslip_compute::Stop as _;
+use stickslip_compute::simulation::cost::Work;
+use stickslip_compute::simulation::{Failure, Timer};
 use stickslip_mechanics::Contact;
 use stickslip_wire::{ContactDefinition, limits};
 
@@ -16,7 +18,6 @@ use super::cache::Guard;
 use super::context::TenantContext;
 use super::error::SessionError;
 use super::loaded::LoadedSession;
-use super::profiles::Profiles;
 use super::snapshot::Snapshots;
 
 /// Moves that are fetched from the store at a time.
@@ -220,7 +221,7 @@ impl TenantContext {
     async fn first_state(&self, guard: &mut Guard, session: Session) -> Result<Box<LoadedSession>, SessionError> {
         let id = session.id;
         let (stop, _raised_at_the_end) = self.pool.deadline_after(guard.loading);
-        let profiles = Profiles::new(&self.common, &stop);
+        let profiles = self.profiles(&stop);
         let cost = profiles.cost_of(&session.definition.defined_profile(""))?;
         let work = move || {
             let timer = Timer::start(&stop);
@@ -275,7 +276,7 @@ impl TenantContext {
         &self,
         id: Uuid,
         said: Option<ContactDefinition>,
-        stop: &Stop,
+        stop: &Deadline,
     ) -> Result<(Contact, u64, Reservation), SessionError> {
         let mut guard = self.lock(id).await?;
         let live = self.current(&mut guard).await?;
@@ -285,7 +286,7 @@ impl TenantContext {
         let (contact, sequence) = (live.contact.memory_bytes(), live.session.sequence);
         let mut held = self.reserve_copy(&mut guard, contact).await?;
         held.shrink(contact);
-        stop.charge(guard.loading);
+        stop.flag().charge(guard.loading);
         let live = guard.live.as_ref().ok_or(SessionError::NotFound(id))?;
         Ok((live.contact.clone(), sequence, held))
     }
@@ -306,7 +307,7 @@ impl TenantContext {
 fn replay(
     live: &mut LoadedSession,
     page: &[Record],
-    stop: &Stop,
+    stop: &Deadline,
     timer: Timer<'_>,
     snapshots: &Snapshots,
 ) -> Result<Result<(), Interrupted>, stickslip_mechanics::Error> {

@@ -4,11 +4,12 @@ use std::time::Duration;
 
 use uuid::Uuid;
 
-use crate::admission::{Reservation, Stop};
-use crate::simulation::Failure;
-use crate::simulation::bytes::ROW;
-use crate::simulation::cost::Work;
+use crate::admission::{Deadline, Reservation};
 use crate::store::{RECORD_BYTES, Record};
+use stickslip_compute::Stop as _;
+use stickslip_compute::simulation::Failure;
+use stickslip_compute::simulation::bytes::ROW;
+use stickslip_compute::simulation::cost::Work;
 use stickslip_mechanics::Contact;
 use stickslip_wire::{HistoryItem, LoopPage, limits};
 
@@ -48,13 +49,13 @@ pub async fn trace(
     let initial = {
         let mut guard = context.lock(id).await?;
         let initial = context.current(&mut guard).await?.contact.virgin();
-        stop.charge(guard.loading);
+        stop.flag().charge(guard.loading);
         initial
     };
     let snapshot = context.store.snapshot(id).await;
     let mut loading = Duration::ZERO;
     let (mut contact, mut at, _) = context.snapshots.load(&mut loading, snapshot, initial, after).await?;
-    stop.charge(loading);
+    stop.flag().charge(loading);
     while at < last {
         let records = context.page(id, at, last).await?;
         let end = at + records.len() as u64;
@@ -93,7 +94,7 @@ fn trace_move(
     (contact, id): (&mut Contact, Uuid),
     record: &Record,
     points: usize,
-    stop: &Stop,
+    stop: &Deadline,
     page: &mut LoopPage,
 ) -> Result<(), SessionError> {
     let check = || stop.check().map_err(|interrupted| Failure::interrupted(interrupted, POINTS));

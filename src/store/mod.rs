@@ -37,30 +37,13 @@ pub use open::{OpenError, backup, open, open_to_read};
 pub use postgres::PostgresStore;
 pub use sqlite::SqliteStore;
 
+pub use crate::tenant::Tenant;
+
 /// How long a reply is kept for retries with the same idempotency key.
 pub const RECEIPT_LIFETIME: std::time::Duration = std::time::Duration::from_secs(24 * 60 * 60);
 
 /// How long a store remembers that a session has expired. Later the session is not found.
 pub const EXPIRED_LIFETIME: std::time::Duration = std::time::Duration::from_secs(30 * 24 * 60 * 60);
-
-/// The owner of sessions: a key of one tenant gives no access to the sessions of others. Without keys there is one
-/// tenant, without a name.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
-pub struct Tenant(Arc<str>);
-
-impl Tenant {
-    /// The tenant of a name.
-    #[must_use]
-    pub fn new(name: &str) -> Tenant {
-        Tenant(name.into())
-    }
-
-    /// The name.
-    #[must_use]
-    pub fn name(&self) -> &str {
-        &self.0
-    }
-}
 
 /// A session as it is stored.
 #[derive(Clone, Debug, PartialEq)]

@@ -3,9 +3,9 @@
 
 use reqwest::Method;
 use serde_json::{Value, json};
-use stickslip::admission::Stop;
-use stickslip::computations::{Shown, compute, entries};
-use stickslip::formats::Format;
+use stickslip_compute::Flag;
+use stickslip_compute::computations::{Shown, compute, entries};
+use stickslip_compute::formats::Format;
 
 use crate::common::openapi::{document, examples};
 use crate::common::tables::same_numbers;
@@ -30,7 +30,7 @@ async fn every_computation_replies_what_the_library_computes_in_every_format() {
             let mut written = Vec::new();
             for format in about.formats {
                 let shown = Shown { choice: choice.map(|(_, word)| word), ..Shown::in_format(*format) };
-                let library = compute(about.name, text.as_bytes(), shown, &Stop::default()).unwrap();
+                let library = compute(about.name, text.as_bytes(), shown, &Flag::default()).unwrap();
                 let named = choice.map_or_else(String::new, |(name, word)| format!("&{name}={word}"));
                 let query = if has_formats { format!("?format={}{named}", format.name()) } else { String::new() };
                 let response = server.post(&format!("{}{query}", route.path), &example).await;

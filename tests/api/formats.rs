@@ -2,7 +2,7 @@
 
 use reqwest::{Method, Response};
 use serde_json::{Value, json};
-use stickslip::formats::Format;
+use stickslip_compute::formats::Format;
 
 use crate::common::tables::same_numbers;
 use crate::common::{Server, ball, changed, good, number, of, problem};

@@ -17,7 +17,7 @@ use crate::fretting_laws;
 use crate::harness::{Outcome, examine};
 use proptest::strategy::{Strategy, ValueTree as _};
 use proptest::test_runner::{Config, RngAlgorithm, TestCaseError, TestError, TestRng, TestRunner};
-use stickslip::computations::files;
+use stickslip_compute::computations::files;
 use stickslip_measured::import::{LoopHints, ScanHints};
 use stickslip_wire::LoopFileReply;
 use stickslip_wire::fit::MeasuredLoop;

@@ -1,5 +1,5 @@
 //! Every picture as SVG beside one that a person has looked at: those of the service in `pictures/`, which `UPDATE=1`
-//! writes anew, to be looked at again, and the figures of the documentation.
+//! writes anew, to be looked at again.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -7,8 +7,8 @@ use std::path::Path;
 
 use serde_json::{Value, json};
 
+use crate::common::Server;
 use crate::common::pictures::other_lines;
-use crate::common::{Server, run};
 
 const FOLDER: &str = "tests/api/pictures";
 /// How far a line of a vector plot may be from its reference, pixels: coordinates are rounded to whole ones.
@@ -88,20 +88,4 @@ async fn each_picture_is_the_one_that_was_looked_at() {
     let held = EXAMPLES.iter().map(|(_, path, ..)| (*path).to_owned());
     let held = held.chain(OF_CONTACT.iter().map(|(_, path, _)| format!("/contacts/{{id}}{path}")));
     assert_eq!(drawn, held.collect::<BTreeSet<_>>());
-}
-
-#[test]
-fn the_figures_of_the_documentation_are_those_that_the_command_draws() {
-    let folder = tempfile::tempdir().unwrap();
-    let output = run(&["figures", "--out", folder.path().to_str().unwrap()]);
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    let written = fs::read_dir(folder.path()).unwrap().map(|file| file.unwrap().path());
-    let drawn: Vec<_> = written.filter(|file| file.extension().is_some_and(|end| end == "svg")).collect();
-    assert!(drawn.len() > 10, "{drawn:?}");
-    for file in drawn {
-        let reference = Path::new("docs/figures").join(file.file_name().unwrap());
-        let [found, reference] = [&file, &reference].map(|file| fs::read_to_string(file).unwrap());
-        let other = other_lines(&found, &reference, SHIFT);
-        assert!(other.is_none(), "{} is another picture: {}", file.display(), other.unwrap_or_default());
-    }
 }

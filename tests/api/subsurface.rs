@@ -4,9 +4,9 @@
 use std::f64::consts::PI;
 
 use serde_json::{Value, json};
-use stickslip::admission::Stop;
-use stickslip::computations::{Shown, compute};
-use stickslip::formats::Format;
+use stickslip_compute::Flag;
+use stickslip_compute::computations::{Shown, compute};
+use stickslip_compute::formats::Format;
 use stickslip_wire::{BodyName, SubsurfaceRequest};
 
 use crate::common::tables::same_numbers;
@@ -46,7 +46,7 @@ async fn a_history_of_three_moves_has_its_published_stress() {
     std::fs::write(&file, asked.to_string()).unwrap();
     let printed = run(&["subsurface", file.to_str().unwrap(), "--format", "columns"]).stdout;
     let shown = Shown::in_format(Format::Columns);
-    let library = compute("subsurface", asked.to_string().as_bytes(), shown, &Stop::default()).unwrap();
+    let library = compute("subsurface", asked.to_string().as_bytes(), shown, &Flag::default()).unwrap();
     let [printed, library] = [printed, library].map(|text| timeless(serde_json::from_slice(&text).unwrap()));
     assert_eq!((&printed, &printed["xz"]), (&library, &reply["subsurface"]["xz"]));
     // What is infinite is null.

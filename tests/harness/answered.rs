@@ -1,7 +1,7 @@
 //! What the laws of every computation begin with.
 
-use stickslip::admission::{Nanoseconds, Stop};
-use stickslip::computations::{self, Computation, Task};
+use stickslip_compute::computations::{self, Computation, Task};
+use stickslip_compute::{Flag, Nanoseconds};
 use stickslip_wire::{Document, parse};
 
 use super::harness::{Outcome, refused};
@@ -23,7 +23,7 @@ pub fn answered<C: Computation<Request: Document<Checked: Clone>>>(
     if C::cost(&task) > most {
         return Outcome::TooExpensive;
     }
-    match C::run(task.clone(), &Stop::default()) {
+    match C::run(task.clone(), &Flag::default()) {
         Ok(found) => {
             laws(task, computations::Outcome::reply(&found));
             Outcome::Answered

@@ -2,8 +2,8 @@
 
 use std::f64::consts::PI;
 
-use stickslip::admission::Nanoseconds;
-use stickslip::computations::Cycle;
+use stickslip_compute::Nanoseconds;
+use stickslip_compute::computations::Cycle;
 use stickslip_mechanics::cycle::Drive;
 use stickslip_wire::cycle::CycleTask;
 use stickslip_wire::{CycleReply, SteadyCycle};

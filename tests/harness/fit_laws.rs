@@ -3,8 +3,8 @@
 use proptest::prelude::*;
 use proptest::sample::{select, subsequence};
 use serde_json::{Value, json};
-use stickslip::admission::Nanoseconds;
-use stickslip::computations::FitLoops;
+use stickslip_compute::Nanoseconds;
+use stickslip_compute::computations::FitLoops;
 use stickslip_wire::fit::FitParameter;
 use stickslip_wire::{CreateRequest, Document as _, FitReply, parse};
 

@@ -1,7 +1,7 @@
 //! What must hold for any body of `POST /fretting`.
 
-use stickslip::admission::Nanoseconds;
-use stickslip::computations::Fretting;
+use stickslip_compute::Nanoseconds;
+use stickslip_compute::computations::Fretting;
 use stickslip_mechanics::fatigue::MAX_INSTANTS;
 use stickslip_wire::FrettingReply;
 use stickslip_wire::fretting::FrettingTask;

@@ -1,7 +1,7 @@
 //! Laws that the reply for every contact and path obeys, whatever the profile.
 
 use serde_json::Value;
-use stickslip::simulation::{Cause, Failure};
+use stickslip_compute::simulation::{Cause, Failure};
 use stickslip_mechanics::Error;
 use stickslip_wire::simulate::Simulation;
 use stickslip_wire::{

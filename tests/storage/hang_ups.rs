@@ -20,11 +20,11 @@ use serde_json::json;
 use stickslip::admission::{Capacity, Pool, QuotaLimits};
 use stickslip::jobs::{JobError, Jobs, LEASE};
 use stickslip::sessions::{CAPACITY, SessionError, Sessions};
-use stickslip::simulation::Sweep;
 use stickslip::store::{
     Changes, ChunkResult, Claim, Extent, IsSmall, Job, JobLimits, JobStore, MemoryStore, Page, PostgresStore, Receipt,
     Record, Reply, RequestKey, Session, Snapshot, SqliteStore, Store, StoreError, Tenant, Usage, Whole,
 };
+use stickslip_compute::simulation::Sweep;
 use stickslip_wire::{
     Document as _, ForkRequest, JobState, Move, MoveRequest, PrepareAnew, SessionSummary, SweepRequest,
 };

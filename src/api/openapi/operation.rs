@@ -14,8 +14,8 @@ use utoipa::openapi::{Content, Header, Object, OpenApi, Ref, RefOr, Required, Re
 
 use crate::api::facts::{Facts, Need, Refusal};
 use crate::api::problem::MEDIA_TYPE;
-use crate::formats::Format;
 use crate::server::connection_limits::HEAD;
+use stickslip_compute::formats::Format;
 
 /// Of every operation with a body.
 const OF_BODIES: &[Refusal] = &[

@@ -14,8 +14,8 @@ use stickslip_wire::{LoopFileReply, ScanFileReply};
 use super::prelude::*;
 use crate::api::extract::FileBody;
 use crate::api::query_parameters::{Plain, Text, number};
-use crate::computations::files;
-use crate::formats;
+use stickslip_compute::computations::files;
+use stickslip_compute::formats;
 
 /// Units of the table. The document lists symbols; the words and other spellings of the table are taken too.
 const LENGTH: Plain<UnitHint> = Plain {
