@@ -1,5 +1,5 @@
-//! Measured loops over HTTP and on the command line: units, warnings, the contact that a fit makes, and what is no loop.
-//! What a fit finds is tested in `crates/measured/tests/loops`.
+//! Measured loops over HTTP and on the command line: units, warnings, the contact that a fit makes, and what is no
+//! loop. What a fit finds is tested in `crates/measured/tests/loops`.
 
 use serde_json::{Value, json};
 

@@ -1,5 +1,5 @@
-//! Protocols over HTTP: what is promised is what comes, from any history, in as few reversals as there are. That no path
-//! leaves less is tested in `crates/mechanics/tests/physics/{minimax,protocols,protocol_search}.rs`.
+//! Protocols over HTTP: what is promised is what comes, from any history, in as few reversals as there are. That no
+//! path leaves less is tested in `crates/mechanics/tests/physics/{minimax,protocols,protocol_search}.rs`.
 
 use reqwest::Method;
 use serde_json::{Value, json};

@@ -142,9 +142,9 @@ async fn a_contact_warns_when_a_move_gives_it_cause() {
         assert_eq!(reply.get("warnings").is_some(), !expected.is_empty(), "{body}: {reply}");
         are_described(&expected);
     }
-    // A simulation warns of the farthest move. Where a hundred times the displacement of gross slip is more than a tenth
-    // of the length, it counts: d = 1 mm on a ball of 1 m slips from 1.8 mm on; of a cone the contact radius is the
-    // only length, 6.4 mm.
+    // A simulation warns of the farthest move. Where a hundred times the displacement of gross slip is more than a
+    // tenth of the length, it counts: d = 1 mm on a ball of 1 m slips from 1.8 mm on; of a cone the contact radius is
+    // the only length, 6.4 mm.
     let soft = json!({"material": {"effective": {"e_star": 1e9, "g_star": 5e8}}, "friction": 0.9,
         "preload": {"indentation": 1e-3}});
     let blunt = changed(soft.clone(), &json!({"profile": {"type": "sphere", "radius": 1.0}}));

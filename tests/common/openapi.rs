@@ -44,7 +44,8 @@ pub fn with_query(method: &str, path: &str) -> String {
     }
 }
 
-/// All values of a document with their pointers, the document itself first; of an array those of its first two elements.
+/// All values of a document with their pointers, the document itself first; of an array those of its first two
+/// elements.
 pub fn nodes(value: &Value) -> Vec<(String, &Value)> {
     let mut all = vec![(String::new(), value)];
     let inner: Vec<(String, &Value)> = match value {
