@@ -1,4 +1,4 @@
-//! The documentation and what it promises: examples, generated clients, dashboards and the report.
+//! The documentation and what it promises: examples, generated clients and dashboards.
 
 #[path = "../common/mod.rs"]
 mod common;
@@ -11,6 +11,5 @@ mod node;
 mod progress;
 mod python;
 mod reference;
-mod report;
 mod system_service;
 mod version;
