@@ -19,13 +19,13 @@ use super::{DoubleDouble, Error, InterpolationError, Moments, Ring, range};
 use crate::cells::moment_tree::MomentTree;
 use crate::elasticity::Elasticity;
 use crate::error::CurveFault;
-use crate::numerics::gauss::QuadraturePanel;
+use crate::numerics::gauss::TWENTY_POINTS;
 
 /// A fall of the slope up to this, of itself, is rounding.
 const ROUND_OFF: f64 = 1e-12;
 /// The least step of the indentation, m.
 const LEAST_STEP: f64 = 1e-15;
-/// What a contact at the end of the curve lacks of the radius that no contact reaches.
+/// The distance of the radius at the end of the curve from the limit that no contact reaches, over the radius.
 const END: f64 = 4.0 * f64::EPSILON;
 /// A share of a level from which on the power law is integrated by a rule, because differences of powers cancel.
 const THIN: f64 = 0.5;
@@ -259,11 +259,12 @@ impl Curve {
         if share < THIN {
             let inner = self.radius(low.into());
             let mut sums = Moments { width: inner * (q * (depth / low).ln_1p()).exp_m1(), ..Moments::default() };
-            QuadraturePanel::fine(depth).visit(|below, weight| {
+            for (share, weight) in TWENTY_POINTS {
+                let below = depth * share;
                 let gained = inner * (q * ((depth - below) / low).ln_1p()).exp_m1();
-                sums.first += weight * gained;
-                sums.second += 2.0 * weight * below * gained;
-            });
+                sums.first += depth * weight * gained;
+                sums.second += 2.0 * depth * weight * below * gained;
+            }
             return sums;
         }
         let u = low / high;
