@@ -22,7 +22,7 @@ pub const ENGINE: u16 = 15;
 /// The version of the arrangement of the bytes.
 const LAYOUT: u16 = 1;
 
-/// What is written as numbers one after the other, and read again if all are finite.
+/// A value that is written as numbers one after the other, and read again if all are finite.
 pub(super) trait Packed: Sized {
     fn pack(&self, bytes: &mut Vec<u8>);
     fn unpack(reader: &mut Reader<'_>) -> Option<Self>;

@@ -44,11 +44,11 @@ pub(crate) type CellPart = (usize, Span);
 
 /// A span by the cells that it lies in.
 pub(crate) struct SpanParts {
-    /// What it has of its innermost cell, if that is not all.
+    /// The part in its innermost cell, unless that is a whole cell.
     pub(crate) low: Option<CellPart>,
     /// The whole cells.
     pub(crate) whole: Range<usize>,
-    /// What it has of its outermost cell.
+    /// The part in its outermost cell.
     pub(crate) high: Option<CellPart>,
 }
 
@@ -265,7 +265,7 @@ impl Cells {
         self.by_radius.holding(radius)
     }
 
-    /// The parts of a span; none of what lies in a flat core.
+    /// The parts of a span outside the flat core.
     pub(crate) fn parts(&self, span: &Span) -> SpanParts {
         let beyond_flat = |first: &Cell| span.above(first.square, first.radius);
         let Some(span) = &self.cells.first().and_then(beyond_flat) else {

@@ -106,7 +106,7 @@ impl Contact {
                 if !pace.goes_on() {
                     return None;
                 }
-                // Beyond the last knot, what the flat or the bend inside it hides may be known.
+                // Beyond the last knot, the sign that the flat or the bend inside it hides may be known.
                 let outermost = begins + position == ends;
                 let known = if !outermost {
                     Known::Nothing

@@ -238,9 +238,7 @@ impl Profile {
         let square = match self.curve() {
             Some(curve) => DoubleDouble::square_of(curve.radius_at(level)),
             None if level.value() <= 0.0 => DoubleDouble::square_of(self.flat_radius()),
-            None => {
-                self.cells(Reach::Level(level.value())).map_or(DoubleDouble::ZERO, |cells| cells.square(level))
-            }
+            None => self.cells(Reach::Level(level.value())).map_or(DoubleDouble::ZERO, |cells| cells.square(level)),
         };
         Point { level, radius: square.value().sqrt(), square }
     }
@@ -302,8 +300,8 @@ impl Profile {
         }
     }
 
-    /// How many times larger than g at the radius `x`, m, the parts are that it is the sum of: what their rounding
-    /// grows by.
+    /// How many times larger than g at the radius `x`, m, the parts are that it is the sum of: the factor by which
+    /// rounding grows.
     #[must_use]
     pub fn cancellation(&self, x: f64) -> f64 {
         if let Profile::Sum(sum) = self { sum.cancellation(x) } else { 1.0 }
@@ -329,7 +327,7 @@ impl Profile {
         self.shape()?.curvature_radius()
     }
 
-    /// What is known of the kernel up to c = `outer`, m, from r = `inner`, m, on.
+    /// Bounds on the kernel up to c = `outer`, m, from r = `inner`, m, on.
     pub(super) fn falls(&self, inner: f64, outer: f64) -> Falls {
         match (self.ball(), self.cells(Reach::Radius(outer))) {
             (None, Some(cells)) => cells.falls(inner, outer),
@@ -368,9 +366,8 @@ impl Profile {
     #[must_use]
     pub fn smooth_centre(&self) -> bool {
         let smooth = |powers| powers == Powers::Odd;
-        self.shape().is_some_and(|shape| {
-            shape.kinks().first().is_none_or(|kink| kink.radius > 0.0 || smooth(kink.powers))
-        })
+        self.shape()
+            .is_some_and(|shape| shape.kinks().first().is_none_or(|kink| kink.radius > 0.0 || smooth(kink.powers)))
     }
 
     /// The interpolation error of tables in a contact of this radius, m; zero for other profiles.

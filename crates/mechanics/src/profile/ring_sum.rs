@@ -1,16 +1,16 @@
 //! Weighted sums of the kernels of adjoining rings: in closed form for a ball, by its cells for every other profile.
 
 use super::{Point, Profile, Ring, Span, Sphere, StressRadius};
+use crate::cells::Cells;
 #[cfg(test)]
 use crate::cells::call_count;
-use crate::cells::Cells;
 use crate::cells::displacement::displacements;
 use crate::cells::field::{SumAndSize, WeightedCells};
 use crate::cells::kernel::Kernel;
 use crate::cells::shape::Reach;
 use crate::cells::sources::Sources;
 
-/// What the derivative of the kernels of a cell costs, in terms of a sum over rings.
+/// The cost of the derivative of the kernels of a cell, in terms of a sum over rings.
 const CELL_TERMS: usize = 8;
 /// Terms of derivatives before the next question whether to go on.
 const BETWEEN_QUESTIONS: usize = 4096;

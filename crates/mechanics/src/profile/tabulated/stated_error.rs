@@ -1,4 +1,4 @@
-//! The error of a table whose heights were fitted, as the fit knows it.
+//! The error of a table whose heights were fitted, as the fit states it.
 
 use super::{Error, InterpolationError, TableFault, Tabulated, range};
 
