@@ -4,7 +4,13 @@ use std::sync::Arc;
 
 use super::profile::StressRadius;
 use super::slip_history::SlipHistory;
-use super::{ContactSummary, DoubleDouble, Elasticity, Error, Preload, Profile, Setup, normal, range};
+use crate::elasticity::Elasticity;
+use crate::error::Error;
+use crate::normal::{ContactSummary, Preload};
+use crate::numerics::double_double::DoubleDouble;
+use crate::profile::Profile;
+use crate::state::Setup;
+use crate::{normal, range};
 
 /// A frictional contact, solved exactly.
 ///

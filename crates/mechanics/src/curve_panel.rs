@@ -10,7 +10,8 @@
 
 use super::curved_path::{CurvedMove, NormalPath, PathPoint, TangentialPath};
 use super::profile::{Ring, StressRadius};
-use super::{Contact, DoubleDouble};
+use crate::contact::Contact;
+use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::gauss::{self, EIGHT_POINTS, TWENTY_POINTS};
 
 /// A rate of slip below this, relative to the levels and positions that it is a difference of, is rounding.

@@ -8,8 +8,11 @@ use std::cmp::Ordering;
 use super::profile::{Point, Ring, StressRadius};
 use super::range::Quantity;
 use super::unit_prefix::short;
-use super::{DoubleDouble, Elasticity, Error, Profile};
+use crate::elasticity::Elasticity;
+use crate::error::Error;
+use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::roots::{largest, within};
+use crate::profile::Profile;
 
 /// Radii of the first scan for the largest pressure.
 const PRESSURE_SCAN: usize = 64;

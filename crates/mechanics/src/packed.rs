@@ -11,7 +11,8 @@
 //! | the rest | the slip history, see `slip_history/packed.rs` |
 
 use super::profile::Point;
-use super::{Contact, DoubleDouble};
+use crate::contact::Contact;
+use crate::numerics::double_double::DoubleDouble;
 
 /// The version of the results of the engine. **Raise it with every change that alters a result in any bit**, for
 /// whatever contact: bytes of another version are not read, so that states packed by an older engine are recomputed

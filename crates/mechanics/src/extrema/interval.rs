@@ -1,7 +1,7 @@
 //! An interval of radii in which the shear stress is smooth, and where its derivative is sampled there.
 
-use super::super::DoubleDouble;
-use super::super::profile::StressRadius;
+use crate::numerics::double_double::DoubleDouble;
+use crate::profile::StressRadius;
 
 /// Towards a kink of the slip history each distance is smaller by this factor, as a logarithm: beneath a thin ring the
 /// derivative has structure of every size from the whole interval down to the ring's depth.

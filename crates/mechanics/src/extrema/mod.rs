@@ -13,7 +13,8 @@ mod interval;
 mod settled;
 
 use super::profile::{RingSum, StressRadius};
-use super::{Contact, DoubleDouble};
+use crate::contact::Contact;
+use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::roots::between;
 use derivative::{Derivative, NOISE, Pace};
 use interval::{EndBehaviour, KNOT_FLOOR, MAX_PLACE, Sample, StressInterval};

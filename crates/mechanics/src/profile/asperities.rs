@@ -13,14 +13,16 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use super::curve_family::CurveFamily;
-use super::{DoubleDouble, Error, Moments, Ring, Sphere, range};
+use super::{Moments, Ring, Sphere};
 use crate::cells::moment_tree::MomentTree;
-use crate::error::CurveFault;
+use crate::error::{CurveFault, Error};
 use crate::numerics::chebyshev::{self, TWENTY};
 use crate::numerics::cluster_tree::{Cluster, ClusterTree};
+use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::gauss::TWELVE_POINTS;
 use crate::numerics::multipole::Multipole;
 use crate::numerics::roots::increasing;
+use crate::range;
 
 /// Asperities in the smallest cluster.
 const LEAF: usize = 16;

@@ -6,7 +6,8 @@
 //! without a surface: its kernels and slopes are NaN, and every function that gives a stress checks
 //! [`Profile::check_stress_field`](super::Profile) first.
 
-use super::{DoubleDouble, InterpolationError, Moments, Ring};
+use super::{InterpolationError, Moments, Ring};
+use crate::numerics::double_double::DoubleDouble;
 
 /// The functions of a load curve.
 pub(super) trait CurveFamily {

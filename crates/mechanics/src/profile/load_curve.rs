@@ -15,11 +15,13 @@ use std::sync::Arc;
 
 use super::curve_family::CurveFamily;
 use super::open_gaps::open_slopes;
-use super::{DoubleDouble, Error, InterpolationError, Moments, Ring, range};
+use super::{InterpolationError, Moments, Ring};
 use crate::cells::moment_tree::MomentTree;
 use crate::elasticity::Elasticity;
-use crate::error::CurveFault;
+use crate::error::{CurveFault, Error};
+use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::gauss::TWENTY_POINTS;
+use crate::range;
 
 /// A fall of the slope up to this, of itself, is rounding.
 const ROUND_OFF: f64 = 1e-12;

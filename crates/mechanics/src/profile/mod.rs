@@ -40,13 +40,15 @@ pub(super) use ring_sum::{InwardSum, RingSum};
 pub use sum::Sum;
 pub use tabulated::{InterpolationError, Tabulated};
 
-use super::error::Error;
-use super::{Elasticity, Preload, range};
 use crate::cells::Cells;
 use crate::cells::falls::Falls;
 use crate::cells::shape::{End, EndKind, Powers, Reach, Shape};
 use crate::cells::span::Span;
+use crate::elasticity::Elasticity;
+use crate::error::Error;
+use crate::normal::Preload;
 use crate::numerics::double_double::DoubleDouble;
+use crate::range;
 use asperities::Count;
 use curve_family::CurveFamily;
 

@@ -4,9 +4,9 @@
 //! points reach round-off. Down to the tip the variable is ln x, octave by octave until nothing is added: for g ~ x^n
 //! with n near one, s comes from all of them.
 
-use super::super::profile::Profile;
 use crate::numerics::gauss::{self, EIGHT_POINTS};
 use crate::numerics::roots::within;
+use crate::profile::Profile;
 
 /// Tolerance of halving a panel, relative to the sum so far; the halves are then good to round-off.
 const TOLERANCE: f64 = 1e-12;

@@ -6,7 +6,7 @@
 //! b))^(1/2). Of many gaps the squares add up. A step T of f' adds (pi/2) T arcosh to the kernel of the pressure. The
 //! factors are fitted to random tables (`tests/physics/open_gaps.rs`).
 
-use super::super::open_gaps::open_slopes;
+use crate::profile::open_gaps::open_slopes;
 
 /// The factors of the errors of g and of the load.
 const OF_LEVEL: f64 = 0.05;

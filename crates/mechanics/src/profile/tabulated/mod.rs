@@ -16,12 +16,12 @@ mod stated_error;
 #[cfg(test)]
 mod tests;
 
-use super::super::error::TableFault;
-use super::{Error, range};
 use crate::cells::Cells;
 use crate::cells::shape::{End, EndKind, Kink, Powers, Shape};
 use crate::cells::stages::Stages;
+use crate::error::{Error, TableFault};
 use crate::numerics::double_double::DoubleDouble;
+use crate::range;
 pub use interpolation_error::InterpolationError;
 use interpolation_error::TableGap;
 use spline::SplineKnot;
