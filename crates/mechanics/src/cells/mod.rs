@@ -36,7 +36,7 @@ use ring::{Moments, Point, Ring, StressRadius};
 use sources::Sources;
 use span::Span;
 
-/// Of a ring thinner than this share of its square, what lies inside a border of two cells is found from its depth.
+/// Of a ring thinner than this share of its square, the part inside a border of two cells is found from its depth.
 const THIN: f64 = 1e-3;
 
 /// A stretch within the cell of this index.
@@ -303,7 +303,7 @@ impl Cells {
         if at.square < self.floor.square { &self.floor } else { at }
     }
 
-    /// The sum of a kernel of what lies beyond r over a span.
+    /// The sum of a kernel over the part of a span beyond r.
     pub(crate) fn sum(&self, kernel: Kernel, at: &StressRadius, span: &Span) -> f64 {
         let at = self.at_least(at);
         let Some(span) = span.above(at.square, at.radius) else { return 0.0 };
@@ -331,7 +331,7 @@ impl Cells {
         low.into_iter().chain(high).map(part).sum::<f64>() + between
     }
 
-    /// int (h + what lies above) dx/sqrt(r^2 - x^2), m, over what a span has below r, h the rise up to its outer end.
+    /// int h dx/sqrt(r^2 - x^2), m, over the part of a span below r, h the rise of g up to the outer end of the span.
     pub(crate) fn displacement_integral(&self, at: &StressRadius, span: &Span) -> f64 {
         let SpanParts { low, whole, high } = self.parts(span);
         let whole = whole.rev().map(|index| (index, self.span_of_cell(index)));

@@ -24,13 +24,13 @@ use crate::numerics::gauss::TWENTY_POINTS;
 use crate::range;
 
 /// A fall of the slope up to this, of itself, is rounding.
-const ROUND_OFF: f64 = 1e-12;
+const ERROR_OF_SLOPE: f64 = 1e-12;
 /// The least step of the indentation, m.
 const LEAST_STEP: f64 = 1e-15;
 /// The distance of the radius at the end of the curve from the limit that no contact reaches, over the radius.
 const END: f64 = 4.0 * f64::EPSILON;
 /// A share of a level from which on the power law is integrated by a rule, because differences of powers cancel.
-const THIN: f64 = 0.5;
+const CANCELLING: f64 = 0.5;
 
 /// The error of int X dy in a gap over its width times that of X, and the share of the latter that a level of given X
 /// errs by.
@@ -120,7 +120,7 @@ impl LoadCurve {
         let points: Vec<(f64, f64)> =
             indentation.iter().zip(normal_force).map(|(&d, &force)| (d, force / unit)).collect();
         let slope = |index: usize| secant(points[index], points[index + 1]);
-        let falls = |index: &usize| slope(*index) < slope(index - 1) * (1.0 - ROUND_OFF);
+        let falls = |index: &usize| slope(*index) < slope(index - 1) * (1.0 - ERROR_OF_SLOPE);
         if let Some(index) = (1..points.len() - 1).find(falls) {
             return fault(CurveFault::SlopeFalls, index + 1);
         }
@@ -258,7 +258,7 @@ impl Curve {
         }
         let q = self.exponent;
         let (outer, share) = (self.radius(high.into()), depth / high);
-        if share < THIN {
+        if share < CANCELLING {
             let inner = self.radius(low.into());
             let mut sums = Moments { width: inner * (q * (depth / low).ln_1p()).exp_m1(), ..Moments::default() };
             for (share, weight) in TWENTY_POINTS {

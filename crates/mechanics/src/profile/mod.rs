@@ -44,9 +44,7 @@ use crate::cells::Cells;
 use crate::cells::falls::Falls;
 use crate::cells::shape::{End, EndKind, Powers, Reach, Shape};
 use crate::cells::span::Span;
-use crate::elasticity::Elasticity;
 use crate::error::Error;
-use crate::normal::Preload;
 use crate::numerics::double_double::DoubleDouble;
 use crate::range;
 use asperities::Count;
@@ -130,32 +128,6 @@ impl Profile {
             _ => return Ok(()),
         };
         Err(Error::NoStressField { profile })
-    }
-
-    /// Prepares what a contact with this preload needs, while `keep_going` returns true: of a table whose slope never
-    /// falls, the part that the contact reaches. Without it that is prepared when it is first needed.
-    ///
-    /// # Errors
-    /// [`Error::Interrupted`] once `keep_going` has returned false.
-    ///
-    /// ```
-    #[doc = include_str!("../example.txt")]
-    /// assert!(setup.profile.prepare_for(&setup.preload, &setup.elasticity, &|| true).is_ok());
-    /// # Ok::<(), Error>(())
-    /// ```
-    pub fn prepare_for(
-        &self,
-        preload: &Preload,
-        elasticity: &Elasticity,
-        keep_going: &dyn Fn() -> bool,
-    ) -> Result<(), Error> {
-        let Some(shape) = self.shape().filter(|shape| shape.stages().is_some()) else { return Ok(()) };
-        let reach = match *preload {
-            Preload::NormalForce(force) => Reach::Load(force / (2.0 * elasticity.e_star())),
-            Preload::Indentation(depth) => Reach::Level(depth),
-            Preload::ContactRadius(radius) => Reach::Radius(radius),
-        };
-        shape.cells_while(reach, keep_going).map(drop).ok_or(Error::Interrupted)
     }
 
     /// The parabola that it is, or whose load curve it has.
