@@ -6,7 +6,7 @@ use super::normal::mean_pressure;
 /// A relative slope of g above this is the edge of a punch, whose radius is exact.
 const MAX_STEEPNESS: f64 = 1e4;
 
-/// What a stress errs by over mu p_max, over what the force errs by over mu F_N, if the path begins at another
+/// The error of a stress over mu p_max, over that of the force over mu F_N, if the path begins at another
 /// indentation: beside the radii at which slip once stopped the stress is steep.
 const STRESS_OF_MOVED: f64 = 5.0;
 

@@ -4,7 +4,13 @@ use std::sync::Arc;
 
 use super::profile::StressRadius;
 use super::slip_history::SlipHistory;
-use super::{ContactSummary, DoubleDouble, Elasticity, Error, Preload, Profile, Setup, normal, range};
+use crate::elasticity::Elasticity;
+use crate::error::Error;
+use crate::normal::{ContactSummary, Preload};
+use crate::numerics::double_double::DoubleDouble;
+use crate::profile::Profile;
+use crate::state::Setup;
+use crate::{normal, range};
 
 /// A frictional contact, solved exactly.
 ///
@@ -86,11 +92,11 @@ impl Contact {
             Preload::Indentation(_) | Preload::ContactRadius(_) => normal::force(&profile, &elasticity, history.edge()),
         };
         let initial = ContactSummary::of(&profile, &elasticity, friction, history.edge(), normal_force);
-        let doubt = profile.interpolation_error(initial.contact_radius);
+        let interpolation = profile.interpolation_error(initial.contact_radius);
         let indentation_error = match preload {
-            Preload::NormalForce(_) if doubt.load > 0.0 => doubt.load / initial.contact_radius,
+            Preload::NormalForce(_) if interpolation.load > 0.0 => interpolation.load / initial.contact_radius,
             Preload::NormalForce(_) | Preload::Indentation(_) => 0.0,
-            Preload::ContactRadius(_) => doubt.level,
+            Preload::ContactRadius(_) => interpolation.level,
         };
         let inverse_scale = if friction > 0.0 {
             DoubleDouble::from(elasticity.g_star()).over(DoubleDouble::from(elasticity.e_star()) * friction)
@@ -192,7 +198,7 @@ impl Contact {
     }
 }
 
-/// What the present state is. A straight move has no error of its path.
+/// The results for the present state, each at once: a straight move has no error of its path.
 ///
 /// ```
 #[doc = include_str!("example.txt")]

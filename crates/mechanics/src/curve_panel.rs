@@ -10,8 +10,9 @@
 
 use super::curved_path::{CurvedMove, NormalPath, PathPoint, TangentialPath};
 use super::profile::{Ring, StressRadius};
-use super::{Contact, DoubleDouble};
-use crate::numerics::gauss::QuadraturePanel;
+use crate::contact::Contact;
+use crate::numerics::double_double::DoubleDouble;
+use crate::numerics::gauss::{self, EIGHT_POINTS, TWENTY_POINTS};
 
 /// A rate of slip below this, relative to the levels and positions that it is a difference of, is rounding.
 const RATE_ROUND_OFF: f64 = 16.0 * f64::EPSILON;
@@ -46,20 +47,16 @@ struct Quadrature {
 /// A quadrature over the radii of a ring of an integrand of (x, D - h, h).
 fn over_ring(contact: &Contact, ring: &Ring, integrand: impl Fn(f64, f64, f64) -> f64) -> Quadrature {
     let (inner, width) = (ring.inner.radius, ring.outer.radius - ring.inner.radius);
-    let integral = |rule: QuadraturePanel| {
-        let mut sum = 0.0;
-        // Over the root of the distance from the inner radius: next to a flat g rises like a root.
-        rule.visit(|u, share| {
-            let x = inner + width * u * u;
-            let level = DoubleDouble::from(contact.profile.level(x));
-            let [risen, left] = [level - ring.inner.level, ring.outer.level - level];
-            let [risen, left] = [risen, left].map(|height| height.value().clamp(0.0, ring.depth));
-            sum += 2.0 * u * share * integrand(x, risen, left);
-        });
-        width * sum
+    // Over the root of the distance from the inner radius: next to a flat g rises like a root.
+    let over_root = |u: f64| {
+        let x = inner + width * u * u;
+        let level = DoubleDouble::from(contact.profile.level(x));
+        let [risen, left] = [level - ring.inner.level, ring.outer.level - level];
+        let [risen, left] = [risen, left].map(|height| height.value().clamp(0.0, ring.depth));
+        2.0 * width * u * integrand(x, risen, left)
     };
-    let value = integral(QuadraturePanel::fine(1.0));
-    Quadrature { value, difference: (value - integral(QuadraturePanel::coarse(1.0))).abs() }
+    let value = gauss::integral(&TWENTY_POINTS, 1.0, over_root);
+    Quadrature { value, difference: (value - gauss::integral(&EIGHT_POINTS, 1.0, over_root)).abs() }
 }
 
 /// Whether slip towards `sign` goes on while the position advances and the indentation rises by so much.

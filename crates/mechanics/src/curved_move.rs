@@ -10,7 +10,9 @@ use std::ops::{Add, Mul, Sub};
 
 use super::curve_panel::PathPanel;
 use super::curved_path::{CurvedMove, NormalPath, PathPoint, TangentialPath};
-use super::{Contact, DoubleDouble, Error};
+use crate::contact::Contact;
+use crate::error::Error;
+use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::roots::{largest, turning};
 
 /// Error of the tangential force, relative to mu F_N, that a move may have unless the caller prescribes another.

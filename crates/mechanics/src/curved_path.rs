@@ -1,6 +1,7 @@
 //! A path straight in two quantities, of which a force makes it a curve in displacement and indentation.
 
-use super::{Contact, DoubleDouble};
+use crate::contact::Contact;
+use crate::numerics::double_double::DoubleDouble;
 
 /// How the tangential target is reached: straight from one value to the other.
 #[derive(Clone, Copy, Debug)]

@@ -3,7 +3,8 @@
 //! 1/E* = sum (1 - nu_i^2)/E_i (Hertz 1881) and 1/G* = sum (2 - nu_i)/(4 G_i) (Mindlin 1949), with
 //! G_i = E_i/(2 (1 + nu_i)). A rigid body adds nothing to either sum.
 
-use super::{Error, range};
+use crate::error::Error;
+use crate::range;
 
 /// An isotropic elastic body.
 #[derive(Clone, Copy, Debug, PartialEq)]

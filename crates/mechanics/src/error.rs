@@ -14,7 +14,7 @@ pub enum Error {
     /// A number outside what is accepted.
     #[error("{quantity} = {} is out of range: allowed is {allowed}", short(*value))]
     OutOfRange {
-        /// What was given.
+        /// The given value.
         quantity: Quantity,
         /// Its value, in its SI unit.
         value: f64,
@@ -38,7 +38,7 @@ pub enum Error {
     /// A table that is not one.
     #[error("the table is not usable: {fault} at index {index}")]
     Table {
-        /// What is wrong.
+        /// The fault.
         fault: TableFault,
         /// The first point at which it is.
         index: usize,
@@ -46,7 +46,7 @@ pub enum Error {
     /// Numbers that are no load curve, or no set of asperities.
     #[error("the profile is not usable: {fault} at index {index}")]
     Curve {
-        /// What is wrong.
+        /// The fault.
         fault: CurveFault,
         /// The first number at which it is.
         index: usize,

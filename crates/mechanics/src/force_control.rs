@@ -8,7 +8,8 @@
 
 use super::normal::{depth_for, load};
 use super::profile::{Point, Ring};
-use super::{Contact, DoubleDouble};
+use crate::contact::Contact;
+use crate::numerics::double_double::DoubleDouble;
 
 /// The stack brought to a new edge, before the slip ring grows towards `sign`.
 struct SlipFront {

@@ -28,8 +28,15 @@
 //! - the shear stress tau(r) = -(G*/pi) int_r^a u_x'(x)/sqrt(x^2 - r^2) dx,
 //! - the elastic energy G* m^2 int_0^a w^2 dx, and the friction work of each move,
 //!
-//! all as sums over pieces of a few integrals of each [`Profile`]: in closed form where there is one, else by a series
-//! or a quadrature to round-off.
+//! all as sums over pieces of a few integrals of each [`Profile`]: in closed form on a parabola, else by series over
+//! `cells` of radii, to round-off. Under a vertical edge, where u_x(a) is not zero, tau has the edge term (G*/pi)
+//! u_x(a)/sqrt(a^2 - r^2) besides, as the pressure has (E*/pi) u_z(a)/sqrt(a^2 - r^2).
+//!
+//! This is the theory of Cattaneo (1938) and Mindlin (1949), extended to any shape and path by Ciavarella (1998) and
+//! Jaeger (1998): the shear stress of partial slip is mu times a difference of pressures of the same bodies. Within it
+//! the solution is exact. It leaves out the coupling of normal and tangential stress (Dundurs' beta is taken as zero),
+//! slip across the motion (friction acts along x alone), and the shape of the bodies away from the contact (each is a
+//! half-space).
 //!
 //! Positive displacement gives positive force and positive shear stress. Energies are those of the tangential problem
 //! alone.
@@ -40,6 +47,7 @@
 //! |---|---|
 //! | [`elasticity`] | which two moduli do the bodies have together? |
 //! | [`profile`] | what does the shape of the indenter mean for a ring of the contact? |
+//! | `cells` | how are g and its integrals computed for any shape, in cells of radii with one series each? |
 //! | `normal` | how do indentation, contact radius, normal force and pressure follow from each other? |
 //! | `slip_history` | what is left of the path, what does a move change, and how much work does it dissipate? |
 //! | `contact`, `moves`, `state` | what is a contact made of, how does it move, what state is it in? |

@@ -2,7 +2,12 @@
 //! so that its path can be drawn point by point.
 
 use super::curved_path::{CurvedMove, NormalPath, PathPoint, TangentialPath};
-use super::{Contact, DEFAULT_TOLERANCE, DoubleDouble, Error, Move, Normal, Tangential, range};
+use crate::contact::Contact;
+use crate::curved_move::DEFAULT_TOLERANCE;
+use crate::error::Error;
+use crate::numerics::double_double::DoubleDouble;
+use crate::range;
+use crate::state::{Move, Normal, Tangential};
 
 impl Contact {
     /// Moves along a straight line, as [`Contact::apply_within`] with [`DEFAULT_TOLERANCE`].

@@ -8,8 +8,12 @@ use std::cmp::Ordering;
 use super::profile::{Point, Ring, StressRadius};
 use super::range::Quantity;
 use super::unit_prefix::short;
-use super::{DoubleDouble, Elasticity, Error, Profile};
+use crate::cells::shape::Reach;
+use crate::elasticity::Elasticity;
+use crate::error::Error;
+use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::roots::{largest, within};
+use crate::profile::Profile;
 
 /// Radii of the first scan for the largest pressure.
 const PRESSURE_SCAN: usize = 64;
@@ -94,6 +98,34 @@ impl ContactSummary {
     #[must_use]
     pub fn unit_shear(&self) -> f64 {
         self.gross_slip_force / self.normal_force * self.unit_pressure()
+    }
+}
+
+impl Profile {
+    /// Prepares what a contact with this preload needs, while `keep_going` returns true: of a table whose slope never
+    /// falls, the part that the contact reaches. Without it that is prepared when it is first needed.
+    ///
+    /// # Errors
+    /// [`Error::Interrupted`] once `keep_going` has returned false.
+    ///
+    /// ```
+    #[doc = include_str!("example.txt")]
+    /// assert!(setup.profile.prepare_for(&setup.preload, &setup.elasticity, &|| true).is_ok());
+    /// # Ok::<(), Error>(())
+    /// ```
+    pub fn prepare_for(
+        &self,
+        preload: &Preload,
+        elasticity: &Elasticity,
+        keep_going: &dyn Fn() -> bool,
+    ) -> Result<(), Error> {
+        let Some(shape) = self.shape().filter(|shape| shape.stages().is_some()) else { return Ok(()) };
+        let reach = match *preload {
+            Preload::NormalForce(force) => Reach::Load(force / (2.0 * elasticity.e_star())),
+            Preload::Indentation(depth) => Reach::Level(depth),
+            Preload::ContactRadius(radius) => Reach::Radius(radius),
+        };
+        shape.cells_while(reach, keep_going).map(drop).ok_or(Error::Interrupted)
     }
 }
 

@@ -11,7 +11,8 @@
 //! | the rest | the slip history, see `slip_history/packed.rs` |
 
 use super::profile::Point;
-use super::{Contact, DoubleDouble};
+use crate::contact::Contact;
+use crate::numerics::double_double::DoubleDouble;
 
 /// The version of the results of the engine. **Raise it with every change that alters a result in any bit**, for
 /// whatever contact: bytes of another version are not read, so that states packed by an older engine are recomputed
@@ -22,7 +23,7 @@ pub const ENGINE: u16 = 16;
 /// The version of the arrangement of the bytes.
 const LAYOUT: u16 = 1;
 
-/// What is written as numbers one after the other, and read again if all are finite.
+/// A value that is written as numbers one after the other, and read again if all are finite.
 pub(super) trait Packed: Sized {
     fn pack(&self, bytes: &mut Vec<u8>);
     fn unpack(reader: &mut Reader<'_>) -> Option<Self>;

@@ -6,7 +6,7 @@ use std::fmt;
 /// A quantity's name, unit and closed interval, bounds included.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Range {
-    /// What the number measures.
+    /// The measured quantity.
     pub quantity: Quantity,
     /// SI unit, empty for a pure number.
     pub unit: &'static str,
@@ -22,7 +22,7 @@ macro_rules! quantities {
     ($(
         $variant:ident = $name:literal $(, $RANGE:ident: $min:literal to $max:literal $unit:literal)?, $doc:literal;
     )*) => {
-        /// What a number measures.
+        /// The quantity that a number measures.
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
         pub enum Quantity {
             $(#[doc = $doc] $variant,)*

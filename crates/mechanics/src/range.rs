@@ -2,9 +2,9 @@
 
 use std::fmt;
 
-use super::error::Error;
 pub use super::quantity::*;
 use super::unit_prefix::short;
+use crate::error::Error;
 
 /// The smallest coefficient of friction above zero: below it, displacements relative to that of gross slip overflow.
 pub const MIN_POSITIVE_FRICTION: f64 = 1e-9;

@@ -2,7 +2,10 @@
 
 use std::sync::Arc;
 
-use super::{Contact, Elasticity, Preload, Profile};
+use crate::contact::Contact;
+use crate::elasticity::Elasticity;
+use crate::normal::Preload;
+use crate::profile::Profile;
 
 /// The definition of a contact. Its profile is a [`Profile`], or an `Arc` of one that others share, because a table is
 /// large.

@@ -8,7 +8,8 @@
 use std::f64::consts::FRAC_2_PI;
 
 use super::profile::{Point, StressRadius};
-use super::{Contact, DoubleDouble};
+use crate::contact::Contact;
+use crate::numerics::double_double::DoubleDouble;
 
 /// The surface after a move.
 ///

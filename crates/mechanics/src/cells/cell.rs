@@ -95,7 +95,7 @@ impl Cell {
         Cell::of(kink, square, high, powers, step == 2, first)
     }
 
-    /// What stands for a tip, up to this radius, m, by its powers.
+    /// The cell in place of a tip, up to this radius, m, by its powers.
     pub(crate) fn tip(radius: f64, powers: &[f64]) -> Cell {
         Cell::of(0.0, DoubleDouble::ZERO, radius, powers.to_vec(), false, powers.len() - 1)
     }

@@ -1,4 +1,4 @@
-//! What is known of the sign of the derivative of a kernel, by the series of q = g'/x.
+//! Bounds on the derivative of a kernel, by the series of q = g'/x.
 //!
 //! With v = sqrt(c^2 - r^2), -2 v dK/d(r^2) of the kernel up to c is q(c^2) - 2 v int q'(r^2 + t^2) dt over t up to v,
 //! q' the slope over x^2: above zero the kernel falls. Where q neither falls nor bends upward, dK/d(r^2) falls all the
@@ -17,7 +17,7 @@ const LOGARITHM: f64 = 40.0;
 /// The share of the terms of a series that rounding makes of a zero.
 const NOISE: f64 = 1e-12;
 
-/// What is known of a kernel from r = `inner` up to c.
+/// Bounds on a kernel from r = `inner` up to c.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Falls {
     /// A lower bound, 1/m, of -2 v dK/d(r^2); minus infinity where nothing is known.
@@ -38,7 +38,7 @@ pub(super) struct Steepness {
 }
 
 impl Cells {
-    /// What is known of the kernel up to `outer`, m, from r = `inner`, m, on.
+    /// Bounds on the kernel up to `outer`, m, from r = `inner`, m, on.
     pub(crate) fn falls(&self, inner: f64, outer: f64) -> Falls {
         let (first, last) = (self.find(inner), self.find(outer));
         let unknown = Falls { least: f64::NEG_INFINITY, concavely: false };

@@ -1,4 +1,4 @@
-//! What is summed over the sources dg of cells: a kernel of their radius x and of r, whole clusters at once where they
+//! Sums over the sources dg of cells: a kernel of their radius x and of r, whole clusters at once where they
 //! are far.
 //!
 //! Of X = x^2 = c + h xi the angles T below r have the derivative -+h/(2 sqrt(X (r^2 - X))) by xi, which is singular at
@@ -18,7 +18,7 @@ use super::ring::StressRadius;
 use super::sources::Sources;
 use super::span::Span;
 use crate::numerics::double_double::DoubleDouble;
-use crate::numerics::gauss;
+use crate::numerics::gauss::TWENTY_POINTS;
 use crate::numerics::multipole::{ORDERS, add_polynomials};
 
 /// A kernel.
@@ -128,8 +128,8 @@ impl Kernel {
     }
 }
 
-/// Gauss's points, and what turns moments into the weights there of a derivative: of each point and order, the part of
-/// P_k in the primitive from 0 on of the polynomial that is one at the point and zero at the others.
+/// The points of a Gauss rule, and the matrix from moments to the weights there of a derivative: of each point and
+/// order, the part of P_k in the primitive from 0 on of the polynomial that is one at the point and zero at the others.
 struct GaussNodes {
     places: [f64; ORDERS],
     primitives: [[f64; ORDERS]; ORDERS],
@@ -137,8 +137,8 @@ struct GaussNodes {
 
 static NODES: LazyLock<GaussNodes> = LazyLock::new(|| {
     let mut nodes = GaussNodes { places: [0.0; ORDERS], primitives: [[0.0; ORDERS]; ORDERS] };
-    for (index, (below, share)) in gauss::QuadraturePanel::fine(2.0).nodes().enumerate() {
-        let place = 1.0 - below;
+    for (index, (below, weight)) in TWENTY_POINTS.into_iter().enumerate() {
+        let (place, share) = (1.0 - 2.0 * below, 2.0 * weight);
         nodes.places[index] = place;
         // The polynomial is the sum of share (j + 1/2) P_j(place) P_j, and the primitive of P_j is (P_(j+1) -
         // P_(j-1))/(2j + 1).

@@ -36,7 +36,7 @@ use ring::{Moments, Point, Ring, StressRadius};
 use sources::Sources;
 use span::Span;
 
-/// Of a ring thinner than this share of its square, what lies inside a border of two cells is found from its depth.
+/// Of a ring thinner than this share of its square, the part inside a border of two cells is found from its depth.
 const THIN: f64 = 1e-3;
 
 /// A stretch within the cell of this index.
@@ -44,11 +44,11 @@ pub(crate) type CellPart = (usize, Span);
 
 /// A span by the cells that it lies in.
 pub(crate) struct SpanParts {
-    /// What it has of its innermost cell, if that is not all.
+    /// The part in its innermost cell, unless that is a whole cell.
     pub(crate) low: Option<CellPart>,
     /// The whole cells.
     pub(crate) whole: Range<usize>,
-    /// What it has of its outermost cell.
+    /// The part in its outermost cell.
     pub(crate) high: Option<CellPart>,
 }
 
@@ -270,7 +270,7 @@ impl Cells {
         self.by_radius.holding(radius)
     }
 
-    /// The parts of a span; none of what lies in a flat core.
+    /// The parts of a span outside the flat core.
     pub(crate) fn parts(&self, span: &Span) -> SpanParts {
         let beyond_flat = |first: &Cell| span.above(first.square, first.radius);
         let Some(span) = &self.cells.first().and_then(beyond_flat) else {
@@ -308,7 +308,7 @@ impl Cells {
         if at.square < self.floor.square { &self.floor } else { at }
     }
 
-    /// The sum of a kernel of what lies beyond r over a span.
+    /// The sum of a kernel over the part of a span beyond r.
     pub(crate) fn sum(&self, kernel: Kernel, at: &StressRadius, span: &Span) -> f64 {
         let at = self.at_least(at);
         let Some(span) = span.above(at.square, at.radius) else { return 0.0 };
@@ -336,7 +336,7 @@ impl Cells {
         low.into_iter().chain(high).map(part).sum::<f64>() + between
     }
 
-    /// int (h + what lies above) dx/sqrt(r^2 - x^2), m, over what a span has below r, h the rise up to its outer end.
+    /// int h dx/sqrt(r^2 - x^2), m, over the part of a span below r, h the rise of g up to the outer end of the span.
     pub(crate) fn displacement_integral(&self, at: &StressRadius, span: &Span) -> f64 {
         let SpanParts { low, whole, high } = self.parts(span);
         let whole = whole.rev().map(|index| (index, self.span_of_cell(index)));

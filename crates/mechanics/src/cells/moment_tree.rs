@@ -41,7 +41,7 @@ impl MomentTree {
         join(inner, outer)
     }
 
-    /// The moments of the rings `run` with those of what lies inside them and of what lies outside, of a depth, m.
+    /// The moments of a run of rings with the rings inside it and with those outside it, of a depth, m.
     pub(crate) fn across(&self, run: Range<usize>, inside: Moments, (outside, depth): (Moments, f64)) -> Moments {
         join((inside, 0.0), join(self.run(run.start, run.end), (outside, depth))).0
     }

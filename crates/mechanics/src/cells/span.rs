@@ -50,7 +50,7 @@ impl Span {
         (inner.value(), outer.value())
     }
 
-    /// What lies inside the radius whose square is given.
+    /// The part inside the radius whose square is given.
     pub(crate) fn below(&self, square: DoubleDouble, radius: f64) -> Option<Span> {
         let (inner, outer) = self.excess(square);
         if inner >= 0.0 {
@@ -62,7 +62,7 @@ impl Span {
         }
     }
 
-    /// What lies outside the radius whose square is given.
+    /// The part outside the radius whose square is given.
     pub(crate) fn above(&self, square: DoubleDouble, radius: f64) -> Option<Span> {
         let (inner, outer) = self.excess(square);
         if outer <= 0.0 {

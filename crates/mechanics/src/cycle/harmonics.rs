@@ -15,16 +15,16 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use super::SteadyCycle;
 use crate::normal::load;
 use crate::numerics::double_double::DoubleDouble;
-use crate::numerics::gauss::QuadraturePanel;
+use crate::numerics::gauss::{EIGHT_POINTS, TWENTY_POINTS};
 use crate::profile::Ring;
 
 /// The turn of the highest harmonic that a panel of twenty points follows, rad.
 const TURN: f64 = 13.0;
 /// The share of a panel that must lie between it and a singularity for a rule of twenty points: rho = 2.6.
 const CLEARANCE: f64 = 0.56;
-/// The rest of the angle next to a singularity contributes its cube.
+/// Panels are halved towards a singularity down to this angle: the integral over the rest is of its third power.
 const LEAST_PANEL: f64 = 1e-5;
-/// More kinks than this are not resolved one by one, but by so many panels as there are.
+/// More kinks than this are not resolved one by one, but by equal panels.
 const MOST_KINKS: usize = 8;
 const PANELS: f64 = 16.0;
 
@@ -67,13 +67,13 @@ impl SteadyCycle<'_> {
     pub fn harmonics(&self, count: usize) -> Harmonics {
         let branch = Branch::new(self);
         let (panels, resolved) = self.panels(count);
-        let sums = branch.integrate(&panels, count, QuadraturePanel::fine);
+        let sums = branch.integrate(&panels, count, &TWENTY_POINTS);
         // Where kinks are not resolved, halves of the panels give the result, and the difference its error.
         let halves = panels.windows(2).flat_map(|pair| [pair[0], 0.5 * (pair[0] + pair[1])]).chain([PI]);
         let (sums, coarser) = if resolved {
             (sums, None)
         } else {
-            (branch.integrate(&halves.collect::<Vec<f64>>(), count, QuadraturePanel::fine), Some(sums))
+            (branch.integrate(&halves.collect::<Vec<f64>>(), count, &TWENTY_POINTS), Some(sums))
         };
         let off = coarser.iter().flatten().flatten().zip(sums.iter().flatten()).map(|(one, other)| (one - other).abs());
         let error = 4.0 / PI * off.fold(0.0, f64::max) / branch.answer.max(f64::MIN_POSITIVE);
@@ -83,7 +83,7 @@ impl SteadyCycle<'_> {
     /// The harmonics by the shorter rule alone, for a start: right to some 1e-3, of unknown error.
     pub(super) fn rough_harmonics(&self, count: usize) -> Vec<Harmonic> {
         let (branch, (panels, _)) = (Branch::new(self), self.panels(count));
-        branch.harmonics(&branch.integrate(&panels, count, QuadraturePanel::coarse), count, f64::INFINITY).harmonics
+        branch.harmonics(&branch.integrate(&panels, count, &EIGHT_POINTS), count, f64::INFINITY).harmonics
     }
 
     /// The ends of the panels of the angle from 0 to pi, and whether they resolve every kink.
@@ -154,24 +154,25 @@ impl<'a, 'b> Branch<'a, 'b> {
     }
 
     /// int sin(n th) dR and int cos(n th) dR for odd n up to `count`, without the straight part.
-    fn integrate(&self, ends: &[f64], count: usize, rule: fn(f64) -> QuadraturePanel) -> Vec<[f64; 2]> {
+    fn integrate(&self, ends: &[f64], count: usize, rule: &[(f64, f64)]) -> Vec<[f64; 2]> {
         let mut sums = vec![[0.0; 2]; count.div_ceil(2)];
         if self.cycle.ring.depth <= 0.0 || self.drive <= 0.0 {
             return sums;
         }
         for pair in ends.windows(2) {
-            rule(pair[1] - pair[0]).visit(|offset, share| {
-                let ([sin, cos], weight) = self.at(pair[0] + offset);
+            let width = pair[1] - pair[0];
+            for (offset, share) in rule {
+                let ([sin, cos], weight) = self.at(pair[0] + width * offset);
                 // By the recurrence of two steps: cos((n + 2) th) = 2 cos(2 th) cos(n th) - cos((n - 2) th).
                 let double = 2.0 * (2.0 * cos * cos - 1.0);
                 let (mut here, mut before) = ([sin, cos], [-sin, cos]);
                 for sum in &mut sums {
-                    sum[0] += share * weight * here[0];
-                    sum[1] += share * weight * here[1];
+                    sum[0] += width * share * weight * here[0];
+                    sum[1] += width * share * weight * here[1];
                     let next = [double * here[0] - before[0], double * here[1] - before[1]];
                     (before, here) = (here, next);
                 }
-            });
+            }
         }
         sums
     }

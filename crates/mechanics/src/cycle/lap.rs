@@ -3,7 +3,8 @@
 use std::f64::consts::TAU;
 
 use super::Harmonic;
-use crate::{Contact, Regime, State};
+use crate::contact::Contact;
+use crate::state::{Regime, State};
 
 /// A steady cycle that was stepped.
 #[derive(Clone, Debug, PartialEq)]

@@ -5,7 +5,7 @@
 //! this loop interrupted (Madelung); a branch from the only turning point ends at its mirror image, on the first
 //! loading curve.
 
-use crate::Contact;
+use crate::contact::Contact;
 use crate::normal::load;
 use crate::numerics::double_double::DoubleDouble;
 use crate::profile::Ring;

@@ -209,7 +209,7 @@ impl DrivenMass<'_> {
     }
 
     /// Adds the error of a step of this length that has been made. Two motions of the mass do not draw apart in speed
-    /// or in the force of any spring; their displacements do, where the contact gives way.
+    /// or in the force of any spring; their displacements do, where the contact yields.
     fn add_error(&self, motion: &mut Motion, trial: &MotionTrial, length: f64) {
         let ([first, .., last], moved) = (trial.accelerations, trial.change[0]);
         let driven = self.drive_force / self.inertia * (motion.angle.cos() - (motion.angle - length).cos());

@@ -30,9 +30,11 @@ pub use response::{Resonator, Response};
 use super::curved_path::PathPoint;
 use super::normal::{depth_for, load, whole};
 use super::profile::{Moments, Ring};
-use super::{Contact, Error, Regime};
+use crate::contact::Contact;
+use crate::error::Error;
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::roots::within;
+use crate::state::Regime;
 
 /// The quantity prescribed as a cosine over a cycle: at the machine, if there is one.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -16,7 +16,7 @@ use std::f64::consts::TAU;
 use super::masing_loop::FirstLoading;
 use super::mass_motion::{DrivenMass, Unfinished};
 use super::{Drive, Harmonic, SteadyCycle};
-use crate::Contact;
+use crate::contact::Contact;
 use crate::numerics::roots::between;
 
 /// Digits, as a logarithm, to which the balance of the first harmonic is solved: it is a start.

@@ -2,8 +2,8 @@
 
 use std::cell::{Cell, OnceCell};
 
-use super::super::Contact;
-use super::super::profile::{Ring, RingSum, StressRadius};
+use crate::contact::Contact;
+use crate::profile::{Ring, RingSum, StressRadius};
 
 /// A derivative below this share of the terms that it is the sum of is zero: the kernels of some families are good to
 /// 1e-13.

@@ -1,7 +1,7 @@
 //! An interval of radii in which the shear stress is smooth, and where its derivative is sampled there.
 
-use super::super::DoubleDouble;
-use super::super::profile::StressRadius;
+use crate::numerics::double_double::DoubleDouble;
+use crate::profile::StressRadius;
 
 /// Towards a kink of the slip history each distance is smaller by this factor, as a logarithm: beneath a thin ring the
 /// derivative has structure of every size from the whole interval down to the ring's depth.
@@ -40,7 +40,7 @@ pub(super) struct StressInterval {
     pub(super) outer: StressRadius,
     /// How it begins, and the sign of the derivative there, zero if unknown.
     pub(super) start: (EndBehaviour, f64),
-    /// How it ends, likewise.
+    /// How it ends, and the sign of the derivative there, zero if unknown.
     pub(super) end: (EndBehaviour, f64),
     /// Smooth, one of many intervals: it gets a few samples only.
     pub(super) sparse: bool,
@@ -81,12 +81,12 @@ impl StressInterval {
         (self.half() / (KNOT_FLOOR * self.outer.square.value())).ln().clamp(0.0, MAX_PLACE)
     }
 
-    /// Where the sign at an end is taken to hold, likewise: about a knot as far as the floor.
+    /// The place up to which the sign at an end is taken to hold: about a knot as far as the floor.
     pub(super) fn limit(&self, end: EndBehaviour) -> f64 {
         if end == EndBehaviour::Logarithm { self.floor() } else { f64::INFINITY }
     }
 
-    /// Places from the middle towards an end, likewise.
+    /// The places from the middle towards an end.
     pub(super) fn places(&self, (end, sign): (EndBehaviour, f64)) -> Vec<f64> {
         let (half, floor) = (self.half(), self.floor());
         let by_steps = |step: f64, last: f64| {

@@ -13,7 +13,8 @@ mod interval;
 mod settled;
 
 use super::profile::{RingSum, StressRadius};
-use super::{Contact, DoubleDouble};
+use crate::contact::Contact;
+use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::roots::between;
 use derivative::{Derivative, NOISE, Pace};
 use interval::{EndBehaviour, KNOT_FLOOR, MAX_PLACE, Sample, StressInterval};
@@ -106,7 +107,7 @@ impl Contact {
                 if !pace.goes_on() {
                     return None;
                 }
-                // Beyond the last knot, what the flat or the bend inside it hides may be known.
+                // Beyond the last knot, the sign that the flat or the bend inside it hides may be known.
                 let outermost = begins + position == ends;
                 let known = if !outermost {
                     Known::Nothing

@@ -21,8 +21,8 @@
 
 use std::cell::LazyCell;
 
-use super::super::Contact;
-use super::super::profile::Ring;
+use crate::contact::Contact;
+use crate::profile::Ring;
 
 /// The growth of a share outward that the rounding of levels explains: as much as the search takes for zero.
 const SAME_SHARE: f64 = super::NOISE;

@@ -27,7 +27,9 @@ mod study;
 
 use std::f64::consts::SQRT_2;
 
-use super::{Error, Stress, range};
+use crate::error::Error;
+use crate::range;
+use crate::subsurface::Stress;
 use ball::dot;
 pub use ball::{Ball, enclosing_ball};
 use curve::StressCurve;

@@ -55,8 +55,8 @@ pub(super) fn grid(more: &[Vector]) -> impl Iterator<Item = &Vector> {
 }
 
 /// The largest peaks of a function that opposite normals share, and their normals, sought from the grid and from
-/// `more`; the largest of all comes first. The function takes whether a bound from above will do, which is to be
-/// cheaper: it spares low planes the exact value.
+/// `more`; the largest of all comes first. The second argument of the function asks for an upper
+/// bound alone, which is cheaper: planes of a low bound need no exact value.
 pub(super) fn peaks(more: &[Vector], mut value: impl FnMut(&Vector, bool) -> f64) -> Vec<(f64, Vector)> {
     let highest_first = |one: &(f64, Vector), other: &(f64, Vector)| other.0.total_cmp(&one.0);
     let mut bounds: Vec<(f64, Vector)> = grid(more).map(|normal| (value(normal, true), *normal)).collect();

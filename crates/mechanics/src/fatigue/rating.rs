@@ -13,7 +13,7 @@ use super::planes::{Vector, climb, peaks};
 use super::{
     Ball, Criterion, deviator, dot, enclosing_ball, from_deviator, resolved, shear_axes, strained, upward, weights,
 };
-use crate::Stress;
+use crate::subsurface::Stress;
 
 /// The hydrostatic stress over the size of a stress, at the most.
 const HYDROSTATIC_SHARE: f64 = 0.577_350_269_189_625_8;

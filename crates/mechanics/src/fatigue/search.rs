@@ -10,7 +10,7 @@ use std::f64::consts::PI;
 use super::planes::Vector;
 use super::study::Study;
 use super::{Measure, Rated};
-use crate::Error;
+use crate::error::Error;
 
 /// Depths of the net, in contact radii; the first ones, and not the others, on the circles where something ends.
 const DEPTHS: [f64; 12] = [0.0, 0.01, 0.03, 0.08, 0.15, 0.25, 0.35, 0.48, 0.65, 0.9, 1.2, 1.7];
@@ -25,7 +25,7 @@ const SAME_CIRCLE: f64 = 1e-3;
 const MOST_CIRCLES: usize = 32;
 /// A depth, in contact radii, at which the contact is hardly felt: where the bulk stress is all that there is.
 const FAR: f64 = 100.0;
-/// Of the angles, depths and circles, a search that only asks whether a larger value exists takes one in so many.
+/// Of the angles, depths and circles, a search that only asks whether a larger value exists takes one in this number.
 const SPARSE: usize = 3;
 /// Starts of a search for each measure, and the value of one over the best.
 const STARTS: usize = 5;
@@ -112,7 +112,7 @@ impl Study<'_> {
         circles
     }
 
-    /// Places of the net, every so many, with their values over few instants.
+    /// The places of the net, one in `stride`, with their values over few instants.
     fn starts(&mut self, every: usize) -> Result<Vec<(Coordinates, Vec<f64>)>, Error> {
         let surface = self.measures.iter().all(Measure::of_surface);
         let special = self.circles();

@@ -8,8 +8,10 @@ use std::rc::Rc;
 use super::curve::{Allowance, CurveStretch, StressCurve, StressSample, stress};
 use super::planes::Vector;
 use super::{Cycle, Instant, Measure, Rated};
-use crate::subsurface::{Side, Subsurface};
-use crate::{Contact, Error, Profile, Stress};
+use crate::contact::Contact;
+use crate::error::Error;
+use crate::profile::Profile;
+use crate::subsurface::{Side, Stress, Subsurface};
 
 /// The value of a measure of the surface below the surface.
 const NO_VALUE: Rated = Rated { value: f64::NAN, error: 0.0, plane: None, at: None };

@@ -1,8 +1,8 @@
 //! An angle against its tangent, where the two nearly agree.
 
 /// The coefficients of (u - atan(u))/u^3 as a polynomial of u^2 for u up to [`QUARTER`], without the sign of every
-/// other one: by interpolation at Chebyshev's points, to 4e-18 of itself.
-pub(crate) const LACKING: [f64; 12] = [
+/// other one: by interpolation at the Chebyshev points, to 4e-18 of itself.
+pub(crate) const SERIES: [f64; 12] = [
     0.333_333_333_333_333_3,
     0.199_999_999_999_998_04,
     0.142_857_142_856_598_28,
@@ -23,7 +23,7 @@ pub(crate) const QUARTER: f64 = std::f64::consts::SQRT_2 - 1.0;
 fn series<const N: usize>(u: [f64; N]) -> [f64; N] {
     // Every other term on its own, so that neither sum waits for the other.
     let (mut falling, mut rising) = ([0.0; N], [0.0; N]);
-    for [plus, minus] in LACKING.as_chunks().0.iter().rev() {
+    for [plus, minus] in SERIES.as_chunks().0.iter().rev() {
         for lane in 0..N {
             let square = u[lane] * u[lane];
             let fourth = square * square;
@@ -43,7 +43,7 @@ fn series<const N: usize>(u: [f64; N]) -> [f64; N] {
 /// At most twice the tangent of half the angle leaves one where the polynomial holds; u - 2 w = u w^2 for the tangent w
 /// of half the angle, so that all terms are positive.
 pub(crate) fn angles<const N: usize>(u: [f64; N]) -> ([f64; N], [f64; N]) {
-    let (mut angle, mut lacking);
+    let (mut angle, mut excess);
     if u.iter().any(|u| *u > QUARTER) {
         let mut halves = u;
         for half in &mut halves {
@@ -51,18 +51,18 @@ pub(crate) fn angles<const N: usize>(u: [f64; N]) -> ([f64; N], [f64; N]) {
             let u = if *half < 1e100 { *half } else { 1e100 };
             *half = u / (1.0 + (1.0 + u * u).sqrt());
         }
-        (angle, lacking) = angles(halves);
+        (angle, excess) = angles(halves);
         for lane in 0..N {
             angle[lane] *= 2.0;
-            lacking[lane] = u[lane] * halves[lane] * halves[lane] + 2.0 * lacking[lane];
+            excess[lane] = u[lane] * halves[lane] * halves[lane] + 2.0 * excess[lane];
         }
     } else {
-        (angle, lacking) = (u, series(u));
+        (angle, excess) = (u, series(u));
         for lane in 0..N {
-            angle[lane] -= lacking[lane];
+            angle[lane] -= excess[lane];
         }
     }
-    (angle, lacking)
+    (angle, excess)
 }
 
 #[cfg(test)]
@@ -91,8 +91,8 @@ mod tests {
             (1.99, 0.8848593116355057),
             (100.0, 98.43920333989176),
         ] {
-            let (_, [lacking]) = angles([u]);
-            let relative: f64 = lacking / exact - 1.0;
+            let (_, [excess]) = angles([u]);
+            let relative: f64 = excess / exact - 1.0;
             assert!(relative.abs() < 1e-15, "{u}: {relative:e}");
         }
     }

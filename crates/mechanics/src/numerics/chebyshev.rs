@@ -9,7 +9,7 @@ use std::f64::consts::PI;
 use std::sync::LazyLock;
 
 /// The part of the largest coefficient below which a last one is the rounding of the values.
-pub(crate) const ROUNDED: f64 = 5e-16;
+pub(crate) const NEGLIGIBLE_TERM: f64 = 5e-16;
 
 /// The Chebyshev points of -1..1, and what turns values there into coefficients.
 ///
@@ -71,7 +71,7 @@ impl<const N: usize> Points<N> {
 
     /// The coefficients without the last ones that are rounding.
     pub(crate) fn series(&self, values: &[f64; N]) -> Vec<f64> {
-        counted(&self.terms(values), ROUNDED).to_vec()
+        counted(&self.terms(values), NEGLIGIBLE_TERM).to_vec()
     }
 
     /// The weights at the points of -1..1 that stand for sources with these sums of weighted polynomials: those of the

@@ -1,4 +1,4 @@
-//! Consecutive items in a binary tree of clusters, each with what stands for its items from afar.
+//! Consecutive items in a binary tree of clusters, each with sources that replace its items from afar.
 
 use std::ops::Range;
 
@@ -16,8 +16,8 @@ pub(crate) struct Cluster<S> {
 pub(crate) struct ClusterTree<S>(Vec<Cluster<S>>);
 
 impl<S> ClusterTree<S> {
-    /// The tree over so many items, with up to `leaf` of them in its smallest clusters. `sources` gives what stands for
-    /// a cluster, by its items or by what stands for its halves.
+    /// The tree over `count` items, with up to `leaf` of them in its smallest clusters. `sources` gives the
+    /// sources of a cluster by its items or by the sources of its halves.
     pub(crate) fn new(
         count: usize,
         leaf: usize,
@@ -55,8 +55,8 @@ impl<S> ClusterTree<S> {
         &self.0[number]
     }
 
-    /// Goes through the items `items`: `far` is offered what stands for whole clusters and says whether it has taken
-    /// it, `near` gets the items that are left, run by run.
+    /// Goes through the items `items`: `far` gets whole clusters and returns whether it has used them, `near`
+    /// gets the other items, run by run.
     pub(crate) fn visit<'a>(
         &'a self,
         items: Range<usize>,

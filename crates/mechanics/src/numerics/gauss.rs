@@ -5,35 +5,40 @@
 //! twelve 4.6 and twenty 2.6 to reach round-off; so the width of a panel follows from how far the integrand's nearest
 //! singularities are.
 
-/// Abscissae below one half and their weights, on 0..1; the other half is the mirror image.
-type Rule = [(f64, f64)];
-
-const EIGHT: [(f64, f64); 4] = [
+/// The rule of eight points over 0..1: abscissae, rising, and weights.
+pub(crate) const EIGHT_POINTS: [(f64, f64); 8] = both_halves(&[
     (0.019_855_071_751_231_884, 0.050_614_268_145_188_13),
     (0.101_666_761_293_186_64, 0.111_190_517_226_687_24),
     (0.237_233_795_041_835_5, 0.156_853_322_938_943_65),
     (0.408_282_678_752_175_1, 0.181_341_891_689_180_98),
-];
+]);
 
-const TWELVE: [(f64, f64); 6] = [
+/// The rule of twelve points over 0..1: abscissae, rising, and weights.
+pub(crate) const TWELVE_POINTS: [(f64, f64); 12] = both_halves(&[
     (0.009_219_682_876_640_375, 0.023_587_668_193_255_914),
     (0.047_941_371_814_762_57, 0.053_469_662_997_659_21),
     (0.115_048_662_902_847_65, 0.080_039_164_271_673_11),
     (0.206_341_022_856_691_3, 0.101_583_713_361_532_96),
     (0.316_084_250_500_909_9, 0.116_746_268_269_177_4),
     (0.437_383_295_744_265_54, 0.124_573_522_906_701_39),
-];
+]);
 
-/// The rule of eight points over 0..1, in rising order.
-pub(crate) const EIGHT_POINTS: [(f64, f64); 8] = both_halves(&EIGHT);
-/// The rule of twelve points over 0..1, in rising order.
-pub(crate) const TWELVE_POINTS: [(f64, f64); 12] = both_halves(&TWELVE);
+/// The rule of twenty points over 0..1: abscissae, rising, and weights.
+pub(crate) const TWENTY_POINTS: [(f64, f64); 20] = both_halves(&[
+    (0.003_435_700_407_452_537_6, 0.008_807_003_569_576_059),
+    (0.018_014_036_361_043_105, 0.020_300_714_900_193_47),
+    (0.043_882_785_874_337_05, 0.031_336_024_167_054_536),
+    (0.080_441_514_088_890_6, 0.041_638_370_788_352_37),
+    (0.126_834_046_769_924_6, 0.050_965_059_908_620_22),
+    (0.181_973_159_636_742_5, 0.059_097_265_980_759_21),
+    (0.244_566_499_024_586_46, 0.065_844_319_224_588_32),
+    (0.313_146_955_642_290_2, 0.071_048_054_659_191_02),
+    (0.386_107_074_429_177_44, 0.074_586_493_236_301_87),
+    (0.461_736_739_433_251_35, 0.076_376_693_565_362_93),
+]);
 
-/// The rule of twenty points over 0..1, in rising order.
-pub(crate) const TWENTY_POINTS: [(f64, f64); 20] = both_halves(&TWENTY);
-
-/// A rule over 0..1 by its lower half.
-const fn both_halves<const N: usize>(lower: &Rule) -> [(f64, f64); N] {
+/// A rule over 0..1 by its lower half, of which the upper one is the mirror image.
+const fn both_halves<const N: usize>(lower: &[(f64, f64)]) -> [(f64, f64); N] {
     let mut points = [(0.0, 0.0); N];
     let mut index = 0;
     while index < lower.len() {
@@ -45,49 +50,7 @@ const fn both_halves<const N: usize>(lower: &Rule) -> [(f64, f64); N] {
     points
 }
 
-const TWENTY: [(f64, f64); 10] = [
-    (0.003_435_700_407_452_537_6, 0.008_807_003_569_576_059),
-    (0.018_014_036_361_043_105, 0.020_300_714_900_193_47),
-    (0.043_882_785_874_337_05, 0.031_336_024_167_054_536),
-    (0.080_441_514_088_890_6, 0.041_638_370_788_352_37),
-    (0.126_834_046_769_924_6, 0.050_965_059_908_620_22),
-    (0.181_973_159_636_742_5, 0.059_097_265_980_759_21),
-    (0.244_566_499_024_586_46, 0.065_844_319_224_588_32),
-    (0.313_146_955_642_290_2, 0.071_048_054_659_191_02),
-    (0.386_107_074_429_177_44, 0.074_586_493_236_301_87),
-    (0.461_736_739_433_251_35, 0.076_376_693_565_362_93),
-];
-
-/// A stretch below the top of what is still to be integrated: its width and the rule for it.
-#[derive(Clone, Copy)]
-pub(crate) struct QuadraturePanel {
-    pub(crate) width: f64,
-    rule: &'static Rule,
-}
-
-impl QuadraturePanel {
-    /// A panel by the shorter rule, whatever the integrand.
-    pub(crate) fn coarse(width: f64) -> QuadraturePanel {
-        QuadraturePanel { width, rule: &EIGHT }
-    }
-
-    /// A panel by the longer rule, for an integrand analytic far around.
-    pub(crate) fn fine(width: f64) -> QuadraturePanel {
-        QuadraturePanel { width, rule: &TWENTY }
-    }
-
-    /// Calls `visit(distance below the panel's top, weight)` at every abscissa; the weights add up to the width.
-    pub(crate) fn visit(&self, mut visit: impl FnMut(f64, f64)) {
-        for &(u, weight) in self.rule {
-            visit(self.width * u, self.width * weight);
-            visit(self.width * (1.0 - u), self.width * weight);
-        }
-    }
-
-    /// The abscissae from the panel's top on, with their weights.
-    pub(crate) fn nodes(self) -> impl Iterator<Item = (f64, f64)> {
-        let lower = self.rule.iter().map(|&(u, weight)| (u, weight));
-        let upper = self.rule.iter().rev().map(|&(u, weight)| (1.0 - u, weight));
-        lower.chain(upper).map(move |(u, weight)| (self.width * u, self.width * weight))
-    }
+/// The integral of a function from zero to `width` by a rule.
+pub(crate) fn integral(rule: &[(f64, f64)], width: f64, function: impl Fn(f64) -> f64) -> f64 {
+    width * rule.iter().map(|(at, weight)| weight * function(width * at)).sum::<f64>()
 }

@@ -31,7 +31,7 @@ pub(crate) fn ln_1p<const N: usize>(z: [f64; N]) -> [f64; N] {
     for lane in 0..N {
         let z = z[lane];
         let y = 1.0 + z;
-        // What the sum has lost: all of a small z.
+        // The rounding error of the sum: all of a small z.
         let lost = if z < 1.0 { z - (y - 1.0) } else { 1.0 - (y - z) };
         let raised = y.to_bits().wrapping_add(ONE - LOW);
         let exponent = f64::from_bits((raised >> 52) | TWO_52) - (4_503_599_627_370_496.0 + 1023.0);

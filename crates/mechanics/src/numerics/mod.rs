@@ -9,14 +9,13 @@
 //! | `gauss` | what is an integral, given where the integrand is singular? |
 //! | `angle`, `logarithm` | what are angles and logarithms of several numbers side by side, to round-off? |
 //! | `root_kernel` | what is the integral of a power series over sqrt(t^2 - kappa)? |
-//! | `cluster_tree`, `multipole`, `far_field` | what do many sources add up to, far away? |
+//! | `cluster_tree`, `multipole` | what do many sources add up to, far away? |
 
 pub(crate) mod angle;
 pub(crate) mod broyden;
 pub(crate) mod chebyshev;
 pub(crate) mod cluster_tree;
 pub(crate) mod double_double;
-pub(crate) mod far_field;
 pub(crate) mod gauss;
 pub(crate) mod logarithm;
 pub(crate) mod multipole;

@@ -7,7 +7,7 @@
 //! 1/sqrt(X - Y) = 2/(p + q) sum over k of sigma^k P_k(xi),
 //!
 //! so that two roots, one division and a polynomial in sigma give a whole cluster of sources, from its moments m_k =
-//! sum of w P_k(xi). As |P_k| <= 1, what is left out from the order n on is at most |sigma|^n/(1 - |sigma|) of the sum
+//! sum of w P_k(xi). As |P_k| <= 1, the error of n orders is at most |sigma|^n/(1 - |sigma|) of the sum
 //! of |w|, times the same factor; and of sources of one sign, whose sum is at least that of |w| over 1 + |sigma|, at
 //! most |sigma|^n (1 + |sigma|)/(1 - |sigma|) of it. At the least distance, once the interval, sigma = -0.1716, and
 //! twenty orders leave 7e-16; at three times the interval, 1e-23.
@@ -65,7 +65,7 @@ pub(crate) fn add_polynomials<const M: usize, const N: usize>(
     }
 }
 
-/// Sources in an interval of X, by what they do from afar.
+/// Sources in an interval of X, by their moments.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Multipole {
     pub(crate) interval: (f64, f64),
@@ -146,7 +146,7 @@ impl Multipole {
         sums
     }
 
-    /// What the roots p and q of the distances of both ends from places give.
+    /// The roots p and q of the distances of both ends from places, as the sums need them.
     fn roots<const N: usize>(&self, below: [f64; N]) -> Roots<N> {
         let mut roots = Roots { inverse: [0.0; N], sigma: [0.0; N], product: [0.0; N] };
         for (lane, below) in below.into_iter().enumerate() {

@@ -2,31 +2,40 @@
 //! the gaps h_i < y (Greenwood & Williamson 1966; with friction by Ciavarella 1998 and Jaeger 1998).
 //!
 //! Each asperity that is touched adds the moments of a parabola from its own tip on, so that a thin ring keeps its
-//! digits. The levels are divided into cells of a few gaps each. Within a cell the asperities whose gaps lie far below
-//! it are one series of X' ([`Local`]), the others are summed one by one; whole cells are summed by a [`MomentTree`].
-//! So a ring costs two cells and the logarithm of their number.
+//! digits. The levels are divided into cells of a few gaps each ([`LevelCell`]). Within a cell the asperities whose gaps
+//! lie farther below it than it is wide are one series of X', the others are summed one by one; whole cells are summed
+//! by a [`MomentTree`]. So a ring costs two cells and the logarithm of their number.
 //!
 //! One asperity alone is a [`Sphere`].
 
+use std::collections::VecDeque;
 use std::ops::Range;
 use std::sync::Arc;
 
 use super::curve_family::CurveFamily;
-use super::{DoubleDouble, Error, Moments, Ring, Sphere, range};
+use super::{Moments, Ring, Sphere};
 use crate::cells::moment_tree::MomentTree;
-use crate::error::CurveFault;
-use crate::numerics::far_field::{FarField, Local};
+use crate::error::{CurveFault, Error};
+use crate::numerics::chebyshev::{self, TWENTY};
+use crate::numerics::cluster_tree::{Cluster, ClusterTree};
+use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::gauss::TWELVE_POINTS;
+use crate::numerics::multipole::Multipole;
 use crate::numerics::roots::increasing;
+use crate::range;
 
-/// Asperities in the smallest cluster: fewer are summed one by one sooner than as the twenty points of a cluster.
+/// Asperities in the smallest cluster.
 const LEAF: usize = 16;
 
-/// Asperities up to this many are summed one by one, without a look at their clusters.
-const FEW: usize = 8 * LEAF;
+/// A cell of levels with more asperities than this within it or near below it is halved.
+const NEAR: usize = 2 * LEAF;
 
-/// Asperities that are summed side by side.
-const LANES: usize = 4;
+/// Above this level, m, there are no cells: no contact is pressed in so far.
+const HIGHEST: f64 = 1e10;
+
+/// Cells beside one for every four asperities, at which halving ends: clusters of gaps that are far narrower than the
+/// distances between them would take many.
+const MOST_CELLS: usize = 2048;
 
 /// A set of asperities; copies share it.
 #[derive(Clone, Debug, PartialEq)]
@@ -44,14 +53,24 @@ pub(super) struct Set {
     /// Gaps above the smallest, m, rising, and sqrt(R), m^(1/2), of each.
     gaps: Vec<f64>,
     roots: Vec<f64>,
-    clusters: FarField,
-    /// Cells of levels, rising from zero, with X' by the asperities far below each; their upper ends; and their
-    /// moments.
-    cells: Vec<Local>,
-    ends: Vec<f64>,
+    /// Cells of levels, rising from zero, and their moments.
+    cells: Vec<LevelCell>,
     whole_cells: MomentTree,
     /// The sum of all sqrt(R), m^(1/2).
     total: f64,
+}
+
+/// An interval of levels, m.
+#[derive(Clone, Debug, PartialEq)]
+struct LevelCell {
+    low: f64,
+    high: f64,
+    /// The first asperity that is not in the series, because its gap is nearer below than the cell is wide.
+    first_near: usize,
+    /// The asperities whose gaps lie within the cell.
+    items: Range<usize>,
+    /// The Chebyshev series of X' by the asperities below `first_near`.
+    series: Vec<f64>,
 }
 
 impl Asperities {
@@ -86,47 +105,30 @@ impl Asperities {
         for (radii, range) in [(radii, range::RADIUS), (gaps, range::GAP)] {
             radii.iter().try_for_each(|&number| range.check(number).map(drop))?;
         }
+        if let (1, &[radius]) = (gaps.len(), radii) {
+            return Ok(Asperities(Count::One(Sphere::of_curvature(radius))));
+        }
         let mut set: Vec<(f64, f64)> =
             gaps.iter().zip(radii.iter().cycle()).map(|(&gap, radius)| (gap, radius.sqrt())).collect();
         set.sort_by(|a, b| a.0.total_cmp(&b.0));
+        // Those of one gap are one parabola.
+        set.dedup_by(|next, before| {
+            let same = next.0 <= before.0;
+            before.1 += if same { next.1 } else { 0.0 };
+            same
+        });
         let first = set[0].0;
         let (gaps, roots): (Vec<f64>, Vec<f64>) = set.into_iter().map(|(gap, root)| (gap - first, root)).unzip();
-        Ok(Asperities(match (gaps.len(), radii) {
-            (1, &[radius]) => Count::One(Sphere::of_curvature(radius)),
-            _ => Count::Many(Arc::new(Set::new(gaps, roots, keep_going)?)),
-        }))
-    }
-
-    /// How many.
-    #[must_use]
-    pub fn count(&self) -> usize {
-        match &self.0 {
-            Count::One(_) => 1,
-            Count::Many(set) => set.gaps.len(),
-        }
+        Ok(Asperities(Count::Many(Arc::new(Set::new(gaps, roots, keep_going)?))))
     }
 }
 
 impl Set {
     fn new(gaps: Vec<f64>, roots: Vec<f64>, keep_going: &dyn Fn() -> bool) -> Result<Set, Error> {
-        let last = gaps[gaps.len() - 1];
-        let clusters = FarField::new(&gaps, &roots, LEAF, keep_going);
-        // Above the last gap cells double in width, until all asperities are one cluster far below.
-        let start = gaps[gaps.len().saturating_sub(LEAF)];
-        let width = last - if start < last { start } else { 0.0 };
-        let beyond: Vec<f64> = std::iter::successors(Some((last, width)), |&(end, width)| {
-            (end < 2.0 * last).then_some((end + width, 2.0 * width))
-        })
-        .map(|(end, _)| end)
-        .collect();
-        let cells = clusters.locals(&beyond, (&gaps, &roots), |distance| 0.5 / distance.sqrt(), keep_going);
-        if !keep_going() {
-            return Err(Error::Interrupted);
-        }
+        let cells = cells(&gaps, &roots, keep_going).ok_or(Error::Interrupted)?;
         let total = roots.iter().sum();
-        let ends = cells.iter().map(|cell| cell.high).collect();
-        let mut set = Set { gaps, roots, clusters, cells, ends, whole_cells: MomentTree::new([].into_iter()), total };
-        let whole = |cell: &Local| {
+        let mut set = Set { gaps, roots, cells, whole_cells: MomentTree::new([].into_iter()), total };
+        let whole = |cell: &LevelCell| {
             let depth = cell.high - cell.low;
             (set.moments_within(Some(cell), cell.low.into(), cell.high.into(), depth), depth)
         };
@@ -137,37 +139,34 @@ impl Set {
 
     /// The cell below whose upper end a level lies, if it does not lie above all.
     fn cell(&self, level: DoubleDouble) -> usize {
-        self.ends.partition_point(|&end| above(level, end) > 0.0)
+        self.cells.partition_point(|cell| above(level, cell.high) > 0.0)
     }
 
     /// How many are touched at a level of a cell.
-    fn touched(&self, cell: Option<&Local>, level: DoubleDouble) -> usize {
-        let Some(cell) = cell else { return self.gaps.len() };
-        cell.items.start + self.gaps[cell.items.clone()].partition_point(|&gap| above(level, gap) > 0.0)
+    fn touched(&self, cell: Option<&LevelCell>, level: DoubleDouble) -> usize {
+        let items = cell.map_or(0..self.gaps.len(), |cell| cell.items.clone());
+        items.start + self.gaps[items].partition_point(|&gap| above(level, gap) > 0.0)
     }
 
-    /// The sums over some asperities of what one gives by sqrt(R) and its gap, which is smooth in the gap up to `level`
-    /// alone.
-    fn sum<const N: usize>(
-        &self,
-        some: Range<usize>,
-        level: DoubleDouble,
-        term: impl Fn(f64, f64) -> [f64; N],
-    ) -> [f64; N] {
-        let (mut far, mut near) = ([[0.0; LANES]; N], [[0.0; LANES]; N]);
-        let here = level.value();
-        let mut each = |items: Range<usize>| add(&mut near, &self.gaps[items.clone()], &self.roots[items], &term);
-        if some.len() <= FEW {
-            each(some);
-        } else {
-            let far = &mut |gaps: &[f64; _], roots: &[f64; _]| add(&mut far, gaps, roots, &term);
-            self.clusters.visit(some, (here, here), far, &mut each);
+    /// The sums of terms over some asperities, of which each is a function of sqrt(R) and of the gap.
+    fn sum<const N: usize>(&self, some: Range<usize>, term: impl Fn(f64, f64) -> [f64; N]) -> [f64; N] {
+        let mut sums = [0.0; N];
+        for (root, gap) in self.roots[some.clone()].iter().zip(&self.gaps[some]) {
+            for (sum, term) in sums.iter_mut().zip(term(*root, *gap)) {
+                *sum += term;
+            }
         }
-        std::array::from_fn(|index| far[index].iter().sum::<f64>() + near[index].iter().sum::<f64>())
+        sums
     }
 
     /// The moments of a ring within one cell.
-    fn moments_within(&self, cell: Option<&Local>, inner: DoubleDouble, outer: DoubleDouble, depth: f64) -> Moments {
+    fn moments_within(
+        &self,
+        cell: Option<&LevelCell>,
+        inner: DoubleDouble,
+        outer: DoubleDouble,
+        depth: f64,
+    ) -> Moments {
         if depth <= 0.0 {
             return Moments::default();
         }
@@ -180,11 +179,8 @@ impl Set {
             let lever = (4.0 / 3.0 * edge - width) * edge + 0.2 * width * width;
             [root * width, area * (edge - 1.0 / 3.0 * width), area * width * lever]
         };
-        // Of those touched within the ring, only the outer level is seen.
         let first = cell.map_or(0, |cell| cell.first_near);
-        let (before, after) = (self.touched(cell, inner), self.touched(cell, outer));
-        let (old, new) = (self.sum(first..before, inner, moments), self.sum(before..after, outer, moments));
-        let mut sums: [f64; 3] = std::array::from_fn(|index| old[index] + new[index]);
+        let mut sums = self.sum(first..self.touched(cell, outer), moments);
         if let Some(cell) = cell.filter(|cell| cell.first_near > 0) {
             let start = above(inner, cell.low);
             let rates = cell.at(TWELVE_POINTS.map(|(at, _)| start + depth * at));
@@ -206,8 +202,8 @@ impl Set {
         if first == last {
             return self.moments_within(self.cells.get(last), inner, outer, depth);
         }
-        let high = DoubleDouble::from(self.ends[first]);
-        let low = DoubleDouble::from(self.ends[last - 1]);
+        let high = DoubleDouble::from(self.cells[first].high);
+        let low = DoubleDouble::from(self.cells[last - 1].high);
         let (head, tail) = ((high - inner).value(), (outer - low).value());
         let inside = self.moments_within(self.cells.get(first), inner, high, head);
         let outside = self.moments_within(self.cells.get(last), low, outer, tail);
@@ -220,7 +216,7 @@ impl Set {
         let Some(below) = last.checked_sub(1) else {
             return self.moments_within(self.cells.first(), DoubleDouble::ZERO, level, level.value());
         };
-        let low = DoubleDouble::from(self.ends[below]);
+        let low = DoubleDouble::from(self.cells[below].high);
         let depth = (level - low).value();
         let outside = self.moments_within(self.cells.get(last), low, level, depth);
         self.whole_cells.across(0..last, Moments::default(), (outside, depth))
@@ -231,7 +227,7 @@ impl Set {
         let cell = self.cells.get(self.cell(level));
         let near = cell.map_or(0, |cell| cell.first_near)..self.touched(cell, level);
         let [far] = cell.map_or([0.0], |cell| cell.at([above(level, cell.low)]));
-        far + self.sum(near, level, |root, gap| [0.5 * root / above(level, gap).sqrt()])[0]
+        far + self.sum(near, |root, gap| [0.5 * root / above(level, gap).sqrt()])[0]
     }
 
     /// X and its slope.
@@ -264,25 +260,77 @@ impl Set {
     }
 }
 
-/// Adds the terms side by side, because roots and divisions take long and one need not wait for another's.
-fn add<const N: usize>(
-    sums: &mut [[f64; LANES]; N],
-    gaps: &[f64],
-    roots: &[f64],
-    term: &impl Fn(f64, f64) -> [f64; N],
-) {
-    let (gaps, roots) = (gaps.chunks(LANES), roots.chunks(LANES));
-    for (gaps, roots) in gaps.zip(roots) {
-        // Lanes left over weigh nothing.
-        let (mut gap, mut root) = ([gaps[0]; LANES], [0.0; LANES]);
-        gap[..gaps.len()].copy_from_slice(gaps);
-        root[..roots.len()].copy_from_slice(roots);
-        for lane in 0..LANES {
-            for (sum, one) in sums.iter_mut().zip(term(root[lane], gap[lane])) {
-                sum[lane] += one;
-            }
+impl LevelCell {
+    /// Its series at levels this far above its lower end, side by side.
+    fn at<const N: usize>(&self, offsets: [f64; N]) -> [f64; N] {
+        let half = 0.5 * (self.high - self.low);
+        chebyshev::values(&self.series, offsets.map(|offset| offset / half - 1.0))
+    }
+}
+
+/// The cells over asperities of these gaps and sqrt(R); `None` if `keep_going` returned false.
+///
+/// The levels up to three times the last gap are halved, the widest first. Above, all asperities are far below cells
+/// that grow by a half.
+fn cells(gaps: &[f64], roots: &[f64], keep_going: &dyn Fn() -> bool) -> Option<Vec<LevelCell>> {
+    if gaps.len() <= NEAR {
+        return Some(Vec::new());
+    }
+    let cell = |low: f64, high: f64| {
+        let touched = |level| gaps.partition_point(|&gap| gap < level);
+        let first_near = gaps.partition_point(|&gap| low - gap > high - low);
+        LevelCell { low, high, first_near, items: touched(low)..touched(high), series: Vec::new() }
+    };
+    let halved = 3.0 * gaps[gaps.len() - 1];
+    let ends = std::iter::successors(Some(halved), |&end| Some(1.5 * end));
+    let mut cells: Vec<LevelCell> = ends.take_while(|&low| low < HIGHEST).map(|low| cell(low, 1.5 * low)).collect();
+    let mut open = VecDeque::from([cell(0.0, halved)]);
+    while let Some(wide) = open.pop_front() {
+        let middle = wide.low.midpoint(wide.high);
+        let few = wide.items.end - wide.first_near <= NEAR || wide.low >= middle || middle >= wide.high;
+        if few || cells.len() + open.len() > MOST_CELLS + gaps.len() / 4 {
+            cells.push(wide);
+        } else {
+            open.extend([cell(wide.low, middle), cell(middle, wide.high)]);
         }
     }
+    cells.sort_by(|one, other| one.low.total_cmp(&other.low));
+    // X' = sum sqrt(R)/(2 sqrt(y - h)), with -h as the place of a source.
+    let clusters = ClusterTree::new(gaps.len(), LEAF, |items, halves| {
+        let last = gaps[items.end - 1];
+        let mut sources = Multipole::empty((-last, -gaps[items.start]));
+        match halves {
+            Some(halves) => halves.into_iter().for_each(|half| sources.add(half, 1.0)),
+            None => items.clone().for_each(|item| sources.add_sources(&[last - gaps[item]], &[0.5 * roots[item]])),
+        }
+        sources
+    });
+    for LevelCell { low, high, first_near, series, .. } in &mut cells {
+        if !keep_going() {
+            return None;
+        }
+        let offsets = TWENTY.places(0.0, *high - *low);
+        let (mut near, mut far) = ([0.0; 20], [0.0; 20]);
+        let mut visit_far = |cluster: &Cluster<Multipole>| {
+            let Multipole { interval: (last, first), moments } = cluster.sources;
+            // Seen from the lower end, from which small distances keep their digits.
+            let sources = Multipole { interval: (*low + last, *low + first), moments };
+            let is_far = sources.is_far(0.0);
+            if is_far {
+                let potentials = sources.potentials(offsets.map(|offset| -offset));
+                far.iter_mut().zip(potentials).for_each(|(sum, potential)| *sum += potential);
+            }
+            is_far
+        };
+        clusters.visit(0..*first_near, &mut visit_far, &mut |items| {
+            for item in items {
+                let rate = |offset: f64| 0.5 * roots[item] / (*low - gaps[item] + offset).sqrt();
+                near.iter_mut().zip(offsets.map(rate)).for_each(|(sum, rate)| *sum += rate);
+            }
+        });
+        *series = TWENTY.series(&std::array::from_fn(|index| near[index] + far[index]));
+    }
+    Some(cells)
 }
 
 /// How far a level lies above a gap, m: to round-off of itself, however near.

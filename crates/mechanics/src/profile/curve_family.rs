@@ -2,11 +2,12 @@
 //!
 //! The slip history asks for X and its integrals over rings of levels, which every contact has whose tangential
 //! compliance is proportional to its normal one, point by point of the load curve (Ciavarella 1998; Jaeger 1998). Such
-//! a family is to the rest of the mechanics the body of revolution with the same curve, g the inverse of X, but for
-//! what needs a surface: its kernels and slopes are NaN, and whoever asks for a stress checks
+//! a family is to the rest of the mechanics the body of revolution with the same curve, g the inverse of X, but
+//! without a surface: its kernels and slopes are NaN, and every function that gives a stress checks
 //! [`Profile::check_stress_field`](super::Profile) first.
 
-use super::{DoubleDouble, InterpolationError, Moments, Ring};
+use super::{InterpolationError, Moments, Ring};
+use crate::numerics::double_double::DoubleDouble;
 
 /// The functions of a load curve.
 pub(super) trait CurveFamily {

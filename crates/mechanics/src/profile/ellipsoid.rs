@@ -10,8 +10,10 @@
 //! [`Elasticity::along_ellipse`](crate::Elasticity::along_ellipse). Partial slip follows from the load curve by
 //! Ciavarella (1998) and Jaeger (1998), which is exact for a circle alone.
 
-use super::{Error, Sphere, range};
+use super::Sphere;
+use crate::error::Error;
 use crate::numerics::roots::turning;
+use crate::range;
 
 /// The axis of the tangential motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -15,20 +15,22 @@ use std::sync::Arc;
 
 use super::curve_family::CurveFamily;
 use super::open_gaps::open_slopes;
-use super::{DoubleDouble, Error, InterpolationError, Moments, Ring, range};
+use super::{InterpolationError, Moments, Ring};
 use crate::cells::moment_tree::MomentTree;
 use crate::elasticity::Elasticity;
-use crate::error::CurveFault;
-use crate::numerics::gauss::QuadraturePanel;
+use crate::error::{CurveFault, Error};
+use crate::numerics::double_double::DoubleDouble;
+use crate::numerics::gauss::TWENTY_POINTS;
+use crate::range;
 
 /// A fall of the slope up to this, of itself, is rounding.
-const ROUND_OFF: f64 = 1e-12;
+const ERROR_OF_SLOPE: f64 = 1e-12;
 /// The least step of the indentation, m.
 const LEAST_STEP: f64 = 1e-15;
-/// What a contact at the end of the curve lacks of the radius that no contact reaches.
+/// The distance of the radius at the end of the curve from the limit that no contact reaches, over the radius.
 const END: f64 = 4.0 * f64::EPSILON;
 /// A share of a level from which on the power law is integrated by a rule, because differences of powers cancel.
-const THIN: f64 = 0.5;
+const CANCELLING: f64 = 0.5;
 
 /// The error of int X dy in a gap over its width times that of X, and the share of the latter that a level of given X
 /// errs by.
@@ -118,7 +120,7 @@ impl LoadCurve {
         let points: Vec<(f64, f64)> =
             indentation.iter().zip(normal_force).map(|(&d, &force)| (d, force / unit)).collect();
         let slope = |index: usize| secant(points[index], points[index + 1]);
-        let falls = |index: &usize| slope(*index) < slope(index - 1) * (1.0 - ROUND_OFF);
+        let falls = |index: &usize| slope(*index) < slope(index - 1) * (1.0 - ERROR_OF_SLOPE);
         if let Some(index) = (1..points.len() - 1).find(falls) {
             return fault(CurveFault::SlopeFalls, index + 1);
         }
@@ -256,14 +258,15 @@ impl Curve {
         }
         let q = self.exponent;
         let (outer, share) = (self.radius(high.into()), depth / high);
-        if share < THIN {
+        if share < CANCELLING {
             let inner = self.radius(low.into());
             let mut sums = Moments { width: inner * (q * (depth / low).ln_1p()).exp_m1(), ..Moments::default() };
-            QuadraturePanel::fine(depth).visit(|below, weight| {
+            for (share, weight) in TWENTY_POINTS {
+                let below = depth * share;
                 let gained = inner * (q * ((depth - below) / low).ln_1p()).exp_m1();
-                sums.first += weight * gained;
-                sums.second += 2.0 * weight * below * gained;
-            });
+                sums.first += depth * weight * gained;
+                sums.second += 2.0 * depth * weight * below * gained;
+            }
             return sums;
         }
         let u = low / high;

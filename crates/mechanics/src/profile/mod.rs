@@ -40,13 +40,13 @@ pub(super) use ring_sum::{InwardSum, RingSum};
 pub use sum::Sum;
 pub use tabulated::{InterpolationError, Tabulated};
 
-use super::error::Error;
-use super::{Elasticity, Preload, range};
 use crate::cells::Cells;
 use crate::cells::falls::Falls;
 use crate::cells::shape::{End, EndKind, Powers, Reach, Shape};
 use crate::cells::span::Span;
+use crate::error::Error;
 use crate::numerics::double_double::DoubleDouble;
+use crate::range;
 use asperities::Count;
 use curve_family::CurveFamily;
 
@@ -128,32 +128,6 @@ impl Profile {
             _ => return Ok(()),
         };
         Err(Error::NoStressField { profile })
-    }
-
-    /// Prepares what a contact with this preload needs, while `keep_going` returns true: of a table whose slope never
-    /// falls, the part that the contact reaches. Without it that is prepared when it is first needed.
-    ///
-    /// # Errors
-    /// [`Error::Interrupted`] once `keep_going` has returned false.
-    ///
-    /// ```
-    #[doc = include_str!("../example.txt")]
-    /// assert!(setup.profile.prepare_for(&setup.preload, &setup.elasticity, &|| true).is_ok());
-    /// # Ok::<(), Error>(())
-    /// ```
-    pub fn prepare_for(
-        &self,
-        preload: &Preload,
-        elasticity: &Elasticity,
-        keep_going: &dyn Fn() -> bool,
-    ) -> Result<(), Error> {
-        let Some(shape) = self.shape().filter(|shape| shape.stages().is_some()) else { return Ok(()) };
-        let reach = match *preload {
-            Preload::NormalForce(force) => Reach::Load(force / (2.0 * elasticity.e_star())),
-            Preload::Indentation(depth) => Reach::Level(depth),
-            Preload::ContactRadius(radius) => Reach::Radius(radius),
-        };
-        shape.cells_while(reach, keep_going).map(drop).ok_or(Error::Interrupted)
     }
 
     /// The parabola that it is, or whose load curve it has.
@@ -300,8 +274,8 @@ impl Profile {
         }
     }
 
-    /// How many times larger than g at the radius `x`, m, the parts are that it is the sum of: what their rounding
-    /// grows by.
+    /// How many times larger than g at the radius `x`, m, the parts are that it is the sum of: the factor by which
+    /// rounding grows.
     #[must_use]
     pub fn cancellation(&self, x: f64) -> f64 {
         if let Profile::Sum(sum) = self { sum.cancellation(x) } else { 1.0 }
@@ -327,7 +301,7 @@ impl Profile {
         self.shape()?.curvature_radius()
     }
 
-    /// What is known of the kernel up to c = `outer`, m, from r = `inner`, m, on.
+    /// Bounds on the kernel up to c = `outer`, m, from r = `inner`, m, on.
     pub(super) fn falls(&self, inner: f64, outer: f64) -> Falls {
         match (self.ball(), self.cells(Reach::Radius(outer))) {
             (None, Some(cells)) => cells.falls(inner, outer),

@@ -1,4 +1,4 @@
-//! What the gaps between points leave open of the slope of a curve through them.
+//! The interpolation error of the slope of a curve through points, by the gaps between them.
 //!
 //! In a gap of the width h the curve has the heights of both ends, so that its slope errs with a mean of zero; by how
 //! much depends on how far the second derivative varies about the gap, and at most in proportion to h times that

@@ -10,7 +10,7 @@ use crate::cells::kernel::Kernel;
 use crate::cells::shape::Reach;
 use crate::cells::sources::Sources;
 
-/// What the derivative of the kernels of a cell costs, in terms of a sum over rings.
+/// The cost of the derivative of the kernels of a cell, in terms of a sum over rings.
 const CELL_TERMS: usize = 8;
 /// Terms of derivatives before the next question whether to go on.
 const BETWEEN_QUESTIONS: usize = 4096;

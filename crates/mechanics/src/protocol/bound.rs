@@ -20,8 +20,10 @@
 
 use std::f64::consts::PI;
 
-use super::{Contact, EvaluationRange, Profile, branch_and_bound};
+use super::{EvaluationRange, branch_and_bound};
+use crate::contact::Contact;
 use crate::numerics::roots::turning;
+use crate::profile::Profile;
 
 /// Steps of the search from the edge to the centre for the end of a piece.
 const STEPS: usize = 4_096;

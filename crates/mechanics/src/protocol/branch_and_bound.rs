@@ -14,9 +14,10 @@
 
 use std::cell::OnceCell;
 
-use super::super::profile::{Point, Ring, StressRadius};
-use super::{Contact, DoubleDouble, Profile};
+use crate::contact::Contact;
+use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::roots::turning;
+use crate::profile::{Point, Profile, Ring, StressRadius};
 
 /// The largest number of reversals: each more takes some eight times as many boxes.
 const MOST_REVERSALS: usize = 8;

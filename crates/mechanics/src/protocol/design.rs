@@ -1,12 +1,13 @@
 //! The design of a path that leaves little stress, with a given start, end and number of reversals.
 
-use super::super::shear_stress::Residual;
-use super::super::state::{Move, Regime, Tangential};
 use super::from_any_state::{FromAnyState, MAX_DEPTH};
-use super::{
-    Contact, DEFAULT_CUTOFF, DoubleDouble, EqualPeakMeasure, Error, Quantity, cutoff_of, evenly_spread,
-    falling_amplitude, outermost_singular,
-};
+use super::{DEFAULT_CUTOFF, EqualPeakMeasure, cutoff_of, evenly_spread, falling_amplitude, outermost_singular};
+use crate::contact::Contact;
+use crate::error::Error;
+use crate::numerics::double_double::DoubleDouble;
+use crate::range::Quantity;
+use crate::shear_stress::Residual;
+use crate::state::{Move, Regime, Tangential};
 
 /// A displacement, force or stress below this share of its unit is zero but for rounding.
 const NEGLIGIBLE: f64 = 1e-9;

@@ -5,12 +5,13 @@
 //! at the outermost kink, its share and E are the two unknowns of two equations, the end and the stress of the core,
 //! solved by Broyden's method from the free optimum. If it is the core, E alone is sought.
 
-use super::super::normal::{load, whole};
-use super::super::profile::Point;
 use super::minimax::{Problem, VirginStrokes};
-use super::{DoubleDouble, PathEnd, alternating};
+use super::{PathEnd, alternating};
+use crate::normal::{load, whole};
 use crate::numerics::broyden::{inverse, product, updated};
+use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::roots::between;
+use crate::profile::Point;
 
 /// The largest number of evaluations of the kinks.
 const MAX_EVALUATIONS: usize = 40;

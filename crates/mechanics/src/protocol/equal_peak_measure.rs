@@ -4,9 +4,9 @@
 //! points reach round-off. Down to the tip the variable is ln x, octave by octave until nothing is added: for g ~ x^n
 //! with n near one, s comes from all of them.
 
-use super::super::profile::Profile;
-use crate::numerics::gauss::QuadraturePanel;
+use crate::numerics::gauss::{self, EIGHT_POINTS};
 use crate::numerics::roots::within;
+use crate::profile::Profile;
 
 /// Tolerance of halving a panel, relative to the sum so far; the halves are then good to round-off.
 const TOLERANCE: f64 = 1e-12;
@@ -107,9 +107,7 @@ impl<'a> EqualPeakMeasure<'a> {
     }
 
     fn area(&self, along: Along, low: f64, high: f64) -> f64 {
-        let mut area = 0.0;
-        QuadraturePanel::coarse(high - low).visit(|below, weight| area += weight * self.density(along, high - below));
-        area
+        gauss::integral(&EIGHT_POINTS, high - low, |below| self.density(along, high - below))
     }
 
     fn add(&mut self, along: Along, low: f64, high: f64) {

@@ -5,9 +5,10 @@
 //! other from the edge inwards: each where the stress first meets E with the other sign. E is then lowered until the
 //! centre meets it too.
 
-use super::super::profile::{InwardSum, Point, Ring, StressRadius};
-use super::{DoubleDouble, Profile, alternating};
+use super::alternating;
+use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::roots::{between, largest};
+use crate::profile::{InwardSum, Point, Profile, Ring, StressRadius};
 
 /// The largest number of evaluations of E, after it has been bracketed.
 const MAX_EVALUATIONS: i32 = 80;

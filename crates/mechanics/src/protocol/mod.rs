@@ -30,7 +30,10 @@ use minimax::Problem;
 use super::profile::Point;
 use super::range::Quantity;
 use super::unit_prefix::short;
-use super::{Contact, DoubleDouble, Error, Profile};
+use crate::contact::Contact;
+use crate::error::Error;
+use crate::numerics::double_double::DoubleDouble;
+use crate::profile::Profile;
 
 /// The part of the way from the innermost radius, where s diverges, to the edge, at which equal peaks begin.
 pub const DEFAULT_CUTOFF: f64 = 0.1;

@@ -1,7 +1,9 @@
 //! The stress that remains if a path is not followed exactly: repeated trials with random errors.
 
-use super::super::state::{Move, Tangential};
-use super::{Contact, Error, EvaluationRange};
+use super::EvaluationRange;
+use crate::contact::Contact;
+use crate::error::Error;
+use crate::state::{Move, Tangential};
 
 /// The random errors of a trial.
 #[derive(Clone, Copy, Debug, PartialEq)]

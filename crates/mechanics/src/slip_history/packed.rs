@@ -4,8 +4,9 @@
 //! The pieces come last, so that their number follows from the length, and no stored length can request more memory
 //! than there are bytes.
 
-use super::super::packed::{Packed, Reader, packed};
-use super::{DoubleDouble, Line, Piece, Point, SlipHistory, Sums};
+use super::{Line, Piece, Point, SlipHistory, Sums};
+use crate::numerics::double_double::DoubleDouble;
+use crate::packed::{Packed, Reader, packed};
 
 /// Bytes before the pieces: edge, sums, position, reference, mark and start of slip.
 const HEAD: usize = 2 * size_of::<Point>() + size_of::<Sums>() + 2 * size_of::<DoubleDouble>() + size_of::<f64>();

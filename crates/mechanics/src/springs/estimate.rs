@@ -3,7 +3,8 @@
 use super::Springs;
 use crate::accuracy::ErrorEstimate;
 
-/// Radii at which stresses are compared: so many at even distances, and beside so many kinks of the slip history.
+/// The number of radii at even distances at which stresses are compared, and that of kinks of the slip history with one
+/// beside each.
 const COMPARED: usize = 128;
 /// Distance from a kink of the displacement, in cells, from which on the error of the stress is stated.
 const NEAREST: f64 = 2.0;

@@ -13,10 +13,13 @@ use std::sync::Arc;
 
 pub use shear_evaluation::ShearEvaluation;
 
-use super::{
-    Contact, ContactSummary, Error, Move, Normal, Profile, Regime, Setup, State, Tangential, UnsupportedMove, range,
-};
+use crate::contact::Contact;
+use crate::error::{Error, UnsupportedMove};
+use crate::normal::ContactSummary;
 use crate::numerics::roots::turning;
+use crate::profile::Profile;
+use crate::range;
+use crate::state::{Move, Normal, Regime, Setup, State, Tangential};
 
 /// A slip up to this, relative to bound and move, is the rounding of displacements.
 const NO_SLIP: f64 = 8.0 * f64::EPSILON;

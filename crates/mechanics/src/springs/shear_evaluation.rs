@@ -7,9 +7,9 @@
 
 use std::f64::consts::PI;
 
-use super::super::DoubleDouble;
-use super::super::profile::Ring;
 use super::Springs;
+use crate::numerics::double_double::DoubleDouble;
+use crate::profile::Ring;
 
 /// The formula for the shear stress between the springs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,7 +1,7 @@
 //! Stresses, surface displacement and slip of the spring foundation.
 
-use super::super::shear_stress::{Peak, Residual};
 use super::{Spring, Springs};
+use crate::shear_stress::{Peak, Residual};
 
 /// The largest number of radii of the search for extrema.
 const SCAN: usize = 2000;

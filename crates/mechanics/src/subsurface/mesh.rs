@@ -7,7 +7,7 @@
 //! halved where the rule misses the rise of g, which is known, and again near the branch point: never is one longer
 //! than its distance from there. A panel touches the branch point only at the surface; there s - sqrt(r - b) = +-xi^2
 //! takes the root away. Over a tree's node that is half as long as its distance, 16 Chebyshev points stand for all
-//! below it: what they leave is 8^-16.
+//! below it, with an error of 8^-16.
 
 use super::complex::Complex;
 use crate::numerics::chebyshev::{self, SIXTEEN};
@@ -95,7 +95,7 @@ impl Mesh {
         Mesh { panels, tree, edge: Some(edge).filter(|edge| edge.normal > 0.0) }
     }
 
-    /// Calls `visit(t - r, source)` for all that acts at the distance `from_axis`, m, from the axis and the depth z,
+    /// Calls `visit(t - r, source)` for all sources of the stress at the distance `from_axis`, m, from the axis and the depth z,
     /// over the contact radius.
     pub(super) fn visit(
         &self,

@@ -16,7 +16,8 @@ use std::sync::OnceLock;
 
 use super::contact::Contact;
 use super::profile::{Profile, Ring};
-use super::{Error, range};
+use crate::error::Error;
+use crate::range;
 use kernel::{DeepPlace, NormalKernels, TangentialKernels};
 use mesh::{Mesh, Source};
 use sphere::Kinks;

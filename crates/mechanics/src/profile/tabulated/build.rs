@@ -39,7 +39,7 @@ const KINK: f64 = 0.6;
 /// whole.
 const GROWTH: f64 = 0.5;
 const LEAST_CELL: f64 = 0.05;
-/// What may be left out of g' for a jump of f'', over f'.
+/// The error of g' that a jump of f'' may leave, over f'.
 const NEGLIGIBLE: f64 = 1e-17;
 /// One over 3, 5, 7 and so on.
 const fn odd<const T: usize>() -> [f64; T] {
@@ -72,7 +72,7 @@ struct Stretch {
     width: f64,
 }
 
-/// What was built.
+/// The cells of a table.
 #[derive(Default)]
 pub(super) struct Built {
     /// From the first knot at which the surface leaves the plane, up to the last or, unless the whole curve is wanted,
@@ -215,7 +215,7 @@ impl Segment {
         if size <= least {
             return;
         }
-        // What so many terms of the series of atan leave is no more than the next one.
+        // The error of a truncated series of atan is no more than the next term.
         if size * square <= 3.0 * least {
             self.add_short(odd::<0>(), share, places, sums);
         } else if size * fourth <= 5.0 * least {
@@ -227,7 +227,7 @@ impl Segment {
         } else if size * fourth * fourth * fourth * fourth <= 17.0 * least {
             self.add_short(odd::<7>(), share, places, sums);
         } else if square <= angle::QUARTER * angle::QUARTER {
-            self.add_short(angle::LACKING, share, places, sums);
+            self.add_short(angle::SERIES, share, places, sums);
         } else {
             let (roots, turns) = places.angles(self.start);
             for lane in 0..N {
@@ -260,7 +260,7 @@ impl Segment {
     }
 }
 
-/// What is far below a cell adds to g' there: a series over the squares of the radii.
+/// The part of g' in a cell by the sources far below it: a series over the squares of the radii.
 struct CellField {
     low: f64,
     high: f64,
@@ -278,12 +278,12 @@ impl CellField {
     }
 }
 
-/// What is summed for the panels of one of the smallest cells.
+/// The sources of the panels of one of the smallest cells.
 struct NearSources {
     far: CellField,
     /// The first of the near segments, or that of the jumps of f''.
     first: usize,
-    /// What may be left out for a jump, m; `None` where segments are summed instead of jumps.
+    /// The error that a jump may leave, m; `None` where segments are summed instead of jumps.
     least: Option<f64>,
 }
 
@@ -429,7 +429,7 @@ impl Build<'_> {
         Cell::new(stretch.base, square, high, &series, powers)
     }
 
-    /// The series of q = g'/x over a stretch, by its values at so many points, and whether they resolve it.
+    /// The series of q = g'/x over a stretch, by its values at N points, and whether they resolve it.
     fn series<const N: usize>(&self, stretch: &Stretch, sources: &NearSources, points: &Points<N>) -> (Vec<f64>, bool) {
         let above = if stretch.low > 0.0 {
             points.places(0.0, stretch.width).map(|above| stretch.low + above)

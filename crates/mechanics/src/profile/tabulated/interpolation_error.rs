@@ -6,12 +6,12 @@
 //! b))^(1/2). Of many gaps the squares add up. A step T of f' adds (pi/2) T arcosh to the kernel of the pressure. The
 //! factors are fitted to random tables (`tests/physics/open_gaps.rs`).
 
-use super::super::open_gaps::open_slopes;
+use crate::profile::open_gaps::open_slopes;
 
-/// The errors of g and of the load over what is said above.
+/// The factors of the errors of g and of the load.
 const OF_LEVEL: f64 = 0.05;
 const OF_LOAD: f64 = 0.15;
-/// What the error of the load falls to just beyond a gap.
+/// The share of the error of the load that is left just beyond a gap.
 const BEYOND: f64 = 0.5;
 
 /// The interpolation error in a contact of one radius.
@@ -34,30 +34,30 @@ impl InterpolationError {
     }
 }
 
-/// An error that the gaps below a radius leave, and how far that is from the lower end of the one that counts most, m.
+/// An error by the gaps below a radius, and how far that is from the lower end of the one that counts most, m.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-struct Left {
+struct GapError {
     size: f64,
     distance: f64,
 }
 
-impl Left {
-    /// The same further out by `width`, m, less by the function `fall` of the distance, with what the gap between
-    /// leaves.
-    fn and(self, own: f64, width: f64, fall: fn(f64) -> f64) -> Left {
+impl GapError {
+    /// The same further out by `width`, m, less by the function `fall` of the distance, with the error `own`
+    /// of the gap between.
+    fn and(self, own: f64, width: f64, fall: fn(f64) -> f64) -> GapError {
         let distance = self.distance + width;
         let rest = self.size * fall(self.distance / distance);
-        Left { size: (rest * rest + own * own).sqrt(), distance: if own > rest { width } else { distance } }
+        GapError { size: (rest * rest + own * own).sqrt(), distance: if own > rest { width } else { distance } }
     }
 }
 
-/// A gap of a table: where it begins, m, the error of f' in it, and what those below it leave there.
+/// A gap of a table: where it begins, m, the error of f' in it, and the errors there by those below it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct TableGap {
     start: f64,
     slope: f64,
-    load: Left,
-    level: Left,
+    load: GapError,
+    level: GapError,
     steepest: f64,
 }
 
@@ -69,7 +69,7 @@ impl TableGap {
         (OF_LEVEL * level, OF_LOAD * level * width)
     }
 
-    /// What follows the gap, up to the end of the next one.
+    /// The gap that follows, which begins at `end`, m.
     fn next(&self, end: f64, slope: f64) -> TableGap {
         let ((level, load), width) = (self.own(end), end - self.start);
         TableGap {
@@ -88,7 +88,7 @@ pub(super) fn gaps(radii: &[f64], heights: &[f64]) -> Vec<TableGap> {
     let points = radii.iter().zip(heights).map(|(&r, &z)| (r, z));
     let mirrored: Vec<(f64, f64)> = points.clone().skip(1).map(|(r, z)| (-r, z)).rev().chain(points).collect();
     let slopes = open_slopes(&mirrored, radii.len() - 1);
-    let (load, level) = (Left::default(), Left::default());
+    let (load, level) = (GapError::default(), GapError::default());
     let mut gaps = vec![TableGap { start: 0.0, slope: slopes[0], load, level, steepest: slopes[0] }];
     for (&end, &slope) in radii[1..].iter().zip(&slopes[1..]) {
         gaps.push(gaps[gaps.len() - 1].next(end, slope));

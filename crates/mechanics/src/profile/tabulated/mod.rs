@@ -16,12 +16,12 @@ mod stated_error;
 #[cfg(test)]
 mod tests;
 
-use super::super::error::TableFault;
-use super::{Error, range};
 use crate::cells::Cells;
 use crate::cells::shape::{End, EndKind, Kink, Powers, Shape};
 use crate::cells::stages::Stages;
+use crate::error::{Error, TableFault};
 use crate::numerics::double_double::DoubleDouble;
+use crate::range;
 pub use interpolation_error::InterpolationError;
 use interpolation_error::TableGap;
 use spline::SplineKnot;
@@ -35,7 +35,7 @@ pub struct Tabulated {
     noise: f64,
     /// The error up to each radius, where it was given.
     stated_errors: Vec<InterpolationError>,
-    /// What its gaps leave open; none of a table without points.
+    /// Its gaps, with the interpolation error of each; empty without points.
     gaps: Vec<TableGap>,
     stages: Stages,
     /// Where the surface leaves the plane, and the last radius, m.
@@ -50,7 +50,7 @@ impl Tabulated {
     ///
     /// # Errors
     /// [`Error::OutOfRange`] by [`range::TABLE_POINTS`], [`range::TABLE_RADIUS`] and [`range::TABLE_HEIGHT`],
-    /// [`Error::Table`] for a table that is none, [`Error::NotConvexEnough`] if g falls from the centre on.
+    /// [`Error::Table`] for radii or heights that are not a table, [`Error::NotConvexEnough`] if g falls from the centre on.
     pub fn new(radii: &[f64], heights: &[f64]) -> Result<Tabulated, Error> {
         Tabulated::new_while(radii, heights, &|| true)
     }

@@ -12,7 +12,7 @@ impl Tabulated {
 
     /// By how much g at the radius x, m, has more noise than the heights do (pure number), if theirs is independent:
     /// the root of the sum of squares of dg/dz, taken for straight lines between the points. At n equal steps it is
-    /// sqrt(2n) and so.
+    /// about sqrt(2n).
     #[must_use]
     pub fn noise_amplification(&self, x: f64) -> f64 {
         let (mut sum, mut before, mut angle) = (0.0, 0.0, 0.0);
@@ -28,7 +28,7 @@ impl Tabulated {
     }
 }
 
-/// What third divided differences say about the noise of single heights.
+/// The noise of single heights, m, by the third divided differences.
 pub(super) fn of_heights(radii: &[f64], heights: &[f64]) -> f64 {
     let (mut sum, mut count) = (0.0, 0.0);
     for (r, z) in radii.windows(4).zip(heights.windows(4)) {

@@ -1,6 +1,8 @@
-//! The error of a table whose heights were fitted, as the fit knows it.
+//! The error of a table whose heights were fitted, as the fit states it.
 
-use super::{Error, InterpolationError, TableFault, Tabulated, range};
+use super::{InterpolationError, Tabulated};
+use crate::error::{Error, TableFault};
+use crate::range;
 
 impl Tabulated {
     /// The same table with standard errors at its points, which take the place of what its heights say of interpolation

@@ -14,12 +14,14 @@ mod descent;
 mod linear_program;
 mod search;
 
-use super::super::normal::load;
-use super::super::profile::{Point, Ring, StressRadius};
-use super::super::slip_history::Line;
 use super::minimax::{Problem, smallest};
-use super::{Contact, DoubleDouble, PathEnd, Profile, alternating, cutoff_of, outermost_singular, positions};
+use super::{PathEnd, alternating, cutoff_of, outermost_singular, positions};
+use crate::contact::Contact;
+use crate::normal::load;
+use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::roots::{largest, turning};
+use crate::profile::{Point, Profile, Ring, StressRadius};
+use crate::slip_history::Line;
 
 /// A slip history of more pieces is refused, because each piece is evaluated for every E; nor is it a candidate as it
 /// is, because the cost of its extrema grows with the square of the depth.

@@ -1,11 +1,12 @@
 //! The sequences of few strokes as the search sees them: their stresses, and how far they miss the end, with the
 //! slopes.
 
-use super::super::super::profile::{Point, StressRadius};
-use super::super::{DoubleDouble, PathEnd, alternating};
 use super::descent::{Trial, search};
 use super::linear_program::Linear;
 use super::{FromAnyState, LaterStrokes};
+use crate::numerics::double_double::DoubleDouble;
+use crate::profile::{Point, StressRadius};
+use crate::protocol::{PathEnd, alternating};
 
 /// The step of the difference that gives the slope of the stress at a kink by its own level, over that of the edge.
 const PROBE: f64 = 1e-6;
