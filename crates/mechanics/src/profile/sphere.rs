@@ -4,7 +4,7 @@
 //! rounded radii (Hertz 1881; Popov & Hess 2015). The forms are closed, so that no cells are made; as a part of a sum
 //! it is a shape like others.
 
-use super::{DoubleDouble, Error, Moments, Point, Ring, Span, StressRadius, range};
+use super::{DoubleDouble, Error, Family, Moments, Parameter, Point, Profile, Ring, Span, StressRadius, range};
 #[cfg(test)]
 use crate::cells::call_count;
 use crate::cells::field::SumAndSize;
@@ -17,6 +17,22 @@ const LANES: usize = 8;
 /// Squares of radii that differ by less, over that of the outer one, have lost digits that the depth of their ring has.
 const THIN: f64 = 1e-3;
 
+/// Its declaration.
+pub(super) static FAMILY: Family = Family {
+    name: "sphere",
+    title: "Sphere (Hertz’s parabola)",
+    about: "A sphere in Hertz's approximation.",
+    parameters: &[Parameter::new(
+        "radius",
+        "Radius R",
+        "Radius of curvature R of the gap, m; for two spheres 1/R = 1/R₁ + 1/R₂.",
+        range::LENGTH,
+        0.01,
+    )],
+    indentation: 3e-6,
+    make: |p| Sphere::new(p[0]).map(Profile::Sphere),
+};
+
 /// A paraboloid of revolution.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sphere {
@@ -27,9 +43,9 @@ impl Sphere {
     /// The paraboloid with curvature radius R, m, at its tip.
     ///
     /// # Errors
-    /// [`Error::OutOfRange`] by [`range::RADIUS`].
+    /// [`Error::OutOfRange`] with the name of the parameter.
     pub fn new(radius: f64) -> Result<Sphere, Error> {
-        Ok(Sphere { curvature_radius: range::RADIUS.check(radius)? })
+        FAMILY.check([radius]).map(|[curvature_radius]| Sphere { curvature_radius })
     }
 
     /// The same where R follows from other, checked numbers.
@@ -128,7 +144,8 @@ impl Sphere {
                 }
                 for lane in 0..LANES {
                     let gap = if below[lane] > 0.0 { ring.gap } else { v_high[lane] * v_high[lane] };
-                    let kernel = if v_high[lane] > 0.0 { difference::<SLOPE>(v_low[lane], v_high[lane], gap) } else { 0.0 };
+                    let kernel =
+                        if v_high[lane] > 0.0 { difference::<SLOPE>(v_low[lane], v_high[lane], gap) } else { 0.0 };
                     sum[lane] += ring.weight * kernel;
                     if SLOPE {
                         size[lane] += (ring.weight * kernel).abs();
