@@ -5,7 +5,7 @@
 use std::f64::consts::FRAC_PI_2;
 
 use super::{Error, Family, Parameter, Profile, range};
-use crate::cells::shape::{Kink, Powers, Shape};
+use crate::cells::shape::{End, Kink, Powers, Shape};
 use crate::cells::stages::Stages;
 
 /// Its declaration.
@@ -55,5 +55,9 @@ impl Shape for Cone {
 
     fn stages(&self) -> Option<&Stages> {
         Some(&self.stages)
+    }
+
+    fn end(&self) -> Option<End> {
+        None
     }
 }

@@ -2,7 +2,7 @@
 //! Sneddon 1965).
 
 use super::{DoubleDouble, Error, Family, Parameter, Profile, range};
-use crate::cells::shape::{Kink, Powers, Shape};
+use crate::cells::shape::{End, Kink, Powers, Shape};
 use crate::cells::stages::Stages;
 
 /// The largest whole exponent of which one term is a series.
@@ -106,5 +106,9 @@ impl Shape for PowerLaw {
 
     fn stages(&self) -> Option<&Stages> {
         Some(&self.stages)
+    }
+
+    fn end(&self) -> Option<End> {
+        None
     }
 }

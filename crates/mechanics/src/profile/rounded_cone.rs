@@ -5,7 +5,7 @@
 //! b, so all stresses are finite.
 
 use super::{Error, Family, Parameter, Profile, range};
-use crate::cells::shape::{Kink, Powers, Shape, above};
+use crate::cells::shape::{End, Kink, Powers, Shape, above};
 use crate::cells::stages::Stages;
 
 /// Its declaration.
@@ -78,5 +78,9 @@ impl Shape for RoundedCone {
 
     fn stages(&self) -> Option<&Stages> {
         Some(&self.stages)
+    }
+
+    fn end(&self) -> Option<End> {
+        None
     }
 }

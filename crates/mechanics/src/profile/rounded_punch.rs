@@ -5,7 +5,7 @@
 //! - atan u), u = t/b.
 
 use super::{Error, Family, Parameter, Profile, range};
-use crate::cells::shape::{Kink, Powers, Shape, above};
+use crate::cells::shape::{End, Kink, Powers, Shape, above};
 use crate::cells::stages::Stages;
 use crate::numerics::angle::angles;
 
@@ -68,6 +68,10 @@ impl Shape for RoundedPunch {
 
     fn stages(&self) -> Option<&Stages> {
         Some(&self.stages)
+    }
+
+    fn end(&self) -> Option<End> {
+        None
     }
 
     fn curvature_radius(&self) -> Option<f64> {

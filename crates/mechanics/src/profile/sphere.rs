@@ -8,7 +8,7 @@ use super::{DoubleDouble, Error, Family, Moments, Parameter, Point, Profile, Rin
 #[cfg(test)]
 use crate::cells::call_count;
 use crate::cells::field::SumAndSize;
-use crate::cells::shape::{Kink, Powers, Shape};
+use crate::cells::shape::{End, Kink, Powers, Shape};
 use crate::cells::stages::Stages;
 use crate::numerics::gauss::TWELVE_POINTS;
 
@@ -232,6 +232,10 @@ impl Shape for Sphere {
     }
 
     fn stages(&self) -> Option<&Stages> {
+        None
+    }
+
+    fn end(&self) -> Option<End> {
         None
     }
 

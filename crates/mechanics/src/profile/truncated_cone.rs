@@ -4,7 +4,7 @@
 //! log-infinite there.
 
 use super::{Error, Family, Parameter, Profile, range};
-use crate::cells::shape::{Kink, Powers, Shape, above};
+use crate::cells::shape::{End, Kink, Powers, Shape, above};
 use crate::cells::stages::Stages;
 
 /// Its declaration.
@@ -60,5 +60,9 @@ impl Shape for TruncatedCone {
 
     fn stages(&self) -> Option<&Stages> {
         Some(&self.stages)
+    }
+
+    fn end(&self) -> Option<End> {
+        None
     }
 }
