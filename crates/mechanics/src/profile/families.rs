@@ -3,8 +3,8 @@
 use super::{Error, Profile};
 use crate::range::{Quantity, Range};
 
-/// A family of profiles, as its file declares it. Its JSON document, the form of the page, the tests, the benchmarks and
-/// the reference values go through [`families`](super::families).
+/// A family of profiles, as its file declares it. Its JSON document, the form of the page, the tests, the benchmarks
+/// and the reference values go through [`families`](super::families).
 #[derive(Debug)]
 pub struct Family {
     /// The `type` in JSON.
