@@ -15,8 +15,8 @@ use axum::Router;
 use axum::body::Bytes;
 use axum::routing::post;
 use load::{Connection, Process, baseline, join, median, serve, serve_other};
-use stickslip::admission::Stop;
-use stickslip::simulation::simulate;
+use stickslip_compute::Flag;
+use stickslip_compute::simulation::simulate;
 use stickslip_wire::{SimulateReply, SimulateRequest, read};
 use tokio::net::TcpListener;
 use tokio::runtime::Handle;
@@ -36,7 +36,7 @@ const MEASUREMENTS: usize = 31;
 
 fn reply() -> SimulateReply {
     let request = read::<SimulateRequest>(BODY.as_bytes()).expect("a sound request");
-    simulate(&request, &Stop::default()).expect("a reply")
+    simulate(&request, &Flag::default()).expect("a reply")
 }
 
 /// Serves the two baseline handlers.
@@ -120,7 +120,7 @@ fn parts() {
     let bytes = serde_json::to_vec(&reply).expect("a reply as JSON").len();
     println!("\n| part | time |\n|---|---|");
     println!("| parsing {} bytes | {:.1} us |", BODY.len(), time(|| read::<SimulateRequest>(BODY.as_bytes())));
-    println!("| solving | {:.1} us |", time(|| simulate(&request, &Stop::default())));
+    println!("| solving | {:.1} us |", time(|| simulate(&request, &Flag::default())));
     println!("| writing {bytes} bytes | {:.1} us |", time(|| serde_json::to_vec(&reply)));
     let hand_over = || tokio::task::block_in_place(|| Handle::current().block_on(spawn_blocking(|| black_box(1))));
     println!("| a thread of the blocking pool and back | {:.1} us |", time(hand_over));

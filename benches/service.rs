@@ -79,12 +79,12 @@ impl Service {
 
 /// Serves the baseline: parses the same body and writes a reply of the same shape.
 async fn serve_baseline() {
-    let reply = stickslip::simulation::simulate(
+    let reply = stickslip_compute::simulation::simulate(
         &stickslip_wire::read::<stickslip_wire::SimulateRequest>(
             format!(r#"{{"contact":{CONTACT},"path":{{"displacement":[1e-7]}}}}"#).as_bytes(),
         )
         .expect("a sound request"),
-        &stickslip::admission::Stop::default(),
+        &stickslip_compute::Flag::default(),
     )
     .expect("a reply");
     let handler = move |Path(id): Path<Uuid>, Json(request): Json<MoveRequest>| async move {

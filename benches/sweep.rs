@@ -17,9 +17,9 @@ use std::time::{Duration, Instant};
 
 use load::{Connection, Process, serve};
 use serde_json::json;
-use stickslip::admission::{SolverSlot, Stop};
-use stickslip::simulation::{Sweep, SweepResult, simulate};
-use stickslip_wire::{self as wire, SimulateRequest, SweepRequest};
+use stickslip_compute::Flag;
+use stickslip_compute::simulation::{Sweep, SweepResult, simulate};
+use stickslip_wire::{self as wire, PrepareAnew, SimulateRequest, SweepRequest};
 
 const POINTS: usize = 1_000_000;
 /// Number of single simulations of a thread, for comparison.
@@ -44,7 +44,7 @@ fn request() -> String {
 
 fn plan() -> Sweep {
     let draft = wire::read::<SweepRequest>(request().as_bytes()).expect("a valid sweep");
-    Sweep::plan(draft, &Stop::default()).expect("a sweep with outputs")
+    Sweep::plan(draft, &PrepareAnew).expect("a sweep with outputs")
 }
 
 /// The time of so many simulations on each of the threads at once: what the machine can do.
@@ -52,7 +52,7 @@ fn time_of_simulations(threads: usize) -> Duration {
     let checked = wire::read::<SimulateRequest>(base().to_string().as_bytes()).expect("a valid simulation");
     let work = || {
         for _ in 0..SIMULATIONS {
-            black_box(simulate(black_box(&checked), &Stop::default()).expect("an answer"));
+            black_box(simulate(black_box(&checked), &Flag::default()).expect("an answer"));
         }
     };
     let begin = Instant::now();
@@ -62,12 +62,8 @@ fn time_of_simulations(threads: usize) -> Duration {
 
 fn time_of_sweep(threads: usize) -> (SweepResult, Duration) {
     let plan = plan();
-    let (mut rows, begin) = (SweepResult::default(), Instant::now());
-    while rows.values.len() < POINTS {
-        let rest = rows.values.len()..POINTS;
-        let slots = (0..threads).map(|_| SolverSlot::alone()).collect();
-        rows.append(plan.slice(rest, slots, &Stop::default(), None).expect("it is not stopped"));
-    }
+    let begin = Instant::now();
+    let rows = plan.compute(0..POINTS, threads, &Flag::default()).expect("it is not stopped");
     (rows, begin.elapsed())
 }
 

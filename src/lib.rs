@@ -1,6 +1,6 @@
-//! The service stickslip: frictional contact of two elastic bodies, exact and with all of its history, over HTTP. The
-//! physics is in `stickslip-mechanics`, the JSON types are in `stickslip-wire`. A module imports only from those below
-//! it here.
+//! The service stickslip: frictional contact of two elastic bodies, exact and with all of its history, over HTTP. What
+//! it computes is in `stickslip-compute`, the JSON types are in `stickslip-wire`. A module imports only from those
+//! below it here.
 //!
 //! [`cli`] is the command line, which the binary and the Python package call.
 //!
@@ -15,33 +15,24 @@
 //! [`sessions`] are the contacts that live on the server: a cache over the store, one writer at a time each, replay,
 //! retries.
 //!
-//! [`computations`] are what takes a document and gives one without storing anything, each with its name, cost, table
-//! and picture, in one list.
-//!
-//! [`simulation`] is what they share with stored contacts: solvers on their paths, stresses, warnings, sweeps, costs.
-//!
-//! [`formats`] writes tables and pictures.
-//!
 //! [`admission`] gives permits for solver threads, places and memory, and ends work that takes too long or is not
 //! waited for.
 //!
 //! [`store`] stores what must survive: definitions, moves, snapshots, jobs, and replies for retries. It knows no
 //! physics.
 //!
-//! [`metrics`] are counters, gauges and histograms; [`otlp`] sends traces. Every module may use both, and TLS to
-//! servers that need not be verified.
+//! [`metrics`] are counters, gauges and histograms; [`otlp`] sends traces; a [`tenant`] is whom keys, quotas and what
+//! is stored belong to. Every module may use them, and TLS to servers that need not be verified.
 
 pub mod access;
 pub mod admission;
 pub mod api;
 pub mod cli;
-pub mod computations;
-pub mod formats;
 pub mod jobs;
 pub mod metrics;
 pub mod otlp;
 pub mod server;
 pub mod sessions;
-pub mod simulation;
 pub mod store;
+pub mod tenant;
 mod unverified_tls;

@@ -4,10 +4,10 @@
 use std::hint::black_box;
 
 use serde_json::json;
-use stickslip::admission::{SolverSlot, Stop};
-use stickslip::simulation::{Sweep, SweepResult};
+use stickslip_compute::Flag;
+use stickslip_compute::simulation::{Sweep, SweepResult};
 use stickslip_mechanics::Contact;
-use stickslip_wire::{self as wire, SweepRequest};
+use stickslip_wire::{self as wire, PrepareAnew, SweepRequest};
 
 use crate::law::{fit, seconds};
 use crate::scenes::{contact, radii, reversed, shapes, slide, sphere, table};
@@ -121,11 +121,6 @@ fn sweeps() {
 
 fn sweep(request: &str, points: usize) -> SweepResult {
     let draft = wire::read::<SweepRequest>(request.as_bytes()).expect("a valid sweep");
-    let sweep = Sweep::plan(draft, &Stop::default()).expect("a sweep with outputs");
-    let mut rows = SweepResult::default();
-    while rows.values.len() < points {
-        let rest = rows.values.len()..points;
-        rows.append(sweep.slice(rest, vec![SolverSlot::alone()], &Stop::default(), None).expect("it is not stopped"));
-    }
-    rows
+    let sweep = Sweep::plan(draft, &PrepareAnew).expect("a sweep with outputs");
+    sweep.compute(0..points, 1, &Flag::default()).expect("it is not stopped")
 }

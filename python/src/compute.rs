@@ -3,9 +3,8 @@
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
-use stickslip::api;
-use stickslip::computations::{self, Shown};
-use stickslip::formats::Format;
+use stickslip_compute::computations::{self, Shown};
+use stickslip_compute::formats::Format;
 
 use super::interrupt::interruptible;
 use super::problem::refused;
@@ -33,7 +32,8 @@ pub fn names() -> Vec<(&'static str, Option<&'static str>)> {
 }
 
 /// The OpenAPI document.
+#[cfg(all(feature = "server", target_os = "linux"))]
 #[pyfunction]
 pub fn openapi() -> &'static str {
-    api::document()
+    stickslip::api::document()
 }

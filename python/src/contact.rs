@@ -5,16 +5,16 @@ use std::sync::Arc;
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 use serde_json::{Map, Value, json};
-use stickslip::admission::Stop;
-use stickslip::api::Problem;
-use stickslip::api::problem::Code;
-use stickslip::computations::{
+use stickslip_compute::Refusal;
+use stickslip_compute::computations::{
     Computation as _, Cycle, OnContact, Shown, StressTask, dry_run_relax, make_moves, shown_states,
 };
-use stickslip::formats::Format;
-use stickslip::simulation::{self, present_warnings};
+use stickslip_compute::formats::Format;
+use stickslip_compute::simulation::{self, Anew, present_warnings};
+use stickslip_compute::{Flag, Stop};
 use stickslip_mechanics as mechanics;
 use stickslip_mechanics::Elasticity;
+use stickslip_wire::Code;
 use stickslip_wire::definition::SharedSetup;
 use stickslip_wire::session::{Advance, Creation};
 use stickslip_wire::{
@@ -44,7 +44,7 @@ pub struct Contact {
 }
 
 /// The profile of a contact that exists.
-struct Ready<'a>(&'a Arc<mechanics::Profile>, &'a Stop);
+struct Ready<'a>(&'a Arc<mechanics::Profile>, &'a dyn Stop);
 
 impl Prepare for Ready<'_> {
     fn profile(
@@ -124,7 +124,7 @@ impl Contact {
     fn undo(&mut self, py: Python<'_>, calls: usize) -> PyResult<usize> {
         let Some(kept) = self.calls.len().checked_sub(calls) else {
             let detail = format!("{} calls have moved this contact", self.calls.len());
-            return Err(refused(Problem::at(Code::InvalidInput, "/calls", detail)));
+            return Err(refused(Refusal::at(Code::InvalidInput, "/calls", detail)));
         };
         let moves = self.calls.get(kept).copied().unwrap_or(self.made.len());
         let state = interruptible(py, |stop| replay(self.state.virgin(), &self.made[..moves], stop))?;
@@ -163,16 +163,16 @@ impl Contact {
 }
 
 impl Contact {
-    fn create(body: &[u8], stop: &Stop) -> Result<Contact, Problem> {
-        let checked = simulation::check(wire::parse::<CreateRequest>(body)?, stop, stop)?;
+    fn create(body: &[u8], stop: &dyn Stop) -> Result<Contact, Refusal> {
+        let checked = simulation::check(wire::parse::<CreateRequest>(body)?, &Anew(stop), stop)?;
         let Creation { label, definition, setup } = checked?;
         let state = simulation::contact(setup.clone(), "")?;
         Ok(Contact { id: Uuid::now_v7(), label, definition, setup, state, made: Vec::new(), calls: Vec::new() })
     }
 
-    fn restore(bytes: &[u8], stop: &Stop) -> Result<Contact, Problem> {
+    fn restore(bytes: &[u8], stop: &dyn Stop) -> Result<Contact, Refusal> {
         let broken = |error: serde_json::Error| {
-            Problem::new(Code::InvalidInput, format!("these bytes are not those of a contact: {error}"))
+            Refusal::new(Code::InvalidInput, format!("these bytes are not those of a contact: {error}"))
         };
         let mut document: Map<String, Value> = serde_json::from_slice(bytes).map_err(broken)?;
         let mut part = |name: &str| document.remove(name).unwrap_or_default();
@@ -191,14 +191,14 @@ impl Contact {
     }
 
     /// A single straight move takes microseconds, less than a thread for it would.
-    fn make_move(&mut self, py: Python<'_>, body: &[u8]) -> PyResult<Result<Vec<u8>, Problem>> {
+    fn make_move(&mut self, py: Python<'_>, body: &[u8]) -> PyResult<Result<Vec<u8>, Refusal>> {
         let advance = match wire::read::<MoveRequest>(body) {
             Ok(advance) => advance,
             Err(rejection) => return Ok(Err(rejection.into())),
         };
         let is_short = self.is_straight(&advance);
         if is_short {
-            return Ok(py.detach(|| self.follow(&advance, &Stop::default())));
+            return Ok(py.detach(|| self.follow(&advance, &Flag::default())));
         }
         interruptible(py, |stop| self.follow(&advance, stop))
     }
@@ -210,7 +210,7 @@ impl Contact {
             && self.state.memory_depth() + PIECES_OF_A_MOVE <= wire::limits::MEMORY_DEPTH
     }
 
-    fn follow(&mut self, advance: &Advance, stop: &Stop) -> Result<Vec<u8>, Problem> {
+    fn follow(&mut self, advance: &Advance, stop: &dyn Stop) -> Result<Vec<u8>, Refusal> {
         let before = (!self.is_straight(advance)).then(|| self.state.clone());
         let (mut states, made) = (Vec::new(), self.made.len());
         let moved = make_moves(&mut self.state, advance, stop, |step, state| {
@@ -243,7 +243,7 @@ impl Contact {
         }
     }
 
-    fn relax(&mut self, body: &[u8], stop: &Stop) -> Result<Vec<u8>, Problem> {
+    fn relax(&mut self, body: &[u8], stop: &dyn Stop) -> Result<Vec<u8>, Refusal> {
         let relaxation = wire::read::<RelaxRequest>(body)?;
         if !relaxation.dry_run {
             return self.follow(&relaxation.into(), stop);
@@ -254,9 +254,9 @@ impl Contact {
     }
 
     /// The body is that of a stress in a request, with `residual` beside.
-    fn stress(&self, body: &[u8], stop: &Stop) -> Result<Vec<u8>, Problem> {
+    fn stress(&self, body: &[u8], stop: &dyn Stop) -> Result<Vec<u8>, Refusal> {
         let mut body: Map<String, Value> =
-            serde_json::from_slice(body).map_err(|error| Problem::new(Code::NotJson, error.to_string()))?;
+            serde_json::from_slice(body).map_err(|error| Refusal::new(Code::NotJson, error.to_string()))?;
         let residual = body.remove("residual") == Some(Value::Bool(true));
         let request = wire::parse::<StressRequest>(Value::Object(body).to_string().as_bytes())?;
         let mut faults = Faults::default();
@@ -265,9 +265,9 @@ impl Contact {
     }
 
     /// The body is that of POST /cycle without a contact.
-    fn cycle(&self, body: &[u8], stop: &Stop) -> Result<Vec<u8>, Problem> {
+    fn cycle(&self, body: &[u8], stop: &dyn Stop) -> Result<Vec<u8>, Refusal> {
         let mut body: Map<String, Value> =
-            serde_json::from_slice(body).map_err(|error| Problem::new(Code::NotJson, error.to_string()))?;
+            serde_json::from_slice(body).map_err(|error| Refusal::new(Code::NotJson, error.to_string()))?;
         body.insert("contact".to_owned(), json!(self.loaded_definition()));
         let request = wire::parse::<CycleRequest>(Value::Object(body).to_string().as_bytes())?;
         let checked = request.check_with(&Ready(&self.setup.profile, stop))?;
@@ -277,7 +277,7 @@ impl Contact {
         self.compute(checked.2, stop)
     }
 
-    fn compute<T: OnContact>(&self, task: T, stop: &Stop) -> Result<Vec<u8>, Problem> {
+    fn compute<T: OnContact>(&self, task: T, stop: &dyn Stop) -> Result<Vec<u8>, Refusal> {
         let shown = Shown::in_format(Format::Columns);
         let outcome = task.run(self.state.clone(), self.made.len() as u64, stop)?;
         Ok(shown.write(&outcome, stop)??)
@@ -285,7 +285,11 @@ impl Contact {
 }
 
 /// The contact after these moves.
-fn replay(mut contact: mechanics::Contact, moves: &[(Move, f64)], stop: &Stop) -> Result<mechanics::Contact, Problem> {
+fn replay(
+    mut contact: mechanics::Contact,
+    moves: &[(Move, f64)],
+    stop: &dyn Stop,
+) -> Result<mechanics::Contact, Refusal> {
     for (step, tolerance) in moves {
         stop.check().map_err(simulation::Failure::from)?;
         let made = contact.apply_while(&step.step(), *tolerance, &|| stop.check().is_ok());
@@ -294,6 +298,6 @@ fn replay(mut contact: mechanics::Contact, moves: &[(Move, f64)], stop: &Stop) -
     Ok(contact)
 }
 
-fn json_bytes(document: &impl serde::Serialize) -> Result<Vec<u8>, Problem> {
-    serde_json::to_vec(document).map_err(|error| Problem::internal(error.to_string()))
+fn json_bytes(document: &impl serde::Serialize) -> Result<Vec<u8>, Refusal> {
+    serde_json::to_vec(document).map_err(|error| Refusal::internal(error.to_string()))
 }

@@ -7,12 +7,12 @@ use pyo3::exceptions::PyIndexError;
 use pyo3::prelude::*;
 use pyo3::types::PyByteArray;
 use serde_json::json;
-use stickslip::admission::Stop;
-use stickslip::api::Problem;
-use stickslip::api::problem::Code;
-use stickslip::simulation;
+use stickslip_compute::Refusal;
+use stickslip_compute::Stop;
+use stickslip_compute::simulation::{self, Anew};
 use stickslip_mechanics::range::{self, Range};
 use stickslip_mechanics::{Contact, Error, Move, Normal, Tangential};
+use stickslip_wire::Code;
 use stickslip_wire::session::Creation;
 use stickslip_wire::{self as wire, CreateRequest, State};
 
@@ -99,7 +99,7 @@ impl Contacts {
         let direction = if upwards { 1.0 } else { -1.0 };
         let all =
             py.detach(|| contacts.iter().map(|contact| stiffness(contact, direction)).collect::<Result<Vec<_>, _>>());
-        let refusal = |error: Error| refused(Problem::new(Code::InvalidInput, error.to_string()));
+        let refusal = |error: Error| refused(Refusal::new(Code::InvalidInput, error.to_string()));
         Ok(pair(py, &all.map_err(refusal)?))
     }
 
@@ -118,7 +118,7 @@ impl Contacts {
 
 impl Contacts {
     /// The targets of a step, all within their ranges: a step that is refused has moved no contact.
-    fn targets(&self, indentation: &[u8], displacement: &[u8]) -> Result<Vec<[f64; 2]>, Problem> {
+    fn targets(&self, indentation: &[u8], displacement: &[u8]) -> Result<Vec<[f64; 2]>, Refusal> {
         let count = self.committed.len();
         let indentation = numbers("/indentation", indentation, count, &range::INDENTATION)?;
         let displacement = numbers("/displacement", displacement, count, &range::DISPLACEMENT)?;
@@ -130,7 +130,7 @@ impl Contacts {
             let profile = contact.profile();
             let radius = profile.check_radius(profile.radius(*depth));
             radius.and_then(|radius| range::CONTACT_RADIUS.check(radius)).map_err(|error| {
-                Problem::at(Code::BeyondProfile, format!("/indentation/{index}"), error.to_string())
+                Refusal::at(Code::BeyondProfile, format!("/indentation/{index}"), error.to_string())
             })?;
         }
         Ok(indentation.into_iter().zip(displacement).map(|(depth, displacement)| [depth, displacement]).collect())
@@ -138,30 +138,30 @@ impl Contacts {
 }
 
 /// The first of the contacts.
-fn first(body: &[u8], stop: &Stop) -> Result<Contact, Problem> {
-    let Creation { setup, .. } = simulation::check(wire::parse::<CreateRequest>(body)?, stop, stop)??;
+fn first(body: &[u8], stop: &dyn Stop) -> Result<Contact, Refusal> {
+    let Creation { setup, .. } = simulation::check(wire::parse::<CreateRequest>(body)?, &Anew(stop), stop)??;
     Ok(simulation::contact(setup, "")?)
 }
 
 /// The numbers of an array, one for each contact.
-fn numbers(pointer: &str, bytes: &[u8], count: usize, range: &Range) -> Result<Vec<f64>, Problem> {
+fn numbers(pointer: &str, bytes: &[u8], count: usize, range: &Range) -> Result<Vec<f64>, Refusal> {
     let (chunks, rest) = bytes.as_chunks();
     if !rest.is_empty() || chunks.len() != count {
         let detail = format!("{} elements: allowed are exactly {count}", chunks.len());
-        return Err(Problem::at(Code::InvalidInput, pointer, detail));
+        return Err(Refusal::at(Code::InvalidInput, pointer, detail));
     }
     let numbers: Vec<f64> = chunks.iter().map(|bytes| f64::from_ne_bytes(*bytes)).collect();
     match numbers.iter().position(|number| !range.contains(*number)) {
         None => Ok(numbers),
         Some(index) => {
             let detail = format!("{:?} is out of range: allowed is {range}", numbers[index]);
-            Err(Problem::at(Code::InvalidInput, format!("{pointer}/{index}"), detail))
+            Err(Refusal::at(Code::InvalidInput, format!("{pointer}/{index}"), detail))
         }
     }
 }
 
 /// Moves the contacts to their targets on so many threads.
-fn move_all(contacts: &mut [Contact], targets: &[[f64; 2]], threads: usize) -> Result<Vec<[f64; 2]>, Problem> {
+fn move_all(contacts: &mut [Contact], targets: &[[f64; 2]], threads: usize) -> Result<Vec<[f64; 2]>, Refusal> {
     let mut forces = vec![[0.0; 2]; contacts.len()];
     let share = contacts.len().div_ceil(threads).max(LEAST_SHARE);
     if contacts.len() <= share {
@@ -190,8 +190,8 @@ fn move_share(contacts: &mut [Contact], targets: &[[f64; 2]], forces: &mut [[f64
 }
 
 /// What the mechanics refuses although every target is in its range.
-fn unexpected(error: Error) -> Problem {
-    Problem::internal(error.to_string())
+fn unexpected(error: Error) -> Refusal {
+    Refusal::internal(error.to_string())
 }
 
 /// Normal and tangential stiffness, N/m: each spring that does not slip adds its own, so that the tangential one is

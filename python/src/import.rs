@@ -3,8 +3,8 @@
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use serde::Serialize;
-use stickslip::api;
-use stickslip::computations::files;
+use stickslip_compute::Refusal;
+use stickslip_compute::computations::files;
 use stickslip_measured::import::{Dimension, ImportError, LoopHints, ScanHints, Unit, UnitHint};
 use stickslip_wire::Code;
 
@@ -14,7 +14,7 @@ use super::problem::refused;
 fn unit(name: &str, text: Option<&str>, dimension: Dimension) -> PyResult<Option<UnitHint>> {
     let of = |text| {
         let unknown = |error: stickslip_measured::import::UnknownUnit| {
-            refused(api::Problem::at(Code::UnknownUnit, format!("/{name}"), error.to_string()))
+            refused(Refusal::at(Code::UnknownUnit, format!("/{name}"), error.to_string()))
         };
         UnitHint::of(text, dimension).map_err(unknown)
     };

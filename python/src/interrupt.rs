@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use pyo3::exceptions::PyMemoryError;
 use pyo3::prelude::*;
-use stickslip::admission::Stop;
+use stickslip_compute::{Flag, Stop};
 
 /// How often a signal is looked for.
 const LOOK: Duration = Duration::from_millis(50);
@@ -16,17 +16,17 @@ const LOOK: Duration = Duration::from_millis(50);
 ///
 /// # Errors
 /// What the handler raises, such as `KeyboardInterrupt`, or a failure to start a thread.
-pub fn interruptible<T: Send>(py: Python<'_>, work: impl FnOnce(&Stop) -> T + Send) -> PyResult<T> {
-    let (stop, guard) = Stop::unbounded();
+pub fn interruptible<T: Send>(py: Python<'_>, work: impl FnOnce(&dyn Stop) -> T + Send) -> PyResult<T> {
+    let stop = Flag::default();
     py.detach(|| {
         thread::scope(|scope| {
             let (sender, receiver) = channel();
+            let flag = &stop;
             let begun = thread::Builder::new().spawn_scoped(scope, move || {
                 // The receiver is there until the thread is joined.
-                sender.send(work(&stop)).ok();
+                sender.send(work(flag)).ok();
             });
             let thread = begun.map_err(|error| PyMemoryError::new_err(error.to_string()))?;
-            let mut guard = Some(guard);
             let (mut result, mut raised) = (None, None);
             loop {
                 match receiver.recv_timeout(LOOK) {
@@ -37,12 +37,11 @@ pub fn interruptible<T: Send>(py: Python<'_>, work: impl FnOnce(&Stop) -> T + Se
                             && let Err(error) = Python::attach(|py| py.check_signals())
                         {
                             raised = Some(error);
-                            guard = None;
+                            stop.raise();
                         }
                     }
                 }
             }
-            drop(guard);
             if let Err(panic) = thread.join() {
                 resume_unwind(panic);
             }

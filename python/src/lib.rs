@@ -1,7 +1,8 @@
 //! The native module of the Python package: computations, contacts, the command line and the server, without a process
 //! or a copy of their own. Documents go in and come out as JSON text, arrays as bytes of `f64`; the Python side makes
-//! objects of them.
+//! objects of them. The command line and the server come with the feature `server`, on Linux alone.
 
+#[cfg(all(feature = "server", target_os = "linux"))]
 mod command;
 mod compute;
 mod contact;
@@ -9,16 +10,21 @@ mod contacts;
 mod import;
 mod interrupt;
 mod problem;
+#[cfg(all(feature = "server", target_os = "linux"))]
 mod server;
 mod sweep;
 
 /// `stickslip._native`.
 #[pyo3::pymodule]
 mod _native {
+    #[cfg(all(feature = "server", target_os = "linux"))]
     #[pymodule_export]
     use super::command::main;
+    #[cfg(all(feature = "server", target_os = "linux"))]
     #[pymodule_export]
-    use super::compute::{compute, names, openapi};
+    use super::compute::openapi;
+    #[pymodule_export]
+    use super::compute::{compute, names};
     #[pymodule_export]
     use super::contact::Contact;
     #[pymodule_export]
@@ -27,6 +33,7 @@ mod _native {
     use super::import::{quantity, read_loop, read_scan};
     #[pymodule_export]
     use super::problem::Problem;
+    #[cfg(all(feature = "server", target_os = "linux"))]
     #[pymodule_export]
     use super::server::Server;
     #[pymodule_export]

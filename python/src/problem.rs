@@ -3,7 +3,7 @@
 use pyo3::create_exception;
 use pyo3::exceptions::PyException;
 use pyo3::prelude::*;
-use stickslip::api;
+use stickslip_compute::Refusal;
 
 create_exception!(_native, Problem, PyException, "A refusal; its argument is the problem document as JSON text.");
 
@@ -11,12 +11,12 @@ create_exception!(_native, Problem, PyException, "A refusal; its argument is the
 const REQUEST_ID: &str = "in process";
 
 /// The exception for a refusal.
-pub fn refused(error: impl Into<api::Problem>) -> PyErr {
-    let problem: api::Problem = error.into();
-    let cause = problem.cause().map(str::to_owned);
-    let mut document = problem.document(REQUEST_ID, false);
-    if let Some(cause) = cause {
-        document.detail = cause;
+pub fn refused(error: impl Into<Refusal>) -> PyErr {
+    let mut refusal: Refusal = error.into();
+    // There is no log.
+    if let Some(cause) = refusal.cause.take() {
+        refusal.detail = cause;
     }
+    let document = refusal.document(REQUEST_ID);
     Problem::new_err(serde_json::to_string(&document).unwrap_or_else(|error| error.to_string()))
 }

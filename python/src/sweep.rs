@@ -3,9 +3,9 @@
 use pyo3::exceptions::PyIndexError;
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
-use stickslip::admission::{SolverSlot, Stop};
-use stickslip::api::Problem;
-use stickslip::simulation::{self, Failure, SweepResult};
+use stickslip_compute::Refusal;
+use stickslip_compute::Stop;
+use stickslip_compute::simulation::{self, Anew};
 use stickslip_wire::sweep::indices;
 use stickslip_wire::{self as wire, Axis, Output, SweepRequest};
 
@@ -24,8 +24,9 @@ impl Sweep {
     /// Plans the sweep of the JSON text of a request.
     #[new]
     fn new(py: Python<'_>, body: &[u8]) -> PyResult<Sweep> {
-        let plan =
-            |stop: &Stop| wire::read::<SweepRequest>(body).and_then(|sweep| simulation::Sweep::plan(sweep, stop));
+        let plan = |stop: &dyn Stop| {
+            wire::read::<SweepRequest>(body).and_then(|sweep| simulation::Sweep::plan(sweep, &Anew(stop)))
+        };
         Ok(Sweep { plan: interruptible(py, plan)?.map_err(refused)? })
     }
 
@@ -44,9 +45,10 @@ impl Sweep {
     /// All points on so many threads: the document that POST /sweep sends, or a table.
     fn run<'py>(&self, py: Python<'py>, threads: usize, format: &str) -> PyResult<Bound<'py, PyBytes>> {
         let format = named(format)?;
-        let result = interruptible(py, |stop| self.compute(0..self.plan.points(), threads, stop))?.map_err(refused)?;
+        let result =
+            interruptible(py, |stop| self.plan.compute(0..self.plan.points(), threads, stop))?.map_err(refused)?;
         let blocks = result.table(self.plan.checked()).blocks(format).collect::<Result<Vec<_>, _>>();
-        let blocks = blocks.map_err(|error| refused(Problem::internal(error.to_string())))?;
+        let blocks = blocks.map_err(|error| refused(Refusal::internal(error.to_string())))?;
         Ok(PyBytes::new(py, &blocks.concat()))
     }
 
@@ -70,7 +72,7 @@ impl Sweep {
         if first > end || end > self.plan.points() {
             return Err(PyIndexError::new_err(format!("this sweep has {} points", self.plan.points())));
         }
-        let result = interruptible(py, |stop| self.compute(first..end, threads, stop))?.map_err(refused)?;
+        let result = interruptible(py, |stop| self.plan.compute(first..end, threads, stop))?.map_err(refused)?;
         let (checked, outputs) = (self.plan.checked(), self.plan.checked().outputs.len().max(1));
         let mut bytes = Vec::with_capacity(8 * (result.values.len() + (end - first) * checked.axes.len()));
         for (row, values) in result.values.chunks(outputs).enumerate() {
@@ -79,19 +81,5 @@ impl Sweep {
         }
         let failures = serde_json::to_string(&result.failures).unwrap_or_default();
         Ok((PyBytes::new(py, &bytes), result.failed, failures))
-    }
-}
-
-impl Sweep {
-    fn compute(&self, points: std::ops::Range<usize>, threads: usize, stop: &Stop) -> Result<SweepResult, Failure> {
-        let (mut result, outputs) = (SweepResult::default(), self.plan.numbers(1).max(1));
-        let mut next = points.start;
-        while next < points.end {
-            let slots = (0..threads.max(1)).map(|_| SolverSlot::alone()).collect();
-            let slice = self.plan.slice(next..points.end, slots, stop, None)?;
-            next += slice.values.len() / outputs;
-            result.append(slice);
-        }
-        Ok(result)
     }
 }

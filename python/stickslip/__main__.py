@@ -10,6 +10,9 @@ def main() -> int:
     """Runs the command line of the service, and returns its exit code."""
     from . import _native
 
+    if not hasattr(_native, "main"):
+        print("stickslip: the command line is in the wheels for Linux alone", file=sys.stderr)
+        return 2
     # Without the handler of Python, an interrupt ends a command at once; `serve` sets its own.
     signal.signal(signal.SIGINT, signal.SIG_DFL)
     return _native.main(["stickslip", *sys.argv[1:]])

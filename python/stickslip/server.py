@@ -30,4 +30,6 @@ def serve(store: str = "memory:", port: int = 0) -> ServedClient:
     It runs in threads of this process, with a store of its own unless one is named, and ends with the process at the
     latest.
     """
+    if not hasattr(_native, "Server"):
+        raise OSError("the server is in the wheels for Linux alone")
     return ServedClient(_native.Server(store, port))

@@ -3,7 +3,7 @@
 use jiff::Timestamp;
 use sha2::{Digest as _, Sha256};
 
-use crate::store::Tenant;
+use crate::tenant::Tenant;
 
 use super::{Hash, Holder, Role};
 

@@ -13,7 +13,7 @@ use jiff::Timestamp;
 use sha2::{Digest as _, Sha256};
 use subtle::ConstantTimeEq as _;
 
-use crate::store::Tenant;
+use crate::tenant::Tenant;
 
 pub use entry::{InvalidEntry, NewKey, new_key, new_key_until};
 

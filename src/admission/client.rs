@@ -3,7 +3,7 @@
 use std::future::Future;
 use std::net::{IpAddr, Ipv6Addr};
 
-use crate::store::Tenant;
+use crate::tenant::Tenant;
 
 tokio::task_local! {
     /// Of the request that this task serves.

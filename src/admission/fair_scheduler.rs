@@ -4,9 +4,9 @@
 //! that its work has held a thread, divided by the weight of its kind, and the queue that has been charged least is
 //! next; within it, the work that came first. So queues share the threads by weight, whatever they ask for, and none
 //! starves (start-time fair queueing: Goyal, Vin and Cheng 1996). Work that has held a thread for a slice gives way at
-//! its next check of a [`Stop`](super::Stop), if another queue is next, and waits on its own thread of the blocking
-//! pool. A thread whose work has not checked for [`OVERDUE`] does not count for interactive work, which then shares the
-//! processors with it.
+//! its next check of a [`Deadline`](super::Deadline), if another queue is next, and waits on its own thread of the
+//! blocking pool. A thread whose work has not checked for [`OVERDUE`] does not count for interactive work, which then
+//! shares the processors with it.
 
 use std::cell::RefCell;
 use std::collections::{BTreeMap, HashMap};
@@ -15,6 +15,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
 use parking_lot::Mutex;
+use stickslip_compute::simulation::Worker;
 use tokio::sync::oneshot;
 use tokio::time::timeout;
 
@@ -124,15 +125,9 @@ pub(super) fn give_way() -> Duration {
     SLOT.with_borrow_mut(|slot| slot.0.as_mut().map_or(Duration::ZERO, Held::give_way))
 }
 
-impl SolverSlot {
-    /// A slot of a thread that nobody else waits for.
-    #[must_use]
-    pub fn alone() -> SolverSlot {
-        SolverSlot(None)
-    }
-
+impl Worker for SolverSlot {
     /// Does the work in the slot, and gives it back.
-    pub fn work<T>(self, work: impl FnOnce() -> T) -> T {
+    fn work<T>(self, work: impl FnOnce() -> T) -> T {
         /// Gives the slot back, after a panic too.
         struct End;
         impl Drop for End {

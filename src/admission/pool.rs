@@ -15,15 +15,14 @@ use tokio::task::spawn_blocking;
 use tokio::time::timeout;
 use tracing::Span;
 
+use stickslip_compute::{LONGEST_WORK, Nanoseconds, simulation::Worker as _};
+
 use crate::metrics::{Counted, SECONDS, SHORT_SECONDS, metrics};
 
+use super::deadline::{Deadline, StopOnDrop};
 use super::fair_scheduler::{FairScheduler, INTERACTIVE, Kind, SolverSlot};
 use super::memory::{BYTES, Memory};
-use super::stop::{LONGEST_WORK, Stop, StopOnDrop};
 use super::{Client, Quota, QuotaExceeded, QuotaLimits, Quotas, Share};
-
-/// Estimated nanoseconds of work.
-pub type Nanoseconds = u64;
 
 /// Work estimated below this runs on the thread that serves the connection.
 pub const INLINE: Nanoseconds = 100_000;
@@ -190,14 +189,14 @@ impl Pool {
 
     /// A flag for work that must end within the deadline.
     #[must_use]
-    pub fn deadline(&self) -> (Stop, StopOnDrop) {
+    pub fn deadline(&self) -> (Deadline, StopOnDrop) {
         self.deadline_after(Duration::ZERO)
     }
 
     /// The same for a request that has had so much work done before.
     #[must_use]
-    pub fn deadline_after(&self, spent: Duration) -> (Stop, StopOnDrop) {
-        Stop::within(self.0.capacity.deadline, spent)
+    pub fn deadline_after(&self, spent: Duration) -> (Deadline, StopOnDrop) {
+        Deadline::within(self.0.capacity.deadline, spent)
     }
 
     /// Waits for `request` within the limits of time and of the queue.
@@ -271,7 +270,7 @@ impl Pool {
     }
 
     /// Runs `work`: in place if its estimated cost is below [`INLINE`], else on a thread of the blocking pool, which it
-    /// shares by the checks of its [`Stop`]. Work of cost zero is not counted.
+    /// shares by the checks of its [`Deadline`]. Work of cost zero is not counted.
     ///
     /// # Errors
     /// As [`Pool::wait`], or [`PoolError::Panicked`] if the work did.

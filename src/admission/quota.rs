@@ -13,6 +13,8 @@ use crate::metrics::OWN_NAME;
 
 /// Requests in progress of one client by default.
 pub const REQUESTS_PER_CLIENT: usize = super::REQUESTS / 2;
+/// Clients that may listen to events of contacts at a time.
+pub const STREAMS: usize = 1_000;
 /// Event streams of one client by default: fewer than there are for jobs or contacts.
 pub const STREAMS_PER_CLIENT: usize = 200;
 /// Contacts of one tenant by default.

@@ -8,44 +8,47 @@ use axum::extract::State;
 use axum::http::{HeaderMap, header};
 use axum::response::Response;
 use axum::routing::{MethodRouter, post};
-use serde_json::{Map, Value, json};
+use utoipa::openapi::example::ExampleBuilder;
+use utoipa::openapi::path::{HttpMethod, OperationBuilder, PathItem, PathsBuilder};
+use utoipa::openapi::request_body::RequestBodyBuilder;
+use utoipa::openapi::{ContentBuilder, Ref, Required, ResponseBuilder};
 use utoipa::{PartialSchema, ToSchema};
 use uuid::Uuid;
 
 use crate::admission::Reservation;
-use crate::computations::{Computation, FromStored, OnContact, Outcome, Shown, Task, Visitor, each};
-use crate::formats::Format;
 use crate::otlp;
+use stickslip_compute::computations::{Computation, FromStored, OnContact, Outcome, Route, Shown, Task, Visitor};
 
+use super::checked_query::CheckedQuery;
 use super::extract::{CheckedBody, HeldResources};
 use super::facts::{Facts, Routes};
-use super::parameters::{Kind as _, QueryParams, QueryReader, described, formats, words};
+use super::formats::{Format, Negotiated as _};
 use super::problem::Problem;
-use super::query::CheckedQuery;
+use super::query_parameters::{Kind as _, QueryParams, QueryReader, described, formats, words};
 use super::reply;
 use super::state::{App, TenantApp};
 
 impl Routes {
-    fn add<C: Computation>(&mut self, facts: Facts, handler: MethodRouter<Arc<App>>) {
+    fn add_computation<C: Computation>(&mut self, facts: Facts, handler: MethodRouter<Arc<App>>) {
         let Some(route) = C::ABOUT.route else { return };
         let mut schemas = Vec::new();
         add_schemas::<C::Request>(&mut schemas);
         add_schemas::<<C::Outcome as Outcome>::Reply>(&mut schemas);
         let formats = if C::ABOUT.formats.len() > 1 { C::ABOUT.formats } else { &[] };
-        self.facts.add("POST", route.path, Facts { formats, ..facts });
-        self.router = std::mem::take(&mut self.router).route(route.path, handler);
-        self.router.get_openapi_mut().components.get_or_insert_default().schemas.extend(schemas);
+        let described = PathItem::new(HttpMethod::Post, operation::<C>(route));
+        let paths = PathsBuilder::new().path(route.path, described).build();
+        self.add(Facts { formats, ..facts }, (schemas, paths, handler));
     }
 }
 
 /// Adds the route of every computation, and the schemas of its documents.
 impl Visitor for Routes {
     fn visit<C: Computation>(&mut self) {
-        self.add::<C>(Facts::READS, post(answer::<C>));
+        self.add_computation::<C>(Facts::READS, post(answer::<C>));
     }
 
     fn visit_stored<C: FromStored>(&mut self) {
-        self.add::<C>(Facts::READS_STORED, post(answer_stored::<C>));
+        self.add_computation::<C>(Facts::READS_STORED, post(answer_stored::<C>));
     }
 }
 
@@ -56,46 +59,38 @@ fn add_schemas<T: ToSchema>(schemas: &mut Schemas) {
     T::schemas(schemas);
 }
 
-/// Writes the operation of every computation.
-pub fn write(document: &mut Value) {
-    each(&mut Operations(document));
-}
-
-struct Operations<'a>(&'a mut Value);
-
-impl Visitor for Operations<'_> {
-    fn visit<C: Computation>(&mut self) {
-        let about = C::ABOUT;
-        let Some(route) = about.route else { return };
-        let reference = |name: &str| json!({"$ref": format!("#/components/schemas/{name}")});
-        let examples = C::examples().into_iter();
-        let examples: Map<_, _> = examples
-            .map(|example| (example.name.to_owned(), json!({"summary": example.summary, "value": example.value})))
-            .collect();
-        let request = json!({"schema": reference(&C::Request::name()), "examples": examples});
-        let reply = json!({"schema": reference(&<C::Outcome as Outcome>::Reply::name())});
-        let mut operation = json!({
-            "tags": [route.tag],
-            "summary": about.title,
-            "description": about.description,
-            "operationId": route.operation,
-            "requestBody": {"content": {"application/json": request}, "required": true},
-            "responses": {"200": {"description": about.reply, "content": {"application/json": reply}}},
-        });
-        if about.formats.len() > 1 {
-            let format = format!(
-                "`columns` (this document), `rows` (a JSON array of flat objects), `csv`, `ndjson`, `arrow` (an Arrow \
-                 IPC stream), or a picture as `svg` or `png`. {} If it is left out, `Accept` decides.",
-                about.shows
-            );
-            let mut parameters = vec![described("format", format, &formats(about.formats), None)];
-            parameters.extend(about.choice.map(|choice| {
-                described(choice.name, choice.description.to_owned(), &words(choice.words, |word| word), None)
-            }));
-            operation["parameters"] = json!(parameters);
+/// The operation of a computation.
+fn operation<C: Computation>(route: Route) -> OperationBuilder {
+    let about = C::ABOUT;
+    let json = |name: &str| ContentBuilder::new().schema(Some(Ref::from_schema_name(name)));
+    let examples = C::examples().into_iter().map(|example| {
+        let shown = ExampleBuilder::new().summary(example.summary).value(Some(example.value));
+        (example.name, shown)
+    });
+    let request = json(&C::Request::name()).examples_from_iter(examples).build();
+    let reply = json(&<C::Outcome as Outcome>::Reply::name()).build();
+    let mut operation = OperationBuilder::new()
+        .tag(route.tag)
+        .summary(Some(about.title))
+        .description(Some(about.description))
+        .operation_id(Some(route.operation))
+        .request_body(Some(
+            RequestBodyBuilder::new().content("application/json", request).required(Some(Required::True)).build(),
+        ))
+        .response("200", ResponseBuilder::new().description(about.reply).content("application/json", reply));
+    if about.formats.len() > 1 {
+        let format = format!(
+            "`columns` (this document), `rows` (a JSON array of flat objects), `csv`, `ndjson`, `arrow` (an Arrow IPC \
+             stream), or a picture as `svg` or `png`. {} If it is left out, `Accept` decides.",
+            about.shows
+        );
+        operation = operation.parameter(described("format", format, &formats(about.formats), None));
+        if let Some(choice) = about.choice {
+            let kind = words(choice.words, |word| word);
+            operation = operation.parameter(described(choice.name, choice.description.to_owned(), &kind, None));
         }
-        self.0["paths"][route.path]["post"] = operation;
     }
+    operation
 }
 
 /// How a client wants the reply of a computation, as its query says.
@@ -169,7 +164,7 @@ async fn run<C: Computation>(
     let cost = C::cost(&task).saturating_add(shown.format.cost());
     let work = move || {
         let outcome = otlp::part!("solve").in_scope(|| C::run(task, &stop))?;
-        Ok::<_, Problem>(shown.write(&outcome, &stop)??)
+        Ok::<_, Problem>(otlp::part!("write").in_scope(|| shown.write(&outcome, &stop))??)
     };
     Ok(held.on(written::<C>(app.pool.run(cost, work).await??, &shown)))
 }

@@ -14,20 +14,22 @@ use sha2::{Digest as _, Sha256};
 use tokio::time::{Instant, timeout};
 
 use crate::admission::{
-    INLINE, Nanoseconds, Pool, PoolError, Quota, RequestPermit, Reservation, Stage, Stop, StopOnDrop, UNCOUNTED,
+    Deadline, INLINE, Pool, PoolError, Quota, RequestPermit, Reservation, Stage, StopOnDrop, UNCOUNTED,
 };
-use crate::computations::files;
 use crate::otlp;
 use crate::server::RequestClient;
-use crate::server::limits::DISCARDED;
-use crate::simulation::{bytes, cost};
+use crate::server::connection_limits::DISCARDED;
 use crate::store::RequestKey;
+use stickslip_compute::Nanoseconds;
+use stickslip_compute::Stop as _;
+use stickslip_compute::computations::files;
+use stickslip_compute::simulation::{bytes, cost};
 use stickslip_wire::{self as wire, Document};
 
-use super::limits::{BODY_LIMIT, FILE_LIMIT};
-use super::params::IdempotencyKey;
+use super::path_and_headers::IdempotencyKey;
 use super::problem::{Code, Problem};
 use super::reply;
+use super::request_limits::{BODY_LIMIT, FILE_LIMIT};
 use super::state::App;
 
 /// A checked body, and the headers that make the request safe to repeat. If it is `OPTIONAL`, no body at all counts as
@@ -57,7 +59,7 @@ enum ReadBody<T: Document> {
 impl HeldResources {
     /// A flag for the work that is left of the request, which must end within the deadline together with its check.
     #[must_use]
-    pub fn deadline(&self, pool: &Pool) -> (Stop, StopOnDrop) {
+    pub fn deadline(&self, pool: &Pool) -> (Deadline, StopOnDrop) {
         pool.deadline_after(self.spent)
     }
 
@@ -125,7 +127,7 @@ impl<T: Document + 'static, const OPTIONAL: bool> FromRequest<Arc<App>> for Chec
                 app.pool.run(cost, work).await???
             }
         };
-        Ok(CheckedBody { body, key, held: HeldResources { memory, _permit: permit, spent: stop.before() } })
+        Ok(CheckedBody { body, key, held: HeldResources { memory, _permit: permit, spent: stop.flag().before() } })
     }
 }
 

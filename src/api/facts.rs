@@ -5,9 +5,10 @@ use std::sync::Arc;
 
 use utoipa_axum::router::{OpenApiRouter, UtoipaMethodRouter};
 
+use super::openapi;
 use super::state::App;
 use crate::access::Role;
-use crate::formats::Format;
+use stickslip_compute::formats::Format;
 
 /// What a request needs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -111,12 +112,19 @@ impl FactsOfRoutes {
 
 impl Routes {
     /// Adds operations with these facts.
-    pub fn with(mut self, facts: Facts, routes: UtoipaMethodRouter<Arc<App>>) -> Routes {
-        for (path, item) in &routes.1.paths {
-            let methods = [("GET", &item.get), ("POST", &item.post), ("PATCH", &item.patch), ("DELETE", &item.delete)];
-            let described = methods.into_iter().filter(|(_, operation)| operation.is_some());
-            described.for_each(|(method, _)| self.facts.add(method, path, facts));
+    pub fn add(&mut self, facts: Facts, mut routes: UtoipaMethodRouter<Arc<App>>) {
+        for (path, item) in &mut routes.1.paths {
+            for (method, operation) in openapi::operations(item) {
+                self.facts.add(method, path, facts);
+                openapi::complete(path, operation, &facts);
+            }
         }
-        Routes { router: self.router.routes(routes), ..self }
+        self.router = std::mem::take(&mut self.router).routes(routes);
+    }
+
+    /// With operations with these facts.
+    pub fn with(mut self, facts: Facts, routes: UtoipaMethodRouter<Arc<App>>) -> Routes {
+        self.add(facts, routes);
+        self
     }
 }

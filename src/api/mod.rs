@@ -1,17 +1,18 @@
 //! HTTP: `router` is the table of contents; each resource has a file; [`problem`] says which error to use when.
 
+mod accept;
+mod checked_query;
 mod computations;
 mod extract;
 mod facts;
 pub mod formats;
-pub mod limits;
 pub mod middleware;
 mod openapi;
-mod parameters;
-mod params;
+mod path_and_headers;
 pub mod problem;
-mod query;
+mod query_parameters;
 mod reply;
+pub mod request_limits;
 mod request_metrics;
 mod resources;
 mod routes;
@@ -32,10 +33,10 @@ use utoipa_axum::router::{OpenApiRouter, UtoipaMethodRouterExt as _};
 use utoipa_axum::routes;
 use utoipa_swagger_ui::{Config, SwaggerUi};
 
-use crate::computations::each;
-use crate::formats::Format;
 use crate::server::tls::Tls;
 use crate::server::{self, ConnectionLimiter, ConnectionLimits, Service};
+use stickslip_compute::computations::each;
+use stickslip_compute::formats::Format;
 
 use facts::{Facts, FactsOfRoutes, Routes};
 use middleware::{Observed, access_control, observe, security_headers};
@@ -116,10 +117,7 @@ fn with_middleware(routes: Router, access: Access, observed: Observed) -> Router
 /// The OpenAPI document, as `/openapi.json` serves it and `stickslip openapi` prints it.
 pub fn document() -> &'static str {
     static DOCUMENT: OnceLock<String> = OnceLock::new();
-    DOCUMENT.get_or_init(|| {
-        let Routes { router, facts } = described("");
-        openapi::complete(router.get_openapi(), &facts)
-    })
+    DOCUMENT.get_or_init(|| openapi::text(described("").router.into_openapi()))
 }
 
 fn facts() -> &'static FactsOfRoutes {

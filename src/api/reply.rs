@@ -7,10 +7,11 @@ use axum::http::{HeaderMap, HeaderValue, StatusCode, header};
 use axum::response::{IntoResponse, Response};
 
 use crate::admission::Reservation;
-use crate::formats;
+use crate::otlp;
 use crate::store::Reply;
+use stickslip_compute::formats;
 
-use super::params::list_members;
+use super::accept::list_members;
 use super::problem::Problem;
 
 /// Number of headers of a finished reply, so that the map need not grow step by step.
@@ -41,7 +42,9 @@ pub fn tagged(mut response: Response, tag: &str) -> Response {
 /// Whether the client already has this version, according to `If-None-Match`.
 pub fn is_current(headers: &HeaderMap, tag: &str) -> bool {
     let mut known = list_members(headers, "if-none-match").map(str::trim);
-    known.any(|known| known == "*" || known.strip_prefix("W/").unwrap_or(known) == tag)
+    // Weakly: the versions are the same, whatever the encodings.
+    let tag = tag.trim_start_matches("W/");
+    known.any(|known| known == "*" || known.trim_start_matches("W/") == tag)
 }
 
 /// 200 with a document as JSON and its version, or 304 if the client already has that.
@@ -92,5 +95,5 @@ pub fn holding(mut response: Response, mut held: Reservation) -> Response {
 /// # Errors
 /// [`Problem::internal`] if it cannot be written, which is a fault of the service.
 pub fn written(value: &impl serde::Serialize) -> Result<Vec<u8>, Problem> {
-    Ok(formats::json(formats::CAPACITY, value)?)
+    Ok(otlp::part!("write").in_scope(|| formats::json(formats::CAPACITY, value))?)
 }

@@ -7,7 +7,7 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use crate::api::Problem;
+use stickslip_compute::Refusal;
 
 /// The content of a file, or of standard input for `-`.
 pub fn read(file: &Path) -> Result<Vec<u8>, String> {
@@ -26,8 +26,8 @@ pub fn json(value: &impl serde::Serialize) -> String {
 }
 
 /// A problem as the message of an error: two lines on a terminal, else the document that the service would send.
-pub fn problem(problem: impl Into<Problem>) -> String {
-    fault(problem, !io::stderr().is_terminal())
+pub fn problem(refusal: impl Into<Refusal>) -> String {
+    fault(refusal, !io::stderr().is_terminal())
 }
 
 pub fn print(text: impl Display) -> Result<(), String> {
@@ -52,8 +52,8 @@ pub fn write(write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(),
 }
 
 /// A problem as the message of an error: the document that the service would send, or two lines for readers.
-pub fn fault(error: impl Into<Problem>, as_json: bool) -> String {
-    let document = error.into().document("command line", false);
+pub fn fault(refusal: impl Into<Refusal>, as_json: bool) -> String {
+    let document = refusal.into().document("command line");
     if as_json {
         return json(&document);
     }

@@ -8,7 +8,7 @@ use ipnet::IpNet;
 
 use crate::admission;
 use crate::admission::{BODY_SHARE, Capacity, QuotaLimits};
-use crate::api::limits::BODY_LIMIT;
+use crate::api::request_limits::BODY_LIMIT;
 use crate::server::connections::DEFAULT_CONNECTIONS;
 use crate::server::fd_limit::room_for;
 use crate::server::{ConnectionLimits, network};

@@ -2,6 +2,7 @@
 
 mod backup;
 mod check;
+mod command_error;
 mod compute;
 mod healthcheck;
 mod io;
@@ -9,19 +10,15 @@ mod key;
 mod limits;
 mod manual;
 mod progress;
-mod refusal;
 mod reload;
-mod report;
 mod serve;
 mod settings;
 mod summary;
 mod sweep;
 
 use std::ffi::OsString;
-use std::path::PathBuf;
 
 use clap::{Parser, Subcommand};
-use stickslip_report::figures;
 
 use crate::api;
 
@@ -32,7 +29,6 @@ use healthcheck::Healthcheck;
 use io::print;
 use key::Key;
 use manual::{Completions, Man};
-use report::Report;
 use serve::Serve;
 use settings::{Settings, SettingsError};
 use sweep::Sweep;
@@ -69,14 +65,6 @@ enum Command {
     Backup(Backup),
     /// Verify a store: replay the moves of every contact, and compare the states. Nothing is written.
     Check(Check),
-    /// Measure speed against error of each solver on this machine.
-    Report(Report),
-    /// Draw the figures of the paper, of protocols and of steady cycles, as SVG and CSV.
-    Figures {
-        /// The folder to write them to.
-        #[arg(long)]
-        out: PathBuf,
-    },
     /// Print the script with which a shell completes commands and flags.
     Completions(Completions),
     /// Write the manual pages of all commands.
@@ -134,12 +122,8 @@ impl Command {
             Command::Key(key) => key::key(key),
             Command::Backup(backup) => backup.run(),
             Command::Check(check) => check.run(),
-            Command::Report(report) => report.run(),
             Command::Completions(completions) => completions.run(),
             Command::Man(man) => man.run(),
-            Command::Figures { out } => {
-                figures::write(&out).map_err(|error| format!("cannot write figures to {}: {error}", out.display()))
-            }
         }
     }
 }

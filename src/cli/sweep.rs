@@ -5,15 +5,15 @@ use std::path::PathBuf;
 
 use clap::Args;
 use clap::builder::PossibleValuesParser;
-use stickslip_wire::{self as wire, SweepRequest};
+use stickslip_wire::{self as wire, PrepareAnew, SweepRequest};
 
+use super::command_error::CommandError;
 use super::io::{json, read, write};
 use super::progress;
-use super::refusal::Refusal;
-use crate::admission::{SolverSlot, Stop};
-use crate::api::Problem;
-use crate::formats::Format;
-use crate::simulation::{Sweep as Plan, SweepResult};
+use stickslip_compute::Flag;
+use stickslip_compute::Refusal;
+use stickslip_compute::formats::Format;
+use stickslip_compute::simulation::{Sweep as Plan, SweepResult};
 
 /// The sweep, and how to run it.
 #[derive(Args)]
@@ -34,22 +34,21 @@ pub struct Sweep {
 impl Sweep {
     /// Computes and prints the table, with progress on a terminal.
     pub fn run(&self) -> Result<(), String> {
-        self.printed().map_err(|refusal| refusal.message(self.json))
+        self.printed().map_err(|error| error.message(self.json))
     }
 
-    fn printed(&self) -> Result<(), Refusal> {
-        let plan = wire::read::<SweepRequest>(&read(&self.file)?).and_then(|sweep| Plan::plan(sweep, &Stop::default()));
-        let plan = plan.map_err(Problem::from)?;
+    fn printed(&self) -> Result<(), CommandError> {
+        let plan = wire::read::<SweepRequest>(&read(&self.file)?).and_then(|sweep| Plan::plan(sweep, &PrepareAnew));
+        let plan = plan.map_err(Refusal::from)?;
         let cores = std::thread::available_parallelism().map_or(1, usize::from);
         let threads = self.threads.unwrap_or(cores).max(1);
-        let (points, outputs) = (plan.points(), plan.numbers(1));
+        let points = plan.points();
         let (mut result, mut done) = (SweepResult::default(), 0);
         let bar = progress::bar(points as u64, "points");
         while done < points {
-            let slots = (0..threads).map(|_| SolverSlot::alone()).collect();
-            let slice = plan.slice(done..points, slots, &Stop::default(), None);
-            result.append(slice.map_err(Problem::from)?);
-            done = result.values.len() / outputs;
+            let slice = plan.slice(done..points, vec![(); threads], &Flag::default(), None);
+            result.append(slice.map_err(Refusal::from)?);
+            done = plan.points_of(&result);
             bar.set_position(done as u64);
         }
         bar.finish_and_clear();

@@ -5,8 +5,8 @@ use std::time::Duration;
 use uuid::Uuid;
 
 use crate::admission::PoolError;
-use crate::simulation::SweepError;
 use crate::store::StoreError;
+use stickslip_compute::simulation::Failure;
 
 /// Why a sweep or a job has no result.
 #[derive(Debug, thiserror::Error)]
@@ -56,7 +56,7 @@ pub enum JobError {
     },
     /// It was stopped, or took too long.
     #[error(transparent)]
-    Sweep(#[from] SweepError),
+    Failure(#[from] Failure),
     /// No memory or no thread became free.
     #[error(transparent)]
     Pool(#[from] PoolError),

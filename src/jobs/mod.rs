@@ -8,6 +8,7 @@ mod error;
 mod events;
 mod work;
 
+use std::ops::Range;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -16,12 +17,13 @@ use prometheus::{IntCounter, IntGauge};
 use tokio::sync::Notify;
 use uuid::Uuid;
 
-use crate::admission::{INLINE, Kind, Nanoseconds, Pool, Stop};
+use crate::admission::{Deadline, INLINE, Kind, Pool};
 use crate::metrics::metrics;
-use crate::simulation::cost::MARGIN;
-use crate::simulation::{Sweep, SweepResult};
-use crate::store::jobs::JOB_LIFETIME;
+use crate::store::job_store::JOB_LIFETIME;
 use crate::store::{IdempotentRequest, Job, JobLimits, Listeners, Reply, RequestKey, Store, StoreError, Tenant};
+use stickslip_compute::Nanoseconds;
+use stickslip_compute::simulation::cost::MARGIN;
+use stickslip_compute::simulation::{Sweep, SweepResult};
 use stickslip_wire::sweep::CheckedSweep;
 use stickslip_wire::{self as wire, JobList, JobProgress, JobReply, JobState, SweepRequest};
 
@@ -105,12 +107,33 @@ impl Jobs {
     /// Computes a sweep at once.
     ///
     /// # Errors
-    /// [`JobError::Sweep`] if it was stopped or took too long.
-    pub async fn at_once(&self, sweep: &Arc<Sweep>, stop: &Stop) -> Result<SweepResult, JobError> {
+    /// [`JobError::Failure`] if it was stopped or took too long.
+    pub async fn at_once(&self, sweep: &Arc<Sweep>, stop: &Deadline) -> Result<SweepResult, JobError> {
         let kind = Kind::of(sweep.cost());
-        let rows = sweep.compute(0..sweep.points(), (&self.common.pool, kind), stop, None).await?;
+        let rows = self.compute(sweep, 0..sweep.points(), (kind, stop), None).await?;
         self.common.meters.points.inc_by(sweep.points() as u64);
         Ok(rows)
+    }
+
+    /// Computes points slice by slice, on the threads that are free for each. A point may take as long as `allowed`, or
+    /// as `stop` permits.
+    async fn compute(
+        &self,
+        sweep: &Arc<Sweep>,
+        points: Range<usize>,
+        (kind, stop): (Kind, &Deadline),
+        allowed: Option<Duration>,
+    ) -> Result<SweepResult, JobError> {
+        let (mut result, mut next) = (SweepResult::default(), points.start);
+        while next < points.end {
+            let (sweep, stop, rest) = (Arc::clone(sweep), stop.clone(), next..points.end);
+            let work =
+                move |slots| sweep.slice(rest, slots, &stop, allowed).map(|slice| (sweep.points_of(&slice), slice));
+            let (done, slice) = self.common.pool.share(kind, work).await??;
+            next += done;
+            result.append(slice);
+        }
+        Ok(result)
     }
 
     /// The metrics of this process, for all tenants.

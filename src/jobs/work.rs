@@ -6,12 +6,12 @@ use std::time::Duration;
 
 use uuid::Uuid;
 
-use crate::admission::{Client, INLINE, Kind, PoolError, Stop};
+use crate::admission::{Client, Deadline, INLINE, Kind, PoolError};
 use crate::metrics::Counted;
-use crate::simulation::bytes::NUMBER;
-use crate::simulation::{Sweep, SweepError, SweepResult};
 use crate::store::{ChunkResult, Claim, Job, StoreError, Tenant};
-use stickslip_wire::{self as wire, SweepRequest};
+use stickslip_compute::simulation::bytes::NUMBER;
+use stickslip_compute::simulation::{Sweep, SweepResult};
+use stickslip_wire::{self as wire, PrepareAnew, SweepRequest};
 
 use super::{JobError, Jobs, store_error};
 
@@ -67,12 +67,12 @@ impl Jobs {
         drop(running);
         let error = match done {
             // The job has been deleted, or the claim has ended.
-            Ok(()) | Err(JobError::NotFound(_) | JobError::Sweep(SweepError::Failure(_))) => return,
+            Ok(()) | Err(JobError::NotFound(_) | JobError::Failure(_)) => return,
             Err(error) => error,
         };
         let permanent = match &error {
             JobError::Broken(why) | JobError::Store(StoreError::Failed(why)) => Some(why.clone()),
-            JobError::Sweep(SweepError::Pool(PoolError::Panicked)) | JobError::Pool(PoolError::Panicked) => {
+            JobError::Pool(PoolError::Panicked) => {
                 Some("the solver has failed; the operator finds the cause in the log".to_owned())
             }
             _ => None,
@@ -122,9 +122,8 @@ impl Jobs {
         let read = move || wire::read::<SweepRequest>(request.as_bytes());
         let checked = self.common.pool.run(INLINE, read).await?;
         let plan = |checked| async {
-            let stop = Stop::default();
             let cost = Sweep::planning_cost(&checked);
-            let plan = self.common.pool.run(cost, move || Sweep::plan(checked, &stop));
+            let plan = self.common.pool.run(cost, move || Sweep::plan(checked, &PrepareAnew));
             Client::Tenant(job.tenant.clone()).serve(plan).await
         };
         let sweep = match checked {
@@ -144,11 +143,11 @@ impl Jobs {
         points: Range<usize>,
         (tenant, lease): (Tenant, Duration),
     ) -> Result<Option<SweepResult>, JobError> {
-        let (stop, guard) = Stop::unbounded();
+        let (stop, guard) = Deadline::unbounded();
         let mut guard = Some(guard);
         let pool = &self.common.pool;
         let allowed = Some(pool.capacity().deadline);
-        let compute = sweep.compute(points, (pool, Kind::Job), &stop, allowed);
+        let compute = self.compute(sweep, points, (Kind::Job, &stop), allowed);
         let mut rows = std::pin::pin!(Client::Tenant(tenant).serve(compute));
         let mut changed = self.common.store.changes().subscribe(claim.job);
         let mut ending = self.common.listeners.ending();

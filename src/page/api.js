@@ -1,6 +1,6 @@
 // Calls of the public API: the key, problem documents, and the stream of events.
 
-import { pause } from "./dom.js";
+import { answerOf, pause } from "./dom.js";
 
 const KEY = "stickslip-key";
 let asking = null;
@@ -26,36 +26,35 @@ export const hasKey = () => sessionStorage.getItem(KEY) !== null;
 
 /** Asks for a key; concurrent callers get the same answer. */
 function askForKey() {
-  asking ??= new Promise((resolve) => {
-    const dialog = document.getElementById("key");
-    dialog.addEventListener(
-      "close",
-      () => {
-        const given = dialog.returnValue === "use" ? dialog.querySelector("input").value.trim() : "";
-        if (given) sessionStorage.setItem(KEY, given);
-        dialog.querySelector("form").reset();
-        asking = null;
-        resolve(given !== "");
-      },
-      { once: true },
-    );
-    dialog.returnValue = "";
-    dialog.showModal();
+  asking ??= answerOf("key").then((answer) => {
+    const form = /** @type {HTMLFormElement} */ (document.querySelector("#key form"));
+    const given = answer === "use" ? form.key.value.trim() : "";
+    if (given) sessionStorage.setItem(KEY, given);
+    form.reset();
+    asking = null;
+    return given !== "";
   });
   return asking;
 }
 
+/** The reply to one request, unless it is a refusal.
+ * @param {string} method
+ * @param {string} path
+ * @param {{ body?: any, headers?: Record<string, string>, signal?: AbortSignal }} [options] */
 async function send(method, path, { body, headers = {}, signal } = {}) {
   for (;;) {
     const key = sessionStorage.getItem(KEY);
+    /** @type {Record<string, string>} */
     const all = { ...headers };
     if (key) all.authorization = `Bearer ${key}`;
     const isFile = body instanceof Blob;
     if (body !== undefined) all["content-type"] = isFile ? "application/octet-stream" : "application/json";
     const text = body === undefined || isFile ? body : JSON.stringify(body);
-    const response = await fetch(path.slice(1), { method, headers: all, body: text, signal, cache: "no-store" }).catch((error) => {
-      throw signal?.aborted ? error : new Away();
-    });
+    const response = await fetch(path.slice(1), { method, headers: all, body: text, signal, cache: "no-store" }).catch(
+      (error) => {
+        throw signal?.aborted ? error : new Away();
+      },
+    );
     if (response.ok) return response;
     // A proxy in front of the service answers for it.
     if (response.status === 502 || response.status === 504) throw new Away();
@@ -84,10 +83,11 @@ function serviceReturns() {
 }
 
 /** Whether a call changes something, so that it must not be repeated unasked. */
-const changes = (method, path) => method !== "GET" && (method !== "POST" || /^\/(contacts|sweep)(?!.*\/subsurface$)/.test(path));
+const changes = (method, path) =>
+  method !== "GET" && (method !== "POST" || /^\/(contacts|sweep)(?!.*\/subsurface$)/.test(path));
 
-/** One call; the JSON of its reply. A call that is refused because of overload is tried again a few times; one that changes
- *  nothing waits for a service that is away. */
+/** One call; the JSON of its reply. A call that is refused because of overload is tried again a few times; one that
+ *  changes nothing waits for a service that is away. */
 export async function call(method, path, body, signal) {
   for (let attempt = 0; ; attempt += 1) {
     try {
@@ -106,17 +106,6 @@ export async function call(method, path, body, signal) {
       await pause(1000 * (attempt + 1), signal);
     }
   }
-}
-
-let paths = null;
-
-/** Whether the service has an endpoint. */
-export async function offered(path) {
-  paths ??= call("GET", "/openapi.json").then(
-    (document) => document.paths,
-    () => ({}),
-  );
-  return path in (await paths);
 }
 
 /** All pages of a list, or as many items as `most`. */

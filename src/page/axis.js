@@ -3,6 +3,13 @@ import { formatNumber, raised, unitScale } from "./units.js";
 
 /** One axis of a plot, linear or logarithmic. */
 export class Axis {
+  /** The range, in SI units, and the pixels of its ends. */
+  from = 0;
+  to = 1;
+  start = 0;
+  end = 1;
+  scale = { factor: 1, unit: "" };
+
   constructor({ label, unit = "", log = false }) {
     this.label = label;
     this.unit = unit;
@@ -89,3 +96,7 @@ export function dataRange(values, log) {
   const margin = (high - low) * 0.06 || Math.abs(high) * 0.5 || 1;
   return [low - margin, high + margin];
 }
+
+/** Which of some numbers is nearest to another. */
+export const nearestIndex = (values, wanted) =>
+  values.reduce((best, value, index) => (Math.abs(value - wanted) < Math.abs(values[best] - wanted) ? index : best), 0);

@@ -1,8 +1,10 @@
-// The stress below the surface of a contact in its present state: a section along the motion, and its largest value in words.
+// The stress below the surface of a contact in its present state: a section along the motion, and its largest value in
+// words.
 import { call } from "./api.js";
-import { debounce, el } from "./dom.js";
+import { el } from "./dom.js";
 import { Choice, Fields, NumberField } from "./form_fields.js";
 import { gridPoints, sectionPlot } from "./section_plot.js";
+import { latestAnswer } from "./study.js";
 import { formatQuantity } from "./units.js";
 
 /** How long contact and fields rest before the service is asked, ms. */
@@ -10,7 +12,11 @@ const REST = 120;
 /** Half the width and the depth of the section, in contact radii, and its points. */
 const [HALF, DEPTH] = [2, 1.5];
 const [COLUMNS, ROWS] = [61, 31];
-const NAMES = { von_mises: "von Mises stress", max_shear: "shear stress on any plane", hydrostatic: "hydrostatic stress" };
+const NAMES = {
+  von_mises: "von Mises stress",
+  max_shear: "shear stress on any plane",
+  hydrostatic: "hydrostatic stress",
+};
 
 /** The bodies of a material, where they are known. */
 export const bodiesOf = ({ bodies, effective }) => bodies ?? effective.bodies;
@@ -28,7 +34,9 @@ function place([x, z]) {
 }
 
 function sentence(field, { infinite, low, high }) {
-  const edge = infinite ? `Infinite ${place(infinite)}, where the profile has an edge or a tip. At the other points: ` : "";
+  const edge = infinite
+    ? `Infinite ${place(infinite)}, where the profile has an edge or a tip. At the other points: `
+    : "";
   const at = (name, point) => `largest ${name} ${formatQuantity(Math.abs(point[2]), "Pa", 3)}, ${place(point)}`;
   const parts = field === "hydrostatic" ? [] : [at(NAMES[field], high)];
   if (field === "hydrostatic" && low[2] < 0) parts.push(at("mean compression", low));
@@ -55,11 +63,11 @@ export function belowSurfaceCard(model) {
   const chart = sectionPlot({
     name: "below",
     title: "Section along the motion",
-    note: "The plane y = 0, x along the motion of the first body, at 61 × 31 points. Dashed: the edge of the contact. The ring marks the largest value.",
+    note:
+      "The plane y = 0, x along the motion of the first body, at 61 × 31 points. Dashed: the edge of the contact. " +
+      "The ring marks the largest value.",
   });
   chart.element.hidden = true;
-  let wanted = null;
-
   const path = `/contacts/${model.id}/subsurface`;
   const request = () => {
     const a = model.state.contact_radius;
@@ -70,33 +78,25 @@ export function belowSurfaceCard(model) {
     text.textContent = words;
     chart.element.hidden = true;
   };
-  const ask = debounce(async (question, asked) => {
-    // A reply counts only for the question that was asked last.
-    const isStale = () => question !== wanted || model.signal.aborted || model.isGone;
-    if (isStale()) return;
-    try {
-      const [name] = asked.fields;
-      const reply = await call("POST", path, asked, model.signal);
-      const points = gridPoints(reply, reply[name], ROWS);
-      if (isStale()) return;
+  const follow = latestAnswer(model, REST, {
+    ask: (asked) => call("POST", path, asked, model.signal),
+    show: (reply, { fields: [name], plane }) => {
       form.clear();
-      chart.element.hidden = false;
-      const found = chart.show(points, { field: name, name: NAMES[name], columns: COLUMNS, radius: asked.plane.x[1] / HALF });
-      text.textContent = sentence(name, found);
-    } catch (error) {
-      if (isStale()) return;
+      const shown = { field: name, quantity: NAMES[name], columns: COLUMNS, radius: plane.x[1] / HALF };
+      text.textContent = sentence(name, chart.drawPoints(gridPoints(reply, reply[name], ROWS), shown));
+    },
+    fail: (error) => {
       say("");
       form.place(error);
-    }
-  }, REST);
+    },
+  });
   const show = (state) => {
     const asked = request();
-    const question = `${model.history.at(-1)?.sequence ?? model.first.sequence} ${JSON.stringify(asked)}`;
-    if (question === wanted) return;
-    wanted = question;
-    if (state.contact_radius > 0) return ask(question, asked);
-    form.clear();
-    say("The bodies do not press on each other: there is no stress below the surface.");
+    follow(`${model.history.at(-1)?.sequence ?? model.first.sequence} ${JSON.stringify(asked)}`, () => {
+      if (state.contact_radius > 0) return asked;
+      form.clear();
+      say("The bodies do not press on each other: there is no stress below the surface.");
+    });
   };
   for (const { control } of fields) {
     for (const event of ["input", "change"]) control.addEventListener(event, () => show(model.state));
@@ -110,5 +110,5 @@ export function belowSurfaceCard(model) {
     text,
     chart.element,
   );
-  return { element, chart, show, calls: () => [{ method: "POST", path, body: request() }] };
+  return { element, charts: [chart], show, calls: () => [{ method: "POST", path, body: request() }] };
 }

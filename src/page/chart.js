@@ -8,16 +8,39 @@ import { el, svg, withSubscripts } from "./dom.js";
 import { formatQuantity } from "./units.js";
 
 const PAD = { left: 62, right: 14, top: 12, bottom: 46 };
-let count = 0;
+
+/** @typedef {{ label: string, unit?: string, log?: boolean }} AxisOptions */
 
 /** A plot. `draw` sets its data; `onhover` is called with what is under the pointer. */
 export class Chart {
-  /** `mode`: whether the pointer selects all series at its `x`, the `nearest` point, or a `radius` that `read` finds; `aspect`:
-   *  height over width of its field. */
+  /** What else than its values a point has: lines of text. @type {(point: any, series: any) => string[]} */
+  more = () => [];
+  /** What is under a place of a plot of this `mode`. @type {(x: number, y: number) => any} */
+  read = null;
+  /** Called with what is under the pointer, and when another part or other series are to be seen. */
+  /** @type {(hit: any) => void} */
+  onhover = () => {};
+  onlook = () => {};
+  /** Reads again what is under a pointer that rests. */
+  refresh = () => {};
+
+  /** `mode`: whether the pointer selects all series at its `x`, the `nearest` point, or a `radius` that `read` finds;
+   *  `aspect`: height over width of its field.
+   * @param {{ name: string, title: string, x: AxisOptions, y: AxisOptions, mode?: "x" | "nearest" | "radius",
+   *  square?: boolean, aspect?: number, height?: number, note?: string }} about */
   constructor({ name, title, x, y, mode = "x", square = false, aspect, height = 300, note }) {
-    Object.assign(this, { name, title, mode, square, aspect, height, x: new Axis(x), y: new Axis(y) });
-    this.clip = `clip-${(count += 1)}`;
+    this.name = name;
+    this.title = title;
+    this.x = new Axis(x);
+    this.y = new Axis(y);
+    this.mode = mode;
+    this.square = square;
+    this.aspect = aspect;
+    this.height = height;
+    this.clip = `clip-${name}`;
+    /** @type {Record<string, any>} */
     this.data = { series: [] };
+    /** @type {{ x: number[], y: number[] } | null} */
     this.view = null;
     this.hidden = new Set();
     this.svg = svg("svg", {
@@ -47,14 +70,16 @@ export class Chart {
   look(view, isWhole = false) {
     this.view = view;
     this.isWhole = isWhole;
-    this.onlook?.();
+    this.onlook();
     this.redraw();
   }
 
-  /** Shows data: `series`, and optionally the `recent` points that the axes fit where older ones lie far from them, `bands` along x, `levels` of y, `marks`, a `range` or what it covers at `least`, a
-   *  `layer` below, a `table`, and a text for when it is `empty`. */
+  /** Shows data: `series`, and optionally the `recent` points that the axes fit where older ones lie far from them,
+   *  `bands` along x, `levels` of y, `marks`, a `range` or what it covers at `least`, a `layer` below, a `table`, and a
+   *  text for when it is `empty`. */
   draw(data) {
     this.data = data;
+    this.element.hidden = false;
     this.redraw();
   }
 
@@ -103,7 +128,7 @@ export class Chart {
     this.x.fit(ranges.x, box.left, box.right);
     this.y.fit(ranges.y, box.bottom, box.top);
     this.svg.setAttribute("viewBox", `0 0 ${width} ${height}`);
-    this.svg.setAttribute("height", height);
+    this.svg.setAttribute("height", String(height));
     const inside = svg("g", { "clip-path": `url(#${this.clip})` });
     const size = { x: box.left, y: box.top, width: box.right - box.left, height: box.bottom - box.top };
     this.cursor = svg("g", { class: "cursor" });

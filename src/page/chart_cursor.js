@@ -18,7 +18,7 @@ export function drawLegend(chart) {
           onclick: ({ currentTarget }) => {
             if (!chart.hidden.delete(name)) chart.hidden.add(name);
             currentTarget.setAttribute("aria-pressed", String(!chart.hidden.has(name)));
-            chart.onlook?.();
+            chart.onlook();
             chart.redraw();
           },
         },
@@ -67,7 +67,9 @@ function labelPlace(chart, x, y, wide, high) {
   const { left, right, top, bottom } = chart.box;
   const across = (place) => Math.min(Math.max(place, 2), Math.max(2, right - wide - 2));
   const down = (place) => Math.min(Math.max(place, 2), Math.max(2, bottom - high - 2));
-  const beside = [x + 14, x - 14 - wide].flatMap((one) => [y - high / 2, y - high - 10, y + 10].map((two) => [one, two]));
+  const beside = [x + 14, x - 14 - wide].flatMap((one) =>
+    [y - high / 2, y - high - 10, y + 10].map((two) => [one, two]),
+  );
   const corners = [left + 6, right - wide - 6].flatMap((one) => [top + 6, bottom - high - 6].map((two) => [one, two]));
   const places = [...beside, ...corners].map(([one, two]) => [across(one), down(two)]);
   const hides = ([one, two]) => {
@@ -86,7 +88,8 @@ export function inkedPlaces(chart) {
     let last = null;
     for (const [px, py] of points) {
       const place = py === null || (chart.y.log && py <= 0) ? null : [chart.x.at(px), chart.y.at(py)];
-      const steps = line && last && place ? Math.min(Math.hypot(place[0] - last[0], place[1] - last[1]) / apart, 200) : 0;
+      const steps =
+        line && last && place ? Math.min(Math.hypot(place[0] - last[0], place[1] - last[1]) / apart, 200) : 0;
       for (let step = 1; step < steps; step += 1) {
         const part = step / steps;
         places.push([last[0] + part * (place[0] - last[0]), last[1] + part * (place[1] - last[1])]);

@@ -1,4 +1,5 @@
 // Pointer and keyboard of a plot: read values, drag a box to zoom, step from point to point.
+import { nearestIndex } from "./axis.js";
 import { svg } from "./dom.js";
 
 /** Adds the handlers of pointer and keyboard to a chart. */
@@ -12,7 +13,7 @@ export function handleInput(chart) {
   };
   const select = (hit) => {
     chart.showCursor(hit);
-    chart.onhover?.(hit);
+    chart.onhover(hit);
   };
   root.addEventListener("pointermove", (event) => {
     if (!chart.box) return;
@@ -75,7 +76,9 @@ const sorted = (one, two) => (one < two ? [one, two] : [two, one]);
 function drawBox(chart, start, now) {
   const [left, right] = sorted(start[0], now[0]);
   const [top, bottom] = sorted(start[1], now[1]);
-  chart.cursor.replaceChildren(svg("rect", { class: "choice", x: left, y: top, width: right - left, height: bottom - top }));
+  chart.cursor.replaceChildren(
+    svg("rect", { class: "choice", x: left, y: top, width: right - left, height: bottom - top }),
+  );
 }
 
 function zoomToBox(chart, start, now) {
@@ -112,16 +115,16 @@ function at(chart, series, index) {
   const lines = [
     `${chart.x.label} ${chart.formatted(chart.x, point[0])}`,
     `${chart.y.label} ${chart.formatted(chart.y, point[1])}`,
-    ...(chart.more?.(point, series) ?? []),
+    ...chart.more(point, series),
   ];
   return { x: point[0], y: point[1], dots: [point], lines, datum: point };
 }
 
 function hitsAtX(chart, series, x) {
   const near = series.map(({ name, points }) => {
-    const index = points.reduce(
-      (best, point, index) => (Math.abs(point[0] - x) < Math.abs(points[best][0] - x) ? index : best),
-      0,
+    const index = nearestIndex(
+      points.map((point) => point[0]),
+      x,
     );
     return { name, index, point: points[index] };
   });

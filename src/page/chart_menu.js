@@ -1,5 +1,5 @@
 // The menu of a plot: zoom, and files to save.
-import { el, notice, save, svg, svgWithSubscripts, withSubscripts } from "./dom.js";
+import { el, mapped, notice, save, svg, svgWithSubscripts, withSubscripts } from "./dom.js";
 import { menuEntry, popupMenu } from "./popup_menu.js";
 
 // The properties that keep the look of a plot without the style sheet of the page.
@@ -78,24 +78,29 @@ function savedSize(chart, more) {
 /** The title and a sample of each visible series with its name, above the drawing, and their height. */
 function savedHead(chart) {
   const [width] = savedSize(chart, 0);
-  const element = svg("g", {}, svg("text", { class: "saved-title", x: 12 }, ...svgWithSubscripts(chart.title)));
+  const title = svg("text", { class: "saved-title", x: 12 }, ...svgWithSubscripts(chart.title));
+  const element = svg("g", {}, title);
   chart.svg.append(element);
   const named = chart.visible().filter((series) => series.legend !== false);
   const places = [];
   let [x, row] = [12, 0];
-  for (const { name, kind, line = true } of named.length > 1 ? named : []) {
-    const sample = line ? svg("path", { class: `line ${kind}`, d: "M0,-4h18" }) : svg("circle", { class: `dot ${kind}`, cx: 9, cy: -4, r: 3 });
-    const entry = svg("g", {}, sample, svg("text", { x: 24 }, ...svgWithSubscripts(name)));
+  for (const { name, kind, line: isLine = true } of named.length > 1 ? named : []) {
+    const sample = isLine
+      ? svg("path", { class: `line ${kind}`, d: "M0,-4h18" })
+      : svg("circle", { class: `dot ${kind}`, cx: 9, cy: -4, r: 3 });
+    const text = svg("text", { x: 24 }, ...svgWithSubscripts(name));
+    const entry = svg("g", {}, sample, text);
     element.append(entry);
-    const wide = 36 + entry.lastChild.getComputedTextLength();
+    const wide = 36 + text.getComputedTextLength();
     if (x > 12 && x + wide > width) [x, row] = [12, row + 1];
-    places.push([entry, x, row]);
+    places.push({ entry, left: x, line: row });
     x += wide;
   }
   const rows = places.length ? row + 1 : 0;
   const height = 32 + 18 * rows;
-  element.firstChild.setAttribute("y", 22 - height);
-  for (const [entry, x, row] of places) entry.setAttribute("transform", `translate(${x} ${42 + 18 * row - height})`);
+  title.setAttribute("y", String(22 - height));
+  for (const { entry, left, line } of places)
+    entry.setAttribute("transform", `translate(${left} ${42 + 18 * line - height})`);
   return { element, height };
 }
 
@@ -125,12 +130,16 @@ async function savePng(chart) {
   }
 }
 
+/** Columns of a table: of each item the member that a column names. */
+export const columnsOf = (items, columns) => mapped(columns, (key) => items.map((item) => item[key]));
+
 /** The data of a plot: the table that it was given, or the points of its series one below the other. */
 export function csvText(chart) {
-  const { columns, rows } = chart.data.table?.() ?? {
-    columns: ["series", `${chart.x.label} ${chart.x.unit}`.trim(), `${chart.y.label} ${chart.y.unit}`.trim()],
-    rows: chart.data.series.flatMap(({ name, points }) => points.map(([x, y]) => [name, x, y])),
-  };
+  const [x, y] = [chart.x, chart.y].map(({ label, unit }) => `${label} ${unit}`.trim());
+  const points = chart.data.series.flatMap((one) => one.points.map((point) => [one.name, ...point]));
+  const table = chart.data.table?.() ?? columnsOf(points, { series: 0, [x]: 1, [y]: 2 });
+  const columns = Object.values(table);
+  const rows = columns[0].map((_, index) => columns.map((column) => column[index]));
   const cell = (value) => (/[",\n]/.test(value) ? `"${String(value).replaceAll('"', '""')}"` : (value ?? ""));
-  return `${[columns, ...rows].map((row) => row.map(cell).join(",")).join("\n")}\n`;
+  return `${[Object.keys(table), ...rows].map((row) => row.map(cell).join(",")).join("\n")}\n`;
 }

@@ -88,7 +88,9 @@ export function drawLevel(chart, { y, label, kind }) {
 
 /** A series: its line, interrupted where values are missing, and its dots. */
 export function drawSeries(chart, { name, points, kind, dots, label, size = 3, line = true }) {
-  const places = points.map(([x, y]) => (y === null || (chart.y.log && y <= 0) ? null : [chart.x.at(x), chart.y.at(y)]));
+  const places = points.map(([x, y]) =>
+    y === null || (chart.y.log && y <= 0) ? null : [chart.x.at(x), chart.y.at(y)],
+  );
   const drawn = [];
   if (line) {
     let pen = "M";
@@ -108,7 +110,12 @@ export function drawSeries(chart, { name, points, kind, dots, label, size = 3, l
     drawn.push(
       svg(
         "text",
-        { class: "small over series-name", x: last[0] + (late ? -8 : 8), y: last[1] + (line ? -5 : 4), "text-anchor": late ? "end" : "start" },
+        {
+          class: "small over series-name",
+          x: last[0] + (late ? -8 : 8),
+          y: last[1] + (line ? -5 : 4),
+          "text-anchor": late ? "end" : "start",
+        },
         name,
       ),
     );
@@ -122,10 +129,13 @@ export function spreadNames(chart) {
   const names = [...chart.svg.querySelectorAll(".series-name")].map((text) => ({ text, box: text.getBBox() }));
   for (const { text, box } of names.sort((one, two) => one.box.y - two.box.y)) {
     const collides = (y) =>
-      placed.some((other) => box.x < other.x + other.width && other.x < box.x + box.width && Math.abs(y - other.y) < box.height);
+      placed.some(
+        (other) => box.x < other.x + other.width && other.x < box.x + box.width && Math.abs(y - other.y) < box.height,
+      );
     const offsets = Array.from({ length: 40 }, (_, index) => Math.ceil(index / 2) * (index % 2 ? 7 : -7));
     const inside = (y) => y >= chart.box.top && y + box.height <= chart.box.bottom;
-    const offset = offsets.find((offset) => !collides(box.y + offset) && (offset === 0 || inside(box.y + offset))) ?? 0;
+    const isFree = (by) => !collides(box.y + by) && (by === 0 || inside(box.y + by));
+    const offset = offsets.find(isFree) ?? 0;
     text.setAttribute("dy", offset);
     placed.push({ x: box.x, y: box.y + offset, width: box.width });
   }

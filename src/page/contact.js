@@ -1,14 +1,15 @@
 // The view of one contact: loads it, follows its events, and redraws.
 import { call, follow, pages } from "./api.js";
 import { FIELDS, contactView } from "./contact_view.js";
-import { curvedPath, stepCounts, straightPath } from "./curved_path.js";
 import { latestOnly, notice, debounce } from "./dom.js";
 import { WITHOUT_STRESS } from "./form_options.js";
 
-const MAX_HISTORY = 1000;
+/** Moves that are drawn of a long history, and moves and points of the loop that the service draws between their
+ *  states. */
+const [MAX_HISTORY, MAX_LOOP, MAX_POINTS, MAX_POINTS_OF_A_MOVE] = [1000, 1000, 8000, 32];
 
-/** Shows a tab of a contact in `main`, until `signal`; `ready` is called when there is something to show. What it returns opens
- *  another tab, and says which query the address of the view has. */
+/** Shows a tab of a contact in `main`, until `signal`; `ready` is called when there is something to show. What it
+ *  returns opens another tab, and says which query the address of the view has. */
 export async function showContact(main, { id, tab }, signal, ready) {
   const [contact, definition] = await Promise.all([
     call("GET", `/contacts/${id}`),
@@ -29,7 +30,7 @@ export async function showContact(main, { id, tab }, signal, ready) {
     elastic_energy: 0,
     memory_depth: 0,
   };
-  // A long history is cut at its beginning, and its path is drawn straight.
+  // A long history is cut at its beginning.
   const model = {
     id,
     definition,
@@ -71,22 +72,24 @@ export async function showContact(main, { id, tab }, signal, ready) {
     model.measured = (await call("GET", `/contacts/${id}/friction`, undefined, signal)).friction ?? null;
     redraw();
   });
+  // The force is curved during a move. What takes the service too long stays straight.
   const refinePath = latestOnly(async () => {
-    const past = [...history];
-    const counts = stepCounts(model.first, past, span(model));
-    if (!model.isComplete || counts.every((count) => count === 1)) return;
-    const path = await curvedPath(definition, model.first, past, counts, signal);
-    // Moves that arrived meanwhile are appended.
-    model.path = [...path, ...straightPath(model.first, history.slice(past.length)).slice(1)];
+    if (!history.length) return;
+    const points = Math.max(1, Math.min(MAX_POINTS_OF_A_MOVE, Math.floor(MAX_POINTS / history.length)));
+    const query = `last=${MAX_LOOP}&points_per_move=${points}`;
+    const page = await call("GET", `/contacts/${id}/loop?${query}`, undefined, signal);
+    const curved = page.sequence.map((sequence, index) => [page.displacement[index], page.force[index], sequence]);
+    const isDrawn = (sequence) => sequence >= page.sequence[0] && sequence <= page.sequence.at(-1);
+    const straight = straightPath(model).filter(([, , sequence]) => !isDrawn(sequence));
+    model.path = [...straight, ...curved].sort((one, two) => one[2] - two[2]);
     redraw();
   });
   const showError = (error) => {
     if (!signal.aborted) notice(error.message, true);
   };
-  // A path that the service cannot compute in small steps stays straight.
   const refine = () => refinePath().catch((error) => error.status === 422 || showError(error));
   const refineLater = debounce(refine, 120);
-  model.path = straightPath(model.first, history);
+  model.path = straightPath(model);
   redraw();
   loadStress().catch(showError);
   if (history.some(({ observation }) => observation)) loadFriction().catch(showError);
@@ -102,7 +105,7 @@ export async function showContact(main, { id, tab }, signal, ready) {
       model.first = history[history.length - MAX_HISTORY - 1];
       history.splice(0, history.length - MAX_HISTORY);
       model.isComplete = false;
-      model.path = straightPath(model.first, history);
+      model.path = straightPath(model);
     }
     redraw();
     loadStress().catch(showError);
@@ -118,12 +121,6 @@ export async function showContact(main, { id, tab }, signal, ready) {
   return view;
 }
 
-/** The largest displacement and force of the loop. */
-function span({ first, history, figures }) {
-  const states = [first, ...history].map(({ state }) => state);
-  const most = (name) => states.reduce((most, state) => Math.max(most, Math.abs(state[name])), 0);
-  return {
-    displacement: most("displacement") || figures.gross_slip_displacement || 1,
-    force: most("force") || figures.gross_slip_force || 1,
-  };
-}
+/** The path of a contact from state to state: `[displacement, force, sequence]`. */
+const straightPath = ({ first, history }) =>
+  [first, ...history].map(({ state, sequence }) => [state.displacement, state.force, sequence]);

@@ -29,7 +29,9 @@ export async function contactList(main, signal) {
     rows.replaceChildren(...found.slice(0, SHOWN).map(row));
     for (const one of rows.querySelectorAll(".shape")) seen.observe(one);
     const more = found.length > SHOWN ? `, the newest ${SHOWN} of which are shown` : "";
-    said.textContent = items.length ? `${found.length} of ${items.length < MOST ? "" : "the newest "}${items.length} contacts${more}` : "";
+    said.textContent = items.length
+      ? `${found.length} of ${items.length < MOST ? "" : "the newest "}${items.length} contacts${more}`
+      : "";
   };
   const search = latestOnly(async (text) => {
     const wanted = text.trim();
@@ -60,7 +62,8 @@ export async function contactList(main, signal) {
     el(
       "p",
       {},
-      "A ball is pressed on a plane and moved sideways: its middle sticks, a ring at its edge slips, and what it does next depends on all that it has done before. Make a contact, move it, and watch.",
+      "A ball is pressed on a plane and moved sideways: its middle sticks, a ring at its edge slips, and what it " +
+        "does next depends on all that it has done before. Make a contact, move it, and watch.",
     ),
     el("a", { class: "button primary", href: "#/new" }, "Make the first contact"),
   );

@@ -1,12 +1,16 @@
 // The four linked plots of a contact.
+import { nearestIndex } from "./axis.js";
 import { Chart } from "./chart.js";
+import { columnsOf } from "./chart_menu.js";
 import { topView } from "./top_view.js";
-import { rememberedTurns } from "./turning_points.js";
 import { formatQuantity } from "./units.js";
 
-const TURNS = "Rings on the curve mark the turning points that the contact remembers. A move beyond one closes its loop and erases it.";
+const TURNS =
+  "Rings on the curve mark the turning points that the contact remembers. A move beyond one closes its loop and " +
+  "erases it.";
 
-/** The plots, and a function that draws them from the model of a contact; `overlay` says what else the first two show. */
+/** The plots, and a function that draws them from the model of a contact; `overlay` says what else the first two
+ *  show. */
 export function contactPlots({ hasStress }) {
   const loop = new Chart({
     name: "loop",
@@ -28,7 +32,9 @@ export function contactPlots({ hasStress }) {
     title: "Friction work and stored energy",
     x: { label: "Move" },
     y: { label: "Energy", unit: "J" },
-    note: "Friction work only grows; stored energy is released on unloading. Both are those at the ends of moves, joined by straight lines.",
+    note:
+      "Friction work only grows; stored energy is released on unloading. Both are those at the ends of moves, " +
+      "joined by straight lines.",
   });
 
   // What is drawn over the loop has no moves of this contact.
@@ -43,7 +49,7 @@ export function contactPlots({ hasStress }) {
     loop.draw(data);
     if (model.stress) {
       stress.draw(stressData(model, overlay.shear()));
-      top.show(model);
+      top.drawModel(model);
     }
     work.draw(energyData(model, data.recent !== undefined));
   };
@@ -57,7 +63,9 @@ function atMove(chart, sequence) {
     .map(({ name, points }) => ({ name, dot: points.find((point) => point[0] === sequence) }))
     .filter(({ dot }) => dot);
   const lines = found.map(({ name, dot }) => `${name} ${formatQuantity(dot[1], "J")}`);
-  return found.length ? { x: sequence, dots: found.map(({ dot }) => dot), lines: [`move ${sequence}`, ...lines] } : null;
+  return found.length
+    ? { x: sequence, dots: found.map(({ dot }) => dot), lines: [`move ${sequence}`, ...lines] }
+    : null;
 }
 
 function atSequence(chart, sequence) {
@@ -67,16 +75,19 @@ function atSequence(chart, sequence) {
 }
 
 function atRadius(chart, radius) {
-  const dots = chart
-    .visible()
-    .filter((series) => series.hover !== false)
-    .map(({ points }) =>
-      points.reduce((best, point) => (Math.abs(point[0] - radius) < Math.abs(best[0] - radius) ? point : best)),
-    );
-  return { x: radius, dots, lines: [] };
+  const series = chart.visible().filter((one) => one.hover !== false);
+  const nearest = (points) =>
+    points[
+      nearestIndex(
+        points.map(([r]) => r),
+        radius,
+      )
+    ];
+  return { x: radius, dots: series.map(({ points }) => nearest(points)), lines: [] };
 }
 
-/** The newest moves, which the axes fit; and how many times wider all of them may be before the older ones are left outside. */
+/** The newest moves, which the axes fit; and how many times wider all of them may be before the older ones are left
+ *  outside. */
 const [RECENT, MOST_WIDER] = [10, 5];
 const OLDER = "Older moves lie far outside: “Show all”, or the key 0, shows them.";
 
@@ -86,17 +97,38 @@ function recentPart(points, first, history) {
   const from = history.at(-RECENT - 1)?.sequence ?? first.sequence;
   const part = points.filter(([, , sequence]) => sequence >= from);
   const wide = (some) => {
-    const [low, high] = some.reduce(([low, high], [x]) => [Math.min(low, x), Math.max(high, x)], [Infinity, -Infinity]);
-    return high - low;
+    const x = some.map((point) => point[0]);
+    return x.reduce((most, one) => Math.max(most, one)) - x.reduce((least, one) => Math.min(least, one));
   };
   return part.length > 1 && wide(points) > MOST_WIDER * wide(part) ? part : undefined;
+}
+
+/** The states at which the turning points lie that a contact remembers, oldest first; none where the load has changed.
+ *  A state says of how many pieces its slip history is: one after gross slip, two on first loading, and one more for
+ *  each turning point. What a move erases are the newest of them. */
+export function rememberedTurns(first, history) {
+  const states = [first, ...history].map(({ state }) => state);
+  if (first.sequence > 0 || states.some((state) => state.indentation !== first.state.indentation)) return [];
+  const turns = [];
+  let [direction, outer] = [0, 2];
+  for (const [index, state] of states.entries()) {
+    const before = states[index - 1] ?? state;
+    const step = Math.sign(state.displacement - before.displacement);
+    if (step === 0) continue;
+    if (direction === -step) turns.push(before);
+    direction = step;
+    if (state.regime === "gross_slip") outer = 1;
+    turns.length = Math.min(turns.length, Math.max(state.memory_depth - outer, 0));
+  }
+  return turns;
 }
 
 /** The loop: the whole path, the part since the last reversal, what was measured, and the present state. */
 function loopData({ path, state, friction, first, history, slip, isComplete }, overlaid) {
   let turn = path.length - 1;
   const direction = (index) => Math.sign(path[index][0] - path[index - 1][0]);
-  while (turn > 1 && (direction(turn) === 0 || direction(turn - 1) === 0 || direction(turn) === direction(turn - 1))) turn -= 1;
+  while (turn > 1 && (direction(turn) === 0 || direction(turn - 1) === 0 || direction(turn) === direction(turn - 1)))
+    turn -= 1;
   const limit = friction * state.normal_force;
   const measured = history
     .filter(({ observation }) => observation)
@@ -105,7 +137,7 @@ function loopData({ path, state, friction, first, history, slip, isComplete }, o
   // What is far beyond slip has to be wide beside the least range, too.
   const reach = least.x ? [...least.x, ...least.x].map((x) => [x, 0, Infinity]) : [];
   const recent = recentPart([...path, ...reach], first, history);
-  const notes = [isComplete ? TURNS : "Of this long history the last moves are drawn, straight from state to state."];
+  const notes = [isComplete ? TURNS : "Of this long history the last moves are drawn."];
   return {
     recent,
     series: [
@@ -124,42 +156,29 @@ function loopData({ path, state, friction, first, history, slip, isComplete }, o
           ]
         : [],
     marks: [
-      ...rememberedTurns(first, history, slip(state)).map((turn) => ({
-        x: turn.displacement,
-        y: turn.force,
-        class: "turn",
-        size: 4.5,
-      })),
+      ...rememberedTurns(first, history).map(({ displacement: x, force: y }) => ({ x, y, class: "turn", size: 4.5 })),
       { x: state.displacement, y: state.force, class: state.regime },
     ],
-    table: () => ({
-      columns: [
-        "sequence",
-        "displacement_m",
-        "force_n",
-        "normal_force_n",
-        "indentation_m",
-        "stick_radius_m",
-        "contact_radius_m",
-        "regime",
-        "friction_work_j",
-        "elastic_energy_j",
-        "measured_force_n",
-      ],
-      rows: history.map(({ sequence, state: s, observation }) => [
+    table: () => {
+      const moves = history.map(({ sequence, state: s, observation }) => ({
         sequence,
-        s.displacement,
-        s.force,
-        s.normal_force,
-        s.indentation,
-        s.stick_radius,
-        s.contact_radius,
-        s.regime,
-        s.dissipated_energy,
-        s.elastic_energy,
-        observation?.force ?? null,
-      ]),
-    }),
+        ...s,
+        measured: observation?.force,
+      }));
+      return columnsOf(moves, {
+        sequence: "sequence",
+        displacement_m: "displacement",
+        force_n: "force",
+        normal_force_n: "normal_force",
+        indentation_m: "indentation",
+        stick_radius_m: "stick_radius",
+        contact_radius_m: "contact_radius",
+        regime: "regime",
+        friction_work_j: "dissipated_energy",
+        elastic_energy_j: "elastic_energy",
+        measured_force_n: "measured",
+      });
+    },
   };
 }
 
@@ -191,8 +210,11 @@ function stressData({ stress, state, friction }, overlaid) {
     // Infinite values at an edge would hide the rest.
     cap: 1.1 * most,
     table: () => ({
-      columns: ["radius_m", "pressure_pa", "shear_pa", "slip_m", "displacement_m"],
-      rows: radius.map((r, index) => [r, pressure[index], shear[index], stress.slip[index], stress.displacement[index]]),
+      radius_m: radius,
+      pressure_pa: pressure,
+      shear_pa: shear,
+      slip_m: stress.slip,
+      displacement_m: stress.displacement,
     }),
   };
 }

@@ -1,11 +1,17 @@
 // The name of a contact, which can be changed in place.
 import { call } from "./api.js";
-import { el } from "./dom.js";
+import { el, reason } from "./dom.js";
 
 /** The heading, a field in its place, and the button that shows the field. */
 export function contactTitle(id, label) {
   const heading = el("h1", {}, label ?? "Unnamed contact");
-  const box = el("input", { type: "text", maxlength: 200, autocomplete: "off", "aria-label": "Label", value: label ?? "" });
+  const box = el("input", {
+    type: "text",
+    maxlength: 200,
+    autocomplete: "off",
+    "aria-label": "Label",
+    value: label ?? "",
+  });
   const fault = el("p", { class: "fault", role: "alert" });
   const button = el("button", { type: "button", class: "quiet", id: "rename" }, "Rename");
   const edit = (is) => {
@@ -21,7 +27,7 @@ export function contactTitle(id, label) {
       heading.textContent = renamed.label ?? "Unnamed contact";
       edit(false);
     } catch (error) {
-      fault.textContent = error.errors?.[0]?.detail ?? error.message;
+      fault.textContent = reason(error);
     }
   };
   const form = el(

@@ -2,13 +2,14 @@
 import { call } from "./api.js";
 import { belowSurfaceCard } from "./below_surface.js";
 import { saveRow } from "./chart_menu.js";
+import { Chart } from "./chart.js";
 import { contactPlots } from "./contact_plots.js";
 import { contactTitle } from "./contact_title.js";
 import { copyMenu } from "./copy_as_code.js";
 import { crackCard } from "./crack_search.js";
 import { figureList } from "./create_form.js";
 import { cycleStudyCard } from "./cycle_study.js";
-import { el, notice } from "./dom.js";
+import { el, mapped, noticing } from "./dom.js";
 import { fittedLoop } from "./loop_fit.js";
 import { loopOverlay } from "./loop_overlay.js";
 import { moveHands } from "./move_hands.js";
@@ -56,57 +57,34 @@ export function contactView(model, contact, changed) {
     el("dl", { class: "figures" }, figureList(figures, model.hasStress)),
   );
 
-  /** What each tab has: `columns` of cards, the parts that follow the state, its plots, and the requests behind it. */
+  // The columns of cards of each tab; some have plots, requests, and a part that follows the state.
   const { loop, stress, top, work } = plots;
-  const steady = steadyCard(model);
-  const response = responseCard(model);
-  const study = cycleStudyCard(model);
-  const map = mapCard(model);
   const fit = fittedLoop(model);
-  const solvers = accuracyCard(model);
-  const views = {
-    live: {
-      columns: model.hasStress ? [[loop, top], [stress, work, path]] : [[loop, path], [work]],
-      parts: [],
-      plots: plots.all,
-      calls: () => stateCalls(model),
-    },
-    loop: { columns: [[fit.form], [fit.results]], parts: [], plots: fit.charts, calls: fit.calls },
-    damping: {
-      columns: [[steady, study, map], [response]],
-      parts: [steady, map, response],
-      plots: [map.chart, ...study.charts, ...response.charts],
-      calls: () => [steady, study, response, map].flatMap((one) => one.calls()),
-    },
-    accuracy: { columns: [[trust], [solvers]], parts: [], plots: [solvers.chart], calls: () => [...trust.calls(), ...solvers.calls()] },
+  const crack = model.hasStress && crackCard(model);
+  /** @type {Record<string, any[][]>} */
+  const lists = {
+    live: model.hasStress
+      ? [
+          [loop, top],
+          [stress, work, path],
+        ]
+      : [[loop, path], [work]],
+    loop: [[fit.form], [fit.results]],
+    crack: crack && [[crack.form], [crack.results, belowSurfaceCard(model)]],
+    damping: [[steadyCard(model), cycleStudyCard(model), mapCard(model)], [responseCard(model)]],
+    residual: model.hasStress && [[protocolCard(model), protocolSearchCard(model)], [residualCard(model)]],
+    accuracy: [[trust], [accuracyCard(model)]],
   };
-  if (model.hasStress) {
-    const below = belowSurfaceCard(model);
-    const crack = crackCard(model);
-    views.crack = {
-      columns: [[crack.form], [crack.results, below]],
-      parts: [below, crack],
-      plots: [crack.chart, below.chart],
-      calls: () => [...crack.calls(), ...below.calls()],
-    };
-    const protocol = protocolCard(model);
-    const search = protocolSearchCard(model);
-    const residual = residualCard(model);
-    views.residual = {
-      columns: [[protocol, search], [residual]],
-      parts: [],
-      plots: [residual.chart],
-      calls: () => [...protocol.calls(), ...search.calls(), ...residual.calls()],
-    };
-  }
-  const panels = Object.fromEntries(
-    Object.keys(TABS)
-      .filter((tab) => tab in views)
-      .map((tab) => {
-        const cards = columns(...views[tab].columns.map((column) => column.map((one) => one.element)));
-        return [tab, el("section", { class: "panel", id: `tab-${tab}`, "aria-label": TABS[tab], hidden: true }, cards)];
-      }),
-  );
+  const offered = Object.fromEntries(Object.entries(lists).filter(([, list]) => list));
+  const views = mapped(offered, (list, tab) => ({
+    parts: list.flat().filter((card) => card.show),
+    plots: list.flat().flatMap((card) => (card instanceof Chart ? card : (card.charts ?? []))),
+    calls: () => (tab === "live" ? stateCalls(model) : list.flat().flatMap((card) => card.calls?.() ?? [])),
+  }));
+  const panels = mapped(offered, (list, tab) => {
+    const cards = columns(...list.map((column) => column.map((one) => one.element)));
+    return el("section", { class: "panel", id: `tab-${tab}`, "aria-label": TABS[tab], hidden: true }, cards);
+  });
   const all = Object.values(views).flatMap((view) => view.plots);
   const link = viewLink({ plots: all, units: hands.units, overlay });
   const tabs = tabBar(id, panels);
@@ -169,25 +147,17 @@ function stateCalls({ id, history, hasStress }) {
 }
 
 function forkButton({ id }) {
-  const fork = async () => {
-    try {
-      location.hash = `#/contacts/${(await call("POST", `/contacts/${id}/fork`, {})).id}`;
-    } catch (error) {
-      notice(error.message, true);
-    }
-  };
+  const fork = noticing(async () => {
+    location.hash = `#/contacts/${(await call("POST", `/contacts/${id}/fork`, {})).id}`;
+  });
   return el("button", { type: "button", class: "quiet", onclick: fork }, "Fork: a copy to go on with");
 }
 
 function removeButton({ id }) {
-  const remove = async () => {
+  const remove = noticing(async () => {
     if (!confirm("Delete this contact and its history?")) return;
-    try {
-      await call("DELETE", `/contacts/${id}`);
-      location.hash = "#/";
-    } catch (error) {
-      notice(error.message, true);
-    }
-  };
+    await call("DELETE", `/contacts/${id}`);
+    location.hash = "#/";
+  });
   return el("button", { type: "button", class: "quiet danger", id: "delete", onclick: remove }, "Delete this contact");
 }

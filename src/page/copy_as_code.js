@@ -13,7 +13,8 @@ export function curl(calls) {
   return calls
     .map(({ method, path, body }) => {
       const verb = method === "GET" || (body !== undefined && method === "POST") ? "" : ` -X ${method}`;
-      const data = body === undefined ? "" : ` \\\n  -H 'content-type: application/json' -d ${shellQuoted(JSON.stringify(body))}`;
+      const data =
+        body === undefined ? "" : ` \\\n  -H 'content-type: application/json' -d ${shellQuoted(JSON.stringify(body))}`;
       return `curl -s${verb}${key} ${shellQuoted(base() + path)}${data}`;
     })
     .join("\n\n");
@@ -26,7 +27,8 @@ export function python(calls) {
   else head.splice(0, 1);
   const blocks = calls.map(({ method, path, body }) => {
     const data = body === undefined ? "" : `, json=${pythonLiteral(body)}`;
-    return `\nreply = session.${method.toLowerCase()}(base + ${JSON.stringify(path)}${data})\nreply.raise_for_status()\nprint(reply.json())`;
+    const request = `reply = session.${method.toLowerCase()}(base + ${JSON.stringify(path)}${data})`;
+    return `\n${request}\nreply.raise_for_status()\nprint(reply.json())`;
   });
   return [...head, ...blocks].join("\n");
 }
@@ -53,7 +55,7 @@ export function copyMenu(calls, more = []) {
 }
 
 async function show(name, text) {
-  const dialog = document.getElementById("code");
+  const dialog = /** @type {HTMLDialogElement} */ (document.getElementById("code"));
   dialog.querySelector("h2").textContent = `The requests for ${name}`;
   const area = dialog.querySelector("textarea");
   area.value = text;

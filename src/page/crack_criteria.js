@@ -1,33 +1,44 @@
 // The fatigue criteria of the form: which are asked for, their numbers and limits, and what they say in words.
-import { el } from "./dom.js";
+import { el, mapped } from "./dom.js";
 import { NumberField } from "./form_fields.js";
-import { MODULUS } from "./form_options.js";
+import { MODULUS, STRESS } from "./form_options.js";
 import { formatNumber, formatQuantity } from "./units.js";
 
-/** Stresses in the form. */
-export const STRESSES = [
-  ["MPa", 6],
-  ["GPa", 9],
-  ["Pa", 0],
-];
 const alpha = { alpha: { label: "Weight α of the hydrostatic stress", value: "0.3" } };
 const k = (value) => ({ k: { label: "Weight k of the normal stress", value } });
 const modulus = { youngs_modulus: { label: "Young’s modulus of the body", units: MODULUS, unit: "GPa", value: "" } };
 
-/** What each criterion is called, what it rates, its unit, its numbers, and whether it is of the surface alone. */
+/** What each criterion is called, what it rates, its unit, its numbers, and whether it is of the surface alone.
+ * @type {Record<string, { name: string, text: string, unit: string, numbers: any, isOfSurface?: boolean }>} */
 const CRITERIA = {
-  crossland: { name: "Crossland", text: "shear amplitude and the largest hydrostatic stress", unit: "Pa", numbers: alpha },
+  crossland: {
+    name: "Crossland",
+    text: "shear amplitude and the largest hydrostatic stress",
+    unit: "Pa",
+    numbers: alpha,
+  },
   dang_van: { name: "Dang Van", text: "shear and hydrostatic stress at one instant", unit: "Pa", numbers: alpha },
   findley: { name: "Findley", text: "shear amplitude and normal stress on a plane", unit: "Pa", numbers: k("0.3") },
-  swt: { name: "Smith, Watson and Topper", text: "tension times strain amplitude on a plane", unit: "Pa", numbers: modulus },
+  swt: {
+    name: "Smith, Watson and Topper",
+    text: "tension times strain amplitude on a plane",
+    unit: "Pa",
+    numbers: modulus,
+  },
   fatemi_socie: {
     name: "Fatemi and Socie",
     text: "shear strain amplitude, raised by the normal stress",
     unit: "",
-    numbers: { ...k("1"), yield: { label: "Yield stress", units: STRESSES, unit: "MPa", value: "" }, ...modulus },
+    numbers: { ...k("1"), yield: { label: "Yield stress", units: STRESS, unit: "MPa", value: "" }, ...modulus },
   },
   ruiz: { name: "Ruiz", text: "shear stress times slip, at the surface", unit: "N/m", numbers: {}, isOfSurface: true },
-  friction_work: { name: "Friction work", text: "per area and cycle, at the surface", unit: "J/m²", numbers: {}, isOfSurface: true },
+  friction_work: {
+    name: "Friction work",
+    text: "per area and cycle, at the surface",
+    unit: "J/m²",
+    numbers: {},
+    isOfSurface: true,
+  },
 };
 /** What comes with Ruiz’s criterion. */
 const TENSION = { name: "Ruiz, times the tension", unit: "N²/m³", isOfSurface: true };
@@ -47,21 +58,22 @@ export function criteriaFields(form, isModulusKnown) {
   const all = Object.entries(CRITERIA).map(([key, { name, text, unit, numbers }]) => {
     const box = el("input", { type: "checkbox", name: key, checked: key === "crossland" });
     const field = (member, about) => new NumberField(form, () => `/criteria/${key}/${member}`, about);
-    const offered = Object.entries(numbers).filter(([member]) => member !== "youngs_modulus" || !isModulusKnown);
-    const fields = offered.map(([member, about]) => [member, field(member, about)]);
-    const units = unit === "Pa" ? STRESSES : undefined;
+    const units = unit === "Pa" ? STRESS : undefined;
     const title = units || !unit ? "Limit" : `Limit in ${unit}`;
-    const limit = field("limit", { label: title, units, unit: "MPa", value: "", optional: true });
-    const body = el("div", { class: "fields" }, ...[...fields.map(([, one]) => one), limit].map((one) => one.element));
+    const { youngs_modulus: own, ...others } = numbers;
+    const asked = own && !isModulusKnown ? numbers : others;
+    const limit = { label: title, units, unit: "MPa", value: "", optional: true };
+    const fields = mapped({ ...asked, limit }, (about, member) => field(member, about));
+    const body = el("div", { class: "fields" }, ...Object.values(fields).map((one) => one.element));
     const fold = () => {
       body.hidden = !box.checked;
       // The numbers of a criterion that is not asked for are not checked.
-      for (const one of [...fields.map(([, one]) => one), limit]) one.isLeftOut = !box.checked;
+      for (const one of Object.values(fields)) one.isLeftOut = !box.checked;
     };
     box.addEventListener("change", fold);
     fold();
     const element = el("fieldset", {}, el("label", {}, box, ` ${name} `, el("span", { class: "note" }, text)), body);
-    const value = () => ({ ...Object.fromEntries(fields.map(([member, one]) => [member, one.value])), limit: limit.value });
+    const value = () => mapped(fields, (one) => one.value);
     return { key, box, element, value };
   });
   const chosen = () => all.filter(({ box }) => box.checked);
@@ -103,7 +115,9 @@ export function verdict(key, { largest, margin }, hasLimit) {
     lines.push(el("p", { class: "note" }, `The critical plane has the normal (${normal}).`));
   }
   if (largest?.at) {
-    lines.push(el("p", { class: "note" }, `It is reached ${instantText(largest.at)} move ${largest.at.move + 1} of the cycle.`));
+    lines.push(
+      el("p", { class: "note" }, `It is reached ${instantText(largest.at)} move ${largest.at.move + 1} of the cycle.`),
+    );
   }
   return el("div", { class: "verdict", id: `verdict-${key}` }, el("h3", {}, about.name), ...lines);
 }

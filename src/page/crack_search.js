@@ -1,16 +1,19 @@
-// Will it crack? Fatigue criteria over a cycle, the worst place that a search finds for each of them, and a section through it.
+// Will it crack? Fatigue criteria over a cycle, the worst place that a search finds for each of them, and a section
+// through it.
 import { call } from "./api.js";
 import { bodiesOf, elasticBodies } from "./below_surface.js";
-import { STRESSES, amountOf, criteriaFields, criterion, verdict } from "./crack_criteria.js";
-import { el, notice } from "./dom.js";
-import { Choice, Fields, NumberField, TextField } from "./form_fields.js";
-import { LENGTH } from "./form_options.js";
+import { amountOf, criteriaFields, criterion, verdict } from "./crack_criteria.js";
+import { el } from "./dom.js";
+import { Choice, Fields, JsonField, NumberField, valuesOf } from "./form_fields.js";
+import { LENGTH, STRESS } from "./form_options.js";
 import { virginContact } from "./protocol_run.js";
 import { gridPoints, sectionPlot } from "./section_plot.js";
+import { study } from "./study.js";
 import { inPower, powerOf } from "./units.js";
 import { showWarnings, warningList } from "./warning_list.js";
 
-/** Half the width and the depth of the section in contact radii, its points, and the error that its colours may have. */
+/** Half the width and the depth of the section in contact radii, its points, and the error that its colours may
+ *  have. */
 const [HALF, DEPTH] = [2, 1.2];
 const [COLUMNS, ROWS] = [41, 19];
 const SECTION_TOLERANCE = 1e-2;
@@ -21,7 +24,7 @@ const MOST_MOVES = 200;
 function pathFields(form, model) {
   const slip = model.figures.gross_slip_displacement;
   const usual = Math.abs(model.state.displacement) || 0.5 * slip || 1e-7;
-  const power = LENGTH.map(([, power]) => power).findLast((one) => one >= powerOf(usual)) ?? LENGTH.at(-1)[1];
+  const [unit, power] = LENGTH.findLast(([, one]) => one >= powerOf(usual)) ?? LENGTH.at(-1);
   const canRepeat = model.isComplete && model.history.length > 0 && model.history.length <= MOST_MOVES;
   const kind = new Choice(form, () => "/path", "The cycle", {
     cycles: "back and forth by an amplitude",
@@ -31,39 +34,26 @@ function pathFields(form, model) {
   const amplitude = new NumberField(form, () => "/path/cycles/displacement", {
     label: "Amplitude of the displacement",
     units: LENGTH,
-    unit: LENGTH.find(([, own]) => own === power)[0],
+    unit,
     value: inPower(Number(usual.toPrecision(3)), power),
   });
-  const text = new TextField(
-    form,
-    () => "/path",
-    "Path as JSON",
-    el("textarea", { rows: 4, spellcheck: "false", value: '{"displacement": [1e-7, -1e-7]}' }),
-  );
+  const text = new JsonField(form, () => "/path", "Path as JSON", '{"displacement": [1e-7, -1e-7]}');
   const fold = () => {
     amplitude.element.hidden = kind.value !== "cycles";
     amplitude.isLeftOut = kind.value !== "cycles";
     text.element.hidden = kind.value !== "json";
+    text.isLeftOut = kind.value !== "json";
   };
   kind.control.addEventListener("change", fold);
   fold();
   const value = () => {
     if (kind.value === "cycles") return { cycles: { displacement: amplitude.value, count: 1 } };
     if (kind.value === "moves") return { moves: model.history.map(({ move }) => move) };
-    try {
-      return JSON.parse(text.value);
-    } catch {
-      return null;
-    }
+    return text.value;
   };
   return {
     element: el("div", {}, kind.element, amplitude.element, text.element),
     value,
-    isFaulty: () => {
-      const is = kind.value === "json" && value() === null;
-      if (is) text.showFault("This is not JSON.");
-      return is;
-    },
     // Moves that were made begin at the load that the contact was made with.
     contact: () => (kind.value === "moves" ? model.definition : virginContact(model)),
   };
@@ -80,7 +70,7 @@ export function crackCard(model) {
     new NumberField(form, () => "/poisson_ratio", { label: "Poisson’s ratio of the body", value: "0.3" });
   const criteria = criteriaFields(form, bodiesOf(material) !== undefined);
   const optional = (pointer, label, more) => new NumberField(form, () => pointer, { label, optional: true, ...more });
-  const stress = { units: STRESSES, unit: "MPa" };
+  const stress = { units: STRESS, unit: "MPa" };
   const bulk = {
     mean: optional("/bulk/mean", "Mean along x", stress),
     amplitude: optional("/bulk/amplitude", "Amplitude", stress),
@@ -88,14 +78,13 @@ export function crackCard(model) {
   };
   const tolerance = optional("/tolerance", "Error that is accepted, of the largest value");
   const request = () => {
-    const told = Object.entries(bulk).filter(([, field]) => field.value !== undefined);
     return {
       contact: path.contact(),
       path: path.value(),
       body: body.value,
       poisson_ratio: poisson ? poisson.value : undefined,
       criteria: criteria.value(),
-      bulk: told.length ? Object.fromEntries(told.map(([name, field]) => [name, field.value])) : undefined,
+      bulk: valuesOf(bulk),
       tolerance: tolerance.value,
     };
   };
@@ -108,7 +97,9 @@ export function crackCard(model) {
   const chart = sectionPlot({
     name: "crack",
     title: "Section through the worst place",
-    note: "The plane of the motion through the worst place. Dashed: the edge of the contact. The ring is the worst place.",
+    note:
+      "The plane of the motion through the worst place. Dashed: the edge of the contact. The ring is the worst " +
+      "place.",
   });
   chart.element.hidden = true;
   let found = null;
@@ -123,15 +114,18 @@ export function crackCard(model) {
     const section = { ...asked, criteria: { [key]: member }, plane, tolerance: SECTION_TOLERANCE };
     const rated = await call("POST", "/fretting", section, model.signal);
     if (question !== wanted) return;
-    chart.element.hidden = false;
     const unit = criterion(key).unit;
-    chart.show(gridPoints(rated, rated[key].values, ROWS), {
+    chart.drawPoints(gridPoints(rated, rated[key].values, ROWS), {
       field: key,
-      name: criterion(key).name,
+      quantity: criterion(key).name,
       columns: COLUMNS,
       radius: a,
       unit,
-      worst: { point: reply[key].largest.point, value: reply[key].largest.value, text: amountOf(key, reply[key].largest.value, 3) },
+      worst: {
+        point: reply[key].largest.point,
+        value: reply[key].largest.value,
+        text: amountOf(key, reply[key].largest.value, 3),
+      },
     });
   };
   const draw = async () => {
@@ -145,63 +139,48 @@ export function crackCard(model) {
     }
   };
   drawn.addEventListener("change", draw);
-  const search = async () => {
-    const first = form.check();
-    if (first) first.control.focus();
-    if (path.isFaulty() || first) return;
+  const compute = async () => {
     const asked = request();
     const question = (wanted += 1);
-    button.disabled = true;
     status.textContent = "Searching the body for the worst place …";
-    try {
-      const reply = await call("POST", "/fretting", asked, model.signal);
-      if (question !== wanted) return;
-      form.clear();
-      found = { asked, reply };
-      const keys = Object.keys(reply).filter((key) => criterion(key));
-      const hasLimit = (key) => asked.criteria[key]?.limit !== undefined;
-      verdicts.replaceChildren(...keys.map((key) => verdict(key, reply[key], hasLimit(key))));
-      showWarnings(warnings, reply.warnings);
-      const sections = keys.filter((key) => !criterion(key).isOfSurface && reply[key].largest);
-      drawn.replaceChildren(...sections.map((key) => el("option", { value: key }, criterion(key).name)));
-      drawnRow.hidden = sections.length === 0;
-      chart.element.hidden = true;
-      status.textContent = "";
-      if (sections.length) await draw();
-    } catch (error) {
-      if (model.signal.aborted) return;
-      status.textContent = "";
-      const first = form.place(error);
-      first?.control.focus();
-      if (!first) notice(error.message, true);
-    } finally {
-      button.disabled = false;
-    }
+    const reply = await call("POST", "/fretting", asked, model.signal).finally(() => (status.textContent = ""));
+    if (question !== wanted) return;
+    found = { asked, reply };
+    const keys = Object.keys(reply).filter((key) => criterion(key));
+    const hasLimit = (key) => asked.criteria[key]?.limit !== undefined;
+    verdicts.replaceChildren(...keys.map((key) => verdict(key, reply[key], hasLimit(key))));
+    showWarnings(warnings, reply.warnings);
+    const sections = keys.filter((key) => !criterion(key).isOfSurface && reply[key].largest);
+    drawn.replaceChildren(...sections.map((key) => el("option", { value: key }, criterion(key).name)));
+    drawnRow.hidden = sections.length === 0;
+    chart.element.hidden = true;
+    if (sections.length) await draw();
   };
-  const button = el("button", { type: "button", class: "primary", id: "search-crack", onclick: search }, "Search for the worst place");
-  const card = el(
-    "section",
-    { class: "card", id: "crack-card" },
-    el("h2", {}, "Will it crack?"),
-    el(
-      "p",
-      {},
-      "A cycle at the present load is repeated until it is steady, and the body is searched for the largest value of each criterion. What the material bears comes from tests; the criteria are empirical.",
-    ),
-    path.element,
-    body.element,
-    ...(poisson ? [poisson.element] : []),
-    ...criteria.elements,
-    el(
-      "details",
-      {},
-      el("summary", {}, "Bulk stress of the body, and accuracy"),
-      ...Object.values(bulk).map((field) => field.element),
-      tolerance.element,
-    ),
-    form.rest,
-    el("p", { class: "row" }, button),
-  );
+  const made = study({
+    name: "crack",
+    button: "Search for the worst place",
+    title: "Will it crack?",
+    text:
+      "A cycle at the present load is repeated until it is steady, and the body is searched for the largest value of " +
+      "each criterion. What the material bears comes from tests; the criteria are empirical.",
+    form,
+    parts: [
+      path.element,
+      body.element,
+      ...(poisson ? [poisson.element] : []),
+      ...criteria.elements,
+      el(
+        "details",
+        {},
+        el("summary", {}, "Bulk stress of the body, and accuracy"),
+        ...Object.values(bulk).map((field) => field.element),
+        tolerance.element,
+      ),
+    ],
+    signal: model.signal,
+    compute,
+    calls: () => [{ method: "POST", path: "/fretting", body: request() }],
+  });
   const results = el(
     "section",
     { class: "card", "aria-label": "What the criteria say" },
@@ -213,11 +192,5 @@ export function crackCard(model) {
     drawnRow,
     chart.element,
   );
-  return {
-    form: { element: card },
-    results: { element: results },
-    chart,
-    calls: () => [{ method: "POST", path: "/fretting", body: request() }],
-    show: () => {},
-  };
+  return { form: made, results: { element: results, charts: [chart] } };
 }

@@ -2,7 +2,7 @@
 import { call } from "./api.js";
 import { Chart } from "./chart.js";
 import { copyMenu } from "./copy_as_code.js";
-import { el, latestOnly, notice, debounce, withSubscripts } from "./dom.js";
+import { debounce, el, figure, latestOnly, notice } from "./dom.js";
 import { Fields, NumberField, TextField } from "./form_fields.js";
 import { WITHOUT_STRESS } from "./form_options.js";
 import { materialFields, preloadFields } from "./material_fields.js";
@@ -60,13 +60,18 @@ export function createForm(main, signal) {
       const contact = form.standingIn(definition);
       const drawn = !WITHOUT_STRESS.includes(contact.profile.type);
       const stress = drawn ? { stress: { points: 200, fields: ["pressure"] } } : {};
-      const reply = await call("POST", "/simulate", { contact, path: { displacement: [0] }, steps: "last", ...stress }, signal);
+      const reply = await call(
+        "POST",
+        "/simulate",
+        { contact, path: { displacement: [0] }, steps: "last", ...stress },
+        signal,
+      );
       // What follows is not that of numbers which stand in for others.
       const isMistaken = form.check() !== undefined;
       derived.classList.toggle("stale", isMistaken);
       if (isMistaken) return;
       figures.replaceChildren(...figureList(reply.contact, drawn));
-      chart.element.hidden = !drawn;
+      chart.element.hidden = true;
       if (drawn) chart.draw(pressureData(reply, Number(friction.value)));
       showWarnings(warnings, reply.warnings);
     } catch (error) {
@@ -122,16 +127,15 @@ export function createForm(main, signal) {
 
 /** The figures of a contact, by name; one that is known by its load curve alone has no pressure. */
 export function figureList(figures, hasStress = true) {
-  const entry = (text, value) => el("div", {}, el("dt", {}, withSubscripts(text)), el("dd", {}, value));
   return [
-    entry("Normal force F_N", formatQuantity(figures.normal_force, "N")),
-    entry("Indentation d", formatQuantity(figures.indentation, "m")),
-    entry("Contact radius a", formatQuantity(figures.contact_radius, "m")),
-    ...(hasStress ? [entry("Largest pressure p_max", formatQuantity(figures.max_pressure, "Pa"))] : []),
-    entry("Gross slip from u_max", formatQuantity(figures.gross_slip_displacement, "m")),
-    entry("Gross slip at μ F_N", formatQuantity(figures.gross_slip_force, "N")),
-    entry("Reduced modulus E*", formatQuantity(figures.e_star, "Pa")),
-    entry("Stiffness ratio E*/G*", formatNumber(figures.e_star / figures.g_star)),
+    figure("Normal force F_N", formatQuantity(figures.normal_force, "N")),
+    figure("Indentation d", formatQuantity(figures.indentation, "m")),
+    figure("Contact radius a", formatQuantity(figures.contact_radius, "m")),
+    ...(hasStress ? [figure("Largest pressure p_max", formatQuantity(figures.max_pressure, "Pa"))] : []),
+    figure("Gross slip from u_max", formatQuantity(figures.gross_slip_displacement, "m")),
+    figure("Gross slip at μ F_N", formatQuantity(figures.gross_slip_force, "N")),
+    figure("Reduced modulus E*", formatQuantity(figures.e_star, "Pa")),
+    figure("Stiffness ratio E*/G*", formatNumber(figures.e_star / figures.g_star)),
   ];
 }
 

@@ -1,17 +1,15 @@
-// A steady cycle in full: under a load that oscillates too, its harmonics, where it wears, and the load that damps most.
-import { call } from "./api.js";
+// A steady cycle in full: under a load that oscillates too, its harmonics, where it wears, and the load that damps
+// most.
 import { Chart } from "./chart.js";
-import { el, notice, withSubscripts } from "./dom.js";
+import { el, figure } from "./dom.js";
 import { Fields, NumberField } from "./form_fields.js";
 import { FORCE, LENGTH } from "./form_options.js";
 import { virginContact } from "./protocol_run.js";
+import { study } from "./study.js";
 import { formatNumber, formatQuantity } from "./units.js";
-import { showWarnings, warningList } from "./warning_list.js";
 
 /** Radii of the friction work, loads of the search, and harmonics. */
 const [RADII, LOADS, HARMONICS] = [100, 60, 5];
-
-const pair = (name, value) => el("div", {}, el("dt", {}, withSubscripts(name)), el("dd", {}, value));
 
 /** The figures of a cycle in rows. */
 function figureRows(cycle, unit) {
@@ -20,20 +18,22 @@ function figureRows(cycle, unit) {
   const [first] = harmonics;
   const part = ({ in_phase: real, quadrature: other }) => Math.hypot(real, other);
   return [
-    pair("Friction work of a cycle", formatQuantity(cycle.dissipated_energy, "J")),
-    pair("Loss factor", ratio(cycle.loss_factor)),
+    figure("Friction work of a cycle", formatQuantity(cycle.dissipated_energy, "J")),
+    figure("Loss factor", ratio(cycle.loss_factor)),
     ...(best
       ? [
-          pair("Load that damps most", formatQuantity(best.normal_force, "N")),
-          pair("Friction work under it", formatQuantity(best.dissipated_energy, "J")),
+          figure("Load that damps most", formatQuantity(best.normal_force, "N")),
+          figure("Friction work under it", formatQuantity(best.dissipated_energy, "J")),
         ]
       : []),
     ...harmonics
       .filter((one) => part(one) > 0)
       .map((one) =>
-        pair(
+        figure(
           `Harmonic ${one.order}`,
-          one === first ? formatQuantity(part(one), unit) : `${formatNumber((100 * part(one)) / part(first), 3)} % of the first`,
+          one === first
+            ? formatQuantity(part(one), unit)
+            : `${formatNumber((100 * part(one)) / part(first), 3)} % of the first`,
         ),
       ),
   ];
@@ -50,7 +50,12 @@ export function cycleStudyCard(model) {
     unit: "nm",
     value: String(Number((0.5e9 * slip).toPrecision(3))),
   });
-  const load = field("/normal/normal_force", { label: "Amplitude of the load", units: FORCE, unit: "N", optional: true });
+  const load = field("/normal/normal_force", {
+    label: "Amplitude of the load",
+    units: FORCE,
+    unit: "N",
+    optional: true,
+  });
   const phase = field("/normal/phase", { label: "Its phase before the displacement, degrees", optional: true });
   const work = new Chart({
     name: "density",
@@ -66,9 +71,6 @@ export function cycleStudyCard(model) {
     x: { label: "Normal force F_N", unit: "N" },
     y: { label: "Friction work of a cycle", unit: "J" },
   });
-  for (const chart of [work, loads]) chart.element.hidden = true;
-  const figures = el("dl", { class: "figures", id: "study-figures", "aria-live": "polite" });
-  const warnings = warningList("study-warnings");
   const request = () => {
     const isConstant = load.value === undefined;
     return {
@@ -80,54 +82,30 @@ export function cycleStudyCard(model) {
       ...(isConstant && model.hasStress ? { work_density: { points: RADII } } : {}),
     };
   };
-  const show = ({ cycles: [cycle], warnings: said }) => {
-    figures.replaceChildren(...figureRows(cycle, "N"));
-    showWarnings(warnings, said);
-    const { friction_work: density, best_load: best } = cycle;
-    work.element.hidden = !density;
-    loads.element.hidden = !best?.curve;
-    if (density) {
-      const points = density.radius.map((r, index) => [r, density.density[index]]);
-      work.draw({ series: [{ name: "friction work per area", kind: "work", points }], least: { y: [0] } });
-    }
-    if (best?.curve) {
-      const points = best.curve.normal_force.map((force, index) => [force, best.curve.dissipated_energy[index]]);
-      loads.draw({ series: [{ name: "friction work", kind: "work", points }], least: { y: [0] } });
-    }
+  const show = ({ cycles: [{ friction_work: density, best_load: best }] }) => {
+    for (const chart of [work, loads]) chart.element.hidden = true;
+    const draw = (chart, name, x, y) =>
+      chart.draw({ series: [{ name, kind: "work", points: x.map((at, index) => [at, y[index]]) }], least: { y: [0] } });
+    if (density) draw(work, "friction work per area", density.radius, density.density);
+    if (best?.curve) draw(loads, "friction work", best.curve.normal_force, best.curve.dissipated_energy);
   };
-  const compute = async (event) => {
-    event.preventDefault();
-    const first = form.check();
-    if (first) return first.control.focus();
-    button.disabled = true;
-    try {
-      show(await call("POST", "/cycle", request(), model.signal));
-      form.clear();
-    } catch (error) {
-      if (model.signal.aborted) return;
-      if (!form.place(error)) notice(error.message, true);
-    } finally {
-      button.disabled = false;
-    }
-  };
-  const button = el("button", { class: "primary", id: "compute-study" }, "Compute");
-  const element = el(
-    "section",
-    { class: "card", id: "study-card" },
-    el("h2", {}, "Load, harmonics and wear"),
-    el("p", {}, "A cycle at the present load, or while the load oscillates with it: its harmonics and, at a constant load, where it wears and which load damps most."),
-    el(
-      "form",
-      { onsubmit: compute },
+  return study({
+    name: "study",
+    title: "Load, harmonics and wear",
+    text:
+      "A cycle at the present load, or while the load oscillates with it: its harmonics and, at a constant load, " +
+      "where " +
+      "it wears and which load damps most.",
+    form,
+    parts: [
       amplitude.element,
       el("details", {}, el("summary", {}, "The load oscillates too"), load.element, phase.element),
-      form.rest,
-      el("p", { class: "row" }, button),
-    ),
-    figures,
-    warnings,
-    work.element,
-    loads.element,
-  );
-  return { element, charts: [work, loads], calls: () => [{ method: "POST", path: "/cycle", body: request() }] };
+    ],
+    charts: [work, loads],
+    signal: model.signal,
+    path: "/cycle",
+    request,
+    rows: ({ cycles: [cycle] }) => figureRows(cycle, "N"),
+    show,
+  });
 }

@@ -1,13 +1,14 @@
 // A table in a form, as text or as a file of an instrument: the service reads it, and says what it took for what.
 import { call } from "./api.js";
-import { el } from "./dom.js";
+import { el, reason } from "./dom.js";
 import { FORCE, LENGTH } from "./form_options.js";
 
 /** How long a text rests before it is read, ms. */
 const REST = 150;
 
-/** What the service reads in the text field `control`, or in a file that is chosen for it or dropped on it. `query` says what is
- *  known beside, `taken` gets each reply, or the error in its place, and `fresh` is called when there is something else to read. */
+/** What the service reads in the text field `control`, or in a file that is chosen for it or dropped on it. `query`
+ *  says what is known beside, `taken` gets each reply, or the error in its place, and `fresh` is called when there is
+ *  something else to read. */
 export function fileSource(kind, control, query, taken, fresh) {
   let file = null;
   let latest = 0;
@@ -49,16 +50,16 @@ export function fileSource(kind, control, query, taken, fresh) {
   });
   const input = el("input", { type: "file", onchange: (event) => open(event.target.files[0]) });
   const settled = async () => {
-    let read;
-    do await (read = reading);
-    while (read !== reading);
+    let last;
+    do await (last = reading);
+    while (last !== reading);
   };
   return { input, open, read, settled };
 }
 
 /** What a reply took for what, without how the text is written, or what is wrong with the file. */
 export function readingText(reply, error) {
-  const text = reply ? reply.preview.reading.slice(1).join(" ") : (error.errors?.[0]?.detail ?? error.message);
+  const text = reply ? reply.preview.reading.slice(1).join(" ") : reason(error);
   return plain(text.replace(/name the unit by `[^`]*`/, "choose the unit below"));
 }
 
@@ -67,17 +68,27 @@ const NAMES = { x: "place x", y: "place y", z: "height", normal_force: "normal l
 /** Columns that are shown one by one. */
 const MOST_COLUMNS = 40;
 
-/** A table of what each column of a file was taken for, with the lines that were left out; `show` fills it from a reply, or
- *  empties it. */
+/** A table of what each column of a file was taken for, with the lines that were left out; `show` fills it from a
+ *  reply, or empties it. */
 export function columnsTable() {
   const rows = el("tbody", {});
   const rest = el("p", { class: "note" });
-  const head = el("tr", {}, ["Column", "Name in the file", "Taken for"].map((name) => el("th", { scope: "col" }, name)));
+  const head = el(
+    "tr",
+    {},
+    ["Column", "Name in the file", "Taken for"].map((name) => el("th", { scope: "col" }, name)),
+  );
   const element = el("div", { class: "columns", hidden: true }, el("table", {}, el("thead", {}, head), rows), rest);
-  const taken = ({ quantity, unit, assumed, left_out: reason }) =>
-    quantity ? `${NAMES[quantity] ?? quantity}, in ${unit}${assumed ? ", which nothing names" : ""}` : `left out: ${plain(reason ?? "")}`;
+  const taken = ({ quantity, unit, assumed, left_out: why }) =>
+    quantity
+      ? `${NAMES[quantity] ?? quantity}, in ${unit}${assumed ? ", which nothing names" : ""}`
+      : `left out: ${plain(why ?? "")}`;
   const row = (column, index) =>
-    el("tr", { class: column.quantity ? false : "faint" }, [index + 1, column.name ?? "–", taken(column)].map((cell) => el("td", {}, String(cell))));
+    el(
+      "tr",
+      { class: column.quantity ? false : "faint" },
+      [index + 1, column.name ?? "–", taken(column)].map((cell) => el("td", {}, String(cell))),
+    );
   const show = (reply) => {
     const { columns = [], rows_left_out: left = { count: 0, lines: [] } } = reply?.preview ?? {};
     element.hidden = !columns.length && !left.count;
@@ -101,13 +112,23 @@ export function chooseUnit(select, symbol) {
 /** The power of ten of a unit in which a reply has its numbers. */
 export const powerOfUnit = (symbol) => [...LENGTH, ...FORCE].find(([text]) => text.replace("µ", "u") === symbol)[1];
 
-/** Columns and units of a loop, as the file says unless somebody chooses otherwise: fields for that, the query that asks for
- *  it, and what shows those of a reply. */
+/** Columns and units of a loop, as the file says unless somebody chooses otherwise: fields for that, the query that
+ *  asks for it, and what shows those of a reply. */
 export function loopColumns(prefix) {
   const QUANTITIES = { displacement: LENGTH, force: FORCE, time: null };
-  const [columns, units, asRead] = [{}, {}, {}];
+  /** @type {Record<string, HTMLInputElement>} */
+  const columns = {};
+  /** @type {Record<string, HTMLSelectElement>} */
+  const units = {};
+  /** @type {Record<string, HTMLOptionElement>} */
+  const asRead = {};
   for (const [name, offered] of Object.entries(QUANTITIES)) {
-    columns[name] = el("input", { type: "text", autocomplete: "off", size: 12, "aria-label": `Column of ${prefix}${name}` });
+    columns[name] = el("input", {
+      type: "text",
+      autocomplete: "off",
+      size: 12,
+      "aria-label": `Column of ${prefix}${name}`,
+    });
     if (!offered) continue;
     asRead[name] = el("option", { value: "" });
     units[name] = el(
@@ -145,7 +166,12 @@ export function loopColumns(prefix) {
   };
   reset();
   const row = (title, name) =>
-    el("div", { class: "row" }, el("label", {}, `${title}: column `, columns[name]), ...(name in units ? [units[name]] : []));
+    el(
+      "div",
+      { class: "row" },
+      el("label", {}, `${title}: column `, columns[name]),
+      ...(name in units ? [units[name]] : []),
+    );
   const rows = [row("Displacement", "displacement"), row("Force", "force")];
   const time = row("Time, for a drift (0: none)", "time");
   return { query, show, reset, rows, time, hasTime: () => columns.time.value.trim() !== "0" };

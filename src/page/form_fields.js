@@ -1,5 +1,5 @@
 // Fields of a form: a label, a value with its unit, and the fault that the service finds in it.
-import { el, withSubscripts } from "./dom.js";
+import { el, mapped, withSubscripts } from "./dom.js";
 import { numberMistake, parseNumber } from "./units.js";
 
 let count = 0;
@@ -21,11 +21,18 @@ class Field {
       this.fault,
     );
     this.form = form;
+    /** Whether the form sends nothing of it. */
+    this.isLeftOut = false;
     form.add(this);
   }
 
-  showFault(text) {
-    this.fault.textContent = text ?? "";
+  /** What is wrong with the text itself, in words. @returns {string | undefined} */
+  get mistake() {
+    return undefined;
+  }
+
+  showFault(text = "") {
+    this.fault.textContent = text;
     if (text) this.control.setAttribute("aria-invalid", "true");
     else this.control.removeAttribute("aria-invalid");
   }
@@ -44,6 +51,9 @@ export function numberIn(box) {
 
 /** A number with its unit. */
 export class NumberField extends Field {
+  /** @param {Fields} form
+   *  @param {() => string} pointer
+   *  @param {{ label: string, units?: [string, number][], unit?: string, value?: string, optional?: boolean }} about */
   constructor(form, pointer, { label, units, unit, value, optional = false }) {
     const control = numberBox({ value: value ?? "" });
     const choice =
@@ -59,7 +69,6 @@ export class NumberField extends Field {
     this.isOptional = optional;
   }
 
-  /** What is wrong with the text itself, in words. */
   get mistake() {
     const text = this.control.value.trim();
     if (this.isLeftOut) return undefined;
@@ -80,11 +89,26 @@ export class NumberField extends Field {
 
 /** A text. */
 export class TextField extends Field {
-  constructor(form, pointer, label, control) {
-    super(form, pointer, label, control);
-  }
   get value() {
     return this.control.value;
+  }
+}
+
+/** A document of JSON. */
+export class JsonField extends Field {
+  constructor(form, pointer, label, value) {
+    super(form, pointer, label, el("textarea", { rows: 4, spellcheck: "false", value }));
+  }
+  get mistake() {
+    return this.value === null && !this.isLeftOut ? "This is not JSON." : undefined;
+  }
+  /** The document, or nothing where the text is none. */
+  get value() {
+    try {
+      return JSON.parse(this.control.value);
+    } catch {
+      return null;
+    }
   }
 }
 
@@ -105,6 +129,12 @@ export class Choice extends Field {
   get value() {
     return this.control.value;
   }
+}
+
+/** The numbers that were given in fields, by name; nothing where there is none. */
+export function valuesOf(fields) {
+  const given = Object.entries(fields).filter(([, field]) => field.value !== undefined);
+  return given.length ? mapped(Object.fromEntries(given), (field) => field.value) : undefined;
 }
 
 /** The fields of a form, and the faults that belong to none of them. */
@@ -148,8 +178,8 @@ export class Fields {
     return wrong[0];
   }
 
-  /** What `read` makes of the form with the numbers of the beginning in place of texts that are none, so that the service finds
-   *  the faults of the other fields too. */
+  /** What `read` makes of the form with the numbers of the beginning in place of texts that are none, so that the
+   *  service finds the faults of the other fields too. */
   standingIn(read) {
     this.isStandingIn = true;
     try {
@@ -159,7 +189,8 @@ export class Fields {
     }
   }
 
-  /** Places each fault at the field whose pointer it has, or which is nearest above it; `root` is where the form begins. */
+  /** Places each fault at the field whose pointer it has, or which is nearest above it; `root` is where the form
+   *  begins. */
   place(refusal, root = "") {
     const mistaken = this.check();
     const fields = this.present().filter((field) => !field.mistake);

@@ -1,25 +1,11 @@
 // The shapes, the materials and the units that the form offers.
 import { FAMILIES } from "./families.js";
-import { inPower } from "./units.js";
+import { inPower, prefixed } from "./units.js";
 
-export const LENGTH = [
-  ["m", 0],
-  ["mm", -3],
-  ["µm", -6],
-  ["nm", -9],
-];
-export const FORCE = [
-  ["kN", 3],
-  ["N", 0],
-  ["mN", -3],
-  ["µN", -6],
-];
-export const MODULUS = [
-  ["GPa", 9],
-  ["MPa", 6],
-  ["kPa", 3],
-  ["Pa", 0],
-];
+export const LENGTH = prefixed("m", "", "m", "µ", "n");
+export const FORCE = prefixed("N", "k", "", "m", "µ");
+export const MODULUS = prefixed("Pa", "G", "M", "k", "");
+export const STRESS = prefixed("Pa", "M", "G", "");
 
 const radius = { name: "radius", label: "Radius R", units: LENGTH, unit: "mm", value: "10" };
 
@@ -54,7 +40,8 @@ export const WITHOUT_STRESS = ["ellipsoid", "asperities", "load_curve"];
 
 const lines = (count, line) => Array.from({ length: count }, (_, index) => line(index)).join("\n");
 
-/** The shapes that are given by two columns: what the text field is called, its columns with their units, and an example. */
+/** The shapes that are given by two columns: what the text field is called, its columns with their units, and an
+ *  example. */
 export const COLUMNS = {
   // A ball of 10 mm in radius.
   tabulated: [

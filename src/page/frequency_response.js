@@ -1,12 +1,12 @@
 // How a contact damps: stiffness and loss factor over the amplitude, and the oscillations of a mass that hangs on it.
-import { call } from "./api.js";
 import { Chart } from "./chart.js";
-import { el, notice, withSubscripts } from "./dom.js";
+import { columnsOf } from "./chart_menu.js";
+import { el, figure } from "./dom.js";
 import { Fields, NumberField } from "./form_fields.js";
 import { FORCE } from "./form_options.js";
 import { virginContact } from "./protocol_run.js";
+import { study } from "./study.js";
 import { formatNumber, formatQuantity } from "./units.js";
-import { showWarnings, warningList } from "./warning_list.js";
 
 /** Amplitudes of the backbone, from the smallest to the largest over that of gross slip. */
 const [COUNT, SMALLEST, LARGEST] = [60, 1e-3, 2];
@@ -27,7 +27,8 @@ function requestOf(model, { mass, drive, from, to, count, machine, tolerance }) 
   const slip = Math.max(model.slip(model.state), 0) || model.figures.gross_slip_displacement || 1e-7;
   const [low, high, points] = [from.value, to.value, count.value ?? FREQUENCIES];
   const spaced = (index) => low * (high / low) ** (index / Math.max(points - 1, 1));
-  const hasRange = [low, high, points].every((value) => typeof value === "number") && points >= 1 && points <= MOST_FREQUENCIES;
+  const hasRange =
+    [low, high, points].every((value) => typeof value === "number") && points >= 1 && points <= MOST_FREQUENCIES;
   return {
     contact: virginContact(model),
     drive: { displacement: amplitudes(slip) },
@@ -44,16 +45,15 @@ function requestOf(model, { mass, drive, from, to, count, machine, tolerance }) 
 
 /** The resonance of a reply in rows. */
 function figureRows({ natural_frequency: natural, points }, drive) {
-  const pair = (name, value) => el("div", {}, el("dt", {}, withSubscripts(name)), el("dd", {}, value));
   const most = points.reduce((best, point) => (point.amplitude > best.amplitude ? point : best));
   const errors = points.map((point) => point.amplitude_error).filter((error) => error !== null);
   const worst = errors.length ? Math.max(...errors) : null;
   return [
-    pair("Frequency of small oscillations", formatQuantity(natural, "Hz")),
-    pair("Largest amplitude", `${formatQuantity(most.amplitude, "m")} at ${formatQuantity(most.frequency, "Hz")}`),
-    pair("Force over that amplitude", formatQuantity(drive / most.amplitude, "N/m", 3)),
-    pair("Phase there", `${formatNumber(most.phase, 3)}°`),
-    pair("Largest error of an amplitude", worst === null ? "not known" : formatQuantity(worst, "m", 2)),
+    figure("Frequency of small oscillations", formatQuantity(natural, "Hz")),
+    figure("Largest amplitude", `${formatQuantity(most.amplitude, "m")} at ${formatQuantity(most.frequency, "Hz")}`),
+    figure("Force over that amplitude", formatQuantity(drive / most.amplitude, "N/m", 3)),
+    figure("Phase there", `${formatNumber(most.phase, 3)}°`),
+    figure("Largest error of an amplitude", worst === null ? "not known" : formatQuantity(worst, "m", 2)),
   ];
 }
 
@@ -65,7 +65,9 @@ function plots() {
     height: 240,
     x: { label: "Amplitude U_0", unit: "m", log: true },
     y: { label: "Loss factor; stiffness of 1 when small" },
-    note: "Stiffness is force over displacement amplitude, as a part of that of small motions; the loss factor is the friction work of a cycle over 2π times the largest stored energy.",
+    note:
+      "Stiffness is force over displacement amplitude, as a part of that of small motions; the loss factor is the " +
+      "friction work of a cycle over 2π times the largest stored energy.",
   });
   const response = new Chart({
     name: "response",
@@ -74,16 +76,19 @@ function plots() {
     height: 320,
     x: { label: "Frequency", unit: "Hz", log: true },
     y: { label: "Displacement", unit: "m", log: true },
-    note: "The amplitude is that of the first harmonic, the peak half the range of the displacement. The backbone is the resonance of the mass on the stiffness at each amplitude.",
+    note:
+      "The amplitude is that of the first harmonic, the peak half the range of the displacement. The backbone is " +
+      "the resonance of the mass on the stiffness at each amplitude.",
   });
-  response.more = ([, , phase], { name }) => [name, ...(phase === undefined ? [] : [`phase ${formatNumber(phase, 3)}°`])];
-  for (const chart of [stiffness, response]) chart.element.hidden = true;
+  response.more = ([, , phase], { name }) => [
+    name,
+    ...(phase === undefined ? [] : [`phase ${formatNumber(phase, 3)}°`]),
+  ];
   return { stiffness, response };
 }
 
 /** Draws a reply. */
 function draw({ stiffness, response }, { cycles, frequency_response: resonance }, mass) {
-  stiffness.element.hidden = response.element.hidden = false;
   stiffness.draw({
     series: [
       {
@@ -91,19 +96,21 @@ function draw({ stiffness, response }, { cycles, frequency_response: resonance }
         kind: "stored",
         points: cycles.map((cycle) => [cycle.displacement_amplitude, cycle.secant_stiffness / cycle.tangent_stiffness]),
       },
-      { name: "loss factor", kind: "work", points: cycles.map((cycle) => [cycle.displacement_amplitude, cycle.loss_factor]) },
+      {
+        name: "loss factor",
+        kind: "work",
+        points: cycles.map((cycle) => [cycle.displacement_amplitude, cycle.loss_factor]),
+      },
     ],
     least: { y: [0] },
-    table: () => ({
-      columns: ["displacement_amplitude_m", "force_amplitude_n", "secant_stiffness_n_per_m", "loss_factor", "friction_work_j"],
-      rows: cycles.map((cycle) => [
-        cycle.displacement_amplitude,
-        cycle.force_amplitude,
-        cycle.secant_stiffness,
-        cycle.loss_factor,
-        cycle.dissipated_energy,
-      ]),
-    }),
+    table: () =>
+      columnsOf(cycles, {
+        displacement_amplitude_m: "displacement_amplitude",
+        force_amplitude_n: "force_amplitude",
+        secant_stiffness_n_per_m: "secant_stiffness",
+        loss_factor: "loss_factor",
+        friction_work_j: "dissipated_energy",
+      }),
   });
   // The first harmonic of the force in phase with the displacement is what a resonance feels.
   const backbone = cycles
@@ -123,10 +130,15 @@ function draw({ stiffness, response }, { cycles, frequency_response: resonance }
         points: backbone.filter(([f, u]) => f >= first && f <= last && u >= low && u <= 1.5 * high),
       },
     ],
-    table: () => ({
-      columns: ["frequency_hz", "amplitude_m", "amplitude_error_m", "peak_m", "phase_deg", "third_harmonic"],
-      rows: points.map((one) => [one.frequency, one.amplitude, one.amplitude_error, one.peak, one.phase, one.third_harmonic]),
-    }),
+    table: () =>
+      columnsOf(points, {
+        frequency_hz: "frequency",
+        amplitude_m: "amplitude",
+        amplitude_error_m: "amplitude_error",
+        peak_m: "peak",
+        phase_deg: "phase",
+        third_harmonic: "third_harmonic",
+      }),
   });
 }
 
@@ -151,41 +163,15 @@ export function responseCard(model) {
     tolerance: field("/tolerance", { label: "Relative error that is accepted", optional: true }),
   };
   const { from, to, count, machine, tolerance } = fields;
-  const figures = el("dl", { class: "figures", id: "response-figures", "aria-live": "polite" });
-  const warnings = warningList("response-warnings");
   const charts = plots();
-  const request = () => requestOf(model, fields);
-  const compute = async () => {
-    const first = form.check();
-    if (first) return first.control.focus();
-    button.disabled = true;
-    try {
-      const asked = request();
-      const reply = await call("POST", "/cycle", asked, model.signal);
-      form.clear();
-      figures.replaceChildren(...figureRows(reply.frequency_response, asked.frequency_response.drive_force));
-      showWarnings(warnings, reply.warnings);
-      draw(charts, reply, asked.frequency_response.mass);
-    } catch (error) {
-      if (model.signal.aborted) return;
-      if (!form.place(error)) notice(error.message, true);
-    } finally {
-      button.disabled = false;
-    }
-  };
-  const button = el("button", { class: "primary", id: "compute-response" }, "Compute");
-  const submit = (event) => {
-    event.preventDefault();
-    compute();
-  };
-  const element = el(
-    "section",
-    { class: "card", id: "response-card" },
-    el("h2", {}, "Frequency response"),
-    el("p", {}, "A mass hangs on the contact at the present load, and a force drives it: how far it swings, and how far behind the force."),
-    el(
-      "form",
-      { onsubmit: submit },
+  return study({
+    name: "response",
+    title: "Frequency response",
+    text:
+      "A mass hangs on the contact at the present load, and a force drives it: how far it swings, and how far behind " +
+      "the force.",
+    form,
+    parts: [
       fields.mass.element,
       fields.drive.element,
       el(
@@ -194,18 +180,12 @@ export function responseCard(model) {
         el("summary", {}, "Frequencies, machine and accuracy"),
         ...[from, to, count, machine, tolerance].map((one) => one.element),
       ),
-      form.rest,
-      el("p", { class: "row" }, button),
-    ),
-    figures,
-    warnings,
-    charts.response.element,
-    charts.stiffness.element,
-  );
-  return {
-    element,
+    ],
     charts: [charts.response, charts.stiffness],
-    show: () => {},
-    calls: () => [{ method: "POST", path: "/cycle", body: request() }],
-  };
+    signal: model.signal,
+    path: "/cycle",
+    request: () => requestOf(model, fields),
+    rows: (reply, asked) => figureRows(reply.frequency_response, asked.frequency_response.drive_force),
+    show: (reply, asked) => draw(charts, reply, asked.frequency_response.mass),
+  });
 }

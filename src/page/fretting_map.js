@@ -1,6 +1,8 @@
-// A fretting map of a contact: regime and lines of equal friction work over load and amplitude, with a mark at the present ones.
+// A fretting map of a contact: regime and lines of equal friction work over load and amplitude, with a mark at the
+// present ones.
 import { call } from "./api.js";
 import { Chart } from "./chart.js";
+import { columnsOf } from "./chart_menu.js";
 import { amplitudeOf } from "./steady_cycle.js";
 import { formatQuantity } from "./units.js";
 
@@ -59,7 +61,9 @@ export function frettingMap(model) {
     height: 340,
     x: { label: "Load F_N", unit: "N", log: true },
     y: { label: "Amplitude U_0", unit: "m", log: true },
-    note: "Grey: equal friction work of a cycle. Below the dashed line the middle sticks, above it the whole contact slides. The mark is the contact now.",
+    note:
+      "Grey: equal friction work of a cycle. Below the dashed line the middle sticks, above it the whole contact " +
+      "slides. The mark is the contact now.",
   });
   chart.more = (_, series) => [series.name];
   let data = null;
@@ -77,10 +81,13 @@ export function frettingMap(model) {
       if (error.status !== 422) throw error;
       return map(load());
     });
-    const table = () => ({
-      columns: ["normal_force_n", "displacement_amplitude_m", "regime", "friction_work_j"],
-      rows: cycles.map((cycle) => [cycle.normal_force, cycle.displacement_amplitude, cycle.regime, cycle.dissipated_energy]),
-    });
+    const table = () =>
+      columnsOf(cycles, {
+        normal_force_n: "normal_force",
+        displacement_amplitude_m: "displacement_amplitude",
+        regime: "regime",
+        friction_work_j: "dissipated_energy",
+      });
     data = { empty: "Without friction there is no map.", series: lines(cycles), table };
     mark();
   };

@@ -1,11 +1,12 @@
 // Loops that a bench has measured, as files or pasted: the service fits friction and stiffness to them.
 import { call } from "./api.js";
 import { Chart } from "./chart.js";
-import { el, notice, withdrawNotice } from "./dom.js";
-import { Fields, NumberField } from "./form_fields.js";
+import { el, figure, noticing, withdrawNotice } from "./dom.js";
+import { Fields, NumberField, valuesOf } from "./form_fields.js";
 import { FORCE, LENGTH } from "./form_options.js";
 import { loopRecord } from "./loop_record.js";
-import { formatInterval, formatQuantity } from "./units.js";
+import { study } from "./study.js";
+import { formatInterval, formatQuantity, prefixed } from "./units.js";
 import { showWarnings, warningList } from "./warning_list.js";
 
 /** What may be free: its name on the page, its unit, whether it is so at first, and whether only a sphere has it. */
@@ -32,12 +33,11 @@ function inWords(name) {
 
 /** The units in which a known value may be given. */
 const SCALES = {
-  "": undefined,
-  Pa: [["GPa", 9], ["MPa", 6], ["Pa", 0]],
-  "m/N": [["nm/N", -9], ["µm/N", -6], ["m/N", 0]],
-  m: [["µm", -6], ["nm", -9], ["mm", -3], ["m", 0]],
-  N: [["N", 0], ["mN", -3]],
-  "m/s": [["nm/s", -9], ["µm/s", -6], ["m/s", 0]],
+  Pa: prefixed("Pa", "G", "M", ""),
+  "m/N": prefixed("m/N", "n", "µ", ""),
+  m: prefixed("m", "µ", "n", "m", ""),
+  N: prefixed("N", "", "m"),
+  "m/s": prefixed("m/s", "n", "µ", ""),
 };
 const MOST_RECORDS = 16;
 /** Up to how many points of a record are drawn one by one. */
@@ -48,7 +48,7 @@ function estimateRows(estimates) {
   return Object.entries(estimates).map(([name, { value, interval, at_bound: bound }]) => {
     const [text, unit] = PARAMETERS[name] ?? [name, ""];
     const between = `95 %: ${formatInterval(interval, unit)}${bound ? ", at its bound" : ""}`;
-    return el("div", {}, el("dt", {}, text), el("dd", {}, `${formatQuantity(value, unit)} (${between})`));
+    return figure(text, `${formatQuantity(value, unit)} (${between})`);
   });
 }
 
@@ -91,30 +91,23 @@ export function fittedLoop(model) {
   const offered = Object.entries(PARAMETERS).filter(
     ([, [, , , ofSphere]]) => !ofSphere || model.definition.profile.type === "sphere",
   );
-  const boxes = offered.map(([name, [label, , checked]]) => {
-    const box = el("input", { type: "checkbox", name, checked });
-    return [box, el("label", {}, box, ` ${label}`)];
-  });
+  const boxes = offered.map(([name, [, , checked]]) => el("input", { type: "checkbox", name, checked }));
   const known = knownFields(form, offered);
-  const noise = { force: [FORCE, "mN"], displacement: [LENGTH, "nm"] };
-  const noises = Object.entries(noise).map(([name, [offers, unit]]) => [
-    name,
-    new NumberField(form, () => `/noise/${name}`, { label: `Noise of the ${name}`, units: offers, unit, optional: true }),
-  ]);
+  const noiseField = (name, units, unit) =>
+    new NumberField(form, () => `/noise/${name}`, { label: `Noise of the ${name}`, units, unit, optional: true });
+  const noise = { force: noiseField("force", FORCE, "mN"), displacement: noiseField("displacement", LENGTH, "nm") };
   const request = () => {
     const given = known.filter(({ value }) => value.value !== undefined);
+    const held = given.map(({ name, value, error }) => [name, { value: value.value, standard_error: error.value }]);
     // All records are in the units of the first.
     const units = records[0].units();
-    const told = noises.filter(([, field]) => field.value !== undefined);
     return {
       contact: model.definition,
       loops: records.map((record) => record.value(units)),
       units,
-      free: boxes.filter(([box]) => box.checked).map(([box]) => box.name),
-      known: given.length
-        ? Object.fromEntries(given.map(({ name, value, error }) => [name, { value: value.value, standard_error: error.value }]))
-        : undefined,
-      noise: told.length ? Object.fromEntries(told.map(([name, field]) => [name, field.value])) : undefined,
+      free: boxes.filter((box) => box.checked).map((box) => box.name),
+      known: held.length ? Object.fromEntries(held) : undefined,
+      noise: valuesOf(noise),
     };
   };
 
@@ -135,20 +128,19 @@ export function fittedLoop(model) {
   });
   for (const plot of [chart, left]) {
     plot.more = (_, series) => [series.name];
-    plot.element.hidden = true;
   }
   const estimates = el("dl", { class: "figures", id: "loop-estimates", "aria-live": "polite" });
   const said = el("p", { class: "note", id: "loop-said" }, "Choose a file or paste columns, and fit.");
   const warnings = warningList("loop-warnings");
   let fitted = null;
-  const create = async () => {
-    try {
-      location.hash = `#/contacts/${(await call("POST", "/contacts", fitted)).id}`;
-    } catch (refusal) {
-      notice(refusal.message, true);
-    }
-  };
-  const make = el("button", { type: "button", id: "create-fitted", hidden: true, onclick: create }, "Create this contact");
+  const create = noticing(async () => {
+    location.hash = `#/contacts/${(await call("POST", "/contacts", fitted)).id}`;
+  });
+  const make = el(
+    "button",
+    { type: "button", id: "create-fitted", hidden: true, onclick: create },
+    "Create this contact",
+  );
   const show = (reply) => {
     fitted = reply.contact;
     make.hidden = false;
@@ -158,15 +150,14 @@ export function fittedLoop(model) {
     const determined = reply.identifiable.flatMap((name, index) => [index ? ", " : "", ...inWords(name)]);
     said.replaceChildren("Determined: ", ...determined, `. Residual ${formatQuantity(rms, "N", 3)} rms, ${like}.`);
     showWarnings(warnings, reply.warnings);
-    const line = (name, kind, of, more) => ({
+    const line = (name, kind, of, look) => ({
       name,
       kind,
       // Loops are not joined with each other.
       points: reply.curve.flatMap((one) => [...one.displacement.map((x, index) => [x, of(one)[index]]), [0, null]]),
-      ...more,
+      ...look,
     });
     const dots = reply.curve.every((one) => one.displacement.length <= MOST_DOTS);
-    for (const plot of [chart, left]) plot.element.hidden = false;
     chart.draw({
       series: [
         line("fitted", "now", (one) => one.force),
@@ -174,46 +165,52 @@ export function fittedLoop(model) {
       ],
     });
     const rest = (one) => one.measured.map((force, index) => force - one.force[index]);
-    left.draw({ series: [line("residual", "points", rest, { dots: true, line: false, size: 1.7 })], least: { y: [0] } });
+    left.draw({
+      series: [line("residual", "points", rest, { dots: true, line: false, size: 1.7 })],
+      least: { y: [0] },
+    });
   };
-  const fit = async () => {
-    button.disabled = true;
-    try {
-      const first = form.check();
-      if (first) return first.control.focus();
-      await Promise.all(records.map((record) => record.settled()));
-      const question = records.map((record) => record.question()).find((asked) => asked !== undefined);
-      if (question) return void (form.rest.textContent = question);
-      show(await call("POST", "/fit", request(), model.signal));
-      form.clear();
-      withdrawNotice();
-    } catch (refusal) {
-      form.place(refusal);
-      if (!model.signal.aborted) notice(refusal.message, true);
-    } finally {
-      button.disabled = false;
-    }
+  const compute = async () => {
+    await Promise.all(records.map((record) => record.settled()));
+    const question = records.map((record) => record.question()).find((asked) => asked !== undefined);
+    form.rest.textContent = question ?? "";
+    if (question) return;
+    show(await call("POST", "/fit", request(), model.signal));
+    withdrawNotice();
   };
-  const button = el("button", { type: "button", class: "primary", id: "fit-loop", onclick: fit }, "Fit");
-  const card = el(
-    "section",
-    { class: "card", id: "loop-card" },
-    el("h2", {}, "Fit a measured loop"),
-    el("p", {}, "Force over displacement of a bench, for this contact: which friction and stiffness it has, and how surely."),
-    list,
-    el("p", { class: "row" }, more, fewer),
-    el("fieldset", {}, el("legend", {}, "To be found"), el("div", { class: "row" }, ...boxes.map(([, label]) => label))),
-    el(
-      "details",
-      {},
-      el("summary", {}, "What is known from elsewhere, and the noise"),
-      el("p", { class: "note" }, "With a standard error a known value takes part in the fit; without one it is held."),
-      ...known.map((one) => one.element),
-      ...noises.map(([, field]) => field.element),
-    ),
-    form.rest,
-    el("p", { class: "row" }, button),
-  );
+  const made = study({
+    name: "loop",
+    button: "Fit",
+    title: "Fit a measured loop",
+    text: "Force over displacement of a bench, for this contact: which friction and stiffness it has, and how surely.",
+    form,
+    parts: [
+      list,
+      el("p", { class: "row" }, more, fewer),
+      el(
+        "fieldset",
+        {},
+        el("legend", {}, "To be found"),
+        el("div", { class: "row" }, ...boxes.map((box) => el("label", {}, box, ` ${PARAMETERS[box.name][0]}`))),
+      ),
+      el(
+        "details",
+        {},
+        el("summary", {}, "What is known from elsewhere, and the noise"),
+        el(
+          "p",
+          { class: "note" },
+          "With a standard error a known value takes part in the fit; without one it is held.",
+        ),
+        ...known.map((one) => one.element),
+        ...Object.values(noise).map((one) => one.element),
+      ),
+    ],
+    charts: [chart, left],
+    signal: model.signal,
+    compute,
+    calls: () => [{ method: "POST", path: "/fit", body: request() }],
+  });
   const results = el(
     "section",
     { class: "card", "aria-label": "What was found" },
@@ -225,10 +222,5 @@ export function fittedLoop(model) {
     chart.element,
     left.element,
   );
-  return {
-    form: { element: card },
-    results: { element: results },
-    charts: [chart, left],
-    calls: () => [{ method: "POST", path: "/fit", body: request() }],
-  };
+  return { form: made, results: { element: results } };
 }

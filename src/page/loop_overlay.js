@@ -1,4 +1,5 @@
-// What is drawn over the loop of a contact: a loop that a bench has measured, from a file, and the loop of another contact.
+// What is drawn over the loop of a contact: a loop that a bench has measured, from a file, and the loop of another
+// contact.
 import { call, follow, pages } from "./api.js";
 import { debounce, el, notice } from "./dom.js";
 import { columnsTable, fileSource, loopColumns, powerOfUnit, readingText } from "./file_source.js";
@@ -44,9 +45,15 @@ function measuredFile(loop, changed) {
     const { displacement = [], force = [] } = reply?.loop ?? {};
     const factor = (quantity) => 10 ** powerOfUnit(reply.units[quantity]);
     points = displacement.map((value, index) => [value * factor("displacement"), force[index] * factor("force")]);
-    const unnamed = (reply?.preview.columns ?? []).filter(({ quantity, assumed }) => quantity in reply.units && assumed);
-    const assumed = unnamed.map(({ quantity, unit }) => ` Nothing says the unit of the ${quantity}: ${unit} is assumed.`);
-    said.textContent = reply ? `${points.length} points of ${name}.${assumed.join("")}` : `${name}: ${readingText(reply, error)}`;
+    const unnamed = (reply?.preview.columns ?? []).filter(
+      ({ quantity, assumed }) => quantity in reply.units && assumed,
+    );
+    const assumed = unnamed.map(
+      ({ quantity, unit }) => ` Nothing says the unit of the ${quantity}: ${unit} is assumed.`,
+    );
+    said.textContent = reply
+      ? `${points.length} points of ${name}.${assumed.join("")}`
+      : `${name}: ${readingText(reply, error)}`;
     changed();
   };
   const source = fileSource("loop", el("textarea", {}), columns.query, taken, columns.reset);
@@ -83,7 +90,8 @@ function measuredFile(loop, changed) {
     el("button", { type: "button", class: "quiet", onclick: clear }, "Clear"),
     said,
   );
-  one.series = () => (points.length ? [{ name: `file ${name.slice(0, 40).replaceAll("_", " ")}`, kind: "file", points }] : []);
+  one.series = () =>
+    points.length ? [{ name: `file ${name.slice(0, 40).replaceAll("_", " ")}`, kind: "file", points }] : [];
   return one;
 }
 
@@ -99,7 +107,9 @@ function otherContact(model, changed) {
     const page = await call("GET", `/contacts/${id}/loop?last=${MOVES}&points_per_move=16`, undefined, signal);
     points = page.displacement.map((x, index) => [x, page.force[index]]);
     // A contact that is known by its load curve alone has no stress.
-    const stress = await call("GET", `/contacts/${id}/stress?points=300&fields=shear`, undefined, signal).catch(() => null);
+    const stress = await call("GET", `/contacts/${id}/stress?points=300&fields=shear`, undefined, signal).catch(
+      () => null,
+    );
     shear = stress ? stress.radius.map((r, index) => [r, stress.shear[index]]) : [];
     changed();
   };

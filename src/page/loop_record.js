@@ -22,7 +22,8 @@ export function loopRecord(form, index) {
   const prefix = index ? `record ${index + 1}: ` : "";
   const columns = loopColumns(prefix);
   const start = new Choice(form, () => `${at()}/start`, "The record begins", STARTS, "steady");
-  const optional = (name, label, more) => new NumberField(form, () => `${at()}/${name}`, { label, optional: true, ...more });
+  const optional = (name, label, more) =>
+    new NumberField(form, () => `${at()}/${name}`, { label, optional: true, ...more });
   const load = optional("normal_force", "Load, if not that of the contact", { units: FORCE, unit: "N" });
   const weight = optional("weight", "Weight beside the other records");
   const said = el("p", { class: "note", "aria-live": "polite" });
@@ -53,7 +54,7 @@ export function loopRecord(form, index) {
     const { displacement = [], force = [], time, normal_force } = found?.loop ?? {};
     const scaled = (name, values) => {
       const factor = 10 ** (powerOfUnit(units()[name]) - powerOfUnit(wanted[name]));
-      return factor === 1 ? values : values.map((value) => value * factor);
+      return factor === 1 ? values : values.map((number) => number * factor);
     };
     return {
       displacement: scaled("displacement", displacement),
@@ -67,9 +68,8 @@ export function loopRecord(form, index) {
   /** What has to be asked before the record can be fitted, if anything has. */
   const question = () => {
     const unnamed = (found?.preview.columns ?? []).filter(({ quantity, assumed }) => quantity in units() && assumed);
-    return unnamed.length
-      ? `Record ${index + 1}: nothing says the unit of the ${unnamed.map(({ quantity }) => quantity).join(", nor of the ")}: choose it.`
-      : undefined;
+    const names = unnamed.map(({ quantity }) => quantity).join(", nor of the ");
+    return names ? `Record ${index + 1}: nothing says the unit of the ${names}: choose it.` : undefined;
   };
   return { element, value, units, question, settled: source.settled };
 }

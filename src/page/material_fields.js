@@ -1,5 +1,5 @@
 // The parts of the form for the material of the bodies, and for the preload.
-import { el } from "./dom.js";
+import { el, mapped } from "./dom.js";
 import { Choice, NumberField } from "./form_fields.js";
 import { MATERIALS, MODULUS, PRELOADS } from "./form_options.js";
 
@@ -36,17 +36,14 @@ export function materialFields(form, changed) {
   let read;
   const fill = () => {
     if (choice.value === "effective") {
-      const star = ["e_star", "g_star"].map((name, index) => [
-        name,
-        new NumberField(form, () => `/material/effective/${name}`, {
-          label: ["Reduced modulus E*", "Reduced shear modulus G*"][index],
-          units: MODULUS,
-          unit: "GPa",
-          value: ["231", "190"][index],
-        }),
-      ]);
-      fields.replaceChildren(...star.map(([, field]) => field.element));
-      read = () => ({ effective: Object.fromEntries(star.map(([name, field]) => [name, field.value])) });
+      const field = (name, label, value) =>
+        new NumberField(form, () => `/material/effective/${name}`, { label, units: MODULUS, unit: "GPa", value });
+      const star = {
+        e_star: field("e_star", "Reduced modulus E*", "231"),
+        g_star: field("g_star", "Reduced shear modulus G*", "190"),
+      };
+      fields.replaceChildren(...Object.values(star).map((one) => one.element));
+      read = () => ({ effective: mapped(star, (one) => one.value) });
     } else {
       const first = body(form, "/material/bodies/0", "First body");
       const second = choice.value === "two" ? body(form, "/material/bodies/1", "Second body") : null;

@@ -1,6 +1,6 @@
-// The controls that move a contact: a number in a unit, and a slider. Both say what they will send; Enter sends it, or the mouse
-// or finger that releases the slider.
-import { el, withSubscripts } from "./dom.js";
+// The controls that move a contact: a number in a unit, and a slider. Both say what they will send; Enter sends it, or
+// the mouse or finger that releases the slider.
+import { el, reason, withSubscripts } from "./dom.js";
 import { numberBox } from "./form_fields.js";
 import { formatQuantity, inPower, numberMistake, parseNumber, powerOf, unitScale } from "./units.js";
 
@@ -56,7 +56,7 @@ export function moveControl({ name, label, unit, limits, value, send }) {
       await send(amount);
       showFault();
     } catch (error) {
-      showFault(error.errors?.[0]?.detail ?? error.message);
+      showFault(reason(error));
       isEdited = document.activeElement === box;
       // A state that came meanwhile has written over it.
       if (isEdited) box.value = typed;
@@ -97,7 +97,10 @@ export function moveControl({ name, label, unit, limits, value, send }) {
     const amount = parseNumber(box.value, power());
     if (amount === undefined) toSend.textContent = "";
     else if (typeof amount === "string") toSend.textContent = numberMistake(box.value);
-    else toSend.textContent = `Enter sends ${box.value.trim()} ${choice.selectedOptions[0].textContent} = ${amount} ${unit}.`;
+    else {
+      const typed = `${box.value.trim()} ${choice.selectedOptions[0].textContent}`;
+      toSend.textContent = `Enter sends ${typed} = ${amount} ${unit}.`;
+    }
   });
   const enter = () => {
     if (isDragged) return commit(sliderValue());
@@ -135,7 +138,7 @@ export function moveControl({ name, label, unit, limits, value, send }) {
       const fits = powerOf(Math.max(Math.abs(ends[0]), Math.abs(ends[1])));
       fitting = Math.max(Math.min(fits, POWERS[unit][0]), POWERS[unit].at(-1));
       automatic.textContent = `${unitScale(10 ** fitting, unit).unit} (auto)`;
-      slider.value = Math.round(((value(state) - ends[0]) / (ends[1] - ends[0])) * POSITIONS);
+      slider.value = String(Math.round(((value(state) - ends[0]) / (ends[1] - ends[0])) * POSITIONS));
       if (!isEdited) box.value = display(value(state));
     }
     slider.setAttribute("aria-valuetext", formatQuantity(isDragged ? sliderValue() : value(state), unit, 6));

@@ -1,26 +1,38 @@
-// The card that moves a contact: by displacement, force or load, to places of note, and back. On a phone it stays in reach.
-import { el, notice } from "./dom.js";
-import { confirmFar, isFar } from "./far_move.js";
+// The card that moves a contact: by displacement, force or load, to places of note, and back. On a phone it stays in
+// reach.
+import { call } from "./api.js";
+import { answerOf, el, noticing } from "./dom.js";
 import { goBack } from "./go_back.js";
 import { moveControl } from "./move_controls.js";
+import { virginContact } from "./protocol_run.js";
 
 /** As the style sheet has it: windows in which the card stands at the lower edge, folded but for the displacement. */
 const NARROW = matchMedia("(max-width: 62rem)");
 
+/** Asks whether a displacement is meant that the service calls far beyond slip. */
+async function isMeant(model, displacement) {
+  const contact = model.state.normal_force > 0 ? virginContact(model) : model.definition;
+  const body = { contact, path: { displacement: [displacement] }, steps: "last" };
+  const { warnings } = await call("POST", "/simulate", body, model.signal);
+  const far = warnings.find(({ code }) => code === "far_beyond_slip");
+  if (!far) return true;
+  const message = far.message[0].toUpperCase() + far.message.slice(1);
+  document.getElementById("far-text").textContent = `${message} All other moves would be too small to be seen.`;
+  return (await answerOf("far")) === "send";
+}
+
 /** The card, the choices of units, and a function that shows a state. */
 export function moveHands(model) {
   const { figures } = model;
+  const reach = (state) => Math.max(model.reach(state), Math.abs(state.displacement));
   const displacement = moveControl({
     name: "displacement",
     label: "Displacement U",
     unit: "m",
     value: (state) => state.displacement,
-    limits: (state) => {
-      const reach = Math.max(model.reach(state), Math.abs(state.displacement));
-      return [-reach, reach];
-    },
+    limits: (state) => [-reach(state), reach(state)],
     send: async (wanted) => {
-      if (isFar(model, wanted) && !(await confirmFar(model, wanted))) throw new Error("Not sent.");
+      if (Math.abs(wanted) > reach(model.state) && !(await isMeant(model, wanted))) throw new Error("Not sent.");
       await model.move({ displacement: wanted });
     },
   });
@@ -49,7 +61,7 @@ export function moveHands(model) {
       "button",
       {
         type: "button",
-        onclick: () => model.move({ displacement: to() }).catch((error) => notice(error.message, true)),
+        onclick: noticing(() => model.move({ displacement: to() })),
       },
       text,
     );

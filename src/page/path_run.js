@@ -1,6 +1,8 @@
 // Runs a whole path on a contact: cycles, or any other path of the API as JSON.
 import { call } from "./api.js";
 import { el } from "./dom.js";
+import { Fields, JsonField } from "./form_fields.js";
+import { study } from "./study.js";
 import { formatQuantity } from "./units.js";
 
 /** Five cycles to half of gross slip. */
@@ -11,51 +13,27 @@ function halfSlip({ figures }) {
 
 /** The card that runs a path on a contact. */
 export function pathCard(model) {
-  const path = `/contacts/${model.id}/path`;
-  const text = el("textarea", {
-    id: "path",
-    rows: 6,
-    spellcheck: "false",
-    "aria-label": "Path as JSON",
-    value: JSON.stringify(halfSlip(model), null, 2),
-  });
+  const at = `/contacts/${model.id}/path`;
+  const form = new Fields();
+  const path = new JsonField(form, () => "/path", "Path as JSON", JSON.stringify(halfSlip(model), null, 2));
   const status = el("p", { class: "status", role: "status", id: "path-status" });
-  const run = el("button", { class: "primary", id: "run-path" }, "Run");
-  const parsed = () => {
-    try {
-      return JSON.parse(text.value);
-    } catch {
-      return null;
-    }
-  };
-  const request = () => ({ method: "POST", path, body: { path: parsed(), steps: "last" } });
-  const begin = async (event) => {
-    event.preventDefault();
-    if (parsed() === null) {
-      status.textContent = "This is not JSON.";
-      return;
-    }
-    run.disabled = true;
+  const request = () => ({ path: path.value, steps: "last" });
+  const compute = async () => {
     const before = model.state.dissipated_energy;
-    try {
-      const { steps, warnings } = await call("POST", path, request().body, model.signal);
-      const work = steps[0].dissipated_energy - before;
-      const warned = (warnings ?? []).map(({ message }) => ` Note: ${message}`).join("");
-      status.textContent = `Done. Friction work of the path: ${formatQuantity(work, "J", 4)}.${warned}`;
-    } catch (error) {
-      const fault = error.errors?.[0];
-      if (!model.signal.aborted) status.textContent = fault ? `${fault.pointer}: ${fault.detail}` : error.message;
-    } finally {
-      run.disabled = false;
-    }
+    const { steps, warnings } = await call("POST", at, request(), model.signal);
+    const work = formatQuantity(steps[0].dissipated_energy - before, "J", 4);
+    const warned = (warnings ?? []).map(({ message }) => ` Note: ${message}`).join("");
+    status.textContent = `Done. Friction work of the path: ${work}.${warned}`;
   };
-  const element = el(
-    "section",
-    { class: "card", id: "path-card" },
-    el("h2", {}, "Run a path"),
-    el("p", {}, "Cycles between two turns, or any other path that the API takes, as JSON. It is run whole or not at all."),
-    el("form", { onsubmit: begin }, text, el("p", { class: "row" }, run)),
-    status,
-  );
-  return { element, calls: () => (parsed() === null ? [] : [request()]) };
+  return study({
+    name: "path",
+    button: "Run",
+    title: "Run a path",
+    text: "Cycles between two turns, or any other path that the API takes, as JSON. It is run whole or not at all.",
+    form,
+    parts: [path.element, status],
+    signal: model.signal,
+    compute,
+    calls: () => (path.value === null ? [] : [{ method: "POST", path: at, body: request() }]),
+  });
 }

@@ -1,5 +1,7 @@
-// A menu that opens below its button, and closes by Escape, by a choice, or when the focus leaves it.
+// A menu that opens below its button: a popover, which Escape, a choice or a click elsewhere closes.
 import { el } from "./dom.js";
+
+let count = 0;
 
 /** An entry; `label` is its name where the text alone would not say what it does. */
 export const menuEntry = (text, act, label) =>
@@ -8,30 +10,24 @@ export const menuEntry = (text, act, label) =>
     {
       type: "button",
       "aria-label": label,
-      onclick: (event) => {
-        event.currentTarget.closest("details").open = false;
+      onclick: ({ currentTarget }) => {
+        currentTarget.closest("[popover]").hidePopover();
         act();
       },
     },
     text,
   );
 
-/** A menu of entries; `label` is its name where the text of its button would not say it. */
+/** A menu of entries; `label` is its name where the text of its button would not say it.
+ * @param {string} text
+ * @param {{ label?: string, class: string, id?: string }} about
+ * @param {HTMLElement[]} entries */
 export function popupMenu(text, { label, ...attributes }, entries) {
+  const id = `menu-${(count += 1)}`;
   return el(
-    "details",
-    {
-      ...attributes,
-      onkeydown: (event) => {
-        if (event.key !== "Escape") return;
-        event.currentTarget.open = false;
-        event.currentTarget.firstElementChild.focus();
-      },
-      onfocusout: (event) => {
-        if (!event.currentTarget.contains(event.relatedTarget)) event.currentTarget.open = false;
-      },
-    },
-    el("summary", { "aria-label": label, title: label }, text),
-    el("div", {}, ...entries),
+    "div",
+    attributes,
+    el("button", { type: "button", popovertarget: id, "aria-label": label, title: label }, text),
+    el("div", { popover: "", id }, ...entries),
   );
 }

@@ -37,7 +37,7 @@ export function profileFields(form, at, changed, nested = false) {
   return { element, value: () => ({ type: choice.value, ...read() }) };
 }
 
-function numbers(form, at, changed, body, type) {
+function numbers(form, at, _changed, body, type) {
   const fields = PROFILES[type][1].map((about) => {
     const place = () => `${at()}/${about.name}`;
     const field = about.options
@@ -80,7 +80,7 @@ function columns(form, at, changed, body, type) {
     type === "load_curve"
       ? ["loop", ["displacement", "force"], ["displacement_unit", "force_unit"]]
       : ["scan", ["x", "z"], ["lateral", "height"]];
-  const unitsOf = ({ units }) => (kind === "scan" ? [units.lateral, units.height] : [units.displacement, units.force]);
+  const unitsOf = ({ units: own }) => (kind === "scan" ? [own.lateral, own.height] : [own.displacement, own.force]);
   const powers = () => units.map((unit) => Number(unit.value));
   const symbols = () => units.map((unit) => unit.selectedOptions[0].text.replace("µ", "u"));
   const query = () => {
@@ -93,7 +93,9 @@ function columns(form, at, changed, body, type) {
     const unnamed = [];
     for (const [index, unit] of units.entries()) {
       if (!reply || chosen.has(unit)) continue;
-      const isAssumed = reply.preview.columns.some(({ quantity, assumed }) => quantity === quantities[index] && assumed);
+      const isAssumed = reply.preview.columns.some(
+        ({ quantity, assumed }) => quantity === quantities[index] && assumed,
+      );
       if (isAssumed) unnamed.push(unit);
       else chooseUnit(unit, unitsOf(reply)[index]);
     }
@@ -120,7 +122,9 @@ function columns(form, at, changed, body, type) {
   const inMetres = (value, power) => (value === null ? null : Number(inPower(value, -power, 17)));
   const read = () => {
     const values = pair();
-    return Object.fromEntries(described.map(([name], index) => [name, values[index].map((value) => inMetres(value, powers()[index]))]));
+    return Object.fromEntries(
+      described.map(([name], index) => [name, values[index].map((value) => inMetres(value, powers()[index]))]),
+    );
   };
   const scan = () => {
     const [lateral, height] = symbols();
@@ -128,7 +132,9 @@ function columns(form, at, changed, body, type) {
   };
   const write = ({ r, z }) => {
     const inUnit = (value, unit) => Number((value / 10 ** Number(unit.value)).toPrecision(12));
-    text.control.value = r.map((radius, index) => `${inUnit(radius, units[0])}\t${inUnit(z[index], units[1])}`).join("\n");
+    text.control.value = r
+      .map((radius, index) => `${inUnit(radius, units[0])}\t${inUnit(z[index], units[1])}`)
+      .join("\n");
     text.control.dispatchEvent(new Event("input", { bubbles: true }));
   };
   const first = type === "tabulated" ? " The first radius is 0, unless it is a scan to be fitted." : "";
@@ -136,16 +142,21 @@ function columns(form, at, changed, body, type) {
     text.element,
     said,
     table.element,
-    el("div", { class: "row", onchange: choose }, ...described.map(([, name], index) => el("label", {}, name, units[index]))),
+    el(
+      "div",
+      { class: "row", onchange: choose },
+      ...described.map(([, name], index) => el("label", {}, name, units[index])),
+    ),
     el(
       "p",
       { class: "note" },
-      `Paste two columns from a spreadsheet or a file; they are separated by tabs, blanks, commas or semicolons.${first}`,
+      "Paste two columns from a spreadsheet or a file; they are separated by tabs, blanks, commas or semicolons.",
+      first,
     ),
   );
   if (isScan) {
-    const label = el("label", {}, "Distance of neighbours in a map, if its header does not say ", spacing);
-    body.append(el("p", { class: "row", onchange: choose }, label), scanFit(source, scan, write));
+    const distance = el("label", {}, "Distance of neighbours in a map, if its header does not say ", spacing);
+    body.append(el("p", { class: "row", onchange: choose }, distance), scanFit(source, scan, write));
   }
   form.settle(source.settled);
   source.read();

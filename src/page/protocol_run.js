@@ -1,25 +1,32 @@
 // Runs a protocol on a contact, move by move: reversals of falling amplitude that reduce its shear stress.
-import { call, offered } from "./api.js";
-import { el, pause, withSubscripts } from "./dom.js";
+import { call } from "./api.js";
+import { el, pause, reason, withSubscripts } from "./dom.js";
 import { numberBox, numberIn } from "./form_fields.js";
 import { formatNumber, formatQuantity, parseNumber } from "./units.js";
 
-export const PROTOCOLS = { falling_amplitude: "Falling amplitude (linear)", equal_peaks: "Equal peaks (for this shape)" };
+export const PROTOCOLS = {
+  falling_amplitude: "Falling amplitude (linear)",
+  equal_peaks: "Equal peaks (for this shape)",
+};
 /** The protocol that the service computes from the present state of a contact. */
 const RELAX = "relax";
 /** Duration of a run with many moves, and longest pause between two moves, ms. */
 const [RUN_TIME, MAX_PAUSE] = [6000, 400];
 
 /** A virgin contact, at the present load of a contact. */
-export const virginContact = ({ definition, state }) => ({ ...definition, preload: { indentation: state.indentation } });
+export const virginContact = ({ definition, state }) => ({
+  ...definition,
+  preload: { indentation: state.indentation },
+});
 
 /** The card that runs a protocol on a contact. */
 export function protocolCard(model) {
   const { id, signal } = model;
+  const options = { ...PROTOCOLS, [RELAX]: "Least stress, from the present state" };
   const kind = el(
     "select",
     { id: "protocol" },
-    Object.entries(PROTOCOLS).map(([key, text]) => el("option", { value: key }, text)),
+    Object.entries(options).map(([key, text]) => el("option", { value: key }, text)),
   );
   const count = numberBox({ id: "reversals", size: 6, value: "20" });
   const bar = el("progress", { id: "progress", max: 1, value: 0, "aria-label": "Progress of the run" });
@@ -28,29 +35,30 @@ export function protocolCard(model) {
   const stop = el("button", { type: "button", hidden: true, onclick: () => halt?.abort() }, "Stop");
   let halt = null;
 
-  const remaining = async () =>
-    (await call("GET", `/contacts/${id}/stress?points=2&residual=true`, undefined, signal)).residual;
-  const amount = ({ max }) => {
-    const { max_pressure: full } = model.figures;
+  const remaining = () => call("GET", `/contacts/${id}/residual`, undefined, signal);
+  const amount = ({ max, relative }) => {
     if (max === null) return "an infinite shear stress at one radius";
-    const share =
-      full && model.figures.normal_force === model.state.normal_force
-        ? ` (${formatNumber((100 * max) / (model.friction * full), 3)} % of μ p_max)`
-        : "";
+    // Where the pressure is infinite, the reply compares with its mean.
+    const hasShare = model.figures.max_pressure !== null && relative !== null;
+    const share = hasShare ? ` (${formatNumber(100 * relative, 3)} % of μ p_max)` : "";
     return `up to ${formatQuantity(max, "Pa", 3)} of shear stress${share}`;
   };
-  const relax = `/contacts/${id}/relax`;
-  offered("/contacts/{id}/relax").then((is) => {
-    if (is) kind.append(el("option", { value: RELAX }, "Least stress, from the present state"));
-  });
-  const path = () => ({ [kind.value]: { reversals: parseNumber(count.value) } });
+  const reversals = () => parseNumber(count.value);
+  const path = () => ({ [kind.value]: { reversals: reversals() } });
   const requestOfRun = () =>
     kind.value === RELAX
-      ? { method: "POST", path: relax, body: { reversals: parseNumber(count.value) } }
+      ? { method: "POST", path: `/contacts/${id}/relax`, body: { reversals: reversals() } }
       : { method: "POST", path: `/contacts/${id}/path`, body: { path: path(), steps: "last" } };
   const displacements = async () => {
-    if (kind.value === RELAX)
-      return (await call("POST", relax, { reversals: parseNumber(count.value), dry_run: true }, signal)).path.displacement;
+    if (kind.value === RELAX) {
+      const { path: best } = await call(
+        "POST",
+        `/contacts/${id}/relax`,
+        { reversals: reversals(), dry_run: true },
+        signal,
+      );
+      return best.displacement;
+    }
     const { steps } = await call("POST", "/simulate", { contact: virginContact(model), path: path() }, signal);
     return steps.map((step) => step.displacement);
   };
@@ -67,9 +75,9 @@ export function protocolCard(model) {
       await pause(Math.min(MAX_PAUSE, RUN_TIME / turns.length), halt.signal);
     }
     const after = await remaining();
-    status.replaceChildren(
-      ...withSubscripts(`${halt.signal.aborted ? "Stopped. " : ""}Before: ${amount(before)}. Now: ${amount(after)}.${before.max === 0 ? " There was nothing to reduce: the moves brought this stress." : ""}`),
-    );
+    const stopped = halt.signal.aborted ? "Stopped. " : "";
+    const nothing = before.max === 0 ? " There was nothing to reduce: the moves brought this stress." : "";
+    status.replaceChildren(...withSubscripts(`${stopped}Before: ${amount(before)}. Now: ${amount(after)}.${nothing}`));
   };
   const begin = async (event) => {
     event.preventDefault();
@@ -80,7 +88,7 @@ export function protocolCard(model) {
     try {
       await run();
     } catch (error) {
-      if (!signal.aborted) status.textContent = error.errors?.[0]?.detail ?? error.message;
+      if (!signal.aborted) status.textContent = reason(error);
     } finally {
       start.disabled = false;
       stop.hidden = true;
@@ -93,7 +101,9 @@ export function protocolCard(model) {
     el(
       "p",
       {},
-      "Pushed aside and brought back, a loaded contact keeps shear stress. Moved back and forth with an amplitude that falls from gross slip to zero, it loses most of it: each reversal leaves a ring of the opposite sign, and many small rings are left where there was one large stress.",
+      "Pushed aside and brought back, a loaded contact keeps shear stress. Moved back and forth with an " +
+        "amplitude that falls from gross slip to zero, it loses most of it: each reversal leaves a ring of the " +
+        "opposite sign, and many small rings are left where there was one large stress.",
     ),
     el(
       "form",

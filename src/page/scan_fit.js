@@ -1,7 +1,7 @@
 // A scan in the field of a table: chosen or dropped as a file, or pasted; the service fits a profile to it.
 import { call } from "./api.js";
 import { Chart } from "./chart.js";
-import { el, notice } from "./dom.js";
+import { el, noticing } from "./dom.js";
 import { formatQuantity } from "./units.js";
 
 /** Controls below a table that `source` reads. `scan` gives what it found, and `write` takes the profile. */
@@ -15,24 +15,19 @@ export function scanFit(source, scan, write) {
   });
   chart.element.hidden = true;
   const said = el("p", { class: "note", id: "scan-said", "aria-live": "polite" });
-  const fit = async () => {
-    try {
-      await source.settled();
-      const reply = await call("POST", "/profiles/fit", scan());
-      const points = ({ radius, height }) => radius.map((r, index) => [r, height[index]]);
-      chart.element.hidden = false;
-      chart.draw({
-        series: [
-          { name: "scan", kind: "bound", points: points(reply.raw) },
-          { name: "profile", kind: "pressure", points: points(reply.used) },
-        ],
-      });
-      said.textContent = [summary(reply), ...reply.warnings.map((warning) => warning.message)].join(". ");
-      write(reply.profile);
-    } catch (error) {
-      notice(error.message, true);
-    }
-  };
+  const fit = noticing(async () => {
+    await source.settled();
+    const reply = await call("POST", "/profiles/fit", scan());
+    const points = ({ radius, height }) => radius.map((r, index) => [r, height[index]]);
+    chart.draw({
+      series: [
+        { name: "scan", kind: "bound", points: points(reply.raw) },
+        { name: "profile", kind: "pressure", points: points(reply.used) },
+      ],
+    });
+    said.textContent = [summary(reply), ...reply.warnings.map((warning) => warning.message)].join(". ");
+    write(reply.profile);
+  });
   return el(
     "div",
     {},
@@ -45,7 +40,8 @@ export function scanFit(source, scan, write) {
 
 /** What a fit says in a sentence. */
 function summary({ radius_of_curvature: { value, standard_error: error }, residual, centre }) {
-  const radius = value === null ? "Flat on the axis" : `Radius ${formatQuantity(value, "m")} ± ${formatQuantity(error, "m", 2)}`;
+  const radius =
+    value === null ? "Flat on the axis" : `Radius ${formatQuantity(value, "m")} ± ${formatQuantity(error, "m", 2)}`;
   const left = `residual ${formatQuantity(residual.rms, "m", 3)}, ${residual.outliers} points left out`;
   return `${radius}, axis at ${formatQuantity(centre.x, "m", 3)}, ${left}`;
 }

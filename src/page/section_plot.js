@@ -1,10 +1,12 @@
 // A section through a body: a stress as shades over x and depth, the edge of the contact, and the largest value.
 import { Chart } from "./chart.js";
+import { columnsOf } from "./chart_menu.js";
 import { svg } from "./dom.js";
 import { formatNumber, formatQuantity } from "./units.js";
 
 const SHADES = 24;
-/** How far beyond the surface a section with a mark reaches, so that one on the surface is seen whole; a part of its depth. */
+/** How far beyond the surface a section with a mark reaches, so that one on the surface is seen whole; a part of its
+ *  depth. */
 const RIM = 0.06;
 /** How far a name stays from a mark, pixels. */
 const CLEAR = 32;
@@ -12,11 +14,11 @@ const CLEAR = 32;
 /** The points of a reply over a grid, `[x, z, value]`, from left to right and then down. */
 export function gridPoints({ x, z }, values, rows) {
   const points = x.map((place, index) => [place, z[index], values[index]]);
-  return Array.from({ length: rows }, (_, row) => points.filter((_, index) => index % rows === row)).flat();
+  return Array.from({ length: rows }, (_, row) => points.filter((_point, index) => index % rows === row)).flat();
 }
 
-/** The plot; `show` draws points `[x, z, value]` in rows of so many `columns`, marks the `worst` place, by default the largest of
- *  them, and returns its smallest, largest and first infinite one. */
+/** The plot; `drawPoints` draws points `[x, z, value]` in rows of so many `columns`, marks the `worst` place, by
+ *  default the largest of them, and returns its smallest, largest and first infinite one. */
 export function sectionPlot({ name, title, note }) {
   const chart = new Chart({
     name,
@@ -27,37 +29,50 @@ export function sectionPlot({ name, title, note }) {
     y: { label: "Depth z", unit: "m" },
     note,
   });
-  chart.show = (points, { field, name, columns, radius, unit = "Pa", worst }) => {
+  const drawPoints = (points, { field, quantity, columns, radius, unit = "Pa", worst = undefined }) => {
     const finite = points.filter((point) => point[2] !== null);
     const low = finite.reduce((least, point) => (point[2] < least[2] ? point : least));
     const high = finite.reduce((most, point) => (point[2] > most[2] ? point : most));
     const largest = -low[2] > high[2] ? low : high;
     const [from, to] = [Math.min(low[2], 0), Math.max(high[2], worst?.value ?? 0, 0)];
     const text = (value, digits) => (unit ? formatQuantity(value, unit, digits) : formatNumber(value, digits));
-    const scale = { from, to, step: (to - from) / SHADES || 1, full: Math.max(Math.abs(from), Math.abs(to)) || 1, text, name };
+    const scale = {
+      from,
+      to,
+      step: (to - from) / SHADES || 1,
+      full: Math.max(Math.abs(from), Math.abs(to)) || 1,
+      text,
+      name: quantity,
+    };
     const [x, z] = worst ? [worst.point[0], worst.point[2]] : largest;
-    chart.more = ([, , value]) => [`${name} ${text(value)}`];
+    chart.more = ([, , value]) => [`${quantity} ${text(value)}`];
     chart.draw({
-      series: [{ name, points, line: false }],
+      series: [{ name: quantity, points, line: false }],
       // Depth grows downwards.
       range: { x: [points[0][0], points.at(-1)[0]], y: [points.at(-1)[1], worst ? -RIM * points.at(-1)[1] : 0] },
       marks: [{ x, y: z, class: "turn worst" }],
       layer: (plot, group) =>
-        group.append(...shades(plot, points, columns, scale), ...edges(plot, radius, [plot.x.at(x), plot.y.at(z)]), ...shadeScale(plot, scale)),
-      table: () => ({ columns: ["x_m", "depth_m", unit === "Pa" ? `${field}_pa` : field], rows: points }),
+        group.append(
+          ...shades(plot, points, columns, scale),
+          ...edges(plot, radius, [plot.x.at(x), plot.y.at(z)]),
+          ...shadeScale(plot, scale),
+        ),
+      table: () => columnsOf(points, { x_m: 0, depth_m: 1, [unit === "Pa" ? `${field}_pa` : field]: 2 }),
     });
     return { low, high, infinite: points.find((point) => point[2] === null) };
   };
-  return chart;
+  return Object.assign(chart, { drawPoints });
 }
 
 /** The colour of a shade: green for tension and quantities without a sign, purple for compression. */
 function colour(index, { from, step, full }) {
   const value = (from + (index + 0.5) * step) / full;
-  return `color-mix(in oklab, var(${value < 0 ? "--minus" : "--plus"}) ${Math.round(100 * Math.abs(value))}%, var(--none))`;
+  const part = Math.round(100 * Math.abs(value));
+  return `color-mix(in oklab, var(${value < 0 ? "--minus" : "--plus"}) ${part}%, var(--none))`;
 }
 
-/** The part of a polygon of corners `[x, y, value]` in which values, straight between the corners, are at least `level`. */
+/** The part of a polygon of corners `[x, y, value]` in which values, straight between the corners, are at least
+ *  `level`. */
 function above(corners, level) {
   return corners.flatMap((corner, index) => {
     const next = corners[(index + 1) % corners.length];
@@ -77,14 +92,17 @@ function shades(plot, points, columns, scale) {
     return [plot.x.at(x), plot.y.at(z), value ?? scale.to];
   };
   const paths = Array.from({ length: SHADES }, () => []);
-  const write = (path, [first, ...others]) =>
-    path.push(`M${first[0].toFixed(2)},${first[1].toFixed(2)}${others.map(([x, y]) => `L${x.toFixed(2)},${y.toFixed(2)}`).join("")}Z`);
+  const place = ([x, y]) => `${x.toFixed(2)},${y.toFixed(2)}`;
+  const write = (path, corners) => path.push(`M${corners.map(place).join("L")}Z`);
   for (let row = 0; row + 1 < rows; row += 1) {
     // Cells that are above a level as a whole are one rectangle with their neighbours.
     const begun = paths.map(() => null);
     for (let column = 0; column + 1 < columns; column += 1) {
       const cell = [corner(row, column), corner(row, column + 1), corner(row + 1, column + 1), corner(row + 1, column)];
-      const [least, most] = [Math.min(...cell.map(([, , value]) => value)), Math.max(...cell.map(([, , value]) => value))];
+      const [least, most] = [
+        Math.min(...cell.map(([, , value]) => value)),
+        Math.max(...cell.map(([, , value]) => value)),
+      ];
       for (const [index, path] of paths.entries()) {
         const level = index === 0 ? -Infinity : scale.from + index * scale.step;
         if (least >= level && begun[index]) [begun[index][1], begun[index][2]] = [cell[1], cell[2]];
@@ -121,7 +139,14 @@ function shadeScale(plot, scale) {
   const ends = [scale.from, scale.to].map((value) => (value === 0 ? "0" : scale.text(value, 2)));
   return [
     ...Array.from({ length: SHADES }, (_, index) =>
-      svg("rect", { x: x + wide * index, y, width: wide, height: 8, fill: colour(index, scale), "shape-rendering": "crispEdges" }),
+      svg("rect", {
+        x: x + wide * index,
+        y,
+        width: wide,
+        height: 8,
+        fill: colour(index, scale),
+        "shape-rendering": "crispEdges",
+      }),
     ),
     svg("text", { class: "small over", x, y: y - 4 }, `${scale.name}: ${ends.join(" to ")}`),
   ];

@@ -1,5 +1,5 @@
 // A state in words.
-import { el, withSubscripts } from "./dom.js";
+import { el, figure, withSubscripts } from "./dom.js";
 import { formatNumber, formatQuantity } from "./units.js";
 
 const NAMES = { stick: "Stick", partial_slip: "Partial slip", gross_slip: "Gross slip", separated: "Lifted off" };
@@ -13,13 +13,18 @@ export const regimeOf = ({ regime, normal_force: load }) => (load > 0 ? regime :
 function sentence(state, moved) {
   const { stick_radius: c, contact_radius: a } = state;
   const regime = regimeOf(state);
-  if (regime === "separated") return "The bodies are apart: there is no load, no friction and no history. A load brings them together.";
+  if (regime === "separated")
+    return "The bodies are apart: there is no load, no friction and no history. A load brings them together.";
   if (!moved) return "Nothing has moved yet: pull the slider, and watch the ring that slips grow from the edge.";
   if (regime === "stick") return "The last move slipped nowhere: the whole contact stuck.";
-  if (regime === "gross_slip") return "The last move slipped everywhere: the whole contact slid, and its history is erased.";
-  if (c > MOST_SHOWN * a)
-    return `The last move has just turned: all sticks but the outermost ${formatQuantity(a - c, "m", 2)} of the contact radius.`;
-  return `Inside r = ${formatQuantity(c, "m", 3)} (${formatNumber((100 * c) / a, 2)} % of the contact radius) the surfaces stuck in the last move; the ring outside slipped.`;
+  if (regime === "gross_slip")
+    return "The last move slipped everywhere: the whole contact slid, and its history is erased.";
+  if (c > MOST_SHOWN * a) {
+    const ring = `the outermost ${formatQuantity(a - c, "m", 2)} of the contact radius`;
+    return `The last move has just turned: all sticks but ${ring}.`;
+  }
+  const inside = `Inside r = ${formatQuantity(c, "m", 3)} (${formatNumber((100 * c) / a, 2)} % of the contact radius)`;
+  return `${inside} the surfaces stuck in the last move; the ring outside slipped.`;
 }
 
 /** A coefficient of friction with its interval. */
@@ -31,14 +36,16 @@ function measuredText({ value, interval: [low, high], from, to }) {
 /** The largest shear stress, and what part of μ times the largest pressure it is. */
 function shearText({ max, relative }) {
   if (max === null) return "∞ at one radius";
-  return [formatQuantity(max, "Pa"), ...(relative === null ? [] : withSubscripts(` = ${formatNumber(100 * relative, 3)} % of μ p_max`))];
+  return [
+    formatQuantity(max, "Pa"),
+    ...(relative === null ? [] : withSubscripts(` = ${formatNumber(100 * relative, 3)} % of μ p_max`)),
+  ];
 }
 
 /** Lines about a state. */
 export function stateText(state, { friction, history, first, measured, stress }) {
   const limit = friction * state.normal_force;
   const use = limit > 0 ? Math.min(1, Math.abs(state.force) / limit) : 0;
-  const pair = (name, value) => el("div", {}, el("dt", {}, withSubscripts(name)), el("dd", {}, value));
   return [
     el("p", { class: `regime ${regimeOf(state)}` }, NAMES[regimeOf(state)]),
     el("p", {}, sentence(state, history.length > 0 || first.sequence > 0)),
@@ -51,14 +58,14 @@ export function stateText(state, { friction, history, first, measured, stress })
     el(
       "dl",
       { class: "figures" },
-      pair("Displacement U", `${formatQuantity(state.displacement, "m")}`),
-      pair("Force F", `${formatQuantity(state.force, "N")}`),
-      pair("Load F_N", `${formatQuantity(state.normal_force, "N")}`),
-      pair("Contact radius a", `${formatQuantity(state.contact_radius, "m")}`),
-      ...(stress && state.normal_force > 0 ? [pair("Largest shear stress", shearText(stress.residual))] : []),
-      pair("Friction work W", `${formatQuantity(state.dissipated_energy, "J")}`),
-      pair("Slip history", `${state.memory_depth} ${state.memory_depth === 1 ? "piece" : "pieces"}`),
-      ...(measured ? [pair("Measured friction μ", measuredText(measured))] : []),
+      figure("Displacement U", `${formatQuantity(state.displacement, "m")}`),
+      figure("Force F", `${formatQuantity(state.force, "N")}`),
+      figure("Load F_N", `${formatQuantity(state.normal_force, "N")}`),
+      figure("Contact radius a", `${formatQuantity(state.contact_radius, "m")}`),
+      ...(stress && state.normal_force > 0 ? [figure("Largest shear stress", shearText(stress.residual))] : []),
+      figure("Friction work W", `${formatQuantity(state.dissipated_energy, "J")}`),
+      figure("Slip history", `${state.memory_depth} ${state.memory_depth === 1 ? "piece" : "pieces"}`),
+      ...(measured ? [figure("Measured friction μ", measuredText(measured))] : []),
     ),
   ];
 }

@@ -1,10 +1,11 @@
-// Studies of a virgin contact of this kind: a fretting map, remaining stress against the number of reversals, and speed against
-// error of the solvers.
-import { call, offered } from "./api.js";
+// Studies of a virgin contact of this kind: a fretting map, remaining stress against the number of reversals, and speed
+// against error of the solvers.
+import { call } from "./api.js";
 import { Chart } from "./chart.js";
-import { el, notice, withSubscripts } from "./dom.js";
+import { columnsOf } from "./chart_menu.js";
 import { frettingMap } from "./fretting_map.js";
 import { virginContact, PROTOCOLS } from "./protocol_run.js";
+import { study } from "./study.js";
 
 /** Up to how many reversals the best protocol is searched for. */
 const MOST_SEARCHED = 10;
@@ -15,52 +16,17 @@ const SMALLEST_ERROR = 1e-16;
 /** The card of the fretting map; `show` moves its mark. */
 export function mapCard(model) {
   const map = frettingMap(model);
-  const made = card({
-    id: "compute-map",
+  const made = study({
+    name: "map",
     signal: model.signal,
     title: "Fretting map",
-    text: "For this shape and friction: which loads and amplitudes slide, and how much friction work a steady cycle does.",
+    text:
+      "For this shape and friction: which loads and amplitudes slide, and how much friction work a steady cycle " +
+      "does.",
+    charts: [map.chart],
     ...map,
   });
   return { ...made, show: map.mark };
-}
-
-/** A card with a button that computes a plot; `body` stands before the button, and `results` after the plot. */
-function card({ title, text, chart, calls, compute, id, signal }) {
-  const bar = el("progress", { max: 1, value: 0, hidden: true, "aria-label": `Progress: ${title}` });
-  const button = el(
-    "button",
-    {
-      type: "button",
-      class: "primary",
-      id,
-      onclick: async () => {
-        button.disabled = true;
-        bar.hidden = false;
-        chart.element.hidden = false;
-        try {
-          await compute((part) => {
-            bar.value = part;
-          });
-        } catch (error) {
-          if (!signal.aborted) notice(error.message, true);
-        }
-        button.disabled = false;
-        bar.hidden = true;
-      },
-    },
-    "Compute",
-  );
-  chart.element.hidden = true;
-  const element = el(
-    "section",
-    { class: "card" },
-    el("h2", {}, withSubscripts(title)),
-    el("p", {}, withSubscripts(text)),
-    el("p", { class: "row" }, button, bar),
-    chart.element,
-  );
-  return { element, chart, calls };
 }
 
 /** The card of what remains after so many reversals. */
@@ -84,7 +50,6 @@ export function residualCard(model) {
   const compute = async (report) => {
     const found = { falling_amplitude: [], equal_peaks: [], minimax: [] };
     const kinds = Object.keys(PROTOCOLS);
-    const hasProtocols = await offered("/protocols");
     let done = 0;
     for (const reversals of REVERSALS) {
       for (const kind of kinds) {
@@ -95,7 +60,7 @@ export function residualCard(model) {
         found[kind].push([reversals, ...[most, left.mean, left.min].map((value) => value / (full || 1) || null)]);
         report((done += 1) / REVERSALS.length / kinds.length);
       }
-      if (reversals <= MOST_SEARCHED && hasProtocols) {
+      if (reversals <= MOST_SEARCHED) {
         const { largest } = await call("POST", "/protocols", { contact: model.definition, reversals }, model.signal);
         found.minimax.push([reversals, (largest ?? 0) / (full || 1) || null]);
       }
@@ -112,23 +77,25 @@ export function residualCard(model) {
           line("linear: mean peak", kinds[0], 2),
           line("linear: smallest peak", kinds[0], 3),
           line("equal peaks: largest", kinds[1], 1),
-          ...(hasProtocols ? [line("least possible (found by search): largest", "minimax", 1)] : []),
+          line("least possible (found by search): largest", "minimax", 1),
         ],
       });
     }
   };
-  return card({
-    id: "compute-residual",
+  return study({
+    name: "residual",
     signal: model.signal,
     title: "Residual stress against reversals",
-    chart,
+    charts: [chart],
     compute,
-    text: "For this shape, friction and preload, from a virgin contact: how much shear stress remains after that many reversals.",
+    text:
+      "For this shape, friction and preload, from a virgin contact: how much shear stress remains after that many " +
+      "reversals.",
     calls: () => [{ method: "POST", path: "/simulate", body: request("falling_amplitude", 20) }],
   });
 }
 
-/** The card that compares the solvers; it stays hidden where the service does not offer that. */
+/** The card that compares the solvers. */
 export function accuracyCard(model) {
   const chart = new Chart({
     name: "accuracy",
@@ -139,15 +106,14 @@ export function accuracyCard(model) {
     y: { label: "Error of the stress / (μ p_max)", log: true },
   });
   chart.more = (_, series) => [series.name];
-  const body = () => ({ contact: virginContact(model), path: { falling_amplitude: { reversals: 20 } } });
+  const request = () => ({ contact: virginContact(model), path: { falling_amplitude: { reversals: 20 } } });
   const named = (solver) =>
     typeof solver === "string"
       ? solver
       : Object.entries(solver)
           .map(([name, options]) => `${options?.count ?? ""} ${name}`.trim())
           .join();
-  const compute = async () => {
-    const { rows } = await call("POST", "/accuracy", body(), model.signal);
+  const show = ({ rows }) => {
     const error = (row) => (row.stress_error === null ? null : Math.max(row.stress_error, SMALLEST_ERROR));
     const series = rows.map((row, index) => ({
       name: named(row.solver),
@@ -159,23 +125,21 @@ export function accuracyCard(model) {
       points: [[row.compute_time, error(row)]],
     }));
     const table = () => ({
-      columns: ["solver", "compute_time_s", "force_error", "stress_error"],
-      rows: rows.map((row) => [named(row.solver), row.compute_time, row.force_error, row.stress_error]),
+      solver: rows.map((row) => named(row.solver)),
+      ...columnsOf(rows, { compute_time_s: "compute_time", force_error: "force_error", stress_error: "stress_error" }),
     });
     chart.draw({ empty: "No solver answered.", series, table });
   };
-  const made = card({
-    id: "compute-accuracy",
+  return study({
+    name: "accuracy",
     signal: model.signal,
     title: "Speed against error",
-    chart,
-    compute,
-    text: "The scene of 20 reversals on this contact by each solver: its time on this server, and its error, of which 10⁻¹⁶ is rounding.",
-    calls: () => [{ method: "POST", path: "/accuracy", body: body() }],
+    charts: [chart],
+    path: "/accuracy",
+    request,
+    show,
+    text:
+      "The scene of 20 reversals on this contact by each solver: its time on this server, and its error, of which " +
+      "10⁻¹⁶ is rounding.",
   });
-  made.element.hidden = true;
-  offered("/accuracy").then((is) => {
-    made.element.hidden = !is;
-  });
-  return made;
 }

@@ -1,5 +1,6 @@
-// The tabs of a contact, one for each question. Each has an address of its own, so that reload, back and links lead to it.
-import { el } from "./dom.js";
+// The tabs of a contact, one for each question. Each has an address of its own, so that reload, back and links lead to
+// it.
+import { el, mapped } from "./dom.js";
 
 /** The tabs by the last part of their address, in their order. */
 export const TABS = {
@@ -20,22 +21,21 @@ export function contactAddress(hash) {
 /** The address of a tab, without its query. */
 export const addressOf = (id, tab) => `#/contacts/${id}${tab === "live" ? "" : `/${tab}`}`;
 
-/** The links of the tabs, and the function that shows the panel of one of them. `panels` are those of this contact, by tab. */
+/** The links of the tabs, and the function that shows the panel of one of them. `panels` are those of this contact, by
+ *  tab. */
 export function tabBar(id, panels) {
-  const links = Object.keys(panels).map((tab) => [tab, el("a", { href: addressOf(id, tab), id: `to-${tab}` }, TABS[tab])]);
-  const element = el("nav", { class: "tabs", "aria-label": "Questions" }, ...links.map(([, link]) => link));
-  let current = links[0][1];
+  const links = mapped(panels, (_, tab) => el("a", { href: addressOf(id, tab), id: `to-${tab}` }, TABS[tab]));
+  const element = el("nav", { class: "tabs", "aria-label": "Questions" }, ...Object.values(links));
+  let current = links.live;
   // On a phone the bar is wider than the window.
   const bringIntoView = () => element.scrollTo({ left: current.offsetLeft - 40 });
   new ResizeObserver(bringIntoView).observe(element);
   const open = (wanted) => {
     const tab = wanted in panels ? wanted : "live";
-    for (const [name, link] of links) {
-      if (name === tab) link.setAttribute("aria-current", "page");
-      else link.removeAttribute("aria-current");
-      panels[name].hidden = name !== tab;
-    }
-    current = links.find(([name]) => name === tab)[1];
+    for (const [name, panel] of Object.entries(panels)) panel.hidden = name !== tab;
+    current.removeAttribute("aria-current");
+    current = links[tab];
+    current.setAttribute("aria-current", "page");
     bringIntoView();
     return tab;
   };

@@ -1,4 +1,5 @@
 // The contact from above: the shear stress as colour, and the slip ring of the last move.
+import { nearestIndex } from "./axis.js";
 import { Chart } from "./chart.js";
 import { svg } from "./dom.js";
 import { formatNumber, formatQuantity, unitScale } from "./units.js";
@@ -15,16 +16,15 @@ export function topView() {
     height: 340,
     x: { label: "x, along the motion", unit: "m" },
     y: { label: "y", unit: "m" },
-    note: "Colour is the shear stress on the contact, green towards +x and purple towards −x, on a scale up to the largest that is there; in the striped ring the last move slipped.",
+    note:
+      "Colour is the shear stress on the contact, green towards +x and purple towards −x, on a scale up to the " +
+      "largest that is there; in the striped ring the last move slipped.",
   });
   let stress = null;
   let radius = 0;
-  chart.at = (r, x, y) => {
+  const at = (r, x, y) => {
     if (!stress || r > radius) return null;
-    const index = stress.radius.reduce(
-      (best, value, index) => (Math.abs(value - r) < Math.abs(stress.radius[best] - r) ? index : best),
-      0,
-    );
+    const index = nearestIndex(stress.radius, r);
     const value = (name, unit) => formatQuantity(stress[name][index], unit);
     return {
       x,
@@ -38,8 +38,8 @@ export function topView() {
       ],
     };
   };
-  chart.read = (x, y) => chart.at(Math.hypot(x, y), x, y);
-  chart.show = (model) => {
+  chart.read = (x, y) => at(Math.hypot(x, y), x, y);
+  const drawModel = (model) => {
     stress = model.stress;
     radius = model.state.contact_radius;
     const half = (radius || 1e-6) * 1.12;
@@ -48,13 +48,10 @@ export function topView() {
       series: [{ name: "shear stress τ", points, kind: "none", line: false }],
       range: { x: [-half, half], y: [-half, half] },
       layer: (plot, group) => group.append(...disc(plot, model)),
-      table: () => ({
-        columns: ["radius_m", "shear_pa", "slip_m"],
-        rows: points.map(([r, tau], index) => [r, tau, stress.slip[index]]),
-      }),
+      table: () => ({ radius_m: stress.radius, shear_pa: stress.shear, slip_m: stress.slip }),
     });
   };
-  return chart;
+  return Object.assign(chart, { at, drawModel });
 }
 
 /** The colour of a stress between −1 and 1; small ones show too. */
@@ -107,13 +104,12 @@ function disc(plot, { stress, state, friction, history }) {
 }
 
 /** The stress of the strongest colour: the largest that is there, so that what little is left shows too. */
-function fullScale({ pressure, shear, residual }, { normal_force: load, contact_radius: a }, friction) {
-  const largest = (values) => values.reduce((most, value) => Math.max(most, Math.abs(value ?? 0)), 0);
-  // Where the pressure is infinite, four times its mean.
-  const bound = friction * Math.min(largest(pressure), (4 * load) / (Math.PI * a * a)) || 1;
-  const found = Math.max(largest(shear), largest(residual.peaks.map((peak) => peak.shear)));
+function fullScale({ pressure, residual: { max, relative } }, { normal_force: load, contact_radius: a }, friction) {
   // Round-off is no stress.
-  return found > 1e-9 * bound ? Math.min(found, bound) : bound;
+  if (max !== null && relative > 1e-9) return max;
+  // Where the pressure is infinite, four times its mean.
+  const largest = pressure.reduce((most, value) => Math.max(most, value ?? Infinity), 0);
+  return friction * Math.min(largest, (4 * load) / (Math.PI * a * a)) || 1;
 }
 
 /** The area between two circles. */

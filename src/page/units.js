@@ -1,5 +1,6 @@
 // Numbers with their units as text, and back.
 
+/** @type {[number, string][]} */
 const PREFIXES = [
   [1e12, "T"],
   [1e9, "G"],
@@ -13,17 +14,25 @@ const PREFIXES = [
   [1e-15, "f"],
 ];
 
+/** A unit with each of some prefixes, and the powers of ten of these. @typedef {[string, number][]} Units */
+
+/** A unit with each of these prefixes, of which the empty one is none. @returns {Units} */
+export const prefixed = (unit, ...prefixes) =>
+  prefixes.map((prefix) => [prefix + unit, Math.round(Math.log10(PREFIXES.find(([, name]) => name === prefix)[0]))]);
+
 /** The unit with the prefix that fits a value: its factor and its name. */
 export function unitScale(value, unit) {
   const size = Math.abs(value);
-  const [factor, prefix] = PREFIXES.find(([factor]) => size >= factor * 0.9999) || (size ? PREFIXES.at(-1) : [1, ""]);
+  const fits = PREFIXES.find(([power]) => size >= power * 0.9999) ?? PREFIXES[size ? PREFIXES.length - 1 : 4];
+  const [factor, prefix] = fits;
   return { factor, unit: prefix + unit };
 }
 
 /** The power of ten of the prefix that fits a value. */
 export const powerOf = (value) => Math.round(Math.log10(unitScale(value, "").factor));
 
-/** A value in units of 10^power, as one would type it: by way of its digits, so that 0.3 µm are not 0.30000000000000004. */
+/** A value in units of 10^power, as one would type it: by way of its digits, so that 0.3 µm are not
+ *  0.30000000000000004. */
 export function inPower(value, power, precision = 6) {
   const [digits, own = 0] = (precision > 16 ? String(value) : value.toPrecision(precision)).split("e");
   return String(Number(`${digits}e${Number(own) - power}`));
@@ -39,7 +48,10 @@ export function formatNumber(value, digits = 4) {
   const size = Math.abs(value);
   const minus = (number) => String(number).replace("-", "−");
   if (size >= 1e-3 && size < 1e6) return minus(Number(value.toPrecision(digits)));
-  const [mantissa, power] = value.toExponential(digits - 1).split("e").map(Number);
+  const [mantissa, power] = value
+    .toExponential(digits - 1)
+    .split("e")
+    .map(Number);
   return `${minus(mantissa)} × 10${raised(power)}`;
 }
 
@@ -64,12 +76,14 @@ const ONE_COMMA = /^[+-]?[1-9]\d{0,2},\d{3}(?:e[+-]?\d+)?$/i;
 /** What is wrong with the text of a number, in words; nothing where it is a number or empty. */
 export function numberMistake(text) {
   const trimmed = text.trim().replace("−", "-");
-  if (ONE_COMMA.test(trimmed)) return `Write ${trimmed.replace(",", ".")} or ${trimmed.replace(",", "")}: ${trimmed} may be either.`;
+  if (ONE_COMMA.test(trimmed))
+    return `Write ${trimmed.replace(",", ".")} or ${trimmed.replace(",", "")}: ${trimmed} may be either.`;
   const isNumber = typeof parseNumber(trimmed) !== "string";
   return isNumber ? undefined : "This must be a number, without its unit and without separators of thousands.";
 }
 
-/** The text of a field in units of 10^power: a number in SI units, or the text itself if it is no number, or may be two. */
+/** The text of a field in units of 10^power: a number in SI units, or the text itself if it is no number, or may be
+ *  two. */
 export function parseNumber(text, power = 0) {
   const trimmed = text.trim().replace("−", "-");
   if (trimmed === "") return undefined;

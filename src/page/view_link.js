@@ -1,13 +1,13 @@
-// The view in the address: the zoom of plots, the lines switched off, chosen units, and the contact compared with. A link, a
-// bookmark or a reload shows the same again.
+// The view in the address: the zoom of plots, the lines switched off, chosen units, and the contact compared with. A
+// link, a bookmark or a reload shows the same again.
 import { notice } from "./dom.js";
 import { menuEntry } from "./popup_menu.js";
 
 /** The view that the address has, as it stands behind the identifier of a contact and its tab. */
 export const viewQuery = () => location.hash.match(/\?.*$/)?.[0] ?? "";
 
-/** Keeps the address in step with plots, unit choices and the contact compared with, once it has been applied to them. What it
- *  returns copies the link, and writes the view to the address of a tab that was opened. */
+/** Keeps the address in step with plots, unit choices and the contact compared with, once it has been applied to them.
+ *  What it returns copies the link, and writes the view to the address of a tab that was opened. */
 export function viewLink({ plots, units, overlay }) {
   const given = new URLSearchParams(viewQuery());
   for (const plot of plots) {
@@ -24,7 +24,8 @@ export function viewLink({ plots, units, overlay }) {
   const write = () => {
     const now = new URLSearchParams();
     for (const plot of plots) {
-      if (plot.view) now.set(plot.name, [...plot.view.x, ...plot.view.y].map((value) => Number(value.toPrecision(5))).join());
+      if (plot.view)
+        now.set(plot.name, [...plot.view.x, ...plot.view.y].map((value) => Number(value.toPrecision(5))).join());
       for (const name of plot.hidden) now.append(`${plot.name}-off`, name);
     }
     for (const choice of units) if (choice.value !== "") now.set(choice.id, choice.selectedOptions[0].text);

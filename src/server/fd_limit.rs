@@ -2,7 +2,7 @@
 
 use rustix::process::{Resource, getrlimit, setrlimit};
 
-use crate::server::limits::SPARE_CONNECTIONS;
+use crate::server::connection_limits::SPARE_CONNECTIONS;
 
 /// Files besides connections: the store, the log, the runtime, libraries.
 const OTHERS: usize = 128;

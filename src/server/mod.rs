@@ -1,9 +1,8 @@
 //! The listener and its connections: who is admitted, how long a client may take, and how the server stops.
 
+pub mod connection_limits;
 pub mod connections;
 pub mod fd_limit;
-pub mod limits;
-pub mod machine_memory;
 pub mod memory_budget;
 pub mod tls;
 
@@ -22,8 +21,8 @@ use tokio::net::{TcpListener, TcpStream};
 use tokio::sync::watch;
 use tokio::time::{Instant, sleep, sleep_until, timeout};
 
+use connection_limits::{BUFFER, GRACE, HEAD, PIECE, SPARE_TIME};
 use connections::{ConnectionCounts, ConnectionPermit, Socket};
-use limits::{BUFFER, GRACE, HEAD, PIECE, SPARE_TIME};
 use tls::Tls;
 
 pub use connections::{ConnectionLimiter, ConnectionLimits, OwnHosts, RequestClient, Service, network};

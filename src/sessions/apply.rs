@@ -1,4 +1,4 @@
-//! Applying moves to a session: the one place where its state changes.
+//! The way of a move: lock, load, compute, store, publish. This is the one place where the state of a session changes.
 
 use std::pin::pin;
 use std::sync::Arc;
@@ -6,41 +6,29 @@ use std::sync::Arc;
 use tracing::Instrument as _;
 use uuid::Uuid;
 
-use crate::admission::{Reservation, Stop};
-use crate::computations::{OnContact as _, dry_run_relax};
+use crate::admission::Reservation;
 use crate::otlp;
-use crate::simulation::bytes::{of_moves, of_records, of_stress};
-use crate::simulation::cost::Work;
 use crate::store::{IdempotentRequest, Reply, RequestKey, StoreError, Usage};
+use stickslip_compute::Stop as _;
+use stickslip_compute::computations::{OnContact as _, dry_run_relax};
+use stickslip_wire::RelaxReply;
 use stickslip_wire::protocol::Relaxation;
 use stickslip_wire::session::Advance;
-use stickslip_wire::{Plan, RelaxReply, limits};
 
-use super::attempt::{Done, PIECES_OF_A_MOVE, attempt};
 use super::cache::Guard;
 use super::changes::answer_once;
+use super::compute::{Computed, compute};
+use super::context::{ATTEMPTS, Common, TenantContext};
+use super::error::SessionError;
 use super::expected::Expected;
-use super::group::{GroupResult, lock_or_join, may_join};
-use super::loaded::LoadedSession;
-use super::observations::Observations;
-use super::replay::Replay;
+use super::loaded::{LoadedSession, written};
 use super::run_to_end::run_to_end;
-use super::{ATTEMPTS, SessionError, written};
-
-/// Bytes that moves take, with their records and the reply; rather too many than too few.
-#[must_use]
-pub fn bytes_of_moves(advance: &Advance) -> usize {
-    let radii = advance.stress.as_ref().map_or(0, |stress| stress.length());
-    advance.relax.map_or(0, |relax| relax.task.bytes())
-        + of_moves(&advance.plan, advance.steps)
-        + of_records(advance.plan.length())
-        + of_stress(radii)
-}
+use super::storage_reservation::StorageReservation;
 
 /// Moves of the sessions of a tenant, for requests that come with the key of the name `by`.
 #[derive(Clone)]
 pub struct Mover {
-    pub(super) replay: Replay,
+    pub(super) context: TenantContext,
     pub(super) by: Option<Arc<str>>,
 }
 
@@ -56,7 +44,7 @@ impl Mover {
         expected: Option<Expected>,
         key: Option<RequestKey>,
     ) -> Result<Reply, SessionError> {
-        let request = self.replay.request(key);
+        let request = self.context.request(key);
         answer_once(&request, pin!(self.apply_anew(id, Arc::new(advance), expected, &request))).await
     }
 
@@ -67,89 +55,100 @@ impl Mover {
         expected: Option<Expected>,
         request: &IdempotentRequest<'_>,
     ) -> Result<Reply, SessionError> {
-        // A client that hangs up in the queue leaves it.
-        let mut guard = if !request.has_key() && may_join(&advance) {
-            match lock_or_join(&self.replay, self.by.as_ref(), id, &advance, expected).await? {
-                GroupResult::Locked(guard) => guard,
-                GroupResult::Answered(answer) => return answer,
-            }
-        } else {
-            self.replay.lock(id).await?
-        };
-        let (stop, _raised_at_the_end) = self.replay.common.pool.deadline();
-        let move_bytes = self.replay.common.store.move_bytes();
-        let mut reservation =
-            self.replay.reserve_storage(Usage::of(0, advance.plan.length() as u64 * move_bytes, None)).await?;
-        // A cached state may be behind the store, and its label too. A refusal counts only once the state has caught
-        // up.
-        let mut caught_up = guard.live.is_none() || expected.is_some_and(|expected| expected.label.is_some());
+        // A client that hangs up while it waits leaves the queue.
+        let mut guard = self.context.lock(id).await?;
+        let (stop, _raised_at_the_end) = self.context.pool.deadline();
+        let bytes = advance.plan.length() as u64 * self.context.store.move_bytes();
+        let mut reservation = self.context.reserve_storage(Usage::of(0, bytes, None)).await?;
+        // A cached state may be behind the store, and its label too.
+        let mut is_current = guard.live.is_none() || expected.is_some_and(|expected| expected.label.is_some());
         let mut found = 0;
         for _ in 0..ATTEMPTS {
             // Again, because the same request, sent twice, may have been done here or elsewhere while this one waited.
             if let Some(reply) = request.earlier_reply().await? {
                 return Ok(reply);
             }
-            let live =
-                if caught_up { self.replay.current(&mut guard).await? } else { self.replay.cached(&mut guard).await? };
-            let sequence = live.session.sequence;
-            if let Some(Err(refusal)) = expected.map(|it| it.check(sequence, live.session.label.as_deref())) {
-                if !caught_up {
-                    caught_up = true;
-                    continue;
-                }
-                return Err(refusal);
-            }
-            stop.charge(std::mem::take(&mut guard.loading));
-            let (mut live, Done { records, mut reply }) = match self.compute(&advance, &mut guard, &stop).await {
-                Ok(done) => done,
+            let sequence = self.load(&mut guard, expected, &mut is_current).await?;
+            stop.flag().charge(std::mem::take(&mut guard.loading));
+            let computed = match compute(&self.context, &mut guard, &advance, self.by.clone(), &stop).await {
                 Err(SessionError::Failure(_) | SessionError::Rejected(_))
-                    if !caught_up && Box::pin(self.replay.catch_up(&mut guard, u64::MAX)).await? =>
+                    if !is_current && Box::pin(self.context.catch_up(&mut guard, u64::MAX)).await? =>
                 {
-                    caught_up = true;
+                    is_current = true;
                     continue;
                 }
-                Err(error) => return Err(error),
-            };
-            if let Plan::Observations(_) = advance.plan {
-                reply.body =
-                    Box::pin(Observations::of(&self.replay).observed(&mut guard, &mut live, &records, &stop)).await?;
-            }
-            // Until the store has answered the new state is in doubt. What the guard holds meanwhile is the state
-            // before, or nothing: if the store fails, the next request asks the store.
-            let moves = records.len() as u64;
-            let receipt = request.receipt(&reply);
-            let added = Usage::of(0, moves * move_bytes, receipt.as_ref());
-            if added.bytes > reservation.bytes() {
-                drop(reservation);
-                reservation = self.replay.reserve_storage(added).await?;
-            }
-            let common = Arc::clone(&self.replay.common);
-            let append = async move {
-                let stored = common.store.append(guard.id(), sequence, records, receipt);
-                let stored = stored.instrument(otlp::part!("store")).await;
-                if stored.is_ok() {
-                    common.metrics.moves.inc_by(moves);
-                    reservation.used(added);
-                    common.snapshots.offer(&mut live);
-                    guard.live = Some(live);
-                }
-                (guard, reservation, stored)
+                computed => computed?,
             };
             let stored;
-            (guard, reservation, stored) = run_to_end(append).await;
+            (guard, reservation, stored) = self.store(guard, sequence, computed, request, reservation).await?;
             match stored {
-                Ok(()) => return Ok(reply),
+                Ok(reply) => return Ok(reply),
                 Err(error @ (StoreError::NotFound | StoreError::Expired(_))) => {
-                    return Err(self.replay.store_failure(&mut guard, error));
+                    return Err(self.context.store_failure(&mut guard, error));
                 }
                 Err(StoreError::Stale { found: moved }) => {
-                    (caught_up, found) = (true, moved);
-                    self.replay.current(&mut guard).await?.shared = true;
+                    (is_current, found) = (true, moved);
+                    self.context.current(&mut guard).await?.shared = true;
                 }
                 Err(other) => return Err(other.into()),
             }
         }
         Err(SessionError::Overtaken { found })
+    }
+
+    /// Brings the state of a session into the guard, and returns its sequence, if it is the one that the client
+    /// expects. A refusal counts only once the state has caught up with the store.
+    async fn load(
+        &self,
+        guard: &mut Guard,
+        expected: Option<Expected>,
+        is_current: &mut bool,
+    ) -> Result<u64, SessionError> {
+        let check = |live: &LoadedSession| {
+            let (sequence, label) = (live.session.sequence, live.session.label.as_deref());
+            expected.map_or(Ok(()), |expected| expected.check(sequence, label)).map(|()| sequence)
+        };
+        if !*is_current {
+            if let Ok(sequence) = check(self.context.cached(guard).await?) {
+                return Ok(sequence);
+            }
+            *is_current = true;
+        }
+        check(self.context.current(guard).await?)
+    }
+
+    /// Stores moves after a sequence, and publishes them, even if the client hangs up meanwhile. Until the store has
+    /// answered the new state is in doubt. What the guard holds meanwhile is the state before, or nothing: if the store
+    /// fails, the next request asks the store.
+    async fn store(
+        &self,
+        guard: Guard,
+        sequence: u64,
+        computed: Computed,
+        request: &IdempotentRequest<'_>,
+        mut reservation: StorageReservation,
+    ) -> Result<(Guard, StorageReservation, Result<Reply, StoreError>), SessionError> {
+        let Computed { live, records, reply } = computed;
+        let moves = records.len() as u64;
+        let receipt = request.receipt(&reply);
+        let added = Usage::of(0, moves * self.context.store.move_bytes(), receipt.as_ref());
+        if added.bytes > reservation.bytes() {
+            drop(reservation);
+            reservation = self.context.reserve_storage(added).await?;
+        }
+        let common = Arc::clone(&self.context.common);
+        let append = async move {
+            let mut guard = guard;
+            let stored = common.store.append(guard.id(), sequence, records, receipt);
+            let stored = stored.instrument(otlp::part!("store")).await;
+            let stored = stored.map(|()| {
+                reservation.used(added);
+                publish(&common, &mut guard, live, moves);
+                reply
+            });
+            (guard, reservation, stored)
+        };
+        Ok(run_to_end(append).await)
     }
 
     /// What [`Mover::apply`] would do to relax a session at the sequence that the client expects; nothing changes. The
@@ -165,11 +164,11 @@ impl Mover {
         memory: &mut Reservation,
     ) -> Result<(u64, Vec<u8>), SessionError> {
         let task = relaxation.task;
-        let (stop, _raised_at_the_end) = self.replay.common.pool.deadline();
-        self.replay.common.pool.resize(memory, task.bytes()).await?;
-        let (contact, sequence, state) = self.replay.copy(id, None, &stop).await?;
+        let (stop, _raised_at_the_end) = self.context.pool.deadline();
+        self.context.pool.resize(memory, task.bytes()).await?;
+        let (contact, sequence, state) = self.context.copy(id, None, &stop).await?;
         if let Some(expected) = expected {
-            let label = if expected.label.is_some() { self.replay.extent(id).await?.label } else { None };
+            let label = if expected.label.is_some() { self.context.extent(id).await?.label } else { None };
             expected.check(sequence, label.as_deref())?;
         }
         let cost = task.cost(contact.profile(), contact.memory_depth());
@@ -178,50 +177,14 @@ impl Mover {
             let (steps, protocol) = dry_run_relax(contact, &relaxation, &stop)?;
             written(&RelaxReply { id, sequence, dry_run: true, steps, protocol })
         };
-        Ok((sequence, self.replay.common.pool.run(cost, work).await??))
+        Ok((sequence, self.context.pool.run(cost, work).await??))
     }
+}
 
-    /// Computes the moves. The guard keeps the state before them, or, if it has been used up, nothing.
-    async fn compute(
-        &self,
-        advance: &Arc<Advance>,
-        guard: &mut Guard,
-        stop: &Stop,
-    ) -> Result<(Box<LoadedSession>, Done), SessionError> {
-        let depth = guard.live.as_ref().map_or(0, |live| live.contact.memory_depth());
-        // A single move that the mechanics refuses has changed nothing, so that it needs no copy to fall back on; and a
-        // copy costs as much as the slip history is deep. A move that another process may have overtaken needs the
-        // copy.
-        let in_place = matches!(advance.plan, Plan::Single(step) if !step.is_curved())
-            && advance.stress.is_none()
-            && depth + PIECES_OF_A_MOVE <= limits::MEMORY_DEPTH
-            && guard.live.as_ref().is_some_and(|live| !live.shared);
-        // A copy can be large, and many requests may be under way.
-        let copied = guard.live.as_ref().filter(|_| !in_place).map_or(0, |live| live.contact.memory_bytes());
-        let _held = if copied > 0 { self.replay.reserve_copy(guard, copied).await? } else { Reservation::default() };
-        let live = if in_place { guard.live.take() } else { guard.live.clone() };
-        let mut live = live.ok_or(SessionError::NotFound(guard.id()))?;
-        let radii = advance.stress.as_ref().map_or(0, |stress| stress.length());
-        let (moves, curved) = (advance.plan.length(), advance.plan.curved());
-        let profile = live.contact.profile();
-        let sought = advance.relax.map_or(0, |relax| relax.task.cost(profile, depth));
-        let work = Work { moves, curved, depth, radii, residual: false };
-        let cost = work.cost(profile).saturating_add(sought);
-        let (advance, stop) = (Arc::clone(advance), stop.clone());
-        let by = self.by.clone();
-        let solve = move || {
-            let result = attempt(&mut live, &advance, by.as_ref(), &stop);
-            (live, result)
-        };
-        let (live, result) = self.replay.common.pool.run(cost, solve).await?;
-        match result {
-            Ok(done) => Ok((live, done)),
-            Err(error) => {
-                if in_place && matches!(error, SessionError::Failure(_)) {
-                    guard.live = Some(live);
-                }
-                Err(error)
-            }
-        }
-    }
+/// Publishes stored moves: the state after them is what the next request finds, and a snapshot if one is due. The store
+/// has woken those who listen.
+fn publish(common: &Common, guard: &mut Guard, mut live: Box<LoadedSession>, moves: u64) {
+    common.metrics.moves.inc_by(moves);
+    common.snapshots.offer(&mut live);
+    guard.live = Some(live);
 }

@@ -6,30 +6,24 @@
 //! identifiers that do not exist leave nothing behind, and a million idle sessions take space in the store alone.
 //!
 //! A profile that is kept counts once, however many states and requests have it. It is used whenever one of these
-//! states is, so that it goes after them; and one that somebody has stays, because to forget it would free nothing.
+//! states is, so that it goes after them. A profile in use stays, because dropping it would free nothing.
 
-use std::collections::hash_map::Entry;
-use std::collections::{HashMap, VecDeque};
+use std::collections::HashMap;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 
 use hashlink::LruCache;
 use parking_lot::Mutex;
 use prometheus::IntCounter;
-use tokio::sync::oneshot;
-use tracing::Span;
+use tokio::sync::{Mutex as FairMutex, OwnedMutexGuard};
 use uuid::Uuid;
 
 use crate::admission::Reservation;
-use crate::store::{Reply, Tenant};
+use crate::store::Tenant;
+use stickslip_compute::simulation::ProfileKey;
 use stickslip_mechanics::Profile;
-use stickslip_wire::session::Advance;
 
-use super::SessionError;
-use super::expected::Expected;
 use super::loaded::LoadedSession;
-use super::storage_reservation::StorageReservation;
 
 /// How many bytes of states are cached by default.
 pub const CAPACITY: usize = 256 * 1024 * 1024;
@@ -37,41 +31,15 @@ pub const CAPACITY: usize = 256 * 1024 * 1024;
 /// A session of a tenant. Under the identifier of another tenant's session a tenant finds neither a state nor a lock.
 type Key = (Tenant, Uuid);
 
-/// What distinguishes prepared profiles: a digest.
-pub(super) type ProfileKey = [u8; 32];
-
 /// States, profiles and locks.
 pub(super) struct Cache {
     // Both are locked for a lookup, never across an await.
-    /// The sessions in use, each with those who wait for it in the order of their arrival.
-    queues: Mutex<HashMap<Key, VecDeque<Waiter>>>,
+    /// The locks of the sessions that requests use or wait for, who get them in the order of their arrival.
+    locks: Mutex<HashMap<Key, Arc<FairMutex<()>>>>,
     cached: Mutex<Cached>,
-    /// Numbers those who wait: no two of them have the same number.
-    arrivals: AtomicU64,
     capacity: usize,
     // How often a state that was asked for was cached.
     hits: IntCounter,
-}
-
-/// A request that waits: with a move that whoever has the session may make, or for anything else.
-struct Waiter {
-    number: u64,
-    waiting_move: Option<WaitingMove>,
-    // Dropped when another one takes the move.
-    lock: oneshot::Sender<(SessionLock, Option<WaitingMove>)>,
-}
-
-/// A move that may be made by whoever has the session.
-pub(super) struct WaitingMove {
-    pub(super) advance: Arc<Advance>,
-    /// What the client expects the session to be.
-    pub(super) expected: Option<Expected>,
-    pub(super) by: Option<Arc<str>>,
-    pub(super) reservation: StorageReservation,
-    pub(super) span: Span,
-    /// What becomes of it if another one takes it: it is stored, or the store has refused those made with it; nothing
-    /// if it has not been made.
-    pub(super) answer: oneshot::Sender<Option<Result<Reply, SessionError>>>,
 }
 
 /// States that no request uses, and profiles; `bytes` are theirs and those of the states that requests have taken out.
@@ -104,68 +72,42 @@ pub(super) struct Guard {
     pub(super) held: Reservation,
     /// Bytes of the state as it came out of the cache, which are counted there.
     taken: usize,
-    lock: SessionLock,
+    lock: LockEntry,
 }
 
-/// Exclusive use of a session, which goes to the next who waits for it when this is dropped.
-pub(super) struct SessionLock {
+/// A request that has the lock of a session or waits for it. The last to leave removes the lock from the cache.
+struct LockEntry {
     cache: Arc<Cache>,
     key: Key,
-}
-
-/// A position in the queue, which is left when this is dropped.
-pub(super) struct QueuePosition {
-    cache: Arc<Cache>,
-    key: Key,
-    number: u64,
-    /// The session, with the move that has waited for it; an error if another one has taken the move.
-    pub(super) lock: oneshot::Receiver<(SessionLock, Option<WaitingMove>)>,
+    lock: Option<Arc<FairMutex<()>>>,
+    held: Option<OwnedMutexGuard<()>>,
 }
 
 impl Cache {
     /// A cache of at most this many bytes, and the counter of its hits.
     pub(super) fn new(capacity: usize, hits: IntCounter) -> Cache {
         let cached = Cached { items: LruCache::new_unbounded(), addresses: HashMap::new(), bytes: 0 };
-        Cache { queues: Mutex::default(), cached: Mutex::new(cached), arrivals: AtomicU64::new(0), capacity, hits }
+        Cache { locks: Mutex::default(), cached: Mutex::new(cached), capacity, hits }
     }
 
     /// Waits for exclusive use of a session. A dropped future no longer waits.
-    pub(super) async fn lock(self: &Arc<Self>, tenant: &Tenant, id: Uuid) -> Result<Guard, SessionError> {
-        let locked = (&mut self.enqueue(tenant, id, None).lock).await;
-        // Nobody else takes it from one who waits without a move.
-        let (lock, _) = locked.map_err(|_| SessionError::Broken("a lock was lost".to_owned()))?;
-        Ok(lock.guard())
+    pub(super) async fn lock(self: &Arc<Self>, tenant: &Tenant, id: Uuid) -> Guard {
+        let (mut entry, lock) = self.enter(tenant, id);
+        entry.held = Some(lock.lock_owned().await);
+        entry.guard()
     }
 
     /// Exclusive use of a session if nobody else has it.
     pub(super) fn try_lock(self: &Arc<Self>, tenant: &Tenant, id: Uuid) -> Option<Guard> {
-        let key = (tenant.clone(), id);
-        match self.queues.lock().entry(key.clone()) {
-            Entry::Vacant(free) => drop(free.insert(VecDeque::new())),
-            Entry::Occupied(_) => return None,
-        }
-        Some(SessionLock { cache: Arc::clone(self), key }.guard())
+        let (mut entry, lock) = self.enter(tenant, id);
+        entry.held = Some(lock.try_lock_owned().ok()?);
+        Some(entry.guard())
     }
 
-    /// A position at the end of the queue for a session, which gets it at once if nobody has the session.
-    pub(super) fn enqueue(
-        self: &Arc<Self>,
-        tenant: &Tenant,
-        id: Uuid,
-        waiting_move: Option<WaitingMove>,
-    ) -> QueuePosition {
-        let (cache, key) = (Arc::clone(self), (tenant.clone(), id));
-        let (sender, lock) = oneshot::channel();
-        let number = self.arrivals.fetch_add(1, Ordering::Relaxed);
-        let mut queues = self.queues.lock();
-        let is_free = !queues.contains_key(&key);
-        queues.entry(key.clone()).or_default().push_back(Waiter { number, waiting_move, lock: sender });
-        drop(queues);
-        if is_free {
-            // It goes to whoever has come first.
-            drop(SessionLock { cache: Arc::clone(self), key: key.clone() });
-        }
-        QueuePosition { cache, key, number, lock }
+    fn enter(self: &Arc<Self>, tenant: &Tenant, id: Uuid) -> (LockEntry, Arc<FairMutex<()>>) {
+        let key = (tenant.clone(), id);
+        let lock = Arc::clone(self.locks.lock().entry(key.clone()).or_default());
+        (LockEntry { cache: Arc::clone(self), key, lock: Some(Arc::clone(&lock)), held: None }, lock)
     }
 
     /// Whether the state of a session is cached.
@@ -177,7 +119,7 @@ impl Cache {
         self.capacity
     }
 
-    /// Bytes of the cached states, with those in use, and of the profiles, and how many states nobody uses.
+    /// Bytes of the states, cached or in use, and of the profiles; and the number of cached states.
     pub(super) fn held(&self) -> (usize, usize) {
         let cached = self.cached.lock();
         (cached.bytes, cached.items.len() - cached.addresses.len())
@@ -299,43 +241,14 @@ impl Guard {
     pub(super) fn finish(mut self, live: Box<LoadedSession>) {
         self.live = Some(live);
     }
-
-    /// Takes the moves at the head of the queue, at most so many, up to whatever else waits there.
-    pub(super) fn take_moves(&self, most: usize) -> Vec<WaitingMove> {
-        let mut queues = self.lock.cache.queues.lock();
-        let Some(queue) = queues.get_mut(&self.lock.key) else { return Vec::new() };
-        let moves = queue.iter().take(most).take_while(|waiter| waiter.waiting_move.is_some()).count();
-        queue.drain(..moves).filter_map(|waiter| waiter.waiting_move).collect()
-    }
 }
 
-impl SessionLock {
+impl LockEntry {
     /// The session with its state, if that is cached.
-    pub(super) fn guard(self) -> Guard {
+    fn guard(self) -> Guard {
         let (live, taken) = self.cache.take(&self.key).unzip();
         let taken = taken.unwrap_or(0);
         Guard { live, loading: Duration::ZERO, held: Reservation::default(), taken, lock: self }
-    }
-}
-
-impl QueuePosition {
-    /// Leaves the queue; returns whether it was still there, so that nobody has taken its move.
-    pub(super) fn leave(&self) -> bool {
-        let left = {
-            let mut queues = self.cache.queues.lock();
-            queues.get_mut(&self.key).and_then(|queue| {
-                let place = queue.iter().position(|waiter| waiter.number == self.number)?;
-                queue.remove(place)
-            })
-        };
-        // A move that is dropped gives its reservation back, for which the lock of the cache is not needed.
-        left.is_some()
-    }
-}
-
-impl Drop for QueuePosition {
-    fn drop(&mut self) {
-        self.leave();
     }
 }
 
@@ -347,20 +260,43 @@ impl Drop for Guard {
     }
 }
 
-impl Drop for SessionLock {
+impl Drop for LockEntry {
     fn drop(&mut self) {
-        let next = {
-            let mut queues = self.cache.queues.lock();
-            let next = queues.get_mut(&self.key).and_then(VecDeque::pop_front);
-            if next.is_none() {
-                queues.remove(&self.key);
-            }
-            next
-        };
-        if let Some(waiter) = next {
-            let lock = SessionLock { cache: Arc::clone(&self.cache), key: self.key.clone() };
-            // From one who has just left, the lock comes back and goes on.
-            let _ = waiter.lock.send((lock, waiter.waiting_move));
+        let mut locks = self.cache.locks.lock();
+        // Both while nobody can enter, so that the last of those who leave at the same time finds nobody else.
+        drop((self.held.take(), self.lock.take()));
+        if locks.get(&self.key).is_some_and(|lock| Arc::strong_count(lock) == 1) {
+            locks.remove(&self.key);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[tokio::test(flavor = "multi_thread", worker_threads = 4)]
+    async fn a_lock_is_exclusive_and_nothing_of_it_stays() {
+        let hits = IntCounter::new("hits", "Hits.").unwrap();
+        let (cache, users, tenant) = (Arc::new(Cache::new(0, hits)), Arc::new(Mutex::new(0)), Tenant::default());
+        let ids = [Uuid::now_v7(), Uuid::now_v7()];
+        let tasks = (0..400).map(|number| {
+            let (cache, users, tenant) = (Arc::clone(&cache), Arc::clone(&users), tenant.clone());
+            tokio::spawn(async move {
+                let waiting = cache.lock(&tenant, ids[number % 2]);
+                let Ok(guard) = tokio::time::timeout(Duration::from_micros(50 * number as u64), waiting).await else {
+                    return;
+                };
+                if number % 2 == 0 {
+                    *users.try_lock().expect("another task has the lock") += 1;
+                    assert!(cache.try_lock(&tenant, ids[0]).is_none());
+                }
+                drop(guard);
+            })
+        });
+        for task in tasks.collect::<Vec<_>>() {
+            task.await.unwrap();
+        }
+        assert!(cache.locks.lock().is_empty());
     }
 }

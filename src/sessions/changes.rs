@@ -12,15 +12,15 @@ use crate::store::{CONTACT_BYTES, IdempotentRequest, Reply, RequestKey, Session,
 use stickslip_wire::session::Creation;
 use stickslip_wire::{ForkRequest, SessionReply};
 
+use super::context::{ATTEMPTS, TenantContext};
+use super::error::SessionError;
 use super::expected::Expected;
-use super::loaded::LoadedSession;
-use super::replay::Replay;
+use super::loaded::{LoadedSession, written};
 use super::run_to_end::run_to_end;
-use super::{ATTEMPTS, SessionError, written};
 
 /// Changes of the sessions of a tenant, but for their moves.
 pub struct Changes {
-    pub(super) replay: Replay,
+    pub(super) context: TenantContext,
 }
 
 impl Changes {
@@ -29,12 +29,12 @@ impl Changes {
     /// # Errors
     /// [`SessionError`]; nothing has been made then.
     pub async fn create(&self, creation: Creation, key: Option<RequestKey>) -> Result<Reply, SessionError> {
-        let request = self.replay.request(key);
+        let request = self.context.request(key);
         let create = pin!(async {
             let now = Timestamp::now();
             let session = Session {
                 id: Uuid::now_v7(),
-                tenant: self.replay.tenant.clone(),
+                tenant: self.context.tenant.clone(),
                 label: creation.label,
                 definition: Arc::new(creation.definition),
                 sequence: 0,
@@ -45,10 +45,10 @@ impl Changes {
             let reply = live.created_reply()?;
             let receipt = request.receipt(&reply);
             let added = Usage::of(1, live.stored_bytes(), receipt.as_ref());
-            let reservation = self.replay.reserve_storage(added).await?;
+            let reservation = self.context.reserve_storage(added).await?;
             // A request that finds the new session in the store waits until it is cached.
-            let guard = self.replay.common.cache.lock(&self.replay.tenant, live.session.id).await?;
-            let common = Arc::clone(&self.replay.common);
+            let guard = self.context.cache.lock(&self.context.tenant, live.session.id).await;
+            let common = Arc::clone(&self.context.common);
             let create = async move {
                 let stored = common.store.create(live.session.clone(), receipt);
                 stored.instrument(otlp::part!("store")).await?;
@@ -66,7 +66,7 @@ impl Changes {
     /// # Errors
     /// A key of another request, or a failure of the store.
     pub async fn earlier_reply(&self, key: RequestKey) -> Result<Option<Reply>, SessionError> {
-        Ok(self.replay.request(Some(key)).earlier_reply().await?)
+        Ok(self.context.request(Some(key)).earlier_reply().await?)
     }
 
     /// Keeps the reply to a request that stores nothing else, within the quotas of the tenant. Returns the reply that
@@ -75,12 +75,12 @@ impl Changes {
     /// # Errors
     /// A key of another request, a quota, or a failure of the store.
     pub async fn keep_reply(&self, key: RequestKey, body: Vec<u8>) -> Result<Reply, SessionError> {
-        let request = self.replay.request(Some(key));
+        let request = self.context.request(Some(key));
         let reply = Reply { created: None, sequence: 0, body };
         let Some(receipt) = request.receipt(&reply) else { return Ok(reply) };
         let added = Usage::of(0, 0, Some(&receipt));
-        let reservation = self.replay.reserve_storage(added).await?;
-        let common = Arc::clone(&self.replay.common);
+        let reservation = self.context.reserve_storage(added).await?;
+        let common = Arc::clone(&self.context.common);
         let keep = async move {
             let stored = common.store.keep(receipt).instrument(otlp::part!("store"));
             stored.await.inspect(|()| reservation.used(added))
@@ -96,12 +96,12 @@ impl Changes {
     /// # Errors
     /// [`SessionError`]; nothing has been made then.
     pub async fn fork(&self, id: Uuid, asked: ForkRequest, key: Option<RequestKey>) -> Result<Reply, SessionError> {
-        let request = self.replay.request(key);
+        let request = self.context.request(key);
         let fork = pin!(async {
             // A tenant at its quota is refused before its past is read.
-            drop(self.replay.reserve_storage(Usage::of(1, CONTACT_BYTES, None)).await?);
-            let mut guard = self.replay.lock(id).await?;
-            let (mut copy, held) = self.replay.after(&mut guard, asked.sequence).await?;
+            drop(self.context.reserve_storage(Usage::of(1, CONTACT_BYTES, None)).await?);
+            let mut guard = self.context.lock(id).await?;
+            let (mut copy, held) = self.context.after(&mut guard, asked.sequence).await?;
             let now = Timestamp::now();
             copy.session = Session {
                 id: Uuid::now_v7(),
@@ -112,14 +112,14 @@ impl Changes {
             };
             let reply = copy.created_reply()?;
             let receipt = request.receipt(&reply);
-            let extent = self.replay.common.store.extent(id).await;
-            let extent = extent.map_err(|error| self.replay.store_failure(&mut guard, error))?;
-            let moves = copy.session.sequence * self.replay.common.store.move_bytes();
+            let extent = self.context.store.extent(id).await;
+            let extent = extent.map_err(|error| self.context.store_failure(&mut guard, error))?;
+            let moves = copy.session.sequence * self.context.store.move_bytes();
             let added = Usage::of(1, copy.stored_bytes() + moves + extent.snapshot, receipt.as_ref());
-            let reservation = self.replay.reserve_storage(added).await?;
-            let new = self.replay.common.cache.lock(&self.replay.tenant, copy.session.id).await?;
+            let reservation = self.context.reserve_storage(added).await?;
+            let new = self.context.cache.lock(&self.context.tenant, copy.session.id).await;
             // The original may have moved on meanwhile in another process: its past stays what it was.
-            let common = Arc::clone(&self.replay.common);
+            let common = Arc::clone(&self.context.common);
             let fork = async move {
                 let _held = held;
                 let stored = common.store.fork(id, copy.session.clone(), receipt);
@@ -131,7 +131,7 @@ impl Changes {
             match run_to_end(fork).await {
                 Ok(()) => Ok(reply),
                 Err(error @ (StoreError::NotFound | StoreError::Expired(_))) => {
-                    Err(self.replay.store_failure(&mut guard, error))
+                    Err(self.context.store_failure(&mut guard, error))
                 }
                 Err(StoreError::Stale { found }) => Err(SessionError::Overtaken { found }),
                 Err(error) => Err(error.into()),
@@ -151,12 +151,12 @@ impl Changes {
         expected: Option<Expected>,
         key: Option<RequestKey>,
     ) -> Result<Reply, SessionError> {
-        let request = self.replay.request(key);
+        let request = self.context.request(key);
         let rename = pin!(async {
-            let mut guard = self.replay.lock(id).await?;
+            let mut guard = self.context.lock(id).await?;
             let mut overtaken = 0;
             for _ in 0..ATTEMPTS {
-                let now = self.replay.current(&mut guard).await?.reply();
+                let now = self.context.current(&mut guard).await?.reply();
                 if let Some(expected) = expected {
                     expected.check(now.sequence, now.label.as_deref())?;
                 }
@@ -165,10 +165,10 @@ impl Changes {
                 let reply = Reply { created: None, sequence: renamed.sequence, body: written(&renamed)? };
                 let receipt = request.receipt(&reply);
                 let added = Usage::of(0, 0, receipt.as_ref());
-                let reservation = self.replay.reserve_storage(added).await?;
+                let reservation = self.context.reserve_storage(added).await?;
                 // The reply shows the sequence, and the client may expect it and the label: both hold only as long as
                 // no other process changes them.
-                let (common, label, at) = (Arc::clone(&self.replay.common), label.clone(), reply.sequence);
+                let (common, label, at) = (Arc::clone(&self.context.common), label.clone(), reply.sequence);
                 let rename = async move {
                     let stored = common.store.rename(id, before, label, at, receipt);
                     stored.instrument(otlp::part!("store")).await.inspect(|()| reservation.used(added))
@@ -176,7 +176,7 @@ impl Changes {
                 match run_to_end(rename).await {
                     Ok(()) => return Ok(reply),
                     Err(StoreError::Stale { found }) => overtaken = found,
-                    Err(error) => return Err(self.replay.store_failure(&mut guard, error)),
+                    Err(error) => return Err(self.context.store_failure(&mut guard, error)),
                 }
             }
             Err(SessionError::Overtaken { found: overtaken })
@@ -189,24 +189,24 @@ impl Changes {
     /// # Errors
     /// [`SessionError`]; it is still there then.
     pub async fn delete(&self, id: Uuid, expected: Option<Expected>) -> Result<(), SessionError> {
-        let mut guard = self.replay.lock(id).await?;
+        let mut guard = self.context.lock(id).await?;
         let found = match &guard.live {
             Some(live) if expected.is_none_or(|expected| expected.label.is_none()) => live.session.sequence,
             _ => {
-                let stored = self.replay.extent(id).await?;
+                let stored = self.context.extent(id).await?;
                 expected.map_or(Ok(()), |expected| expected.check(stored.sequence, stored.label.as_deref()))?;
                 stored.sequence
             }
         };
         let mut at = expected.map_or(found, |expected| expected.sequence);
         for _ in 0..ATTEMPTS {
-            let Replay { tenant, common } = self.replay.clone();
+            let TenantContext { tenant, common } = self.context.clone();
             let delete = async move {
                 let deleted = common.store.delete(id, at).instrument(otlp::part!("store")).await;
                 if deleted.is_ok() {
                     guard.live = None;
                     let bytes = CONTACT_BYTES + at * common.store.move_bytes();
-                    common.usage.give_back(&tenant, Usage::of(1, bytes, None));
+                    common.give_back(&tenant, Usage::of(1, bytes, None));
                 }
                 (guard, deleted)
             };
@@ -218,7 +218,7 @@ impl Changes {
                     return Err(SessionError::Stale { expected: expected.sequence, found });
                 }
                 (Err(StoreError::Stale { found }), None) => at = found,
-                (Err(error), _) => return Err(self.replay.store_failure(&mut guard, error)),
+                (Err(error), _) => return Err(self.context.store_failure(&mut guard, error)),
             }
         }
         Err(SessionError::Overtaken { found: at })

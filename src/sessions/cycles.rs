@@ -4,20 +4,23 @@ use std::sync::Arc;
 
 use uuid::Uuid;
 
-use crate::admission::{Interrupted, Reservation, Stop};
-use crate::simulation::Failure;
-use crate::simulation::cost::Work;
-use stickslip_mechanics::cycle::SteadyCycle;
-use stickslip_mechanics::{Contact, Move, Normal};
+use crate::admission::{Deadline, Reservation};
+use crate::store::RECORD_BYTES;
+use stickslip_compute::simulation::Failure;
+use stickslip_compute::simulation::cost::Work;
+use stickslip_compute::{Interrupted, Nanoseconds, Stop};
+use stickslip_mechanics::Contact;
+use stickslip_mechanics::closed_cycles::{ClosedCycle, CycleLog, Loop};
 use stickslip_wire::reply::finite;
-use stickslip_wire::{Cycle, CyclePage, HistoryPage, State};
+use stickslip_wire::{Cycle, CyclePage, HistoryPage, State, limits};
 
-use super::SessionError;
-use super::cycle_log::{CycleLog, STATE_COST};
-use super::cycle_scan::{Answer, ClosedCycle};
-use super::replay::{PAGE, Replay};
+use super::context::TenantContext;
+use super::error::SessionError;
+use super::replay::PAGE;
 
-/// Moves whose cost that of a steady cycle is like.
+/// Looking at one recorded state.
+pub(super) const STATE_COST: Nanoseconds = 50;
+/// The cost of a steady cycle, in moves.
 const CYCLE_MOVES: usize = 4;
 /// JSON pointer to the number of cycles.
 const LAST: &str = "/last";
@@ -27,7 +30,7 @@ const MARKED: &str = "/cycles";
 /// The closed cycles of the sessions of a tenant.
 #[derive(Clone)]
 pub struct ClosedCycles {
-    pub(super) replay: Replay,
+    pub(super) context: TenantContext,
 }
 
 impl ClosedCycles {
@@ -43,13 +46,13 @@ impl ClosedCycles {
         last: usize,
         memory: &mut Reservation,
     ) -> Result<(u64, CyclePage), SessionError> {
-        let (stop, _guard) = self.replay.common.pool.deadline();
+        let (stop, _guard) = self.context.pool.deadline();
         // The lock is held for copies alone, so that the session can move on meanwhile.
         let (virgin, sequence, known) = {
-            let mut guard = self.replay.lock(id).await?;
-            let live = self.replay.current(&mut guard).await?;
+            let mut guard = self.context.lock(id).await?;
+            let live = self.context.current(&mut guard).await?;
             let known = (live.contact.virgin(), live.session.sequence, live.cycles.clone());
-            stop.charge(guard.loading);
+            stop.flag().charge(guard.loading);
             known
         };
         let log = match known {
@@ -67,7 +70,7 @@ impl ClosedCycles {
             let newest = log.newest.range(log.newest.len().saturating_sub(last)..);
             newest.map(|cycle| answered(cycle, &virgin, (&stop, LAST))).collect::<Result<_, _>>()
         };
-        let items = self.replay.common.pool.run(cost, answers).await??;
+        let items = self.context.pool.run(cost, answers).await??;
         Ok((sequence, CyclePage { items }))
     }
 
@@ -77,27 +80,30 @@ impl ClosedCycles {
     /// As [`ClosedCycles::newest`].
     pub async fn mark(&self, id: Uuid, page: &mut HistoryPage, memory: &mut Reservation) -> Result<(), SessionError> {
         let Some(after) = page.items.first().map(|item| item.sequence - 1) else { return Ok(()) };
-        let (stop, _guard) = self.replay.common.pool.deadline();
+        let (stop, _guard) = self.context.pool.deadline();
         let (virgin, known) = {
-            let mut guard = self.replay.lock(id).await?;
-            let live = self.replay.current(&mut guard).await?;
+            let mut guard = self.context.lock(id).await?;
+            let live = self.context.current(&mut guard).await?;
             let known = (live.contact.virgin(), live.log_for(after));
-            stop.charge(guard.loading);
+            stop.flag().charge(guard.loading);
             known
         };
         let mut log = match known {
             Some(known) if known.sequence >= after => known,
             known => self.look_on(id, after, known, &virgin, (&stop, MARKED), memory).await?,
         };
-        let (pool, before) = (&self.replay.common.pool, memory.bytes());
-        pool.resize(memory, before + log.bytes_with(PAGE)).await?;
+        let (pool, before) = (&self.context.pool, memory.bytes());
+        pool.resize(memory, before + bytes_with(&log, PAGE)).await?;
         let states: Vec<(u64, State)> = page.items.iter().map(|item| (item.sequence, item.state)).collect();
         let cost = Work { moves: CYCLE_MOVES * states.len(), ..Work::default() }.cost(virgin.profile());
         let look = move || {
             let mut answer = |(sequence, state): (u64, State)| {
                 let is_known = sequence <= log.sequence;
-                let cycle =
-                    if is_known { log.closed_by(sequence) } else { Arc::make_mut(&mut log).push(sequence, &state) };
+                let cycle = if is_known {
+                    log.closed_by(sequence)
+                } else {
+                    Arc::make_mut(&mut log).push(sequence, &state.into())
+                };
                 cycle.map(|cycle| answered(&cycle, &virgin, (&stop, MARKED))).transpose()
             };
             let cycles = states.into_iter().map(&mut answer).collect::<Result<Vec<_>, _>>()?;
@@ -109,15 +115,15 @@ impl ClosedCycles {
         self.keep(id, &log).await
     }
 
-    /// Looks at the states up to the move `sequence` that are not in `known`. What has been seen when the time is up is
-    /// left with the session, so that another try comes farther; `place` is then refused.
+    /// Looks at the states up to the move `sequence` that are not in `known`. The log at the deadline is kept
+    /// with the session, so that the next request continues from it; `place` is then refused.
     async fn look_on(
         &self,
         id: Uuid,
         sequence: u64,
         known: Option<Arc<CycleLog>>,
         virgin: &Contact,
-        (stop, place): (&Stop, &str),
+        (stop, place): (&Deadline, &str),
         memory: &mut Reservation,
     ) -> Result<Arc<CycleLog>, SessionError> {
         let (log, seen) = self.read_states(id, sequence, known, virgin, stop, Some(memory)).await?;
@@ -136,27 +142,27 @@ impl ClosedCycles {
         sequence: u64,
         known: Option<Arc<CycleLog>>,
         virgin: &Contact,
-        stop: &Stop,
+        stop: &dyn Stop,
         mut memory: Option<&mut Reservation>,
     ) -> Result<(Arc<CycleLog>, Result<(), Interrupted>), SessionError> {
         let known = match known {
             Some(known) if known.sequence == sequence => return Ok((known, Ok(()))),
             known => known,
         };
-        let (pool, before) = (&self.replay.common.pool, memory.as_ref().map_or(0, |memory| memory.bytes()));
-        let mut log = known.map_or_else(|| CycleLog::new(&virgin.state().into()), Arc::unwrap_or_clone);
+        let (pool, before) = (&self.context.pool, memory.as_ref().map_or(0, |memory| memory.bytes()));
+        let mut log = known.map_or_else(|| empty_log(virgin), Arc::unwrap_or_clone);
         while log.sequence < sequence {
             if let Err(interrupted) = stop.check() {
                 return Ok((Arc::new(log), Err(interrupted)));
             }
             if let Some(memory) = &mut memory {
-                pool.resize(memory, before + log.bytes_with(PAGE)).await?;
+                pool.resize(memory, before + bytes_with(&log, PAGE)).await?;
             }
-            let records = self.replay.page(id, log.sequence, sequence).await?;
+            let records = self.context.page(id, log.sequence, sequence).await?;
             let cost = STATE_COST * records.len() as u64;
             let look = move || {
                 for record in records {
-                    log.push(record.sequence, &record.state);
+                    log.push(record.sequence, &record.state.into());
                 }
                 log
             };
@@ -169,9 +175,9 @@ impl ClosedCycles {
         Ok((Arc::new(log), Ok(())))
     }
 
-    /// Leaves what has been found with the session if that has come as far.
+    /// Keeps a log with the cached session, unless the log is ahead of the session.
     async fn keep(&self, id: Uuid, log: &Arc<CycleLog>) -> Result<(), SessionError> {
-        let mut guard = self.replay.lock(id).await?;
+        let mut guard = self.context.lock(id).await?;
         if let Some(live) = guard.live.as_mut().filter(|live| live.session.sequence >= log.sequence) {
             live.keep_log(log);
         }
@@ -180,28 +186,34 @@ impl ClosedCycles {
 }
 
 /// A row of the reply; `virgin` is the contact before its first move.
-fn answered(cycle: &ClosedCycle, virgin: &Contact, (stop, place): (&Stop, &str)) -> Result<Cycle, SessionError> {
+fn answered(cycle: &ClosedCycle, virgin: &Contact, (stop, place): (&Deadline, &str)) -> Result<Cycle, SessionError> {
     stop.check().map_err(|interrupted| Failure::interrupted(interrupted, place))?;
-    let amplitude = cycle.displacement_amplitude;
-    let (force_amplitude, dissipated_energy, sliding_ratio) = match cycle.answer {
-        Answer::Recorded { force_amplitude, dissipated_energy } => (force_amplitude, dissipated_energy, None),
-        Answer::Steady { indentation } => {
-            let mut contact = virgin.clone();
-            let load = Move { normal: Some(Normal::Indentation(indentation)), ..Move::default() };
-            if (indentation - virgin.indentation()).abs() > 0.0 {
-                contact.apply(&load).map_err(|error| SessionError::Broken(format!("no load of a cycle: {error}")))?;
-            }
-            let steady = SteadyCycle::of(&contact, amplitude);
-            (steady.force_amplitude(), steady.dissipated_energy(), steady.sliding_ratio())
-        }
-    };
+    let broken = |error| SessionError::Broken(format!("no load of a cycle: {error}"));
+    let Loop { force_amplitude, dissipated_energy, sliding_ratio } = cycle.loop_of(virgin).map_err(broken)?;
     Ok(Cycle {
         from: cycle.from,
         to: cycle.to,
-        displacement_amplitude: amplitude,
+        displacement_amplitude: cycle.displacement_amplitude,
         force_amplitude,
         dissipated_energy,
-        secant_stiffness: finite(force_amplitude / amplitude),
+        secant_stiffness: finite(force_amplitude / cycle.displacement_amplitude),
         sliding_ratio,
     })
+}
+
+/// The log of a session before its first move, with as many cycles as a reply can have.
+fn empty_log(virgin: &Contact) -> CycleLog {
+    CycleLog::new(&virgin.state(), *limits::CYCLES.end())
+}
+
+/// Bytes that a log and so many records take while they are looked at.
+fn bytes_with(log: &CycleLog, records: usize) -> usize {
+    log.memory_bytes_after(records) + records * RECORD_BYTES
+}
+
+/// Bytes that it takes to know all cycles of a session up to a move, with the records that are read for it.
+pub(super) fn bytes_to_read(known: Option<&CycleLog>, virgin: &Contact, sequence: u64) -> usize {
+    let new = usize::try_from(sequence - known.map_or(0, |known| known.sequence).min(sequence)).unwrap_or(usize::MAX);
+    let log = known.map_or_else(|| empty_log(virgin).memory_bytes_after(new), |known| known.memory_bytes_after(new));
+    log + new.min(PAGE) * RECORD_BYTES
 }

@@ -5,9 +5,9 @@ use std::time::Duration;
 use uuid::Uuid;
 
 use crate::admission::PoolError;
-use crate::formats::Unwritable;
-use crate::simulation;
 use crate::store::StoreError;
+use stickslip_compute::formats::Unwritable;
+use stickslip_compute::simulation;
 use stickslip_wire::Rejection;
 
 /// Why an operation on a session failed. Nothing has changed then.
@@ -57,7 +57,7 @@ pub enum SessionError {
         found: u64,
     },
     /// The limit of clients that listen to events is reached.
-    #[error("{} clients listen to events, which is the limit", super::STREAMS)]
+    #[error("{} clients listen to events, which is the limit", crate::admission::STREAMS)]
     TooManyStreams,
     /// The mechanics has no answer, or the client no longer waits for it.
     #[error(transparent)]

@@ -11,16 +11,15 @@ use futures::Stream;
 use uuid::Uuid;
 
 use crate::admission::{PoolError, Quota, Reservation, Share};
-use crate::simulation::{Cause, Failure};
 use crate::store::{Listener, StoreError, StreamEvent};
+use stickslip_compute::simulation::{Cause, Failure};
 use stickslip_wire::{EndReason, HistoryPage, StateEvent};
 
 use super::cycles::ClosedCycles;
+use super::error::SessionError;
+use super::handle::Sessions;
 use super::history::History;
-use super::{SessionError, Sessions};
 
-/// Clients that may listen at a time.
-pub const STREAMS: usize = 1_000;
 /// Moves that a listener reads at a time.
 const PAGE: usize = 80;
 /// How long a listener waits before it tries again what may succeed later, as where the store is unreachable.
@@ -53,9 +52,9 @@ pub async fn events(
     id: Uuid,
     after: Option<u64>,
 ) -> Result<impl Stream<Item = StreamEvent<StateEvent>> + Send + use<>, SessionError> {
-    let share = sessions.replay.common.pool.share_of(Quota::Streams)?;
+    let share = sessions.context.pool.share_of(Quota::Streams)?;
     // Every later change wakes the listener, so that none can fall between the first read and the first wait.
-    let listener = sessions.replay.common.listeners.listen(sessions.replay.common.store.changes(), id);
+    let listener = sessions.context.listeners.listen(sessions.context.store.changes(), id);
     let listener = listener.ok_or(SessionError::TooManyStreams)?;
     let session = sessions.get(id).await?;
     let found = session.sequence;

@@ -6,13 +6,14 @@ use uuid::Uuid;
 use crate::otlp;
 use stickslip_wire::{HistoryItem, HistoryPage};
 
-use super::SessionError;
-use super::replay::{Replay, damaged};
+use super::context::TenantContext;
+use super::error::SessionError;
+use super::replay::damaged;
 
 /// The recorded moves of the sessions of a tenant.
 #[derive(Clone)]
 pub struct History {
-    pub(super) replay: Replay,
+    pub(super) context: TenantContext,
     pub(super) names_makers: bool,
 }
 
@@ -22,7 +23,7 @@ impl History {
     /// # Errors
     /// [`SessionError::NotFound`] or [`SessionError::Expired`], or a failure of the store.
     pub async fn sequence(&self, id: Uuid) -> Result<u64, SessionError> {
-        Ok(self.replay.extent(id).await?.sequence)
+        Ok(self.context.extent(id).await?.sequence)
     }
 
     /// Checks that the first `end` moves of a session are all stored.
@@ -31,14 +32,14 @@ impl History {
     /// [`SessionError::Store`] with [`StoreError::Damaged`](crate::store::StoreError::Damaged) if they are not, or a
     /// failure of the store.
     pub async fn check_complete(&self, id: Uuid, end: u64) -> Result<(), SessionError> {
-        let count = self.replay.common.store.count_moves(id, end).await;
-        if count.map_err(|error| self.replay.store_error(id, error))? == end {
+        let count = self.context.store.count_moves(id, end).await;
+        if count.map_err(|error| self.context.store_error(id, error))? == end {
             return Ok(());
         }
         // Which one is missing is found by reading them.
         let mut at = 0;
         while at < end {
-            at += self.replay.page(id, at, end).await?.len() as u64;
+            at += self.context.page(id, at, end).await?.len() as u64;
         }
         Err(damaged(id, &format_args!("of its {end} moves some are missing")))
     }
@@ -48,16 +49,16 @@ impl History {
     /// # Errors
     /// [`SessionError::NotFound`] or [`SessionError::Expired`], or a failure of the store.
     pub async fn page(&self, id: Uuid, after: u64, limit: usize) -> Result<HistoryPage, SessionError> {
-        if !self.replay.common.cache.holds(&self.replay.tenant, id) {
-            self.replay.extent(id).await?;
+        if !self.context.cache.holds(&self.context.tenant, id) {
+            self.context.extent(id).await?;
         }
         self.own_page(id, after, limit).await
     }
 
     /// The same of a session that is known to belong to the tenant.
     pub(super) async fn own_page(&self, id: Uuid, after: u64, limit: usize) -> Result<HistoryPage, SessionError> {
-        let found = self.replay.common.store.history(id, after, limit + 1).instrument(otlp::part!("store")).await;
-        let mut found = found.map_err(|error| self.replay.store_error(id, error))?;
+        let found = self.context.store.history(id, after, limit + 1).instrument(otlp::part!("store")).await;
+        let mut found = found.map_err(|error| self.context.store_error(id, error))?;
         let more = found.len() > limit;
         found.truncate(limit);
         let next = found.last().filter(|_| more).map(|record| record.sequence);

@@ -3,20 +3,24 @@
 use std::cmp::Ordering;
 use std::sync::Arc;
 
-use crate::simulation::{self, bytes, present_warnings};
+use crate::otlp;
 use crate::store::{CONTACT_BYTES, Reply, Session};
+use stickslip_compute::formats;
+use stickslip_compute::simulation::{self, bytes, present_warnings};
 use stickslip_mechanics::Contact;
+use stickslip_mechanics::closed_cycles::CycleLog;
 use stickslip_wire::definition::SharedSetup;
 use stickslip_wire::{ContactSummary, Faults, FrictionEstimate, JsonPath, NewSession, Prepare, SessionReply, Warning};
 
-use super::cycle_log::CycleLog;
+use super::error::SessionError;
 use super::replay_cost::ReplayCost;
-use super::{SessionError, written};
 
 /// Bytes of a session besides its pieces, its label and its tables: what is fixed, and the entry in the cache. The
 /// process grows by 800.
 const FIXED: usize = 1024;
 
+/// Bytes that suffice for most replies, so that a buffer need not grow step by step.
+const REPLY: usize = 768;
 /// Bytes of a definition as JSON besides its tables, and of a number in these.
 const DEFINITION: usize = 256;
 const NUMBER: usize = 20;
@@ -84,7 +88,7 @@ impl LoadedSession {
         })
     }
 
-    /// The same of a session as it is stored, or why its definition is invalid.
+    /// The same of a stored session, or the reason why its definition is invalid.
     pub(super) fn of_stored(session: Session, profiles: &dyn Prepare) -> Result<LoadedSession, String> {
         let mut faults = Faults::default();
         let setup = session.definition.check(JsonPath::Root, profiles, &mut faults);
@@ -96,7 +100,8 @@ impl LoadedSession {
     pub(super) fn bytes(&self) -> usize {
         let label = self.session.label.as_ref().map_or(0, String::capacity);
         let warnings: usize = self.derived.warnings.iter().map(|warning| warning.message.capacity()).sum();
-        let cycles: usize = [&self.cycles, &self.past_cycles].into_iter().flatten().map(|cycles| cycles.bytes()).sum();
+        let cycles: usize =
+            [&self.cycles, &self.past_cycles].into_iter().flatten().map(|cycles| cycles.memory_bytes()).sum();
         FIXED + self.contact.memory_bytes() + label + warnings + cycles
     }
 
@@ -153,4 +158,9 @@ impl LoadedSession {
             Ordering::Greater => self.past_cycles = Some(Arc::clone(log)),
         }
     }
+}
+
+/// A reply as JSON.
+pub(super) fn written(reply: &impl serde::Serialize) -> Result<Vec<u8>, SessionError> {
+    Ok(otlp::part!("write").in_scope(|| formats::json(REPLY, reply))?)
 }

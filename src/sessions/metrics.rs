@@ -23,7 +23,7 @@ metrics! {
 
 /// The metrics of the sessions.
 pub struct Readings<'a> {
-    /// What is counted as it happens.
+    /// Metrics that are counted as events happen.
     pub counted: &'a SessionMetrics,
     /// Cached sessions that no request uses.
     pub cached: usize,

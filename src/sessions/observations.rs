@@ -1,36 +1,31 @@
 //! Observations: a contact follows a bench, and the reply has what it predicts beside what was measured. Its friction
 //! is that with which the model is nearest to the newest measured cycle.
 //!
-//! The estimate follows from what is stored, and is kept with the cached session until the next such cycle closes. A
-//! cycle counts if all of its moves are observations under one load. Noise closes cycles too: those with few moves are
-//! passed over, and so are those that are small beside others.
+//! The estimate follows from what is stored, and is kept with the cached session until the next such cycle closes.
 
 use std::sync::Arc;
 use std::time::Duration;
 
 use uuid::Uuid;
 
-use crate::admission::{Nanoseconds, Reservation, Stop};
-use crate::simulation::bytes::ROW;
+use crate::admission::{Deadline, Reservation};
 use crate::store::{self, StoreError};
-use stickslip_measured::loops::{Error, Known, LoopFit, Noise, Note, Parameter, Record, Start, Task, fit};
-use stickslip_mechanics::{Contact, range};
-use stickslip_report::plot::in_unit;
+use stickslip_compute::simulation::bytes::ROW;
+use stickslip_compute::{Nanoseconds, Part, Stop};
+use stickslip_measured::cycle_friction::{MeasuredCycle, newest_large};
+use stickslip_mechanics::closed_cycles::{ClosedCycle, CycleLog};
+use stickslip_mechanics::{Contact, in_unit, range};
 use stickslip_wire::{
     Faults, FrictionEstimate, FrictionReply, JsonPath, Observation, ObservationsReply, ObservedMove, Rejection, limits,
 };
 
 use super::cache::Guard;
-use super::cycle_log::{CycleLog, STATE_COST};
-use super::cycles::ClosedCycles;
-use super::loaded::{Estimated, LoadedSession};
-use super::replay::{PAGE, Replay};
-use super::{SessionError, written};
+use super::context::TenantContext;
+use super::cycles::{ClosedCycles, STATE_COST, bytes_to_read};
+use super::error::SessionError;
+use super::loaded::{Estimated, LoadedSession, written};
+use super::replay::PAGE;
 
-/// Moves that a cycle must have.
-const MOVES: u64 = 8;
-/// Newest cycles of so many moves that are compared; of less than half the largest amplitude are small ones.
-const COMPARED: usize = 100;
 /// How long an estimate may take.
 const TIME: Duration = Duration::from_secs(5);
 /// Time of a fit to a cycle, and for each of its points.
@@ -38,35 +33,6 @@ const FIT_COST: Nanoseconds = 500_000;
 const POINT_COST: Nanoseconds = 10_000;
 /// Time to write one observation as JSON.
 const WRITING_COST: Nanoseconds = 240;
-/// Indentations are the same load if they agree to this part.
-const SAME_LOAD: f64 = 1e-12;
-
-/// The measurements of a cycle, as far as they have been read.
-#[derive(Default)]
-struct MeasuredCycle {
-    displacement: Vec<f64>,
-    force: Vec<f64>,
-    /// Indentation, m, and normal force, N.
-    load: Option<(f64, f64)>,
-}
-
-impl MeasuredCycle {
-    /// Adds a move; returns whether it is an observation under the same load as those before.
-    fn push(&mut self, record: &store::Record) -> bool {
-        let Some(measured) = record.measured else { return false };
-        let (indentation, _) = *self.load.get_or_insert((record.state.indentation, record.state.normal_force));
-        self.displacement.push(record.state.displacement);
-        self.force.push(measured.force);
-        (record.state.indentation - indentation).abs() <= SAME_LOAD * indentation.abs()
-    }
-}
-
-/// The newest cycle that is not a small one: the move after which it began, and the one that closed it.
-fn newest_large(log: &CycleLog) -> Option<(u64, u64)> {
-    let long = || log.newest.iter().rev().filter(|cycle| cycle.to - cycle.from >= MOVES).take(COMPARED);
-    let largest = long().map(|cycle| cycle.displacement_amplitude).fold(0.0, f64::max);
-    long().find(|cycle| cycle.displacement_amplitude >= 0.5 * largest).map(|cycle| (cycle.from, cycle.to))
-}
 
 /// Refuses forces that no coefficient of friction explains at this normal force, N: they are in another unit.
 pub(super) fn check_plausible(observations: &[Observation], normal_force: f64) -> Result<(), Rejection> {
@@ -92,8 +58,8 @@ pub struct Observations {
 }
 
 impl Observations {
-    pub(super) fn of(replay: &Replay) -> Observations {
-        Observations { cycles: ClosedCycles { replay: replay.clone() } }
+    pub(super) fn of(context: &TenantContext) -> Observations {
+        Observations { cycles: ClosedCycles { context: context.clone() } }
     }
 
     /// The friction of a session by its observations.
@@ -101,23 +67,23 @@ impl Observations {
     /// # Errors
     /// [`SessionError::NotFound`] or [`SessionError::Expired`], or a failure of the store or of the pool.
     pub async fn friction(&self, id: Uuid) -> Result<FrictionReply, SessionError> {
-        let (request, _raised_at_the_end) = self.cycles.replay.common.pool.deadline();
-        let stop = request.child_deadline(Some(TIME));
+        let (request, _raised_at_the_end) = self.cycles.context.pool.deadline();
+        let stop = Arc::new(Part::of(request.clone(), Some(TIME)));
         // The lock is held for copies alone, so that the session can move on meanwhile.
         let (virgin, sequence, known, mut estimated) = {
-            let mut guard = self.cycles.replay.lock(id).await?;
-            let live = self.cycles.replay.current(&mut guard).await?;
+            let mut guard = self.cycles.context.lock(id).await?;
+            let live = self.cycles.context.current(&mut guard).await?;
             let known = (live.contact.virgin(), live.session.sequence, live.cycles.clone(), live.estimated);
-            request.charge(guard.loading);
+            request.flag().charge(guard.loading);
             known
         };
         let memory = &mut Reservation::default();
-        let (log, seen) = self.cycles.read_states(id, sequence, known, &virgin, &stop, Some(memory)).await?;
+        let (log, seen) = self.cycles.read_states(id, sequence, known, &virgin, &*stop, Some(memory)).await?;
         if seen.is_ok() {
-            self.cycles.replay.common.pool.resize(memory, bytes_of_fit(sequence)).await?;
+            self.cycles.context.pool.resize(memory, bytes_of_fit(sequence)).await?;
             estimated = self.estimate(id, &log, &virgin, estimated, &[], &stop).await?;
         }
-        let mut guard = self.cycles.replay.lock(id).await?;
+        let mut guard = self.cycles.context.lock(id).await?;
         if let Some(live) = guard.live.as_mut().filter(|live| live.session.sequence == sequence) {
             live.keep_log(&log);
             live.estimated = estimated;
@@ -134,9 +100,9 @@ impl Observations {
         virgin: &Contact,
         earlier: Option<Estimated>,
         new: &[store::Record],
-        stop: &Stop,
+        stop: &Arc<Part<Deadline>>,
     ) -> Result<Option<Estimated>, SessionError> {
-        let Some((from, to)) = newest_large(log) else { return Ok(None) };
+        let Some(&ClosedCycle { from, to, .. }) = newest_large(&log.newest) else { return Ok(None) };
         if let Some(earlier) = earlier.filter(|earlier| (earlier.from, earlier.to) == (from, to)) {
             return Ok(Some(earlier));
         }
@@ -149,49 +115,50 @@ impl Observations {
         let stored = to.min(log.sequence - new.len() as u64);
         let mut read = from.saturating_sub(1);
         while read < stored {
-            let page = match self.cycles.replay.page(id, read, stored).await {
+            let page = match self.cycles.context.page(id, read, stored).await {
                 // A store behind the cached state: the append that follows says so.
                 Err(SessionError::Store(StoreError::Damaged { .. })) if !new.is_empty() => return Ok(unknown),
                 page => page?,
             };
-            if !page.iter().all(|record| cycle.push(record)) {
+            if !page.iter().all(|record| add(&mut cycle, record)) {
                 return Ok(unknown);
             }
             read += page.len() as u64;
         }
         let mut rest = new.iter().filter(|record| (from..=to).contains(&record.sequence));
-        if !rest.all(|record| cycle.push(record)) {
+        if !rest.all(|record| add(&mut cycle, record)) {
             return Ok(unknown);
         }
-        let (virgin, stop) = (virgin.clone(), stop.clone());
-        let fit = move || fitted(virgin, cycle, &stop);
-        let friction = self.cycles.replay.common.pool.run(FIT_COST + POINT_COST * moves as u64, fit).await?;
+        let (virgin, stop) = (virgin.clone(), Arc::clone(stop));
+        let fit = move || cycle.friction(virgin, &|| stop.check().is_ok());
+        let friction = self.cycles.context.pool.run(FIT_COST + POINT_COST * moves as u64, fit).await?;
         Ok(match friction {
-            Some(friction) => {
+            Ok(friction) => {
                 let friction = friction.map(|(value, interval)| FrictionEstimate { value, interval, from, to });
                 Some(Estimated { from, to, friction })
             }
-            None => earlier,
+            // The time is up.
+            Err(_) => earlier,
         })
     }
 
     /// The reply to observations that have led to `live` and are not stored yet. The guard has the state before them.
-    /// If the estimate of the friction takes too long, or there is no memory for it now, it is the one before: nobody
-    /// waits for memory while he has the lock of a contact.
+    /// If the estimate of the friction takes too long, or there is no memory for it now, it is the one before: a
+    /// request that has the lock of a contact never waits for memory.
     pub(super) async fn observed(
         &self,
         guard: &mut Guard,
         live: &mut LoadedSession,
         records: &[store::Record],
-        stop: &Stop,
+        stop: &Deadline,
     ) -> Result<Vec<u8>, SessionError> {
         let id = guard.id();
         let (virgin, before) = (live.contact.virgin(), live.session.sequence - records.len() as u64);
-        let stop = stop.child_deadline(Some(TIME));
-        let (pool, known) = (&self.cycles.replay.common.pool, live.cycles.take());
-        let bytes = CycleLog::bytes_to_read(known.as_deref(), live.session.sequence);
+        let stop = Arc::new(Part::of(stop.clone(), Some(TIME)));
+        let (pool, known) = (&self.cycles.context.pool, live.cycles.take());
+        let bytes = bytes_to_read(known.as_deref(), &virgin, live.session.sequence);
         if let Some(_held) = pool.try_reserve(bytes + bytes_of_fit(live.session.sequence)) {
-            let (mut log, seen) = self.cycles.read_states(id, before, known, &virgin, &stop, None).await?;
+            let (mut log, seen) = self.cycles.read_states(id, before, known, &virgin, &*stop, None).await?;
             // It is not read again if these observations are overtaken.
             if let Some(live) = &mut guard.live {
                 live.keep_log(&log);
@@ -201,7 +168,7 @@ impl Observations {
                 let look = move || {
                     let own = Arc::make_mut(&mut log);
                     for (sequence, state) in states {
-                        own.push(sequence, &state);
+                        own.push(sequence, &state.into());
                     }
                     log
                 };
@@ -223,7 +190,7 @@ impl Observations {
         });
         let friction = live.estimated.and_then(|estimated| estimated.friction);
         let reply = ObservationsReply { id, sequence: live.session.sequence, items: items.collect(), friction };
-        self.cycles.replay.common.pool.run(WRITING_COST * records.len() as u64, move || written(&reply)).await?
+        self.cycles.context.pool.run(WRITING_COST * records.len() as u64, move || written(&reply)).await?
     }
 }
 
@@ -233,63 +200,8 @@ fn bytes_of_fit(sequence: u64) -> usize {
     moves.min(*limits::PATH_MOVES.end()) * ROW + moves.min(PAGE) * store::RECORD_BYTES
 }
 
-/// The coefficient of friction of a cycle with its 95 % interval, if the cycle determines it; nothing at all if the
-/// time is up.
-fn fitted(virgin: Contact, cycle: MeasuredCycle, stop: &Stop) -> Option<Option<(f64, [f64; 2])>> {
-    let MeasuredCycle { displacement, force, load } = cycle;
-    let normal_force = load.map(|(_, normal_force)| normal_force);
-    let record = Record { displacement, force, time: None, normal_force, start: Some(Start::Steady), weight: 1.0 };
-    let stiff = Known { parameter: Parameter::MachineCompliance, value: 0.0, standard_error: 0.0 };
-    let task = Task {
-        contact: virgin,
-        records: vec![record],
-        free: vec![Parameter::Friction, Parameter::ForceOffset],
-        known: vec![stiff],
-        noise: Noise::default(),
-    };
-    match fit(&task, &|| stop.check().is_ok()) {
-        Ok(found) => Some(determined(&found)),
-        Err(Error::Interrupted) => None,
-        Err(_) => Some(None),
-    }
-}
-
-/// The friction of a fit with its interval, unless the contact does not slide as a whole or the interval is as wide as
-/// that.
-fn determined(found: &LoopFit) -> Option<(f64, [f64; 2])> {
-    let friction = found.estimates.first()?;
-    let [Some(low), Some(high)] = friction.interval else { return None };
-    let slides = !found.notes.contains(&Note::PartialSlipOnly);
-    (slides && !friction.at_bound && high - low <= friction.value).then_some((friction.value, [low, high]))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::super::cycle_scan::{Answer, ClosedCycle};
-    use super::CycleLog;
-
-    #[test]
-    fn noise_and_what_was_long_ago_hide_no_cycle() {
-        let newest_large = |cycles: &[(u64, u64, f64)]| {
-            let cycle = |&(from, to, displacement_amplitude)| ClosedCycle {
-                from,
-                to,
-                displacement_amplitude,
-                answer: Answer::Steady { indentation: 1.0 },
-            };
-            let mut log = CycleLog::default();
-            log.newest.extend(cycles.iter().map(cycle));
-            super::newest_large(&log)
-        };
-        assert_eq!(newest_large(&[]), None);
-        // Of few moves, or small beside others.
-        assert_eq!(newest_large(&[(1, 4, 9.0)]), None);
-        assert_eq!(newest_large(&[(1, 30, 1.0), (30, 60, 0.6), (45, 55, 0.2), (60, 63, 2.0)]), Some((30, 60)));
-        // After a hundred smaller ones a larger one is forgotten.
-        let later = |count: u64| (1..=count).map(|index| (30 * index, 30 * index + 30, 0.4));
-        let cycles: Vec<_> = std::iter::once((1, 30, 1.0)).chain(later(99)).collect();
-        assert_eq!(newest_large(&cycles), Some((1, 30)));
-        let cycles: Vec<_> = std::iter::once((1, 30, 1.0)).chain(later(100)).collect();
-        assert_eq!(newest_large(&cycles), Some((3_000, 3_030)));
-    }
+/// Adds a move to a cycle; returns whether it is an observation under the same load as those before.
+fn add(cycle: &mut MeasuredCycle, record: &store::Record) -> bool {
+    let (state, Some(measured)) = (&record.state, record.measured) else { return false };
+    cycle.push(state.displacement, measured.force, (state.indentation, state.normal_force))
 }

@@ -1,25 +1,24 @@
-//! The lock of a session, and its state: as it is cached, or by its newest snapshot and the moves after it.
+//! The state of a session: the cached one, or a replay of its newest snapshot and the moves after it.
 
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use uuid::Uuid;
 
-use crate::admission::{Interrupted, Reservation, Stop};
-use crate::simulation::cost::Work;
-use crate::simulation::{Failure, Timer};
-use crate::store::{
-    Extent, IdempotentRequest, RECORD_BYTES, Record, RequestKey, Session, Snapshot, StoreError, Tenant, Usage, Whole,
-};
+use crate::admission::{Deadline, Reservation};
+use crate::store::{Extent, RECORD_BYTES, Record, Session, Snapshot, StoreError, Whole};
+use stickslip_compute::Interrupted;
+use stickslip_compute::Stop as _;
+use stickslip_compute::simulation::cost::Work;
+use stickslip_compute::simulation::{Failure, Timer};
 use stickslip_mechanics::Contact;
 use stickslip_wire::{ContactDefinition, limits};
 
 use super::cache::Guard;
+use super::context::TenantContext;
+use super::error::SessionError;
 use super::loaded::LoadedSession;
-use super::profiles::Profiles;
 use super::snapshot::Snapshots;
-use super::storage_reservation::StorageReservation;
-use super::{Common, SessionError};
 
 /// Moves that are fetched from the store at a time.
 pub(super) const PAGE: usize = 10_000;
@@ -40,33 +39,8 @@ const KEPT_EVERY: Duration = Duration::from_secs(1);
 /// request.
 const SMALL_HISTORY: u64 = 64;
 
-/// The sessions of a tenant as they are stored. Clones are handles on the same.
-#[derive(Clone)]
-pub(super) struct Replay {
-    pub(super) tenant: Tenant,
-    pub(super) common: Arc<Common>,
-}
-
-impl Replay {
-    /// A request that may have been answered before.
-    pub(super) fn request(&self, key: Option<RequestKey>) -> IdempotentRequest<'_> {
-        IdempotentRequest::new(&*self.common.store, &self.tenant, key)
-    }
-
-    /// Reserves space in the store for what a change will add, within the quotas of the tenant.
-    pub(super) async fn reserve_storage(&self, requested: Usage) -> Result<StorageReservation, SessionError> {
-        self.common.usage.reserve(&self.common.store, &self.common.pool, &self.tenant, requested).await
-    }
-
-    /// Exclusive use of a session: waits for earlier requests, as long as the pool permits.
-    pub(super) async fn lock(&self, id: Uuid) -> Result<Guard, SessionError> {
-        match self.common.cache.try_lock(&self.tenant, id) {
-            Some(guard) => Ok(guard),
-            None => Box::pin(self.common.pool.wait(self.common.cache.lock(&self.tenant, id))).await?,
-        }
-    }
-
-    /// The session as it is cached, or else as it is stored. Other processes may have moved or deleted it since: the
+impl TenantContext {
+    /// The cached session, or the stored one. Other processes may have moved or deleted it since: the
     /// result is to be checked against the store.
     pub(super) async fn cached<'a>(&self, guard: &'a mut Guard) -> Result<&'a mut LoadedSession, SessionError> {
         if guard.live.as_ref().is_none_or(|live| live.is_behind) {
@@ -77,10 +51,10 @@ impl Replay {
         guard.live.as_deref_mut().ok_or(SessionError::NotFound(id))
     }
 
-    /// The session as it is stored: with what other processes have done to it up to now.
+    /// The stored session, with the changes that other processes have made up to now.
     pub(super) async fn current<'a>(&self, guard: &'a mut Guard) -> Result<&'a mut LoadedSession, SessionError> {
         if let Some(cached) = guard.live.as_ref().map(|live| live.session.sequence) {
-            let stored = self.common.store.extent(guard.id()).await;
+            let stored = self.store.extent(guard.id()).await;
             let stored = stored.map_err(|error| self.store_failure(guard, error))?;
             if let Some(live) = &mut guard.live {
                 live.session.label = stored.label;
@@ -102,7 +76,7 @@ impl Replay {
         let mut moved = false;
         while let Some(sequence) = guard.live.as_ref().map(|live| live.session.sequence).filter(|at| *at < last) {
             let limit = usize::try_from(last - sequence).map_or(PAGE, |left| left.min(PAGE));
-            let page = self.common.store.history(id, sequence, limit).await;
+            let page = self.store.history(id, sequence, limit).await;
             let page = page.map_err(|error| self.store_failure(guard, error))?;
             let is_last = page.len() < limit;
             if let Some(live) = guard.live.take_if(|_| !page.is_empty()) {
@@ -120,7 +94,7 @@ impl Replay {
             live.shared |= moved && !live.is_behind;
             live.is_behind = false;
             if moved {
-                self.common.snapshots.offer(live);
+                self.snapshots.offer(live);
             }
         }
         Ok(moved)
@@ -133,14 +107,14 @@ impl Replay {
             return self.catch_up(guard, u64::MAX).await.map(drop);
         }
         let (id, begin) = (guard.id(), Instant::now());
-        let (extent, whole) = match self.common.store.load(id, is_small).await {
+        let (extent, whole) = match self.store.load(id, is_small).await {
             Ok((extent, whole)) if extent.tenant == self.tenant => (extent, whole),
             Ok(_) => return Err(SessionError::NotFound(id)),
             Err(error) => return Err(self.store_error(id, error)),
         };
-        // Nobody waits for this memory while he has some of it.
+        // A request that has some of this memory never waits for more of it.
         guard.held = Reservation::default();
-        guard.held = self.common.pool.reserve_states(bytes_to_load(&extent)).await?;
+        guard.held = self.pool.reserve_states(bytes_to_load(&extent)).await?;
         let ((mut live, followed), updated_at) = match whole {
             Some(Whole { session, moves }) => {
                 let updated_at = session.updated_at;
@@ -149,7 +123,7 @@ impl Replay {
             }
             None => {
                 // First: taken later, it might be of a move that the session found has not made yet.
-                let snapshot = self.common.store.snapshot(id).await;
+                let snapshot = self.store.snapshot(id).await;
                 let session = self.find_own(id).await?;
                 let (last, updated_at) = (session.sequence, session.updated_at);
                 if matches!(&snapshot, Ok(Some(snapshot)) if snapshot.sequence > last) {
@@ -161,16 +135,16 @@ impl Replay {
         if followed.is_ok() {
             live.session.updated_at = updated_at;
         }
-        self.common.snapshots.offer(&mut live);
+        self.snapshots.offer(&mut live);
         // The state, and a copy of it, which shares the profile.
         guard.held.shrink(2 * live.bytes() + live.shape_bytes());
         guard.live = Some(live);
         followed?;
-        self.common.metrics.open.observe(begin.elapsed().as_secs_f64());
+        self.metrics.open.observe(begin.elapsed().as_secs_f64());
         Ok(())
     }
 
-    /// A stored session after its move `last`, from its snapshot on, or as far as [`Replay::follow`] came.
+    /// A stored session after its move `last`, from its snapshot on, or as far as [`TenantContext::follow`] came.
     async fn replayed(
         &self,
         guard: &mut Guard,
@@ -181,7 +155,7 @@ impl Replay {
         let id = session.id;
         let mut live = self.first_state(guard, session).await?;
         (live.contact, live.session.sequence, live.unreadable) =
-            self.common.snapshots.load(&mut guard.loading, snapshot, live.contact, last).await?;
+            self.snapshots.load(&mut guard.loading, snapshot, live.contact, last).await?;
         while live.session.sequence < last {
             let page = self.page(id, live.session.sequence, last).await?;
             let followed;
@@ -197,8 +171,8 @@ impl Replay {
     /// for it.
     ///
     /// # Errors
-    /// [`SessionError::NoSuchMove`] if it has made fewer, and as [`Replay::current`]; but what is damaged after the
-    /// last of so many moves is none.
+    /// [`SessionError::NoSuchMove`] if it has made fewer, and as [`TenantContext::current`]; damage after
+    /// the last of so many moves is no error.
     pub(super) async fn after(
         &self,
         guard: &mut Guard,
@@ -209,7 +183,7 @@ impl Replay {
             Ok(now) => (now.contact.memory_bytes(), now.session.clone()),
             // What was made before the damage may be whole.
             Err(SessionError::Store(StoreError::Damaged { .. })) if sequence.is_some() => {
-                let extent = self.common.store.extent(id).await.map_err(|error| self.store_failure(guard, error))?;
+                let extent = self.store.extent(id).await.map_err(|error| self.store_failure(guard, error))?;
                 (bytes_to_load(&extent), self.find_own(id).await?)
             }
             Err(error) => return Err(error),
@@ -223,7 +197,7 @@ impl Replay {
         if let Some(now) = guard.live.as_ref().filter(|now| now.session.sequence == wanted && wanted == found) {
             return Ok((now.clone(), held));
         }
-        let snapshot = self.common.store.snapshot(id).await;
+        let snapshot = self.store.snapshot(id).await;
         let (copy, followed) = self.replayed(guard, session, snapshot, wanted).await?;
         followed?;
         Ok((copy, held))
@@ -233,10 +207,10 @@ impl Replay {
     /// are fetched at a time.
     ///
     /// # Errors
-    /// As [`Replay::store_error`]; it is damaged if there is none.
+    /// As [`TenantContext::store_error`]; it is damaged if there is none.
     pub(super) async fn page(&self, id: Uuid, after: u64, last: u64) -> Result<Vec<Record>, SessionError> {
         let limit = usize::try_from(last - after).map_or(PAGE, |left| left.min(PAGE));
-        let page = self.common.store.history(id, after, limit).await.map_err(|error| self.store_error(id, error))?;
+        let page = self.store.history(id, after, limit).await.map_err(|error| self.store_error(id, error))?;
         if page.is_empty() {
             return Err(damaged(id, &format_args!("move {} is missing", after + 1)));
         }
@@ -246,8 +220,8 @@ impl Replay {
     /// The state of a stored session before its first move. The sequence of the session is that of the store.
     async fn first_state(&self, guard: &mut Guard, session: Session) -> Result<Box<LoadedSession>, SessionError> {
         let id = session.id;
-        let (stop, _raised_at_the_end) = self.common.pool.deadline_after(guard.loading);
-        let profiles = Profiles::new(&self.common, &stop);
+        let (stop, _raised_at_the_end) = self.pool.deadline_after(guard.loading);
+        let profiles = self.profiles(&stop);
         let cost = profiles.cost_of(&session.definition.defined_profile(""))?;
         let work = move || {
             let timer = Timer::start(&stop);
@@ -258,12 +232,12 @@ impl Replay {
             Ok::<_, Failure>((first, timer.elapsed()))
         };
         let first;
-        (first, guard.loading) = self.common.pool.run(cost, work).await??;
+        (first, guard.loading) = self.pool.run(cost, work).await??;
         first.map_err(|error| damaged(id, &error))
     }
 
     /// Makes the moves of a page, as work of the request: the deadline and a client that hangs up end it. Every now and
-    /// then, and at the end, what has been replayed is offered to the store as a snapshot.
+    /// then, and at the end, the replayed state is offered to the store as a snapshot.
     ///
     /// # Errors
     /// Within, beside the state after as many of the moves as time allowed: [`SessionError::Loading`].
@@ -276,14 +250,14 @@ impl Replay {
         let curved = page.iter().filter(|record| record.step.is_curved()).count();
         let id = live.session.id;
         let cost = Work { moves: page.len(), curved, ..Work::default() }.cost(live.contact.profile());
-        let (stop, _raised_at_the_end) = self.common.pool.deadline_after(guard.loading);
+        let (stop, _raised_at_the_end) = self.pool.deadline_after(guard.loading);
         let common = Arc::clone(&self.common);
         let replay = move || {
             let timer = Timer::start(&stop);
             let followed = replay(&mut live, &page, &stop, timer, &common.snapshots);
             (live, followed, timer.elapsed())
         };
-        let (live, followed, loading) = self.common.pool.run(cost, replay).await?;
+        let (live, followed, loading) = self.pool.run(cost, replay).await?;
         guard.loading = loading;
         let followed = followed.map_err(|error: stickslip_mechanics::Error| {
             damaged(id, &format_args!("a stored move cannot be made again: {error}"))
@@ -302,7 +276,7 @@ impl Replay {
         &self,
         id: Uuid,
         said: Option<ContactDefinition>,
-        stop: &Stop,
+        stop: &Deadline,
     ) -> Result<(Contact, u64, Reservation), SessionError> {
         let mut guard = self.lock(id).await?;
         let live = self.current(&mut guard).await?;
@@ -312,62 +286,28 @@ impl Replay {
         let (contact, sequence) = (live.contact.memory_bytes(), live.session.sequence);
         let mut held = self.reserve_copy(&mut guard, contact).await?;
         held.shrink(contact);
-        stop.charge(guard.loading);
+        stop.flag().charge(guard.loading);
         let live = guard.live.as_ref().ok_or(SessionError::NotFound(id))?;
         Ok((live.contact.clone(), sequence, held))
     }
 
-    /// Memory for a copy of the state in a guard: that of a state which was brought from the store has it already, so
-    /// that nobody waits for memory while he holds some.
+    /// Memory for a copy of the state in a guard. Loading a state from the store has reserved it already, so that no
+    /// request waits for memory while it holds some.
     pub(super) async fn reserve_copy(&self, guard: &mut Guard, bytes: usize) -> Result<Reservation, SessionError> {
         if guard.held.is_counted() {
             return Ok(std::mem::take(&mut guard.held));
         }
-        Ok(self.common.pool.reserve_states(bytes).await?)
-    }
-
-    /// What can be known of a session without reading it, if it belongs to the tenant.
-    pub(super) async fn extent(&self, id: Uuid) -> Result<Extent, SessionError> {
-        match self.common.store.extent(id).await {
-            Ok(extent) if extent.tenant == self.tenant => Ok(extent),
-            Ok(_) => Err(SessionError::NotFound(id)),
-            Err(error) => Err(self.store_error(id, error)),
-        }
-    }
-
-    /// The session as it is stored, if it belongs to the tenant.
-    pub(super) async fn find_own(&self, id: Uuid) -> Result<Session, SessionError> {
-        match self.common.store.find(id).await {
-            Ok(session) if session.tenant == self.tenant => Ok(session),
-            Ok(_) => Err(SessionError::NotFound(id)),
-            Err(error) => Err(self.store_error(id, error)),
-        }
-    }
-
-    /// Converts a failure of the store. If the session is gone, its cached state is removed too.
-    pub(super) fn store_failure(&self, guard: &mut Guard, error: StoreError) -> SessionError {
-        if matches!(error, StoreError::NotFound | StoreError::Expired(_)) {
-            guard.live = None;
-        }
-        self.store_error(guard.id(), error)
-    }
-
-    pub(super) fn store_error(&self, id: Uuid, error: StoreError) -> SessionError {
-        match error {
-            StoreError::Expired(tenant) if tenant == self.tenant => SessionError::Expired(id),
-            StoreError::NotFound | StoreError::Expired(_) => SessionError::NotFound(id),
-            other => SessionError::Store(other),
-        }
+        Ok(self.pool.reserve_states(bytes).await?)
     }
 }
 
 /// Makes stored moves, until the flag ends it or one cannot be made. A state is offered as a snapshot whenever
-/// [`KEPT_EVERY`] has been worked since the last, and where the flag ends it: a client that has hung up has nobody left
-/// to keep it.
+/// [`KEPT_EVERY`] has been worked since the last, and where the flag ends it: after the client has hung up, no request
+/// keeps the state.
 fn replay(
     live: &mut LoadedSession,
     page: &[Record],
-    stop: &Stop,
+    stop: &Deadline,
     timer: Timer<'_>,
     snapshots: &Snapshots,
 ) -> Result<Result<(), Interrupted>, stickslip_mechanics::Error> {
@@ -417,7 +357,7 @@ fn bytes_to_load(extent: &Extent) -> usize {
         .saturating_add(definition.saturating_mul(PREPARED))
 }
 
-/// A session that cannot be replayed from what is stored.
+/// A session that cannot be replayed from its stored moves.
 pub(super) fn damaged(contact: Uuid, why: &dyn std::fmt::Display) -> SessionError {
     StoreError::Damaged { contact, what: why.to_string() }.into()
 }

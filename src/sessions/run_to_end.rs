@@ -1,5 +1,5 @@
-//! A change on its way to the store, and what follows from it in this process: all of it is done even if the client
-//! hangs up between the commit and its reply.
+//! A change on its way to the store, and its consequences in this process: both are completed even if the client hangs
+//! up between the commit and its reply.
 
 use std::pin::Pin;
 use std::task::{Context, Poll};
@@ -8,10 +8,10 @@ use futures::FutureExt as _;
 use futures::future::BoxFuture;
 use tokio::runtime::Handle;
 
-/// A change that goes on in a task of its own if whoever waits for it leaves.
+/// A change that continues in a task of its own if the request that waits for it is dropped.
 pub(super) struct RunToEnd<T: 'static>(Option<BoxFuture<'static, T>>);
 
-/// Sends a change to the store, and does what follows from it.
+/// Sends a change to the store, and completes its consequences.
 pub(super) fn run_to_end<T>(change: impl Future<Output = T> + Send + 'static) -> RunToEnd<T> {
     RunToEnd(Some(Box::pin(change)))
 }

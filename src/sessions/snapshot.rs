@@ -13,7 +13,7 @@ use crate::admission::Pool;
 use crate::store::{Snapshot, Store, StoreError};
 use stickslip_mechanics::Contact;
 
-use super::SessionError;
+use super::error::SessionError;
 use super::loaded::LoadedSession;
 use super::replay_cost::ReplayCost;
 

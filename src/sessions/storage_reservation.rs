@@ -1,6 +1,6 @@
-//! What each tenant takes in the store, against its quotas.
+//! The space of each tenant in the store, against its quotas.
 //!
-//! What a tenant takes is counted by the store at the first change after the start, and again from time to time,
+//! The space of a tenant is counted by the store at the first change after the start, and again from time to time,
 //! because others on the same store change it too. In between, this process adds what it stores itself.
 
 use std::collections::HashMap;
@@ -12,7 +12,7 @@ use parking_lot::Mutex;
 use crate::admission::{Pool, PoolError, Quota};
 use crate::store::{Store, StoreError, Tenant, Usage};
 
-use super::SessionError;
+use super::error::SessionError;
 
 /// How long a count is taken to hold.
 const RECOUNT: Duration = Duration::from_secs(60);
@@ -21,11 +21,11 @@ const RECOUNT_FULL: Duration = Duration::from_secs(1);
 /// A count that takes long is repeated less often: it may take one part in so many of the time.
 const COUNTING_SHARE: u32 = 20;
 
-/// What the tenants take. Each has an entry from its first change on.
+/// The space of the tenants. Each has an entry from its first change on.
 #[derive(Default)]
 pub(super) struct UsageByTenant(Mutex<HashMap<Tenant, Arc<ClientUsage>>>);
 
-/// What a tenant takes.
+/// The space of a tenant.
 #[derive(Default)]
 struct ClientUsage {
     // Held while the store counts, so that it counts once for all who wait.
@@ -38,22 +38,22 @@ struct ClientUsage {
 struct Known {
     /// As it was counted, when, and how long that took.
     counted: Option<(Usage, Instant, Duration)>,
-    /// What has been stored since the last count began, whether that has ended or not.
+    /// Space added since the last count began, even if that count is still running.
     stored: Usage,
     /// When the store last failed to count, if it has not counted since.
     failed: Option<Instant>,
-    /// What changes under way will add at most.
+    /// The most that pending changes will add.
     pending: Usage,
 }
 
-/// What a change under way may add to the store, given back when dropped.
+/// The space that a change may add to the store, given back when dropped.
 pub(super) struct StorageReservation {
     client: Arc<ClientUsage>,
     reserved: Usage,
 }
 
 impl UsageByTenant {
-    /// Reserves what a change will add to what a tenant has stored.
+    /// Reserves space for a change of a tenant.
     ///
     /// # Errors
     /// [`PoolError::Quota`] if it would have more than it may, by a count that is a second old or little more; or a
@@ -142,7 +142,7 @@ impl ClientUsage {
     ) -> Result<StorageReservation, SessionError> {
         let begin = Instant::now();
         let _counting = pool.wait(self.counting.lock()).await?;
-        // Whoever had the lock before may have counted, or may have waited in vain for a store that does not answer.
+        // Whoever had the lock before may have counted, or may have waited for a store that does not answer.
         if self.known.lock().failed.is_some_and(|at| at >= begin) {
             return Err(StoreError::Unavailable("what the tenant has stored cannot be counted".to_owned()).into());
         }

@@ -4,15 +4,16 @@ use std::time::Duration;
 
 use uuid::Uuid;
 
-use crate::admission::{Reservation, Stop};
-use crate::simulation::Failure;
-use crate::simulation::bytes::ROW;
-use crate::simulation::cost::Work;
+use crate::admission::{Deadline, Reservation};
 use crate::store::{RECORD_BYTES, Record};
+use stickslip_compute::Stop as _;
+use stickslip_compute::simulation::Failure;
+use stickslip_compute::simulation::bytes::ROW;
+use stickslip_compute::simulation::cost::Work;
 use stickslip_mechanics::Contact;
 use stickslip_wire::{HistoryItem, LoopPage, limits};
 
-use super::SessionError;
+use super::error::SessionError;
 use super::history::History;
 use super::replay::{PAGE, PIECE_BYTES, damaged};
 
@@ -26,7 +27,7 @@ const POINTS: &str = "/points_per_move";
 /// [`SessionError::NotFound`] or [`SessionError::Expired`], a failure of the store or of the pool, or
 /// [`SessionError::Failure`] if it takes too long.
 pub async fn trace(
-    History { replay, .. }: &History,
+    History { context, .. }: &History,
     id: Uuid,
     after: u64,
     past: &[HistoryItem],
@@ -40,23 +41,23 @@ pub async fn trace(
         }
         return Ok(page);
     };
-    let (stop, _guard) = replay.common.pool.deadline();
+    let (stop, _guard) = context.pool.deadline();
     // A move is assumed to leave one piece of slip history.
     let pieces = usize::try_from(after).unwrap_or(usize::MAX).min(limits::MEMORY_DEPTH);
     let before = memory.bytes();
-    replay.common.pool.resize(memory, before + 2 * PIECE_BYTES * pieces + PAGE * RECORD_BYTES).await?;
+    context.pool.resize(memory, before + 2 * PIECE_BYTES * pieces + PAGE * RECORD_BYTES).await?;
     let initial = {
-        let mut guard = replay.lock(id).await?;
-        let initial = replay.current(&mut guard).await?.contact.virgin();
-        stop.charge(guard.loading);
+        let mut guard = context.lock(id).await?;
+        let initial = context.current(&mut guard).await?.contact.virgin();
+        stop.flag().charge(guard.loading);
         initial
     };
-    let snapshot = replay.common.store.snapshot(id).await;
+    let snapshot = context.store.snapshot(id).await;
     let mut loading = Duration::ZERO;
-    let (mut contact, mut at, _) = replay.common.snapshots.load(&mut loading, snapshot, initial, after).await?;
-    stop.charge(loading);
+    let (mut contact, mut at, _) = context.snapshots.load(&mut loading, snapshot, initial, after).await?;
+    stop.flag().charge(loading);
     while at < last {
-        let records = replay.page(id, at, last).await?;
+        let records = context.page(id, at, last).await?;
         let end = at + records.len() as u64;
         let drawn = records.iter().filter(|record| record.sequence > after).count();
         let curved = records.iter().filter(|record| record.step.is_curved()).count();
@@ -75,10 +76,10 @@ pub async fn trace(
             }
             Ok::<_, SessionError>((contact, page))
         };
-        (contact, page) = replay.common.pool.run(price, work).await??;
+        (contact, page) = context.pool.run(price, work).await??;
         at = end;
     }
-    replay.common.pool.resize(memory, before).await?;
+    context.pool.resize(memory, before).await?;
     Ok(page)
 }
 
@@ -93,7 +94,7 @@ fn trace_move(
     (contact, id): (&mut Contact, Uuid),
     record: &Record,
     points: usize,
-    stop: &Stop,
+    stop: &Deadline,
     page: &mut LoopPage,
 ) -> Result<(), SessionError> {
     let check = || stop.check().map_err(|interrupted| Failure::interrupted(interrupted, POINTS));

@@ -1,4 +1,4 @@
-//! Changes that wait together share a transaction, and so the wait for the disk.
+//! Changes that wait at the same time share a transaction, and so the wait for the disk.
 
 use tokio::sync::mpsc;
 

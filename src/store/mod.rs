@@ -9,7 +9,7 @@ mod batch;
 pub mod changes;
 pub mod commits;
 pub mod idempotency;
-pub mod jobs;
+pub mod job_store;
 pub mod listeners;
 pub mod memory;
 pub mod open;
@@ -30,37 +30,20 @@ use stickslip_wire::{ContactDefinition, ContactOrder, Move, ObservedForce, Sessi
 pub use changes::Changes;
 pub use commits::Commits;
 pub use idempotency::IdempotentRequest;
-pub use jobs::{ChunkResult, Claim, Job, JobLimits, JobStore};
+pub use job_store::{ChunkResult, Claim, Job, JobLimits, JobStore};
 pub use listeners::{Listener, Listeners, StreamEvent};
 pub use memory::MemoryStore;
 pub use open::{OpenError, backup, open, open_to_read};
 pub use postgres::PostgresStore;
 pub use sqlite::SqliteStore;
 
+pub use crate::tenant::Tenant;
+
 /// How long a reply is kept for retries with the same idempotency key.
 pub const RECEIPT_LIFETIME: std::time::Duration = std::time::Duration::from_secs(24 * 60 * 60);
 
-/// How long a store knows of a session that it has expired. Later it is as if it had never been there.
+/// How long a store remembers that a session has expired. Later the session is not found.
 pub const EXPIRED_LIFETIME: std::time::Duration = std::time::Duration::from_secs(30 * 24 * 60 * 60);
-
-/// Who owns sessions: a key of one tenant gives no access to those of others. Without keys there is one tenant, without
-/// a name.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
-pub struct Tenant(Arc<str>);
-
-impl Tenant {
-    /// The tenant of a name.
-    #[must_use]
-    pub fn new(name: &str) -> Tenant {
-        Tenant(name.into())
-    }
-
-    /// The name.
-    #[must_use]
-    pub fn name(&self) -> &str {
-        &self.0
-    }
-}
 
 /// A session as it is stored.
 #[derive(Clone, Debug, PartialEq)]
@@ -101,7 +84,7 @@ pub struct Record {
 }
 
 impl Record {
-    /// What was measured beside what the contact predicts, if it is an observation.
+    /// The measurement, if the move is an observation.
     #[must_use]
     pub fn observation(&self) -> Option<ObservedForce> {
         self.measured.map(|Measured { force, at }| ObservedForce::new(force, self.state.force, at))
@@ -111,7 +94,7 @@ impl Record {
 /// Bytes of a record in memory, with the longest name of a key.
 pub const RECORD_BYTES: usize = size_of::<Record>() + 96;
 
-/// What a bench measured at the displacement that a move goes to.
+/// The measurement of a bench at the displacement that a move goes to.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Measured {
     /// Tangential force, N.
@@ -183,8 +166,7 @@ pub struct Snapshot {
     pub state: Vec<u8>,
 }
 
-/// What can be known of a session before it is read: whose it is, how much there is to read, and all that can change
-/// of it.
+/// The size of a session before it is read, its tenant, and its label, which can change.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Extent {
     /// Its tenant.
@@ -218,10 +200,10 @@ impl Page {
     }
 }
 
-/// Says of a session whether it may be read at once.
+/// Decides whether a session is small enough to be read at once.
 pub type IsSmall = fn(&Extent) -> bool;
 
-/// A session with all of its moves, as one moment of the storage had them.
+/// A session with all of its moves, from one consistent read.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Whole {
     /// The session.
@@ -230,7 +212,7 @@ pub struct Whole {
     pub moves: Vec<Record>,
 }
 
-/// What is stored for a tenant.
+/// The space that a tenant takes in the store.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Usage {
     /// Contacts.
@@ -241,7 +223,7 @@ pub struct Usage {
 }
 
 impl Usage {
-    /// What a change adds: contacts, bytes, and those of the reply that is kept of it.
+    /// The space of a change: contacts, bytes, and the bytes of its kept reply.
     #[must_use]
     pub fn of(contacts: u64, bytes: u64, receipt: Option<&Receipt>) -> Usage {
         Usage { contacts, bytes: bytes + receipt.map_or(0, Receipt::bytes) }
@@ -278,7 +260,7 @@ pub enum StoreError {
     /// The tenant has as many jobs as it may; the text says which limit is reached.
     #[error("{0}")]
     TooManyJobs(String),
-    /// Moves of a contact are missing, or cannot be made again: whatever is shown of it might be wrong.
+    /// Moves of a contact are missing, or cannot be replayed: its state might be wrong.
     #[error("contact {contact}: {what}")]
     Damaged {
         /// The contact.
@@ -301,7 +283,7 @@ pub enum StoreError {
 }
 
 impl StoreError {
-    /// Whether the same call may succeed later without anybody mending something.
+    /// Whether the same call may succeed later without a repair.
     #[must_use]
     pub fn is_transient(&self) -> bool {
         matches!(self, StoreError::Full(_) | StoreError::Locked(_) | StoreError::Unavailable(_))
@@ -321,17 +303,17 @@ pub trait Store: JobStore {
     /// Stores a new session that has not moved, and the receipt with it.
     async fn create(&self, session: Session, receipt: Option<Receipt>) -> Result<()>;
 
-    /// What can be known of a session without reading it.
+    /// The size of a session, with its tenant and label.
     async fn extent(&self, id: Uuid) -> Result<Extent>;
 
-    /// What can be known of a session without reading it; and the session with its moves, where `is_small` says so of
-    /// that and the store can read it in the same step.
+    /// The size of a session; and the session with its moves, if `is_small` accepts the size and the store can read
+    /// both in one step.
     async fn load(&self, id: Uuid, is_small: IsSmall) -> Result<(Extent, Option<Whole>)> {
         let _ = is_small;
         Ok((self.extent(id).await?, None))
     }
 
-    /// What is stored for a tenant. It reads a row or two of each contact, and no moves.
+    /// The space that a tenant takes. It reads a row or two of each contact, and no moves.
     async fn usage(&self, tenant: &Tenant) -> Result<Usage>;
 
     /// Bytes that a move takes in the storage, with its share of the indexes; rather too many than too few.
@@ -342,8 +324,8 @@ pub trait Store: JobStore {
 
     /// A page of the sessions of a tenant, or of all tenants, by their identifiers; of those alone whose label contains
     /// `label`, whatever the case of ASCII letters. Without their definitions: a page of those could be larger than the
-    /// memory. A search for a label may read all labels of a tenant: few run at a time, and one that nobody waits for
-    /// any more ends.
+    /// memory. A search for a label may read all labels of a tenant: few run at a time, and one whose client has left
+    /// ends.
     async fn list(&self, tenant: Option<Tenant>, label: Option<String>, page: Page) -> Result<Vec<SessionSummary>>;
 
     /// Gives a session that is at sequence `expected` and has the label `from` the label `to`, or none, and stores the
@@ -386,8 +368,8 @@ pub trait Store: JobStore {
     /// The newest snapshot of a session, if there is one.
     async fn snapshot(&self, id: Uuid) -> Result<Option<Snapshot>>;
 
-    /// Stores a snapshot in place of an older one, or of that of the move `unreadable`, whatever move that is. Does
-    /// nothing where the session is gone or a newer snapshot is stored.
+    /// Stores a snapshot in place of an older one, or of the unreadable one after the move `unreadable`. Does nothing
+    /// if the session is deleted or a newer snapshot is stored.
     async fn save_snapshot(&self, id: Uuid, snapshot: Snapshot, unreadable: Option<u64>) -> Result<()>;
 
     /// Deletes receipts older than [`RECEIPT_LIFETIME`], jobs past their time, and, where `idle_since` is given, the
@@ -403,7 +385,7 @@ pub trait Store: JobStore {
         None
     }
 
-    /// What is wrong with the storage itself, a line each: what is damaged, and what belongs to no contact.
+    /// Faults of the storage itself, a line each: damage, and rows that belong to no contact.
     async fn check_integrity(&self) -> Result<Vec<String>> {
         Ok(Vec::new())
     }

@@ -6,7 +6,7 @@ use std::net::TcpListener;
 use serde_json::{Value, json};
 use stickslip_wire::ProblemDocument;
 
-use crate::common::{ball, run};
+use crate::common::{ball, binary, run};
 
 fn printed(arguments: &[&str]) -> String {
     let output = run(arguments);
@@ -112,6 +112,21 @@ fn a_sweep_prints_its_document_with_json() {
     let table = printed(&["sweep", file]);
     let force = &document["columns"]["/steps/0/force"][0];
     assert_eq!(table.lines().nth(1).unwrap(), format!("0.1,{force}"));
+}
+
+#[test]
+fn a_body_is_read_from_standard_input_and_a_refusal_is_a_failure() {
+    let simulated = |force: f64| {
+        let body = tempfile::NamedTempFile::new().unwrap();
+        std::fs::write(&body, json!({"contact": ball(), "path": {"force": [force]}}).to_string()).unwrap();
+        binary(&["simulate", "-"]).stdin(body.reopen().unwrap()).output().unwrap()
+    };
+    let (good, bad) = (simulated(1.0), simulated(3.0));
+    let reply: Value = serde_json::from_slice(&good.stdout).unwrap();
+    assert!(good.status.success() && (reply["steps"][0]["force"].as_f64().unwrap() - 1.0).abs() < 1e-12, "{reply}");
+    let problem: ProblemDocument = serde_json::from_slice(&bad.stderr).unwrap();
+    assert_eq!((bad.status.code(), problem.code.as_str()), (Some(1), "force_exceeds_friction"));
+    assert_eq!(problem.errors[0].pointer, "/path/force/0");
 }
 
 #[test]

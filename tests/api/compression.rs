@@ -54,7 +54,7 @@ async fn each_format_decodes_to_the_bytes_that_it_has_without_a_coding() {
         let path = format!("{contact}/stress?points=500&format={format}");
         let plain = get(&server, &path, &[]).await;
         assert_eq!((header(&plain, "content-encoding"), vary(&plain)), (None, vec!["accept", "accept-encoding"]));
-        let tag = header(&plain, "etag").unwrap().trim_end_matches('"').to_owned();
+        let tag = header(&plain, "etag").unwrap().to_owned();
         let plain = plain.bytes().await.unwrap();
         for coding in CODINGS {
             let response = get(&server, &path, &[("accept-encoding", coding)]).await;
@@ -62,7 +62,7 @@ async fn each_format_decodes_to_the_bytes_that_it_has_without_a_coding() {
             assert_eq!(header(&response, "content-encoding"), Some(coding), "{format}");
             assert_eq!(header(&response, "content-length"), None);
             assert_eq!(vary(&response), ["accept", "accept-encoding"]);
-            assert_eq!(header(&response, "etag").unwrap(), format!("{tag}+{coding}\""));
+            assert_eq!(header(&response, "etag").unwrap(), format!("W/{tag}"));
             let packed = response.bytes().await.unwrap();
             assert!(packed.len() < plain.len(), "{format} {coding}: {} {}", packed.len(), plain.len());
             assert_eq!(decoded(coding, &packed), plain, "{format} {coding}");
@@ -101,9 +101,10 @@ async fn short_compressed_and_streamed_replies_stay_unchanged() {
     let page = get(&server, "/", &accept).await;
     assert_eq!((header(&page, "content-encoding"), vary(&page)), (Some("gzip"), vec!["accept-encoding"]));
     let tag = header(&page, "etag").unwrap().to_owned();
-    assert!(tag.ends_with("-gzip\""), "{tag}");
+    assert!(tag.starts_with("W/\""), "{tag}");
     let again = get(&server, "/", &[accept[0], ("if-none-match", &tag)]).await;
     assert_eq!((again.status().as_u16(), header(&again, "etag").unwrap()), (304, tag.as_str()));
+    assert_eq!(vary(&again), ["accept-encoding"]);
 }
 
 #[tokio::test]
@@ -117,7 +118,7 @@ async fn a_tag_is_taken_as_the_client_got_it() {
         assert_ne!(tag, plain_tag);
         for (given, expected) in [
             (tag.as_str(), tag.as_str()),
-            (&format!("\"0\", W/{tag}"), &tag),
+            (&format!("\"0\", {tag}"), &tag),
             (&plain_tag, &plain_tag),
             ("*", &plain_tag),
         ] {
@@ -125,7 +126,7 @@ async fn a_tag_is_taken_as_the_client_got_it() {
             assert_eq!((response.status().as_u16(), header(&response, "etag").unwrap()), (304, expected), "{given}");
             assert_eq!(response.bytes().await.unwrap().len(), 0);
         }
-        let other = get(&server, &path, &[accept, ("if-none-match", "\"0+gzip\"")]).await;
+        let other = get(&server, &path, &[accept, ("if-none-match", "W/\"0\"")]).await;
         assert_eq!((other.status().as_u16(), header(&other, "etag").unwrap()), (200, tag.as_str()));
 
         let body = json!({"displacement": 1e-9, "relative": true, "stress": {"points": 500}}).to_string();
@@ -136,7 +137,7 @@ async fn a_tag_is_taken_as_the_client_got_it() {
         let moved = moving(&tag).await;
         assert_eq!((moved.status().as_u16(), header(&moved, "content-encoding")), (200, Some(coding)));
         let next = header(&moved, "etag").unwrap().to_owned();
-        assert!(next != tag && next.ends_with(&format!("+{coding}\"")), "{next}");
+        assert!(next != tag && next.starts_with("W/\""), "{next}");
         // The first tag is of an earlier state.
         assert_eq!(moving(&tag).await.status(), 412);
         assert_eq!(moving(&next).await.status(), 200);

@@ -3,14 +3,13 @@
 use crate::common;
 
 use std::sync::Arc;
-use std::time::Duration;
 
-use common::{Server, ball, create, good, problem, until, with};
+use common::{Server, ball, create, good, problem, with};
 use futures::future::join_all;
 use reqwest::{Method, Response, StatusCode};
 use serde_json::{Value, json};
-use stickslip::admission::{Capacity, Pool};
-use stickslip::sessions::{CAPACITY, Sessions};
+use stickslip::admission::Pool;
+use stickslip::sessions::Sessions;
 use stickslip::store::MemoryStore;
 use stickslip_wire::client::Options;
 use stickslip_wire::{ForkRequest, Move, Path, PathRequest, Steps};
@@ -29,20 +28,6 @@ fn wandering(count: usize) -> Vec<Move> {
         _ => Move::force(0.8 * turn(index)),
     };
     (0..count).map(step).collect()
-}
-
-#[tokio::test]
-async fn moves_of_one_contact_are_counted_without_a_gap() {
-    let server = Server::start().await;
-    let id = server.client.create(&create(), &Options::default()).await.unwrap().id;
-    let step = Move { relative: true, ..Move::displacement(1e-9) }.into();
-    let options = Options::default();
-    let replies = join_all((0..100).map(|_| server.client.apply(id, &step, &options))).await;
-    let mut sequences: Vec<u64> = replies.into_iter().map(|reply| reply.unwrap().sequence).collect();
-    sequences.sort_unstable();
-    assert_eq!(sequences, (1..=100).collect::<Vec<u64>>());
-    let state = server.client.contact(id).await.unwrap().state;
-    assert!((state.displacement - 1e-7).abs() < 1e-20, "{state:?}");
 }
 
 #[tokio::test]
@@ -69,52 +54,6 @@ async fn a_path_is_all_or_nothing() {
 }
 
 #[tokio::test]
-async fn a_session_that_left_the_cache_is_replayed_to_the_last_bit() {
-    let server = Server::with(Arc::new(MemoryStore::new()), 1).await;
-    let (client, options) = (&server.client, Options::default());
-    let id = client.create(&create(), &options).await.unwrap().id;
-    let reply = client.path(id, &along(wandering(400)), &options).await.unwrap();
-    let before = client.contact(id).await.unwrap();
-    assert_eq!(before.state, reply.steps[399]);
-    // Another session takes the only place.
-    let other = client.create(&create(), &options).await.unwrap().id;
-    client.contact(other).await.unwrap();
-    assert_eq!(client.contact(id).await.unwrap(), before);
-    let history = client.history(id, Some(399), None).await.unwrap();
-    assert_eq!((history.items[0].state, history.next), (before.state, None));
-}
-
-#[tokio::test]
-async fn a_path_gives_what_its_moves_give_one_by_one() {
-    let server = Server::start().await;
-    let (client, options) = (&server.client, Options::default());
-    let whole = client.create(&create(), &options).await.unwrap().id;
-    let single = client.create(&create(), &options).await.unwrap().id;
-    let moves = wandering(60);
-    let path = client.path(whole, &along(moves.clone()), &options).await.unwrap();
-    for (step, state) in moves.iter().zip(&path.steps) {
-        let reply = client.apply(single, &(*step).into(), &options).await.unwrap();
-        assert_eq!(&reply.state, state);
-    }
-}
-
-#[tokio::test]
-async fn a_fork_has_the_same_past_and_its_own_future() {
-    let server = Server::start().await;
-    let (client, options) = (&server.client, Options::default());
-    let id = client.create(&create(), &options).await.unwrap().id;
-    client.path(id, &along(wandering(10)), &options).await.unwrap();
-    let fork = client.fork(id, &ForkRequest::default(), &options).await.unwrap();
-    let pasts = (client.history(id, None, None).await.unwrap(), client.history(fork.id, None, None).await.unwrap());
-    assert_eq!(pasts.0, pasts.1);
-    client.apply(fork.id, &Move::displacement(-1e-7).into(), &options).await.unwrap();
-    assert_eq!(client.contact(id).await.unwrap().sequence, 10);
-    assert_eq!(client.contact(fork.id).await.unwrap().sequence, 11);
-    client.delete(id, &options).await.unwrap();
-    assert_eq!(client.history(fork.id, None, None).await.unwrap().items.len(), 11);
-}
-
-#[tokio::test]
 async fn a_fork_begins_after_any_move_and_is_what_the_contact_was_then() {
     // Without a cache, every state is replayed.
     let pool = Pool::with_defaults();
@@ -137,16 +76,14 @@ async fn a_fork_begins_after_any_move_and_is_what_the_contact_was_then() {
     }
     let target = format!("/contacts/{id}/fork");
     for wrong in ["41", "9223372036854775807"] {
-        let refused =
-            problem(server.post(&target, &serde_json::from_str(&format!("{{\"sequence\": {wrong}}}")).unwrap()).await)
-                .await;
+        let body = format!("{{\"sequence\": {wrong}}}");
+        let refused = problem(server.send(Method::POST, &target, Some(&body), &[]).await).await;
         let place = (refused.status, refused.errors[0].pointer.as_str(), refused.errors[0].detail.as_str());
         assert_eq!(place, (422, "/sequence", "the contact has made 40 moves: give 0 to 40"));
     }
     for wrong in ["-1", "1.5", "9223372036854775808", "\"3\"", "null"] {
-        let refused =
-            problem(server.post(&target, &serde_json::from_str(&format!("{{\"sequence\": {wrong}}}")).unwrap()).await)
-                .await;
+        let body = format!("{{\"sequence\": {wrong}}}");
+        let refused = problem(server.send(Method::POST, &target, Some(&body), &[]).await).await;
         assert_eq!((refused.status, refused.errors[0].pointer.as_str()), (422, "/sequence"), "{wrong}");
     }
     assert_eq!(client.contacts(None, None).await.unwrap().items.len(), 6);
@@ -241,31 +178,6 @@ async fn a_new_label_is_no_move_and_is_found() {
 }
 
 #[tokio::test]
-async fn a_stale_sequence_is_refused_and_changes_nothing() {
-    let server = Server::start().await;
-    let (client, plain) = (&server.client, Options::default());
-    let id = client.create(&create(), &plain).await.unwrap().id;
-    let at = |sequence| Options { if_match: Some(sequence), ..Options::default() };
-    client.apply(id, &Move::displacement(1e-7).into(), &at(0)).await.unwrap();
-    for refused in [
-        client.apply(id, &Move::displacement(0.0).into(), &at(0)).await.map(drop),
-        client.path(id, &along(vec![Move::displacement(0.0)]), &at(2)).await.map(drop),
-        client.rename(id, Some("late"), &at(0)).await.map(drop),
-        client.delete(id, &at(0)).await,
-    ] {
-        let refused = refused.unwrap_err();
-        assert_eq!(
-            refused.problem().map(|problem| (problem.status, problem.code.as_str())),
-            Some((412, "stale_sequence"))
-        );
-    }
-    let now = client.contact(id).await.unwrap();
-    assert_eq!((now.sequence, now.label), (1, None));
-    let any = server.send(Method::DELETE, &format!("/contacts/{id}"), None, &[("if-match", "*")]).await;
-    assert_eq!(any.status(), StatusCode::NO_CONTENT);
-}
-
-#[tokio::test]
 async fn a_tag_with_a_label_compares_the_label_too() {
     let server = Server::start().await;
     let id = server.post("/contacts", &with(ball(), "/label", json!("a"))).await.json::<Value>().await.unwrap();
@@ -308,7 +220,9 @@ async fn a_tag_with_a_label_compares_the_label_too() {
     // The sequence alone does not compare the label, and there is a checksum of no label.
     assert_eq!(rename("\"0\"", json!(null)).await.status(), 200);
     assert_eq!(rename("\"0.00000000\"", json!("d")).await.status(), 200);
-    assert_eq!(rename("\"0.00000000\"", json!("e")).await.status(), 412);
+    for stale in ["\"0.00000000\"", "\"1\"", "\"7\""] {
+        assert_eq!(rename(stale, json!("e")).await.status(), 412, "{stale}");
+    }
     for wrong in ["\"0.\"", "\"0.xyz\"", "\"0.123456789\"", "\"0.+1234567\"", "\".00000000\""] {
         assert_eq!(rename(wrong, json!("e")).await.status(), 422, "{wrong}");
     }
@@ -321,12 +235,14 @@ async fn a_tag_with_a_label_compares_the_label_too() {
         (Method::POST, "/move", "{\"displacement\": 1e-8}"),
         (Method::POST, "/path", &steps),
         (Method::POST, "/observations", &measured),
-        (Method::DELETE, "", ""),
+        (Method::PATCH, "", "{\"label\": null}"),
     ] {
         let tag = shown().await;
         let reply = server.send(method, &format!("{target}{path}"), Some(body), &[("if-match", &*tag)]).await;
         assert!(reply.status().is_success(), "{path}: {}", reply.text().await.unwrap());
     }
+    let any = server.send(Method::DELETE, &target, None, &[("if-match", "*")]).await;
+    assert_eq!(any.status(), StatusCode::NO_CONTENT);
 }
 
 #[tokio::test]
@@ -334,12 +250,14 @@ async fn a_retry_gets_the_first_reply_again() {
     let server = Server::start().await;
     let id = server.contact().await;
     let (contact, ball) = (format!("/contacts/{id}"), ball().to_string());
-    let (moved, path, fork) = (format!("{contact}/move"), format!("{contact}/path"), format!("{contact}/fork"));
+    let [moved, path, fork, observed] =
+        ["move", "path", "fork", "observations"].map(|change| format!("{contact}/{change}"));
     for (key, target, body) in [
         ("one", "/contacts", &*ball),
         ("two", &*moved, r#"{"displacement": 1e-7}"#),
         ("three", &*path, r#"{"path": {"displacement": [2e-8, 3e-8]}}"#),
         ("four", &*fork, "{}"),
+        ("five", &*observed, r#"{"observations": [{"displacement": 1e-7, "force": 1.2}]}"#),
     ] {
         let headers = [("idempotency-key", key)];
         let first = server.send(Method::POST, target, Some(body), &headers).await;
@@ -356,7 +274,7 @@ async fn a_retry_gets_the_first_reply_again() {
         assert_eq!((other.status, other.code.as_str()), (422, "idempotency_key_reused"));
     }
     let shown: Value = server.get(&contact).await.json().await.unwrap();
-    assert_eq!(shown["sequence"], 3);
+    assert_eq!(shown["sequence"], 4);
     assert_eq!(server.client.contacts(None, None).await.unwrap().items.len(), 3);
 
     // The retry gets its reply even when the contact is deleted.
@@ -391,44 +309,4 @@ async fn twins_that_arrive_together_are_applied_once() {
         assert_eq!(status, StatusCode::CREATED, "{}", twin.text().await.unwrap());
     }
     assert_eq!(server.client.contacts(None, None).await.unwrap().items.len(), 2);
-}
-
-#[tokio::test]
-async fn a_client_that_hangs_up_leaves_a_sound_contact() {
-    let server = Server::start().await;
-    let (client, options) = (&server.client, Options::default());
-    let id = client.create(&create(), &options).await.unwrap().id;
-    let long = along(wandering(20_000));
-    for patience in [1, 5, 20, 60] {
-        let call = client.path(id, &long, &options);
-        let _ = tokio::time::timeout(Duration::from_millis(patience), call).await;
-    }
-    let moved = client.apply(id, &Move::displacement(1e-7).into(), &options).await.unwrap();
-    // Each path was applied as a whole or not at all, and the store agrees with the cache.
-    assert_eq!((moved.sequence - 1) % 20_000, 0);
-    let history = client.history(id, Some(moved.sequence - 1), None).await.unwrap();
-    assert_eq!((history.items[0].state, history.next), (moved.state, None));
-}
-
-/// If the solver finished work of clients that hung up, the calls together would take far longer than any test waits.
-#[tokio::test]
-async fn a_client_that_hangs_up_frees_the_solver() {
-    let hour = Duration::from_secs(3_600);
-    let pool = Pool::new(Capacity { threads: 1, wait: hour, deadline: hour, ..Capacity::default() });
-    let sessions = Sessions::new(Arc::new(MemoryStore::new()), pool.clone(), CAPACITY);
-    let server = Server::over(sessions, pool.clone()).await;
-    let wide = json!({"contact": ball(), "path": {"falling_amplitude": {"reversals": 1900}},
-        "steps": "last", "solver": {"springs": {"count": 1_000_000}}});
-    let busy = async |threads| {
-        until("the solver begins or stops", async || (pool.taken().threads == threads).then_some(())).await
-    };
-    for _ in 0..50 {
-        tokio::select! {
-            response = server.post("/simulate", &wide) => panic!("answered with {}", response.status()),
-            () = busy(1) => {}
-        }
-        busy(0).await;
-    }
-    let narrow = json!({"contact": ball(), "path": {"falling_amplitude": {"reversals": 2000}}, "steps": "last"});
-    assert_eq!(server.post("/simulate", &narrow).await.status(), StatusCode::OK);
 }

@@ -5,18 +5,12 @@ use crate::common;
 use std::process::Command;
 
 use common::process::{Process, ended};
-use common::{ball, clean};
+use common::{ball, binary};
 use reqwest::header::HeaderMap;
 use serde_json::Value;
 use stickslip::access::{Role, new_key};
 use stickslip_wire::client::{Client, Options};
 use tempfile::tempdir;
-
-fn binary(arguments: &[&str]) -> Command {
-    let mut command = clean(Command::new(env!("CARGO_BIN_EXE_stickslip")));
-    command.args(arguments);
-    command
-}
 
 /// The one line with which it ends at start.
 fn refused(command: &mut Command) -> String {

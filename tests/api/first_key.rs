@@ -7,12 +7,12 @@ use std::process::{Command, Stdio};
 
 use reqwest::StatusCode;
 
-use crate::common::clean;
+use crate::common::binary;
 use crate::common::process::{Process, ended};
 
 fn serve(file: &Path, more: &[&str]) -> Command {
-    let mut command = clean(Command::new(env!("CARGO_BIN_EXE_stickslip")));
-    command.args(["serve", "--store", "memory:", "--listen", "0.0.0.0:0", "--log", "error", "--first-key"]);
+    let mut command =
+        binary(&["serve", "--store", "memory:", "--listen", "0.0.0.0:0", "--log", "error", "--first-key"]);
     command.arg(file).args(more);
     command
 }
@@ -85,8 +85,7 @@ async fn no_key_is_made_where_there_are_keys_or_none_are_wanted() {
         server.stop().await;
     }
     // Without it the service does not start on such an address, nor with a file that cannot be made.
-    let mut bare = clean(Command::new(env!("CARGO_BIN_EXE_stickslip")));
-    let bare = ended(bare.args(["serve", "--store", "memory:", "--listen", "0.0.0.0:0"]));
+    let bare = ended(&mut binary(&["serve", "--store", "memory:", "--listen", "0.0.0.0:0"]));
     assert!(!bare.status.success() && String::from_utf8_lossy(&bare.stderr).contains("--first-key"));
     let nowhere = ended(&mut serve(Path::new("/no/such/folder/keys"), &[]));
     let said = String::from_utf8_lossy(&nowhere.stderr);

@@ -17,7 +17,7 @@ use crate::fretting_laws;
 use crate::harness::{Outcome, examine};
 use proptest::strategy::{Strategy, ValueTree as _};
 use proptest::test_runner::{Config, RngAlgorithm, TestCaseError, TestError, TestRng, TestRunner};
-use stickslip::computations::files;
+use stickslip_compute::computations::files;
 use stickslip_measured::import::{LoopHints, ScanHints};
 use stickslip_wire::LoopFileReply;
 use stickslip_wire::fit::MeasuredLoop;
@@ -41,6 +41,15 @@ pub fn seed() -> u64 {
 fn from_environment(name: &str) -> Option<u64> {
     let text = std::env::var(name).ok()?;
     Some(text.parse().unwrap_or_else(|error| panic!("{name}={text}: {error}")))
+}
+
+/// What makes the values of a case.
+pub fn runner(seed: u64, case: u64) -> TestRunner {
+    let mut bytes = [0; 32];
+    bytes[..8].copy_from_slice(&seed.to_le_bytes());
+    bytes[8..16].copy_from_slice(&case.to_le_bytes());
+    let config = Config { failure_persistence: None, max_shrink_iters: 2000, ..Config::default() };
+    TestRunner::new_with_rng(config, TestRng::from_seed(RngAlgorithm::ChaCha, &bytes))
 }
 
 /// The body under examination, and since when.
@@ -74,11 +83,7 @@ fn fuzz<S: Strategy>(
     let (cases, seed, start) = (case_count(numbers), seed(), Instant::now());
     let (mut counts, mut slowest) = ([0_u64; 3], Duration::ZERO);
     for case in 0..cases {
-        let mut bytes = [0; 32];
-        bytes[..8].copy_from_slice(&seed.to_le_bytes());
-        bytes[8..16].copy_from_slice(&case.to_le_bytes());
-        let config = Config { failure_persistence: None, max_shrink_iters: 2000, ..Config::default() };
-        let mut runner = TestRunner::new_with_rng(config, TestRng::from_seed(RngAlgorithm::ChaCha, &bytes));
+        let mut runner = runner(seed, case);
         let tree = strategy.new_tree(&mut runner).expect("nothing is filtered out");
         let case_start = Instant::now();
         let outcome = Mutex::new(Outcome::Refused);
@@ -135,12 +140,7 @@ fn damaged_requests() {
 
 #[test]
 fn sound_requests() {
-    fuzz(
-        [3_000, 9_500],
-        crate::requests::random_request(),
-        |request| request.to_json().to_string().into_bytes(),
-        examine,
-    );
+    fuzz([3_000, 9_500], crate::requests::random_request(), |it| it.to_json().to_string().into_bytes(), examine);
 }
 
 #[test]
@@ -157,37 +157,10 @@ fn fretting() {
 
 /// A file of words that instruments write, and of others.
 fn random_file() -> impl Strategy<Value = Vec<u8>> {
-    const WORDS: [&str; 28] = [
-        "1",
-        "-2.5e-9",
-        "0,5",
-        "1e999",
-        "nan",
-        "No Data",
-        "-",
-        "\u{2212}3",
-        ";",
-        ";",
-        "\t",
-        ",",
-        " ",
-        "\n",
-        "\n",
-        "\r\n",
-        "#",
-        "\"",
-        "x",
-        "X [um]",
-        "Force (mN)",
-        "Displacement",
-        "Zygo XYZ\n",
-        "Width: 3 um\n",
-        "Height: 2 nm\n",
-        "\u{feff}",
-        "\u{e9}",
-        "\u{0}",
-    ];
-    let words = proptest::collection::vec(proptest::sample::select(WORDS.to_vec()), 0..80);
+    const WORDS: &str = "1|-2.5e-9|0,5|1e999|nan|No Data|-|\u{2212}3|;|;|\t|,| |\n|\n|\r\n|#|\"|x|X [um]|Force (mN)|\
+        Displacement|Zygo XYZ\n|Width: 3 um\n|Height: 2 nm\n|\u{feff}|\u{e9}|\0";
+    let all: Vec<&str> = WORDS.split('|').collect();
+    let words = proptest::collection::vec(proptest::sample::select(all), 0..80);
     let text = words.prop_map(|words| words.concat());
     (text, 0..3_u8).prop_map(|(text, coding)| match coding {
         0 => text.into_bytes(),

@@ -4,7 +4,6 @@
 
 use std::path::{Path, PathBuf};
 
-use reqwest::Method;
 use serde::Deserialize;
 use serde_json::{Map, Value, json};
 use stickslip_wire::ProblemDocument;
@@ -155,13 +154,12 @@ fn contact() -> Value {
 #[tokio::test]
 async fn every_file_is_read_and_fitted_over_http_or_refused_at_its_place() {
     let server = Server::start().await;
-    let client = reqwest::Client::new();
     for entry in entries() {
         let url = format!("{}/files/{}", server.base, entry.kind);
         let query: Vec<(&String, &str)> =
             entry.hints.iter().map(|(name, value)| (name, value.as_str().unwrap())).collect();
         let bytes = std::fs::read(folder().join(&entry.file)).unwrap();
-        let call = client.request(Method::POST, url).query(&query).header("content-type", "application/octet-stream");
+        let call = server.http.post(url).query(&query).header("content-type", "application/octet-stream");
         let reply = call.body(bytes).send().await.unwrap();
         if entry.refused.is_some() {
             assert_eq!(reply.status(), 422, "{entry:?}");
@@ -251,4 +249,52 @@ async fn requests_find_the_truth() {
         count += 1;
     }
     assert_eq!(count, 3);
+}
+
+async fn read(server: &Server, path: &str, text: impl Into<Vec<u8>>) -> reqwest::Response {
+    let call = server.http.post(format!("{}{path}", server.base)).header("content-type", "text/csv");
+    call.body(text.into()).send().await.unwrap()
+}
+
+#[tokio::test]
+async fn the_query_wins_over_the_file_and_a_map_over_the_limit_is_thinned_and_says_so() {
+    let server = Server::start().await;
+    let text = "X [um];Z [nm]\n-2;-4\n-1;-1\n0;0\n1;-1\n2;-4\n";
+    for (query, units) in [("", ["um", "nm"]), ("?height=um", ["um", "um"])] {
+        let found = good(read(&server, &format!("/files/scan{query}"), text).await).await;
+        assert_eq!(found["units"], json!({"lateral": units[0], "height": units[1]}));
+    }
+    let text = std::fs::read("examples/data/ball_loop.csv").unwrap();
+    let found = good(read(&server, "/files/loop", text.clone()).await).await;
+    let other = good(read(&server, "/files/loop?displacement=2&force=3&force_unit=mN", text).await).await;
+    assert_eq!((&other["loop"]["force"], &other["units"]["force"]), (&found["loop"]["force"], &json!("mN")));
+    let row = (0..1024).map(|index| format!("{}e-9", index % 7)).collect::<Vec<_>>().join("\t");
+    let head = "# Width: 102.4 \u{b5}m\n# Height: 102.4 \u{b5}m\n# Value units: m\n";
+    let found = good(read(&server, "/files/scan", head.to_owned() + &(row + "\n").repeat(1024)).await).await;
+    let map = &found["scan"]["map"];
+    assert_eq!((map["z"].as_array().unwrap().len(), &found["preview"]["thinned"]), (512, &json!(2)));
+    assert!((number(&map["dx"]) - 0.2).abs() < 1e-12, "{}", map["dx"]);
+    let reading = found["preview"]["reading"].as_array().unwrap();
+    assert!(reading.iter().any(|line| line.as_str().unwrap().starts_with("Thinned 2 times")), "{reading:?}");
+}
+
+#[tokio::test]
+async fn what_is_wrong_with_a_file_is_said_by_line_and_column() {
+    let server = Server::start().await;
+    for (path, text, pointer, detail) in [
+        ("scan", "1;2\n3;four\n", "/line/2/column/2", "`four` is not a number"),
+        ("scan", "x,z\n1,2\n3,4,5\n", "/line/3", "has 3 columns, and the first 2"),
+        ("scan", "", "", "no rows of numbers"),
+        ("loop", "a;b;c\n1;2;3\n", "", "no column `displacement` among 3 columns with a, b, c"),
+        ("loop?force=9", "1;2\n3;4\n", "", "no column `9` among 2 columns with no names"),
+        ("scan?height=V", "1;2\n", "/height", "not a unit of length"),
+        ("scan?spacing=-1", "1;2\n", "/spacing", "out of range"),
+    ] {
+        let fault = problem(read(&server, &format!("/files/{path}"), text).await).await.errors.remove(0);
+        assert_eq!(fault.pointer, pointer, "{path} {text}");
+        assert!(fault.detail.contains(detail), "{}", fault.detail);
+    }
+    assert_eq!(problem(server.post("/files/scan", &json!({})).await).await.code, "unsupported_media_type");
+    assert_eq!(read(&server, "/files/scan", vec![b'1'; 16 * 1024 * 1024 + 1]).await.status(), 413);
+    assert_eq!(good(server.get("/contacts").await).await["items"], json!([]), "nothing is stored");
 }

@@ -1,5 +1,7 @@
 //! The contract over HTTP, and what surrounds it: access, settings, logs, metrics and traces.
 
+#[path = "../harness/answered.rs"]
+mod answered;
 #[path = "../common/mod.rs"]
 mod common;
 #[path = "../harness/cycle_laws.rs"]
@@ -24,6 +26,7 @@ mod accuracy;
 mod bad_input;
 mod command_line;
 mod compression;
+mod computations;
 mod contacts;
 mod contract;
 mod cycle;
@@ -32,17 +35,14 @@ mod cycles_path;
 mod documents;
 mod events;
 mod exposure;
-mod far_moves;
-mod files;
+mod faults;
 mod first_key;
 mod fit;
 mod formats;
 mod fretting;
-mod fretting_picture;
 mod fuzz_bodies;
 mod fuzz_http;
 mod lab_files;
-mod limiting_cases;
 mod load_curves;
 mod logs;
 mod metrics;
@@ -54,7 +54,6 @@ mod pictures;
 mod profile_fit;
 mod profiles;
 mod protocols;
-mod schema;
 mod settings;
 mod subsurface;
 mod sweeps;

@@ -144,24 +144,6 @@ async fn observations_are_moves_with_what_was_measured_beside_them() {
 }
 
 #[tokio::test]
-async fn a_repetition_gets_the_first_reply_and_a_stale_one_changes_nothing() {
-    let server = Server::start().await;
-    let id = contact(&server).await.id;
-    let path = format!("/contacts/{id}/observations");
-    let body = json!({"observations": [{"displacement": 1e-7, "force": 1.2}, {"displacement": 2e-7, "force": 2.0}]});
-    let send = async |key: &str, sequence: &str| {
-        let headers = [("idempotency-key", key), ("if-match", sequence)];
-        server.send(Method::POST, &path, Some(&body.to_string()), &headers).await
-    };
-    let first = send("one", "\"0\"").await;
-    assert_eq!((first.status().as_u16(), &first.headers()["etag"]), (200, &"\"2\"".parse().unwrap()));
-    let first = first.text().await.unwrap();
-    assert_eq!(send("one", "\"0\"").await.text().await.unwrap(), first);
-    assert_eq!(problem(send("two", "\"0\"").await).await.code, "stale_sequence");
-    assert_eq!(server.client.contact(id).await.unwrap().sequence, 2);
-}
-
-#[tokio::test]
 async fn bad_observations_are_refused_at_their_place_and_change_nothing() {
     let server = Server::start().await;
     let id = contact(&server).await.id;
@@ -173,9 +155,6 @@ async fn bad_observations_are_refused_at_their_place_and_change_nothing() {
         (json!({"observations": []}).to_string(), "/observations"),
         (json!({"observations": vec![good.clone(); 100_001]}).to_string(), "/observations"),
         (beside(json!({"displacement": 1e-7})), "/observations/1/force"),
-        (beside(json!({"displacement": 1e300, "force": 1.0})), "/observations/1/displacement"),
-        (beside(json!({"displacement": "NaN", "force": 1.0})), "/observations/1/displacement"),
-        (beside(json!({"displacement": 1e-7, "force": null})), "/observations/1/force"),
         (beside(json!({"displacement": 1e-7, "force": 1.0, "indentation": 1.0})), "/observations/1/indentation"),
         (beside(json!({"displacement": 1e-7, "force": 1.0, "at": "noon"})), "/observations/1/at"),
         (beside(json!({"displacement": 1e-7, "force": 1.0, "at": "2026-03-01T11:59:59.9Z"})), "/observations/1/at"),

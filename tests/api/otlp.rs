@@ -15,7 +15,7 @@ use axum::routing::post;
 use axum::serve::Listener;
 use axum::{Json, Router};
 use common::process::Process;
-use common::{Binary, clean, create};
+use common::{Binary, binary, create};
 use opentelemetry::trace::TraceContextExt as _;
 use rustls::ServerConfig;
 use rustls::crypto::ring;
@@ -231,8 +231,7 @@ async fn spans_travel_by_https_to_a_collector_that_is_trusted_and_to_no_other() 
     std::fs::write(&strange, stranger.cert.pem()).unwrap();
     for (roots, arrived) in [(strange, 0), (trusted, 1)] {
         let log = folder.path().join("log");
-        let mut command = clean(Command::new(env!("CARGO_BIN_EXE_stickslip")));
-        command.args(["serve", "--listen", "127.0.0.1:0", "--store", "memory:", "--otlp-endpoint", &base]);
+        let mut command = binary(&["serve", "--listen", "127.0.0.1:0", "--store", "memory:", "--otlp-endpoint", &base]);
         command.env("SSL_CERT_FILE", &roots).env_remove("SSL_CERT_DIR").stderr(std::fs::File::create(&log).unwrap());
         let server = Process::of(command).await;
         server.client.healthz().await.unwrap();

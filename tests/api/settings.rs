@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::process::{Command, Output};
 
-use common::clean;
+use common::binary;
 use common::process::{Process, ended};
 use tempfile::tempdir;
 
@@ -49,12 +49,6 @@ const CASES: [(&str, [&str; 3]); 33] = [
 
 fn variable(key: &str) -> String {
     format!("STICKSLIP_{}", key.to_uppercase().replace('-', "_"))
-}
-
-fn binary(arguments: &[&str]) -> Command {
-    let mut command = clean(Command::new(env!("CARGO_BIN_EXE_stickslip")));
-    command.args(arguments);
-    command
 }
 
 fn said(command: &mut Command) -> (Output, String, String) {

@@ -7,7 +7,7 @@ use std::process::Command;
 use std::sync::Arc;
 
 use common::process::{Process, ended};
-use common::{clean, until};
+use common::{binary, until};
 use rustls::pki_types::{CertificateDer, ServerName};
 use rustls::{ClientConfig, RootCertStore};
 use tempfile::tempdir;
@@ -40,9 +40,7 @@ async fn call(address: &str, certificate: &CertificateDer<'static>, request: &st
 }
 
 fn healthcheck(more: &[&str]) -> Command {
-    let mut command = clean(Command::new(env!("CARGO_BIN_EXE_stickslip")));
-    command.arg("healthcheck").args(more);
-    command
+    binary(&[&["healthcheck"], more].concat())
 }
 
 #[tokio::test]
@@ -101,8 +99,8 @@ fn a_certificate_without_its_key_ends_the_start() {
         (vec!["--tls-cert".to_owned(), text(&key), "--tls-key".to_owned(), text(&key)], "no certificate"),
         (vec!["--tls-cert".to_owned(), "/nowhere".to_owned(), "--tls-key".to_owned(), text(&key)], "/nowhere"),
     ] {
-        let mut command = clean(Command::new(env!("CARGO_BIN_EXE_stickslip")));
-        let output = ended(command.args(["serve", "--store", "memory:", "--listen", "127.0.0.1:0"]).args(&arguments));
+        let mut command = binary(&["serve", "--store", "memory:", "--listen", "127.0.0.1:0"]);
+        let output = ended(command.args(&arguments));
         let said = String::from_utf8(output.stderr).unwrap();
         assert!(!output.status.success() && said.lines().count() == 1 && said.contains(why), "{arguments:?}: {said}");
     }

@@ -1,203 +1,213 @@
 //! Warnings over HTTP: each code appears exactly when it should, and is in the docs.
 
-use crate::common;
-
 use serde_json::{Value, json};
 
-/// A scene without warnings.
+use crate::common::{Server, ball, changed, codes, good, of, with};
+
+/// A contact without warnings.
 fn flawless() -> Value {
     json!({
-        "contact": {
-            "profile": {"type": "sphere", "radius": 0.01},
-            "material": {"effective": {"e_star": 1.15e11, "g_star": 8.5e10}},
-            "friction": 0.3,
-            "preload": {"normal_force": 10.0}
-        },
-        "path": {"displacement": [1e-7]}
+        "profile": {"type": "sphere", "radius": 0.01},
+        "material": {"effective": {"e_star": 1.15e11, "g_star": 8.5e10}},
+        "friction": 0.3,
+        "preload": {"normal_force": 10.0}
     })
 }
 
-/// The scene with some members of its contact, or its path, in place of others.
-fn with(changes: &Value) -> Value {
-    let mut scene = flawless();
-    for (name, value) in changes.as_object().unwrap() {
-        let place = if ["path", "tolerance"].contains(&name.as_str()) { &mut scene } else { &mut scene["contact"] };
-        place[name] = value.clone();
-    }
-    scene
+/// A ball of 10 mm, measured every `spacing` with heights rounded to `step` (m).
+fn table(spacing: f64, height: impl Fn(f64) -> f64, step: f64) -> Value {
+    let radii: Vec<f64> = (0..=200).map(|index| spacing * f64::from(index)).collect();
+    let heights: Vec<f64> = radii.iter().map(|r| (height(*r) / step).round() * step).collect();
+    json!({"type": "tabulated", "r": radii, "z": heights})
 }
 
-/// A ball of 10 mm, measured every 2 um with heights rounded to `step` (m).
 fn measured(step: f64) -> Value {
-    let radii: Vec<f64> = (0..=200).map(|index| 2e-6 * f64::from(index)).collect();
-    let heights: Vec<f64> = radii.iter().map(|r| (r * r / 0.02 / step).round() * step).collect();
-    json!({"type": "tabulated", "r": radii, "z": heights})
+    table(2e-6, |r| r * r / 0.02, step)
 }
 
-/// A ball of 10 mm as a table that reaches to nine tenths of it.
-fn steep_table() -> Value {
-    let radii: Vec<f64> = (0..=200).map(|index| 4.5e-5 * f64::from(index)).collect();
-    let heights: Vec<f64> = radii.iter().map(|r| 0.01 - (1e-4 - r * r).sqrt()).collect();
-    json!({"type": "tabulated", "r": radii, "z": heights})
+/// Of these members of a contact, or of a simulation beside it, the body of a simulation.
+fn scene(changes: &Value) -> Value {
+    let (mut contact, mut body) = (flawless(), json!({"path": {"displacement": [1e-7]}}));
+    for (name, value) in changes.as_object().unwrap() {
+        let of_contact = ["profile", "material", "friction", "preload"].contains(&name.as_str());
+        (if of_contact { &mut contact } else { &mut body })[name] = value.clone();
+    }
+    of(&contact, &body)
 }
 
-/// A ball of this radius (m) as a power law.
-fn parabola(radius: f64) -> Value {
-    json!({"type": "power_law", "exponent": 2.0, "coefficient": 0.5 / radius})
-}
-
-async fn codes(server: &common::Server, scene: &Value) -> Vec<String> {
-    let reply = reqwest::Client::new().post(format!("{}/simulate", server.base)).json(scene).send().await.unwrap();
-    assert_eq!(reply.status(), 200, "{scene}");
-    let reply: Value = reply.json().await.unwrap();
-    reply["warnings"].as_array().unwrap().iter().map(|warning| warning["code"].as_str().unwrap().to_owned()).collect()
+/// Asserts that the docs have a section on each code.
+fn are_described(codes: &[&str]) {
+    let pages = include_str!("../../docs/warnings.md");
+    for code in codes {
+        assert!(pages.contains(&format!("\n## {code}\n")), "docs/warnings.md has nothing on {code}");
+    }
 }
 
 #[tokio::test]
 async fn each_warning_has_its_cause_and_its_page() {
-    let server = common::Server::start().await;
-    let steel = json!({"youngs_modulus": 2.1e11, "poisson_ratio": 0.3});
-    let incompressible = json!({"youngs_modulus": 2.1e11, "poisson_ratio": 0.5});
+    let server = Server::start().await;
+    let [steel, incompressible] = [0.3, 0.5].map(|nu| json!({"youngs_modulus": 2.1e11, "poisson_ratio": nu}));
+    let sphere = |kind: &str| json!({"type": kind, "radius": 0.01});
+    let law = |radius: f64| json!({"type": "power_law", "exponent": 2.0, "coefficient": 0.5 / radius});
+    let blunt = json!({"type": "rounded_cone", "slope": 0.5, "tip_radius": 0.005});
+    let sum = json!({"type": "sum", "parts": [law(0.02), {"type": "sphere", "radius": 0.02}]});
+    let steep = table(4.5e-5, |r| 0.01 - (1e-4 - r * r).sqrt(), 1e-18);
+    let wide = |profile: &Value, radius: f64| json!({"profile": profile, "preload": {"contact_radius": radius}});
+    let from_nothing = |profile: Value, more: Value| {
+        let path = json!({"moves": [{"displacement": 2e-7, "normal_force": 10.0}, {"displacement": 1e-5}]});
+        changed(json!({"profile": profile, "preload": {"normal_force": 0.0}, "path": path}), &more)
+    };
+    let cone = |slope: f64| json!({"type": "cone", "slope": slope});
+    let springs = json!({"springs": {"count": 20}});
     let cases: &[(Value, &[&str])] = &[
         (json!({}), &[]),
         (json!({"profile": measured(1e-15)}), &[]),
+        (json!({"profile": measured(1e-9)}), &["noisy_table"]),
         (json!({"material": {"bodies": [steel, steel]}}), &["slip_direction"]),
         (json!({"material": {"bodies": [steel, "rigid"]}}), &["dundurs_beta", "slip_direction"]),
         // Against a rigid body beta vanishes for an incompressible one.
         (json!({"material": {"bodies": [incompressible, "rigid"]}}), &["slip_direction"]),
-        (json!({"preload": {"contact_radius": 0.0029}}), &[]),
-        (json!({"preload": {"contact_radius": 0.0031}}), &["large_contact"]),
+        (wide(&sphere("sphere"), 0.0029), &[]),
+        (wide(&sphere("sphere"), 0.0031), &["large_contact"]),
         // A slope of 0.3 is that of the sphere itself at a/R = 0.287.
-        (json!({"profile": {"type": "exact_sphere", "radius": 0.01}, "preload": {"contact_radius": 0.0028}}), &[]),
-        (
-            json!({"profile": {"type": "exact_sphere", "radius": 0.01}, "preload": {"contact_radius": 0.003}}),
-            &["large_contact"],
-        ),
-        (json!({"profile": steep_table(), "preload": {"contact_radius": 0.008}}), &["large_contact"]),
-        (json!({"profile": parabola(0.01), "preload": {"contact_radius": 0.0029}}), &[]),
-        (json!({"profile": parabola(0.01), "preload": {"contact_radius": 0.0031}}), &["large_contact"]),
-        (
-            json!({"profile": {"type": "rounded_cone", "slope": 0.5, "tip_radius": 0.005},
-                "preload": {"contact_radius": 0.0029}}),
-            &[],
-        ),
-        (
-            json!({"profile": {"type": "rounded_cone", "slope": 0.5, "tip_radius": 0.005},
-                "preload": {"contact_radius": 0.0031}}),
-            &["large_contact"],
-        ),
-        (
-            json!({"profile": {"type": "sum", "parts": [parabola(0.02), {"type": "sphere", "radius": 0.02}]},
-                "preload": {"contact_radius": 0.0031}}),
-            &["large_contact"],
-        ),
-        (json!({"profile": {"type": "cone", "slope": 0.29}}), &[]),
-        (json!({"profile": {"type": "cone", "slope": 0.31}}), &["large_contact"]),
+        (wide(&sphere("exact_sphere"), 0.0028), &[]),
+        (wide(&sphere("exact_sphere"), 0.003), &["large_contact"]),
+        (wide(&steep, 0.008), &["large_contact"]),
+        (wide(&law(0.01), 0.0029), &[]),
+        (wide(&law(0.01), 0.0031), &["large_contact"]),
+        (wide(&blunt, 0.0029), &[]),
+        (wide(&blunt, 0.0031), &["large_contact"]),
+        (wide(&sum, 0.0031), &["large_contact"]),
+        (json!({"profile": cone(0.29)}), &[]),
+        (json!({"profile": cone(0.31)}), &["large_contact"]),
         (json!({"profile": {"type": "rounded_punch", "flat_radius": 0.01, "edge_radius": 0.001}}), &[]),
         (json!({"profile": {"type": "flat_punch", "radius": 0.01}}), &[]),
         (json!({"profile": {"type": "truncated_sphere", "radius": 0.01, "flat_radius": 0.001}}), &[]),
-        // A path may lead from no load at all.
-        (
-            json!({"profile": measured(1e-15), "preload": {"normal_force": 0.0},
-                "path": {"moves": [{"normal_force": 10.0}]}}),
-            &[],
-        ),
-        (
-            json!({"profile": measured(1e-9), "preload": {"normal_force": 0.0},
-                "path": {"moves": [{"normal_force": 10.0}]}}),
-            &["noisy_table"],
-        ),
+        // A path may lead from no load at all. What its last move wipes out is still in the states before it.
+        (from_nothing(measured(1e-15), json!({"tolerance": 1e-6})), &[]),
+        (from_nothing(measured(1e-9), json!({"tolerance": 1e-6})), &["noisy_table"]),
+        (from_nothing(cone(0.01), json!({"tolerance": 1e-14})), &["tolerance_not_met"]),
         // A radius of 10 and moduli of 115 GPa: millimetres and megapascals.
         (
             json!({"profile": {"type": "sphere", "radius": 10.0},
                 "material": {"effective": {"e_star": 1.15e5, "g_star": 8.5e4}}}),
             &["units"],
         ),
-        (json!({"profile": measured(1e-9)}), &["noisy_table"]),
-        (
-            json!({
-                "profile": {"type": "cone", "slope": 0.01},
-                "preload": {"normal_force": 0.0},
-                "path": {"moves": [{"displacement": 2e-7, "normal_force": 10.0}]},
-                "tolerance": 1e-14
-            }),
-            &["tolerance_not_met"],
-        ),
-        // What the last move wipes out is still in the states before it.
-        (
-            json!({
-                "profile": {"type": "cone", "slope": 0.01},
-                "preload": {"normal_force": 0.0},
-                "path": {"moves": [{"displacement": 2e-7, "normal_force": 10.0}, {"displacement": 1e-5}]},
-                "tolerance": 1e-14
-            }),
-            &["tolerance_not_met"],
-        ),
+        // Twenty springs have the force to a share of a per cent, and stresses only by their order.
+        (json!({"solver": springs}), &[]),
+        (json!({"solver": springs, "residual": true}), &["stress_error"]),
+        (json!({"residual": true}), &[]),
     ];
-    let pages = include_str!("../../docs/warnings.md");
     for (changes, expected) in cases {
-        let found = codes(&server, &with(changes)).await;
-        assert_eq!(&found, expected, "{changes}");
-        for code in found {
-            assert!(pages.contains(&format!("\n## {code}\n")), "docs/warnings.md has nothing on {code}");
+        let reply = good(server.post("/simulate", &scene(changes)).await).await;
+        assert_eq!(codes(&reply), *expected, "{changes}");
+        are_described(expected);
+    }
+}
+
+#[tokio::test]
+async fn a_contact_warns_when_a_move_gives_it_cause() {
+    let server = Server::start().await;
+    let steel = json!({"youngs_modulus": 2.1e11, "poisson_ratio": 0.3});
+    let made =
+        good(server.post("/contacts", &with(flawless(), "/material", json!({"bodies": [steel, steel]}))).await).await;
+    assert_eq!(codes(&made), ["slip_direction"]);
+    let loose = json!({"profile": {"type": "cone", "slope": 0.01}, "preload": {"normal_force": 0.0}});
+    let cone = good(server.post("/contacts", &changed(flawless(), &loose)).await).await;
+    let [large, far, hard] = ["large_contact", "far_beyond_slip", "tolerance_not_met"].map(|code| vec![code]);
+    // Gross slip begins below a micrometre, and a tenth of the radius of the ball is 1 mm.
+    for (contact, last, body, expected) in [
+        (&made, "move", json!({"displacement": 1e-7}), vec![]),
+        // a^2 = R d, and a warning of the preload is not repeated.
+        (&made, "move", json!({"indentation": 8.9e-4}), vec![]),
+        (&made, "move", json!({"indentation": 9.1e-4}), large.clone()),
+        (&made, "move", json!({"indentation": 9.2e-4}), vec![]),
+        (&made, "move", json!({"indentation": 1e-6}), vec![]),
+        (&made, "path", json!({"path": {"moves": [{"indentation": 1e-3}, {"indentation": 1e-6}]}}), large),
+        (&made, "path", json!({"path": {"displacement": [1e-7, 0.0]}}), vec![]),
+        (&made, "move", json!({"force": 1.0, "normal_force": 20.0, "tolerance": 1e-10}), vec![]),
+        (&cone, "move", json!({"displacement": 2e-7, "normal_force": 10.0, "tolerance": 1e-14}), hard),
+        (&made, "move", json!({"displacement": 0.999e-3}), vec![]),
+        (&made, "move", json!({"displacement": -1.001e-3}), far.clone()),
+        // It stays there, and the load alone changes.
+        (&made, "move", json!({"normal_force": 12.0}), vec![]),
+        (&made, "move", json!({"displacement": 1e3}), far.clone()),
+        (&made, "move", json!({"displacement": -1e3, "relative": true}), vec![]),
+        (&made, "path", json!({"path": {"displacement": [1e-7, 2e-3, 0.0]}, "steps": "last"}), far.clone()),
+        (&made, "path", json!({"path": {"displacement": [1e-7, -1e-7, 0.0]}}), vec![]),
+    ] {
+        let path = format!("/contacts/{}/{last}", contact["id"].as_str().unwrap());
+        let reply = good(server.post(&path, &body).await).await;
+        assert_eq!(codes(&reply), expected, "{body}");
+        assert_eq!(reply.get("warnings").is_some(), !expected.is_empty(), "{body}: {reply}");
+        are_described(&expected);
+    }
+    // A simulation warns of the farthest move. Where a hundred times the displacement of gross slip is more than a
+    // tenth of the length, it counts: d = 1 mm on a ball of 1 m slips from 1.8 mm on; of a cone the contact radius is
+    // the only length, 6.4 mm.
+    let soft = json!({"material": {"effective": {"e_star": 1e9, "g_star": 5e8}}, "friction": 0.9,
+        "preload": {"indentation": 1e-3}});
+    let blunt = changed(soft.clone(), &json!({"profile": {"type": "sphere", "radius": 1.0}}));
+    let pointed = changed(soft, &json!({"profile": {"type": "cone", "slope": 0.1}}));
+    for (contact, path, said) in [
+        (&ball(), json!({"displacement": [1e-7, 0.9e-3, 0.0]}), None),
+        (&ball(), json!({"displacement": [-1234.5]}), Some("-1.2345 km")),
+        (&blunt, json!({"displacement": [0.179]}), None),
+        (&blunt, json!({"displacement": [0.181]}), Some("mm")),
+        (&pointed, json!({"displacement": [0.179]}), None),
+        (&pointed, json!({"displacement": [0.181]}), Some("mm")),
+        // Apart from each other the bodies do not slip at all.
+        (&ball(), json!({"moves": [{"indentation": -1e-6}, {"displacement": 1.0}]}), Some("hardly touch")),
+    ] {
+        for solver in [json!("exact"), json!({"springs": {"count": 100}})] {
+            let body = of(contact, &json!({"path": path, "solver": solver, "steps": "last"}));
+            let reply = good(server.post("/simulate", &body).await).await;
+            let far = reply["warnings"].as_array().unwrap().iter().find(|one| one["code"] == "far_beyond_slip");
+            assert_eq!(far.is_some(), said.is_some(), "{body}");
+            assert!(far.is_none_or(|far| far["message"].as_str().unwrap().contains(said.unwrap())), "{far:?}");
         }
     }
 }
 
-/// Twenty springs have the force to a share of a per cent, and stresses only by their order.
 #[tokio::test]
-async fn stresses_that_are_far_off_warn_where_they_are_asked_for() {
-    let server = common::Server::start().await;
-    let mut scene = flawless();
-    scene["solver"] = json!({"springs": {"count": 20}});
-    assert_eq!(codes(&server, &scene).await, [""; 0]);
-    scene["residual"] = json!(true);
-    assert_eq!(codes(&server, &scene).await, ["stress_error"]);
-    scene["solver"] = json!("exact");
-    assert_eq!(codes(&server, &scene).await, [""; 0]);
-    assert!(include_str!("../../docs/warnings.md").contains("\n## stress_error\n"));
-}
-
-/// The codes of the warnings of a reply, and whether it has the member at all.
-fn codes_if_present(reply: &Value) -> Option<Vec<&str>> {
-    let warnings = reply.get("warnings")?.as_array().unwrap();
-    Some(warnings.iter().map(|warning| warning["code"].as_str().unwrap()).collect())
-}
-
-#[tokio::test]
-async fn a_session_warns_when_a_move_gives_it_cause() {
-    let server = common::Server::start().await;
-    let client = reqwest::Client::new();
-    let send = async |place: &str, body: Value| -> Value {
-        let reply = client.post(format!("{}{place}", server.base)).json(&body).send().await.unwrap();
-        assert!(reply.status().is_success(), "{body}");
-        reply.json().await.unwrap()
-    };
-    let steel = json!({"youngs_modulus": 2.1e11, "poisson_ratio": 0.3});
-    let contact = with(&json!({"material": {"bodies": [steel, steel]}}))["contact"].clone();
-    let made = send("/contacts", contact).await;
-    assert_eq!(codes_if_present(&made), Some(vec!["slip_direction"]));
-    let place = |last: &str| format!("/contacts/{}/{last}", made["id"].as_str().unwrap());
-    for (last, body, expected) in [
-        ("move", json!({"displacement": 1e-7}), None),
-        // a^2 = R d, and a warning of the preload is not repeated.
-        ("move", json!({"indentation": 8.9e-4}), None),
-        ("move", json!({"indentation": 9.1e-4}), Some(vec!["large_contact"])),
-        ("move", json!({"indentation": 9.2e-4}), None),
-        ("move", json!({"indentation": 1e-6}), None),
-        (
-            "path",
-            json!({"path": {"moves": [{"indentation": 1e-3}, {"indentation": 1e-6}]}}),
-            Some(vec!["large_contact"]),
-        ),
-        ("path", json!({"path": {"displacement": [1e-7, 0.0]}}), None),
-        ("move", json!({"force": 1.0, "normal_force": 20.0, "tolerance": 1e-10}), None),
+async fn a_cycle_beyond_the_model_of_fretting_says_which_part_of_it() {
+    let server = Server::start().await;
+    let wide = |radius: f64| with(ball(), "/preload", json!({"contact_radius": radius}));
+    let limit = |limit: f64| json!({"criteria": {"crossland": {"alpha": 0.3, "limit": limit}}});
+    let between = |reach: f64| json!({"path": {"displacement": [reach, -reach]}});
+    let deep = json!({"path": {"moves": [{"indentation": 9.7e-4}, {"indentation": 1e-6}]}});
+    for (contact, changes, said) in [
+        (ball(), json!({}), None),
+        (wide(0.0029), json!({}), None),
+        (wide(0.0031), json!({}), Some("slope of 0.31")),
+        // Larger on the way than at the preload.
+        (ball(), deep, Some("slope of 0.31")),
+        // From end to end 20 contact radii of 100 um.
+        (wide(1e-4), between(0.9e-3), None),
+        (wide(1e-4), between(1.1e-3), Some("2.2 mm long")),
+        (wide(1e-4), between(2.0), Some("4 m long, over 20 contact radii of 100 µm")),
+        (ball(), json!({"bulk": {"mean": 2e10, "amplitude": 4e9}}), Some("the bulk stress reaches 24 GPa")),
+        (ball(), json!({"bulk": {"mean": 2e8, "amplitude": 4e8}}), None),
+        (ball(), json!({"bulk": {"amplitude": 120.0}}), Some("120 Pa alone")),
+        (ball(), limit(300.0), Some("the limit of crossland is 300 Pa")),
+        (ball(), limit(3e8), None),
+        (ball(), limit(3e14), Some("the limit of crossland is 300 TPa")),
     ] {
-        assert_eq!(codes_if_present(&send(&place(last), body.clone()).await), expected, "{body}");
+        let asked = changed(
+            between(1e-8),
+            &json!({"body": "first", "points": [[0.0, 0.0, 1e-5]],
+            "criteria": {"crossland": {"alpha": 0.3}}}),
+        );
+        let reply = good(server.post("/fretting", &of(&contact, &changed(asked, &changes))).await).await;
+        let warnings = reply["warnings"].as_array().unwrap().iter();
+        let found: Vec<&str> = warnings
+            .filter(|warning| warning["code"] == "beyond_model")
+            .map(|warning| warning["message"].as_str().unwrap())
+            .collect();
+        match said {
+            None => assert!(found.is_empty(), "{changes}: {found:?}"),
+            Some(said) => assert!(found.iter().any(|message| message.contains(said)), "{changes}: {found:?}"),
+        }
     }
-    let cone = with(&json!({"profile": {"type": "cone", "slope": 0.01}, "preload": {"normal_force": 0.0}}));
-    let made = send("/contacts", cone["contact"].clone()).await;
-    let place = format!("/contacts/{}/move", made["id"].as_str().unwrap());
-    let hard = json!({"displacement": 2e-7, "normal_force": 10.0, "tolerance": 1e-14});
-    assert_eq!(codes_if_present(&send(&place, hard).await), Some(vec!["tolerance_not_met"]));
+    are_described(&["beyond_model"]);
 }

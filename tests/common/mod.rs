@@ -3,6 +3,7 @@
 #![allow(dead_code, reason = "each test binary uses a part of it")]
 
 pub mod kill;
+pub mod openapi;
 pub mod pictures;
 pub mod port;
 pub mod postgres;
@@ -10,8 +11,8 @@ pub mod process;
 pub mod prometheus;
 pub mod raw;
 pub mod small_disk;
+pub mod tables;
 
-use std::io::{BufRead as _, BufReader};
 use std::process::{Child, Command, Output, Stdio};
 use std::sync::Arc;
 use std::time::Duration;
@@ -130,23 +131,23 @@ impl Binary {
 
     /// The same at an address.
     pub fn at(address: &str, store: &str, arguments: &[&str]) -> Binary {
-        let mut child = clean(Command::new(env!("CARGO_BIN_EXE_stickslip")))
-            .args(["--listen", address, "--store", store])
-            .args(arguments)
-            .stdout(Stdio::piped())
-            .stderr(Stdio::piped())
-            .spawn()
-            .unwrap();
-        let mut line = String::new();
-        BufReader::new(child.stdout.take().unwrap()).read_line(&mut line).unwrap();
-        let base = line.split_whitespace().find(|word| word.starts_with("http://")).unwrap().trim_end_matches(',');
-        Binary { child, address: base.to_owned(), client: Client::new(base) }
+        let mut command = binary(&["--listen", address, "--store", store]);
+        command.args(arguments).stderr(Stdio::piped());
+        let (child, address) = process::listening(command);
+        Binary { child, client: Client::new(&*address), address }
     }
 }
 
-/// The output of the binary with these arguments, after it has exited by itself.
+/// The binary with these arguments, and without the settings of the environment.
+pub fn binary(arguments: &[&str]) -> Command {
+    let mut command = clean(Command::new(env!("CARGO_BIN_EXE_stickslip")));
+    command.args(arguments);
+    command
+}
+
+/// Its output, after it has exited by itself.
 pub fn run(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_stickslip")).args(arguments).output().unwrap()
+    binary(arguments).output().unwrap()
 }
 
 impl Drop for Binary {
@@ -188,8 +189,12 @@ pub fn long_simulation() -> Value {
 
 /// A body: a contact, and members beside it.
 pub fn of(contact: &Value, rest: &Value) -> Value {
-    let mut body = json!({"contact": contact});
-    body.as_object_mut().unwrap().extend(rest.as_object().unwrap().clone());
+    changed(json!({"contact": contact}), rest)
+}
+
+/// A body with these members added or replaced.
+pub fn changed(mut body: Value, members: &Value) -> Value {
+    body.as_object_mut().unwrap().extend(members.as_object().unwrap().clone());
     body
 }
 
@@ -210,6 +215,35 @@ pub async fn good(response: Response) -> Value {
     let text = response.text().await.unwrap();
     assert!(status.is_success(), "{status} {text}");
     serde_json::from_str(&text).unwrap()
+}
+
+/// A document without the times that it took to compute.
+pub fn timeless(mut document: Value) -> Value {
+    match &mut document {
+        Value::Object(members) => {
+            members.remove("compute_time");
+            members.values_mut().for_each(|member| *member = timeless(member.take()));
+        }
+        Value::Array(elements) => elements.iter_mut().for_each(|element| *element = timeless(element.take())),
+        _ => {}
+    }
+    document
+}
+
+/// The codes of the warnings of a reply.
+pub fn codes(reply: &Value) -> Vec<&str> {
+    let warnings = reply.get("warnings").and_then(Value::as_array).map_or(&[][..], Vec::as_slice);
+    warnings.iter().map(|warning| warning["code"].as_str().unwrap()).collect()
+}
+
+/// Asserts that a body is refused with a code, at a place, by a text with these words.
+pub async fn assert_refused(server: &Server, path: &str, body: &Value, (code, pointer, words): (&str, &str, &str)) {
+    let text = body.to_string();
+    let refused = problem(server.send(Method::POST, path, Some(&text), &[]).await).await;
+    let shown = format!("{path} {:.300}..{}: {refused:?}", text, &text[text.len().saturating_sub(200)..]);
+    assert_eq!((refused.status, refused.code.as_str()), (422, code), "{shown}");
+    assert_eq!(refused.errors[0].pointer, pointer, "{shown}");
+    assert!(refused.errors[0].detail.contains(words), "{shown}");
 }
 
 pub fn number(value: &Value) -> f64 {

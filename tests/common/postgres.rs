@@ -181,3 +181,10 @@ fn as_owner(command: &mut Command, owner: Option<(u32, u32)>) -> &mut Command {
     }
     command
 }
+
+/// A connection to a database.
+pub async fn connected(url: &str) -> tokio_postgres::Client {
+    let (client, connection) = tokio_postgres::connect(url, NoTls).await.unwrap();
+    tokio::spawn(connection);
+    client
+}

@@ -36,23 +36,20 @@ impl Process {
 
     /// Starts a server with these arguments, and its log in a file.
     pub async fn start_with(arguments: &[&str], log: &Path) -> Process {
-        let mut command = super::clean(Command::new(env!("CARGO_BIN_EXE_stickslip")));
-        command.args(["serve", "--listen", "127.0.0.1:0"]).args(arguments);
-        command.stderr(std::fs::File::create(log).unwrap());
+        let mut command = super::binary(&["serve", "--listen", "127.0.0.1:0"]);
+        command.args(arguments).stderr(std::fs::File::create(log).unwrap());
         Process::of(command).await
     }
 
     /// Starts a server by a command, and waits until it listens.
-    pub async fn of(mut command: Command) -> Process {
-        let mut child = command.stdout(Stdio::piped()).spawn().unwrap();
-        let stdout = child.stdout.take().unwrap();
-        let read = move || BufReader::new(stdout).lines().next();
-        let line = tokio::task::spawn_blocking(read).await.unwrap();
-        let Some(Ok(line)) = line else {
-            panic!("the server ended at once: {:?}", child.wait());
-        };
-        let base = line.split_whitespace().find(|word| word.starts_with("http")).unwrap().trim_end_matches(',');
-        Process::running(child, base)
+    pub async fn of(command: Command) -> Process {
+        tokio::task::spawn_blocking(move || Process::at_once(command)).await.unwrap()
+    }
+
+    /// The same, for which it blocks the thread.
+    pub fn at_once(command: Command) -> Process {
+        let (child, base) = listening(command);
+        Process::running(child, &base)
     }
 
     /// A server that runs already, by its address.
@@ -60,17 +57,26 @@ impl Process {
         Process { child: Some(child), base: base.to_owned(), client: Client::new(base) }
     }
 
+    /// Its number.
+    pub fn id(&self) -> u32 {
+        self.child.as_ref().unwrap().id()
+    }
+
     /// The most memory that the process has had so far, bytes.
     pub fn peak(&self) -> u64 {
-        let status = std::fs::read_to_string(format!("/proc/{}/status", self.child.as_ref().unwrap().id())).unwrap();
-        let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:")).unwrap();
+        self.memory("VmHWM:")
+    }
+
+    /// A line of the status of the process, bytes.
+    pub fn memory(&self, name: &str) -> u64 {
+        let status = std::fs::read_to_string(format!("/proc/{}/status", self.id())).unwrap();
+        let line = status.lines().find_map(|line| line.strip_prefix(name)).unwrap();
         line.split_whitespace().next().unwrap().parse::<u64>().unwrap() * 1024
     }
 
     /// Sends a signal, such as `HUP`.
     pub fn signal(&self, name: &str) {
-        let id = self.child.as_ref().unwrap().id().to_string();
-        assert!(Command::new("kill").args([&format!("-{name}"), &id]).status().unwrap().success());
+        assert!(Command::new("kill").args([&format!("-{name}"), &self.id().to_string()]).status().unwrap().success());
     }
 
     /// SIGKILL, and the end awaited.
@@ -97,6 +103,16 @@ impl Drop for Process {
             let _ = child.wait();
         }
     }
+}
+
+/// Starts a server by a command, and waits until it says where it listens.
+pub fn listening(mut command: Command) -> (Child, String) {
+    let mut child = command.stdout(Stdio::piped()).spawn().unwrap();
+    let Some(Ok(line)) = BufReader::new(child.stdout.take().unwrap()).lines().next() else {
+        panic!("the server ended at once: {:?}", child.wait());
+    };
+    let base = line.split_whitespace().find(|word| word.starts_with("http")).unwrap().trim_end_matches(',');
+    (child, base.to_owned())
 }
 
 /// The output of a server that cannot start, after it has exited by itself.

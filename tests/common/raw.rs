@@ -1,9 +1,7 @@
 //! The real binary under hostile clients: raw sockets, and the memory and processor time of the process.
 
 use std::fs::File;
-use std::io::{BufRead as _, BufReader};
 use std::net::SocketAddr;
-use std::process::{Child, Command, Stdio};
 use std::time::Duration;
 
 use stickslip_wire::client::Client;
@@ -12,12 +10,14 @@ use tokio::io::{AsyncReadExt as _, AsyncWriteExt as _};
 use tokio::net::{TcpSocket, TcpStream};
 use tokio::time::timeout;
 
+use super::process::Process;
+
 /// How long a test waits before it gives up.
 pub const PATIENCE: Duration = Duration::from_secs(60);
 
 /// A server in a process of its own, killed when dropped.
 pub struct Service {
-    child: Child,
+    process: Process,
     folder: TempDir,
     pub address: SocketAddr,
     pub client: Client,
@@ -36,22 +36,19 @@ impl Service {
         Service::start_on("memory:", arguments)
     }
 
+    /// The same with the arguments in one text.
+    pub fn with(arguments: &str) -> Service {
+        Service::start(&arguments.split_whitespace().collect::<Vec<_>>())
+    }
+
     /// The same with a store.
     pub fn start_on(store: &str, arguments: &[&str]) -> Service {
         let folder = tempfile::tempdir().unwrap();
-        let log = File::create(folder.path().join("log")).unwrap();
-        let mut child = super::clean(Command::new(env!("CARGO_BIN_EXE_stickslip")))
-            .args(["serve", "--listen", "127.0.0.1:0", "--store", store])
-            .args(arguments)
-            .stdout(Stdio::piped())
-            .stderr(log)
-            .spawn()
-            .unwrap();
-        let mut line = String::new();
-        BufReader::new(child.stdout.take().unwrap()).read_line(&mut line).unwrap();
-        let base = line.split_whitespace().find(|word| word.starts_with("http://")).unwrap().trim_end_matches(',');
-        let address = base.trim_start_matches("http://").parse().unwrap();
-        Service { child, folder, address, client: Client::new(base) }
+        let mut command = super::binary(&["serve", "--listen", "127.0.0.1:0", "--store", store]);
+        command.args(arguments).stderr(File::create(folder.path().join("log")).unwrap());
+        let process = Process::at_once(command);
+        let address = process.base.trim_start_matches("http://").parse().unwrap();
+        Service { client: process.client.clone(), process, folder, address }
     }
 
     /// Everything in the log so far.
@@ -61,33 +58,27 @@ impl Service {
 
     /// The most memory that the process has had so far, bytes.
     pub fn peak(&self) -> usize {
-        self.status("VmHWM:")
+        self.process.peak() as usize
     }
 
     /// The memory that the process has now, bytes.
     pub fn resident(&self) -> usize {
-        self.status("VmRSS:")
-    }
-
-    fn status(&self, name: &str) -> usize {
-        let status = std::fs::read_to_string(format!("/proc/{}/status", self.child.id())).unwrap();
-        let line = status.lines().find(|line| line.starts_with(name)).unwrap();
-        line.split_whitespace().nth(1).unwrap().parse::<usize>().unwrap() * 1024
+        self.process.memory("VmRSS:") as usize
     }
 
     /// Tells it to stop.
     pub fn terminate(&self) {
-        assert!(Command::new("kill").args(["-TERM", &self.child.id().to_string()]).status().unwrap().success());
+        self.process.signal("TERM");
     }
 
     /// Files that the process has open; a connection is one of them.
     pub fn open_files(&self) -> usize {
-        std::fs::read_dir(format!("/proc/{}/fd", self.child.id())).unwrap().count()
+        std::fs::read_dir(format!("/proc/{}/fd", self.process.id())).unwrap().count()
     }
 
     /// Processor time that the process has had so far, ticks of the clock.
     pub fn processor_ticks(&self) -> u64 {
-        let stat = std::fs::read_to_string(format!("/proc/{}/stat", self.child.id())).unwrap();
+        let stat = std::fs::read_to_string(format!("/proc/{}/stat", self.process.id())).unwrap();
         let fields: Vec<&str> = stat.rsplit_once(')').unwrap().1.split_whitespace().collect();
         fields[11].parse::<u64>().unwrap() + fields[12].parse::<u64>().unwrap()
     }
@@ -116,14 +107,6 @@ impl Service {
         let stream = self.connect_from(source).await.ok()?;
         let answer = talk(stream, request.as_bytes(), false).await;
         (!answer.statuses.is_empty()).then_some(answer)
-    }
-}
-
-impl Drop for Service {
-    fn drop(&mut self) {
-        // It may have ended already.
-        let _ = self.child.kill();
-        let _ = self.child.wait();
     }
 }
 

@@ -1,5 +1,6 @@
 //! The pages of `docs/`: their commands run as printed, and what they list is complete.
 
+use std::collections::BTreeSet;
 use std::process::Command;
 
 use stickslip::api::{Need, need};
@@ -72,35 +73,18 @@ async fn a_key_is_added_to_a_running_server_as_the_page_says() {
 
 #[test]
 fn every_link_between_the_pages_leads_somewhere() {
-    for name in [
-        "simulate.md",
-        "cycles.md",
-        "fretting.md",
-        "rough-contacts.md",
-        "measured-surfaces.md",
-        "measured-loops.md",
-        "contacts.md",
-        "clients.md",
-        "python.md",
-        "equations.md",
-        "dashboards.md",
-        "access.md",
-        "operation.md",
-        "overload.md",
-        "sweeps.md",
-        "limits.md",
-        "gallery.md",
-        "errors.md",
-        "reference.md",
-        "verification.md",
-    ] {
-        let text = page(name);
+    let pages = std::fs::read_dir(file("docs")).unwrap().map(|page| page.unwrap().file_name().into_string().unwrap());
+    for name in pages.filter(|name| name.ends_with(".md")) {
+        let text = page(&name);
         let targets = text.split("](").skip(1).map(|rest| rest.split(')').next().unwrap());
         for target in targets.filter(|target| !target.starts_with("http")) {
             let (path, place) = target.split_once('#').unwrap_or((target, ""));
-            let there = file("docs").join(if path.is_empty() { name } else { path });
+            let there = file("docs").join(if path.is_empty() { &*name } else { path });
             assert!(there.exists(), "{name}: {target}");
-            let heading = |line: &str| line.trim_start_matches('#').trim().to_lowercase().replace(' ', "-");
+            let is_kept = |letter: &char| letter.is_alphanumeric() || ['-', '_'].contains(letter);
+            let heading = |line: &str| -> String {
+                line.trim_start_matches('#').trim().to_lowercase().replace(' ', "-").chars().filter(is_kept).collect()
+            };
             let found = place.is_empty()
                 || std::fs::read_to_string(&there)
                     .unwrap()
@@ -145,16 +129,58 @@ fn every_test_that_verification_names_exists() {
 
 #[test]
 fn the_crates_depend_on_no_more_than_the_readme_says() {
-    let dependencies = |folder: &str| -> Vec<String> {
-        let manifest = std::fs::read_to_string(file("crates").join(folder).join("Cargo.toml")).unwrap();
-        let section = manifest.split("[dependencies]\n").nth(1).unwrap().split("\n[").next().unwrap();
-        let names = section.lines().map(|line| line.split([' ', '.']).next().unwrap());
-        names.filter(|name| !name.is_empty()).map(str::to_owned).collect()
+    let tree = |package: &str| -> BTreeSet<String> {
+        let arguments =
+            ["tree", "--offline", "--locked", "--edges", "normal", "--prefix", "none", "--package", package];
+        let mut cargo = Command::new(env!("CARGO"));
+        let printed = succeed(cargo.args(arguments).current_dir(env!("CARGO_MANIFEST_DIR")), "cargo is there");
+        printed.lines().filter_map(|line| line.split(' ').next()).map(str::to_owned).collect()
     };
-    assert!(dependencies("mechanics").len() <= 2, "{:?}", dependencies("mechanics"));
-    let wire = dependencies("wire");
+    let manifest = std::fs::read_to_string(file("crates/mechanics/Cargo.toml")).unwrap();
+    let direct = manifest.split("[dependencies]\n").nth(1).unwrap().split("\n[").next().unwrap();
+    assert!(direct.lines().filter(|line| !line.is_empty()).count() <= 2, "{direct}");
+    let compute = tree("stickslip-compute");
+    for absent in ["axum", "hyper", "prometheus", "reqwest", "rusqlite", "tokio", "tokio-postgres", "tracing"] {
+        assert!(!compute.contains(absent), "stickslip-compute depends on {absent}");
+    }
+    let wire = tree("stickslip-wire");
     for absent in ["axum", "rusqlite", "tokio-postgres", "deadpool-postgres"] {
-        assert!(!wire.iter().any(|name| name == absent), "stickslip-wire depends on {absent}");
+        assert!(!wire.contains(absent), "stickslip-wire depends on {absent}");
+    }
+}
+
+/// The floors of the service, and those below that each may use, beside the ground.
+const FLOORS: [(&str, &[&str]); 8] = [
+    ("cli", &["api", "server", "access", "jobs", "sessions", "admission", "store"]),
+    ("api", &["server", "access", "jobs", "sessions", "admission", "store"]),
+    ("server", &["admission"]),
+    ("access", &[]),
+    ("jobs", &["admission", "store"]),
+    ("sessions", &["admission", "store"]),
+    ("admission", &[]),
+    ("store", &[]),
+];
+const GROUND: [&str; 4] = ["metrics", "otlp", "tenant", "unverified_tls"];
+
+#[test]
+fn a_floor_uses_those_below_it_alone() {
+    let mut pending = vec![file("src")];
+    while let Some(path) = pending.pop() {
+        if path.is_dir() {
+            pending.extend(std::fs::read_dir(path).unwrap().map(|entry| entry.unwrap().path()));
+            continue;
+        }
+        let relative = path.strip_prefix(file("src")).unwrap().with_extension("");
+        let floor = relative.iter().next().unwrap().to_str().unwrap().to_owned();
+        if path.extension().is_none_or(|extension| extension != "rs") || ["lib", "main"].contains(&&*floor) {
+            continue;
+        }
+        let below = FLOORS.iter().find(|(name, _)| *name == floor).map_or(&[][..], |(_, below)| below);
+        for used in std::fs::read_to_string(&path).unwrap().split("crate::").skip(1) {
+            let used: String = used.chars().take_while(|letter| letter.is_alphanumeric() || *letter == '_').collect();
+            let known = used == floor || below.contains(&&*used) || GROUND.contains(&&*used);
+            assert!(known, "{} uses {used}", path.display());
+        }
     }
 }
 

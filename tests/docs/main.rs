@@ -1,4 +1,4 @@
-//! The documentation and what it promises: examples, generated clients, dashboards and the report.
+//! The documentation and what it promises: examples, generated clients and dashboards.
 
 #[path = "../common/mod.rs"]
 mod common;
@@ -12,6 +12,5 @@ mod page_forms;
 mod progress;
 mod python;
 mod reference;
-mod report;
 mod system_service;
 mod version;

@@ -2,13 +2,14 @@
 
 use std::f64::consts::PI;
 
-use stickslip::admission::{Nanoseconds, Stop};
-use stickslip::computations::{Computation as _, Cycle, Outcome as _};
+use stickslip_compute::Nanoseconds;
+use stickslip_compute::computations::Cycle;
 use stickslip_mechanics::cycle::Drive;
-use stickslip_wire::cycle::{CycleRequest, CycleTask};
-use stickslip_wire::{CycleReply, Document as _, SteadyCycle, parse};
+use stickslip_wire::cycle::CycleTask;
+use stickslip_wire::{CycleReply, SteadyCycle};
 
-use super::harness::{Outcome, refused};
+use super::answered::answered;
+use super::harness::Outcome;
 
 /// The largest estimated cost of a body that is run.
 const MAX_COST: Nanoseconds = 150_000_000;
@@ -17,30 +18,10 @@ const WORK: f64 = 1e-10;
 /// Contact radii, m, and normal forces, N, below which products of a few of them lose their digits.
 const SMALLEST: f64 = 1e-90;
 
-/// Parses, checks and answers a body.
-///
 /// # Panics
-/// If a law does not hold.
+/// If a law does not hold for the answer to a body.
 pub fn examine(body: &[u8]) -> Outcome {
-    let request = match parse::<CycleRequest>(body) {
-        Ok(request) => request,
-        Err(rejection) => return refused(body, rejection.into()),
-    };
-    let checked = match request.check() {
-        Ok(checked) => checked,
-        Err(rejection) => return refused(body, rejection.into()),
-    };
-    if Cycle::cost(&checked) > MAX_COST {
-        return Outcome::TooExpensive;
-    }
-    let (.., task) = checked.clone();
-    match Cycle::run(checked, &Stop::default()) {
-        Ok(found) => {
-            laws(&task, found.reply());
-            Outcome::Answered
-        }
-        Err(failure) => refused(body, failure.into()),
-    }
+    answered::<Cycle>(body, MAX_COST, |(.., task), reply| laws(&task, reply))
 }
 
 fn laws(task: &CycleTask, reply: &CycleReply) {

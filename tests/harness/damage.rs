@@ -25,36 +25,16 @@ pub enum Damage {
     Remove(usize),
 }
 
-const WORDS: [&str; 24] = [
-    "null",
-    "true",
-    "{}",
-    "[]",
-    "\"rigid\"",
-    "\"exact\"",
-    "1e999",
-    "-1e999",
-    "1e-999",
-    "-0.0",
-    "5e-324",
-    "1e308",
-    "0",
-    "-1",
-    "9007199254740993",
-    "18446744073709551616",
-    "0.1",
-    "1e-15",
-    "\"\"",
-    "\"a/b~c\"",
-    "\"\\u0000\"",
-    "[[]]",
-    "{\"displacement\":1e-7}",
-    "[0,1e-9,1e-9]",
-];
+/// Values to put in, and words to insert.
+const WORDS: &str = r#"
+    null true {} [] "rigid" "exact" 1e999 -1e999 1e-999 -0.0 5e-324 1e308 0 -1 9007199254740993
+    18446744073709551616 0.1 1e-15 "" "a/b~c" "\u0000" [[]] {"displacement":1e-7} [0,1e-9,1e-9]
+"#;
 
-fn damage() -> impl Strategy<Value = Damage> {
+/// Any damage.
+pub fn damage() -> impl Strategy<Value = Damage> {
     let place = || 0.0..1.0_f64;
-    let word = || select(WORDS.to_vec());
+    let word = || select(WORDS.split_whitespace().collect::<Vec<_>>());
     prop_oneof![
         2 => (place(), any::<u8>()).prop_map(|(place, byte)| Damage::Byte(place, byte)),
         1 => (place(), 1..20_usize).prop_map(|(place, length)| Damage::Cut(place, length)),
@@ -75,7 +55,8 @@ pub fn damaged() -> impl Strategy<Value = Vec<u8>> {
 }
 
 impl Damage {
-    fn apply(&self, mut text: Vec<u8>) -> Vec<u8> {
+    /// The text with this damage.
+    pub fn apply(&self, mut text: Vec<u8>) -> Vec<u8> {
         let length = text.len();
         let at = |place: f64| ((place * length as f64) as usize).min(length.saturating_sub(1));
         match *self {
@@ -95,15 +76,13 @@ impl Damage {
             }
             Damage::Replace(index, word) => {
                 if let (Ok(mut document), Ok(word)) = (serde_json::from_slice(&text), serde_json::from_str(word)) {
-                    let count = count(&document);
-                    change(&mut document, &mut (index % count), &mut Some(word));
+                    change(&mut document, index, Some(word));
                     text = document.to_string().into_bytes();
                 }
             }
             Damage::Remove(index) => {
                 if let Ok(mut document) = serde_json::from_slice(&text) {
-                    let count = count(&document);
-                    change(&mut document, &mut (index % count), &mut None);
+                    change(&mut document, index, None);
                     text = document.to_string().into_bytes();
                 }
             }
@@ -127,79 +106,43 @@ fn numbers(text: &[u8]) -> Vec<std::ops::Range<usize>> {
     found
 }
 
-fn count(value: &Value) -> usize {
-    1 + match value {
-        Value::Array(elements) => elements.iter().map(count).sum(),
-        Value::Object(members) => members.values().map(count).sum(),
-        _ => 0,
-    }
+/// The pointers of all values of a document.
+fn places(value: &Value) -> Vec<String> {
+    let inner: Vec<(String, &Value)> = match value {
+        Value::Array(elements) => elements.iter().enumerate().map(|(at, one)| (at.to_string(), one)).collect(),
+        Value::Object(members) => members.iter().map(|(name, member)| (name.clone(), member)).collect(),
+        _ => Vec::new(),
+    };
+    let within = |(name, value): (String, &Value)| {
+        places(value).into_iter().map(|below| format!("/{name}{below}")).collect::<Vec<_>>()
+    };
+    std::iter::once(String::new()).chain(inner.into_iter().flat_map(within)).collect()
 }
 
-/// Replaces the value at index `left` of a depth-first walk, or removes it if `by` is `None`; true once that is done.
-fn change(value: &mut Value, left: &mut usize, by: &mut Option<Value>) -> bool {
-    if *left == 0 {
-        *value = by.take().unwrap_or(Value::Null);
-        return true;
+/// Replaces the n-th value of a document, or removes it.
+fn change(document: &mut Value, index: usize, by: Option<Value>) {
+    let places = places(document);
+    let place = &places[index % places.len()];
+    if let Some(by) = by {
+        document.pointer_mut(place).into_iter().for_each(|value| *value = by.clone());
+        return;
     }
-    *left -= 1;
-    match value {
-        Value::Array(elements) => {
-            for index in 0..elements.len() {
-                if *left == 0 && by.is_none() {
-                    elements.remove(index);
-                    return true;
-                }
-                if change(&mut elements[index], left, by) {
-                    return true;
-                }
-            }
-        }
-        Value::Object(members) => {
-            let names: Vec<String> = members.keys().cloned().collect();
-            for name in names {
-                if *left == 0 && by.is_none() {
-                    members.remove(&name);
-                    return true;
-                }
-                if members.get_mut(&name).is_some_and(|member| change(member, left, by)) {
-                    return true;
-                }
-            }
-        }
+    let (parent, name) = place.rsplit_once('/').unwrap_or_default();
+    match document.pointer_mut(parent) {
+        Some(Value::Object(members)) => drop(members.remove(name)),
+        Some(Value::Array(elements)) if !name.is_empty() => drop(elements.remove(name.parse().unwrap())),
         _ => {}
     }
-    false
 }
 
 /// Random bytes, and words of JSON in random order.
 pub fn raw() -> impl Strategy<Value = Vec<u8>> {
-    const NAMES: [&str; 24] = [
-        "{",
-        "}",
-        "[",
-        "]",
-        ":",
-        ",",
-        "\"contact\"",
-        "\"profile\"",
-        "\"type\"",
-        "\"sphere\"",
-        "\"radius\"",
-        "\"material\"",
-        "\"effective\"",
-        "\"friction\"",
-        "\"preload\"",
-        "\"path\"",
-        "\"moves\"",
-        "\"stress\"",
-        "\"sum\"",
-        "\"parts\"",
-        "\"tabulated\"",
-        "\"r\"",
-        "\"z\"",
-        "\"force\"",
-    ];
-    let soup = prop_oneof![3 => select(NAMES.to_vec()), 1 => select(WORDS.to_vec())];
+    const NAMES: &str = r#"
+        { } [ ] : , "contact" "profile" "type" "sphere" "radius" "material" "effective" "friction" "preload"
+        "path" "moves" "stress" "sum" "parts" "tabulated" "r" "z" "force"
+    "#;
+    let among = |words: &'static str| select(words.split_whitespace().collect::<Vec<_>>());
+    let soup = prop_oneof![3 => among(NAMES), 1 => among(WORDS)];
     prop_oneof![
         prop::collection::vec(any::<u8>(), 0..200),
         prop::collection::vec(soup, 0..60).prop_map(|words| words.concat().into_bytes()),

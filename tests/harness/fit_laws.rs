@@ -3,12 +3,13 @@
 use proptest::prelude::*;
 use proptest::sample::{select, subsequence};
 use serde_json::{Value, json};
-use stickslip::admission::{Nanoseconds, Stop};
-use stickslip::computations::{Computation as _, FitLoops};
-use stickslip_wire::fit::{FitParameter, FitRequest};
+use stickslip_compute::Nanoseconds;
+use stickslip_compute::computations::FitLoops;
+use stickslip_wire::fit::FitParameter;
 use stickslip_wire::{CreateRequest, Document as _, FitReply, parse};
 
-use super::harness::{Outcome, refused};
+use super::answered::answered;
+use super::harness::Outcome;
 use super::requests::{contact, units};
 
 /// The largest estimated cost of a body that is run.
@@ -84,25 +85,10 @@ impl RandomFit {
     }
 }
 
-/// Parses, checks and answers a body.
-///
 /// # Panics
-/// If a law does not hold.
+/// If a law does not hold for the answer to a body.
 pub fn examine(body: &[u8]) -> Outcome {
-    let task = match parse::<FitRequest>(body).and_then(FitRequest::check) {
-        Ok(task) => task,
-        Err(rejection) => return refused(body, rejection.into()),
-    };
-    if FitLoops::cost(&task) > MAX_COST {
-        return Outcome::TooExpensive;
-    }
-    match FitLoops::run(task, &Stop::default()) {
-        Ok(reply) => {
-            laws(&reply);
-            Outcome::Answered
-        }
-        Err(failure) => refused(body, failure.into()),
-    }
+    answered::<FitLoops>(body, MAX_COST, |_, reply| laws(reply))
 }
 
 fn laws(reply: &FitReply) {

@@ -1,41 +1,24 @@
 //! What must hold for any body of `POST /fretting`.
 
-use stickslip::admission::{Nanoseconds, Stop};
-use stickslip::computations::{Computation as _, Fretting, Outcome as _};
+use stickslip_compute::Nanoseconds;
+use stickslip_compute::computations::Fretting;
 use stickslip_mechanics::fatigue::MAX_INSTANTS;
-use stickslip_wire::fretting::{FrettingRequest, FrettingTask};
-use stickslip_wire::{Document as _, FrettingReply, parse};
+use stickslip_wire::FrettingReply;
+use stickslip_wire::fretting::FrettingTask;
 
-use super::harness::{Outcome, refused};
+use super::answered::answered;
+use super::harness::Outcome;
 
 /// The largest estimated cost of a body that is run.
 const MAX_COST: Nanoseconds = 300_000_000;
 
-/// Parses, checks and answers a body.
-///
 /// # Panics
-/// If a law does not hold.
+/// If a law does not hold for the answer to a body.
 pub fn examine(body: &[u8]) -> Outcome {
-    let request = match parse::<FrettingRequest>(body) {
-        Ok(request) => request,
-        Err(rejection) => return refused(body, rejection.into()),
-    };
-    let checked = match request.check() {
-        Ok(checked) => checked,
-        Err(rejection) => return refused(body, rejection.into()),
-    };
-    if Fretting::cost(&checked) > MAX_COST {
-        return Outcome::TooExpensive;
-    }
-    let (_, setup, task) = checked.clone();
-    let spiked = setup.profile.rim_radius().is_some() || !setup.profile.singular_radii().is_empty();
-    match Fretting::run(checked, &Stop::default()) {
-        Ok(found) => {
-            laws(&task, found.reply(), spiked);
-            Outcome::Answered
-        }
-        Err(failure) => refused(body, failure.into()),
-    }
+    answered::<Fretting>(body, MAX_COST, |(_, setup, task), reply| {
+        let spiked = setup.profile.rim_radius().is_some() || !setup.profile.singular_radii().is_empty();
+        laws(&task, reply, spiked);
+    })
 }
 
 fn laws(task: &FrettingTask, reply: &FrettingReply, spiked: bool) {

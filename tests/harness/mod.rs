@@ -1,15 +1,14 @@
 //! What must hold for any bytes as the body of `POST /simulate`: shared by `tests/api/fuzz_bodies.rs` and `fuzz/`.
 
-mod balance;
 mod laws;
 mod refusals;
 
-use stickslip::admission::Stop;
-use stickslip::simulation::{Failure, cost, simulate};
+use stickslip_compute::Flag;
+use stickslip_compute::simulation::{Failure, cost, simulate};
 use stickslip_wire::{Document as _, Profile, Rejection, SimulateReply, SimulateRequest, parse};
 
 /// The largest estimated cost of a body that is run: each that is answered runs several times.
-const MAX_COST: stickslip::admission::Nanoseconds = 30_000_000;
+const MAX_COST: stickslip_compute::Nanoseconds = 30_000_000;
 
 /// The fate of a body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -45,7 +44,7 @@ pub fn examine(body: &[u8]) -> Outcome {
     if slow || cost::of_simulation(&simulation) > MAX_COST {
         return Outcome::TooExpensive;
     }
-    match simulate(&simulation, &Stop::default()) {
+    match simulate(&simulation, &Flag::default()) {
         Ok(reply) => {
             laws::check(&request, &simulation, &reply);
             Outcome::Answered
@@ -63,7 +62,7 @@ pub fn refused(body: &[u8], problem: stickslip::api::Problem) -> Outcome {
 /// Checks and simulates a request as the service does.
 fn run(request: &SimulateRequest) -> Result<SimulateReply, Refusal> {
     let simulation = request.clone().check().map_err(Refusal::Rejected)?;
-    simulate(&simulation, &Stop::default()).map_err(Refusal::Failed)
+    simulate(&simulation, &Flag::default()).map_err(Refusal::Failed)
 }
 
 /// Why a variation of a sound request is refused: by its check, or by the solver.

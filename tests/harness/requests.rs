@@ -5,8 +5,8 @@ use proptest::prelude::*;
 use proptest::sample::select;
 use proptest::strategy::Union;
 use serde_json::{Map, Value, json};
-use stickslip::admission::Stop;
-use stickslip::simulation::simulate;
+use stickslip_compute::Flag;
+use stickslip_compute::simulation::simulate;
 use stickslip_mechanics::profile::{Parameter, families};
 use stickslip_mechanics::range::{self, Range};
 use stickslip_wire::{SimulateRequest, read};
@@ -343,7 +343,7 @@ pub fn units(contact: &Value) -> [f64; 5] {
     let body = json!({"contact": contact, "path": {"displacement": [0.0]}, "steps": "last"});
     let simulation = read::<SimulateRequest>(body.to_string().as_bytes()).ok();
     let figures =
-        simulation.and_then(|simulation| simulate(&simulation, &Stop::default()).ok()).map(|reply| reply.contact);
+        simulation.and_then(|simulation| simulate(&simulation, &Flag::default()).ok()).map(|reply| reply.contact);
     let units = figures.map_or([1e-6, 1.0, 1e-6, 1.0, 1e-4], |figures| {
         let tangential = [figures.gross_slip_displacement, figures.gross_slip_force];
         let [displacement, force] = tangential;

@@ -1,4 +1,4 @@
-//! axe-core from npm, at the version of `axe/package-lock.json`: rules of accessibility, run in the page.
+//! axe-core from npm, at the version of `package-lock.json`: rules of accessibility, run in the page.
 
 use std::path::Path;
 use std::process::{Command, Stdio};
@@ -9,27 +9,21 @@ use serde_json::Value;
 use crate::browser::{self, Browser};
 use crate::plots;
 
-const LOCK: &str = include_str!("axe/package-lock.json");
-
-/// The script, installed below the target folder if this version is not there yet.
+/// The script, installed as `./check` does it if this version is not there yet.
 fn script() -> &'static str {
     static SCRIPT: OnceLock<String> = OnceLock::new();
     SCRIPT.get_or_init(|| {
-        let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("axe");
-        let done = folder.join("installed.json");
-        if !std::fs::read_to_string(&done).is_ok_and(|installed| installed == LOCK) {
-            std::fs::create_dir_all(&folder).unwrap();
-            for name in ["package.json", "package-lock.json"] {
-                let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/page/axe").join(name);
-                std::fs::copy(source, folder.join(name)).unwrap();
-            }
+        let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+        let (lock, done) = (root.join("package-lock.json"), root.join("node_modules/installed.json"));
+        let read = |file: &Path| std::fs::read(file).ok();
+        if read(&done) != read(&lock) {
             let mut npm = Command::new("npm");
-            npm.args(["ci", "--prefer-offline", "--no-audit", "--no-fund", "--ignore-scripts"]);
-            let status = npm.current_dir(&folder).stdout(Stdio::null()).status();
-            assert!(status.expect("this test needs npm (Debian: apt install nodejs npm)").success());
-            std::fs::write(&done, LOCK).unwrap();
+            npm.args(["ci", "--no-audit", "--no-fund", "--ignore-scripts"]);
+            let status = npm.current_dir(root).stdout(Stdio::null()).status();
+            assert!(status.expect("this test needs npm: see https://nodejs.org").success());
+            std::fs::copy(lock, done).unwrap();
         }
-        std::fs::read_to_string(folder.join("node_modules/axe-core/axe.min.js")).unwrap()
+        std::fs::read_to_string(root.join("node_modules/axe-core/axe.min.js")).unwrap()
     })
 }
 

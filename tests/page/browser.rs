@@ -221,10 +221,38 @@ impl Browser {
 
     /// Chooses an entry of the list below a label.
     pub async fn choose(&self, label: &str, value: &str) {
-        let script = "const label = [...document.querySelectorAll('label')].find((one) => one.innerText === \
-                      arguments[0]); const list = document.getElementById(label.htmlFor); list.value = arguments[1]; \
-                      list.dispatchEvent(new Event('change', { bubbles: true }));";
-        self.page.execute(script, vec![json!(label), json!(value)]).await.unwrap();
+        let id = "[...document.querySelectorAll('label')].find((one) => one.innerText === ";
+        let id = self.value(&format!("{id}{label:?})?.htmlFor")).await;
+        self.set(&format!("#{}", id.as_str().unwrap()), value).await;
+    }
+
+    /// Puts a value into a field at once, as pasting and choosing do.
+    pub async fn set(&self, css: &str, value: &str) {
+        self.find(css).await;
+        let script = "const field = document.querySelector(arguments[0]); field.value = arguments[1]; \
+                      for (const name of ['input', 'change']) field.dispatchEvent(new Event(name, { bubbles: true }));";
+        self.page.execute(script, vec![json!(css), json!(value)]).await.unwrap();
+    }
+
+    /// The words of an element in one line.
+    pub async fn text(&self, css: &str) -> String {
+        self.find(css).await;
+        self.value(&words(css)).await.as_str().unwrap().to_owned()
+    }
+
+    /// Waits until an element has these words.
+    pub async fn says(&self, css: &str, text: &str) {
+        self.until(&format!("{}?.includes({text:?})", words(css))).await;
+    }
+
+    /// Waits until there are so many elements.
+    pub async fn counts(&self, css: &str, count: usize) {
+        self.until(&format!("document.querySelectorAll({css:?}).length === {count}")).await;
+    }
+
+    /// Opens what is folded.
+    pub async fn unfold(&self, css: &str) {
+        self.value(&format!("document.querySelectorAll({css:?}).forEach((one) => one.open = true) ?? null")).await;
     }
 
     /// Scrolls to an element and clicks on it.
@@ -247,6 +275,11 @@ impl Browser {
         let picture = self.page.screenshot().await.unwrap();
         std::fs::write(PathBuf::from(folder).join(format!("{name}.png")), picture).unwrap();
     }
+}
+
+/// The words of an element in one line, as an expression.
+pub fn words(css: &str) -> String {
+    format!("document.querySelector({css:?})?.innerText.replace(/\\s+/g, ' ')")
 }
 
 impl Drop for Browser {

@@ -1,162 +1,327 @@
 //! Six journeys through the page, each from a file to a number, as somebody would go who has the one and wants the
-//! other.
+//! other, with what can go wrong on the way.
+
+use std::f64::consts::TAU;
 
 use serde_json::{Value, json};
 use stickslip_wire::client::Options;
-use stickslip_wire::{CreateRequest, NewSession, Observation, ObservationsRequest};
+use stickslip_wire::{Observation, ObservationsRequest};
 
 use crate::axe;
-use crate::browser::Browser;
-use crate::common::Binary;
+use crate::browser::words;
+use crate::common::create;
+use crate::scene::{LIVE, NOT_A_NUMBER, Scene};
 use crate::{four, three};
 
-/// A server and a browser that shows its list.
-async fn begin() -> (Binary, Browser) {
-    let server = Binary::start(&[]);
-    let browser = Browser::start(1440, 900, false).await;
-    browser.page.goto(&server.address).await.unwrap();
-    browser.find("#new").await;
-    (server, browser)
+/// A scene at a tab, which is opened from the list by its name.
+async fn begin(tab: &str) -> Scene {
+    let scene = Scene::start().await;
+    scene.view("").await;
+    scene.browser.click(".list a").await;
+    scene.browser.until(LIVE).await;
+    scene.browser.click(&format!("#to-{tab}")).await;
+    scene.browser.until(&format!("!document.querySelector('#tab-{tab}').hidden")).await;
+    scene
 }
 
-/// The contact that a file of the examples defines.
-async fn contact_of_file(server: &Binary) -> NewSession {
-    let text = std::fs::read_to_string("examples/data/ball_contact.json").unwrap();
-    let request: CreateRequest = serde_json::from_str(&text).unwrap();
-    server.client.create(&request, &Options::default()).await.unwrap()
+impl Scene {
+    /// What the service answers to a document.
+    async fn asked(&self, path: &str, body: &Value) -> Value {
+        let call = reqwest::Client::new().post(format!("{}{path}", self.server.address)).json(body);
+        call.send().await.unwrap().json().await.unwrap()
+    }
+
+    /// The ball as it was made, at its present load.
+    fn virgin(&self) -> Value {
+        let mut contact = crate::common::ball();
+        contact["preload"] = json!({"indentation": self.ball.contact.indentation});
+        contact
+    }
+
+    /// Half the displacement of gross slip with the digits that the page offers.
+    fn half_slip(&self) -> f64 {
+        format!("{:.2e}", 0.5 * self.ball.contact.gross_slip_displacement).parse().unwrap()
+    }
 }
 
-/// Opens a contact from the list, and one of its tabs by its name.
-async fn open(browser: &Browser, tab: &str) {
-    browser.page.refresh().await.unwrap();
-    browser.click(".list a").await;
-    browser.until("document.querySelector('.badge.on') !== null").await;
-    browser.click(&format!("#to-{tab}")).await;
-    browser.until(&format!("!document.querySelector('#tab-{tab}').hidden")).await;
-}
-
-async fn end(server: &Binary, browser: Browser, known: &[&str]) {
-    browser.stayed_quiet_and_at(&server.address, known).await;
-    browser.close().await;
+fn number(value: &Value) -> f64 {
+    value.as_f64().unwrap()
 }
 
 #[tokio::test]
 async fn scan_a_file_of_an_instrument_becomes_the_contact_radius() {
-    let (server, browser) = begin().await;
+    let scene = Scene::start().await;
+    let browser = &scene.browser;
+    scene.view("").await;
     browser.click("#new").await;
-    browser.until("document.querySelector('form select') !== null").await;
+    browser.find("form select").await;
     browser.choose("Shape of the indenter", "tabulated").await;
-    browser.upload("form input[type=file]", "examples/data/ball_scan.txt").await;
-    browser.until("document.querySelector('form').innerText.includes('x is “Lateral')").await;
+    // Pasted: a ball of 10 mm, 7 µm off the middle, upside down, with a header; 1 nm up and down of noise.
+    let row = |index: i32| {
+        let x = f64::from(index) * 2.0 - 120.0;
+        format!("{x};{:.5}", -(x - 7.0).powi(2) / 2e4 + 0.001 * f64::from((index * 37) % 21 - 10) / 10.0)
+    };
+    let scan = format!("Lateral;Height\n{}", (0..=120).map(row).collect::<Vec<_>>().join("\n"));
+    browser.set("form textarea", &scan).await;
     browser.click("#fit-scan").await;
-    browser.until("document.querySelector('#scan-said').textContent.includes('left out')").await;
-    axe::assert_readable(&browser, "journey-scan").await;
+    browser.says("#scan-said", "Radius 10").await;
+    let said = browser.text("#scan-said").await;
+    browser.upload("form input[type=file]", "examples/data/ball_scan.txt").await;
+    browser.says("form", "x is “Lateral").await;
+    browser.click("#fit-scan").await;
+    browser.until(&format!("{0} !== {said:?} && {0}.includes('left out')", words("#scan-said"))).await;
+    axe::assert_readable(browser, "journey-scan").await;
     browser.click("#create").await;
-    browser.until("document.querySelector('.badge.on') !== null").await;
-    let said = "document.querySelector('.state-text').innerText";
-    browser.until(&format!("{said}.includes('Contact radius')")).await;
+    let id = scene.shown(None).await;
     // By quadrature of the worn ball that the file was made with it is 69.07 µm; the standard error is 0.26 µm.
-    let id = server.client.contacts(None, None).await.unwrap().items[0].id;
-    let radius = server.client.contact(id).await.unwrap().contact.contact_radius;
+    let radius = scene.server.client.contact(id).await.unwrap().contact.contact_radius;
     assert!((radius / 6.907e-5 - 1.0).abs() < 0.01, "{radius}");
-    browser.until(&format!("{said}.includes({:?})", format!("{} µm", four(radius * 1e6)))).await;
+    browser.says(".state-text", &format!("Contact radius a {} µm", four(radius * 1e6))).await;
     // A scan is no table of a profile yet, and the form says so meanwhile.
-    end(&server, browser, &["status of 422"]).await;
+    scene.end(&["status of 422"]).await;
 }
 
+/// The cells of the table of columns.
+const TABLE: &str = "[...document.querySelectorAll('#loop-card .columns tbody tr')].map((row) => [...row.cells].map(\
+                     (cell) => cell.innerText).join(' | '))";
+
 #[tokio::test]
-async fn loop_a_file_of_a_bench_becomes_the_coefficient_of_friction() {
-    let (server, browser) = begin().await;
-    contact_of_file(&server).await;
-    open(&browser, "loop").await;
-    browser.upload("#loop-card input[type=file]", "examples/data/ball_loop.csv").await;
+async fn loop_a_file_of_a_bench_becomes_the_coefficient_of_friction_and_a_contact() {
+    let scene = begin("loop").await;
+    let browser = &scene.browser;
+    let upload = async |file: &str| browser.upload("#loop-card input[type=file]", file).await;
+    // Three columns are pasted without their names: nobody knows which they are, and the fault is shown.
+    let table = std::fs::read_to_string("examples/data/ball_loop.csv").unwrap();
+    let rows: Vec<_> = table.lines().filter(|line| line.starts_with(|first: char| first.is_ascii_digit())).collect();
+    browser.set("textarea[name=loop]", &rows.join("\n")).await;
+    browser.says("#loop-card", "no column “displacement”").await;
+    browser.click("#compute-loop").await;
+    browser.until("[...document.querySelectorAll('#loop-card .fault')].some((one) => one.innerText.length > 20)").await;
+    // Nor does anything say their units: they are asked for, and not taken for metres.
+    browser.set("[aria-label='Column of displacement']", "2").await;
+    browser.set("[aria-label='Column of force']", "3").await;
+    browser.says("#loop-card", "The force is column 3, in N").await;
+    browser.click("#compute-loop").await;
+    let question = "Record 1: nothing says the unit of the displacement, nor of the force: choose it.";
+    browser.says("#loop-card", question).await;
+    browser.set("[aria-label='Unit of displacement']", "-6").await;
+    browser.set("[aria-label='Unit of force']", "0").await;
+    browser.says("#loop-card", "The force is column 3, in N.").await;
+
+    // A file, of which each column is shown with what it was taken for, or why it was left out.
+    upload("tests/lab_files/loop_coefficient_first.csv").await;
+    browser.until(&format!("{TABLE}.length === 5")).await;
+    for (row, texts) in [(2, ["left out", "coefficient"]), (3, ["force, in n", "friction force (n)"])] {
+        let shown = browser.value(&format!("{TABLE}[{row}].toLowerCase()")).await;
+        assert!(texts.iter().all(|text| shown.as_str().unwrap().contains(text)), "{shown}: {texts:?}");
+    }
+    browser.says("#loop-card", "Lines that are not in it: 1.").await;
+    assert_eq!(axe::serious(browser).await, [""; 0]);
+    // A unit that lost its first character: named by line, column and text, and chosen here.
+    upload("tests/lab_files/loop_unit_question.csv").await;
+    for text in ["line 1, column 1", "“?m”", "choose the unit below"] {
+        browser.says("#loop-card", text).await;
+    }
+    browser.until(&format!("{TABLE}.length === 0")).await;
+    browser.set("[aria-label='Unit of displacement']", "-6").await;
+    browser.until(&format!("{TABLE}.some((row) => row.includes('displacement, in um'))")).await;
+    // Another unit than those of the list stays that of the file when a column is chosen.
+    upload("tests/lab_files/loop_unit_mils.csv").await;
+    browser.until(&format!("{TABLE}.some((row) => row.includes('displacement, in mil'))")).await;
+    browser.set("[aria-label='Column of displacement']", "1").await;
+    browser.until(&format!("{TABLE}.some((row) => row.includes('displacement, in mil'))")).await;
+    browser.click("#compute-loop").await;
+    browser.says("#loop-estimates", "friction μ 0.3 (95 %").await;
+
     // Columns and units come from the header, the time too.
-    browser.until("document.querySelector('#loop-card').innerText.includes('The force is “Force (N)”, in N.')").await;
+    upload("examples/data/ball_loop.csv").await;
+    browser.says("#loop-card", "The force is “Force (N)”, in N.").await;
     browser.click("[name=machine_compliance]").await;
     browser.click("[name=drift]").await;
-    browser.click("#fit-loop").await;
-    let found = "document.querySelector('#loop-estimates').innerText.replaceAll('\\n', ' ')";
-    browser.until(&format!("{found}.includes('friction μ 0.42')")).await;
+    browser.click("#compute-loop").await;
+    browser.says("#loop-estimates", "friction μ 0.42").await;
     // The file was made with a friction of 0.42; all that was asked for has an interval.
-    let said = browser.value(found).await;
-    let said = said.as_str().unwrap();
+    let said = browser.text("#loop-estimates").await;
     let interval = said.split("(95 %: ").nth(1).unwrap().split(')').next().unwrap();
     let (low, high) = interval.split_once(" to ").unwrap();
     let [low, high]: [f64; 2] = [low, high].map(|end| end.parse().unwrap());
     assert!(low < 0.42 && 0.42 < high && said.contains("drift of the displacement"), "{said}");
-    axe::assert_readable(&browser, "journey-loop").await;
-    end(&server, browser, &[]).await;
+    browser.says("#loop-said", "Determined: friction μ, G* · (R/E*)1/3, compliance of the machine").await;
+    assert_eq!(browser.text("#loop-said sup").await, "1/3");
+    browser.counts("#plot-fit path.line", 2).await;
+    browser.counts("#loop-warnings li", 0).await;
+    axe::assert_readable(browser, "journey-loop").await;
+    browser.click("#create-fitted").await;
+    let made = scene.server.client.definition(scene.shown(Some(scene.ball.id)).await).await.unwrap();
+    assert!((made.friction / 0.42 - 1.0).abs() < 0.02, "{made:?}");
+    scene.end(&["status of 422"]).await;
 }
 
 #[tokio::test]
 async fn crack_a_file_of_a_contact_becomes_the_margin_of_a_criterion() {
-    let (server, browser) = begin().await;
-    let session = contact_of_file(&server).await;
-    open(&browser, "crack").await;
-    browser.click("#crack-card [name=crossland]").await;
+    let scene = begin("crack").await;
+    let browser = &scene.browser;
+    let field = |criterion: &str, index: usize| {
+        format!("#crack-card fieldset:has([name={criterion}]) .field:nth-child({index}) input")
+    };
+    // Faults of two fields at once, in words.
+    browser.set(&field("crossland", 1), "much").await;
+    browser.set(&field("crossland", 2), "300 MPa").await;
+    browser.click("#compute-crack").await;
+    let faults = "[...document.querySelectorAll('#crack-card .fault')].map((one) => one.innerText).filter(Boolean)";
+    browser.until(&format!("{faults}.join() === '{NOT_A_NUMBER},{NOT_A_NUMBER}'")).await;
+    browser.set(&field("crossland", 1), "0.3").await;
+    browser.set(&field("crossland", 2), "200").await;
     browser.click("#crack-card [name=findley]").await;
-    let limit = "[...document.querySelectorAll('#crack-card fieldset')].find((one) => \
-                 one.innerText.includes('Findley')).querySelectorAll('input')[2]";
-    browser.value(&format!("({limit}.value = '400') && null")).await;
-    browser.click("#search-crack").await;
-    browser.until("document.querySelector('#verdict-findley .good') !== null").await;
-    let amplitude: f64 = format!("{:.2e}", 0.5 * session.contact.gross_slip_displacement).parse().unwrap();
-    let mut contact = crate::common::ball();
-    contact["preload"] = json!({"indentation": session.contact.indentation});
-    let body = json!({"contact": contact, "body": "first", "criteria": {"findley": {"k": 0.3, "limit": 4e8}},
-        "path": {"cycles": {"displacement": amplitude, "count": 1}}});
-    let reply = reqwest::Client::new().post(format!("{}/fretting", server.address)).json(&body).send().await.unwrap();
-    let margin = reply.json::<Value>().await.unwrap()["findley"]["margin"].as_f64().unwrap();
-    let said = browser.value("document.querySelector('#verdict-findley .good').innerText").await;
-    assert!(margin > 1.0 && margin < 10.0, "{margin}");
+    browser.set(&field("findley", 2), "2000").await;
+    // A bulk stress, and a cycle of half of gross slip.
+    browser.unfold("#crack-card details").await;
+    browser.set("#crack-card details .field:nth-of-type(1) input", "50").await;
+    browser.set("#crack-card details .field:nth-of-type(2) input", "40").await;
+    browser.click("#compute-crack").await;
+    browser.find("#plot-crack .shade").await;
+    let path = json!({"cycles": {"displacement": scene.half_slip(), "count": 1}});
+    let criteria = json!({"crossland": {"alpha": 0.3, "limit": 2e8}, "findley": {"k": 0.3, "limit": 2e9}});
+    let bulk = json!({"mean": 5e7, "amplitude": 4e7});
+    let body = json!({"contact": scene.virgin(), "body": "first", "path": path, "criteria": criteria, "bulk": bulk});
+    let reply = scene.asked("/fretting", &body).await;
+    let largest = &reply["crossland"]["largest"];
+    let margin = number(&reply["crossland"]["margin"]);
+    assert!(margin < 1.0, "{margin}");
+    for text in [
+        format!("Largest {} MPa ± ", four(number(&largest["value"]) / 1e6)),
+        format!("Margin {}: the criterion predicts crack growth.", three(1e3 * margin).parse::<f64>().unwrap() / 1e3),
+    ] {
+        browser.says("#verdict-crossland", &text).await;
+    }
+    let margin = number(&reply["findley"]["margin"]);
+    assert!(margin > 1.0 && margin < 100.0, "{margin}");
     let text = format!("Margin {}: the criterion does not predict crack growth.", three(margin));
-    assert_eq!(said, text);
-    axe::assert_readable(&browser, "journey-crack").await;
-    end(&server, browser, &[]).await;
+    assert_eq!(browser.text("#verdict-findley .good").await, text);
+    // The warnings stand beside the result, in a colour that is not that of the text.
+    browser.counts("#crack-warnings li", reply["warnings"].as_array().unwrap().len()).await;
+    let colours = "['borderLeftColor', 'color'].map((name) => getComputedStyle(document.querySelector('#crack-warnings \
+        li'))[name])";
+    let colours = browser.value(colours).await;
+    assert_ne!(colours[0], colours[1]);
+    // The ring is at the worst place, which is on the surface, and whole.
+    let mark = "(() => { const frame = document.querySelector('#plot-crack rect.field').getBBox(); \
+                const ring = document.querySelector('#plot-crack .worst'); \
+                return [(Number(ring.getAttribute('cx')) - frame.x) / frame.width, ring.getAttribute('cy') - frame.y]; \
+                })()";
+    let place: [f64; 2] = serde_json::from_value(browser.value(mark).await).unwrap();
+    let half = (2.0 * number(&reply["contact"]["contact_radius"])).max(1.2 * number(&largest["point"][0]).abs());
+    let expected = 0.5 + 0.5 * number(&largest["point"][0]) / half;
+    assert!((place[0] - expected).abs() < 1e-3 && place[1] > 4.0, "{place:?} instead of {expected}");
+    axe::assert_readable(browser, "journey-crack").await;
+    scene.end(&[]).await;
 }
 
 #[tokio::test]
-async fn damping_a_file_of_a_contact_becomes_its_loss_factor() {
-    let (server, browser) = begin().await;
-    let session = contact_of_file(&server).await;
-    open(&browser, "damping").await;
-    let slip = session.contact.gross_slip_displacement;
-    browser.write("#box-displacement", &format!("{:.3}", slip * 1e9)).await;
+async fn damping_a_file_of_a_contact_becomes_its_loss_factor_and_resonance() {
+    let scene = begin("damping").await;
+    let browser = &scene.browser;
+    // The loss factor of so small a cycle on a ball is 1/(3 pi) of the amplitude over that of gross slip.
+    scene.moved(&[1e-4]).await;
+    browser.says("#steady-figures", &format!("Loss factor {} × 10⁻⁵", four(10.0 / (1.5 * TAU)))).await;
+    assert!(!browser.text("body").await.contains("10^"));
+    let figures = &scene.ball.contact;
+    browser.write("#box-displacement", &format!("{:.3}", figures.gross_slip_displacement * 1e9)).await;
     browser.press("#box-displacement", "\u{e007}").await;
     // A ball at the onset of gross slip: 1/pi.
-    let said = "document.querySelector('#steady-figures').innerText.replaceAll('\\n', ' ')";
-    browser.until(&format!("/Loss factor 0\\.318/.test({said})")).await;
-    // In the resonance the phase is a right angle, to a step of the frequencies.
+    browser.says("#steady-figures", "Loss factor 0.318").await;
+
+    // A kilogram on the stiffness 2 G* a of small motions; in the resonance the phase is a right angle, to a step of
+    // the frequencies.
     browser.click("#compute-response").await;
-    let phase = "Number(document.querySelector('#response-figures').innerText.match(/Phase \
-        there\\s+([\\d.]+)°/)?.[1])";
+    let natural = (2.0 * figures.g_star * figures.contact_radius).sqrt() / TAU;
+    browser.says("#response-figures", &format!("{} Hz", four(natural))).await;
+    let response = json!({"mass": 1.0, "drive_force": 1.5});
+    let drive = json!({"displacement": 1e-7});
+    let body = json!({"contact": scene.virgin(), "drive": drive, "frequency_response": response});
+    let reply = scene.asked("/cycle", &body).await;
+    let points = reply["frequency_response"]["points"].as_array().unwrap();
+    let most = points.iter().map(|point| number(&point["amplitude"])).fold(0.0, f64::max);
+    browser.says("#response-figures", &format!("{} nm at", four(most * 1e9))).await;
+    let phase = format!("Number({}.match(/Phase there ([\\d.]+)°/)?.[1])", words("#response-figures"));
     browser.until(&format!("Math.abs({phase} - 90) < 5")).await;
-    axe::assert_readable(&browser, "journey-damping").await;
-    end(&server, browser, &[]).await;
+    for series in ["#plot-response .line.past", "#plot-backbone .line.work", "#plot-backbone .line.stored"] {
+        browser.until(&format!("document.querySelector({series:?})?.getAttribute('d').split('L').length > 10")).await;
+    }
+
+    browser.click("#compute-study").await;
+    let drive = json!({"displacement": scene.half_slip()});
+    let body = json!({"contact": scene.virgin(), "drive": drive, "best_load": {}});
+    let best = number(&scene.asked("/cycle", &body).await["cycles"][0]["best_load"]["normal_force"]);
+    browser.says("#study-figures", &format!("Load that damps most {} N", four(best))).await;
+    browser.find("#plot-density .line.work").await;
+    browser.find("#plot-best-load .line.work").await;
+    // Under a load that oscillates the loss is another.
+    browser.unfold("#study-card details").await;
+    browser.set("#study-card details input", "2").await;
+    browser.click("#compute-study").await;
+    browser.until("document.querySelector('#plot-density').hidden").await;
+    let body = json!({"contact": scene.virgin(), "drive": drive, "normal": {"normal_force": 2.0}});
+    let loss = number(&scene.asked("/cycle", &body).await["cycles"][0]["loss_factor"]);
+    browser.says("#study-figures", format!("Loss factor {loss:.4}").trim_end_matches('0')).await;
+    axe::assert_readable(browser, "journey-damping").await;
+    scene.end(&[]).await;
 }
 
 #[tokio::test]
-async fn residual_a_file_of_a_contact_becomes_what_twenty_reversals_leave() {
-    let (server, browser) = begin().await;
-    contact_of_file(&server).await;
-    open(&browser, "residual").await;
+async fn residual_a_file_of_a_contact_becomes_what_reversals_leave() {
+    let scene = begin("residual").await;
+    let browser = &scene.browser;
+    scene.moved(&[1.0, 0.0]).await;
+    browser.write("#reversals", "4").await;
     browser.click("#run").await;
-    let status = "document.querySelector('#run-status').innerText";
-    browser.until(&format!("{status}.includes('Now')")).await;
-    // (2 − √(3/2))/√20 of μ p_max.
-    let left = 100.0 * (2.0 - 1.5_f64.sqrt()) / 20.0_f64.sqrt();
-    let said = browser.value(status).await;
-    assert!(said.as_str().unwrap().contains("Now: up to"), "{said}");
-    assert!(said.as_str().unwrap().contains(&format!("({left:.1} % of")), "{said} instead of {left}");
-    axe::assert_readable(&browser, "journey-residual").await;
-    end(&server, browser, &[]).await;
+    browser.until(&format!("{}.startsWith('Move')", words("#run-status"))).await;
+    // One reversal leaves sqrt(1/2) of mu p_max, and more of them (2 - sqrt(3/2)) / sqrt(N_R).
+    browser.says("#run-status", "Now: up to").await;
+    let (before, left) = (100.0 * 0.5_f64.sqrt(), 100.0 * (2.0 - 1.5_f64.sqrt()) / 2.0);
+    let said = browser.text("#run-status").await;
+    assert!(said.contains(&format!("({before:.1} % of")) && said.contains(&format!("({left:.1} % of")), "{said}");
+    let (sequence, state) = scene.now().await;
+    assert_eq!((sequence, state.displacement), (7, 0.0));
+
+    browser.click("#compute-residual").await;
+    browser.until("document.querySelectorAll('#plot-residual .dot').length >= 4 * 15 + 7").await;
+    // With two reversals the least is 3/(4 sqrt 2), and with one no protocol is better than another.
+    for (key, texts) in [
+        ("\u{e011}", ["linear: largest 0.7071", "least possible (found by search): largest 0.7071"]),
+        ("\u{e014}", ["least possible (found by search): largest 0.5303", "equal peaks"]),
+    ] {
+        browser.press("#plot-residual svg", key).await;
+        let said = browser.value("document.querySelector('#plot-residual .said').textContent").await;
+        assert!(texts.iter().all(|text| said.as_str().unwrap().contains(text)), "{said}: {texts:?}");
+    }
+
+    browser.unfold("#search-card details").await;
+    browser.set("#search-card details input", "1").await;
+    browser.click("#compute-search").await;
+    let reply = scene.asked("/protocols", &json!({"contact": scene.virgin(), "target": 0.2})).await;
+    browser.says("#search-figures", &format!("Reversals {} ", reply["reversals"])).await;
+    browser.says("#search-figures", "In 95 of 100 trials at most").await;
+    axe::assert_readable(browser, "journey-residual").await;
+
+    // From a history that no closed-form protocol starts from, the best run keeps its promise.
+    scene.moved(&[0.9, -0.3, 0.5]).await;
+    let relax = format!("/contacts/{}/relax", scene.ball.id);
+    let promised = scene.asked(&relax, &json!({"reversals": 3, "dry_run": true})).await;
+    browser.set("#protocol", "relax").await;
+    browser.write("#reversals", "3").await;
+    browser.click("#run").await;
+    let share = 100.0 * number(&promised["residual"]["max"]) / (0.3 * scene.ball.contact.max_pressure.unwrap());
+    let now = format!("{}.split('Now: up to')[1]", words("#run-status"));
+    browser.until(&format!("{now}?.includes('({share:.1} % of')")).await;
+    scene.end(&[]).await;
 }
 
 #[tokio::test]
 async fn dashboard_a_file_of_a_bench_becomes_the_friction_that_is_shown_live() {
-    let (server, browser) = begin().await;
-    let session = contact_of_file(&server).await;
-    open(&browser, "live").await;
+    let scene = begin("live").await;
+    let browser = &scene.browser;
+    let client = &scene.server.client;
     // The rows of the file as a bench would send them, without what the rig gives way and the zero of the force.
     let text = std::fs::read_to_string("examples/data/ball_loop.csv").unwrap();
     let number = |cell: &str| cell.replace(',', ".").parse::<f64>();
@@ -165,18 +330,26 @@ async fn dashboard_a_file_of_a_bench_becomes_the_friction_that_is_shown_live() {
         let force = cells[2] - 0.15;
         Some(Observation { displacement: cells[1] * 1e-6 - 5e-8 * force, force, at: None })
     });
-    let request = ObservationsRequest { observations: rows.collect() };
-    let reply = server.client.observe(session.id, &request, &Options::default()).await.unwrap();
-    let friction = reply.friction.expect("a cycle of the file closes").value;
+    let mut observations: Vec<_> = rows.collect();
+    let others = observations.split_off(20);
+    let observe = async |observations| {
+        let request = ObservationsRequest { observations };
+        client.observe(scene.ball.id, &request, &Options::default()).await.unwrap().friction
+    };
+    // Before a cycle has closed there are points, and no friction.
+    assert!(observe(observations).await.is_none());
+    browser.counts("#plot-loop .dot.measured", 20).await;
+    assert!(!browser.text(".state-text").await.contains("Measured"));
+    let friction = observe(others).await.expect("a cycle of the file closes").value;
     assert!((friction / 0.42 - 1.0).abs() < 0.02, "{friction}");
-    let said = "document.querySelector('.state-text').innerText";
-    browser.until(&format!("{said}.includes('Measured friction μ') && {said}.includes({:?})", short(friction))).await;
+    let digits = format!("{friction:.4}");
+    browser.says(".state-text", &format!("Measured friction μ {} (95 %: ", digits.trim_end_matches('0'))).await;
     browser.until("document.querySelectorAll('#plot-loop .dot.measured').length > 500").await;
-    axe::assert_readable(&browser, "journey-dashboard").await;
-    end(&server, browser, &[]).await;
-}
-
-/// Four digits of a number below one, without trailing zeros.
-fn short(value: f64) -> String {
-    format!("{value:.4}").trim_end_matches('0').to_owned()
+    axe::assert_readable(browser, "journey-dashboard").await;
+    // A contact that nobody measures says nothing of it.
+    let other = client.create(&create(), &Options::default()).await.unwrap();
+    scene.open(&other, "").await;
+    browser.find("#plot-loop .line.past").await;
+    browser.counts("#plot-loop .dot.measured", 0).await;
+    scene.end(&[]).await;
 }

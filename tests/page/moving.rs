@@ -1,349 +1,240 @@
 //! Moving a contact by hand: units, what is sent and when, going back, and a service that is away for a while.
 
-use serde_json::{Value, json};
+use serde_json::Value;
 use stickslip_wire::client::Options;
+use stickslip_wire::{Move, MoveRequest};
 use tempfile::tempdir;
 
-use crate::browser::Browser;
-use crate::common::{Binary, create, until};
-use crate::{E_STAR, ball, hertz, moved};
+use crate::common::{Binary, until};
+use crate::hertz;
+use crate::scene::{LIVE, Scene, WARNED};
 
-/// The number and the unit that a control shows.
-fn shown(name: &str) -> String {
-    format!(
-        "document.querySelector('#box-{name}').value + ' ' + \
-         document.querySelector('#unit-{name}').selectedOptions[0].textContent"
-    )
-}
+const BOX: &str = "#box-displacement";
+const SLIDER: &str = "#slide-displacement";
+/// What will be sent.
+const NOTE: &str = "document.querySelector('#to-send-displacement').innerText";
+const FAULT: &str = "document.querySelector('#fault-displacement').innerText";
+/// The number and the unit that the control shows.
+const SHOWN: &str = "document.querySelector('#box-displacement').value + ' ' + \
+                     document.querySelector('#unit-displacement').selectedOptions[0].textContent";
+const ENTER: &str = "\u{e007}";
+const ESCAPE: &str = "\u{e00c}";
+const TAB: &str = "\u{e004}";
+const LEFT: &str = "\u{e012}";
+/// The drawn path of the loop, `[x, y]` in pixels; an empty one while the page draws it.
+const WAY: &str = "(document.querySelector('#plot-loop .line.past')?.getAttribute('d') ?? \
+    '').slice(1).split('L').map((p) => p.split(',').map(Number))";
 
-/// What a control says is wrong.
-fn fault(name: &str) -> String {
-    format!("document.querySelector('#fault-{name}').innerText")
-}
-
-async fn displacement(server: &Binary, session: &stickslip_wire::NewSession) -> (u64, f64) {
-    let now = server.client.contact(session.id).await.unwrap();
-    (now.sequence, now.state.displacement)
+#[tokio::test]
+async fn a_contact_is_made_moved_reloaded_and_followed() {
+    let server = Binary::start(&[]);
+    let browser = crate::browser::Browser::start(1280, 900, false).await;
+    browser.page.goto(&server.address).await.unwrap();
+    browser.says("body", "No contact yet").await;
+    browser.click("#new").await;
+    browser.write("input[maxlength]", "Steel ball").await;
+    browser.click("#create").await;
+    browser.until(LIVE).await;
+    browser.until(WARNED).await;
+    // Pulled to one side and back, the force returns along another path.
+    browser.drag(SLIDER, 0.5, 0.8).await;
+    browser.until(&format!("{WAY}.length > 5")).await;
+    browser.drag(SLIDER, 0.8, 0.35).await;
+    let turned = format!(
+        "(() => {{ const way = {WAY}; const x = way.map((p) => p[0]); const top = x.indexOf(Math.max(...x)); \
+         const middle = (x[0] + x[top]) / 2; const out = way.slice(0, top).find((p) => p[0] >= middle); \
+         const back = way.slice(top).find((p) => p[0] <= middle); \
+         return out !== undefined && back !== undefined && x.at(-1) < x[0] && back[1] > out[1] + 10; }})()"
+    );
+    browser.until(&turned).await;
+    let id = server.client.contacts(None, None).await.unwrap().items[0].id;
+    // The last moves of the slider may still be under way.
+    until("the page shows what the server has", async || {
+        let force = server.client.contact(id).await.unwrap().state.force;
+        let shown = browser.value("Number(document.querySelector('#box-force').value)").await;
+        ((shown.as_f64().unwrap() - force).abs() < 1e-4).then_some(())
+    })
+    .await;
+    // The history is still there after a reload.
+    let moves = server.client.contact(id).await.unwrap().sequence;
+    browser.page.refresh().await.unwrap();
+    browser.until(LIVE).await;
+    browser.until(&turned).await;
+    browser.until(&format!("{WAY}.length > {moves}")).await;
+    assert_eq!(browser.text("h1").await, "Steel ball");
+    // Moves by another client are shown at once.
+    let step = Move { normal_force: Some(15.0), displacement: Some(5e-8), ..Move::default() };
+    server.client.apply(id, &MoveRequest::from(step), &Options::default()).await.unwrap();
+    browser.until("document.querySelector('#box-displacement').value === '50'").await;
+    browser.says(".side", &hertz(15.0, 0.01)).await;
+    server.client.delete(id, &Options::default()).await.unwrap();
+    browser.says(".badge", "deleted").await;
+    // What was asked of the contact while it was deleted is logged.
+    browser.stayed_quiet_and_at(&server.address, &["status of 404"]).await;
+    browser.close().await;
 }
 
 #[tokio::test]
 async fn a_typed_number_keeps_its_unit_and_is_shown_before_it_is_sent() {
-    let server = Binary::start(&[]);
-    let session = ball(&server).await;
-    let browser = Browser::start(1280, 900, false).await;
-    browser.page.goto(&format!("{}/#/contacts/{}", server.address, session.id)).await.unwrap();
-    let live = "document.querySelector('.badge.on') !== null";
-    browser.until(&format!("{live} && ({}) === '0 nm (auto)'", shown("displacement"))).await;
-    let note = "document.querySelector('#to-send-displacement').innerText";
+    let scene = Scene::start().await;
+    let browser = &scene.browser;
+    let sent =
+        async |sequence| until("the move is made", async || (scene.now().await.0 == sequence).then_some(())).await;
+    scene.open(&scene.ball, "").await;
+    browser.until(&format!("({SHOWN}) === '0 nm (auto)'")).await;
     for (typed, sequence, metres, si, micro) in
         [("5000", 1, 5e-6, "0.000005", "5"), ("4900", 2, 4.9e-6, "0.0000049", "4.9")]
     {
-        browser.write("#box-displacement", typed).await;
-        browser.until(&format!("{note} === 'Enter sends {typed} nm = {si} m.'")).await;
-        assert_eq!(displacement(&server, &session).await.0, sequence - 1, "nothing is sent while one types");
-        browser.press("#box-displacement", "\u{e007}").await;
-        browser.until(&format!("document.querySelector('.side').innerText.includes('\\n{micro} µm')")).await;
-        assert_eq!(displacement(&server, &session).await, (sequence, metres));
-        browser.until(&format!("({}) === '{typed} nm' && {note} === ''", shown("displacement"))).await;
+        browser.write(BOX, typed).await;
+        browser.until(&format!("{NOTE} === 'Enter sends {typed} nm = {si} m.'")).await;
+        assert_eq!(scene.now().await.0, sequence - 1, "nothing is sent while one types");
+        browser.press(BOX, ENTER).await;
+        browser.says(".side", &format!("Displacement U {micro} µm")).await;
+        let (made, state) = scene.now().await;
+        assert_eq!((made, state.displacement), (sequence, metres));
+        browser.until(&format!("({SHOWN}) === '{typed} nm' && {NOTE} === ''")).await;
     }
     // Another unit shows the same displacement, and stays too.
-    let choose = "(() => { const unit = document.querySelector('#unit-displacement'); unit.value = '-6'; \
-                  unit.dispatchEvent(new Event('change')); })() ?? null";
-    browser.value(choose).await;
-    browser.until(&format!("({}) === '4.9 µm'", shown("displacement"))).await;
-    browser.write("#box-displacement", "0,1").await;
-    browser.until(&format!("{note} === 'Enter sends 0,1 µm = 1e-7 m.'")).await;
+    browser.set("#unit-displacement", "-6").await;
+    browser.until(&format!("({SHOWN}) === '4.9 µm'")).await;
+    browser.write(BOX, "0,1").await;
+    browser.until(&format!("{NOTE} === 'Enter sends 0,1 µm = 1e-7 m.'")).await;
     // Escape sends nothing.
-    browser.press("#box-displacement", "\u{e00c}").await;
-    browser.until(&format!("({}) === '4.9 µm' && {note} === ''", shown("displacement"))).await;
-    assert_eq!(displacement(&server, &session).await.0, 2);
-
+    browser.press(BOX, ESCAPE).await;
+    browser.until(&format!("({SHOWN}) === '4.9 µm' && {NOTE} === ''")).await;
     // One comma before three digits may separate thousands or decimals: the page asks, and sends nothing.
-    browser.write("#box-displacement", "1,000").await;
-    browser.press("#box-displacement", "\u{e007}").await;
-    browser.until(&format!("{} === 'Write 1.000 or 1000: 1,000 may be either.'", fault("displacement"))).await;
+    browser.write(BOX, "1,000").await;
+    browser.press(BOX, ENTER).await;
+    browser.until(&format!("{FAULT} === 'Write 1.000 or 1000: 1,000 may be either.'")).await;
     // Nor does a number that is left without Enter move the contact.
-    browser.write("#box-displacement", "1.000").await;
-    browser
-        .until(&format!("{note} === 'Enter sends 1.000 µm = 0.000001 m.' && {} === ''", fault("displacement")))
-        .await;
-    browser.press("#slide-displacement", "\u{e00c}").await;
-    browser.press("#box-displacement", "\u{e00c}").await;
-    browser.until(&format!("({}) === '4.9 µm'", shown("displacement"))).await;
-    assert_eq!(displacement(&server, &session).await.0, 2);
+    browser.write(BOX, "1.000").await;
+    browser.until(&format!("{NOTE} === 'Enter sends 1.000 µm = 0.000001 m.' && {FAULT} === ''")).await;
+    browser.press(SLIDER, ESCAPE).await;
+    browser.press(BOX, ESCAPE).await;
+    browser.until(&format!("({SHOWN}) === '4.9 µm'")).await;
+    assert_eq!(scene.now().await.0, 2);
 
     // A slider sends once, where it is let go.
-    browser.drag("#slide-displacement", 0.97, 0.6).await;
-    browser
-        .until(
-            "document.querySelector('#plot-work .said') && \
-        !document.querySelector('.side').innerText.includes('4.9 µm')",
-        )
-        .await;
-    let (sequence, dragged) = displacement(&server, &session).await;
-    assert_eq!(sequence, 3);
-    assert!(dragged > 0.0 && dragged < 4e-6, "{dragged}");
+    browser.drag(SLIDER, 0.97, 0.6).await;
+    sent(3).await;
+    let (_, state) = scene.now().await;
+    assert!(state.displacement > 0.0 && state.displacement < 4e-6, "{state:?}");
     // By keyboard it sends by Enter, however many keys it takes to get there.
-    browser.press("#slide-displacement", "\u{e012}\u{e012}\u{e012}").await;
-    browser.until(&format!("{note}.startsWith('Enter sends ')")).await;
-    assert_eq!(displacement(&server, &session).await.0, 3, "no key of the slider sends");
-    browser.press("#slide-displacement", "\u{e00c}").await;
-    browser.until(&format!("{note} === ''")).await;
-    browser.press("#slide-displacement", "\u{e012}\u{e012}\u{e012}\u{e007}").await;
-    let sent = async || (displacement(&server, &session).await.0 == 4).then_some(());
-    until("Enter moves the contact", sent).await;
+    browser.press(SLIDER, &LEFT.repeat(3)).await;
+    browser.until(&format!("{NOTE}.startsWith('Enter sends ')")).await;
+    assert_eq!(scene.now().await.0, 3, "no key of the slider sends");
+    browser.press(SLIDER, ESCAPE).await;
+    browser.until(&format!("{NOTE} === ''")).await;
+    browser.press(SLIDER, &(LEFT.repeat(3) + ENTER)).await;
+    sent(4).await;
+
+    // A move far beyond slip is asked for before it is sent. A tenth of the radius is 1 mm, and what is not farther is
+    // sent unasked. By keyboard alone: Escape and Enter take it back, and Tab leads to the button that sends it.
+    let open = "document.querySelector('#far').open";
+    browser.write(BOX, "999").await;
+    browser.press(BOX, ENTER).await;
+    sent(5).await;
+    for (typed, answer) in [("1e9", vec![ESCAPE]), ("1e9", vec![ENTER]), ("1001", vec![TAB, ENTER])] {
+        browser.write(BOX, typed).await;
+        browser.press(BOX, ENTER).await;
+        browser.until(open).await;
+        browser.says("#far-text", "over 100 times that of gross slip").await;
+        browser.picture("far").await;
+        assert_eq!(scene.now().await.0, 5, "nothing is sent while the page asks");
+        for key in &answer {
+            browser.press("#far :focus", key).await;
+        }
+        browser.until(&format!("!{open}")).await;
+        if answer.len() == 1 {
+            browser.until(&format!("{FAULT} === 'Not sent.'")).await;
+            browser.until(&format!("document.activeElement === document.querySelector({BOX:?})")).await;
+            assert_eq!(browser.value(&format!("document.querySelector({BOX:?}).value")).await, typed);
+        }
+    }
+    sent(6).await;
+    let (sequence, state) = scene.now().await;
+    assert_eq!((sequence, state.displacement), (6, 1.001e-3));
 
     // A fault goes when the state has changed otherwise, and the number with it.
-    let fault = fault("force");
+    scene.moved(&[0.5]).await;
     browser.write("#box-force", "50").await;
-    browser.press("#box-force", "\u{e007}").await;
-    browser
-        .until(&format!(
-            "{fault}.includes('friction holds no more') && document.querySelector('#box-force').value === '50'"
-        ))
-        .await;
+    browser.press("#box-force", ENTER).await;
+    browser.says("#fault-force", "friction holds no more").await;
+    browser.until("document.querySelector('#box-force').value === '50'").await;
     browser.picture("fault").await;
-    moved(&server, &session, &[0.0]).await;
-    let force = "Number(document.querySelector('#box-force').value)";
-    browser
-        .until(&format!(
-            "{fault} === '' && Math.abs({force}) < 3.1 && \
-        !document.querySelector('#box-force').hasAttribute('aria-invalid')"
-        ))
-        .await;
-    browser.stayed_quiet_and_at(&server.address, &["status of 422"]).await;
-    browser.close().await;
-}
-
-#[tokio::test]
-async fn every_field_asks_what_a_comma_before_three_digits_separates() {
-    let server = Binary::start(&[]);
-    let session = ball(&server).await;
-    moved(&server, &session, &[0.9, -0.7]).await;
-    let browser = Browser::start(1280, 900, false).await;
-    browser.page.goto(&format!("{}/#/new", server.address)).await.unwrap();
-    browser.find("form.create input[inputmode=decimal]").await;
-    let boxes = "[...document.querySelectorAll('form.create .field input[inputmode=decimal]')]";
-    let faults = format!("{boxes}.map((box) => box.closest('.field').querySelector('.fault').innerText)");
-    for (typed, question) in [
-        ("1,000", "Write 1.000 or 1000: 1,000 may be either."),
-        ("−12,345e-3", "Write -12.345e-3 or -12345e-3: -12,345e-3 may be either."),
-        ("1,000,000", "This must be a number, without its unit and without separators of thousands."),
-        ("1.000,5", "This must be a number, without its unit and without separators of thousands."),
-    ] {
-        let write = format!(
-            "{boxes}.map((box) => {{ box.value = {typed:?}; \
-             box.dispatchEvent(new Event('input', {{ bubbles: true }})); }}).length"
-        );
-        assert_eq!(browser.value(&write).await, 5);
-        browser.until(&format!("{faults}.every((fault) => fault === {question:?})")).await;
-    }
-    browser.click("#create").await;
-    // These are one number each: thousands have three digits in a group, and no group begins with 0.
-    browser.write("form .card:first-child input", "12,5").await;
-    let figures = "document.querySelector('.derived').innerText";
-    for (at, typed) in [(1, "210"), (2, "0,300"), (3, "0,3"), (4, "1000,000e-2")] {
-        browser.value(&format!("{boxes}[{at}].focus() ?? null")).await;
-        browser.value(&format!("{boxes}[{at}].select() ?? null")).await;
-        browser.page.active_element().await.unwrap().send_keys(typed).await.unwrap();
-    }
-    browser.until(&format!("{figures}.includes({:?})", hertz(10.0, 0.0125, E_STAR))).await;
-    assert_eq!(server.client.contacts(None, None).await.unwrap().items.len(), 1, "the form waited for an answer");
-
-    let contact = format!("{}/#/contacts/{}", server.address, session.id);
-    for (tab, field, act, said) in
-        [("/residual", "#reversals", "#run", "#run-status"), ("", "#back-to", "#go-back", "#notice")]
-    {
-        browser.page.goto(&format!("{contact}{tab}")).await.unwrap();
-        browser.until("document.querySelector('.badge.on') !== null").await;
-        browser.write(field, "1,000").await;
-        browser.click(act).await;
-        browser.until(&format!("document.querySelector('{said}').innerText.endsWith('1,000 may be either.')")).await;
-        // No number is read by the language of the browser.
-        assert_eq!(browser.value("document.querySelectorAll('input[type=number]').length").await, 0);
-    }
-    assert_eq!(displacement(&server, &session).await.0, 2);
-    assert_eq!(server.client.contacts(None, None).await.unwrap().items.len(), 1);
-    browser.stayed_quiet_and_at(&server.address, &["status of 422"]).await;
-    browser.close().await;
-}
-
-#[tokio::test]
-async fn a_move_far_beyond_slip_is_asked_for_before_it_is_sent() {
-    let server = Binary::start(&[]);
-    let session = ball(&server).await;
-    let browser = Browser::start(1280, 900, false).await;
-    browser.page.goto(&format!("{}/#/contacts/{}", server.address, session.id)).await.unwrap();
-    browser.until("document.querySelector('.badge.on') !== null").await;
-    let choose = "(() => { const unit = document.querySelector('#unit-displacement'); unit.value = '-6'; \
-                  unit.dispatchEvent(new Event('change')); })() ?? null";
-    browser.value(choose).await;
-    let (open, fault) =
-        ("document.querySelector('#far').open", "document.querySelector('#fault-displacement').innerText");
-    // A tenth of the radius is 1 mm, and what is not farther is sent unasked.
-    for (typed, answer, sequence) in [
-        ("999", None, 1),
-        ("1e9", Some("\u{e00c}"), 1),
-        ("1e9", Some("\u{e007}"), 1),
-        ("1001", Some("\u{e004}\u{e007}"), 2),
-    ] {
-        browser.write("#box-displacement", typed).await;
-        browser.press("#box-displacement", "\u{e007}").await;
-        if let Some(keys) = answer {
-            browser.until(open).await;
-            browser.picture("far").await;
-            assert!(displacement(&server, &session).await.0 < 2, "nothing is sent while the page asks");
-            // By keyboard alone: Escape and Enter take it back, and Tab leads to the button that sends it.
-            for key in keys.chars() {
-                browser.press("#far :focus", &key.to_string()).await;
-            }
-            browser.until(&format!("!{open}")).await;
-        }
-        if answer.is_some() && sequence == 1 {
-            browser.until(&format!("{fault} === 'Not sent.'")).await;
-            browser.until("document.activeElement === document.querySelector('#box-displacement')").await;
-            assert_eq!(browser.value("document.querySelector('#box-displacement').value").await, typed);
-        } else {
-            let sent = async || (displacement(&server, &session).await.0 == sequence).then_some(());
-            until("the move is sent", sent).await;
-        }
-    }
-    assert_eq!(displacement(&server, &session).await, (2, 1.001e-3));
-    browser.stayed_quiet_and_at(&server.address, &[]).await;
-    browser.close().await;
+    scene.moved(&[0.0]).await;
+    browser.until("document.querySelector('#fault-force').innerText === ''").await;
+    let box_is_clean = "Math.abs(Number(document.querySelector('#box-force').value)) < 3.1 && \
+                        !document.querySelector('#box-force').hasAttribute('aria-invalid')";
+    browser.until(box_is_clean).await;
+    scene.end(&["status of 422"]).await;
 }
 
 #[tokio::test]
 async fn undo_goes_back_by_a_fork_and_a_name_changes_in_place() {
-    let server = Binary::start(&[]);
-    let session = ball(&server).await;
-    moved(&server, &session, &[0.9, -0.7, 0.5]).await;
-    let path = server.client.history(session.id, None, None).await.unwrap().items;
-    let browser = Browser::start(400, 850, true).await;
-    browser.page.goto(&format!("{}/#/contacts/{}", server.address, session.id)).await.unwrap();
-    let live = "document.querySelector('.badge.on') !== null";
-    browser.until(&format!("{live} && !document.querySelector('#undo').disabled")).await;
-    let mut before = session.id;
+    let scene = Scene::over(Binary::start(&[]), 400, 850, true).await;
+    let browser = &scene.browser;
+    scene.moved(&[0.9, -0.7, 0.5]).await;
+    let path = scene.server.client.history(scene.ball.id, None, None).await.unwrap().items;
+    scene.open(&scene.ball, "").await;
+    browser.until("!document.querySelector('#undo').disabled").await;
+    let mut before = scene.ball.id;
     for (act, sequence) in [("#undo", 2), ("#undo", 1), ("#go-back", 0)] {
         browser.click(act).await;
-        browser.until(&format!("!location.hash.includes('{before}') && {live}")).await;
-        let hash = browser.value("location.hash").await;
-        before = hash.as_str().unwrap().rsplit('/').next().unwrap().parse().unwrap();
-        let now = server.client.contact(before).await.unwrap();
+        before = scene.shown(Some(before)).await;
+        let now = scene.server.client.contact(before).await.unwrap();
         assert_eq!(now.sequence, sequence, "{act}");
         let expected = usize::try_from(sequence).unwrap().checked_sub(1).map(|last| path[last].state);
-        assert_eq!(now.state, expected.unwrap_or(session.state));
+        assert_eq!(now.state, expected.unwrap_or(scene.ball.state));
         // It looks like the same contact, and the page says that it is a copy.
-        assert_eq!(browser.value("document.querySelector('h1').innerText").await, "Steel ball");
-        let said = browser.value("document.querySelector('#notice').innerText").await;
-        assert!(said.as_str().unwrap().contains("a copy of the same name"), "{said}");
+        assert_eq!(browser.text("h1").await, "Steel ball");
+        browser.says("#notice", "a copy of the same name").await;
     }
     browser.until("document.querySelector('#undo').disabled").await;
-    assert_eq!(server.client.contact(session.id).await.unwrap().sequence, 3, "the original keeps its moves");
+    assert_eq!(scene.now().await.0, 3, "the original keeps its moves");
 
     browser.click("#rename").await;
     browser.write(".rename input", "Ball, before it moved").await;
-    browser.picture("rename").await;
-    browser.press(".rename input", "\u{e007}").await;
-    browser.until("document.querySelector('h1').innerText === 'Ball, before it moved'").await;
+    browser.press(".rename input", ENTER).await;
+    browser.says("h1", "Ball, before it moved").await;
     browser.until("document.documentElement.scrollWidth <= innerWidth").await;
-    let named = server.client.contact(before).await.unwrap();
+    let named = scene.server.client.contact(before).await.unwrap();
     assert_eq!((named.label.as_deref(), named.sequence), (Some("Ball, before it moved"), 0));
-    browser.page.goto(&format!("{}/#/", server.address)).await.unwrap();
-    browser
-        .until(
-            "[...document.querySelectorAll('.list strong')].some((name) => name.innerText === 'Ball, before it moved')",
-        )
-        .await;
-    browser.picture("list").await;
-    browser.stayed_quiet_and_at(&server.address, &[]).await;
-    browser.close().await;
+    scene.view("").await;
+    browser.says(".list", "Ball, before it moved").await;
+    scene.end(&[]).await;
 }
 
 #[tokio::test]
 async fn a_service_that_is_away_is_named_and_the_page_goes_on_when_it_is_back() {
     let folder = tempdir().unwrap();
     let store = format!("sqlite:{}", folder.path().join("contacts.db").display());
-    let mut server = Binary::over(&store, &[]);
-    let session = ball(&server).await;
-    moved(&server, &session, &[0.5]).await;
-    let browser = Browser::start(1280, 900, false).await;
-    browser.page.goto(&format!("{}/#/contacts/{}", server.address, session.id)).await.unwrap();
-    let live = "document.querySelector('.badge.on') !== null";
-    browser.until(live).await;
-    server.child.kill().unwrap();
-    server.child.wait().unwrap();
+    let mut scene = Scene::over(Binary::over(&store, &[]), 1280, 900, false).await;
+    scene.moved(&[0.5]).await;
+    scene.open(&scene.ball, "").await;
+    scene.server.child.kill().unwrap();
+    scene.server.child.wait().unwrap();
     let away = "!document.querySelector('#away').hidden";
-    browser.until(&format!("{away} && !({live})")).await;
+    scene.browser.until(&format!("{away} && !({LIVE})")).await;
     // A move is not repeated unasked, and says why it failed.
-    browser.write("#box-displacement", "50").await;
-    browser.press("#box-displacement", "\u{e007}").await;
-    browser
-        .until("document.querySelector('#fault-displacement').innerText.startsWith('The service does not answer')")
-        .await;
-    browser.picture("away").await;
+    scene.browser.write(BOX, "50").await;
+    scene.browser.press(BOX, ENTER).await;
+    scene.browser.says("#fault-displacement", "The service does not answer").await;
+    scene.browser.picture("away").await;
     // A view that is opened meanwhile is shown when the service is back.
-    browser.value("location.assign('#/') ?? null").await;
-    browser.until("document.querySelector('main').innerText.includes('Loading')").await;
-    let address = server.address.strip_prefix("http://").unwrap().to_owned();
-    let server = Binary::at(&address, &store, &[]);
-    browser.until(&format!("!({away}) && document.querySelector('.list strong')?.innerText === 'Steel ball'")).await;
+    scene.browser.value("location.assign('#/') ?? null").await;
+    scene.browser.says("main", "Loading").await;
+    let address = scene.server.address.strip_prefix("http://").unwrap().to_owned();
+    scene.server = Binary::at(&address, &store, &[]);
+    let browser = &scene.browser;
+    browser.until(&format!("!({away})")).await;
+    browser.says(".list strong", "Steel ball").await;
     browser.click(".list a").await;
-    browser.until(live).await;
-    let before = server.client.contact(session.id).await.unwrap();
-    assert_eq!(before.sequence, 1, "the move that failed was not made later");
-    moved(&server, &session, &[0.0]).await;
+    browser.until(LIVE).await;
+    assert_eq!(scene.now().await.0, 1, "the move that failed was not made later");
+    scene.moved(&[0.0]).await;
     browser.until("document.querySelector('#box-displacement').value === '0'").await;
     let text: Value = browser.value("document.body.innerText").await;
     assert!(!text.as_str().unwrap().contains("Failed to fetch"), "{text}");
-    browser
-        .stayed_quiet_and_at(&server.address, &["ERR_CONNECTION", "ERR_INCOMPLETE", "ERR_EMPTY", "network error"])
-        .await;
-    browser.close().await;
-}
-
-#[tokio::test]
-async fn the_largest_shear_stress_and_the_warnings_are_in_sight() {
-    let server = Binary::start(&[]);
-    let mut request = create();
-    // Equal bodies with Poisson's ratio zero: no warning is due.
-    let body = json!({"youngs_modulus": 2.1e11, "poisson_ratio": 0.0});
-    request.material = serde_json::from_value(json!({"bodies": [body, body]})).unwrap();
-    let quiet = server.client.create(&request, &Options::default()).await.unwrap();
-    assert!(quiet.warnings.is_empty(), "{:?}", quiet.warnings);
-    let warned = ball(&server).await;
-    let browser = Browser::start(1280, 900, false).await;
-    let said = "document.querySelector('.state-text').innerText.replaceAll('\\n', '')";
-    for session in [&quiet, &warned] {
-        browser.page.goto(&format!("{}/#/contacts/{}", server.address, session.id)).await.unwrap();
-        let count = format!("document.querySelectorAll('#warnings li').length === {}", session.warnings.len());
-        browser
-            .until(&format!(
-                "document.querySelector('#trust-card summary')?.innerText.startsWith('Accuracy') && \
-            document.querySelector('#trust-card dd') !== null && {count}"
-            ))
-            .await;
-        browser.until(&format!("{said}.includes('Largest shear stress0 Pa = 0 % of μ p')")).await;
-        // After gross slip it is the whole of it; back at zero sqrt(1/2).
-        let full = 0.3 * session.contact.max_pressure.unwrap();
-        for (part, share) in [(1.5, 1.0), (0.5, 0.5_f64.sqrt())] {
-            // One reversal from gross slip by the displacement of gross slip brings it to the middle.
-            moved(&server, session, &[part]).await;
-            let text = format!(
-                "Largest shear stress{} = {} % of μ p",
-                four_pascals(full * share),
-                crate::three(100.0 * share)
-            );
-            browser.until(&format!("{said}.includes({text:?})")).await;
-        }
-    }
-    browser.value("(document.querySelector('#trust-card').open = true) && null").await;
-    browser.picture("trust").await;
-    browser.stayed_quiet_and_at(&server.address, &[]).await;
-    browser.close().await;
-}
-
-/// Four digits in MPa or GPa, as the page shows them.
-fn four_pascals(value: f64) -> String {
-    if value >= 1e9 { format!("{} GPa", crate::four(value / 1e9)) } else { format!("{} MPa", crate::four(value / 1e6)) }
+    scene.end(&["ERR_CONNECTION", "ERR_INCOMPLETE", "ERR_EMPTY", "network error"]).await;
 }

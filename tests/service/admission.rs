@@ -9,10 +9,11 @@ use std::time::Duration;
 
 use futures::future::join_all;
 use stickslip::admission::{
-    Capacity, Client, INLINE, Interrupted, Kind, LONGEST_WORK, Nanoseconds, Pool, PoolError, Quota, QuotaLimits,
-    Reservation, Stage, Stop,
+    Capacity, Client, Deadline, INLINE, Kind, Pool, PoolError, Quota, QuotaLimits, Reservation, Stage,
 };
-use stickslip::simulation::cost::Work;
+use stickslip_compute::simulation::Worker as _;
+use stickslip_compute::simulation::cost::Work;
+use stickslip_compute::{Interrupted, LONGEST_WORK, Nanoseconds, Stop as _};
 use stickslip_mechanics::profile::Cone;
 use stickslip_mechanics::{Profile, Sphere};
 use tokio::sync::Mutex as AsyncMutex;
@@ -129,7 +130,7 @@ async fn requests_never_wait_for_each_other_in_a_circle() {
 
 #[test]
 fn work_ends_with_the_guard() {
-    let (stop, guard) = Stop::within(LONGEST_WORK, Duration::ZERO);
+    let (stop, guard) = Deadline::within(LONGEST_WORK, Duration::ZERO);
     assert_eq!(stop.check(), Ok(()));
     drop(guard);
     assert_eq!(stop.check(), Err(Interrupted::Abandoned));
@@ -138,7 +139,7 @@ fn work_ends_with_the_guard() {
 #[test]
 fn the_time_limit_runs_from_the_first_check() {
     let allowed = Duration::from_millis(20);
-    let (stop, _guard) = Stop::within(allowed, Duration::ZERO);
+    let (stop, _guard) = Deadline::within(allowed, Duration::ZERO);
     std::thread::sleep(2 * allowed);
     assert_eq!(stop.check(), Ok(()));
     std::thread::sleep(2 * allowed);
@@ -153,7 +154,7 @@ fn client(number: u8) -> Client {
 fn patient(ended: &Arc<AtomicBool>) -> impl Fn() -> bool + Clone + Send + Sync + 'static {
     let ended = Arc::clone(ended);
     move || {
-        let (stop, _guard) = Stop::within(Duration::from_secs(20), Duration::ZERO);
+        let (stop, _guard) = Deadline::within(Duration::from_secs(20), Duration::ZERO);
         while !ended.load(Ordering::Relaxed) {
             if stop.check().is_err() {
                 return false;

@@ -1,6 +1,7 @@
 //! The largest request of every endpoint with the least memory that the server can be given: each is served, alone and
 //! beside another one, so that no request waits for memory that only itself or its neighbour could give back.
 
+use crate::common::openapi::{examples, operations};
 use crate::common::raw::{Service, get, post};
 use crate::common::{ball, create, until};
 use futures::future::join_all;
@@ -58,16 +59,6 @@ fn padded(document: &Value) -> String {
     format!("{text}{spaces}{end}")
 }
 
-/// The examples of a request in the OpenAPI document.
-fn examples(document: &Value, content: &Value) -> Vec<Value> {
-    if let Some(Value::Object(named)) = content.get("examples") {
-        return named.values().map(|example| example["value"].clone()).collect();
-    }
-    let schema = content["schema"]["$ref"].as_str().and_then(|name| document.pointer(name.trim_start_matches('#')));
-    let example = content.get("example").or_else(|| schema?.get("example")).or_else(|| schema?["examples"].get(0));
-    vec![example.expect("every request has an example").clone()]
-}
-
 #[tokio::test]
 async fn largest_requests_are_served_with_the_least_memory() {
     let service = least_memory();
@@ -85,35 +76,31 @@ async fn largest_requests_are_served_with_the_least_memory() {
     until("the job is done", async || is_done().await.then_some(())).await;
     let document = service.client.openapi().await.unwrap();
     let mut count = 0;
-    for (path, operations) in document["paths"].as_object().unwrap() {
-        for (method, operation) in operations.as_object().unwrap() {
-            // A deletion has no body, and cannot be repeated.
-            if STREAMS.contains(&path.as_str()) || method == "delete" {
-                continue;
-            }
-            let named = if path.starts_with("/jobs/") { &job } else { &id };
-            let place = path.replace("{id}", named).replace("{code}", "not_found");
-            let name = format!("{method} {path}");
-            let Some(content) = operation.pointer("/requestBody/content").and_then(Value::as_object) else {
-                let query = QUERIES.iter().find(|(of, _)| of == path).map_or("", |(_, query)| query);
-                alone_and_in_pairs(&service, &name, &get(&format!("{place}?{query}"))).await;
-                count += 1;
-                continue;
-            };
-            for (kind, content) in content {
-                for example in examples(&document, content) {
-                    let request = match &example {
-                        Value::String(file) => {
-                            // Empty lines are no data.
-                            let file = format!("{file}{}", "\n".repeat(PADDED));
-                            post(&place, &file).replacen("application/json", kind, 1)
-                        }
-                        document => post(&place, &padded(document)),
-                    };
-                    alone_and_in_pairs(&service, &name, &request.replacen("POST", &method.to_uppercase(), 1)).await;
-                    count += 1;
-                }
-            }
+    for (method, path, operation) in operations(&document) {
+        // A deletion has no body, and cannot be repeated.
+        if STREAMS.contains(&path) || method == "DELETE" {
+            continue;
+        }
+        let named = if path.starts_with("/jobs/") { &job } else { &id };
+        let place = path.replace("{id}", named).replace("{code}", "not_found");
+        let query = QUERIES.iter().find(|(of, _)| *of == path).map_or("", |(_, query)| query);
+        let request = |example: &Value| match example {
+            // Empty lines are no data.
+            Value::String(file) => post(&place, &format!("{file}{}", "\n".repeat(PADDED))).replacen(
+                "application/json",
+                "application/octet-stream",
+                1,
+            ),
+            document => post(&place, &padded(document)).replacen("POST", &method, 1),
+        };
+        let mut requests: Vec<String> = examples(&document, operation).iter().map(request).collect();
+        if requests.is_empty() {
+            assert_eq!(method, "GET");
+            requests.push(get(&format!("{place}?{query}")));
+        }
+        for request in requests {
+            alone_and_in_pairs(&service, &format!("{method} {path}"), &request).await;
+            count += 1;
         }
     }
     assert!(count > 35, "{count}");

@@ -21,24 +21,10 @@ const REVERSALS: usize = 99_999;
 #[tokio::test]
 async fn cold_contacts_that_are_asked_for_at_once_stay_within_the_memory_bound() {
     // A cache that none of them fits into: each is read from the store, whenever it is asked for.
-    let service = Service::start(&[
-        "--cache-bytes",
-        "1MiB",
-        "--work-bytes",
-        "256MiB",
-        "--max-connections",
-        "200",
-        "--max-requests",
-        "100",
-        "--max-queue",
-        "100",
-        "--max-requests-per-client",
-        "100",
-        "--max-wait",
-        "60s",
-        "--log",
-        "info",
-    ]);
+    let service = Service::with(
+        "--cache-bytes 1MiB --work-bytes 256MiB --max-connections 200 --max-requests 100 --max-queue 100 \
+         --max-requests-per-client 100 --max-wait 60s --log info",
+    );
     let first = service.client.create(&create(), &Options::default()).await.unwrap().id;
     let path = json!({"path": {"falling_amplitude": {"reversals": REVERSALS}}, "steps": "last"}).to_string();
     let moved = service.ask("127.0.0.1", &post(&format!("/contacts/{first}/path"), &path)).await.unwrap();

@@ -10,7 +10,7 @@ use crate::common::{ball, create, long_moves, long_simulation};
 use futures::future::join_all;
 use serde_json::json;
 use stickslip::admission::Capacity;
-use stickslip::server::limits::SPARE_CONNECTIONS;
+use stickslip::server::connection_limits::SPARE_CONNECTIONS;
 use stickslip::server::{ConnectionLimits, memory_budget};
 use stickslip_wire::Move;
 use stickslip_wire::client::Options;
@@ -26,32 +26,12 @@ const HONEST: &str = "127.0.0.2";
 
 /// Waits until a condition holds.
 async fn until(what: &str, condition: impl AsyncFn() -> bool) {
-    let waiting = async {
-        while !condition().await {
-            sleep(Duration::from_millis(20)).await;
-        }
-    };
-    timeout(PATIENCE, waiting).await.unwrap_or_else(|_| panic!("never: {what}"));
+    crate::common::until(what, async || condition().await.then_some(())).await;
 }
 
 /// Whether a request gets a 200.
 async fn served(service: &Service, source: &str, request: &str) -> bool {
     service.ask(source, request).await.is_some_and(|answer| answer.statuses == [200])
-}
-
-/// Stresses of as many pieces of slip history as allowed, at as many radii, of a shape with many pieces of its own.
-fn long_stress() -> String {
-    let radii: Vec<_> = (0..1000).map(|index| 1e-6 * f64::from(index)).collect();
-    let heights: Vec<_> = radii.iter().map(|r| r * r / 0.02).collect();
-    let mut contact = ball();
-    contact["profile"] = json!({"type": "tabulated", "r": radii, "z": heights});
-    json!({"contact": contact, "path": {"falling_amplitude": {"reversals": 99_999}}, "steps": "last",
-        "stress": {"points": 10_000}})
-    .to_string()
-}
-
-fn long_comparison() -> String {
-    json!({"contact": ball(), "path": long_moves(), "solvers": [{"springs": {"count": 9_000}}]}).to_string()
 }
 
 fn long_path() -> String {
@@ -66,16 +46,7 @@ fn sound_simulation() -> String {
 async fn two_thousand_slow_clients_use_little_memory_and_delay_no_others() {
     const SLOW: usize = 2_000;
     room_for(SLOW + 100);
-    let service = Service::start(&[
-        "--cache-bytes",
-        "16MiB",
-        "--head-time",
-        "8s",
-        "--max-requests-per-client",
-        "2000",
-        "--log",
-        "warn",
-    ]);
+    let service = Service::with("--cache-bytes 16MiB --head-time 8s --max-requests-per-client 2000 --log warn");
     let contact = service.client.create(&create(), &Options::default()).await.unwrap().id;
     let (over, closed) = (Arc::new(AtomicBool::new(false)), Arc::new(AtomicUsize::new(0)));
     let mut slow = Vec::new();
@@ -118,28 +89,11 @@ async fn two_thousand_slow_clients_use_little_memory_and_delay_no_others() {
 async fn a_flood_of_ten_times_the_capacity_is_survived() {
     const MOST: usize = 200;
     room_for(10 * MOST + 100);
-    let service = Service::start(&[
-        "--max-connections",
-        "200",
-        "--max-connections-per-client",
-        "150",
-        "--max-requests",
-        "16",
-        "--max-queue",
-        "32",
-        "--max-requests-per-client",
-        "1000",
-        "--max-wait",
-        "200ms",
-        "--work-bytes",
-        "256MiB",
-        "--cache-bytes",
-        "16MiB",
-        "--head-time",
-        "2s",
-        "--log",
-        "off",
-    ]);
+    let service = Service::with(
+        "--max-connections 200 --max-connections-per-client 150 --max-requests 16 --max-queue 32 \
+         --max-requests-per-client 1000 --max-wait 200ms --work-bytes 256MiB --cache-bytes 16MiB \
+         --head-time 2s --log off",
+    );
     let over = Arc::new(AtomicBool::new(false));
     let (good, refused) = (Arc::new(AtomicUsize::new(0)), Arc::new(AtomicUsize::new(0)));
     let service = Arc::new(service);
@@ -214,19 +168,10 @@ async fn a_flood_of_ten_times_the_capacity_is_survived() {
 
 #[tokio::test]
 async fn large_bodies_wait_for_memory_or_are_refused() {
-    let service = Service::start(&[
-        "--work-bytes",
-        "256MiB",
-        "--cache-bytes",
-        "16MiB",
-        "--max-wait",
-        "1s",
-        "--log",
-        "off",
-        // They are all of one client, and are to fill the memory.
-        "--max-body-bytes-per-client",
-        "1GiB",
-    ]);
+    let service = Service::with(
+        "--work-bytes 256MiB --cache-bytes 16MiB --max-wait 1s --log off \
+         --max-body-bytes-per-client 1GiB",
+    );
     // Each becomes some 200 MiB while it is parsed, or would become more.
     let moves = vec!["{}"; 2_700_000].join(",");
     let simulation = post("/simulate", &format!("{{\"contact\":{},\"path\":{{\"moves\":[{moves}]}}}}", ball()));
@@ -249,31 +194,6 @@ async fn large_bodies_wait_for_memory_or_are_refused() {
     println!("large bodies: {read} read, {refused} refused, at most {} MiB", peak / MIB);
     assert!(peak < allowed, "{peak} of {allowed}");
     assert!(served(&service, FLOOD, &post("/simulate", &sound_simulation())).await);
-}
-
-#[tokio::test]
-async fn work_ends_at_the_deadline_and_changes_nothing() {
-    let service = Service::start(&["--deadline", "1s"]);
-    let contact = service.client.create(&create(), &Options::default()).await.unwrap().id;
-    for (place, body, pointer) in [
-        ("/simulate".to_owned(), long_simulation().to_string(), Some("/path/moves/")),
-        ("/simulate".to_owned(), long_stress(), None),
-        ("/accuracy".to_owned(), long_comparison(), None),
-        (format!("/contacts/{contact}/path"), long_path(), Some("/path/moves/")),
-    ] {
-        let answer = service.ask(FLOOD, &post(&place, &body)).await.unwrap();
-        assert_eq!(answer.statuses, [422], "{}", answer.text);
-        assert!(answer.text.contains("too_much_work") && answer.text.contains("1 s"), "{}", answer.text);
-        assert!(pointer.is_none_or(|pointer| answer.text.contains(pointer)), "{}", answer.text);
-    }
-    assert_eq!(service.client.contact(contact).await.unwrap().sequence, 0);
-    // The processors are free again: a thread at work would take 50 ticks or so in this time, for minutes.
-    until("the work has ended", async || {
-        let before = service.processor_ticks();
-        sleep(Duration::from_millis(500)).await;
-        service.processor_ticks() - before < 15
-    })
-    .await;
 }
 
 #[tokio::test]

@@ -7,11 +7,12 @@ use std::time::Duration;
 use crate::common::raw::{Service, post};
 use crate::common::{Server, ball, good, number, of, problem, with};
 use serde_json::{Value, json};
-use stickslip::admission::{Pool, Stop};
-use stickslip::computations::{Computation as _, Cycle, Outcome as _};
+use stickslip::admission::Pool;
 use stickslip::sessions::{CAPACITY, Sessions};
-use stickslip::simulation;
 use stickslip::store::MemoryStore;
+use stickslip_compute::Flag;
+use stickslip_compute::computations::{Computation as _, Cycle, Outcome as _};
+use stickslip_compute::simulation;
 use stickslip_mechanics::{Elasticity, Error, Profile};
 use stickslip_wire::{self as wire, CycleRequest, Document as _, Prepare, Rejection, SimulateRequest};
 
@@ -174,13 +175,13 @@ impl Prepare for Slow {
 #[test]
 fn the_time_of_a_reply_has_the_preparation_of_its_profile_in_it() {
     let rest = Duration::from_millis(20);
-    let stop = Stop::default();
+    let stop = Flag::default();
     let body: SimulateRequest = serde_json::from_value(moved(&table(10, 1))).unwrap();
     let checked = simulation::check(body, &Slow(rest), &stop).unwrap().unwrap();
     let reply = simulation::simulate(&checked, &stop).unwrap();
     assert!(reply.accuracy.compute_time >= rest.as_secs_f64(), "{:?}", reply.accuracy);
 
-    let stop = Stop::default();
+    let stop = Flag::default();
     let body = of(&table(10, 1), &json!({"drive": {"displacement": 1e-8}}));
     let body: CycleRequest = serde_json::from_value(body).unwrap();
     let checked = simulation::check(body, &Slow(rest), &stop).unwrap().unwrap();

@@ -6,10 +6,11 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use crate::common::raw::{Service, get, post};
-use crate::common::{ball, long_moves, long_simulation, of, until, with};
+use crate::common::{ball, create, long_moves, long_simulation, of, until, with};
 use jiff::Timestamp;
 use serde_json::{Value, json};
 use stickslip::store::{Record, Session, Snapshot, SqliteStore, Store as _, Tenant};
+use stickslip_wire::client::Options;
 use stickslip_wire::{CreateRequest, Document as _, Move, State};
 use tempfile::TempDir;
 use tokio::io::{AsyncReadExt as _, AsyncWriteExt as _};
@@ -75,7 +76,7 @@ fn table(number: usize) -> Value {
 }
 
 /// Requests that take a second at least, by the kind of their work.
-fn kinds(contact: Uuid) -> Vec<(&'static str, String)> {
+fn kinds(contact: Uuid, fresh: Uuid) -> Vec<(&'static str, String)> {
     let falling = |reversals: usize| json!({"falling_amplitude": {"reversals": reversals}});
     let power = json!({"type": "power_law", "exponent": 2.37, "coefficient": 50.0});
     let law = with(with(ball(), "/profile", power), "/preload", json!({"indentation": 1e-6}));
@@ -139,6 +140,8 @@ fn kinds(contact: Uuid) -> Vec<(&'static str, String)> {
     ];
     let mut kinds: Vec<_> = simulations.map(|(name, body)| (name, post("/simulate", &body.to_string()))).into();
     kinds.extend(others.map(|(name, place, body)| (name, post(place, &body.to_string()))));
+    let path = json!({"path": long_moves(), "steps": "last"}).to_string();
+    kinds.push(("a path", post(&format!("/contacts/{fresh}/path"), &path)));
     kinds.push(("loading", get(&format!("/contacts/{contact}"))));
     kinds.push(("tracing", get(&format!("/contacts/{contact}/loop?points_per_move=100"))));
     // Bytes behind a body, which belong to another request, and hide from the HTTP library that its client has left.
@@ -181,7 +184,8 @@ async fn work_of_every_kind_ends_with_its_client() {
     let file = folder.path().join("contacts.db");
     let contact = stored(&file, LONG).await;
     let service = on(&file, &[]);
-    for (name, request) in kinds(contact) {
+    let fresh = service.client.create(&create(), &Options::default()).await.unwrap().id;
+    for (name, request) in kinds(contact, fresh) {
         idle(&service).await;
         leave(&service, name, &request, 30).await;
         let left = service.processor_ticks();
@@ -190,6 +194,7 @@ async fn work_of_every_kind_ends_with_its_client() {
         println!("{name}: {used} ticks after its client has left");
         assert!(used < WITHIN, "{name}: {used} ticks");
     }
+    assert_eq!(service.client.contact(fresh).await.unwrap().sequence, 0);
 }
 
 #[tokio::test]
@@ -199,16 +204,23 @@ async fn work_of_every_kind_ends_at_the_deadline() {
     let file = folder.path().join("contacts.db");
     let contact = stored(&file, LONG).await;
     let service = on(&file, &["--deadline", "500ms"]);
-    for (name, request) in kinds(contact) {
+    let fresh = service.client.create(&create(), &Options::default()).await.unwrap().id;
+    for (name, request) in kinds(contact, fresh) {
         let before = service.processor_ticks();
         let answer = service.ask("127.0.0.2", &request).await.unwrap();
         assert_eq!(answer.statuses, [422], "{name}: {}", answer.text);
-        assert!(answer.text.contains("too_much_work"), "{name}: {}", answer.text);
+        let said = match name {
+            "curved moves" | "a path" => &["too_much_work", "0.5 s", "/path/moves/"][..],
+            "stresses" | "a comparison" => &["too_much_work", "0.5 s"],
+            _ => &["too_much_work"],
+        };
+        assert!(said.iter().all(|words| answer.text.contains(words)), "{name}: {}", answer.text);
         idle(&service).await;
         let used = service.processor_ticks() - before;
         println!("{name}: {used} ticks");
         assert!(used < DEADLINE + WITHIN, "{name}: {used} ticks");
     }
+    assert_eq!(service.client.contact(fresh).await.unwrap().sequence, 0);
 }
 
 /// The document of an answer.

@@ -1,26 +1,13 @@
-//! Nothing acknowledged is lost: by a kill, by a stop, or by another version.
+//! A kill loses no measurement that was acknowledged.
 
 use crate::common;
 
 use common::create;
-use common::kill::{self, exact};
+use common::kill::exact;
 use common::process::Process;
 use stickslip_wire::client::Options;
 use stickslip_wire::{Observation, ObservationsRequest};
 use tempfile::tempdir;
-
-#[tokio::test(flavor = "multi_thread")]
-async fn kills_under_load_lose_nothing_and_double_nothing() {
-    let folder = tempdir().unwrap();
-    let store = format!("sqlite:{}", folder.path().join("killed.db").display());
-    kill::survives(&store, 20, 4).await;
-}
-
-#[tokio::test(flavor = "multi_thread")]
-async fn kills_under_load_lose_nothing_and_double_nothing_in_postgres() {
-    let store = common::postgres::Cluster::shared().database().await;
-    kill::survives(&store, 20, 5).await;
-}
 
 #[tokio::test]
 async fn observations_survive_a_kill() {

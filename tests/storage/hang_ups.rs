@@ -20,11 +20,11 @@ use serde_json::json;
 use stickslip::admission::{Capacity, Pool, QuotaLimits};
 use stickslip::jobs::{JobError, Jobs, LEASE};
 use stickslip::sessions::{CAPACITY, SessionError, Sessions};
-use stickslip::simulation::Sweep;
 use stickslip::store::{
     Changes, ChunkResult, Claim, Extent, IsSmall, Job, JobLimits, JobStore, MemoryStore, Page, PostgresStore, Receipt,
     Record, Reply, RequestKey, Session, Snapshot, SqliteStore, Store, StoreError, Tenant, Usage, Whole,
 };
+use stickslip_compute::simulation::Sweep;
 use stickslip_wire::{
     Document as _, ForkRequest, JobState, Move, MoveRequest, PrepareAnew, SessionSummary, SweepRequest,
 };
@@ -50,143 +50,68 @@ async fn around<T>(change: impl Future<Output = T>) -> T {
     answer
 }
 
-#[async_trait]
-impl Store for Yielding {
-    async fn ready(&self) -> Stored {
-        self.inner.ready().await
-    }
+/// Passes the calls of a trait on; the changes among them with awaits around.
+macro_rules! passed_on {
+    ($of:ident { $($how:ident $name:ident($($given:ident: $kind:ty),*) -> $answer:ty;)* } $($rest:tt)*) => {
+        #[async_trait]
+        impl $of for Yielding {
+            $(async fn $name(&self, $($given: $kind),*) -> Stored<$answer> {
+                passed_on!($how self.inner.$name($($given),*))
+            })*
+            $($rest)*
+        }
+    };
+    (change $call:expr) => { around($call).await };
+    (read $call:expr) => { $call.await };
+}
 
-    async fn create(&self, session: Session, receipt: Option<Receipt>) -> Stored {
-        around(self.inner.create(session, receipt)).await
+passed_on! {
+    Store {
+        read ready() -> ();
+        change create(session: Session, receipt: Option<Receipt>) -> ();
+        read extent(id: Uuid) -> Extent;
+        read load(id: Uuid, is_small: IsSmall) -> (Extent, Option<Whole>);
+        read find(id: Uuid) -> Session;
+        read list(tenant: Option<Tenant>, label: Option<String>, page: Page) -> Vec<SessionSummary>;
+        change rename(id: Uuid, from: Option<String>, to: Option<String>, at: u64, receipt: Option<Receipt>) -> ();
+        change append(id: Uuid, expected: u64, records: Vec<Record>, receipt: Option<Receipt>) -> ();
+        read history(id: Uuid, after: u64, limit: usize) -> Vec<Record>;
+        read count_moves(id: Uuid, end: u64) -> u64;
+        change fork(id: Uuid, copy: Session, receipt: Option<Receipt>) -> ();
+        change delete(id: Uuid, expected: u64) -> ();
+        change keep(receipt: Receipt) -> ();
+        read receipt(key: &str) -> Option<Receipt>;
+        read snapshot(id: Uuid) -> Option<Snapshot>;
+        change save_snapshot(id: Uuid, snapshot: Snapshot, unreadable: Option<u64>) -> ();
+        read purge_expired(idle_since: Option<Timestamp>) -> u64;
     }
-
-    async fn extent(&self, id: Uuid) -> Stored<Extent> {
-        self.inner.extent(id).await
-    }
-
-    async fn load(&self, id: Uuid, is_small: IsSmall) -> Stored<(Extent, Option<Whole>)> {
-        self.inner.load(id, is_small).await
-    }
-
     async fn usage(&self, tenant: &Tenant) -> Stored<Usage> {
         if self.uncountable.load(Ordering::SeqCst) {
             return Err(StoreError::Unavailable("it does not count".to_owned()));
         }
         self.inner.usage(tenant).await
     }
-
     fn move_bytes(&self) -> u64 {
         self.inner.move_bytes()
     }
-
-    async fn find(&self, id: Uuid) -> Stored<Session> {
-        self.inner.find(id).await
-    }
-
-    async fn list(&self, tenant: Option<Tenant>, label: Option<String>, page: Page) -> Stored<Vec<SessionSummary>> {
-        self.inner.list(tenant, label, page).await
-    }
-
-    async fn rename(
-        &self,
-        id: Uuid,
-        from: Option<String>,
-        to: Option<String>,
-        expected: u64,
-        receipt: Option<Receipt>,
-    ) -> Stored {
-        around(self.inner.rename(id, from, to, expected, receipt)).await
-    }
-
-    async fn append(&self, id: Uuid, expected: u64, records: Vec<Record>, receipt: Option<Receipt>) -> Stored {
-        around(self.inner.append(id, expected, records, receipt)).await
-    }
-
-    async fn history(&self, id: Uuid, after: u64, limit: usize) -> Stored<Vec<Record>> {
-        self.inner.history(id, after, limit).await
-    }
-
-    async fn count_moves(&self, id: Uuid, end: u64) -> Stored<u64> {
-        self.inner.count_moves(id, end).await
-    }
-
-    async fn fork(&self, id: Uuid, copy: Session, receipt: Option<Receipt>) -> Stored {
-        around(self.inner.fork(id, copy, receipt)).await
-    }
-
-    async fn delete(&self, id: Uuid, expected: u64) -> Stored {
-        around(self.inner.delete(id, expected)).await
-    }
-
-    async fn keep(&self, receipt: Receipt) -> Stored {
-        around(self.inner.keep(receipt)).await
-    }
-
-    async fn receipt(&self, key: &str) -> Stored<Option<Receipt>> {
-        self.inner.receipt(key).await
-    }
-
-    async fn snapshot(&self, id: Uuid) -> Stored<Option<Snapshot>> {
-        self.inner.snapshot(id).await
-    }
-
-    async fn save_snapshot(&self, id: Uuid, snapshot: Snapshot, unreadable: Option<u64>) -> Stored {
-        around(self.inner.save_snapshot(id, snapshot, unreadable)).await
-    }
-
-    async fn purge_expired(&self, idle_since: Option<Timestamp>) -> Stored<u64> {
-        self.inner.purge_expired(idle_since).await
-    }
-
     fn changes(&self) -> &Changes {
         self.inner.changes()
     }
 }
 
-#[async_trait]
-impl JobStore for Yielding {
-    async fn create_job(&self, job: Job, request: String, limits: JobLimits, receipt: Option<Receipt>) -> Stored {
-        around(self.inner.create_job(job, request, limits, receipt)).await
-    }
-
-    async fn job(&self, id: Uuid) -> Stored<Job> {
-        self.inner.job(id).await
-    }
-
-    async fn jobs(&self, tenant: Tenant) -> Stored<Vec<Job>> {
-        self.inner.jobs(tenant).await
-    }
-
-    async fn job_request(&self, id: Uuid) -> Stored<String> {
-        self.inner.job_request(id).await
-    }
-
-    async fn claim(&self, owner: Uuid, after: Option<Uuid>, lease: Duration) -> Stored<Option<Claim>> {
-        self.inner.claim(owner, after, lease).await
-    }
-
-    async fn renew(&self, claim: Claim, lease: Duration) -> Stored<bool> {
-        self.inner.renew(claim, lease).await
-    }
-
-    async fn release(&self, claim: Claim) -> Stored {
-        self.inner.release(claim).await
-    }
-
-    async fn save_chunk(&self, claim: Claim, result: ChunkResult) -> Stored {
-        around(self.inner.save_chunk(claim, result)).await
-    }
-
-    async fn fail_job(&self, id: Uuid, error: String) -> Stored {
-        around(self.inner.fail_job(id, error)).await
-    }
-
-    async fn chunks(&self, id: Uuid, first: u64, limit: usize) -> Stored<Vec<Vec<u8>>> {
-        self.inner.chunks(id, first, limit).await
-    }
-
-    async fn delete_job(&self, id: Uuid) -> Stored {
-        around(self.inner.delete_job(id)).await
+passed_on! {
+    JobStore {
+        change create_job(job: Job, request: String, limits: JobLimits, receipt: Option<Receipt>) -> ();
+        read job(id: Uuid) -> Job;
+        read jobs(tenant: Tenant) -> Vec<Job>;
+        read job_request(id: Uuid) -> String;
+        read claim(owner: Uuid, after: Option<Uuid>, lease: Duration) -> Option<Claim>;
+        read renew(claim: Claim, lease: Duration) -> bool;
+        read release(claim: Claim) -> ();
+        change save_chunk(claim: Claim, result: ChunkResult) -> ();
+        change fail_job(id: Uuid, error: String) -> ();
+        read chunks(id: Uuid, first: u64, limit: usize) -> Vec<Vec<u8>>;
+        change delete_job(id: Uuid) -> ();
     }
 }
 

@@ -10,11 +10,10 @@ use stickslip::store::{
     ChunkResult, Job, JobLimits, Page, PostgresStore, SqliteStore, Store, Tenant, postgres, sqlite,
 };
 use tempfile::tempdir;
-use tokio_postgres::{Client, NoTls};
 use uuid::Uuid;
 
 use crate::common::kill::exact;
-use crate::common::postgres::Cluster;
+use crate::common::postgres::{Cluster, connected};
 use crate::fixtures::{receipt, record, records, session, snapshot, stored, url};
 
 /// A next version: a column with a value for what is there, and a table filled from another. A second time it would
@@ -138,12 +137,6 @@ async fn a_file_takes_a_step_once_and_whole_and_keeps_what_is_in_it() {
     assert_eq!(store.find(ids[0]).await.unwrap().sequence, 5);
 }
 
-async fn connect(url: &str) -> Client {
-    let (client, connection) = tokio_postgres::connect(url, NoTls).await.unwrap();
-    tokio::spawn(connection);
-    client
-}
-
 /// A contact at an earlier version of the tables, with one move to a force: version 1 knew no observations, and version
 /// 2 not by which key a move was made.
 #[tokio::test]
@@ -173,7 +166,7 @@ async fn what_earlier_versions_have_stored_is_read() {
         assert_eq!(named("SELECT made_by FROM history ORDER BY sequence"), [None, Some("key_3.a-B".to_owned())]);
 
         let url = Cluster::shared().database().await;
-        let mut client = connect(&url).await;
+        let mut client = connected(&url).await;
         postgres::schema::migrate(&mut client, &postgres::schema::MIGRATIONS[..version]).await.unwrap();
         let contact = "INSERT INTO contacts VALUES ($1, NULL, '', $2, 1, now(), 0, now(), 0)";
         client.execute(contact, &[&made.id, &definition]).await.unwrap();
@@ -210,10 +203,10 @@ async fn a_database_takes_a_step_once_and_whole_and_keeps_what_is_in_it() {
     let migrations = postgres::schema::MIGRATIONS;
     let known = migrations.len() as i32;
     let migrate = async |steps: &[&str]| {
-        let migrated = postgres::schema::migrate(&mut connect(&url).await, &with(migrations, steps)).await;
+        let migrated = postgres::schema::migrate(&mut connected(&url).await, &with(migrations, steps)).await;
         migrated.map_err(|error| format!("{error:?} {error}"))
     };
-    let ask = async |sql: &str| connect(&url).await.query_one(sql, &[]).await.unwrap().get::<_, i64>(0);
+    let ask = async |sql: &str| connected(&url).await.query_one(sql, &[]).await.unwrap().get::<_, i64>(0);
     let version = async || ask("SELECT max(version)::bigint FROM stickslip_schema").await;
     let tables = async || ask("SELECT count(*) FROM pg_tables WHERE tablename IN ('half', 'labels')").await;
     assert_eq!(version().await, i64::from(known));
@@ -242,7 +235,7 @@ async fn a_database_takes_a_step_once_and_whole_and_keeps_what_is_in_it() {
     assert_eq!((version().await, tables().await), (i64::from(known) + 1, 1));
 
     // The step only adds: with its version put back by hand, the tables read as before, and take changes.
-    connect(&url).await.execute("DELETE FROM stickslip_schema WHERE version = $1", &[&(known + 1)]).await.unwrap();
+    connected(&url).await.execute("DELETE FROM stickslip_schema WHERE version = $1", &[&(known + 1)]).await.unwrap();
     let store = PostgresStore::open(&url).await.unwrap();
     assert_eq!(content(&store, ids).await, before);
     store.append(ids[0], 4, records(4, 5), None).await.unwrap();

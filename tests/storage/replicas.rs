@@ -3,29 +3,21 @@
 use crate::common;
 use crate::fixtures::soon;
 
-use std::collections::HashMap;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use common::postgres::Cluster;
 use common::process::Process;
 use common::{Server, ball, create, problem};
 use futures::StreamExt as _;
-use futures::future::join_all;
 use reqwest::{Method, StatusCode};
 use serde_json::{Value, json};
-use stickslip::admission::Stop;
 use stickslip::sessions::CAPACITY;
-use stickslip::simulation;
 use stickslip::store::PostgresStore;
-use stickslip_wire::client::{Client, Error, Event, Options};
-use stickslip_wire::{self as wire, ForkRequest, HistoryItem, Move, MoveReply, SimulateRequest, State};
+use stickslip_wire::client::{Client, Event, Options};
+use stickslip_wire::{ForkRequest, HistoryItem, Move};
 use uuid::Uuid;
-
-const SESSIONS: usize = 5;
-const CLIENTS: usize = 16;
-const MOVES: usize = 40;
 
 /// Moves whose order matters: relative ones, and every kind of target.
 fn step(index: usize) -> Move {
@@ -37,110 +29,8 @@ fn step(index: usize) -> Move {
     }
 }
 
-/// The replies that a client received.
-struct Acknowledged {
-    id: Uuid,
-    step: Move,
-    reply: MoveReply,
-}
-
-/// Sends a move until it is acknowledged, each time to the next server; counts the refusals that name a code.
-async fn insist(servers: &[Client], first: usize, id: Uuid, step: Move, key: String, seen: &Seen) -> Acknowledged {
-    let options = Options { idempotency_key: Some(key), ..Options::default() };
-    let request = step.into();
-    for attempt in first.. {
-        let call = servers[attempt % servers.len()].apply(id, &request, &options);
-        match soon(call).await {
-            Ok(reply) => return Acknowledged { id, step, reply },
-            Err(Error::Transport(_)) => {}
-            Err(Error::Problem(problem)) if problem.status == 503 => {
-                seen.unavailable.fetch_add(1, Ordering::Relaxed);
-            }
-            Err(Error::Problem(problem)) if problem.code == "conflict" => {
-                seen.conflicts.fetch_add(1, Ordering::Relaxed);
-            }
-            Err(other) => panic!("{other}"),
-        }
-        tokio::time::sleep(Duration::from_millis(20)).await;
-    }
-    unreachable!("there is always another attempt")
-}
-
-#[derive(Default)]
-struct Seen {
-    unavailable: AtomicUsize,
-    conflicts: AtomicUsize,
-    acknowledged: AtomicUsize,
-}
-
-#[tokio::test]
-async fn sixteen_clients_on_two_replicas_lose_nothing_while_one_is_killed_and_the_database_crashes() {
-    let cluster = Cluster::start();
-    let url = cluster.database().await;
-    let (here, there) = (Process::start(&url).await, Process::start(&url).await);
-    let servers = [here.client.clone(), there.client.clone()];
-    let ids =
-        join_all((0..SESSIONS).map(|_| async { servers[0].create(&create(), &Options::default()).await.unwrap().id }));
-    let ids = ids.await;
-
-    let seen = Seen::default();
-    let clients = join_all((0..CLIENTS).map(|client| {
-        let (servers, ids, seen) = (&servers, &ids, &seen);
-        async move {
-            let mut acknowledged = Vec::new();
-            for index in 0..MOVES {
-                let (id, key) = (ids[(client + index) % SESSIONS], format!("{client}-{index}"));
-                acknowledged.push(insist(servers, client + index, id, step(client * MOVES + index), key, seen).await);
-                seen.acknowledged.fetch_add(1, Ordering::Relaxed);
-            }
-            acknowledged
-        }
-    }));
-    let accidents = async {
-        let progress = async |parts: usize| {
-            while seen.acknowledged.load(Ordering::Relaxed) < CLIENTS * MOVES * parts / 3 {
-                tokio::time::sleep(Duration::from_millis(2)).await;
-            }
-        };
-        progress(1).await;
-        there.kill().await;
-        progress(2).await;
-        cluster.crash();
-        while seen.unavailable.load(Ordering::Relaxed) == 0 {
-            tokio::time::sleep(Duration::from_millis(10)).await;
-        }
-        cluster.resume();
-    };
-    let (acknowledged, ()) = futures::join!(clients, accidents);
-    println!("refused: {} times 503, {} times 409", seen.unavailable.into_inner(), seen.conflicts.into_inner());
-
-    let mut by_session: HashMap<Uuid, Vec<Acknowledged>> = HashMap::new();
-    for one in acknowledged.into_iter().flatten() {
-        by_session.entry(one.id).or_default().push(one);
-    }
-    for id in ids {
-        let mut acknowledged = by_session.remove(&id).unwrap();
-        acknowledged.sort_by_key(|one| one.reply.sequence);
-        let past = history(&servers[0], id).await;
-        let sequences: Vec<u64> = past.iter().map(|item| item.sequence).collect();
-        assert_eq!(sequences, (1..=acknowledged.len() as u64).collect::<Vec<_>>());
-        for (item, one) in past.iter().zip(&acknowledged) {
-            assert_eq!((item.sequence, item.step, item.state), (one.reply.sequence, one.step, one.reply.state));
-        }
-        assert_eq!(past.iter().map(|item| item.state).collect::<Vec<_>>(), replay(&past));
-    }
-}
-
 async fn history(client: &Client, id: Uuid) -> Vec<HistoryItem> {
     client.history(id, None, Some(1000)).await.unwrap().items
-}
-
-/// The states of the same moves, by the library and without a store.
-fn replay(past: &[HistoryItem]) -> Vec<State> {
-    let moves: Vec<Move> = past.iter().map(|item| item.step).collect();
-    let request = json!({"contact": ball(), "path": {"moves": moves}});
-    let request = wire::read::<SimulateRequest>(request.to_string().as_bytes()).unwrap();
-    simulation::simulate(&request, &Stop::default()).unwrap().steps
 }
 
 #[tokio::test]
@@ -288,14 +178,18 @@ async fn moves_made_at_one_replica_are_sent_by_the_other_also_after_the_database
     let id = here.client.create(&create(), &Options::default()).await.unwrap().id;
     let mut events = Box::pin(there.client.events(id, Some(0)).await.unwrap());
     let mut seen_events = Vec::new();
-    let seen = Seen::default();
     for index in 0..40 {
         if index == 20 {
             cluster.crash();
             cluster.resume();
         }
-        let servers = [here.client.clone()];
-        insist(&servers, 0, id, step(index), format!("event-{index}"), &seen).await;
+        let keyed = Options { idempotency_key: Some(format!("event-{index}")), ..Options::default() };
+        soon(async {
+            while here.client.apply(id, &step(index).into(), &keyed).await.is_err() {
+                tokio::time::sleep(Duration::from_millis(20)).await;
+            }
+        })
+        .await;
         let event = tokio::time::timeout(Duration::from_secs(30), events.next()).await.expect("no event came");
         match event.expect("the events ended").unwrap() {
             Event::State(state) => seen_events.push((state.sequence, state.step, state.state)),

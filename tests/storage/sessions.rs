@@ -2,11 +2,10 @@
 
 use crate::common;
 
-use std::process::Command;
 use std::sync::Arc;
 use std::time::Duration;
 
-use common::{Binary, Server, ball, create, problem};
+use common::{Binary, Server, ball, create, problem, run};
 use futures::StreamExt as _;
 use futures::future::join_all;
 use jiff::{SignedDuration, Timestamp};
@@ -284,7 +283,7 @@ async fn an_expired_session_is_gone_for_reads_moves_and_events_though_it_was_cac
 #[tokio::test]
 async fn the_binary_expires_idle_contacts_with_expire_after() {
     for nonsense in [["--expire-after", "0s"], ["--expire-after", "soon"], ["--cache-bytes", "-1"]] {
-        let refused = Command::new(env!("CARGO_BIN_EXE_stickslip")).args(nonsense).output().unwrap();
+        let refused = run(&nonsense);
         assert_eq!(refused.status.code(), Some(2), "{nonsense:?}");
     }
     let binary = Binary::start(&["--expire-after", "1s", "--cache-bytes", "1MiB"]);
@@ -294,47 +293,6 @@ async fn the_binary_expires_idle_contacts_with_expire_after() {
     let last = tokio::time::timeout(Duration::from_secs(30), events.next()).await.expect("it did not expire");
     assert_eq!(last.unwrap().unwrap(), Event::End(EndReason::Expired));
     assert_eq!(client.contact(id).await.unwrap_err().problem().unwrap().status, 410);
-}
-
-/// Two session layers over one store act as two processes: neither has access to the cache of the other.
-#[tokio::test]
-async fn processes_that_share_a_store_see_each_others_moves() {
-    let store = Arc::new(MemoryStore::new());
-    let servers = [Server::with(store.clone(), 1 << 20).await, Server::with(store.clone(), 1 << 20).await];
-    let [here, there] = [&servers[0].client, &servers[1].client];
-    let options = Options::default();
-    let id = here.create(&create(), &options).await.unwrap().id;
-    here.apply(id, &Move::displacement(1e-7).into(), &options).await.unwrap();
-    assert_eq!(there.contact(id).await.unwrap(), here.contact(id).await.unwrap());
-    let moved = there.apply(id, &Move { normal_force: Some(20.0), ..Move::default() }.into(), &options).await.unwrap();
-    assert_eq!(here.contact(id).await.unwrap().state, moved.state);
-
-    // The load that the other has set determines the friction limit, and so the sequence.
-    there.apply(id, &Move { normal_force: Some(30.0), ..Move::default() }.into(), &options).await.unwrap();
-    let strong = here.apply(id, &Move::force(8.0).into(), &options).await.unwrap();
-    assert_eq!(strong.sequence, 4);
-    let expecting = |sequence| Options { if_match: Some(sequence), ..Options::default() };
-    there.apply(id, &Move::force(1.0).into(), &expecting(4)).await.unwrap();
-    let stale = here.apply(id, &Move::force(1.0).into(), &expecting(4)).await.unwrap_err();
-    assert_eq!(stale.problem().unwrap().code, "stale_sequence");
-    assert_eq!(there.fork(id, &ForkRequest::default(), &options).await.unwrap().sequence, 5);
-
-    // Sixteen at once, over both.
-    let writes = (0..160).map(|index| {
-        let (client, options) = (servers[index % 2].client.clone(), options.clone());
-        let step = Move { relative: true, ..Move::displacement(1e-9 * (index as f64).sin()) };
-        async move { client.apply(id, &step.into(), &options).await.unwrap().sequence }
-    });
-    let mut sequences = join_all(writes).await;
-    sequences.sort_unstable();
-    assert_eq!(sequences, (6..=165).collect::<Vec<u64>>());
-    let contact = replayed(&*store, id).await;
-    for client in [here, there] {
-        assert_eq!(bits(&client.contact(id).await.unwrap().state), bits(&contact.state().into()));
-    }
-    // Deleted there, it is gone here.
-    there.delete(id, &options).await.unwrap();
-    assert_eq!(here.contact(id).await.unwrap_err().problem().unwrap().status, 404);
 }
 
 /// Two processes on one store know nothing of each other: the store decides.

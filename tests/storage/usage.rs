@@ -4,9 +4,8 @@ use std::path::Path;
 
 use stickslip::store::{PostgresStore, SqliteStore, Store, Tenant};
 use tempfile::tempdir;
-use tokio_postgres::NoTls;
 
-use crate::common::postgres::Cluster;
+use crate::common::postgres::{Cluster, connected};
 use crate::fixtures::{records, session};
 
 const MOVES: u64 = 20_000;
@@ -44,8 +43,7 @@ async fn what_is_counted_is_what_a_database_takes() {
     let store = PostgresStore::open(&url).await.unwrap();
     fill(&store).await;
     let counted = store.usage(&Tenant::default()).await.unwrap().bytes;
-    let (client, connection) = tokio_postgres::connect(&url, NoTls).await.unwrap();
-    tokio::spawn(connection);
+    let client = connected(&url).await;
     let taken: i64 = client.query_one("SELECT pg_total_relation_size('moves')", &[]).await.unwrap().get(0);
     agree(counted, taken as u64, MOVES);
 }

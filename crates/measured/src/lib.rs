@@ -7,8 +7,10 @@
 //! |---|---|
 //! | [`scan`] | which profile does a scan of heights show? |
 //! | [`loops`] | which friction, stiffness and compliance does a measured loop show? |
+//! | [`cycle_friction`] | which friction does the newest measured cycle of a contact show? |
 //! | [`import`] | which numbers are in a file of an instrument, and in which units? |
 
+pub mod cycle_friction;
 pub mod import;
 mod linear;
 pub mod loops;

@@ -47,6 +47,7 @@
 //! | `curved_move` | how is a move followed that is straight in a force? |
 //! | `curve_panel` | which two chords have the integral of a curve? |
 //! | [`cycle`] | what does it do in a steady cycle? |
+//! | [`closed_cycles`] | which cycles has a path closed? |
 //! | `shear_stress`, `extrema` | what is the shear stress, and where are its extrema? |
 //! | [`subsurface`] | what is the stress in the bodies below the contact? |
 //! | [`fatigue`] | how near does a cycle of stresses bring the material to fatigue? |
@@ -60,6 +61,7 @@
 
 mod accuracy;
 mod cells;
+pub mod closed_cycles;
 mod contact;
 mod curve_panel;
 mod curved_move;

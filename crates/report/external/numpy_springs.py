@@ -2,7 +2,7 @@
 
 A row of springs over the contact, clamped to mu times the normal load of each after every move; the shear stress by
 differences between neighbours. It reads a scene as one line of JSON, then {"count": N} line by line, and replies to each with
-forces, stresses, and the seconds of processor time that they took. `stickslip report --external PYTHON` runs it.
+forces, stresses, and the seconds of processor time that they took. `stickslip-report speed --external PYTHON` runs it.
 """
 
 import json

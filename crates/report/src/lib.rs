@@ -1,8 +1,7 @@
-//! Speed against error of the solvers, the figures of the paper, and plots.
+//! Speed against error of the solvers, and the figures of the paper.
 //!
 //! [`benchmark`] measures speed against error, with a reference solver of its own. [`figures`] draws the figures of
-//! Kraft & Pohrt (2016). [`plot`] draws panels and charts, as SVG and PNG.
+//! Kraft & Pohrt (2016).
 
 pub mod benchmark;
 pub mod figures;
-pub mod plot;

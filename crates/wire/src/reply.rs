@@ -200,6 +200,23 @@ impl From<mechanics::State> for State {
     }
 }
 
+impl From<State> for mechanics::State {
+    fn from(state: State) -> Self {
+        mechanics::State {
+            displacement: state.displacement,
+            force: state.force,
+            indentation: state.indentation,
+            normal_force: state.normal_force,
+            contact_radius: state.contact_radius,
+            stick_radius: state.stick_radius,
+            regime: state.regime.into(),
+            dissipated_energy: state.dissipated_energy,
+            elastic_energy: state.elastic_energy,
+            memory_depth: state.memory_depth,
+        }
+    }
+}
+
 impl Residual {
     /// The extrema, with the shear stress that `relative` refers to, Pa.
     #[must_use]

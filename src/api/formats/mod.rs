@@ -1,26 +1,43 @@
-//! What a request gets of [`crate::formats`]: the choice by the query or by `Accept`, and the reply.
+//! What a request gets of [`stickslip_compute::formats`]: the choice by the query or by `Accept`, and the reply.
 
-mod accept;
+mod choice;
 
 use axum::body::Body;
-use axum::http::{HeaderValue, header};
+use axum::http::{HeaderMap, HeaderValue, header};
 use axum::response::{IntoResponse as _, Response};
 
-pub use crate::formats::{Format, TableStream};
+pub use stickslip_compute::formats::{Format, TableStream};
 
-impl Format {
+use super::problem::Problem;
+
+/// A format over HTTP.
+pub trait Negotiated: Sized {
+    /// The format that the query names, or the one out of `formats` that `Accept` prefers.
+    ///
+    /// # Errors
+    /// [`Code::NotAcceptable`](super::problem::Code) if `Accept` admits none of them.
+    fn chosen(named: Option<Self>, headers: &HeaderMap, formats: &[Self]) -> Result<Self, Problem>;
+
     /// The tag of a reply in this format; that of columns is the version alone.
-    #[must_use]
-    pub fn tag(self, version: &str) -> String {
+    fn tag(self, version: &str) -> String;
+
+    /// 200 with a body in this format.
+    fn reply(self, body: impl Into<Body>) -> Response;
+}
+
+impl Negotiated for Format {
+    fn chosen(named: Option<Format>, headers: &HeaderMap, formats: &[Format]) -> Result<Format, Problem> {
+        named.map_or_else(|| choice::preferred(headers, formats), Ok)
+    }
+
+    fn tag(self, version: &str) -> String {
         match self {
             Format::Columns => format!("\"{version}\""),
             other => format!("\"{version}-{}\"", other.name()),
         }
     }
 
-    /// 200 with a body in this format.
-    #[must_use]
-    pub fn reply(self, body: impl Into<Body>) -> Response {
+    fn reply(self, body: impl Into<Body>) -> Response {
         let headers = [
             (header::CONTENT_TYPE, HeaderValue::from_static(self.media_type())),
             (header::VARY, HeaderValue::from_static("accept")),

@@ -1,11 +1,10 @@
-//! Compression of replies by gzip or zstd, as `Accept-Encoding` says: what may be compressed, and the tag that it has
-//! then.
+//! Compression of replies by gzip or zstd, as `Accept-Encoding` says. The tag of a compressed reply is weak: it has the
+//! version of the plain reply, and other bytes (RFC 9110, 8.8.1).
 
 use std::sync::Arc;
 
 use axum::body::{Body, HttpBody as _};
-use axum::extract::Request;
-use axum::http::{HeaderName, HeaderValue, StatusCode, header};
+use axum::http::{HeaderMap, HeaderValue, StatusCode, header};
 use axum::response::{IntoResponse as _, Response};
 use tower::{ServiceExt as _, service_fn};
 use tower_http::CompressionLevel;
@@ -13,6 +12,7 @@ use tower_http::compression::Compression;
 use tower_http::compression::predicate::SizeAbove;
 
 use crate::admission::{Pool, Reservation};
+use crate::api::accept::list_members;
 use crate::api::formats::Format;
 use crate::api::problem::{self, Problem};
 
@@ -31,41 +31,34 @@ const SMALLEST: u64 = 1024;
 /// Bytes that an encoder takes until its reply is sent: zstd at its fastest has a window of 512 KiB, held twice, and
 /// tables.
 const ENCODER: usize = 2 * 1024 * 1024;
-/// The codings, each with the suffix that it adds to an entity tag: a tag identifies bytes.
-const CODINGS: [(&str, &str); 2] = [("gzip", "+gzip\""), ("zstd", "+zstd\"")];
-/// The headers in which clients send tags.
-const CONDITIONS: [HeaderName; 2] = [header::IF_MATCH, header::IF_NONE_MATCH];
+
+/// The beginning of a weak tag.
+const WEAK: &str = "W/";
 
 /// What the client of a request accepts and has.
 pub struct Client {
     /// The lines of `Accept-Encoding`.
     accepted: Vec<HeaderValue>,
-    /// The tags that it sent, if one is that of a compressed reply.
-    tags: Option<HeaderValue>,
+    /// Whether it has a reply with a weak tag.
+    has_weak_tag: bool,
 }
 
 impl Client {
-    /// The client of a request, in which the tags of compressed replies become those of the plain ones.
-    pub fn of(request: &mut Request) -> Client {
-        let accepted = request.headers().get_all(header::ACCEPT_ENCODING).iter().cloned().collect();
-        let mut tags = None;
-        for name in CONDITIONS {
-            if let Some(plain) = request.headers().get(&name).and_then(without_coding) {
-                tags = request.headers_mut().insert(name, plain);
-            }
-        }
-        Client { accepted, tags }
+    /// The client of a request with these headers.
+    pub fn of(headers: &HeaderMap) -> Client {
+        let accepted = headers.get_all(header::ACCEPT_ENCODING).iter().cloned().collect();
+        let has_weak_tag = list_members(headers, "if-none-match").any(|tag| tag.trim().starts_with(WEAK));
+        Client { accepted, has_weak_tag }
     }
 }
 
 /// Compresses a reply as its client accepts it, if that is worth its time and there is memory for it. A compressed
-/// reply gets a tag of its own.
+/// reply gets a weak tag.
 pub async fn compress(mut response: Response, client: Client, pool: &Pool) -> Response {
-    if let Some(tags) = client.tags.filter(|_| response.status() == StatusCode::NOT_MODIFIED) {
-        // The tag that the client sent, not that of a representation which it does not have.
-        let tags = tags.to_str().unwrap_or_default();
+    if client.has_weak_tag && response.status() == StatusCode::NOT_MODIFIED {
+        // A cache refreshes a reply with a weak tag by another weak one.
         vary(&mut response);
-        add_suffix(&mut response, |tag| tags.contains(tag));
+        weaken_tag(&mut response);
     }
     if !is_worthwhile(&response) {
         return response;
@@ -95,9 +88,8 @@ async fn encode(response: Response, accepted: Vec<HeaderValue>) -> Response {
     // The library refuses a client that accepts no coding that there is, but the work is done: it gets the reply as it
     // is.
     *response.status_mut() = status;
-    if let Some(coding) = response.headers().get(header::CONTENT_ENCODING).cloned() {
-        let suffix = CODINGS.iter().find(|(name, _)| coding == name).map(|(_, suffix)| *suffix);
-        add_suffix(&mut response, |tag| suffix.is_some_and(|suffix| tag.ends_with(suffix)));
+    if response.headers().contains_key(header::CONTENT_ENCODING) {
+        weaken_tag(&mut response);
     }
     response
 }
@@ -110,21 +102,16 @@ fn is_worthwhile(response: &Response) -> bool {
 }
 
 fn vary(response: &mut Response) {
-    response.headers_mut().append(header::VARY, HeaderValue::from_static("accept-encoding"));
-}
-
-/// Gives the tag of a reply the first suffix of a coding with which it is `right`.
-fn add_suffix(response: &mut Response, right: impl Fn(&str) -> bool) {
-    let plain = response.headers().get(header::ETAG).and_then(|tag| tag.to_str().ok()?.strip_suffix('"'));
-    let mut coded = CODINGS.iter().filter_map(|(_, suffix)| Some(format!("{}{suffix}", plain?)));
-    if let Some(tag) = coded.find(|tag| right(tag)).and_then(|tag| HeaderValue::try_from(tag).ok()) {
-        response.headers_mut().insert(header::ETAG, tag);
+    let coding = HeaderValue::from_static("accept-encoding");
+    if !response.headers().get_all(header::VARY).iter().any(|field| field == coding) {
+        response.headers_mut().append(header::VARY, coding);
     }
 }
 
-/// A list of tags without the suffixes of codings; none if no tag has one.
-fn without_coding(value: &HeaderValue) -> Option<HeaderValue> {
-    let tags = value.to_str().ok().filter(|tags| CODINGS.iter().any(|(_, suffix)| tags.contains(suffix)))?;
-    let plain = CODINGS.iter().fold(tags.to_owned(), |tags, (_, suffix)| tags.replace(suffix, "\""));
-    HeaderValue::try_from(plain).ok()
+fn weaken_tag(response: &mut Response) {
+    let tag = response.headers().get(header::ETAG).and_then(|tag| tag.to_str().ok());
+    let strong = tag.filter(|tag| !tag.starts_with(WEAK)).map(|tag| format!("{WEAK}{tag}"));
+    if let Some(weak) = strong.and_then(|tag| HeaderValue::try_from(tag).ok()) {
+        response.headers_mut().insert(header::ETAG, weak);
+    }
 }

@@ -21,8 +21,8 @@ pub type Observed = (Arc<RequestMetrics>, Pool, watch::Receiver<bool>);
 
 /// Logs a request and compresses its reply: one layer, because each such layer puts the request and its answer into a
 /// box.
-pub async fn observe(State((metrics, pool, stops)): State<Observed>, mut request: Request, next: Next) -> Response {
-    let client = compression::Client::of(&mut request);
+pub async fn observe(State((metrics, pool, stops)): State<Observed>, request: Request, next: Next) -> Response {
+    let client = compression::Client::of(request.headers());
     let response = request_log::log_request(&metrics, stops, request, next).await;
     compression::compress(response, client, &pool).await
 }

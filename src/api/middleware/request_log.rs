@@ -19,11 +19,11 @@ use uuid::Uuid;
 
 use crate::access::Role;
 use crate::api::facts::Need;
-use crate::api::limits;
 use crate::api::middleware::access_control::Caller;
 use crate::api::middleware::request_id::{self, REQUEST_ID};
 use crate::api::middleware::security_headers;
 use crate::api::problem::{Code, MEDIA_TYPE, Problem};
+use crate::api::request_limits;
 use crate::api::request_metrics::{ABANDONED, Endpoint, RequestMetrics};
 use crate::api::routes;
 use crate::metrics::Counted;
@@ -42,7 +42,8 @@ struct RequestGuard<'a> {
     caller: Caller,
     /// The contact that it would change.
     contact: Option<Uuid>,
-    endpoint: &'a Endpoint,
+    metrics: &'a RequestMetrics,
+    endpoint: Endpoint<'a>,
     span: Span,
     answered: bool,
 }
@@ -59,7 +60,7 @@ pub async fn log_request(
     let id = request_id.to_str().unwrap_or_default();
     let method = request.method().clone();
     let traceparent =
-        request.headers().get("traceparent").filter(|value| value.len() <= limits::REQUEST_ID_LENGTH).cloned();
+        request.headers().get("traceparent").filter(|value| value.len() <= request_limits::REQUEST_ID_LENGTH).cloned();
     // The route rather than the path: it holds no identifier, and cannot be made up by clients.
     let route = request.extensions().get::<MatchedPath>().cloned();
     let route = route.as_ref().map(MatchedPath::as_str);
@@ -67,7 +68,8 @@ pub async fn log_request(
         request.extensions_mut().insert(Arc::clone(metrics));
     }
     let endpoint = metrics.endpoint(route, &method);
-    let _in_flight = Counted::by(&endpoint.in_flight);
+    let in_flight = metrics.in_flight(endpoint);
+    let _in_flight = Counted::by(&in_flight);
     let traceparent = traceparent.as_ref().and_then(|value| value.to_str().ok());
     let span = span(&request, route.unwrap_or(NO_ROUTE), id);
     let client = request.extensions().get::<RequestClient>().map(|client| client.address);
@@ -84,6 +86,7 @@ pub async fn log_request(
         client,
         caller,
         contact,
+        metrics,
         endpoint,
         span: span.clone(),
         answered: false,
@@ -91,7 +94,7 @@ pub async fn log_request(
     let mut response = tokio::select! {
         biased;
         response = next.run(request).instrument(span) => response,
-        // Or else, like its service, it is gone.
+        // Otherwise the service has been stopped.
         Ok(_) = stops.wait_for(|stops| *stops) => {
             Problem::in_doubt(Code::Stopping, "the server stops before this is done").into_response()
         }
@@ -169,7 +172,7 @@ impl RequestGuard<'_> {
     fn answer(&mut self, status: StatusCode, code: Option<&str>, cause: Option<&str>) {
         self.answered = true;
         let (time, status) = (self.start.elapsed(), status.as_u16());
-        self.endpoint.answered(status, time);
+        self.metrics.answered(self.endpoint, status, time);
         self.span.record("http.response.status_code", status);
         self.span.record("error.type", code);
         if status >= 500 {
@@ -189,7 +192,7 @@ impl Drop for RequestGuard<'_> {
     fn drop(&mut self) {
         if !self.answered {
             let time = self.start.elapsed();
-            self.endpoint.answered(ABANDONED, time);
+            self.metrics.answered(self.endpoint, ABANDONED, time);
             self.span.record("http.response.status_code", ABANDONED);
             line!(info, self, ABANDONED, time, "the client left");
         }

@@ -13,8 +13,8 @@ const REMEMBERED: Duration = Duration::from_secs(600);
 
 /// A reply is data: nothing in it may be run or framed.
 const POLICY: HeaderValue = HeaderValue::from_static("default-src 'none'; frame-ancestors 'none'");
-/// The page to try the service runs its own scripts, styles its own elements, and talks to the service alone.
-const PAGE_POLICY: HeaderValue = HeaderValue::from_static(
+/// The API documentation runs its own scripts, styles its own elements, and talks to the service alone.
+const DOCS_POLICY: HeaderValue = HeaderValue::from_static(
     "default-src 'none'; script-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data:; font-src 'self'; \
      connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'",
 );
@@ -22,7 +22,7 @@ const PAGE_POLICY: HeaderValue = HeaderValue::from_static(
 /// Which pages may embed a reply.
 const RESOURCE_POLICY: HeaderName = HeaderName::from_static("cross-origin-resource-policy");
 /// The web page does the same, without inline styles. It saves a plot as an image from a `blob:` URL.
-const LOOK_POLICY: HeaderValue = HeaderValue::from_static(
+const PAGE_POLICY: HeaderValue = HeaderValue::from_static(
     "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob:; \
      connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'",
 );
@@ -42,7 +42,7 @@ pub enum Kind {
     Data,
     /// The API documentation page, which is public and may be cached.
     Docs,
-    /// The web page, likewise.
+    /// The web page, which is public and may be cached.
     Page,
 }
 
@@ -52,8 +52,8 @@ pub fn protect(headers: &mut HeaderMap, method: &Method, kind: Kind) {
     headers.extend(COMMON);
     let policy = match kind {
         Kind::Data => POLICY,
-        Kind::Docs => PAGE_POLICY,
-        Kind::Page => LOOK_POLICY,
+        Kind::Docs => DOCS_POLICY,
+        Kind::Page => PAGE_POLICY,
     };
     headers.insert(header::CONTENT_SECURITY_POLICY, policy);
     if kind == Kind::Data {

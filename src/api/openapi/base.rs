@@ -1,22 +1,26 @@
 //! The document before the handlers add themselves: title, introduction, tags, and schemas that no handler names.
 
 use utoipa::OpenApi;
+use utoipa::openapi::security::{HttpAuthScheme, HttpBuilder, SecurityScheme};
 
 use stickslip_wire::{EndEvent, JobEndEvent, ProblemDocument, limits, profile};
 
-use crate::api::limits::BODY_LIMIT;
+use crate::access::Role;
+use crate::api::checked_query::PAGE;
 use crate::api::problem::MEDIA_TYPE;
-use crate::api::query::PAGE;
+use crate::api::request_limits::BODY_LIMIT;
 
 #[derive(OpenApi)]
 #[openapi(
     info(title = "stickslip"),
+    // A document without it is of no server at all to some tools.
+    servers((url = "/", description = "The server that this document comes from")),
     components(schemas(ProblemDocument, EndEvent, JobEndEvent)),
     tags(
         (name = "simulation", description = "A path from beginning to end, in one call"),
         (name = "protocols", description = "How to move so that little shear stress remains"),
-        (name = "contacts", description = "Contacts that live on the server and remember"),
-        (name = "jobs", description = "Sweeps that go on after they have been asked for"),
+        (name = "contacts", description = "Stored contacts with their history"),
+        (name = "jobs", description = "Background sweeps"),
         (name = "service", description = "Health, and this document")
     )
 )]
@@ -25,7 +29,14 @@ struct Base;
 pub fn base() -> utoipa::openapi::OpenApi {
     let mut base = Base::openapi();
     base.info.description = Some(introduction());
-    base.components.get_or_insert_default().schemas.extend(profile::schemas());
+    let components = base.components.get_or_insert_default();
+    components.schemas.extend(profile::schemas());
+    let roles = Role::ALL.map(|role| format!("`{}`", role.name())).join(", ");
+    let key = HttpBuilder::new().scheme(HttpAuthScheme::Bearer).description(Some(format!(
+        "A key of the server, where it has keys. Each has one role or several out of {roles}; the first includes the \
+         second. A key shows the contacts of its tenant alone."
+    )));
+    components.add_security_scheme("key", SecurityScheme::Http(key.build()));
     base
 }
 

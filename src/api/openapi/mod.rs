@@ -1,40 +1,24 @@
-//! The OpenAPI document: what the attributes of handlers and types generate, completed by what attributes cannot
-//! express.
+//! The OpenAPI document: what the attributes of handlers and types generate, completed operation by operation when its
+//! route is added, and by what the derived schemas cannot express.
 
 mod base;
-mod refusals;
-mod responses;
+mod operation;
 mod schemas;
 
-use serde_json::{Map, Value, json};
+use serde_json::{Map, Value};
 
 use stickslip_wire::all_limits;
 
-use super::computations;
-use super::facts::FactsOfRoutes;
-
 pub use base::base;
+pub use operation::{complete, operations};
 
-/// The text of the document, from what the attributes generate.
-pub fn complete(described: &utoipa::openapi::OpenApi, facts: &FactsOfRoutes) -> String {
-    let mut document = serde_json::to_value(described).unwrap_or_default();
-    // A document without it is of no server at all to some tools.
-    document["servers"] = json!([{"url": "/", "description": "The server that this document comes from"}]);
-    computations::write(&mut document);
+/// The text of the document, of which the operations are complete.
+pub fn text(mut document: utoipa::openapi::OpenApi) -> String {
+    operation::link(&mut document);
+    let mut document = serde_json::to_value(&document).unwrap_or_default();
     write_limits(&mut document);
     schemas::write(&mut document);
-    refusals::write(&mut document, facts);
-    responses::write(&mut document, facts);
     format!("{document:#}\n")
-}
-
-/// Every operation with its method and path.
-fn operations(document: &mut Value) -> impl Iterator<Item = (&str, &str, &mut Value)> {
-    let paths = document.get_mut("paths").and_then(Value::as_object_mut);
-    paths.into_iter().flatten().flat_map(|(path, methods)| {
-        let methods = methods.as_object_mut().into_iter().flatten();
-        methods.map(move |(method, operation)| (method.as_str(), path.as_str(), operation))
-    })
 }
 
 fn write_limits(document: &mut Value) {

@@ -11,7 +11,7 @@ pub fn write(document: &mut Value) {
         close_choices(schemas);
         write_profiles(schemas);
         write_titles(schemas);
-        write_exclusions(schemas);
+        super::write_keywords(schemas, &additions());
         write_gaps(schemas);
         schemas.values_mut().for_each(describe_defaults);
     }
@@ -78,23 +78,19 @@ fn write_titles(schemas: &mut Map<String, Value>) {
     }
 }
 
-/// Members that exclude each other, or of which one is required. It is said with `not`, because that is the one form
-/// that generators of types ignore rather than fail on.
-fn write_exclusions(schemas: &mut Map<String, Value>) {
+/// What the derived schemas leave out, to be merged into them: members that exclude each other, or of which one is
+/// required; quantities that are either zero or not too small; counts that are even; and ranges of one use of a type.
+/// Exclusions are said with `not`, because that is the one form that generators of types ignore rather than fail on.
+fn additions() -> Value {
     let have = |names: &[&str]| json!({"required": names});
     let none = |names: &[&str]| {
         let each: Vec<Value> = names.iter().map(|name| have(&[name])).collect();
         json!({"not": {"anyOf": each}})
     };
+    let one_of = |names: &[&str]| json!({"anyOf": [have(names), none(names)]});
     let targets = ["displacement", "force", "indentation", "normal_force"];
-    let step = json!([have(&targets[..2]), have(&targets[2..]), none(&targets)]);
-    let places = ["points", "radii"];
-    let places = json!([have(&places), none(&places)]);
-    schemas["StressRequest"]["properties"]["fields"]["minItems"] = json!(1);
-    // Axes may put in what the base of a sweep leaves out.
-    schemas["SweepRequest"]["properties"]["base"]["additionalProperties"] = json!(true);
-    let aims = ["reversals", "target"];
-    let aims = json!([have(&aims), none(&aims)]);
+    let step = json!({"anyOf": [have(&targets[..2]), have(&targets[2..]), none(&targets)]});
+    let (places, aims) = (one_of(&["points", "radii"]), one_of(&["reversals", "target"]));
     // The contact may be left out only if `start` names a stored one.
     let named = json!({"required": ["start"], "properties": {"start": {"required": ["contact_id"],
         "description": "One that names a contact."}}});
@@ -104,42 +100,41 @@ fn write_exclusions(schemas: &mut Map<String, Value>) {
     let contact = json!({"required": ["friction"], "properties": {"friction": friction},
         "description": "One without friction."});
     let frictionless = json!({"required": ["contact"], "properties": {"contact": contact}});
-    let protocol = json!([aims[0], aims[1], nowhere, frictionless.clone()]);
-    let one_of = |names: &[&str]| json!([have(names), none(names)]);
-    let (cycles, oscillation) = (one_of(&targets[..2]), one_of(&targets[2..]));
-    for (schema, wrong) in [
-        ("Move", &step),
-        ("MoveRequest", &step),
-        ("StressRequest", &places),
-        ("WorkDensity", &places),
-        ("RelaxRequest", &aims),
-        ("ProtocolRequest", &protocol),
-        ("CyclicPath", &cycles),
-        ("NormalOscillation", &oscillation),
-    ] {
-        schemas[schema]["not"] = json!({"anyOf": wrong});
-    }
-    schemas["FitRequest"]["not"] = frictionless;
-}
-
-/// Quantities that are either zero or not too small, counts that are even, and ranges of one use of a type.
-fn write_gaps(schemas: &mut Map<String, Value>) {
-    let gap = |least: f64| json!({"exclusiveMinimum": 0, "exclusiveMaximum": least});
-    for schema in ["ContactDefinition", "CreateRequest", "ScanLoad"] {
-        schemas[schema]["properties"]["friction"]["not"] = gap(range::MIN_POSITIVE_FRICTION);
-    }
-    schemas["CyclicPath"]["properties"]["points_per_cycle"]["multipleOf"] = json!(2);
-    for parameter in FitParameter::ALL {
+    let protocol = json!({"anyOf": [aims["anyOf"][0], aims["anyOf"][1], nowhere, frictionless]});
+    let gap = |least: f64| json!({"not": {"exclusiveMinimum": 0, "exclusiveMaximum": least}});
+    let friction = json!({"properties": {"friction": gap(range::MIN_POSITIVE_FRICTION)}});
+    let known = FitParameter::ALL.into_iter().map(|parameter| {
         let range = parameter.range();
         let value = json!({"not": {"minimum": range.min, "maximum": range.max}, "description": "Out of its range."});
-        schemas["KnownValues"]["properties"][parameter.name()]["not"] =
-            json!({"required": ["value"], "properties": {"value": value}});
-    }
-    // No place is above the surface.
-    schemas["SubsurfacePlane"]["properties"]["z"]["items"]["minimum"] = json!(0);
+        (parameter.name().to_owned(), json!({"not": {"required": ["value"], "properties": {"value": value}}}))
+    });
+    let known: Map<String, Value> = known.collect();
+    json!({
+        "ContactDefinition": friction,
+        "CreateRequest": friction,
+        "ScanLoad": friction,
+        "CyclicPath": {"properties": {"points_per_cycle": {"multipleOf": 2}}, "not": one_of(&targets[..2])},
+        "FitRequest": {"not": frictionless},
+        "KnownValues": {"properties": known},
+        "Move": {"not": step},
+        "MoveRequest": {"not": step},
+        "NormalOscillation": {"not": one_of(&targets[2..])},
+        "ProtocolRequest": {"not": protocol},
+        "RelaxRequest": {"not": aims},
+        "StressRequest": {"properties": {"fields": {"minItems": 1}}, "not": places},
+        // No place is above the surface.
+        "SubsurfacePlane": {"properties": {"z": {"items": {"minimum": 0}}}},
+        // Axes may put in what the base of a sweep leaves out.
+        "SweepRequest": {"properties": {"base": {"additionalProperties": true}}},
+        "WorkDensity": {"not": places},
+    })
+}
+
+/// Forces of a preload are either zero or not too small.
+fn write_gaps(schemas: &mut Map<String, Value>) {
     for choice in schemas["Preload"]["oneOf"].as_array_mut().into_iter().flatten() {
         if let Some(force) = choice["properties"].get_mut("normal_force") {
-            force["not"] = gap(range::MIN_POSITIVE_NORMAL_FORCE);
+            force["not"] = json!({"exclusiveMinimum": 0, "exclusiveMaximum": range::MIN_POSITIVE_NORMAL_FORCE});
         }
     }
 }

@@ -2,10 +2,10 @@
 
 use super::prelude::*;
 use crate::api::extract::OptionalBody;
-use crate::api::parameters::{CONTACT_ORDER, IDENTIFIER, Text};
+use crate::api::query_parameters::{CONTACT_ORDER, IDENTIFIER, Text};
 use crate::sessions::label_checksum;
-use crate::simulation::bytes::OBJECT;
 use crate::store::Page;
+use stickslip_compute::simulation::bytes::OBJECT;
 use stickslip_wire::session::LABEL;
 use stickslip_wire::{
     ContactDefinition, ContactOrder, CreateRequest, ForkRequest, NewSession, RenameRequest, SessionPage, SessionReply,

@@ -7,14 +7,14 @@ use stickslip_wire::{Amplitudes, CycleDrive, CycleReply, JsonPath, WorkDensity};
 
 use super::prelude::*;
 use super::stress::QUERY_RADII;
-use crate::api::parameters::{List, number};
+use crate::api::query_parameters::{List, number};
 
 parameters! {
     pub struct CycleQuery {
         /// Amplitudes of the displacement, m, separated by commas or given one by one: of the indenter or, with
         /// `machine_stiffness`, of the machine. Give this or `force`.
         displacement: Option<Vec<f64>> = List(Array(QUERY_RADII, Range { min: 0.0, ..range::DISPLACEMENT }));
-        /// Amplitudes of the tangential force, N, likewise.
+        /// Amplitudes of the tangential force, N, separated by commas or given one by one.
         force: Option<Vec<f64>> = List(Array(QUERY_RADII, Range { min: 0.0, ..range::FORCE }));
         /// Radii for the friction work per area, m, separated by commas or given one by one. Give this or `points`, or
         /// neither.

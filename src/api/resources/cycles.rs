@@ -1,12 +1,12 @@
 //! `/contacts/{id}/cycles`: the closed cycles of a contact's past.
 
-use stickslip_report::plot::{Axis, Colour, Plot};
+use stickslip_plot::{Axis, Colour, Plot};
 use stickslip_wire::{Cycle, CyclePage, limits};
 
 use super::move_series::curve;
 use super::prelude::*;
-use crate::formats::{CAPACITY, Column, Table};
-use crate::simulation::bytes::OBJECT;
+use stickslip_compute::formats::{CAPACITY, Column, Table};
+use stickslip_compute::simulation::bytes::OBJECT;
 
 parameters! {
     pub struct CyclesQuery {

@@ -4,8 +4,8 @@ use axum::response::sse::{Event, KeepAlive, Sse};
 use futures::{Stream, StreamExt as _};
 
 use super::prelude::*;
-use crate::api::limits::KEEP_ALIVE;
-use crate::api::params::LastEventId;
+use crate::api::path_and_headers::LastEventId;
+use crate::api::request_limits::KEEP_ALIVE;
 use crate::sessions;
 use crate::store::StreamEvent;
 use stickslip_wire::{EndEvent, StateEvent};

@@ -13,9 +13,9 @@ use stickslip_wire::{LoopFileReply, ScanFileReply};
 
 use super::prelude::*;
 use crate::api::extract::FileBody;
-use crate::api::parameters::{Plain, Text, number};
-use crate::computations::files;
-use crate::formats;
+use crate::api::query_parameters::{Plain, Text, number};
+use stickslip_compute::computations::files;
+use stickslip_compute::formats;
 
 /// Units of the table. The document lists symbols; the words and other spellings of the table are taken too.
 const LENGTH: Plain<UnitHint> = Plain {
@@ -49,16 +49,18 @@ parameters! {
     pub struct ScanFileQuery {
         /// The unit of places; without it the one that the header names, or m.
         lateral: Option<UnitHint> = LENGTH;
-        /// The unit of heights, likewise.
+        /// The unit of heights; without it the one that the header names, or m.
         height: Option<UnitHint> = LENGTH;
         /// The distance of neighbours in a matrix of heights, in the unit of places; without it that of the header.
         spacing: Option<f64> = Number { is_checked: true, ..number(&SPACING) };
         /// The column of places along the line, or along the one axis, by its number from 1 on or the beginning of its
         /// name in the header; without it the one that is called so, or the first.
         x: Option<String> = COLUMN;
-        /// The column of places along the other axis, likewise.
+        /// The column of places along the other axis, by its number or the beginning of its name; without it the one
+        /// that is called so, if there is one.
         y: Option<String> = COLUMN;
-        /// The column of heights, likewise; the last.
+        /// The column of heights, by its number or the beginning of its name; without it the one that is called so, or
+        /// the last.
         z: Option<String> = COLUMN;
         /// The sheet of a spreadsheet, by its name or its number from 1 on; without it the first with numbers.
         sheet: Option<String> = COLUMN;
@@ -71,7 +73,8 @@ parameters! {
         /// The column of displacements, by its number from 1 on or the beginning of its name in the header; without it
         /// the one that is called so, or the first of two.
         displacement: Option<String> = COLUMN;
-        /// The column of forces, likewise; the second of two.
+        /// The column of forces, by its number or the beginning of its name; without it the one that is called so, or
+        /// the second of two.
         force: Option<String> = COLUMN;
         /// The column of times; without it the one that is called so, if its times rise.
         time: Option<String> = COLUMN;

@@ -1,15 +1,15 @@
 //! `/contacts/{id}/history`: the moves that a contact has made.
 
-use stickslip_report::plot::{Axis, Colour, Plot};
+use stickslip_plot::{Axis, Colour, Plot};
 use stickslip_wire::{Cycle, HistoryPage, ObservedForce, State};
 
 use super::move_series::{self, ITEM_BYTES, MoveSeries};
 use super::prelude::*;
 use crate::admission::Reservation;
-use crate::api::parameters::FLAG;
-use crate::api::query::MovesQuery;
-use crate::computations::state_columns;
-use crate::formats::{Cells, Column, Table};
+use crate::api::checked_query::MovesQuery;
+use crate::api::query_parameters::FLAG;
+use stickslip_compute::computations::state_columns;
+use stickslip_compute::formats::{Cells, Column, Table};
 
 parameters! {
     /// What a history has of each move.

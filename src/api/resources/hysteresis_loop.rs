@@ -1,14 +1,14 @@
 //! `/contacts/{id}/loop`: the tangential force over the displacement along the moves of a contact.
 
-use stickslip_report::plot::{Axis, Colour, Plot};
+use stickslip_plot::{Axis, Colour, Plot};
 use stickslip_wire::{HistoryPage, LoopPage, ObservedForce, limits};
 
 use super::move_series::{self, ITEM_BYTES, MoveSeries};
 use super::prelude::*;
 use crate::admission::Reservation;
-use crate::api::query::MovesQuery;
-use crate::formats::{Column, Table};
+use crate::api::checked_query::MovesQuery;
 use crate::sessions::{bytes_of_trace, trace};
+use stickslip_compute::formats::{Column, Table};
 
 parameters! {
     /// How a loop is traced.

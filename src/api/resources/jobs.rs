@@ -5,9 +5,9 @@ use axum::response::sse::{Event, KeepAlive, Sse};
 use futures::StreamExt as _;
 
 use super::prelude::*;
-use crate::api::limits::KEEP_ALIVE;
-use crate::api::parameters::JOB_STATE;
-use crate::api::params::JobPath;
+use crate::api::path_and_headers::JobPath;
+use crate::api::query_parameters::JOB_STATE;
+use crate::api::request_limits::KEEP_ALIVE;
 use crate::store::StreamEvent;
 use stickslip_wire::{JobEndEvent, JobList, JobReply, JobState, SweepReply};
 

@@ -1,15 +1,13 @@
 //! `/metrics`: every number that the service counts. `docs/operation.md` says what to do about them.
 
 use std::sync::Arc;
-use std::time::UNIX_EPOCH;
 
 use axum::Extension;
 use axum::extract::State;
-use prometheus::{Counter, Gauge, IntCounter, Opts, Registry, TextEncoder};
+use prometheus::{Gauge, IntCounter, Opts, Registry, TextEncoder};
 use stickslip_mechanics::ENGINE;
 
 use super::prelude::*;
-use crate::metrics::process;
 use crate::sessions::Readings;
 
 use crate::api::request_metrics::RequestMetrics;
@@ -17,7 +15,7 @@ use crate::api::request_metrics::RequestMetrics;
 /// The text format of Prometheus that the library writes.
 const MEDIA_TYPE: &str = "text/plain; version=0.0.4; charset=utf-8";
 
-/// How is it doing?
+/// Get the metrics
 ///
 /// Counters, gauges and histograms since the start, for Prometheus.
 #[utoipa::path(
@@ -53,7 +51,7 @@ fn page(app: &App, traffic: &RequestMetrics) -> prometheus::Result<String> {
     if let Some(commits) = readings.commits {
         show!(page, commits.time, commits.size, commits.failed, commits.pending);
     }
-    this_process(&page, traffic)?;
+    this_program(&page)?;
     TextEncoder::new().encode_to_string(&page.gather())
 }
 
@@ -84,21 +82,14 @@ fn sessions(page: &Registry, readings: &Readings<'_>) -> prometheus::Result<()> 
     Ok(())
 }
 
-fn this_process(page: &Registry, traffic: &RequestMetrics) -> prometheus::Result<()> {
+fn this_program(page: &Registry) -> prometheus::Result<()> {
     let build = Opts::new("stickslip_build_info", "1, with what this program was built from.")
         .const_label("version", env!("CARGO_PKG_VERSION"))
         .const_label("engine", ENGINE.to_string())
         .const_label("rustc", env!("BUILD_COMPILER"))
         .const_label("commit", env!("BUILD_COMMIT"));
     gauge(page, build, 1.0)?;
-    let seconds = Counter::new("process_cpu_seconds_total", "Processor time used.")?;
-    seconds.inc_by(process::processor_seconds());
-    show!(page, seconds);
-    let since = traffic.since.duration_since(UNIX_EPOCH).unwrap_or_default().as_secs_f64();
-    let start = Opts::new("process_start_time_seconds", "Start of the service, in seconds since 1970.");
-    gauge(page, start, since)?;
-    for (name, help, value) in process::gauges() {
-        gauge(page, Opts::new(name, help), value as f64)?;
-    }
+    #[cfg(target_os = "linux")]
+    page.register(Box::new(prometheus::process_collector::ProcessCollector::for_self()))?;
     Ok(())
 }

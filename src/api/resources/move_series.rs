@@ -7,16 +7,17 @@ use std::sync::Arc;
 use axum::body::Body;
 use futures::{StreamExt as _, stream};
 use serde::Serialize;
-use stickslip_report::plot::{Axis, Colour, Curve, Panel, Plot};
+use stickslip_plot::{Axis, Colour, Curve, Panel, Plot};
 use stickslip_wire::HistoryPage;
 
 use super::prelude::*;
 use crate::admission::Reservation;
+use crate::api::checked_query::{Moves, MovesQuery};
 use crate::api::formats::TableStream;
-use crate::api::query::{Moves, MovesQuery};
-use crate::formats::{CAPACITY, Table, Unwritable};
-use crate::simulation::Failure;
-use crate::simulation::bytes::OBJECT;
+use stickslip_compute::Stop as _;
+use stickslip_compute::formats::{CAPACITY, Table, Unwritable};
+use stickslip_compute::simulation::Failure;
+use stickslip_compute::simulation::bytes::OBJECT;
 
 /// Moves that are read at once.
 const PAGE: usize = 500;

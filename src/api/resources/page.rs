@@ -10,7 +10,7 @@ use axum::routing::get;
 use sha2::{Digest as _, Sha256};
 
 use super::meta;
-use crate::api::params::list_members;
+use crate::api::accept::admission;
 use crate::api::{reply, routes};
 
 struct Asset {
@@ -47,9 +47,10 @@ async fn named(name: &str, headers: &HeaderMap, uri: &Uri) -> Response {
 impl Asset {
     /// The file, or 304 if the client has the current version.
     fn answer(&self, hash: &str, asked: &HeaderMap) -> Response {
-        let (body, coding) = if takes_gzip(asked) { (self.packed, "gzip") } else { (self.plain, "identity") };
-        // The two encodings have different tags, because a tag identifies bytes.
-        let tag = format!("\"{hash}-{coding}\"");
+        let gzip = admission(asked, "accept-encoding", "gzip").is_some_and(|gzip| gzip.quality > 0.0);
+        let body = if gzip { self.packed } else { self.plain };
+        // Of both encodings, and so weak.
+        let tag = format!("W/\"{hash}\"");
         let current = reply::is_current(asked, &tag);
         let response = if current { StatusCode::NOT_MODIFIED.into_response() } else { body.into_response() };
         let mut response = reply::tagged(response, &tag);
@@ -59,8 +60,8 @@ impl Asset {
         headers.insert(header::CACHE_CONTROL, HeaderValue::from_static("no-cache"));
         if !current {
             headers.insert(header::CONTENT_TYPE, HeaderValue::from_static(self.media_type()));
-            if coding == "gzip" {
-                headers.insert(header::CONTENT_ENCODING, HeaderValue::from_static(coding));
+            if gzip {
+                headers.insert(header::CONTENT_ENCODING, HeaderValue::from_static("gzip"));
             }
         }
         response
@@ -74,14 +75,6 @@ impl Asset {
             _ => "text/javascript; charset=utf-8",
         }
     }
-}
-
-fn takes_gzip(headers: &HeaderMap) -> bool {
-    list_members(headers, "accept-encoding").any(|coding| {
-        let (name, weight) = coding.split_once(';').unwrap_or((coding, "q=1"));
-        let weight = weight.trim().trim_start_matches("q=").parse::<f64>();
-        name.trim().eq_ignore_ascii_case("gzip") && weight.is_ok_and(|weight| weight > 0.0)
-    })
 }
 
 fn hash(bytes: &[u8]) -> String {

@@ -3,7 +3,7 @@
 use stickslip_wire::{Faults, Field, JsonPath, Residual, StressRequest};
 
 use super::prelude::*;
-use crate::computations::ResidualTask;
+use stickslip_compute::computations::ResidualTask;
 
 /// Radii between which a plot has the shear stress.
 const PLOT_RADII: usize = 1_000;

@@ -7,8 +7,8 @@ use stickslip_wire::limits::{self, Array};
 use stickslip_wire::{Field, JsonPath, Sampling, StressReply, StressRequest};
 
 use super::prelude::*;
-use crate::api::parameters::{FLAG, Fields, List};
-use crate::computations::StressTask;
+use crate::api::query_parameters::{FLAG, Fields, List};
+use stickslip_compute::computations::StressTask;
 
 /// Radii in a query: with all digits, they fit into the head of a request.
 pub const QUERY_RADII: RangeInclusive<usize> = 1..=1_000;

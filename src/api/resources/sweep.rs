@@ -6,10 +6,11 @@ use axum::body::Body;
 
 use super::jobs::{self, TableQuery};
 use super::prelude::*;
-use crate::api::params::{Prefer, accepts_events};
+use crate::api::path_and_headers::{Prefer, accepts_events};
 use crate::jobs::AT_ONCE;
-use crate::simulation::bytes::NUMBER;
-use crate::simulation::{Failure, Sweep, SweepResult};
+use stickslip_compute::Stop as _;
+use stickslip_compute::simulation::bytes::NUMBER;
+use stickslip_compute::simulation::{Failure, Sweep, SweepResult};
 use stickslip_wire::{JobReply, SweepReply, SweepRequest};
 
 /// The most numbers of a table that is kept for a retry as a whole.

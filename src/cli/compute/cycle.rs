@@ -7,9 +7,9 @@ use serde_json::{Value, json};
 use stickslip_wire::{Faults, FrettingMap, JsonPath, LoadSpan};
 
 use super::{Body, Flags};
+use crate::cli::command_error::CommandError;
 use crate::cli::io::{parsed, read};
-use crate::cli::refusal::Refusal;
-use crate::formats::Format;
+use stickslip_compute::formats::Format;
 
 /// What to make of the body.
 #[derive(Args)]
@@ -37,7 +37,7 @@ fn loads(text: &str) -> Result<FrettingMap, &'static str> {
 }
 
 impl Flags for CycleFlags {
-    fn body(&self, file: Option<&Path>) -> Result<Body, Refusal> {
+    fn body(&self, file: Option<&Path>) -> Result<Body, CommandError> {
         let text = read(file.unwrap_or(Path::new("-")))?;
         let Some(map) = &self.map else { return Ok(Body { text, ..Body::default() }) };
         let mut body: Value = parsed(&text)?;

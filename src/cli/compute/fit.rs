@@ -2,15 +2,15 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::computations::files;
 use clap::{Args, Command};
+use stickslip_compute::computations::files;
 use stickslip_measured::import::{LoopHints, UnitHint};
 use stickslip_wire::fit::{FitParameter, KnownValue, KnownValues, LoopStart, MeasuredLoop};
 use stickslip_wire::{self as wire, ContactDefinition, FitRequest};
 
 use super::{Body, Flags, force, length, member, one_of, time};
+use crate::cli::command_error::CommandError;
 use crate::cli::io::read;
-use crate::cli::refusal::Refusal;
 
 /// What is free if the command line does not say.
 const USUALLY_FREE: [FitParameter; 3] = [FitParameter::Friction, FitParameter::GStar, FitParameter::ForceOffset];
@@ -74,14 +74,14 @@ impl Flags for FitFlags {
         Self::augment_args(command).mut_arg("file", |file| file.help(help))
     }
 
-    fn body(&self, file: Option<&Path>) -> Result<Body, Refusal> {
+    fn body(&self, file: Option<&Path>) -> Result<Body, CommandError> {
         let body = Body::of_file(file, |content, file| self.of_columns(content, file))?;
         Ok(Body { only: self.only_contact.then_some(|reply| member::<ContactDefinition>(reply, "contact")), ..body })
     }
 }
 
 impl FitFlags {
-    fn of_columns(&self, content: &[u8], file: &Path) -> Result<(FitRequest, Vec<String>), Refusal> {
+    fn of_columns(&self, content: &[u8], file: &Path) -> Result<(FitRequest, Vec<String>), CommandError> {
         let contact =
             self.contact.as_ref().ok_or("a file of columns needs --contact FILE, the definition of the contact")?;
         let contact = wire::parse::<ContactDefinition>(&read(contact)?)?;
@@ -96,7 +96,7 @@ impl FitFlags {
             load_unit: self.load_unit.clone(),
             sheet: self.sheet.clone(),
         };
-        let found = files::measured_loop(content, &hints).map_err(|error| Refusal::of_file(file, error))?;
+        let found = files::measured_loop(content, &hints).map_err(|error| CommandError::of_file(file, error))?;
         let normal_force = self.normal_force.or(found.measured.normal_force);
         let measured = MeasuredLoop { normal_force, start: self.start, ..found.measured };
         let mut known = KnownValues::default();

@@ -16,13 +16,12 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 use stickslip_measured::import::{Dimension, UnitHint, UnknownUnit};
 
+use super::command_error::CommandError;
 use super::io::{json, parsed, print, read, say, write};
-use super::refusal::Refusal;
 use super::summary::summary;
-use crate::admission::Stop;
-use crate::api::Problem;
-use crate::computations::{About, Shown, compute, entries};
-use crate::formats::Format;
+use stickslip_compute::computations::{About, Shown, compute, entries};
+use stickslip_compute::formats::Format;
+use stickslip_compute::{Flag, Refusal};
 
 /// A computation, and the flags that it is called with.
 pub struct Compute {
@@ -49,8 +48,8 @@ impl Body {
     /// A file that is a body, or else one that `made` makes a body of, with what it took for what.
     fn of_file<R: Serialize>(
         file: Option<&Path>,
-        made: impl FnOnce(&[u8], &Path) -> Result<(R, Vec<String>), Refusal>,
-    ) -> Result<Body, Refusal> {
+        made: impl FnOnce(&[u8], &Path) -> Result<(R, Vec<String>), CommandError>,
+    ) -> Result<Body, CommandError> {
         let file = file.unwrap_or(Path::new("-"));
         let text = read(file)?;
         if text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&text).trim_ascii_start().starts_with(b"{") {
@@ -93,7 +92,7 @@ trait Flags: Args {
     }
 
     /// The body of the request: the file as it is.
-    fn body(&self, file: Option<&Path>) -> Result<Body, Refusal> {
+    fn body(&self, file: Option<&Path>) -> Result<Body, CommandError> {
         Ok(Body { text: read(file.unwrap_or(Path::new("-")))?, ..Body::default() })
     }
 }
@@ -105,7 +104,7 @@ struct NoFlags {}
 impl Flags for NoFlags {}
 
 /// How flags are added to a command, and read.
-type FlagsOf = (fn(Command) -> Command, fn(&ArgMatches, Option<&Path>) -> Result<Body, Refusal>);
+type FlagsOf = (fn(Command) -> Command, fn(&ArgMatches, Option<&Path>) -> Result<Body, CommandError>);
 
 fn flags(name: &str) -> FlagsOf {
     fn of<F: Flags>() -> FlagsOf {
@@ -189,7 +188,7 @@ impl Compute {
         let wants_json = matches.get_flag("json");
         let word = |name: &str| matches.get_one::<String>(name);
         let file = matches.get_one::<PathBuf>("file").map(PathBuf::as_path);
-        let body = flags(about.name).1(matches, file).map_err(|refusal| refusal.message(wants_json))?;
+        let body = flags(about.name).1(matches, file).map_err(|error| error.message(wants_json))?;
         let named = word("format").and_then(|name| Format::named(name, about.formats));
         let format = if wants_json { Format::Columns } else { named.or(body.format).unwrap_or(about.printed) };
         let choice = about.choice.and_then(|choice| {
@@ -197,12 +196,12 @@ impl Compute {
             choice.words.iter().copied().find(|known| known == chosen)
         });
         let shown = Shown { format, choice, indented: true };
-        let reply = compute(about.name, &body.text, shown, &Stop::default());
+        let reply = compute(about.name, &body.text, shown, &Flag::default());
         // A program that asked for JSON gets the problem document of a fault alone.
         if reply.is_ok() || !wants_json {
             say(file.unwrap_or(Path::new("-")), &body.reading);
         }
-        let reply = reply.map_err(|error| Refusal::from(Problem::from(error)).message(wants_json))?;
+        let reply = reply.map_err(|error| CommandError::from(Refusal::from(error)).message(wants_json))?;
         // A document is a wall of numbers to somebody who reads it on a terminal and has not asked for it.
         let is_read = !wants_json && named.is_none() && stdout().is_terminal();
         match (body.only, format) {

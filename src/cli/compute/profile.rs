@@ -2,15 +2,15 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::computations::files;
 use clap::{Args, Command};
+use stickslip_compute::computations::files;
 use stickslip_measured::import::{ScanHints, UnitHint};
 use stickslip_wire::profile_fit::{ScanLoad, ScanOrientation, Smoothing};
 use stickslip_wire::{self as wire, Profile, ProfileFitRequest};
 
 use super::{Body, Flags, length, member};
+use crate::cli::command_error::CommandError;
 use crate::cli::io::read;
-use crate::cli::refusal::Refusal;
 
 /// What a file of columns leaves open.
 #[derive(Args)]
@@ -52,14 +52,14 @@ impl Flags for ProfileFlags {
         Self::augment_args(command).mut_arg("file", |file| file.help(help))
     }
 
-    fn body(&self, file: Option<&Path>) -> Result<Body, Refusal> {
+    fn body(&self, file: Option<&Path>) -> Result<Body, CommandError> {
         let body = Body::of_file(file, |content, file| self.of_columns(content, file))?;
         Ok(Body { only: self.only_profile.then_some(|reply| member::<Profile>(reply, "profile")), ..body })
     }
 }
 
 impl ProfileFlags {
-    fn of_columns(&self, content: &[u8], file: &Path) -> Result<(ProfileFitRequest, Vec<String>), Refusal> {
+    fn of_columns(&self, content: &[u8], file: &Path) -> Result<(ProfileFitRequest, Vec<String>), CommandError> {
         let hints = ScanHints {
             lateral: self.lateral.clone(),
             height: self.height.clone(),
@@ -70,8 +70,8 @@ impl ProfileFlags {
             sheet: self.sheet.clone(),
             most: 0,
         };
-        let found = files::scan(content, hints).map_err(|error| Refusal::of_file(file, error))?;
-        let load = |file: &PathBuf| Ok::<_, Refusal>(wire::parse::<ScanLoad>(&read(file)?)?);
+        let found = files::scan(content, hints).map_err(|error| CommandError::of_file(file, error))?;
+        let load = |file: &PathBuf| Ok::<_, CommandError>(wire::parse::<ScanLoad>(&read(file)?)?);
         let load = self.load.as_ref().map(load).transpose()?;
         let request = ProfileFitRequest {
             scan: found.scan,

@@ -7,8 +7,8 @@ use clap::{Args, Command};
 use serde_json::{Map, Value, json};
 
 use super::{Body, Flags};
+use crate::cli::command_error::CommandError;
 use crate::cli::io::{parsed, read};
-use crate::cli::refusal::Refusal;
 
 /// Names of the API, which may be written with hyphens.
 fn names(names: &[&'static str]) -> PossibleValuesParser {
@@ -49,7 +49,7 @@ impl Flags for ProtocolFlags {
         Self::augment_args(command).mut_arg("file", |file| file.required(false).required_unless_present("contact"))
     }
 
-    fn body(&self, file: Option<&Path>) -> Result<Body, Refusal> {
+    fn body(&self, file: Option<&Path>) -> Result<Body, CommandError> {
         let word = |word: &Option<String>| json!(word.as_ref().map(|word| word.replace('-', "_")));
         let contact = self.contact.as_ref().map(|contact| parsed(&read(contact)?)).transpose()?;
         let flags = given([

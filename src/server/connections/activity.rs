@@ -4,7 +4,7 @@ use parking_lot::Mutex;
 use tokio::time::Instant;
 
 use super::ConnectionLimits;
-use crate::server::limits::LEAST_PROGRESS;
+use crate::server::connection_limits::LEAST_PROGRESS;
 
 /// What a connection is doing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

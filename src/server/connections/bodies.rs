@@ -13,7 +13,7 @@ use tokio::time::timeout;
 
 use super::ConnectionActivity;
 use crate::admission::{Client, RequestPermit, Reservation};
-use crate::server::limits::{DISCARD_TIME, DISCARDED, PIECE};
+use crate::server::connection_limits::{DISCARD_TIME, DISCARDED, PIECE};
 
 /// The body of a request, of which the service gets back what a handler has not read. Nothing once it has ended.
 pub struct ReturnedBody<B: Unpin>(Option<(B, oneshot::Sender<B>)>);

@@ -13,7 +13,7 @@ use tokio::time::Instant;
 
 use super::{ConnectionActivity, ConnectionLimits, is_trusted};
 use crate::admission::Client;
-use crate::server::limits::{LEAST_WAIT, SPARE_CONNECTIONS};
+use crate::server::connection_limits::{LEAST_WAIT, SPARE_CONNECTIONS};
 
 /// The divisor of all connections that gives the number freed at a time, so that the search costs little for each.
 const FREED_SHARE: usize = 16;
@@ -23,7 +23,7 @@ const SEARCH_PAUSE: Duration = Duration::from_millis(100);
 /// All connections of the server. Clones share it.
 #[derive(Clone, Debug)]
 pub struct ConnectionLimiter {
-    /// What connections are held to.
+    /// The limits of connections.
     pub limits: ConnectionLimits,
     /// The proxies that are trusted. Their clients are many: the bound of one does not hold for them.
     pub proxies: Arc<[IpNet]>,
@@ -36,9 +36,10 @@ struct Table {
     next: u64,
     connections: HashMap<u64, Connection>,
     clients: HashMap<Client, usize>,
-    /// But for the open ones.
+    /// Without the number of open ones, which is that of `connections`.
     counts: ConnectionCounts,
-    searched_in_vain: Option<Instant>,
+    /// When a search last found nothing to close.
+    searched_at: Option<Instant>,
 }
 
 #[derive(Debug)]
@@ -133,7 +134,7 @@ impl Table {
     /// first, and of these the ones that have waited longest.
     fn make_room(&mut self, most: usize) {
         let now = Instant::now();
-        if self.searched_in_vain.is_some_and(|last| now < last + SEARCH_PAUSE) {
+        if self.searched_at.is_some_and(|last| now < last + SEARCH_PAUSE) {
             return;
         }
         let mut waiting: Vec<_> = self
@@ -159,7 +160,7 @@ impl Table {
                 }
             }
         }
-        self.searched_in_vain = (!found).then_some(now);
+        self.searched_at = (!found).then_some(now);
     }
 
     fn remove(&mut self, number: u64) -> Option<Connection> {

@@ -55,7 +55,7 @@ pub struct Service {
     pub refusals: Router,
     /// Where requests get their places.
     pub pool: Pool,
-    /// Whether clients are told apart by their addresses: where there are no keys.
+    /// Whether clients are distinguished by their addresses: where there are no keys.
     pub by_address: bool,
     /// How long a body may take to arrive.
     pub body_time: Duration,

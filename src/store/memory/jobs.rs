@@ -8,7 +8,7 @@ use jiff::Timestamp;
 use uuid::Uuid;
 
 use super::MemoryStore;
-use crate::store::jobs::{ChunkResult, Claim, Job, JobLimits, JobStore};
+use crate::store::job_store::{ChunkResult, Claim, Job, JobLimits, JobStore};
 use crate::store::{Receipt, Result, StoreError, Tenant};
 
 pub(super) struct StoredJob {

@@ -17,7 +17,7 @@ use stickslip_wire::{ContactOrder, SessionSummary};
 
 use jobs::StoredJob;
 
-use super::jobs::ChunkQueue;
+use super::job_store::ChunkQueue;
 use super::{
     CONTACT_BYTES, Changes, EXPIRED_LIFETIME, Extent, Page, RECEIPT_LIFETIME, RECORD_BYTES, Receipt, Record, Result,
     Session, Snapshot, Store, StoreError, Tenant, Usage,

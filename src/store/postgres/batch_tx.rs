@@ -23,7 +23,7 @@ impl WriterConnection {
         let open = async {
             let client = pool.target.open().await?;
             client.batch_execute(sql::PREPARE_WRITER).await?;
-            let batch = client.prepare(&sql::batch(pool.announces)).await?;
+            let batch = client.prepare(sql::BATCH).await?;
             Ok(WriterConnection { client, batch })
         };
         pool.answer(ANSWER, open).await

@@ -6,6 +6,7 @@ use deadpool_postgres::{
     GenericClient, Hook, HookError, Manager, ManagerConfig, Object, Pool, RecyclingMethod, Runtime,
 };
 use tokio::sync::Semaphore;
+use tokio::time::timeout;
 use tokio_postgres::Row;
 use tokio_postgres::types::ToSql;
 use tokio_postgres_rustls::MakeRustlsConnect;
@@ -75,8 +76,6 @@ pub(super) type Parameter<'a> = &'a (dyn ToSql + Sync);
 pub(super) struct ClientPool {
     pub(super) target: ConnectTarget,
     pub(super) outage: Outage,
-    /// Whether the database has notifications.
-    pub(super) announces: bool,
     pool: Pool,
     /// For searches, so that other reads never wait behind them.
     searches: Semaphore,
@@ -103,7 +102,7 @@ impl Drop for Search {
 
 impl ClientPool {
     /// A pool that connects when it is first used.
-    pub(super) fn new(target: ConnectTarget, announces: bool) -> Result<ClientPool> {
+    pub(super) fn new(target: ConnectTarget) -> Result<ClientPool> {
         let config = ManagerConfig { recycling_method: RecyclingMethod::Fast };
         let manager = Manager::from_config(target.config.clone(), target.tls.clone(), config);
         let prepare = Hook::async_fn(|client, _| {
@@ -119,25 +118,24 @@ impl ClientPool {
             .build();
         let pool = pool.map_err(|error| StoreError::Failed(format!("no pool of connections: {error}")))?;
         let searches = Semaphore::new(SEARCHES);
-        Ok(ClientPool { target, outage: Outage::default(), announces, pool, searches })
+        Ok(ClientPool { target, outage: Outage::default(), pool, searches })
     }
 
     pub(super) async fn connection(&self) -> Result<Object, Fault> {
         self.answer(PATIENCE_FOR_CONNECTION, async { Ok(self.pool.get().await?) }).await
     }
 
-    /// The outcome of work on a connection, unless it takes longer than `limit` or the database falls silent.
+    /// The outcome of work on a connection, unless it takes longer than `limit`.
     pub(super) async fn answer<T>(
         &self,
         limit: Duration,
         work: impl Future<Output = Result<T, Fault>>,
     ) -> Result<T, Fault> {
-        tokio::select! {
-            biased;
-            done = work => done,
-            () = tokio::time::sleep(limit) => Err(Fault::no_answer()),
-            () = self.outage.silence() => Err(Fault::no_answer()),
-        }
+        let begin = Instant::now();
+        timeout(limit, work).await.unwrap_or_else(|_| {
+            self.outage.begin(begin);
+            Err(Fault::no_answer())
+        })
     }
 
     /// The rows of a statement that only reads, or that may be repeated.
@@ -145,8 +143,8 @@ impl ClientPool {
         with_retries!(self, ANSWER, connection => rows(connection, statement, parameters))
     }
 
-    /// The same for a statement that may read much: few at a time, and the database is told to end one that nobody
-    /// waits for any more.
+    /// The same for a statement that may read much: few run at a time, and the database ends one whose client has
+    /// left.
     pub(super) async fn search(&self, statement: &str, parameters: &[Parameter<'_>]) -> Result<Vec<Row>> {
         let mut tries = Tries::default();
         loop {
@@ -240,7 +238,7 @@ pub(super) async fn long_rows(
     Ok(rows)
 }
 
-/// Whether the row that a statement is about exists, by the first column of what it returns: whether it was free.
+/// Whether the row of a statement exists. The first returned column says whether no other transaction held it.
 pub(super) fn existed(rows: &[Row]) -> Result<bool, Fault> {
     match rows.first().map(|row| row.get(0)) {
         Some(false) => Err(Fault::locked()),
@@ -248,7 +246,7 @@ pub(super) fn existed(rows: &[Row]) -> Result<bool, Fault> {
     }
 }
 
-/// The number of rows that a statement has changed, likewise.
+/// The number of rows that a statement has changed.
 pub(super) async fn execute(
     client: &impl GenericClient,
     statement: &str,

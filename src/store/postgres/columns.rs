@@ -117,6 +117,8 @@ columns!(Requests, "Requested changes, a row a session.", (Uuid, u64, u64, Optio
 columns!(Moves, "Moves, with the states after them.", (Uuid, i64, &Record), |request| {
     contact: Uuid = request.0,
     sequence: i64 = to_bigint(request.2.sequence),
+    at: SystemTime = split_time(request.2.at).0,
+    at_ns: i16 = split_time(request.2.at).1,
     target_displacement: Option<f64> = request.2.step.displacement,
     target_force: Option<f64> = request.2.step.force,
     target_indentation: Option<f64> = request.2.step.indentation,
@@ -133,8 +135,6 @@ columns!(Moves, "Moves, with the states after them.", (Uuid, i64, &Record), |req
     dissipated_energy: f64 = request.2.state.dissipated_energy,
     elastic_energy: f64 = request.2.state.elastic_energy,
     memory_depth: i64 = to_bigint(request.2.state.memory_depth as u64),
-    at: SystemTime = split_time(request.2.at).0,
-    at_ns: i16 = split_time(request.2.at).1,
     observed_force: Option<f64> = request.2.measured.map(|measured| measured.force),
     observed_at: Option<i64> = request.2.measured.and_then(|measured| measured.at).map(to_nanoseconds),
     made_by: Option<String> = request.2.by.as_deref().map(str::to_owned),

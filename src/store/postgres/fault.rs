@@ -5,8 +5,6 @@ use std::time::{Duration, Instant};
 
 use deadpool_postgres::PoolError;
 use parking_lot::Mutex;
-use tokio::sync::watch;
-use tokio::time::timeout_at;
 use tokio_postgres::Error;
 use tokio_postgres::error::{DbError, SqlState};
 
@@ -16,8 +14,6 @@ use super::connect::{causes, error_chain};
 
 /// How long to wait for a lost database before requests fail. After that no request waits until it is back.
 const PATIENCE: Duration = Duration::from_secs(2);
-/// The same for each request while the database is known not to answer.
-const BRIEF_PATIENCE: Duration = Duration::from_millis(250);
 /// How soon to try again at first; the time doubles up to the longest.
 const FIRST_PAUSE: Duration = Duration::from_millis(25);
 const LONGEST_PAUSE: Duration = Duration::from_millis(400);
@@ -122,62 +118,37 @@ impl Fault {
     }
 }
 
-/// Since when the database has been unreachable, as observed by the last call, and when it was last heard of.
+/// Since when the database has been unreachable, as observed by the last call.
+#[derive(Default)]
 pub(super) struct Outage {
     // Locked for a read, never across an await.
     since: Mutex<Option<Instant>>,
-    heard: watch::Sender<Instant>,
-}
-
-impl Default for Outage {
-    fn default() -> Outage {
-        Outage { since: Mutex::default(), heard: watch::Sender::new(Instant::now()) }
-    }
 }
 
 impl Outage {
-    /// Notes a sign of life of the database, whatever it says to requests.
-    pub(super) fn heard(&self) {
-        self.heard.send_replace(Instant::now());
-    }
-
-    /// Ends when nothing has been heard of the database for as long as a request waits. A request that takes long is
-    /// not silence: other answers come meanwhile (`listen.rs` asks for them).
-    pub(super) async fn silence(&self) {
-        let (begin, mut heard) = (Instant::now(), self.heard.subscribe());
-        let known = self.since.lock().is_some() && heard.borrow().elapsed() >= PATIENCE;
-        let least = begin + if known { BRIEF_PATIENCE } else { PATIENCE };
-        loop {
-            let end = least.max(*heard.borrow_and_update() + PATIENCE);
-            // The sender lives as long as `self`.
-            if timeout_at(end.into(), heard.changed()).await.is_err() {
-                return;
-            }
-        }
-    }
-
     /// Notes that the database could be reached.
     pub(super) fn end(&self) {
-        // Those who wait need not be woken by each of many answers.
-        self.heard.send_if_modified(|heard| {
-            let is_old = heard.elapsed() >= FIRST_PAUSE;
-            if is_old {
-                *heard = Instant::now();
-            }
-            is_old
-        });
         if let Some(begin) = self.since.lock().take() {
             tracing::info!(outage_ms = begin.elapsed().as_millis() as u64, "the database is back");
         }
     }
 
-    /// Notes that it could not; returns whether another attempt is worth waiting for.
+    /// Notes that the database has not answered what was sent to it at this time.
+    pub(super) fn begin(&self, at: Instant) {
+        let mut since = self.since.lock();
+        if since.is_none() {
+            tracing::warn!("the database does not answer");
+        }
+        since.get_or_insert(at);
+    }
+
+    /// Notes that it could not be reached; returns whether another attempt is worth waiting for.
     pub(super) fn worth_waiting(&self, fault: &str) -> bool {
         let mut since = self.since.lock();
         if since.is_none() {
             tracing::warn!(error = fault, "the database is unreachable");
         }
-        since.get_or_insert_with(|| *self.heard.borrow()).elapsed() < PATIENCE
+        since.get_or_insert_with(Instant::now).elapsed() < PATIENCE
     }
 }
 

@@ -9,7 +9,7 @@ use async_trait::async_trait;
 use deadpool_postgres::Object;
 use uuid::Uuid;
 
-use crate::store::jobs::{ChunkResult, Claim, JOB_LIFETIME, JOB_TIME_LIMIT, Job, JobLimits, JobStore};
+use crate::store::job_store::{ChunkResult, Claim, JOB_LIFETIME, JOB_TIME_LIMIT, Job, JobLimits, JobStore};
 use crate::store::rows as read;
 use crate::store::{Receipt, Result, StoreError, Tenant};
 
@@ -47,7 +47,7 @@ impl ClientPool {
         let (bytes, cost, chunks) = (to_bigint(job.bytes), to_bigint(job.cost), to_bigint(job.chunks()));
         let row: [Parameter<'_>; 10] = [&job.id, &tenant, &at, &ns, &points, &chunk, &bytes, &cost, &request, &chunks];
         let row: Vec<_> = row.into_iter().chain(receipts.parameters()).collect();
-        rows(&transaction, &sql::create_job(self.announces), &row).await?;
+        rows(&transaction, sql::CREATE_JOB, &row).await?;
         sent.answered(async { Ok(transaction.commit().await?) }).await
     }
 
@@ -114,18 +114,16 @@ impl JobStore for PostgresStore {
     async fn save_chunk(&self, claim: Claim, result: ChunkResult) -> Result<()> {
         let (chunk, points, failed) = (to_bigint(claim.chunk), to_bigint(result.points), to_bigint(result.failed));
         let parameters: [Parameter<'_>; 5] = [&claim.job, &chunk, &result.content, &points, &failed];
-        let statement = sql::save_chunk(self.pool.announces);
         let found = with_retries!(self.pool, ANSWER, connection => async {
-            existed(&rows(connection, &statement, &parameters).await?)
+            existed(&rows(connection, sql::SAVE_CHUNK, &parameters).await?)
         })?;
         self.changes.wake(claim.job);
         if found { Ok(()) } else { Err(StoreError::NotFound) }
     }
 
     async fn fail_job(&self, id: Uuid, error: String) -> Result<()> {
-        let statement = sql::fail_job(self.pool.announces);
         with_retries!(self.pool, ANSWER, connection => async {
-            existed(&rows(connection, &statement, &[&id, &error]).await?)
+            existed(&rows(connection, sql::FAIL_JOB, &[&id, &error]).await?)
         })?;
         self.changes.wake(id);
         Ok(())
@@ -137,9 +135,9 @@ impl JobStore for PostgresStore {
     }
 
     async fn delete_job(&self, id: Uuid) -> Result<()> {
-        let (sent, statement) = (InDoubt::default(), sql::delete_job(self.pool.announces));
+        let sent = InDoubt::default();
         let delete =
-            async |connection: &Object| existed(&sent.answered(long_rows(connection, &statement, &[&id])).await?);
+            async |connection: &Object| existed(&sent.answered(long_rows(connection, sql::DELETE_JOB, &[&id])).await?);
         let existed = with_retries!(self.pool, LONG_ANSWER, connection => delete(connection))?;
         self.changes.wake(id);
         if existed || sent.get() { Ok(()) } else { Err(StoreError::NotFound) }

@@ -1,8 +1,6 @@
-//! One connection that listens to changes that other processes make, and asks now and then whether the database is
-//! there: a connection to a database that is frozen stays open and says nothing.
+//! One connection that listens to changes that other processes make.
 
 use std::sync::Arc;
-use std::time::Duration;
 
 use futures::StreamExt as _;
 use futures::stream;
@@ -16,10 +14,7 @@ use super::client_pool::{ANSWER, ClientPool};
 use super::fault::{Backoff, Fault};
 use super::sql;
 
-/// How often the database is asked for an answer, and listeners are woken if it has no notifications.
-const BEAT: Duration = Duration::from_millis(500);
-
-/// Wakes listeners when the database notifies of changes, and notes its signs of life; never ends.
+/// Wakes listeners when the database notifies of changes; never ends.
 pub(super) async fn listen(pool: Arc<ClientPool>, changes: Arc<Changes>) {
     let mut backoff = Backoff::default();
     loop {
@@ -39,26 +34,18 @@ async fn receive(pool: &ClientPool, changes: &Changes, listening: &mut bool) -> 
     let connected = timeout(ANSWER, pool.target.connect()).await.map_err(|_| Fault::no_answer())?;
     let (client, mut driver) = connected?;
     let mut messages = stream::poll_fn(move |context| driver.poll_message(context));
-    let beats = async {
-        if pool.announces {
-            client.batch_execute(sql::LISTEN).await?;
-        }
+    // Sent as the messages are driven.
+    let begin = async {
+        client.batch_execute(sql::LISTEN).await?;
         *listening = true;
         // Earlier changes are not notified to this connection.
         changes.wake_all();
-        loop {
-            pool.outage.heard();
-            tokio::time::sleep(BEAT).await;
-            client.batch_execute(sql::BEAT).await?;
-            if !pool.announces {
-                changes.wake_all();
-            }
-        }
+        std::future::pending::<Result<(), Fault>>().await
     };
-    let mut beats = std::pin::pin!(beats);
+    let mut begin = std::pin::pin!(begin);
     loop {
         tokio::select! {
-            ended = &mut beats => return ended,
+            failed = &mut begin => return failed,
             message = messages.next() => match message {
                 Some(Ok(AsyncMessage::Notification(announcement))) => wake(changes, announcement.payload()),
                 Some(Ok(_)) => {}

@@ -1,10 +1,10 @@
 //! PostgreSQL, shared by many processes: all of them read what one has acknowledged.
 //!
-//! Moves and new sessions queue at a writer, which sends what has gathered as one transaction in one round trip. The
+//! Moves and new sessions queue at a writer, which sends the waiting requests as one transaction in one round trip. The
 //! sequence of a contact decides which of several processes that move it at once wins; the primary key of the moves is
 //! a second barrier. A change whose contact another transaction holds waits apart from the others. Everything else goes
-//! through a pool of connections. A lost connection is replaced, and what is safe to repeat is repeated for a while;
-//! then the callers get an error.
+//! through a pool of connections. A lost connection is replaced, and statements that are safe to repeat are repeated
+//! for a while; then the callers get an error.
 //!
 //! `docs/postgres.md` describes the tables and what the database must support.
 
@@ -62,7 +62,8 @@ pub struct PostgresStore {
     pool: Arc<ClientPool>,
     writer: Writer,
     changes: Arc<Changes>,
-    listener: AbortHandle,
+    /// None where it is open for reading alone.
+    listener: Option<AbortHandle>,
     probe: Probe,
 }
 
@@ -75,15 +76,15 @@ impl PostgresStore {
     pub async fn open(url: &str) -> Result<PostgresStore> {
         let target = ConnectTarget::parse(url).map_err(StoreError::Failed)?;
         let address = target.address();
-        let announces = prepare(&target).await.map_err(|error| match error {
+        prepare(&target).await.map_err(|error| match error {
             StoreError::Unavailable(text) => StoreError::Unavailable(format!("{address}: {text}")),
             StoreError::Failed(text) => StoreError::Failed(format!("{address}: {text}")),
             other => other,
         })?;
-        if !announces {
-            tracing::warn!("the database has no pg_notify: listeners read changes by other processes once a second");
-        }
-        PostgresStore::start(target, announces)
+        let mut store = PostgresStore::start(target)?;
+        let listening = listen::listen(Arc::clone(&store.pool), Arc::clone(&store.changes));
+        store.listener = Some(tokio::spawn(listening).abort_handle());
+        Ok(store)
     }
 
     /// Connects to a database for reading, while other processes may use it. Its tables must exist.
@@ -97,16 +98,14 @@ impl PostgresStore {
         checked.await.map_err(|error: SchemaError<_>| {
             StoreError::Failed(format!("{address}: {}", Fault::from(error).into_store_error()))
         })?;
-        PostgresStore::start(target, false)
+        PostgresStore::start(target)
     }
 
     /// A store of which the tables have been looked at.
-    fn start(target: ConnectTarget, announces: bool) -> Result<PostgresStore> {
-        let (pool, changes) = (Arc::new(ClientPool::new(target, announces)?), Arc::default());
+    fn start(target: ConnectTarget) -> Result<PostgresStore> {
+        let (pool, changes) = (Arc::new(ClientPool::new(target)?), Arc::default());
         let writer = Writer::start(Arc::clone(&pool), Arc::clone(&changes));
-        let listening = listen::listen(Arc::clone(&pool), Arc::clone(&changes));
-        let listener = tokio::spawn(listening).abort_handle();
-        Ok(PostgresStore { pool, writer, changes, listener, probe: Probe::default() })
+        Ok(PostgresStore { pool, writer, changes, listener: None, probe: Probe::default() })
     }
 
     /// Which database it is, without the password.
@@ -118,25 +117,27 @@ impl PostgresStore {
 
 impl Drop for PostgresStore {
     fn drop(&mut self) {
-        self.listener.abort();
+        self.listener.iter().for_each(AbortHandle::abort);
     }
 }
 
-/// Migrates the tables, and returns whether the database has notifications.
-async fn prepare(target: &ConnectTarget) -> Result<bool> {
+/// Migrates the tables, and checks that the database has notifications.
+async fn prepare(target: &ConnectTarget) -> Result<()> {
     let (begin, mut backoff) = (Instant::now(), Backoff::default());
     loop {
-        let connected = timeout(ANSWER, target.open()).await;
-        let fault = match connected.map_or_else(|_| Err(Fault::no_answer()), |opened| opened.map_err(Fault::from)) {
-            Ok(mut client) => match schema::migrate(&mut client, schema::MIGRATIONS).await {
-                Ok(()) => return Ok(client.batch_execute(sql::PROBE_NOTIFY).await.is_ok()),
-                Err(error) => error.into(),
-            },
-            Err(fault) => fault,
+        let prepared = async {
+            let opened = timeout(ANSWER, target.open()).await.map_err(|_| Fault::no_answer())?;
+            let mut client = opened?;
+            schema::migrate(&mut client, schema::MIGRATIONS).await?;
+            client.batch_execute(sql::PROBE_NOTIFY).await?;
+            Ok::<_, Fault>(())
         };
-        match fault {
-            Fault::Lost(_) | Fault::Conflict(_) | Fault::Locked(_) if begin.elapsed() < START => backoff.pause().await,
-            fault => return Err(fault.into_store_error()),
+        match prepared.await {
+            Ok(()) => return Ok(()),
+            Err(Fault::Lost(_) | Fault::Conflict(_) | Fault::Locked(_)) if begin.elapsed() < START => {
+                backoff.pause().await;
+            }
+            Err(fault) => return Err(fault.into_store_error()),
         }
     }
 }
@@ -153,7 +154,7 @@ impl From<SchemaError<tokio_postgres::Error>> for Fault {
 /// Bytes that a move takes in the table, with the longest name of a key, and in its index.
 const MOVE_BYTES: u64 = 320;
 
-/// The definition of a session as it is stored: exactly the JSON that it was.
+/// The definition of a session, as exactly the JSON that is stored.
 fn definition(session: &Session) -> Result<String> {
     let written = serde_json::to_string(&*session.definition);
     written.map_err(|error| StoreError::Failed(format!("a definition cannot be written: {error}")))
@@ -167,7 +168,7 @@ impl Store for PostgresStore {
                 client_pool::execute(connection, statement, &[]));
             done.map(drop).map_err(Fault::into_store_error)
         };
-        execute(sql::BEAT).await?;
+        execute(sql::PING).await?;
         self.probe.outcome(execute(sql::PROBE)).await?;
         let stalled = self.writer.commits.stalled();
         if stalled < STALLED {

@@ -25,7 +25,7 @@ pub(super) struct WriteRequest {
     arrived: Instant,
     /// Whether an earlier attempt may have been committed.
     pub(super) in_doubt: bool,
-    /// Those of its contact and its key: later changes wait until it is answered.
+    /// The locks of its contact and its key: later changes wait until it is answered.
     pub(super) locks: Vec<OwnedMutexGuard<()>>,
     /// Its place among those that wait for other transactions, if it has one.
     pub(super) place: Option<OwnedSemaphorePermit>,

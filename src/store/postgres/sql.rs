@@ -9,39 +9,54 @@ macro_rules! channel {
     };
 }
 
+// The columns of a move beside its contact and its stamp, in the order of `rows::record`.
+macro_rules! move_columns {
+    () => {
+        "sequence, at, at_ns, target_displacement, target_force, target_indentation, target_normal_force, relative, \
+         tolerance, displacement, force, indentation, normal_force, contact_radius, stick_radius, regime, \
+         dissipated_energy, elastic_energy, memory_depth, observed_force, observed_at, made_by"
+    };
+}
+
+// A statement that returns its `found`, and announces the identifiers in another part of it: as many as fit into the
+// payload of one notification.
+macro_rules! announcing {
+    ($changed:literal, $($statement:expr),+) => {
+        concat!($($statement,)+ ", announced AS (
+    SELECT count(pg_notify('", channel!(), "', ids)) FROM (
+        SELECT string_agg(id::text, ',') AS ids
+        FROM (SELECT id, row_number() OVER () / 200 AS page FROM ", $changed, ") AS numbered GROUP BY page) AS paged
+) SELECT found.* FROM found, announced")
+    };
+}
+
 /// Bounds for every statement of a connection; and no notices, which only say that a table exists already. A lock is
 /// waited for briefly: until the transactions of other processes are done that are under way, but not longer with a
-/// connection. What a client that falls silent in the middle of a transaction holds is given back by the server, where
-/// it has these settings: if the client is there and says nothing, or if the network to it is gone.
+/// connection. What a client that falls silent in the middle of a transaction holds is given back by the server, if the
+/// client is there and says nothing, or if the network to it is gone; from PostgreSQL 17 on, no transaction lasts long.
 pub(super) const PREPARE_CONNECTION: &str =
     "SET statement_timeout = '10s'; SET lock_timeout = '250ms'; SET client_min_messages = 'warning';
 SET SESSION CHARACTERISTICS AS TRANSACTION ISOLATION LEVEL READ COMMITTED;
-SELECT set_config(name, CASE name
-    WHEN 'idle_in_transaction_session_timeout' THEN '2s'
-    WHEN 'transaction_timeout' THEN '70s'
-    WHEN 'tcp_user_timeout' THEN '10s'
-    WHEN 'tcp_keepalives_idle' THEN '10'
-    WHEN 'tcp_keepalives_interval' THEN '2'
-    ELSE '3' END, false)
-FROM pg_settings WHERE name IN ('idle_in_transaction_session_timeout', 'transaction_timeout', 'tcp_user_timeout',
-    'tcp_keepalives_idle', 'tcp_keepalives_interval', 'tcp_keepalives_count')";
+SET idle_in_transaction_session_timeout = '2s'; SET tcp_user_timeout = '10s'; SET tcp_keepalives_idle = 10;
+SET tcp_keepalives_interval = 2; SET tcp_keepalives_count = 3;
+SELECT set_config(name, '70s', false) FROM pg_settings WHERE name = 'transaction_timeout'";
 
 /// For the statements that copy or delete all moves of a contact, and after them.
 pub(super) const ALLOW_LONG: &str = "SET statement_timeout = '60s'";
 pub(super) const ALLOW_SHORT: &str = "SET statement_timeout = '10s'";
 
-/// Settings of the writer's connection, where the database has them. A statement of a batch is a transaction of its
+/// Settings of the writer's connection. A statement of a batch is a transaction of its
 /// own. To plan it for each batch takes as long as to execute it for a few contacts, so that its plan is kept; and
 /// while the tables grow too, so that it uses their indexes however small they are.
-pub(super) const PREPARE_WRITER: &str = "
-SELECT set_config(name, CASE name WHEN 'enable_seqscan' THEN 'off' ELSE 'force_generic_plan' END, false)
-FROM pg_settings WHERE name IN ('plan_cache_mode', 'enable_seqscan')";
+pub(super) const PREPARE_WRITER: &str = "SET plan_cache_mode = force_generic_plan; SET enable_seqscan = off";
 
 /// Makes sessions. Locks those to append to, in the order of their identifiers, but for those that another transaction
 /// holds, and appends moves to those of them that are at the expected sequence. Stores the receipts of what it has
 /// changed alone. Returns the sessions to append to that exist, with their sequences unless another transaction holds
 /// them.
-const BATCH: &str = "
+pub(super) const BATCH: &str = announcing!(
+    "won",
+    "
 WITH locked AS (
     SELECT id, sequence FROM contacts WHERE id = ANY($1::uuid[]) ORDER BY id FOR NO KEY UPDATE SKIP LOCKED
 ), won AS (
@@ -55,15 +70,16 @@ WITH locked AS (
     WHERE contacts.id = locked.id
     RETURNING contacts.id
 ), moved AS (
-    INSERT INTO moves (contact, sequence, target_displacement, target_force, target_indentation, target_normal_force,
-        relative, tolerance, displacement, force, indentation, normal_force, contact_radius, stick_radius, regime,
-        dissipated_energy, elastic_energy, memory_depth, at, at_ns, observed_force, observed_at, made_by, stamp)
+    INSERT INTO moves (contact, ",
+    move_columns!(),
+    ", stamp)
     SELECT move.*
-    FROM unnest($6::uuid[], $7::bigint[], $8::double precision[], $9::double precision[], $10::double precision[],
-        $11::double precision[], $12::boolean[], $13::double precision[], $14::double precision[],
+    FROM unnest($6::uuid[], $7::bigint[], $8::timestamptz[], $9::smallint[], $10::double precision[],
+        $11::double precision[], $12::double precision[], $13::double precision[], $14::boolean[],
         $15::double precision[], $16::double precision[], $17::double precision[], $18::double precision[],
-        $19::double precision[], $20::text[], $21::double precision[], $22::double precision[], $23::bigint[],
-        $24::timestamptz[], $25::smallint[], $26::double precision[], $27::bigint[], $28::text[], $29::bigint[])
+        $19::double precision[], $20::double precision[], $21::double precision[], $22::text[],
+        $23::double precision[], $24::double precision[], $25::bigint[], $26::double precision[], $27::bigint[],
+        $28::text[], $29::bigint[])
         AS move (contact)
     JOIN won ON won.id = move.contact
 ), made AS (
@@ -81,35 +97,16 @@ WITH locked AS (
 ), found AS (
     SELECT contacts.id, locked.sequence FROM contacts LEFT JOIN locked ON locked.id = contacts.id
     WHERE contacts.id = ANY($1::uuid[])
-)";
+)"
+);
 
-/// A statement that returns its `found`, and announces the identifiers in another part of it if the database has
-/// notifications. As many fit into the payload of one notification.
-fn announcing(announces: bool, statement: &str, changed: &str) -> String {
-    if !announces {
-        return format!("{statement} SELECT found.* FROM found");
-    }
-    let channel = channel!();
-    format!(
-        "{statement}, told AS (
-    SELECT count(pg_notify('{channel}', ids)) FROM (
-        SELECT string_agg(id::text, ',') AS ids
-        FROM (SELECT id, row_number() OVER () / 200 AS page FROM {changed}) AS numbered GROUP BY page) AS paged
-) SELECT found.* FROM found, told"
-    )
-}
-
-pub(super) fn batch(announces: bool) -> String {
-    announcing(announces, BATCH, "won")
-}
-
-/// Fails if the database has no notifications.
+/// Fails if the database has no notifications, or does not allow them to this role.
 pub(super) const PROBE_NOTIFY: &str = concat!("SELECT pg_notify('", channel!(), "', '')");
 
 pub(super) const LISTEN: &str = concat!("LISTEN ", channel!());
 
-/// The outcome of a request: the sequence of its session, whose it was if it has expired, whether its key is taken, and
-/// the stamp of its last move.
+/// The outcome of a request: the sequence of its session, the tenant of an expired one, whether the key is taken, and
+/// the stamp of the last move.
 pub(super) const OUTCOME: &str = "
 SELECT (SELECT sequence FROM contacts WHERE id = $1),
     (SELECT tenant FROM expired WHERE id = $1),
@@ -126,8 +123,8 @@ pub(super) const PROBE: &str = "
 INSERT INTO receipts (key, fingerprint, sequence, body) VALUES ('', '', 0, '')
 ON CONFLICT (key) DO UPDATE SET created_at = now()";
 
-/// Asks for nothing but an answer.
-pub(super) const BEAT: &str = "";
+/// Checks that the database answers.
+pub(super) const PING: &str = "";
 
 pub(super) const FIND: &str = "
 SELECT id, label, sequence, created_at, created_ns, updated_at, updated_ns, definition, tenant
@@ -138,9 +135,8 @@ SELECT tenant, sequence, label, octet_length(definition)::bigint,
     coalesce((SELECT octet_length(state) FROM snapshots WHERE contact = contacts.id), 0)::bigint
 FROM contacts WHERE id = $1";
 
-/// What is stored for a tenant: how many contacts and bytes. A contact takes `$2` of them besides its definition and
-/// its snapshot, a move `$3`, and a receipt `$4`. The lengths are known without reading what is stored apart from its
-/// row.
+/// The contacts and bytes of a tenant. A contact takes `$2` bytes besides its definition and its snapshot, a move `$3`,
+/// and a receipt `$4`. The lengths of values that are stored apart from their rows are known without reading them.
 pub(super) const USAGE: &str = "
 SELECT count(*), coalesce(sum($2::bigint + octet_length(definition) + $3::bigint * sequence
         + coalesce((SELECT octet_length(state) FROM snapshots WHERE contact = contacts.id), 0)), 0)::bigint
@@ -206,14 +202,16 @@ FROM unnest($1::uuid[], $2::text[], $3::bytea[], $4::uuid[], $5::bigint[], $6::b
 
 /// The sequence of a contact, and some of its moves beside it: in one statement, so that both are of one state of the
 /// database.
-pub(super) const HISTORY: &str = "
+pub(super) const HISTORY: &str = concat!(
+    "
 SELECT contacts.sequence, past.*
 FROM contacts LEFT JOIN LATERAL (
-SELECT sequence, at, at_ns, target_displacement, target_force, target_indentation, target_normal_force, relative,
-    tolerance, displacement, force, indentation, normal_force, contact_radius, stick_radius, regime, dissipated_energy,
-    elastic_energy, memory_depth, observed_force, observed_at, made_by
+SELECT ",
+    move_columns!(),
+    "
 FROM moves WHERE contact = $1 AND sequence > $2 ORDER BY sequence LIMIT $3) AS past ON true
-WHERE contacts.id = $1 ORDER BY past.sequence";
+WHERE contacts.id = $1 ORDER BY past.sequence"
+);
 
 pub(super) const COUNT_MOVES: &str = "SELECT count(*) FROM moves WHERE contact = $1 AND sequence <= $2";
 
@@ -231,7 +229,8 @@ WHERE snapshots.sequence < excluded.sequence OR snapshots.sequence = $4::bigint"
 /// Makes a session with the first `$2` moves of `$1` and with its snapshot, if that is not after them, unless there are
 /// fewer; and keeps the receipt. Returns the sequence of `$1` and how many of these moves there are. No lock is needed:
 /// moves are only appended.
-pub(super) const FORK: &str = "
+pub(super) const FORK: &str = concat!(
+    "
 WITH source AS (
     SELECT sequence, (SELECT count(*) FROM moves WHERE contact = $1 AND sequence <= $2) AS moves
     FROM contacts WHERE id = $1
@@ -243,12 +242,12 @@ WITH source AS (
     JOIN source ON source.sequence >= $2 AND source.moves = $2
     RETURNING id
 ), past AS (
-    INSERT INTO moves (contact, sequence, target_displacement, target_force, target_indentation, target_normal_force,
-        relative, tolerance, displacement, force, indentation, normal_force, contact_radius, stick_radius, regime,
-        dissipated_energy, elastic_energy, memory_depth, at, at_ns, observed_force, observed_at, made_by, stamp)
-    SELECT made.id, sequence, target_displacement, target_force, target_indentation, target_normal_force,
-        relative, tolerance, displacement, force, indentation, normal_force, contact_radius, stick_radius, regime,
-        dissipated_energy, elastic_energy, memory_depth, at, at_ns, observed_force, observed_at, made_by, stamp
+    INSERT INTO moves (contact, ",
+    move_columns!(),
+    ", stamp)
+    SELECT made.id, ",
+    move_columns!(),
+    ", stamp
     FROM moves, made WHERE moves.contact = $1 AND moves.sequence <= $2
 ), state AS (
     INSERT INTO snapshots (contact, sequence, state)
@@ -260,12 +259,14 @@ WITH source AS (
         AS receipt (contact, key, fingerprint, created, sequence, body)
     JOIN made ON made.id = receipt.contact
 )
-SELECT source.sequence, source.moves FROM source";
+SELECT source.sequence, source.moves FROM source"
+);
 
 /// Deletes a session that is at a sequence, with its moves, which have all been committed then. Returns, if the session
 /// exists, whether it was at that sequence and free, and its sequence.
-pub(super) fn delete(announces: bool) -> String {
-    let statement = "
+pub(super) const DELETE: &str = announcing!(
+    "gone",
+    "
 WITH held AS (
     SELECT id FROM contacts WHERE id = $1 AND sequence = $2 FOR UPDATE SKIP LOCKED
 ), gone AS (
@@ -275,9 +276,8 @@ WITH held AS (
 ), found AS (
     SELECT held.id IS NOT NULL AS held, contacts.sequence
     FROM contacts LEFT JOIN held ON held.id = contacts.id WHERE contacts.id = $1
-)";
-    announcing(announces, statement, "gone")
-}
+)"
+);
 
 /// Receipts past their time, some at a time. What another replica is deleting is left to it.
 pub(super) const PURGE_RECEIPTS: &str = "
@@ -285,7 +285,7 @@ DELETE FROM receipts WHERE key IN (
     SELECT key FROM receipts WHERE created_at <= now() - $1::double precision * INTERVAL '1 second'
     ORDER BY created_at LIMIT $2 FOR UPDATE SKIP LOCKED)";
 
-/// Marks of sessions that expired long ago, likewise.
+/// Marks of sessions that expired long ago, some at a time. What another replica is deleting is left to it.
 pub(super) const PURGE_MARKS: &str = "
 DELETE FROM expired WHERE id IN (
     SELECT id FROM expired WHERE at <= now() - $1::double precision * INTERVAL '1 second'
@@ -297,9 +297,10 @@ SELECT id FROM contacts
 WHERE active_hour <= $1::timestamptz AT TIME ZONE 'UTC' AND (updated_at, updated_ns) < ($1, $2)
 ORDER BY active_hour LIMIT $3";
 
-/// Deletes those of the sessions that are still idle. What another replica moves or deletes meanwhile is left to it.
-pub(super) fn purge_idle(announces: bool) -> String {
-    let statement = "
+/// Deletes the sessions that are still idle. Sessions that another replica moves or deletes meanwhile are skipped.
+pub(super) const PURGE_IDLE: &str = announcing!(
+    "found",
+    "
 WITH found AS (
     DELETE FROM contacts WHERE id IN (
         SELECT id FROM contacts WHERE id = ANY($1) AND (updated_at, updated_ns) < ($2, $3)
@@ -309,9 +310,8 @@ WITH found AS (
     DELETE FROM moves WHERE contact IN (SELECT id FROM found)
 ), marked AS (
     INSERT INTO expired (id, tenant) SELECT id, tenant FROM found ON CONFLICT DO NOTHING
-)";
-    announcing(announces, statement, "found")
-}
+)"
+);
 
 /// Moves whose contact does not exist: a recursive query that reads one row of the index for each contact.
 pub(super) const ORPHANED_MOVES: &str = "
@@ -356,8 +356,9 @@ SELECT count(*), coalesce(sum(bytes), 0)::bigint,
 FROM jobs WHERE tenant = $1";
 
 /// Makes a job with its chunks, and keeps the receipt.
-pub(super) fn create_job(announces: bool) -> String {
-    let statement = "
+pub(super) const CREATE_JOB: &str = announcing!(
+    "found",
+    "
 WITH found AS (
     INSERT INTO jobs (id, tenant, created_at, created_ns, points, chunk, done, failed, bytes, cost, request)
     VALUES ($1, $2, $3, $4, $5, $6, 0, 0, $7, $8, $9) RETURNING id
@@ -370,9 +371,8 @@ WITH found AS (
     FROM unnest($11::uuid[], $12::text[], $13::bytea[], $14::uuid[], $15::bigint[], $16::bytea[])
         AS receipt (contact, key, fingerprint, created, sequence, body)
     JOIN found ON found.id = receipt.contact
-)";
-    announcing(announces, statement, "found")
-}
+)"
+);
 
 pub(super) const JOB: &str = "
 SELECT id, tenant, created_at, created_ns, finished_at, error, points, chunk, done, failed, bytes, cost
@@ -419,10 +419,10 @@ WITH held AS (
 }
 
 /// Stores the result of a chunk that has none, and counts it.
-pub(super) fn save_chunk(announces: bool) -> String {
-    let statement = concat!(
-        held_job!(),
-        ", saved AS (
+pub(super) const SAVE_CHUNK: &str = announcing!(
+    "saved",
+    held_job!(),
+    ", saved AS (
     UPDATE job_chunks SET content = $3, owner = NULL, leased_until = NULL FROM held
     WHERE job_chunks.job = held.id AND job_chunks.chunk = $2 AND job_chunks.content IS NULL
     RETURNING job_chunks.job AS id
@@ -431,38 +431,34 @@ pub(super) fn save_chunk(announces: bool) -> String {
         finished_at = CASE WHEN done + $4 = points THEN clock_timestamp() END
     FROM saved WHERE jobs.id = saved.id
 )"
-    );
-    announcing(announces, statement, "saved")
-}
+);
 
 /// Ends a job with an error, and deletes the chunks that have no result.
-pub(super) fn fail_job(announces: bool) -> String {
-    let statement = concat!(
-        held_job!(),
-        ", failed AS (
+pub(super) const FAIL_JOB: &str = announcing!(
+    "held",
+    held_job!(),
+    ", failed AS (
     UPDATE jobs SET finished_at = now(), error = $2 FROM held WHERE jobs.id = held.id
 ), dropped AS (
     DELETE FROM job_chunks USING held WHERE job_chunks.job = held.id AND job_chunks.content IS NULL
 )"
-    );
-    announcing(announces, statement, "held")
-}
+);
 
 pub(super) const CHUNKS: &str = "
 SELECT content FROM job_chunks WHERE job = $1 AND chunk >= $2 AND content IS NOT NULL ORDER BY chunk LIMIT $3";
 
 /// Deletes a job with its chunks. Returns, if it exists, whether it was free.
-pub(super) fn delete_job(announces: bool) -> String {
-    let statement = "
+pub(super) const DELETE_JOB: &str = announcing!(
+    "held",
+    "
 WITH held AS (
     SELECT id FROM jobs WHERE id = $1 FOR UPDATE SKIP LOCKED
 ), gone AS (
     DELETE FROM jobs USING held WHERE jobs.id = held.id
 ), found AS (
     SELECT held.id IS NOT NULL AS held FROM jobs LEFT JOIN held ON held.id = jobs.id WHERE jobs.id = $1
-)";
-    announcing(announces, statement, "held")
-}
+)"
+);
 
 /// Expired jobs, some at a time. What another replica is deleting is left to it.
 pub(super) const PURGE_JOBS: &str = "

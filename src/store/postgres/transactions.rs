@@ -79,8 +79,8 @@ impl ClientPool {
         }
     }
 
-    /// The columns of a receipt for a change of what has this identifier. Makes room for its key, if that is kept for a
-    /// request from long ago.
+    /// The columns of a receipt for a change of the contact or job with this identifier. Deletes an expired receipt
+    /// with the same key.
     pub(super) async fn free_key(&self, id: Uuid, receipt: Option<&Receipt>) -> Result<Receipts> {
         let mut receipts = Receipts::default();
         if let Some(receipt) = receipt {
@@ -99,10 +99,9 @@ impl ClientPool {
     }
 
     pub(super) async fn delete(&self, id: Uuid, expected: u64) -> Result<()> {
-        let (sent, statement) = (InDoubt::default(), sql::delete(self.announces));
-        let sequence = to_bigint(expected);
+        let (sent, sequence) = (InDoubt::default(), to_bigint(expected));
         let deleted = with_retries!(self, LONG_ANSWER, connection => async {
-            done_at(&sent.answered(long_rows(connection, &statement, &[&id, &sequence])).await?, expected)
+            done_at(&sent.answered(long_rows(connection, sql::DELETE, &[&id, &sequence])).await?, expected)
         });
         match deleted? {
             Err(StoreError::NotFound) if sent.get() => Ok(()),
@@ -184,7 +183,7 @@ impl ClientPool {
     }
 
     async fn purge_idle(&self, connection: &Object, which: &[Parameter<'_>]) -> Result<Vec<Uuid>, Fault> {
-        let gone = long_rows(connection, &sql::purge_idle(self.announces), which).await?;
+        let gone = long_rows(connection, sql::PURGE_IDLE, which).await?;
         Ok(gone.iter().map(|row| row.get(0)).collect())
     }
 }

@@ -65,7 +65,7 @@ pub(super) fn backup(path: &Path, copy: &Path, progress: impl FnMut(u64, u64) + 
     copied
 }
 
-/// The result of `work`, during which `progress` is told of the length of a file now and then.
+/// The result of `work`, during which `progress` receives the length of a file now and then.
 fn watched<T>(file: &File, whole: u64, mut progress: impl FnMut(u64, u64) + Send, work: impl FnOnce() -> T) -> T {
     thread::scope(|scope| {
         let (working, ended) = mpsc::channel::<()>();

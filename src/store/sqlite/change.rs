@@ -7,7 +7,7 @@ use jiff::Timestamp;
 use rusqlite::{Connection, params};
 use uuid::Uuid;
 
-use crate::store::jobs::QueueChange;
+use crate::store::job_store::QueueChange;
 use crate::store::rows::{RowReader as _, tenant};
 use crate::store::{EXPIRED_LIFETIME, RECEIPT_LIFETIME, Receipt, Record, Session, Snapshot, StoreError};
 
@@ -75,7 +75,7 @@ pub(super) enum Done {
 }
 
 impl Transaction<'_> {
-    /// Writes what is there already: a change like any other for the disk.
+    /// Writes a row again with its own values: for the disk, a change like any other.
     pub(super) fn probe(&self) -> Result<Done, Fault> {
         schema::mark(self.database, schema::IN_USE)?;
         Ok(Done::Made(0))

@@ -180,7 +180,7 @@ pub(super) fn clamped_nanoseconds(at: Timestamp) -> i64 {
     i64::try_from(at.as_nanosecond()).unwrap_or(if at < Timestamp::UNIX_EPOCH { i64::MIN } else { i64::MAX })
 }
 
-/// The time so long ago, likewise.
+/// The time so long ago; beyond the range of stored times, the end of it.
 pub(super) fn nanoseconds_ago(time: Duration) -> i64 {
     clamped_nanoseconds(Timestamp::now().checked_sub(time).unwrap_or(Timestamp::MIN))
 }

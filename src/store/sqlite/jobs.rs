@@ -8,7 +8,7 @@ use jiff::Timestamp;
 use rusqlite::{Connection, params};
 use uuid::Uuid;
 
-use crate::store::jobs::{
+use crate::store::job_store::{
     ChunkQueue, ChunkResult, Claim, JOB_LIFETIME, JOB_TIME_LIMIT, Job, JobLimits, JobStore, QueueChange,
 };
 use crate::store::rows::{self, RowReader as _};

@@ -30,7 +30,7 @@ use jiff::Timestamp;
 use tokio::sync::{mpsc, oneshot};
 use uuid::Uuid;
 
-use super::jobs::ChunkQueue;
+use super::job_store::ChunkQueue;
 use super::probe::Probe;
 use super::{
     Changes, Commits, Extent, IsSmall, Page, Receipt, Record, Result, Session, Snapshot, Store, StoreError, Tenant,
@@ -49,7 +49,7 @@ use writer::{Request, Writer};
 const QUEUE: usize = 1_024;
 /// How long to wait for another program that has locked the file.
 const BUSY: Duration = Duration::from_secs(2);
-/// The same once that was in vain: until the lock is gone no request waits for it.
+/// The same after one request has waited for nothing: until the lock is released no request waits for it.
 const STILL_BUSY: Duration = Duration::from_millis(50);
 /// Sessions that expire in one transaction.
 const EXPIRE_AT_ONCE: usize = 200;

@@ -32,7 +32,7 @@ pub(super) struct Readers {
     idle: Arc<Idle>,
 }
 
-/// A search that somebody waits for. Without him it ends.
+/// A search that ends when its request is dropped.
 struct Search(Arc<Mutex<SearchState>>);
 
 // Locked for a moment. The handle is there while the search runs, so that nothing else on its connection is
@@ -98,7 +98,7 @@ impl Readers {
         }
     }
 
-    /// The same for a query that may read much. It is interrupted when nobody waits for it any more.
+    /// The same for a query that may read much. It is interrupted when its request is dropped.
     pub(super) async fn search<T: Send + 'static>(
         &self,
         question: impl FnOnce(&Connection) -> Result<T, Fault> + Send + 'static,

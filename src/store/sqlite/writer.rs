@@ -13,7 +13,7 @@ use rusqlite::config::DbConfig;
 use tokio::sync::mpsc::error::TryRecvError;
 use tokio::sync::{mpsc, oneshot};
 
-use crate::store::jobs::ChunkQueue;
+use crate::store::job_store::ChunkQueue;
 use crate::store::{Changes, Commits, Result, StoreError, batch};
 
 use super::change::{Change, Done, SequenceCache, Transaction};

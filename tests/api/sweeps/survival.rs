@@ -3,10 +3,9 @@
 use serde_json::{Value, json};
 use tempfile::tempdir;
 use tokio::io::AsyncWriteExt as _;
-use tokio_postgres::NoTls;
 
 use super::long;
-use crate::common::postgres::Cluster;
+use crate::common::postgres::{Cluster, connected};
 use crate::common::process::Process;
 use crate::common::raw::{Service, post};
 use crate::common::{PATIENCE, Server, run, until};
@@ -66,8 +65,7 @@ async fn a_job_goes_on_after_a_kill_with_what_it_had() {
 #[tokio::test(flavor = "multi_thread")]
 async fn replicas_share_a_job_and_one_that_is_killed_leaves_its_part_to_the_other() {
     let url = Cluster::shared().database().await;
-    let (client, connection) = tokio_postgres::connect(&url, NoTls).await.unwrap();
-    tokio::spawn(connection);
+    let client = connected(&url).await;
     let folder = tempdir().unwrap();
     let start = async |name: &str| {
         Process::start_with(&["--store", &url, "--job-lease", "2s"], &folder.path().join(name)).await
@@ -93,8 +91,7 @@ async fn replicas_share_a_job_and_one_that_is_killed_leaves_its_part_to_the_othe
 #[tokio::test(flavor = "multi_thread")]
 async fn a_replica_that_stops_gives_its_part_back_at_once() {
     let url = Cluster::shared().database().await;
-    let (client, connection) = tokio_postgres::connect(&url, NoTls).await.unwrap();
-    tokio::spawn(connection);
+    let client = connected(&url).await;
     let process = Process::start(&url).await;
     let path = Server::at(&process.base).start_job(&long(POINTS)).await;
     let held = async || {

@@ -1,16 +1,14 @@
 //! The numbers in the table of a sweep.
 
-use arrow_array::Array as _;
-use arrow_array::cast::AsArray as _;
-use arrow_array::types::Float64Type;
 use arrow_ipc::reader::StreamReader;
+use reqwest::Method;
 use serde_json::{Value, json};
-
 use stickslip_wire::SweepRequest;
 use stickslip_wire::client::{Options, Swept};
 
 use super::{base, small_job};
-use crate::common::{Server, ball, problem, run};
+use crate::common::tables::same_numbers;
+use crate::common::{Server, ball, problem, run, with};
 
 /// Sends each row's point to `/simulate` by itself, and compares to the last bit. Says how many numbers there were.
 async fn compare(server: &Server, sweep: &Value) -> (usize, usize) {
@@ -23,13 +21,7 @@ async fn compare(server: &Server, sweep: &Value) -> (usize, usize) {
     for row in 0..table["points"].as_u64().unwrap() as usize {
         let mut point = sweep["base"].clone();
         for axis in &axes {
-            let (parent, member) = axis.rsplit_once('/').unwrap();
-            let parent = point.pointer_mut(parent).unwrap();
-            let value = table["columns"][axis][row].clone();
-            match parent.as_array_mut() {
-                Some(elements) => elements[member.parse::<usize>().unwrap()] = value,
-                None => parent[member] = value,
-            }
+            point = with(point, axis, table["columns"][axis][row].clone());
         }
         let reply = server.post("/simulate", &point).await;
         assert_eq!(reply.status(), 200, "{point}");
@@ -175,39 +167,24 @@ async fn a_point_without_an_answer_is_a_row_without_numbers_and_is_listed_as_a_f
     assert_eq!(failures[0]["detail"], refusal.errors[0].detail);
 }
 
-/// The rows of a stream of Arrow's record batches, of which there are several.
-fn arrow(stream: &[u8], names: &[&str]) -> Vec<Vec<Option<f64>>> {
-    let batches: Vec<_> = StreamReader::try_new(stream, None).unwrap().map(Result::unwrap).collect();
-    assert!(batches.len() > 1);
-    let rows = batches.iter().flat_map(|batch| {
-        assert_eq!(batch.schema().fields().iter().map(|field| field.name()).collect::<Vec<_>>(), names);
-        let columns: Vec<_> = batch.columns().iter().map(|column| column.as_primitive::<Float64Type>()).collect();
-        (0..batch.num_rows())
-            .map(move |row| {
-                columns.iter().map(|column| column.is_valid(row).then(|| column.value(row))).collect::<Vec<_>>()
-            })
-            .collect::<Vec<_>>()
-    });
-    rows.collect()
-}
-
+/// With names for some of the columns, which change nothing but the headings.
 #[tokio::test]
 async fn every_format_holds_the_same_numbers_at_once_and_from_a_job() {
     let server = Server::start().await;
     // More rows than are written at a time, and some without numbers.
-    let sweep = json!({"base": base(), "axes": [
-        {"pointer": "/contact/friction", "linear": {"from": 0.1, "to": 0.5, "count": 300}},
-        {"pointer": "/path/falling_amplitude/reversals", "values": [1, 5]}
-    ], "outputs": ["/residual/max", "/residual/peaks/2/shear"]});
-    let names = ["/contact/friction", "/path/falling_amplitude/reversals", "/residual/max", "/residual/peaks/2/shear"];
-    let mut asked = sweep.clone();
-    asked["job"] = json!(true);
-    let job = server.start_job(&asked).await;
-    let columns = server.job_result(&job).await;
-    let table: Value = serde_json::from_str(&columns).unwrap();
-    let rows: Vec<Vec<Value>> =
-        (0..600).map(|row| names.iter().map(|name| table["columns"][name][row].clone()).collect()).collect();
-    assert!(rows.iter().any(|row| row[3].is_null()) && rows.iter().any(|row| row[3].is_number()));
+    let pointers =
+        ["/contact/friction", "/path/falling_amplitude/reversals", "/residual/max", "/residual/peaks/2/shear"];
+    let names = ["mu", pointers[1], "largest_shear", pointers[3]];
+    let plain = json!({"base": base(), "axes": [
+        {"pointer": pointers[0], "linear": {"from": 0.1, "to": 0.5, "count": 300}},
+        {"pointer": pointers[1], "values": [1, 5]}
+    ], "outputs": [pointers[2], pointers[3]]});
+    let sweep = with(plain.clone(), "/axes/0/name", json!(names[0]));
+    let sweep = with(sweep, "/outputs/0", json!({"pointer": pointers[2], "name": names[2]}));
+    let job = server.start_job(&with(sweep.clone(), "/job", json!(true))).await;
+    let table: Value = serde_json::from_str(&server.job_result(&job).await).unwrap();
+    let unnamed: Value = server.post("/sweep", &plain).await.json().await.unwrap();
+    let mut bodies = Vec::new();
     for (format, media_type) in [
         ("columns", "application/json"),
         ("rows", "application/vnd.stickslip.rows+json"),
@@ -218,85 +195,32 @@ async fn every_format_holds_the_same_numbers_at_once_and_from_a_job() {
         let stored = server.get(&format!("{job}/result?format={format}")).await;
         assert_eq!(stored.headers()["content-type"], media_type);
         let stored = stored.bytes().await.unwrap();
-        let accept = media_type.split(';').next().unwrap();
-        let at_once =
-            server.send(reqwest::Method::POST, "/sweep", Some(&sweep.to_string()), &[("accept", accept)]).await;
+        let accept = [("accept", media_type.split(';').next().unwrap())];
+        let at_once = server.send(Method::POST, "/sweep", Some(&sweep.to_string()), &accept).await;
         assert_eq!((at_once.status().as_u16(), &at_once.headers()["vary"]), (200, &"accept".parse().unwrap()));
         assert_eq!(at_once.bytes().await.unwrap(), stored, "{format}");
-        if format == "arrow" {
-            assert_eq!(
-                arrow(&stored, &names),
-                rows.iter().map(|row| row.iter().map(Value::as_f64).collect()).collect::<Vec<Vec<_>>>()
-            );
-            continue;
-        }
-        let stored = std::str::from_utf8(&stored).unwrap();
-        let object = |row: &Value| names.iter().map(|name| row[name].clone()).collect::<Vec<_>>();
-        let read: Vec<Vec<Value>> = match format {
-            "columns" => rows.clone(),
-            "rows" => serde_json::from_str::<Vec<Value>>(stored).unwrap().iter().map(object).collect(),
-            "ndjson" => stored.lines().map(|line| object(&serde_json::from_str(line).unwrap())).collect(),
-            _ => {
-                let (head, body) = stored.split_once('\n').unwrap();
-                assert_eq!(head, names.join(","));
-                let cell = |cell: &str| if cell.is_empty() { Value::Null } else { cell.parse().unwrap() };
-                body.lines().map(|line| line.split(',').map(cell).collect()).collect()
-            }
-        };
-        assert_eq!(read, rows, "{format}");
+        bodies.push(stored);
     }
-    for path in ["/sweep".to_owned(), format!("{job}/result")] {
-        let (method, body) = if path == "/sweep" {
-            (reqwest::Method::POST, Some(sweep.to_string()))
-        } else {
-            (reqwest::Method::GET, None)
-        };
-        let refusal = problem(server.send(method, &path, body.as_deref(), &[("accept", "image/png")]).await).await;
-        assert_eq!(refusal.code, "not_acceptable");
+    let (found, rows) = same_numbers(&bodies[1], &bodies[2], &bodies[3], &bodies[4]);
+    assert_eq!((found, rows.len()), (names.map(str::to_owned).to_vec(), 600));
+    assert!(StreamReader::try_new(&bodies[4][..], None).unwrap().count() > 1);
+    assert!(rows.iter().any(|row| row[3].is_null()) && rows.iter().any(|row| row[3].is_number()));
+    assert_eq!(table["columns"].as_object().unwrap().len(), names.len());
+    for (at, (name, pointer)) in names.into_iter().zip(pointers).enumerate() {
+        assert_eq!(table["columns"][name], rows.iter().map(|row| row[at].clone()).collect::<Value>());
+        assert_eq!(table["columns"][name], unnamed["columns"][pointer]);
     }
-}
-
-/// The same table twice, once with names: the same numbers under other headings, at once, from a job, and by the typed
-/// client.
-#[tokio::test]
-async fn named_columns_hold_the_numbers_of_their_pointers() {
-    let server = Server::start().await;
-    let pointers = ["/contact/friction", "/path/falling_amplitude/reversals", "/residual/max", "/residual/mean"];
-    let names = ["mu", "/path/falling_amplitude/reversals", "largest_shear", "/residual/mean"];
-    let plain = json!({"base": base(), "axes": [
-        {"pointer": pointers[0], "values": [0.1, 0.2, 0.3]}, {"pointer": pointers[1], "values": [1, 5]}
-    ], "outputs": [pointers[2], pointers[3]]});
-    let mut named = plain.clone();
-    named["axes"][0]["name"] = json!(names[0]);
-    named["outputs"][0] = json!({"pointer": pointers[2], "name": names[2]});
-    let table = |text: &str| serde_json::from_str::<Value>(text).unwrap();
-    let without = table(&server.post("/sweep", &plain).await.text().await.unwrap());
-    let mut asked = named.clone();
-    asked["job"] = json!(true);
-    let job = server.start_job(&asked).await;
-    for text in [server.post("/sweep", &named).await.text().await.unwrap(), server.job_result(&job).await] {
-        let with = table(&text);
-        assert_eq!(with["columns"].as_object().unwrap().len(), 4);
-        for (name, pointer) in names.into_iter().zip(pointers) {
-            assert_eq!(with["columns"][name], without["columns"][pointer], "{name}");
-            assert!(with["columns"][name][5].is_number());
-        }
+    for (method, path) in [(Method::POST, "/sweep"), (Method::GET, &*format!("{job}/result"))] {
+        let body = (method == Method::POST).then(|| sweep.to_string());
+        let refused = problem(server.send(method, path, body.as_deref(), &[("accept", "image/png")]).await).await;
+        assert_eq!(refused.code, "not_acceptable");
     }
-    let result = async |format: &str| server.get(&format!("{job}/result?format={format}")).await.bytes().await.unwrap();
-    assert!(result("csv").await.starts_with(format!("{}\n", names.join(",")).as_bytes()));
-    let first = result("ndjson").await;
-    let first: Value = serde_json::from_slice(first.split(|byte| *byte == b'\n').next().unwrap()).unwrap();
-    assert!(names.iter().all(|name| first[name].is_number()), "{first}");
-    let stream = result("arrow").await;
-    let schema = StreamReader::try_new(&stream[..], None).unwrap().schema();
-    assert_eq!(schema.fields().iter().map(|field| field.name().as_str()).collect::<Vec<_>>(), names);
-
-    let request: SweepRequest = serde_json::from_value(named.clone()).unwrap();
-    assert_eq!(serde_json::to_value(&request).unwrap()["outputs"], named["outputs"]);
-    let Swept::Table(table) = server.client.sweep(&request, &Options::default()).await.unwrap() else {
-        panic!("six points are no job")
+    let request: SweepRequest = serde_json::from_value(sweep.clone()).unwrap();
+    assert_eq!(serde_json::to_value(&request).unwrap()["outputs"], sweep["outputs"]);
+    let Swept::Table(typed) = server.client.sweep(&request, &Options::default()).await.unwrap() else {
+        panic!("few points are no job")
     };
-    assert_eq!(serde_json::to_value(&table.columns["largest_shear"]).unwrap(), without["columns"]["/residual/max"]);
+    assert_eq!(serde_json::to_value(&typed.columns["largest_shear"]).unwrap(), table["columns"]["largest_shear"]);
 }
 
 #[tokio::test]

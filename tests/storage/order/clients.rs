@@ -47,7 +47,7 @@ pub struct Recorder {
     pub done: AtomicU64,
     /// Contacts that all clients know, oldest first.
     contacts: Mutex<Vec<Uuid>>,
-    histories: Mutex<HashMap<Uuid, History<Contact>>>,
+    histories: Mutex<HashMap<Uuid, History>>,
     /// What forks were found to have made when they were new.
     pasts: Mutex<HashMap<Uuid, Arc<[Made]>>>,
 }
@@ -241,7 +241,7 @@ impl Recorder {
     }
 
     /// The histories, with what the forks have shown.
-    pub fn histories(&self) -> Vec<(Uuid, History<Contact>)> {
+    pub fn histories(&self) -> Vec<(Uuid, History)> {
         let pasts = self.pasts.lock().unwrap();
         let mut histories: Vec<_> = self.histories.lock().unwrap().drain().collect();
         for call in histories.iter_mut().flat_map(|(_, history)| &mut history.calls) {
@@ -264,7 +264,7 @@ impl Recorder {
     fn called(&self, id: Uuid, request: &Request) -> usize {
         let mut histories = self.histories.lock().unwrap();
         let calls = &mut histories.get_mut(&id).unwrap().calls;
-        calls.push(Call { operation: request.clone(), called: self.instant(), returned: None });
+        calls.push(Call { request: request.clone(), called: self.instant(), returned: None });
         calls.len() - 1
     }
 
@@ -279,13 +279,13 @@ impl Recorder {
 }
 
 /// A lost request whose key nobody has used again does the same without it, and there are fewer states to tell apart.
-fn forget_unused_keys(calls: &mut [Call<Request, Reply>]) {
+fn forget_unused_keys(calls: &mut [Call]) {
     let mut uses: HashMap<String, usize> = HashMap::new();
-    for key in calls.iter().filter_map(|call| call.operation.key.clone()) {
+    for key in calls.iter().filter_map(|call| call.request.key.clone()) {
         *uses.entry(key).or_default() += 1;
     }
     for call in calls.iter_mut().filter(|call| call.returned.is_none()) {
-        call.operation.key.take_if(|key| uses[key.as_str()] == 1);
+        call.request.key.take_if(|key| uses[key.as_str()] == 1);
     }
 }
 

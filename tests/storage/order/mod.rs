@@ -21,8 +21,7 @@ use crate::common::kill::Random;
 use crate::common::postgres::Cluster;
 use crate::common::process::Process;
 use clients::{Load, Recorder};
-use linearizability::History;
-use model::{Contact, Operation};
+use linearizability::{Call, History};
 use service::{Fault, Service};
 
 /// What is asked for between two starts of the processes.
@@ -132,8 +131,7 @@ async fn are_linearizable(store: &str, processes: usize, kinds: &[Accident]) {
         for (_, history) in recorder.histories() {
             figures.histories += 1;
             figures.operations += history.calls.len();
-            let unknown =
-                history.calls.iter().filter(|call| call.returned.is_none() && changes(&call.operation.operation));
+            let unknown = history.calls.iter().filter(|call| call.returned.is_none() && call.request.changes());
             figures.unknown_changes += unknown.count();
             if let Some(contradiction) = history.first_contradiction() {
                 println!("seed {seed}: no order explains\n{}", told(&history, contradiction));
@@ -149,19 +147,15 @@ async fn are_linearizable(store: &str, processes: usize, kinds: &[Accident]) {
     assert!(figures.unknown_changes > 0 && figures.freezes + figures.kills > 0, "nothing was lost: {figures:?}");
 }
 
-fn changes(operation: &Operation) -> bool {
-    !matches!(operation, Operation::Read | Operation::History { .. })
-}
-
 /// A history up to a reply, a line for each request.
-fn told(history: &History<Contact>, last: usize) -> String {
+fn told(history: &History, last: usize) -> String {
     let calls = &history.calls;
     let end = calls[last].returned.as_ref().map_or(u64::MAX, |(end, _)| *end);
-    let line = |(number, call): (usize, &linearizability::Call<_, _>)| {
+    let line = |(number, call): (usize, &Call)| {
         let mark = if number == last { ">>" } else { "  " };
         let reply = call.returned.as_ref().filter(|(at, _)| *at <= end);
         let returned = reply.map_or("lost".to_owned(), |(at, reply)| format!("{at}: {reply:?}"));
-        format!("{mark} {} {:?}\n      {returned}\n", call.called, call.operation)
+        format!("{mark} {} {:?}\n      {returned}\n", call.called, call.request)
     };
     let lines: String = calls.iter().enumerate().filter(|(_, call)| call.called < end).map(line).collect();
     format!("{:?}\n{lines}", history.initial)

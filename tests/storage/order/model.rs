@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use uuid::Uuid;
 
-use super::linearizability::{Call, Specification};
+use super::linearizability::Call;
 
 /// A move to a displacement, or by one, in units of which every sum is exact ([`super::service::UNIT`]).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -194,11 +194,9 @@ impl Reply {
     }
 }
 
-impl Specification for Contact {
-    type Operation = Request;
-    type Reply = Reply;
-
-    fn after(&self, request: &Request, seen: Option<&Reply>) -> Option<Contact> {
+impl Contact {
+    /// The contact after a request, if that may get this reply. An unknown reply may be any.
+    pub fn served(&self, request: &Request, seen: Option<&Reply>) -> Option<Contact> {
         let mut after = self.clone();
         let reply = after.serve(request);
         let mut new = (self.sequence() + 1..).zip(&after.moves[self.moves.len()..]);
@@ -213,11 +211,12 @@ impl Specification for Contact {
         Some(after)
     }
 
-    /// A move stays where it is for ever, so that one that a reply has shown elsewhere is not tried there.
-    fn with_replies(self, calls: &[Call<Request, Reply>]) -> Contact {
+    /// A contact that knows which moves the replies of its history show. A move stays where it is for ever, so that one
+    /// that a reply has shown elsewhere is not tried there.
+    pub fn with_replies(self, calls: &[Call]) -> Contact {
         let mut shown = BTreeMap::new();
-        for Call { operation, returned, .. } in calls {
-            match (&operation.operation, returned.as_ref().map(|(_, reply)| reply)) {
+        for Call { request, returned, .. } in calls {
+            match (&request.operation, returned.as_ref().map(|(_, reply)| reply)) {
                 (Operation::Advance(steps), Some(Reply::Advanced(last, displacements))) => {
                     let first = (last + 1).saturating_sub(steps.len() as u64);
                     let made =

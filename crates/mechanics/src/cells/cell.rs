@@ -65,7 +65,7 @@ pub(crate) struct Cell {
     integrals: Box<[f64]>,
     odd: bool,
     /// p in gamma ~ zeta^(p - 1) at b.
-    order: f64,
+    order: i32,
 }
 
 /// A part of a cell, between two values of zeta, m, with their difference.
@@ -117,7 +117,7 @@ impl Cell {
             powers: powers.into(),
             integrals,
             odd,
-            order: (first + 1) as f64,
+            order: first as i32 + 1,
         };
         cell.depth = cell.rise(cell.whole());
         cell
@@ -252,7 +252,7 @@ impl Cell {
 
     /// zeta, m, where g has risen by this much, m, from b on.
     pub(crate) fn zeta_of(&self, rise: f64) -> f64 {
-        let share = (rise / self.depth).min(1.0).powf(self.order.recip());
+        let share = root((rise / self.depth).min(1.0), self.order);
         within([0.0, self.high], share * self.high, |zeta| {
             let (reached, gamma) = self.rise_and_gamma(zeta);
             (reached - rise, gamma)
@@ -260,10 +260,10 @@ impl Cell {
     }
 
     /// The difference of the squares, m^2, between two places at these squares above b^2 that the rise `depth`, m,
-    /// separates.
-    pub(crate) fn gap(&self, low: f64, high: f64, depth: f64) -> f64 {
+    /// separates; by the rise alone where the squares are `rounded`.
+    pub(crate) fn gap(&self, low: f64, high: f64, depth: f64, rounded: bool) -> f64 {
         let (plain, top) = (high - low, high.sqrt());
-        if plain > APART * high {
+        if plain > APART * high && !rounded {
             return plain;
         }
         let steep = self.gamma(top);
@@ -319,8 +319,8 @@ impl Cell {
 
     /// zeta, m, where int x dg from b on is this much, m^2, of the `whole` of the cell.
     pub(crate) fn zeta_of_load(&self, load: f64, whole: f64) -> f64 {
-        let order = if self.radius > 0.0 { self.order } else { self.order + 1.0 };
-        let share = (load / whole).min(1.0).powf(order.recip());
+        let order = if self.radius > 0.0 { self.order } else { self.order + 1 };
+        let share = root((load / whole).min(1.0), order);
         within([0.0, self.high], share * self.high, |zeta| {
             (self.load_to(zeta) - load, self.radius_at(zeta) * self.gamma(zeta))
         })
@@ -419,6 +419,16 @@ impl Cell {
     /// Whether the series takes only odd powers.
     pub(crate) fn odd(&self) -> bool {
         self.odd
+    }
+}
+
+/// The root of this order.
+fn root(share: f64, order: i32) -> f64 {
+    match order {
+        1 => share,
+        2 => share.sqrt(),
+        3 => share.cbrt(),
+        _ => share.powf(f64::from(order).recip()),
     }
 }
 

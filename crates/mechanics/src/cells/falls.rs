@@ -33,23 +33,23 @@ pub(super) struct Steepness {
     rise: f64,
     /// How many cells there are in which q may fall or bend upward.
     others: usize,
+    /// And above how many kinks f' jumps.
+    jumps: usize,
 }
 
 impl Cells {
     /// What is known of the kernel up to `outer`, m, from r = `inner`, m, on.
     pub(crate) fn falls(&self, inner: f64, outer: f64) -> Falls {
         let (first, last) = (self.find(inner), self.find(outer));
-        // Where f' jumps beyond the inner radius q rises to infinity.
-        let beyond = |cell: &&Cell| cell.radius > inner || self.cells[first].radius < cell.radius;
-        if self.cells.is_empty() || self.cells[first..=last.max(first)].iter().filter(beyond).any(Cell::jumps) {
-            return Falls { least: f64::NEG_INFINITY, concavely: false };
-        }
+        let unknown = Falls { least: f64::NEG_INFINITY, concavely: false };
+        let Some(innermost) = self.cells.get(first) else { return unknown };
         let sums = self.steepness.get_or_init(|| {
             let mut sum = Steepness::default();
             let add = |cell: &Cell| {
                 let before = sum;
                 sum.rise += cell.steepest();
                 sum.others += usize::from(!cell.rises_concavely());
+                sum.jumps += usize::from(cell.jumps());
                 before
             };
             let mut sums: Vec<Steepness> = self.cells.iter().map(add).collect();
@@ -57,6 +57,10 @@ impl Cells {
             sums
         });
         let (start, end) = (sums[first], sums[last + 1]);
+        // Where f' jumps beyond the inner radius q rises to infinity.
+        if end.jumps > start.jumps + usize::from(innermost.jumps() && innermost.radius <= inner) {
+            return unknown;
+        }
         // 2 v int q' dt is v int (dq/dzeta) dzeta/sqrt(zeta^2 - kappa), summed over the cells.
         let rise = ((outer - inner) * (outer + inner)).sqrt() * LOGARITHM * (end.rise - start.rise);
         Falls {

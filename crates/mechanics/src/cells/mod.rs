@@ -230,10 +230,15 @@ impl Cells {
             }
             // Each side from its own distance to the border, which a difference of squares may have lost.
             let whole = cell.high * cell.high;
-            let inside = cell.gap(low, whole, (next.level - ring.inner.level).value().max(0.0));
-            return inside + (outer.square - next.square).value();
+            let inside = cell.gap(low, whole, (next.level - ring.inner.level).value().max(0.0), false);
+            let zeta = next.zeta_of((outer.level - next.level).value().max(0.0));
+            let beyond = if zeta < next.high { zeta * zeta } else { (outer.square - next.square).value() };
+            return inside + beyond;
         }
-        cell.gap(low, (outer.square - cell.square).value().max(0.0), depth)
+        let high = (outer.square - cell.square).value().max(0.0);
+        // Squares that were rounded with their radius have lost what the depth of a thin ring has.
+        let rounded = cell.kink <= 0.0 && high - low <= THIN * outer.square.value();
+        cell.gap(low, high, depth, rounded)
     }
 
     /// The kinks below a radius, m, above zero.

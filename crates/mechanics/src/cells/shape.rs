@@ -1,7 +1,7 @@
 //! A shape as its cells are made of it.
 
-use super::stages::Stages;
 use super::Cells;
+use super::stages::Stages;
 
 /// The uneven power from which on what is not analytic beside a lower power is rounding: the terms of a Chebyshev series
 /// of t^(n - 1) fall like j^(1 - 2 n).

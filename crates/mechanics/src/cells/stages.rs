@@ -6,8 +6,8 @@
 
 use std::sync::{Arc, OnceLock};
 
-use super::{Cells, grid};
 use super::shape::{Reach, Shape};
+use super::{Cells, grid};
 
 /// The octaves of a stage.
 const OCTAVES: i32 = 2;
@@ -74,9 +74,8 @@ impl Stages {
         match reach {
             Reach::Radius(radius) => self.stage(shape, number(radius).min(last), keep_going),
             Reach::Level(level) => {
-                let serves = |stage: &&Stage| {
-                    stage.levels.0 <= level && (level < stage.levels.1 || stage.number == last)
-                };
+                let serves =
+                    |stage: &&Stage| stage.levels.0 <= level && (level < stage.levels.1 || stage.number == last);
                 if let Some(stage) = self.built().find(serves) {
                     return Some(&stage.cells);
                 }
@@ -106,7 +105,8 @@ impl Stages {
         }
         let (low, high) = (start(number), start(number + 1).min(shape.end().map_or(f64::INFINITY, |end| end.radius)));
         let levels = (shape.level(low), shape.level(high));
-        let stage = Stage { number, levels, cells: grid::cells(shape, (low, high), keep_going)?, next: OnceLock::new() };
+        let stage =
+            Stage { number, levels, cells: grid::cells(shape, (low, high), keep_going)?, next: OnceLock::new() };
         let mut place = &*self.0;
         let mut stage = Box::new(stage);
         // Another thread may have put one there in the meantime, even the same.

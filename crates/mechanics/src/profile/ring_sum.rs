@@ -1,9 +1,9 @@
 //! Weighted sums of the kernels of adjoining rings: in closed form for a ball, by its cells for every other profile.
 
 use super::{Point, Profile, Ring, Span, Sphere, StressRadius};
+use crate::cells::Cells;
 #[cfg(test)]
 use crate::cells::call_count;
-use crate::cells::Cells;
 use crate::cells::displacement::displacements;
 use crate::cells::field::{SumAndSize, WeightedCells};
 use crate::cells::kernel::Kernel;

@@ -4,16 +4,24 @@
 //! rounded radii (Hertz 1881; Popov & Hess 2015). The forms are closed, so that no cells are made; as a part of a sum
 //! it is a shape like others.
 
+use std::ops::Range;
+
 use super::{DoubleDouble, Error, Family, Moments, Parameter, Point, Profile, Ring, Span, StressRadius, range};
 #[cfg(test)]
 use crate::cells::call_count;
 use crate::cells::field::SumAndSize;
+use crate::cells::kernel::Kernel;
 use crate::cells::shape::{End, Kink, Powers, Shape};
+use crate::cells::sources::Sources;
 use crate::cells::stages::Stages;
+use crate::numerics::cluster_tree::{Cluster, ClusterTree};
 use crate::numerics::gauss::TWELVE_POINTS;
 
 /// Radii that are summed for side by side.
 const LANES: usize = 8;
+/// From so many rings and radii on they are summed by clusters, the smallest of so many rings.
+const MANY: (usize, usize) = (128, 48);
+const CLUSTER: usize = 12;
 /// Squares of radii that differ by less, over that of the outer one, have lost digits that the depth of their ring has.
 const THIN: f64 = 1e-3;
 
@@ -119,52 +127,24 @@ impl Sphere {
     /// The sums of the kernels, or of their derivatives with respect to r^2, of weighted rings from the centre outward,
     /// at radii in rising order.
     pub(super) fn sums<const SLOPE: bool>(&self, rings: &[(Ring, f64)], radii: &[StressRadius]) -> Vec<SumAndSize> {
-        let Some((outermost, _)) = rings.last() else { return vec![(0.0, 0.0); radii.len()] };
-        let ends: Vec<BallRing> = rings.iter().rev().map(|(ring, weight)| self.ball_ring(ring, *weight)).collect();
-        let edge = outermost.outer.square.parts();
-        let unit = 2.0 / self.curvature_radius;
-        let mut sums = Vec::with_capacity(radii.len());
-        for radii in radii.chunks(LANES) {
-            let square: [_; LANES] = std::array::from_fn(|lane| radii[lane.min(radii.len() - 1)].square.parts());
-            let least = square[0].0;
-            let excess = |end: (f64, f64)| square.map(|(high, low)| (end.0 - high) + (end.1 - low));
-            let (mut sum, mut size) = ([0.0; LANES], [0.0; LANES]);
-            let mut v_high = excess(edge).map(root_of);
-            for ring in &ends {
-                #[cfg(test)]
-                call_count::add(|calls| if SLOPE { &mut calls.kernel_slope } else { &mut calls.kernel });
-                let below = excess(ring.end);
-                let v_low = below.map(root_of);
-                if ring.thin {
-                    for lane in 0..LANES {
-                        if below[lane] > -0.5 * ring.gap {
-                            v_high[lane] = root_of(below[lane] + ring.gap);
-                        }
-                    }
-                }
-                for lane in 0..LANES {
-                    let gap = if below[lane] > 0.0 { ring.gap } else { v_high[lane] * v_high[lane] };
-                    let kernel =
-                        if v_high[lane] > 0.0 { difference::<SLOPE>(v_low[lane], v_high[lane], gap) } else { 0.0 };
-                    sum[lane] += ring.weight * kernel;
-                    if SLOPE {
-                        size[lane] += (ring.weight * kernel).abs();
-                    }
-                }
-                v_high = v_low;
-                if ring.end.0 < least {
-                    break;
-                }
-            }
-            sums.extend((0..radii.len()).map(|lane| (unit * sum[lane], unit * size[lane])));
+        let mut sums = vec![(0.0, 0.0); radii.len()];
+        let Some((outermost, _)) = rings.last() else { return sums };
+        let ends = rings.iter().rev().map(|(ring, weight)| self.ball_ring(ring, *weight)).collect();
+        let inward = InwardRings { edge: outermost.outer.square, rings: ends };
+        if rings.len() >= MANY.0 && radii.len() >= MANY.1 {
+            let tree = inward.clusters();
+            tree.root().into_iter().for_each(|root| inward.visit::<SLOPE>(&tree, root, radii, &mut sums));
+        } else {
+            inward.add::<SLOPE>(0..rings.len(), radii, &mut sums);
         }
-        sums
+        let unit = 2.0 / self.curvature_radius;
+        sums.into_iter().map(|(sum, size)| (unit * sum, unit * size)).collect()
     }
 
     fn ball_ring(&self, ring: &Ring, weight: f64) -> BallRing {
         let plain = (ring.outer.square - ring.inner.square).value();
         let thin = plain <= THIN * ring.outer.square.value();
-        BallRing { end: ring.inner.square.parts(), gap: if thin { self.gap(ring) } else { plain }, thin, weight }
+        BallRing { end: ring.inner.square, gap: if thin { self.gap(ring) } else { plain }, thin, weight }
     }
 
     /// int (y_outer - g) dx/sqrt(r^2 - x^2), m, over the radii x of a ring below r: over the angle whose sine is x/r.
@@ -185,14 +165,117 @@ impl Sphere {
     }
 }
 
-/// A ring by its inner end, whose square, m^2, is given in both parts.
+/// A ring by the square of its inner end, m^2.
 struct BallRing {
-    end: (f64, f64),
+    end: DoubleDouble,
     /// Difference of the squares, m^2.
     gap: f64,
     /// Whether that has digits that the squares have lost.
     thin: bool,
     weight: f64,
+}
+
+/// Rings from the edge, whose square is given, m^2, inward.
+struct InwardRings {
+    edge: DoubleDouble,
+    rings: Vec<BallRing>,
+}
+
+impl InwardRings {
+    /// The square where the rings from this one on begin.
+    fn outer(&self, first: usize) -> DoubleDouble {
+        first.checked_sub(1).map_or(self.edge, |outer| self.rings[outer].end)
+    }
+
+    /// Adds R/2 times what some rings do at radii in rising order.
+    fn add<const SLOPE: bool>(&self, some: Range<usize>, radii: &[StressRadius], sums: &mut [SumAndSize]) {
+        let edge = self.outer(some.start).parts();
+        for (radii, sums) in radii.chunks(LANES).zip(sums.chunks_mut(LANES)) {
+            // Lanes left over repeat the last.
+            let square: [_; LANES] = std::array::from_fn(|lane| radii[lane.min(radii.len() - 1)].square.parts());
+            let excess = |end: (f64, f64)| square.map(|(high, low)| (end.0 - high) + (end.1 - low));
+            let (mut sum, mut size) = ([0.0; LANES], [0.0; LANES]);
+            let mut v_high = excess(edge).map(root_of);
+            for ring in &self.rings[some.clone()] {
+                #[cfg(test)]
+                call_count::add(|calls| if SLOPE { &mut calls.kernel_slope } else { &mut calls.kernel });
+                let end = ring.end.parts();
+                let below = excess(end);
+                let v_low = below.map(root_of);
+                if ring.thin {
+                    for lane in 0..LANES {
+                        if below[lane] > -0.5 * ring.gap {
+                            v_high[lane] = root_of(below[lane] + ring.gap);
+                        }
+                    }
+                }
+                for lane in 0..LANES {
+                    let gap = if below[lane] > 0.0 { ring.gap } else { v_high[lane] * v_high[lane] };
+                    let kernel = difference::<SLOPE>(v_low[lane], v_high[lane], gap);
+                    let term = if v_high[lane] > 0.0 { ring.weight * kernel } else { 0.0 };
+                    sum[lane] += term;
+                    if SLOPE {
+                        size[lane] += term.abs();
+                    }
+                }
+                v_high = v_low;
+                if end.0 < square[0].0 {
+                    break;
+                }
+            }
+            for (lane, total) in sums.iter_mut().enumerate() {
+                *total = (total.0 + sum[lane], total.1 + size[lane]);
+            }
+        }
+    }
+
+    /// Clusters of the rings: over x^2 each has a constant density of sources, whose moments a rule of twelve points
+    /// gives exactly.
+    fn clusters(&self) -> ClusterTree<Sources> {
+        ClusterTree::new(self.rings.len(), CLUSTER, |items, halves: Option<[&Sources; 2]>| {
+            let rings = &self.rings[items.clone()];
+            let width = rings.iter().map(|ring| ring.gap).sum();
+            let (mut sources, mut start) = (Sources::empty(rings[rings.len() - 1].end, width), 0.0);
+            if let Some([outer, inner]) = halves {
+                sources.add_beyond(0.0, inner, 1.0);
+                sources.add_beyond(inner.width(), outer, 1.0);
+                return sources;
+            }
+            for ring in rings.iter().rev() {
+                let places = TWELVE_POINTS.map(|(share, _)| start + ring.gap * share);
+                sources
+                    .beyond
+                    .add_sources(&places, &TWELVE_POINTS.map(|(_, part)| 0.5 * ring.weight * ring.gap * part));
+                start += ring.gap;
+            }
+            sources
+        })
+    }
+
+    /// Adds R/2 times what a cluster does at radii in rising order.
+    fn visit<const SLOPE: bool>(
+        &self,
+        tree: &ClusterTree<Sources>,
+        number: usize,
+        radii: &[StressRadius],
+        sums: &mut [SumAndSize],
+    ) {
+        let (Cluster { items, sources, halves }, kernel) =
+            (tree.cluster(number), if SLOPE { Kernel::RootSlope } else { Kernel::Root });
+        let outer = self.outer(items.start);
+        let met = radii.partition_point(|at| at.square < outer);
+        let far = radii[..met].partition_point(|at| kernel.is_far(sources, at.square));
+        for (at, sum) in radii[..far].iter().zip(&mut *sums) {
+            let [term] = kernel.far(sources, [at.square]);
+            *sum = (sum.0 + term, sum.1 + term.abs());
+        }
+        let (radii, sums) = (&radii[far..met], &mut sums[far..met]);
+        match halves {
+            _ if radii.is_empty() => {}
+            Some(halves) => halves.iter().for_each(|&half| self.visit::<SLOPE>(tree, half, radii, sums)),
+            None => self.add::<SLOPE>(items.clone(), radii, sums),
+        }
+    }
 }
 
 /// The difference of two roots, given that of their squares; or its derivative with respect to r^2, from the right where

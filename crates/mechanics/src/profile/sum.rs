@@ -68,7 +68,9 @@ impl Sum {
     /// The tables whose g falls before their end.
     fn falling_tables(&self) -> impl Iterator<Item = &Tabulated> {
         self.parts.iter().filter_map(|part| match part {
-            Profile::Tabulated(table) => Some(table).filter(|table| table.falls().is_some_and(|at| at < table.known_to())),
+            Profile::Tabulated(table) => {
+                Some(table).filter(|table| table.falls().is_some_and(|at| at < table.known_to()))
+            }
             _ => None,
         })
     }
@@ -93,9 +95,11 @@ impl Sum {
             self.falling_tables().flat_map(Tabulated::slope_check_radii).filter(|&radius| radius < end).collect();
         samples.sort_by(f64::total_cmp);
         let falls = |x: f64| {
-            let (slope, sizes) = self.parts.iter().map(|part| part.slope(x)).fold((0.0, 0.0), |(slope, sizes), part| {
-                (slope + part, sizes + part.abs())
-            });
+            let (slope, sizes) = self
+                .parts
+                .iter()
+                .map(|part| part.slope(x))
+                .fold((0.0, 0.0), |(slope, sizes), part| (slope + part, sizes + part.abs()));
             // Parts that cancel leave their rounding.
             slope < -ROUNDING_OF_SLOPE * sizes
         };

@@ -11,13 +11,17 @@ mod branch_and_bound;
 mod design;
 mod end_constraint;
 mod equal_peak_measure;
+mod fewest;
 mod from_any_state;
 mod minimax;
 mod robustness;
+mod spread;
 
 pub use bound::lower_bound;
 pub use design::{AmplitudeLaw, Design, EvaluationRange, FirstMove, PathEnd, PathStart, design};
+pub use fewest::{Fewest, fewest};
 pub use robustness::{ExecutionErrors, trials};
+pub use spread::Spread;
 
 use end_constraint::Equations;
 use equal_peak_measure::EqualPeakMeasure;

@@ -40,8 +40,8 @@ pub struct Options {
     pub repetition_time: Duration,
     /// About how long the report may take; solvers that would take longer are listed as missing.
     pub budget: Option<Duration>,
-    /// The version of the compiler that built this, for the description of the machine.
-    pub compiler: &'static str,
+    /// The version of the compiler, for the description of the machine.
+    pub compiler: String,
     /// The Python that runs the external solvers, if they are wanted.
     pub python: Option<PathBuf>,
 }
@@ -114,7 +114,7 @@ pub struct Report {
 pub fn measure(options: &Options, mut measured: impl FnMut(&str)) -> io::Result<Report> {
     let begin = Instant::now();
     let mut report = Report {
-        machine: output::describe_machine(options.compiler),
+        machine: output::describe_machine(&options.compiler),
         external_solvers: Vec::new(),
         seconds: 0.0,
         rows: Vec::new(),

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use std::path::Path;
 use std::{fs, io};
 
-use crate::plot::{Curve, Picture as _, Plot};
+use stickslip_plot::{Curve, Picture as _, Plot};
 
 use super::{Report, Row};
 

@@ -3,10 +3,10 @@
 
 use super::POINTS;
 use super::contact::{ball, small_contact};
-use crate::plot::{Curve, Plot};
 use stickslip_mechanics::cycle::SteadyCycle;
 use stickslip_mechanics::profile::{Cone, TruncatedSphere};
 use stickslip_mechanics::{Error, Profile};
+use stickslip_plot::{Curve, Plot};
 
 /// The largest amplitude over that of gross slip.
 const LARGEST: f64 = 1.6;

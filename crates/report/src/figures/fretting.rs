@@ -2,10 +2,10 @@
 //! slip.
 
 use super::contact::{ball, small_contact, to};
-use crate::plot::{Axis, ContactEdge, Peak, Section};
 use stickslip_mechanics::Error;
 use stickslip_mechanics::fatigue::{Criterion, Cycle};
 use stickslip_mechanics::subsurface::Side;
+use stickslip_plot::{Axis, ContactEdge, Peak, Section};
 
 /// Amplitudes over that of gross slip.
 const AMPLITUDES: [(&str, f64); 2] = [

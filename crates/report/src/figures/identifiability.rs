@@ -3,9 +3,9 @@
 
 use super::Failure;
 use super::contact::{ball_under_load, to};
-use crate::plot::{Curve, Plot};
 use stickslip_measured::loops::{self, Known, Noise, Parameter, Record, Start, Task};
 use stickslip_mechanics::{Contact, Error};
+use stickslip_plot::{Curve, Plot};
 
 /// Amplitudes of the contact over the displacement of gross slip.
 const AMPLITUDES: [f64; 13] = [0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.1, 1.3, 1.6, 2.0, 2.5, 3.0];

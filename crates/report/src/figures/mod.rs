@@ -17,9 +17,9 @@ use std::fs;
 use std::io;
 use std::path::Path;
 
-use crate::plot::{Colour, Curve, Drawing, Picture as _, Plot, Section};
 use stickslip_mechanics::protocol::falling_amplitude;
 use stickslip_mechanics::{Contact, Error, Residual, State};
+use stickslip_plot::{Colour, Curve, Drawing, Picture as _, Plot, Section};
 
 const REVERSALS: usize = 20;
 /// Radii of a curve, beside its kinks.
@@ -229,9 +229,9 @@ fn csv(figure: &Drawing) -> String {
 mod tests {
     use std::path::Path;
 
-    use crate::plot::Picture as _;
+    use stickslip_plot::Picture as _;
 
-    /// All but those of protocols, which take long. `cargo run --release -- figures --out docs/figures` draws them
+    /// All but those of protocols, which take long. `cargo run --release -p stickslip-report -- figures` draws them
     /// anew.
     #[test]
     fn the_figures_of_the_documentation_are_those_that_are_drawn() {

@@ -2,10 +2,10 @@
 
 use super::contact::{ball, small_contact};
 use super::shear_curve;
-use crate::plot::{Curve, Plot};
 use stickslip_mechanics::profile::PowerLaw;
 use stickslip_mechanics::protocol::{AmplitudeLaw, Design, ExecutionErrors, PathEnd, PathStart, design, trials};
 use stickslip_mechanics::{Contact, Error, Profile};
+use stickslip_plot::{Curve, Plot};
 
 const KINDS: [(AmplitudeLaw, &str); 3] =
     [(AmplitudeLaw::Linear, "linear"), (AmplitudeLaw::EqualPeaks, "equal peaks"), (AmplitudeLaw::Minimax, "minimax")];

@@ -1,9 +1,9 @@
 //! Figure 14: the hysteresis loop of a rough contact beside that of a ball of the same load and stiffness.
 
 use super::contact::{contact_of, to};
-use crate::plot::{Curve, Plot};
 use stickslip_mechanics::profile::Asperities;
 use stickslip_mechanics::{Contact, Error, Preload, Profile, Sphere};
+use stickslip_plot::{Curve, Plot};
 
 /// Asperities, and the scale of their exponential heights, m.
 const COUNT: u32 = 100_000;

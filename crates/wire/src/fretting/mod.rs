@@ -2,7 +2,7 @@
 
 mod reply;
 
-pub use reply::{FrettingReply, Instant, Largest, Rating, StressPath};
+pub use reply::{CRITERIA, FrettingReply, Instant, Largest, Rating, StressPath};
 
 use std::ops::RangeInclusive;
 
@@ -257,8 +257,10 @@ impl Criteria {
         faults: &mut Faults,
     ) -> [Option<(Measure, Option<f64>)>; 8] {
         if *self == Criteria::default() {
-            let names = "`crossland`, `dang_van`, `findley`, `swt`, `fatemi_socie`, `ruiz`, `friction_work`";
-            faults.add(at, format_args!("empty: give at least one of {names}"));
+            // Ruiz's second parameter comes with the first.
+            let names = CRITERIA.into_iter().filter(|(name, ..)| *name != "ruiz_tension");
+            let names: Vec<String> = names.map(|(name, ..)| format!("`{name}`")).collect();
+            faults.add(at, format_args!("empty: give at least one of {}", names.join(", ")));
         }
         let modulus = |given: Option<f64>, name: &str, faults: &mut Faults| {
             let place = at.member(name);

@@ -102,20 +102,26 @@ pub struct StressPath: Default {
 }
 }
 
+/// The criteria in their order: the name in requests and replies, the unit, and what a picture calls it.
+pub const CRITERIA: [(&str, &str, &str); 8] = [
+    ("crossland", "Pa", "Crossland"),
+    ("dang_van", "Pa", "Dang Van"),
+    ("findley", "Pa", "Findley"),
+    ("swt", "Pa", "Smith-Watson-Topper"),
+    ("fatemi_socie", "1", "Fatemi-Socie"),
+    ("ruiz", "N/m", "Ruiz, shear stress times slip"),
+    ("ruiz_tension", "N²/m³", "Ruiz, with tension"),
+    ("friction_work", "J/m²", "Friction work per cycle"),
+];
+
 impl FrettingReply {
     /// The criteria that there are, with names and units.
     pub fn ratings(&self) -> impl Iterator<Item = (&'static str, &'static str, &Rating)> {
-        [
-            ("crossland", "Pa", &self.crossland),
-            ("dang_van", "Pa", &self.dang_van),
-            ("findley", "Pa", &self.findley),
-            ("swt", "Pa", &self.swt),
-            ("fatemi_socie", "1", &self.fatemi_socie),
-            ("ruiz", "N/m", &self.ruiz),
-            ("ruiz_tension", "N²/m³", &self.ruiz_tension),
-            ("friction_work", "J/m²", &self.friction_work),
-        ]
-        .into_iter()
-        .filter_map(|(name, unit, rating)| Some((name, unit, rating.as_ref()?)))
+        let FrettingReply {
+            crossland, dang_van, findley, swt, fatemi_socie, ruiz, ruiz_tension, friction_work, ..
+        } = self;
+        let ratings = [crossland, dang_van, findley, swt, fatemi_socie, ruiz, ruiz_tension, friction_work];
+        let named = CRITERIA.into_iter().zip(ratings);
+        named.filter_map(|((name, unit, _), rating)| Some((name, unit, rating.as_ref()?)))
     }
 }

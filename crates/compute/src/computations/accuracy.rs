@@ -1,0 +1,233 @@
+//! `accuracy`: the time and the error of each solver on a path, compared with a reference.
+//!
+//! Every solver runs exactly as in [`simulate`](crate::simulation::simulate), so that its numbers are those of a
+//! simulation. Where all moves of the path have an exact solution, the reference is the exact solver. Where some are
+//! curved, it is the exact solver again, held to a smaller tolerance.
+
+use std::time::{Duration, Instant};
+
+use serde_json::json;
+
+use stickslip_mechanics::{Contact, ErrorEstimate};
+use stickslip_wire::reply::finite;
+use stickslip_wire::{
+    AccuracyReply, AccuracyRequest, AccuracyRow, Comparison, ContactDefinition, Fault, Field, Points, Protocol,
+    Reference, Sampling, Solver as Named, SolverKind, Steps, limits,
+};
+
+use super::{About, Computation, Example, Plain, Route, example, example_contact};
+use crate::simulation::bytes::{SPRING, of_moves, of_shape, of_stress};
+use crate::simulation::cost::{Work, of_springs};
+use crate::simulation::{Cause, Failure, Solver, contact, equal_peaks, follow, spring_foundation, stresses};
+use crate::{Nanoseconds, Stop};
+
+/// The reference is held to this part of the tolerance: some two and a half times the chords, with a
+/// sixteenth of the error of their forces and a quarter of that of their stresses.
+const REFERENCE_TOLERANCE: f64 = 1.0 / 16.0;
+/// A solver runs again, for the median of the times, until its runs together have taken this long.
+const REPEAT_UNTIL: Duration = Duration::from_millis(5);
+/// The most runs of one solver.
+const MAX_RUNS: usize = 9;
+
+/// Why the reference is exact enough.
+const REASON_EXACT: &str =
+    "every move of this path has an exact solution: what is left is rounding, or the points of a table";
+const REASON_REFINED: &str = "the exact solver, held to a sixteenth of the tolerance where moves are curved";
+const REASON_UNREFINED: &str =
+    "the exact solver, held to the tolerance where moves are curved: a smaller one needs too long a slip history";
+
+/// The result of one solver: forces, N, after each move, and shear stresses, Pa, at the end.
+struct Answer {
+    forces: Vec<f64>,
+    shears: Vec<Option<f64>>,
+    estimate: ErrorEstimate,
+    time: f64,
+}
+
+/// The input of all solvers.
+struct Task<'a> {
+    comparison: &'a Comparison,
+    protocol: Option<&'a Protocol>,
+    sampling: &'a Sampling,
+    stop: &'a dyn Stop,
+}
+
+/// The same path with several solvers, each compared with a reference.
+pub struct CompareSolvers;
+
+impl Computation for CompareSolvers {
+    const ABOUT: About = About {
+        name: "accuracy",
+        route: Some(Route { path: "/accuracy", operation: "compare_solvers", tag: "simulation" }),
+        title: "Compare solvers",
+        description: "Follows a path from the preloaded contact with each of the solvers, and compares the forces \
+                      along it and the shear stresses at its end with a reference: the exact solver, refined where \
+                      moves are curved. This shows what a coarser model would do to your own numbers. A solver that \
+                      cannot follow the path has the reason in its row. The springs of all solvers together, times \
+                      moves and stress points, have the limit of one simulation. Nothing is stored.",
+        reply: "The reference, and a row a solver",
+        ..About::DOCUMENT
+    };
+
+    type Request = AccuracyRequest;
+    type Outcome = Plain<AccuracyReply>;
+
+    fn examples() -> Vec<Example> {
+        vec![
+            example(
+                "as it is",
+                "A contact and a path, and the usual solvers",
+                json!({
+                    "contact": ContactDefinition::example(),
+                    "path": {"falling_amplitude": {"reversals": 20}}
+                }),
+            ),
+            example(
+                "own solvers",
+                "Two spring foundations, at given radii",
+                json!({
+                    "contact": example_contact(json!({"type": "cone", "slope": 0.05}), json!({"contact_radius": 1e-4})),
+                    "path": {"displacement": [1e-7, -1e-7, 0.0]},
+                    "stress": {"radii": [2e-5, 5e-5, 8e-5], "fields": ["shear"]},
+                    "solvers": ["exact", {"springs": {"count": 200}}, {"springs": {"count": 2000}}]
+                }),
+            ),
+        ]
+    }
+
+    /// One solver at a time, and a force a move of the reference and of that.
+    fn bytes(task: &Comparison) -> usize {
+        of_moves(&task.plan, Steps::Last)
+            + 2 * size_of::<f64>() * task.plan.length()
+            + 2 * of_stress(task.sampling.length())
+            + of_shape(&task.definition.profile)
+            + task.springs().max().unwrap_or(0) * SPRING
+    }
+
+    /// Each solver once, and the reference.
+    fn cost(task: &Comparison) -> Nanoseconds {
+        let (plan, radii) = (&task.plan, task.sampling.length());
+        let exact = Work { moves: plan.length(), curved: plan.curved(), radii, ..Work::default() };
+        let each = exact.cost(&task.setup.profile).saturating_mul(task.solvers.len() as u64 + 1);
+        let springs = task.springs().map(|springs| of_springs(springs, task.passes()));
+        springs.fold(each, Nanoseconds::saturating_add)
+    }
+
+    fn run(task: Comparison, stop: &dyn Stop) -> Result<Plain<AccuracyReply>, Failure> {
+        compare_solvers(&task, stop).map(Plain)
+    }
+}
+
+/// Runs every solver of a comparison.
+///
+/// # Errors
+/// [`Failure`] if the reference has no answer, or the client hung up. A solver that cannot follow the path is refused
+/// in its row.
+pub fn compare_solvers(comparison: &Comparison, stop: &dyn Stop) -> Result<AccuracyReply, Failure> {
+    let Comparison { setup, plan, tolerance, .. } = comparison;
+    let begin = Instant::now();
+    let start = contact(setup.clone(), "/contact")?;
+    let protocol = equal_peaks(plan, &start)?;
+    let follows = |tolerance: f64| -> Result<_, Failure> {
+        let (mut truth, mut load) = (start.clone(), start.normal_force());
+        let mut forces = Vec::with_capacity(plan.length());
+        follow(&mut truth, plan, protocol.as_ref(), tolerance, stop, |_, truth: &Contact| {
+            load = load.max(truth.normal_force());
+            forces.push(truth.force());
+        })?;
+        Ok((truth, forces, setup.friction * load))
+    };
+    let (followed, reason) = if plan.curved() == 0 {
+        (follows(*tolerance), REASON_EXACT)
+    } else {
+        match follows((REFERENCE_TOLERANCE * tolerance).max(*limits::TOLERANCE.start())) {
+            // More chords leave a deeper slip history.
+            Err(Failure { cause: Cause::MemoryFull { .. }, .. }) => (follows(*tolerance), REASON_UNREFINED),
+            refined => (refined, REASON_REFINED),
+        }
+    };
+    let (truth, forces, unit) = followed?;
+    let radii = comparison.sampling.radii(truth.contact_radius());
+    let sampling = Sampling { points: Points::Radii(radii), fields: vec![Field::Shear] };
+    let shears = stresses(&truth, &sampling, stop)?.shear.unwrap_or_default();
+    let pressure = truth.summary().unit_pressure();
+    let pressure = if pressure.is_finite() { pressure } else { 0.0 };
+    let estimate = truth.accuracy();
+    let reference = Reference {
+        solver: SolverKind::Exact,
+        reason: reason.to_owned(),
+        force_error: estimate.force_error,
+        stress_error: estimate.stress_error,
+        compute_time: begin.elapsed().as_secs_f64(),
+        force_unit: unit,
+        stress_unit: setup.friction * pressure,
+        radii: shears.iter().flatten().count(),
+    };
+    let truth = Answer { forces, shears, estimate, time: reference.compute_time };
+    let task = Task { comparison, protocol: protocol.as_ref(), sampling: &sampling, stop };
+    let rows = comparison.solvers.iter().map(|&solver| row(solver, &task, &truth, &reference));
+    let rows: Result<_, Failure> = rows.collect();
+    Ok(AccuracyReply { rows: rows?, reference })
+}
+
+fn row(solver: Named, task: &Task<'_>, truth: &Answer, reference: &Reference) -> Result<AccuracyRow, Failure> {
+    let Comparison { setup, plan, .. } = task.comparison;
+    let begin = Instant::now();
+    let found = match solver {
+        Named::Exact => answer(|| contact(setup.clone(), "/contact"), task),
+        Named::Springs(springs) => answer(|| spring_foundation(setup, plan, springs.count, task.stop), task),
+    };
+    let (found, refused) = match found {
+        Ok(found) => (Some(found), None),
+        Err(Failure { pointer, cause: Cause::Refused(error) }) => {
+            (None, Some(Fault { pointer, detail: error.to_string() }))
+        }
+        Err(failure) => return Err(failure),
+    };
+    let found = found.as_ref();
+    let force_error = |found: &Answer| {
+        let differences = found.forces.iter().zip(&truth.forces).map(|(found, truth)| (found - truth).abs());
+        relative(differences, reference.force_unit)
+    };
+    let stress_error = |found: &Answer| {
+        // Where the reference is infinite, nothing is a finite error.
+        let known = found.shears.iter().zip(&truth.shears).filter_map(|(found, truth)| Some((found, (*truth)?)));
+        let differences = known.map(|(found, truth)| found.map_or(f64::INFINITY, |found| (found - truth).abs()));
+        relative(differences, reference.stress_unit)
+    };
+    Ok(AccuracyRow {
+        solver,
+        force_error: found.and_then(force_error),
+        stress_error: found.and_then(stress_error),
+        estimated_force_error: found.and_then(|found| finite(found.estimate.force_error)),
+        estimated_stress_error: found.and_then(|found| finite(found.estimate.stress_error)),
+        compute_time: found.map_or_else(|| begin.elapsed().as_secs_f64(), |found| found.time),
+        refused,
+    })
+}
+
+/// The largest of the differences over a unit; zero where all are, whatever the unit.
+fn relative(differences: impl Iterator<Item = f64>, unit: f64) -> Option<f64> {
+    let largest = differences.fold(0.0, f64::max);
+    finite(if largest > 0.0 { largest / unit } else { 0.0 })
+}
+
+fn answer<S: Solver>(start: impl Fn() -> Result<S, Failure>, task: &Task<'_>) -> Result<Answer, Failure> {
+    let Comparison { plan, tolerance, .. } = task.comparison;
+    let (begin, mut times) = (Instant::now(), Vec::with_capacity(MAX_RUNS));
+    loop {
+        let run = Instant::now();
+        let mut solver = start()?;
+        let mut forces = Vec::with_capacity(plan.length());
+        let push = |_, solver: &S| forces.push(solver.state().force);
+        follow(&mut solver, plan, task.protocol, *tolerance, task.stop, push)?;
+        let shears = stresses(&solver, task.sampling, task.stop)?.shear.unwrap_or_default();
+        let estimate = solver.accuracy(&|| task.stop.check().is_ok());
+        task.stop.check()?;
+        times.push(run.elapsed().as_secs_f64());
+        if times.len() == MAX_RUNS || begin.elapsed() >= REPEAT_UNTIL {
+            times.sort_by(f64::total_cmp);
+            return Ok(Answer { forces, shears, estimate, time: times[times.len() / 2] });
+        }
+    }
+}

@@ -1,0 +1,244 @@
+//! `cycle`: the steady cycles of a contact at constant load, under a load that oscillates, or under many.
+
+mod map;
+mod steady;
+mod studies;
+
+use serde_json::json;
+
+use stickslip_mechanics::{Contact, Move, Profile, Tangential};
+use stickslip_plot::{Axis, Colour, Curve, Drawing, Panel, Plot};
+use stickslip_wire::cycle::CycleTask;
+use stickslip_wire::{ContactDefinition, CycleReply, CycleRequest, Harmonic, SteadyCycle};
+
+use super::{About, Computation, Example, OnContact, Outcome, Route, Shown, Task, example};
+use crate::formats::{Column, Table};
+use crate::simulation::bytes::{NUMBER, NUMBER_LENGTH, OBJECT, ROW, STATE_LENGTH, of_shape};
+use crate::simulation::cost::{RADIUS_COST, on_profile};
+use crate::simulation::{Failure, Timer, contact};
+use crate::{Nanoseconds, Stop};
+
+/// One steady cycle with its row as JSON.
+const CYCLE_COST: u64 = 2_000;
+/// The first harmonics of one cycle, and as much again for every eight orders.
+const HARMONICS_COST: u64 = 3_000;
+/// The same of a driven force or through a machine, where each node inverts the profile.
+const INVERTED_HARMONICS_COST: u64 = 20_000;
+/// The steady oscillation of a mass on a sphere at one frequency, some tenths of that of small oscillations or higher.
+const OSCILLATION_COST: u64 = 500_000;
+/// One cycle under a load that oscillates, which is stepped until three results agree.
+const STEPPED_CYCLE_COST: u64 = 15_000_000;
+/// The same driven by a force or through a machine, where what is left falls with the square of the step alone and each
+/// step searches for a force.
+const SEARCHED_CYCLE_COST: u64 = 100_000_000;
+/// Points of each branch of a steady loop in a plot.
+const BRANCH_POINTS: usize = 200;
+
+/// The steady cycles of a contact.
+pub struct Cycle;
+
+/// Steady cycles, and the contact at their load without its history.
+pub struct SteadyCycles {
+    contact: Contact,
+    reply: CycleReply,
+    task: CycleTask,
+}
+
+impl Computation for Cycle {
+    const ABOUT: About = About {
+        name: "cycle",
+        route: Some(Route { path: "/cycle", operation: "compute_steady_cycle", tag: "simulation" }),
+        title: "Compute steady cycles",
+        description: "Moves a contact back and forth at constant load until every cycle is as the one before, in \
+                      closed form: a displacement or a force that is a cosine, directly or through a machine of \
+                      finite stiffness. Returns work, stiffness, loss factor and slip for each amplitude and, if \
+                      asked for, the harmonics and the friction work per area, or the same cycles under many loads. \
+                      Nothing is stored.",
+        reply: "The cycles, one for each amplitude, under each load of a map",
+        shows: "The friction work per area is in `columns` alone.",
+        ..About::TABLE
+    };
+
+    type Request = CycleRequest;
+    type Outcome = SteadyCycles;
+
+    fn examples() -> Vec<Example> {
+        vec![
+            example(
+                "amplitudes",
+                "Displacement amplitudes, with the describing function",
+                json!({
+                    "contact": ContactDefinition::example(),
+                    "drive": {"displacement": [5e-8, 1e-7, 2e-7]},
+                    "harmonics": 1
+                }),
+            ),
+            example(
+                "machine",
+                "A force through a machine, with the friction work per area",
+                json!({
+                    "contact": ContactDefinition::example(),
+                    "drive": {"force": 2.0}, "machine": {"stiffness": 2e7},
+                    "work_density": {"points": 50}
+                }),
+            ),
+            example(
+                "map",
+                "A fretting map",
+                json!({
+                    "contact": ContactDefinition::example(), "drive": {"displacement": [1e-8, 3e-8, 1e-7, 3e-7]},
+                    "map": {"normal_force": {"from": 1.0, "to": 100.0, "count": 40}}
+                }),
+            ),
+        ]
+    }
+
+    fn bytes((definition, _, task): &Task<Self>) -> usize {
+        task.bytes() + of_shape(&definition.profile)
+    }
+
+    fn rows((.., task): &Task<Self>) -> (usize, usize) {
+        OnContact::rows(task)
+    }
+
+    fn cost((_, setup, task): &Task<Self>) -> Nanoseconds {
+        task.cost(&setup.profile, 0)
+    }
+
+    fn run((_, setup, task): Task<Self>, stop: &dyn Stop) -> Result<SteadyCycles, Failure> {
+        let timer = Timer::start(stop);
+        SteadyCycles::of(contact(setup, "/contact")?, task, timer, stop)
+    }
+}
+
+impl OnContact for CycleTask {
+    type Outcome = SteadyCycles;
+
+    fn bytes(&self) -> usize {
+        let curve = self.best_load.map_or(0, |study| study.points.unwrap_or(0));
+        self.rows() * (2 * OBJECT + self.harmonics * ROW + (self.radii() + curve) * 2 * NUMBER)
+            + frequencies(self) * 2 * OBJECT
+    }
+
+    fn rows(&self) -> (usize, usize) {
+        (CycleTask::rows(self), STATE_LENGTH + 2 * self.harmonics * 2 * NUMBER_LENGTH)
+    }
+
+    fn cost(&self, profile: &Profile, _: usize) -> Nanoseconds {
+        let inverted = self.is_force_driven() || self.stiffness.is_some();
+        let once = if inverted { INVERTED_HARMONICS_COST } else { HARMONICS_COST };
+        let harmonics = if self.harmonics > 0 { once * (1 + self.harmonics as u64 / 8) } else { 0 };
+        let each_stepped = if inverted { SEARCHED_CYCLE_COST } else { STEPPED_CYCLE_COST };
+        let stepped = if self.normal.is_some() { each_stepped } else { 0 };
+        // Some four hundred loads are compared.
+        let searched = self.best_load.map_or(0, |study| 400 + study.points.unwrap_or(0) as u64) * CYCLE_COST;
+        let each = CYCLE_COST + stepped + harmonics + searched + self.radii() as u64 * RADIUS_COST;
+        let response = OSCILLATION_COST * frequencies(self) as u64;
+        on_profile(profile, each.saturating_mul(self.rows() as u64).saturating_add(response), false)
+    }
+
+    fn run(self, contact: Contact, _: u64, stop: &dyn Stop) -> Result<SteadyCycles, Failure> {
+        SteadyCycles::of(contact.without_history(), self, Timer::start(stop), stop)
+    }
+}
+
+/// Frequencies of the oscillations of a mass.
+fn frequencies(task: &CycleTask) -> usize {
+    task.response.as_ref().map_or(0, |(asked, _)| asked.frequencies.as_ref().map_or(studies::FREQUENCIES, Vec::len))
+}
+
+impl SteadyCycles {
+    fn of(contact: Contact, task: CycleTask, timer: Timer<'_>, stop: &dyn Stop) -> Result<SteadyCycles, Failure> {
+        let reply = match task.map {
+            Some(map) => map::cycles(&contact, &task, map, timer, stop)?,
+            None => steady::steady_cycles(&contact, &task, timer, stop)?,
+        };
+        Ok(SteadyCycles { contact, reply, task })
+    }
+}
+
+impl Outcome for SteadyCycles {
+    type Reply = CycleReply;
+
+    fn reply(&self) -> &CycleReply {
+        &self.reply
+    }
+
+    /// A row for each amplitude, under each load of a map.
+    fn table(&self, _: &Shown) -> Option<Table<'_>> {
+        let (cycles, task) = (&self.reply.cycles, &self.task);
+        let column = |name, unit, of: fn(&SteadyCycle) -> f64| Column::floats(name, unit, move |row| of(&cycles[row]));
+        let mut columns = Vec::new();
+        if task.map.is_some() {
+            columns.push(Column::floats("normal_force", "N", |row| cycles[row].normal_force));
+            columns.push(Column::floats("gross_slip_displacement", "m", |row| cycles[row].gross_slip_displacement));
+        }
+        columns.push(column("displacement_amplitude", "m", |cycle| cycle.displacement_amplitude));
+        columns.push(column("force_amplitude", "N", |cycle| cycle.force_amplitude));
+        if task.stiffness.is_some() {
+            columns.push(Column::floats("machine_amplitude", "m", |row| cycles[row].machine_amplitude));
+        }
+        columns.extend([
+            column("dissipated_energy", "J", |cycle| cycle.dissipated_energy),
+            column("max_elastic_energy", "J", |cycle| cycle.max_elastic_energy),
+            column("secant_stiffness", "N/m", |cycle| cycle.secant_stiffness),
+            column("tangent_stiffness", "N/m", |cycle| cycle.tangent_stiffness),
+            Column::floats("loss_factor", "1", |row| cycles[row].loss_factor),
+            Column::floats("sliding_ratio", "1", |row| cycles[row].sliding_ratio),
+            column("stick_radius", "m", |cycle| cycle.stick_radius),
+            Column::words("regime", |row| cycles[row].regime.name()),
+        ]);
+        let unit = if task.is_force_driven() { "m" } else { "N" };
+        for index in 0..task.harmonics {
+            let part = |name: &str, of: fn(&Harmonic) -> f64| {
+                let value = move |row: usize| cycles[row].harmonics.as_deref()?.get(index).map(of);
+                Column::floats(&format!("{name}_{}", index + 1), unit, value)
+            };
+            columns.push(part("in_phase", |harmonic| harmonic.in_phase));
+            columns.push(part("quadrature", |harmonic| harmonic.quadrature));
+        }
+        Some(Table::flat(cycles.len(), columns))
+    }
+
+    fn picture(&self, _: &Shown) -> Option<Drawing> {
+        Some(Drawing::Plot(plot(&self.contact, &self.reply.cycles, &self.task)))
+    }
+}
+
+/// Loss factor and secant stiffness over the amplitude, or the loop if there is one amplitude at constant load, or the
+/// fretting map. `contact` is at the load of the cycles and has no history.
+fn plot(contact: &Contact, cycles: &[SteadyCycle], task: &CycleTask) -> Plot {
+    if task.map.is_some() {
+        return map::plot(cycles, task.drives().len());
+    }
+    if let ([only], None) = (cycles, task.normal) {
+        return steady_loop(contact, only);
+    }
+    let panel = |y, colour, of: fn(&SteadyCycle) -> f64| {
+        let mut points: Vec<_> = cycles.iter().map(|cycle| (cycle.displacement_amplitude, of(cycle))).collect();
+        points.sort_by(|one, other| one.0.total_cmp(&other.0));
+        Panel { y, curves: vec![Curve::line("", colour, points)] }
+    };
+    let loss =
+        panel(Axis { name: "loss factor", unit: None }, Colour::Red, |cycle| cycle.loss_factor.unwrap_or(f64::NAN));
+    let stiffness = panel(Axis::of("secant stiffness", "N/m"), Colour::Blue, |cycle| cycle.secant_stiffness);
+    Plot::new("Steady cycles", Axis::of("displacement amplitude U₀", "m"), vec![loss, stiffness])
+}
+
+/// The loop of a steady cycle, followed from its upper end.
+fn steady_loop(contact: &Contact, cycle: &SteadyCycle) -> Plot {
+    let mut contact = contact.clone();
+    let at = |share: f64| {
+        let displacement = share * cycle.displacement_amplitude;
+        let step = Move { tangential: Some(Tangential::Displacement(displacement)), ..Move::default() };
+        (displacement, contact.apply(&step).map_or(f64::NAN, |()| contact.force()))
+    };
+    let down = (0..=BRANCH_POINTS).map(|index| 1.0 - 2.0 * index as f64 / BRANCH_POINTS as f64);
+    let up = down.clone().map(|share| -share);
+    let curves = vec![Curve::line("", Colour::Blue, down.chain(up).map(at))];
+    Plot::new(
+        format!("Steady cycle of {:.4e} J", cycle.dissipated_energy),
+        Axis::of("displacement U", "m"),
+        vec![Panel { y: Axis::of("tangential force F", "N"), curves }],
+    )
+}

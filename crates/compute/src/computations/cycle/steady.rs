@@ -1,0 +1,145 @@
+//! Steady cycles of a contact at its present load, one for each amplitude.
+
+use std::f64::consts::TAU;
+
+use stickslip_mechanics::cycle::{self, OscillatingCycle, OscillatingLoad, Oscillation};
+use stickslip_mechanics::{Contact, Error, Move, Normal, Tangential};
+use stickslip_wire::cycle::CycleTask;
+use stickslip_wire::reply::finite;
+use stickslip_wire::{CycleReply, FrictionWork, Harmonic, SteadyCycle};
+
+use super::studies::{best_load, resonance};
+use crate::Stop;
+use crate::simulation::{Failure, Timer, accuracy, excess_error, needs_stress_field, warnings_at};
+
+/// Radii between two checks of the flag: each time the contact is copied and turned.
+const RADII_PER_CHECK: usize = 512;
+
+const REASON: &str = "a steady cycle at constant load follows from the load curve alone";
+const REASON_STEPPED: &str =
+    "a cycle under a load that oscillates is stepped with the exact slip history, to the tolerance";
+
+/// The steady cycles of a contact at its present load, which has no history.
+///
+/// # Errors
+/// [`Failure`] for a force of μ F_N or more, or if the work was ended.
+pub fn steady_cycles(
+    contact: &Contact,
+    task: &CycleTask,
+    timer: Timer<'_>,
+    stop: &dyn Stop,
+) -> Result<CycleReply, Failure> {
+    if task.density.is_some() {
+        needs_stress_field(contact, "/work_density")?;
+    }
+    let radii = task.density.as_ref().map(|sampling| sampling.radii(contact.contact_radius()));
+    // Compliance of the machine, m/N.
+    let compliance = task.stiffness.map_or(0.0, f64::recip);
+    let mut cycles = Vec::with_capacity(task.drives().len());
+    // The largest cycle shows the error of the forces.
+    let (mut largest, mut error) = (0.0_f64, 0.0_f64);
+    for (index, drive) in task.drives().enumerate() {
+        stop.check()?;
+        let row = if let Some((load, tolerance)) = task.normal {
+            let swing = Oscillation { drive, load, compliance };
+            let found = swing.steady(contact, tolerance, task.harmonics, &|| stop.check().is_ok());
+            let found = found.map_err(|error| {
+                let place = place_of_refused(&error, &load, task, index);
+                Failure::at(place, error).unless_interrupted(stop, &task.place_of(index))
+            })?;
+            error = error.max(found.error);
+            stepped(found, task)
+        } else {
+            let found = cycle::SteadyCycle::driven(contact, drive, compliance)
+                .map_err(|error| Failure::at(task.place_of(index), error))?;
+            let harmonics = (task.harmonics > 0).then(|| found.harmonics(task.harmonics));
+            error = harmonics.as_ref().map_or(error, |found| error.max(found.error));
+            SteadyCycle {
+                displacement_amplitude: found.displacement_amplitude(),
+                force_amplitude: found.force_amplitude(),
+                machine_amplitude: task.stiffness.map(|_| found.machine_amplitude()),
+                dissipated_energy: found.dissipated_energy(),
+                max_elastic_energy: found.max_elastic_energy(),
+                secant_stiffness: found.secant_stiffness(),
+                tangent_stiffness: found.tangent_stiffness(),
+                loss_factor: found.loss_factor().and_then(finite),
+                sliding_ratio: found.sliding_ratio().and_then(finite),
+                stick_radius: found.stick_radius(),
+                regime: found.regime().into(),
+                harmonics: harmonics.map(|found| found.harmonics.into_iter().map(harmonic).collect()),
+                friction_work: radii.as_deref().map(|radii| friction_work(&found, radii, stop)).transpose()?,
+                best_load: match task.best_load {
+                    Some(study) => best_load(contact, (drive, compliance), study, stop)?,
+                    None => None,
+                },
+                ..SteadyCycle::default()
+            }
+        };
+        largest = largest.max(row.displacement_amplitude);
+        cycles.push(row);
+    }
+    let (reason, missed) = match task.normal {
+        Some((_, tolerance)) => (REASON_STEPPED, excess_error(error, tolerance, 1)),
+        None => (REASON, None),
+    };
+    let mut turned = contact.clone();
+    let step = Move { tangential: Some(Tangential::Displacement(largest)), ..Move::default() };
+    // A displacement within its range is always reached.
+    let estimated = turned.apply(&step).map_or(contact, |()| &turned);
+    let mut accuracy = accuracy(estimated, timer, reason);
+    accuracy.force_error = accuracy.force_error.max(error);
+    let mut warnings = warnings_at(contact, contact.contact_radius(), contact.indentation(), missed);
+    let mut frequency_response = None;
+    if let Some((asked, tolerance)) = &task.response {
+        let (found, warning) = resonance(contact, asked, *tolerance, stop)?;
+        warnings.extend(warning);
+        frequency_response = Some(found);
+    }
+    Ok(CycleReply { contact: contact.summary().into(), cycles, frequency_response, accuracy, warnings })
+}
+
+/// The member that a cycle under a load that oscillates is refused for: the drive, or the load.
+fn place_of_refused(error: &Error, load: &OscillatingLoad, task: &CycleTask, index: usize) -> String {
+    match (error, load.amplitude) {
+        (Error::ForceExceedsFriction { .. }, _) => task.place_of(index),
+        (_, Normal::NormalForce(_)) => "/normal/normal_force".to_owned(),
+        (_, Normal::Indentation(_)) => "/normal/indentation".to_owned(),
+    }
+}
+
+/// The row of a cycle under a load that oscillates.
+fn stepped(cycle: OscillatingCycle, task: &CycleTask) -> SteadyCycle {
+    let moves = cycle.displacement_amplitude > 0.0;
+    let stored = cycle.max_elastic_energy;
+    let loss = if stored > 0.0 { cycle.dissipated_energy / (TAU * stored) } else { f64::NAN };
+    let secant = cycle.force_amplitude / cycle.displacement_amplitude;
+    SteadyCycle {
+        displacement_amplitude: cycle.displacement_amplitude,
+        force_amplitude: cycle.force_amplitude,
+        machine_amplitude: task.stiffness.map(|_| cycle.machine_amplitude),
+        dissipated_energy: cycle.dissipated_energy,
+        max_elastic_energy: stored,
+        secant_stiffness: if moves { secant } else { cycle.tangent_stiffness },
+        tangent_stiffness: cycle.tangent_stiffness,
+        loss_factor: finite(if moves { loss } else { 0.0 }),
+        sliding_ratio: if moves { cycle.sliding_ratio.and_then(finite) } else { Some(0.0) },
+        stick_radius: cycle.stick_radius,
+        regime: cycle.regime.into(),
+        harmonics: (task.harmonics > 0).then(|| cycle.harmonics.into_iter().map(harmonic).collect()),
+        ..SteadyCycle::default()
+    }
+}
+
+fn harmonic(harmonic: cycle::Harmonic) -> Harmonic {
+    let cycle::Harmonic { order, in_phase, quadrature } = harmonic;
+    Harmonic { order, in_phase, quadrature }
+}
+
+fn friction_work(cycle: &cycle::SteadyCycle<'_>, radii: &[f64], stop: &dyn Stop) -> Result<FrictionWork, Failure> {
+    let mut density = Vec::with_capacity(radii.len());
+    for some in radii.chunks(RADII_PER_CHECK) {
+        stop.check()?;
+        density.extend(cycle.friction_work(some).into_iter().map(finite));
+    }
+    Ok(FrictionWork { radius: radii.to_vec(), density })
+}

@@ -1,0 +1,202 @@
+//! Friction and stiffness from measured loops.
+
+use stickslip_measured::loops::{self, Error, Known, LoopFit, Noise, Note, Parameter, Record, Start};
+use stickslip_mechanics as mechanics;
+use stickslip_wire::fit::{
+    FitEstimate, FitParameter, FitReply, FitResidual, FitTask, FitUnits, FittedLoop, LoopRecord, LoopStart,
+    NoiseLevels, SignRuns,
+};
+use stickslip_wire::{ContactDefinition, Effective, Material, Profile, Warning};
+
+use crate::Stop;
+use crate::simulation::{Failure, contact, refused_at};
+
+/// Fits what is free to measured loops.
+///
+/// # Errors
+/// [`Failure`], which says what the loops lack, that the contact cannot be made, or that the work was ended.
+pub fn fit_loops(task: FitTask, stop: &dyn Stop) -> Result<FitReply, Failure> {
+    let FitTask { definition, setup, loops, free, known, noise, units } = task;
+    let (preload, has_friction) = (setup.preload, setup.friction > 0.0);
+    let task = loops::Task {
+        contact: contact(setup, "/contact")?,
+        records: loops.into_iter().map(record).collect(),
+        free: free.iter().map(|name| of(*name)).collect(),
+        known: known
+            .iter()
+            .map(|(name, known)| Known {
+                parameter: of(name),
+                value: known.value,
+                standard_error: known.standard_error.unwrap_or(0.0),
+            })
+            .collect(),
+        noise: Noise { force: noise.force, displacement: noise.displacement },
+    };
+    let fit = loops::fit(&task, &|| stop.check().is_ok()).map_err(|error| match (error, stop.check()) {
+        (Error::Interrupted, Err(interrupted)) => Failure::interrupted(interrupted, "/loops"),
+        (Error::Refused(error), _) => refused_at("/contact", preload)(error),
+        (error, _) => Failure::at(place(&error, &free, units, has_friction), error),
+    })?;
+    Ok(reply(fit, definition))
+}
+
+/// Both lists have the same order.
+fn of(name: FitParameter) -> Parameter {
+    Parameter::ALL[name as usize]
+}
+
+fn name(parameter: Parameter) -> FitParameter {
+    FitParameter::ALL[parameter as usize]
+}
+
+fn record(record: LoopRecord) -> Record {
+    let LoopRecord { displacement, force, time, normal_force, start, weight } = record;
+    let start = start.map(|start| match start {
+        LoopStart::Steady => Start::Steady,
+        LoopStart::Virgin => Start::Virgin,
+    });
+    Record { displacement, force, time, normal_force, start, weight }
+}
+
+/// The JSON pointer to what an error is about.
+fn place(error: &Error, free: &[FitParameter], units: FitUnits, has_friction: bool) -> String {
+    let of_record = |record: usize, member: &str| format!("/loops/{record}/{member}");
+    let of_unit = |is_given: bool, record: usize, member: &str| {
+        if is_given { format!("/units/{member}") } else { of_record(record, member) }
+    };
+    let position = |parameter: Parameter| free.iter().position(|name| of(*name) == parameter);
+    match *error {
+        Error::TooFewPoints { record } | Error::ConstantForce { record } | Error::WrongWay { record, .. } => {
+            of_record(record, "force")
+        }
+        Error::SingleBranch { record } | Error::ConstantDisplacement { record } => of_record(record, "displacement"),
+        Error::ForceUnit { record, .. } => of_unit(units.force.is_some(), record, "force"),
+        Error::StiffnessUnit { record, .. } => of_unit(units.displacement.is_some(), record, "displacement"),
+        Error::NoTime { record } => of_record(record, "time"),
+        Error::Inseparable { parameter, .. } | Error::NotOfProfile { parameter } => {
+            position(parameter).map_or_else(|| "/free".to_owned(), |index| format!("/free/{index}"))
+        }
+        Error::NoContact { .. } if has_friction => "/contact/preload".to_owned(),
+        Error::NoContact { .. } => "/contact/friction".to_owned(),
+        Error::NoSolution | Error::Refused(_) | Error::Interrupted => "/loops".to_owned(),
+    }
+}
+
+fn reply(fit: LoopFit, definition: ContactDefinition) -> FitReply {
+    let names: Vec<FitParameter> = fit.estimates.iter().map(|estimate| name(estimate.parameter)).collect();
+    let correlations = |row: &Vec<Option<f64>>| names.iter().copied().zip(row.iter().copied()).collect();
+    let correlations = names.iter().copied().zip(fit.correlations.iter().map(correlations)).collect();
+    let estimate = |estimate: &loops::Estimate| FitEstimate {
+        value: estimate.value,
+        standard_error: estimate.standard_error,
+        interval: estimate.interval,
+        at_bound: estimate.at_bound,
+    };
+    let [force, displacement] = fit.noise;
+    FitReply {
+        estimates: names.iter().copied().zip(fit.estimates.iter().map(estimate)).collect(),
+        correlations,
+        contact: fitted(definition, &fit, &names),
+        identifiable: fit.identifiable,
+        residual: FitResidual {
+            rms: fit.residual.rms,
+            largest: fit.residual.largest,
+            outliers: fit.residual.outliers,
+            runs: SignRuns {
+                count: fit.residual.runs.count,
+                expected: fit.residual.runs.expected,
+                random: fit.residual.runs.random,
+            },
+        },
+        noise: NoiseLevels { force, displacement },
+        curve: fit
+            .curves
+            .into_iter()
+            .map(|curve| FittedLoop {
+                displacement: curve.displacement,
+                force: curve.fitted,
+                measured: curve.measured,
+                used: curve.used,
+            })
+            .collect(),
+        warnings: fit.notes.into_iter().map(warning).collect(),
+    }
+}
+
+/// The definition with what was fitted in the place of what it had.
+fn fitted(definition: ContactDefinition, fit: &LoopFit, names: &[FitParameter]) -> ContactDefinition {
+    let has = |name: FitParameter| names.contains(&name);
+    let elasticity = fit.contact.elasticity();
+    // Those of the bodies, where they are known, stay the constants of the stress below the surface.
+    let bodies = definition.material.bodies().map(<[_]>::to_vec);
+    let moduli = Effective { e_star: elasticity.e_star(), g_star: elasticity.g_star(), bodies };
+    let is_modulus_fitted = has(FitParameter::GStar) || has(FitParameter::EStar);
+    let profile = match fit.contact.profile() {
+        mechanics::Profile::Sphere(sphere) if has(FitParameter::Radius) => {
+            Profile::sphere(sphere.curvature_radius())
+        }
+        _ => definition.profile,
+    };
+    ContactDefinition {
+        profile,
+        material: if is_modulus_fitted { Material::Effective(moduli) } else { definition.material },
+        friction: if has(FitParameter::Friction) { fit.contact.friction() } else { definition.friction },
+        preload: definition.preload,
+    }
+}
+
+fn warning(note: Note) -> Warning {
+    let (code, message) = match note {
+        Note::MachineComplianceUnknown => (
+            "machine_compliance_unknown",
+            "the compliance of the machine is taken for zero: a soft machine makes friction and stiffness wrong, and \
+             the fit looks perfect all the same. Give it as `known`, or free it where the loop reaches gross slip",
+        ),
+        Note::PartialSlipOnly => (
+            "partial_slip_only",
+            "no loop reaches gross slip: friction and stiffness follow from the curvature of the branches alone",
+        ),
+        Note::BeyondGrossSlip => (
+            "beyond_gross_slip",
+            "most of the loop is gross slip: it determines the friction, and the stiffness by few points alone",
+        ),
+        Note::FirstBranchUnknown => (
+            "first_branch_unknown",
+            "how a record begins, or where its displacement is zero, is not known: it is taken for a part of a steady \
+             cycle about its own middle. Say `start`; in a steady cycle nothing determines `displacement_offset`",
+        ),
+        Note::Quantised => (
+            "quantised",
+            "the forces come in steps that are not small beside their noise: where the contact slides their rounding \
+             does not average out. Standard errors and intervals are wider by what it may shift",
+        ),
+        Note::TurnsAsSampled => (
+            "turns_as_sampled",
+            "a record has more turning points than can be fitted, and they do not repeat: they are taken where they \
+             were sampled, and the intervals leave out how far off that may be. Send fewer cycles",
+        ),
+        Note::NotCoulomb => (
+            "not_coulomb",
+            "the residual is not noise: the contact has another friction law, shape or load, or the bench \
+             another error. The standard errors are too small",
+        ),
+        Note::NotConverged => (
+            "not_converged",
+            "the search for the best values ended before it had found them: values and intervals are those of where it \
+             stopped. Free fewer parameters, or give known ones",
+        ),
+    };
+    Warning::new(code, message)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{FitParameter, name, of};
+
+    #[test]
+    fn the_names_of_requests_are_those_of_the_fit() {
+        for parameter in FitParameter::ALL {
+            assert_eq!((of(parameter).name(), name(of(parameter))), (parameter.name(), parameter));
+        }
+    }
+}

@@ -1,0 +1,102 @@
+//! Moves of a contact, and what a reply says of them: the same for contacts on a server and in a process of their own.
+
+use std::time::{Duration, Instant};
+
+use stickslip_mechanics::{Contact, DEFAULT_TOLERANCE};
+use stickslip_wire::protocol::Relaxation;
+use stickslip_wire::session::Advance;
+use stickslip_wire::{Accuracy, Move, Plan, Protocol, ProtocolReply, State, Steps, Stress, Warning};
+
+use super::find_from_state;
+use crate::Stop;
+use crate::simulation::{
+    Cause, Failure, FarMove, Timer, accuracy, equal_peaks, excess_error, follow, new_warnings, stresses,
+};
+
+/// Why the exact solver answers for a contact with a history.
+const REASON: &str = "stored contacts use the exact solver";
+
+/// The result of moves besides the states after them.
+pub struct Moved {
+    /// The stresses at the end, if they are asked for.
+    pub stress: Option<Stress>,
+    /// The path, if it follows the law of equal peaks.
+    pub protocol: Option<Protocol>,
+    /// The protocol that has been found and followed, if the contact was to be relaxed.
+    pub relaxed: Option<ProtocolReply>,
+    /// Errors and time.
+    pub accuracy: Accuracy,
+    /// Warnings that earlier replies have not given.
+    pub warnings: Vec<Warning>,
+    /// How long the moves themselves took.
+    pub followed_in: Duration,
+}
+
+/// Makes moves, and shows each with the state after it to `each`.
+///
+/// # Errors
+/// [`Failure`] at the first move without an answer; the moves before it have been made.
+pub fn make_moves(
+    contact: &mut Contact,
+    advance: &Advance,
+    stop: &dyn Stop,
+    mut each: impl FnMut(Move, State),
+) -> Result<Moved, Failure> {
+    let timer = Timer::start(stop);
+    let tolerance = advance.tolerance;
+    let relaxed = advance.relax.map(|relax| find_from_state(contact, &relax.task, stop)).transpose()?;
+    let plan = relaxed.as_ref().map(|found| Plan::Displacement(found.path.displacement.clone()));
+    let plan = plan.as_ref().unwrap_or(&advance.plan);
+    let protocol = equal_peaks(plan, contact)?;
+    let (before, error_before) = (contact.contact_radius(), contact.path_error());
+    let (mut largest, mut error) = (before, 0.0f64);
+    let mut far = FarMove::from(contact);
+    let begin = Instant::now();
+    let followed = follow(contact, plan, protocol.as_ref(), tolerance, stop, |step, contact| {
+        largest = largest.max(contact.contact_radius());
+        error = error.max(contact.path_error() - error_before);
+        far.reach(contact);
+        each(step, contact.state().into());
+    });
+    followed.map_err(|failure| if advance.relax.is_some() { without_step(failure) } else { failure })?;
+    let followed_in = begin.elapsed();
+    let stress = advance.stress.as_ref().map(|sampling| stresses(contact, sampling, stop)).transpose()?;
+    let accuracy = accuracy(contact, timer, REASON);
+    let excess = excess_error(error, tolerance, advance.plan.curved());
+    let mut warnings = new_warnings(contact, before, largest, excess);
+    warnings.extend(far.warning());
+    Ok(Moved { stress, protocol, relaxed, accuracy, warnings, followed_in })
+}
+
+/// The states that a reply shows of those after each move; `end` is the one at the end.
+#[must_use]
+pub fn shown_states(steps: Steps, all: impl Iterator<Item = State>, end: State) -> Vec<State> {
+    match steps {
+        Steps::All => all.collect(),
+        Steps::Last => vec![end],
+    }
+}
+
+/// What would relax a contact, and the states on the way if they are asked for; the contact is used up.
+///
+/// # Errors
+/// [`Failure`] if there is no such protocol, or the work was ended.
+pub fn dry_run_relax(
+    mut contact: Contact,
+    relaxation: &Relaxation,
+    stop: &dyn Stop,
+) -> Result<(Option<Vec<State>>, ProtocolReply), Failure> {
+    let protocol = find_from_state(&contact, &relaxation.task, stop)?;
+    let plan = Plan::Displacement(protocol.path.displacement.clone());
+    let Some(steps) = relaxation.steps else { return Ok((None, protocol)) };
+    let mut states = Vec::new();
+    follow(&mut contact, &plan, None, DEFAULT_TOLERANCE, stop, |_, contact| states.push(contact.state().into()))
+        .map_err(without_step)?;
+    Ok((Some(shown_states(steps, states.into_iter(), contact.state().into())), protocol))
+}
+
+/// The failure of a move that the client did not send itself.
+fn without_step(failure: Failure) -> Failure {
+    let pointer = if matches!(failure.cause, Cause::TooLong { .. }) { "/reversals" } else { "" };
+    Failure::at(pointer, failure.cause)
+}

@@ -1,0 +1,205 @@
+//! `simulate`: the states and stresses of a contact along a path.
+
+use serde_json::json;
+
+use stickslip_plot::{Axis, Colour, Curve, Drawing, Panel, Plot};
+use stickslip_wire::simulate::Simulation;
+use stickslip_wire::{ContactDefinition, Fault, Field, Sampling, SimulateReply, SimulateRequest, State, Stress};
+
+use super::{About, Choice, Computation, Example, Outcome, Route, Shown, example, example_contact, residual, stress};
+use crate::formats::{Column, Table};
+use crate::simulation::bytes::{NUMBER_LENGTH, OBJECT, STATE_LENGTH, of_simulation};
+use crate::simulation::{self, Failure, cost};
+use crate::{Nanoseconds, Stop};
+
+/// What a reply has besides states and stresses, bytes of JSON.
+const REPLY_LENGTH: usize = 2_048;
+
+/// The states of a contact along a path, and the stresses at its end.
+pub struct Simulate;
+
+impl Computation for Simulate {
+    const ABOUT: About = About {
+        name: "simulate",
+        route: Some(Route { path: "/simulate", operation: "simulate_path", tag: "simulation" }),
+        title: "Simulate a path",
+        description: "Follows a path from the preloaded contact and returns the states along it, and the stresses \
+                      and their extrema at its end if asked for. Nothing is stored, so that a repeated request \
+                      simply runs again.",
+        reply: "States, and what else was asked for",
+        shows: "All but `columns` show one part of the document: the residual stress if it is asked for, a row for \
+                each extremum; else the stresses over the radius; else the states along the path. `show` names \
+                another.",
+        choice: Some(SHOW),
+        ..About::TABLE
+    };
+
+    type Request = SimulateRequest;
+    type Outcome = SimulateReply;
+
+    fn examples() -> Vec<Example> {
+        vec![
+            example(
+                "back and forth",
+                "Falling amplitude, with the residual stresses",
+                json!({
+                    "contact": ContactDefinition::example(),
+                    "path": {"falling_amplitude": {"reversals": 20}},
+                    "stress": {"points": 200}, "residual": true
+                }),
+            ),
+            example(
+                "by force",
+                "A cycle of the tangential force, the last state alone",
+                json!({
+                    "contact": example_contact(json!({"type": "sphere", "radius": 0.01}), json!({"indentation": 1e-6})),
+                    "path": {"force": [0.5, -0.5, 0.5]}, "steps": "last", "solver": "exact"
+                }),
+            ),
+            example(
+                "springs",
+                "The same contact on the paper's spring foundation",
+                json!({
+                    "contact": example_contact(
+                        json!({"type": "sphere", "radius": 0.01}),
+                        json!({"contact_radius": 1e-4})
+                    ),
+                    "path": {"moves": [{"displacement": 1e-7}, {"indentation": 8e-7, "displacement": 0.0}]},
+                    "solver": {"springs": {"count": 1000}}
+                }),
+            ),
+        ]
+    }
+
+    fn check_shown(task: &Simulation, shown: &Shown) -> Result<(), Fault> {
+        let part = part(shown, task.residual, task.stress.is_some());
+        let is_asked = match part {
+            "residual" => task.residual,
+            "stress" => task.stress.is_some(),
+            _ => true,
+        };
+        let fault = || Fault { pointer: "/show".to_owned(), detail: format!("the body does not ask for `{part}`") };
+        if is_asked { Ok(()) } else { Err(fault()) }
+    }
+
+    fn bytes(task: &Simulation) -> usize {
+        of_simulation(task)
+    }
+
+    fn rows(task: &Simulation) -> (usize, usize) {
+        let radii = task.stress.as_ref().map_or(0, Sampling::length);
+        ((2 * task.plan.length()).max(radii), OBJECT)
+    }
+
+    fn cost(task: &Simulation) -> Nanoseconds {
+        cost::of_simulation(task)
+    }
+
+    fn run(task: Simulation, stop: &dyn Stop) -> Result<SimulateReply, Failure> {
+        simulation::simulate(&task, stop)
+    }
+}
+
+impl Outcome for SimulateReply {
+    type Reply = SimulateReply;
+
+    fn reply(&self) -> &SimulateReply {
+        self
+    }
+
+    fn length(&self) -> usize {
+        let along = |stress: &Stress| stress.radius.len() * (1 + fields(stress).into_iter().flatten().count());
+        let below = self.subsurface.as_ref().map_or(0, |stress| {
+            stress.x.len() * (3 + stress.columns().iter().filter(|(_, values)| values.is_some()).count())
+        });
+        let numbers = self.stress.as_ref().map_or(0, along) + below;
+        REPLY_LENGTH + self.steps.len() * STATE_LENGTH + numbers * NUMBER_LENGTH
+    }
+
+    /// A row for each state, radius or extremum.
+    fn table(&self, shown: &Shown) -> Option<Table<'_>> {
+        match part(shown, self.residual.is_some(), self.stress.is_some()) {
+            "residual" => self.residual.as_ref().map(residual::table),
+            "stress" => self.stress.as_ref().map(|stress| stress::table(&stress.radius, fields(stress))),
+            _ => Some(Table::flat(self.steps.len(), state_columns(|row| &self.steps[row]).into())),
+        }
+    }
+
+    /// Force over displacement, the stresses over the radius, or the extrema.
+    fn picture(&self, shown: &Shown) -> Option<Drawing> {
+        let plot = match part(shown, self.residual.is_some(), self.stress.is_some()) {
+            "residual" => {
+                let between = self.stress.as_ref().map_or_else(Vec::new, |stress| points(stress, &stress.shear));
+                residual::plot("Residual stress at the end of the path".to_owned(), self.residual.as_ref()?, between)
+            }
+            "stress" => stresses(self.stress.as_ref()?),
+            _ => loop_of(&self.steps),
+        };
+        Some(Drawing::Plot(plot))
+    }
+}
+
+/// Which part is shown.
+const SHOW: Choice = Choice {
+    name: "show",
+    description: "Which part of the document a format other than `columns` shows: the states along the path (`steps`), \
+                  the stresses over the radius (`stress`), or the extrema of the shear stress (`residual`).",
+    words: &["steps", "stress", "residual"],
+};
+
+/// What is asked for, in the order in which it is shown if the query names nothing.
+fn part(shown: &Shown, has_residual: bool, has_stress: bool) -> &'static str {
+    shown.choice.unwrap_or(match (has_residual, has_stress) {
+        (true, _) => "residual",
+        (false, true) => "stress",
+        (false, false) => "steps",
+    })
+}
+
+fn fields(stress: &Stress) -> [&stress::Values; 4] {
+    [&stress.pressure, &stress.shear, &stress.slip, &stress.displacement]
+}
+
+/// The columns of a state by its row.
+pub fn state_columns<'a>(state: impl Fn(usize) -> &'a State + Copy + Send + 'a) -> [Column<'a>; 10] {
+    let floats = |name, unit, of: fn(&State) -> f64| Column::floats(name, unit, move |row| of(state(row)));
+    [
+        floats("displacement", "m", |state| state.displacement),
+        floats("force", "N", |state| state.force),
+        floats("indentation", "m", |state| state.indentation),
+        floats("normal_force", "N", |state| state.normal_force),
+        floats("contact_radius", "m", |state| state.contact_radius),
+        floats("stick_radius", "m", |state| state.stick_radius),
+        Column::words("regime", move |row| state(row).regime.name()),
+        floats("dissipated_energy", "J", |state| state.dissipated_energy),
+        floats("elastic_energy", "J", |state| state.elastic_energy),
+        Column::counts("memory_depth", move |row| state(row).memory_depth as u64),
+    ]
+}
+
+fn points(stress: &Stress, values: &stress::Values) -> Vec<(f64, f64)> {
+    let values = values.iter().flatten().map(|value| value.unwrap_or(f64::NAN));
+    stress.radius.iter().copied().zip(values).collect()
+}
+
+/// A panel for each unit.
+fn stresses(stress: &Stress) -> Plot {
+    let panel = |name, unit| {
+        let colours = [Colour::Grey, Colour::Blue, Colour::Red, Colour::Blue];
+        let drawn = Field::ALL.into_iter().zip(fields(stress)).zip(colours);
+        let of_unit = drawn.filter(|((field, values), _)| stress::unit(*field) == unit && values.is_some());
+        let curves: Vec<_> = of_unit
+            .map(|((field, values), colour)| Curve::line(field.name(), colour, points(stress, values)))
+            .collect();
+        (!curves.is_empty()).then_some(Panel { y: Axis::of(name, unit), curves })
+    };
+    let panels = [panel("stress", "Pa"), panel("displacement", "m")].into_iter().flatten().collect();
+    Plot::new("Stresses at the end of the path", Axis::of("radius r", "m"), panels)
+}
+
+fn loop_of(steps: &[State]) -> Plot {
+    let points = || steps.iter().map(|state| (state.displacement, state.force));
+    let curves = vec![Curve::line("", Colour::Blue, points()), Curve::dots("", Colour::Blue, points())];
+    let panel = Panel { y: Axis::of("tangential force F", "N"), curves };
+    Plot::new("States along the path", Axis::of("displacement U", "m"), vec![panel])
+}

@@ -1,0 +1,104 @@
+//! Why a request has no reply, as the problem document says it.
+
+use stickslip_measured::import::ImportError;
+use stickslip_wire::{Code, Fault, ProblemDocument, Rejection};
+
+use crate::computations::ComputeError;
+use crate::formats::Unwritable;
+use crate::simulation::{Cause, Failure};
+
+/// A refusal: its kind, what happened this time, and where in the request.
+#[derive(Clone, Debug)]
+pub struct Refusal {
+    /// The kind.
+    pub code: Code,
+    /// What happened this time.
+    pub detail: String,
+    /// Each fault of the request with its place.
+    pub errors: Vec<Fault>,
+    /// The cause for the log, which clients do not see.
+    pub cause: Option<String>,
+}
+
+impl Refusal {
+    /// A refusal of this kind, with what happened this time.
+    #[must_use]
+    pub fn new(code: Code, detail: impl Into<String>) -> Refusal {
+        Refusal { code, detail: detail.into(), errors: Vec::new(), cause: None }
+    }
+
+    /// A refusal with one place in the request.
+    #[must_use]
+    pub fn at(code: Code, pointer: impl Into<String>, detail: impl Into<String>) -> Refusal {
+        let (pointer, detail) = (pointer.into(), detail.into());
+        let errors = vec![Fault { pointer, detail: detail.clone() }];
+        Refusal { errors, ..Refusal::new(code, detail) }
+    }
+
+    /// A fault of this program; the cause is for the log.
+    #[must_use]
+    pub fn internal(cause: impl Into<String>) -> Refusal {
+        let detail = "this is not your fault; the operator finds the cause in the log under the request_id";
+        Refusal { cause: Some(cause.into()), ..Refusal::new(Code::Internal, detail) }
+    }
+
+    /// The document that tells it.
+    #[must_use]
+    pub fn document(self, request_id: &str) -> ProblemDocument {
+        ProblemDocument::new(self.code, self.detail, self.errors, request_id)
+    }
+}
+
+impl From<Rejection> for Refusal {
+    fn from(rejection: Rejection) -> Self {
+        let detail = rejection.to_string();
+        match rejection {
+            Rejection::NotJson(_) => Refusal::new(Code::NotJson, detail),
+            Rejection::Invalid(errors) => Refusal { errors, ..Refusal::new(Code::InvalidInput, detail) },
+            Rejection::Refused { pointer, error } => Failure::at(pointer, error).into(),
+        }
+    }
+}
+
+impl From<Fault> for Refusal {
+    fn from(Fault { pointer, detail }: Fault) -> Self {
+        Refusal::at(Code::InvalidInput, pointer, detail)
+    }
+}
+
+impl From<ImportError> for Refusal {
+    /// At the line and column of the file, from 1 on.
+    fn from(error: ImportError) -> Self {
+        let place = |name: &str, number: Option<usize>| number.map_or_else(String::new, |at| format!("/{name}/{at}"));
+        let pointer = place("line", error.line) + &place("column", error.column);
+        let code = if error.unknown_unit.is_some() { Code::UnknownUnit } else { Code::InvalidInput };
+        Refusal::at(code, pointer, error.to_string())
+    }
+}
+
+impl From<Unwritable> for Refusal {
+    fn from(error: Unwritable) -> Self {
+        Refusal::internal(error.to_string())
+    }
+}
+
+impl From<ComputeError> for Refusal {
+    fn from(error: ComputeError) -> Self {
+        match error {
+            ComputeError::Unknown(_) => Refusal::new(Code::NotFound, error.to_string()),
+            ComputeError::Rejected(rejection) => rejection.into(),
+            ComputeError::Failed(failure) => failure.into(),
+            ComputeError::Unwritable(error) => error.into(),
+        }
+    }
+}
+
+impl From<Failure> for Refusal {
+    fn from(failure: Failure) -> Self {
+        let (code, detail) = (failure.code(), failure.cause.to_string());
+        match failure.cause {
+            Cause::Stopped | Cause::Lifted => Refusal::new(code, detail),
+            _ => Refusal::at(code, failure.pointer, detail),
+        }
+    }
+}

@@ -1,0 +1,301 @@
+//! From a checked request to a reply.
+
+use std::time::Duration;
+
+use stickslip_mechanics::{self as mechanics, Contact, Preload, Profile, Springs, protocol, range::Quantity, springs};
+use stickslip_wire::definition::SharedSetup;
+use stickslip_wire::reply::{Accuracy, State, finite};
+use stickslip_wire::simulate::Simulation;
+use stickslip_wire::{
+    self as wire, ContactDefinition, Field, Move, Plan, Protocol, Residual, Sampling, SimulateReply, SolverKind, Steps,
+    Stress, limits,
+};
+
+use super::{
+    Cause, Failure, Solver, cost, needs_stress_field, quantity,
+    stated_accuracy::{Timer, accuracy},
+    stress_below::subsurface,
+    warnings::{FarMove, bulk_warning, excess_error, stress_warning, warnings_at},
+};
+use crate::{LONGEST_WORK, Stop};
+
+/// Why the solver is the one that the request names.
+const AS_ASKED: &str = "as asked for";
+
+/// Runs a simulation.
+///
+/// # Errors
+/// [`Failure`] if the mechanics has no answer to it, or the client hung up.
+pub fn simulate(simulation: &Simulation, stop: &dyn Stop) -> Result<SimulateReply, Failure> {
+    let timer = Timer::start(stop);
+    if let Some(wire::Solver::Springs(wire::Springs { count })) = simulation.solver {
+        let springs = spring_foundation(&simulation.setup, &simulation.plan, count, stop)?;
+        return run(springs, simulation, timer, AS_ASKED, stop);
+    }
+    simulate_on(contact(simulation.setup.clone(), "/contact")?, simulation, timer, stop)
+}
+
+/// Runs a simulation with the exact solver on a virgin contact, in place of the one that the simulation defines.
+///
+/// # Errors
+/// As [`simulate`].
+pub(super) fn simulate_on(
+    contact: Contact,
+    simulation: &Simulation,
+    timer: Timer<'_>,
+    stop: &dyn Stop,
+) -> Result<SimulateReply, Failure> {
+    let reason = match (simulation.solver, simulation.plan.curved()) {
+        (Some(_), _) => AS_ASKED,
+        (None, 0) => "every move of this path has an exact solution, which is also the cheapest",
+        (None, _) => "only this solver follows moves straight in a force under changing load, to the tolerance",
+    };
+    run(contact, simulation, timer, reason, stop)
+}
+
+/// The reply of one solver. Nothing is computed that the simulation does not request.
+pub(super) fn run<S: Solver>(
+    mut solver: S,
+    simulation: &Simulation,
+    timer: Timer<'_>,
+    reason: &str,
+    stop: &dyn Stop,
+) -> Result<SimulateReply, Failure> {
+    let summary = solver.exact().initial_summary();
+    let protocol = equal_peaks(&simulation.plan, &solver)?;
+    let mut largest = summary.contact_radius;
+    let all = simulation.steps == Steps::All;
+    let mut steps: Vec<State> = Vec::with_capacity(if all { simulation.plan.length() } else { 1 });
+    // Gross slip erases the error of a curved path, but not that of the states before it.
+    let (curved, mut path_error) = (simulation.plan.curved(), 0.0f64);
+    let mut far = FarMove::from(&solver);
+    follow(&mut solver, &simulation.plan, protocol.as_ref(), simulation.tolerance, stop, |_, solver| {
+        largest = largest.max(solver.contact_radius());
+        far.reach(solver);
+        if curved > 0 && all {
+            path_error = path_error.max(solver.path_error());
+        }
+        if all {
+            steps.push(solver.state().into());
+        }
+    })?;
+    if !all {
+        steps.push(solver.state().into());
+    }
+    if simulation.residual {
+        check_search(solver.exact().profile(), solver.depth(), stop)?;
+    }
+    let stress = simulation.stress.as_ref().map(|sampling| stresses(&solver, sampling, stop)).transpose()?;
+    let residual = simulation.residual.then(|| residual(&solver, stop)).transpose()?;
+    let below = simulation.subsurface.as_ref().filter(|_| S::KIND == SolverKind::Exact);
+    let below = below.map(|task| subsurface(solver.exact(), task, stop)).transpose()?;
+    let (subsurface, subsurface_error) = below.unzip();
+    let mut accuracy = Accuracy { subsurface_error, ..accuracy(&solver, timer, reason) };
+    stop.check()?;
+    let path_error = path_error.max(solver.path_error());
+    accuracy.force_error += path_error - solver.path_error();
+    // A table, which may have noise, has no vertical edge.
+    let indentation = summary.indentation.max(solver.exact().profile().level(largest));
+    let excess = excess_error(path_error, simulation.tolerance, curved);
+    Ok(SimulateReply {
+        contact: summary.into(),
+        steps,
+        stress,
+        residual,
+        subsurface,
+        protocol,
+        warnings: warnings_at(solver.exact(), largest, indentation, excess)
+            .into_iter()
+            .chain(stress_warning(simulation.stress.is_some() || simulation.residual, accuracy.stress_error))
+            .chain(bulk_warning(simulation.subsurface.as_ref().is_some_and(|task| task.bulk.is_some())))
+            .chain(far.warning())
+            .collect(),
+        accuracy,
+    })
+}
+
+/// The exact contact of a definition, which is at the JSON pointer `base` of the body.
+///
+/// # Errors
+/// [`Cause::Refused`] if the preload cannot be reached.
+pub fn contact(setup: SharedSetup, base: &str) -> Result<Contact, Failure> {
+    let refused = refused_at(base, setup.preload);
+    Contact::new(setup).map_err(refused)
+}
+
+/// A foundation of this many springs, as wide as the path needs.
+///
+/// # Errors
+/// As [`contact()`], for a definition at `/contact`, and if the work was ended.
+pub fn spring_foundation(setup: &SharedSetup, plan: &Plan, count: usize, stop: &dyn Stop) -> Result<Springs, Failure> {
+    let start = contact(setup.clone(), "/contact")?;
+    let go_on = || stop.check().is_ok();
+    // Only what has a normal target reaches further, and the law of equal peaks has none.
+    let moves = moves(plan, &start, None)?.take_while(|_| go_on()).map(|step| step.step());
+    let springs = springs::largest_contact_radius(setup, moves)
+        .and_then(|reach| Springs::new_while(setup.clone(), count, reach, &go_on));
+    springs.map_err(|error| refused_at("/contact", setup.preload)(error).unless_interrupted(stop, ""))
+}
+
+/// What the mechanics refuses of a definition at the JSON pointer `base`, whose preload this is.
+pub fn refused_at(base: &str, preload: Preload) -> impl Fn(mechanics::Error) -> Failure {
+    move |error| {
+        let place_of = |quantity| ContactDefinition::place_of(quantity, &preload);
+        let place = match error {
+            mechanics::Error::NotConvexEnough { .. } => "/profile",
+            mechanics::Error::BeyondProfile { .. } => place_of(Quantity::ContactRadius),
+            _ => quantity(&error).map_or("", place_of),
+        };
+        Failure::at(format!("{base}{place}"), error)
+    }
+}
+
+/// The displacements of a plan that follows the law of equal peaks, for the contact in its present state.
+///
+/// # Errors
+/// [`Cause::Refused`] for a cut-off radius that the contact does not allow.
+pub fn equal_peaks<S: Solver>(plan: &Plan, solver: &S) -> Result<Option<Protocol>, Failure> {
+    let Plan::EqualPeaks(peaks) = plan else { return Ok(None) };
+    let protocol::EqualPeaks { displacements, cutoff_radius } = solver
+        .equal_peaks(peaks.reversals, peaks.cutoff_radius)
+        .map_err(|error| Failure::at(plan.place_of(0, quantity(&error)), error))?;
+    Ok(Some(Protocol { displacement: displacements, cutoff_radius }))
+}
+
+/// The moves of a plan for this contact at their beginning; `protocol` is the result of [`equal_peaks`] for it.
+///
+/// # Errors
+/// [`Cause::Refused`] if the load would fall below zero.
+fn moves<'a>(
+    plan: &'a Plan,
+    contact: &Contact,
+    protocol: Option<&'a Protocol>,
+) -> Result<Box<dyn Iterator<Item = Move> + Send + 'a>, Failure> {
+    Ok(match plan {
+        Plan::Moves(moves) => Box::new(moves.iter().copied()),
+        Plan::Displacement(targets) => Box::new(targets.iter().map(|target| Move::displacement(*target))),
+        Plan::Force(targets) => Box::new(targets.iter().map(|target| Move::force(*target))),
+        Plan::FallingAmplitude(fall) => {
+            let amplitude = fall.amplitude.unwrap_or_else(|| contact.gross_slip_displacement());
+            Box::new(protocol::falling_amplitude(fall.reversals, amplitude).map(Move::displacement))
+        }
+        Plan::EqualPeaks(_) => {
+            let displacements = protocol.into_iter().flat_map(|protocol| &protocol.displacement);
+            Box::new(displacements.copied().map(Move::displacement))
+        }
+        Plan::Cycles(cycles) => {
+            let moves = cycles.moves(contact.indentation(), contact.normal_force());
+            Box::new(moves.map_err(|error| Failure::at(place(plan, 0, None, &error), error))?)
+        }
+        Plan::Single(step) => Box::new(std::iter::once(*step)),
+        Plan::Observations(observations) => {
+            Box::new(observations.iter().map(|observation| Move::displacement(observation.displacement)))
+        }
+    })
+}
+
+/// The moves of a path as one cycle, from the contact as it is.
+///
+/// # Errors
+/// [`Cause::Refused`] for a cut-off radius that the contact does not allow, or a load that would fall below zero.
+pub fn cycle_moves(plan: &Plan, contact: &Contact) -> Result<Vec<mechanics::Move>, Failure> {
+    let protocol = equal_peaks(plan, contact)?;
+    Ok(moves(plan, contact, protocol.as_ref())?.map(|step| step.step()).collect())
+}
+
+/// The pointer to what has led to the refusal of a move of a plan: the move, or the number at fault if the plan has one
+/// for it.
+fn place(plan: &Plan, index: usize, step: Option<&Move>, error: &mechanics::Error) -> String {
+    let named = match (plan, error) {
+        (Plan::Cycles(_), mechanics::Error::ForceExceedsFriction { .. }) => Some(Quantity::Force),
+        (Plan::Cycles(_), mechanics::Error::BeyondProfile { .. }) => Some(Quantity::ContactRadius),
+        (Plan::Cycles(_), _) => quantity(error),
+        _ => quantity(error).filter(|quantity| step.is_some_and(|step| step.names(*quantity))),
+    };
+    plan.place_of(index, named)
+}
+
+/// Makes the moves of a plan one after the other, and shows each, and the contact after it, to `each`. `protocol` is
+/// what [`equal_peaks`] has found for the plan.
+///
+/// # Errors
+/// [`Failure`] at the first move without an answer, with a pointer to it; the moves before it have been made.
+pub fn follow<S: Solver>(
+    solver: &mut S,
+    plan: &Plan,
+    protocol: Option<&Protocol>,
+    tolerance: f64,
+    stop: &dyn Stop,
+    mut each: impl FnMut(Move, &S),
+) -> Result<(), Failure> {
+    for (index, step) in moves(plan, solver.exact(), protocol)?.enumerate() {
+        stop.check().map_err(|interrupted| Failure::interrupted(interrupted, &plan.place_of(index, None)))?;
+        solver.apply(&step.step(), tolerance, &|| stop.check().is_ok()).map_err(|error| {
+            let refused = Failure::at(place(plan, index, Some(&step), &error), error);
+            refused.unless_interrupted(stop, &plan.place_of(index, None))
+        })?;
+        let depth = solver.depth();
+        if depth > limits::MEMORY_DEPTH {
+            return Err(Failure::at(plan.place_of(index, None), Cause::MemoryFull { depth }));
+        }
+        each(step, solver);
+    }
+    Ok(())
+}
+
+/// Radii times pieces between two checks of the flag: some milliseconds.
+const TERMS_PER_CHECK: usize = 1 << 17;
+/// The most radii between two checks.
+const RADII_PER_CHECK: usize = 512;
+
+/// The requested stresses.
+///
+/// # Errors
+/// [`Cause::Refused`] without a stress field, [`Cause::Stopped`] if the client hung up.
+pub fn stresses<S: Solver>(solver: &S, sampling: &Sampling, stop: &dyn Stop) -> Result<Stress, Failure> {
+    needs_stress_field(solver.exact(), "/stress")?;
+    let radius = sampling.radii(solver.state().contact_radius);
+    let (terms, least) = solver.terms();
+    let at_once = (TERMS_PER_CHECK / terms.max(1)).clamp(least, RADII_PER_CHECK);
+    let along = |field: Field| -> Result<Option<Vec<Option<f64>>>, Failure> {
+        if !sampling.fields.contains(&field) {
+            return Ok(None);
+        }
+        let mut all = Vec::with_capacity(radius.len());
+        for radii in radius.chunks(at_once) {
+            stop.check()?;
+            all.extend(solver.field(field, radii).into_iter().map(finite));
+        }
+        Ok(Some(all))
+    };
+    let (pressure, shear) = (along(Field::Pressure)?, along(Field::Shear)?);
+    let (slip, displacement) = (along(Field::Slip)?, along(Field::Displacement)?);
+    Ok(Stress { radius, pressure, shear, slip, displacement })
+}
+
+/// Refuses a search for extrema that cannot end in time.
+///
+/// # Errors
+/// [`Cause::Search`] with the estimate, and what would fit.
+fn check_search(profile: &Profile, depth: usize, stop: &dyn Stop) -> Result<(), Failure> {
+    let (estimate, allowed) =
+        (Duration::from_nanos(cost::of_search(profile, depth)), stop.flag().time_limit().unwrap_or(LONGEST_WORK));
+    if estimate <= allowed.saturating_mul(cost::MARGIN) {
+        return Ok(());
+    }
+    let (estimate, fits) = (estimate.as_secs(), cost::longest_search(profile, allowed));
+    Err(Failure::at("/residual", Cause::Search { estimate, depth, fits, allowed }))
+}
+
+/// The extrema of the shear stress.
+///
+/// # Errors
+/// [`Failure`] if the slip history is so deep that the search would exceed the time limit, or the client hung up.
+pub fn residual<S: Solver>(solver: &S, stop: &dyn Stop) -> Result<Residual, Failure> {
+    needs_stress_field(solver.exact(), "/residual")?;
+    check_search(solver.exact().profile(), solver.depth(), stop)?;
+    match solver.residual(&|| stop.check().is_ok()) {
+        Some(residual) => Ok(Residual::new(residual, solver.exact().summary().unit_shear())),
+        None => Err(Failure::at("", Cause::Stopped).unless_interrupted(stop, "")),
+    }
+}

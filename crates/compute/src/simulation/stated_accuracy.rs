@@ -1,0 +1,47 @@
+//! What a reply states of itself: its solver, its errors, and the time that it took.
+
+use std::time::{Duration, Instant};
+
+use stickslip_wire::reply::Accuracy;
+
+use super::Solver;
+use super::warnings::assumption;
+use crate::Stop;
+
+/// Measures the time spent computing for a request: with what its [`Stop`] has counted before, and without the time for
+/// which it has given way to others.
+#[derive(Clone, Copy)]
+pub struct Timer<'a> {
+    stop: &'a dyn Stop,
+    begin: Instant,
+    waited: Duration,
+}
+
+impl Timer<'_> {
+    /// Starts now.
+    #[must_use]
+    pub fn start(stop: &dyn Stop) -> Timer<'_> {
+        Timer { stop, begin: Instant::now(), waited: stop.flag().waited() }
+    }
+
+    /// The time up to now.
+    #[must_use]
+    pub fn elapsed(&self) -> Duration {
+        let flag = self.stop.flag();
+        flag.before() + (self.begin.elapsed() + self.waited).saturating_sub(flag.waited())
+    }
+}
+
+/// Which solver answered, how well, and how long it took.
+pub fn accuracy<S: Solver>(solver: &S, timer: Timer<'_>, reason: &str) -> Accuracy {
+    let estimate = solver.accuracy(&|| timer.stop.check().is_ok());
+    let assumed = assumption(solver.exact().profile()).map(|(_, assumed)| format!("; {assumed}"));
+    Accuracy {
+        solver: S::KIND,
+        reason: format!("{reason}{}", assumed.unwrap_or_default()),
+        force_error: estimate.force_error,
+        stress_error: estimate.stress_error,
+        subsurface_error: None,
+        compute_time: timer.elapsed().as_secs_f64(),
+    }
+}

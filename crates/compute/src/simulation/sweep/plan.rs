@@ -1,0 +1,173 @@
+//! Checking a sweep: at its corners, where each axis is at one of its ends, its numbers are smallest and largest.
+
+use serde_json::Value;
+
+use super::Sweep;
+use super::shared::{self, Shared};
+use crate::Nanoseconds;
+use crate::simulation::{bytes, cost};
+use stickslip_wire::check::{Fault, Faults, JsonPath};
+use stickslip_wire::json_value::{Pointer, index};
+use stickslip_wire::pointer_lookup::{Lookup, lookup};
+use stickslip_wire::simulate::Simulation;
+use stickslip_wire::sweep::CheckedSweep;
+use stickslip_wire::{
+    Accuracy, ContactSummary, Document as _, Field, Peak, Plan, Prepare, PrepareOnce, Protocol, Rejection, Residual,
+    Sampling, SimulateReply, SimulateRequest, State, Steps, Stress, parse_value,
+};
+
+/// What planning takes besides profiles: a thread of the solver, however small the sweep is.
+const PLANNING_COST: Nanoseconds = 100_000;
+
+impl Sweep {
+    /// The cost of [`Sweep::plan`]: above all of the profile, which each corner may have its own of.
+    #[must_use]
+    pub fn planning_cost(checked: &CheckedSweep) -> Nanoseconds {
+        let corners = 1_u64 << checked.axes.len();
+        PLANNING_COST.saturating_add(cost::of_profile_in(&checked.request.base.0).saturating_mul(corners))
+    }
+
+    /// Checks the corners of a sweep, with a profile that `profiles` prepares once if no axis changes it, and estimates
+    /// its cost.
+    ///
+    /// # Errors
+    /// [`Rejection::Invalid`] if an axis leaves the range of its field, the base is at fault whatever the axes say, or
+    /// an output does not exist; [`Rejection::Refused`] if the mechanics takes none of the corners.
+    pub fn plan(checked: CheckedSweep, profiles: &dyn Prepare) -> Result<Sweep, Rejection> {
+        let profiles = PrepareOnce::by(profiles);
+        let mut document = checked.request.base.0.clone();
+        let mut sweep = Sweep { checked, base: Value::Null, shared: None, cost_per_point: 0, bytes: 0 };
+        let mut outputs = vec![Lookup::Nothing; sweep.checked.outputs.len()];
+        let (mut faults, mut accepted, mut refused) = (Vec::new(), 0, None);
+        for point in sweep.corners() {
+            sweep.checked.put(&mut document, point);
+            let request = parse_value::<SimulateRequest>(&document).map_err(|fault| Rejection::Invalid(vec![fault]));
+            match request.and_then(|request| request.check_with(&profiles)) {
+                Ok(simulation) => {
+                    accepted += 1;
+                    sweep.inspect(simulation, &mut outputs);
+                }
+                Err(Rejection::Invalid(found)) => faults.extend(found),
+                Err(other) => refused = Some(other),
+            }
+        }
+        sweep.refuse(faults, accepted, refused)?;
+        if accepted > 0 {
+            sweep.check_outputs(&outputs)?;
+        }
+        let written = document.to_string().len();
+        if sweep.shared.is_some() {
+            document["contact"]["profile"] = shared::placeholder();
+        }
+        sweep.base = document;
+        sweep.bytes += written * bytes::READ;
+        Ok(sweep)
+    }
+
+    /// The points where each axis is at one of its ends.
+    fn corners(&self) -> Vec<usize> {
+        let mut corners = vec![0];
+        for axis in &self.checked.axes {
+            let with = |index: usize| corners.iter().map(move |corner| corner * axis.count() + index);
+            let [least, most] = axis.ends();
+            corners = if least == most { with(least).collect() } else { with(least).chain(with(most)).collect() };
+        }
+        corners
+    }
+
+    fn inspect(&mut self, simulation: Simulation, outputs: &mut [Lookup]) {
+        let preparation = cost::of_preparation(&simulation.definition.profile);
+        let mut cost = cost::of_simulation(&simulation);
+        self.bytes = self.bytes.max(bytes::of_simulation(&simulation));
+        let reply = reply_template(&simulation);
+        for (output, found) in self.checked.outputs.iter().zip(outputs) {
+            if !matches!(found, Lookup::Number(_)) {
+                *found = lookup(&reply, &first_peak(output));
+            }
+        }
+        if self.shared.is_none() {
+            self.shared = Shared::of(simulation, &self.checked.axes);
+        }
+        if self.shared.is_none() {
+            cost = cost.saturating_add(preparation);
+        }
+        self.cost_per_point = self.cost_per_point.max(cost);
+    }
+
+    /// Refuses faults that every point has, and values out of the range of their field.
+    fn refuse(&self, found: Vec<Fault>, accepted: usize, refused: Option<Rejection>) -> Result<(), Rejection> {
+        let mut faults = Faults::default();
+        let mut seen = Vec::new();
+        for fault in found {
+            let place = self.checked.place_of(&fault.pointer);
+            if (accepted == 0 || !place.starts_with("/base")) && !seen.contains(&place) {
+                faults.add(JsonPath::Pointer(&place), fault.detail);
+                seen.push(place);
+            }
+        }
+        match (faults.is_empty(), refused) {
+            (true, Some(Rejection::Refused { pointer, error })) if accepted == 0 => {
+                Err(Rejection::Refused { pointer: self.checked.place_of(&pointer), error })
+            }
+            _ => faults.done(Some(())),
+        }
+    }
+
+    fn check_outputs(&self, found: &[Lookup]) -> Result<(), Rejection> {
+        let (mut faults, at) = (Faults::default(), JsonPath::Root.member("outputs"));
+        for (index, (found, output)) in found.iter().zip(&self.checked.request.outputs).enumerate() {
+            let at = at.index(index);
+            let at = output.place_of_pointer(&at);
+            match found {
+                Lookup::Number(_) => {}
+                Lookup::Nothing => faults.add(at, "the reply to the base has no such member"),
+                Lookup::Other => faults.add(at, "the reply to the base has no number there"),
+            }
+        }
+        faults.done(Some(()))
+    }
+}
+
+/// The pointer to the first peak in place of one to any peak: their number is not known in advance.
+fn first_peak(output: &Pointer) -> Pointer {
+    match output.segments() {
+        [residual, peaks, position, rest @ ..]
+            if residual == "residual" && peaks == "peaks" && index(position).is_some() =>
+        {
+            let first = format!("/residual/peaks/0{}", rest.iter().map(|part| format!("/{part}")).collect::<String>());
+            Pointer::parse(&first).unwrap_or_else(|| output.clone())
+        }
+        _ => output.clone(),
+    }
+}
+
+/// A reply with a zero or none for each number that the simulation will compute, and one peak in place of however many
+/// there will be.
+fn reply_template(simulation: &Simulation) -> SimulateReply {
+    let moves = simulation.plan.length();
+    let residual = || Residual { peaks: vec![Peak::default()], ..Residual::default() };
+    let protocol = || Protocol { displacement: vec![0.0; moves], cutoff_radius: 0.0 };
+    SimulateReply {
+        contact: ContactSummary::default(),
+        steps: vec![State::default(); if simulation.steps == Steps::All { moves } else { 1 }],
+        stress: simulation.stress.as_ref().map(stress_template),
+        residual: simulation.residual.then(residual),
+        // No output of a sweep.
+        subsurface: None,
+        protocol: matches!(simulation.plan, Plan::EqualPeaks(_)).then(protocol),
+        accuracy: Accuracy::default(),
+        warnings: Vec::new(),
+    }
+}
+
+fn stress_template(sampling: &Sampling) -> Stress {
+    let length = sampling.length();
+    let column = |field: Field| sampling.fields.contains(&field).then(|| vec![None; length]);
+    Stress {
+        radius: vec![0.0; length],
+        pressure: column(Field::Pressure),
+        shear: column(Field::Shear),
+        slip: column(Field::Slip),
+        displacement: column(Field::Displacement),
+    }
+}

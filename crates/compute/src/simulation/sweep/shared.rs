@@ -1,0 +1,60 @@
+//! What the points of a sweep share: a profile that no axis changes is checked and made once, and so is the whole
+//! contact if no axis changes that.
+
+use std::sync::Arc;
+
+use serde_json::{Value, json};
+use stickslip_mechanics::{Contact, Profile};
+use stickslip_wire::simulate::Simulation;
+use stickslip_wire::sweep::AxisValues;
+use stickslip_wire::{SimulateReply, Solver};
+
+use crate::Stop;
+use crate::simulation::run::{contact, simulate_on};
+use crate::simulation::stated_accuracy::Timer;
+use crate::simulation::{Failure, simulate};
+
+#[derive(Debug)]
+pub(super) struct Shared {
+    profile: Arc<Profile>,
+    /// The virgin contact, unless an axis changes it or there is none.
+    contact: Option<Contact>,
+}
+
+/// A profile that is cheap to parse, in the base of points that share another.
+pub(super) fn placeholder() -> Value {
+    json!({"type": "sphere", "radius": 1.0})
+}
+
+impl Shared {
+    /// What one of the points shares with all the others; `None` if not even the profile.
+    pub(super) fn of(point: Simulation, axes: &[AxisValues]) -> Option<Shared> {
+        let changed = |member: &str| {
+            axes.iter().any(|axis| axis.pointer.segments().iter().map(String::as_str).take(2).eq(["contact", member]))
+        };
+        if changed("profile") || point.definition.profile.depends_on_bodies() && changed("material") {
+            return None;
+        }
+        let fixed = !["material", "friction", "preload"].into_iter().any(changed);
+        let profile = Arc::clone(&point.setup.profile);
+        let contact = fixed.then(|| Contact::new(point.setup).ok());
+        Some(Shared { profile, contact: contact.flatten() })
+    }
+
+    /// The reply to a point whose profile is the placeholder.
+    pub(super) fn simulate(&self, mut point: Simulation, stop: &dyn Stop) -> Result<SimulateReply, Failure> {
+        if matches!(point.solver, Some(Solver::Springs(_))) {
+            point.setup.profile = Arc::clone(&self.profile);
+            return simulate(&point, stop);
+        }
+        let timer = Timer::start(stop);
+        let contact = match &self.contact {
+            Some(contact) => contact.clone(),
+            None => {
+                point.setup.profile = Arc::clone(&self.profile);
+                contact(point.setup.clone(), "/contact")?
+            }
+        };
+        simulate_on(contact, &point, timer, stop)
+    }
+}

@@ -1,0 +1,193 @@
+//! Path and header parameters. Each type is both what a handler takes and what the OpenAPI document says of it.
+
+use std::convert::Infallible;
+use std::sync::Arc;
+
+use axum::extract::{FromRequestParts, Path};
+use axum::http::request::Parts;
+use axum::http::{HeaderMap, header};
+use utoipa::IntoParams;
+use utoipa::openapi::path::{Parameter, ParameterIn};
+use uuid::Uuid;
+
+use super::accept::{NAMED, admission, list_members};
+use super::problem::{Code, Problem};
+use super::query_parameters::{MOVE_NUMBER, described};
+use super::state::App;
+use crate::sessions::Expected;
+
+/// Characters of an idempotency key.
+const KEY_LENGTH: usize = 255;
+
+/// The contact in the path.
+#[derive(IntoParams)]
+#[into_params(parameter_in = Path)]
+pub struct ContactPath {
+    /// The identifier of the contact.
+    pub id: Uuid,
+}
+
+/// The job in the path.
+#[derive(IntoParams)]
+#[into_params(parameter_in = Path)]
+pub struct JobPath {
+    /// The identifier of the job.
+    pub id: Uuid,
+}
+
+/// The condition under which a contact is changed; `None` if the client sets none, or `*`.
+#[derive(IntoParams)]
+#[into_params(parameter_in = Header)]
+pub struct IfMatch {
+    /// The sequence that the contact must have, in quotes: an `ETag` of it. If it has another one, nothing changes and
+    /// the answer is 412. With the checksum of a label behind a dot, as `GET /contacts/{id}` gives it, the label must
+    /// be the same too; `.00000000` is that of no label. The `W/` of a compressed reply may stand before it.
+    #[param(rename = "If-Match", value_type = Option<String>, nullable = false,
+        pattern = r#"^((W/)?"[0-9]{1,19}(\.[0-9a-f]{8})?"|\*)$"#)]
+    pub expected: Option<Expected>,
+}
+
+/// The name of a request that may have to be repeated.
+#[derive(IntoParams)]
+#[into_params(parameter_in = Header)]
+pub struct IdempotencyKey {
+    /// A name of your choice for this request. A repetition with the same name and body within 24 hours changes nothing
+    /// and gets the first reply again; with another body it is refused. A server with the store `memory:` forgets the
+    /// oldest replies earlier once they take more than 256 MiB.
+    #[param(rename = "Idempotency-Key", nullable = false, min_length = 1, max_length = 255, pattern = "^[!-~]+$")]
+    pub key: Option<String>,
+}
+
+/// Where a stream of events continues.
+pub struct LastEventId {
+    /// The sequence of the last event that the client has received.
+    pub sequence: Option<u64>,
+}
+
+impl IntoParams for LastEventId {
+    fn into_params(_: impl Fn() -> Option<ParameterIn>) -> Vec<Parameter> {
+        let description = "The sequence of the last event that the client has received. The stream continues with the \
+                           next one, without a gap; if the header is left out, it begins with the present state.";
+        let mut parameter = described("Last-Event-ID", description.to_owned(), &MOVE_NUMBER, None);
+        parameter.parameter_in = ParameterIn::Header;
+        vec![parameter]
+    }
+}
+
+/// How the client wants to be answered (RFC 7240).
+#[derive(IntoParams)]
+#[into_params(parameter_in = Header)]
+pub struct Prefer {
+    /// `respond-async` makes a job of the sweep, however small it is (RFC 7240).
+    #[param(rename = "Prefer", value_type = Option<String>, nullable = false)]
+    pub respond_async: bool,
+}
+
+impl FromRequestParts<Arc<App>> for ContactPath {
+    type Rejection = Problem;
+
+    async fn from_request_parts(parts: &mut Parts, app: &Arc<App>) -> Result<Self, Problem> {
+        Ok(ContactPath { id: identifier(parts, app, Code::ContactNotFound, "contact").await? })
+    }
+}
+
+impl FromRequestParts<Arc<App>> for JobPath {
+    type Rejection = Problem;
+
+    async fn from_request_parts(parts: &mut Parts, app: &Arc<App>) -> Result<Self, Problem> {
+        Ok(JobPath { id: identifier(parts, app, Code::JobNotFound, "job").await? })
+    }
+}
+
+/// The identifier in the path. A text that is not a UUID cannot name anything, so it is "not found" rather than
+/// invalid.
+async fn identifier(parts: &mut Parts, app: &Arc<App>, kind: Code, noun: &str) -> Result<Uuid, Problem> {
+    let missing = |id: &str| {
+        let shown: String = id.chars().take(40).collect();
+        Problem::new(kind, format!("there is no {noun} {shown}"))
+    };
+    match Path::<String>::from_request_parts(parts, app).await {
+        Ok(Path(id)) => Uuid::parse_str(&id).map_err(|_| missing(&id)),
+        // Percent signs that do not decode.
+        Err(_) => Err(missing("of this name")),
+    }
+}
+
+impl FromRequestParts<Arc<App>> for IfMatch {
+    type Rejection = Problem;
+
+    async fn from_request_parts(parts: &mut Parts, _: &Arc<App>) -> Result<Self, Problem> {
+        let Some(value) = parts.headers.get(header::IF_MATCH) else {
+            return Ok(IfMatch { expected: None });
+        };
+        let text = value.to_str().unwrap_or_default().trim();
+        // A version is the same version in a compressed reply.
+        let tag = text.strip_prefix("W/").unwrap_or(text);
+        let tag = tag.strip_prefix('"').and_then(|rest| rest.strip_suffix('"'));
+        match (text, tag.and_then(expected)) {
+            ("*", _) => Ok(IfMatch { expected: None }),
+            (_, Some(expected)) => Ok(IfMatch { expected: Some(expected) }),
+            _ => Err(Problem::new(Code::InvalidInput, "If-Match must be a sequence in quotes, such as \"3\", or *")),
+        }
+    }
+}
+
+/// The version that a tag names: a sequence, and the checksum of a label behind a dot if it has one.
+fn expected(tag: &str) -> Option<Expected> {
+    let (sequence, label) = tag.split_once('.').map_or((tag, None), |(sequence, label)| (sequence, Some(label)));
+    let is_checksum = |label: &&str| label.len() == 8 && label.bytes().all(|digit| digit.is_ascii_hexdigit());
+    let label = match label {
+        Some(label) => Some(u32::from_str_radix(Some(label).filter(is_checksum)?, 16).ok()?),
+        None => None,
+    };
+    Some(Expected { sequence: sequence.parse().ok()?, label })
+}
+
+impl IdempotencyKey {
+    /// Reads the header.
+    ///
+    /// # Errors
+    /// A [`Problem`] if it is empty, too long, or not visible ASCII.
+    pub fn read(headers: &HeaderMap) -> Result<IdempotencyKey, Problem> {
+        let Some(value) = headers.get("idempotency-key") else {
+            return Ok(IdempotencyKey { key: None });
+        };
+        let key = value.to_str().ok().filter(|key| (1..=KEY_LENGTH).contains(&key.len()));
+        let key = key.filter(|key| key.bytes().all(|byte| byte.is_ascii_graphic()));
+        let refusal = || format!("Idempotency-Key must be 1 to {KEY_LENGTH} visible ASCII characters");
+        let key = key.ok_or_else(|| Problem::new(Code::InvalidInput, refusal()))?;
+        Ok(IdempotencyKey { key: Some(key.to_owned()) })
+    }
+}
+
+impl FromRequestParts<Arc<App>> for LastEventId {
+    type Rejection = Problem;
+
+    async fn from_request_parts(parts: &mut Parts, _: &Arc<App>) -> Result<Self, Problem> {
+        let Some(value) = parts.headers.get("last-event-id") else {
+            return Ok(LastEventId { sequence: None });
+        };
+        let sequence = value.to_str().ok().and_then(|text| text.trim().parse().ok());
+        let refusal = "Last-Event-ID must be the number of a move, such as 3";
+        let refused = || Problem::at(Code::InvalidInput, "/Last-Event-ID", refusal);
+        sequence.map(|sequence| LastEventId { sequence: Some(sequence) }).ok_or_else(refused)
+    }
+}
+
+impl FromRequestParts<Arc<App>> for Prefer {
+    type Rejection = Infallible;
+
+    async fn from_request_parts(parts: &mut Parts, _: &Arc<App>) -> Result<Self, Infallible> {
+        let is_async = |preference: &str| {
+            let name = preference.split(';').next().unwrap_or_default();
+            name.trim().eq_ignore_ascii_case("respond-async")
+        };
+        Ok(Prefer { respond_async: list_members(&parts.headers, "prefer").any(is_async) })
+    }
+}
+
+/// Whether the client asks for server-sent events.
+pub fn accepts_events(headers: &HeaderMap) -> bool {
+    let admission = admission(headers, "accept", "text/event-stream");
+    admission.is_some_and(|admission| admission.rank == NAMED && admission.quality > 0.0)
+}

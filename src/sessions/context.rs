@@ -1,0 +1,143 @@
+//! The context of the sessions of a tenant: the store, the pool, and the cache with its locks. Every handle on these
+//! sessions holds one.
+
+use std::ops::Deref;
+use std::sync::Arc;
+
+use uuid::Uuid;
+
+use crate::admission::{Deadline, Pool, STREAMS};
+use crate::store::{Extent, IdempotentRequest, Listeners, RequestKey, Session, Store, StoreError, Tenant, Usage};
+use stickslip_compute::simulation::{ProfileCache, ProfileKey, Profiles};
+use stickslip_mechanics::Profile;
+
+use super::cache::{Cache, Guard};
+use super::error::SessionError;
+use super::metrics::SessionMetrics;
+use super::snapshot::Snapshots;
+use super::storage_reservation::{StorageReservation, UsageByTenant};
+
+/// How often a change is tried if other processes move the contact first. Each time, one of them has made progress.
+pub(super) const ATTEMPTS: usize = 100;
+
+/// The sessions of a tenant. Clones are handles on the same.
+#[derive(Clone)]
+pub(super) struct TenantContext {
+    pub(super) tenant: Tenant,
+    pub(super) common: Arc<Common>,
+}
+
+/// What all tenants share.
+pub(super) struct Common {
+    pub(super) store: Arc<dyn Store>,
+    pub(super) pool: Pool,
+    pub(super) cache: Arc<Cache>,
+    pub(super) snapshots: Snapshots,
+    pub(super) listeners: Listeners,
+    pub(super) metrics: SessionMetrics,
+    usage: UsageByTenant,
+}
+
+impl Deref for TenantContext {
+    type Target = Common;
+
+    fn deref(&self) -> &Common {
+        &self.common
+    }
+}
+
+impl Common {
+    /// Sessions in a store, of which at most `capacity` bytes of states are cached.
+    pub(super) fn new(store: Arc<dyn Store>, pool: Pool, capacity: usize) -> Common {
+        let metrics = SessionMetrics::default();
+        Common {
+            snapshots: Snapshots::new(Arc::clone(&store), pool.clone()),
+            cache: Arc::new(Cache::new(capacity, metrics.hits.clone())),
+            store,
+            pool,
+            listeners: Listeners::new(STREAMS),
+            metrics,
+            usage: UsageByTenant::default(),
+        }
+    }
+
+    /// Notes that a tenant takes less of the store.
+    pub(super) fn give_back(&self, tenant: &Tenant, freed: Usage) {
+        self.usage.give_back(tenant, freed);
+    }
+}
+
+/// The profiles that requests share are kept in the cache of the states, within one bound.
+impl ProfileCache for Common {
+    fn holds(&self, key: &ProfileKey) -> bool {
+        self.cache.profile(key).is_some()
+    }
+
+    fn get(&self, key: &ProfileKey) -> Option<Arc<Profile>> {
+        self.cache.profile(key).inspect(|_| self.metrics.profiles_shared.inc())
+    }
+
+    fn keep(&self, key: ProfileKey, profile: Arc<Profile>, bytes: usize) -> Arc<Profile> {
+        self.metrics.profiles_prepared.inc();
+        self.cache.keep_profile(key, profile, bytes)
+    }
+}
+
+impl TenantContext {
+    /// The shared profiles, for work that ends when this flag is raised.
+    pub(super) fn profiles(&self, stop: &Deadline) -> Profiles<Deadline> {
+        Profiles::new(self.common.clone(), stop.clone(), self.pool.capacity().deadline)
+    }
+
+    /// A request that may have been answered before.
+    pub(super) fn request(&self, key: Option<RequestKey>) -> IdempotentRequest<'_> {
+        IdempotentRequest::new(&*self.store, &self.tenant, key)
+    }
+
+    /// Reserves space in the store for what a change will add, within the quotas of the tenant.
+    pub(super) async fn reserve_storage(&self, requested: Usage) -> Result<StorageReservation, SessionError> {
+        self.usage.reserve(&self.store, &self.pool, &self.tenant, requested).await
+    }
+
+    /// Exclusive use of a session: waits for earlier requests, as long as the pool permits.
+    pub(super) async fn lock(&self, id: Uuid) -> Result<Guard, SessionError> {
+        match self.cache.try_lock(&self.tenant, id) {
+            Some(guard) => Ok(guard),
+            None => Ok(Box::pin(self.pool.wait(self.cache.lock(&self.tenant, id))).await?),
+        }
+    }
+
+    /// The size of a session, with its tenant and label, if it belongs to the tenant.
+    pub(super) async fn extent(&self, id: Uuid) -> Result<Extent, SessionError> {
+        match self.store.extent(id).await {
+            Ok(extent) if extent.tenant == self.tenant => Ok(extent),
+            Ok(_) => Err(SessionError::NotFound(id)),
+            Err(error) => Err(self.store_error(id, error)),
+        }
+    }
+
+    /// The session as it is stored, if it belongs to the tenant.
+    pub(super) async fn find_own(&self, id: Uuid) -> Result<Session, SessionError> {
+        match self.store.find(id).await {
+            Ok(session) if session.tenant == self.tenant => Ok(session),
+            Ok(_) => Err(SessionError::NotFound(id)),
+            Err(error) => Err(self.store_error(id, error)),
+        }
+    }
+
+    /// Converts a failure of the store. If the session is gone, its cached state is removed too.
+    pub(super) fn store_failure(&self, guard: &mut Guard, error: StoreError) -> SessionError {
+        if matches!(error, StoreError::NotFound | StoreError::Expired(_)) {
+            guard.live = None;
+        }
+        self.store_error(guard.id(), error)
+    }
+
+    pub(super) fn store_error(&self, id: Uuid, error: StoreError) -> SessionError {
+        match error {
+            StoreError::Expired(tenant) if tenant == self.tenant => SessionError::Expired(id),
+            StoreError::NotFound | StoreError::Expired(_) => SessionError::NotFound(id),
+            other => SessionError::Store(other),
+        }
+    }
+}

@@ -1,0 +1,203 @@
+//! The handle on the sessions of a tenant, and what it reads of a single one.
+
+use std::sync::Arc;
+
+use uuid::Uuid;
+
+use crate::admission::{Deadline, Pool, Reservation};
+use crate::otlp;
+use crate::store::{Page, Store, Tenant};
+use stickslip_compute::computations::{OnContact, Shown};
+use stickslip_compute::simulation::{Profiles, bytes, cost};
+use stickslip_wire::subsurface::SubsurfaceTask;
+use stickslip_wire::{ContactDefinition, SessionPage, SessionReply, SubsurfaceRequest};
+
+use super::apply::Mover;
+use super::changes::Changes;
+use super::context::{Common, TenantContext};
+use super::cycles::ClosedCycles;
+use super::error::SessionError;
+use super::history::History;
+use super::loaded::written;
+use super::metrics::Readings;
+use super::observations::Observations;
+
+/// The sessions of a tenant. Clones, and those of other tenants, are handles on the same.
+#[derive(Clone)]
+pub struct Sessions {
+    pub(super) context: TenantContext,
+    /// The name of the key that the requests come with, where keys are in use.
+    by: Option<Arc<str>>,
+}
+
+impl Sessions {
+    /// Sessions in a store, of the tenant without a name. At most `capacity` bytes of states are cached; the rest is
+    /// replayed when needed.
+    #[must_use]
+    pub fn new(store: Arc<dyn Store>, pool: Pool, capacity: usize) -> Sessions {
+        let common = Arc::new(Common::new(store, pool, capacity));
+        Sessions { context: TenantContext { tenant: Tenant::default(), common }, by: None }
+    }
+
+    /// The sessions of another tenant, for requests that come with the key of this name.
+    #[must_use]
+    pub fn for_tenant(&self, tenant: Tenant, key: Arc<str>) -> Sessions {
+        Sessions { context: TenantContext { tenant, common: Arc::clone(&self.context.common) }, by: Some(key) }
+    }
+
+    /// Making, copying, naming and deleting them.
+    #[must_use]
+    pub fn changes(&self) -> Changes {
+        Changes { context: self.context.clone() }
+    }
+
+    /// Their moves to come.
+    #[must_use]
+    pub fn moves(&self) -> Mover {
+        Mover { context: self.context.clone(), by: self.by.clone() }
+    }
+
+    /// Their moves of the past.
+    #[must_use]
+    pub fn history(&self) -> History {
+        History { context: self.context.clone(), names_makers: self.names_makers() }
+    }
+
+    /// The cycles that they have closed.
+    #[must_use]
+    pub fn cycles(&self) -> ClosedCycles {
+        ClosedCycles { context: self.context.clone() }
+    }
+
+    /// What a bench has measured beside their moves.
+    #[must_use]
+    pub fn observations(&self) -> Observations {
+        Observations::of(&self.context)
+    }
+
+    /// The shared profiles, for work that ends when this flag is raised.
+    #[must_use]
+    pub fn profiles(&self, stop: &Deadline) -> Profiles<Deadline> {
+        self.context.profiles(stop)
+    }
+
+    /// Ends all events, present and future: the process is about to stop.
+    pub fn end_events(&self) {
+        self.context.listeners.end();
+    }
+
+    /// Whether requests come with keys, by whose names the history says who made a move.
+    #[must_use]
+    pub fn names_makers(&self) -> bool {
+        self.by.is_some()
+    }
+
+    /// Whether the store can serve.
+    ///
+    /// # Errors
+    /// [`SessionError::Store`] if it cannot.
+    pub async fn ready(&self) -> Result<(), SessionError> {
+        Ok(self.context.store.ready().await?)
+    }
+
+    /// Bytes of the cached states, and how many sessions they are.
+    #[must_use]
+    pub fn held(&self) -> (usize, usize) {
+        self.context.cache.held()
+    }
+
+    /// A session with its state.
+    ///
+    /// # Errors
+    /// [`SessionError::NotFound`] or [`SessionError::Expired`], or a failure of the store.
+    pub async fn get(&self, id: Uuid) -> Result<SessionReply, SessionError> {
+        let mut guard = self.context.lock(id).await?;
+        Ok(self.context.current(&mut guard).await?.reply())
+    }
+
+    /// The definition of a session as it was sent, as JSON, and the memory that it takes.
+    ///
+    /// # Errors
+    /// [`SessionError::NotFound`] or [`SessionError::Expired`], or a failure of the store or of the pool.
+    pub async fn definition(&self, id: Uuid) -> Result<(Vec<u8>, Reservation), SessionError> {
+        let definition = {
+            let mut guard = self.context.lock(id).await?;
+            // It does not depend on the state, which is not loaded for it.
+            match &guard.live {
+                Some(live) if !live.is_behind => {
+                    Arc::clone(&self.context.current(&mut guard).await?.session.definition)
+                }
+                _ => self.context.find_own(id).await?.definition,
+            }
+        };
+        let points = definition.profile.points();
+        let held = self.context.pool.reserve(bytes::of_definition(points)).await?;
+        let work = move || written(&*definition);
+        Ok((self.context.pool.run(cost::writing_table(points), work).await??, held))
+    }
+
+    /// The reply of a computation on a session, which `said` to have this definition, with the sequence that it belongs
+    /// to. The memory of the request becomes what that takes.
+    ///
+    /// # Errors
+    /// [`SessionError`], among them [`SessionError::OtherDefinition`].
+    pub async fn compute_on<T: OnContact>(
+        &self,
+        id: Uuid,
+        said: Option<ContactDefinition>,
+        task: T,
+        shown: Shown,
+        memory: &mut Reservation,
+    ) -> Result<(u64, Vec<u8>), SessionError> {
+        let (stop, _guard) = self.context.pool.deadline();
+        self.context.pool.resize(memory, task.bytes() + shown.bytes(task.rows())).await?;
+        let (contact, sequence, state) = self.context.copy(id, said, &stop).await?;
+        let cost = task.cost(contact.profile(), contact.memory_depth()).saturating_add(shown.format.cost());
+        let work = move || {
+            let _state = state;
+            let outcome = otlp::part!("solve").in_scope(|| task.run(contact, sequence, &stop))?;
+            Ok::<_, SessionError>(otlp::part!("write").in_scope(|| shown.write(&outcome, &stop))??)
+        };
+        Ok((sequence, self.context.pool.run(cost, work).await??))
+    }
+
+    /// The stresses below the surface that a request asks for, checked against the definition of the session.
+    ///
+    /// # Errors
+    /// [`SessionError::NotFound`] or [`SessionError::Expired`], a request that does not fit the definition, or a
+    /// failure of the store.
+    pub async fn subsurface_task(&self, id: Uuid, request: SubsurfaceRequest) -> Result<SubsurfaceTask, SessionError> {
+        let mut guard = self.context.lock(id).await?;
+        Ok(request.of_contact(&self.context.current(&mut guard).await?.session.definition)?)
+    }
+
+    /// A page of sessions; of those alone whose label contains `label`.
+    ///
+    /// # Errors
+    /// A failure of the store, or of the pool if the store does not find it in time.
+    pub async fn list(&self, label: Option<String>, page: Page) -> Result<SessionPage, SessionError> {
+        let limit = page.limit;
+        // One more than requested shows whether there is a next page.
+        let page = Page { limit: limit + 1, ..page };
+        let listed = self.context.store.list(Some(self.context.tenant.clone()), label, page);
+        let mut found = self.context.pool.wait(listed).await??;
+        let more = found.len() > limit;
+        found.truncate(limit);
+        let next = found.last().filter(|_| more).map(|session| session.id);
+        Ok(SessionPage { items: found, next })
+    }
+
+    /// The metrics of the sessions.
+    #[must_use]
+    pub fn readings(&self) -> Readings<'_> {
+        let (bytes, cached) = self.context.cache.held();
+        Readings {
+            counted: &self.context.metrics,
+            cached,
+            bytes,
+            capacity: self.context.cache.capacity(),
+            streams: self.context.listeners.count(),
+            commits: self.context.store.commits(),
+        }
+    }
+}
