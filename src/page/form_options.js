@@ -1,6 +1,6 @@
 // The shapes, the materials and the units that the form offers.
-
-import { prefixed } from "./units.js";
+import { FAMILIES } from "./families.js";
+import { inPower, prefixed } from "./units.js";
 
 export const LENGTH = prefixed("m", "", "m", "µ", "n");
 export const FORCE = prefixed("N", "k", "", "m", "µ");
@@ -8,29 +8,19 @@ export const MODULUS = prefixed("Pa", "G", "M", "k", "");
 export const STRESS = prefixed("Pa", "M", "G", "");
 
 const radius = { name: "radius", label: "Radius R", units: LENGTH, unit: "mm", value: "10" };
-const slope = { name: "slope", label: "Slope dz/dr", value: "0.05" };
-const flat = { name: "flat_radius", label: "Radius of the flat", units: LENGTH, unit: "µm", value: "50" };
+
+/** The field for a parameter of a family: a length in the unit of which the example is at least one. */
+function field({ name, label, si, example }) {
+  if (si !== "m") return { name, label, value: example };
+  const [unit, power] = LENGTH.find((choice) => Number(inPower(Number(example), choice[1])) >= 1);
+  return { name, label, units: LENGTH, unit, value: inPower(Number(example), power) };
+}
+
+const families = Object.entries(FAMILIES).map(([type, [title, parameters]]) => [type, [title, parameters.map(field)]]);
 
 /** What each shape is called, and its fields. */
 export const PROFILES = {
-  sphere: ["Sphere (Hertz’s parabola)", [radius]],
-  exact_sphere: ["Exact sphere", [radius]],
-  cone: ["Cone", [slope]],
-  power_law: [
-    "Power law z = c rⁿ",
-    [
-      { name: "exponent", label: "Exponent n", value: "4" },
-      { name: "coefficient", label: "Coefficient c (m to the 1 − n)", value: "1e6" },
-    ],
-  ],
-  flat_punch: ["Flat punch", [{ ...radius, value: "1" }]],
-  truncated_cone: ["Truncated cone", [slope, flat]],
-  truncated_sphere: ["Truncated (worn) sphere", [radius, flat]],
-  rounded_punch: [
-    "Punch with a rounded edge",
-    [flat, { name: "edge_radius", label: "Radius of the edge", units: LENGTH, unit: "mm", value: "5" }],
-  ],
-  rounded_cone: ["Cone with a rounded tip", [slope, { ...flat, name: "tip_radius", label: "Radius of the tip" }]],
+  ...Object.fromEntries(families),
   tabulated: ["Table of measured heights", []],
   sum: ["Sum of shapes", []],
   ellipsoid: [

@@ -1,6 +1,7 @@
 //! Every profile over HTTP: the promises of the API that depend on the shape.
 
 use serde_json::{Value, json};
+use stickslip_mechanics::profile::{self, Family};
 
 use crate::common::{Server, assert_refused, changed, good, number, problem, with};
 
@@ -20,19 +21,16 @@ fn request(profile: &Value, preload: &Value) -> Value {
 fn families() -> Vec<Value> {
     let radii: Vec<f64> = (0..=100).map(|index| 1e-5 * f64::from(index)).collect();
     let heights: Vec<f64> = radii.iter().map(|r| r * r / 0.02).collect();
-    vec![
-        json!({"type": "sphere", "radius": 0.01}),
-        json!({"type": "exact_sphere", "radius": 0.01}),
-        json!({"type": "cone", "slope": 0.05}),
-        json!({"type": "power_law", "exponent": 1.5, "coefficient": 1.0}),
-        json!({"type": "flat_punch", "radius": 1e-3}),
-        json!({"type": "truncated_cone", "slope": 0.05, "flat_radius": 5e-5}),
-        json!({"type": "truncated_sphere", "radius": 0.01, "flat_radius": 5e-5}),
-        json!({"type": "rounded_punch", "flat_radius": 5e-5, "edge_radius": 0.01}),
-        json!({"type": "rounded_cone", "slope": 0.05, "tip_radius": 5e-5}),
-        json!({"type": "tabulated", "r": radii, "z": heights}),
-        json!({"type": "sum", "parts": [{"type": "sphere", "radius": 0.02}, {"type": "cone", "slope": 0.01}]}),
-    ]
+    let of_family = |family: &&Family| {
+        family.parameters.iter().fold(json!({"type": family.name}), |mut document, parameter| {
+            document[parameter.name] = json!(parameter.example);
+            document
+        })
+    };
+    let mut all: Vec<Value> = profile::families().iter().map(of_family).collect();
+    all.push(json!({"type": "tabulated", "r": radii, "z": heights}));
+    all.push(json!({"type": "sum", "parts": [{"type": "sphere", "radius": 0.02}, {"type": "cone", "slope": 0.01}]}));
+    all
 }
 
 #[tokio::test]

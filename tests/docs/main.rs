@@ -8,6 +8,7 @@ mod dashboards;
 mod docs;
 mod examples;
 mod node;
+mod page_forms;
 mod progress;
 mod python;
 mod reference;

@@ -3,9 +3,11 @@
 
 use proptest::prelude::*;
 use proptest::sample::select;
+use proptest::strategy::Union;
 use serde_json::{Map, Value, json};
 use stickslip_compute::Flag;
 use stickslip_compute::simulation::simulate;
+use stickslip_mechanics::profile::{Parameter, families};
 use stickslip_mechanics::range::{self, Range};
 use stickslip_wire::{SimulateRequest, read};
 
@@ -94,31 +96,30 @@ fn quantity(range: &'static Range, low: f64, high: f64) -> impl Strategy<Value =
     ]
 }
 
+/// A shape of ordinary size, sometimes of any.
 fn family() -> BoxedStrategy<Value> {
-    let radius = || quantity(&range::RADIUS, -5.0, 0.0);
-    let flat = || quantity(&range::FLAT_RADIUS, -7.0, -3.0);
-    let slope = || quantity(&range::SLOPE, -4.0, 0.3);
-    let exponent = prop_oneof![
-        4 => 0.1..5.0_f64,
-        2 => (1..9_u8).prop_map(f64::from),
-        1 => quantity(&range::EXPONENT, 0.0, 2.9),
-    ];
-    prop_oneof![
-        3 => radius().prop_map(|radius| json!({"type": "sphere", "radius": radius})),
-        2 => radius().prop_map(|radius| json!({"type": "exact_sphere", "radius": radius})),
-        2 => slope().prop_map(|slope| json!({"type": "cone", "slope": slope})),
-        3 => (exponent, quantity(&range::COEFFICIENT, -3.0, 3.0))
-            .prop_map(|(n, c)| json!({"type": "power_law", "exponent": n, "coefficient": c})),
-        2 => flat().prop_map(|radius| json!({"type": "flat_punch", "radius": radius})),
-        2 => (slope(), flat()).prop_map(|(k, b)| json!({"type": "truncated_cone", "slope": k, "flat_radius": b})),
-        2 => (radius(), flat()).prop_map(|(r, b)| json!({"type": "truncated_sphere", "radius": r, "flat_radius": b})),
-        2 => (flat(), quantity(&range::EDGE_RADIUS, -5.0, 0.0))
-            .prop_map(|(b, r)| json!({"type": "rounded_punch", "flat_radius": b, "edge_radius": r})),
-        2 => (slope(), quantity(&range::TIP_RADIUS, -7.0, -3.0))
-            .prop_map(|(k, b)| json!({"type": "rounded_cone", "slope": k, "tip_radius": b})),
-        3 => table(),
-    ]
-    .boxed()
+    let closed = families().iter().map(|family| {
+        let start = Just(Map::from_iter([("type".to_owned(), json!(family.name))])).boxed();
+        let with = |members: BoxedStrategy<Map<String, Value>>, parameter: &'static Parameter| {
+            (members, parameter_of(parameter)).prop_map(|(mut members, number)| {
+                members.insert(parameter.name.to_owned(), json!(number));
+                members
+            })
+        };
+        let members = family.parameters.iter().fold(start, |members, parameter| with(members, parameter).boxed());
+        (2, members.prop_map(Value::Object).boxed())
+    });
+    Union::new_weighted(closed.chain([(3, table().boxed())]).collect()).boxed()
+}
+
+/// About what the example has: an exponent is mostly small, or whole.
+fn parameter_of(parameter: &'static Parameter) -> BoxedStrategy<f64> {
+    let about = parameter.example.log10();
+    let usual = quantity(&parameter.range, about.min(0.0) - 3.0, about + 2.0);
+    if parameter.name == "exponent" {
+        return prop_oneof![4 => 0.1..5.0_f64, 2 => (1..9_u8).prop_map(f64::from), 1 => usual].boxed();
+    }
+    usual.boxed()
 }
 
 /// Heights of a power law with some noise over radii that are even, crowded or repeated.

@@ -26,6 +26,8 @@ macro_rules! quantities {
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
         pub enum Quantity {
             $(#[doc = $doc] $variant,)*
+            /// A parameter of a family of profiles, by its name.
+            Parameter(&'static str),
         }
 
         $($(
@@ -46,6 +48,7 @@ macro_rules! quantities {
             pub fn name(self) -> &'static str {
                 match self {
                     $(Quantity::$variant => $name,)*
+                    Quantity::Parameter(name) => name,
                 }
             }
         }
@@ -54,9 +57,7 @@ macro_rules! quantities {
 
 quantities! {
     Radius = "radius", RADIUS: 1e-15 to 1e9 "m", "Any radius of a body or a contact.";
-    FlatRadius = "flat_radius", FLAT_RADIUS: 1e-15 to 1e9 "m", "Radius of a flat end.";
-    EdgeRadius = "edge_radius", EDGE_RADIUS: 1e-15 to 1e9 "m", "Curvature radius of a rounded edge.";
-    TipRadius = "tip_radius", TIP_RADIUS: 1e-15 to 1e9 "m", "Radius up to which the tip of a cone is rounded.";
+    Length = "length", LENGTH: 1e-15 to 1e9 "m", "A length of a shape: a radius of curvature, of a flat, of a tip.";
     Slope = "slope", SLOPE: 1e-9 to 1e9 "", "Slope dz/dr of a cone.";
     Exponent = "exponent", EXPONENT: 0.1 to 1000.0 "", "Exponent of a power law.";
     Coefficient = "coefficient", COEFFICIENT: 1e-280 to 1e280 "m^(1-n)",

@@ -73,7 +73,7 @@ pub use parse::{parse, parse_value};
 pub use path::{CyclicPath, EqualPeaks, FallingAmplitude, FirstTurn, Move, NormalOscillation, Observation, Path, Plan};
 pub use prepare::{Prepare, PrepareAnew, PrepareOnce};
 pub use problem::{Code, ProblemDocument};
-pub use profile::{Profile, SphereProfile};
+pub use profile::Profile;
 pub use profile_fit::{ProfileFitReply, ProfileFitRequest};
 pub use protocol::{ProtocolReply, ProtocolRequest, RelaxReply, RelaxRequest};
 pub use reply::{Accuracy, ContactSummary, Peak, Protocol, Regime, Residual, SolverKind, State, Warning};

@@ -1,7 +1,7 @@
 //! The profile: which shape touches the flat.
 //!
-//! The families with numbers for parameters, their documents, checks and limits come from the table
-//! [`stickslip_mechanics::for_each_family!`]; tables of heights and sums are written out here, and contacts that are
+//! The documents of the families whose parameters are plain numbers follow from their declarations
+//! ([`stickslip_mechanics::profile::families`]); tables of heights and sums are written out here, and contacts that are
 //! known by their load curve alone in [`curve_profiles`](super::curve_profiles).
 
 use std::fmt;
@@ -11,134 +11,221 @@ use std::sync::LazyLock;
 
 use serde::de::value::{MapDeserializer, SeqDeserializer};
 use serde::de::{DeserializeOwned, Error as _, IntoDeserializer, MapAccess, Visitor};
-use serde::{Deserialize, Deserializer, Serialize, forward_to_deserialize_any};
-use utoipa::ToSchema;
-use utoipa::openapi::{RefOr, Schema};
+use serde::ser::SerializeMap as _;
+use serde::{Deserialize, Deserializer, Serialize, Serializer, forward_to_deserialize_any};
+use serde_json::{Value, json};
+use utoipa::openapi::schema::{AllOfBuilder, OneOfBuilder, SchemaFormat, Type};
+use utoipa::openapi::{KnownFormat, ObjectBuilder, Ref, RefOr, Schema};
+use utoipa::{PartialSchema, ToSchema};
 
-use stickslip_mechanics::profile::{Profile as Shape, Sum, Tabulated};
-use stickslip_mechanics::{Elasticity, Error, for_each_family, profile as families, range};
+use stickslip_mechanics::profile::{Family, Parameter, Profile as Shape, Sum, Tabulated, families};
+use stickslip_mechanics::{Elasticity, Error, range};
 
 use super::check::{Faults, JsonPath, accepted};
 use super::curve_profiles::{AsperitiesProfile, EllipsoidProfile, LoadCurveProfile, MotionAxis};
-use super::limits::{Array, Items, Limited, count};
+use super::limits::{Array, Items, Limit, Limited, count};
 use super::request::requests;
 
-/// Declares everything that follows from the table of families.
-macro_rules! documents {
-    ($(
-        $(#[$about:meta])* $module:ident::$Family:ident,
-        $(#[doc = $about_document:literal])*
-        $Document:ident { $($(#[$about_number:meta])* $number:ident: $RANGE:ident,)+ }
-    )+) => {
-        /// The shape of the indenter before it is loaded, chosen by `type`.
-        #[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
-        #[serde(tag = "type", rename_all = "snake_case")]
-        #[schema(example = json!({"type": "sphere", "radius": 0.01}), no_recursion)]
-        pub enum Profile {
-            $($(#[$about])* $Family($Document),)+
-            /// A measured profile, through whose points a smooth curve is drawn that keeps their monotony and
-            /// convexity.
-            Tabulated(TabulatedProfile),
-            /// Several profiles added up, z = Σ zᵢ.
-            Sum(SumProfile),
-            /// Hertzian asperities on one rigid motion, which do not interact elastically. No stresses.
-            Asperities(AsperitiesProfile),
-            /// A load curve F_N(d), measured or computed elsewhere. No stresses.
-            LoadCurve(LoadCurveProfile),
-            /// An ellipsoid, or two bodies crossed: Hertz's ellipse of contact. No stresses.
-            Ellipsoid(EllipsoidProfile),
-        }
-
-        requests! {$(
-            $(#[doc = $about_document])*
-            pub struct $Document {
-                $($(#[$about_number])* pub $number: f64 = range::$RANGE,)+
-            }
-        )+}
-
-        /// Schema, member and keywords of every limit.
-        pub(super) fn limits() -> Vec<(&'static str, &'static str, serde_json::Value)> {
-            [
-                $(<$Document as Limited>::limits_of_schema(),)+
-                TabulatedProfile::limits_of_schema(),
-                SumProfile::limits_of_schema(),
-                AsperitiesProfile::limits_of_schema(),
-                LoadCurveProfile::limits_of_schema(),
-                EllipsoidProfile::limits_of_schema(),
-            ]
-            .concat()
-        }
-
-        /// The schemas of the documents that [`Profile`] chooses from, by name: its recursion keeps the derivation from
-        /// finding them.
-        #[must_use]
-        pub fn schemas() -> Vec<(String, RefOr<Schema>)> {
-            fn named<T: ToSchema>() -> (String, RefOr<Schema>) {
-                (T::name().into_owned(), T::schema())
-            }
-            vec![
-                $(named::<$Document>(),)+
-                named::<TabulatedProfile>(),
-                named::<SumProfile>(),
-                named::<AsperitiesProfile>(),
-                named::<LoadCurveProfile>(),
-                named::<EllipsoidProfile>(),
-                named::<MotionAxis>(),
-            ]
-        }
-
-        /// The names of the families.
-        #[derive(Clone, Copy, Deserialize)]
-        #[serde(rename_all = "snake_case")]
-        enum Kind {
-            $($Family,)+
-            Tabulated,
-            Sum,
-            Asperities,
-            LoadCurve,
-            Ellipsoid,
-        }
-
-        impl Profile {
-            /// The checked profile of these bodies, `None` if they are at fault; its own faults are noted at `at`, and
-            /// so it is if `keep_going` has returned false.
-            pub fn check(
-                &self,
-                bodies: Option<&Elasticity>,
-                at: JsonPath<'_>,
-                keep_going: &dyn Fn() -> bool,
-                faults: &mut Faults,
-            ) -> Option<Shape> {
-                match self {
-                    $(Profile::$Family(document) => {
-                        document.check_members(at, faults);
-                        accepted(families::$Family::new($(document.$number),+).map(Shape::$Family), at, faults)
-                    })+
-                    Profile::Tabulated(table) => check_table(table, Tabulated::new_while, at, keep_going, faults),
-                    Profile::Sum(SumProfile { parts }) => check_sum(parts, bodies, at, keep_going, faults),
-                    Profile::Asperities(asperities) => asperities.check(at, keep_going, faults),
-                    Profile::LoadCurve(curve) => curve.check(bodies?, at, keep_going, faults),
-                    Profile::Ellipsoid(ellipsoid) => ellipsoid.check(at, faults),
-                }
-            }
-        }
-
-        impl<'de> Deserialize<'de> for Profile {
-            fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-                let members = deserializer.deserialize_map(MembersVisitor)?;
-                match members.kind.ok_or_else(|| D::Error::missing_field("type"))? {
-                    $(Kind::$Family => members.document().map(Profile::$Family),)+
-                    Kind::Tabulated => members.document().map(Profile::Tabulated),
-                    Kind::Sum => members.sum().map(Profile::Sum),
-                    Kind::Asperities => members.document().map(Profile::Asperities),
-                    Kind::LoadCurve => members.document().map(Profile::LoadCurve),
-                    Kind::Ellipsoid => members.document().map(Profile::Ellipsoid),
-                }
-            }
-        }
-    };
+/// The shape of the indenter before it is loaded, chosen by `type`.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(tag = "type", rename_all = "snake_case")]
+pub enum Profile {
+    /// A measured profile, through whose points a smooth curve is drawn that keeps their monotony and convexity.
+    Tabulated(TabulatedProfile),
+    /// Several profiles added up, z = Σ zᵢ.
+    Sum(SumProfile),
+    /// Hertzian asperities on one rigid motion, which do not interact elastically. No stresses.
+    Asperities(AsperitiesProfile),
+    /// A load curve F_N(d), measured or computed elsewhere. No stresses.
+    LoadCurve(LoadCurveProfile),
+    /// An ellipsoid, or two bodies crossed: Hertz's ellipse of contact. No stresses.
+    Ellipsoid(EllipsoidProfile),
+    /// A shape whose parameters are plain numbers.
+    #[serde(untagged)]
+    Closed(ClosedProfile),
 }
-for_each_family!(documents);
+
+/// A profile of a family whose parameters are plain numbers.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ClosedProfile {
+    document: &'static Document,
+    numbers: Vec<f64>,
+}
+
+/// The document of a family.
+#[derive(Debug)]
+struct Document {
+    family: &'static Family,
+    /// The name of its schema: `TruncatedConeProfile` of `truncated_cone`.
+    schema: String,
+    /// The names of its members.
+    members: Vec<&'static str>,
+}
+
+impl PartialEq for Document {
+    fn eq(&self, other: &Document) -> bool {
+        self.schema == other.schema
+    }
+}
+
+/// Those of all families, in their order.
+static CLOSED: LazyLock<Vec<Document>> = LazyLock::new(|| {
+    let document = |family: &&'static Family| {
+        let words = family.name.split('_').map(|word| word[..1].to_uppercase() + &word[1..]);
+        let members = family.parameters.iter().map(|parameter| parameter.name).collect();
+        Document { family, schema: words.collect::<String>() + "Profile", members }
+    };
+    families().iter().map(document).collect()
+});
+
+impl Serialize for ClosedProfile {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let numbers = self.document.members.iter().zip(&self.numbers);
+        let mut map = serializer.serialize_map(None)?;
+        map.serialize_entry("type", self.document.family.name)?;
+        numbers.into_iter().try_for_each(|(name, number)| map.serialize_entry(name, number))?;
+        map.end()
+    }
+}
+
+/// Schema, member and keywords of every limit.
+pub(super) fn limits() -> Vec<(&'static str, &'static str, Value)> {
+    let closed = CLOSED.iter().flat_map(|Document { family, schema, .. }| {
+        let limit = |of: &'static Parameter| (schema.as_str(), of.name, Limit::<f64>::keywords(&of.range));
+        family.parameters.iter().map(limit)
+    });
+    let others = [
+        TabulatedProfile::limits_of_schema(),
+        SumProfile::limits_of_schema(),
+        AsperitiesProfile::limits_of_schema(),
+        LoadCurveProfile::limits_of_schema(),
+        EllipsoidProfile::limits_of_schema(),
+    ];
+    closed.chain(others.into_iter().flatten()).collect()
+}
+
+/// The names of the families with the schemas of their documents, and the names of these.
+fn documents() -> Vec<(&'static str, String, RefOr<Schema>)> {
+    fn document<T: ToSchema>(family: &'static str) -> (&'static str, String, RefOr<Schema>) {
+        (family, T::name().into_owned(), T::schema())
+    }
+    let closed = CLOSED.iter().map(|Document { family, schema, .. }| {
+        let document = family.parameters.iter().fold(ObjectBuilder::new(), |document, parameter| {
+            let format = SchemaFormat::KnownFormat(KnownFormat::Double);
+            let about = Some(parameter.about);
+            let number = ObjectBuilder::new().schema_type(Type::Number).format(Some(format)).description(about);
+            document.property(parameter.name, number).required(parameter.name)
+        });
+        (family.name, schema.clone(), document.description(Some(family.about)).into())
+    });
+    let others = [
+        document::<TabulatedProfile>("tabulated"),
+        document::<SumProfile>("sum"),
+        document::<AsperitiesProfile>("asperities"),
+        document::<LoadCurveProfile>("load_curve"),
+        document::<EllipsoidProfile>("ellipsoid"),
+    ];
+    closed.chain(others).collect()
+}
+
+/// The schemas of the documents that [`Profile`] chooses from, by name: its recursion keeps the derivation from finding
+/// them.
+#[must_use]
+pub fn schemas() -> Vec<(String, RefOr<Schema>)> {
+    let direction = (<MotionAxis as ToSchema>::name().into_owned(), MotionAxis::schema());
+    documents().into_iter().map(|(_, name, schema)| (name, schema)).chain([direction]).collect()
+}
+
+impl ToSchema for Profile {}
+
+impl PartialSchema for Profile {
+    #[expect(deprecated, reason = "tools of version 3.0 of OpenAPI read `example`")]
+    fn schema() -> RefOr<Schema> {
+        let choice = OneOfBuilder::new()
+            .description(Some("The shape of the indenter before it is loaded, chosen by `type`."))
+            .example(Some(json!({"type": "sphere", "radius": 0.01})));
+        let choices = documents().into_iter().fold(choice, |choice, (family, name, _)| {
+            let name_of_family = ObjectBuilder::new().schema_type(Type::String).enum_values(Some([family]));
+            let tag = ObjectBuilder::new().property("type", name_of_family).required("type");
+            choice.item(AllOfBuilder::new().item(Ref::from_schema_name(name)).item(tag))
+        });
+        choices.into()
+    }
+}
+
+/// The names of the families.
+enum Kind {
+    Closed(&'static Document),
+    Tabulated,
+    Sum,
+    Asperities,
+    LoadCurve,
+    Ellipsoid,
+}
+
+impl<'de> Deserialize<'de> for Kind {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        static KINDS: LazyLock<Vec<&str>> = LazyLock::new(|| documents().into_iter().map(|kind| kind.0).collect());
+        let name = String::deserialize(deserializer)?;
+        Ok(match name.as_str() {
+            "tabulated" => Kind::Tabulated,
+            "sum" => Kind::Sum,
+            "asperities" => Kind::Asperities,
+            "load_curve" => Kind::LoadCurve,
+            "ellipsoid" => Kind::Ellipsoid,
+            name => {
+                let document = CLOSED.iter().find(|document| document.family.name == name);
+                Kind::Closed(document.ok_or_else(|| D::Error::unknown_variant(name, &KINDS))?)
+            }
+        })
+    }
+}
+
+impl Profile {
+    /// Hertz's parabola of this radius of curvature, m: the first family.
+    #[must_use]
+    pub fn sphere(radius: f64) -> Profile {
+        Profile::Closed(ClosedProfile { document: &CLOSED[0], numbers: vec![radius] })
+    }
+
+    /// The checked profile of these bodies, `None` if they are at fault; its own faults are noted at `at`, and so it is
+    /// if `keep_going` has returned false.
+    pub fn check(
+        &self,
+        bodies: Option<&Elasticity>,
+        at: JsonPath<'_>,
+        keep_going: &dyn Fn() -> bool,
+        faults: &mut Faults,
+    ) -> Option<Shape> {
+        match self {
+            Profile::Closed(ClosedProfile { document: Document { family, .. }, numbers }) => {
+                for (parameter, number) in family.parameters.iter().zip(numbers) {
+                    faults.number(at.member(parameter.name), *number, &parameter.range);
+                }
+                accepted((family.make)(numbers), at, faults)
+            }
+            Profile::Tabulated(table) => check_table(table, Tabulated::new_while, at, keep_going, faults),
+            Profile::Sum(SumProfile { parts }) => check_sum(parts, bodies, at, keep_going, faults),
+            Profile::Asperities(asperities) => asperities.check(at, keep_going, faults),
+            Profile::LoadCurve(curve) => curve.check(bodies?, at, keep_going, faults),
+            Profile::Ellipsoid(ellipsoid) => ellipsoid.check(at, faults),
+        }
+    }
+}
+
+impl<'de> Deserialize<'de> for Profile {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let mut members = deserializer.deserialize_map(MembersVisitor)?;
+        match members.kind.take().ok_or_else(|| D::Error::missing_field("type"))? {
+            Kind::Closed(document) => members.closed(document).map(Profile::Closed),
+            Kind::Tabulated => members.document().map(Profile::Tabulated),
+            Kind::Sum => members.sum().map(Profile::Sum),
+            Kind::Asperities => members.document().map(Profile::Asperities),
+            Kind::LoadCurve => members.document().map(Profile::LoadCurve),
+            Kind::Ellipsoid => members.document().map(Profile::Ellipsoid),
+        }
+    }
+}
 
 impl Profile {
     /// Points of all its tables and curves, and asperities: what preparing it takes time and memory for.
@@ -289,6 +376,21 @@ impl Members {
     fn document<T: DeserializeOwned, E: serde::de::Error>(mut self) -> Result<T, E> {
         self.others.extend(self.parts.is_some().then_some(("parts", Member::Parts)));
         T::deserialize(MapDeserializer::new(self.others.into_iter()))
+    }
+
+    /// The parameters of a family, if these are the members given.
+    fn closed<E: serde::de::Error>(self, document: &'static Document) -> Result<ClosedProfile, E> {
+        let names = &document.members;
+        let mut numbers = vec![None; names.len()];
+        for (name, member) in self.others.into_iter().chain(self.parts.map(|_| ("parts", Member::Parts))) {
+            match (names.iter().position(|known| *known == name), member) {
+                (Some(at), Member::Number(number)) => numbers[at] = Some(number),
+                _ => return Err(E::unknown_field(name, names)),
+            }
+        }
+        let given = |(number, name): (Option<f64>, &&'static str)| number.ok_or_else(|| E::missing_field(name));
+        let numbers = numbers.into_iter().zip(names).map(given).collect::<Result<_, E>>()?;
+        Ok(ClosedProfile { document, numbers })
     }
 
     fn sum<E: serde::de::Error>(self) -> Result<SumProfile, E> {

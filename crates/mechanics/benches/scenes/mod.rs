@@ -1,8 +1,6 @@
 //! Shared by the benchmarks: a contact of each shape, under the same load.
 
-use stickslip_mechanics::profile::{
-    Cone, ExactSphere, PowerLaw, RoundedCone, RoundedPunch, Sum, Tabulated, TruncatedCone, TruncatedSphere,
-};
+use stickslip_mechanics::profile::{PowerLaw, Sum, Tabulated, families};
 use stickslip_mechanics::protocol::falling_amplitude;
 use stickslip_mechanics::{Body, Contact, Elasticity, Move, Preload, Profile, Setup, Sphere, Tangential};
 
@@ -63,19 +61,16 @@ pub fn radii(contact: &Contact, count: usize) -> Vec<f64> {
 /// Every shape with its name, the sphere first.
 pub fn shapes() -> Vec<(&'static str, Profile)> {
     let power = |exponent, coefficient| Profile::PowerLaw(PowerLaw::new(exponent, coefficient).expect(VALID));
-    vec![
-        ("sphere", sphere()),
-        ("cone", Profile::Cone(Cone::new(0.05).expect(VALID))),
-        ("power 4", power(4.0, 1e6)),
+    let sum = |other| Profile::Sum(Sum::new(vec![sphere(), other]).expect(VALID));
+    let mut shapes: Vec<_> =
+        families().iter().map(|family| (family.name, (family.make)(&family.example()).expect(VALID))).collect();
+    shapes.retain(|(_, profile)| profile.rim_radius().is_none());
+    shapes.extend([
         ("power 2.7", power(2.7, 1e4)),
-        ("exact sphere", Profile::ExactSphere(ExactSphere::new(BALL).expect(VALID))),
-        ("truncated sphere", Profile::TruncatedSphere(TruncatedSphere::new(BALL, 5e-5).expect(VALID))),
-        ("truncated cone", Profile::TruncatedCone(TruncatedCone::new(0.05, 5e-5).expect(VALID))),
-        ("rounded punch", Profile::RoundedPunch(RoundedPunch::new(5e-5, BALL).expect(VALID))),
-        ("rounded cone", Profile::RoundedCone(RoundedCone::new(0.05, 5e-5).expect(VALID))),
-        ("sphere and fourth power", Profile::Sum(Sum::new(vec![sphere(), power(4.0, 1e6)]).expect(VALID))),
+        ("sphere and fourth power", sum(power(4.0, 1e6))),
         ("table of 1000 points", table(1_000)),
         ("table of 10 000 points", table(10_000)),
-        ("sphere and table of 1000 points", Profile::Sum(Sum::new(vec![sphere(), table(1_000)]).expect(VALID))),
-    ]
+        ("sphere and table of 1000 points", sum(table(1_000))),
+    ]);
+    shapes
 }

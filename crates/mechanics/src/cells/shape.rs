@@ -134,12 +134,12 @@ pub(crate) trait Shape {
     /// Its cells as far as they have been asked for; none of a parabola, which has closed forms.
     fn stages(&self) -> Option<&Stages>;
 
-    /// Where contacts end.
-    fn end(&self) -> Option<End> {
-        None
-    }
+    /// Where contacts end. A shape that went on beyond its own end would give numbers where there is no surface, so that
+    /// each has to say.
+    fn end(&self) -> Option<End>;
 
-    /// A radius of curvature, m, where it is given by one.
+    /// A radius of curvature, m, where it is given by one. No result depends on it: it is what warnings compare the
+    /// contact radius with, and without one they compare nothing.
     fn curvature_radius(&self) -> Option<f64> {
         None
     }

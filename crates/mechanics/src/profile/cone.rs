@@ -4,9 +4,19 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use super::{Error, range};
-use crate::cells::shape::{Kink, Powers, Shape};
+use super::{Error, Family, Parameter, Profile, range};
+use crate::cells::shape::{End, Kink, Powers, Shape};
 use crate::cells::stages::Stages;
+
+/// Its declaration.
+pub(super) static FAMILY: Family = Family {
+    name: "cone",
+    title: "Cone",
+    about: "A cone.",
+    parameters: &[Parameter::new("slope", "Slope dz/dr", "Slope dz/dr, a pure number.", range::SLOPE, 0.05)],
+    indentation: 1e-5,
+    make: |p| Cone::new(p[0]).map(Profile::Cone),
+};
 
 /// A cone.
 #[derive(Clone, Debug, PartialEq)]
@@ -19,9 +29,9 @@ impl Cone {
     /// The cone of slope T = dz/dr.
     ///
     /// # Errors
-    /// [`Error::OutOfRange`] by [`range::SLOPE`].
+    /// [`Error::OutOfRange`] with the name of the parameter.
     pub fn new(slope: f64) -> Result<Cone, Error> {
-        Ok(Cone { slope: range::SLOPE.check(slope)?, stages: Stages::new() })
+        FAMILY.check([slope]).map(|[slope]| Cone { slope, stages: Stages::new() })
     }
 }
 
@@ -45,5 +55,9 @@ impl Shape for Cone {
 
     fn stages(&self) -> Option<&Stages> {
         Some(&self.stages)
+    }
+
+    fn end(&self) -> Option<End> {
+        None
     }
 }

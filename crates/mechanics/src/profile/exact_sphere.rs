@@ -3,12 +3,28 @@
 //! Contacts end at nine tenths of the radius: beyond, elasticity of small strains says little, and a radius beside the
 //! equator, where the sphere is vertical, has few digits for its level.
 
-use super::{Error, range};
+use super::{Error, Family, Parameter, Profile, range};
 use crate::cells::shape::{End, EndKind, Kink, Powers, Shape};
 use crate::cells::stages::Stages;
 
 /// Where contacts end, over the radius.
 const END: f64 = 0.9;
+
+/// Its declaration.
+pub(super) static FAMILY: Family = Family {
+    name: "exact_sphere",
+    title: "Exact sphere",
+    about: "A sphere without approximation.",
+    parameters: &[Parameter::new(
+        "radius",
+        "Radius R",
+        "Radius R, m; the contact radius stays below it.",
+        range::LENGTH,
+        0.01,
+    )],
+    indentation: 1e-4,
+    make: |p| ExactSphere::new(p[0]).map(Profile::ExactSphere),
+};
 
 /// A sphere, not its osculating paraboloid.
 #[derive(Clone, Debug, PartialEq)]
@@ -21,9 +37,9 @@ impl ExactSphere {
     /// The sphere of radius R, m.
     ///
     /// # Errors
-    /// [`Error::OutOfRange`] by [`range::RADIUS`].
+    /// [`Error::OutOfRange`] with the name of the parameter.
     pub fn new(radius: f64) -> Result<ExactSphere, Error> {
-        Ok(ExactSphere { radius: range::RADIUS.check(radius)?, stages: Stages::new() })
+        FAMILY.check([radius]).map(|[radius]| ExactSphere { radius, stages: Stages::new() })
     }
 }
 

@@ -1,9 +1,19 @@
 //! Flat punch of radius b: X(y) = b for every level, so that all of a ring lies at the vertical edge, where its kernel
 //! is depth/sqrt(b^2 - r^2) (Boussinesq 1885).
 
-use super::{Error, range};
+use super::{Error, Family, Parameter, Profile, range};
 use crate::cells::shape::{End, EndKind, Kink, Shape};
 use crate::cells::stages::Stages;
+
+/// Its declaration.
+pub(super) static FAMILY: Family = Family {
+    name: "flat_punch",
+    title: "Flat punch",
+    about: "A flat punch.",
+    parameters: &[Parameter::new("radius", "Radius R", "Radius of the punch, m.", range::LENGTH, 1e-3)],
+    indentation: 1e-6,
+    make: |p| FlatPunch::new(p[0]).map(Profile::FlatPunch),
+};
 
 /// A cylinder pressed in with its flat end.
 #[derive(Clone, Debug, PartialEq)]
@@ -16,9 +26,9 @@ impl FlatPunch {
     /// The punch of radius b, m.
     ///
     /// # Errors
-    /// [`Error::OutOfRange`] by [`range::RADIUS`].
+    /// [`Error::OutOfRange`] with the name of the parameter.
     pub fn new(radius: f64) -> Result<FlatPunch, Error> {
-        Ok(FlatPunch { radius: range::RADIUS.check(radius)?, stages: Stages::new() })
+        FAMILY.check([radius]).map(|[radius]| FlatPunch { radius, stages: Stages::new() })
     }
 }
 

@@ -5,36 +5,27 @@
 //! keeps that radius. Normal contact, slip history and stresses read a profile through rings between two levels, so no
 //! other module depends on the family.
 //!
-//! A family is a struct with a checked constructor and its `shape::Shape`, and an entry of
-//! [`for_each_family!`](crate::for_each_family), from which the JSON documents and their checks follow.
-//! `ARCHITECTURE.md` has the recipe for another one. Contacts that are known by their load curve alone have
-//! `curve_family::CurveFamily` instead.
+//! A family is one file, with its declaration ([`Family`]), a struct with a checked constructor and its `shape::Shape`,
+//! and an entry of `families!` below; documents, form, tests and benchmarks go through [`families`]. `ARCHITECTURE.md`
+//! has the recipe for another one. Contacts that are known by their load curve alone have `curve_family::CurveFamily`
+//! instead.
 
 mod asperities;
-mod cone;
 mod curve_family;
 mod ellipsoid;
-mod exact_sphere;
-#[macro_use]
 mod families;
-mod flat_punch;
 mod load_curve;
 mod open_gaps;
-mod power_law;
 mod ring_sum;
-mod rounded_cone;
-mod rounded_punch;
-mod sphere;
 mod sum;
 mod tabulated;
 #[cfg(test)]
 mod tests;
-mod truncated_cone;
-mod truncated_sphere;
 
 pub use crate::cells::ring::{Moments, Point, Ring, StressRadius};
 pub use asperities::Asperities;
 pub use ellipsoid::{Direction, Ellipsoid};
+pub use families::{Family, Parameter};
 pub use load_curve::LoadCurve;
 pub(super) use ring_sum::{InwardSum, RingSum};
 pub use sum::Sum;
@@ -50,13 +41,26 @@ use crate::range;
 use asperities::Count;
 use curve_family::CurveFamily;
 
-/// The enum of all families.
-macro_rules! profile {
-    ($(
-        $(#[$about:meta])* $module:ident::$Family:ident,
-        $(#[$about_document:meta])* $Document:ident { $($(#[$about_parameter:meta])* $parameter:ident: $RANGE:ident,)+ }
-    )+) => {
-        $(pub use $module::$Family;)+
+/// Declares the modules of the families, the enum of all profiles, and [`families`].
+macro_rules! families {
+    ($($module:ident::$Family:ident,)+) => {
+        $(mod $module; pub use $module::$Family;)+
+
+        /// The families whose parameters are plain numbers. The `type` in JSON of each is the name of its file.
+        ///
+        /// ```
+        /// use stickslip_mechanics::profile::families;
+        ///
+        /// let family = families().iter().find(|family| family.name == "truncated_cone").unwrap();
+        /// assert_eq!(family.parameters[1].name, "flat_radius");
+        /// let error = (family.make)(&[0.1, 0.0]).unwrap_err().to_string();
+        /// assert_eq!(error, "flat_radius = 0 is out of range: allowed is 1e-15 to 1e9 m");
+        /// ```
+        #[must_use]
+        pub fn families() -> &'static [&'static Family] {
+            static ALL: &[&Family] = &[$(&$module::FAMILY,)+];
+            ALL
+        }
 
         /// A profile of one of the families: a closed set.
         ///
@@ -73,7 +77,7 @@ macro_rules! profile {
         /// ```
         #[derive(Clone, Debug, PartialEq)]
         pub enum Profile {
-            $($(#[$about])* $Family($Family),)+
+            $(#[doc = concat!("See [`", stringify!($Family), "`].")] $Family($Family),)+
             /// A measured profile, through whose points a smooth curve is drawn that keeps their monotony and
             /// convexity.
             Tabulated(Tabulated),
@@ -103,7 +107,17 @@ macro_rules! profile {
         }
     };
 }
-for_each_family!(profile);
+families! {
+    sphere::Sphere,
+    exact_sphere::ExactSphere,
+    cone::Cone,
+    power_law::PowerLaw,
+    flat_punch::FlatPunch,
+    truncated_cone::TruncatedCone,
+    truncated_sphere::TruncatedSphere,
+    rounded_punch::RoundedPunch,
+    rounded_cone::RoundedCone,
+}
 
 mod ring_integrals;
 

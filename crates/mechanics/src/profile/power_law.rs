@@ -1,12 +1,31 @@
 //! Power law f = c r^n: g = B x^n with B = kappa c, kappa = sqrt(pi) Gamma(n/2 + 1)/Gamma((n + 1)/2) (Galin 1946;
 //! Sneddon 1965).
 
-use super::{DoubleDouble, Error, range};
-use crate::cells::shape::{Kink, Powers, Shape};
+use super::{DoubleDouble, Error, Family, Parameter, Profile, range};
+use crate::cells::shape::{End, Kink, Powers, Shape};
 use crate::cells::stages::Stages;
 
 /// The largest whole exponent of which one term is a series.
 const MOST: u16 = 24;
+
+/// Its declaration.
+pub(super) static FAMILY: Family = Family {
+    name: "power_law",
+    title: "Power law z = c rⁿ",
+    about: "A power law.",
+    parameters: &[
+        Parameter::new("exponent", "Exponent n", "Exponent n, a pure number.", range::EXPONENT, 4.0),
+        Parameter::new(
+            "coefficient",
+            "Coefficient c (m to the 1 − n)",
+            "Coefficient, m^(1−n).",
+            range::COEFFICIENT,
+            1e6,
+        ),
+    ],
+    indentation: 3e-6,
+    make: |p| PowerLaw::new(p[0], p[1]).map(Profile::PowerLaw),
+};
 
 /// A body of revolution whose height is a power of the radius.
 #[derive(Clone, Debug, PartialEq)]
@@ -25,9 +44,9 @@ impl PowerLaw {
     /// f = c r^n of exponent n and coefficient c, m^(1-n).
     ///
     /// # Errors
-    /// [`Error::OutOfRange`] by [`range::EXPONENT`] and [`range::COEFFICIENT`].
+    /// [`Error::OutOfRange`] with the name of the parameter.
     pub fn new(exponent: f64, coefficient: f64) -> Result<PowerLaw, Error> {
-        let (exponent, coefficient) = (range::EXPONENT.check(exponent)?, range::COEFFICIENT.check(coefficient)?);
+        let [exponent, coefficient] = FAMILY.check([exponent, coefficient])?;
         let order = (1..=MOST).find(|&n| f64::from(n).to_bits() == exponent.to_bits());
         Ok(PowerLaw { exponent, coefficient, scale: kappa(exponent) * coefficient, order, stages: Stages::new() })
     }
@@ -87,5 +106,9 @@ impl Shape for PowerLaw {
 
     fn stages(&self) -> Option<&Stages> {
         Some(&self.stages)
+    }
+
+    fn end(&self) -> Option<End> {
+        None
     }
 }

@@ -4,9 +4,28 @@
 //! There gamma = dg/dt = T (t/x) (2b/(x + t) + phi) (Ciavarella 1999; Popov & Hess 2015). f' bends but does not jump at
 //! b, so all stresses are finite.
 
-use super::{Error, range};
-use crate::cells::shape::{Kink, Powers, Shape, above};
+use super::{Error, Family, Parameter, Profile, range};
+use crate::cells::shape::{End, Kink, Powers, Shape, above};
 use crate::cells::stages::Stages;
+
+/// Its declaration.
+pub(super) static FAMILY: Family = Family {
+    name: "rounded_cone",
+    title: "Cone with a rounded tip",
+    about: "A cone with a rounded tip.",
+    parameters: &[
+        Parameter::new("slope", "Slope dz/dr", "Slope dz/dr of the cone, a pure number.", range::SLOPE, 0.05),
+        Parameter::new(
+            "tip_radius",
+            "Radius of the tip",
+            "Radius up to which the tip is a parabola, m.",
+            range::LENGTH,
+            5e-5,
+        ),
+    ],
+    indentation: 1e-5,
+    make: |p| RoundedCone::new(p[0], p[1]).map(Profile::RoundedCone),
+};
 
 /// A cone whose tip is a paraboloid.
 #[derive(Clone, Debug, PartialEq)]
@@ -20,9 +39,9 @@ impl RoundedCone {
     /// The cone of slope T, parabolic up to the radius b, m, where both slopes agree.
     ///
     /// # Errors
-    /// [`Error::OutOfRange`] by [`range::SLOPE`] and [`range::TIP_RADIUS`].
+    /// [`Error::OutOfRange`] with the name of the parameter.
     pub fn new(slope: f64, tip_radius: f64) -> Result<RoundedCone, Error> {
-        let (slope, tip_radius) = (range::SLOPE.check(slope)?, range::TIP_RADIUS.check(tip_radius)?);
+        let [slope, tip_radius] = FAMILY.check([slope, tip_radius])?;
         Ok(RoundedCone { slope, tip_radius, stages: Stages::new() })
     }
 }
@@ -59,5 +78,9 @@ impl Shape for RoundedCone {
 
     fn stages(&self) -> Option<&Stages> {
         Some(&self.stages)
+    }
+
+    fn end(&self) -> Option<End> {
+        None
     }
 }

@@ -4,10 +4,23 @@
 //! gamma = dg/dt = (t/(R x))(2t - b phi) (Schubert 1942; Ciavarella 1999). All stays positive through t - b phi = b (u
 //! - atan u), u = t/b.
 
-use super::{Error, range};
-use crate::cells::shape::{Kink, Powers, Shape, above};
+use super::{Error, Family, Parameter, Profile, range};
+use crate::cells::shape::{End, Kink, Powers, Shape, above};
 use crate::cells::stages::Stages;
 use crate::numerics::angle::angles;
+
+/// Its declaration.
+pub(super) static FAMILY: Family = Family {
+    name: "rounded_punch",
+    title: "Punch with a rounded edge",
+    about: "A flat punch with a rounded edge.",
+    parameters: &[
+        Parameter::new("flat_radius", "Radius of the flat", "Radius of the flat end, m.", range::LENGTH, 5e-5),
+        Parameter::new("edge_radius", "Radius of the edge", "Radius of curvature of the edge, m.", range::LENGTH, 5e-3),
+    ],
+    indentation: 3e-6,
+    make: |p| RoundedPunch::new(p[0], p[1]).map(Profile::RoundedPunch),
+};
 
 /// A flat punch with a rounded edge.
 #[derive(Clone, Debug, PartialEq)]
@@ -21,10 +34,9 @@ impl RoundedPunch {
     /// Flat up to the radius b, then a parabola of curvature radius R, both in m.
     ///
     /// # Errors
-    /// [`Error::OutOfRange`] by [`range::FLAT_RADIUS`] and [`range::EDGE_RADIUS`].
+    /// [`Error::OutOfRange`] with the name of the parameter.
     pub fn new(flat_radius: f64, edge_radius: f64) -> Result<RoundedPunch, Error> {
-        let (flat_radius, edge_radius) =
-            (range::FLAT_RADIUS.check(flat_radius)?, range::EDGE_RADIUS.check(edge_radius)?);
+        let [flat_radius, edge_radius] = FAMILY.check([flat_radius, edge_radius])?;
         Ok(RoundedPunch { flat_radius, edge_radius, stages: Stages::new() })
     }
 
@@ -56,6 +68,10 @@ impl Shape for RoundedPunch {
 
     fn stages(&self) -> Option<&Stages> {
         Some(&self.stages)
+    }
+
+    fn end(&self) -> Option<End> {
+        None
     }
 
     fn curvature_radius(&self) -> Option<f64> {

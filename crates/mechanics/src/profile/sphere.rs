@@ -6,12 +6,12 @@
 
 use std::ops::Range;
 
-use super::{DoubleDouble, Error, Moments, Point, Ring, Span, StressRadius, range};
+use super::{DoubleDouble, Error, Family, Moments, Parameter, Point, Profile, Ring, Span, StressRadius, range};
 #[cfg(test)]
 use crate::cells::call_count;
 use crate::cells::field::SumAndSize;
 use crate::cells::kernel::Kernel;
-use crate::cells::shape::{Kink, Powers, Shape};
+use crate::cells::shape::{End, Kink, Powers, Shape};
 use crate::cells::sources::Sources;
 use crate::cells::stages::Stages;
 use crate::numerics::cluster_tree::{Cluster, ClusterTree};
@@ -25,6 +25,22 @@ const CLUSTER: usize = 12;
 /// Squares of radii that differ by less, over that of the outer one, have lost digits that the depth of their ring has.
 const THIN: f64 = 1e-3;
 
+/// Its declaration.
+pub(super) static FAMILY: Family = Family {
+    name: "sphere",
+    title: "Sphere (Hertz’s parabola)",
+    about: "A sphere in Hertz's approximation.",
+    parameters: &[Parameter::new(
+        "radius",
+        "Radius R",
+        "Radius of curvature R of the gap, m; for two spheres 1/R = 1/R₁ + 1/R₂.",
+        range::LENGTH,
+        0.01,
+    )],
+    indentation: 3e-6,
+    make: |p| Sphere::new(p[0]).map(Profile::Sphere),
+};
+
 /// A paraboloid of revolution.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sphere {
@@ -35,9 +51,9 @@ impl Sphere {
     /// The paraboloid with curvature radius R, m, at its tip.
     ///
     /// # Errors
-    /// [`Error::OutOfRange`] by [`range::RADIUS`].
+    /// [`Error::OutOfRange`] with the name of the parameter.
     pub fn new(radius: f64) -> Result<Sphere, Error> {
-        Ok(Sphere { curvature_radius: range::RADIUS.check(radius)? })
+        FAMILY.check([radius]).map(|[curvature_radius]| Sphere { curvature_radius })
     }
 
     /// The same where R follows from other, checked numbers.
@@ -299,6 +315,10 @@ impl Shape for Sphere {
     }
 
     fn stages(&self) -> Option<&Stages> {
+        None
+    }
+
+    fn end(&self) -> Option<End> {
         None
     }
 

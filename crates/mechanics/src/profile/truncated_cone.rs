@@ -3,9 +3,22 @@
 //! gamma = dg/dt = T (phi t + b)/x (Shtaerman 1949; Popov & Hess 2015). f' jumps at b: pressure and shear are
 //! log-infinite there.
 
-use super::{Error, range};
-use crate::cells::shape::{Kink, Powers, Shape, above};
+use super::{Error, Family, Parameter, Profile, range};
+use crate::cells::shape::{End, Kink, Powers, Shape, above};
 use crate::cells::stages::Stages;
+
+/// Its declaration.
+pub(super) static FAMILY: Family = Family {
+    name: "truncated_cone",
+    title: "Truncated cone",
+    about: "A truncated cone.",
+    parameters: &[
+        Parameter::new("slope", "Slope dz/dr", "Slope dz/dr outside the flat, a pure number.", range::SLOPE, 0.05),
+        Parameter::new("flat_radius", "Radius of the flat", "Radius of the flat end, m.", range::LENGTH, 5e-5),
+    ],
+    indentation: 1e-5,
+    make: |p| TruncatedCone::new(p[0], p[1]).map(Profile::TruncatedCone),
+};
 
 /// A truncated cone.
 #[derive(Clone, Debug, PartialEq)]
@@ -19,9 +32,9 @@ impl TruncatedCone {
     /// The cone of the given slope T, flat up to the radius b, m.
     ///
     /// # Errors
-    /// [`Error::OutOfRange`] by [`range::SLOPE`] and [`range::FLAT_RADIUS`].
+    /// [`Error::OutOfRange`] with the name of the parameter.
     pub fn new(slope: f64, flat_radius: f64) -> Result<TruncatedCone, Error> {
-        let (slope, flat_radius) = (range::SLOPE.check(slope)?, range::FLAT_RADIUS.check(flat_radius)?);
+        let [slope, flat_radius] = FAMILY.check([slope, flat_radius])?;
         Ok(TruncatedCone { slope, flat_radius, stages: Stages::new() })
     }
 }
@@ -47,5 +60,9 @@ impl Shape for TruncatedCone {
 
     fn stages(&self) -> Option<&Stages> {
         Some(&self.stages)
+    }
+
+    fn end(&self) -> Option<End> {
+        None
     }
 }

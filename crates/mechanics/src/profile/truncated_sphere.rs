@@ -3,9 +3,22 @@
 //! gamma = dg/dt = (b^2 + 2 t^2)/(R x) (Ejike 1981; Popov & Hess 2015). f' jumps at b: pressure and shear are
 //! log-infinite there.
 
-use super::{Error, range};
-use crate::cells::shape::{Kink, Powers, Shape, above};
+use super::{Error, Family, Parameter, Profile, range};
+use crate::cells::shape::{End, Kink, Powers, Shape, above};
 use crate::cells::stages::Stages;
+
+/// Its declaration.
+pub(super) static FAMILY: Family = Family {
+    name: "truncated_sphere",
+    title: "Truncated (worn) sphere",
+    about: "A truncated sphere.",
+    parameters: &[
+        Parameter::new("radius", "Radius R", "Radius of curvature R, m.", range::LENGTH, 0.01),
+        Parameter::new("flat_radius", "Radius of the flat", "Radius of the flat end, m.", range::LENGTH, 5e-5),
+    ],
+    indentation: 3e-6,
+    make: |p| TruncatedSphere::new(p[0], p[1]).map(Profile::TruncatedSphere),
+};
 
 /// A paraboloid with a flat end.
 #[derive(Clone, Debug, PartialEq)]
@@ -19,9 +32,9 @@ impl TruncatedSphere {
     /// The paraboloid of curvature radius R, m, worn flat up to the radius b, m.
     ///
     /// # Errors
-    /// [`Error::OutOfRange`] by [`range::RADIUS`] and [`range::FLAT_RADIUS`].
+    /// [`Error::OutOfRange`] with the name of the parameter.
     pub fn new(radius: f64, flat_radius: f64) -> Result<TruncatedSphere, Error> {
-        let (curvature_radius, flat_radius) = (range::RADIUS.check(radius)?, range::FLAT_RADIUS.check(flat_radius)?);
+        let [curvature_radius, flat_radius] = FAMILY.check([radius, flat_radius])?;
         Ok(TruncatedSphere { curvature_radius, flat_radius, stages: Stages::new() })
     }
 }
@@ -47,6 +60,10 @@ impl Shape for TruncatedSphere {
 
     fn stages(&self) -> Option<&Stages> {
         Some(&self.stages)
+    }
+
+    fn end(&self) -> Option<End> {
+        None
     }
 
     fn curvature_radius(&self) -> Option<f64> {

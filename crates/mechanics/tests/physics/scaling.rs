@@ -2,52 +2,22 @@
 //! no choice of a method depends on a length in metres. Only where r is raised to a power that is neither whole nor
 //! half is there no such equality, since the power itself is rounded.
 
-use crate::support::{displace, oblique, push, shapes};
-use stickslip_mechanics::profile::{
-    Asperities, Cone, ExactSphere, FlatPunch, PowerLaw, RoundedCone, RoundedPunch, Sum, Tabulated, TruncatedCone,
-    TruncatedSphere,
-};
-use stickslip_mechanics::{Contact, Elasticity, Move, Normal, Preload, Profile, Setup, Sphere, Tangential};
+use crate::support::{displace, oblique, push, scaled_shapes};
+use stickslip_mechanics::profile::Asperities;
+use stickslip_mechanics::{Contact, Elasticity, Move, Normal, Preload, Profile, Setup, Tangential};
 
 /// Powers of two by which lengths of some micrometres to millimetres are multiplied: the radii and forces that are
 /// accepted allow no more. Each is even, and a tenth of it is whole, so that r^1.5 and r^2.7 are scaled exactly, too.
 const POWERS: [i32; 4] = [-30, -10, 10, 20];
 
 /// Where r^2.7 is among the families.
-const ROUNDED: usize = 5;
+const ROUNDED: usize = 0;
 
-/// The families of [`shapes`] with all lengths multiplied by `scale`, and their indentations.
+/// [`shapes`](crate::support::shapes), and asperities, with all lengths multiplied by `scale`.
 fn scaled(scale: f64) -> Vec<(Profile, f64)> {
-    let radii: Vec<f64> = (0..=40).map(|index| f64::from(index) * 3e-5).collect();
-    let heights: Vec<f64> = radii.iter().map(|r| r * r / 0.02 * (1.0 + 500.0 * r) * scale).collect();
-    let radii: Vec<f64> = radii.iter().map(|r| r * scale).collect();
-    // 2^(k (1 - n)) by a whole exponent.
-    let octaves = scale.log2();
-    let power = |n: f64, c: f64| {
-        let octaves = (octaves * (1.0 - n)).round() as i32;
-        Profile::PowerLaw(PowerLaw::new(n, c * 2.0_f64.powi(octaves)).unwrap())
-    };
-    let (ball, blunt) = (0.01 * scale, 1e-4 * scale);
-    let sphere = || Profile::Sphere(Sphere::new(ball).unwrap());
-    let profiles = vec![
-        sphere(),
-        Profile::ExactSphere(ExactSphere::new(ball).unwrap()),
-        Profile::Cone(Cone::new(0.05).unwrap()),
-        power(1.5, 1.0),
-        power(4.0, 1e6),
-        power(2.7, 1e3),
-        Profile::TruncatedCone(TruncatedCone::new(0.05, blunt).unwrap()),
-        Profile::TruncatedSphere(TruncatedSphere::new(ball, blunt).unwrap()),
-        Profile::RoundedPunch(RoundedPunch::new(blunt, ball).unwrap()),
-        Profile::RoundedCone(RoundedCone::new(0.05, blunt).unwrap()),
-        Profile::Sum(Sum::new(vec![sphere(), power(4.0, 1e6)]).unwrap()),
-        Profile::Tabulated(Tabulated::new(&radii, &heights).unwrap()),
-        Profile::FlatPunch(FlatPunch::new(1e-3 * scale).unwrap()),
-    ];
-    let depths = shapes().into_iter().map(|(_, depth)| depth * scale);
-    let mut all: Vec<_> = profiles.into_iter().zip(depths).collect();
+    let mut all = scaled_shapes(scale);
     let gaps: Vec<f64> = (0..20).map(|index| f64::from(index) * 2e-7 * scale).collect();
-    let asperities = Asperities::new(&vec![ball; gaps.len()], &gaps).unwrap();
+    let asperities = Asperities::new(&vec![0.01 * scale; gaps.len()], &gaps).unwrap();
     all.push((Profile::Asperities(asperities), 3e-6 * scale));
     all
 }

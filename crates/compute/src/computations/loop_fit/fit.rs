@@ -6,7 +6,6 @@ use stickslip_wire::fit::{
     FitEstimate, FitParameter, FitReply, FitResidual, FitTask, FitUnits, FittedLoop, LoopRecord, LoopStart,
     NoiseLevels, SignRuns,
 };
-use stickslip_wire::profile::SphereProfile;
 use stickslip_wire::{ContactDefinition, Effective, Material, Profile, Warning};
 
 use crate::Stop;
@@ -134,7 +133,7 @@ fn fitted(definition: ContactDefinition, fit: &LoopFit, names: &[FitParameter]) 
     let is_modulus_fitted = has(FitParameter::GStar) || has(FitParameter::EStar);
     let profile = match fit.contact.profile() {
         mechanics::Profile::Sphere(sphere) if has(FitParameter::Radius) => {
-            Profile::Sphere(SphereProfile { radius: sphere.curvature_radius() })
+            Profile::sphere(sphere.curvature_radius())
         }
         _ => definition.profile,
     };

@@ -11,9 +11,7 @@ pub mod reference;
 use std::cell::Cell;
 
 use proptest::test_runner::{Config, RngAlgorithm, RngSeed, TestCaseError, TestRng, TestRunner};
-use stickslip_mechanics::profile::{
-    Cone, ExactSphere, FlatPunch, PowerLaw, RoundedCone, RoundedPunch, Sum, Tabulated, TruncatedCone, TruncatedSphere,
-};
+use stickslip_mechanics::profile::{Parameter, PowerLaw, Sum, Tabulated, families};
 use stickslip_mechanics::{Contact, Elasticity, Move, Normal, Preload, Profile, Setup, Sphere, Tangential};
 
 /// A sphere pressed against a plane, by the numbers that define it.
@@ -102,27 +100,44 @@ pub fn power(exponent: f64) -> Profile {
     Profile::PowerLaw(PowerLaw::new(exponent, 0.1).unwrap())
 }
 
-/// One profile of each family with an ordinary indentation, m.
+/// The profile of a family, by its name, of these parameters.
+pub fn of_family(name: &str, parameters: &[f64]) -> Profile {
+    let family = families().iter().find(|family| family.name == name).unwrap_or_else(|| panic!("no family {name}"));
+    (family.make)(parameters).unwrap()
+}
+
+/// Powers, a sum, a table, and the example of each family, with an ordinary indentation, m.
 pub fn shapes() -> Vec<(Profile, f64)> {
+    scaled_shapes(1.0)
+}
+
+/// The same with all lengths multiplied by a power of two, of which r^2.7 comes first.
+pub fn scaled_shapes(scale: f64) -> Vec<(Profile, f64)> {
     let radii: Vec<f64> = (0..=40).map(|index| f64::from(index) * 3e-5).collect();
-    let heights: Vec<f64> = radii.iter().map(|r| r * r / 0.02 * (1.0 + 500.0 * r)).collect();
-    let power = |n, c| Profile::PowerLaw(PowerLaw::new(n, c).unwrap());
-    let sphere = || Profile::Sphere(Sphere::new(0.01).unwrap());
-    vec![
-        (sphere(), 3e-6),
-        (Profile::ExactSphere(ExactSphere::new(0.01).unwrap()), 1e-4),
-        (Profile::Cone(Cone::new(0.05).unwrap()), 1e-5),
-        (power(1.5, 1.0), 3e-6),
-        (power(4.0, 1e6), 3e-6),
-        (power(2.7, 1e3), 3e-6),
-        (Profile::TruncatedCone(TruncatedCone::new(0.05, 1e-4).unwrap()), 1e-5),
-        (Profile::TruncatedSphere(TruncatedSphere::new(0.01, 1e-4).unwrap()), 3e-6),
-        (Profile::RoundedPunch(RoundedPunch::new(1e-4, 0.01).unwrap()), 3e-6),
-        (Profile::RoundedCone(RoundedCone::new(0.05, 1e-4).unwrap()), 1e-5),
-        (Profile::Sum(Sum::new(vec![sphere(), power(4.0, 1e6)]).unwrap()), 3e-6),
-        (Profile::Tabulated(Tabulated::new(&radii, &heights).unwrap()), 3e-6),
-        (Profile::FlatPunch(FlatPunch::new(1e-3).unwrap()), 1e-6),
-    ]
+    let heights: Vec<f64> = radii.iter().map(|r| r * r / 0.02 * (1.0 + 500.0 * r) * scale).collect();
+    let radii: Vec<f64> = radii.iter().map(|r| r * scale).collect();
+    // 2^(k (1 - n)) by a whole exponent.
+    let power_of_scale = |power: f64| 2.0_f64.powi((scale.log2() * power).round() as i32);
+    let scaled = |name: &str, numbers: &[f64]| {
+        let family = families().iter().find(|family| family.name == name).unwrap();
+        let number = |(parameter, number): (&Parameter, &f64)| match parameter.range.unit {
+            "m" => number * scale,
+            "m^(1-n)" => number * power_of_scale(1.0 - numbers[0]),
+            _ => *number,
+        };
+        of_family(name, &family.parameters.iter().zip(numbers).map(number).collect::<Vec<_>>())
+    };
+    let power = |n, c| scaled("power_law", &[n, c]);
+    let sum = Sum::new(vec![scaled("sphere", &[0.01]), power(4.0, 1e6)]).unwrap();
+    let others = [
+        power(2.7, 1e3),
+        power(1.5, 1.0),
+        Profile::Sum(sum),
+        Profile::Tabulated(Tabulated::new(&radii, &heights).unwrap()),
+    ];
+    let of_families = families().iter().map(|family| (scaled(family.name, &family.example()), family.indentation));
+    let all = others.into_iter().map(|profile| (profile, 3e-6)).chain(of_families);
+    all.map(|(profile, depth)| (profile, depth * scale)).collect()
 }
 
 /// Moves a contact to one displacement, m, after the other.

@@ -2,13 +2,12 @@
 
 use std::fmt;
 
-use stickslip_mechanics::profile::{
-    Cone, ExactSphere, FlatPunch, PowerLaw, RoundedCone, RoundedPunch, Sphere, Sum, Tabulated, TruncatedCone,
-    TruncatedSphere,
-};
+use stickslip_mechanics::profile::{Sum, Tabulated};
 use stickslip_mechanics::{
     Contact, DEFAULT_TOLERANCE, Elasticity, Error, Move, Normal, Preload, Profile, Setup, Tangential,
 };
+
+use crate::support::of_family;
 
 /// A contact, the moves that it makes, and what the reference found.
 pub struct Scene {
@@ -107,20 +106,11 @@ fn profile_of(text: &str) -> Profile {
     let family = words.next().unwrap();
     let n: Vec<f64> = words.map(number).collect();
     match family {
-        "sphere" => Profile::Sphere(Sphere::new(n[0]).unwrap()),
-        "exact_sphere" => Profile::ExactSphere(ExactSphere::new(n[0]).unwrap()),
-        "cone" => Profile::Cone(Cone::new(n[0]).unwrap()),
-        "power_law" => Profile::PowerLaw(PowerLaw::new(n[0], n[1]).unwrap()),
-        "flat_punch" => Profile::FlatPunch(FlatPunch::new(n[0]).unwrap()),
-        "truncated_cone" => Profile::TruncatedCone(TruncatedCone::new(n[0], n[1]).unwrap()),
-        "truncated_sphere" => Profile::TruncatedSphere(TruncatedSphere::new(n[0], n[1]).unwrap()),
-        "rounded_punch" => Profile::RoundedPunch(RoundedPunch::new(n[0], n[1]).unwrap()),
-        "rounded_cone" => Profile::RoundedCone(RoundedCone::new(n[0], n[1]).unwrap()),
         "tabulated" => {
             let (radii, heights): (Vec<f64>, Vec<f64>) = n.chunks(2).map(|point| (point[0], point[1])).unzip();
             Profile::Tabulated(Tabulated::new(&radii, &heights).unwrap())
         }
-        other => panic!("{other}"),
+        family => of_family(family, &n),
     }
 }
 
