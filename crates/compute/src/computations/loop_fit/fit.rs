@@ -132,9 +132,7 @@ fn fitted(definition: ContactDefinition, fit: &LoopFit, names: &[FitParameter]) 
     let moduli = Effective { e_star: elasticity.e_star(), g_star: elasticity.g_star(), bodies };
     let is_modulus_fitted = has(FitParameter::GStar) || has(FitParameter::EStar);
     let profile = match fit.contact.profile() {
-        mechanics::Profile::Sphere(sphere) if has(FitParameter::Radius) => {
-            Profile::sphere(sphere.curvature_radius())
-        }
+        mechanics::Profile::Sphere(sphere) if has(FitParameter::Radius) => Profile::sphere(sphere.curvature_radius()),
         _ => definition.profile,
     };
     ContactDefinition {
