@@ -263,7 +263,8 @@ impl Cell {
     /// separates; by the rise alone where the squares are `rounded`.
     pub(crate) fn gap(&self, low: f64, high: f64, depth: f64, rounded: bool) -> f64 {
         let (plain, top) = (high - low, high.sqrt());
-        if plain > APART * high && !rounded {
+        // The squares of a contact may be so small that they are zero.
+        if (plain > APART * high && !rounded) || top <= 0.0 {
             return plain;
         }
         let steep = self.gamma(top);
