@@ -74,7 +74,8 @@ fn each_field_costs_its_own_calls_and_no_others() {
         let (pieces, radii) = (contact.memory_depth(), radii(&contact));
         assert!(pieces > REVERSALS / 2);
         let all = RADII * pieces;
-        // For the pressure the few cells near a radius, for each of the others one call a radius and piece, at the most.
+        // For the pressure the few cells near a radius, for each of the others one call a radius and piece, at the
+        // most.
         let fields: [(&str, &dyn Fn(), usize, usize); 4] = [
             ("pressure", &|| drop(contact.pressures(&radii)), 2 * RADII, 0),
             ("shear", &|| drop(contact.shears(&radii)), all, 0),

@@ -7,8 +7,8 @@
 //! and 1e-15. A cell whose last terms are more than rounding is halved, however it came to be too wide: where g grows
 //! steeply, or beside a singularity above.
 //!
-//! At a tip where g is an uneven power no cell has a series, and where it is a steep one few points do. What lies so near to it that the difference is rounding
-//! is taken for a cone, or for a parabola, with the right end.
+//! At a tip where g is an uneven power no cell has a series, and where it is a steep one few points do. What lies so
+//! near to it that the difference is rounding is taken for a cone, or for a parabola, with the right end.
 
 use super::ring::StressRadius;
 use super::shape::{Kink, Powers, Shape};

@@ -3,8 +3,8 @@
 use super::Cells;
 use super::stages::Stages;
 
-/// The uneven power from which on what is not analytic beside a lower power is rounding: the terms of a Chebyshev series
-/// of t^(n - 1) fall like j^(1 - 2 n).
+/// The uneven power from which on what is not analytic beside a lower power is rounding: the terms of a Chebyshev
+/// series of t^(n - 1) fall like j^(1 - 2 n).
 const SMOOTH: f64 = 14.0;
 
 /// What g is a series of, above a place where it is not analytic in x^2.
@@ -134,8 +134,8 @@ pub(crate) trait Shape {
     /// Its cells as far as they have been asked for; none of a parabola, which has closed forms.
     fn stages(&self) -> Option<&Stages>;
 
-    /// Where contacts end. A shape that went on beyond its own end would give numbers where there is no surface, so that
-    /// each has to say.
+    /// Where contacts end. A shape that went on beyond its own end would give numbers where there is no surface, so
+    /// that each has to say.
     fn end(&self) -> Option<End>;
 
     /// A radius of curvature, m, where it is given by one. No result depends on it: it is what warnings compare the

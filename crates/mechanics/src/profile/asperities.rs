@@ -2,9 +2,9 @@
 //! the gaps h_i < y (Greenwood & Williamson 1966; with friction by Ciavarella 1998 and Jaeger 1998).
 //!
 //! Each asperity that is touched adds the moments of a parabola from its own tip on, so that a thin ring keeps its
-//! digits. The levels are divided into cells of a few gaps each ([`LevelCell`]). Within a cell the asperities whose gaps
-//! lie farther below it than it is wide are one series of X', the others are summed one by one; whole cells are summed
-//! by a [`MomentTree`]. So a ring costs two cells and the logarithm of their number.
+//! digits. The levels are divided into cells of a few gaps each ([`LevelCell`]). Within a cell the asperities whose
+//! gaps lie farther below it than it is wide are one series of X', the others are summed one by one; whole cells are
+//! summed by a [`MomentTree`]. So a ring costs two cells and the logarithm of their number.
 //!
 //! One asperity alone is a [`Sphere`].
 

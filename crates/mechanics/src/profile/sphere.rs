@@ -278,8 +278,8 @@ impl InwardRings {
     }
 }
 
-/// The difference of two roots, given that of their squares; or its derivative with respect to r^2, from the right where
-/// the lower one is zero.
+/// The difference of two roots, given that of their squares; or its derivative with respect to r^2, from the right
+/// where the lower one is zero.
 #[inline]
 fn difference<const SLOPE: bool>(low: f64, high: f64, gap: f64) -> f64 {
     if !SLOPE {

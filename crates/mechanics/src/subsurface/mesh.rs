@@ -95,8 +95,8 @@ impl Mesh {
         Mesh { panels, tree, edge: Some(edge).filter(|edge| edge.normal > 0.0) }
     }
 
-    /// Calls `visit(t - r, source)` for all sources of the stress at the distance `from_axis`, m, from the axis and the depth z,
-    /// over the contact radius.
+    /// Calls `visit(t - r, source)` for all sources of the stress at the distance `from_axis`, m, from the axis and the
+    /// depth z, over the contact radius.
     pub(super) fn visit(
         &self,
         profile: &Profile,

@@ -120,7 +120,7 @@ fn every_family_has_reference_values_deep_in_its_shape() {
         };
         assert!(
             level_rows.iter().any(deep),
-            "{0} has no reference values at ten times its shortest length: give crates/mechanics/tests/data/profiles.py \
+            "{0} has no reference values at ten times its shortest length: give tests/data/profiles.py \
              a function `{0}` and a row of `cases` that reaches so far, and run it for profiles.csv",
             family.name
         );

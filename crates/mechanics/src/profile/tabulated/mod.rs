@@ -50,7 +50,8 @@ impl Tabulated {
     ///
     /// # Errors
     /// [`Error::OutOfRange`] by [`range::TABLE_POINTS`], [`range::TABLE_RADIUS`] and [`range::TABLE_HEIGHT`],
-    /// [`Error::Table`] for radii or heights that are not a table, [`Error::NotConvexEnough`] if g falls from the centre on.
+    /// [`Error::Table`] for radii or heights that are not a table, [`Error::NotConvexEnough`] if g falls from the
+    /// centre on.
     pub fn new(radii: &[f64], heights: &[f64]) -> Result<Tabulated, Error> {
         Tabulated::new_while(radii, heights, &|| true)
     }
