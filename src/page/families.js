@@ -1,5 +1,6 @@
 // The families of shapes whose parameters are plain numbers: printed by `./check print`.
 
+/** @type {Record<string, [string, { name: string; label: string; si: string; example: string }[]]>} */
 // prettier-ignore
 export const FAMILIES = {
   sphere: [

@@ -10,6 +10,7 @@ use crate::python::file;
 #[test]
 fn the_form_of_the_page_has_every_family() {
     let mut printed = "// The families of shapes whose parameters are plain numbers: printed by `./check print`.\n\n\
+        /** @type {Record<string, [string, { name: string; label: string; si: string; example: string }[]]>} */\n\
         // prettier-ignore\nexport const FAMILIES = {\n"
         .to_owned();
     for family in families() {
