@@ -3,17 +3,20 @@
 use super::Springs;
 use crate::accuracy::ErrorEstimate;
 
-/// The number of radii at even distances at which stresses are compared, and that of kinks of the slip history with one
-/// beside each.
+/// Radii at even distances at which stresses are compared, and kinks of the displacement beside which they are.
 const COMPARED: usize = 128;
-/// Distance from a kink of the displacement, in cells, from which on the error of the stress is stated.
+const KINKS: usize = 32;
+/// Distances from a kink, in cells: a stress is smeared over a cell there, and errs the most.
+const BESIDE: [f64; 9] = [-2.0, -1.0, -0.5, -0.1, 0.0, 0.1, 0.5, 1.0, 2.0];
+/// Distance from a singular radius of the profile, in cells, from which on the error of the stress is stated.
 const NEAREST: f64 = 2.0;
+/// The contact radius, in cells, up to which it is stated for all radii.
+const FEW: f64 = 5.0;
 
 impl Springs {
-    /// The errors by the discretisation. The one of the stress is for radii some cells (of twice the largest contact
-    /// radius over the number of springs) away from the kinks of the displacement, the centre, the edge and the
-    /// singular radii of the profile: nearer, a stress is smeared over a cell. Where no radius is that far from all of
-    /// these, it is for all radii but the nearest to a singular one.
+    /// The errors by the discretisation. The one of the stress is the largest over the contact, beside the kinks of the
+    /// displacement too, but for radii within some cells (of twice the largest contact radius over the number of
+    /// springs) of a singular radius of the profile.
     ///
     /// ```
     #[doc = include_str!("../example.txt")]
@@ -48,20 +51,21 @@ impl Springs {
         }
     }
 
-    /// Radii over the contact, m, but for those near a kink or a singular radius, if there are others;
-    /// without, the kinks and
-    /// the springs too, where stresses have cusps.
+    /// Radii over the contact, m, and beside its kinks, but for those near a singular radius.
     fn compared_radii(&self) -> Vec<f64> {
-        let (edge, near) = (self.contact_radius(), NEAREST * self.spacing);
+        let edge = self.contact_radius();
+        // So few springs leave no radius that is far from all.
+        let near = if edge > FEW * self.spacing { NEAREST * self.spacing } else { 0.0 };
+        let singular = self.exact.profile.singular_radii();
         let mut kinks: Vec<f64> = self.exact.history.rings().map(|(ring, _)| ring.inner.radius).collect();
-        kinks.extend(self.exact.profile.singular_radii());
-        kinks.extend([0.0, edge]);
+        kinks.push(edge);
         let even = (0..COMPARED).map(|index| edge * (index as f64 + 0.5) / COMPARED as f64);
-        let beside = kinks.iter().take(COMPARED).flat_map(|kink| [kink - 1.01 * near, kink + 1.01 * near]);
+        let some = kinks.iter().step_by(kinks.len().div_ceil(KINKS));
+        let beside = some.flat_map(|kink| BESIDE.map(|cells| kink + cells * self.spacing));
         let resolved =
-            |radius: &f64| (0.0..edge).contains(radius) && kinks.iter().all(|kink| (radius - kink).abs() > near);
-        let radii: Vec<f64> = even.clone().chain(beside).filter(resolved).collect();
+            |radius: &f64| (0.0..edge).contains(radius) && singular.iter().all(|place| (radius - place).abs() > near);
+        // Between few springs a stress has a cusp at each.
         let springs = self.in_contact().map(|spring| spring.radius).take(COMPARED);
-        if radii.is_empty() { even.chain(kinks.iter().copied()).chain(springs).collect() } else { radii }
+        even.chain(beside).chain(springs).filter(resolved).collect()
     }
 }
