@@ -41,7 +41,7 @@ fn gauge(scene: &Scene, contact: &Contact, outcome: &Outcome) -> Gauge {
         // An energy relative to itself: the sums that make it up are of one sign.
         "elastic" | "dissipated" => (value, 5e-12),
         "pressure" => (over_friction(units.stress), 1e-10),
-        "shear" => (units.stress, 1e-9),
+        "shear" => (units.stress, 2e-10),
         "kink" => (units.stress, 1e-11),
         other => panic!("{other}"),
     };
