@@ -126,7 +126,7 @@ fn kinds(contact: Uuid, fresh: Uuid) -> Vec<(&'static str, String)> {
             "a mass",
             "/cycle",
             of(
-                &tables,
+                &sum((0..8).map(table).collect()),
                 &json!({"drive": {"displacement": 1e-8}, "frequency_response": {"mass": 0.1, "drive_force": 1.0}}),
             ),
         ),
