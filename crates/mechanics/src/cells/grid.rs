@@ -22,9 +22,9 @@ const KINK: f64 = 0.6;
 const WIDEST: f64 = 1.1;
 /// The width of a cell over its distance from the kink beneath, in squares.
 const GROWTH: f64 = 0.5;
-/// The share of the largest below which the last terms of a series are rounding, and the one up to which they may be
-/// left out.
+/// The share of the largest term up to which the last terms of a series are left out.
 const NEGLIGIBLE: f64 = 1e-16;
+/// The share of the largest term up to which the last terms of a series are rounding.
 const RESOLVED: f64 = 5e-16;
 /// The differences of values, over the largest, that rounding makes of a constant.
 const CONSTANT: f64 = 1e-15;
@@ -149,7 +149,7 @@ impl<S: Shape + ?Sized> Above<'_, S> {
                 _ => self.fit(&TWENTY_FOUR, |u| (high * u.sqrt(), u.sqrt())),
             }
         };
-        let (Fit { terms, .. }, width) = narrowed(widest, 0.5, fit);
+        let (Fit { terms, .. }, width) = narrowed(widest, fit);
         (Cell::new(self.kink.radius, self.base, width.sqrt(), &terms, self.kink.powers), width)
     }
 
@@ -161,7 +161,7 @@ impl<S: Shape + ?Sized> Above<'_, S> {
                 (t, t / width.sqrt())
             })
         };
-        let (Fit { terms, .. }, width) = narrowed(widest, 0.5, fit);
+        let (Fit { terms, .. }, width) = narrowed(widest, fit);
         let square = self.base + DoubleDouble::from(below);
         (Cell::new(self.kink.radius, square, width.sqrt(), &terms, Powers::Odd), below + width)
     }
@@ -192,15 +192,15 @@ impl<S: Shape + ?Sized> Above<'_, S> {
     }
 }
 
-/// The fit over the widest cell that leaves rounding, each narrower by a factor than the one before, and its width.
-fn narrowed(widest: f64, factor: f64, fit: impl Fn(f64) -> Fit) -> (Fit, f64) {
+/// The fit over the widest cell that leaves rounding, each half as wide as the one before, and its width.
+fn narrowed(widest: f64, fit: impl Fn(f64) -> Fit) -> (Fit, f64) {
     let (mut width, mut best) = (widest, fit(widest));
     while (best.steep || best.left > RESOLVED) && width > NARROWEST * widest {
-        let next = fit(factor * width);
+        let next = fit(0.5 * width);
         if !best.steep && next.left * GAIN > best.left {
             break;
         }
-        (width, best) = (factor * width, next);
+        (width, best) = (0.5 * width, next);
     }
     (best, width)
 }

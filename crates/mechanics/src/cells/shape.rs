@@ -138,6 +138,11 @@ pub(crate) trait Shape {
     /// that each has to say.
     fn end(&self) -> Option<End>;
 
+    /// The radius at which contacts end, m; infinite where they never do.
+    fn end_radius(&self) -> f64 {
+        self.end().map_or(f64::INFINITY, |end| end.radius)
+    }
+
     /// A radius of curvature, m, where it is given by one. No result depends on it: it is what warnings compare the
     /// contact radius with, and without one they compare nothing.
     fn curvature_radius(&self) -> Option<f64> {

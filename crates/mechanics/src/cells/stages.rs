@@ -69,8 +69,7 @@ impl Stages {
         if let Some(cells) = self.everything() {
             return Some(cells);
         }
-        let end = shape.end().map_or(f64::INFINITY, |end| end.radius);
-        let last = number(end.next_down());
+        let last = number(shape.end_radius().next_down());
         match reach {
             Reach::Radius(radius) => self.stage(shape, number(radius).min(last), keep_going),
             Reach::Level(level) => {
@@ -103,7 +102,7 @@ impl Stages {
         if let Some(stage) = self.built().find(|stage| stage.number == number) {
             return Some(&stage.cells);
         }
-        let (low, high) = (start(number), start(number + 1).min(shape.end().map_or(f64::INFINITY, |end| end.radius)));
+        let (low, high) = (start(number), start(number + 1).min(shape.end_radius()));
         let levels = (shape.level(low), shape.level(high));
         let stage =
             Stage { number, levels, cells: grid::cells(shape, (low, high), keep_going)?, next: OnceLock::new() };

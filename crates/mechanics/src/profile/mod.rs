@@ -175,7 +175,7 @@ impl Profile {
         if let Some(curve) = self.curve() {
             return curve.level_of(radius);
         }
-        let closed = |shape: &dyn Shape| shape.level(radius.min(shape.end().map_or(f64::INFINITY, |end| end.radius)));
+        let closed = |shape: &dyn Shape| shape.level(radius.min(shape.end_radius()));
         self.shape().map_or(f64::NAN, closed)
     }
 

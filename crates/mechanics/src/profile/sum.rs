@@ -68,9 +68,7 @@ impl Sum {
     /// The tables whose g falls before their end.
     fn falling_tables(&self) -> impl Iterator<Item = &Tabulated> {
         self.parts.iter().filter_map(|part| match part {
-            Profile::Tabulated(table) => {
-                Some(table).filter(|table| table.falls().is_some_and(|at| at < table.known_to()))
-            }
+            Profile::Tabulated(table) if table.falls_within() => Some(table),
             _ => None,
         })
     }
@@ -90,7 +88,7 @@ impl Sum {
 
     /// The first radius at which the sum falls, where a part of it does, m.
     fn first_fall(&self, keep_going: &dyn Fn() -> bool) -> Result<Option<f64>, Error> {
-        let end = self.end.map_or(f64::INFINITY, |end| end.radius);
+        let end = self.end_radius();
         let mut samples: Vec<f64> =
             self.falling_tables().flat_map(Tabulated::slope_check_radii).filter(|&radius| radius < end).collect();
         samples.sort_by(f64::total_cmp);
@@ -116,7 +114,7 @@ impl Sum {
 /// Where a part of a sum ends; a table may go on where its g falls.
 fn end_in_sum(part: &Profile) -> Option<End> {
     match part {
-        Profile::Tabulated(table) if table.falls().is_some_and(|at| at < table.known_to()) => {
+        Profile::Tabulated(table) if table.falls_within() => {
             Some(End { radius: table.known_to(), kind: EndKind::Unknown })
         }
         part => part.shape()?.end(),

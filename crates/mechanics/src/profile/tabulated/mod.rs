@@ -146,9 +146,9 @@ impl Tabulated {
         self.end
     }
 
-    /// The first radius at which g falls, if it does, m.
-    pub(super) fn falls(&self) -> Option<f64> {
-        self.falls
+    /// Whether g falls before the table ends.
+    pub(super) fn falls_within(&self) -> bool {
+        self.falls.is_some_and(|at| at < self.known_to())
     }
 
     /// The interpolation error in a contact of this radius, m.
