@@ -48,11 +48,14 @@ impl Contact {
         let carried = self.friction * self.normal_force();
         let summed = self.force_unit() * self.history.force_size();
         let terms = if carried > 0.0 { summed / carried } else { 0.0 };
-        let (radius, indentation) = (self.contact_radius(), self.indentation());
+        let (radius, indentation) = (self.stiffness_radius(), self.indentation());
         // Where g is steep, a rounded radius moves the indentation by this many units.
         let steepness = radius * self.profile.slope(radius) / indentation;
         let steepness = known(steepness).clamp(0.0, MAX_STEEPNESS);
-        let mean_pressure = mean_pressure(self.normal_force(), radius);
+        let mean_pressure = match self.profile.line() {
+            Some(line) => self.normal_force() / (2.0 * self.contact_radius() * line.length()),
+            None => mean_pressure(self.normal_force(), radius),
+        };
         let interpolation = self.profile.interpolation_error(radius);
         let kernel = self.elasticity.e_star() / std::f64::consts::PI * (self.path_kernel + 2.0 * interpolation.kernel)
             / mean_pressure;

@@ -74,6 +74,7 @@ impl Contact {
         let Setup { profile, elasticity, friction, preload } = setup.shared();
         let elasticity = match &*profile {
             Profile::Ellipsoid(ellipsoid) => elasticity.along_ellipse(ellipsoid.shear_share())?,
+            Profile::Line(_) => elasticity.along_line(),
             _ => elasticity,
         };
         range::check_friction(friction)?;
@@ -85,13 +86,14 @@ impl Contact {
             Preload::ContactRadius(radius) => normal::indentation_at(&profile, range::CONTACT_RADIUS.check(radius)?)?,
         };
         range::PRELOAD_INDENTATION.check(indentation)?;
-        range::CONTACT_RADIUS.check(profile.check_radius(profile.radius(indentation))?)?;
+        range::CONTACT_RADIUS.check(profile.check_radius(profile.contact_radius(indentation))?)?;
         let history = SlipHistory::new(&profile, DoubleDouble::from(indentation));
         let normal_force = match preload {
             Preload::NormalForce(force) => force,
             Preload::Indentation(_) | Preload::ContactRadius(_) => normal::force(&profile, &elasticity, history.edge()),
         };
         let initial = ContactSummary::of(&profile, &elasticity, friction, history.edge(), normal_force);
+        profile.line().map_or(Ok(()), |line| line.check_bulk(initial.contact_radius, normal_force))?;
         let interpolation = profile.interpolation_error(initial.contact_radius);
         let indentation_error = match preload {
             Preload::NormalForce(_) if interpolation.load > 0.0 => interpolation.load / initial.contact_radius,
@@ -162,6 +164,11 @@ impl Contact {
         self.at_rest(indentation, initial)
     }
 
+    /// The same definition, displacement and load, without pieces of the slip history.
+    pub(super) fn clone_without_history(&self) -> Contact {
+        Contact { profile: Arc::clone(&self.profile), history: SlipHistory::default(), ..*self }
+    }
+
     /// [`Contact::without_history`] but for the summary, which takes a search for the largest pressure.
     pub(super) fn unmoved(self) -> Contact {
         let initial = ContactSummary { normal_force: self.normal_force, ..self.initial };
@@ -193,6 +200,8 @@ impl Contact {
         let indentation = self.indentation_for(normal_force);
         range::PRELOAD_INDENTATION.check(indentation.value())?;
         self.check_indentation(indentation.value())?;
+        let half_width = self.profile.contact_radius(indentation.value());
+        self.profile.line().map_or(Ok(()), |line| line.check_bulk(half_width, normal_force))?;
         let initial = ContactSummary { normal_force, ..self.initial };
         Ok(self.clone().at_rest(indentation, initial))
     }
@@ -265,16 +274,20 @@ impl Contact {
         self.normal_force
     }
 
-    /// Pressure, Pa, at a radius (m) of at least zero; zero outside the contact, infinite at a sharp edge.
+    /// Pressure, Pa, at a radius (m) of at least zero, or at the x of a line contact; zero outside the contact, infinite
+    /// at a sharp edge.
     #[must_use]
     pub fn pressure(&self, radius: f64) -> f64 {
-        normal::pressure(&self.profile, &self.elasticity, self.history.edge(), &StressRadius::new(radius))
+        let (profile, edge) = self.profile.face(self.history.edge());
+        normal::pressure(profile, &self.elasticity, &edge, &StressRadius::new(radius.abs()))
     }
 
     /// [`Contact::pressure`] at each of `radii`, m: faster than one by one.
     #[must_use]
     pub fn pressures(&self, radii: &[f64]) -> Vec<f64> {
-        normal::pressures(&self.profile, &self.elasticity, self.history.edge(), radii)
+        let (profile, edge) = self.profile.face(self.history.edge());
+        let distances: Vec<f64> = radii.iter().map(|radius| radius.abs()).collect();
+        normal::pressures(profile, &self.elasticity, &edge, &distances)
     }
 
     /// The shape of the indenter.
@@ -301,9 +314,16 @@ impl Contact {
         self.path_error
     }
 
-    /// Contact radius a, m; of a profile without a stress field X(d) = F_N'/(2 E*), which governs the stiffness.
+    /// Contact radius a, m; half-width of a line contact; of a profile without a stress field as
+    /// [`Contact::stiffness_radius`].
     #[must_use]
     pub fn contact_radius(&self) -> f64 {
+        self.profile.edge_radius(self.history.edge())
+    }
+
+    /// F_N'/(2 E*), m, the contact radius of the round contact that is as stiff: a where the contact is round.
+    #[must_use]
+    pub fn stiffness_radius(&self) -> f64 {
         self.history.edge().radius
     }
 

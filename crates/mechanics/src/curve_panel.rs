@@ -9,7 +9,7 @@
 //!   c = (dF_x/dd)/(2 G* m), J = int h/x^2 dx and K = int (D - h)/x^2 dx; J = D/x0 - D/x1 - K.
 
 use super::curved_path::{CurvedMove, NormalPath, PathPoint, TangentialPath};
-use super::profile::{Ring, StressRadius};
+use super::profile::Ring;
 use crate::contact::Contact;
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::gauss::{self, EIGHT_POINTS, TWENTY_POINTS};
@@ -179,14 +179,14 @@ impl Contact {
         }
         // A chord of half the depth is off the parabola's slope by a half of bend times the depth at its ends, and the
         // elbow by a sixth more.
-        let kernel = self.profile.kernel(&StressRadius::of_point(&ring.inner), ring);
+        let kernel = self.face_kernel(ring, None);
         let kernel = if kernel.is_finite() {
             kernel
         } else {
             // At the tip of a cone or at a rim it is infinite, and so is the stress itself: the error is that of the
             // stress beside it.
             let beside = BESIDE * ring.inner.radius + (1.0 - BESIDE) * ring.outer.radius;
-            self.profile.kernel(&StressRadius::new(beside), ring)
+            self.face_kernel(ring, Some(beside))
         };
         panel.kernel = (bend * ring.depth).abs() / 1.5 * kernel;
     }

@@ -31,7 +31,7 @@ impl Body {
         })
     }
 
-    fn normal_compliance(self) -> f64 {
+    pub(crate) fn normal_compliance(self) -> f64 {
         (1.0 - self.poisson_ratio) * (1.0 + self.poisson_ratio) / self.youngs_modulus
     }
 
@@ -120,6 +120,13 @@ impl Elasticity {
         };
         let compliance: f64 = self.bodies.into_iter().flatten().map(compliance).sum();
         if compliance > 0.0 { Ok(Elasticity { g_star: compliance.recip(), ..self }) } else { Err(Error::BodiesNeeded) }
+    }
+
+    /// The same bodies along a line, in plane strain: half-planes have one influence function for normal and tangential
+    /// tractions, so that G* is E*.
+    #[must_use]
+    pub fn along_line(self) -> Elasticity {
+        Elasticity { g_star: self.e_star, ..self }
     }
 
     /// Reduced modulus E*, Pa.

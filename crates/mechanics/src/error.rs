@@ -29,6 +29,34 @@ pub enum Error {
         /// Where the profile ends, m.
         limit: f64,
     },
+    /// The half-width of a line contact would come near the length that fixes its displacements.
+    #[error(
+        "a half-width of {} is not below {}, nine tenths of reference_length: displacements of a line contact are \
+            known within that length alone", in_unit(*half_width, "m"), in_unit(*limit, "m")
+    )]
+    BeyondReferenceLength {
+        /// The half-width needed, m; the limit itself if none would do.
+        half_width: f64,
+        /// The largest half-width, m.
+        limit: f64,
+    },
+    /// A bulk stress under which the stick zones of a history would not be nested.
+    #[error(
+        "stress_per_force = {} is too large: allowed is up to {} Pa/N either way, beyond which slip begins on both \
+            sides in opposite directions", short(*stress_per_force), short(*largest)
+    )]
+    BulkTooLarge {
+        /// The stress of the body over the tangential force, Pa/N.
+        stress_per_force: f64,
+        /// The largest that is taken, Pa/N.
+        largest: f64,
+    },
+    /// A normal target of a contact whose bulk stress moves the stick zone.
+    #[error("the stick zone that a bulk stress moves is known at a constant normal force: leave the normal target out")]
+    BulkNeedsConstantLoad,
+    /// A computation that is defined for round contacts alone.
+    #[error("{0} is not defined for a line contact: its profile must be one of a round contact")]
+    LineContact(&'static str),
     /// g falls beyond some radius: the contact would be a ring.
     #[error("the profile is not convex enough for a contact without a gap: g falls at the radius {} m", short(*radius))]
     NotConvexEnough {

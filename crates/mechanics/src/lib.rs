@@ -59,6 +59,7 @@
 //! | `shear_stress`, `extrema` | what is the shear stress, and where are its extrema? |
 //! | [`subsurface`] | what is the stress in the bodies below the contact? |
 //! | [`fatigue`] | how near does a cycle of stresses bring the material to fatigue? |
+//! | `line_surface` | what does the surface of a line contact carry, and how far has it slipped? |
 //! | `surface_displacement` | how far does the surface move, and how far has it slipped? |
 //! | `accuracy` | how far may a result be off? |
 //! | `packed` | how is a contact stored as bytes? |
@@ -80,6 +81,7 @@ mod error;
 mod extrema;
 pub mod fatigue;
 mod force_control;
+mod line_surface;
 mod moves;
 mod normal;
 mod numerics;

@@ -101,6 +101,9 @@ impl Contact {
 
     fn normal_path(&self, step: &Move) -> Result<NormalPath, Error> {
         let here = self.history.edge().level;
+        if step.normal.is_some() && self.profile.line().is_some_and(|line| line.bulk().is_some()) {
+            return Err(Error::BulkNeedsConstantLoad);
+        }
         Ok(match step.normal {
             None => NormalPath::Indentation { from: here, to: here },
             Some(Normal::Indentation(depth)) => {
@@ -122,7 +125,7 @@ impl Contact {
     pub(super) fn check_indentation(&self, indentation: f64) -> Result<(), Error> {
         range::INDENTATION.check(indentation)?;
         if indentation > 0.0 {
-            range::CONTACT_RADIUS.check(self.profile.check_radius(self.profile.radius(indentation))?)?;
+            range::CONTACT_RADIUS.check(self.profile.check_radius(self.profile.contact_radius(indentation))?)?;
         }
         Ok(())
     }

@@ -75,7 +75,7 @@ impl ContactSummary {
             e_star: elasticity.e_star(),
             g_star: elasticity.g_star(),
             indentation,
-            contact_radius: edge.radius,
+            contact_radius: profile.edge_radius(edge),
             normal_force,
             max_pressure: max_pressure(profile, elasticity, edge),
             semi_axes: match profile {
@@ -164,7 +164,7 @@ pub(super) fn indentation(profile: &Profile, elasticity: &Elasticity, normal_for
 pub(super) fn indentation_at(profile: &Profile, radius: f64) -> Result<f64, Error> {
     let allowed = |allowed: String| Error::OutOfRange { quantity: Quantity::ContactRadius, value: radius, allowed };
     profile.check_radius(radius)?;
-    let flat = profile.radius(0.0);
+    let flat = profile.contact_radius(0.0);
     if radius < flat {
         return Err(allowed(format!("from the radius of the flat end, {} m, on", short(flat))));
     }
@@ -176,7 +176,7 @@ pub(super) fn indentation_at(profile: &Profile, radius: f64) -> Result<f64, Erro
             short(rim)
         )));
     }
-    Ok(profile.level(radius))
+    Ok(profile.level_at_edge(radius))
 }
 
 /// Pressure, Pa, at radius r; zero outside the contact.
@@ -203,7 +203,8 @@ pub(super) fn max_pressure(profile: &Profile, elasticity: &Elasticity, edge: &Po
     if !profile.has_stress_field() {
         return None;
     }
-    let at = |radius: f64| pressure(profile, elasticity, edge, &StressRadius::new(radius));
+    let (profile, edge) = profile.face(edge);
+    let at = |radius: f64| pressure(profile, elasticity, &edge, &StressRadius::new(radius));
     let inside = |radius: &f64| *radius <= edge.radius;
     let spikes = profile.singular_radii().into_iter().filter(inside).chain([edge.radius]);
     if edge.level.value() > 0.0 && spikes.map(at).any(f64::is_infinite) {
@@ -217,7 +218,7 @@ pub(super) fn max_pressure(profile: &Profile, elasticity: &Elasticity, edge: &Po
     // may be narrower than a unit in the last place of a radius: so radii at even steps of the level are scanned too,
     // and distinguished by their squares.
     let pressure_at = |square: DoubleDouble| {
-        pressure(profile, elasticity, edge, &StressRadius { radius: square.value().sqrt(), square })
+        pressure(profile, elasticity, &edge, &StressRadius { radius: square.value().sqrt(), square })
     };
     let radius = |index: usize| edge.radius * index as f64 / PRESSURE_SCAN as f64;
     let level = |index: usize| edge.level * (index as f64 / LEVEL_SCAN as f64);

@@ -94,6 +94,8 @@ quantities! {
     Force = "force", FORCE: -1e20 to 1e20 "N", "A tangential force.";
     Place = "place", PLACE: -1e9 to 1e9 "m", "A coordinate of a place below the surface.";
     BulkStress = "bulk stress", BULK_STRESS: -1e20 to 1e20 "Pa", "A component of a uniform stress.";
+    StressPerForce = "stress_per_force", STRESS_PER_FORCE: -1e30 to 1e30 "Pa/N",
+        "A stress of a body along x over the tangential force that it comes with.";
     MachineStiffness = "stiffness", MACHINE_STIFFNESS: 1e-9 to 1e30 "N/m",
         "The stiffness of a machine in series with the contact.";
     Phase = "phase", "Phase of the normal load of a cycle.";

@@ -50,7 +50,7 @@ impl Residual {
 }
 
 impl Contact {
-    /// Shear stress, Pa, at a radius (m) of at least zero; zero outside the contact.
+    /// Shear stress, Pa, at a radius (m) of at least zero, or at the x of a line contact; zero outside the contact.
     ///
     /// ```
     #[doc = include_str!("example.txt")]
@@ -61,7 +61,10 @@ impl Contact {
     /// ```
     #[must_use]
     pub fn shear(&self, radius: f64) -> f64 {
-        self.shear_at(&StressRadius::new(radius))
+        if let Some(line) = self.eccentric() {
+            return self.eccentric_shears(line, &[radius])[0];
+        }
+        self.face().shear_at(&StressRadius::new(radius.abs()))
     }
 
     /// [`Contact::shear`] at each of `radii`, m: faster than one by one.
@@ -74,7 +77,11 @@ impl Contact {
     /// ```
     #[must_use]
     pub fn shears(&self, radii: &[f64]) -> Vec<f64> {
-        self.shears_at(&StressRadius::of_all(radii))
+        if let Some(line) = self.eccentric() {
+            return self.eccentric_shears(line, radii);
+        }
+        let distances: Vec<f64> = radii.iter().map(|radius| radius.abs()).collect();
+        self.face().shears_at(&StressRadius::of_all(&distances))
     }
 
     /// [`Contact::shears`] at radii whose squares have all their digits.
@@ -144,6 +151,13 @@ impl Contact {
     /// # Ok::<(), Error>(())
     /// ```
     pub fn residual_while(&self, keep_going: impl Fn() -> bool) -> Option<Residual> {
+        if let Some(line) = self.eccentric() {
+            return self.eccentric_residual(line, keep_going);
+        }
+        self.face().round_residual(keep_going)
+    }
+
+    fn round_residual(&self, keep_going: impl Fn() -> bool) -> Option<Residual> {
         let edge = self.history.edge().radius;
         let spikes = self.profile.singular_radii().into_iter().filter(|&radius| radius <= edge).chain([edge]);
         let mut radii: Vec<StressRadius> = [0.0].into_iter().chain(spikes).map(StressRadius::new).collect();

@@ -86,8 +86,10 @@ pub struct State {
     pub normal_force: f64,
     /// Contact radius a, m.
     pub contact_radius: f64,
-    /// Radius of the part that did not slip in the last move, m.
+    /// Radius of the part that did not slip in the last move, m; half-width of a line contact.
     pub stick_radius: f64,
+    /// Where the middle of that part is, m, if a bulk stress comes with the force.
+    pub stick_centre: Option<f64>,
     /// Which parts the last move made slip.
     pub regime: Regime,
     /// Friction work since the start, J.
@@ -122,8 +124,9 @@ impl Contact {
             force: self.force(),
             indentation: edge.level.value(),
             normal_force: self.normal_force(),
-            contact_radius: edge.radius,
+            contact_radius: self.contact_radius(),
             stick_radius,
+            stick_centre: self.profile.line().filter(|line| line.bulk().is_some()).map(|line| self.zone_centre(line, stick_radius)),
             regime,
             dissipated_energy: self.dissipated.value(),
             elastic_energy: (2.0 * self.elasticity.g_star() * scale * scale * self.history.energy()).max(0.0),
@@ -140,10 +143,10 @@ impl Contact {
             return (0.0, Regime::GrossSlip);
         }
         match self.history.slip_from() {
-            None => (edge.radius, Regime::Stick),
+            None => (self.contact_radius(), Regime::Stick),
             Some(start) if start.level.value() <= 0.0 => (0.0, Regime::GrossSlip),
-            Some(start) if start.radius < edge.radius => (start.radius, Regime::PartialSlip),
-            Some(_) => (edge.radius, Regime::Stick),
+            Some(start) if start.radius < edge.radius => (self.profile.edge_radius(start), Regime::PartialSlip),
+            Some(_) => (self.contact_radius(), Regime::Stick),
         }
     }
 }

@@ -36,6 +36,11 @@ impl Contact {
     #[must_use]
     pub fn surface_displacements(&self, radii: &[f64]) -> Vec<f64> {
         let (edge, shift) = (self.history.edge(), self.history.shift().value());
+        if let Some(line) = self.profile.line() {
+            let zones: Vec<_> = self.zones(line).collect();
+            let middle = self.scale() * (self.core() + shift);
+            return radii.iter().map(|&x| middle - self.friction * self.lag(line, &zones, x)).collect();
+        }
         // The displacements of the pieces are relative to the indenter.
         let moved = |radius: f64| {
             if radius > 0.0 { shift * FRAC_2_PI * arc_to(edge, &StressRadius::new(radius)) } else { shift }
@@ -55,11 +60,18 @@ impl Contact {
     #[must_use]
     pub fn slips(&self, radii: &[f64]) -> Vec<Option<f64>> {
         let edge = self.history.edge();
-        let touched = |radius: &f64| edge.level.value() > 0.0 && *radius <= edge.radius;
+        let (pressed, most) = (edge.level.value() > 0.0, self.contact_radius());
+        let touched = |radius: &f64| pressed && radius.abs() <= most;
         if self.friction <= 0.0 {
             // The surface does not move at all, and the slip history does not follow the displacement.
             let slip = self.displacement.value() + 0.0;
             return radii.iter().map(|radius| touched(radius).then_some(slip)).collect();
+        }
+        if let Some(line) = self.profile.line() {
+            let zones: Vec<_> = self.zones(line).collect();
+            let middle = self.scale() * ((self.history.position() - self.history.shift()).value() - self.core());
+            let slip = |x: f64| middle + self.friction * self.lag(line, &zones, x) + 0.0;
+            return radii.iter().map(|&x| touched(&x).then(|| slip(x))).collect();
         }
         let inside: Vec<f64> = radii.iter().copied().filter(touched).collect();
         let started = (self.history.position() - self.history.shift()).value();

@@ -218,7 +218,7 @@ impl<'a> SteadyCycle<'a> {
     #[must_use]
     pub fn tangent_stiffness(&self) -> f64 {
         if self.contact.friction > 0.0 {
-            2.0 * self.contact.elasticity.g_star() * self.contact.contact_radius()
+            2.0 * self.contact.elasticity.g_star() * self.contact.stiffness_radius()
         } else {
             0.0
         }
@@ -257,7 +257,7 @@ impl<'a> SteadyCycle<'a> {
     /// Radius of the part that never slips, m.
     #[must_use]
     pub fn stick_radius(&self) -> f64 {
-        if self.regime() == Regime::GrossSlip { 0.0 } else { self.ring.inner.radius }
+        if self.regime() == Regime::GrossSlip { 0.0 } else { self.contact.profile.edge_radius(&self.ring.inner) }
     }
 
     /// Which parts slip.

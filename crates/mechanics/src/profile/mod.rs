@@ -14,6 +14,7 @@ mod asperities;
 mod curve_family;
 mod ellipsoid;
 mod families;
+mod line;
 mod load_curve;
 mod open_gaps;
 mod ring_sum;
@@ -26,6 +27,7 @@ pub use crate::cells::ring::{Moments, Point, Ring, StressRadius};
 pub use asperities::Asperities;
 pub use ellipsoid::{Direction, Ellipsoid};
 pub use families::{Family, Parameter};
+pub use line::{LineBulk, LineContact, PadFace, WIDEST};
 pub use load_curve::LoadCurve;
 pub(super) use ring_sum::{InwardSum, RingSum};
 pub use sum::Sum;
@@ -89,6 +91,10 @@ macro_rules! families {
             LoadCurve(LoadCurve),
             /// Hertz's ellipse of contact.
             Ellipsoid(Ellipsoid),
+            /// A contact along a line, in plane strain.
+            Line(LineContact),
+            /// What the pressure of a pad along a line follows from, as a body of revolution.
+            PadFace(PadFace),
         }
 
         impl Profile {
@@ -98,10 +104,11 @@ macro_rules! families {
                     $(Profile::$Family(shape) => Some(shape),)+
                     Profile::Tabulated(table) => Some(table),
                     Profile::Sum(sum) => Some(sum),
+                    Profile::PadFace(face) => Some(face),
                     Profile::Asperities(Asperities(Count::One(ball))) | Profile::Ellipsoid(Ellipsoid { ball, .. }) => {
                         Some(ball)
                     }
-                    Profile::Asperities(Asperities(Count::Many(_))) | Profile::LoadCurve(_) => None,
+                    Profile::Asperities(Asperities(Count::Many(_))) | Profile::LoadCurve(_) | Profile::Line(_) => None,
                 }
             }
         }
@@ -160,8 +167,43 @@ impl Profile {
         match self {
             Profile::Asperities(Asperities(Count::Many(curve))) => Some(curve),
             Profile::LoadCurve(curve) => Some(curve),
+            Profile::Line(line) => Some(line),
             _ => None,
         }
+    }
+
+    /// It as a contact along a line.
+    #[must_use]
+    pub fn line(&self) -> Option<&LineContact> {
+        if let Profile::Line(line) = self { Some(line) } else { None }
+    }
+
+    /// The body of revolution whose stresses over r are those of the contact, and its edge for that of the contact.
+    pub(super) fn face(&self, edge: &Point) -> (&Profile, Point) {
+        match self.line() {
+            Some(line) if edge.level.value() >= 0.0 => (line.face(), line.face_point(edge.level)),
+            line => (line.map_or(self, LineContact::face), *edge),
+        }
+    }
+
+    /// The contact radius, m, of a contact with this edge; of a line contact the half-width.
+    pub(super) fn edge_radius(&self, edge: &Point) -> f64 {
+        match self.line() {
+            Some(line) if edge.level.value() >= 0.0 => line.half_width(edge.level.value()),
+            _ => edge.radius,
+        }
+    }
+
+    /// The contact radius, m, at a level, m; of a line contact the half-width, where [`Profile::radius`] is F_N'/(2 E*).
+    #[must_use]
+    pub fn contact_radius(&self, level: f64) -> f64 {
+        self.line().map_or_else(|| self.radius(level), |line| line.half_width(level))
+    }
+
+    /// The level, m, of a contact radius, m; of a half-width, for a line contact.
+    #[must_use]
+    pub fn level_at_edge(&self, contact_radius: f64) -> f64 {
+        self.line().map_or_else(|| self.level(contact_radius), |line| line.level_of_width(contact_radius))
     }
 
     /// Its cells that reach beyond something, where it has any.
@@ -275,8 +317,13 @@ impl Profile {
     ///
     /// # Errors
     /// If it is not below [`Profile::limit_radius`]: [`Error::NotConvexEnough`] where g falls from there on,
-    /// [`Error::BeyondProfile`] where the profile ends.
+    /// [`Error::BeyondProfile`] where the profile ends; [`Error::BeyondReferenceLength`] for the half-width of a line
+    /// contact from [`WIDEST`] of its reference length on.
     pub fn check_radius(&self, radius: f64) -> Result<f64, Error> {
+        if let Some(limit) = self.line().map(|line| WIDEST * line.reference_length()) {
+            let beyond = Err(Error::BeyondReferenceLength { half_width: radius, limit });
+            return if radius < limit { Ok(radius) } else { beyond };
+        }
         match self.end() {
             Some(End { radius: limit, kind: EndKind::Fall }) if radius >= limit => {
                 Err(Error::NotConvexEnough { radius: limit })
@@ -306,13 +353,16 @@ impl Profile {
     /// ```
     #[must_use]
     pub fn surface_slope(&self, r: f64) -> f64 {
+        if let Some(line) = self.line() {
+            return line.surface_slope(r);
+        }
         self.shape().filter(|_| self.has_stress_field()).map_or(f64::NAN, |shape| shape.surface_slope(r))
     }
 
     /// The radius of curvature, m, where the shape is given by one: the smallest of a sum.
     #[must_use]
     pub fn curvature_radius(&self) -> Option<f64> {
-        self.shape()?.curvature_radius()
+        self.line().map_or_else(|| self.shape()?.curvature_radius(), |line| Some(line.curvature_radius()))
     }
 
     /// Bounds on the kernel up to c = `outer`, m, from r = `inner`, m, on.

@@ -123,6 +123,17 @@ impl SlipHistory {
         Unloading { from, to: d1, advance, shift }.work(profile, self.rings(), self.pieces.first())
     }
 
+    /// The same slopes over other levels, at whose points they then begin: what stresses read, without sums and without
+    /// a position.
+    pub(super) fn moved_to(&self, point: impl Fn(DoubleDouble) -> Point) -> SlipHistory {
+        let moved = |piece: &Piece| {
+            let line = Line { slope: piece.line.slope, ..Line::default() };
+            Piece::new(point(piece.inner.level), line, Sums::default(), None)
+        };
+        let edge = if self.in_contact() { point(self.edge.level) } else { self.edge };
+        SlipHistory { pieces: self.pieces.iter().map(moved).collect(), edge, ..SlipHistory::default() }
+    }
+
     /// Bytes held beyond the struct itself.
     pub(super) fn heap_bytes(&self) -> usize {
         self.pieces.capacity() * size_of::<Piece>()

@@ -321,6 +321,7 @@ impl Springs {
             indentation: self.indentation,
             normal_force: self.normal_force(),
             contact_radius: self.contact_radius(),
+            stick_centre: None,
             stick_radius: if self.indentation < 0.0 { 0.0 } else { self.stick_radius },
             regime,
             dissipated_energy: self.dissipated,

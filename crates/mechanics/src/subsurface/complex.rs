@@ -22,6 +22,20 @@ impl Complex {
         Complex::new(self.re / square, -self.im / square)
     }
 
+    /// Its distance from zero.
+    pub(super) fn size(self) -> f64 {
+        self.re.hypot(self.im)
+    }
+
+    /// The principal arctangent, right of its cuts beyond i and -i.
+    pub(super) fn arctan(self) -> Complex {
+        let Complex { re, im } = self;
+        let square = re * re;
+        let angle = (2.0 * re.abs()).atan2((1.0 - im) * (1.0 + im) - square);
+        let ratio = 4.0 * im / (square + (1.0 - im) * (1.0 - im));
+        Complex::new(0.5 * angle.copysign(re), 0.25 * ratio.ln_1p())
+    }
+
     /// The root with real and imaginary part of at least zero of a number in the upper half-plane.
     pub(super) fn root(self) -> Complex {
         let size = (self.re * self.re + self.im * self.im).sqrt();

@@ -7,6 +7,7 @@
 
 mod complex;
 mod kernel;
+mod line;
 mod mesh;
 mod sphere;
 mod tensor;
@@ -15,9 +16,10 @@ use std::f64::consts::PI;
 use std::sync::OnceLock;
 
 use super::contact::Contact;
-use super::profile::{Profile, Ring};
+use super::profile::{LineContact, Profile, Ring};
 use crate::error::Error;
 use crate::range;
+use line::LineField;
 use kernel::{DeepPlace, NormalKernels, TangentialKernels};
 use mesh::{Mesh, Source};
 use sphere::Kinks;
@@ -49,8 +51,11 @@ pub struct Subsurface {
     pub(super) contact: Contact,
     /// The changes of the slopes of pressure and shear stress at the kinks of the slip history, under a parabola alone.
     kinks: Option<Kinks>,
+    /// The zones of a line contact.
+    line: Option<LineField>,
     /// The slopes over the radius, made when the first place needs them.
     mesh: OnceLock<Mesh>,
+    side: Side,
     poisson: f64,
     /// Pa/m for the slopes of the pressure, and of the shear stress on this body.
     units: (f64, f64),
@@ -88,7 +93,8 @@ impl Contact {
         let units = (pressed / (PI * radius), dragged / (PI * radius));
         let singular = self.profile.singular_radii().into_iter().chain([0.0, radius]).collect();
         let kinks = matches!(*self.profile, Profile::Sphere(_)).then(|| self.kinks());
-        Ok(Subsurface { contact: self, kinks, mesh: OnceLock::new(), poisson, units, singular })
+        let line = self.profile.line().map(|line| LineField::new(&self, line));
+        Ok(Subsurface { contact: self, kinks, line, mesh: OnceLock::new(), side, poisson, units, singular })
     }
 
     /// The changes of the slopes at the kinks, from the edge inward, for g = t^2 over the contact radius.
@@ -111,6 +117,9 @@ impl Subsurface {
     #[must_use]
     pub fn at(&self, [x, y, z]: [f64; 3]) -> Stress {
         let radius = self.contact.contact_radius();
+        if let Some(field) = &self.line {
+            return self.below_line(field, x, z);
+        }
         if radius <= 0.0 {
             return Stress::default();
         }
@@ -129,6 +138,25 @@ impl Subsurface {
             &tangential.map(|value| dragged * value),
         );
         if surface { self.of_surface(r, stress) } else { stress }
+    }
+
+    /// The stress below a line contact, with the stress along x that comes with its tangential force.
+    fn below_line(&self, field: &LineField, x: f64, z: f64) -> Stress {
+        let contact = &self.contact;
+        let carried = contact.profile.line().and_then(LineContact::bulk).filter(|bulk| bulk.side == self.side);
+        let along = carried.map_or(0.0, |bulk| bulk.stress_per_force * contact.force());
+        if contact.normal_force() <= 0.0 {
+            return Stress { xx: along, ..Stress::default() };
+        }
+        let sign = if self.side == Side::Second { 1.0 } else { -1.0 };
+        let surface = z <= SURFACE * contact.contact_radius();
+        let z = if surface { 0.0 } else { z };
+        let mut stress = field.at(x, z, sign * contact.friction(), self.poisson) * contact.elasticity().e_star();
+        if surface {
+            (stress.zz, stress.xz) = (-contact.pressure(x), -sign * contact.shear(x));
+        }
+        stress.xx += along;
+        stress
     }
 
     /// The ten functions by quadrature over the radius, at a place this far from the axis, m.

@@ -20,6 +20,7 @@ mod few_springs;
 mod fretting;
 mod hard_cases;
 mod laws;
+mod line_contacts;
 mod load_curves;
 mod many_radii;
 mod minimax;
