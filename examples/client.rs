@@ -41,7 +41,7 @@ pub async fn life(service: &str) -> Result<Vec<String>, Box<dyn std::error::Erro
         lines.push(format!("{}: {}", problem.code, problem.detail));
     }
 
-    let request = StressRequest { points: Some(3), radii: None, fields: None };
+    let request = StressRequest { points: Some(3), ..StressRequest::default() };
     let stress = client.stress(made.id, &request, true).await?;
     lines.push(format!("shear stress: {:?} Pa", stress.shear.unwrap_or_default()));
 

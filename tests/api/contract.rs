@@ -37,10 +37,11 @@ async fn every_endpoint_answers_the_client() {
     };
     let followed = client.path(contact.id, &path, &plain).await.unwrap();
     assert_eq!((followed.sequence, followed.steps.len()), (5, 4));
-    assert_eq!(followed.stress.unwrap().radius.len(), 5);
-    let wanted = StressRequest { radii: Some(vec![0.0, 1e-5]), fields: Some(vec![Field::Shear]), points: None };
+    assert_eq!(followed.stress.unwrap().places().len(), 5);
+    let radii = Some(vec![0.0, 1e-5]);
+    let wanted = StressRequest { radii, fields: Some(vec![Field::Shear]), ..StressRequest::default() };
     let stress = client.stress(contact.id, &wanted, true).await.unwrap();
-    assert_eq!(stress.radius, [0.0, 1e-5]);
+    assert_eq!(stress.places(), [0.0, 1e-5]);
     assert!(stress.pressure.is_none() && stress.shear.unwrap().len() == 2);
     assert_eq!(client.residual(contact.id).await.unwrap(), stress.residual.unwrap());
 
@@ -110,7 +111,7 @@ async fn a_simulation_computes_what_is_asked_for_and_nothing_else_with_either_so
     assert_eq!(reply.steps, [last]);
     let stress = reply.stress.unwrap();
     assert!(stress.shear.is_none());
-    assert_eq!(stress.radius, [0.0, 0.5 * last.contact_radius, last.contact_radius]);
+    assert_eq!(stress.places(), [0.0, 0.5 * last.contact_radius, last.contact_radius]);
     assert_eq!((stress.pressure.unwrap()[2], reply.residual.unwrap().peaks.len()), (Some(0.0), 20));
     let springs = ask(json!({"solver": {"springs": {"count": 4000}}})).await;
     assert_eq!(springs.accuracy.solver, SolverKind::Springs);

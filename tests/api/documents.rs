@@ -169,7 +169,7 @@ fn extreme_numbers_may_stand_in_place_of_any_or_of_all_counts() {
 
 #[test]
 fn a_number_is_found_as_a_pointer_finds_it_in_the_written_document() {
-    let peak = |radius, shear| Peak { radius, shear };
+    let peak = |radius, shear| Peak { radius: Some(radius), x: None, shear };
     let residual = Residual {
         centre: None,
         peaks: vec![peak(1e-5, Some(-2.5)), peak(2e-5, None)],
@@ -195,7 +195,7 @@ fn a_number_is_found_as_a_pointer_finds_it_in_the_written_document() {
     ] {
         assert_eq!(lookup(&residual, &Pointer::parse(pointer).unwrap()), found, "{pointer}");
     }
-    let stress = Stress { radius: vec![0.0], pressure: None, shear: None, slip: None, displacement: None };
+    let stress = Stress { radius: Some(vec![0.0]), ..Stress::default() };
     assert_eq!(lookup(&stress, &Pointer::parse("/shear/0").unwrap()), Lookup::Nothing);
 }
 

@@ -133,7 +133,7 @@ fn below(reply: &SimulateReply) -> &Subsurface {
 
 fn radius(reply: &SimulateReply, index: &str) -> f64 {
     let stress = reply.stress.as_ref().expect("there are stresses");
-    stress.radius[index.parse::<usize>().expect("an index")]
+    stress.places()[index.parse::<usize>().expect("an index")]
 }
 
 /// Whether the bodies end up apart or just touching.
@@ -261,8 +261,8 @@ fn stresses(simulation: &Simulation, reply: &SimulateReply) {
     let Some(stress) = &reply.stress else { return };
     let end = &reply.steps[reply.steps.len() - 1];
     let fields = [&stress.pressure, &stress.shear, &stress.slip, &stress.displacement];
-    assert!(fields.into_iter().flatten().all(|field| field.len() == stress.radius.len()));
-    for (index, &radius) in stress.radius.iter().enumerate() {
+    assert!(fields.into_iter().flatten().all(|field| field.len() == stress.places().len()));
+    for (index, &radius) in stress.places().iter().enumerate() {
         let at = |field: &Option<Vec<Option<f64>>>| field.as_ref().and_then(|values| values[index]);
         let (pressure, shear) = (at(&stress.pressure), at(&stress.shear));
         if radius > end.contact_radius || end.indentation <= 0.0 {
@@ -288,7 +288,7 @@ fn stresses(simulation: &Simulation, reply: &SimulateReply) {
 fn residual(simulation: &Simulation, reply: &SimulateReply) {
     let Some(residual) = &reply.residual else { return };
     let end = &reply.steps[reply.steps.len() - 1];
-    let radii: Vec<f64> = residual.peaks.iter().map(|peak| peak.radius).collect();
+    let radii: Vec<f64> = residual.peaks.iter().map(|peak| peak.place()).collect();
     assert!(radii.windows(2).all(|pair| pair[0] <= pair[1] * (1.0 + 4.0 * f64::EPSILON)), "{radii:?}");
     assert!(radii.iter().all(|radius| *radius > 0.0 && *radius <= end.contact_radius), "{radii:?}");
     let sizes = residual.peaks.iter().filter_map(|peak| peak.shear).map(f64::abs);

@@ -60,6 +60,7 @@ pub fn record(sequence: u64) -> Record {
         step: Move { displacement: Some(number * 1e-9), relative: sequence.is_multiple_of(2), ..Move::default() },
         tolerance: 1e-10 / number,
         state: State {
+            stick_centre: None,
             displacement: number * 1e-9,
             force: number / 3.0,
             indentation: 1.0 / number,

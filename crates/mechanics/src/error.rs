@@ -54,8 +54,11 @@ pub enum Error {
     /// A normal target of a contact whose bulk stress moves the stick zone.
     #[error("the stick zone that a bulk stress moves is known at a constant normal force: leave the normal target out")]
     BulkNeedsConstantLoad,
-    /// A computation that is defined for round contacts alone.
-    #[error("{0} is not defined for a line contact: its profile must be one of a round contact")]
+    /// Places along x where there are radii alone.
+    #[error("{0} is known of line contacts alone")]
+    RoundContact(&'static str),
+    /// What is defined for round contacts alone.
+    #[error("{0} is not available for a line contact")]
     LineContact(&'static str),
     /// g falls beyond some radius: the contact would be a ring.
     #[error("the profile is not convex enough for a contact without a gap: g falls at the radius {} m", short(*radius))]

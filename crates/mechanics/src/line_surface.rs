@@ -44,7 +44,11 @@ impl Contact {
     pub(super) fn zone_centre(&self, line: &LineContact, half_width: f64) -> f64 {
         let edge = self.contact_radius();
         let reach = line.reach_of_bulk(self.normal_force);
-        if reach == 0.0 || edge <= 0.0 { 0.0 } else { reach * (edge - half_width) * (edge + half_width) / (edge * edge) }
+        if reach == 0.0 || edge <= 0.0 {
+            0.0
+        } else {
+            reach * (edge - half_width) * (edge + half_width) / (edge * edge)
+        }
     }
 
     /// The line contact of a bulk stress that moves its zones.
@@ -63,6 +67,27 @@ impl Contact {
             let inner = zone(ring.inner.level);
             (inner, std::mem::replace(&mut outer, inner), share)
         })
+    }
+
+    /// What the surface's fields depend on at a place, m: the distance from the axis, or the x of a line contact.
+    pub(super) fn coordinate(&self, [x, y, _]: &[f64; 3]) -> f64 {
+        if self.profile.line().is_some() { *x } else { x.hypot(*y) }
+    }
+
+    /// The level, m, of the zone whose end is at a coordinate: c with e(c) + c = x, or e(c) - c = x on the other side.
+    pub(super) fn level_at(&self, coordinate: f64) -> f64 {
+        let Some(line) = self.profile.line() else { return self.profile.level(coordinate) };
+        let (reach, edge) = (line.reach_of_bulk(self.normal_force), self.contact_radius());
+        let bend = if edge > 0.0 { 4.0 * reach / (edge * edge) } else { 0.0 };
+        let (from, bend) = if coordinate >= reach { (coordinate - reach, -bend) } else { (reach - coordinate, bend) };
+        line.level_of_width(2.0 * from / (1.0 + (1.0 + bend * from).max(0.0).sqrt()))
+    }
+
+    /// The distances from the middle, m, at which the zone of a level, m, ends.
+    pub(super) fn circles_of(&self, level: f64) -> [f64; 2] {
+        let radius = self.profile.contact_radius(level);
+        let centre = self.profile.line().map_or(0.0, |line| self.zone_centre(line, radius));
+        [radius + centre, radius - centre].map(f64::abs)
     }
 
     /// Shear stress over mu E*/(2 R), m, of the eccentric zones of a cylinder at a place, m, and its derivative.
@@ -91,7 +116,8 @@ impl Contact {
     /// The extrema of the shear stress of eccentric zones, from the edge at -a to that at a: the derivative is sampled
     /// between the ends of zones, closer to these, and an extremum is where its sign changes.
     pub(super) fn eccentric_residual(&self, line: &LineContact, keep_going: impl Fn() -> bool) -> Option<Residual> {
-        let (zones, unit, edge) = (self.zones(line).collect::<Vec<_>>(), self.eccentric_unit(line), self.contact_radius());
+        let (zones, unit, edge) =
+            (self.zones(line).collect::<Vec<_>>(), self.eccentric_unit(line), self.contact_radius());
         let mut ends: Vec<f64> = vec![-edge, edge];
         for (inner, ..) in zones.iter().filter(|(inner, ..)| inner.half_width > 0.0) {
             ends.extend([inner.centre - inner.half_width, inner.centre + inner.half_width]);
@@ -110,7 +136,11 @@ impl Contact {
                 let here = slope(x);
                 if let Some((last, value)) = before.filter(|(last, value)| *last < x && value * here < 0.0) {
                     // Across the end of a zone, where the derivative jumps, that end itself is the extremum.
-                    let root = if last < pair[0] { pair[0] } else { between([(last, value), (x, here)], RESOLUTION * edge, slope) };
+                    let root = if last < pair[0] {
+                        pair[0]
+                    } else {
+                        between([(last, value), (x, here)], RESOLUTION * edge, slope)
+                    };
                     places.push(root);
                 }
                 if here != 0.0 {

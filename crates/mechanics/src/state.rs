@@ -126,7 +126,11 @@ impl Contact {
             normal_force: self.normal_force(),
             contact_radius: self.contact_radius(),
             stick_radius,
-            stick_centre: self.profile.line().filter(|line| line.bulk().is_some()).map(|line| self.zone_centre(line, stick_radius)),
+            stick_centre: self
+                .profile
+                .line()
+                .filter(|line| line.bulk().is_some())
+                .map(|line| self.zone_centre(line, stick_radius)),
             regime,
             dissipated_energy: self.dissipated.value(),
             elastic_energy: (2.0 * self.elasticity.g_star() * scale * scale * self.history.energy()).max(0.0),

@@ -11,6 +11,7 @@ use stickslip_mechanics::{self as mechanics, Setup, elasticity, range, range::Qu
 use super::check::{Faults, JsonPath};
 use super::choice::{choices, object_or_string, words};
 use super::limits::{Items, Limited as _};
+use super::line_profiles::BulkPerForce;
 use super::prepare::Prepare;
 use super::profile::Profile;
 use super::request::requests;
@@ -27,6 +28,9 @@ pub struct ContactDefinition {
     pub friction: f64 = range::FRICTION,
     /// The normal load that the contact starts with.
     pub preload: Preload,
+    /// A stress along x that comes with the tangential force and moves the stick zone: with a `cylinder`, under a
+    /// constant load.
+    pub bulk: Option<BulkPerForce>,
 }
 
 /// An isotropic, linearly elastic body.
@@ -153,7 +157,10 @@ impl ContactDefinition {
         }
         self.check_members(at, faults);
         let preload = self.preload.check(at.member("preload"), faults);
-        let (profile, elasticity) = (profile?, elasticity?);
+        let (mut profile, elasticity) = (profile?, elasticity?);
+        if let Some(bulk) = &self.bulk {
+            profile = Arc::new(bulk.check(&profile, &self.material, at.member("bulk"), faults)?);
+        }
         if faults.is_empty()
             && let Err(error) = profile.prepare_for(&preload, &elasticity, &|| profiles.keep_going())
         {
@@ -196,6 +203,17 @@ impl Material {
     #[must_use]
     pub fn elasticity(&self) -> Option<elasticity::Elasticity> {
         self.check(JsonPath::Root, &mut Faults::default())
+    }
+
+    /// The two bodies in their order, where they are known: `None` among them is rigid.
+    #[must_use]
+    pub fn checked_bodies(&self) -> Option<[Option<elasticity::Body>; 2]> {
+        let body = |body: &Body| match body {
+            Body::Elastic(body) => elasticity::Body::new(body.youngs_modulus, body.poisson_ratio).ok(),
+            Body::Rigid(_) => None,
+        };
+        let [first, second] = self.bodies()? else { return None };
+        Some([body(first), body(second)])
     }
 
     /// Young's modulus of one of the bodies, Pa, where it is known.

@@ -31,6 +31,7 @@ pub mod history;
 pub mod job;
 pub mod json_value;
 pub mod limits;
+pub mod line_profiles;
 pub mod observation;
 pub mod parse;
 pub mod path;

@@ -111,6 +111,10 @@ codes! {
     /// The request is valid, but the contact would outgrow the profile.
     BeyondProfile = 422 "beyond_profile": "The contact outgrows the profile",
         "the contact outgrows the table or the sphere: less load, or a larger profile";
+    /// The request is valid, but its bulk stress is too large for the contact, or the profile takes none.
+    BulkTooLarge = 422 "bulk_too_large": "The bulk stress is too large for nested stick zones",
+        "slip would begin on both sides in opposite directions; `detail` gives the largest stress: [line \
+            contacts](line-contacts.md#bulk-stress)";
     /// The request is valid, but asks for a stress of a contact that is known by its load curve alone.
     NoStressField = 422 "no_stress_field": "The profile has no stress field",
         "forces and energies follow from a load curve, stresses do not: [rough contacts](rough-contacts.md)";

@@ -2,7 +2,8 @@
 //!
 //! The documents of the families whose parameters are plain numbers follow from their declarations
 //! ([`stickslip_mechanics::profile::families`]); tables of heights and sums are written out here, and contacts that are
-//! known by their load curve alone in [`curve_profiles`](super::curve_profiles).
+//! known by their load curve alone in [`curve_profiles`](super::curve_profiles), those along a line in
+//! [`line_profiles`](super::line_profiles).
 
 use std::fmt;
 use std::marker::PhantomData;
@@ -24,6 +25,7 @@ use stickslip_mechanics::{Elasticity, Error, range};
 use super::check::{Faults, JsonPath, accepted};
 use super::curve_profiles::{AsperitiesProfile, EllipsoidProfile, LoadCurveProfile, MotionAxis};
 use super::limits::{Array, Items, Limit, Limited, count};
+use super::line_profiles::{CylinderProfile, RoundedPadProfile};
 use super::request::requests;
 
 /// The shape of the indenter before it is loaded, chosen by `type`.
@@ -40,6 +42,10 @@ pub enum Profile {
     LoadCurve(LoadCurveProfile),
     /// An ellipsoid, or two bodies crossed: Hertz's ellipse of contact. No stresses.
     Ellipsoid(EllipsoidProfile),
+    /// A cylinder pressed along a line.
+    Cylinder(CylinderProfile),
+    /// A flat pad with rounded edges pressed along a line.
+    RoundedPad(RoundedPadProfile),
     /// A shape whose parameters are plain numbers.
     #[serde(untagged)]
     Closed(ClosedProfile),
@@ -100,6 +106,8 @@ pub(super) fn limits() -> Vec<(&'static str, &'static str, Value)> {
         AsperitiesProfile::limits_of_schema(),
         LoadCurveProfile::limits_of_schema(),
         EllipsoidProfile::limits_of_schema(),
+        CylinderProfile::limits_of_schema(),
+        RoundedPadProfile::limits_of_schema(),
     ];
     closed.chain(others.into_iter().flatten()).collect()
 }
@@ -124,6 +132,8 @@ fn documents() -> Vec<(&'static str, String, RefOr<Schema>)> {
         document::<AsperitiesProfile>("asperities"),
         document::<LoadCurveProfile>("load_curve"),
         document::<EllipsoidProfile>("ellipsoid"),
+        document::<CylinderProfile>("cylinder"),
+        document::<RoundedPadProfile>("rounded_pad"),
     ];
     closed.chain(others).collect()
 }
@@ -161,6 +171,8 @@ enum Kind {
     Asperities,
     LoadCurve,
     Ellipsoid,
+    Cylinder,
+    RoundedPad,
 }
 
 impl<'de> Deserialize<'de> for Kind {
@@ -173,6 +185,8 @@ impl<'de> Deserialize<'de> for Kind {
             "asperities" => Kind::Asperities,
             "load_curve" => Kind::LoadCurve,
             "ellipsoid" => Kind::Ellipsoid,
+            "cylinder" => Kind::Cylinder,
+            "rounded_pad" => Kind::RoundedPad,
             name => {
                 let document = CLOSED.iter().find(|document| document.family.name == name);
                 Kind::Closed(document.ok_or_else(|| D::Error::unknown_variant(name, &KINDS))?)
@@ -209,6 +223,8 @@ impl Profile {
             Profile::Asperities(asperities) => asperities.check(at, keep_going, faults),
             Profile::LoadCurve(curve) => curve.check(bodies?, at, keep_going, faults),
             Profile::Ellipsoid(ellipsoid) => ellipsoid.check(at, faults),
+            Profile::Cylinder(cylinder) => cylinder.check(at, faults),
+            Profile::RoundedPad(pad) => pad.check(at, faults),
         }
     }
 }
@@ -223,6 +239,8 @@ impl<'de> Deserialize<'de> for Profile {
             Kind::Asperities => members.document().map(Profile::Asperities),
             Kind::LoadCurve => members.document().map(Profile::LoadCurve),
             Kind::Ellipsoid => members.document().map(Profile::Ellipsoid),
+            Kind::Cylinder => members.document().map(Profile::Cylinder),
+            Kind::RoundedPad => members.document().map(Profile::RoundedPad),
         }
     }
 }

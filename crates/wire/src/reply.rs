@@ -14,7 +14,8 @@ pub struct ContactSummary: Default omits Option {
     pub g_star: f64,
     /// Indentation d, m.
     pub indentation: f64,
-    /// Contact radius a, m; of a profile without a stress field F_N′/(2 E*), which governs the stiffness.
+    /// Contact radius a, m; the half-width of a line contact; of a profile without a stress field F_N′/(2 E*), which
+    /// governs the stiffness.
     pub contact_radius: f64,
     /// Normal force F_N, N.
     pub normal_force: f64,
@@ -39,10 +40,14 @@ pub struct State: Copy, Default {
     pub indentation: f64,
     /// Normal force F_N, N; compression is positive.
     pub normal_force: f64,
-    /// Contact radius a, m; of a profile without a stress field F_N′/(2 E*).
+    /// Contact radius a, m; the half-width of a line contact; of a profile without a stress field F_N′/(2 E*).
     pub contact_radius: f64,
     /// Radius inside which the last move did not slip, m: the contact radius if nothing slipped, zero in gross slip.
     pub stick_radius: f64,
+    /// Where the middle of that part is along x, m: of a contact whose bulk stress moves it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub stick_centre: Option<f64>,
     /// How much of the contact slipped in the last move.
     pub regime: Regime,
     /// Work dissipated by friction since the start, J; never falls.
@@ -92,8 +97,14 @@ pub struct Residual: Default {
 
 /// A local extremum of the shear stress.
 pub struct Peak: Copy, Default {
-    /// Where, m.
-    pub radius: f64,
+    /// Where, m: of a round contact.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub radius: Option<f64>,
+    /// Where along x, m: of a line contact. Without a bulk stress those at −x are alike and left out.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub x: Option<f64>,
     /// Shear stress there, Pa, positive as a positive displacement causes it; `null` where it is infinite.
     pub shear: Option<f64>,
 }
@@ -153,6 +164,14 @@ pub struct Warning: Eq {
 }
 }
 
+impl Peak {
+    /// The radius or, of a line contact, x, m.
+    #[must_use]
+    pub fn place(&self) -> f64 {
+        self.radius.or(self.x).unwrap_or(f64::NAN)
+    }
+}
+
 impl Warning {
     /// A warning with this code.
     pub fn new(code: &str, message: impl Into<String>) -> Warning {
@@ -192,6 +211,7 @@ impl From<mechanics::State> for State {
             normal_force: state.normal_force,
             contact_radius: state.contact_radius,
             stick_radius: state.stick_radius,
+            stick_centre: state.stick_centre,
             regime: state.regime.into(),
             dissipated_energy: state.dissipated_energy,
             elastic_energy: state.elastic_energy,
@@ -209,6 +229,7 @@ impl From<State> for mechanics::State {
             normal_force: state.normal_force,
             contact_radius: state.contact_radius,
             stick_radius: state.stick_radius,
+            stick_centre: state.stick_centre,
             regime: state.regime.into(),
             dissipated_energy: state.dissipated_energy,
             elastic_energy: state.elastic_energy,
@@ -218,10 +239,15 @@ impl From<State> for mechanics::State {
 }
 
 impl Residual {
-    /// The extrema, with the shear stress that `relative` refers to, Pa.
+    /// The extrema of a contact on a profile, with the shear stress that `relative` refers to, Pa.
     #[must_use]
-    pub fn new(residual: mechanics::Residual, unit: f64) -> Residual {
-        let peak = |peak: mechanics::Peak| Peak { radius: peak.radius, shear: finite(peak.shear) };
+    pub fn new(residual: mechanics::Residual, unit: f64, profile: &mechanics::Profile) -> Residual {
+        let line = profile.line().is_some();
+        let peak = |mechanics::Peak { radius: at, shear }| Peak {
+            radius: (!line).then_some(at),
+            x: line.then_some(at),
+            shear: finite(shear),
+        };
         Residual {
             centre: residual.centre.and_then(finite),
             peaks: residual.peaks.into_iter().map(peak).collect(),

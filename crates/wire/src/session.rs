@@ -12,6 +12,7 @@ use super::choice::words;
 use super::definition::{ContactDefinition, DefinedProfile, Material, Preload, SharedSetup};
 use super::document::Document;
 use super::limits::{Characters, Limited as _, Tolerance};
+use super::line_profiles::BulkPerForce;
 use super::path::{Move, Path, Plan};
 use super::prepare::Prepare;
 use super::profile::Profile;
@@ -46,6 +47,9 @@ pub struct CreateRequest and ContactDefinition {
     pub friction: f64,
     /// The normal load that the contact starts with.
     pub preload: Preload,
+    /// A stress along x that comes with the tangential force and moves the stick zone: with a `cylinder`, under a
+    /// constant load.
+    pub bulk: Option<BulkPerForce>,
 }
 
 /// A move, with an optional request for the stresses after it.
@@ -211,8 +215,10 @@ pub struct PathReply omits Option {
 
 /// The stresses of a contact, and their extrema if asked for.
 pub struct StressReply omits Option {
-    /// Radii, m.
-    pub radius: Vec<f64>,
+    /// Radii, m: of a round contact.
+    pub radius: Option<Vec<f64>>,
+    /// Places along x, m: of a line contact.
+    pub x: Option<Vec<f64>>,
     /// Normal pressure, Pa; compression is positive; `null` where it is infinite.
     pub pressure: Option<Vec<Option<f64>>>,
     /// Shear stress, Pa; positive as a positive displacement causes it; `null` where it is infinite.
@@ -224,6 +230,14 @@ pub struct StressReply omits Option {
     /// The extrema of the shear stress, if asked for.
     pub residual: Option<Residual>,
 }
+}
+
+impl StressReply {
+    /// The places: radii or, of a line contact, x, m.
+    #[must_use]
+    pub fn places(&self) -> &[f64] {
+        self.radius.as_deref().or(self.x.as_deref()).unwrap_or_default()
+    }
 }
 
 /// A contact that has passed all checks, to be created.
@@ -270,8 +284,8 @@ impl Document for CreateRequest {
 
     fn checked(self, profiles: &dyn Prepare, faults: &mut Faults) -> Option<Self::Checked> {
         self.check_members(JsonPath::Root, faults);
-        let CreateRequest { label, profile, material, friction, preload } = self;
-        let definition = ContactDefinition { profile, material, friction, preload };
+        let CreateRequest { label, profile, material, friction, preload, bulk } = self;
+        let definition = ContactDefinition { profile, material, friction, preload, bulk };
         let setup = definition.check(JsonPath::Root, profiles, faults);
         setup.map(|setup| Creation { label, definition, setup })
     }

@@ -8,13 +8,16 @@ use super::limits::{Array, Limited as _, STRESS_POINTS};
 use super::request::{replies, requests};
 
 requests! {
-/// Where stresses are asked for: exactly one of `points` and `radii`, and which `fields`.
+/// Where stresses are asked for: exactly one of `points` and `radii` (of a line contact `x`), and which `fields`.
 #[schema(example = json!({"points": 200}))]
 pub struct StressRequest: Default {
-    /// Number of radii, evenly spaced from the centre to the edge of the contact, both included.
+    /// Number of radii, evenly spaced from the centre to the edge of the contact, both included; of a line contact from
+    /// the edge at −a to that at a.
     pub points: Option<usize> = STRESS_POINTS,
-    /// Radii, m; outside the contact the stresses are zero.
+    /// Radii, m, of a round contact; outside the contact the stresses are zero.
     pub radii: Option<Vec<f64>> = Array(1..=10_000, range::CONTACT_RADIUS),
+    /// Places along x, m, of a line contact.
+    pub x: Option<Vec<f64>> = Array(1..=10_000, range::PLACE),
     /// Which fields are computed; left out, `pressure` and `shear`.
     pub fields: Option<Vec<Field>>,
 }
@@ -37,8 +40,10 @@ pub enum Field {
 replies! {
 /// Stresses along the radius; an array that was not asked for is left out.
 pub struct Stress: Default omits Option {
-    /// Radii, m.
-    pub radius: Vec<f64>,
+    /// Radii, m: of a round contact.
+    pub radius: Option<Vec<f64>>,
+    /// Places along x, m: of a line contact.
+    pub x: Option<Vec<f64>>,
     /// Normal pressure, Pa; compression is positive; `null` where it is infinite.
     pub pressure: Option<Vec<Option<f64>>>,
     /// Shear stress, Pa; positive as a positive displacement causes it; `null` where it is infinite.
@@ -48,6 +53,14 @@ pub struct Stress: Default omits Option {
     /// Tangential displacement u(r) of the surface, m; positive along x.
     pub displacement: Option<Vec<Option<f64>>>,
 }
+}
+
+impl Stress {
+    /// The places: radii or, of a line contact, x, m.
+    #[must_use]
+    pub fn places(&self) -> &[f64] {
+        self.radius.as_deref().or(self.x.as_deref()).unwrap_or_default()
+    }
 }
 
 /// A checked stress request.
@@ -66,6 +79,8 @@ pub enum Points {
     Uniform(usize),
     /// A list, m.
     Radii(Vec<f64>),
+    /// A list along x, m, of a line contact.
+    Places(Vec<f64>),
 }
 
 impl StressRequest {
@@ -79,21 +94,20 @@ impl StressRequest {
             let all = Field::ALL.map(Field::name).join("`, `");
             faults.add(at.member("fields"), format_args!("empty: name at least one of `{all}`"));
         }
-        if self.points.is_some() != self.radii.is_some() {
-            self.check_members(at, faults);
-        }
-        let points = match (self.points, self.radii) {
-            (Some(count), None) => Points::Uniform(count),
-            (None, Some(radii)) => Points::Radii(radii),
-            (None, None) => {
-                faults.add(at, "give one of `points` and `radii`");
+        let points = match (self.points, &self.radii, &self.x) {
+            (Some(count), None, None) => Points::Uniform(count),
+            (None, Some(radii), None) => Points::Radii(radii.clone()),
+            (None, None, Some(places)) => Points::Places(places.clone()),
+            (None, None, None) => {
+                faults.add(at, "give one of `points` and `radii`, or `x` of a line contact");
                 return None;
             }
-            (Some(_), Some(_)) => {
-                faults.add(at, "`points` conflicts with `radii`: give one of them");
+            _ => {
+                faults.add(at, "`points`, `radii` and `x` conflict: give one of them");
                 return None;
             }
         };
+        self.check_members(at, faults);
         Some(Sampling { points, fields: self.fields.unwrap_or_else(|| vec![Field::Pressure, Field::Shear]) })
     }
 }
@@ -104,7 +118,21 @@ impl Sampling {
     pub fn length(&self) -> usize {
         match &self.points {
             Points::Uniform(count) => *count,
-            Points::Radii(radii) => radii.len(),
+            Points::Radii(places) | Points::Places(places) => places.len(),
+        }
+    }
+
+    /// The places, m, in a line contact of the given half-width, m.
+    #[must_use]
+    pub fn places(&self, half_width: f64) -> Vec<f64> {
+        match &self.points {
+            Points::Uniform(count) => {
+                let last = count.saturating_sub(1);
+                // Mirror images of each other to the last bit.
+                let place = |index: usize| (2 * index) as f64 - last as f64;
+                (0..*count).map(|index| half_width * (place(index) / last as f64)).collect()
+            }
+            Points::Radii(places) | Points::Places(places) => places.clone(),
         }
     }
 
@@ -117,7 +145,7 @@ impl Sampling {
                 let last = count.saturating_sub(1) as f64;
                 (0..*count).map(|index| contact_radius * (index as f64 / last)).collect()
             }
-            Points::Radii(radii) => radii.clone(),
+            Points::Radii(radii) | Points::Places(radii) => radii.clone(),
         }
     }
 }

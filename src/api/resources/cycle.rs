@@ -19,6 +19,8 @@ parameters! {
         /// Radii for the friction work per area, m, separated by commas or given one by one. Give this or `points`, or
         /// neither.
         radii: Option<Vec<f64>> = List(Array(QUERY_RADII, range::CONTACT_RADIUS));
+        /// Places along x for the friction work per area of a line contact, m, in place of `radii`.
+        x: Option<Vec<f64>> = List(Array(QUERY_RADII, range::PLACE));
         /// The stiffness of a machine in series with the contact, N/m.
         machine_stiffness: Option<f64> = number(&range::MACHINE_STIFFNESS);
         /// The number of harmonics.
@@ -39,7 +41,7 @@ pub struct CheckedCycle {
 
 impl QueryParams for CheckedCycle {
     fn take(query: &mut QueryReader, headers: &HeaderMap) -> Option<CheckedCycle> {
-        let CycleQuery { displacement, force, radii, machine_stiffness, harmonics, points, format } =
+        let CycleQuery { displacement, force, radii, x, machine_stiffness, harmonics, points, format } =
             CycleQuery::take(query, headers)?;
         if !query.faults.is_empty() {
             return None;
@@ -61,7 +63,7 @@ impl QueryParams for CheckedCycle {
                 return None;
             }
         };
-        let density = (points.is_some() || radii.is_some()).then_some(WorkDensity { points, radii });
+        let density = (points.is_some() || radii.is_some() || x.is_some()).then_some(WorkDensity { points, radii, x });
         let options = CycleOptions { drive, stiffness: machine_stiffness, harmonics, density };
         Some(CheckedCycle { task: options.check(CyclePlaces::QUERY, &mut query.faults)?, format })
     }

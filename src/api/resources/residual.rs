@@ -32,7 +32,7 @@ pub async fn get_residual(
     CheckedQuery(ResidualQuery { format }): CheckedQuery<ResidualQuery>,
 ) -> Result<Response, Problem> {
     let is_plot = Format::chosen(format, &headers, &Format::ALL)?.is_plot();
-    let request = StressRequest { points: Some(PLOT_RADII), radii: None, fields: Some(vec![Field::Shear]) };
+    let request = StressRequest { points: Some(PLOT_RADII), radii: None, x: None, fields: Some(vec![Field::Shear]) };
     let between = is_plot.then(|| request.check(JsonPath::Root, &mut Faults::default())).flatten();
     computations::get_of_contact(&app, id, &headers, format, ResidualTask { id, between }).await
 }

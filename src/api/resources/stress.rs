@@ -22,6 +22,8 @@ parameters! {
         points: Option<usize> = Number { is_checked: false, example: Some(100), ..count(&limits::STRESS_POINTS) };
         /// Radii, m, separated by commas or given one by one.
         radii: Option<Vec<f64>> = List(Array(QUERY_RADII, range::CONTACT_RADIUS));
+        /// Places along x of a line contact, m, in place of `radii`.
+        x: Option<Vec<f64>> = List(Array(QUERY_RADII, range::PLACE));
         /// Which fields, separated by commas, out of `pressure`, `shear`, `slip` and `displacement`. If it is left out,
         /// the first two.
         fields: Option<Vec<Field>> = Fields;
@@ -41,20 +43,20 @@ pub struct CheckedStress {
 
 impl QueryParams for CheckedStress {
     fn take(query: &mut QueryReader, headers: &HeaderMap) -> Option<CheckedStress> {
-        let StressQuery { mut points, radii, fields, residual, format } = StressQuery::take(query, headers)?;
+        let StressQuery { mut points, radii, x, fields, residual, format } = StressQuery::take(query, headers)?;
         if Format::chosen(format, headers, &Format::ALL).is_ok_and(Format::is_plot) {
             if fields.is_some() {
                 let detail = "a plot always shows pressure and shear: leave this out";
                 query.faults.add(JsonPath::Root.member("fields"), detail);
             }
-            if radii.is_none() {
+            if radii.is_none() && x.is_none() {
                 points = points.or(Some(PLOT_RADII));
             }
         }
         if !query.faults.is_empty() {
             return None;
         }
-        let sampling = StressRequest { points, radii, fields }.check(JsonPath::Root, &mut query.faults)?;
+        let sampling = StressRequest { points, radii, x, fields }.check(JsonPath::Root, &mut query.faults)?;
         Some(CheckedStress { sampling, residual, format })
     }
 }

@@ -50,8 +50,8 @@ impl OnContact for ResidualTask {
         let reply = simulation::residual(&contact, stop)?;
         let stress = self.between.map(|between| simulation::stresses(&contact, &between, stop)).transpose()?;
         let between = stress.map_or_else(Vec::new, |stress| {
-            let shear = stress.shear.unwrap_or_default().into_iter().map(|value| value.unwrap_or(f64::NAN));
-            stress.radius.into_iter().zip(shear).collect()
+            let shear = stress.shear.clone().unwrap_or_default().into_iter().map(|value| value.unwrap_or(f64::NAN));
+            stress.places().iter().copied().zip(shear).collect()
         });
         let title = format!("Contact {} after move {sequence}: residual stress", self.id);
         Ok(Extrema { title, reply, between })
@@ -78,11 +78,15 @@ impl Outcome for Extrema {
 pub(super) fn table(residual: &Residual) -> Table<'_> {
     let peaks = &residual.peaks;
     let columns = vec![
-        Column::floats("radius", "m", |row| peaks[row].radius),
+        Column::floats(if along_line(residual) { "x" } else { "radius" }, "m", |row| peaks[row].place()),
         Column::floats("shear", "Pa", |row| peaks[row].shear),
         Column::words("kind", |row| kind(residual, row)),
     ];
     Table::flat(peaks.len(), columns)
+}
+
+fn along_line(residual: &Residual) -> bool {
+    residual.peaks.iter().any(|peak| peak.x.is_some())
 }
 
 /// Whether an extremum is a `maximum` or a `minimum` of the shear stress: by the next one outwards, the one inside it,
@@ -101,7 +105,7 @@ fn kind(residual: &Residual, row: usize) -> &'static str {
 
 /// The extrema as dots over the shear stress, which leads through them however few the points between them are.
 pub(super) fn plot(title: String, residual: &Residual, mut between: Vec<(f64, f64)>) -> Plot {
-    let dots = |peak: &Peak| (peak.radius, peak.shear.unwrap_or(f64::NAN));
+    let dots = |peak: &Peak| (peak.place(), peak.shear.unwrap_or(f64::NAN));
     let dots: Vec<_> = residual.peaks.iter().map(dots).collect();
     let mut curves = Vec::new();
     if !between.is_empty() {
@@ -110,7 +114,8 @@ pub(super) fn plot(title: String, residual: &Residual, mut between: Vec<(f64, f6
         curves.push(Curve::line("shear stress τ", Colour::Blue, between));
     }
     curves.push(Curve::dots("extrema", Colour::Red, dots));
-    Plot::new(title, Axis::of("radius r", "m"), vec![Panel { y: Axis::of("shear stress", "Pa"), curves }])
+    let axis = super::stress::place_axis(along_line(residual));
+    Plot::new(title, axis, vec![Panel { y: Axis::of("shear stress", "Pa"), curves }])
 }
 
 #[cfg(test)]
@@ -118,7 +123,7 @@ mod tests {
     use super::{Peak, Residual, kind};
 
     fn residual(centre: Option<f64>, shears: &[Option<f64>]) -> Residual {
-        let peaks = shears.iter().map(|shear| Peak { radius: 1.0, shear: *shear }).collect();
+        let peaks = shears.iter().map(|shear| Peak { radius: Some(1.0), x: None, shear: *shear }).collect();
         Residual { centre, peaks, max: None, min: None, mean: None, relative: None }
     }
 

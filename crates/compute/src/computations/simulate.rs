@@ -108,7 +108,7 @@ impl Outcome for SimulateReply {
     }
 
     fn length(&self) -> usize {
-        let along = |stress: &Stress| stress.radius.len() * (1 + fields(stress).into_iter().flatten().count());
+        let along = |stress: &Stress| stress.places().len() * (1 + fields(stress).into_iter().flatten().count());
         let below = self.subsurface.as_ref().map_or(0, |stress| {
             stress.x.len() * (3 + stress.columns().iter().filter(|(_, values)| values.is_some()).count())
         });
@@ -120,8 +120,17 @@ impl Outcome for SimulateReply {
     fn table(&self, shown: &Shown) -> Option<Table<'_>> {
         match part(shown, self.residual.is_some(), self.stress.is_some()) {
             "residual" => self.residual.as_ref().map(residual::table),
-            "stress" => self.stress.as_ref().map(|stress| stress::table(&stress.radius, fields(stress))),
-            _ => Some(Table::flat(self.steps.len(), state_columns(|row| &self.steps[row]).into())),
+            "stress" => self
+                .stress
+                .as_ref()
+                .map(|stress| stress::table(stress::place_column(&stress.radius, &stress.x), fields(stress))),
+            _ => {
+                let mut columns: Vec<Column<'_>> = state_columns(|row| &self.steps[row]).into();
+                if self.steps.first().is_some_and(|state| state.stick_centre.is_some()) {
+                    columns.push(Column::floats("stick_centre", "m", |row| self.steps[row].stick_centre));
+                }
+                Some(Table::flat(self.steps.len(), columns))
+            }
         }
     }
 
@@ -179,7 +188,7 @@ pub fn state_columns<'a>(state: impl Fn(usize) -> &'a State + Copy + Send + 'a) 
 
 fn points(stress: &Stress, values: &stress::Values) -> Vec<(f64, f64)> {
     let values = values.iter().flatten().map(|value| value.unwrap_or(f64::NAN));
-    stress.radius.iter().copied().zip(values).collect()
+    stress.places().iter().copied().zip(values).collect()
 }
 
 /// A panel for each unit.
@@ -194,7 +203,7 @@ fn stresses(stress: &Stress) -> Plot {
         (!curves.is_empty()).then_some(Panel { y: Axis::of(name, unit), curves })
     };
     let panels = [panel("stress", "Pa"), panel("displacement", "m")].into_iter().flatten().collect();
-    Plot::new("Stresses at the end of the path", Axis::of("radius r", "m"), panels)
+    Plot::new("Stresses at the end of the path", stress::place_axis(stress.x.is_some()), panels)
 }
 
 fn loop_of(steps: &[State]) -> Plot {

@@ -50,6 +50,7 @@ impl OnContact for StressTask {
         let stress = simulation::stresses(&contact, &self.sampling, stop)?;
         let reply = StressReply {
             radius: stress.radius,
+            x: stress.x,
             pressure: stress.pressure,
             shear: stress.shear,
             slip: stress.slip,
@@ -69,7 +70,7 @@ impl Outcome for Stresses {
 
     fn table(&self, _: &Shown) -> Option<Table<'_>> {
         let StressReply { pressure, shear, slip, displacement, .. } = &self.reply;
-        Some(table(&self.reply.radius, [pressure, shear, slip, displacement]))
+        Some(table(place_column(&self.reply.radius, &self.reply.x), [pressure, shear, slip, displacement]))
     }
 
     /// Shear stress between the bounds of friction, with the regions that stuck and slipped in the last move.
@@ -77,18 +78,24 @@ impl Outcome for Stresses {
         let Stresses { id, sequence, contact, reply } = self;
         let over = |values: &Option<Vec<Option<f64>>>, factor: f64| {
             let values = values.iter().flatten().map(|value| factor * value.unwrap_or(f64::NAN));
-            reply.radius.iter().copied().zip(values).collect::<Vec<_>>()
+            place_column(&reply.radius, &reply.x).1.iter().copied().zip(values).collect::<Vec<_>>()
         };
         let state = contact.state();
         let friction = contact.friction();
         let (stick, edge) = (state.stick_radius, state.contact_radius);
         let mut bands = Vec::new();
         if state.regime != Regime::Separated {
+            let line = contact.profile().line().is_some();
+            let middle = state.stick_centre.unwrap_or(0.0);
+            let (from, least) = if line { (middle - stick, -edge) } else { (0.0, 0.0) };
             if stick > 0.0 {
-                bands.push(Band { name: "stick", from: 0.0, to: stick, colour: Colour::Blue });
+                bands.push(Band { name: "stick", from, to: middle + stick, colour: Colour::Blue });
+            }
+            if line && stick < edge {
+                bands.push(Band { name: "", from: least, to: from, colour: Colour::Red });
             }
             if stick < edge {
-                bands.push(Band { name: "slip", from: stick, to: edge, colour: Colour::Red });
+                bands.push(Band { name: "slip", from: middle + stick, to: edge, colour: Colour::Red });
             }
         }
         let curves = vec![
@@ -98,22 +105,35 @@ impl Outcome for Stresses {
         ];
         let title = format!("Contact {id} after move {sequence}: shear stress");
         let panels = vec![Panel { y: Axis::of("stress", "Pa"), curves }];
-        Some(Drawing::Plot(Plot { bands, ..Plot::new(title, Axis::of("radius r", "m"), panels) }))
+        Some(Drawing::Plot(Plot { bands, ..Plot::new(title, place_axis(reply.x.is_some()), panels) }))
     }
 }
 
 /// A field at some radii, if it was asked for.
 pub(super) type Values = Option<Vec<Option<f64>>>;
 
-/// The fields over the radius, in the order of [`Field::ALL`].
-pub(super) fn table<'a>(radius: &'a [f64], fields: [&'a Values; 4]) -> Table<'a> {
-    let mut columns = vec![Column::floats("radius", "m", |row| radius[row])];
+/// The name of the column of places with these: radii or, of a line contact, x, m.
+pub(super) fn place_column<'a>(radius: &'a Option<Vec<f64>>, x: &'a Option<Vec<f64>>) -> (&'static str, &'a [f64]) {
+    match x {
+        Some(x) => ("x", x),
+        None => ("radius", radius.as_deref().unwrap_or_default()),
+    }
+}
+
+/// The axis of a picture over these places.
+pub(super) fn place_axis(line: bool) -> Axis {
+    Axis::of(if line { "x" } else { "radius r" }, "m")
+}
+
+/// The fields over the places, in the order of [`Field::ALL`].
+pub(super) fn table<'a>((name, places): (&'static str, &'a [f64]), fields: [&'a Values; 4]) -> Table<'a> {
+    let mut columns = vec![Column::floats(name, "m", |row| places[row])];
     for (field, values) in Field::ALL.into_iter().zip(fields) {
         if let Some(values) = values {
             columns.push(Column::floats(field.name(), unit(field), |row| values[row]));
         }
     }
-    Table::flat(radius.len(), columns)
+    Table::flat(places.len(), columns)
 }
 
 /// The SI unit of a field.

@@ -19,7 +19,9 @@ mod warnings;
 
 pub use prepare::{Anew, check, cost_of_preparation};
 pub use prepared_profiles::{ProfileCache, ProfileKey, Profiles};
-pub use run::{contact, cycle_moves, equal_peaks, follow, refused_at, residual, simulate, spring_foundation, stresses};
+pub use run::{
+    contact, cycle_moves, equal_peaks, follow, refused_at, residual, sampled, simulate, spring_foundation, stresses,
+};
 pub use solver::Solver;
 pub use stated_accuracy::{Timer, accuracy};
 pub use stress_below::subsurface;
@@ -155,9 +157,15 @@ impl Failure {
                 | mechanics::Error::Curve { .. }
                 | mechanics::Error::NoSurface { .. }
                 | mechanics::Error::BodiesNeeded
+                | mechanics::Error::LineContact(_)
+                | mechanics::Error::RoundContact(_)
+                | mechanics::Error::BulkNeedsConstantLoad
                 | mechanics::Error::OpenCycle { .. } => Code::InvalidInput,
                 mechanics::Error::NoStressField { .. } => Code::NoStressField,
-                mechanics::Error::BeyondProfile { .. } => Code::BeyondProfile,
+                mechanics::Error::BeyondProfile { .. } | mechanics::Error::BeyondReferenceLength { .. } => {
+                    Code::BeyondProfile
+                }
+                mechanics::Error::BulkTooLarge { .. } => Code::BulkTooLarge,
                 mechanics::Error::NotConvexEnough { .. } => Code::ProfileNotConvexEnough,
                 mechanics::Error::ForceExceedsFriction { .. } => Code::ForceExceedsFriction,
                 mechanics::Error::Interrupted | mechanics::Error::CycleTooLarge => Code::TooMuchWork,

@@ -7,8 +7,8 @@ use stickslip_wire::definition::SharedSetup;
 use stickslip_wire::reply::{Accuracy, State, finite};
 use stickslip_wire::simulate::Simulation;
 use stickslip_wire::{
-    self as wire, ContactDefinition, Field, Move, Plan, Protocol, Residual, Sampling, SimulateReply, SolverKind, Steps,
-    Stress, limits,
+    self as wire, ContactDefinition, Field, Move, Plan, Points, Protocol, Residual, Sampling, SimulateReply,
+    SolverKind, Steps, Stress, limits,
 };
 
 use super::{
@@ -95,7 +95,7 @@ pub(super) fn run<S: Solver>(
     let path_error = path_error.max(solver.path_error());
     accuracy.force_error += path_error - solver.path_error();
     // A table, which may have noise, has no vertical edge.
-    let indentation = summary.indentation.max(solver.exact().profile().level(largest));
+    let indentation = summary.indentation.max(solver.exact().profile().level_at_edge(largest));
     let excess = excess_error(path_error, simulation.tolerance, curved);
     Ok(SimulateReply {
         contact: summary.into(),
@@ -144,6 +144,8 @@ pub fn refused_at(base: &str, preload: Preload) -> impl Fn(mechanics::Error) -> 
         let place = match error {
             mechanics::Error::NotConvexEnough { .. } => "/profile",
             mechanics::Error::BeyondProfile { .. } => place_of(Quantity::ContactRadius),
+            mechanics::Error::BeyondReferenceLength { .. } => "/profile/reference_length",
+            mechanics::Error::BulkTooLarge { .. } => "/bulk/stress_per_force",
             _ => quantity(&error).map_or("", place_of),
         };
         Failure::at(format!("{base}{place}"), error)
@@ -254,15 +256,15 @@ const RADII_PER_CHECK: usize = 512;
 /// [`Cause::Refused`] without a stress field, [`Cause::Stopped`] if the client hung up.
 pub fn stresses<S: Solver>(solver: &S, sampling: &Sampling, stop: &dyn Stop) -> Result<Stress, Failure> {
     needs_stress_field(solver.exact(), "/stress")?;
-    let radius = sampling.radii(solver.state().contact_radius);
+    let (places, line) = sampled(solver.exact(), sampling, solver.state().contact_radius, "/stress")?;
     let (terms, least) = solver.terms();
     let at_once = (TERMS_PER_CHECK / terms.max(1)).clamp(least, RADII_PER_CHECK);
     let along = |field: Field| -> Result<Option<Vec<Option<f64>>>, Failure> {
         if !sampling.fields.contains(&field) {
             return Ok(None);
         }
-        let mut all = Vec::with_capacity(radius.len());
-        for radii in radius.chunks(at_once) {
+        let mut all = Vec::with_capacity(places.len());
+        for radii in places.chunks(at_once) {
             stop.check()?;
             all.extend(solver.field(field, radii).into_iter().map(finite));
         }
@@ -270,7 +272,27 @@ pub fn stresses<S: Solver>(solver: &S, sampling: &Sampling, stop: &dyn Stop) -> 
     };
     let (pressure, shear) = (along(Field::Pressure)?, along(Field::Shear)?);
     let (slip, displacement) = (along(Field::Slip)?, along(Field::Displacement)?);
-    Ok(Stress { radius, pressure, shear, slip, displacement })
+    let (radius, x) = if line { (None, Some(places)) } else { (Some(places), None) };
+    Ok(Stress { radius, x, pressure, shear, slip, displacement })
+}
+
+/// The places of a request in a contact of this radius or half-width, m, and whether they are x of a line contact.
+///
+/// # Errors
+/// [`Cause::Refused`] for radii of a line contact, and x of a round one, at the member of `pointer`.
+pub fn sampled(
+    contact: &Contact,
+    sampling: &Sampling,
+    contact_radius: f64,
+    pointer: &str,
+) -> Result<(Vec<f64>, bool), Failure> {
+    let refused = |member: &str, error| Err(Failure::at(format!("{pointer}/{member}"), error));
+    match (&sampling.points, contact.profile().line().is_some()) {
+        (Points::Radii(_), true) => refused("radii", mechanics::Error::LineContact("`radii`")),
+        (Points::Places(_), false) => refused("x", mechanics::Error::RoundContact("`x`")),
+        (_, true) => Ok((sampling.places(contact_radius), true)),
+        (_, false) => Ok((sampling.radii(contact_radius), false)),
+    }
 }
 
 /// Refuses a search for extrema that cannot end in time.
@@ -295,7 +317,10 @@ pub fn residual<S: Solver>(solver: &S, stop: &dyn Stop) -> Result<Residual, Fail
     needs_stress_field(solver.exact(), "/residual")?;
     check_search(solver.exact().profile(), solver.depth(), stop)?;
     match solver.residual(&|| stop.check().is_ok()) {
-        Some(residual) => Ok(Residual::new(residual, solver.exact().summary().unit_shear())),
+        Some(residual) => {
+            let exact = solver.exact();
+            Ok(Residual::new(residual, exact.summary().unit_shear(), exact.profile()))
+        }
         None => Err(Failure::at("", Cause::Stopped).unless_interrupted(stop, "")),
     }
 }

@@ -40,7 +40,8 @@ pub fn new_warnings(contact: &Contact, before: f64, largest: f64, excess_error: 
     if largest <= before && excess_error.is_none() {
         return Vec::new();
     }
-    let at = |radius: f64, error: Option<f64>| warnings_at(contact, radius, contact.profile().level(radius), error);
+    let at =
+        |radius: f64, error: Option<f64>| warnings_at(contact, radius, contact.profile().level_at_edge(radius), error);
     let known = at(before, None);
     let mut found = at(largest, excess_error);
     found.retain(|warning| known.iter().all(|old| old.code != warning.code));
@@ -167,7 +168,8 @@ pub fn warnings_at(
             ),
         );
     }
-    if let Some(nu) = elasticity.largest_poisson_ratio().filter(|nu| *nu > 0.0) {
+    let across = elasticity.largest_poisson_ratio().filter(|nu| *nu > 0.0 && profile.line().is_none());
+    if let Some(nu) = across {
         warn(
             "slip_direction",
             format!(
@@ -213,6 +215,14 @@ pub fn warnings_at(
                 in_unit(noise, "m"),
                 in_unit(indentation, "m")
             ),
+        );
+    }
+    if profile.line().is_some_and(|line| line.bulk().is_some_and(|bulk| bulk.stress_per_force != 0.0)) {
+        warn(
+            "bulk_work_neglected",
+            "displacements, energies and the loss are those without the bulk stress: its own work, and what the stick \
+             zone off the middle adds, are in the slip and in the friction work by place alone"
+                .to_owned(),
         );
     }
     if let Some((code, message)) = assumption(profile) {

@@ -105,7 +105,7 @@ pub(super) fn check(
     for &parameter in free {
         let fits = match parameter {
             Parameter::EStar | Parameter::Radius => matches!(profile, Profile::Sphere(_)),
-            Parameter::GStar => !matches!(profile, Profile::Ellipsoid(_)),
+            Parameter::GStar => !matches!(profile, Profile::Ellipsoid(_) | Profile::Line(_)),
             _ => true,
         };
         if !fits {

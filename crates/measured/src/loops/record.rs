@@ -259,7 +259,7 @@ impl Branches {
 
 /// The stiffness of a contact as defined, 2 G* a, N/m.
 pub(super) fn stiffness(contact: &Contact) -> f64 {
-    2.0 * contact.elasticity().g_star() * contact.contact_radius()
+    2.0 * contact.elasticity().g_star() * contact.stiffness_radius()
 }
 
 /// The times of a record, s, or the numbers of its points.

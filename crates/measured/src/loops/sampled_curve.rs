@@ -41,7 +41,7 @@ impl SampledCurve {
     pub(super) fn new(contact: &Contact) -> SampledCurve {
         let gross_slip = contact.gross_slip_displacement();
         let limit = contact.friction() * contact.normal_force();
-        let stiffness = 2.0 * contact.elasticity().g_star() * contact.contact_radius();
+        let stiffness = 2.0 * contact.elasticity().g_star() * contact.stiffness_radius();
         let sample = |t: f64| {
             let cycle = SteadyCycle::of(contact, gross_slip * t * (2.0 - t));
             [cycle.force_amplitude() / limit, cycle.stick_radius() / contact.contact_radius()]

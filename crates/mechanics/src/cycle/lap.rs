@@ -70,7 +70,12 @@ impl OscillatingCycle {
             machine_amplitude: amplitude(&|state| state.displacement + compliance * state.force),
             dissipated_energy,
             max_elastic_energy: after.iter().map(|state| state.elastic_energy).fold(0.0, f64::max),
-            tangent_stiffness: 2.0 * contact.elasticity.g_star() * states[0].contact_radius,
+            tangent_stiffness: 2.0
+                * contact.elasticity.g_star()
+                * contact
+                    .profile
+                    .line()
+                    .map_or(states[0].contact_radius, |_| contact.profile.radius(states[0].indentation)),
             sliding_ratio,
             stick_radius: after.iter().map(|state| state.stick_radius).fold(f64::INFINITY, f64::min),
             regime: after.iter().map(|state| state.regime).fold(Regime::Stick, Regime::max),

@@ -122,6 +122,9 @@ impl Oscillation {
     }
 
     fn check(&self, contact: &Contact) -> Result<(), Error> {
+        if contact.profile.line().is_some_and(|line| line.bulk().is_some()) {
+            return Err(Error::BulkNeedsConstantLoad);
+        }
         match self.load.amplitude {
             Normal::NormalForce(amplitude) => {
                 if amplitude.is_nan() || amplitude.abs() > contact.normal_force {

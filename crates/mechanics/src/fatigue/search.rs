@@ -93,6 +93,10 @@ impl Study<'_> {
         Ok(places)
     }
 
+    fn along_line(&self) -> bool {
+        self.cycle.start().profile().line().is_some()
+    }
+
     fn found_at(&self, candidate: &Candidate) -> Worst {
         Worst { place: self.place(candidate.at), rated: self.rated(&candidate.found), instants: candidate.instants }
     }
@@ -102,7 +106,7 @@ impl Study<'_> {
         let mut circles = Vec::new();
         for state in self.cycle.ends() {
             circles.push(state.contact_radius());
-            circles.extend(state.history.kink_levels().map(|level| state.profile().radius(level)));
+            circles.extend(state.history.kink_levels().flat_map(|level| state.circles_of(level)));
         }
         circles.retain(|radius| *radius > 0.0);
         circles.iter_mut().for_each(|circle| *circle /= self.radius);
@@ -115,16 +119,20 @@ impl Study<'_> {
     /// The places of the net, one in `stride`, with their values over few instants.
     fn starts(&mut self, every: usize) -> Result<Vec<(Coordinates, Vec<f64>)>, Error> {
         let surface = self.measures.iter().all(Measure::of_surface);
-        let special = self.circles();
+        let (special, line) = (self.circles(), self.along_line());
         let between = (0..).map(|index| STEP * f64::from(index)).take_while(|circle| *circle < 1.0);
         let between = between.chain(OUTSIDE).step_by(every).map(|circle| (circle, DEPTHS.len()));
         let circles = special.iter().map(|circle| (*circle, SHALLOW)).chain(between);
         let mut net: Vec<Coordinates> = Vec::new();
         for (circle, depths) in circles {
             for depth in DEPTHS[..if surface { 1 } else { depths }].iter().step_by(every) {
-                let angles = if circle > 0.0 { ANGLES } else { 1 };
-                let angle = |index: usize| PI * index as f64 / (ANGLES - 1) as f64;
-                net.extend((0..angles).step_by(every).map(|index| [circle, angle(index), *depth]));
+                // Along a line only the two sides differ.
+                let most = if line { 2 } else { ANGLES };
+                let angles = if circle > 0.0 { most } else { 1 };
+                let angle = |index: usize| PI * index as f64 / (most - 1) as f64;
+                net.extend(
+                    (0..angles).step_by(if line { 1 } else { every }).map(|index| [circle, angle(index), *depth]),
+                );
             }
         }
         if !surface {
@@ -222,6 +230,9 @@ impl Study<'_> {
         while share >= finest {
             let before = best.found.value;
             for (axis, first_step) in FIRST_STEPS.into_iter().enumerate().take(axes) {
+                if axis == 1 && self.along_line() {
+                    continue;
+                }
                 let middle = best;
                 let mut sides = [None; 2];
                 for (side, sign) in sides.iter_mut().zip([1.0, -1.0]) {

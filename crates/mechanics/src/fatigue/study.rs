@@ -281,7 +281,7 @@ impl<'a> Study<'a> {
 
     /// A measure where the stress is infinite: infinite too, unless it needs slip and there is none.
     fn infinite(&self, measure: &Measure, place: &[f64; 3]) -> Rated {
-        let radius = place[0].hypot(place[1]);
+        let radius = self.cycle.start().coordinate(place);
         let slips = self.cycle.ends().filter_map(|end| end.slip(radius));
         let value = if measure.of_surface() && extent(slips) <= 0.0 { 0.0 } else { f64::INFINITY };
         Rated { value, ..NO_VALUE }
@@ -323,13 +323,13 @@ impl<'a> Study<'a> {
 
     /// The curve of a place, m; `None` where a stress is infinite.
     fn curve(&mut self, place: &[f64; 3], allowed: Allowance, passes: bool) -> Result<Option<StressCurve>, Error> {
-        let radius = place[0].hypot(place[1]);
+        let radius = self.cycle.start().coordinate(place);
         if radius.to_bits() != self.near_radius.to_bits() {
             self.near.clear();
             self.near_radius = radius;
         }
         let near = passes && place[2] <= DEEP * self.radius;
-        let level = self.cycle.start().profile().level(radius);
+        let level = self.cycle.start().level_at(radius);
         let mut stretches = Vec::new();
         for step in self.steps() {
             let turns = self.cycle.turns(step);
@@ -385,12 +385,12 @@ impl<'a> Study<'a> {
         }
         let contact = &field.contact;
         let edge = contact.contact_radius();
-        let touched = contact.indentation() > 0.0 && radius <= edge * (1.0 + SAME_INSTANT);
+        let touched = contact.indentation() > 0.0 && radius.abs() <= edge * (1.0 + SAME_INSTANT);
         let [mut pressure, mut shear, mut slip] = [0.0; 3];
         if surface && touched {
             pressure = contact.pressure(radius);
             shear = contact.shear(radius);
-            slip = contact.slip(radius.min(edge)).unwrap_or(0.0);
+            slip = contact.slip(radius.clamp(-edge, edge)).unwrap_or(0.0);
         }
         ([xx, yy, zz, xy, yz, xz, pressure, shear, slip], touched)
     }

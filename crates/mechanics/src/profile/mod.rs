@@ -151,6 +151,14 @@ impl Profile {
         Err(Error::NoStressField { profile })
     }
 
+    /// Refuses what is defined for round contacts alone, by its name.
+    ///
+    /// # Errors
+    /// [`Error::LineContact`].
+    pub fn check_round(&self, what: &'static str) -> Result<(), Error> {
+        if self.line().is_some() { Err(Error::LineContact(what)) } else { Ok(()) }
+    }
+
     /// The parabola that it is, or whose load curve it has.
     #[inline]
     fn ball(&self) -> Option<&Sphere> {

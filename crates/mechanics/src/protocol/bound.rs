@@ -46,6 +46,8 @@ const STEPS: usize = 4_096;
 /// # Ok::<(), Error>(())
 /// ```
 pub fn lower_bound(contact: &Contact, reversals: usize, keep_going: &dyn Fn() -> bool) -> Option<f64> {
+    let face = contact.face();
+    let contact = &*face;
     let (profile, edge) = (&*contact.profile, contact.contact_radius());
     let EvaluationRange { from: cutoff, vertical, .. } = EvaluationRange::of(contact);
     if vertical || edge <= 0.0 || contact.friction <= 0.0 {

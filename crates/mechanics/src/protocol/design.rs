@@ -1,6 +1,7 @@
 //! The design of a path that leaves little stress, with a given start, end and number of reversals.
 
 use super::from_any_state::{FromAnyState, MAX_DEPTH};
+use super::line::design_line;
 use super::{DEFAULT_CUTOFF, EqualPeakMeasure, cutoff_of, evenly_spread, falling_amplitude, outermost_singular};
 use crate::contact::Contact;
 use crate::error::Error;
@@ -169,6 +170,9 @@ pub fn design(
     }
     if contact.indentation() <= 0.0 {
         return Err(above(Quantity::Indentation, contact.indentation(), "bodies that do not touch carry no stress"));
+    }
+    if let Some(line) = contact.profile.line() {
+        return design_line(contact, line, (start, kind, reversals), end, keep_going);
     }
     let task = DesignTask { contact, reversals, end, range: EvaluationRange::of(contact), keep_going };
     let (first, first_move) = match start {

@@ -13,6 +13,7 @@ mod end_constraint;
 mod equal_peak_measure;
 mod fewest;
 mod from_any_state;
+mod line;
 mod minimax;
 mod robustness;
 mod spread;
@@ -86,7 +87,8 @@ pub struct EqualPeaks {
 /// Other profiles have no cut-off unless it is given.
 ///
 /// # Errors
-/// [`Error::OutOfRange`] for a cut-off radius inside the one where s diverges, or beyond the edge.
+/// [`Error::OutOfRange`] for a cut-off radius inside the one where s diverges, or beyond the edge. The path of a line
+/// contact ends without a force.
 ///
 /// ```
 #[doc = include_str!("../example.txt")]
@@ -99,6 +101,12 @@ pub struct EqualPeaks {
 /// ```
 pub fn equal_peaks(contact: &Contact, reversals: usize, cutoff_radius: Option<f64>) -> Result<EqualPeaks, Error> {
     contact.profile.check_stress_field()?;
+    if let Some(line) = contact.profile.line() {
+        let EqualPeaks { displacements, cutoff_radius: cutoff } =
+            equal_peaks(&contact.virgin_face(), reversals, cutoff_radius)?;
+        let (displacements, _) = contact.clone().without_history().by_forces(line, &displacements)?;
+        return Ok(EqualPeaks { displacements, cutoff_radius: cutoff });
+    }
     let edge = contact.contact_radius();
     let singular = outermost_singular(&contact.profile, edge);
     let least = singular.unwrap_or(0.0);
@@ -167,6 +175,11 @@ pub struct Minimax {
 /// # Ok::<(), Error>(())
 /// ```
 pub fn minimax(contact: &Contact, reversals: usize, keep_going: &dyn Fn() -> bool) -> Option<Minimax> {
+    if let Some(line) = contact.profile.line() {
+        let found = minimax(&contact.virgin_face(), reversals, keep_going)?;
+        let (displacements, _) = contact.by_forces(line, &found.displacements).ok()?;
+        return Some(Minimax { displacements, ..found });
+    }
     minimax_to(contact, reversals, contact.gross_slip_displacement(), PathEnd::Free, keep_going).pop()
 }
 

@@ -110,6 +110,7 @@ impl Springs {
         range::SPRING_COUNT.check(count as f64)?;
         let setup = setup.shared();
         setup.profile.check_stress_field()?;
+        setup.profile.check_round("the spring foundation")?;
         let contact = Contact::new(setup)?;
         let ContactSummary { indentation, contact_radius, .. } = contact.initial_summary();
         let spacing = 2.0 * reach / count as f64;

@@ -148,7 +148,8 @@ impl LineField {
         let ([p, p1], [q, q1]) = self.potentials(Complex::new(x, z));
         let q = dragged * q;
         // At the surface the terms with z vanish, at the edge too.
-        let (p1, q1) = if z > 0.0 { (z * p1, (z * dragged) * q1) } else { (Complex::new(0.0, 0.0), Complex::new(0.0, 0.0)) };
+        let (p1, q1) =
+            if z > 0.0 { (z * p1, (z * dragged) * q1) } else { (Complex::new(0.0, 0.0), Complex::new(0.0, 0.0)) };
         let sum = 2.0 * (p.im - q.re);
         let difference = 2.0 * (q.re - p1.re - q1.im);
         let [sum, difference, xz] = [sum, difference, q.im + q1.re - p1.im].map(|part| part / std::f64::consts::PI);

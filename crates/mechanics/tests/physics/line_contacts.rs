@@ -1,9 +1,10 @@
 //! Contacts along a line against closed forms, their own laws, and boundary elements.
 
 use stickslip_mechanics::cycle::{Drive, SteadyCycle};
-use stickslip_mechanics::profile::{LineBulk, LineContact};
+use stickslip_mechanics::profile::{LineBulk, LineContact, Moments, Ring};
+use stickslip_mechanics::protocol::{AmplitudeLaw, PathEnd, PathStart, design, lower_bound};
 use stickslip_mechanics::subsurface::Side;
-use stickslip_mechanics::{Body, Contact, Elasticity, Move, Normal, Preload, Profile, Setup, Tangential};
+use stickslip_mechanics::{Body, Contact, Elasticity, Error, Move, Normal, Preload, Profile, Setup, Tangential};
 
 const E: f64 = 7.4e10;
 const NU: f64 = 0.33;
@@ -96,23 +97,351 @@ fn a_pad_has_the_printed_load_pressure_and_approach() {
     }
 }
 
-#[test]
-fn zz_debug() {
-    let load = 968.466409034;
-    let mut contact = contact(cylinder(), Preload::NormalForce(load));
-    println!("{:?}", contact.summary());
-    let p = contact.profile();
-    let whole = stickslip_mechanics::profile::Ring::between(p.point(0.0.into()), p.point(contact.indentation().into()));
-    println!("{:?} {:?}", whole, p.moments(&whole));
-    for share in [0.3, 0.5, 0.9, 0.99] {
-        let cycle = SteadyCycle::driven(&contact, Drive::Force(share * 0.6 * load), 0.0).unwrap();
-        println!("{share} {} {} {} {}", cycle.dissipated_energy(), cycle.stick_radius(), cycle.force_amplitude(), cycle.displacement_amplitude());
+/// A random move that friction can hold: force and load straight to new values.
+fn oblique(random: &mut fastrand::Rng, contact: &Contact, largest: f64) -> Move {
+    let load = largest * (0.2 + 0.8 * random.f64());
+    let least = contact.normal_force().min(load);
+    let share = (1.8 * random.f64() - 0.9) * contact.friction();
+    let force = (share * load).clamp(-0.95 * contact.friction() * least, 0.95 * contact.friction() * least);
+    Move { tangential: Some(Tangential::Force(force)), normal: Some(Normal::NormalForce(load)), relative: false }
+}
+
+/// int of a function over a stretch by the double exponential rule, which roots at both ends do not disturb.
+fn integral(low: f64, high: f64, of: &dyn Fn(f64) -> f64) -> f64 {
+    let (half, step) = (0.5 * (high - low), 0.05);
+    let node = |index: i32| {
+        let t = step * f64::from(index);
+        let inner = std::f64::consts::FRAC_PI_2 * t.sinh();
+        let near = half * (-inner.abs()).exp() / inner.cosh();
+        let x = if inner > 0.0 { high - near } else { low + near };
+        step * std::f64::consts::FRAC_PI_2 * t.cosh() * half / inner.cosh().powi(2) * of(x)
+    };
+    (-64..=64).map(node).sum()
+}
+
+/// The same over the whole contact, whose zones end at some places.
+fn over_contact(contact: &Contact, zones: &[f64], of: &dyn Fn(f64) -> f64) -> f64 {
+    let a = contact.contact_radius();
+    let mut ends: Vec<f64> = zones.iter().copied().filter(|x| x.abs() < a).chain([-a, a]).collect();
+    ends.sort_by(f64::total_cmp);
+    ends.windows(2).map(|pair| integral(pair[0], pair[1], of)).sum()
+}
+
+/// Places where zones end: of the contact on the way of a path of forces, relative to gross slip.
+fn led(contact: &mut Contact, path: &[f64]) -> Vec<f64> {
+    let limit = contact.summary().gross_slip_force;
+    let mut zones = vec![5e-4, -5e-4];
+    for share in path {
+        contact.apply(&by_force(share * limit)).unwrap();
+        let (c, e) = (contact.state().stick_radius, contact.state().stick_centre.unwrap_or(0.0));
+        zones.extend([e + c, e - c]);
     }
-    contact.apply(&by_force(0.5 * 0.6 * load)).unwrap();
-    println!("{:?}", contact.state());
-    let (b, p0, a) = nowell_and_hills(true);
-    println!("{:?}", b.state());
-    println!("{:?}", b.shears(&[-0.97, -0.5, 0.1, 0.7, 0.99].map(|x| x * a)).iter().map(|x| x/(0.6*p0)).collect::<Vec<_>>());
-    let (b, p0, a) = nowell_and_hills(false);
-    println!("{:?}", b.shears(&[-0.97, -0.5, 0.1, 0.7, 0.99].map(|x| x * a)).iter().map(|x| x/(0.6*p0)).collect::<Vec<_>>());
+    zones
+}
+
+#[test]
+fn a_path_straight_in_force_and_load_is_the_same_in_many_steps_and_stays_below_friction() {
+    let mut random = fastrand::Rng::with_seed(1);
+    for round in 0..1000 {
+        let line = if round % 2 == 0 { cylinder() } else { pad() };
+        let mut contact = contact(line, Preload::NormalForce(300.0));
+        let mut in_parts = contact.clone();
+        for _ in 0..6 {
+            let step = oblique(&mut random, &contact, 1000.0);
+            let parts: Vec<Move> = (1..=5).map(|part| in_parts.partial_move(&step, f64::from(part) / 5.0)).collect();
+            contact.apply_within(&step, 1e-4).unwrap();
+            parts.iter().for_each(|part| in_parts.apply_within(part, 1e-4).unwrap());
+        }
+        let (a, unit) = (contact.contact_radius(), contact.summary().unit_shear());
+        let places: Vec<f64> = (0..40).map(|index| a * f64::from(index) / 39.0).collect();
+        let (pressures, shears) = (contact.pressures(&places), contact.shears(&places));
+        for ((p, q), other) in pressures.into_iter().zip(shears).zip(in_parts.shears(&places)) {
+            assert!(q.abs() <= contact.friction() * p + 1e-12 * unit, "{q} exceeds mu times {p}");
+            assert!((q - other).abs() < 2e-7 * unit, "{q} is not {other}");
+        }
+        assert_near(contact.displacement(), in_parts.displacement(), 1e-9);
+    }
+}
+
+#[test]
+fn the_integral_of_the_shear_is_the_force() {
+    for line in [cylinder(), pad(), with_bulk(cylinder(), Side::Second, 1e5)] {
+        let mut contact = contact(line, Preload::NormalForce(500.0));
+        let zones = led(&mut contact, &[0.7, -0.3, 0.1]);
+        let found = 0.01 * over_contact(&contact, &zones, &|x| contact.shear(x));
+        assert_near(found, contact.force(), 1e-12);
+        let load = 0.01 * over_contact(&contact, &zones, &|x| contact.pressure(x));
+        assert_near(load, contact.normal_force(), 1e-12);
+    }
+}
+
+fn with_bulk(line: LineContact, side: Side, stress_per_force: f64) -> LineContact {
+    line.with_bulk(LineBulk::new(side, stress_per_force, Some(Body::new(E, NU).unwrap())).unwrap()).unwrap()
+}
+
+/// What a bulk stress does in a cycle between the forces of this contact and its negative, beyond the loop of the force
+/// over the displacement without it, J: its strain takes the moment of the shear along, and the pad follows the stuck
+/// zone off the middle by (mu/R) e^2 after a reversal.
+fn work_of_bulk(start: &Contact, bulk: &LineBulk, zones: &[f64]) -> f64 {
+    let (limit, from) = (start.summary().gross_slip_force, start.force());
+    let strain = (1.0 - NU * NU) / E * bulk.stress_per_force * if bulk.side == Side::Second { 1.0 } else { -1.0 };
+    let (reach, a) = (0.05 * strain * start.normal_force(), start.contact_radius());
+    // Gauss rules are exact: the moment is a polynomial of the force of the third degree at most.
+    let points = [(-0.861136311594053, 0.347854845137454), (-0.339981043584856, 0.652145154862546)];
+    let both = points.into_iter().flat_map(|(x, weight)| [(x, weight), (-x, weight)]);
+    let branch: f64 = both
+        .map(|(x, weight)| {
+            let force = x * from.abs();
+            let mut contact = start.clone();
+            contact.apply(&by_force(force)).unwrap();
+            let state = contact.state();
+            let (c, e) = (state.stick_radius, state.stick_centre.unwrap());
+            assert_near(e, reach * (1.0 - c * c / (a * a)), 1e-12);
+            let ends = [&zones[..], &[e + c, e - c]].concat();
+            let moment = 0.01 * over_contact(&contact, &ends, &|x| x * contact.shear(x));
+            let followed = force * 2.0 * 0.6 / 0.05 * e * reach / (2.0 * limit);
+            weight * from.abs() * (followed - strain * moment)
+        })
+        .sum();
+    2.0 * branch
+}
+
+#[test]
+fn the_work_of_a_cycle_is_the_pressure_times_the_slip_at_each_place_with_and_without_bulk_stress() {
+    for line in [cylinder(), pad(), with_bulk(cylinder(), Side::First, 1e5)] {
+        let bulk = line.bulk().copied();
+        let mut contact = contact(line, Preload::NormalForce(500.0));
+        let cycle = SteadyCycle::driven(&contact.clone(), Drive::Force(240.0), 0.0).unwrap().dissipated_energy();
+        let zones = led(&mut contact, &[0.8, -0.8]);
+        let back = contact.clone();
+        let before = back.state().dissipated_energy;
+        contact.apply(&by_force(240.0)).unwrap();
+        let slipped = |x: f64| (contact.slip(x).unwrap() - back.slip(x).unwrap()).abs();
+        let found = 0.01 * 0.6 * over_contact(&contact, &zones, &|x| contact.pressure(x) * slipped(x));
+        let added = bulk.map_or(0.0, |bulk| work_of_bulk(&back, &bulk, &zones));
+        assert_near(2.0 * found, cycle + added, 1e-9);
+        assert!(bulk.is_none() == (added == 0.0));
+        assert_near(2.0 * (contact.state().dissipated_energy - before), cycle, 1e-10);
+    }
+}
+
+#[test]
+fn the_work_of_a_closed_cycle_does_not_depend_on_the_reference_length() {
+    for make in
+        [|l| LineContact::cylinder(0.05, 0.01, Some(l)), |l| LineContact::rounded_pad(5e-4, 0.05, 0.01, Some(l))]
+    {
+        let work = |length: f64| {
+            let contact = contact(make(length).unwrap(), Preload::NormalForce(500.0));
+            SteadyCycle::driven(&contact, Drive::Force(200.0), 0.0).unwrap().dissipated_energy()
+        };
+        let expected = work(0.02);
+        for length in [2e-3, 1.0, 1e6] {
+            assert_near(work(length), expected, 1e-11);
+        }
+    }
+}
+
+#[test]
+fn the_stress_below_is_that_of_lines_of_force_over_the_tractions_on_the_surface() {
+    // Flamant (Johnson 1985, eqs 2.23), tension positive, q along +x.
+    let lines = [(cylinder(), 0.0), (pad(), 0.0), (with_bulk(cylinder(), Side::Second, 1e5), 1e5)];
+    for (line, per_force) in lines {
+        let mut contact = contact(line, Preload::NormalForce(500.0));
+        let zones = led(&mut contact, &[0.7, -0.3, 0.1]);
+        let (a, unit) = (contact.contact_radius(), contact.summary().unit_pressure());
+        for (side, sign) in [(Side::First, -1.0), (Side::Second, 1.0)] {
+            let field = contact.subsurface(side, NU).unwrap();
+            for [x, z] in [[0.0, 0.3], [0.97, 0.1], [-0.7, 0.05], [-1.3, 0.4], [3.0, 2.0], [0.63, 0.02], [0.2, 9.0]] {
+                let (x, z) = (x * a, z * a);
+                let sum = |power: [i32; 2], q: f64| {
+                    over_contact(&contact, &[&zones[..], &[x]].concat(), &|s| {
+                        let traction = if q > 0.0 { sign * contact.shear(s) } else { contact.pressure(s) };
+                        let square = (x - s) * (x - s) + z * z;
+                        traction * (x - s).powi(power[0]) * z.powi(power[1]) / (square * square)
+                    }) * -std::f64::consts::FRAC_2_PI
+                };
+                let xx = sum([2, 1], 0.0) + sum([3, 0], 1.0);
+                let zz = sum([0, 3], 0.0) + sum([1, 2], 1.0);
+                let xz = sum([1, 2], 0.0) + sum([2, 1], 1.0);
+                let found = field.at([x, 0.0, z]);
+                let bulk = if sign > 0.0 { per_force * contact.force() } else { 0.0 };
+                let expected = [xx + bulk, NU * (xx + zz), zz, xz];
+                for (found, expected) in [found.xx, found.yy, found.zz, found.xz].into_iter().zip(expected) {
+                    assert!((found - expected).abs() < 1e-10 * unit, "{x} {z}: {found} is not {expected}");
+                }
+            }
+        }
+        // At the surface the tensor joins the tractions, like the root of the depth beside the end of a zone.
+        let field = contact.subsurface(Side::Second, NU).unwrap();
+        for share in [-0.9, 0.1, 0.5, 0.99] {
+            let (at, near) = (field.at([share * a, 0.0, 0.0]), field.at([share * a, 0.0, 1e-13 * a]));
+            for (at, near) in at.components().into_iter().zip(near.components()) {
+                assert!((at - near).abs() < 1e-10 * unit, "{share}: {at} is not {near}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_narrow_edge_of_a_pad_has_the_stress_of_its_tractions() {
+    for excess in [1e-3, 1e-5, 1e-7] {
+        let contact = contact(pad(), Preload::ContactRadius(5e-4 * (1.0 + excess)));
+        let (a, unit) = (contact.contact_radius(), contact.summary().unit_pressure());
+        let field = contact.subsurface(Side::Second, NU).unwrap();
+        for [x, z] in [[0.0, 0.5], [1.0, 0.01], [0.3, 3.0], [1.0, 1e-4]] {
+            let zz = |s: f64| {
+                let square = (x * a - s) * (x * a - s) + z * z * a * a;
+                contact.pressure(s) * (z * a).powi(3) / (square * square)
+            };
+            let ends = [0.5, 0.9, 0.99, 0.999, 0.9999].map(|share| share * a);
+            let expected =
+                -std::f64::consts::FRAC_2_PI * over_contact(&contact, &[&ends[..], &[5e-4, -5e-4]].concat(), &zz);
+            let found = field.at([x * a, 0.0, z * a]).zz;
+            assert!((found - expected).abs() < 1e-8 * unit, "{excess} {x} {z}: {found} is not {expected}");
+        }
+    }
+}
+
+#[test]
+fn without_bulk_stress_or_in_a_rigid_body_nothing_moves_and_a_mirror_image_is_one() {
+    let path = [0.6, -0.4, 0.3];
+    let places: Vec<f64> = (-20..=20).map(|index| 5e-4 * f64::from(index) / 20.0).collect();
+    let after = |line: LineContact, sign: f64| {
+        let mut contact = contact(line, Preload::NormalForce(500.0));
+        led(&mut contact, &path.map(|share| sign * share));
+        (contact.shears(&places), contact.state())
+    };
+    let (plain, state) = after(cylinder(), 1.0);
+    let (none, zero) = after(with_bulk(cylinder(), Side::First, 0.0), 1.0);
+    assert_eq!((plain.clone(), zero.stick_centre), (none, Some(0.0)));
+    let rigid = LineBulk::new(Side::Second, 1e5, None).unwrap();
+    assert_eq!(after(cylinder().with_bulk(rigid).unwrap(), 1.0).0, plain);
+    let (moved, second) = after(with_bulk(cylinder(), Side::Second, 1e5), 1.0);
+    // The same strain in the other body has the other sign.
+    assert_eq!(after(with_bulk(cylinder(), Side::First, -1e5), 1.0).0, moved);
+    // The zones, the loss and the rest of the state are those without it.
+    assert!(second.stick_centre.unwrap() > 0.0 && second.dissipated_energy == state.dissipated_energy);
+    assert_eq!(
+        (second.force, second.displacement, second.stick_radius),
+        (state.force, state.displacement, state.stick_radius)
+    );
+    let unit = 0.6 * 1e8;
+    let mirrored = after(with_bulk(cylinder(), Side::Second, -1e5), -1.0).0;
+    for (one, other) in moved.iter().zip(mirrored.iter().rev()) {
+        assert!((one + other).abs() < 1e-13 * unit, "{one} {other}");
+    }
+}
+
+#[test]
+fn a_bulk_stress_is_taken_as_long_as_zones_are_nested() {
+    // Like bodies: |sigma| <= 2 p0 |Q|/P.
+    let contact_of = |per_force: f64| {
+        let profile = Profile::Line(with_bulk(cylinder(), Side::Second, per_force));
+        Contact::new(Setup { profile, elasticity: alike(), friction: 0.6, preload: Preload::NormalForce(500.0) })
+    };
+    let most = 2.0 * contact(cylinder(), Preload::NormalForce(500.0)).summary().max_pressure.unwrap() / 500.0;
+    assert!(contact_of(0.999 * most).is_ok());
+    let Err(Error::BulkTooLarge { largest, .. }) = contact_of(-1.001 * most) else { panic!("it is taken") };
+    assert_near(largest, most, 1e-12);
+    let mut held = contact_of(0.5 * most).unwrap();
+    let pressed = Move { normal: Some(Normal::NormalForce(600.0)), ..Move::default() };
+    assert_eq!(held.apply(&pressed), Err(Error::BulkNeedsConstantLoad));
+    let bulk = *with_bulk(cylinder(), Side::Second, 1.0).bulk().unwrap();
+    assert!(matches!(pad().with_bulk(bulk), Err(Error::BulkTooLarge { .. })));
+}
+
+#[test]
+fn the_extrema_of_eccentric_zones_are_those_of_a_dense_scan() {
+    let mut random = fastrand::Rng::with_seed(2);
+    for _ in 0..40 {
+        let mut contact =
+            contact(with_bulk(cylinder(), Side::Second, 4e5 * (random.f64() - 0.5)), Preload::NormalForce(500.0));
+        let mut share = 0.95;
+        for _ in 0..random.usize(1..7) {
+            share *= -0.95 + 0.5 * random.f64();
+            led(&mut contact, &[share]);
+        }
+        let (a, residual) = (contact.contact_radius(), contact.residual());
+        let scanned =
+            (-20_000..=20_000).map(|index| contact.shear(a * f64::from(index) / 20_000.0).abs()).fold(0.0, f64::max);
+        let largest = residual.max.unwrap();
+        assert!(largest >= scanned * (1.0 - 1e-12) && largest < scanned * 1.001, "{largest} {scanned}");
+        assert!(residual.peaks.iter().all(|peak| (contact.shear(peak.radius) - peak.shear).abs() < 1e-9 * largest));
+    }
+}
+
+#[test]
+fn rings_of_a_line_contact_add_up_however_thin_they_are() {
+    let mut random = fastrand::Rng::with_seed(3);
+    let lines = [
+        cylinder(),
+        pad(),
+        LineContact::rounded_pad(1e-9, 0.05, 1.0, None).unwrap(),
+        LineContact::rounded_pad(1.0, 1e-3, 1.0, Some(1e9)).unwrap(),
+        LineContact::cylinder(1e-3, 1.0, Some(1e9)).unwrap(),
+    ];
+    for line in lines {
+        let profile = Profile::Line(line);
+        for _ in 0..200 {
+            let top = profile
+                .level_at_edge(profile.contact_radius(0.0).max(1e-5) * (1.0 + 10f64.powf(6.0 * random.f64() - 5.0)));
+            let low = top * (1.0 - 10f64.powf(-9.0 * random.f64()));
+            let middle = low + (top - low) * random.f64();
+            let [low, middle, high] = [low, middle, top].map(|level| profile.point(level.into()));
+            let (whole, inner, outer) =
+                (Ring::between(low, high), Ring::between(low, middle), Ring::between(middle, high));
+            let [whole, inner, outer_moments] = [whole, inner, outer].map(|ring| profile.moments(&ring));
+            let stacked = Moments {
+                width: inner.width + outer_moments.width,
+                first: inner.first + outer.depth * inner.width + outer_moments.first,
+                second: inner.second
+                    + outer.depth * (2.0 * inner.first + outer.depth * inner.width)
+                    + outer_moments.second,
+            };
+            let thin = (high.level.value() - low.level.value()) / high.level.value();
+            for (found, expected) in
+                [(whole.width, stacked.width), (whole.first, stacked.first), (whole.second, stacked.second)]
+            {
+                assert!(
+                    (found / expected - 1.0).abs() < 1e-10 + 1e-14 / thin,
+                    "{profile:?} {thin}: {found} {expected}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn the_best_path_of_a_line_contact_is_held_by_the_bound_and_leaves_equal_peaks() {
+    for line in [cylinder(), pad()] {
+        let contact = contact(line, Preload::NormalForce(500.0));
+        let bound = lower_bound(&contact, 4, &|| true).unwrap();
+        let law = |law, end| design(&contact, PathStart::Here, law, 4, end, &|| true);
+        let [linear, best] =
+            [AmplitudeLaw::Linear, AmplitudeLaw::Minimax].map(|kind| law(kind, PathEnd::ForceZero).unwrap());
+        let free = law(AmplitudeLaw::Minimax, PathEnd::Free).unwrap();
+        assert!(bound <= free.largest && free.largest <= best.largest * (1.0 + 1e-9) && best.largest < linear.largest);
+        assert!(best.contact.force().abs() < 1e-9 && free.gap.unwrap() < 1e-6);
+        let mut follower = contact.clone();
+        for target in &best.displacements {
+            follower.apply(&Move { tangential: Some(Tangential::Displacement(*target)), ..Move::default() }).unwrap();
+        }
+        assert_near(follower.residual().max.unwrap(), best.largest, 1e-6);
+        assert!(matches!(law(AmplitudeLaw::Linear, PathEnd::DisplacementZero), Err(Error::LineContact(_))));
+    }
+}
+
+#[test]
+fn contacts_end_below_the_reference_length() {
+    let line = || LineContact::cylinder(0.05, 0.01, Some(1e-3)).unwrap();
+    let made =
+        |preload| Contact::new(Setup { profile: Profile::Line(line()), elasticity: alike(), friction: 0.6, preload });
+    for preload in [Preload::ContactRadius(9.1e-4), Preload::NormalForce(1e9), Preload::Indentation(1.0)] {
+        assert!(matches!(made(preload), Err(Error::BeyondReferenceLength { .. })));
+    }
+    let mut contact = made(Preload::ContactRadius(8.9e-4)).unwrap();
+    let before = contact.state();
+    let pressed = Move { normal: Some(Normal::NormalForce(2.0 * before.normal_force)), ..Move::default() };
+    assert!(matches!(contact.apply(&pressed), Err(Error::BeyondReferenceLength { .. })));
+    assert_eq!(contact.state(), before);
 }

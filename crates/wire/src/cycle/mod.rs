@@ -74,12 +74,15 @@ pub struct Machine: Copy {
     pub stiffness: f64 = range::MACHINE_STIFFNESS,
 }
 
-/// Where the friction work per area is asked for: exactly one of `points` and `radii`.
+/// Where the friction work per area is asked for: exactly one of `points` and `radii` (of a line contact `x`).
 pub struct WorkDensity: Default and StressRequest {
-    /// Number of radii, evenly spaced from the centre to the edge of the contact, both included.
+    /// Number of radii, evenly spaced from the centre to the edge of the contact, both included; of a line contact from
+    /// the edge at −a to that at a.
     pub points: Option<usize>,
     /// Radii, m; outside the contact there is no work.
     pub radii: Option<Vec<f64>>,
+    /// Places along x, m, of a line contact.
+    pub x: Option<Vec<f64>>,
 }
 }
 
@@ -248,8 +251,8 @@ impl CycleOptions {
         let at = JsonPath::Pointer(places.density);
         let density = match density {
             None => None,
-            Some(WorkDensity { points, radii }) => {
-                Some(StressRequest { points, radii, fields: None }.check(at, faults)?)
+            Some(WorkDensity { points, radii, x }) => {
+                Some(StressRequest { points, radii, x, fields: None }.check(at, faults)?)
             }
         };
         let (count, radii) = (drive.amplitudes().all().len(), density.as_ref().map_or(0, Sampling::length));

@@ -72,9 +72,11 @@ pub struct Harmonic: Copy {
 }
 
 /// Friction work of a cycle per area, along the radius.
-pub struct FrictionWork {
-    /// Radii, m.
-    pub radius: Vec<f64>,
+pub struct FrictionWork omits Option {
+    /// Radii, m: of a round contact.
+    pub radius: Option<Vec<f64>>,
+    /// Places along x, m: of a line contact.
+    pub x: Option<Vec<f64>>,
     /// Friction work per area, J/m²; `null` where it is infinite.
     pub density: Vec<Option<f64>>,
 }

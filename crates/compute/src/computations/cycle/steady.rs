@@ -10,7 +10,7 @@ use stickslip_wire::{CycleReply, FrictionWork, Harmonic, SteadyCycle};
 
 use super::studies::{best_load, resonance};
 use crate::Stop;
-use crate::simulation::{Failure, Timer, accuracy, excess_error, needs_stress_field, warnings_at};
+use crate::simulation::{Failure, Timer, accuracy, excess_error, needs_stress_field, sampled, warnings_at};
 
 /// Radii between two checks of the flag: each time the contact is copied and turned.
 const RADII_PER_CHECK: usize = 512;
@@ -32,7 +32,8 @@ pub fn steady_cycles(
     if task.density.is_some() {
         needs_stress_field(contact, "/work_density")?;
     }
-    let radii = task.density.as_ref().map(|sampling| sampling.radii(contact.contact_radius()));
+    let sampled = |sampling| sampled(contact, sampling, contact.contact_radius(), "/work_density");
+    let places = task.density.as_ref().map(sampled).transpose()?;
     // Compliance of the machine, m/N.
     let compliance = task.stiffness.map_or(0.0, f64::recip);
     let mut cycles = Vec::with_capacity(task.drives().len());
@@ -67,7 +68,7 @@ pub fn steady_cycles(
                 stick_radius: found.stick_radius(),
                 regime: found.regime().into(),
                 harmonics: harmonics.map(|found| found.harmonics.into_iter().map(harmonic).collect()),
-                friction_work: radii.as_deref().map(|radii| friction_work(&found, radii, stop)).transpose()?,
+                friction_work: places.as_ref().map(|places| friction_work(&found, places, stop)).transpose()?,
                 best_load: match task.best_load {
                     Some(study) => best_load(contact, (drive, compliance), study, stop)?,
                     None => None,
@@ -135,11 +136,16 @@ fn harmonic(harmonic: cycle::Harmonic) -> Harmonic {
     Harmonic { order, in_phase, quadrature }
 }
 
-fn friction_work(cycle: &cycle::SteadyCycle<'_>, radii: &[f64], stop: &dyn Stop) -> Result<FrictionWork, Failure> {
+fn friction_work(
+    cycle: &cycle::SteadyCycle<'_>,
+    (radii, line): &(Vec<f64>, bool),
+    stop: &dyn Stop,
+) -> Result<FrictionWork, Failure> {
     let mut density = Vec::with_capacity(radii.len());
     for some in radii.chunks(RADII_PER_CHECK) {
         stop.check()?;
         density.extend(cycle.friction_work(some).into_iter().map(finite));
     }
-    Ok(FrictionWork { radius: radii.to_vec(), density })
+    let (radius, x) = if *line { (None, Some(radii.clone())) } else { (Some(radii.clone()), None) };
+    Ok(FrictionWork { radius, x, density })
 }

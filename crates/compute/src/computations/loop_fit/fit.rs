@@ -140,6 +140,7 @@ fn fitted(definition: ContactDefinition, fit: &LoopFit, names: &[FitParameter]) 
         material: if is_modulus_fitted { Material::Effective(moduli) } else { definition.material },
         friction: if has(FitParameter::Friction) { fit.contact.friction() } else { definition.friction },
         preload: definition.preload,
+        bulk: definition.bulk,
     }
 }
 

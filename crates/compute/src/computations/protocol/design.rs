@@ -93,7 +93,7 @@ pub fn protocol(subject: &Subject<'_>, task: &ProtocolTask, stop: &dyn Stop) -> 
         let tried = task.robustness.as_ref();
         let tried = tried.map(|errors| robustness(subject, errors, &design.displacements, unit, stop)).transpose()?;
         Ok(Outcome {
-            residual: Residual::new(design.residual.clone(), unit),
+            residual: Residual::new(design.residual.clone(), unit, contact.profile()),
             largest: finite(design.largest),
             relative: finite(design.largest / unit),
             displacement: state.displacement,

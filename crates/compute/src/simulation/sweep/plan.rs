@@ -6,6 +6,7 @@ use super::Sweep;
 use super::shared::{self, Shared};
 use crate::Nanoseconds;
 use crate::simulation::{bytes, cost};
+use stickslip_mechanics::profile::LineContact;
 use stickslip_wire::check::{Fault, Faults, JsonPath};
 use stickslip_wire::json_value::{Pointer, index};
 use stickslip_wire::pointer_lookup::{Lookup, lookup};
@@ -145,12 +146,17 @@ fn first_peak(output: &Pointer) -> Pointer {
 /// there will be.
 fn reply_template(simulation: &Simulation) -> SimulateReply {
     let moves = simulation.plan.length();
-    let residual = || Residual { peaks: vec![Peak::default()], ..Residual::default() };
+    let line = simulation.setup.profile.line();
+    let along = |along_line: bool| (along_line == line.is_some()).then_some(0.0);
+    let peak = Peak { radius: along(false), x: along(true), shear: None };
+    let residual = || Residual { peaks: vec![peak], ..Residual::default() };
+    let stick_centre = line.and_then(LineContact::bulk).map(|_| 0.0);
+    let state = State { stick_centre, ..State::default() };
     let protocol = || Protocol { displacement: vec![0.0; moves], cutoff_radius: 0.0 };
     SimulateReply {
         contact: ContactSummary::default(),
-        steps: vec![State::default(); if simulation.steps == Steps::All { moves } else { 1 }],
-        stress: simulation.stress.as_ref().map(stress_template),
+        steps: vec![state; if simulation.steps == Steps::All { moves } else { 1 }],
+        stress: simulation.stress.as_ref().map(|sampling| stress_template(sampling, line.is_some())),
         residual: simulation.residual.then(residual),
         // No output of a sweep.
         subsurface: None,
@@ -160,11 +166,12 @@ fn reply_template(simulation: &Simulation) -> SimulateReply {
     }
 }
 
-fn stress_template(sampling: &Sampling) -> Stress {
+fn stress_template(sampling: &Sampling, line: bool) -> Stress {
     let length = sampling.length();
     let column = |field: Field| sampling.fields.contains(&field).then(|| vec![None; length]);
     Stress {
-        radius: vec![0.0; length],
+        radius: (!line).then(|| vec![0.0; length]),
+        x: line.then(|| vec![0.0; length]),
         pressure: column(Field::Pressure),
         shear: column(Field::Shear),
         slip: column(Field::Slip),

@@ -73,8 +73,14 @@ impl LineContact {
         let radius = checked("radius", radius)?;
         let reference_length = reference_length.unwrap_or(2.0 * radius);
         let face = Profile::Sphere(Sphere::of_curvature(4.0 * radius / PI));
-        LineContact { specimen: Specimen::Cylinder { radius }, length, reference_length, face: Arc::new(face), bulk: None }
-            .checked(0.0)
+        LineContact {
+            specimen: Specimen::Cylinder { radius },
+            length,
+            reference_length,
+            face: Arc::new(face),
+            bulk: None,
+        }
+        .checked(0.0)
     }
 
     /// A pad along the length L, m, flat up to the half-width b, m, with edges of the radius R, m. The reference length
@@ -112,7 +118,10 @@ impl LineContact {
         Err(Error::OutOfRange {
             quantity: Quantity::Parameter("reference_length"),
             value: self.reference_length,
-            allowed: format!("above {} m, the half-width of the flat over {WIDEST}", crate::unit_prefix::short(least / WIDEST)),
+            allowed: format!(
+                "above {} m, the half-width of the flat over {WIDEST}",
+                crate::unit_prefix::short(least / WIDEST)
+            ),
         })
     }
 
@@ -224,7 +233,8 @@ impl LineContact {
     #[must_use]
     pub fn level_of_width(&self, half_width: f64) -> f64 {
         let b = self.flat_half_width();
-        if half_width > b { self.level_to(((half_width - b) * (half_width + b)).sqrt()) } else { 0.0 }
+        let t = half_width.min(WIDEST * self.reference_length);
+        if t > b { self.level_to(((t - b) * (t + b)).sqrt()) } else { 0.0 }
     }
 
     /// Half-width at s, m.

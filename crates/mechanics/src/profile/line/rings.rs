@@ -47,8 +47,7 @@ impl LineContact {
         // X - X(inner) is this over ln(l/t).
         let unit = 0.25 * PI * self.length / self.log_at(inner);
         let gained = |step: f64| unit * 0.5 * (step * (2.0 * inner + step) / square).ln_1p();
-        let mut moments =
-            Moments { width: gained(width) / self.log_at(outer), ..Moments::default() };
+        let mut moments = Moments { width: gained(width) / self.log_at(outer), ..Moments::default() };
         for (share, weight) in TWENTY_POINTS {
             let s = inner + width * share;
             let rise = self.rise(s);

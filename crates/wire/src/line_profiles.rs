@@ -1,0 +1,98 @@
+//! Profiles of contacts along a line, and the bulk stress that comes with their tangential force.
+
+use stickslip_mechanics::profile::{LineBulk, LineContact, Profile as Shape};
+use stickslip_mechanics::{Error, range};
+
+use super::check::{Faults, JsonPath, accepted};
+use super::definition::{BodyName, Material};
+use super::limits::Limited as _;
+use super::request::requests;
+
+requests! {
+/// A cylinder pressed along a line on a flat, in plane strain.
+pub struct CylinderProfile {
+    /// Radius R, m; for two cylinders 1/R = 1/R₁ + 1/R₂.
+    pub radius: f64 = range::LENGTH,
+    /// Length L of the contact, m: forces are those of all of it.
+    pub length: f64 = range::LENGTH,
+    /// The length that fixes the displacements, m: dδ = 2/(π E* L) ln(reference_length/t) dF_N for the half-width t.
+    /// Left out, twice the radius. Half-widths stay below nine tenths of it; stresses, forces and the work of closed
+    /// cycles under a force do not depend on it.
+    pub reference_length: Option<f64> = range::LENGTH,
+}
+
+/// A flat pad with rounded edges pressed along a line on a flat, in plane strain.
+pub struct RoundedPadProfile {
+    /// Half-width b of the flat, m.
+    pub flat_half_width: f64 = range::LENGTH,
+    /// Radius R of the edges, m.
+    pub edge_radius: f64 = range::LENGTH,
+    /// Length L of the contact, m: forces are those of all of it.
+    pub length: f64 = range::LENGTH,
+    /// The length that fixes the displacements, m, as of a cylinder. Left out, `length`.
+    pub reference_length: Option<f64> = range::LENGTH,
+}
+
+/// A stress along x in one of the bodies that comes with the tangential force, as a bulk load in phase does.
+pub struct BulkPerForce {
+    /// The body that carries it.
+    pub body: BodyName,
+    /// The stress over the tangential force, Pa/N; tension is positive.
+    pub stress_per_force: f64 = range::STRESS_PER_FORCE,
+}
+}
+
+impl CylinderProfile {
+    /// The checked profile; its faults are noted at `at`.
+    pub(super) fn check(&self, at: JsonPath<'_>, faults: &mut Faults) -> Option<Shape> {
+        faults.part(|faults| self.check_members(at, faults))?;
+        made(LineContact::cylinder(self.radius, self.length, self.reference_length), at, faults)
+    }
+}
+
+impl RoundedPadProfile {
+    /// The checked profile; its faults are noted at `at`.
+    pub(super) fn check(&self, at: JsonPath<'_>, faults: &mut Faults) -> Option<Shape> {
+        faults.part(|faults| self.check_members(at, faults))?;
+        let RoundedPadProfile { flat_half_width, edge_radius, length, reference_length } = *self;
+        made(LineContact::rounded_pad(flat_half_width, edge_radius, length, reference_length), at, faults)
+    }
+}
+
+fn made(line: Result<LineContact, Error>, at: JsonPath<'_>, faults: &mut Faults) -> Option<Shape> {
+    if let Err(Error::OutOfRange { .. }) = &line {
+        // Each number has passed its own check: the reference length is too short for the flat.
+        return accepted(line.map(Shape::Line), at.member("reference_length"), faults);
+    }
+    accepted(line.map(Shape::Line), at, faults)
+}
+
+impl BulkPerForce {
+    /// The profile with this stress; what is refused of it is noted at `at`.
+    pub(super) fn check(
+        &self,
+        shape: &Shape,
+        material: &Material,
+        at: JsonPath<'_>,
+        faults: &mut Faults,
+    ) -> Option<Shape> {
+        faults.part(|faults| self.check_members(at, faults))?;
+        let Some(bodies) = material.checked_bodies() else {
+            faults.add(at, "the strain of a bulk stress needs the constants of the body: name the two bodies");
+            return None;
+        };
+        let body = bodies[usize::from(self.body == BodyName::Second)];
+        let bulk = LineBulk::new(self.body.into(), self.stress_per_force, body);
+        let found = match shape {
+            Shape::Line(line) => bulk.and_then(|bulk| line.clone().with_bulk(bulk)),
+            _ => Err(Error::BulkTooLarge { stress_per_force: self.stress_per_force, largest: 0.0 }),
+        };
+        match found {
+            Ok(line) => Some(Shape::Line(line)),
+            Err(error) => {
+                faults.unanswerable(at, error);
+                None
+            }
+        }
+    }
+}
