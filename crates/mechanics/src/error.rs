@@ -42,8 +42,14 @@ pub enum Error {
     },
     /// A bulk stress under which the stick zones of a history would not be nested.
     #[error(
-        "stress_per_force = {} is too large: allowed is up to {} Pa/N either way, beyond which slip begins on both \
-            sides in opposite directions", short(*stress_per_force), short(*largest)
+        "stress_per_force = {} {}", short(*stress_per_force), if *largest > 0.0 {
+            format!(
+                "is too large: allowed is up to {} Pa/N either way, beyond which slip begins on both sides in opposite \
+                    directions", short(*largest)
+            )
+        } else {
+            "is not available with this profile: the stick zone that it moves is known of a cylinder alone".to_owned()
+        }
     )]
     BulkTooLarge {
         /// The stress of the body over the tangential force, Pa/N.

@@ -10,7 +10,7 @@ use super::path::{Path, Plan};
 use super::prepare::Prepare;
 use super::reply::SolverKind;
 use super::request::{replies, requests};
-use super::simulate::{Solver, Springs, most_springs};
+use super::simulate::{SPRINGS, Solver, Springs, most_springs};
 use super::stress::{Field, Sampling, StressRequest};
 
 /// Solvers that one comparison may name.
@@ -147,6 +147,7 @@ impl Document for AccuracyRequest {
         let setup = self.contact.check(JsonPath::Root.member("contact"), profiles, faults);
         // Stresses are always compared.
         faults.needs_stress_field(setup.as_ref(), JsonPath::Root.member("contact").member("profile"));
+        faults.needs_round_contact(setup.as_ref(), JsonPath::Root.member("contact").member("profile"), SPRINGS);
         let plan = self.path.check(JsonPath::Root.member("path"), faults);
         let stress = self.stress.unwrap_or_else(|| StressRequest {
             points: Some(COMPARED_RADII),

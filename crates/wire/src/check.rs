@@ -124,6 +124,13 @@ impl Faults {
         }
     }
 
+    /// Refuses what is asked for at this place if it is defined for round contacts alone.
+    pub fn needs_round_contact(&mut self, setup: Option<&Setup<Arc<Profile>>>, at: JsonPath<'_>, what: &'static str) {
+        if let Some(Err(error)) = setup.map(|setup| setup.profile.check_round(what)) {
+            self.unanswerable(at, error);
+        }
+    }
+
     /// Checks a number against the range of its quantity.
     pub fn number(&mut self, at: JsonPath<'_>, value: f64, range: &Range) {
         if !range.contains(value) {

@@ -148,6 +148,9 @@ impl Document for SimulateRequest {
             let detail = "springs stand under a surface, which this profile has not: leave `solver` out";
             faults.add(JsonPath::Root.member("solver"), detail);
         }
+        if matches!(self.solver, Some(Solver::Springs(_))) {
+            faults.needs_round_contact(setup.as_ref(), JsonPath::Root.member("solver"), SPRINGS);
+        }
         if let Some(solver) = &self.solver {
             let search = if self.residual { SPRING_SEARCH } else { 0 };
             let moves = plan.as_ref().map_or(0, Plan::length);
@@ -186,6 +189,9 @@ impl Solver {
         }
     }
 }
+
+/// What springs are called where they are refused.
+pub(super) const SPRINGS: &str = "the spring foundation";
 
 /// How many springs may be evaluated `passes` times each.
 pub(super) fn most_springs(passes: usize) -> usize {

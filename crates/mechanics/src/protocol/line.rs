@@ -3,7 +3,7 @@
 //!
 //! The slip history of a line contact over G = P/E* is that of its face over g; what moves it is Q/(mu E*) in place of
 //! W. So a path of displacements of the face is a path of forces F_x = E* L U, and an end without displacement is one
-//! without force.
+//! without force; a path that is to end at the displacement zero is one of these but for its last move.
 
 use super::{AmplitudeLaw, Design, EvaluationRange, FirstMove, PathEnd, PathStart, design};
 use crate::contact::Contact;
@@ -28,7 +28,8 @@ impl Contact {
         let mut displacements = Vec::with_capacity(path.len());
         for target in path {
             let force = self.elasticity.e_star() * line.length() * target;
-            let to = if force.abs() < limit {
+            // A force by rounding below the limit would leave a core of nothing stuck.
+            let to = if force.abs() < limit * (1.0 - 1e-12) {
                 Tangential::Force(force)
             } else {
                 Tangential::Displacement(self.gross_slip_displacement().copysign(force))
@@ -60,8 +61,7 @@ pub(super) fn design_line(
 ) -> Result<Design, Error> {
     let face_end = match end {
         PathEnd::Free => PathEnd::Free,
-        PathEnd::ForceZero => PathEnd::DisplacementZero,
-        PathEnd::DisplacementZero => return Err(Error::LineContact("a path that ends at the displacement zero")),
+        PathEnd::ForceZero | PathEnd::DisplacementZero => PathEnd::DisplacementZero,
     };
     let face = contact.virgin_face();
     let first = match start {
@@ -69,7 +69,14 @@ pub(super) fn design_line(
         PathStart::Displacement(first) => contact.face_displacement(line, first)?,
     };
     let found = design(&face, PathStart::Displacement(first), kind, reversals, face_end, keep_going)?;
-    let (displacements, contact) = contact.by_forces(line, &found.displacements)?;
+    let (mut displacements, mut contact) = contact.by_forces(line, &found.displacements)?;
+    if end == PathEnd::DisplacementZero {
+        // The best path without a force at its end, whose last move goes on to the displacement zero.
+        let to = Some(Tangential::Displacement(0.0));
+        contact.apply(&Move { tangential: to, ..Move::default() })?;
+        displacements.pop();
+        displacements.push(0.0);
+    }
     let first_move = if matches!(start, PathStart::Here) { FirstMove::GrossSlip } else { found.first_move };
     let residual = contact.residual_while(keep_going).ok_or(Error::Interrupted)?;
     let largest = EvaluationRange::of(&contact).largest(&contact, &residual);

@@ -131,7 +131,14 @@ impl SlipHistory {
             Piece::new(point(piece.inner.level), line, Sums::default(), None)
         };
         let edge = if self.in_contact() { point(self.edge.level) } else { self.edge };
-        SlipHistory { pieces: self.pieces.iter().map(moved).collect(), edge, ..SlipHistory::default() }
+        let mut pieces: Vec<Piece> = Vec::with_capacity(self.pieces.len());
+        for piece in self.pieces.iter().map(moved) {
+            // A ring that is thinner than the rounding of its levels has none left.
+            pieces.retain(|before| before.inner.level < piece.inner.level);
+            pieces.push(piece);
+        }
+        pieces.retain(|piece| piece.inner.level < edge.level);
+        SlipHistory { pieces, edge, ..SlipHistory::default() }
     }
 
     /// Bytes held beyond the struct itself.

@@ -94,6 +94,11 @@ impl LineField {
             return self.integrated(s, zeta, excess);
         }
         let root = root_of_excess(c, zeta);
+        if root.size() <= 0.0 {
+            // Both angles are a right one at the end of the zone; the slope is infinite, and has the depth as a factor.
+            let value = std::f64::consts::FRAC_PI_2 * (c - b) / self.radius;
+            return [Complex::new(value, 0.0), Complex::new(f64::INFINITY, 0.0)];
+        }
         if s < NARROW * b {
             return self.narrow(s, zeta, excess, root);
         }

@@ -32,7 +32,9 @@ impl Shared {
         let changed = |member: &str| {
             axes.iter().any(|axis| axis.pointer.segments().iter().map(String::as_str).take(2).eq(["contact", member]))
         };
-        if changed("profile") || point.definition.profile.depends_on_bodies() && changed("material") {
+        // A bulk stress is one of the profile, and a line contact is quickly made.
+        let bound = point.definition.bulk.is_some();
+        if bound || changed("profile") || point.definition.profile.depends_on_bodies() && changed("material") {
             return None;
         }
         let fixed = !["material", "friction", "preload"].into_iter().any(changed);
