@@ -27,12 +27,15 @@ pub use lap::OscillatingCycle;
 pub use oscillating::{OscillatingLoad, Oscillation};
 pub use response::{Resonator, Response};
 
+use std::f64::consts::PI;
+
 use super::curved_path::PathPoint;
 use super::normal::{depth_for, load, whole};
 use super::profile::{Moments, Ring};
 use crate::contact::Contact;
 use crate::error::Error;
 use crate::numerics::double_double::DoubleDouble;
+use crate::numerics::gauss::TWENTY_POINTS;
 use crate::numerics::roots::within;
 use crate::state::Regime;
 
@@ -199,6 +202,24 @@ impl<'a> SteadyCycle<'a> {
         let limit = self.contact.friction * self.contact.normal_force;
         let factor = 4.0 * self.contact.scale() * self.contact.force_unit();
         factor * (self.ring.depth * first - second).max(0.0) + 4.0 * limit * self.slide
+    }
+
+    /// All that friction dissipates in a cycle, J: [`SteadyCycle::dissipated_energy`], unless a bulk stress does work too.
+    ///
+    /// Then it is the integral of [`SteadyCycle::friction_work`] on both sides of the stuck zone, over an angle in which
+    /// the roots at their ends are smooth.
+    #[must_use]
+    pub fn friction_energy(&self) -> f64 {
+        let Some(line) = self.contact.eccentric() else { return self.dissipated_energy() };
+        let (edge, stuck) = (self.contact.contact_radius(), self.stick_radius());
+        let centre = self.contact.zone_centre(line, stuck);
+        let side = |from: f64, to: f64| {
+            let angles = TWENTY_POINTS.map(|(share, weight)| (PI * share, PI * weight));
+            let places = angles.map(|(angle, _)| from + (to - from) * (0.5 * angle).sin().powi(2));
+            let terms = self.friction_work(&places).into_iter().zip(angles);
+            0.5 * (to - from) * terms.map(|(work, (angle, weight))| weight * angle.sin() * work).sum::<f64>()
+        };
+        line.length() * (side(-edge, centre - stuck) + side(centre + stuck, edge))
     }
 
     /// The largest elastic energy of the tangential deformation in a cycle, J.

@@ -211,7 +211,9 @@ fn the_work_of_a_cycle_is_the_pressure_times_the_slip_at_each_place_with_and_wit
     for line in [cylinder(), pad(), with_bulk(cylinder(), Side::First, 1e5)] {
         let bulk = line.bulk().copied();
         let mut contact = contact(line, Preload::NormalForce(500.0));
-        let cycle = SteadyCycle::driven(&contact.clone(), Drive::Force(240.0), 0.0).unwrap().dissipated_energy();
+        let unmoved = contact.clone();
+        let steady = SteadyCycle::driven(&unmoved, Drive::Force(240.0), 0.0).unwrap();
+        let cycle = steady.dissipated_energy();
         let zones = led(&mut contact, &[0.8, -0.8]);
         let back = contact.clone();
         let before = back.state().dissipated_energy;
@@ -220,6 +222,7 @@ fn the_work_of_a_cycle_is_the_pressure_times_the_slip_at_each_place_with_and_wit
         let found = 0.01 * 0.6 * over_contact(&contact, &zones, &|x| contact.pressure(x) * slipped(x));
         let added = bulk.map_or(0.0, |bulk| work_of_bulk(&back, &bulk, &zones));
         assert_near(2.0 * found, cycle + added, 1e-9);
+        assert_near(steady.friction_energy(), cycle + added, 1e-9);
         assert!(bulk.is_none() == (added == 0.0));
         assert_near(2.0 * (contact.state().dissipated_energy - before), cycle, 1e-10);
     }

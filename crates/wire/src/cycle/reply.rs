@@ -31,7 +31,7 @@ pub struct SteadyCycle: Default omits Option {
     pub force_amplitude: f64,
     /// Amplitude of the displacement at the machine, m; with `machine` alone.
     pub machine_amplitude: Option<f64>,
-    /// Friction work of a cycle, J.
+    /// Friction work of a cycle, J: the area of the loop of the force over the displacement.
     pub dissipated_energy: f64,
     /// The largest elastic energy of the tangential deformation in a cycle, J.
     pub max_elastic_energy: f64,
@@ -47,6 +47,9 @@ pub struct SteadyCycle: Default omits Option {
     /// no force, as without friction and without load.
     #[serde_with(skip_apply)]
     pub sliding_ratio: Option<f64>,
+    /// All that friction dissipates in a cycle, J, where a bulk stress does work too: the integral of `friction_work`
+    /// over the contact. Else it is `dissipated_energy`, and left out.
+    pub friction_energy: Option<f64>,
     /// Radius of the part that never slips, m; zero in gross slip.
     pub stick_radius: f64,
     /// How much of the contact slips.

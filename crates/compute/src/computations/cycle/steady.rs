@@ -65,6 +65,7 @@ pub fn steady_cycles(
                 tangent_stiffness: found.tangent_stiffness(),
                 loss_factor: found.loss_factor().and_then(finite),
                 sliding_ratio: found.sliding_ratio().and_then(finite),
+                friction_energy: has_bulk(contact).then(|| found.friction_energy()),
                 stick_radius: found.stick_radius(),
                 regime: found.regime().into(),
                 harmonics: harmonics.map(|found| found.harmonics.into_iter().map(harmonic).collect()),
@@ -134,6 +135,10 @@ fn stepped(cycle: OscillatingCycle, task: &CycleTask) -> SteadyCycle {
 fn harmonic(harmonic: cycle::Harmonic) -> Harmonic {
     let cycle::Harmonic { order, in_phase, quadrature } = harmonic;
     Harmonic { order, in_phase, quadrature }
+}
+
+fn has_bulk(contact: &Contact) -> bool {
+    contact.profile().line().is_some_and(|line| line.bulk().is_some())
 }
 
 fn friction_work(
