@@ -12,7 +12,7 @@ use std::hint::black_box;
 use std::time::{Duration, Instant};
 
 use scenes::{BALL, VALID, contact, elasticity, points, radii, reversed, shapes, slide, sphere, table};
-use stickslip_mechanics::profile::{Asperities, Direction, Ellipsoid, LoadCurve, Sum, Tabulated};
+use stickslip_mechanics::profile::{Asperities, Direction, Ellipsoid, LineContact, LoadCurve, Sum, Tabulated};
 use stickslip_mechanics::protocol::minimax;
 use stickslip_mechanics::{Contact, Profile};
 
@@ -43,6 +43,13 @@ fn curves() -> Vec<(&'static str, Profile)> {
         ("load curve of 100 points", Profile::LoadCurve(LoadCurve::new(&levels, &forces, &elasticity()).expect(VALID))),
         ("ellipsoid", Profile::Ellipsoid(Ellipsoid::new([BALL, 2.0 * BALL], Direction::X).expect(VALID))),
     ]
+}
+
+/// The line contacts, with their names.
+fn lines() -> Vec<(&'static str, Profile)> {
+    let cylinder = LineContact::cylinder(BALL, 1e-3, None).expect(VALID);
+    let pad = LineContact::rounded_pad(1e-5, BALL, 1e-3, None).expect(VALID);
+    vec![("cylinder", Profile::Line(cylinder)), ("rounded pad", Profile::Line(pad))]
 }
 
 /// The time of the reversals and the shear stress.
@@ -148,7 +155,7 @@ fn main() {
     println!("Times in us, and over the sphere's.\n");
     println!("| shape | stress at 200 radii | | a move | | extrema | | displacement at a radius | | minimax | |");
     println!("|---|---|---|---|---|---|---|---|---|---|---|");
-    for (name, profile) in shapes().into_iter().filter(|(name, _)| wanted(name)) {
+    for (name, profile) in shapes().into_iter().chain(lines()).filter(|(name, _)| wanted(name)) {
         let shape = contact(profile);
         let scenes: [(Scene, usize, usize); 5] = [
             (stresses, 1, PAIRS),

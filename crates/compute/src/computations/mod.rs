@@ -263,6 +263,18 @@ fn example_contact(profile: Value, preload: Value) -> Value {
     json!({"profile": profile, "material": material, "friction": 0.3, "preload": preload})
 }
 
+/// A cylinder of aluminium under 160 MPa, with a bulk stress of 1.2 times the pressure times Q/P, for an example.
+fn line_contact() -> Value {
+    let body = json!({"youngs_modulus": 7.4e10, "poisson_ratio": 0.33});
+    json!({
+        "profile": {"type": "cylinder", "radius": 0.05, "length": 0.01},
+        "material": {"bodies": [body, body]},
+        "friction": 0.6,
+        "preload": {"normal_force": 968.5},
+        "bulk": {"body": "second", "stress_per_force": 198_000.0}
+    })
+}
+
 /// How a result is shown.
 #[derive(Clone, Copy, Debug)]
 pub struct Shown {

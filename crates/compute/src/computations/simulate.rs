@@ -6,7 +6,10 @@ use stickslip_plot::{Axis, Colour, Curve, Drawing, Panel, Plot};
 use stickslip_wire::simulate::Simulation;
 use stickslip_wire::{ContactDefinition, Fault, Field, Sampling, SimulateReply, SimulateRequest, State, Stress};
 
-use super::{About, Choice, Computation, Example, Outcome, Route, Shown, example, example_contact, residual, stress};
+use super::{
+    About, Choice, Computation, Example, Outcome, Route, Shown, example, example_contact, line_contact, residual,
+    stress,
+};
 use crate::formats::{Column, Table};
 use crate::simulation::bytes::{NUMBER_LENGTH, OBJECT, STATE_LENGTH, of_simulation};
 use crate::simulation::{self, Failure, cost};
@@ -54,6 +57,14 @@ impl Computation for Simulate {
                 json!({
                     "contact": example_contact(json!({"type": "sphere", "radius": 0.01}), json!({"indentation": 1e-6})),
                     "path": {"force": [0.5, -0.5, 0.5]}, "steps": "last", "solver": "exact"
+                }),
+            ),
+            example(
+                "line contact",
+                "A cylinder on a flat whose bulk stress comes with the tangential force",
+                json!({
+                    "contact": line_contact(), "path": {"force": [290.0, -290.0, 0.0]},
+                    "stress": {"points": 101}, "residual": true
                 }),
             ),
             example(
