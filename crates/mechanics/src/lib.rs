@@ -58,6 +58,7 @@
 //! | [`closed_cycles`] | which cycles has a path closed? |
 //! | `shear_stress`, `extrema` | what is the shear stress, and where are its extrema? |
 //! | [`subsurface`] | what is the stress in the bodies below the contact? |
+//! | [`wear`] | which shape does fretting wear leave in the end? |
 //! | [`fatigue`] | how near does a cycle of stresses bring the material to fatigue? |
 //! | `surface_displacement` | how far does the surface move, and how far has it slipped? |
 //! | `accuracy` | how far may a result be off? |
@@ -97,6 +98,7 @@ mod surface_displacement;
 #[cfg(test)]
 mod tests;
 mod unit_prefix;
+pub mod wear;
 
 /// Runs the example of the README as a test.
 #[cfg(doctest)]

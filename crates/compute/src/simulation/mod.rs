@@ -157,7 +157,9 @@ impl Failure {
                 | mechanics::Error::BodiesNeeded
                 | mechanics::Error::OpenCycle { .. } => Code::InvalidInput,
                 mechanics::Error::NoStressField { .. } => Code::NoStressField,
-                mechanics::Error::BeyondProfile { .. } => Code::BeyondProfile,
+                mechanics::Error::BeyondProfile { .. } | mechanics::Error::WornBeyondProfile { .. } => {
+                    Code::BeyondProfile
+                }
                 mechanics::Error::NotConvexEnough { .. } => Code::ProfileNotConvexEnough,
                 mechanics::Error::ForceExceedsFriction { .. } => Code::ForceExceedsFriction,
                 mechanics::Error::Interrupted | mechanics::Error::CycleTooLarge => Code::TooMuchWork,
