@@ -66,7 +66,7 @@ pub struct WornContact<'a> {
 /// Largest depth of the removed material.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WearDepth {
-    /// It, m.
+    /// The depth, m.
     pub largest: f64,
     /// Where, m.
     pub radius: f64,

@@ -1,10 +1,10 @@
 //! The limiting shape as a table, for computations that follow.
 //!
 //! The limit itself has a g that jumps from d - U0/m to d at c and is constant up to b. A table would round its way
-//! about that constant, and a contact needs a g that rises. So the table has a smooth rise in place of the jump, g = d
-//! - (U0/m) [(1 - xi)^n - k xi] between c and b, xi = (x - c)/(b - c), with k such that the surface meets the unworn
-//! one at b as before. The largest exponent n is taken under which the g of the table does not fall. The rise begins as
-//! far inside c as keeps the normal force, by the same formulas with a slightly larger amplitude.
+//! about that constant, and a contact needs a g that rises. So the table has a smooth rise in place of the jump:
+//! between c and b, with xi = (x - c)/(b - c), g = d - (U0/m) [(1 - xi)^n - k xi], where k is such that the surface
+//! meets the unworn one at b as before. The largest exponent n is taken under which the g of the table does not fall.
+//! The rise begins as far inside c as keeps the normal force, by the same formulas with a slightly larger amplitude.
 
 use std::f64::consts::FRAC_2_PI;
 
@@ -49,19 +49,22 @@ pub struct WornTable {
 
 impl WornContact<'_> {
     /// The limiting shape as a table that contacts of any load can be computed with; `None` where there is none: the
-    /// profile ends in a vertical edge, nothing wears, or so little that no table of it has a g that rises.
+    /// profile ends in a vertical edge, nothing wears, or so little that no table of it has a g that rises. So it is too
+    /// once `keep_going` has returned false.
     #[must_use]
-    pub fn table(&self) -> Option<WornTable> {
+    pub fn table_while(&self, keep_going: &dyn Fn() -> bool) -> Option<WornTable> {
         if self.contact.profile.rim_radius().is_some() || !self.wears() {
             return None;
         }
-        let (first, exponent) = EXPONENTS.iter().find_map(|&exponent| Some((self.smooth(exponent)?, exponent)))?;
+        let (first, exponent) =
+            EXPONENTS.iter().find_map(|&exponent| Some((self.smooth(exponent, keep_going)?, exponent)))?;
         let error = |force: f64| (force / self.normal_force() - 1.0).abs();
         // The rise adds to the normal force what lies below it; it takes from it where it begins inside c.
         let inward = (first.1 - self.normal_force()) / (2.0 * self.contact.elasticity.e_star() * self.step);
         let begins = self.contact.profile.level((self.stick.radius - inward).max(0.0));
         let amplitude = self.contact.scale() * (self.edge().level.value() - begins);
-        let moved = WornContact::new(self.contact, amplitude).ok().and_then(|moved| moved.smooth(exponent));
+        let moved = WornContact::new(self.contact, amplitude).ok();
+        let moved = moved.and_then(|moved| moved.smooth(exponent, keep_going));
         let ((table, force), inward) = match moved {
             Some(moved) if error(moved.1) < error(first.1) => (moved, inward),
             _ => (first, 0.0),
@@ -72,7 +75,7 @@ impl WornContact<'_> {
 
     /// The table with this exponent, without its errors, and its normal force at the indentation of the contact, N;
     /// `None` if its g falls.
-    fn smooth(&self, exponent: i32) -> Option<(WornTable, f64)> {
+    fn smooth(&self, exponent: i32, keep_going: &dyn Fn() -> bool) -> Option<(WornTable, f64)> {
         let radii = self.table_radii();
         let unworn = unworn_heights(&self.contact.profile, &radii);
         let is_worn = |radius: f64| radius > self.stick.radius && radius < self.worn.radius;
@@ -85,7 +88,7 @@ impl WornContact<'_> {
             if is_worn(radius) { worn.next().map_or(unworn, |worn| worn.max(unworn)) } else { unworn }
         };
         let heights: Vec<f64> = radii.iter().zip(&unworn).map(height).collect();
-        let table = Tabulated::new(&radii, &heights).ok()?;
+        let table = Tabulated::new_while(&radii, &heights, keep_going).ok()?;
         table.end().filter(|end| end.radius > self.worn.radius)?;
         let table = Profile::Tabulated(table);
         let force = normal::force(&table, &self.contact.elasticity, &table.point(self.edge().level));
