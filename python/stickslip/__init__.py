@@ -61,6 +61,7 @@ compute_bytes = _local.compute_bytes
 simulate = _local.simulate
 cycle = _local.cycle
 fretting = _local.fretting
+wear = _local.wear
 protocols = _local.protocols
 accuracy = _local.accuracy
 fit_loop = _local.fit_loop
@@ -143,4 +144,5 @@ __all__ = [
     "serve",
     "simulate",
     "sweep",
+    "wear",
 ]

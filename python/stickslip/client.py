@@ -26,6 +26,7 @@ PATHS = {
     "protocol": "/protocols",
     "cycle": "/cycle",
     "fretting": "/fretting",
+    "wear": "/wear",
     "profile": "/profiles/fit",
     "fit": "/fit",
 }

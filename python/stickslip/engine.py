@@ -63,6 +63,14 @@ class Engine(ABC):
         """Fatigue criteria over the steady cycle of this amplitude (m), or of a path."""
         return self._answer(results.FrettingReply, "fretting", requests.fretting(contact, displacement, **request))
 
+    def wear(
+        self, contact: Any, displacement: Quantity, *, hold: str = "indentation", points: int | None = None
+    ) -> results.WearReply:
+        """What fretting wear leaves in the end under cycles of this amplitude (m) at a held indentation."""
+        whole = {"drive": {"displacement": displacement}, "hold": hold, "points": points}
+        document = {"contact": requests.definition(contact)} | {k: v for k, v in whole.items() if v is not None}
+        return self._answer(results.WearReply, "wear", document)
+
     def protocols(
         self, contact: Any, reversals: int | None = None, *, target: float | None = None, **request: Any
     ) -> results.ProtocolReply:

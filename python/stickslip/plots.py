@@ -97,6 +97,15 @@ def _fretting(ax: Axes, result: Any, criterion: str | None = None, **options: An
     _over_places(ax, (result.x, result.y, result.z), result.ratings[criterion].values, criterion, **options)
 
 
+def _wear(ax: Axes, result: Any, **options: Any) -> None:
+    shape = result.shape
+    ax.fill_between(shape.radius, shape.before, shape.after, alpha=0.3, label="removed")
+    ax.plot(shape.radius, shape.before, color="0.6", label="before")
+    ax.plot(shape.radius, shape.after, label="after", **options)
+    ax.set(xlabel="radius r, m", ylabel="height z, m")
+    ax.legend()
+
+
 def _sweep(ax: Axes, result: Any, x: str | None = None, y: str | None = None, **options: Any) -> None:
     names = list(result.columns)
     x, y = x or names[0], y or names[-1]
@@ -125,4 +134,5 @@ _PAINTERS: dict[str, Callable[..., None]] = {
     "SubsurfaceReply": _below,
     "Subsurface": _below,
     "SweepReply": _sweep,
+    "WearReply": _wear,
 }

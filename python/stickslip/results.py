@@ -1752,6 +1752,113 @@ class Warning(Result):
     """An explanation for people."""
 
 
+class WearDepth(Result):
+    """The largest depth of the removed material."""
+
+    largest: float
+    """The depth, m."""
+
+    radius: float
+    """Where it is, m."""
+
+
+class WearReply(Result):
+    """What wear leaves of a contact."""
+
+    accuracy: Accuracy
+    """Solver, errors and time: of the forces before wear, and of the table if the profile has one."""
+
+    contact: Figures
+    """The contact before."""
+
+    depth: WearDepth
+    """The largest depth that is removed."""
+
+    force_amplitude: float
+    """Amplitude of the tangential force in the limit, N: all of the contact sticks."""
+
+    indentation: float
+    """The indentation, which is held, m."""
+
+    normal_force: WornForce
+    """The normal force, N."""
+
+    pressure: WornPressure
+    """The pressure, Pa, at the same radii; in the limit it is infinite, and so `null`, at the stick radius."""
+
+    removed_volume: float
+    """The volume that is removed, m³."""
+
+    shape: WornShape
+    """The height of the undeformed surface above its lowest point, m, from the centre to beyond the worn radius."""
+
+    stick_radius: float
+    """Radius of the disc that never slips, m: the contact radius in the limit."""
+
+    warnings: list[Warning]
+    """Warnings about the result."""
+
+    worn_radius: float
+    """Radius up to which the surface wears, m."""
+
+    profile: Any = None
+    """The limiting shape for the computations that follow: a table, or the profile itself if nothing wears; left out
+    where there is none, with a warning that says why. In the table a steep rise of g takes the place of the jump at
+    the stick radius: with the jump itself the contact at this indentation would be ambiguous.
+    """
+
+    profile_error: WornProfileError | None = None
+    """How far `profile` is from the limit; left out without it. The errors that other computations state do not
+    include it.
+    """
+
+
+class WornForce(Result):
+    """The normal force before wear, and in the limit."""
+
+    after: float
+    """In the limit, N."""
+
+    before: float
+    """Before, N."""
+
+
+class WornPressure(Result):
+    """The pressure over the radius, before wear and in the limit."""
+
+    after: Floats
+    """Pressure in the limit, Pa; `null` where it is infinite."""
+
+    before: Floats
+    """Pressure before, Pa; `null` where it is infinite."""
+
+    radius: Floats
+    """Radii, m, increasing."""
+
+
+class WornProfileError(Result):
+    """How far a table of the limiting shape is from it."""
+
+    normal_force: float
+    """Error of its normal force at this indentation, relative to that of the limit, a pure number."""
+
+    rise_width: float
+    """Width about the stick radius within which its g rises, where that of the limit jumps, m."""
+
+
+class WornShape(Result):
+    """The height of the surface over the radius, before wear and in the limit."""
+
+    after: Floats
+    """Heights in the limit, m."""
+
+    before: Floats
+    """Heights before, m."""
+
+    radius: Floats
+    """Radii, m, increasing."""
+
+
 NAMES = [
     "Accuracy",
     "AccuracyReply",
@@ -1836,4 +1943,10 @@ NAMES = [
     "SubsurfaceReply",
     "SweepReply",
     "Warning",
+    "WearDepth",
+    "WearReply",
+    "WornForce",
+    "WornPressure",
+    "WornProfileError",
+    "WornShape",
 ]

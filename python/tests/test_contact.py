@@ -81,7 +81,9 @@ def test_results_have_tables_and_pictures(ball: ss.Contact) -> None:
     below = ball.subsurface(plane={"normal": "y", "offset": 0.0, "x": [-1e-4, 1e-4, 5], "z": [0.0, 1e-4, 4]})
     cycle = ball.cycle(np.geomspace(1e-9, 1e-7, 5))
     fretting = ball.fretting("50 nm", crossland={"alpha": 0.3, "limit": "300 MPa"}, tolerance=1e-2)
-    for result in (path, stress, ball.residual(), below, cycle, fretting):
+    wear = ss.wear(ball, "50 nm", points=20)
+    assert wear.profile_error is not None and wear.shape.radius.size == 23
+    for result in (path, stress, ball.residual(), below, cycle, fretting, wear):
         result.plot()
         assert "<table" in result._repr_html_()
         assert type(result).__name__ in repr(result)

@@ -85,7 +85,7 @@ def test_every_computation_has_its_path_and_method(openapi: dict[str, Any]) -> N
     served = {name: path for name, path in _native.names() if path is not None}
     assert served == client.PATHS
     assert set(served.values()) < set(openapi["paths"])
-    for method in ("simulate", "cycle", "fretting", "protocols", "accuracy", "fit_loop", "fit_profile", "sweep"):
+    for method in ("simulate", "cycle", "fretting", "protocols", "accuracy", "fit_loop", "fit_profile", "sweep", "wear"):
         assert callable(getattr(ss, method))
         assert callable(getattr(ss.Client, method))
 

@@ -1,5 +1,6 @@
 // A steady cycle in full: under a load that oscillates too, its harmonics, where it wears, and the load that damps
 // most.
+import { Refusal, call } from "./api.js";
 import { Chart } from "./chart.js";
 import { el, figure } from "./dom.js";
 import { Fields, NumberField } from "./form_fields.js";
@@ -39,6 +40,17 @@ function figureRows(cycle, unit) {
   ];
 }
 
+/** The figures of the limit of wear in rows. */
+function wearRows({ stick_radius: stick, worn_radius: worn, normal_force: force, depth, removed_volume: volume }) {
+  return [
+    figure("Wear ends at a contact radius of", formatQuantity(stick, "m")),
+    figure("Worn up to", formatQuantity(worn, "m")),
+    figure("Largest depth", formatQuantity(depth.largest, "m")),
+    figure("Removed volume", `${formatNumber(volume * 1e18)} µm³`),
+    figure("Load that is left", formatQuantity(force.after, "N")),
+  ];
+}
+
 /** The card, its plots and the request behind it. */
 export function cycleStudyCard(model) {
   const form = new Fields();
@@ -71,6 +83,20 @@ export function cycleStudyCard(model) {
     x: { label: "Normal force F_N", unit: "N" },
     y: { label: "Friction work of a cycle", unit: "J" },
   });
+  const shape = new Chart({
+    name: "wear",
+    title: "Shape before wear, and in the end, at a held indentation",
+    height: 220,
+    x: { label: "Radius r", unit: "m" },
+    y: { label: "Height z", unit: "m" },
+  });
+  const wearRequest = () => ({
+    contact: virginContact(model),
+    drive: { displacement: amplitude.value },
+    hold: "indentation",
+  });
+  /** Whether wear at this load has a limit that the service computes. */
+  const hasLimit = () => load.value === undefined && model.hasStress;
   const request = () => {
     const isConstant = load.value === undefined;
     return {
@@ -82,29 +108,53 @@ export function cycleStudyCard(model) {
       ...(isConstant && model.hasStress ? { work_density: { points: RADII } } : {}),
     };
   };
-  const show = ({ cycles: [{ friction_work: density, best_load: best }] }) => {
-    for (const chart of [work, loads]) chart.element.hidden = true;
+  const show = async ({ cycles: [{ friction_work: density, best_load: best, regime }] }, _, figures) => {
+    for (const chart of [work, loads, shape]) chart.element.hidden = true;
     const draw = (chart, name, x, y) =>
       chart.draw({ series: [{ name, kind: "work", points: x.map((at, index) => [at, y[index]]) }], least: { y: [0] } });
     if (density) draw(work, "friction work per area", density.radius, density.density);
     if (best?.curve) draw(loads, "friction work", best.curve.normal_force, best.curve.dissipated_energy);
+    if (!hasLimit()) return;
+    if (regime === "gross_slip") {
+      figures.append(figure("Wear", "All of the contact slips: it wears on without a limit"));
+      return;
+    }
+    try {
+      const reply = await call("POST", "/wear", wearRequest(), model.signal);
+      figures.append(...wearRows(reply));
+      const { radius, before, after } = reply.shape;
+      const points = (heights) => radius.map((at, index) => [at, heights[index]]);
+      shape.draw({
+        series: [
+          { name: "before", kind: "past", points: points(before) },
+          { name: "in the end", kind: "work", points: points(after) },
+        ],
+        least: { y: [0] },
+      });
+    } catch (error) {
+      if (!(error instanceof Refusal)) throw error;
+      figures.append(figure("Wear", error.message));
+    }
   };
   return study({
     name: "study",
     title: "Load, harmonics and wear",
     text:
       "A cycle at the present load, or while the load oscillates with it: its harmonics and, at a constant load, " +
-      "where " +
-      "it wears and which load damps most.",
+      "where it wears, which load damps most, and the shape that wear at a held indentation leaves in the end.",
     form,
     parts: [
       amplitude.element,
       el("details", {}, el("summary", {}, "The load oscillates too"), load.element, phase.element),
     ],
-    charts: [work, loads],
+    charts: [work, loads, shape],
     signal: model.signal,
     path: "/cycle",
     request,
+    calls: () => [
+      { method: "POST", path: "/cycle", body: request() },
+      ...(hasLimit() ? [{ method: "POST", path: "/wear", body: wearRequest() }] : []),
+    ],
     rows: ({ cycles: [cycle] }) => figureRows(cycle, "N"),
     show,
   });

@@ -6,7 +6,7 @@ import { Fields } from "./form_fields.js";
 import { showWarnings, warningList } from "./warning_list.js";
 
 /** A card with a form. By default it sends the document that `request` gives to `path`, and shows the figures that
- *  `rows` makes of the reply, its warnings, and what else `show` does. `compute` does all of that in their place; it
+ *  `rows` makes of the reply, its warnings, and what else `show` does, which gets the list of figures too. `compute` does all of that in their place; it
  *  gets a function that shows how much is done. `parts` stand before the button, and the charts, which appear when they
  *  are drawn, after the results. */
 export function study({ name, button: label = "Compute", title, text, signal, form = new Fields(), ...more }) {
@@ -23,7 +23,7 @@ export function study({ name, button: label = "Compute", title, text, signal, fo
     const reply = await call("POST", path, asked, signal);
     if (rows) figures.replaceChildren(...rows(reply, asked));
     showWarnings(warnings, reply.warnings);
-    show?.(reply, asked);
+    await show?.(reply, asked, figures);
   };
   const { compute = ask, calls = () => [{ method: "POST", path, body: request() }] } = more;
   const button = el("button", { class: "primary", id: `compute-${name}` }, label);

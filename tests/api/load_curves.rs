@@ -72,6 +72,7 @@ async fn they_are_stored_moved_swept_and_cycled_and_have_no_stresses() {
                 changed(point.clone(), &json!({"path": path, "criteria": {"crossland": {"alpha": 0.3}}})),
                 "/contact/profile",
             ),
+            ("/wear".to_owned(), json!({"drive": {"displacement": 1e-8}, "hold": "indentation"}), "/contact/profile"),
         ] {
             let body = if call.starts_with("/contacts") { body } else { of(&contact(profile.clone()), &body) };
             let refused = crate::common::problem(server.post(&call, &body).await).await;

@@ -61,3 +61,4 @@ mod sweeps;
 mod tls;
 mod unread_bodies;
 mod warnings;
+mod wear;

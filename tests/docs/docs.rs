@@ -18,7 +18,7 @@ async fn every_command_of_the_pages_runs_as_printed() {
     let server = Process::start("memory:").await;
     for (name, blocks) in [
         ("simulate.md", 4),
-        ("cycles.md", 3),
+        ("cycles.md", 4),
         ("fretting.md", 1),
         ("rough-contacts.md", 1),
         ("measured-surfaces.md", 2),

@@ -256,6 +256,10 @@ async fn damping_a_file_of_a_contact_becomes_its_loss_factor_and_resonance() {
     browser.says("#study-figures", &format!("Load that damps most {} N", four(best))).await;
     browser.find("#plot-density .line.work").await;
     browser.find("#plot-best-load .line.work").await;
+    let body = json!({"contact": scene.virgin(), "drive": drive, "hold": "indentation"});
+    let stick = number(&scene.asked("/wear", &body).await["stick_radius"]);
+    browser.says("#study-figures", &format!("Wear ends at a contact radius of {} µm", four(1e6 * stick))).await;
+    browser.find("#plot-wear .line.work").await;
     // Under a load that oscillates the loss is another.
     browser.unfold("#study-card details").await;
     browser.set("#study-card details input", "2").await;

@@ -72,6 +72,16 @@ pub enum Error {
         /// The first radius at which g falls, m.
         radius: f64,
     },
+    /// The part of the surface that wears reaches beyond what is known of the profile.
+    #[error(
+        "the worn part reaches beyond the radius {} m, where the profile ends, or its g falls: give the surface further \
+            out",
+        short(*limit)
+    )]
+    WornBeyondProfile {
+        /// Where the profile ends, m.
+        limit: f64,
+    },
     /// A table that is not one.
     #[error("the table is not usable: {fault} at index {index}")]
     Table {

@@ -58,6 +58,7 @@
 //! | [`closed_cycles`] | which cycles has a path closed? |
 //! | `shear_stress`, `extrema` | what is the shear stress, and where are its extrema? |
 //! | [`subsurface`] | what is the stress in the bodies below the contact? |
+//! | [`wear`] | which shape does fretting wear leave in the end? |
 //! | [`fatigue`] | how near does a cycle of stresses bring the material to fatigue? |
 //! | `line_surface` | what does the surface of a line contact carry, and how far has it slipped? |
 //! | `surface_displacement` | how far does the surface move, and how far has it slipped? |
@@ -99,6 +100,7 @@ mod surface_displacement;
 #[cfg(test)]
 mod tests;
 mod unit_prefix;
+pub mod wear;
 
 /// Runs the example of the README as a test.
 #[cfg(doctest)]

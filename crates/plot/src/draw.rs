@@ -22,6 +22,8 @@ const MARGIN: f64 = 0.05;
 /// The part kept free above where there is a legend.
 const HEADROOM: f64 = 0.24;
 
+/// How much of its colour an area has.
+const AREA_SHADE: f64 = 0.3;
 /// Radius of a point, pixels; of one that stands alone, or is one of so few that none hides another.
 const DOT: u32 = 4;
 const LARGE_DOT: u32 = 7;
@@ -200,6 +202,14 @@ impl Plot {
             let mut named = curve.name.is_empty();
             for stretch in points.filter(|stretch| !stretch.is_empty()) {
                 let points = || stretch.iter().map(|point| (point.0 / x.unit, point.1 / y.unit));
+                if curve.filled {
+                    let shade = colour.mix(AREA_SHADE);
+                    let area = Polygon::new(points().collect::<Vec<_>>(), shade.filled());
+                    axes.draw_series([area])?
+                        .label(curve.name.as_ref())
+                        .legend(move |(x, y)| Rectangle::new([(x, y - 12), (x + 28, y + 12)], shade.filled()));
+                    continue;
+                }
                 let joined = stretch.len() > 1 && !curve.dots;
                 let dot = if stretch.len() == 1 || curve.points.len() < FEW { LARGE_DOT } else { DOT };
                 if !joined || decades {
@@ -313,7 +323,7 @@ mod tests {
     /// Every second of many points is high, so that each corner is sharp.
     fn comb(dots: bool) -> Plot {
         let points = (0..400).map(|index| (f64::from(index), if index % 2 == 0 { -1.0 } else { 1.0 })).collect();
-        let curve = Curve { name: "".into(), points, colour: Some(Colour::Red), dots };
+        let curve = Curve { name: "".into(), points, colour: Some(Colour::Red), dots, filled: false };
         let axis = || Axis { name: "x", unit: None };
         Plot::new("t", axis(), vec![Panel { y: axis(), curves: vec![curve] }])
     }
@@ -353,6 +363,21 @@ mod tests {
         assert_eq!(svg.matches("<circle").count(), 2);
         // Nor do the axes reach to it.
         assert!(!svg.contains("NaN") && !svg.contains("inf") && !svg.contains("1e0") && !svg.contains("1e-2"));
+    }
+
+    #[test]
+    fn an_area_is_filled_and_has_no_line() {
+        let axis = || Axis { name: "x", unit: None };
+        let outline = [(0.0, 0.0), (1.0, 2.0), (2.0, 0.0)];
+        let area = Curve::area("removed", Colour::Red, outline);
+        let plot = Plot::new("t", axis(), vec![Panel { y: axis(), curves: vec![area] }]);
+        let svg = String::from_utf8(plot.svg().unwrap()).unwrap();
+        let filled = |part: &&str| part.contains("#DC3220") && part.contains("opacity=\"0.3\"");
+        let polygons: Vec<&str> = svg.split("<polygon").skip(1).filter_map(|part| part.split('>').next()).collect();
+        assert_eq!(polygons.iter().filter(|part| filled(part)).count(), 1, "{polygons:?}");
+        assert!(svg.contains("removed"));
+        let lines = svg.split("<polyline").skip(1).filter_map(|line| line.split('>').next());
+        assert_eq!(lines.filter(|line| line.contains("#DC3220")).count(), 0);
     }
 
     #[test]

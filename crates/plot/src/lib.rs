@@ -83,6 +83,8 @@ pub struct Curve {
     pub colour: Option<Colour>,
     /// Points alone, as they were measured: between them nothing is known.
     pub dots: bool,
+    /// The points are the outline of an area, which is filled.
+    pub filled: bool,
 }
 
 impl Curve {
@@ -93,7 +95,8 @@ impl Curve {
         colour: impl Into<Option<Colour>>,
         points: impl IntoIterator<Item = (f64, f64)>,
     ) -> Curve {
-        Curve { name: name.into(), points: points.into_iter().collect(), colour: colour.into(), dots: false }
+        let points = points.into_iter().collect();
+        Curve { name: name.into(), points, colour: colour.into(), dots: false, filled: false }
     }
 
     /// Points alone.
@@ -104,6 +107,16 @@ impl Curve {
         points: impl IntoIterator<Item = (f64, f64)>,
     ) -> Curve {
         Curve { dots: true, ..Curve::line(name, colour, points) }
+    }
+
+    /// An area within an outline.
+    #[must_use]
+    pub fn area(
+        name: impl Into<Cow<'static, str>>,
+        colour: impl Into<Option<Colour>>,
+        outline: impl IntoIterator<Item = (f64, f64)>,
+    ) -> Curve {
+        Curve { filled: true, ..Curve::line(name, colour, outline) }
     }
 }
 

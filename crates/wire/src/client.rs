@@ -16,7 +16,7 @@ use crate::{
     NewSession, ObservationsReply, ObservationsRequest, PathReply, PathRequest, ProblemDocument, ProfileFitReply,
     ProfileFitRequest, ProtocolReply, ProtocolRequest, RelaxReply, RelaxRequest, RenameRequest, Residual,
     ScanFileReply, SessionPage, SessionReply, SimulateReply, SimulateRequest, StateEvent, StressReply, StressRequest,
-    SubsurfaceReply, SubsurfaceRequest, SweepReply, SweepRequest, WorkDensity,
+    SubsurfaceReply, SubsurfaceRequest, SweepReply, SweepRequest, WearReply, WearRequest, WorkDensity,
 };
 
 /// A handle on a service; clones share its connections. Every call fails with an [`Error`], and so may a stream of
@@ -138,6 +138,7 @@ impl Client {
         cycle: POST "/cycle" CycleRequest => CycleReply;
         protocol: POST "/protocols" ProtocolRequest => ProtocolReply;
         fretting: POST "/fretting" FrettingRequest => FrettingReply;
+        wear: POST "/wear" WearRequest => WearReply;
         fit_profile: POST "/profiles/fit" ProfileFitRequest => ProfileFitReply;
         fit_loops: POST "/fit" FitRequest => FitReply;
         create: POST "/contacts" CreateRequest + options => NewSession;

@@ -48,6 +48,7 @@ pub mod simulate;
 pub mod stress;
 pub mod subsurface;
 pub mod sweep;
+pub mod wear;
 
 pub use accuracy::{AccuracyReply, AccuracyRequest, AccuracyRow, Comparison, Reference};
 pub use check::{Fault, Faults, JsonPath, Rejection};
@@ -89,6 +90,9 @@ pub use subsurface::{
     SubsurfaceSurface,
 };
 pub use sweep::{Axis, NamedOutput, Output, PointFailure, Span, SweepReply, SweepRequest};
+pub use wear::{
+    Hold, WearDepth, WearDrive, WearReply, WearRequest, WornForce, WornPressure, WornProfileError, WornShape,
+};
 
 /// Schema, member and keywords of every limit.
 #[must_use]
@@ -107,6 +111,6 @@ pub fn all_limits() -> Vec<(&'static str, &'static str, serde_json::Value)> {
         profile_fit::PointScan, Preload, ProtocolRequest, protocol::ProtocolStart, RelaxRequest, RenameRequest,
         protocol::Robustness, profile_fit::ScanLoad, SimulateRequest, profile_fit::Smoothing, Span, Springs,
         StrainBased, StressRequest, SubsurfaceLine, SubsurfacePlane, SubsurfaceRequest, SubsurfaceSurface,
-        SurfaceCriterion, SweepRequest, Weighted, WorkDensity
+        SurfaceCriterion, SweepRequest, WearDrive, WearRequest, Weighted, WorkDensity
     }
 }

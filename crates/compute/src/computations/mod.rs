@@ -15,6 +15,7 @@ mod residual;
 mod simulate;
 mod stress;
 mod subsurface;
+mod wear;
 
 use serde::Serialize;
 use serde_json::{Value, json};
@@ -45,6 +46,7 @@ pub fn each(visitor: &mut impl Visitor) {
     visitor.visit_stored::<protocol::FindProtocol>();
     visitor.visit::<cycle::Cycle>();
     visitor.visit::<fretting::Fretting>();
+    visitor.visit::<wear::Wear>();
     visitor.visit::<subsurface::SubsurfaceOfPath>();
     visitor.visit::<profile_fit::FitProfile>();
     visitor.visit::<loop_fit::FitLoops>();

@@ -23,7 +23,7 @@ pub const OBJECT: usize = 1_024;
 pub const PLACE_ROW: usize = 10 * NUMBER;
 /// A point of a table, with the series that the mechanics makes between it and the next. The process grows by 2700 to
 /// 3800.
-const SERIES: usize = 4_096;
+pub const SERIES: usize = 4_096;
 /// What an optimisation takes, whatever its size.
 pub const WORKSPACE: usize = 4 * 1024 * 1024;
 

@@ -162,9 +162,9 @@ impl Failure {
                 | mechanics::Error::BulkNeedsConstantLoad
                 | mechanics::Error::OpenCycle { .. } => Code::InvalidInput,
                 mechanics::Error::NoStressField { .. } => Code::NoStressField,
-                mechanics::Error::BeyondProfile { .. } | mechanics::Error::BeyondReferenceLength { .. } => {
-                    Code::BeyondProfile
-                }
+                mechanics::Error::BeyondProfile { .. }
+                | mechanics::Error::BeyondReferenceLength { .. }
+                | mechanics::Error::WornBeyondProfile { .. } => Code::BeyondProfile,
                 mechanics::Error::BulkTooLarge { .. } => Code::BulkTooLarge,
                 mechanics::Error::NotConvexEnough { .. } => Code::ProfileNotConvexEnough,
                 mechanics::Error::ForceExceedsFriction { .. } => Code::ForceExceedsFriction,

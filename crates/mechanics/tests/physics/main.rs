@@ -43,3 +43,4 @@ mod sums_of_tables;
 mod support;
 mod tables;
 mod thin_annuli;
+mod wear;

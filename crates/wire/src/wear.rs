@@ -1,0 +1,170 @@
+//! The body of `POST /wear` and its reply: what fretting wear leaves.
+
+use stickslip_mechanics::range::{self, Range};
+
+use crate::check::{Faults, JsonPath};
+use crate::choice::words;
+use crate::definition::{ContactDefinition, DefinedProfile, SharedSetup};
+use crate::document::Document;
+use crate::limits::{Limited as _, STRESS_POINTS};
+use crate::prepare::Prepare;
+use crate::profile::Profile;
+use crate::reply::{Accuracy, ContactSummary, Warning};
+use crate::request::{replies, requests};
+
+/// Points of the curves if the request does not say.
+const DEFAULT_POINTS: usize = 200;
+
+requests! {
+/// A contact that is moved back and forth until it has worn to its limit; the server keeps nothing of it.
+#[schema(example = json!({
+    "contact": ContactDefinition::example(),
+    "drive": {"displacement": 1e-7},
+    "hold": "indentation"
+}))]
+pub struct WearRequest {
+    /// The contact. Its profile must have a stress field.
+    pub contact: ContactDefinition,
+    /// How it is moved.
+    pub drive: WearDrive,
+    /// What is held meanwhile: `indentation`. Under a held normal force the end depends on the way, so that
+    /// `normal_force` is refused.
+    pub hold: Hold,
+    /// Number of radii of the curves, evenly spaced and with both ends; 200 if left out. Stick radius, contact radius
+    /// and worn radius are added to them.
+    pub points: Option<usize> = STRESS_POINTS,
+}
+
+/// The cycles that wear a contact.
+pub struct WearDrive: Copy {
+    /// Amplitude of the tangential displacement, m; below that of gross slip.
+    pub displacement: f64 = Range { min: 0.0, ..range::DISPLACEMENT },
+}
+}
+
+words! {
+/// What is held while a contact wears.
+pub enum Hold {
+    /// The indentation.
+    Indentation = "indentation",
+    /// The normal force. Refused: no limit is known.
+    NormalForce = "normal_force",
+}
+}
+
+replies! {
+/// What wear leaves of a contact.
+pub struct WearReply omits Option {
+    /// The contact before.
+    pub contact: ContactSummary,
+    /// Radius of the disc that never slips, m: the contact radius in the limit.
+    pub stick_radius: f64,
+    /// Radius up to which the surface wears, m.
+    pub worn_radius: f64,
+    /// The indentation, which is held, m.
+    pub indentation: f64,
+    /// The normal force, N.
+    pub normal_force: WornForce,
+    /// Amplitude of the tangential force in the limit, N: all of the contact sticks.
+    pub force_amplitude: f64,
+    /// The volume that is removed, m³.
+    pub removed_volume: f64,
+    /// The largest depth that is removed.
+    pub depth: WearDepth,
+    /// The height of the undeformed surface above its lowest point, m, from the centre to beyond the worn radius.
+    pub shape: WornShape,
+    /// The pressure, Pa, at the same radii; in the limit it is infinite, and so `null`, at the stick radius.
+    pub pressure: WornPressure,
+    /// The limiting shape for the computations that follow: a table, or the profile itself if nothing wears; left out
+    /// where there is none, with a warning that says why. In the table a steep rise of g takes the place of the jump at
+    /// the stick radius: with the jump itself the contact at this indentation would be ambiguous.
+    pub profile: Option<Profile>,
+    /// How far `profile` is from the limit; left out without it. The errors that other computations state do not
+    /// include it.
+    pub profile_error: Option<WornProfileError>,
+    /// Solver, errors and time: of the forces before wear, and of the table if the profile has one.
+    pub accuracy: Accuracy,
+    /// Warnings about the result.
+    pub warnings: Vec<Warning>,
+}
+
+/// How far a table of the limiting shape is from it.
+pub struct WornProfileError: Copy, Default {
+    /// Error of its normal force at this indentation, relative to that of the limit, a pure number.
+    pub normal_force: f64,
+    /// Width about the stick radius within which its g rises, where that of the limit jumps, m.
+    pub rise_width: f64,
+}
+
+/// The normal force before wear, and in the limit.
+pub struct WornForce: Copy, Default {
+    /// Before, N.
+    pub before: f64,
+    /// In the limit, N.
+    pub after: f64,
+}
+
+/// The largest depth of the removed material.
+pub struct WearDepth: Copy, Default {
+    /// The depth, m.
+    pub largest: f64,
+    /// Where it is, m.
+    pub radius: f64,
+}
+
+/// The height of the surface over the radius, before wear and in the limit.
+pub struct WornShape: Default {
+    /// Radii, m, increasing.
+    pub radius: Vec<f64>,
+    /// Heights before, m.
+    pub before: Vec<f64>,
+    /// Heights in the limit, m.
+    pub after: Vec<f64>,
+}
+
+/// The pressure over the radius, before wear and in the limit.
+pub struct WornPressure: Default {
+    /// Radii, m, increasing.
+    pub radius: Vec<f64>,
+    /// Pressure before, Pa; `null` where it is infinite.
+    pub before: Vec<Option<f64>>,
+    /// Pressure in the limit, Pa; `null` where it is infinite.
+    pub after: Vec<Option<f64>>,
+}
+}
+
+/// A checked request.
+#[derive(Clone, Copy, Debug)]
+pub struct WearTask {
+    /// Amplitude of the displacement, m.
+    pub displacement: f64,
+    /// Points of each curve.
+    pub points: usize,
+}
+
+impl Document for WearRequest {
+    type Checked = (ContactDefinition, SharedSetup, WearTask);
+
+    fn profile(&self) -> Option<DefinedProfile<'_>> {
+        Some(self.contact.defined_profile("/contact/profile"))
+    }
+
+    fn checked(self, profiles: &dyn Prepare, faults: &mut Faults) -> Option<Self::Checked> {
+        let at = |name| JsonPath::Root.member(name);
+        let setup = self.contact.check(at("contact"), profiles, faults);
+        if let Some(Err(error)) = setup.as_ref().map(|setup| setup.profile.check_wear()) {
+            faults.unanswerable(at("contact").member("profile"), error);
+        }
+        self.drive.check_members(at("drive"), faults);
+        self.check_members(JsonPath::Root, faults);
+        if self.hold == Hold::NormalForce {
+            faults.add(
+                at("hold"),
+                "normal_force: the indentation would grow while the surface wears, and where it ends depends on the \
+                 way, so that there is no limit to compute; allowed is indentation",
+            );
+        }
+        let task = WearTask { displacement: self.drive.displacement, points: self.points.unwrap_or(DEFAULT_POINTS) };
+        Some((self.contact, setup?, task))
+    }
+}

@@ -1,0 +1,112 @@
+//! What fretting wear leaves, over HTTP: closed forms, what is infinite, the profile that other calls take, and what
+//! has no limit.
+
+use serde_json::{Value, json};
+
+use crate::common::{Server, assert_refused, ball, changed, codes, good, number, of};
+
+/// R = d = m = 1.
+fn unit_sphere() -> Value {
+    json!({
+        "profile": {"type": "sphere", "radius": 1.0},
+        "material": {"effective": {"e_star": 1e11, "g_star": 1e11}},
+        "friction": 1.0,
+        "preload": {"indentation": 1.0}
+    })
+}
+
+fn asked(displacement: f64) -> Value {
+    json!({"drive": {"displacement": displacement}, "hold": "indentation"})
+}
+
+fn close(found: &Value, expected: f64, tolerance: f64) {
+    let found = number(found);
+    assert!((found - expected).abs() <= tolerance * expected.abs(), "{found:e} is not {expected:e}");
+}
+
+#[tokio::test]
+async fn a_ball_wears_to_the_closed_form_and_the_profile_carries_on() {
+    let server = Server::start().await;
+    let reply = good(server.post("/wear", &of(&unit_sphere(), &asked(0.36))).await).await;
+    close(&reply["stick_radius"], 0.8, 1e-14);
+    close(&reply["worn_radius"], 1.096_897_388_221, 1e-11);
+    close(&reply["indentation"], 1.0, 1e-15);
+    close(&reply["normal_force"]["before"], 4e11 / 3.0, 1e-14);
+    close(&reply["normal_force"]["after"], 1.258_666_666_667e11, 1e-11);
+    close(&reply["force_amplitude"], 2e11 * 0.8 * 0.36, 1e-14);
+    close(&reply["removed_volume"], 0.090_048_319_215_8, 1e-11);
+    let (shape, pressure) = (&reply["shape"], &reply["pressure"]);
+    let radii: Vec<f64> = shape["radius"].as_array().unwrap().iter().map(number).collect();
+    assert_eq!((radii.len(), &shape["radius"]), (203, &pressure["radius"]));
+    assert!(radii.windows(2).all(|pair| pair[0] < pair[1]) && radii[202] > 1.3, "{radii:?}");
+    for (index, &r) in radii.iter().enumerate() {
+        assert!((number(&shape["before"][index]) - 0.5 * r * r).abs() < 1e-14);
+        let removed = number(&shape["after"][index]) - number(&shape["before"][index]);
+        assert_eq!(removed > 1e-12, r > 0.8 + 1e-12 && r < 1.096_897, "{r}: {removed:e}");
+        assert!(removed <= number(&reply["depth"]["largest"]) * (1.0 + 1e-12));
+        let after = &pressure["after"][index];
+        // Infinite at the stick radius, nothing beyond.
+        assert_eq!(after.is_null(), (r - 0.8).abs() < 1e-14, "{r}: {after}");
+        assert!(r <= 0.8 || after.is_null() || number(after) <= 0.0, "{r}: {after}");
+    }
+    // The same cycle on what is left slips in the rise of g alone, and the force is that of the limit to the stated error.
+    let error = number(&reply["profile_error"]["normal_force"]);
+    assert!(error < 1e-3, "{error:e}");
+    let worn = changed(unit_sphere(), &json!({"profile": reply["profile"]}));
+    let cycle = json!({"drive": {"displacement": 0.36}});
+    let next = good(server.post("/cycle", &of(&worn, &cycle)).await).await;
+    close(&next["contact"]["normal_force"], 1.258_666_666_667e11, 1.01 * error + 1e-11);
+    close(&next["cycles"][0]["force_amplitude"], 2e11 * 0.8 * 0.36, 2e-3);
+    let unworn = good(server.post("/cycle", &of(&unit_sphere(), &cycle)).await).await;
+    let work = |reply: &Value| number(&reply["cycles"][0]["dissipated_energy"]);
+    assert!(work(&next) < 0.1 * work(&unworn), "{} {}", work(&next), work(&unworn));
+    // A heavier contact takes it, too.
+    let heavier = json!({"preload": {"indentation": 1.2}});
+    good(server.post("/cycle", &of(&changed(worn, &heavier), &cycle)).await).await;
+}
+
+#[tokio::test]
+async fn a_vertical_edge_has_a_limit_but_no_table_and_a_stuck_punch_keeps_its_profile() {
+    let server = Server::start().await;
+    let edge = json!({"type": "flat_punch", "radius": 1.2e-4});
+    let edged = json!({"type": "sum", "parts": [{"type": "sphere", "radius": 0.01}, edge]});
+    let contact =
+        |profile: Value, depth: f64| changed(ball(), &json!({"profile": profile, "preload": {"indentation": depth}}));
+    let reply = good(server.post("/wear", &of(&contact(edged, 1e-6), &asked(2e-7))).await).await;
+    assert_eq!((&reply["profile"], &reply["profile_error"]), (&Value::Null, &Value::Null));
+    assert!(codes(&reply).contains(&"no_worn_profile"), "{reply}");
+    assert!(number(&reply["removed_volume"]) > 0.0);
+    let reply = good(server.post("/wear", &of(&contact(edge.clone(), 1e-6), &asked(1e-7))).await).await;
+    assert_eq!((&reply["profile"], &reply["removed_volume"]), (&edge, &json!(0.0)));
+    assert!(!codes(&reply).contains(&"no_worn_profile"), "{reply}");
+    assert_eq!(reply["stick_radius"], reply["worn_radius"]);
+    // The edge is singular before and after.
+    let (before, after) = (&reply["pressure"]["before"], &reply["pressure"]["after"]);
+    assert!(
+        before.as_array().unwrap().last().unwrap().is_null() && after.as_array().unwrap().last().unwrap().is_null()
+    );
+}
+
+#[tokio::test]
+async fn what_has_no_limit_is_refused_at_its_place() {
+    let server = Server::start().await;
+    let refuse = async |contact: &Value, asked: Value, expected| {
+        assert_refused(&server, "/wear", &of(contact, &asked), expected).await;
+    };
+    let held = json!({"drive": {"displacement": 1e-7}, "hold": "normal_force"});
+    refuse(&ball(), held, ("invalid_input", "/hold", "depends on the way")).await;
+    for amplitude in [1.0, 2.0] {
+        refuse(&unit_sphere(), asked(amplitude), ("invalid_input", "/drive/displacement", "gross slip, 1 m")).await;
+    }
+    refuse(&ball(), asked(-1e-7), ("invalid_input", "/drive/displacement", "")).await;
+    let frictionless = changed(ball(), &json!({"friction": 0.0}));
+    refuse(&frictionless, asked(1e-8), ("invalid_input", "/drive/displacement", "gross slip, 0 m")).await;
+    let (drive, few) = (json!({"force": 1.0}), json!({"points": 1}));
+    refuse(&ball(), changed(asked(1e-8), &json!({"drive": drive})), ("invalid_input", "/drive/force", "")).await;
+    refuse(&ball(), changed(asked(1e-8), &few), ("invalid_input", "/points", "")).await;
+    let radii: Vec<f64> = (0..=20).map(|index| 5.05e-6 * f64::from(index)).collect();
+    let heights: Vec<f64> = radii.iter().map(|r| r * r / 0.02).collect();
+    let short = json!({"profile": {"type": "tabulated", "r": radii, "z": heights}, "preload": {"indentation": 1e-6}});
+    let named = ("beyond_profile", "/contact/profile", "give the surface further out");
+    refuse(&changed(ball(), &short), asked(1e-7), named).await;
+}
