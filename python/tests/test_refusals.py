@@ -47,6 +47,10 @@ BAD: list[tuple[Callable[[Any], Any], str]] = [
     (lambda e: e.fretting(BALL, 1e-8, crossland={"alpha": -1.0}), "/criteria/crossland/alpha"),
     (lambda e: e.fretting(BALL, 1e-8, crossland={"alpha": 0.3, "limit": "3 N"}), "/criteria/crossland/limit"),
     (lambda e: e.fretting(BALL, 1e-8, bulk=("1 mm", "2 MPa"), ruiz=True), "/bulk/mean"),
+    (
+        lambda e: e.fretting(BALL, 1e-8, swt=True, critical_distance={"length": "3 N", "method": "line"}),
+        "/critical_distance/length",
+    ),
     (lambda e: e.protocols(BALL, 0), "/reversals"),
     (lambda e: e.protocols(BALL, 5, kind="best"), "/kind"),
     (

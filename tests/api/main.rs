@@ -43,6 +43,7 @@ mod fretting;
 mod fuzz_bodies;
 mod fuzz_http;
 mod lab_files;
+mod lives;
 mod load_curves;
 mod logs;
 mod metrics;

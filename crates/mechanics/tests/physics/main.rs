@@ -3,6 +3,7 @@
 mod accuracy;
 mod closed_loops;
 mod coarse_tables;
+mod critical_distance;
 mod curved_moves;
 mod curved_tolerance;
 mod cycles;
@@ -20,6 +21,7 @@ mod few_springs;
 mod fretting;
 mod hard_cases;
 mod laws;
+mod lives;
 mod load_curves;
 mod many_radii;
 mod minimax;
