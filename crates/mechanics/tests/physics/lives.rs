@@ -61,7 +61,7 @@ fn lives_are_those_of_the_printed_formulas() {
                 cycles >= life.shortest * (1.0 - 1e-9) && life.longest.is_none_or(|most| cycles <= most * (1.0 + 1e-9))
             };
             assert!(life.cycles == Ok(found) && within(found), "case {case}: {life:?}");
-            assert!(within(other) || other > LIVES[1] || other < LIVES[0], "case {case}: {other:e} {life:?}");
+            assert!(within(other) || !(LIVES[0]..=LIVES[1]).contains(&other), "case {case}: {other:e} {life:?}");
             // Its ends are the lives of the ends of the error.
             let ends = [value + error, value - error].map(|end| bisected(end.max(1e-300), of_cycles));
             let shortest = if ends[0] < LIVES[0] { 0.0 } else { ends[0] };
