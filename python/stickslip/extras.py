@@ -45,7 +45,10 @@ class Fretting(Result):
 
         x, y, z = (getattr(self, name) for name in "xyz")
         if len(x) > 0:
-            return pandas.DataFrame({"x": x, "y": y, "z": z} | {name: one.values for name, one in self.ratings.items()})
+            columns = {"x": x, "y": y, "z": z}
+            for name, one in self.ratings.items():
+                columns |= {name: one.values} | ({f"{name}_cycles": one.cycles} if one.cycles is not None else {})
+            return pandas.DataFrame(columns)
         rows = []
         for name, rating in self.ratings.items():
             place = [np.nan] * 3 if rating.largest is None else rating.largest.point

@@ -18,6 +18,8 @@ MEMBERS = {
     "cutoff_radius": "m",
     "displacement": "m",
     "drive_force": "N",
+    "ductility": "1",
+    "ductility_exponent": "1",
     "dx": "m",
     "dy": "m",
     "e_star": "Pa",
@@ -31,6 +33,7 @@ MEMBERS = {
     "gaps": "m",
     "indentation": "m",
     "indentation_error": "m",
+    "length": "m",
     "mass": "kg",
     "normal_force": "N",
     "offset": "m",
@@ -42,6 +45,8 @@ MEMBERS = {
     "radius": "m",
     "slope": "1",
     "stiffness": "N/m",
+    "strength": "Pa",
+    "strength_exponent": "1",
     "target": "1",
     "time": "s",
     "tip_radius": "m",
@@ -74,6 +79,7 @@ WITHIN = {
     ("normal_force", "from"): "N",
     ("normal_force", "to"): "N",
     ("ruiz", "limit"): "N/m",
+    ("s_n", "reference"): "",
     ("swt", "limit"): "Pa",
 }
 #: Members that are texts, whatever they look like.

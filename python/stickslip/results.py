@@ -95,6 +95,33 @@ class Axis2(Result):
     """Along y, in the unit of the quantity."""
 
 
+class BelowSurface(Result):
+    """A criterion at the critical distance below a place of the surface."""
+
+    error: float
+    """The estimated distance of the value from that over the whole cycle, in the unit of the criterion."""
+
+    point: Floats
+    """The place of the surface below which it is: x, y, z, m. It is where the criterion is largest on the surface,
+    though a deeper place may be worse.
+    """
+
+    value: float
+    """The value, in the unit of the criterion."""
+
+    at: Instant | None = None
+    """The critical instant, if the criterion has one."""
+
+    life: Life | None = None
+    """The life of the value, if a curve was given."""
+
+    margin: float | None = None
+    """The limit over the value, a pure number, if a limit was given and the value is positive."""
+
+    plane: Floats | None = None
+    """Unit normal of the critical plane along x, y and z, pure numbers, if the criterion has one."""
+
+
 class BestLoad(Result):
     """The load under which a drive does most friction work."""
 
@@ -676,6 +703,22 @@ class Largest(Result):
     """Unit normal of the critical plane along x, y and z, pure numbers, if the criterion has one."""
 
 
+class Life(Result):
+    """How many cycles the material bears. Tested lives scatter by a factor of three and more about such a curve."""
+
+    shortest: float
+    """The fewest cycles that the stated error of the value leaves, a pure number; zero for less than 0.5."""
+
+    cycles: float | None = None
+    """Cycles N, a pure number; `null` where `no_life` says why there are none."""
+
+    longest: float | None = None
+    """The most cycles that it leaves, a pure number; `null` where that is more than 1e12 or has no bound."""
+
+    no_life: Any = None
+    """Why there is no number of cycles; left out where there is one."""
+
+
 class LineInFile(Result):
     """A profile along a line."""
 
@@ -1082,8 +1125,17 @@ class Rating(Result):
     surface for a quantity of the surface.
     """
 
+    critical_distance: BelowSurface | None = None
+    """The criterion below its worst place of the surface, if `critical_distance` was given."""
+
+    cycles: Floats | None = None
+    """The cycles at all places, pure numbers, if a curve was given; `null` where a value has no life."""
+
     largest: Largest | None = None
     """The largest of those that are not `null`; in a search left out if there is no largest value in the body."""
+
+    life: Life | None = None
+    """The life of the largest value, if a curve was given."""
 
     margin: float | None = None
     """The limit over the largest value, a pure number, if a limit was given: below 1 the criterion predicts crack
@@ -1864,6 +1916,7 @@ NAMES = [
     "AccuracyReply",
     "AccuracyRow",
     "Axis2",
+    "BelowSurface",
     "BestLoad",
     "ColumnPair",
     "Comparison",
@@ -1897,6 +1950,7 @@ NAMES = [
     "JobReply",
     "JudgedReply",
     "Largest",
+    "Life",
     "LineInFile",
     "LoadCurve",
     "LoopFileReply",

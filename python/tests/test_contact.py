@@ -80,7 +80,12 @@ def test_results_have_tables_and_pictures(ball: ss.Contact) -> None:
     assert list(stress.to_frame().columns) == ["radius", "pressure", "shear"]
     below = ball.subsurface(plane={"normal": "y", "offset": 0.0, "x": [-1e-4, 1e-4, 5], "z": [0.0, 1e-4, 4]})
     cycle = ball.cycle(np.geomspace(1e-9, 1e-7, 5))
-    fretting = ball.fretting("50 nm", crossland={"alpha": 0.3, "limit": "300 MPa"}, tolerance=1e-2)
+    life = {"s_n": {"reference": "200 MPa", "cycles": 1e6, "exponent": 8}}
+    crossland = {"alpha": 0.3, "limit": "300 MPa", "life": life}
+    distance = {"length": "10 um", "method": "point"}
+    fretting = ball.fretting("50 nm", crossland=crossland, critical_distance=distance, tolerance=1e-2)
+    assert fretting.crossland.critical_distance.life.cycles > fretting.crossland.life.cycles
+    assert list(fretting.to_frame().columns) == ["x", "y", "z", "crossland", "crossland_cycles"]
     wear = ss.wear(ball, "50 nm", points=20)
     assert wear.profile_error is not None and wear.shape.radius.size == 23
     for result in (path, stress, ball.residual(), below, cycle, fretting, wear):

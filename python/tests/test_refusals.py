@@ -49,6 +49,10 @@ BAD: list[tuple[Callable[[Any], Any], str]] = [
     (lambda e: e.fretting(BALL, 1e-8, bulk=("1 mm", "2 MPa"), ruiz=True), "/bulk/mean"),
     (lambda e: e.wear(BALL, "3 N"), "/drive/displacement"),
     (lambda e: e.wear(BALL, 1e-8, hold="normal_force"), "/hold"),
+    (
+        lambda e: e.fretting(BALL, 1e-8, swt=True, critical_distance={"length": "3 N", "method": "line"}),
+        "/critical_distance/length",
+    ),
     (lambda e: e.protocols(BALL, 0), "/reversals"),
     (lambda e: e.protocols(BALL, 5, kind="best"), "/kind"),
     (

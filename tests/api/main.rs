@@ -44,6 +44,7 @@ mod fuzz_bodies;
 mod fuzz_http;
 mod lab_files;
 mod line_contacts;
+mod lives;
 mod load_curves;
 mod logs;
 mod metrics;

@@ -19,7 +19,8 @@ async fn every_command_of_the_pages_runs_as_printed() {
     for (name, blocks) in [
         ("simulate.md", 4),
         ("cycles.md", 4),
-        ("fretting.md", 1),
+        ("fretting.md", 2),
+        ("line-contacts.md", 2),
         ("rough-contacts.md", 1),
         ("measured-surfaces.md", 2),
         ("measured-loops.md", 1),

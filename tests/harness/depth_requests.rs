@@ -95,16 +95,27 @@ pub struct RandomFretting {
     stress_paths: bool,
     /// Without places.
     search: bool,
+    /// The critical distance over the contact radius, and whether the stress is averaged.
+    critical_distance: Option<(f64, bool)>,
 }
 
 /// A random request: mostly of a path that closes.
 pub fn random_fretting() -> impl Strategy<Value = RandomFretting> {
     let weight = || prop_oneof![8 => 0.0..2.0_f64, 1 => Just(-1.0)];
     let inside = prop_oneof![
-        2 => weight().prop_map(|alpha| json!({"crossland": {"alpha": alpha, "limit": 3e8}})),
+        2 => (weight(), prop_oneof![8 => 6.0..12.0_f64, 1 => -300.0..30.0_f64]).prop_map(|(alpha, power)| {
+            let life = json!({"s_n": {"reference": 10_f64.powf(power), "cycles": 1e6, "exponent": 6.0}});
+            json!({"crossland": {"alpha": alpha, "limit": 3e8, "life": life}})
+        }),
         2 => weight().prop_map(|alpha| json!({"dang_van": {"alpha": alpha}})),
         1 => weight().prop_map(|k| json!({"findley": {"k": k}})),
-        1 => Just(json!({"swt": {}})),
+        1 => (8.0..10.0_f64, 0.0..1.0_f64, -0.5..0.02_f64).prop_map(|(power, ductility, exponent)| {
+            let strain_life = json!({
+                "strength": 10_f64.powf(power), "strength_exponent": exponent,
+                "ductility": ductility, "ductility_exponent": -0.6
+            });
+            json!({"swt": {"life": {"strain_life": strain_life}}})
+        }),
         1 => Just(json!({"swt": {"youngs_modulus": 2e11}})),
         1 => weight().prop_map(|k| json!({"fatemi_socie": {"k": k, "yield": 5e8, "youngs_modulus": 2e11}})),
     ];
@@ -115,8 +126,9 @@ pub fn random_fretting() -> impl Strategy<Value = RandomFretting> {
     ];
     let bulk = prop::option::weighted(0.3, (-3e8..3e8_f64, 0.0..3e8_f64, -360.0..360.0_f64));
     let search = prop::bool::weighted(0.04);
-    (contact(), closed_path(), asked, bulk, any::<bool>(), search).prop_map(
-        |(contact, path, (depth, criteria), bulk, stress_paths, search)| RandomFretting {
+    let distance = prop::option::weighted(0.3, ((-3.0..1.0_f64).prop_map(|power| 10_f64.powf(power)), any::<bool>()));
+    (contact(), closed_path(), asked, bulk, any::<bool>(), search, distance).prop_map(
+        |(contact, path, (depth, criteria), bulk, stress_paths, search, critical_distance)| RandomFretting {
             contact,
             path,
             depth,
@@ -124,6 +136,7 @@ pub fn random_fretting() -> impl Strategy<Value = RandomFretting> {
             bulk: bulk.map(|(mean, amplitude, phase)| [mean, amplitude, phase]),
             stress_paths,
             search,
+            critical_distance,
         },
     )
 }
@@ -140,6 +153,10 @@ impl RandomFretting {
         request["tolerance"] = json!(0.01);
         if let Some([mean, amplitude, phase]) = self.bulk {
             request["bulk"] = json!({"mean": mean, "amplitude": amplitude, "phase": phase});
+        }
+        if let Some((length, averaged)) = self.critical_distance {
+            let method = if averaged { "line" } else { "point" };
+            request["critical_distance"] = json!({"length": (length * units[4]).clamp(1e-9, 1.0), "method": method});
         }
         if self.search {
             let members = request.as_object_mut().expect("a request is an object");

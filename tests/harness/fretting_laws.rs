@@ -4,7 +4,7 @@ use stickslip_compute::Nanoseconds;
 use stickslip_compute::computations::Fretting;
 use stickslip_mechanics::fatigue::MAX_INSTANTS;
 use stickslip_wire::FrettingReply;
-use stickslip_wire::fretting::FrettingTask;
+use stickslip_wire::fretting::{FrettingTask, Life};
 
 use super::answered::answered;
 use super::harness::Outcome;
@@ -42,6 +42,23 @@ fn laws(task: &FrettingTask, reply: &FrettingReply, spiked: bool) {
         let unbounded = task.searches() && rating.values.contains(&None);
         assert!(unbounded || rating.largest.as_ref().map(|largest| largest.value) == most, "{name}: {rating:?}");
         assert!(rating.margin.is_none_or(|margin| margin > 0.0), "{name}: {rating:?}");
+        assert_eq!(rating.cycles.is_some(), rating.life.is_some(), "{name}: {rating:?}");
+        assert!(rating.cycles.as_ref().is_none_or(|cycles| cycles.len() == count), "{name}: {rating:?}");
+        if let Some(below) = &rating.critical_distance {
+            assert!(below.value.is_finite() && below.error >= 0.0 && below.error.is_finite(), "{name}: {below:?}");
+            assert!(below.point[2] == 0.0 && below.life.is_some() == rating.life.is_some(), "{name}: {below:?}");
+        }
+        // Where the stress is infinite at the surface it has a value below.
+        assert_eq!(rating.critical_distance.is_some(), task.critical_distance.is_some(), "{name}: {rating:?}");
+        for life in rating.life.iter().chain(rating.critical_distance.iter().flat_map(|below| &below.life)) {
+            let Life { cycles, shortest, longest, no_life } = life;
+            assert_eq!(cycles.is_some(), no_life.is_none(), "{name}: {life:?}");
+            let within = |cycles: f64| *shortest <= cycles && longest.is_none_or(|longest| cycles <= longest);
+            assert!(
+                cycles.is_none_or(within) && longest.is_none_or(|longest| *shortest <= longest),
+                "{name}: {life:?}"
+            );
+        }
         if let Some(largest) = &rating.largest {
             let place = (0..count).find(|index| {
                 let place = [reply.x[*index], reply.y[*index], reply.z[*index]];

@@ -102,6 +102,16 @@ quantities! {
     FatigueWeight = "weight", FATIGUE_WEIGHT: 0.0 to 100.0 "",
         "The weight of a normal or hydrostatic stress in a fatigue criterion.";
     YieldStress = "yield_stress", YIELD_STRESS: 1e-3 to 1e18 "Pa", "The yield stress of a fatigue criterion.";
+    LifeReference = "reference", LIFE_REFERENCE: 1e-300 to 1e30 "",
+        "The value of a criterion, in its unit, at a point of an S-N curve.";
+    LifeCycles = "cycles", LIFE_CYCLES: 1.0 to 1e12 "", "The cycles at a point of an S-N curve.";
+    LifeExponent = "exponent", LIFE_EXPONENT: 0.1 to 1000.0 "", "The exponent k of an S-N curve, N ~ value^(-k).";
+    FatigueStrength = "strength", FATIGUE_STRENGTH: 1e-3 to 1e18 "Pa", "A fatigue strength coefficient.";
+    FatigueDuctility = "ductility", FATIGUE_DUCTILITY: 0.0 to 1e3 "",
+        "A fatigue ductility coefficient; zero for a curve without plastic strain.";
+    FatigueExponent = "fatigue exponent", FATIGUE_EXPONENT: -10.0 to -1e-3 "",
+        "The exponent of a fatigue strength or ductility; lives end, so it is negative.";
+    CriticalLength = "length", CRITICAL_LENGTH: 1e-9 to 1.0 "m", "A critical distance of a material.";
     SpringCount = "count", SPRING_COUNT: 2.0 to 1e6 "", "How many springs the foundation may have.";
     CutoffRadius = "cutoff_radius", "Radius from which on the peaks of a protocol are equal.";
     ProtocolTarget = "target", "Shear stress that a protocol may leave, relative to mu times the pressure.";

@@ -63,8 +63,9 @@ pub use event::{EndEvent, EndReason, StateEvent};
 pub use files::{FileColumn, FilePreview, LoopFileReply, RowsLeftOut, ScanFileReply};
 pub use fit::{FitReply, FitRequest};
 pub use fretting::{
-    BulkCycle, Criteria, FatemiSocie, Findley, FrettingReply, FrettingRequest, Largest, Rating, StrainBased,
-    StressPath, SurfaceCriterion, Weighted,
+    BelowSurface, BulkCycle, Criteria, CriticalDistance, FatemiSocie, Findley, FrettingReply, FrettingRequest, Largest,
+    Life, Rating, SnCurve, StrainBased, StrainLife, StrainLifeCurve, StressLife, StressPath, SurfaceCriterion,
+    Weighted,
 };
 pub use history::{HistoryItem, HistoryPage, LoopPage};
 pub use job::{JobEndEvent, JobList, JobProgress, JobReply, JobState};
@@ -104,13 +105,13 @@ pub fn all_limits() -> Vec<(&'static str, &'static str, serde_json::Value)> {
     }
     of_all! {
         AccuracyRequest, Axis, BestLoadStudy, Bulk, BulkCycle, profile_fit::CentrePlace, ContactDefinition,
-        CreateRequest, CycleDrive, CycleRequest, CyclicPath, Effective, ElasticBody, EqualPeaks, FallingAmplitude,
+        CreateRequest, CriticalDistance, CycleDrive, CycleRequest, CyclicPath, Effective, ElasticBody, EqualPeaks, FallingAmplitude,
         FatemiSocie, Findley, fit::FitNoise, FitRequest, ForkRequest, FrequencyResponse, FrettingRequest,
         fit::KnownValue, profile_fit::LineScan, LoadSpan, Machine, profile_fit::MapScan, Material, fit::MeasuredLoop,
         Move, MoveRequest, NamedOutput, NormalOscillation, Observation, ObservationsRequest, Path, PathRequest,
         profile_fit::PointScan, Preload, ProtocolRequest, protocol::ProtocolStart, RelaxRequest, RenameRequest,
         protocol::Robustness, profile_fit::ScanLoad, SimulateRequest, profile_fit::Smoothing, Span, Springs,
-        StrainBased, StressRequest, SubsurfaceLine, SubsurfacePlane, SubsurfaceRequest, SubsurfaceSurface,
-        SurfaceCriterion, SweepRequest, WearDrive, WearRequest, Weighted, WorkDensity
+        SnCurve, StrainBased, StrainLifeCurve, StressRequest, SubsurfaceLine, SubsurfacePlane, SubsurfaceRequest,
+        SubsurfaceSurface, SurfaceCriterion, SweepRequest, WearDrive, WearRequest, Weighted, WorkDensity
     }
 }

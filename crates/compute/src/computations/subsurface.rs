@@ -160,10 +160,10 @@ impl<R: AsRef<Subsurface> + Serialize + ToSchema + Send> Outcome for Below<R> {
 /// Columns of values over their places, m: a row for each place.
 pub(super) fn column_table<'a>(
     [x, y, z]: [&'a [f64]; 3],
-    columns: impl Iterator<Item = (&'static str, &'static str, &'a [Option<f64>])>,
+    columns: impl Iterator<Item = (impl AsRef<str>, &'static str, &'a [Option<f64>])>,
 ) -> Table<'a> {
     let places = [("x", x), ("y", y), ("z", z)].map(|(name, along)| Column::floats(name, "m", |row| along[row]));
-    let values = columns.map(|(name, unit, values)| Column::floats(name, unit, |row| values[row]));
+    let values = columns.map(|(name, unit, values)| Column::floats(name.as_ref(), unit, |row| values[row]));
     Table::flat(x.len(), places.into_iter().chain(values).collect())
 }
 

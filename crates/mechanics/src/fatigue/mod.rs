@@ -15,11 +15,14 @@
 //! Strains are elastic (Hooke). Planes are searched for on a grid of five degrees and refined from its peaks to about
 //! 1e-9 of the value. Of random paths, one in ten thousand has a narrow peak between the planes of the grid that the
 //! search misses; the value is then too low, by 0.4 % at most of those seen. [`Cycle`] gives the stresses, [`Study`]
-//! each [`Measure`] of them at the instants that matter.
+//! each [`Measure`] of them at the instants that matter, [`CriticalDistance`] the same below the surface, [`LifeCurve`]
+//! the cycles that a value leaves.
 
 mod ball;
+mod critical_distance;
 mod curve;
 mod cycle;
+mod life;
 mod planes;
 mod rating;
 mod search;
@@ -32,9 +35,11 @@ use crate::range;
 use crate::subsurface::Stress;
 use ball::dot;
 pub use ball::{Ball, enclosing_ball};
+pub use critical_distance::CriticalDistance;
 use curve::StressCurve;
 pub use curve::{Instant, MAX_INSTANTS};
 pub use cycle::{Cycle, MOST_BYTES};
+pub use life::{LIVES, Life, LifeCurve, NoLife, StrainLife};
 use planes::{Vector, axes, grid, unit};
 pub use rating::{Measure, Rated};
 pub use search::Worst;

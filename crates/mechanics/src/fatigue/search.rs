@@ -7,9 +7,9 @@
 
 use std::f64::consts::PI;
 
+use super::Rated;
 use super::planes::Vector;
 use super::study::Study;
-use super::{Measure, Rated};
 use crate::error::Error;
 
 /// Depths of the net, in contact radii; the first ones, and not the others, on the circles where something ends.
@@ -97,6 +97,30 @@ impl Study<'_> {
         self.cycle.start().profile().line().is_some()
     }
 
+    /// The place of the surface where a measure is largest, and those in the plane of the motion where it is infinite.
+    ///
+    /// # Errors
+    /// [`Error::Interrupted`].
+    pub fn worst_of_surface(&mut self, measure: usize) -> Result<Vec<[f64; 3]>, Error> {
+        self.on_surface = true;
+        let found = self.starts(1).and_then(|starts| self.largest_bounded(measure, &starts));
+        self.on_surface = false;
+        let mut places = vec![found?.place];
+        for radius in self.singular_radii() {
+            for place in [[radius, 0.0, 0.0], [-radius, 0.0, 0.0]] {
+                if self.rate_one(measure, &place, None)?.0.value == f64::INFINITY {
+                    places.push(place);
+                }
+            }
+        }
+        Ok(places)
+    }
+
+    /// Whether a search for the largest value stays on the surface.
+    fn is_flat(&self, measure: usize) -> bool {
+        self.on_surface || self.measures[measure].of_surface()
+    }
+
     fn found_at(&self, candidate: &Candidate) -> Worst {
         Worst { place: self.place(candidate.at), rated: self.rated(&candidate.found), instants: candidate.instants }
     }
@@ -118,7 +142,7 @@ impl Study<'_> {
 
     /// The places of the net, one in `stride`, with their values over few instants.
     fn starts(&mut self, every: usize) -> Result<Vec<(Coordinates, Vec<f64>)>, Error> {
-        let surface = self.measures.iter().all(Measure::of_surface);
+        let surface = (0..self.measures.len()).all(|measure| self.is_flat(measure));
         let (special, line) = (self.circles(), self.along_line());
         let between = (0..).map(|index| STEP * f64::from(index)).take_while(|circle| *circle < 1.0);
         let between = between.chain(OUTSIDE).step_by(every).map(|circle| (circle, DEPTHS.len()));
@@ -148,7 +172,7 @@ impl Study<'_> {
 
     /// The best places of the net for a measure, apart from each other, the best first.
     fn best_starts(&self, measure: usize, starts: &[(Coordinates, Vec<f64>)]) -> Vec<Coordinates> {
-        let surface = self.measures[measure].of_surface();
+        let surface = self.is_flat(measure);
         let mut order: Vec<&(Coordinates, Vec<f64>)> =
             starts.iter().filter(|(at, values)| values[measure].is_finite() && (!surface || at[2] <= 0.0)).collect();
         order.sort_by(|one, other| other.1[measure].total_cmp(&one.1[measure]));
@@ -170,9 +194,14 @@ impl Study<'_> {
     }
 
     fn worst_of(&mut self, measure: usize, starts: &[(Coordinates, Vec<f64>)]) -> Result<Worst, Error> {
-        if let Some(unbounded) = self.unbounded(measure)? {
-            return Ok(unbounded);
+        match self.unbounded(measure)? {
+            Some(unbounded) => Ok(unbounded),
+            None => self.largest_bounded(measure, starts),
         }
+    }
+
+    /// The largest finite value that a search finds.
+    fn largest_bounded(&mut self, measure: usize, starts: &[(Coordinates, Vec<f64>)]) -> Result<Worst, Error> {
         let mut best: Option<Candidate> = None;
         for start in self.best_starts(measure, starts) {
             let candidate = self.climb(measure, start, (1.0, COARSE))?.0;
@@ -189,8 +218,7 @@ impl Study<'_> {
 
     /// A place of the surface at which the measure is infinite.
     fn unbounded(&mut self, measure: usize) -> Result<Option<Worst>, Error> {
-        let profile = self.cycle.start().profile();
-        for radius in profile.singular_radii().into_iter().chain(profile.rim_radius()) {
+        for radius in self.singular_radii() {
             let place = [radius, 0.0, 0.0];
             if self.rate_one(measure, &place, None)?.0.value == f64::INFINITY {
                 let rated = Rated { value: f64::INFINITY, error: f64::INFINITY, plane: None, at: None };
@@ -198,6 +226,12 @@ impl Study<'_> {
             }
         }
         Ok(None)
+    }
+
+    /// Where the stress of the surface may be infinite, m.
+    fn singular_radii(&self) -> Vec<f64> {
+        let profile = self.cycle.start().profile();
+        profile.singular_radii().into_iter().chain(profile.rim_radius()).collect()
     }
 
     fn unit_place([radius, angle, depth]: Coordinates) -> [f64; 3] {
@@ -224,7 +258,7 @@ impl Study<'_> {
         start: Coordinates,
         (mut share, finest): (f64, f64),
     ) -> Result<(Candidate, f64), Error> {
-        let axes = if self.measures[measure].of_surface() { 2 } else { 3 };
+        let axes = if self.is_flat(measure) { 2 } else { 3 };
         let mut best = self.candidate_at(measure, start, None)?;
         let (mut gains, mut turns) = ([0.0; 2], 0);
         while share >= finest {

@@ -5,6 +5,7 @@ use std::f64::consts::TAU;
 use std::ops::Range;
 use std::rc::Rc;
 
+use super::critical_distance::mean_over_depth;
 use super::curve::{Allowance, CurveStretch, StressCurve, StressSample, stress};
 use super::planes::Vector;
 use super::{Cycle, Instant, Measure, Rated};
@@ -28,6 +29,8 @@ const LEAST: f64 = 1e-3;
 /// The error of a stress by rounding, and by the chords of curved moves, over the largest pressure.
 const STRESS_ROUND_OFF: f64 = 1e-12;
 const CHORD_ERROR: f64 = 1e-6;
+/// The part of the accepted error that a mean over the depth may use.
+const AVERAGING_SHARE: f64 = 0.05;
 /// Depth, in contact radii, below which the passing of an edge is as smooth as all else.
 const DEEP: f64 = 0.3;
 /// Instants closer than this, in parts of a move, are one.
@@ -76,12 +79,16 @@ type Field = Rc<(Subsurface, f64)>;
 /// Measures of a cycle in one of the bodies.
 pub struct Study<'a> {
     pub(super) cycle: &'a Cycle,
-    body: (Side, f64),
-    bulk: Option<Bulk>,
+    pub(super) body: (Side, f64),
+    pub(super) bulk: Option<Bulk>,
+    /// The depth over which stresses are averaged, m; zero for none.
+    pub(super) averaged: f64,
+    /// Whether a search stays on the surface.
+    pub(super) on_surface: bool,
     pub(super) measures: Vec<Measure>,
     /// Of the largest value of each measure.
     pub(super) tolerance: f64,
-    keep_going: &'a dyn Fn() -> bool,
+    pub(super) keep_going: &'a dyn Fn() -> bool,
     /// The largest contact radius, m, and pressure that stresses are compared with, Pa, with the bulk stress.
     pub(super) radius: f64,
     stress: f64,
@@ -125,6 +132,8 @@ impl<'a> Study<'a> {
             cycle,
             body,
             bulk,
+            averaged: 0.0,
+            on_surface: false,
             tolerance,
             keep_going,
             radius: most(&Contact::contact_radius),
@@ -347,10 +356,21 @@ impl<'a> Study<'a> {
             }
         }
         let surface = self.measures.iter().any(Measure::of_surface);
-        StressCurve::follow(&stretches, allowed, |step, part, shared| {
+        // Noise that the curve does not see.
+        let averaging = (AVERAGING_SHARE * allowed.stress.min(self.stress)).max(self.rounding());
+        let mut averaging_error = 0.0_f64;
+        let mut curve = StressCurve::follow(&stretches, allowed, |step, part, shared| {
             let field = self.field(step, part, shared)?;
-            Ok(self.looked_at(&field, step, (place, radius), surface))
-        })
+            let (stress, off) = if self.averaged > 0.0 {
+                mean_over_depth(&field.0, *place, self.averaged, averaging)
+            } else {
+                (field.0.at(*place), 0.0)
+            };
+            averaging_error = averaging_error.max(off);
+            Ok(self.looked_at(&field, stress, step, (radius, surface)))
+        })?;
+        curve.iter_mut().for_each(|curve| curve.error.stress += averaging_error);
+        Ok(curve)
     }
 
     /// The field at an instant.
@@ -370,16 +390,15 @@ impl<'a> Study<'a> {
         Ok(field)
     }
 
-    /// The sample of a place at an instant, and whether it is in contact.
+    /// The sample of a place with its stress at an instant, and whether it is in contact.
     fn looked_at(
         &self,
         field: &Field,
+        Stress { mut xx, yy, zz, xy, yz, xz }: Stress,
         step: usize,
-        (place, radius): (&[f64; 3], f64),
-        surface: bool,
+        (radius, surface): (f64, bool),
     ) -> (StressSample, bool) {
         let (field, part) = (&field.0, field.1);
-        let Stress { mut xx, yy, zz, xy, yz, xz } = field.at(*place);
         if let Some(Bulk { mean, amplitude, phase }) = self.bulk {
             xx += mean + amplitude * (TAU * (step as f64 + part) / self.cycle.moves() as f64 + phase).cos();
         }

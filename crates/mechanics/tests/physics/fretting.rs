@@ -9,21 +9,21 @@ use stickslip_mechanics::{
 
 use crate::support::{Random, cases, displace, oblique, push, shapes, sphere};
 
-const BODY: (Side, f64) = (Side::First, 0.3);
-const STEEL: f64 = 2.1e11;
+pub const BODY: (Side, f64) = (Side::First, 0.3);
+pub const STEEL: f64 = 2.1e11;
 
 /// A steel body of this profile on a rigid plane.
-fn steel(profile: Profile, friction: f64, radius: f64) -> Contact {
+pub fn steel(profile: Profile, friction: f64, radius: f64) -> Contact {
     let elasticity = Elasticity::against_rigid(Body::new(STEEL, 0.3).unwrap());
     Contact::new(Setup { profile, elasticity, friction, preload: Preload::ContactRadius(radius) }).unwrap()
 }
 
-fn crossland(alpha: f64) -> Measure {
+pub fn crossland(alpha: f64) -> Measure {
     Measure::Stress(Criterion::Crossland { alpha })
 }
 
 /// All criteria of stress.
-fn of_stress() -> Vec<Measure> {
+pub fn of_stress() -> Vec<Measure> {
     let (youngs_modulus, poisson) = (STEEL, 0.3);
     [
         Criterion::Crossland { alpha: 0.3 },
@@ -36,7 +36,7 @@ fn of_stress() -> Vec<Measure> {
     .into()
 }
 
-fn rated(cycle: &Cycle, measures: Vec<Measure>, tolerance: f64, places: &[[f64; 3]]) -> Ratings {
+pub fn rated(cycle: &Cycle, measures: Vec<Measure>, tolerance: f64, places: &[[f64; 3]]) -> Ratings {
     Study::new(cycle, BODY, None, measures, tolerance, &|| true).unwrap().rate_all(places).unwrap()
 }
 
@@ -89,7 +89,17 @@ fn in_gross_slip_ruiz_is_exact_and_has_no_tension_where_all_is_pressed() {
 
 /// The stresses of a place over a cycle of straight moves, at so many instants that the curve is within `sag` of the
 /// chords between them, and these shorter than `length`, Pa.
-fn curve(cycle: &Cycle, place: [f64; 3], moves: &[Move], (sag, length): (f64, f64)) -> Vec<Stress> {
+fn curve(cycle: &Cycle, place: [f64; 3], moves: &[Move], fineness: (f64, f64)) -> Vec<Stress> {
+    curve_of(cycle, moves, fineness, |contact| contact.subsurface(BODY.0, BODY.1).unwrap().at(place))
+}
+
+/// The same of a stress that each state has.
+pub fn curve_of(
+    cycle: &Cycle,
+    moves: &[Move],
+    (sag, length): (f64, f64),
+    stress: impl Fn(&Contact) -> Stress,
+) -> Vec<Stress> {
     let ends = cycle.states(1, &|| true).unwrap();
     let mut path = Vec::new();
     for (index, step) in moves.iter().enumerate() {
@@ -97,7 +107,7 @@ fn curve(cycle: &Cycle, place: [f64; 3], moves: &[Move], (sag, length): (f64, f6
         let at = |part: f64| {
             let mut contact = start.clone();
             contact.apply(&start.partial_move(step, part)).unwrap();
-            contact.subsurface(BODY.0, BODY.1).unwrap().at(place)
+            stress(&contact)
         };
         let off = |one: Stress, other: Stress| {
             let off = one + other * -1.0;
@@ -147,7 +157,7 @@ fn a_cusp_in_time_at_the_surface_is_found() {
 }
 
 /// A random cycle of oblique moves on a ball, and a place below or at the surface of it.
-fn any_cycle(random: &mut Random) -> (Contact, Vec<Move>, [f64; 3]) {
+pub fn any_cycle(random: &mut Random) -> (Contact, Vec<Move>, [f64; 3]) {
     let contact = steel(sphere(0.01), random.within(0.1, 1.0), 1e-4);
     let (depth, slide) = (contact.indentation(), contact.gross_slip_displacement());
     let count = 2 + (random.bits() % 3) as usize;

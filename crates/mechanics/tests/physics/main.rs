@@ -3,6 +3,7 @@
 mod accuracy;
 mod closed_loops;
 mod coarse_tables;
+mod critical_distance;
 mod curved_moves;
 mod curved_tolerance;
 mod cycles;
@@ -21,6 +22,7 @@ mod fretting;
 mod hard_cases;
 mod laws;
 mod line_contacts;
+mod lives;
 mod load_curves;
 mod many_radii;
 mod minimax;

@@ -1,16 +1,19 @@
 //! The body of `POST /fretting` and its reply: fatigue criteria over the stresses of a closed cycle.
 
+mod life;
 mod reply;
 
-pub use reply::{CRITERIA, FrettingReply, Instant, Largest, Rating, StressPath};
+pub use life::{SnCurve, StrainLife, StrainLifeCurve, StressLife};
+pub use reply::{BelowSurface, CRITERIA, FrettingReply, Instant, Largest, Life, NoLife, Rating, StressPath};
 
 use std::ops::RangeInclusive;
 
-use stickslip_mechanics::fatigue::{self, Criterion, Measure};
+use stickslip_mechanics::fatigue::{self, Criterion, LifeCurve, Measure};
 use stickslip_mechanics::range::{self, Quantity, Range};
 use stickslip_mechanics::subsurface::Side;
 
 use crate::check::{Faults, JsonPath};
+use crate::choice::words;
 use crate::definition::{BodyName, ContactDefinition, DefinedProfile, SharedSetup};
 use crate::document::Document;
 use crate::limits::{Array, FRETTING_MOVES, Limit, Limited as _, OfItsMembers, SUBSURFACE_POINTS, Tolerance, Triple};
@@ -56,6 +59,8 @@ pub struct FrettingRequest {
     pub bulk: Option<BulkCycle>,
     /// The criteria.
     pub criteria: Criteria,
+    /// The depth below the worst place of the surface at which criteria of stress are evaluated too.
+    pub critical_distance: Option<CriticalDistance> = OfItsMembers,
     /// Indices of places whose stresses over the cycle are wanted too.
     pub stress_paths: Option<Vec<usize>> = PATHS,
     /// Error of a criterion, relative to its largest value, that is accepted; a pure number. In a search it is 1e-3 if
@@ -71,6 +76,14 @@ pub struct BulkCycle: Copy, Default {
     pub amplitude: Option<f64> = range::BULK_STRESS,
     /// Its phase, degrees; zero if left out.
     pub phase: Option<f64> = PHASE,
+}
+
+/// The critical distance of the material (Taylor 2007).
+pub struct CriticalDistance: Copy {
+    /// The critical distance L, m: (threshold of the stress intensity range/range of the fatigue limit)²/π.
+    pub length: f64 = range::CRITICAL_LENGTH,
+    /// How it is used.
+    pub method: CriticalMethod,
 }
 
 /// Which criteria, at least one.
@@ -97,6 +110,8 @@ pub struct Weighted: Copy {
     pub alpha: f64 = range::FATIGUE_WEIGHT,
     /// The value that the material bears, Pa.
     pub limit: Option<f64> = BEARABLE,
+    /// How many cycles it bears, from tests.
+    pub life: Option<StressLife> = OfItsMembers,
 }
 
 /// Findley's criterion.
@@ -105,6 +120,8 @@ pub struct Findley: Copy {
     pub k: f64 = range::FATIGUE_WEIGHT,
     /// The value that the material bears, Pa.
     pub limit: Option<f64> = BEARABLE,
+    /// How many cycles it bears, from tests.
+    pub life: Option<StressLife> = OfItsMembers,
 }
 
 /// A criterion that needs strains.
@@ -113,6 +130,8 @@ pub struct StrainBased: Copy, Default {
     pub youngs_modulus: Option<f64> = range::YOUNGS_MODULUS,
     /// The value that the material bears, Pa.
     pub limit: Option<f64> = BEARABLE,
+    /// How many cycles it bears, from tests.
+    pub life: Option<StrainLife> = OfItsMembers,
 }
 
 /// Fatemi and Socie's criterion.
@@ -125,12 +144,26 @@ pub struct FatemiSocie: Copy {
     pub youngs_modulus: Option<f64> = range::YOUNGS_MODULUS,
     /// The value that the material bears, a pure number.
     pub limit: Option<f64> = BEARABLE,
+    /// How many cycles it bears, from tests.
+    pub life: Option<StrainLife> = OfItsMembers,
 }
 
 /// A quantity of the surface.
 pub struct SurfaceCriterion: Copy, Default {
     /// The value that the material bears.
     pub limit: Option<f64> = BEARABLE,
+    /// How many cycles it bears, from tests.
+    pub life: Option<StressLife> = OfItsMembers,
+}
+}
+
+words! {
+/// How a critical distance L is used along the inward normal.
+pub enum CriticalMethod {
+    /// The stress at the depth L/2.
+    Point = "point",
+    /// At each instant the mean stress over the depth 2L.
+    Line = "line",
 }
 }
 
@@ -138,6 +171,17 @@ pub struct SurfaceCriterion: Copy, Default {
 const PATHS: Array<RangeInclusive<usize>> = Array(0..=100, 0..=*SUBSURFACE_POINTS.end() - 1);
 /// A value that a material bears.
 const BEARABLE: Range = Range { quantity: Quantity::Number, unit: "", min: 1e-300, max: 1e30 };
+
+/// What is computed, and what the material bears.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AskedMeasure {
+    /// What is computed.
+    pub measure: Measure,
+    /// The value that the material bears.
+    pub limit: Option<f64>,
+    /// The cycles that it bears.
+    pub life: Option<LifeCurve>,
+}
 
 /// A checked request.
 #[derive(Clone, Debug)]
@@ -150,8 +194,10 @@ pub struct FrettingTask {
     pub places: Places,
     /// The bulk stress.
     pub bulk: Option<fatigue::Bulk>,
-    /// What is computed, with limits, by the order of the reply.
-    pub measures: [Option<(Measure, Option<f64>)>; 8],
+    /// What is computed, by the order of the reply.
+    pub measures: [Option<AskedMeasure>; 8],
+    /// Where below the surface criteria of stress are evaluated too.
+    pub critical_distance: Option<fatigue::CriticalDistance>,
     /// Places whose stresses over the cycle are asked for.
     pub stress_paths: Vec<usize>,
     /// The error that is accepted.
@@ -169,10 +215,10 @@ impl FrettingTask {
     #[must_use]
     pub fn planes(&self) -> usize {
         use Criterion::{FatemiSocie, Findley, SmithWatsonTopper};
-        let has_plane = |measure: &Measure| {
-            matches!(measure, Measure::Stress(Findley { .. } | SmithWatsonTopper { .. } | FatemiSocie { .. }))
+        let has_plane = |asked: &&AskedMeasure| {
+            matches!(asked.measure, Measure::Stress(Findley { .. } | SmithWatsonTopper { .. } | FatemiSocie { .. }))
         };
-        self.measures.iter().flatten().filter(|(measure, _)| has_plane(measure)).count()
+        self.measures.iter().flatten().filter(has_plane).count()
     }
 }
 
@@ -202,6 +248,7 @@ impl Document for FrettingRequest {
             let [mean, amplitude, phase] = [bulk.mean, bulk.amplitude, bulk.phase].map(|part| part.unwrap_or(0.0));
             fatigue::Bulk { mean, amplitude, phase: phase.to_radians() }
         });
+        Limit::check(&OfItsMembers, &self.critical_distance, at("critical_distance"), faults);
         let places = SubsurfaceRequest {
             body: self.body,
             poisson_ratio: self.poisson_ratio,
@@ -224,6 +271,13 @@ impl Document for FrettingRequest {
         Limit::check(&PATHS, &stress_paths, at("stress_paths"), faults);
         if let Some(asked) = &asked {
             self.criteria.check_surface(&asked.places, at("criteria"), faults);
+            if self.critical_distance.is_some() {
+                self.criteria.check_depth(at("criteria"), faults);
+                if !searches && (0..asked.places.count()).all(|index| asked.places.at(index)[2] > 0.0) {
+                    let detail = "begins at the surface: ask for a place with z = 0, or for none to search";
+                    faults.add(at("critical_distance"), detail);
+                }
+            }
             for (index, place) in stress_paths.iter().enumerate() {
                 if searches {
                     let detail = "a search finds its places itself: name them, or leave `stress_paths` out";
@@ -241,6 +295,10 @@ impl Document for FrettingRequest {
             places: asked.places,
             bulk,
             measures,
+            critical_distance: self.critical_distance.map(|CriticalDistance { length, method }| match method {
+                CriticalMethod::Point => fatigue::CriticalDistance::Point(length),
+                CriticalMethod::Line => fatigue::CriticalDistance::Line(length),
+            }),
             stress_paths,
             tolerance,
         });
@@ -255,7 +313,7 @@ impl Criteria {
         (youngs_modulus, poisson): (Option<f64>, f64),
         at: JsonPath<'_>,
         faults: &mut Faults,
-    ) -> [Option<(Measure, Option<f64>)>; 8] {
+    ) -> [Option<AskedMeasure>; 8] {
         if *self == Criteria::default() {
             // Ruiz's second parameter comes with the first.
             let names = CRITERIA.into_iter().filter(|(name, ..)| *name != "ruiz_tension");
@@ -278,24 +336,47 @@ impl Criteria {
             given.or(youngs_modulus).unwrap_or(1.0)
         };
         self.check_members(at, faults);
-        let stress = |criterion, limit| (Measure::Stress(criterion), limit);
+        let of = |measure, limit, life: Option<StressLife>| AskedMeasure {
+            measure,
+            limit,
+            life: life.and_then(StressLife::curve),
+        };
+        let stress = |criterion, limit, life| of(Measure::Stress(criterion), limit, life);
+        let strain = |criterion, limit, life| AskedMeasure { measure: Measure::Stress(criterion), limit, life };
         [
-            self.crossland.map(|asked| stress(Criterion::Crossland { alpha: asked.alpha }, asked.limit)),
-            self.dang_van.map(|asked| stress(Criterion::DangVan { alpha: asked.alpha }, asked.limit)),
-            self.findley.map(|asked| stress(Criterion::Findley { k: asked.k }, asked.limit)),
+            self.crossland.map(|asked| stress(Criterion::Crossland { alpha: asked.alpha }, asked.limit, asked.life)),
+            self.dang_van.map(|asked| stress(Criterion::DangVan { alpha: asked.alpha }, asked.limit, asked.life)),
+            self.findley.map(|asked| stress(Criterion::Findley { k: asked.k }, asked.limit, asked.life)),
             self.swt.map(|asked| {
                 let youngs_modulus = modulus(asked.youngs_modulus, "swt", faults);
-                stress(Criterion::SmithWatsonTopper { youngs_modulus, poisson }, asked.limit)
+                let of_strain = |curve: &_| LifeCurve::smith_watson_topper(curve, youngs_modulus);
+                let life = asked.life.and_then(|life| life.curve(of_strain));
+                strain(Criterion::SmithWatsonTopper { youngs_modulus, poisson }, asked.limit, life)
             }),
             self.fatemi_socie.map(|asked| {
                 let youngs_modulus = modulus(asked.youngs_modulus, "fatemi_socie", faults);
+                let of_strain = |curve: &_| LifeCurve::fatemi_socie(curve, youngs_modulus, poisson);
+                let life = asked.life.and_then(|life| life.curve(of_strain));
                 let FatemiSocie { k, r#yield: yield_stress, limit, .. } = asked;
-                stress(Criterion::FatemiSocie { k, yield_stress, youngs_modulus, poisson }, limit)
+                strain(Criterion::FatemiSocie { k, yield_stress, youngs_modulus, poisson }, limit, life)
             }),
-            self.ruiz.map(|asked| (Measure::Ruiz, asked.limit)),
-            self.ruiz.map(|_| (Measure::RuizTension, None)),
-            self.friction_work.map(|asked| (Measure::FrictionWork, asked.limit)),
+            self.ruiz.map(|asked| of(Measure::Ruiz, asked.limit, asked.life)),
+            self.ruiz.map(|_| of(Measure::RuizTension, None, None)),
+            self.friction_work.map(|asked| of(Measure::FrictionWork, asked.limit, asked.life)),
         ]
+    }
+
+    /// Those of the surface alone, by name.
+    fn of_surface(&self) -> impl Iterator<Item = &'static str> {
+        let asked = [("ruiz", self.ruiz.is_some()), ("friction_work", self.friction_work.is_some())];
+        asked.into_iter().filter_map(|(name, asked)| asked.then_some(name))
+    }
+
+    /// Notes the criteria of the surface that are asked for at a critical distance.
+    fn check_depth(&self, at: JsonPath<'_>, faults: &mut Faults) {
+        for name in self.of_surface() {
+            faults.add(at.member(name), "is of the surface: leave this or `critical_distance` out");
+        }
     }
 
     /// Notes the criteria of the surface that are asked for below it.
@@ -303,10 +384,8 @@ impl Criteria {
         if (0..places.count()).all(|index| places.at(index)[2] == 0.0) {
             return;
         }
-        for (name, asked) in [("ruiz", self.ruiz.is_some()), ("friction_work", self.friction_work.is_some())] {
-            if asked {
-                faults.add(at.member(name), "is of the surface: ask for places with z = 0, or leave this out");
-            }
+        for name in self.of_surface() {
+            faults.add(at.member(name), "is of the surface: ask for places with z = 0, or leave this out");
         }
     }
 }

@@ -1,5 +1,8 @@
 //! The reply of `POST /fretting`.
 
+use stickslip_mechanics::fatigue;
+
+use crate::choice::words;
 use crate::reply::{Accuracy, ContactSummary, Warning};
 use crate::request::replies;
 
@@ -52,6 +55,45 @@ pub struct Rating omits Option {
     /// The limit over the largest value, a pure number, if a limit was given: below 1 the criterion predicts crack
     /// growth. Left out where the value is nowhere positive, and where it is infinite somewhere.
     pub margin: Option<f64>,
+    /// The life of the largest value, if a curve was given.
+    pub life: Option<Life>,
+    /// The cycles at all places, pure numbers, if a curve was given; `null` where a value has no life.
+    pub cycles: Option<Vec<Option<f64>>>,
+    /// The criterion below its worst place of the surface, if `critical_distance` was given.
+    pub critical_distance: Option<BelowSurface>,
+}
+
+/// A criterion at the critical distance below a place of the surface.
+pub struct BelowSurface omits Option {
+    /// The value, in the unit of the criterion.
+    pub value: f64,
+    /// The estimated distance of the value from that over the whole cycle, in the unit of the criterion.
+    pub error: f64,
+    /// The place of the surface below which it is: x, y, z, m. It is where the criterion is largest on the surface,
+    /// though a deeper place may be worse.
+    pub point: [f64; 3],
+    /// Unit normal of the critical plane along x, y and z, pure numbers, if the criterion has one.
+    pub plane: Option<[f64; 3]>,
+    /// The critical instant, if the criterion has one.
+    pub at: Option<Instant>,
+    /// The limit over the value, a pure number, if a limit was given and the value is positive.
+    pub margin: Option<f64>,
+    /// The life of the value, if a curve was given.
+    pub life: Option<Life>,
+}
+
+/// How many cycles the material bears. Tested lives scatter by a factor of three and more about such a curve.
+pub struct Life: Copy {
+    /// Cycles N, a pure number; `null` where `no_life` says why there are none.
+    pub cycles: Option<f64>,
+    /// The fewest cycles that the stated error of the value leaves, a pure number; zero for less than 0.5.
+    pub shortest: f64,
+    /// The most cycles that it leaves, a pure number; `null` where that is more than 1e12 or has no bound.
+    pub longest: Option<f64>,
+    /// Why there is no number of cycles; left out where there is one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub no_life: Option<NoLife>,
 }
 
 /// The place where a criterion is largest.
@@ -100,6 +142,27 @@ pub struct StressPath: Default {
     /// Shear stress in the plane of x and z, Pa.
     pub xz: Vec<Option<f64>>,
 }
+}
+
+words! {
+/// Why a value has no life.
+pub enum NoLife of fatigue::NoLife {
+    /// It is zero or negative: the criterion sees no damage. That is no proof of an infinite life.
+    NotPositive = "not_positive",
+    /// The curve gives more than 1e12 cycles, which no test has reached.
+    TooLong = "too_long",
+    /// The curve gives less than half a cycle.
+    TooShort = "too_short",
+    /// The stress of the model is infinite there.
+    InfiniteStress = "infinite_stress",
+}
+}
+
+impl From<fatigue::Life> for Life {
+    fn from(life: fatigue::Life) -> Life {
+        let fatigue::Life { cycles, shortest, longest } = life;
+        Life { cycles: cycles.ok(), shortest, longest, no_life: cycles.err().map(NoLife::from) }
+    }
 }
 
 /// The criteria in their order: the name in requests and replies, the unit, and what a picture calls it.

@@ -4,9 +4,12 @@ mod picture;
 mod rating;
 mod warnings;
 
+use std::iter;
+
 use serde_json::json;
 
-use stickslip_mechanics::{Profile, Stress, fatigue};
+use stickslip_mechanics::fatigue::{self, CriticalDistance};
+use stickslip_mechanics::{Profile, Stress};
 use stickslip_plot::Drawing;
 use stickslip_wire::fretting::FrettingTask;
 use stickslip_wire::{ContactDefinition, Fault, FrettingReply, FrettingRequest};
@@ -33,6 +36,8 @@ const NET_INSTANTS: u64 = 9;
 /// Places that such a search climbs over for each criterion.
 const CLIMB: u64 = 500;
 const SHORT_CLIMB: u64 = 15;
+/// Depths at which a stress is averaged.
+const LINE_DEPTHS: u64 = 100;
 /// One stress in the search for a plane among those of a grid alone.
 const GRID_PLANES_COST: u64 = 5_000;
 /// One stress in one criterion without planes.
@@ -93,6 +98,23 @@ impl Computation for Fretting {
                     "criteria": {"findley": {"k": 0.3}, "ruiz": {}, "friction_work": {}}
                 }),
             ),
+            example(
+                "life",
+                "Lives at the worst place and at a critical distance below it",
+                json!({
+                    "contact": ContactDefinition::example(),
+                    "path": {"cycles": {"displacement": 1e-7, "count": 1}},
+                    "body": "first",
+                    "surface": {"x": [-1.2e-4, 1.2e-4, 13], "y": [0.0, 1e-5, 2]},
+                    "critical_distance": {"length": 1e-5, "method": "point"},
+                    "criteria": {
+                        "crossland": {"alpha": 0.3, "life": {"s_n": {"reference": 3e8, "cycles": 1e6, "exponent": 8.0}}},
+                        "swt": {"life": {"strain_life": {
+                            "strength": 9.5e8, "strength_exponent": -0.09, "ductility": 0.26, "ductility_exponent": -0.6
+                        }}}
+                    }
+                }),
+            ),
         ]
     }
 
@@ -102,7 +124,8 @@ impl Computation for Fretting {
 
     /// The states and fields of a cycle, the places of a search, and the values.
     fn bytes((definition, _, task): &Task<Self>) -> usize {
-        let columns = task.measures.iter().flatten().count();
+        let lives = task.measures.iter().flatten().filter(|asked| asked.life.is_some()).count();
+        let columns = lives + task.measures.iter().flatten().count();
         let path = size_of::<Stress>() + 8 * 2 * NUMBER_LENGTH;
         let instants = task.plan.length() * ASSUMED_INSTANTS;
         task.places.count() * (3 + columns) * NUMBER
@@ -131,8 +154,15 @@ impl Computation for Fretting {
         let netted = (net * moves * NET_INSTANTS).saturating_mul(stress + CRITERION_COST + planes * GRID_PLANES_COST);
         let curved = (task.plan.curved() * ASSUMED_INSTANTS) as u64;
         let followed = (instants * MOVE_COST).saturating_add(curved.saturating_mul(CURVED_INSTANT_COST));
+        // Below each worst place of the surface, which a search may have to look for.
+        let (below, climb) = match task.critical_distance {
+            None => (0, climb),
+            Some(CriticalDistance::Point(_)) => (1, 2 * climb),
+            Some(CriticalDistance::Line(_)) => (LINE_DEPTHS, 2 * climb),
+        };
+        let averaged = (below * all as u64).saturating_mul(instants * stress);
         let places = (task.places.count() as u64).saturating_add(climb * all as u64);
-        places.saturating_mul(each).saturating_add(netted).saturating_add(followed)
+        places.saturating_mul(each).saturating_add(averaged).saturating_add(netted).saturating_add(followed)
     }
 
     fn run((_, setup, task): Task<Self>, stop: &dyn Stop) -> Result<Rated, Failure> {
@@ -158,7 +188,10 @@ impl Outcome for Rated {
 
     fn table(&self, _: &Shown) -> Option<Table<'_>> {
         let FrettingReply { x, y, z, .. } = &self.reply;
-        let ratings = self.reply.ratings().map(|(name, unit, rating)| (name, unit, &rating.values[..]));
+        let ratings = self.reply.ratings().flat_map(|(name, unit, rating)| {
+            let cycles = rating.cycles.iter().map(move |cycles| (format!("{name}_cycles"), "1", &cycles[..]));
+            iter::once((name.to_owned(), unit, &rating.values[..])).chain(cycles)
+        });
         Some(column_table([x, y, z], ratings))
     }
 

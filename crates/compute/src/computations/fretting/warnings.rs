@@ -2,7 +2,7 @@
 
 use stickslip_mechanics::fatigue::{Criterion, Measure, Ratings, Worst};
 use stickslip_mechanics::{Contact, Move, in_unit};
-use stickslip_wire::fretting::FrettingTask;
+use stickslip_wire::fretting::{AskedMeasure, FrettingTask};
 use stickslip_wire::subsurface::Places;
 use stickslip_wire::{FrettingReply, Warning};
 
@@ -72,6 +72,12 @@ pub(super) fn fretting_warnings(reply: &FrettingReply, rated: &Rated<'_>) -> Vec
             on_rim.then(|| format!("{name} at {}", shown(rated.places[place])))
         }),
         ": the largest value lies on the rim of the places asked for, and may be larger beyond it",
+    );
+    warn(
+        "life_scatter",
+        of_each(&|index, name, _| reply.ratings().nth(index)?.2.life.map(|_| format!("life by {name}"))),
+        ": tested lives scatter about such a curve by a factor of three and more, and a small error of the friction or \
+         the load changes them by as much; `shortest` and `longest` have the stated error of the value alone",
     );
     warn(
         "grid_misses_largest",
@@ -169,7 +175,9 @@ pub(super) fn beyond_model(
         messages.push(format!("the bulk stress reaches {} alone: is it in Pa, rather than MPa?", in_unit(bulk, "Pa")));
     }
     for (name, asked) in NAMES.into_iter().zip(task.measures) {
-        let Some((Measure::Stress(criterion), Some(limit))) = asked else { continue };
+        let Some(AskedMeasure { measure: Measure::Stress(criterion), limit: Some(limit), .. }) = asked else {
+            continue;
+        };
         if matches!(criterion, Criterion::FatemiSocie { .. }) {
             // A strain.
             continue;
