@@ -3,11 +3,12 @@
 #[path = "../../build/commit.rs"]
 mod commit;
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use crate::common;
-use crate::python::succeed;
+use crate::python::{file, succeed};
 
 fn git(folder: &Path, arguments: &[&str]) -> String {
     let mut git = Command::new("git");
@@ -23,6 +24,51 @@ fn the_version_is_that_of_the_package() {
     // A debug build has no commit but one that is given.
     assert_eq!(version.split(" (").next(), Some(env!("CARGO_PKG_VERSION")), "{line}");
     assert_eq!(version.contains('('), option_env!("BUILD_COMMIT") != Some("unknown"), "{line}");
+}
+
+/// Cargo, the Python package (whose version maturin takes from its Cargo.toml), the OpenAPI document and the citation.
+#[test]
+fn one_version_counts_for_everything() {
+    let version = env!("CARGO_PKG_VERSION");
+    let read = |path: &str| std::fs::read_to_string(file(path)).unwrap();
+    let crates = std::fs::read_dir(file("crates")).unwrap().map(|folder| folder.unwrap().path().join("Cargo.toml"));
+    for manifest in crates.chain([file("Cargo.toml"), file("python/Cargo.toml")]) {
+        let text = std::fs::read_to_string(&manifest).unwrap();
+        let package = text.split("[package]").nth(1).unwrap().split("\n[").next().unwrap();
+        assert!(package.contains("\nversion.workspace = true\n"), "{}", manifest.display());
+    }
+    let project: toml::Table = read("python/pyproject.toml").parse().unwrap();
+    assert!(project["project"].get("version").is_none());
+    assert_eq!(project["project"]["dynamic"].as_array().unwrap()[0].as_str(), Some("version"));
+    let document: serde_json::Value = serde_json::from_str(&read("openapi/openapi.json")).unwrap();
+    assert_eq!(document["info"]["version"], version);
+    assert!(read("CITATION.cff").lines().any(|line| line == format!("version: {version}")));
+    assert!(read("CHANGELOG.md").contains(&format!("\n## [{version}] - ")));
+}
+
+/// The notices are written by `./check notices write`, which needs cargo-about; that each crate is in them needs nothing.
+#[test]
+fn the_notices_name_every_crate_that_is_shipped() {
+    let mut tree = Command::new(env!("CARGO"));
+    tree.args(["tree", "--offline", "--locked", "--edges", "normal,no-proc-macro", "--prefix", "none"]);
+    tree.args(["--target", "x86_64-unknown-linux-gnu", "--target", "x86_64-unknown-linux-musl"]);
+    tree.args(["--package", "stickslip", "--package", "stickslip-python"]).current_dir(env!("CARGO_MANIFEST_DIR"));
+    let printed = succeed(&mut tree, "cargo is there");
+    let crates: BTreeSet<(&str, &str)> = printed
+        .lines()
+        .filter(|line| !line.contains("(/"))
+        .filter_map(|line| line.split_once(" v"))
+        .map(|(name, rest)| (name, rest.split(' ').next().unwrap()))
+        .collect();
+    assert!(crates.len() > 150, "{}", crates.len());
+    let notices = std::fs::read_to_string(file("THIRD-PARTY.txt")).unwrap();
+    let named: BTreeSet<(&str, &str)> =
+        notices.lines().filter_map(|line| line.strip_prefix("  ")?.split_once(' ')).collect();
+    let absent: Vec<_> = crates.difference(&named).collect();
+    assert!(absent.is_empty(), "run `./check notices write` for {absent:?}");
+    for part in ["swagger-ui", "DejaVu", "SQLite", "Zstandard", "mimalloc", "musl", "ring: further parts"] {
+        assert!(notices.lines().any(|line| line.starts_with(part) && line.ends_with(':')), "{part}");
+    }
 }
 
 #[test]
