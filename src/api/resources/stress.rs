@@ -78,5 +78,5 @@ pub async fn get_stress(
         let detail = "the extrema are no column: ask for them with the format `columns`, or at /contacts/{id}/residual";
         return Err(Problem::at(Code::InvalidInput, "/residual", detail));
     }
-    computations::get_of_contact(&app, id, &headers, format, StressTask { id, sampling, residual }).await
+    computations::get_of_contact(&app, id, &headers, format, StressTask { sampling, residual }).await
 }
