@@ -37,8 +37,7 @@ pub(super) struct Scale {
 }
 
 impl Colour {
-    const ALL: [Colour; 6] =
-        [Colour::Blue, Colour::Red, Colour::Grey, Colour::Sky, Colour::Orange, Colour::Green];
+    const ALL: [Colour; 6] = [Colour::Blue, Colour::Red, Colour::Grey, Colour::Sky, Colour::Orange, Colour::Green];
 
     fn rgb(self) -> RGBColor {
         match self {
