@@ -45,6 +45,33 @@ fn one_version_counts_for_everything() {
     assert!(read("CHANGELOG.md").contains(&format!("\n## [{version}] - ")));
 }
 
+/// What others publish is named by its hash, and the checks run in the image that builds a release.
+#[test]
+fn actions_and_images_are_pinned_by_hash() {
+    let is_hash = |text: &str, length| text.len() == length && text.chars().all(|letter| letter.is_ascii_hexdigit());
+    let dockerfile = std::fs::read_to_string(file("Dockerfile")).unwrap();
+    let builder = dockerfile.lines().find_map(|line| line.strip_prefix("FROM ")?.split(' ').next()).unwrap();
+    let mut found = 0;
+    let workflows = std::fs::read_dir(file(".github/workflows")).unwrap().map(|entry| entry.unwrap().path());
+    for path in workflows.chain([file("deploy/compose.yaml")]) {
+        for line in std::fs::read_to_string(&path).unwrap().lines() {
+            let line = line.trim_start_matches([' ', '-']);
+            if let Some(action) = line.strip_prefix("uses: ") {
+                let hash = action.split(' ').next().unwrap().split('@').nth(1).unwrap();
+                assert!(is_hash(hash, 40), "{}: {line}", path.display());
+                found += 1;
+            }
+            if let Some(image) = line.strip_prefix("image: ") {
+                let digest = image.split("@sha256:").nth(1).unwrap_or_default();
+                assert!(is_hash(digest, 64), "{}: {line}", path.display());
+                assert!(!image.starts_with("rust:") || image == builder, "{}: {line}", path.display());
+                found += 1;
+            }
+        }
+    }
+    assert!(found > 30, "{found}");
+}
+
 #[test]
 fn the_commit_is_that_of_the_repository_and_of_no_other() {
     let folder = tempfile::tempdir().unwrap();
