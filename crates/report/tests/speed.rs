@@ -32,7 +32,7 @@ fn the_report_finds_the_known_orders_of_error() {
         for named in ["reversals_20", "exact", "springs_arcosh", "springs_level", "recipe", "time, s"] {
             assert!(chart.contains(named), "{kind} {named}");
         }
-        // Three springs on each of three lines, the exact solver, and its place in the legend; the reference has no error.
+        // Three springs on each of three lines, the exact solver, and its legend; the reference has no error.
         assert_eq!(chart.matches("<circle").count(), 11, "{kind}");
     }
     for row in rows {

@@ -18,8 +18,8 @@ const HEAD: &str = "| scene | solver | springs | × exact | force error | stress
 /// The scene of the charts, or else the first one that was measured: the others look alike, and the tables have them.
 const CHARTED: &str = "reversals_20";
 
-/// Writes `report.md`, `report.csv`, `report.json`, `stress.svg` and `force.svg` into `dir`, which is created if it does
-/// not exist.
+/// Writes `report.md`, `report.csv`, `report.json`, `stress.svg` and `force.svg` into `dir`, which is created if it
+/// does not exist.
 ///
 /// # Errors
 /// An error of the file system; a chart that cannot be drawn is [`io::ErrorKind::Other`].
