@@ -1,12 +1,12 @@
 # Build: a static program; the toolchain stays in this stage.
-FROM rust:1.95-bookworm AS build
+FROM rust:1.95-bookworm@sha256:6258907abe69656e41cd992e0b705cdcfabcbbe3db374f92ed2d47121282d4a1 AS build
 RUN apt-get update && apt-get install --yes --no-install-recommends musl-tools ca-certificates
 WORKDIR /src
-COPY Cargo.toml Cargo.lock build.rs image ./
+COPY Cargo.toml Cargo.lock LICENSE build.rs image ./
 COPY build ./build
 COPY .cargo ./.cargo
 COPY crates ./crates
-COPY python/Cargo.toml ./python/
+COPY python/Cargo.toml python/THIRD-PARTY.txt ./python/
 COPY python/src ./python/src
 COPY src ./src
 COPY openapi ./openapi

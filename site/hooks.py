@@ -11,7 +11,7 @@ ROOT = Path(__file__).resolve().parents[1]
 #: The folder of the site that stands for the repository.
 REPOSITORY = "repository"
 #: Pages outside docs/, with their places in the site.
-PAGES = {name: f"{REPOSITORY}/{name}" for name in ["ARCHITECTURE.md", "CHANGELOG.md"]} | {"README.md": "index.md"}
+PAGES = {name: f"{REPOSITORY}/{name}" for name in ["ARCHITECTURE.md", "CHANGELOG.md", "CONTRIBUTING.md", "SECURITY.md"]} | {"README.md": "index.md"}
 LINK = re.compile(r"(\]\(|\]: |(?:src|href)=\")(?!\w+:|#|<)([^)\s\"#]+)")
 EQUATION = re.compile(r"<(span|div) class=\"arithmatex\">\\[\[(](.*?)\\[\])]</\1>", re.DOTALL)
 

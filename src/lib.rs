@@ -12,7 +12,7 @@
 //!
 //! [`jobs`] are sweeps over many simulations, at once or beyond the request that asks for them.
 //!
-//! [`sessions`] are the contacts that live on the server: a cache over the store, one writer at a time each, replay,
+//! [`sessions`] are the stored contacts with their history: a cache over the store, one writer at a time each, replay,
 //! retries.
 //!
 //! [`admission`] gives permits for solver threads, places and memory, and ends work that takes too long or is not

@@ -261,7 +261,7 @@ impl Contact {
         let request = wire::parse::<StressRequest>(Value::Object(body).to_string().as_bytes())?;
         let mut faults = Faults::default();
         let sampling = request.check(JsonPath::Root, &mut faults);
-        self.compute(StressTask { id: self.id, sampling: faults.done(sampling)?, residual }, stop)
+        self.compute(StressTask { sampling: faults.done(sampling)?, residual }, stop)
     }
 
     /// The body is that of POST /cycle without a contact.

@@ -17,7 +17,7 @@ class Accuracy(Result):
 
     compute_time: float
     """Processor time that the request took but for HTTP, s: with the check, the preparation of the profile unless it
-    was ready, and the loading of a stored contact; without the time for which the work gave way to that of others.
+    was ready, and the loading of a stored contact; without the time in which it yielded to other work.
     """
 
     force_error: float

@@ -1,4 +1,4 @@
-"""Points a second of one sweep by engine: `python tools/throughput.py [POINTS]` prints the table of docs/sweeps.md.
+"""Points a second of one sweep by engine: `python tools/throughput.py [POINTS]` prints a table of docs/python.md.
 
 All compute the same points, in turn in each round, so that a busy machine slows them alike; ratios are medians of the
 rounds. Workers have one thread each. The time has everything but the start of the cluster: planning, tasks, files.

@@ -1,9 +1,9 @@
-//! Slots on the solver threads: which work is next, and when long work gives way.
+//! Slots on the solver threads: which work is next, and when long work yields.
 //!
 //! Work waits in a queue: that of its client and its kind. While somebody waits, each queue is charged for the time
 //! that its work has held a thread, divided by the weight of its kind, and the queue that has been charged least is
 //! next; within it, the work that came first. So queues share the threads by weight, whatever they ask for, and none
-//! starves (start-time fair queueing: Goyal, Vin and Cheng 1996). Work that has held a thread for a slice gives way at
+//! starves (start-time fair queueing: Goyal, Vin and Cheng 1996). Work that has held a thread for a slice yields at
 //! its next check of a [`Deadline`](super::Deadline), if another queue is next, and waits on its own thread of the
 //! blocking pool. A thread whose work has not checked for [`OVERDUE`] does not count for interactive work, which then
 //! shares the processors with it.

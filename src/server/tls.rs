@@ -68,7 +68,7 @@ fn read(TlsFiles { certificate, key }: &TlsFiles) -> Result<TlsAcceptor, String>
         .with_safe_default_protocol_versions()
         .and_then(|config| config.with_no_client_auth().with_single_cert(chain, private));
     let mut config = config.map_err(|error| {
-        format!("{} and {} are no certificate with its key: {error}", certificate.display(), key.display())
+        format!("{} and {} are not a certificate and its key: {error}", certificate.display(), key.display())
     })?;
     config.alpn_protocols = vec![b"http/1.1".to_vec()];
     Ok(TlsAcceptor::from(Arc::new(config)))

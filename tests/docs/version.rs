@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use crate::common;
-use crate::python::succeed;
+use crate::python::{file, succeed};
 
 fn git(folder: &Path, arguments: &[&str]) -> String {
     let mut git = Command::new("git");
@@ -23,6 +23,53 @@ fn the_version_is_that_of_the_package() {
     // A debug build has no commit but one that is given.
     assert_eq!(version.split(" (").next(), Some(env!("CARGO_PKG_VERSION")), "{line}");
     assert_eq!(version.contains('('), option_env!("BUILD_COMMIT") != Some("unknown"), "{line}");
+}
+
+/// Cargo, the Python package (whose version maturin takes from its Cargo.toml), the OpenAPI document and the citation.
+#[test]
+fn one_version_counts_for_everything() {
+    let version = env!("CARGO_PKG_VERSION");
+    let read = |path: &str| std::fs::read_to_string(file(path)).unwrap();
+    let crates = std::fs::read_dir(file("crates")).unwrap().map(|folder| folder.unwrap().path().join("Cargo.toml"));
+    for manifest in crates.chain([file("Cargo.toml"), file("python/Cargo.toml")]) {
+        let text = std::fs::read_to_string(&manifest).unwrap();
+        let package = text.split("[package]").nth(1).unwrap().split("\n[").next().unwrap();
+        assert!(package.contains("\nversion.workspace = true\n"), "{}", manifest.display());
+    }
+    let project: toml::Table = read("python/pyproject.toml").parse().unwrap();
+    assert!(project["project"].get("version").is_none());
+    assert_eq!(project["project"]["dynamic"].as_array().unwrap()[0].as_str(), Some("version"));
+    let document: serde_json::Value = serde_json::from_str(&read("openapi/openapi.json")).unwrap();
+    assert_eq!(document["info"]["version"], version);
+    assert!(read("CITATION.cff").lines().any(|line| line == format!("version: {version}")));
+    assert!(read("CHANGELOG.md").contains(&format!("\n## [{version}] - ")));
+}
+
+/// What others publish is named by its hash, and the checks run in the image that builds a release.
+#[test]
+fn actions_and_images_are_pinned_by_hash() {
+    let is_hash = |text: &str, length| text.len() == length && text.chars().all(|letter| letter.is_ascii_hexdigit());
+    let dockerfile = std::fs::read_to_string(file("Dockerfile")).unwrap();
+    let builder = dockerfile.lines().find_map(|line| line.strip_prefix("FROM ")?.split(' ').next()).unwrap();
+    let mut found = 0;
+    let workflows = std::fs::read_dir(file(".github/workflows")).unwrap().map(|entry| entry.unwrap().path());
+    for path in workflows.chain([file("deploy/compose.yaml")]) {
+        for line in std::fs::read_to_string(&path).unwrap().lines() {
+            let line = line.trim_start_matches([' ', '-']);
+            if let Some(action) = line.strip_prefix("uses: ") {
+                let hash = action.split(' ').next().unwrap().split('@').nth(1).unwrap();
+                assert!(is_hash(hash, 40), "{}: {line}", path.display());
+                found += 1;
+            }
+            if let Some(image) = line.strip_prefix("image: ") {
+                let digest = image.split("@sha256:").nth(1).unwrap_or_default();
+                assert!(is_hash(digest, 64), "{}: {line}", path.display());
+                assert!(!image.starts_with("rust:") || image == builder, "{}: {line}", path.display());
+                found += 1;
+            }
+        }
+    }
+    assert!(found > 30, "{found}");
 }
 
 #[test]

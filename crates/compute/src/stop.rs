@@ -19,7 +19,7 @@ pub enum Interrupted {
 }
 
 /// What long loops ask whether to go on. No more than some milliseconds may pass between two questions, since at each
-/// of them the work may give way to others.
+/// of them the work may yield to others.
 pub trait Stop: Send + Sync {
     /// The flag that ends the work, and the times that have been counted for it.
     fn flag(&self) -> &Flag;

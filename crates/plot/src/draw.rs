@@ -39,15 +39,14 @@ pub(super) struct Scale {
 }
 
 impl Colour {
-    const ALL: [Colour; 6] =
-        [Colour::Blue, Colour::Red, Colour::Grey, Colour::LightGrey, Colour::Orange, Colour::Green];
+    const ALL: [Colour; 6] = [Colour::Blue, Colour::Red, Colour::Grey, Colour::Sky, Colour::Orange, Colour::Green];
 
     fn rgb(self) -> RGBColor {
         match self {
             Colour::Blue => RGBColor(0, 90, 181),
             Colour::Red => RGBColor(220, 50, 32),
             Colour::Grey => RGBColor(110, 110, 110),
-            Colour::LightGrey => RGBColor(160, 160, 160),
+            Colour::Sky => RGBColor(86, 180, 233),
             Colour::Orange => RGBColor(230, 159, 0),
             Colour::Green => RGBColor(0, 130, 90),
         }
@@ -217,8 +216,12 @@ impl Plot {
                 }
                 let line = axes.draw_series(joined.then(|| PathElement::new(points().collect::<Vec<_>>(), style)))?;
                 if !std::mem::replace(&mut named, true) {
-                    line.label(curve.name.as_ref())
-                        .legend(move |(x, y)| Rectangle::new([(x, y - 3), (x + 28, y + 3)], style.filled()));
+                    let label = line.label(curve.name.as_ref());
+                    if curve.dots {
+                        label.legend(move |(x, y)| Circle::new((x + 14, y), LARGE_DOT, style.filled()));
+                    } else {
+                        label.legend(move |(x, y)| Rectangle::new([(x, y - 3), (x + 28, y + 3)], style.filled()));
+                    }
                 }
             }
         }

@@ -142,7 +142,7 @@ pub enum Colour {
     /// Of the third, and for secondary curves.
     Grey,
     /// Of the fourth.
-    LightGrey,
+    Sky,
     /// Of the fifth.
     Orange,
     /// Of the sixth.

@@ -134,7 +134,7 @@ codes! {
     /// The tenant has as many jobs as it may have.
     TooManyJobs = 429 "too_many_jobs": "There are too many jobs",
         "wait for a job to end, or delete one; `Retry-After` says when to try again";
-    /// The client has as much of something that all share as one client may have.
+    /// A quota of the client is used up.
     QuotaExceeded = 429 "quota_exceeded": "A quota of the client is used up",
         "`detail` names the [quota](overload.md#quotas): end, close or delete something, or wait as long as \
             `Retry-After` says";

@@ -125,7 +125,7 @@ pub struct Accuracy: Default omits Option {
     /// number, if it was asked for.
     pub subsurface_error: Option<f64>,
     /// Processor time that the request took but for HTTP, s: with the check, the preparation of the profile unless it
-    /// was ready, and the loading of a stored contact; without the time for which the work gave way to that of others.
+    /// was ready, and the loading of a stored contact; without the time in which it yielded to other work.
     pub compute_time: f64,
 }
 }

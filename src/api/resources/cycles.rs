@@ -39,19 +39,19 @@ pub async fn get_cycles(
     }
     let mut memory = app.pool.reserve(last * OBJECT + format.bytes(0, 0)).await?;
     let (sequence, page) = app.sessions.cycles().newest(id, last, &mut memory).await?;
-    let write = move || format.write(CAPACITY, &page, || Some(plot(id, &page)), || Some(table(&page)), &|| true);
+    let write = move || format.write(CAPACITY, &page, || Some(plot(&page)), || Some(table(&page)), &|| true);
     let body = app.pool.run(format.cost(), write).await??;
     let tag = format.tag(&sequence.to_string());
     Ok(reply::holding(reply::tagged(format.reply(body), &tag), memory))
 }
 
 /// Amplitudes, friction work and stiffness of the cycles over the moves that closed them.
-fn plot(id: Uuid, page: &CyclePage) -> Plot {
+fn plot(page: &CyclePage) -> Plot {
     let panel = |name, unit, colour, of: fn(&Cycle) -> f64| {
         curve(name, unit, colour, page.items.iter().map(|cycle| (cycle.to as f64, of(cycle))))
     };
     Plot::new(
-        format!("Contact {id}: {}closed cycles", if page.items.is_empty() { "no " } else { "" }),
+        if page.items.is_empty() { "No closed cycles" } else { "Closed cycles" },
         Axis { name: "move", unit: None },
         vec![
             panel("amplitude U₀", "m", Colour::Blue, |cycle| cycle.displacement_amplitude),

@@ -83,7 +83,7 @@ impl MoveSeries for History {
     }
 
     /// Displacement, force and friction work over the moves.
-    fn plot(id: Uuid, page: &HistoryPage) -> Plot {
+    fn plot(page: &HistoryPage) -> Plot {
         let panel = |name, unit, colour, of: fn(&State) -> f64| {
             move_series::curve(
                 name,
@@ -93,7 +93,7 @@ impl MoveSeries for History {
             )
         };
         Plot::new(
-            format!("Contact {id}: history{}", move_series::shown(page.items.iter().map(|item| item.sequence))),
+            format!("History{}", move_series::shown(page.items.iter().map(|item| item.sequence))),
             Axis { name: "move", unit: None },
             vec![
                 panel("displacement", "m", Colour::Blue, |state| state.displacement),

@@ -76,11 +76,11 @@ impl MoveSeries for Loop {
         Ok(LoopPage { next: moves.next, ..page })
     }
 
-    fn plot(id: Uuid, page: &LoopPage) -> Plot {
+    fn plot(page: &LoopPage) -> Plot {
         let points = page.displacement.iter().copied().zip(page.force.iter().copied());
         let moves = move_series::shown(page.sequence.iter().copied().filter(|number| *number > 0));
         Plot::new(
-            format!("Contact {id}: hysteresis loop{moves}"),
+            format!("Hysteresis loop{moves}"),
             Axis::of("displacement U", "m"),
             vec![move_series::curve("tangential force F", "N", Colour::Blue, points)],
         )

@@ -51,7 +51,7 @@ pub(super) trait MoveSeries: Clone + Send + Sync + 'static {
         memory: &mut Reservation,
     ) -> impl Future<Output = Result<Self::Page, Problem>> + Send;
 
-    fn plot(id: Uuid, page: &Self::Page) -> Plot;
+    fn plot(page: &Self::Page) -> Plot;
 
     fn table<'a>(&self, page: &'a Self::Page) -> Table<'a>;
 }
@@ -85,7 +85,7 @@ pub(super) async fn reply<T: MoveSeries>(
     let page = shown.page(&app, id, after, moves, format, &mut memory).await?;
     let (stop, _raised_at_the_end) = app.pool.deadline();
     let write = move || {
-        let (plot, table) = (|| Some(T::plot(id, &page)), || Some(shown.table(&page)));
+        let (plot, table) = (|| Some(T::plot(&page)), || Some(shown.table(&page)));
         let written = format.write(CAPACITY, &page, plot, table, &|| stop.check().is_ok());
         if written.is_err() {
             stop.check().map_err(Failure::from)?;

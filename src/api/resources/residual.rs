@@ -34,5 +34,5 @@ pub async fn get_residual(
     let is_plot = Format::chosen(format, &headers, &Format::ALL)?.is_plot();
     let request = StressRequest { points: Some(PLOT_RADII), radii: None, x: None, fields: Some(vec![Field::Shear]) };
     let between = is_plot.then(|| request.check(JsonPath::Root, &mut Faults::default())).flatten();
-    computations::get_of_contact(&app, id, &headers, format, ResidualTask { id, between }).await
+    computations::get_of_contact(&app, id, &headers, format, ResidualTask { between }).await
 }

@@ -77,8 +77,9 @@ pub async fn get_stress(
 ) -> Result<Response, Problem> {
     let CheckedStress { sampling, residual, format } = query;
     if residual && Format::chosen(format, &headers, &Format::ALL)? != Format::Columns {
-        let detail = "the extrema are no column: ask for them with the format `columns`, or at /contacts/{id}/residual";
+        let detail =
+            "the extrema are not a column: ask for them with the format `columns`, or at /contacts/{id}/residual";
         return Err(Problem::at(Code::InvalidInput, "/residual", detail));
     }
-    computations::get_of_contact(&app, id, &headers, format, StressTask { id, sampling, residual }).await
+    computations::get_of_contact(&app, id, &headers, format, StressTask { sampling, residual }).await
 }

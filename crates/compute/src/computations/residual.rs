@@ -1,7 +1,5 @@
 //! The residual stress: the extrema of the shear stress in the present state of a contact.
 
-use uuid::Uuid;
-
 use stickslip_mechanics::{Contact, Profile};
 use stickslip_plot::{Axis, Colour, Curve, Drawing, Panel, Plot};
 use stickslip_wire::{Peak, Residual, Sampling};
@@ -17,8 +15,6 @@ const ASSUMED_PEAKS: usize = 1_000;
 
 /// The extrema of which contact.
 pub struct ResidualTask {
-    /// The contact, for the title of a plot.
-    pub id: Uuid,
     /// Where a plot has the shear stress between the extrema.
     pub between: Option<Sampling>,
 }
@@ -53,7 +49,7 @@ impl OnContact for ResidualTask {
             let shear = stress.shear.clone().unwrap_or_default().into_iter().map(|value| value.unwrap_or(f64::NAN));
             stress.places().iter().copied().zip(shear).collect()
         });
-        let title = format!("Contact {} after move {sequence}: residual stress", self.id);
+        let title = format!("Residual stress after move {sequence}");
         Ok(Extrema { title, reply, between })
     }
 }

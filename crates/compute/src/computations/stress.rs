@@ -1,7 +1,5 @@
 //! The stresses in the present state of a contact.
 
-use uuid::Uuid;
-
 use stickslip_mechanics::{Contact, Profile, Regime};
 use stickslip_plot::{Axis, Band, Colour, Curve, Drawing, Panel, Plot};
 use stickslip_wire::{Field, Sampling, StressReply};
@@ -14,8 +12,6 @@ use crate::{Nanoseconds, Stop};
 
 /// Which stresses of which contact.
 pub struct StressTask {
-    /// The contact, for the title of a plot.
-    pub id: Uuid,
     /// Where, and which fields.
     pub sampling: Sampling,
     /// Whether the extrema of the shear stress are asked for.
@@ -24,7 +20,6 @@ pub struct StressTask {
 
 /// Stresses, and the contact that has them.
 pub struct Stresses {
-    id: Uuid,
     sequence: u64,
     contact: Contact,
     reply: StressReply,
@@ -57,7 +52,7 @@ impl OnContact for StressTask {
             displacement: stress.displacement,
             residual: self.residual.then(|| simulation::residual(&contact, stop)).transpose()?,
         };
-        Ok(Stresses { id: self.id, sequence, contact, reply })
+        Ok(Stresses { sequence, contact, reply })
     }
 }
 
@@ -75,7 +70,7 @@ impl Outcome for Stresses {
 
     /// Shear stress between the bounds of friction, with the regions that stuck and slipped in the last move.
     fn picture(&self, _: &Shown) -> Option<Drawing> {
-        let Stresses { id, sequence, contact, reply } = self;
+        let Stresses { sequence, contact, reply } = self;
         let over = |values: &Option<Vec<Option<f64>>>, factor: f64| {
             let values = values.iter().flatten().map(|value| factor * value.unwrap_or(f64::NAN));
             place_column(&reply.radius, &reply.x).1.iter().copied().zip(values).collect::<Vec<_>>()
@@ -103,7 +98,7 @@ impl Outcome for Stresses {
             Curve::line("", Colour::Grey, over(&reply.pressure, -friction)),
             Curve::line("shear stress τ", Colour::Blue, over(&reply.shear, 1.0)),
         ];
-        let title = format!("Contact {id} after move {sequence}: shear stress");
+        let title = format!("Shear stress after move {sequence}");
         let panels = vec![Panel { y: Axis::of("stress", "Pa"), curves }];
         Some(Drawing::Plot(Plot { bands, ..Plot::new(title, place_axis(reply.x.is_some()), panels) }))
     }

@@ -1,7 +1,7 @@
 //! What was taken for what in a file.
 
 use super::label::Mention;
-use super::sheet::Sheet;
+use super::sheet::{Sheet, columns};
 use super::source::Source;
 use super::units::Unit;
 
@@ -89,7 +89,7 @@ impl Preview {
             _ => format!(", separated by {}, {mark}", separator.plural()),
         };
         let rows = if rows == 1 { "1 row".to_owned() } else { format!("{rows} rows") };
-        self.reading.insert(0, format!("{}, {rows} of {width} columns{written}.", self.encoding));
+        self.reading.insert(0, format!("{}, {rows} of {}{written}.", self.encoding, columns(*width)));
     }
 
     /// Notes what a column was taken for.

@@ -169,7 +169,7 @@ impl<'a> Sheet<'a> {
             return Ok(());
         }
         let others = if self.rows.is_empty() { "most rows have" } else { "the first" };
-        Err(ImportError::at_line(line, format!("has {} columns, and {others} {}", cells.len(), self.width)))
+        Err(ImportError::at_line(line, format!("has {}, and {others} {}", columns(cells.len()), self.width)))
     }
 
     /// Refuses a line above the numbers that looks like a row of them.
@@ -545,4 +545,9 @@ fn no_table(text: &str, all: &[Row]) -> ImportError {
         has_column |= shape(line).is_some();
     }
     ImportError::of_file(if has_column { ONE_COLUMN } else { "there are no rows of numbers" })
+}
+
+/// A number of columns in words.
+pub(super) fn columns(count: usize) -> String {
+    if count == 1 { "1 column".to_owned() } else { format!("{count} columns") }
 }

@@ -2,14 +2,13 @@
 //!
 //! | criterion | value | unit |
 //! |---|---|---|
-//! | Crossland (1956) | sqrt(J2a) + alpha max hydrostatic stress, sqrt(J2a) = radius of the smallest ball around the
-//! deviators over sqrt(2) | Pa |
-//! | Dang Van (1973) | max over instants of \[Tresca shear of (deviator - centre of that ball) + alpha hydrostatic
-//! stress\] | Pa |
+//! | Crossland (1956) | sqrt(J2a) + alpha max hydrostatic stress | Pa |
+//! | Dang Van (1973) | max over instants of \[Tresca shear of (deviator - centre) + alpha hydrostatic stress\] | Pa |
 //! | Findley (1959) | max over planes of \[tau_a + k max sigma_n\] | Pa |
 //! | Smith, Watson & Topper (1970) | max over planes of max sigma_n (range of eps_n)/2; zero without tension | Pa |
 //! | Fatemi & Socie (1988) | max over planes of gamma_a max(0, 1 + k max sigma_n/sigma_y), gamma_a = tau_a/G | – |
 //!
+//! sqrt(J2a) is the radius of the smallest ball around the deviators over sqrt(2), and the centre is that of this ball.
 //! Tresca shear is half the difference of the outer principal stresses; sigma_n and eps_n are the normal stress and
 //! strain of a plane; tau_a is the radius of the smallest circle around the path of the shear stress in the plane.
 //! Strains are elastic (Hooke). Planes are searched for on a grid of five degrees and refined from its peaks to about

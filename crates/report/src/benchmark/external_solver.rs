@@ -88,7 +88,7 @@ impl ExternalSolver {
         let mut reply = String::new();
         self.stdout.read_line(&mut reply)?;
         serde_json::from_str(&reply)
-            .map_err(|error| io::Error::other(format!("{} replied with what is no valid document: {error}", self.name)))
+            .map_err(|error| io::Error::other(format!("{} replied with an invalid document: {error}", self.name)))
     }
 }
 

@@ -126,15 +126,17 @@ fn positions(path: &NormalisedPath) -> Plot {
         })
     });
     let position: Vec<_> = position.chain(turns.last().copied()).collect();
-    let marked = vec![turns[5], (6.5, 0.0)];
+    let at_reversal = vec![turns[5]];
     Plot::of_numbers(
         "Figure 1: position of the indenter, 20 reversals",
         "reversal point k",
         "u / u_max",
         vec![
             Curve::line("position", Colour::Grey, position),
-            Curve::dots("reversal points", Colour::Red, turns),
-            Curve::dots("A and B of figure 3", Colour::Blue, marked),
+            Curve::dots("reversal points", Colour::Orange, turns),
+            // In the colours of their curves in figure 3.
+            Curve::dots("A: reversal 6", Colour::Blue, at_reversal),
+            Curve::dots("B: back at u = 0", Colour::Red, vec![(6.5, 0.0)]),
         ],
     )
 }
@@ -161,8 +163,8 @@ fn shear_partway() -> Result<Plot, Error> {
         "tau / (mu p_max)",
         // The friction bound lies behind the curves that it bounds.
         vec![
-            Curve::line("mu p", Colour::Grey, bound),
-            Curve::line("-mu p", Colour::LightGrey, mirrored),
+            Curve::line("mu p and -mu p", Colour::Grey, bound),
+            Curve::line("", Colour::Grey, mirrored),
             Curve::line("B: back at u = 0", Colour::Red, path.shear()),
             Curve::line("A: reversal 6", Colour::Blue, at_reversal),
         ],
