@@ -77,7 +77,7 @@ impl<T: QueryParams> FromRequestParts<Arc<App>> for CheckedQuery<T> {
         let given = match Query::<Vec<(String, String)>>::from_request_parts(parts, app).await {
             Ok(Query(given)) => given,
             Err(error) => {
-                let fault = Fault { pointer: String::new(), detail: error.body_text() };
+                let fault = Fault::new("", error.body_text());
                 return Err(Rejection::Invalid(vec![fault]).into());
             }
         };

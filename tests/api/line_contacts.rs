@@ -169,6 +169,13 @@ async fn what_is_no_line_contact_is_refused_at_its_place() {
     ] {
         assert_refused(&server, "/simulate", &of(&contact, &rest), (code, place, words)).await;
     }
+    // The range is there for programs too.
+    let body = of(&line(json!({"radius": -1.0})), &path);
+    let fault = problem(server.post("/simulate", &body).await).await.errors.remove(0);
+    assert_eq!([fault.minimum, fault.maximum], [Some(1e-15), Some(1e9)]);
+    let body = of(&cylinder(), &json!({"path": {"force": [600.0]}}));
+    let fault = problem(server.post("/simulate", &body).await).await.errors.remove(0);
+    assert!((fault.exclusive_maximum.unwrap() - 0.6 * 968.466409034).abs() < 1e-9);
     let pad = with(pad(), "/profile/reference_length", json!(4e-4));
     let place = ("invalid_input", "/contact/profile/reference_length", "above 5.5");
     assert_refused(&server, "/simulate", &of(&pad, &path), place).await;

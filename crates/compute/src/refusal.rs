@@ -1,6 +1,7 @@
 //! Why a request has no reply, as the problem document says it.
 
 use stickslip_measured::import::ImportError;
+use stickslip_mechanics::Error;
 use stickslip_wire::{Code, Fault, ProblemDocument, Rejection};
 
 use crate::computations::ComputeError;
@@ -31,7 +32,7 @@ impl Refusal {
     #[must_use]
     pub fn at(code: Code, pointer: impl Into<String>, detail: impl Into<String>) -> Refusal {
         let (pointer, detail) = (pointer.into(), detail.into());
-        let errors = vec![Fault { pointer, detail: detail.clone() }];
+        let errors = vec![Fault::new(pointer, detail.clone())];
         Refusal { errors, ..Refusal::new(code, detail) }
     }
 
@@ -61,8 +62,8 @@ impl From<Rejection> for Refusal {
 }
 
 impl From<Fault> for Refusal {
-    fn from(Fault { pointer, detail }: Fault) -> Self {
-        Refusal::at(Code::InvalidInput, pointer, detail)
+    fn from(fault: Fault) -> Self {
+        Refusal { errors: vec![fault.clone()], ..Refusal::new(Code::InvalidInput, fault.detail) }
     }
 }
 
@@ -98,6 +99,19 @@ impl From<Failure> for Refusal {
         let (code, detail) = (failure.code(), failure.cause.to_string());
         match failure.cause {
             Cause::Stopped | Cause::Lifted => Refusal::new(code, detail),
+            Cause::Refused(error) => {
+                let mut fault = Fault::new(failure.pointer, detail.clone());
+                match error {
+                    Error::ForceExceedsFriction { limit, .. } => {
+                        (fault.exclusive_minimum, fault.exclusive_maximum) = (Some(-limit), Some(limit));
+                    }
+                    Error::BulkTooLarge { largest, .. } => {
+                        (fault.minimum, fault.maximum) = (Some(-largest), Some(largest));
+                    }
+                    _ => {}
+                }
+                Refusal { errors: vec![fault], ..Refusal::new(code, detail) }
+            }
             _ => Refusal::at(code, failure.pointer, detail),
         }
     }

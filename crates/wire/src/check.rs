@@ -10,7 +10,7 @@ use stickslip_mechanics::{Error, Profile, Setup, TableFault, range::Range};
 const LISTED_FAULTS: usize = 100;
 
 /// One fault of a request.
-#[derive(Clone, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
 pub struct Fault {
     /// JSON pointer (RFC 6901) into the body, or `/` and the name of a query parameter.
     #[schema(example = "/contact/profile/radius")]
@@ -18,6 +18,37 @@ pub struct Fault {
     /// What is wrong there, and what is allowed.
     #[schema(example = "-1 is out of range: allowed is 1e-15 to 1e9 m")]
     pub detail: String,
+    /// The least number allowed, where a number is out of range.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub minimum: Option<f64>,
+    /// The largest number allowed, where a number is out of range.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub maximum: Option<f64>,
+    /// What a force must stay above, N, where friction cannot hold it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub exclusive_minimum: Option<f64>,
+    /// What a force must stay below, N, where friction cannot hold it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub exclusive_maximum: Option<f64>,
+}
+
+impl Fault {
+    /// A fault without a range.
+    pub fn new(pointer: impl Into<String>, detail: impl Into<String>) -> Fault {
+        let none = None::<f64>;
+        Fault {
+            pointer: pointer.into(),
+            detail: detail.into(),
+            minimum: none,
+            maximum: none,
+            exclusive_minimum: none,
+            exclusive_maximum: none,
+        }
+    }
 }
 
 /// Why a body is refused.
@@ -108,7 +139,16 @@ impl Faults {
     pub fn add(&mut self, at: JsonPath<'_>, detail: impl fmt::Display) {
         self.count = self.count.saturating_add(1);
         if self.found.len() < LISTED_FAULTS {
-            self.found.push(Fault { pointer: at.to_string(), detail: detail.to_string() });
+            self.found.push(Fault::new(at.to_string(), detail.to_string()));
+        }
+    }
+
+    /// Notes a number that is not within a range.
+    fn out_of_range(&mut self, at: JsonPath<'_>, detail: impl fmt::Display, [minimum, maximum]: [Option<f64>; 2]) {
+        let listed = self.found.len();
+        self.add(at, detail);
+        if let Some(fault) = self.found.get_mut(listed) {
+            (fault.minimum, fault.maximum) = (minimum, maximum);
         }
     }
 
@@ -134,7 +174,8 @@ impl Faults {
     /// Checks a number against the range of its quantity.
     pub fn number(&mut self, at: JsonPath<'_>, value: f64, range: &Range) {
         if !range.contains(value) {
-            self.add(at, format_args!("{value:?} is out of range: allowed is {range}"));
+            let bounds = [Some(range.min), Some(range.max)];
+            self.out_of_range(at, format_args!("{value:?} is out of range: allowed is {range}"), bounds);
         }
     }
 
@@ -142,7 +183,9 @@ impl Faults {
     pub fn count<T: PartialOrd + fmt::Display>(&mut self, at: JsonPath<'_>, value: T, allowed: &RangeInclusive<T>) {
         if !allowed.contains(&value) {
             let (least, most) = (allowed.start(), allowed.end());
-            self.add(at, format_args!("{value} is out of range: allowed is {least} to {most}"));
+            // As the detail prints them.
+            let bounds = [least, most].map(|bound| bound.to_string().parse().ok());
+            self.out_of_range(at, format_args!("{value} is out of range: allowed is {least} to {most}"), bounds);
         }
     }
 

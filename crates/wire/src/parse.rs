@@ -89,7 +89,7 @@ fn fault(path: &Path, message: &str) -> Fault {
             pointer.push_str(&format!("/{}", escaped(name)));
         }
     }
-    Fault { pointer: shortened(pointer), detail: shortened(in_json_terms(message)) }
+    Fault::new(shortened(pointer), shortened(in_json_terms(message)))
 }
 
 fn pointer(path: &Path) -> String {

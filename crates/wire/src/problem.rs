@@ -167,7 +167,7 @@ impl Code {
 
 replies! {
 /// What went wrong, for programs (`code`, `errors`) and for people (`title`, `detail`).
-pub struct ProblemDocument: Eq {
+pub struct ProblemDocument {
     /// A reference that identifies the kind of problem: `/problems/` and the code.
     #[serde(rename = "type")]
     #[schema(example = "/problems/invalid_input")]

@@ -179,9 +179,7 @@ fn row(solver: Named, task: &Task<'_>, truth: &Answer, reference: &Reference) ->
     };
     let (found, refused) = match found {
         Ok(found) => (Some(found), None),
-        Err(Failure { pointer, cause: Cause::Refused(error) }) => {
-            (None, Some(Fault { pointer, detail: error.to_string() }))
-        }
+        Err(Failure { pointer, cause: Cause::Refused(error) }) => (None, Some(Fault::new(pointer, error.to_string()))),
         Err(failure) => return Err(failure),
     };
     let found = found.as_ref();

@@ -89,7 +89,7 @@ impl Computation for Simulate {
             "stress" => task.stress.is_some(),
             _ => true,
         };
-        let fault = || Fault { pointer: "/show".to_owned(), detail: format!("the body does not ask for `{part}`") };
+        let fault = || Fault::new("/show", format!("the body does not ask for `{part}`"));
         if is_asked { Ok(()) } else { Err(fault()) }
     }
 

@@ -62,7 +62,7 @@ impl Computation for SubsurfaceOfPath {
     }
 
     fn check_shown(task: &Simulation, shown: &Shown) -> Result<(), Fault> {
-        let at = |detail: &str| Fault { pointer: "/subsurface".to_owned(), detail: detail.to_owned() };
+        let at = |detail: &str| Fault::new("/subsurface", detail.to_owned());
         match &task.subsurface {
             None => Err(at("missing: it says where the stress is asked for")),
             Some(task) => can_show(task, shown).map_err(at),
@@ -100,7 +100,7 @@ impl OnContact for SubsurfaceTask {
     }
 
     fn check_shown(&self, shown: &Shown) -> Result<(), Fault> {
-        let at = |detail: &str| Fault { pointer: "/fields".to_owned(), detail: detail.to_owned() };
+        let at = |detail: &str| Fault::new("/fields", detail.to_owned());
         can_show(self, shown).map_err(at)
     }
 

@@ -36,7 +36,7 @@ pub fn criterion(task: &FrettingTask, shown: &Shown) -> Result<Option<&'static s
     let asked: Vec<&'static str> = asked.collect();
     let refused = |problem: &str| {
         let names = asked.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
-        Fault { pointer: "/criterion".to_owned(), detail: format!("{problem}: choose one of {names}") }
+        Fault::new("/criterion", format!("{problem}: choose one of {names}"))
     };
     // Ruiz's second parameter comes with the first.
     let mut named = asked.iter().copied().filter(|name| *name != "ruiz_tension");
@@ -48,7 +48,7 @@ pub fn criterion(task: &FrettingTask, shown: &Shown) -> Result<Option<&'static s
         (None, ..) => return Err(refused("a picture is of one criterion")),
     };
     match &task.places {
-        Places::Points(_) if is_plot => Err(Fault { pointer: "/points".to_owned(), detail: NO_PICTURE.to_owned() }),
+        Places::Points(_) if is_plot => Err(Fault::new("/points", NO_PICTURE.to_owned())),
         _ => Ok(Some(chosen).filter(|_| is_plot)),
     }
 }

@@ -148,7 +148,7 @@ impl Sweep {
     fn point(&self, document: &mut Value, point: usize, stop: &dyn Stop) -> Result<SimulateReply, PointFailure> {
         self.checked.put(document, point);
         let request = SimulateRequest::deserialize(&*document)
-            .map_err(|error| Rejection::Invalid(vec![Fault { pointer: String::new(), detail: error.to_string() }]));
+            .map_err(|error| Rejection::Invalid(vec![Fault::new("", error.to_string())]));
         let checked = check(request.map_err(of_rejection)?, &Anew(stop), stop).map_err(of_failure)?;
         let simulation = checked.map_err(of_rejection)?;
         let reply = match &self.shared {
@@ -164,7 +164,7 @@ fn of_rejection(rejection: Rejection) -> PointFailure {
         Rejection::Refused { pointer, error } => of_failure(Failure::at(pointer, error)),
         Rejection::NotJson(detail) => failure(Code::InvalidInput, String::new(), detail),
         Rejection::Invalid(faults) => {
-            let first = faults.into_iter().next().unwrap_or(Fault { pointer: String::new(), detail: String::new() });
+            let first = faults.into_iter().next().unwrap_or(Fault::new("", ""));
             failure(Code::InvalidInput, first.pointer, first.detail)
         }
     }
