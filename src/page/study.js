@@ -6,9 +6,9 @@ import { Fields } from "./form_fields.js";
 import { showWarnings, warningList } from "./warning_list.js";
 
 /** A card with a form. By default it sends the document that `request` gives to `path`, and shows the figures that
- *  `rows` makes of the reply, its warnings, and what else `show` does, which gets the list of figures too. `compute` does all of that in their place; it
- *  gets a function that shows how much is done. `parts` stand before the button, and the charts, which appear when they
- *  are drawn, after the results. */
+ *  `rows` makes of the reply, its warnings, and what else `show` does, which gets the list of figures too. `compute`
+ *  does all of that in their place; it gets a function that shows how much is done. `parts` stand before the button,
+ *  and the charts, which appear when they are drawn, after the results. */
 export function study({ name, button: label = "Compute", title, text, signal, form = new Fields(), ...more }) {
   const { parts = [], charts = [], path, request, rows, show } = more;
   const figures = el("dl", { class: "figures", id: `${name}-figures`, "aria-live": "polite" });

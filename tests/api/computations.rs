@@ -83,6 +83,6 @@ async fn the_typed_client_has_every_computation() {
             assert_eq!(timeless(json!(typed)), timeless(plain), $path);
         })*};
     }
-    agree!("/simulate" simulate, "/accuracy" accuracy, "/protocols" protocol, "/cycle" cycle, "/fretting" fretting, "/wear" wear,
-        "/profiles/fit" fit_profile, "/fit" fit_loops);
+    agree!("/simulate" simulate, "/accuracy" accuracy, "/protocols" protocol, "/cycle" cycle, "/fretting" fretting,
+        "/wear" wear, "/profiles/fit" fit_profile, "/fit" fit_loops);
 }

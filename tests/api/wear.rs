@@ -49,7 +49,8 @@ async fn a_ball_wears_to_the_closed_form_and_the_profile_carries_on() {
         assert_eq!(after.is_null(), (r - 0.8).abs() < 1e-14, "{r}: {after}");
         assert!(r <= 0.8 || after.is_null() || number(after) <= 0.0, "{r}: {after}");
     }
-    // The same cycle on what is left slips in the rise of g alone, and the force is that of the limit to the stated error.
+    // The same cycle on what is left slips in the rise of g alone, and the force is that of the limit to the stated
+    // error.
     let error = number(&reply["profile_error"]["normal_force"]);
     assert!(error < 1e-3, "{error:e}");
     let worn = changed(unit_sphere(), &json!({"profile": reply["profile"]}));

@@ -49,8 +49,8 @@ pub struct WornTable {
 
 impl WornContact<'_> {
     /// The limiting shape as a table that contacts of any load can be computed with; `None` where there is none: the
-    /// profile ends in a vertical edge, nothing wears, or so little that no table of it has a g that rises. So it is too
-    /// once `keep_going` has returned false.
+    /// profile ends in a vertical edge, nothing wears, or so little that no table of it has a g that rises. It is
+    /// `None` too once `keep_going` has returned false.
     #[must_use]
     pub fn table_while(&self, keep_going: &dyn Fn() -> bool) -> Option<WornTable> {
         if self.contact.profile.rim_radius().is_some() || !self.wears() {
