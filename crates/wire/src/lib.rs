@@ -100,13 +100,14 @@ pub fn all_limits() -> Vec<(&'static str, &'static str, serde_json::Value)> {
     }
     of_all! {
         AccuracyRequest, Axis, BestLoadStudy, Bulk, BulkCycle, profile_fit::CentrePlace, ContactDefinition,
-        CreateRequest, CriticalDistance, CycleDrive, CycleRequest, CyclicPath, Effective, ElasticBody, EqualPeaks, FallingAmplitude,
-        FatemiSocie, Findley, fit::FitNoise, FitRequest, ForkRequest, FrequencyResponse, FrettingRequest,
-        fit::KnownValue, profile_fit::LineScan, LoadSpan, Machine, profile_fit::MapScan, Material, fit::MeasuredLoop,
-        Move, MoveRequest, NamedOutput, NormalOscillation, Observation, ObservationsRequest, Path, PathRequest,
-        profile_fit::PointScan, Preload, ProtocolRequest, protocol::ProtocolStart, RelaxRequest, RenameRequest,
-        protocol::Robustness, profile_fit::ScanLoad, SimulateRequest, profile_fit::Smoothing, Span, Springs,
-        SnCurve, StrainBased, StrainLifeCurve, StressRequest, SubsurfaceLine, SubsurfacePlane, SubsurfaceRequest, SubsurfaceSurface,
-        SurfaceCriterion, SweepRequest, Weighted, WorkDensity
+        CreateRequest, CriticalDistance, CycleDrive, CycleRequest, CyclicPath, Effective, ElasticBody,
+        EqualPeaks, FallingAmplitude, FatemiSocie, Findley, fit::FitNoise, FitRequest, ForkRequest,
+        FrequencyResponse, FrettingRequest, fit::KnownValue, profile_fit::LineScan, LoadSpan, Machine,
+        profile_fit::MapScan, Material, fit::MeasuredLoop, Move, MoveRequest, NamedOutput, NormalOscillation,
+        Observation, ObservationsRequest, Path, PathRequest, profile_fit::PointScan, Preload, ProtocolRequest,
+        protocol::ProtocolStart, RelaxRequest, RenameRequest, protocol::Robustness, profile_fit::ScanLoad,
+        SimulateRequest, profile_fit::Smoothing, Span, Springs, SnCurve, StrainBased, StrainLifeCurve,
+        StressRequest, SubsurfaceLine, SubsurfacePlane, SubsurfaceRequest, SubsurfaceSurface, SurfaceCriterion,
+        SweepRequest, Weighted, WorkDensity
     }
 }
