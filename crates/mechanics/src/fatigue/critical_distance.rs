@@ -1,5 +1,5 @@
-//! Criteria at a critical distance L below the surface, which the gradient under a contact asks for (Taylor, *The Theory
-//! of Critical Distances*, 2007; for fretting Araújo, Susmel, Taylor, Ferro & Mamiya, Int. J. Fatigue 29, 2007).
+//! Criteria at a critical distance L below the surface, which the gradient under a contact asks for (Taylor, *The
+//! Theory of Critical Distances*, 2007; for fretting Araújo, Susmel, Taylor, Ferro & Mamiya, Int. J. Fatigue 29, 2007).
 //!
 //! The point method takes the stress at the depth L/2. The line method takes its mean over the depth 2L, instant by
 //! instant, and rates the cycle of this mean stress.
@@ -22,8 +22,8 @@ pub enum CriticalDistance {
 }
 
 impl Study<'_> {
-    /// A criterion of stress, by its index, below a place of the surface, m, to the tolerance of this study; the value is infinite
-    /// where the stress is.
+    /// A criterion of stress, by its index, below a place of the surface, m, to the tolerance of this study; the value
+    /// is infinite where the stress is.
     ///
     /// # Errors
     /// [`Error::Interrupted`].

@@ -7,8 +7,8 @@
 //! sigma_f' eps_f' (2N)^(b+c) |
 //! | Fatemi & Socie (1988): value = gamma_a (1 + k max sigma_n/sigma_y) | (tau_f'/G) (2N)^b | gamma_f' (2N)^c |
 //!
-//! The two strain-life curves are those of Basquin, Coffin and Manson. Their amplitudes are half of a range, as those of
-//! the [criteria](super::Criterion) are.
+//! The two strain-life curves are those of Basquin, Coffin and Manson. Their amplitudes are half of a range, as those
+//! of the [criteria](super::Criterion) are.
 
 use crate::error::Error;
 use crate::range;
@@ -139,8 +139,8 @@ impl LifeCurve {
     /// The cycles without their limits; infinite where the value is not positive.
     fn unlimited(&self, value: f64) -> f64 {
         let log = value.max(0.0).ln();
-        // Over x = ln 2N the logarithm of the sum is convex and falls. At the larger of the x at which one term alone is
-        // the value the sum is at most twice that, and Newton's steps rise from there to the root.
+        // Over x = ln 2N the logarithm of the sum is convex and falls. At the larger of the x at which one term alone
+        // is the value the sum is at most twice that, and Newton's steps rise from there to the root.
         let alone = self.terms.map(|(coefficient, exponent)| (log - coefficient) / exponent);
         let mut x = alone[0].max(alone[1]);
         for _ in 0..MOST_STEPS {

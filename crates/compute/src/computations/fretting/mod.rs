@@ -108,7 +108,9 @@ impl Computation for Fretting {
                     "surface": {"x": [-1.2e-4, 1.2e-4, 13], "y": [0.0, 1e-5, 2]},
                     "critical_distance": {"length": 1e-5, "method": "point"},
                     "criteria": {
-                        "crossland": {"alpha": 0.3, "life": {"s_n": {"reference": 3e8, "cycles": 1e6, "exponent": 8.0}}},
+                        "crossland": {"alpha": 0.3, "life": {
+                            "s_n": {"reference": 3e8, "cycles": 1e6, "exponent": 8.0}
+                        }},
                         "swt": {"life": {"strain_life": {
                             "strength": 9.5e8, "strength_exponent": -0.09, "ductility": 0.26, "ductility_exponent": -0.6
                         }}}
