@@ -63,12 +63,12 @@ class AccuracyRow(Result):
 
     estimated_force_error: float | None = None
     """Error of the force as the solver estimates it, without a reference, relative to `force_unit`, a pure number;
-    likewise.
+    `null` as for `force_error`.
     """
 
     estimated_stress_error: float | None = None
     """Error of the stress as the solver estimates it, relative to `stress_unit`, a pure number: for radii some cells
-    away from kinks; likewise.
+    away from kinks; `null` as for `force_error`.
     """
 
     force_error: float | None = None
@@ -81,7 +81,7 @@ class AccuracyRow(Result):
 
     stress_error: float | None = None
     """Largest difference of the shear stress at the end, over the radii, relative to `stress_unit`, a pure number;
-    likewise.
+    `null` as for `force_error`.
     """
 
 
@@ -1313,7 +1313,7 @@ class ResonancePoint(Result):
     """
 
     peak_error: float | None = None
-    """Estimated error of the peak, m; `null` likewise."""
+    """Estimated error of the peak, m; `null` as for `amplitude_error`."""
 
 
 class RobustnessReply(Result):

@@ -80,13 +80,13 @@ pub struct AccuracyRow {
     /// number; `null` without an answer, or where it is infinite.
     pub force_error: Option<f64>,
     /// Largest difference of the shear stress at the end, over the radii, relative to `stress_unit`, a pure number;
-    /// likewise.
+    /// `null` as for `force_error`.
     pub stress_error: Option<f64>,
     /// Error of the force as the solver estimates it, without a reference, relative to `force_unit`, a pure number;
-    /// likewise.
+    /// `null` as for `force_error`.
     pub estimated_force_error: Option<f64>,
     /// Error of the stress as the solver estimates it, relative to `stress_unit`, a pure number: for radii some cells
-    /// away from kinks; likewise.
+    /// away from kinks; `null` as for `force_error`.
     pub estimated_stress_error: Option<f64>,
     /// Time spent computing, s: the median of a few runs if one takes less than some milliseconds.
     pub compute_time: f64,

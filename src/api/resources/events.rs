@@ -13,7 +13,7 @@ use stickslip_wire::{EndEvent, StateEvent};
 parameters! {
     /// When a stream of events ends by itself.
     pub struct EventsQuery {
-        /// End the stream after so many events. Without it, it goes on as long as the contact.
+        /// End the stream after so many events. Without it the stream lasts as long as the contact.
         limit: Option<usize> = count(&PAGE);
     }
 }

@@ -25,7 +25,8 @@ pub struct FitFlags {
     /// the first.
     #[arg(long, value_name = "COLUMN")]
     displacement: Option<String>,
-    /// The column of forces, likewise; the second.
+    /// The column of forces, by its number or its name in the header; without it the one that is called so, or the
+    /// second.
     #[arg(long, value_name = "COLUMN")]
     force: Option<String>,
     /// The column of times, if there is one; without it the one that is called so.
