@@ -173,6 +173,9 @@ export function crackCard(model) {
         "details",
         {},
         el("summary", {}, "Bulk stress of the body, and accuracy"),
+        model.hasBulk
+          ? el("p", { class: "note" }, "The bulk stress of the contact is added by itself; here is what comes besides.")
+          : null,
         ...Object.values(bulk).map((field) => field.element),
         tolerance.element,
       ),
