@@ -64,7 +64,7 @@ export function crackCard(model) {
   const form = new Fields();
   const path = pathFields(form, model);
   const { material } = model.definition;
-  const body = new Choice(form, () => "/body", "Body", elasticBodies(model.definition));
+  const body = new Choice(form, () => "/body", "Body", elasticBodies(model.definition), model.definition.bulk?.body);
   const poisson =
     bodiesOf(material) === undefined &&
     new NumberField(form, () => "/poisson_ratio", { label: "Poisson’s ratio of the body", value: "0.3" });

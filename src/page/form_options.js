@@ -35,7 +35,7 @@ export const PROFILES = {
     [{ ...radius, value: "50" }, length, { ...reference, label: "Reference length, if not 2 R" }],
   ],
   rounded_pad: [
-    "Flat pad with rounded edges along a line",
+    "Rounded pad along a line",
     [
       { ...radius, name: "flat_half_width", label: "Half-width b of the flat", value: "0.5" },
       { ...radius, name: "edge_radius", label: "Radius R of the edges", value: "50" },

@@ -59,37 +59,36 @@ export function materialFields(form, changed) {
 
 /** The fields of a bulk stress that comes with the tangential force; `offer` says whether the shape may have one. */
 export function bulkFields(form) {
-  const kinds = { none: "None", second: "In the second body", first: "In the first body" };
-  const side = new Choice(form, () => "/bulk", "Bulk stress along x that comes with the force", kinds, "none");
-  const stress = new NumberField(form, () => "/bulk/stress_per_force", {
-    label: "Bulk stress over the tangential force",
-    units: STRESS_PER_FORCE,
-    unit: "MPa/kN",
-    value: "100",
-  });
-  const note = el(
-    "p",
-    { class: "note" },
-    "In phase with the force, at a constant load: it moves the stick zone off the middle. The constants of both bodies " +
-      "must be given.",
-  );
-  const element = el("div", { hidden: true }, side.element, stress.element, note);
-  const isGiven = () => !element.hidden && side.value !== "none";
-  const fold = () => {
-    stress.isLeftOut = !isGiven();
-    stress.element.hidden = note.hidden = stress.isLeftOut;
-  };
-  side.control.addEventListener("change", fold);
-  fold();
-  const offer = (is) => {
-    element.hidden = !is;
+  const element = el("div", {});
+  let read = () => undefined;
+  let isOffered = false;
+  const fill = () => {
+    const kinds = { none: "None", second: "In the second body", first: "In the first body" };
+    const side = new Choice(form, () => "/bulk", "Bulk stress along x that comes with the force", kinds, "none");
+    const stress = new NumberField(form, () => "/bulk/stress_per_force", {
+      label: "Bulk stress over the tangential force",
+      units: STRESS_PER_FORCE,
+      unit: "MPa/kN",
+      value: "100",
+    });
+    const note =
+      "In phase with the force, at a constant load: it moves the stick zone off the middle. The constants of both " +
+      "bodies must be given.";
+    const given = el("div", {}, stress.element, el("p", { class: "note" }, note));
+    const fold = () => (given.hidden = stress.isLeftOut = side.value === "none");
+    side.control.addEventListener("change", fold);
     fold();
+    element.replaceChildren(side.element, given);
+    read = () => (given.hidden ? undefined : { body: side.value, stress_per_force: stress.value });
   };
-  return {
-    element,
-    offer,
-    value: () => (isGiven() ? { body: side.value, stress_per_force: stress.value } : undefined),
+  const offer = (is) => {
+    if (is === isOffered) return;
+    isOffered = is;
+    if (is) return fill();
+    element.replaceChildren();
+    read = () => undefined;
   };
+  return { element, offer, value: () => read() };
 }
 
 /** The fields of the preload. */
