@@ -117,7 +117,7 @@ function bulkStress(plot, { bulk, material }, { force }) {
   const { left, right } = plot.box;
   const y = plot.y.at(bulk.body === "first" ? 0.75 : -0.45);
   const name = `bulk σ = ${formatQuantity(stress, "Pa", 3)}`;
-  const label = svg("text", { class: "small", x: (left + right) / 2, y: y + 4, "text-anchor": "middle" }, name);
+  const label = svg("text", { class: "small", x: (left + right) / 2, y: y + 22, "text-anchor": "middle" }, name);
   if (stress === 0) return [label];
   // Tension pulls outwards on both sides.
   const end = (x, sign) =>
