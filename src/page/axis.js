@@ -10,8 +10,9 @@ export class Axis {
   end = 1;
   scale = { factor: 1, unit: "" };
 
-  constructor({ label, unit = "", log = false }) {
+  constructor({ label, unit = "", log = false, isBare = false }) {
     this.label = label;
+    this.isBare = isBare;
     this.unit = unit;
     this.log = log;
   }
@@ -41,6 +42,7 @@ export class Axis {
 
   /** Values with their texts, about one in so many pixels. */
   ticks(apart) {
+    if (this.isBare) return [];
     const count = Math.max(2, Math.floor(Math.abs(this.end - this.start) / apart));
     const { factor } = this.scale;
     if (this.log)

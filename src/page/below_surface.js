@@ -49,7 +49,7 @@ function sentence(field, { infinite, low, high }) {
 /** The card, and a function that shows the stress that belongs to a state. */
 export function belowSurfaceCard(model) {
   const form = new Fields();
-  const body = new Choice(form, () => "/body", "Body", elasticBodies(model.definition));
+  const body = new Choice(form, () => "/body", "Body", elasticBodies(model.definition), model.definition.bulk?.body);
   const field = new Choice(form, () => "/fields", "Stress", {
     von_mises: "von Mises",
     max_shear: "largest shear stress",

@@ -3,6 +3,7 @@ import { call, follow, pages } from "./api.js";
 import { FIELDS, contactView } from "./contact_view.js";
 import { latestOnly, notice, debounce } from "./dom.js";
 import { WITHOUT_STRESS } from "./form_options.js";
+import { isLine } from "./line_contact.js";
 
 /** Moves that are drawn of a long history, and moves and points of the loop that the service draws between their
  *  states. */
@@ -40,6 +41,9 @@ export async function showContact(main, { id, tab }, signal, ready) {
     friction: definition.friction,
     // A contact that is known by its load curve alone has no stress.
     hasStress: !WITHOUT_STRESS.includes(definition.profile.type),
+    isLine: isLine(definition),
+    // A stick zone that a bulk stress moves is known at a constant load.
+    hasBulk: definition.bulk !== undefined,
     state: history.at(-1)?.state ?? contact.state,
     first: begin ? history.shift() : { sequence: 0, state: virgin },
     isComplete: begin === 0,

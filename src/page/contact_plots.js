@@ -2,6 +2,8 @@
 import { nearestIndex } from "./axis.js";
 import { Chart } from "./chart.js";
 import { columnsOf } from "./chart_menu.js";
+import { isLine, meanPressure, peaksOf, placesOf, zonesOf } from "./line_contact.js";
+import { sideView } from "./side_view.js";
 import { topView } from "./top_view.js";
 import { formatQuantity } from "./units.js";
 
@@ -11,7 +13,8 @@ const TURNS =
 
 /** The plots, and a function that draws them from the model of a contact; `overlay` says what else the first two
  *  show. */
-export function contactPlots({ hasStress }) {
+export function contactPlots({ hasStress, definition }) {
+  const isAlongLine = isLine(definition);
   const loop = new Chart({
     name: "loop",
     title: "Hysteresis loop",
@@ -22,11 +25,11 @@ export function contactPlots({ hasStress }) {
   const stress = new Chart({
     name: "stress",
     title: "Stress under the contact",
-    x: { label: "Radius r", unit: "m" },
+    x: { label: isAlongLine ? "x, along the motion" : "Radius r", unit: "m" },
     y: { label: "Stress", unit: "Pa" },
     note: "Where τ touches its bound the surfaces slip; where they stick, the stress left by earlier moves stays.",
   });
-  const top = topView();
+  const view = isAlongLine ? sideView() : topView();
   const work = new Chart({
     name: "work",
     title: "Friction work and stored energy",
@@ -41,19 +44,19 @@ export function contactPlots({ hasStress }) {
   loop.more = ([, , sequence], { name }) => [sequence === undefined ? name : sequence ? `move ${sequence}` : "start"];
   loop.onhover = (hit) => work.showCursor(hit && atMove(work, hit.datum[2]));
   work.onhover = (hit) => loop.showCursor(hit && atSequence(loop, hit.x));
-  stress.onhover = (hit) => top.showCursor(hit && top.at(hit.x, hit.x, 0));
-  top.onhover = (hit) => stress.showCursor(hit && atRadius(stress, hit.ring));
+  stress.onhover = (hit) => view.showCursor(hit && view.at(hit.x, hit.x, 0));
+  view.onhover = (hit) => stress.showCursor(hit && atPlace(stress, hit.ring ?? hit.x));
 
   const draw = (model, overlay) => {
     const data = loopData(model, overlay.loop());
     loop.draw(data);
     if (model.stress) {
       stress.draw(stressData(model, overlay.shear()));
-      top.drawModel(model);
+      view.drawModel(model);
     }
     work.draw(energyData(model, data.recent !== undefined));
   };
-  return { all: hasStress ? [loop, stress, top, work] : [loop, work], loop, stress, top, work, draw };
+  return { all: hasStress ? [loop, stress, view, work] : [loop, work], loop, stress, view, work, draw };
 }
 
 /** The points of a move in the plot of energies. */
@@ -74,16 +77,16 @@ function atSequence(chart, sequence) {
   return point ? { x: point[0], y: point[1], dots: [point], lines: [] } : null;
 }
 
-function atRadius(chart, radius) {
+function atPlace(chart, place) {
   const series = chart.visible().filter((one) => one.hover !== false);
   const nearest = (points) =>
     points[
       nearestIndex(
-        points.map(([r]) => r),
-        radius,
+        points.map(([x]) => x),
+        place,
       )
     ];
-  return { x: radius, dots: series.map(({ points }) => nearest(points)), lines: [] };
+  return { x: place, dots: series.map(({ points }) => nearest(points)), lines: [] };
 }
 
 /** The newest moves, which the axes fit; and how many times wider all of them may be before the older ones are left
@@ -182,35 +185,30 @@ function loopData({ path, state, friction, first, history, slip, isComplete }, o
   };
 }
 
-/** Pressure, bound and shear stress along the radius; the peaks at their exact radii. */
-function stressData({ stress, state, friction }, overlaid) {
-  const { radius, pressure, shear, residual } = stress;
+/** Pressure, bound and shear stress over the radius or x; the peaks at their exact places. */
+function stressData({ stress, state, friction, definition }, overlaid) {
+  const { pressure, shear } = stress;
+  const [places, isAlongLine] = [placesOf(stress), isLine(definition)];
   const a = state.contact_radius;
-  const scale = (factor) => radius.map((r, index) => [r, pressure[index] === null ? null : factor * pressure[index]]);
-  const peaks = residual.peaks.filter((peak) => peak.shear !== null).map((peak) => [peak.radius, peak.shear]);
-  const tau = [...radius.map((r, index) => [r, shear[index]]), ...peaks].sort((one, two) => one[0] - two[0]);
-  const mean = state.normal_force / (Math.PI * a * a);
+  const scale = (factor) => places.map((x, index) => [x, pressure[index] === null ? null : factor * pressure[index]]);
+  const tau = [...places.map((x, index) => [x, shear[index]]), ...peaksOf(stress.residual, definition)];
+  const mean = meanPressure(definition, state);
   const most = Math.min(4 * mean || 1, Math.max(...pressure.filter((value) => value !== null), 0) || 1);
+  const reach = (a || 1) * 1.04;
   return {
     series: [
-      { name: "shear stress τ", kind: "tau", points: tau },
+      { name: "shear stress τ", kind: "tau", points: tau.sort((one, two) => one[0] - two[0]) },
       { name: "bound ±μ p", kind: "bound", points: scale(friction) },
       { name: "bound ±μ p", kind: "bound", points: scale(-friction), hover: false, legend: false },
       { name: "pressure p", kind: "pressure", points: scale(1) },
       ...overlaid,
     ],
-    bands:
-      a > 0
-        ? [
-            { from: 0, to: state.stick_radius, kind: "stick", label: "stick" },
-            { from: state.stick_radius, to: a, kind: "slip", label: "slip" },
-          ]
-        : [],
-    range: { x: [0, (a || 1) * 1.04] },
+    bands: a > 0 ? zonesOf(state, isAlongLine).map((zone) => ({ ...zone, label: zone.kind })) : [],
+    range: { x: [isAlongLine ? -reach : 0, reach] },
     // Infinite values at an edge would hide the rest.
     cap: 1.1 * most,
     table: () => ({
-      radius_m: radius,
+      [isAlongLine ? "x_m" : "radius_m"]: places,
       pressure_pa: pressure,
       shear_pa: shear,
       slip_m: stress.slip,

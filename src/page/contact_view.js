@@ -54,26 +54,30 @@ export function contactView(model, contact, changed) {
     "details",
     { class: "card preload" },
     el("summary", {}, "Figures at the preload"),
-    el("dl", { class: "figures" }, figureList(figures, model.hasStress)),
+    el("dl", { class: "figures" }, figureList(figures, model.definition)),
   );
 
   // The columns of cards of each tab; some have plots, requests, and a part that follows the state.
-  const { loop, stress, top, work } = plots;
+  const { loop, stress, view: contactFrom, work } = plots;
   const fit = fittedLoop(model);
   const crack = model.hasStress && crackCard(model);
   /** @type {Record<string, any[][]>} */
   const lists = {
     live: model.hasStress
       ? [
-          [loop, top],
+          [loop, contactFrom],
           [stress, work, path],
         ]
       : [[loop, path], [work]],
     loop: [[fit.form], [fit.results]],
     crack: crack && [[crack.form], [crack.results, belowSurfaceCard(model)]],
     damping: [[steadyCard(model), cycleStudyCard(model), mapCard(model)], [responseCard(model)]],
-    residual: model.hasStress && [[protocolCard(model), protocolSearchCard(model)], [residualCard(model)]],
-    accuracy: [[trust], [accuracyCard(model)]],
+    residual: model.hasStress && [
+      [protocolCard(model), ...(model.hasBulk ? [] : [protocolSearchCard(model)])],
+      model.hasBulk ? [] : [residualCard(model)],
+    ],
+    // The solvers that are compared are of round contacts.
+    accuracy: model.isLine ? [[trust]] : [[trust], [accuracyCard(model)]],
   };
   const offered = Object.fromEntries(Object.entries(lists).filter(([, list]) => list));
   const views = mapped(offered, (list, tab) => ({

@@ -64,7 +64,7 @@ export function crackCard(model) {
   const form = new Fields();
   const path = pathFields(form, model);
   const { material } = model.definition;
-  const body = new Choice(form, () => "/body", "Body", elasticBodies(model.definition));
+  const body = new Choice(form, () => "/body", "Body", elasticBodies(model.definition), model.definition.bulk?.body);
   const poisson =
     bodiesOf(material) === undefined &&
     new NumberField(form, () => "/poisson_ratio", { label: "Poisson’s ratio of the body", value: "0.3" });
@@ -173,6 +173,9 @@ export function crackCard(model) {
         "details",
         {},
         el("summary", {}, "Bulk stress of the body, and accuracy"),
+        model.hasBulk
+          ? el("p", { class: "note" }, "The bulk stress of the contact is added by itself; here is what comes besides.")
+          : null,
         ...Object.values(bulk).map((field) => field.element),
         tolerance.element,
       ),

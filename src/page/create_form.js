@@ -5,7 +5,8 @@ import { copyMenu } from "./copy_as_code.js";
 import { debounce, el, figure, latestOnly, notice } from "./dom.js";
 import { Fields, NumberField, TextField } from "./form_fields.js";
 import { WITHOUT_STRESS } from "./form_options.js";
-import { materialFields, preloadFields } from "./material_fields.js";
+import { isLine, meanPressure, placesOf } from "./line_contact.js";
+import { bulkFields, materialFields, preloadFields } from "./material_fields.js";
 import { profileFields } from "./profile_fields.js";
 import { formatNumber, formatQuantity } from "./units.js";
 import { showWarnings, warningList } from "./warning_list.js";
@@ -16,7 +17,9 @@ export function createForm(main, signal) {
   const ready = {};
   const ask = debounce(() => derive(), 200);
   const changed = () => {
-    if (ready.now) ask();
+    if (!ready.now) return;
+    bulk.offer(profile.type() === "cylinder");
+    ask();
   };
 
   const label = new TextField(
@@ -28,12 +31,14 @@ export function createForm(main, signal) {
   const profile = profileFields(form, () => "/profile", changed);
   const material = materialFields(form, changed);
   const friction = new NumberField(form, () => "/friction", { label: "Coefficient of friction μ", value: "0.3" });
+  const bulk = bulkFields(form);
   const preload = preloadFields(form, changed);
   const definition = () => ({
     profile: profile.value(),
     material: material.value(),
     friction: friction.value,
     preload: preload.value(),
+    bulk: bulk.value(),
   });
   const body = () => ({ ...(label.value ? { label: label.value } : {}), ...definition() });
 
@@ -70,9 +75,10 @@ export function createForm(main, signal) {
       const isMistaken = form.check() !== undefined;
       derived.classList.toggle("stale", isMistaken);
       if (isMistaken) return;
-      figures.replaceChildren(...figureList(reply.contact, drawn));
+      figures.replaceChildren(...figureList(reply.contact, contact));
       chart.element.hidden = true;
-      if (drawn) chart.draw(pressureData(reply, Number(friction.value)));
+      chart.x.label = isLine(contact) ? "x" : "Radius r";
+      if (drawn) chart.draw(pressureData(reply, contact));
       showWarnings(warnings, reply.warnings);
     } catch (error) {
       if (signal.aborted) return;
@@ -108,7 +114,7 @@ export function createForm(main, signal) {
       "form",
       { class: "create", onsubmit: submit, oninput: changed, onchange: changed },
       el("section", { class: "card" }, el("h2", {}, "Shape"), profile.element),
-      el("section", { class: "card" }, el("h2", {}, "Bodies"), material.element, friction.element),
+      el("section", { class: "card" }, el("h2", {}, "Bodies"), material.element, friction.element, bulk.element),
       el(
         "section",
         { class: "card" },
@@ -126,11 +132,12 @@ export function createForm(main, signal) {
 }
 
 /** The figures of a contact, by name; one that is known by its load curve alone has no pressure. */
-export function figureList(figures, hasStress = true) {
+export function figureList(figures, definition) {
+  const hasStress = !WITHOUT_STRESS.includes(definition.profile.type);
   return [
     figure("Normal force F_N", formatQuantity(figures.normal_force, "N")),
     figure("Indentation d", formatQuantity(figures.indentation, "m")),
-    figure("Contact radius a", formatQuantity(figures.contact_radius, "m")),
+    figure(isLine(definition) ? "Half-width a" : "Contact radius a", formatQuantity(figures.contact_radius, "m")),
     ...(hasStress ? [figure("Largest pressure p_max", formatQuantity(figures.max_pressure, "Pa"))] : []),
     figure("Gross slip from u_max", formatQuantity(figures.gross_slip_displacement, "m")),
     figure("Gross slip at μ F_N", formatQuantity(figures.gross_slip_force, "N")),
@@ -140,16 +147,17 @@ export function figureList(figures, hasStress = true) {
 }
 
 /** The pressure, and the friction bound. */
-function pressureData({ contact: figures, stress: { radius, pressure } }, coefficient) {
-  const mean = figures.normal_force / (Math.PI * figures.contact_radius ** 2);
-  const points = (factor) => radius.map((r, index) => [r, pressure[index] === null ? null : factor * pressure[index]]);
+function pressureData({ contact: figures, stress }, definition) {
+  const { pressure } = stress;
+  const points = (factor) =>
+    placesOf(stress).map((x, index) => [x, pressure[index] === null ? null : factor * pressure[index]]);
   return {
     series: [
       { name: "pressure p", kind: "pressure", points: points(1) },
-      { name: "bound μ p", kind: "bound", points: points(coefficient) },
+      { name: "bound μ p", kind: "bound", points: points(definition.friction) },
     ],
     least: { y: [0] },
-    cap: figures.max_pressure === null ? 4 * mean : undefined,
+    cap: figures.max_pressure === null ? 4 * meanPressure(definition, figures) : undefined,
     empty: "There is no area of contact.",
   };
 }

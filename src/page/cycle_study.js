@@ -5,11 +5,12 @@ import { Chart } from "./chart.js";
 import { el, figure } from "./dom.js";
 import { Fields, NumberField } from "./form_fields.js";
 import { FORCE, LENGTH } from "./form_options.js";
+import { placesOf } from "./line_contact.js";
 import { virginContact } from "./protocol_run.js";
 import { study } from "./study.js";
 import { formatNumber, formatQuantity } from "./units.js";
 
-/** Radii of the friction work, loads of the search, and harmonics. */
+/** Radii, or places along x, of the friction work, loads of the search, and harmonics. */
 const [RADII, LOADS, HARMONICS] = [100, 60, 5];
 
 /** The figures of a cycle in rows. */
@@ -73,7 +74,7 @@ export function cycleStudyCard(model) {
     name: "density",
     title: "Friction work per area and cycle",
     height: 220,
-    x: { label: "Radius r", unit: "m" },
+    x: { label: model.isLine ? "x, along the motion" : "Radius r", unit: "m" },
     y: { label: "Work per area", unit: "J/m²" },
   });
   const loads = new Chart({
@@ -112,7 +113,7 @@ export function cycleStudyCard(model) {
     for (const chart of [work, loads, shape]) chart.element.hidden = true;
     const draw = (chart, name, x, y) =>
       chart.draw({ series: [{ name, kind: "work", points: x.map((at, index) => [at, y[index]]) }], least: { y: [0] } });
-    if (density) draw(work, "friction work per area", density.radius, density.density);
+    if (density) draw(work, "friction work per area", placesOf(density), density.density);
     if (best?.curve) draw(loads, "friction work", best.curve.normal_force, best.curve.dissipated_energy);
     if (!hasLimit()) return;
     if (regime === "gross_slip") {
@@ -145,7 +146,9 @@ export function cycleStudyCard(model) {
     form,
     parts: [
       amplitude.element,
-      el("details", {}, el("summary", {}, "The load oscillates too"), load.element, phase.element),
+      ...(model.hasBulk
+        ? []
+        : [el("details", {}, el("summary", {}, "The load oscillates too"), load.element, phase.element)]),
     ],
     charts: [work, loads, shape],
     signal: model.signal,

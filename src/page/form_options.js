@@ -7,7 +7,16 @@ export const FORCE = prefixed("N", "k", "", "m", "µ");
 export const MODULUS = prefixed("Pa", "G", "M", "k", "");
 export const STRESS = prefixed("Pa", "M", "G", "");
 
+/** A stress over a force. @type {[string, number][]} */
+export const STRESS_PER_FORCE = [
+  ["MPa/kN", 3],
+  ["MPa/N", 6],
+  ["Pa/N", 0],
+];
+
 const radius = { name: "radius", label: "Radius R", units: LENGTH, unit: "mm", value: "10" };
+const length = { name: "length", label: "Length L of the contact", units: LENGTH, unit: "mm", value: "10" };
+const reference = { name: "reference_length", units: LENGTH, unit: "mm", optional: true };
 
 /** The field for a parameter of a family: a length in the unit of which the example is at least one. */
 function field({ name, label, si, example }) {
@@ -21,6 +30,19 @@ const families = Object.entries(FAMILIES).map(([type, [title, parameters]]) => [
 /** What each shape is called, and its fields. */
 export const PROFILES = {
   ...Object.fromEntries(families),
+  cylinder: [
+    "Cylinder along a line",
+    [{ ...radius, value: "50" }, length, { ...reference, label: "Reference length, if not 2 R" }],
+  ],
+  rounded_pad: [
+    "Rounded pad along a line",
+    [
+      { ...radius, name: "flat_half_width", label: "Half-width b of the flat", value: "0.5" },
+      { ...radius, name: "edge_radius", label: "Radius R of the edges", value: "50" },
+      length,
+      { ...reference, label: "Reference length, if not L" },
+    ],
+  ],
   tabulated: ["Table of measured heights", []],
   sum: ["Sum of shapes", []],
   ellipsoid: [
@@ -37,6 +59,9 @@ export const PROFILES = {
 
 /** Those that are known by their load curve alone: no stress, and no part of a sum. */
 export const WITHOUT_STRESS = ["ellipsoid", "asperities", "load_curve"];
+
+/** Those along a line, with stresses over x in place of the radius; they are no part of a sum either. */
+export const LINE_CONTACTS = ["cylinder", "rounded_pad"];
 
 const lines = (count, line) => Array.from({ length: count }, (_, index) => line(index)).join("\n");
 

@@ -88,8 +88,10 @@ export function fittedLoop(model) {
   const more = el("button", { type: "button", class: "quiet", onclick: add }, "Add a record");
   const fewer = el("button", { type: "button", class: "quiet", onclick: drop }, "Remove the last record");
   add();
+  // The stiffness of a line contact follows from E* and its reference length.
   const offered = Object.entries(PARAMETERS).filter(
-    ([, [, , , ofSphere]]) => !ofSphere || model.definition.profile.type === "sphere",
+    ([name, [, , , ofSphere]]) =>
+      (!ofSphere || model.definition.profile.type === "sphere") && !(model.isLine && name === "g_star"),
   );
   const boxes = offered.map(([name, [, , checked]]) => el("input", { type: "checkbox", name, checked }));
   const known = knownFields(form, offered);

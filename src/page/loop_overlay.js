@@ -3,6 +3,7 @@
 import { call, follow, pages } from "./api.js";
 import { debounce, el, notice } from "./dom.js";
 import { columnsTable, fileSource, loopColumns, powerOfUnit, readingText } from "./file_source.js";
+import { placesOf } from "./line_contact.js";
 
 /** Moves of the other contact, and contacts to choose from. */
 const [MOVES, CHOICES] = [1000, 200];
@@ -110,7 +111,9 @@ function otherContact(model, changed) {
     const stress = await call("GET", `/contacts/${id}/stress?points=300&fields=shear`, undefined, signal).catch(
       () => null,
     );
-    shear = stress ? stress.radius.map((r, index) => [r, stress.shear[index]]) : [];
+    // Stresses over x and over the radius do not belong into one plot.
+    const isComparable = stress && (stress.x !== undefined) === model.isLine;
+    shear = isComparable ? placesOf(stress).map((x, index) => [x, stress.shear[index]]) : [];
     changed();
   };
   one.compare = async (id) => {

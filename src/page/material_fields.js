@@ -1,7 +1,7 @@
-// The parts of the form for the material of the bodies, and for the preload.
+// The parts of the form for the material of the bodies, for a bulk stress, and for the preload.
 import { el, mapped } from "./dom.js";
 import { Choice, NumberField } from "./form_fields.js";
-import { MATERIALS, MODULUS, PRELOADS } from "./form_options.js";
+import { MATERIALS, MODULUS, PRELOADS, STRESS_PER_FORCE } from "./form_options.js";
 
 function body(form, at, title) {
   const modulus = new NumberField(form, () => `${at}/youngs_modulus`, {
@@ -55,6 +55,40 @@ export function materialFields(form, changed) {
   choice.control.addEventListener("change", fill);
   fill();
   return { element: el("div", {}, choice.element, fields), value: () => read() };
+}
+
+/** The fields of a bulk stress that comes with the tangential force; `offer` says whether the shape may have one. */
+export function bulkFields(form) {
+  const element = el("div", {});
+  let read = () => undefined;
+  let isOffered = false;
+  const fill = () => {
+    const kinds = { none: "None", second: "In the second body", first: "In the first body" };
+    const side = new Choice(form, () => "/bulk", "Bulk stress along x that comes with the force", kinds, "none");
+    const stress = new NumberField(form, () => "/bulk/stress_per_force", {
+      label: "Bulk stress over the tangential force",
+      units: STRESS_PER_FORCE,
+      unit: "MPa/kN",
+      value: "100",
+    });
+    const note =
+      "In phase with the force, at a constant load: it moves the stick zone off the middle. The constants of both " +
+      "bodies must be given.";
+    const given = el("div", {}, stress.element, el("p", { class: "note" }, note));
+    const fold = () => (given.hidden = stress.isLeftOut = side.value === "none");
+    side.control.addEventListener("change", fold);
+    fold();
+    element.replaceChildren(side.element, given);
+    read = () => (given.hidden ? undefined : { body: side.value, stress_per_force: stress.value });
+  };
+  const offer = (is) => {
+    if (is === isOffered) return;
+    isOffered = is;
+    if (is) return fill();
+    element.replaceChildren();
+    read = () => undefined;
+  };
+  return { element, offer, value: () => read() };
 }
 
 /** The fields of the preload. */

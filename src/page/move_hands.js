@@ -55,6 +55,7 @@ export function moveHands(model) {
     limits: (state) => [0, Math.max(2 * figures.normal_force, state.normal_force) || 10],
     send: (wanted) => model.move({ normal_force: wanted }),
   });
+  if (model.hasBulk) load.element.hidden = true;
   const back = goBack(model);
   const jump = (text, to) =>
     el(
@@ -68,7 +69,7 @@ export function moveHands(model) {
   const more = el(
     "details",
     { class: "more-moves", id: "more-moves", open: !NARROW.matches },
-    el("summary", {}, "Force, load, undo"),
+    el("summary", {}, model.hasBulk ? "Force, undo" : "Force, load, undo"),
     force.element,
     load.element,
     el(

@@ -2,14 +2,19 @@
 import { el } from "./dom.js";
 import { chooseUnit, columnsTable, fileSource, readingText } from "./file_source.js";
 import { Choice, NumberField, TextField, numberBox, numberIn } from "./form_fields.js";
-import { COLUMNS, PROFILES, WITHOUT_STRESS } from "./form_options.js";
+import { COLUMNS, LINE_CONTACTS, PROFILES, WITHOUT_STRESS } from "./form_options.js";
 import { scanFit } from "./scan_fit.js";
+import { specimenPicture } from "./specimens.js";
 import { inPower } from "./units.js";
+
+const LINE_NOTE =
+  "In plane strain; forces are those of the whole length. The reference length fixes the displacements, which a line " +
+  "contact leaves open: stresses and the work of closed cycles do not depend on it.";
 
 /** An editor of a profile at the pointer that `at` gives; `changed` is called when its fields change. */
 export function profileFields(form, at, changed, nested = false) {
   const names = Object.entries(PROFILES)
-    .filter(([key]) => !nested || (key !== "sum" && !WITHOUT_STRESS.includes(key)))
+    .filter(([key]) => !nested || !["sum", ...WITHOUT_STRESS, ...LINE_CONTACTS].includes(key))
     .map(([key, [text]]) => [key, text]);
   const choice = new Choice(
     form,
@@ -34,7 +39,7 @@ export function profileFields(form, at, changed, nested = false) {
   choice.control.addEventListener("change", fill);
   const element = el("div", {}, choice.element, body);
   fill();
-  return { element, value: () => ({ type: choice.value, ...read() }) };
+  return { element, type: () => choice.value, value: () => ({ type: choice.value, ...read() }) };
 }
 
 function numbers(form, at, _changed, body, type) {
@@ -45,7 +50,9 @@ function numbers(form, at, _changed, body, type) {
       : new NumberField(form, place, about);
     return [about.name, field];
   });
+  if (LINE_CONTACTS.includes(type)) body.append(specimenPicture(type));
   body.append(...fields.map(([, field]) => field.element));
+  if (LINE_CONTACTS.includes(type)) body.append(el("p", { class: "note" }, LINE_NOTE));
   return () => {
     const members = {};
     for (const [name, field] of fields) {

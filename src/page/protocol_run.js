@@ -22,7 +22,10 @@ export const virginContact = ({ definition, state }) => ({
 /** The card that runs a protocol on a contact. */
 export function protocolCard(model) {
   const { id, signal } = model;
-  const options = { ...PROTOCOLS, [RELAX]: "Least stress, from the present state" };
+  const { falling_amplitude } = PROTOCOLS;
+  const searched = { ...PROTOCOLS, [RELAX]: "Least stress, from the present state" };
+  // The others are searched for zones about the middle, which a bulk stress moves.
+  const options = model.hasBulk ? { falling_amplitude } : searched;
   const kind = el(
     "select",
     { id: "protocol" },

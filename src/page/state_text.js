@@ -1,6 +1,7 @@
 // A state in words.
 import { el, figure, withSubscripts } from "./dom.js";
-import { formatNumber, formatQuantity } from "./units.js";
+import { zonesOf } from "./line_contact.js";
+import { formatInterval, formatNumber, formatQuantity } from "./units.js";
 
 const NAMES = { stick: "Stick", partial_slip: "Partial slip", gross_slip: "Gross slip", separated: "Lifted off" };
 
@@ -10,18 +11,27 @@ const MOST_SHOWN = 0.995;
 /** The regime of a state; bodies without a load between them are apart, whatever the last move did. */
 export const regimeOf = ({ regime, normal_force: load }) => (load > 0 ? regime : "separated");
 
-function sentence(state, moved) {
+function sentence(state, moved, isLine) {
   const { stick_radius: c, contact_radius: a } = state;
   const regime = regimeOf(state);
   if (regime === "separated")
     return "The bodies are apart: there is no load, no friction and no history. A load brings them together.";
-  if (!moved) return "Nothing has moved yet: pull the slider, and watch the ring that slips grow from the edge.";
+  if (!moved) {
+    const slipping = isLine ? "slip grow from the edges" : "the ring that slips grow from the edge";
+    return `Nothing has moved yet: pull the slider, and watch ${slipping}.`;
+  }
   if (regime === "stick") return "The last move slipped nowhere: the whole contact stuck.";
   if (regime === "gross_slip")
     return "The last move slipped everywhere: the whole contact slid, and its history is erased.";
   if (c > MOST_SHOWN * a) {
-    const ring = `the outermost ${formatQuantity(a - c, "m", 2)} of the contact radius`;
+    const outermost = `the outermost ${formatQuantity(isLine ? 2 * (a - c) : a - c, "m", 2)}`;
+    const ring = isLine ? `${outermost}, both edges together` : `${outermost} of the contact radius`;
     return `The last move has just turned: all sticks but ${ring}.`;
+  }
+  if (isLine) {
+    const { from, to } = zonesOf(state, true).find(({ kind }) => kind === "stick");
+    const part = `${formatNumber((100 * c) / a, 2)} % of the contact`;
+    return `From x = ${formatInterval([from, to], "m", 3)} (${part}) the surfaces stuck in the last move; beside that they slipped.`;
   }
   const inside = `Inside r = ${formatQuantity(c, "m", 3)} (${formatNumber((100 * c) / a, 2)} % of the contact radius)`;
   return `${inside} the surfaces stuck in the last move; the ring outside slipped.`;
@@ -43,12 +53,12 @@ function shearText({ max, relative }) {
 }
 
 /** Lines about a state. */
-export function stateText(state, { friction, history, first, measured, stress }) {
+export function stateText(state, { friction, history, first, measured, stress, isLine }) {
   const limit = friction * state.normal_force;
   const use = limit > 0 ? Math.min(1, Math.abs(state.force) / limit) : 0;
   return [
     el("p", { class: `regime ${regimeOf(state)}` }, NAMES[regimeOf(state)]),
-    el("p", {}, sentence(state, history.length > 0 || first.sequence > 0)),
+    el("p", {}, sentence(state, history.length > 0 || first.sequence > 0, isLine)),
     el(
       "p",
       { class: "meter" },
@@ -61,7 +71,10 @@ export function stateText(state, { friction, history, first, measured, stress })
       figure("Displacement U", `${formatQuantity(state.displacement, "m")}`),
       figure("Force F", `${formatQuantity(state.force, "N")}`),
       figure("Load F_N", `${formatQuantity(state.normal_force, "N")}`),
-      figure("Contact radius a", `${formatQuantity(state.contact_radius, "m")}`),
+      figure(isLine ? "Half-width a" : "Contact radius a", `${formatQuantity(state.contact_radius, "m")}`),
+      ...(state.stick_centre && state.stick_radius > 0
+        ? [figure("Middle of the stick zone e", formatQuantity(state.stick_centre, "m"))]
+        : []),
       ...(stress && state.normal_force > 0 ? [figure("Largest shear stress", shearText(stress.residual))] : []),
       figure("Friction work W", `${formatQuantity(state.dissipated_energy, "J")}`),
       figure("Slip history", `${state.memory_depth} ${state.memory_depth === 1 ? "piece" : "pieces"}`),

@@ -10,9 +10,13 @@ const REST = 120;
 /** The amplitude that the slider stands at, m. */
 export const amplitudeOf = (state) => Math.abs(state.displacement);
 
-function sentence({ regime, stick_radius: c }, { contact_radius: a }) {
+function sentence({ regime, stick_radius: c }, { contact_radius: a }, isLine) {
   if (regime === "stick") return "Back and forth, nothing slips, and no work is lost.";
   if (regime === "gross_slip") return "Back and forth, the whole contact slides in each stroke.";
+  if (isLine) {
+    const width = `${formatQuantity(2 * c, "m", 3)} (${formatNumber((100 * c) / a, 2)} % of the contact)`;
+    return `Back and forth, a zone of the width ${width} sticks in each stroke; beside it the surfaces slip.`;
+  }
   const part = a > 0 ? ` (${formatNumber((100 * c) / a, 2)} % of the contact radius)` : "";
   return `Back and forth, the ring outside r = ${formatQuantity(c, "m", 3)}${part} slips; inside, the surfaces stick.`;
 }
@@ -22,6 +26,9 @@ function figures(cycle) {
   return [
     figure("Amplitude U_0", formatQuantity(cycle.displacement_amplitude, "m")),
     figure("Friction work of a cycle", formatQuantity(cycle.dissipated_energy, "J")),
+    ...(cycle.friction_energy === undefined
+      ? []
+      : [figure("All that friction dissipates, with the bulk stress", formatQuantity(cycle.friction_energy, "J"))]),
     figure("Secant stiffness", formatQuantity(cycle.secant_stiffness, "N/m")),
     figure("Loss factor", ratio(cycle.loss_factor)),
     figure("Sliding ratio", ratio(cycle.sliding_ratio)),
@@ -39,7 +46,7 @@ export function steadyCard(model) {
   };
   const follow = latestAnswer(model, REST, {
     ask: () => call("GET", path(), undefined, model.signal),
-    show: ({ contact, cycles: [cycle] }) => say(sentence(cycle, contact), figures(cycle)),
+    show: ({ contact, cycles: [cycle] }) => say(sentence(cycle, contact, model.isLine), figures(cycle)),
     fail: (error) => say(reason(error)),
   });
   const show = (state) =>

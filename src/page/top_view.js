@@ -2,6 +2,7 @@
 import { nearestIndex } from "./axis.js";
 import { Chart } from "./chart.js";
 import { svg } from "./dom.js";
+import { meanPressure } from "./line_contact.js";
 import { formatNumber, formatQuantity, unitScale } from "./units.js";
 
 const STOPS = 160;
@@ -25,18 +26,7 @@ export function topView() {
   const at = (r, x, y) => {
     if (!stress || r > radius) return null;
     const index = nearestIndex(stress.radius, r);
-    const value = (name, unit) => formatQuantity(stress[name][index], unit);
-    return {
-      x,
-      y,
-      ring: r,
-      lines: [
-        `radius ${formatQuantity(r, "m")}`,
-        `shear τ ${value("shear", "Pa")}`,
-        `pressure p ${value("pressure", "Pa")}`,
-        `slip ${value("slip", "m")}`,
-      ],
-    };
+    return { x, y, ring: r, lines: [`radius ${formatQuantity(r, "m")}`, ...valuesAt(stress, index)] };
   };
   chart.read = (x, y) => at(Math.hypot(x, y), x, y);
   const drawModel = (model) => {
@@ -54,49 +44,63 @@ export function topView() {
   return Object.assign(chart, { at, drawModel });
 }
 
+/** What a contact carries at one of the places of a reply, as lines of text. */
+export function valuesAt(stress, index) {
+  const value = (name, unit) => formatQuantity(stress[name][index], unit);
+  return [`shear τ ${value("shear", "Pa")}`, `pressure p ${value("pressure", "Pa")}`, `slip ${value("slip", "m")}`];
+}
+
 /** The colour of a stress between −1 and 1; small ones show too. */
-export function colour(value) {
+function colour(value) {
   const part = Math.round(100 * Math.min(1, Math.abs(value)) ** 0.6);
   return `color-mix(in oklab, var(${value < 0 ? "--minus" : "--plus"}) ${part}%, var(--none))`;
 }
 
-function disc(plot, { stress, state, friction, history }) {
+/** What stands in a plot of a contact whose bodies are apart. */
+export const noContact = ({ box }) =>
+  svg(
+    "text",
+    { x: (box.left + box.right) / 2, y: (box.top + box.bottom) / 2, "text-anchor": "middle" },
+    "There is no area of contact.",
+  );
+
+/** The stops of a gradient that has the shear stress as colour: at each place its `part` of the way, from 0 to 1. */
+export function shearStops(places, shear, full, part) {
+  const every = Math.max(1, Math.floor(places.length / STOPS));
+  return places
+    .map((place, index) => [part(place), shear[index]])
+    .filter((_, index) => index % every === 0 || index === places.length - 1)
+    .map(([offset, tau]) => svg("stop", { offset, "stop-color": colour((tau ?? full) / full) }));
+}
+
+/** The stripes of what slipped, and the fill that they are. */
+export function stripes({ clip }) {
+  const id = `${clip}-stripes`;
+  const pattern = svg(
+    "pattern",
+    { id, width: 6, height: 6, patternUnits: "userSpaceOnUse", patternTransform: "rotate(45)" },
+    svg("line", { class: "stripe", y2: 6 }),
+  );
+  return { element: svg("defs", {}, pattern), fill: `url(#${id})` };
+}
+
+function disc(plot, { stress, state, friction, history, definition }) {
   const a = state.contact_radius;
-  if (!(a > 0))
-    return [
-      svg(
-        "text",
-        { x: (plot.box.left + plot.box.right) / 2, y: (plot.box.top + plot.box.bottom) / 2, "text-anchor": "middle" },
-        "There is no area of contact.",
-      ),
-    ];
-  const full = fullScale(stress, state, friction);
+  if (!(a > 0)) return [noContact(plot)];
+  const full = fullScale(stress, friction, meanPressure(definition, state));
   const [cx, cy] = [plot.x.at(0), plot.y.at(0)];
   const size = (radius) => Math.abs(plot.x.at(radius) - cx);
-  const every = Math.max(1, Math.floor(stress.radius.length / STOPS));
-  const stops = stress.radius.map((r, index) => [r / a, stress.shear[index]]).filter((_, index) => index % every === 0);
   const id = `${plot.clip}-rings`;
   const gradient = svg(
     "radialGradient",
     { id, gradientUnits: "userSpaceOnUse", cx, cy, r: size(a) },
-    ...stops.map(([offset, tau]) => svg("stop", { offset, "stop-color": colour((tau ?? full) / full) })),
+    ...shearStops(stress.radius, stress.shear, full, (r) => r / a),
   );
   const drawn = [svg("defs", {}, gradient), svg("circle", { cx, cy, r: size(a), fill: `url(#${id})`, class: "disc" })];
   const c = state.stick_radius;
   if (c < a) {
-    const stripes = `${plot.clip}-stripes`;
-    drawn.push(
-      svg(
-        "defs",
-        {},
-        svg(
-          "pattern",
-          { id: stripes, width: 6, height: 6, patternUnits: "userSpaceOnUse", patternTransform: "rotate(45)" },
-          svg("line", { class: "stripe", y2: 6 }),
-        ),
-      ),
-      svg("path", { class: "slipping", fill: `url(#${stripes})`, d: ring(cx, cy, size(a), size(c)) }),
-    );
+    const { element, fill } = stripes(plot);
+    drawn.push(element, svg("path", { class: "slipping", fill, d: ring(cx, cy, size(a), size(c)) }));
     if (c > 0) drawn.push(svg("circle", { class: "front", cx, cy, r: size(c) }));
   }
   drawn.push(...colourScale(plot, full), ...arrow(plot, history));
@@ -104,12 +108,12 @@ function disc(plot, { stress, state, friction, history }) {
 }
 
 /** The stress of the strongest colour: the largest that is there, so that what little is left shows too. */
-function fullScale({ pressure, residual: { max, relative } }, { normal_force: load, contact_radius: a }, friction) {
+export function fullScale({ pressure, residual: { max, relative } }, friction, mean) {
   // Round-off is no stress.
   if (max !== null && relative > 1e-9) return max;
   // Where the pressure is infinite, four times its mean.
   const largest = pressure.reduce((most, value) => Math.max(most, value ?? Infinity), 0);
-  return friction * Math.min(largest, (4 * load) / (Math.PI * a * a)) || 1;
+  return friction * Math.min(largest, 4 * mean) || 1;
 }
 
 /** The area between two circles. */
@@ -119,7 +123,7 @@ function ring(x, y, outer, inner) {
 }
 
 /** The legend of the colours. */
-function colourScale(plot, full) {
+export function colourScale(plot, full) {
   const { left, bottom } = plot.box;
   const [x, y, width] = [left + 8, bottom - 14, 128];
   const id = `${plot.clip}-scale`;
@@ -136,7 +140,7 @@ function colourScale(plot, full) {
 }
 
 /** The direction of the last move. */
-function arrow(plot, history) {
+export function arrow(plot, history) {
   const last = history.at(-1)?.state.displacement ?? 0;
   const before = history.at(-2)?.state.displacement ?? 0;
   if (last === before) return [];

@@ -8,6 +8,7 @@ mod comparing;
 mod following;
 mod forms;
 mod journeys;
+mod line_contacts;
 mod moving;
 mod plots;
 mod scene;

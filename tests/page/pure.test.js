@@ -7,6 +7,7 @@ import { columnsOf, csvText } from "../../src/page/chart_menu.js";
 import { rememberedTurns } from "../../src/page/contact_plots.js";
 import { amountOf } from "../../src/page/crack_criteria.js";
 import { latestOnly } from "../../src/page/dom.js";
+import { isEccentric, meanPressure, peaksOf, zonesOf } from "../../src/page/line_contact.js";
 import { gridPoints } from "../../src/page/section_plot.js";
 import { addressOf, contactAddress } from "../../src/page/tabs.js";
 import * as units from "../../src/page/units.js";
@@ -123,6 +124,30 @@ test("a table is saved by its columns, and a plot without one by its series", ()
 test("places of a grid are drawn row by row", () => {
   const reply = { x: [0, 0, 1, 1], z: [0, 5, 0, 5] };
   assert.deepEqual(gridPoints(reply, [1, 2, 3, 4], 2), [[0, 0, 1], [1, 0, 3], [0, 5, 2], [1, 5, 4]]); // prettier-ignore
+});
+
+test("a line contact has two edges, a stick zone off the middle, and extrema on both sides", () => {
+  const state = { contact_radius: 4, stick_radius: 2, normal_force: 24 };
+  const ends = (zones) => zones.map(({ from, to, kind }) => [from, to, kind]);
+  assert.deepEqual(ends(zonesOf(state, false)), [[0, 2, "stick"], [2, 4, "slip"]]); // prettier-ignore
+  const shifted = { ...state, stick_centre: 1 };
+  assert.deepEqual(ends(zonesOf(shifted, true)), [[-4, -1, "slip"], [-1, 3, "stick"], [3, 4, "slip"]]); // prettier-ignore
+  // In gross slip a bulk stress still has a middle, but of nothing.
+  assert.deepEqual(ends(zonesOf({ ...shifted, stick_radius: 0 }, true)), [[-4, 4, "slip"]]);
+  assert.deepEqual(ends(zonesOf({ ...state, stick_radius: 4, stick_centre: 0 }, true)), [[-4, 4, "stick"]]);
+
+  const material = { bodies: ["rigid", { youngs_modulus: 1, poisson_ratio: 0 }] };
+  const definition = { profile: { type: "cylinder", radius: 1, length: 3 }, material };
+  const peaks = [{ x: 1, shear: -5 }, { x: 2, shear: null }]; // prettier-ignore
+  assert.deepEqual(peaksOf({ peaks }, definition), [[1, -5], [-1, -5]]); // prettier-ignore
+  const bulk = { body: "second", stress_per_force: 1 };
+  assert.deepEqual(peaksOf({ peaks }, { ...definition, bulk }), [[1, -5]]);
+  for (const still of [{ ...bulk, body: "first" }, { ...bulk, stress_per_force: 0 }, undefined])
+    assert.equal(isEccentric({ bulk: still, material }), false, "a rigid body, and no stress, move nothing");
+  assert.equal(meanPressure(definition, state), 1);
+  const round = { profile: { type: "sphere", radius: 1 } };
+  assert.equal(meanPressure(round, state), 24 / (16 * Math.PI));
+  assert.deepEqual(peaksOf({ peaks: [{ radius: 1, shear: 2 }] }, round), [[1, 2]]);
 });
 
 test("an address names contact, tab and view", () => {
