@@ -176,15 +176,24 @@ pub fn ball() -> Value {
     })
 }
 
-/// Moves that take minutes on any machine: each of them is followed in many small steps.
-pub fn long_moves() -> Value {
-    let step = |index| json!({"force": 0.1 * f64::from(index % 7), "normal_force": 9.0 + 0.1 * f64::from(index % 9)});
-    json!({"moves": (0..80_000).map(step).collect::<Vec<_>>()})
+/// A contact whose curved moves take long.
+pub fn slow_contact() -> Value {
+    with(ball(), "/profile", json!({"type": "power_law", "exponent": 2.7, "coefficient": 1e3}))
+}
+
+/// One of many curved moves.
+pub fn curved_move(index: u64) -> Value {
+    json!({"force": 0.2 * (index % 7) as f64, "normal_force": 5.0 + (index % 9) as f64})
+}
+
+/// A path that takes the slow contact most of an hour: each move is followed in thousands of small steps.
+pub fn long_path() -> Value {
+    json!({"path": {"moves": (0..80_000).map(curved_move).collect::<Vec<_>>()}, "steps": "last", "tolerance": 1e-14})
 }
 
 /// A simulation that ends when its client leaves, or at its time limit.
 pub fn long_simulation() -> Value {
-    json!({"contact": ball(), "path": long_moves(), "steps": "last"})
+    of(&slow_contact(), &long_path())
 }
 
 /// A body: a contact, and members beside it.
