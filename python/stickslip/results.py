@@ -17,12 +17,13 @@ class Accuracy(Result):
 
     compute_time: float
     """Processor time that the request took but for HTTP, s: with the check, the preparation of the profile unless it
-    was ready, and the loading of a stored contact; without the time for which the work gave way to that of others.
+    was ready, and the loading of a stored contact; without the time for which the work yielded to that of others.
     """
 
     force_error: float
     """Estimated error of the forces, relative to the friction limit μ F_N, a pure number: of rounding, of curved
-    paths, of the interpolation of a table, of springs.
+    paths, of the interpolation of a table, of springs. That of curved paths is the largest of the states in the
+    reply, that of springs the largest over all moves.
     """
 
     reason: str
@@ -62,13 +63,14 @@ class AccuracyRow(Result):
     """The solver."""
 
     estimated_force_error: float | None = None
-    """Error of the force as the solver estimates it, without a reference, relative to `force_unit`, a pure number;
-    likewise.
+    """Error of the force over all moves as the solver states it itself, relative to the friction limit μ F_N, a pure
+    number; `null` without an answer, or where it is infinite.
     """
 
     estimated_stress_error: float | None = None
-    """Error of the stress as the solver estimates it, relative to `stress_unit`, a pure number: for radii some cells
-    away from kinks; likewise.
+    """Error of the stress at the end as the solver states it itself, relative to `stress_unit`, a pure number: the
+    largest over the contact, but for springs within some cells of a singular radius of the profile; `null` without
+    an answer, or where it is infinite.
     """
 
     force_error: float | None = None
@@ -81,7 +83,7 @@ class AccuracyRow(Result):
 
     stress_error: float | None = None
     """Largest difference of the shear stress at the end, over the radii, relative to `stress_unit`, a pure number;
-    likewise.
+    `null` without an answer, or where it is infinite.
     """
 
 
@@ -1261,7 +1263,7 @@ class ResonancePoint(Result):
     """
 
     peak_error: float | None = None
-    """Estimated error of the peak, m; `null` likewise."""
+    """Estimated error of the peak, m; `null` where the oscillation was not found."""
 
 
 class RobustnessReply(Result):

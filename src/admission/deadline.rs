@@ -8,7 +8,7 @@ use stickslip_compute::{Flag, Stop};
 use super::fair_scheduler;
 
 /// What the work for a request asks whether to go on. Work on the blocking pool outlives the handler that asked for it;
-/// this ends it. At a check the work also gives way to others that are next.
+/// this ends it. At a check the work also yields to others that are next.
 #[derive(Clone, Debug)]
 pub struct Deadline(Arc<Flag>);
 
@@ -43,8 +43,8 @@ impl Stop for Deadline {
         &self.0
     }
 
-    fn give_way(&self) -> Duration {
-        fair_scheduler::give_way()
+    fn yield_slot(&self) -> Duration {
+        fair_scheduler::yield_slot()
     }
 }
 

@@ -1,9 +1,9 @@
-//! Slots on the solver threads: which work is next, and when long work gives way.
+//! Slots on the solver threads: which work is next, and when long work yields.
 //!
 //! Work waits in a queue: that of its client and its kind. While somebody waits, each queue is charged for the time
 //! that its work has held a thread, divided by the weight of its kind, and the queue that has been charged least is
 //! next; within it, the work that came first. So queues share the threads by weight, whatever they ask for, and none
-//! starves (start-time fair queueing: Goyal, Vin and Cheng 1996). Work that has held a thread for a slice gives way at
+//! starves (start-time fair queueing: Goyal, Vin and Cheng 1996). Work that has held a thread for a slice yields at
 //! its next check of a [`Deadline`](super::Deadline), if another queue is next, and waits on its own thread of the
 //! blocking pool. A thread whose work has not checked for [`OVERDUE`] does not count for interactive work, which then
 //! shares the processors with it.
@@ -121,8 +121,8 @@ thread_local! {
 }
 
 /// Lets others work if they are next, and then waits; returns how long. To be called by work at each of its checks.
-pub(super) fn give_way() -> Duration {
-    SLOT.with_borrow_mut(|slot| slot.0.as_mut().map_or(Duration::ZERO, Held::give_way))
+pub(super) fn yield_slot() -> Duration {
+    SLOT.with_borrow_mut(|slot| slot.0.as_mut().map_or(Duration::ZERO, Held::yield_slot))
 }
 
 impl Worker for SolverSlot {
@@ -289,7 +289,7 @@ impl WaitQueues {
 }
 
 impl Held {
-    fn give_way(&mut self) -> Duration {
+    fn yield_slot(&mut self) -> Duration {
         if self.scheduler.0.waiting.load(Ordering::Relaxed) == 0 {
             return Duration::ZERO;
         }

@@ -139,7 +139,7 @@ impl Serve {
 pub fn serve(mut options: Serve) -> Result<(), String> {
     // Spans go to a collector alone, and are not even made where there is none.
     let filter = options.log.clone().with_target(otlp::SPANS, LevelFilter::OFF);
-    // Work that gives way to other work keeps its thread, and must leave some to the work that it gives way to.
+    // Work that yields keeps its thread, and must leave some to the work that it yields to.
     let threads = SPARE_THREADS + options.limits.capacity().requests.min(MOST_THREADS);
     let runtime = tokio::runtime::Builder::new_multi_thread().max_blocking_threads(threads).enable_all().build();
     let runtime = runtime.map_err(|error| format!("cannot start: {error}"))?;
@@ -195,7 +195,7 @@ impl Serve {
 }
 
 /// Has a write beyond the limit of the size of files (`ulimit -f`) fail, as on a full disk: without a handler, the
-/// signal that comes with it ends the process. The handler stays for good.
+/// signal that comes with it ends the process. The handler is never removed.
 async fn survive_file_size_limit() -> Result<(), String> {
     let kind = SignalKind::from_raw(rustix::process::Signal::XFSZ.as_raw());
     signal(kind).map(drop).map_err(|error| format!("cannot listen for signals: {error}"))

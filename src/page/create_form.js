@@ -1,4 +1,4 @@
-// The form that creates a contact, and shows its figures while one types.
+// The form that creates a contact, and shows its figures while the user types.
 import { call } from "./api.js";
 import { Chart } from "./chart.js";
 import { copyMenu } from "./copy_as_code.js";

@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use rustix::time::{ClockId, clock_gettime};
 use serde_json::{Value, json};
-use stickslip_compute::computations::{Shown, compute};
+use stickslip_compute::computations::{DisplayOptions, compute};
 use stickslip_compute::formats::Format;
 use stickslip_compute::{Flag, Interrupted, Refusal, Stop};
 use stickslip_wire::Code;
@@ -199,7 +199,7 @@ fn work_of_every_kind_asks_throughout_and_ends_at_the_first_no() {
         let body = body.to_string();
         let run = |granted: u64| {
             let questions = Questions::granting(granted);
-            let reply = compute(name, body.as_bytes(), Shown::in_format(format), &questions);
+            let reply = compute(name, body.as_bytes(), DisplayOptions::in_format(format), &questions);
             (reply, questions.end())
         };
         let (reply, whole) = run(u64::MAX);

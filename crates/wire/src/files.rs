@@ -13,7 +13,7 @@ use crate::request::replies;
 pub struct ScanFileHints {
     /// The unit of places, in place of the one that the file names.
     pub lateral: Option<String>,
-    /// The unit of heights, likewise.
+    /// The unit of heights, in place of the one that the file names.
     pub height: Option<String>,
     /// The distance of neighbours in a matrix of heights, in the unit of places, in place of that of the header.
     pub spacing: Option<f64>,
@@ -41,11 +41,11 @@ pub struct LoopFileHints {
     pub load: Option<String>,
     /// The unit of displacements, in place of the one that the header names.
     pub displacement_unit: Option<String>,
-    /// The unit of forces, likewise.
+    /// The unit of forces, in place of the one that the header names.
     pub force_unit: Option<String>,
-    /// The unit of times, likewise.
+    /// The unit of times, in place of the one that the header names.
     pub time_unit: Option<String>,
-    /// The unit of loads, likewise.
+    /// The unit of loads, in place of the one that the header names.
     pub load_unit: Option<String>,
     /// The sheet of a spreadsheet, by its name or its number from 1 on.
     pub sheet: Option<String>,

@@ -18,7 +18,7 @@ pub struct ProfileFlags {
     /// The unit of places in a file of columns; without it the one that the header names, or m.
     #[arg(long, value_name = "UNIT", value_parser = length)]
     lateral: Option<UnitHint>,
-    /// The unit of heights in a file of columns, likewise.
+    /// The unit of heights in a file of columns; without it the one that the header names, or m.
     #[arg(long, value_name = "UNIT", value_parser = length)]
     height: Option<UnitHint>,
     /// The distance of neighbours in a matrix of heights, in the unit of places.
@@ -28,10 +28,12 @@ pub struct ProfileFlags {
     /// the one that is called so, or the first.
     #[arg(long, value_name = "COLUMN")]
     x: Option<String>,
-    /// The column of places along the other axis, likewise.
+    /// The column of places along the other axis, by its number or its name in the header; without it the one that
+    /// is called so.
     #[arg(long, value_name = "COLUMN")]
     y: Option<String>,
-    /// The column of heights, likewise; the last.
+    /// The column of heights, by its number or its name in the header; without it the one that is called so, or the
+    /// last.
     #[arg(long, value_name = "COLUMN")]
     z: Option<String>,
     /// The sheet of a spreadsheet, by its name or its number; without it the first with numbers.

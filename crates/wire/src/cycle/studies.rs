@@ -54,7 +54,7 @@ pub struct ResonancePoint: Copy {
     pub phase: f64,
     /// Half the range of the displacement, m: more or less than the amplitude, by what the higher harmonics add.
     pub peak: f64,
-    /// Estimated error of the peak, m; `null` likewise.
+    /// Estimated error of the peak, m; `null` where the oscillation was not found.
     pub peak_error: Option<f64>,
     /// Third harmonic of the contact's force over the first, a pure number.
     pub third_harmonic: f64,
