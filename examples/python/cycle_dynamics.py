@@ -2,7 +2,7 @@
 
     python cycle_dynamics.py [URL] > response.csv
 
-Needs `requests`, `pandas` and `scipy`. The table is one call of POST /cycle, which any dynamics code can use likewise. The
+Needs `requests`, `pandas` and `scipy`. The table is one call of POST /cycle, which any dynamics code can use. The
 service's own `frequency_response` gives the same curve for this one mass.
 """
 

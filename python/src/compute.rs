@@ -3,7 +3,7 @@
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
-use stickslip_compute::computations::{self, Shown};
+use stickslip_compute::computations::{self, DisplayOptions};
 use stickslip_compute::formats::Format;
 
 use super::interrupt::interruptible;
@@ -13,7 +13,7 @@ use super::problem::refused;
 #[pyfunction]
 #[pyo3(signature = (name, body, format = "columns"))]
 pub fn compute<'py>(py: Python<'py>, name: &str, body: &[u8], format: &str) -> PyResult<Bound<'py, PyBytes>> {
-    let shown = Shown::in_format(named(format)?);
+    let shown = DisplayOptions::in_format(named(format)?);
     let reply = interruptible(py, |stop| computations::compute(name, body, shown, stop))?;
     Ok(PyBytes::new(py, &reply.map_err(refused)?))
 }

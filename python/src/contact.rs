@@ -7,7 +7,7 @@ use pyo3::types::PyBytes;
 use serde_json::{Map, Value, json};
 use stickslip_compute::Refusal;
 use stickslip_compute::computations::{
-    Computation as _, Cycle, OnContact, Shown, StressTask, dry_run_relax, make_moves, shown_states,
+    Computation as _, Cycle, DisplayOptions, OnContact, StressTask, dry_run_relax, make_moves, shown_states,
 };
 use stickslip_compute::formats::Format;
 use stickslip_compute::simulation::{self, Anew, present_warnings};
@@ -272,13 +272,13 @@ impl Contact {
         let request = wire::parse::<CycleRequest>(Value::Object(body).to_string().as_bytes())?;
         let checked = request.check_with(&Ready(&self.setup.profile, stop))?;
         if checked.2.map.is_some() {
-            return Ok(Shown::in_format(Format::Columns).write(&Cycle::run(checked, stop)?, stop)??);
+            return Ok(DisplayOptions::in_format(Format::Columns).write(&Cycle::run(checked, stop)?, stop)??);
         }
         self.compute(checked.2, stop)
     }
 
     fn compute<T: OnContact>(&self, task: T, stop: &dyn Stop) -> Result<Vec<u8>, Refusal> {
-        let shown = Shown::in_format(Format::Columns);
+        let shown = DisplayOptions::in_format(Format::Columns);
         let outcome = task.run(self.state.clone(), self.made.len() as u64, stop)?;
         Ok(shown.write(&outcome, stop)??)
     }

@@ -66,7 +66,7 @@ class ExactSphere(Profile):
     TYPE: ClassVar[str] = "exact_sphere"
 
     radius: Quantity
-    """Radius R, m; the contact radius stays below it."""
+    """Radius R, m; the contact radius stays below 0.9 of it."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -43,8 +43,8 @@ impl Stop for Deadline {
         &self.0
     }
 
-    fn give_way(&self) -> Duration {
-        fair_scheduler::give_way()
+    fn yield_slot(&self) -> Duration {
+        fair_scheduler::yield_slot()
     }
 }
 

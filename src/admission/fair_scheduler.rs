@@ -121,8 +121,8 @@ thread_local! {
 }
 
 /// Lets others work if they are next, and then waits; returns how long. To be called by work at each of its checks.
-pub(super) fn give_way() -> Duration {
-    SLOT.with_borrow_mut(|slot| slot.0.as_mut().map_or(Duration::ZERO, Held::give_way))
+pub(super) fn yield_slot() -> Duration {
+    SLOT.with_borrow_mut(|slot| slot.0.as_mut().map_or(Duration::ZERO, Held::yield_slot))
 }
 
 impl Worker for SolverSlot {
@@ -289,7 +289,7 @@ impl WaitQueues {
 }
 
 impl Held {
-    fn give_way(&mut self) -> Duration {
+    fn yield_slot(&mut self) -> Duration {
         if self.scheduler.0.waiting.load(Ordering::Relaxed) == 0 {
             return Duration::ZERO;
         }

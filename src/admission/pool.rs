@@ -86,7 +86,7 @@ metrics! {
     pub struct PoolMeters {
         /// Long work that waits for a thread.
         waiting: IntGauge = gauge("stickslip_solver_waiting"),
-        /// Long work that has begun; some of it may have given way to other work.
+        /// Long work that has begun; some of it may have yielded to other work.
         running: IntGauge = gauge("stickslip_solver_running"),
         /// Work for which no thread became free in time.
         refused: IntCounter = counter("stickslip_solver_refused_total"),

@@ -17,7 +17,9 @@ use uuid::Uuid;
 
 use crate::admission::Reservation;
 use crate::otlp;
-use stickslip_compute::computations::{Computation, FromStored, OnContact, Outcome, Route, Shown, Task, Visitor};
+use stickslip_compute::computations::{
+    Computation, DisplayOptions, FromStored, OnContact, Outcome, Route, Task, Visitor,
+};
 
 use super::checked_query::CheckedQuery;
 use super::extract::{CheckedBody, HeldResources};
@@ -110,16 +112,16 @@ impl<C: Computation> QueryParams for ShownQuery<C> {
 
 type AskedFor<C> = Result<CheckedQuery<ShownQuery<C>>, Problem>;
 
-fn shown<C: Computation>(query: AskedFor<C>, headers: &HeaderMap) -> Result<Shown, Problem> {
+fn shown<C: Computation>(query: AskedFor<C>, headers: &HeaderMap) -> Result<DisplayOptions, Problem> {
     if C::ABOUT.formats.len() == 1 {
         // It has no parameters, and never refused those that it does not have.
-        return Ok(Shown::in_format(Format::Columns));
+        return Ok(DisplayOptions::in_format(Format::Columns));
     }
     let CheckedQuery(ShownQuery { format, choice, .. }) = query?;
-    Ok(Shown { choice, ..Shown::in_format(Format::chosen(format, headers, C::ABOUT.formats)?) })
+    Ok(DisplayOptions { choice, ..DisplayOptions::in_format(Format::chosen(format, headers, C::ABOUT.formats)?) })
 }
 
-fn written<C: Computation>(body: Vec<u8>, shown: &Shown) -> Response {
+fn written<C: Computation>(body: Vec<u8>, shown: &DisplayOptions) -> Response {
     if C::ABOUT.formats.len() == 1 { reply::json(body) } else { shown.format.reply(body) }
 }
 
@@ -144,8 +146,8 @@ async fn answer_stored<C: FromStored>(
     let shown = shown::<C>(query, &headers)?;
     let CheckedBody { body, mut held, .. } = request;
     match C::stored(body) {
-        Ok((id, said, task)) => {
-            let (_, body) = app.sessions.compute_on(id, said, task, shown, &mut held.memory).await?;
+        Ok((id, expected, task)) => {
+            let (_, body) = app.sessions.compute_on(id, expected, task, shown, &mut held.memory).await?;
             Ok(held.on(written::<C>(body, &shown)))
         }
         Err(task) => run::<C>(&app, task, shown, held).await,
@@ -155,7 +157,7 @@ async fn answer_stored<C: FromStored>(
 async fn run<C: Computation>(
     app: &App,
     task: Task<C>,
-    shown: Shown,
+    shown: DisplayOptions,
     mut held: HeldResources,
 ) -> Result<Response, Problem> {
     C::check_shown(&task, &shown)?;
@@ -203,7 +205,7 @@ pub async fn of_contact<T: OnContact>(
     task: T,
     mut memory: Reservation,
 ) -> Result<Response, Problem> {
-    let shown = Shown::in_format(format);
+    let shown = DisplayOptions::in_format(format);
     task.check_shown(&shown)?;
     let (sequence, body) = app.sessions.compute_on(id, None, task, shown, &mut memory).await?;
     Ok(reply::holding(reply::tagged(format.reply(body), &format.tag(&sequence.to_string())), memory))

@@ -35,7 +35,7 @@ use utoipa_swagger_ui::{Config, SwaggerUi};
 
 use crate::server::tls::Tls;
 use crate::server::{self, ConnectionLimiter, ConnectionLimits, Service};
-use stickslip_compute::computations::each;
+use stickslip_compute::computations::for_each_computation;
 use stickslip_compute::formats::Format;
 
 use facts::{Facts, FactsOfRoutes, Routes};
@@ -140,7 +140,7 @@ pub fn need(method: &str, route: &str) -> Need {
 fn described(document: &'static str) -> Routes {
     let router = OpenApiRouter::with_openapi(openapi::base());
     let mut routes = Routes { router, facts: FactsOfRoutes::default() };
-    each(&mut routes);
+    for_each_computation(&mut routes);
     let page = Facts { formats: &Format::ALL, conditional: true, ..Facts::READS_CONTACT };
     routes
         .with(Facts { formats: &Format::TABLES, ..Facts::WRITES }, routes!(sweep::run_sweep))

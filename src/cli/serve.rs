@@ -195,7 +195,7 @@ impl Serve {
 }
 
 /// Has a write beyond the limit of the size of files (`ulimit -f`) fail, as on a full disk: without a handler, the
-/// signal that comes with it ends the process. The handler stays permanently.
+/// signal that comes with it ends the process. The handler is never removed.
 async fn survive_file_size_limit() -> Result<(), String> {
     let kind = SignalKind::from_raw(rustix::process::Signal::XFSZ.as_raw());
     signal(kind).map(drop).map_err(|error| format!("cannot listen for signals: {error}"))

@@ -59,14 +59,14 @@ fn members(around: &str, node: &Value, depth: usize, lines: &mut Vec<String>) {
             }
             _ => {
                 let width = NAMES.saturating_sub(indent.len());
-                lines.push(format!("{indent}{title:width$} {}", said(&format!("{around}_{name}"), value)));
+                lines.push(format!("{indent}{title:width$} {}", text_of(&format!("{around}_{name}"), value)));
             }
         }
     }
 }
 
 /// A value in a line.
-fn said(name: &str, value: &Value) -> String {
+fn text_of(name: &str, value: &Value) -> String {
     match value {
         Value::Null => "none".to_owned(),
         Value::Number(number) if number.is_f64() => quantity(number.as_f64().unwrap_or(f64::NAN), unit(name)),

@@ -15,7 +15,7 @@ use super::{JobError, Jobs};
 /// How long a follower waits at most before it reads again: not every change by another process is announced.
 const LONGEST_WAIT: Duration = Duration::from_secs(1);
 /// The shortest time between two events: chunks may be finished faster than a client reads.
-const REST: Duration = Duration::from_millis(100);
+const RETRY_DELAY: Duration = Duration::from_millis(100);
 
 struct Follower {
     jobs: Jobs,
@@ -53,7 +53,7 @@ impl Follower {
     /// The next event, and what follows it unless it is the last.
     async fn next(mut self) -> (StreamEvent<JobReply>, Option<Follower>) {
         if self.last.is_some() {
-            self.listener.pause(REST).await;
+            self.listener.pause(RETRY_DELAY).await;
         }
         let event = loop {
             if self.listener.is_ending() {

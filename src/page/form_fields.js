@@ -102,7 +102,7 @@ export class JsonField extends Field {
   get mistake() {
     return this.value === null && !this.isLeftOut ? "This is not JSON." : undefined;
   }
-  /** The document, or nothing where the text is none. */
+  /** The document, or nothing where the text is not valid JSON. */
   get value() {
     try {
       return JSON.parse(this.control.value);
@@ -131,7 +131,7 @@ export class Choice extends Field {
   }
 }
 
-/** The numbers that were given in fields, by name; nothing where there is none. */
+/** The numbers that were given in fields, by name; nothing where a field has no number. */
 export function valuesOf(fields) {
   const given = Object.entries(fields).filter(([, field]) => field.value !== undefined);
   return given.length ? mapped(Object.fromEntries(given), (field) => field.value) : undefined;
@@ -178,7 +178,7 @@ export class Fields {
     return wrong[0];
   }
 
-  /** What `read` makes of the form with the numbers of the beginning in place of texts that are none, so that the
+  /** What `read` makes of the form with the numbers of the beginning in place of texts that are not numbers, so that the
    *  service finds the faults of the other fields too. */
   standingIn(read) {
     this.isStandingIn = true;

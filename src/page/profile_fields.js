@@ -120,7 +120,7 @@ function columns(form, at, changed, body, type) {
     if (units.includes(target)) chosen.add(target);
     source.read();
   };
-  /** The two columns as they were read; those of a scan of a surface are none. */
+  /** The two columns as they were read; a scan of a surface has no such columns. */
   const pair = () => {
     const { x = [], z = [] } = found?.scan?.line ?? {};
     return kind === "scan" ? [x, z] : [found?.loop.displacement ?? [], found?.loop.force ?? []];

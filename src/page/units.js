@@ -16,7 +16,7 @@ const PREFIXES = [
 
 /** A unit with each of some prefixes, and the powers of ten of these. @typedef {[string, number][]} Units */
 
-/** A unit with each of these prefixes, of which the empty one is none. @returns {Units} */
+/** A unit with each of these prefixes, the empty prefix leaves the unit as it is. @returns {Units} */
 export const prefixed = (unit, ...prefixes) =>
   prefixes.map((prefix) => [prefix + unit, Math.round(Math.log10(PREFIXES.find(([, name]) => name === prefix)[0]))]);
 

@@ -7,7 +7,7 @@ use uuid::Uuid;
 use crate::admission::{Deadline, Pool, Reservation};
 use crate::otlp;
 use crate::store::{Page, Store, Tenant};
-use stickslip_compute::computations::{OnContact, Shown};
+use stickslip_compute::computations::{DisplayOptions, OnContact};
 use stickslip_compute::simulation::{Profiles, bytes, cost};
 use stickslip_wire::subsurface::SubsurfaceTask;
 use stickslip_wire::{ContactDefinition, SessionPage, SessionReply, SubsurfaceRequest};
@@ -136,7 +136,7 @@ impl Sessions {
         Ok((self.context.pool.run(cost::writing_table(points), work).await??, held))
     }
 
-    /// The reply of a computation on a session, which `said` to have this definition, with the sequence that it belongs
+    /// The reply of a computation on a session, which is `expected` to have this definition, with the sequence that it belongs
     /// to. The memory of the request becomes what that takes.
     ///
     /// # Errors
@@ -144,14 +144,14 @@ impl Sessions {
     pub async fn compute_on<T: OnContact>(
         &self,
         id: Uuid,
-        said: Option<ContactDefinition>,
+        expected: Option<ContactDefinition>,
         task: T,
-        shown: Shown,
+        shown: DisplayOptions,
         memory: &mut Reservation,
     ) -> Result<(u64, Vec<u8>), SessionError> {
         let (stop, _guard) = self.context.pool.deadline();
         self.context.pool.resize(memory, task.bytes() + shown.bytes(task.rows())).await?;
-        let (contact, sequence, state) = self.context.copy(id, said, &stop).await?;
+        let (contact, sequence, state) = self.context.copy(id, expected, &stop).await?;
         let cost = task.cost(contact.profile(), contact.memory_depth()).saturating_add(shown.format.cost());
         let work = move || {
             let _state = state;

@@ -270,17 +270,17 @@ impl TenantContext {
         Ok((live, followed.map_err(stopped)))
     }
 
-    /// A copy of the contact, which `said` to have this definition, with its sequence and memory for it; `stop` counts
+    /// A copy of the contact, which is `expected` to have this definition, with its sequence and memory for it; `stop` counts
     /// what loading it takes. The lock is held for the copy alone, so that the session can move on meanwhile.
     pub(super) async fn copy(
         &self,
         id: Uuid,
-        said: Option<ContactDefinition>,
+        expected: Option<ContactDefinition>,
         stop: &Deadline,
     ) -> Result<(Contact, u64, Reservation), SessionError> {
         let mut guard = self.lock(id).await?;
         let live = self.current(&mut guard).await?;
-        if said.is_some_and(|said| said != *live.session.definition) {
+        if expected.is_some_and(|expected| expected != *live.session.definition) {
             return Err(SessionError::OtherDefinition(id));
         }
         let (contact, sequence) = (live.contact.memory_bytes(), live.session.sequence);

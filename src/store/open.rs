@@ -96,7 +96,7 @@ pub async fn open_to_read(url: &str) -> Result<Arc<dyn Store>, OpenError> {
 /// copied.
 ///
 /// # Errors
-/// [`OpenError`] if the store is none that is kept in a file, or why there is no copy.
+/// [`OpenError`] if the store is not kept in a file, or why there is no copy.
 pub fn backup(url: &str, copy: &Path, progress: impl FnMut(u64, u64) + Send) -> Result<u64, OpenError> {
     match kind(url)? {
         Kind::Memory => Err(OpenError::new(url, "a `memory:` store exists only in the process that serves it")),

@@ -204,8 +204,8 @@ async fn a_key_counts_only_whole_and_once_and_as_a_bearer() {
         }
         call.send().await.unwrap().status().as_u16()
     };
-    for good in [format!("Bearer {a}"), format!("bearer {b}"), format!("BEARER   {a}  ")] {
-        assert_eq!(send(std::slice::from_ref(&good)).await, 200, "{good}");
+    for valid in [format!("Bearer {a}"), format!("bearer {b}"), format!("BEARER   {a}  ")] {
+        assert_eq!(send(std::slice::from_ref(&valid)).await, 200, "{valid}");
     }
     for bad in [
         a.to_owned(),
@@ -247,7 +247,7 @@ async fn seen(response: Response, id: Uuid) -> (u16, Vec<(String, String)>, Stri
 /// A request: method, route, body and header.
 type Attempt = (String, String, Option<Value>, Option<(&'static str, &'static str)>);
 
-/// Requests about a contact, good and bad.
+/// Requests about a contact, valid and bad.
 fn attempts(document: &Value) -> Vec<Attempt> {
     let mut all = Vec::new();
     for (method, route, _) in endpoints().into_iter().filter(|(_, route, _)| route.contains("{id}")) {

@@ -4,7 +4,7 @@
 use reqwest::Method;
 use serde_json::{Value, json};
 use stickslip_compute::Flag;
-use stickslip_compute::computations::{Shown, compute, entries};
+use stickslip_compute::computations::{DisplayOptions, compute, entries};
 use stickslip_compute::formats::Format;
 
 use crate::common::openapi::{document, examples};
@@ -29,7 +29,8 @@ async fn every_computation_replies_what_the_library_computes_in_every_format() {
             });
             let mut written = Vec::new();
             for format in about.formats {
-                let shown = Shown { choice: choice.map(|(_, word)| word), ..Shown::in_format(*format) };
+                let shown =
+                    DisplayOptions { choice: choice.map(|(_, word)| word), ..DisplayOptions::in_format(*format) };
                 let library = compute(about.name, text.as_bytes(), shown, &Flag::default()).unwrap();
                 let named = choice.map_or_else(String::new, |(name, word)| format!("&{name}={word}"));
                 let query = if has_formats { format!("?format={}{named}", format.name()) } else { String::new() };

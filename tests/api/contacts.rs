@@ -19,7 +19,7 @@ fn along(moves: Vec<Move>) -> PathRequest {
 }
 
 /// Slip back and forth, deeper and less deep, by displacement and by force.
-fn wandering(count: usize) -> Vec<Move> {
+fn varied_moves(count: usize) -> Vec<Move> {
     let turn = |index: usize| (index as f64 * 2.399).sin();
     let step = |index: usize| match index % 4 {
         0 => Move::displacement(2e-7 * turn(index)),
@@ -61,7 +61,7 @@ async fn a_fork_begins_after_any_move_and_is_what_the_contact_was_then() {
     let (client, options) = (&server.client, Options::default());
     let id = client.create(&create(), &options).await.unwrap().id;
     let virgin = client.contact(id).await.unwrap().state;
-    let path = client.path(id, &along(wandering(40)), &options).await.unwrap();
+    let path = client.path(id, &along(varied_moves(40)), &options).await.unwrap();
     for sequence in [0_u64, 1, 17, 39, 40] {
         let wanted = ForkRequest { sequence: Some(sequence), label: None };
         let fork = client.fork(id, &wanted, &options).await.unwrap();
@@ -71,7 +71,7 @@ async fn a_fork_begins_after_any_move_and_is_what_the_contact_was_then() {
         let past = client.history(fork.id, None, None).await.unwrap().items;
         assert_eq!(past, client.history(id, None, None).await.unwrap().items[..then]);
         // It goes on as the contact did.
-        let rest = client.path(fork.id, &along(wandering(40).split_off(then)), &options).await;
+        let rest = client.path(fork.id, &along(varied_moves(40).split_off(then)), &options).await;
         assert!(then == 40 || rest.unwrap().steps == path.steps[then..]);
     }
     let target = format!("/contacts/{id}/fork");

@@ -4,7 +4,8 @@
 use reqwest::Method;
 use serde_json::{Value, json};
 
-use crate::common::openapi::{document, examples, nodes, operations};
+use crate::common::json::nodes;
+use crate::common::openapi::{document, examples, operations};
 use crate::common::{Server, problem};
 
 /// Members that may be anything: a sweep is checked as a whole, with the values of its axes put in.
@@ -23,7 +24,7 @@ fn wrong(place: &str, value: &Value) -> Vec<Value> {
         all.push(Value::Null);
     }
     match value {
-        // Larger than any range: every number of a request has one, but a height that is none.
+        // Larger than any range: every number of a request has one, except a missing height.
         Value::Number(_) if !is_height => all.extend([json!(1e300), json!(-1e300)]),
         // No character that ends a text in a database is in any word or label.
         Value::String(_) => all.push(json!("before\0after")),

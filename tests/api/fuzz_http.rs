@@ -21,12 +21,12 @@ use serde_json::{Value, json};
 use stickslip_wire::ProblemDocument;
 use stickslip_wire::client::Options;
 
+use crate::cases::{case_count, runner, seed};
 use crate::common::kill::Random;
 use crate::common::openapi::{document, examples, operations};
 use crate::common::raw::{PATIENCE, Service, get, post};
 use crate::common::{ball, create};
 use crate::damage::damage;
-use crate::fuzz_bodies::{case_count, runner, seed};
 
 /// Tasks that send requests at the same time. Each has its own contacts.
 const TASKS: u64 = 8;

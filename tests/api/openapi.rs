@@ -5,7 +5,8 @@ use reqwest::Method;
 use serde_json::{Value, json};
 use uuid::Uuid;
 
-use crate::common::openapi::{document, examples, nodes, operations, reference};
+use crate::common::json::nodes;
+use crate::common::openapi::{document, examples, operations, reference};
 use crate::common::{Server, problem, until};
 
 #[tokio::test]

@@ -3,7 +3,7 @@
 
 use serde_json::{Value, json};
 
-use crate::common::{Server, assert_refused, ball, codes, good, number, of, problem, run, with};
+use crate::common::{Server, assert_refused, ball, good, number, of, problem, run, with};
 
 /// Heights over a line of 401 places, in micrometres and nanometres.
 fn scan(x: impl Fn(usize) -> f64, z: impl Fn(usize, f64) -> f64) -> Value {
@@ -71,83 +71,6 @@ async fn a_scan_of_a_ball_is_the_contact_of_that_ball() {
         let heights: Value = of_part.map(|row| row["height"].clone()).collect();
         assert_eq!(heights, columns[name]["height"], "{part}");
     }
-}
-
-#[tokio::test]
-async fn a_map_and_points_with_missing_heights_are_scans_too() {
-    let server = Server::start().await;
-    let height = |x: usize, y: usize| match (x + y).is_multiple_of(9) {
-        true => Value::Null,
-        false => json!(((2.0 * x as f64 - 30.0).powi(2) + (2.0 * y as f64 - 34.0).powi(2)) / 20.0),
-    };
-    let rows: Vec<Vec<Value>> = (0..32).map(|y| (0..32).map(|x| height(x, y)).collect()).collect();
-    let places = |place: fn(usize) -> usize| (0..1024).map(|index| 2.0 * place(index) as f64).collect::<Vec<_>>();
-    let points = json!({"x": places(|index| index % 32), "y": places(|index| index / 32), "z": rows.concat()});
-    let map = with(line(), "/scan", json!({"map": {"dx": 2.0, "dy": 2.0, "z": rows}}));
-    let map = fitted(&server, &map).await;
-    assert_eq!(map, fitted(&server, &with(line(), "/scan", json!({"points": points}))).await);
-    assert!((number(&map["centre"]["x"]) - 3e-5).abs() < 1e-9 && (number(&map["centre"]["y"]) - 3.4e-5).abs() < 1e-9);
-    assert!((radius(&map) / 0.01 - 1.0).abs() < 1e-6);
-}
-
-#[tokio::test]
-async fn every_fault_of_a_scan_has_its_place() {
-    let server = Server::start().await;
-    let some = |count: usize| vec![1.0; count];
-    let ragged = json!({"map": {"dx": 1, "dy": 1, "z": [some(4), some(4), some(5), some(4)]}});
-    for (body, pointer) in [
-        (with(line(), "/scan/line/x", json!([1.0])), "/scan/line/x"),
-        (with(line(), "/scan/line/z", json!(some(400))), "/scan/line/z"),
-        (with(line(), "/scan/line/z", json!(some(401))), "/scan/line/z"),
-        (with(line(), "/scan/line/z", json!(vec![Value::Null; 401])), "/scan/line/z"),
-        (with(line(), "/scan/map", json!({})), "/scan"),
-        (with(line(), "/scan", ragged), "/scan/map/z/2"),
-        (with(line(), "/units/height", json!("inch")), "/units/height"),
-        (with(line(), "/orientation", json!("peak_down")), "/scan/line/z"),
-        (with(line(), "/centre", json!({"x": 1e-3})), "/centre"),
-        (with(line(), "/centre", json!("middle")), "/centre"),
-        (with(line(), "/smoothing", json!({"knots": 1_000})), "/smoothing/knots"),
-        (with(line(), "/smoothing", json!({"noise": 0.0})), "/smoothing/noise"),
-        (with(loaded(), "/load/friction", json!(-1.0)), "/load/friction"),
-    ] {
-        assert_refused(&server, "/profiles/fit", &body, ("invalid_input", pointer, "")).await;
-    }
-    let far = with(loaded(), "/load/preload", json!({"normal_force": 1e3}));
-    let said = "does not reach the edge of the contact: 207 um of about 3";
-    assert_refused(&server, "/profiles/fit", &far, ("beyond_profile", "/load/preload", said)).await;
-}
-
-#[tokio::test]
-async fn a_scan_that_can_hardly_be_meant_is_warned_of() {
-    let server = Server::start().await;
-    let heights = |places: &[usize], height: &dyn Fn(usize) -> f64| {
-        let mut body = line();
-        places.iter().enumerate().for_each(|(n, place)| body["scan"]["line"]["z"][*place] = json!(height(n)));
-        body
-    };
-    let spikes: Vec<usize> = (5..400).step_by(13).collect();
-    let fills = [-9999.0, 1.70141e38, 1e30, -32768.0];
-    let one_sided = scan(|index| index as f64 - 20.0, |_, x| (x * 7.0).sin() / 2.0 - x * x / 20.0);
-    // Nanometres taken for picometres, as it were: the radius of curvature comes out a thousand times too large.
-    let wide: Vec<f64> = (0..401).map(|index| 1e3 * f64::from(index - 200)).collect();
-    let wide = with(line(), "/scan/line/x", json!(wide));
-    for (body, code, outliers) in [
-        (wide.clone(), "units", None),
-        // A contact that all but fills the scan.
-        (with(loaded(), "/load/preload", json!({"contact_radius": 2e-4})), "short_scan", None),
-        // Each at a height of its own: one that occurs often is a fill value.
-        (heights(&spikes, &|index| 1e4 + index as f64), "many_outliers", Some(31)),
-        (heights(&[50, 90, 130, 170], &|index| fills[index]), "fill_values", Some(4)),
-        // The axis at a tenth of the scan from its edge.
-        (with(one_sided, "/level", json!(false)), "one_sided_scan", None),
-    ] {
-        let reply = fitted(&server, &body).await;
-        assert_eq!(codes(&reply)[0], code, "{}", reply["warnings"]);
-        assert!(outliers.is_none_or(|count| reply["residual"]["outliers"] == count), "{code}: {}", reply["residual"]);
-    }
-    let flat = with(ball(), "/profile", fitted(&server, &wide).await["profile"].clone());
-    let reply = good(server.post("/simulate", &of(&flat, &json!({"path": {"force": [1.0]}}))).await).await;
-    assert!(codes(&reply).contains(&"units"), "{:?}", codes(&reply));
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use serde_json::{Value, json};
 use stickslip_mechanics::profile::{self, Family};
 
-use crate::common::{Server, assert_refused, changed, good, number, problem, with};
+use crate::common::{Server, changed, good, problem, with};
 
 fn request(profile: &Value, preload: &Value) -> Value {
     json!({
@@ -31,109 +31,6 @@ fn families() -> Vec<Value> {
     all.push(json!({"type": "tabulated", "r": radii, "z": heights}));
     all.push(json!({"type": "sum", "parts": [{"type": "sphere", "radius": 0.02}, {"type": "cone", "slope": 0.01}]}));
     all
-}
-
-#[tokio::test]
-async fn every_profile_carries_its_normal_force_and_gives_every_field() {
-    let server = Server::start().await;
-    for profile in families() {
-        let fields = json!({"points": 9, "fields": ["pressure", "shear", "slip", "displacement"]});
-        let body = with(request(&profile, &json!({"normal_force": 10.0})), "/stress", fields);
-        let reply = good(server.post("/simulate", &body).await).await;
-        assert_eq!(reply["contact"]["normal_force"], json!(10.0));
-        for field in ["radius", "pressure", "shear", "slip", "displacement"] {
-            assert_eq!(reply["stress"][field].as_array().unwrap().len(), 9, "{profile} {field}");
-        }
-        assert!(reply.get("residual").is_none() && reply.get("protocol").is_none(), "not asked for");
-    }
-}
-
-#[tokio::test]
-async fn infinite_stresses_are_null_and_change_nothing_else() {
-    let server = Server::start().await;
-    let body = request(&json!({"type": "flat_punch", "radius": 1e-3}), &json!({"normal_force": 10.0}));
-    let asked = json!({"path": {"displacement": [1e-9]}, "stress": {"points": 3}, "residual": true});
-    let reply = good(server.post("/simulate", &changed(body, &asked)).await).await;
-    for field in ["pressure", "shear"] {
-        let values = reply["stress"][field].as_array().unwrap();
-        assert!(values[0].is_number() && values[1].is_number() && values[2].is_null(), "{field}: {values:?}");
-    }
-    assert!(reply["contact"]["max_pressure"].is_null() && reply["residual"]["max"].is_null());
-    assert_eq!(reply["steps"][0]["regime"], "stick", "a punch sticks as a whole");
-}
-
-#[tokio::test]
-async fn what_a_shape_cannot_do_is_refused_by_name() {
-    let server = Server::start().await;
-    let table = |r: Value, z: Value| json!({"type": "tabulated", "r": r, "z": z});
-    let sphere = json!({"type": "exact_sphere", "radius": 0.01});
-    let punch = json!({"type": "flat_punch", "radius": 1e-3});
-    let short = table(json!([0.0, 1e-5, 2e-5]), json!([0.0, 1e-9, 4e-9]));
-    let falling = table(json!([0.0, 2e-6, 4e-6, 7e-6, 1e-5]), json!([0.0, 1e-9, 2e-9, 1e-9, 0.0]));
-    let sum = json!({"type": "sum", "parts": [{"type": "sphere", "radius": 1e9}, &falling]});
-    let law = |power: f64, scale: f64| json!({"type": "power_law", "exponent": power, "coefficient": scale});
-    let (rising, one) = (json!([0.0, 1e-9, 4e-9, 9e-9]), json!({"normal_force": 1}));
-    let [concave, beyond, invalid] = ["profile_not_convex_enough", "beyond_profile", "invalid_input"];
-    for (profile, preload, refused) in [
-        (&sphere, json!({"contact_radius": 0.02}), (beyond, "preload/contact_radius", "")),
-        (&short, json!({"normal_force": 1e6}), (beyond, "preload/normal_force", "")),
-        (&falling, json!({"contact_radius": 9e-6}), (concave, "profile", "")),
-        (&sum, json!({"contact_radius": 9e-6}), (concave, "profile", "")),
-        (&table(json!([0, 1e-5, 2e-5]), json!([0, -1e-9, -4e-9])), one.clone(), (concave, "profile", "the radius 0 m")),
-        (&punch, json!({"contact_radius": 1e-3}), (invalid, "preload/contact_radius", "")),
-        (&json!({"type": "cone", "radius": 1.0}), one.clone(), (invalid, "profile/radius", "unknown field")),
-        (&json!({"type": "cone"}), one.clone(), (invalid, "profile/slope", "missing")),
-        (&table(json!([0, 1]), json!([0, 1])), one.clone(), (invalid, "profile/r", "")),
-        (&law(0.0, 1.0), one.clone(), (invalid, "profile/exponent", "")),
-        (
-            &json!({"type": "sphere", "radius": 1}),
-            json!({"normal_force": 1e-300}),
-            (invalid, "preload/normal_force", ""),
-        ),
-        // So blunt that the contact radius exceeds its limit.
-        (&law(0.1, 1e-200), one.clone(), (invalid, "preload/normal_force", "")),
-        (&table(json!([0, 2e-5, 1e-5, 3e-5]), rising.clone()), one.clone(), (invalid, "profile/r/2", "rise")),
-        (&table(json!([0, 1e-5, 2e-5, 2e-5]), rising.clone()), one.clone(), (invalid, "profile/r/3", "rise")),
-        (&table(json!([1e-6, 1e-5, 2e-5, 3e-5]), rising.clone()), one.clone(), (invalid, "profile/r/0", "begin at 0")),
-        (&table(json!([0, 1e-5, 2e-5, 1e10]), rising.clone()), one.clone(), (invalid, "profile/r/3", "1e9 m")),
-        (&table(json!([0, 1e-5, 2e-5]), rising), one.clone(), (invalid, "profile/z", "length")),
-        (&table(json!([0, 1e-5, 2e-5]), json!([1e-9, 1e-9, 1e-9])), one, (invalid, "profile/z", "rise")),
-    ] {
-        let refused = (refused.0, &*format!("/contact/{}", refused.1), refused.2);
-        assert_refused(&server, "/simulate", &request(profile, &preload), refused).await;
-    }
-    // A profile without an answer beside another fault is one of two faults.
-    let hollow = table(json!([0, 1e-5, 2e-5]), json!([0, -1e-9, -4e-9]));
-    let both = with(request(&hollow, &json!({"normal_force": 1.0})), "/tolerance", json!(1.0));
-    let refused = problem(server.post("/simulate", &both).await).await;
-    assert_eq!((refused.code.as_str(), refused.errors.len()), (invalid, 2), "{refused:?}");
-}
-
-#[tokio::test]
-async fn equal_peaks_say_which_path_they_are_and_refuse_a_cutoff_outside_the_contact() {
-    let server = Server::start().await;
-    let peaks = |peaks: Value| json!({"path": {"equal_peaks": peaks}});
-    let cone = request(&json!({"type": "cone", "slope": 0.05}), &json!({"normal_force": 10.0}));
-    let reply = good(server.post("/simulate", &changed(cone.clone(), &peaks(json!({"reversals": 5})))).await).await;
-    let cutoff = number(&reply["protocol"]["cutoff_radius"]) / number(&reply["contact"]["contact_radius"]);
-    assert!((cutoff - 0.1).abs() < 1e-12);
-    let path = json!({"path": {"displacement": reply["protocol"]["displacement"]}});
-    let again = good(server.post("/simulate", &changed(cone, &path)).await).await;
-    assert_eq!(again["steps"], reply["steps"], "the path is usable as it is");
-    let worn = json!({"type": "truncated_sphere", "radius": 0.01, "flat_radius": 5e-5});
-    let worn = request(&worn, &json!({"contact_radius": 1e-4}));
-    for solver in [json!("exact"), json!({"springs": {"count": 100}})] {
-        for (cutoff, is_good) in [(6e-5, true), (0.1, false), (4e-5, false)] {
-            let body = changed(worn.clone(), &peaks(json!({"reversals": 3, "cutoff_radius": cutoff})));
-            let body = with(body, "/solver", solver.clone());
-            if is_good {
-                good(server.post("/simulate", &body).await).await;
-                continue;
-            }
-            let refused = ("invalid_input", "/path/equal_peaks/cutoff_radius", "5e-5 to 1e-4 m");
-            assert_refused(&server, "/simulate", &body, refused).await;
-        }
-    }
 }
 
 #[tokio::test]

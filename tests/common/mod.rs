@@ -2,6 +2,8 @@
 
 #![allow(dead_code, reason = "each test binary uses a part of it")]
 
+#[path = "../../crates/compute/tests/documents/json.rs"]
+pub mod json;
 pub mod kill;
 pub mod openapi;
 pub mod pictures;
@@ -12,6 +14,8 @@ pub mod prometheus;
 pub mod raw;
 pub mod small_disk;
 pub mod tables;
+
+pub use json::{ball, changed, codes, number, of, timeless, with};
 
 use std::process::{Child, Command, Output, Stdio};
 use std::sync::Arc;
@@ -41,7 +45,7 @@ pub async fn until<T>(what: &str, mut look: impl AsyncFnMut() -> Option<T>) -> T
             }
         }
     };
-    tokio::time::timeout(PATIENCE, found).await.unwrap_or_else(|_| panic!("waited in vain until {what}"))
+    tokio::time::timeout(PATIENCE, found).await.unwrap_or_else(|_| panic!("timed out waiting until {what}"))
 }
 
 /// A server. If this process runs it, it ends with the runtime of its test.
@@ -166,47 +170,24 @@ pub fn clean(mut command: Command) -> Command {
     command
 }
 
-/// The contact of the examples.
-pub fn ball() -> Value {
-    json!({
-        "profile": {"type": "sphere", "radius": 0.01},
-        "material": {"bodies": [{"youngs_modulus": 2.1e11, "poisson_ratio": 0.3}, "rigid"]},
-        "friction": 0.3,
-        "preload": {"normal_force": 10.0}
-    })
+/// A contact whose curved moves take long.
+pub fn slow_contact() -> Value {
+    with(ball(), "/profile", json!({"type": "power_law", "exponent": 2.7, "coefficient": 1e3}))
 }
 
-/// Moves that take minutes on any machine: each of them is followed in many small steps.
-pub fn long_moves() -> Value {
-    let step = |index| json!({"force": 0.1 * f64::from(index % 7), "normal_force": 9.0 + 0.1 * f64::from(index % 9)});
-    json!({"moves": (0..80_000).map(step).collect::<Vec<_>>()})
+/// One of many curved moves.
+pub fn curved_move(index: u64) -> Value {
+    json!({"force": 0.2 * (index % 7) as f64, "normal_force": 5.0 + (index % 9) as f64})
+}
+
+/// A path that takes the slow contact most of an hour: each move is followed in thousands of small steps.
+pub fn long_path() -> Value {
+    json!({"path": {"moves": (0..80_000).map(curved_move).collect::<Vec<_>>()}, "steps": "last", "tolerance": 1e-14})
 }
 
 /// A simulation that ends when its client leaves, or at its time limit.
 pub fn long_simulation() -> Value {
-    json!({"contact": ball(), "path": long_moves(), "steps": "last"})
-}
-
-/// A body: a contact, and members beside it.
-pub fn of(contact: &Value, rest: &Value) -> Value {
-    changed(json!({"contact": contact}), rest)
-}
-
-/// A body with these members added or replaced.
-pub fn changed(mut body: Value, members: &Value) -> Value {
-    body.as_object_mut().unwrap().extend(members.as_object().unwrap().clone());
-    body
-}
-
-/// A body with the value at a pointer set.
-pub fn with(mut body: Value, pointer: &str, value: Value) -> Value {
-    let (parent, name) = pointer.rsplit_once('/').unwrap();
-    let place = body.pointer_mut(parent).unwrap();
-    match name.parse::<usize>() {
-        Ok(index) => place[index] = value,
-        Err(_) => place[name] = value,
-    }
-    body
+    of(&slow_contact(), &long_path())
 }
 
 /// The document of a reply that is no refusal.
@@ -217,25 +198,6 @@ pub async fn good(response: Response) -> Value {
     serde_json::from_str(&text).unwrap()
 }
 
-/// A document without the times that it took to compute.
-pub fn timeless(mut document: Value) -> Value {
-    match &mut document {
-        Value::Object(members) => {
-            members.remove("compute_time");
-            members.values_mut().for_each(|member| *member = timeless(member.take()));
-        }
-        Value::Array(elements) => elements.iter_mut().for_each(|element| *element = timeless(element.take())),
-        _ => {}
-    }
-    document
-}
-
-/// The codes of the warnings of a reply.
-pub fn codes(reply: &Value) -> Vec<&str> {
-    let warnings = reply.get("warnings").and_then(Value::as_array).map_or(&[][..], Vec::as_slice);
-    warnings.iter().map(|warning| warning["code"].as_str().unwrap()).collect()
-}
-
 /// Asserts that a body is refused with a code, at a place, by a text with these words.
 pub async fn assert_refused(server: &Server, path: &str, body: &Value, (code, pointer, words): (&str, &str, &str)) {
     let text = body.to_string();
@@ -244,10 +206,6 @@ pub async fn assert_refused(server: &Server, path: &str, body: &Value, (code, po
     assert_eq!((refused.status, refused.code.as_str()), (422, code), "{shown}");
     assert_eq!(refused.errors[0].pointer, pointer, "{shown}");
     assert!(refused.errors[0].detail.contains(words), "{shown}");
-}
-
-pub fn number(value: &Value) -> f64 {
-    value.as_f64().unwrap_or_else(|| panic!("{value} is no number"))
 }
 
 /// The same as a typed request.

@@ -43,18 +43,3 @@ pub fn with_query(method: &str, path: &str) -> String {
         _ => path.to_owned(),
     }
 }
-
-/// All values of a document with their pointers, the document itself first; of an array those of its first two
-/// elements.
-pub fn nodes(value: &Value) -> Vec<(String, &Value)> {
-    let mut all = vec![(String::new(), value)];
-    let inner: Vec<(String, &Value)> = match value {
-        Value::Object(members) => members.iter().map(|(name, member)| (name.clone(), member)).collect(),
-        Value::Array(elements) => elements.iter().take(2).enumerate().map(|(at, one)| (at.to_string(), one)).collect(),
-        _ => Vec::new(),
-    };
-    for (name, inner) in inner {
-        all.extend(nodes(inner).into_iter().map(|(below, node)| (format!("/{name}{below}"), node)));
-    }
-    all
-}

@@ -326,7 +326,7 @@ async fn dashboard_a_file_of_a_bench_becomes_the_friction_that_is_shown_live() {
     let scene = begin("live").await;
     let browser = &scene.browser;
     let client = &scene.server.client;
-    // The rows of the file as a bench would send them, without what the rig gives way and the zero of the force.
+    // The rows of the file as a bench would send them, without the compliance of the rig and the zero of the force.
     let text = std::fs::read_to_string("examples/data/ball_loop.csv").unwrap();
     let number = |cell: &str| cell.replace(',', ".").parse::<f64>();
     let rows = text.lines().filter_map(|line| {

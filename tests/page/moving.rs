@@ -87,7 +87,7 @@ async fn a_typed_number_keeps_its_unit_and_is_shown_before_it_is_sent() {
     {
         browser.write(BOX, typed).await;
         browser.until(&format!("{NOTE} === 'Enter sends {typed} nm = {si} m.'")).await;
-        assert_eq!(scene.now().await.0, sequence - 1, "nothing is sent while one types");
+        assert_eq!(scene.now().await.0, sequence - 1, "nothing is sent while the user types");
         browser.press(BOX, ENTER).await;
         browser.says(".side", &format!("Displacement U {micro} µm")).await;
         let (made, state) = scene.now().await;

@@ -166,7 +166,7 @@ fn patient(ended: &Arc<AtomicBool>) -> impl Fn() -> bool + Clone + Send + Sync +
 }
 
 #[tokio::test]
-async fn long_work_of_some_gives_way_to_short_work_of_others_on_a_single_thread() {
+async fn long_work_of_some_yields_to_short_work_of_others_on_a_single_thread() {
     const LONG: Nanoseconds = 100_000_000_000;
     let pool = Pool::new(Capacity { threads: 1, ..Capacity::default() });
     let ended = Arc::default();

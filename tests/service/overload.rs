@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::time::Duration;
 
 use crate::common::raw::{PATIENCE, Service, get, post, room_for};
-use crate::common::{ball, create, long_moves, long_simulation};
+use crate::common::{ball, create, long_path, long_simulation};
 use futures::future::join_all;
 use serde_json::json;
 use stickslip::admission::Capacity;
@@ -32,10 +32,6 @@ async fn until(what: &str, condition: impl AsyncFn() -> bool) {
 /// Whether a request gets a 200.
 async fn served(service: &Service, source: &str, request: &str) -> bool {
     service.ask(source, request).await.is_some_and(|answer| answer.statuses == [200])
-}
-
-fn long_path() -> String {
-    json!({"path": long_moves(), "steps": "last"}).to_string()
 }
 
 fn sound_simulation() -> String {
@@ -222,7 +218,7 @@ async fn many_moves_of_one_contact_queue_up_to_a_bound() {
     let service = Service::start(&["--max-queue", "5", "--max-wait", "100ms", "--deadline", "20s", "--log", "off"]);
     let contact = service.client.create(&create(), &Options::default()).await.unwrap().id;
     let mut long = TcpStream::connect(service.address).await.unwrap();
-    long.write_all(post(&format!("/contacts/{contact}/path"), &long_path()).as_bytes()).await.unwrap();
+    long.write_all(post(&format!("/contacts/{contact}/path"), &long_path().to_string()).as_bytes()).await.unwrap();
     let look = get(&format!("/contacts/{contact}"));
     until("the contact is at work", async || !served(&service, FLOOD, &look).await).await;
     let step = post(&format!("/contacts/{contact}/move"), r#"{"displacement": 1e-8}"#);

@@ -305,8 +305,8 @@ async fn tls_is_used_and_verified_as_the_url_says() {
     let other = tempfile::NamedTempFile::new().unwrap();
     let full = format!("sslmode=verify-full&sslrootcert={}", certificate.display());
     // The server accepts no connection without TLS.
-    for good in ["sslmode=require", "sslmode=prefer", "", &full] {
-        open(good).await.unwrap_or_else(|error| panic!("{good}: {error}"));
+    for valid in ["sslmode=require", "sslmode=prefer", "", &full] {
+        open(valid).await.unwrap_or_else(|error| panic!("{valid}: {error}"));
     }
     assert!(open("sslmode=disable").await.unwrap_err().to_string().contains("no encryption"));
     // No authority has signed this certificate, and it is not for this host.

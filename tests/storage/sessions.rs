@@ -26,7 +26,7 @@ use uuid::Uuid;
 const NO_CACHE: usize = 0;
 
 /// Moves of all kinds, some of them curved, many small ones among them that leave a deep slip history.
-fn wandering(count: usize, seed: f64) -> Vec<Move> {
+fn varied_moves(count: usize, seed: f64) -> Vec<Move> {
     let turn = |index: usize| (seed + index as f64 * 2.399).sin();
     let step = |index: usize| match index % 97 {
         0 => Move { indentation: Some(4.7e-7 * (1.0 + 0.3 * turn(index))), ..Move::displacement(5e-8 * turn(index)) },
@@ -94,12 +94,12 @@ async fn a_session_opened_from_a_snapshot_is_the_same_to_the_last_bit() {
     let server = Server::with(store.clone(), NO_CACHE).await;
     let (client, options) = (&server.client, Options::default());
     let id = client.create(&create(), &options).await.unwrap().id;
-    client.path(id, &along(wandering(11_000, 0.0)), &options).await.unwrap();
+    client.path(id, &along(varied_moves(11_000, 0.0)), &options).await.unwrap();
     snapshot(&*store, id, 11_000).await;
     // Beyond the snapshot, straight and curved, each call from the store.
     let fork = client.fork(id, &ForkRequest::default(), &options).await.unwrap().id;
     for id in [id, fork] {
-        client.path(id, &along(wandering(200, 1.0)), &options).await.unwrap();
+        client.path(id, &along(varied_moves(200, 1.0)), &options).await.unwrap();
         let contact = replayed(&*store, id).await;
         let shown = client.contact(id).await.unwrap();
         assert_eq!((shown.sequence, bits(&shown.state)), (11_200, bits(&contact.state().into())));
@@ -115,7 +115,7 @@ async fn a_snapshot_is_read_where_it_is_sound_and_ignored_where_it_is_not() {
     let (client, options) = (&server.client, Options::default());
     let (one, other) =
         (client.create(&create(), &options).await.unwrap().id, client.create(&create(), &options).await.unwrap().id);
-    client.path(one, &along(wandering(10_000, 0.0)), &options).await.unwrap();
+    client.path(one, &along(varied_moves(10_000, 0.0)), &options).await.unwrap();
     // Too few moves for a snapshot of its own.
     let few = (0..500).map(|index| Move::displacement(2e-7 * f64::from(index).sin())).collect();
     client.path(other, &along(few), &options).await.unwrap();
@@ -149,7 +149,7 @@ async fn contacts_of_any_number_of_moves_are_opened_from_a_file_as_they_were() {
     for count in [0, 1, 2, 63, 64, 65, 200] {
         let id = client.create(&create(), &options).await.unwrap().id;
         if count > 0 {
-            client.path(id, &along(wandering(count, count as f64)), &options).await.unwrap();
+            client.path(id, &along(varied_moves(count, count as f64)), &options).await.unwrap();
         }
         let (shown, contact) = (client.contact(id).await.unwrap(), replayed(&*store, id).await);
         assert_eq!((shown.sequence, bits(&shown.state)), (count as u64, bits(&contact.state().into())));
@@ -186,10 +186,10 @@ async fn a_tiny_cache_under_load_stays_within_its_bytes_and_changes_no_result() 
         async move {
             for round in 0..6 {
                 let seed = (index * 7 + round) as f64;
-                for step in wandering(4, seed) {
+                for step in varied_moves(4, seed) {
                     client.apply(id, &step.into(), &options).await.unwrap();
                 }
-                client.path(id, &along(wandering(30, seed)), &options).await.unwrap();
+                client.path(id, &along(varied_moves(30, seed)), &options).await.unwrap();
                 client.contact(id).await.unwrap();
                 assert!(client.contact(Uuid::now_v7()).await.is_err());
                 assert!(sessions.held().0 <= budget);

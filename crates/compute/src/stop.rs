@@ -25,7 +25,7 @@ pub trait Stop: Send + Sync {
     fn flag(&self) -> &Flag;
 
     /// Lets other work go first where it shares the threads; returns how long that took.
-    fn give_way(&self) -> Duration {
+    fn yield_slot(&self) -> Duration {
         Duration::ZERO
     }
 
@@ -34,10 +34,10 @@ pub trait Stop: Send + Sync {
     /// # Errors
     /// [`Interrupted::Abandoned`] if nobody waits for it any more, [`Interrupted::TimeLimit`] if the time is up.
     fn check(&self) -> Result<(), Interrupted> {
-        self.check_after(self.give_way())
+        self.check_after(self.yield_slot())
     }
 
-    /// The same, when the work has just given way for so long.
+    /// The same, when the work has just yielded for so long.
     ///
     /// # Errors
     /// As [`Stop::check`].
@@ -53,7 +53,7 @@ pub struct Flag {
     allowed: Option<Duration>,
     // Set by the first check: the time that a request has waited for a thread does not count.
     started: OnceLock<Instant>,
-    // Nanoseconds for which the work has given way to others since, which do not count either.
+    // Nanoseconds for which the work has yielded to others since, which do not count either.
     waited: AtomicU64,
     // Nanoseconds of work for the same request under other flags that counts for the time limit.
     spent: AtomicU64,
@@ -98,7 +98,7 @@ impl Flag {
         Duration::from_nanos(self.before.load(Ordering::Relaxed))
     }
 
-    /// How long the work has given way to others.
+    /// How long the work has yielded to others.
     #[must_use]
     pub fn waited(&self) -> Duration {
         Duration::from_nanos(self.waited.load(Ordering::Relaxed))
@@ -133,8 +133,8 @@ impl<S: Stop + ?Sized> Stop for &S {
         (**self).flag()
     }
 
-    fn give_way(&self) -> Duration {
-        (**self).give_way()
+    fn yield_slot(&self) -> Duration {
+        (**self).yield_slot()
     }
 
     fn check_after(&self, waited: Duration) -> Result<(), Interrupted> {
@@ -162,8 +162,8 @@ impl<S: Stop> Stop for Part<S> {
         &self.flag
     }
 
-    fn give_way(&self) -> Duration {
-        self.whole.give_way()
+    fn yield_slot(&self) -> Duration {
+        self.whole.yield_slot()
     }
 
     fn check_after(&self, waited: Duration) -> Result<(), Interrupted> {

@@ -215,25 +215,25 @@ mod tests {
 
     #[test]
     fn a_contact_beyond_the_profile_is_told_where_that_ends() {
-        let said = |radius: f64| Error::BeyondProfile { radius, limit: 1.25e-4 }.to_string();
-        assert_eq!(said(2e-4), "a contact radius of 2e-4 m is not below 1.25e-4 m, where the profile ends");
+        let message = |radius: f64| Error::BeyondProfile { radius, limit: 1.25e-4 }.to_string();
+        assert_eq!(message(2e-4), "a contact radius of 2e-4 m is not below 1.25e-4 m, where the profile ends");
         // The radius that a load needs is sought up to the end alone.
-        assert_eq!(said(1.25e-4), "the contact would reach the radius 1.25e-4 m, where the profile ends");
+        assert_eq!(message(1.25e-4), "the contact would reach the radius 1.25e-4 m, where the profile ends");
     }
 
     #[test]
     fn a_force_that_friction_cannot_hold_is_told_the_largest_that_it_can() {
-        let said = |target: f64, limit: f64| Error::ForceExceedsFriction { target, limit, part: 0.5 }.to_string();
+        let message = |target: f64, limit: f64| Error::ForceExceedsFriction { target, limit, part: 0.5 }.to_string();
         assert_eq!(
-            said(2000.0, 3.0),
+            message(2000.0, 3.0),
             "friction holds no more than mu F_N = 3 N: the largest tangential force that this move can meet is just \
              below it, and 2 kN was asked for"
         );
         assert!(
-            said(-25.0, 0.012_345_678).contains("mu F_N = 12.3457 mN:")
-                && said(-25.0, 3.0).ends_with("-25 N was asked for")
+            message(-25.0, 0.012_345_678).contains("mu F_N = 12.3457 mN:")
+                && message(-25.0, 3.0).ends_with("-25 N was asked for")
         );
         // Where the load falls on the way, the target itself may be held.
-        assert!(said(2.82, 7.4).starts_with("friction holds no more than mu F_N = 7.4 N on the way, and 2.82 N"));
+        assert!(message(2.82, 7.4).starts_with("friction holds no more than mu F_N = 7.4 N on the way, and 2.82 N"));
     }
 }

@@ -110,6 +110,6 @@ fn an_unknown_scene_is_refused_by_name() {
     let folder = tempfile::tempdir().unwrap();
     let output = speed(&["--out", folder.path().to_str().unwrap(), "--scenes", "third_loading"]);
     assert!(!output.status.success());
-    let said = String::from_utf8_lossy(&output.stderr);
-    assert!(said.contains("third_loading") && said.contains("first_loading"), "{said}");
+    let message = String::from_utf8_lossy(&output.stderr);
+    assert!(message.contains("third_loading") && message.contains("first_loading"), "{message}");
 }

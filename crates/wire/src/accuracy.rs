@@ -80,13 +80,14 @@ pub struct AccuracyRow {
     /// number; `null` without an answer, or where it is infinite.
     pub force_error: Option<f64>,
     /// Largest difference of the shear stress at the end, over the radii, relative to `stress_unit`, a pure number;
-    /// `null` as for `force_error`.
+    /// `null` without an answer, or where it is infinite.
     pub stress_error: Option<f64>,
-    /// Error of the force as the solver estimates it, without a reference, relative to `force_unit`, a pure number;
-    /// `null` as for `force_error`.
+    /// Error of the force over all moves as the solver states it itself, relative to the friction limit μ F_N, a pure
+    /// number; `null` without an answer, or where it is infinite.
     pub estimated_force_error: Option<f64>,
-    /// Error of the stress as the solver estimates it, relative to `stress_unit`, a pure number: for radii some cells
-    /// away from kinks; `null` as for `force_error`.
+    /// Error of the stress at the end as the solver states it itself, relative to `stress_unit`, a pure number: the
+    /// largest over the contact, but for springs within some cells of a singular radius of the profile; `null` without
+    /// an answer, or where it is infinite.
     pub estimated_stress_error: Option<f64>,
     /// Time spent computing, s: the median of a few runs if one takes less than some milliseconds.
     pub compute_time: f64,

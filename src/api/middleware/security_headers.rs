@@ -90,7 +90,7 @@ pub fn cross_origin(origins: &[HeaderValue]) -> CorsLayer {
 /// An origin that pages may come from.
 ///
 /// # Errors
-/// What is expected, if the text is none.
+/// What is expected, if the text is not an origin.
 pub fn origin(text: &str) -> Result<HeaderValue, String> {
     let refused = || "expected an origin as browsers write it, such as https://lab.example:8443".to_owned();
     let uri: Uri = text.parse().map_err(|_| refused())?;
@@ -111,8 +111,8 @@ mod tests {
 
     #[test]
     fn an_origin_is_what_a_browser_sends() {
-        for good in ["https://lab.example", "http://localhost:3000", "http://[::1]:80"] {
-            assert_eq!(origin(good).unwrap(), good);
+        for valid in ["https://lab.example", "http://localhost:3000", "http://[::1]:80"] {
+            assert_eq!(origin(valid).unwrap(), valid);
         }
         for bad in [
             "",

@@ -118,12 +118,12 @@ impl FitFlags {
 
 /// What `NAME=VALUE` or `NAME=VALUE+-ERROR` says.
 fn known(text: &str) -> Result<(FitParameter, KnownValue), String> {
-    let said = || format!("`{text}` is not NAME=VALUE or NAME=VALUE+-STANDARD_ERROR");
-    let (name, rest) = text.split_once('=').ok_or_else(said)?;
+    let malformed = || format!("`{text}` is not NAME=VALUE or NAME=VALUE+-STANDARD_ERROR");
+    let (name, rest) = text.split_once('=').ok_or_else(malformed)?;
     let parameter = FitParameter::ALL.into_iter().find(|one| one.name() == name.trim());
     let parameter = parameter
         .ok_or_else(|| format!("`{name}` is none of {}", FitParameter::ALL.map(FitParameter::name).join(", ")))?;
-    let number = |text: &str| text.trim().parse::<f64>().map_err(|_| said());
+    let number = |text: &str| text.trim().parse::<f64>().map_err(|_| malformed());
     let (value, error) = rest.split_once("+-").map_or((rest, None), |(value, error)| (value, Some(error)));
     Ok((parameter, KnownValue { value: number(value)?, standard_error: error.map(number).transpose()? }))
 }
@@ -138,8 +138,10 @@ mod tests {
         assert_eq!(parameter, FitParameter::MachineCompliance);
         assert_eq!((value.value.to_bits(), value.standard_error), (5e-8_f64.to_bits(), Some(5e-9)));
         assert_eq!(known("friction=-1").unwrap().1.standard_error, None);
-        for (text, said) in [("friction", "is not NAME"), ("mu=1", "none of friction"), ("drift=1+-x", "is not NAME")] {
-            assert!(known(text).unwrap_err().contains(said), "{text}");
+        for (text, expected) in
+            [("friction", "is not NAME"), ("mu=1", "none of friction"), ("drift=1+-x", "is not NAME")]
+        {
+            assert!(known(text).unwrap_err().contains(expected), "{text}");
         }
     }
 }

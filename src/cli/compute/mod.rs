@@ -19,7 +19,7 @@ use stickslip_measured::import::{Dimension, UnitHint, UnknownUnit};
 use super::command_error::CommandError;
 use super::io::{json, parsed, print, read, say, write};
 use super::summary::summary;
-use stickslip_compute::computations::{About, Shown, compute, entries};
+use stickslip_compute::computations::{About, DisplayOptions, compute, entries};
 use stickslip_compute::formats::Format;
 use stickslip_compute::{Flag, Refusal};
 
@@ -195,7 +195,7 @@ impl Compute {
             let chosen = word(choice.name)?;
             choice.words.iter().copied().find(|known| known == chosen)
         });
-        let shown = Shown { format, choice, indented: true };
+        let shown = DisplayOptions { format, choice, indented: true };
         let reply = compute(about.name, &body.text, shown, &Flag::default());
         // A program that asked for JSON gets the problem document of a fault alone.
         if reply.is_ok() || !wants_json {

@@ -28,7 +28,8 @@ pub struct ProfileFlags {
     /// the one that is called so, or the first.
     #[arg(long, value_name = "COLUMN")]
     x: Option<String>,
-    /// The column of places along the other axis, by its number or its name in the header.
+    /// The column of places along the other axis, by its number or its name in the header; without it the one that
+    /// is called so.
     #[arg(long, value_name = "COLUMN")]
     y: Option<String>,
     /// The column of heights, by its number or its name in the header; without it the one that is called so, or the

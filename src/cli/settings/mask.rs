@@ -11,7 +11,7 @@ const HASH: &str = "sha256:";
 const PUBLIC_PARAMETERS: [&str; 6] =
     ["sslmode", "sslrootcert", "application_name", "connect_timeout", "target_session_attrs", "options"];
 
-/// A value without the passwords and keys in it. In doubt, a part is masked.
+/// A value without the passwords and keys in it. A part that may be either is masked.
 pub fn masked(value: &str) -> String {
     let masked = without_secrets(&without_parameters(&without_password(value)), KEY.0, KEY.1);
     let masked = without_secrets(&masked, HASH, 0);

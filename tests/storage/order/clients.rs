@@ -278,7 +278,7 @@ impl Recorder {
     }
 }
 
-/// A lost request whose key nobody has used again does the same without it, and there are fewer states to tell apart.
+/// A lost request whose key nobody has used again does the same without it, and there are fewer states to distinguish.
 fn forget_unused_keys(calls: &mut [Call]) {
     let mut uses: HashMap<String, usize> = HashMap::new();
     for key in calls.iter().filter_map(|call| call.request.key.clone()) {

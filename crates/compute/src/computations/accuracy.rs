@@ -216,11 +216,14 @@ fn answer<S: Solver>(start: impl Fn() -> Result<S, Failure>, task: &Task<'_>) ->
     loop {
         let run = Instant::now();
         let mut solver = start()?;
-        let mut forces = Vec::with_capacity(plan.length());
-        let push = |_, solver: &S| forces.push(solver.state().force);
-        follow(&mut solver, plan, task.protocol, *tolerance, task.stop, push)?;
+        let (mut forces, mut path_error) = (Vec::with_capacity(plan.length()), 0.0f64);
+        follow(&mut solver, plan, task.protocol, *tolerance, task.stop, |_, solver: &S| {
+            path_error = path_error.max(solver.path_error());
+            forces.push(solver.state().force);
+        })?;
         let shears = stresses(&solver, task.sampling, task.stop)?.shear.unwrap_or_default();
-        let estimate = solver.accuracy(&|| task.stop.check().is_ok());
+        let mut estimate = solver.accuracy(&|| task.stop.check().is_ok());
+        estimate.force_error += path_error - estimate.path_error;
         task.stop.check()?;
         times.push(run.elapsed().as_secs_f64());
         if times.len() == MAX_RUNS || begin.elapsed() >= REPEAT_UNTIL {

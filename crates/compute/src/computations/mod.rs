@@ -1,5 +1,5 @@
 //! Computations: each takes a document and gives a document, and stores nothing. A computation is one file here and one
-//! line of [`each`]; its route, its part of the OpenAPI document, its command and [`compute`] follow from them.
+//! line of [`for_each_computation`]; its route, its part of the OpenAPI document, its command and [`compute`] follow from them.
 //!
 //! [`OnContact`] is the same on a contact in its present state, and [`make_moves`] changes that state.
 
@@ -40,7 +40,7 @@ pub use simulate::state_columns;
 pub use stress::StressTask;
 
 /// Calls `visitor` with every computation.
-pub fn each(visitor: &mut impl Visitor) {
+pub fn for_each_computation(visitor: &mut impl Visitor) {
     visitor.visit::<simulate::Simulate>();
     visitor.visit::<accuracy::CompareSolvers>();
     visitor.visit_stored::<protocol::FindProtocol>();
@@ -82,7 +82,7 @@ pub trait Computation: Sized + 'static {
     ///
     /// # Errors
     /// The [`Fault`].
-    fn check_shown(_task: &Task<Self>, _shown: &Shown) -> Result<(), Fault> {
+    fn check_shown(_task: &Task<Self>, _shown: &DisplayOptions) -> Result<(), Fault> {
         Ok(())
     }
 
@@ -133,7 +133,7 @@ pub trait OnContact: Send + 'static {
     ///
     /// # Errors
     /// The [`Fault`].
-    fn check_shown(&self, _shown: &Shown) -> Result<(), Fault> {
+    fn check_shown(&self, _shown: &DisplayOptions) -> Result<(), Fault> {
         Ok(())
     }
 
@@ -161,12 +161,12 @@ pub trait Outcome: Send + Sized {
     }
 
     /// Its table, if it has one.
-    fn table(&self, _shown: &Shown) -> Option<Table<'_>> {
+    fn table(&self, _shown: &DisplayOptions) -> Option<Table<'_>> {
         None
     }
 
     /// Its picture, if it has one.
-    fn picture(&self, _shown: &Shown) -> Option<Drawing> {
+    fn picture(&self, _shown: &DisplayOptions) -> Option<Drawing> {
         None
     }
 }
@@ -279,7 +279,7 @@ fn line_contact() -> Value {
 
 /// How a result is shown.
 #[derive(Clone, Copy, Debug)]
-pub struct Shown {
+pub struct DisplayOptions {
     /// The format.
     pub format: Format,
     /// What a picture or a table shows, by one of the words of the [`Choice`].
@@ -288,11 +288,11 @@ pub struct Shown {
     pub indented: bool,
 }
 
-impl Shown {
+impl DisplayOptions {
     /// In a format.
     #[must_use]
-    pub fn in_format(format: Format) -> Shown {
-        Shown { format, choice: None, indented: false }
+    pub fn in_format(format: Format) -> DisplayOptions {
+        DisplayOptions { format, choice: None, indented: false }
     }
 
     /// Bytes that this takes beyond the columns of a table of so many rows of so many bytes.
@@ -322,7 +322,7 @@ impl Shown {
 /// Why a computation has no reply.
 #[derive(Debug, thiserror::Error)]
 pub enum ComputeError {
-    /// There is none of this name.
+    /// No computation has this name.
     #[error("there is no computation `{0}`")]
     Unknown(String),
     /// The request is invalid.
@@ -344,7 +344,7 @@ pub struct Entry {
     compute: Compute,
 }
 
-type Compute = fn(&[u8], Shown, &dyn Stop) -> Result<Vec<u8>, ComputeError>;
+type Compute = fn(&[u8], DisplayOptions, &dyn Stop) -> Result<Vec<u8>, ComputeError>;
 
 /// All computations.
 #[must_use]
@@ -356,7 +356,7 @@ pub fn entries() -> Vec<Entry> {
         }
     }
     let mut entries = Entries(Vec::new());
-    each(&mut entries);
+    for_each_computation(&mut entries);
     entries.0
 }
 
@@ -364,14 +364,14 @@ pub fn entries() -> Vec<Entry> {
 ///
 /// # Errors
 /// [`ComputeError`].
-pub fn compute(name: &str, body: &[u8], shown: Shown, stop: &dyn Stop) -> Result<Vec<u8>, ComputeError> {
+pub fn compute(name: &str, body: &[u8], shown: DisplayOptions, stop: &dyn Stop) -> Result<Vec<u8>, ComputeError> {
     let entry = entries().into_iter().find(|entry| entry.about.name == name);
     let entry = entry.ok_or_else(|| ComputeError::Unknown(name.to_owned()))?;
     (entry.compute)(body, shown, stop)
 }
 
 /// The reply of a computation to the JSON text of a request.
-fn compute_by<C: Computation>(body: &[u8], shown: Shown, stop: &dyn Stop) -> Result<Vec<u8>, ComputeError> {
+fn compute_by<C: Computation>(body: &[u8], shown: DisplayOptions, stop: &dyn Stop) -> Result<Vec<u8>, ComputeError> {
     let task = simulation::check(wire::parse::<C::Request>(body)?, &simulation::Anew(stop), stop)??;
     C::check_shown(&task, &shown).map_err(|fault| Rejection::Invalid(vec![fault]))?;
     Ok(shown.write(&C::run(task, stop)?, stop)??)

@@ -49,19 +49,24 @@ pub fn make_moves(
     let plan = plan.as_ref().unwrap_or(&advance.plan);
     let protocol = equal_peaks(plan, contact)?;
     let (before, error_before) = (contact.contact_radius(), contact.path_error());
-    let (mut largest, mut error) = (before, 0.0f64);
+    let (mut largest, mut error, mut path_error) = (before, 0.0f64, 0.0f64);
     let mut far = FarMove::from(contact);
     let begin = Instant::now();
     let followed = follow(contact, plan, protocol.as_ref(), tolerance, stop, |step, contact| {
         largest = largest.max(contact.contact_radius());
         error = error.max(contact.path_error() - error_before);
+        if advance.steps == Steps::All {
+            path_error = path_error.max(contact.path_error());
+        }
         far.reach(contact);
         each(step, contact.state().into());
     });
     followed.map_err(|failure| if advance.relax.is_some() { without_step(failure) } else { failure })?;
     let followed_in = begin.elapsed();
     let stress = advance.stress.as_ref().map(|sampling| stresses(contact, sampling, stop)).transpose()?;
-    let accuracy = accuracy(contact, timer, REASON);
+    let mut accuracy = accuracy(contact, timer, REASON);
+    // Gross slip erases the error of a curved path, but not that of the states before it.
+    accuracy.force_error += path_error.max(contact.path_error()) - contact.path_error();
     let excess = excess_error(error, tolerance, advance.plan.curved());
     let mut warnings = new_warnings(contact, before, largest, excess);
     warnings.extend(far.warning());

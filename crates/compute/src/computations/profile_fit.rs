@@ -12,7 +12,7 @@ use stickslip_wire::reply::finite;
 use stickslip_wire::{ContactDefinition, Profile, ProfileFitReply, ProfileFitRequest, Warning};
 
 use super::loop_fit::{Points, clamped};
-use super::{About, Computation, Example, Outcome, Route, Shown, example};
+use super::{About, Computation, DisplayOptions, Example, Outcome, Route, example};
 use crate::formats::{Column, Table};
 use crate::simulation::bytes::{ROW, WORKSPACE};
 use crate::simulation::{Failure, HUGE_TABLE_RADIUS, quantity};
@@ -130,7 +130,7 @@ impl Outcome for ProfileFitReply {
     }
 
     /// The points of a scan and of the profile that was fitted to it.
-    fn table(&self, _: &Shown) -> Option<Table<'_>> {
+    fn table(&self, _: &DisplayOptions) -> Option<Table<'_>> {
         let parts = [("fitted", &self.raw), ("left_out", &self.left_out), ("profile", &self.used)];
         let of = move |mut row: usize| {
             for (name, columns) in parts {
@@ -150,7 +150,7 @@ impl Outcome for ProfileFitReply {
     }
 
     /// A scan and the profile that was fitted to it, over the difference of both.
-    fn picture(&self, _: &Shown) -> Option<Drawing> {
+    fn picture(&self, _: &DisplayOptions) -> Option<Drawing> {
         let used = &self.used;
         let fitted = |radius: f64| {
             let above = used.radius.partition_point(|&r| r < radius).clamp(1, used.radius.len() - 1);

@@ -4,7 +4,7 @@ use stickslip_mechanics::{Contact, Profile};
 use stickslip_plot::{Axis, Colour, Curve, Drawing, Panel, Plot};
 use stickslip_wire::{Peak, Residual, Sampling};
 
-use super::{OnContact, Outcome, Shown};
+use super::{DisplayOptions, OnContact, Outcome};
 use crate::formats::{Column, Table};
 use crate::simulation::cost::Work;
 use crate::simulation::{self, Failure, bytes};
@@ -61,11 +61,11 @@ impl Outcome for Extrema {
         &self.reply
     }
 
-    fn table(&self, _: &Shown) -> Option<Table<'_>> {
+    fn table(&self, _: &DisplayOptions) -> Option<Table<'_>> {
         Some(table(&self.reply))
     }
 
-    fn picture(&self, _: &Shown) -> Option<Drawing> {
+    fn picture(&self, _: &DisplayOptions) -> Option<Drawing> {
         Some(Drawing::Plot(plot(self.title.clone(), &self.reply, self.between.clone())))
     }
 }

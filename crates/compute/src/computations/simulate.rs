@@ -7,8 +7,8 @@ use stickslip_wire::simulate::Simulation;
 use stickslip_wire::{ContactDefinition, Fault, Field, Sampling, SimulateReply, SimulateRequest, State, Stress};
 
 use super::{
-    About, Choice, Computation, Example, Outcome, Route, Shown, example, example_contact, line_contact, residual,
-    stress,
+    About, Choice, Computation, DisplayOptions, Example, Outcome, Route, example, example_contact, line_contact,
+    residual, stress,
 };
 use crate::formats::{Column, Table};
 use crate::simulation::bytes::{NUMBER_LENGTH, OBJECT, STATE_LENGTH, of_simulation};
@@ -82,7 +82,7 @@ impl Computation for Simulate {
         ]
     }
 
-    fn check_shown(task: &Simulation, shown: &Shown) -> Result<(), Fault> {
+    fn check_shown(task: &Simulation, shown: &DisplayOptions) -> Result<(), Fault> {
         let part = part(shown, task.residual, task.stress.is_some());
         let is_asked = match part {
             "residual" => task.residual,
@@ -128,7 +128,7 @@ impl Outcome for SimulateReply {
     }
 
     /// A row for each state, radius or extremum.
-    fn table(&self, shown: &Shown) -> Option<Table<'_>> {
+    fn table(&self, shown: &DisplayOptions) -> Option<Table<'_>> {
         match part(shown, self.residual.is_some(), self.stress.is_some()) {
             "residual" => self.residual.as_ref().map(residual::table),
             "stress" => self
@@ -146,7 +146,7 @@ impl Outcome for SimulateReply {
     }
 
     /// Force over displacement, the stresses over the radius, or the extrema.
-    fn picture(&self, shown: &Shown) -> Option<Drawing> {
+    fn picture(&self, shown: &DisplayOptions) -> Option<Drawing> {
         let plot = match part(shown, self.residual.is_some(), self.stress.is_some()) {
             "residual" => {
                 let between = self.stress.as_ref().map_or_else(Vec::new, |stress| points(stress, &stress.shear));
@@ -168,7 +168,7 @@ const SHOW: Choice = Choice {
 };
 
 /// What is asked for, in the order in which it is shown if the query names nothing.
-fn part(shown: &Shown, has_residual: bool, has_stress: bool) -> &'static str {
+fn part(shown: &DisplayOptions, has_residual: bool, has_stress: bool) -> &'static str {
     shown.choice.unwrap_or(match (has_residual, has_stress) {
         (true, _) => "residual",
         (false, true) => "stress",

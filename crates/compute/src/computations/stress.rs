@@ -4,7 +4,7 @@ use stickslip_mechanics::{Contact, Profile, Regime};
 use stickslip_plot::{Axis, Band, Colour, Curve, Drawing, Panel, Plot};
 use stickslip_wire::{Field, Sampling, StressReply};
 
-use super::{OnContact, Outcome, Shown};
+use super::{DisplayOptions, OnContact, Outcome};
 use crate::formats::{Column, Table};
 use crate::simulation::cost::Work;
 use crate::simulation::{self, Failure, bytes};
@@ -63,13 +63,13 @@ impl Outcome for Stresses {
         &self.reply
     }
 
-    fn table(&self, _: &Shown) -> Option<Table<'_>> {
+    fn table(&self, _: &DisplayOptions) -> Option<Table<'_>> {
         let StressReply { pressure, shear, slip, displacement, .. } = &self.reply;
         Some(table(place_column(&self.reply.radius, &self.reply.x), [pressure, shear, slip, displacement]))
     }
 
     /// Shear stress between the bounds of friction, with the regions that stuck and slipped in the last move.
-    fn picture(&self, _: &Shown) -> Option<Drawing> {
+    fn picture(&self, _: &DisplayOptions) -> Option<Drawing> {
         let Stresses { sequence, contact, reply } = self;
         let over = |values: &Option<Vec<Option<f64>>>, factor: f64| {
             let values = values.iter().flatten().map(|value| factor * value.unwrap_or(f64::NAN));

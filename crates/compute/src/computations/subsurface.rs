@@ -10,7 +10,7 @@ use stickslip_wire::simulate::Simulation;
 use stickslip_wire::subsurface::{Places, SubsurfaceTask};
 use stickslip_wire::{Accuracy, ContactDefinition, Fault, SimulateRequest, Steps, Subsurface, SubsurfaceReply};
 
-use super::{About, Computation, Example, OnContact, Outcome, Shown, example};
+use super::{About, Computation, DisplayOptions, Example, OnContact, Outcome, example};
 use crate::formats::{Column, Format, Table};
 use crate::simulation::{
     self, Failure, Timer, accuracy, bulk_warning, bytes, cost, needs_stress_field, present_warnings,
@@ -26,7 +26,7 @@ const NO_SECTION: &str =
 pub struct SubsurfaceOfPath;
 
 /// Stresses below the surface, and what was asked for.
-pub struct Below<R> {
+pub struct SubsurfaceTable<R> {
     reply: R,
     task: Option<SubsurfaceTask>,
 }
@@ -43,7 +43,7 @@ impl Computation for SubsurfaceOfPath {
     };
 
     type Request = SimulateRequest;
-    type Outcome = Below<Subsurface>;
+    type Outcome = SubsurfaceTable<Subsurface>;
 
     fn examples() -> Vec<Example> {
         vec![example(
@@ -61,7 +61,7 @@ impl Computation for SubsurfaceOfPath {
         )]
     }
 
-    fn check_shown(task: &Simulation, shown: &Shown) -> Result<(), Fault> {
+    fn check_shown(task: &Simulation, shown: &DisplayOptions) -> Result<(), Fault> {
         let at = |detail: &str| Fault::new("/subsurface", detail.to_owned());
         match &task.subsurface {
             None => Err(at("missing: it says where the stress is asked for")),
@@ -81,15 +81,15 @@ impl Computation for SubsurfaceOfPath {
         cost::of_simulation(task)
     }
 
-    fn run(mut task: Simulation, stop: &dyn Stop) -> Result<Below<Subsurface>, Failure> {
+    fn run(mut task: Simulation, stop: &dyn Stop) -> Result<SubsurfaceTable<Subsurface>, Failure> {
         (task.steps, task.stress, task.residual) = (Steps::Last, None, false);
         let reply = simulation::simulate(&task, stop)?.subsurface.unwrap_or_default();
-        Ok(Below { reply, task: task.subsurface })
+        Ok(SubsurfaceTable { reply, task: task.subsurface })
     }
 }
 
 impl OnContact for SubsurfaceTask {
-    type Outcome = Below<SubsurfaceReply>;
+    type Outcome = SubsurfaceTable<SubsurfaceReply>;
 
     fn bytes(&self) -> usize {
         bytes::of_subsurface(self)
@@ -99,7 +99,7 @@ impl OnContact for SubsurfaceTask {
         (self.places.count(), bytes::PLACE_ROW)
     }
 
-    fn check_shown(&self, shown: &Shown) -> Result<(), Fault> {
+    fn check_shown(&self, shown: &DisplayOptions) -> Result<(), Fault> {
         let at = |detail: &str| Fault::new("/fields", detail.to_owned());
         can_show(self, shown).map_err(at)
     }
@@ -108,36 +108,36 @@ impl OnContact for SubsurfaceTask {
         cost::of_subsurface(profile, self, depth)
     }
 
-    fn run(self, contact: Contact, _: u64, stop: &dyn Stop) -> Result<Below<SubsurfaceReply>, Failure> {
+    fn run(self, contact: Contact, _: u64, stop: &dyn Stop) -> Result<SubsurfaceTable<SubsurfaceReply>, Failure> {
         let timer = Timer::start(stop);
         needs_stress_field(&contact, "")?;
         let (stress, error) = simulation::subsurface(&contact, &self, stop)?;
         let accuracy = Accuracy { subsurface_error: Some(error), ..accuracy(&contact, timer, REASON) };
         let warnings = present_warnings(&contact).into_iter().chain(bulk_warning(self.bulk.is_some())).collect();
-        Ok(Below { reply: SubsurfaceReply { stress, accuracy, warnings }, task: Some(self) })
+        Ok(SubsurfaceTable { reply: SubsurfaceReply { stress, accuracy, warnings }, task: Some(self) })
     }
 }
 
 /// Refuses a picture of what has none.
-fn can_show(task: &SubsurfaceTask, shown: &Shown) -> Result<(), &'static str> {
+fn can_show(task: &SubsurfaceTask, shown: &DisplayOptions) -> Result<(), &'static str> {
     if shown.format.is_plot() && !task.is_section() { Err(NO_SECTION) } else { Ok(()) }
 }
 
-impl<R: AsRef<Subsurface> + Serialize + ToSchema + Send> Outcome for Below<R> {
+impl<R: AsRef<Subsurface> + Serialize + ToSchema + Send> Outcome for SubsurfaceTable<R> {
     type Reply = R;
 
     fn reply(&self) -> &R {
         &self.reply
     }
 
-    fn table(&self, _: &Shown) -> Option<Table<'_>> {
+    fn table(&self, _: &DisplayOptions) -> Option<Table<'_>> {
         let stress = self.reply.as_ref();
         let columns = stress.columns().into_iter().filter_map(|(name, values)| Some((name, "Pa", values?)));
         Some(column_table([&stress.x, &stress.y, &stress.z], columns))
     }
 
     /// One field below the surface over a plane.
-    fn picture(&self, _: &Shown) -> Option<Drawing> {
+    fn picture(&self, _: &DisplayOptions) -> Option<Drawing> {
         let (stress, task) = (self.reply.as_ref(), self.task.as_ref()?);
         let fields = [
             ("von Mises stress", &stress.von_mises),

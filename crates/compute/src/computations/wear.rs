@@ -12,7 +12,7 @@ use stickslip_wire::{
     WornShape,
 };
 
-use super::{About, Computation, Example, Outcome, Route, Shown, Task, example};
+use super::{About, Computation, DisplayOptions, Example, Outcome, Route, Task, example};
 use crate::formats::{Column, Table};
 use crate::simulation::bytes::{NUMBER, NUMBER_LENGTH, SERIES, of_shape};
 use crate::simulation::cost::{RADIUS_COST, on_profile};
@@ -179,7 +179,7 @@ impl Outcome for Worn {
         (6 * self.0.shape.radius.len() + 2 * table) * NUMBER_LENGTH + 4_096
     }
 
-    fn table(&self, _: &Shown) -> Option<Table<'_>> {
+    fn table(&self, _: &DisplayOptions) -> Option<Table<'_>> {
         let WearReply { shape, pressure, .. } = &self.0;
         let columns = vec![
             Column::floats("radius", "m", |row| shape.radius[row]),
@@ -192,7 +192,7 @@ impl Outcome for Worn {
     }
 
     /// The shape with the removed part filled, and the pressure.
-    fn picture(&self, _: &Shown) -> Option<Drawing> {
+    fn picture(&self, _: &DisplayOptions) -> Option<Drawing> {
         let WearReply { shape, pressure: pressures, .. } = &self.0;
         let radii = || shape.radius.iter().copied();
         let height = |values: &[f64]| -> Vec<(f64, f64)> { radii().zip(values.iter().copied()).collect() };

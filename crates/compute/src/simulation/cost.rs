@@ -39,9 +39,9 @@ const SPRING_COST: u64 = 3;
 
 /// One point of a table, while it is prepared.
 const TABLE_POINT_COST: u64 = 10_000;
-/// One point of a load curve, likewise.
+/// One point of a load curve, while it is prepared.
 const CURVE_POINT_COST: u64 = 3_000;
-/// One asperity, likewise.
+/// One asperity, while it is prepared.
 const ASPERITY_COST: u64 = 1_500;
 /// One point of a table in each part of a sum: whether the sum falls there, and its moments up to the next.
 const SUM_POINT_COST: u64 = 2_000;

@@ -9,7 +9,7 @@ use super::warnings::assumption;
 use crate::Stop;
 
 /// Measures the time spent computing for a request: with what its [`Stop`] has counted before, and without the time for
-/// which it has given way to others.
+/// which it has yielded to others.
 #[derive(Clone, Copy)]
 pub struct Timer<'a> {
     stop: &'a dyn Stop,

@@ -30,7 +30,7 @@ pub fn subsurface(contact: &Contact, task: &SubsurfaceTask, stop: &dyn Stop) -> 
     Ok((reply, field.error()))
 }
 
-/// Appends the values at a place to the columns of what is asked for; one that is not finite is none.
+/// Appends the values at a place to the columns of what is asked for; `None` for one that is not finite.
 fn push(reply: &mut Subsurface, task: &SubsurfaceTask, stress: Stress) {
     let put = |column: &mut Option<Vec<Option<f64>>>, value: f64| {
         let count = task.places.count();

@@ -13,7 +13,7 @@ pub struct ImportError {
     pub column: Option<usize>,
     /// What is wrong with it.
     pub fault: String,
-    /// The text that was taken for a unit and is none of what is needed, if that is the fault.
+    /// The text that was taken for a unit and is not a unit of the quantity needed, if that is the fault.
     pub unknown_unit: Option<String>,
 }
 

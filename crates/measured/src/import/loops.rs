@@ -60,7 +60,7 @@ pub struct LoopFile {
     pub load: Option<f64>,
     /// The unit of displacements; metres where neither the file nor a hint names one.
     pub displacement_unit: Length,
-    /// The unit of forces; newtons likewise.
+    /// The unit of forces; newtons where neither the file nor a hint names one.
     pub force_unit: Force,
     /// What was taken for what.
     pub preview: Preview,
@@ -85,14 +85,14 @@ pub fn read_loop(bytes: &[u8], hints: &LoopHints) -> Result<LoopFile, ImportErro
     numeric.extend(columns.time.filter(|time| !sheet.is_text[*time]));
     let mut found = sheet.numbers(&numeric)?;
     preview.written(&sheet, found.has_decimal_commas);
-    let said = |needed: Needed, column: usize, quantity: &str, unit: &ColumnUnit, hint: Option<&UnitHint>| {
+    let sentence = |needed: Needed, column: usize, quantity: &str, unit: &ColumnUnit, hint: Option<&UnitHint>| {
         needed.sentence(&sheet, column, &format!("The {quantity}"), unit, hint)
     };
     preview.take(columns.displacement, "displacement", &displacement);
     preview.take(columns.force, "force", &force);
     let hint = hints.displacement_unit.as_ref();
-    preview.reading.push(said(DISPLACEMENT, columns.displacement, "displacement", &displacement, hint));
-    preview.reading.push(said(FORCE, columns.force, "force", &force, hints.force_unit.as_ref()));
+    preview.reading.push(sentence(DISPLACEMENT, columns.displacement, "displacement", &displacement, hint));
+    preview.reading.push(sentence(FORCE, columns.force, "force", &force, hints.force_unit.as_ref()));
     let times = times(&sheet, &columns, hints, ticks, &numeric, &mut found.columns, &mut preview)?;
     let loads = columns.load.map_or_else(Vec::new, |_| std::mem::take(&mut found.columns[2]));
 
@@ -157,12 +157,12 @@ fn times(
     };
     let is_wanted = hints.time.is_some();
     let title = sheet.title(column);
-    let (times, unit, said) = if let Some(index) = numeric.iter().position(|one| *one == column) {
+    let (times, unit, sentence) = if let Some(index) = numeric.iter().position(|one| *one == column) {
         let unit = TIME.unit(sheet, column, hints.time_unit.as_ref())?;
         let times = std::mem::take(&mut found[index]);
         let times: Vec<_> = times.into_iter().map(|time| time.map(|time| unit.unit.to_si(time))).collect();
-        let said = TIME.sentence(sheet, column, "The time", &unit, hints.time_unit.as_ref());
-        (times, unit, said)
+        let sentence = TIME.sentence(sheet, column, "The time", &unit, hints.time_unit.as_ref());
+        (times, unit, sentence)
     } else {
         let Some(times) = clock::seconds(sheet.texts(column)) else {
             if is_wanted {
@@ -176,7 +176,7 @@ fn times(
     };
     if is_rising(&times) || is_wanted {
         preview.take(column, "time", &unit);
-        preview.reading.push(said);
+        preview.reading.push(sentence);
         return Ok(Some(times));
     }
     preview.leave_out(column, "times that do not rise");
@@ -204,13 +204,13 @@ fn load(
     }
     let mean = loads.iter().sum::<f64>() / loads.len() as f64;
     let is_constant = loads.iter().all(|one| (one - mean).abs() <= CONSTANT * mean.abs());
-    let said = match (is_constant, mean) {
+    let sentence = match (is_constant, mean) {
         (true, 0.0) => "not used, because it is zero",
         (true, ..0.0) => "it is negative throughout, so its amount is the load",
         (true, _) => "its mean is the load",
         (false, _) => "not used, because it is not constant",
     };
-    preview.reading.push(format!("{title} is the load, in {}: {said}.", unit.text));
+    preview.reading.push(format!("{title} is the load, in {}: {sentence}.", unit.text));
     let load = Some(unit.unit.to_si(mean.abs())).filter(|load| is_constant && *load > 0.0);
     match load {
         Some(_) => preview.take(column, "normal_force", &unit),
@@ -440,7 +440,7 @@ mod tests {
             assert_eq!((file.displacement_unit, file.force_unit), (Length::Micrometre, Force::Millinewton));
             assert!((file.load.unwrap() - 10.0).abs() < 1e-12, "{:?}", file.load);
             assert!(
-                file.preview.reading.iter().any(|said| said.contains("lacks a number and is a gap")),
+                file.preview.reading.iter().any(|sentence| sentence.contains("lacks a number and is a gap")),
                 "{:?}",
                 file.preview.reading
             );
@@ -496,12 +496,12 @@ mod tests {
 
     #[test]
     fn a_column_that_is_not_there_is_named_with_those_that_are() {
-        for (text, said) in [
+        for (text, sentence) in [
             ("a;b;c\n1;2;3\n", "there is no column `displacement` among 3 columns with a, b, c"),
             ("1;2;3\n", "no column `displacement` among 3 columns with no names"),
         ] {
             let error = read_loop(text.as_bytes(), &LoopHints::default()).unwrap_err().to_string();
-            assert!(error.contains(said), "{error}");
+            assert!(error.contains(sentence), "{error}");
         }
         assert_eq!(read_loop(b"1;2\n3;4\n", &LoopHints::default()).unwrap().force, [2.0, 4.0]);
     }

@@ -530,16 +530,16 @@ mod tests {
 
     #[test]
     fn what_is_no_table_is_refused_by_line_and_column() {
-        for (text, said) in [
+        for (text, expected) in [
             ("x,z\n1,2\n3,4,5\n", "line 3 has 3 columns, and the first 2"),
             ("1;2\n3;four\n", "line 2, column 2: `four` is not a number"),
             ("a header\n", "no rows"),
-            ("1\n2\n", "1 columns"),
+            ("1\n2\n", "a single column"),
             ("1,2\n,2\n", "line 2, column 1: a place is missing"),
             ("1 2 3 4\n5 6 7 8\n", "4 columns are a matrix of heights"),
         ] {
             let error = read_scan(text.as_bytes(), &ScanHints::default()).unwrap_err().to_string();
-            assert!(error.contains(said), "{text}: {error}");
+            assert!(error.contains(expected), "{text}: {error}");
         }
     }
 

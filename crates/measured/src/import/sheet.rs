@@ -15,7 +15,7 @@ const SAMPLE: usize = 400;
 /// Columns of a list with names; wider tables are matrices.
 const MOST_NAMED: usize = 1000;
 /// Why a single column is no scan and no loop.
-const ONE_COLUMN: &str = "1 columns: a scan has x and z or x, y and z, and a loop displacement and force";
+const ONE_COLUMN: &str = "a single column: a scan has x and z or x, y and z, and a loop displacement and force";
 
 /// A row: its line from 1 on, and its place in the text.
 #[derive(Clone, Copy)]

@@ -42,7 +42,7 @@ pub use parameter::Parameter;
 pub use result::{Curve, Estimate, Note, Residual, Runs};
 
 use loading_curve::LoadingCurve;
-use outcome::{Doubt, LeftOver, fitted_contact, left_over};
+use outcome::{LeftOver, Uncertainty, fitted_contact, left_over};
 use prepare::prepare;
 use record::Branches;
 use stickslip_mechanics::Contact;
@@ -57,7 +57,7 @@ pub const MOST_REFINED_TURNS: usize = 64;
 const FEW_TURNS: usize = 8;
 /// A residual of this share of the force is rounding.
 const ROUNDING: f64 = 1e-9;
-/// A residual of so many times the noise given is none.
+/// A residual beyond so many times the noise given is not noise.
 const MORE_THAN_NOISE: f64 = 3.0;
 /// A record with fewer of its points on sticking branches slides nearly always.
 const FEW_STICKING: f64 = 0.1;
@@ -202,19 +202,19 @@ pub fn fit(task: &Task, proceed: &dyn Fn() -> bool) -> Result<LoopFit, Error> {
     let compliance = Parameter::MachineCompliance;
     let compliance_unknown =
         !task.free.contains(&compliance) && !task.known.iter().any(|known| known.parameter == compliance);
-    let mut doubt = Doubt::new(task, &data, &fitted, &roundings, proceed)?;
+    let mut uncertainty = Uncertainty::new(task, &data, &fitted, &roundings, proceed)?;
     if compliance_unknown {
         // What a compliance that may be anything leaves open is open.
         let mut wider = prepare(task, true, drifts)?;
         let free = fit::fit(&mut wider, noise, proceed)?;
-        let own = std::mem::replace(&mut doubt, Doubt::new(task, &wider, &free, &roundings, proceed)?);
-        for (estimate, own) in doubt.estimates.iter_mut().zip(&own.estimates) {
+        let own = std::mem::replace(&mut uncertainty, Uncertainty::new(task, &wider, &free, &roundings, proceed)?);
+        for (estimate, own) in uncertainty.estimates.iter_mut().zip(&own.estimates) {
             let ([low, high], value) = (estimate.interval, own.value);
             let interval = [low.map(|low| low.min(value)), high.map(|high| high.max(value))];
             *estimate = Estimate { interval, value, at_bound: own.at_bound, ..*estimate };
         }
     }
-    let Doubt { estimates, correlations, identifiable } = doubt;
+    let Uncertainty { estimates, correlations, identifiable } = uncertainty;
     let bench = data.layout.bench(&fitted.values);
     let largest_noise = data.records.iter().map(|record| record.noise).fold(0.0, f64::max);
     let force = data.records.iter().map(|record| record.half_force).fold(0.0, f64::max);

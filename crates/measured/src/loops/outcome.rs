@@ -14,20 +14,20 @@ use super::{Curve, Error, Estimate, Parameter, Residual, Runs, Task};
 const TOO_FEW_RUNS: f64 = 4.0;
 
 /// How surely the values of a fit are known.
-pub(super) struct Doubt {
+pub(super) struct Uncertainty {
     pub(super) estimates: Vec<Estimate>,
     pub(super) correlations: Vec<Vec<Option<f64>>>,
     pub(super) identifiable: Vec<String>,
 }
 
-impl Doubt {
+impl Uncertainty {
     pub(super) fn new(
         task: &Task,
         data: &Data,
         fitted: &Fitted,
         roundings: &[Option<Rounding>],
         proceed: &dyn Fn() -> bool,
-    ) -> Result<Doubt, Error> {
+    ) -> Result<Uncertainty, Error> {
         let covariance = Covariance::new(data, fitted)?;
         let mut estimates = estimates(task, data, fitted, &covariance, proceed)?;
         let shifts = shifts(data, fitted, &covariance, roundings);
@@ -42,7 +42,7 @@ impl Doubt {
         let correlation = |a: &Estimate, b: &Estimate| covariance.correlation(column(a)?, column(b)?);
         let correlations = estimates.iter().map(|a| estimates.iter().map(|b| correlation(a, b)).collect()).collect();
         let identifiable = identifiable(data, fitted, &covariance, &estimates);
-        Ok(Doubt { estimates, correlations, identifiable })
+        Ok(Uncertainty { estimates, correlations, identifiable })
     }
 }
 

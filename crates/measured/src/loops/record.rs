@@ -11,7 +11,7 @@ use stickslip_mechanics::{Contact, range};
 const OUTLYING: f64 = 0.02;
 /// The largest friction coefficient that is believed.
 const MOST_FRICTION: f64 = 10.0;
-/// How far the measured stiffness may be from that of the definition before the units are doubted.
+/// How far the measured stiffness may be from that of the definition before the units are questioned.
 const MOST_STIFFNESS_RATIO: f64 = 200.0;
 /// Standard errors by which a loop that turns the wrong way is known.
 const SURELY: f64 = 5.0;

@@ -2,7 +2,7 @@
 
 use super::Parameter;
 
-/// A parameter, with what the data leave of doubt.
+/// A parameter with its uncertainty.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Estimate {
     /// Which.

@@ -1,4 +1,4 @@
-//! Heights that are none: values by which instruments mark a point that they have not measured.
+//! Missing heights: values by which instruments mark a point that they have not measured.
 
 /// Fill values, in the unit of the heights (ESRI's grids; the least and the largest 16-bit number).
 const FILL_VALUES: [f64; 3] = [-9999.0, -32768.0, 32767.0];

@@ -97,7 +97,7 @@ impl Scan {
 /// How a scan is fitted.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Options {
-    /// Which way up it is; `None` goes by its curvature.
+    /// Which way up it is; `None` derives it from its curvature.
     pub orientation: Option<Orientation>,
     /// The axis, m; `None` looks for it.
     pub centre: Option<[f64; 2]>,

@@ -115,7 +115,7 @@ impl Statistics {
             right[intervals + 1 + row] = self.column_heights[row];
         }
         let scale = (0..intervals).map(|index| matrix[(index, index)]).sum::<f64>() / intervals as f64;
-        // A curvature that wanders steps the farther, the wider its intervals are.
+        // A curvature that drifts differs the more between neighbours, the wider its intervals are.
         let distances: Vec<f64> = middles.windows(2).map(|pair| pair[1] - pair[0]).collect();
         let mean = distances.iter().sum::<f64>() / distances.len() as f64;
         let nearness: Vec<f64> = distances.iter().map(|distance| mean / distance).collect();

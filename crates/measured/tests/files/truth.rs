@@ -10,7 +10,7 @@ use super::writer::{CHARSETS, Charset, FORCES, LENGTHS, MISSING, Style, TIMES, o
 
 /// Rows of a table.
 const ROWS: usize = 24;
-/// Names of the quantities, the plainest first; and columns that are none of them, with a unit of theirs.
+/// Names of the quantities, the plainest first; and other columns, each with a unit.
 const DISPLACEMENT: &[&str] = &[
     "Displacement",
     "Linear Position",
@@ -103,28 +103,28 @@ fn a_loop_is_what_was_written_in_any_unit_encoding_order_and_separator() {
                 !rows[*row].iter().any(lacks)
             })
             .collect();
-        let said = || format!("{charset:?} {found:?}\n{text}");
-        assert_eq!(found.displacement.len(), kept.len(), "{}", said());
+        let context = || format!("{charset:?} {found:?}\n{text}");
+        assert_eq!(found.displacement.len(), kept.len(), "{}", context());
         let (u_factor, f_factor) = (found.displacement_unit.unit().to_si(1.0), found.force_unit.unit().to_si(1.0));
         for (index, row) in kept.iter().enumerate() {
-            assert!(is_near(found.displacement[index] * u_factor, displacement(*row)), "row {row}: {}", said());
-            assert!(is_near(found.force[index] * f_factor, tangential(*row)), "row {row}: {}", said());
+            assert!(is_near(found.displacement[index] * u_factor, displacement(*row)), "row {row}: {}", context());
+            assert!(is_near(found.force[index] * f_factor, tangential(*row)), "row {row}: {}", context());
             if let Some(times) = &found.time {
-                assert!(is_near(times[index], 0.25 * *row as f64), "row {row}: {}", said());
+                assert!(is_near(times[index], 0.25 * *row as f64), "row {row}: {}", context());
             }
         }
-        assert_eq!(found.time.is_some(), has_time, "{}", said());
-        assert_eq!(found.load.is_some(), has_load, "{}", said());
-        assert!(found.load.is_none_or(|load| is_near(load, 12.5)), "{}", said());
+        assert_eq!(found.time.is_some(), has_time, "{}", context());
+        assert_eq!(found.load.is_some(), has_load, "{}", context());
+        assert!(found.load.is_none_or(|load| is_near(load, 12.5)), "{}", context());
         // Every line is a row of the reply or is counted.
-        assert_eq!(kept.len() + found.preview.rows_left_out.len(), first - 1 + ROWS, "{}", said());
+        assert_eq!(kept.len() + found.preview.rows_left_out.len(), first - 1 + ROWS, "{}", context());
         let used = found.preview.columns.iter().filter(|column| column.quantity.is_some()).count();
         let reasons = found.preview.columns.iter().filter(|column| column.left_out.is_some()).count();
         assert_eq!(
             (used, used + reasons),
             (2 + usize::from(has_time) + usize::from(has_load), columns.len()),
             "{}",
-            said()
+            context()
         );
     });
 }
@@ -169,14 +169,14 @@ fn a_scan_is_what_was_written_in_any_unit_encoding_order_and_separator() {
         let charset = charset(random);
         let found = read_scan(&charset.encode(&text), &ScanHints::default());
         let found = found.unwrap_or_else(|error| panic!("{error}\n{charset:?}\n{text}"));
-        let said = || format!("{charset:?} {found:?}\n{text}");
-        let Places::Line { x, z } = &found.places else { panic!("{}", said()) };
-        assert_eq!((x.len(), found.preview.rows_left_out.len()), (ROWS, first - 1), "{}", said());
+        let context = || format!("{charset:?} {found:?}\n{text}");
+        let Places::Line { x, z } = &found.places else { panic!("{}", context()) };
+        assert_eq!((x.len(), found.preview.rows_left_out.len()), (ROWS, first - 1), "{}", context());
         let (x_factor, z_factor) = (found.lateral.unit().to_si(1.0), found.height.unit().to_si(1.0));
         for row in 0..ROWS {
-            assert!(is_near(x[row] * x_factor, place(row)), "row {row}: {}", said());
-            assert_eq!(z[row].is_none(), row == missing, "row {row}: {}", said());
-            assert!(z[row].is_none_or(|z| is_near(z * z_factor, height_of(row))), "row {row}: {}", said());
+            assert!(is_near(x[row] * x_factor, place(row)), "row {row}: {}", context());
+            assert_eq!(z[row].is_none(), row == missing, "row {row}: {}", context());
+            assert!(z[row].is_none_or(|z| is_near(z * z_factor, height_of(row))), "row {row}: {}", context());
         }
     });
 }

@@ -62,7 +62,7 @@ pub const TIMES: &[Spelling] = &[
     ("h", 3600.0),
     ("hours", 3600.0),
 ];
-/// Units of something else, and texts that are none.
+/// Units of another quantity, and texts that are not units.
 pub const NO_UNITS: &[&str] = &[
     "?m",
     "\u{fffd}m",

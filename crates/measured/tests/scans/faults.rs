@@ -1,4 +1,4 @@
-//! Scans that are none: each is refused by what is wrong with it, and nothing panics.
+//! Invalid scans: each is refused by what is wrong with it, and nothing panics.
 
 use proptest::prelude::*;
 use stickslip_measured::scan::{Error, Options, Orientation, Scan, ScanFit, Smoothing};

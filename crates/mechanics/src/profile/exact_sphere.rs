@@ -18,7 +18,7 @@ pub(super) static FAMILY: Family = Family {
     parameters: &[Parameter::new(
         "radius",
         "Radius R",
-        "Radius R, m; the contact radius stays below it.",
+        "Radius R, m; the contact radius stays below 0.9 of it.",
         range::LENGTH,
         0.01,
     )],

@@ -14,9 +14,11 @@ const NEAREST: f64 = 2.0;
 const FEW: f64 = 5.0;
 
 impl Springs {
-    /// The errors by the discretisation. The one of the stress is the largest over the contact, beside the kinks of the
-    /// displacement too, but for radii within some cells (of twice the largest contact radius over the number of
-    /// springs) of a singular radius of the profile.
+    /// The errors by the discretisation. The one of the force holds for all states so far: it is the largest, over the
+    /// largest friction limit among them, or that of the present state over its own limit, if that is more. The one of
+    /// the stress is the largest over the present contact, beside the kinks of the displacement too, but for radii
+    /// within some cells (of twice the largest contact radius over the number of springs) of a singular radius of the
+    /// profile.
     ///
     /// ```
     #[doc = include_str!("../example.txt")]
@@ -37,8 +39,7 @@ impl Springs {
     pub fn accuracy_while(&self, keep_going: &dyn Fn() -> bool) -> ErrorEstimate {
         let summary = self.exact.summary();
         let relative = |error: f64, unit: f64| f64::EPSILON + if unit > 0.0 { error / unit } else { 0.0 };
-        let normal = self.exact.friction * (self.normal_force() - summary.normal_force).abs();
-        let force = (self.force() - self.exact.force()).abs().max(normal);
+        let present = relative(self.force_error(self.force(), self.normal_force()), summary.gross_slip_force);
         let radii = self.compared_radii();
         let expected = self.exact.shears(&radii);
         let errors = radii.iter().zip(expected).take_while(|_| keep_going());
@@ -46,9 +47,21 @@ impl Springs {
         let stress = errors.filter(|error| error.is_finite()).fold(0.0, f64::max);
         ErrorEstimate {
             path_error: 0.0,
-            force_error: relative(force, summary.gross_slip_force),
+            force_error: present.max(relative(self.largest_force_error, self.largest_limit)),
             stress_error: relative(stress, self.exact.friction * summary.unit_pressure()),
         }
+    }
+
+    /// The error of the tangential force, N, or of the friction limit by that of the normal force, if that is more.
+    fn force_error(&self, force: f64, normal_force: f64) -> f64 {
+        let normal = self.exact.friction * (normal_force - self.exact.normal_force()).abs();
+        (force - self.exact.force()).abs().max(normal)
+    }
+
+    /// Takes the state with these forces, N, into the error of all states so far.
+    pub(super) fn note_error(&mut self, force: f64, normal_force: f64) {
+        self.largest_limit = self.largest_limit.max(self.exact.friction * self.exact.normal_force());
+        self.largest_force_error = self.largest_force_error.max(self.force_error(force, normal_force));
     }
 
     /// Radii over the contact, m, and beside its kinks, but for those near a singular radius.

@@ -38,6 +38,9 @@ pub struct Springs {
     dissipated: f64,
     slipped: bool,
     stick_radius: f64,
+    /// The largest friction limit, N, and the largest error of a force, N, of all states so far.
+    largest_limit: f64,
+    largest_force_error: f64,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -127,7 +130,7 @@ impl Springs {
             }
             springs.push(spring(index));
         }
-        Ok(Springs {
+        let mut springs = Springs {
             exact: contact.clone(),
             virgin: contact,
             spacing,
@@ -137,7 +140,11 @@ impl Springs {
             dissipated: 0.0,
             slipped: false,
             stick_radius: contact_radius,
-        })
+            largest_limit: 0.0,
+            largest_force_error: 0.0,
+        };
+        springs.note_error(springs.force(), springs.normal_force());
+        Ok(springs)
     }
 
     /// The exact contact that the foundation approximates, before its first move.
@@ -196,7 +203,7 @@ impl Springs {
         let scale = self.virgin.scale();
         let (dd, du) = (d1 - self.indentation, u1 - self.displacement);
         let stiffness = self.stiffness();
-        let mut work = 0.0;
+        let (mut work, mut carried, mut pressed) = (0.0, 0.0, 0.0);
         let mut stick_radius: f64 = 0.0;
         self.slipped = false;
         for spring in &mut self.springs {
@@ -229,12 +236,17 @@ impl Springs {
             } else {
                 stick_radius = stick_radius.max(spring.radius + 0.5 * self.spacing);
             }
+            if after > 0.0 {
+                carried += spring.weight * spring.carried;
+                pressed += spring.weight * after;
+            }
         }
         self.dissipated += work;
         self.indentation = d1;
         self.displacement = u1;
         let radius = self.contact_radius();
         self.stick_radius = if self.slipped { stick_radius.min(radius) } else { radius };
+        self.note_error(stiffness * carried, self.virgin.initial.e_star * self.spacing * pressed);
     }
 
     /// The displacement, m, that gives a tangential force, N: bisected, since the force only grows with it.

@@ -138,7 +138,7 @@ impl Mesh {
     }
 }
 
-/// Panels in the making, from the outer end inward.
+/// Panels while they are bisected, from the outer end inward.
 struct Resolution<'a> {
     profile: &'a Profile,
     /// Of the contact, m.

@@ -2,7 +2,7 @@
 
 Each profile is stated by its slope f'(r) and by a formula for g. The formula is first held against the definition
     g(x) = x int_0^{pi/2} f'(x sin q) dq,
-by quadrature, and the script stops if they differ; g' is the numerical derivative's check likewise. All else - the moments of
+by quadrature, and the script stops if they differ; g' is checked by the numerical derivative. All else - the moments of
 rings, the kernel, its slope, the lift, the load, the inverse - is quadrature, numerical differentiation or root finding on g,
 never a formula for that quantity. Writes profiles.csv: family;parameters;function;arguments;value.
 """

@@ -66,7 +66,7 @@ fn any_move(virgin: &Contact, random: &mut Random) -> (Move, f64) {
 }
 
 /// Makes moves; those that are refused change nothing.
-fn wander(contact: &mut Contact, virgin: &Contact, count: usize, random: &mut Random) {
+fn move_at_random(contact: &mut Contact, virgin: &Contact, count: usize, random: &mut Random) {
     for _ in 0..count {
         let (step, tolerance) = any_move(virgin, random);
         let _ = contact.apply_within(&step, tolerance);
@@ -126,15 +126,15 @@ fn what_is_read_back_is_the_same_to_the_last_bit_and_stays_so() {
     forall(300, (0..SHAPES, 0..60_usize, any::<u64>()), |(shape, count, seed)| {
         let (virgin, mut random) = (virgin(shape), Random(seed | 1));
         let mut contact = virgin.clone();
-        wander(&mut contact, &virgin, count, &mut random);
+        move_at_random(&mut contact, &virgin, count, &mut random);
         let bytes = contact.pack();
         assert_eq!(bytes.len(), contact.packed_length());
         let mut read = virgin.unpack(&bytes).expect("it was packed a moment ago");
         assert_eq!(digest_of(&read), digest_of(&contact));
         // And from there on, whichever of the two is moved.
         let mut twin = Random(random.0);
-        wander(&mut contact, &virgin, 20, &mut random);
-        wander(&mut read, &virgin, 20, &mut twin);
+        move_at_random(&mut contact, &virgin, 20, &mut random);
+        move_at_random(&mut read, &virgin, 20, &mut twin);
         assert_eq!(digest_of(&read), digest_of(&contact));
     });
 }
@@ -143,7 +143,7 @@ fn what_is_read_back_is_the_same_to_the_last_bit_and_stays_so() {
 fn the_stack_that_is_read_back_takes_no_more_room_than_it_needs() {
     let (virgin, mut random) = (virgin(0), Random(7));
     let mut contact = virgin.clone();
-    wander(&mut contact, &virgin, 3_000, &mut random);
+    move_at_random(&mut contact, &virgin, 3_000, &mut random);
     let read = virgin.unpack(&contact.pack()).unwrap();
     assert!(read.memory_bytes() <= contact.memory_bytes());
 }
@@ -152,7 +152,7 @@ fn the_stack_that_is_read_back_takes_no_more_room_than_it_needs() {
 fn bytes_that_are_cut_short_or_drawn_out_are_not_read() {
     let (virgin, mut random) = (virgin(0), Random(11));
     let mut contact = virgin.clone();
-    wander(&mut contact, &virgin, 40, &mut random);
+    move_at_random(&mut contact, &virgin, 40, &mut random);
     let bytes = contact.pack();
     for length in 0..bytes.len() {
         let piece_by_piece = virgin.unpack(&bytes[..length]);
@@ -176,7 +176,7 @@ fn any_bytes_at_all_are_refused_or_read_without_a_panic() {
     });
     // One wrong byte in what is otherwise sound.
     let mut contact = virgin.clone();
-    wander(&mut contact, &virgin, 30, &mut Random(3));
+    move_at_random(&mut contact, &virgin, 30, &mut Random(3));
     let bytes = contact.pack();
     forall(2_000, (0..bytes.len(), any::<u8>()), |(place, value)| {
         let mut bytes = bytes.clone();

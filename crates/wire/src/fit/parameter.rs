@@ -69,8 +69,8 @@ parameters! {
         "Compliance of the machine in series with the contact, m/N.";
     DisplacementOffset displacement_offset "displacement_offset" range::DISPLACEMENT,
         "Measured displacement at which the contact is not displaced, m.";
-    ForceOffset force_offset "force_offset" range::FORCE, "Measured force at which there is none, N.";
-    Drift drift "drift" DRIFT, "How fast the zero of the displacement wanders, m/s.";
+    ForceOffset force_offset "force_offset" range::FORCE, "Measured force at zero force on the contact, N.";
+    Drift drift "drift" DRIFT, "Drift rate of the zero of the displacement, m/s.";
 }
 
 requests! {

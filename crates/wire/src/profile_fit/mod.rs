@@ -32,7 +32,7 @@ pub struct ProfileFitRequest {
     pub scan: ScanData,
     /// The units of the scan: metres if it is left out. Everything else is in SI units.
     pub units: Option<ScanUnits>,
-    /// Which way up the scan is; `auto` decides by the curvature of the surface.
+    /// Which way up the scan is; `auto` derives it from the curvature of the surface.
     #[schema(default = "auto")]
     pub orientation: Option<ScanOrientation>,
     /// Where the axis of the body is, m; `auto` looks for it.

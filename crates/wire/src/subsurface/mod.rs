@@ -124,7 +124,7 @@ pub struct SubsurfaceReply {
 }
 
 impl Subsurface {
-    /// The columns of values, all in Pa, with their names; those that are not asked for are none.
+    /// The columns of values, all in Pa, with their names; only those that are asked for have values.
     #[must_use]
     pub fn columns(&self) -> [(&'static str, Option<&[Option<f64>]>); 12] {
         [

@@ -11,7 +11,7 @@ use stickslip_plot::{Axis, Colour, Curve, Drawing, Panel, Plot};
 use stickslip_wire::cycle::CycleTask;
 use stickslip_wire::{ContactDefinition, CycleReply, CycleRequest, Harmonic, SteadyCycle};
 
-use super::{About, Computation, Example, OnContact, Outcome, Route, Shown, Task, example};
+use super::{About, Computation, DisplayOptions, Example, OnContact, Outcome, Route, Task, example};
 use crate::formats::{Column, Table};
 use crate::simulation::bytes::{NUMBER, NUMBER_LENGTH, OBJECT, ROW, STATE_LENGTH, of_shape};
 use crate::simulation::cost::{RADIUS_COST, on_profile};
@@ -165,7 +165,7 @@ impl Outcome for SteadyCycles {
     }
 
     /// A row for each amplitude, under each load of a map.
-    fn table(&self, _: &Shown) -> Option<Table<'_>> {
+    fn table(&self, _: &DisplayOptions) -> Option<Table<'_>> {
         let (cycles, task) = (&self.reply.cycles, &self.task);
         let column = |name, unit, of: fn(&SteadyCycle) -> f64| Column::floats(name, unit, move |row| of(&cycles[row]));
         let mut columns = Vec::new();
@@ -200,7 +200,7 @@ impl Outcome for SteadyCycles {
         Some(Table::flat(cycles.len(), columns))
     }
 
-    fn picture(&self, _: &Shown) -> Option<Drawing> {
+    fn picture(&self, _: &DisplayOptions) -> Option<Drawing> {
         Some(Drawing::Plot(plot(&self.contact, &self.reply.cycles, &self.task)))
     }
 }

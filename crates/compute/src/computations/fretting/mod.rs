@@ -15,7 +15,7 @@ use stickslip_wire::fretting::FrettingTask;
 use stickslip_wire::{ContactDefinition, Fault, FrettingReply, FrettingRequest};
 
 use super::subsurface::column_table;
-use super::{About, Choice, Computation, Example, Outcome, Route, Shown, Task, example};
+use super::{About, Choice, Computation, DisplayOptions, Example, Outcome, Route, Task, example};
 use crate::formats::Table;
 use crate::simulation::Failure;
 use crate::simulation::bytes::{NUMBER, NUMBER_LENGTH, PLACE_ROW, of_shape};
@@ -120,7 +120,7 @@ impl Computation for Fretting {
         ]
     }
 
-    fn check_shown((.., task): &Task<Self>, shown: &Shown) -> Result<(), Fault> {
+    fn check_shown((.., task): &Task<Self>, shown: &DisplayOptions) -> Result<(), Fault> {
         picture::criterion(task, shown).map(drop)
     }
 
@@ -188,7 +188,7 @@ impl Outcome for Rated {
         &self.reply
     }
 
-    fn table(&self, _: &Shown) -> Option<Table<'_>> {
+    fn table(&self, _: &DisplayOptions) -> Option<Table<'_>> {
         let FrettingReply { x, y, z, .. } = &self.reply;
         let ratings = self.reply.ratings().flat_map(|(name, unit, rating)| {
             let cycles = rating.cycles.iter().map(move |cycles| (format!("{name}_cycles"), "1", &cycles[..]));
@@ -197,7 +197,7 @@ impl Outcome for Rated {
         Some(column_table([x, y, z], ratings))
     }
 
-    fn picture(&self, shown: &Shown) -> Option<Drawing> {
+    fn picture(&self, shown: &DisplayOptions) -> Option<Drawing> {
         let criterion = picture::criterion(&self.task, shown).ok()??;
         Some(picture::plot(&self.reply, &self.task, criterion))
     }

@@ -5,7 +5,7 @@ use stickslip_wire::fretting::{CRITERIA, FrettingTask};
 use stickslip_wire::subsurface::{Places, SubsurfaceLine};
 use stickslip_wire::{BodyName, Fault, FrettingReply, Largest};
 
-use crate::computations::Shown;
+use crate::computations::DisplayOptions;
 use crate::computations::subsurface::{COORDINATES, over_plane, shown_axes};
 
 /// The criteria by their names in the reply, in its order.
@@ -30,7 +30,7 @@ const NO_PICTURE: &str = "places without an order have no picture: ask for a `pl
 ///
 /// # Errors
 /// The [`Fault`] of one that is not asked for, for several without a name, and for places that have no picture.
-pub fn criterion(task: &FrettingTask, shown: &Shown) -> Result<Option<&'static str>, Fault> {
+pub fn criterion(task: &FrettingTask, shown: &DisplayOptions) -> Result<Option<&'static str>, Fault> {
     let is_plot = shown.format.is_plot();
     let asked = NAMES.into_iter().zip(task.measures).filter_map(|(name, asked)| asked.map(|_| name));
     let asked: Vec<&'static str> = asked.collect();

@@ -8,7 +8,7 @@ use stickslip_plot::{Axis, Colour, Curve, Drawing, Panel, Plot, in_unit};
 use stickslip_wire::fit::{FitTask, FittedLoop};
 use stickslip_wire::{FitReply, FitRequest};
 
-use super::{About, Computation, Example, Outcome, Route, Shown, example};
+use super::{About, Computation, DisplayOptions, Example, Outcome, Route, example};
 use crate::formats::{Column, Table};
 use crate::simulation::Failure;
 use crate::simulation::bytes::{ROW, WORKSPACE, of_shape};
@@ -87,7 +87,7 @@ impl Outcome for FitReply {
     }
 
     /// The points of measured loops, with what was fitted to them.
-    fn table(&self, _: &Shown) -> Option<Table<'_>> {
+    fn table(&self, _: &DisplayOptions) -> Option<Table<'_>> {
         let at = |mut row: usize| {
             let mut loops = self.curve.iter().enumerate();
             loops.find_map(|(index, curve)| match row.checked_sub(curve.force.len()) {
@@ -113,7 +113,7 @@ impl Outcome for FitReply {
     }
 
     /// Measured loops and what was fitted to them, over the difference of both.
-    fn picture(&self, _: &Shown) -> Option<Drawing> {
+    fn picture(&self, _: &DisplayOptions) -> Option<Drawing> {
         // Loops are not joined with each other.
         let over = |of: OfPoint| -> Points {
             let of_loop = |curve: &FittedLoop| -> Points {

@@ -9,7 +9,7 @@ use stickslip_wire::{
     Subsurface,
 };
 
-use super::{Refusal, run};
+use super::{Unanswered, run};
 
 /// The allowed error of forces beyond their estimate, relative to mu F_N.
 const FORCE: f64 = 1e-10;
@@ -322,7 +322,7 @@ fn repeat_last_move(request: &SimulateRequest, reply: &SimulateReply) {
     let longer = match run(&request) {
         Ok(longer) => longer,
         // In gross slip a force is at its limit to round-off, on either side of it.
-        Err(Refusal::Failed(Failure { cause: Cause::Refused(Error::ForceExceedsFriction { .. }), .. }))
+        Err(Unanswered::Failed(Failure { cause: Cause::Refused(Error::ForceExceedsFriction { .. }), .. }))
             if last.relative && last.force.is_some() =>
         {
             return;

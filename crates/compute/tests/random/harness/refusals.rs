@@ -1,15 +1,15 @@
 //! Laws of refusals: every one is a problem that names its kind and the place.
 
 use serde_json::Value;
-use stickslip::api::Problem;
-use stickslip::api::problem::Code;
+use stickslip_compute::Refusal;
+use stickslip_wire::Code;
 
 /// # Panics
 /// If the refusal of `body` violates the API contract.
-pub fn check(body: &[u8], problem: Problem) {
-    let code = problem.code();
-    assert!(!matches!(code, Code::Internal | Code::Overloaded), "{problem:?}");
-    let document = problem.document("fuzz", false);
+pub fn check(body: &[u8], refusal: Refusal) {
+    let code = refusal.code;
+    assert!(!matches!(code, Code::Internal | Code::Overloaded), "{refusal:?}");
+    let document = refusal.document("fuzz");
     assert!((400..500).contains(&document.status), "{document:?}");
     assert!(!document.detail.is_empty() && !document.detail.contains("NaN"), "{document:?}");
     let parsed = serde_json::from_slice::<Value>(body);

@@ -1,56 +1,45 @@
-//! Random bodies of `POST /simulate`, `POST /cycle`, `POST /fretting`, `POST /fit`
-//! and `POST /files`: each is answered with a reply
-//! that obeys the laws, or refused with the place of the fault. None panics.
+//! Random documents of simulations, cycles, fretting and fits, and random files of instruments: each has a reply that
+//! obeys the laws, or is refused with the place of the fault. None panics.
 //!
 //! The number of cases is fixed, and case n is the same on every run and every machine. `STICKSLIP_LONG=1`, which
 //! `./check long` sets, asks for many more, `STICKSLIP_FUZZ_CASES` for another number of each kind, and
 //! `STICKSLIP_FUZZ_SEED` for other cases. `fuzz/` runs the same checks under a coverage-guided fuzzer.
 
+mod answered;
+mod cases;
+mod cycle_laws;
+mod cycle_requests;
+mod damage;
+mod depth_requests;
+mod fit_laws;
+mod fretting_laws;
+mod harness;
+mod requests;
+
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-use crate::cycle_laws;
-use crate::cycle_requests::RandomCycle;
-use crate::depth_requests::RandomFretting;
-use crate::fit_laws::{self, RandomFit};
-use crate::fretting_laws;
-use crate::harness::{Outcome, examine};
-use proptest::strategy::{Strategy, ValueTree as _};
-use proptest::test_runner::{Config, RngAlgorithm, TestCaseError, TestError, TestRng, TestRunner};
+use proptest::prelude::*;
+use proptest::sample::select;
+use proptest::strategy::ValueTree as _;
+use proptest::test_runner::{TestCaseError, TestError};
 use stickslip_compute::computations::files;
 use stickslip_measured::import::{LoopHints, ScanHints};
 use stickslip_wire::LoopFileReply;
 use stickslip_wire::fit::MeasuredLoop;
 
+use cases::{case_count, runner, seed};
+use cycle_requests::RandomCycle;
+use damage::{WORDS, damage};
+use depth_requests::RandomFretting;
+use fit_laws::RandomFit;
+use harness::{Outcome, examine};
+use requests::random_request;
+
 /// A case that takes longer is printed.
 const NOTABLE: Duration = Duration::from_secs(2);
 /// A case that takes longer is taken for an endless loop.
 const HANGING: Duration = Duration::from_secs(600);
-
-/// The number of cases to run, of the usual and the long run, unless the environment asks for another.
-pub fn case_count([usual, long]: [u64; 2]) -> u64 {
-    let is_long = from_environment("STICKSLIP_LONG").is_some_and(|flag| flag > 0);
-    from_environment("STICKSLIP_FUZZ_CASES").unwrap_or(if is_long { long } else { usual })
-}
-
-/// What all random numbers derive from.
-pub fn seed() -> u64 {
-    from_environment("STICKSLIP_FUZZ_SEED").unwrap_or(0)
-}
-
-fn from_environment(name: &str) -> Option<u64> {
-    let text = std::env::var(name).ok()?;
-    Some(text.parse().unwrap_or_else(|error| panic!("{name}={text}: {error}")))
-}
-
-/// What makes the values of a case.
-pub fn runner(seed: u64, case: u64) -> TestRunner {
-    let mut bytes = [0; 32];
-    bytes[..8].copy_from_slice(&seed.to_le_bytes());
-    bytes[8..16].copy_from_slice(&case.to_le_bytes());
-    let config = Config { failure_persistence: None, max_shrink_iters: 2000, ..Config::default() };
-    TestRunner::new_with_rng(config, TestRng::from_seed(RngAlgorithm::ChaCha, &bytes))
-}
 
 /// The body under examination, and since when.
 type Running = Arc<Mutex<Option<(Instant, Vec<u8>)>>>;
@@ -117,9 +106,31 @@ fn fuzz<S: Strategy>(
     assert!(cases > 0);
 }
 
+/// The text of a request with one to three damages.
+pub fn damaged() -> impl Strategy<Value = Vec<u8>> {
+    (random_request(), prop::collection::vec(damage(), 1..4)).prop_map(|(request, damages)| {
+        let text = request.to_json().to_string().into_bytes();
+        damages.iter().fold(text, |text, damage| damage.apply(text))
+    })
+}
+
+/// Random bytes, and words of JSON in random order.
+pub fn raw() -> impl Strategy<Value = Vec<u8>> {
+    const NAMES: &str = r#"
+        { } [ ] : , "contact" "profile" "type" "sphere" "radius" "material" "effective" "friction" "preload"
+        "path" "moves" "stress" "sum" "parts" "tabulated" "r" "z" "force"
+    "#;
+    let among = |words: &'static str| select(words.split_whitespace().collect::<Vec<_>>());
+    let soup = prop_oneof![3 => among(NAMES), 1 => among(WORDS)];
+    prop_oneof![
+        prop::collection::vec(any::<u8>(), 0..200),
+        prop::collection::vec(soup, 0..60).prop_map(|words| words.concat().into_bytes()),
+    ]
+}
+
 #[test]
 fn bodies_that_once_broke_a_law() {
-    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/harness/regressions");
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/random/regressions");
     let files: Vec<_> = std::fs::read_dir(folder).unwrap().map(|file| file.unwrap().path()).collect();
     assert!(!files.is_empty());
     for file in files {
@@ -130,29 +141,29 @@ fn bodies_that_once_broke_a_law() {
 
 #[test]
 fn raw_bytes() {
-    fuzz([150_000, 1_200_000], crate::damage::raw(), Clone::clone, examine);
+    fuzz([150_000, 1_200_000], raw(), Clone::clone, examine);
 }
 
 #[test]
 fn damaged_requests() {
-    fuzz([10_000, 35_000], crate::damage::damaged(), Clone::clone, examine);
+    fuzz([10_000, 35_000], damaged(), Clone::clone, examine);
 }
 
 #[test]
 fn sound_requests() {
-    fuzz([3_000, 9_500], crate::requests::random_request(), |it| it.to_json().to_string().into_bytes(), examine);
+    fuzz([3_000, 9_500], random_request(), |it| it.to_json().to_string().into_bytes(), examine);
 }
 
 #[test]
 fn cycles() {
     let write = |request: &RandomCycle| request.to_json().to_string().into_bytes();
-    fuzz([400, 1_000], crate::cycle_requests::random_cycle(), write, cycle_laws::examine);
+    fuzz([400, 1_000], cycle_requests::random_cycle(), write, cycle_laws::examine);
 }
 
 #[test]
 fn fretting() {
     let write = |request: &RandomFretting| request.to_json().to_string().into_bytes();
-    fuzz([150, 800], crate::depth_requests::random_fretting(), write, fretting_laws::examine);
+    fuzz([150, 800], depth_requests::random_fretting(), write, fretting_laws::examine);
 }
 
 /// A file of words that instruments write, and of others.
@@ -182,7 +193,7 @@ fn files_of_instruments() {
         if scan.is_ok() || found.is_ok() { Outcome::Answered } else { Outcome::Refused }
     };
     fuzz([20_000, 200_000], random_file(), Clone::clone, examine);
-    fuzz([20_000, 200_000], crate::damage::raw(), Clone::clone, examine);
+    fuzz([20_000, 200_000], raw(), Clone::clone, examine);
 }
 
 #[test]

@@ -4,7 +4,8 @@
 use serde_json::{Value, json};
 use stickslip_wire::AccuracyReply;
 
-use crate::common::{Server, assert_refused, ball, good, of, with};
+use crate::json::{ball, of, with};
+use crate::{assert_refused, good, post};
 
 const INDENTATION: f64 = 1e-6;
 /// Displacement of gross slip, m.
@@ -23,13 +24,12 @@ fn springs(count: usize) -> Value {
     json!({"springs": {"count": count}})
 }
 
-async fn compared(server: &Server, body: &Value) -> AccuracyReply {
-    server.client.accuracy(&serde_json::from_value(body.clone()).unwrap()).await.unwrap()
+fn compared(body: &Value) -> AccuracyReply {
+    serde_json::from_value(good(post("/accuracy", body))).unwrap()
 }
 
-#[tokio::test]
-async fn the_rows_are_what_simulations_with_each_solver_differ_by() {
-    let server = Server::start().await;
+#[test]
+fn the_rows_are_what_simulations_with_each_solver_differ_by() {
     let edge = (0.01 * INDENTATION).sqrt();
     let radii: Vec<f64> = (0..40).map(|i| edge * (f64::from(i) + 0.3) / 41.0).collect();
     let path = json!({"moves": [
@@ -38,20 +38,20 @@ async fn the_rows_are_what_simulations_with_each_solver_differ_by() {
     ]});
     let solvers = json!([springs(17), "exact", springs(300)]);
     let base = json!({"path": path, "stress": {"radii": radii, "fields": ["pressure", "shear"]}});
-    let reply = compared(&server, &with(of(&parabola(), &base), "/solvers", solvers.clone())).await;
-    let simulated = async |solver: &Value| -> (Vec<f64>, Vec<f64>, Value) {
-        let reply = server.post("/simulate", &with(of(&parabola(), &base), "/solver", solver.clone())).await;
-        let reply = good(reply).await;
+    let reply = compared(&with(of(&parabola(), &base), "/solvers", solvers.clone()));
+    let simulated = |solver: &Value| -> (Vec<f64>, Vec<f64>, Value) {
+        let reply = post("/simulate", &with(of(&parabola(), &base), "/solver", solver.clone()));
+        let reply = good(reply);
         let forces = reply["steps"].as_array().unwrap().iter().map(|step| step["force"].as_f64().unwrap()).collect();
         let shears = reply["stress"]["shear"].as_array().unwrap().iter().map(|shear| shear.as_f64().unwrap()).collect();
         (forces, shears, reply["accuracy"].clone())
     };
-    let truth = simulated(&json!("exact")).await;
+    let truth = simulated(&json!("exact"));
     let most = |found: &[f64], truth: &[f64]| {
         found.iter().zip(truth).map(|(found, truth)| (found - truth).abs()).fold(0.0, f64::max)
     };
     for (row, solver) in reply.rows.iter().zip(solvers.as_array().unwrap()) {
-        let (forces, shears, accuracy) = simulated(solver).await;
+        let (forces, shears, accuracy) = simulated(solver);
         assert_eq!(&json!(row.solver), solver);
         let close = |found: Option<f64>, expected: f64| (found.unwrap() - expected).abs() <= 1e-14 * expected;
         assert!(close(row.force_error, most(&forces, &truth.0) / reply.reference.force_unit), "{row:?}");
@@ -61,21 +61,20 @@ async fn the_rows_are_what_simulations_with_each_solver_differ_by() {
     }
     // A contact and a path are enough. At the tip of a cone that slips the shear stress is infinite, and not compared.
     let cone = with(parabola(), "/profile", json!({"type": "cone", "slope": 0.05}));
-    let reply = compared(&server, &of(&cone, &json!({"path": {"displacement": [2.0 * UNIT]}}))).await;
+    let reply = compared(&of(&cone, &json!({"path": {"displacement": [2.0 * UNIT]}})));
     let named: Vec<Value> = reply.rows.iter().map(|row| json!(row.solver)).collect();
     assert_eq!(named, [json!("exact"), springs(10), springs(100), springs(1000), springs(10_000)]);
     assert_eq!(reply.reference.radii, 199);
     assert!(reply.rows[3].stress_error.is_some_and(|error| error < 0.1), "{reply:?}");
 }
 
-#[tokio::test]
-async fn a_solver_that_cannot_follow_the_path_has_the_reason_in_its_row() {
-    let server = Server::start().await;
+#[test]
+fn a_solver_that_cannot_follow_the_path_has_the_reason_in_its_row() {
     let limit = 0.3 * 4.0 / 3.0 * 1.15e11 * (0.01 * INDENTATION).sqrt() * INDENTATION;
     let curved = json!({"normal_force": 5.0 * limit, "displacement": 0.4 * UNIT});
     let path = json!({"moves": [{"displacement": 0.1 * UNIT}, curved, {"force": 0.3 * limit}]});
     let asked = json!({"path": path, "solvers": ["exact", springs(100)]});
-    let reply = compared(&server, &of(&parabola(), &asked)).await;
+    let reply = compared(&of(&parabola(), &asked));
     // Curved: the reference is finer, and the solver as near to it as the tolerance demands.
     let exact = &reply.rows[0];
     assert!(reply.reference.reason.contains("sixteenth"), "{}", reply.reference.reason);
@@ -88,12 +87,11 @@ async fn a_solver_that_cannot_follow_the_path_has_the_reason_in_its_row() {
     assert!(refused.detail.contains("springs follow a normal force only"), "{}", refused.detail);
     // No solver runs on a path that the reference cannot follow.
     let beyond = of(&parabola(), &json!({"path": {"force": [0.1, 2.0 * limit]}}));
-    assert_refused(&server, "/accuracy", &beyond, ("force_exceeds_friction", "/path/force/1", "friction")).await;
+    assert_refused("/accuracy", &beyond, ("force_exceeds_friction", "/path/force/1", "friction"));
 }
 
-#[tokio::test]
-async fn what_is_too_much_is_refused_at_its_place() {
-    let server = Server::start().await;
+#[test]
+fn what_is_too_much_is_refused_at_its_place() {
     let many = |count: usize| json!(vec!["exact"; count]);
     let long = json!({"falling_amplitude": {"reversals": 99_999}});
     let path = json!({"displacement": [1e-8]});
@@ -113,8 +111,8 @@ async fn what_is_too_much_is_refused_at_its_place() {
             "30000 springs in all",
         ),
     ] {
-        assert_refused(&server, "/accuracy", &of(&ball(), &asked), ("invalid_input", pointer, word)).await;
+        assert_refused("/accuracy", &of(&ball(), &asked), ("invalid_input", pointer, word));
     }
     let sixteen = of(&ball(), &json!({"path": path, "solvers": many(16)}));
-    assert_eq!(compared(&server, &sixteen).await.rows.len(), 16);
+    assert_eq!(compared(&sixteen).rows.len(), 16);
 }

@@ -1,10 +1,10 @@
-//! What must hold for any bytes as the body of `POST /simulate`: shared by `tests/api/fuzz_bodies.rs` and `fuzz/`.
+//! What must hold for any bytes as the document of a simulation: shared by this program and `fuzz/`.
 
 mod laws;
 mod refusals;
 
-use stickslip_compute::Flag;
 use stickslip_compute::simulation::{Failure, cost, simulate};
+use stickslip_compute::{Flag, Refusal};
 use stickslip_wire::{Document as _, Profile, Rejection, SimulateReply, SimulateRequest, parse};
 
 /// The largest estimated cost of a body that is run: each that is answered runs several times.
@@ -54,21 +54,21 @@ pub fn examine(body: &[u8]) -> Outcome {
 }
 
 /// Checks the refusal of a body.
-pub fn refused(body: &[u8], problem: stickslip::api::Problem) -> Outcome {
-    refusals::check(body, problem);
+pub fn refused(body: &[u8], refusal: Refusal) -> Outcome {
+    refusals::check(body, refusal);
     Outcome::Refused
 }
 
 /// Checks and simulates a request as the service does.
-fn run(request: &SimulateRequest) -> Result<SimulateReply, Refusal> {
-    let simulation = request.clone().check().map_err(Refusal::Rejected)?;
-    simulate(&simulation, &Flag::default()).map_err(Refusal::Failed)
+fn run(request: &SimulateRequest) -> Result<SimulateReply, Unanswered> {
+    let simulation = request.clone().check().map_err(Unanswered::Rejected)?;
+    simulate(&simulation, &Flag::default()).map_err(Unanswered::Failed)
 }
 
 /// Why a variation of a sound request is refused: by its check, or by the solver.
 #[derive(Debug)]
 #[expect(dead_code, reason = "shown in full when a law is broken")]
-enum Refusal {
+enum Unanswered {
     Rejected(Rejection),
     Failed(Failure),
 }

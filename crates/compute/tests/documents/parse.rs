@@ -9,7 +9,7 @@ use stickslip_wire::{
     RelaxRequest, RenameRequest, Residual, SimulateRequest, Stress, SweepRequest, parse, read,
 };
 
-use crate::common::openapi::nodes;
+use crate::json::nodes;
 
 fn with(profile: &str, path: &str) -> String {
     format!(

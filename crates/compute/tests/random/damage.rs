@@ -1,10 +1,8 @@
-//! Damaged requests, and random bytes.
+//! Damages to the text of a request.
 
 use proptest::prelude::*;
 use proptest::sample::select;
 use serde_json::Value;
-
-use super::requests::random_request;
 
 /// A damage to the text of a request.
 #[derive(Clone, Debug)]
@@ -26,7 +24,7 @@ pub enum Damage {
 }
 
 /// Values to put in, and words to insert.
-const WORDS: &str = r#"
+pub const WORDS: &str = r#"
     null true {} [] "rigid" "exact" 1e999 -1e999 1e-999 -0.0 5e-324 1e308 0 -1 9007199254740993
     18446744073709551616 0.1 1e-15 "" "a/b~c" "\u0000" [[]] {"displacement":1e-7} [0,1e-9,1e-9]
 "#;
@@ -44,14 +42,6 @@ pub fn damage() -> impl Strategy<Value = Damage> {
         3 => (0..60_usize, word()).prop_map(|(index, word)| Damage::Replace(index, word)),
         2 => (0..60_usize).prop_map(Damage::Remove),
     ]
-}
-
-/// The text of a request with one to three damages.
-pub fn damaged() -> impl Strategy<Value = Vec<u8>> {
-    (random_request(), prop::collection::vec(damage(), 1..4)).prop_map(|(request, damages)| {
-        let text = request.to_json().to_string().into_bytes();
-        damages.iter().fold(text, |text, damage| damage.apply(text))
-    })
 }
 
 impl Damage {
@@ -133,18 +123,4 @@ fn change(document: &mut Value, index: usize, by: Option<Value>) {
         Some(Value::Array(elements)) if !name.is_empty() => drop(elements.remove(name.parse().unwrap())),
         _ => {}
     }
-}
-
-/// Random bytes, and words of JSON in random order.
-pub fn raw() -> impl Strategy<Value = Vec<u8>> {
-    const NAMES: &str = r#"
-        { } [ ] : , "contact" "profile" "type" "sphere" "radius" "material" "effective" "friction" "preload"
-        "path" "moves" "stress" "sum" "parts" "tabulated" "r" "z" "force"
-    "#;
-    let among = |words: &'static str| select(words.split_whitespace().collect::<Vec<_>>());
-    let soup = prop_oneof![3 => among(NAMES), 1 => among(WORDS)];
-    prop_oneof![
-        prop::collection::vec(any::<u8>(), 0..200),
-        prop::collection::vec(soup, 0..60).prop_map(|words| words.concat().into_bytes()),
-    ]
 }

@@ -1,0 +1,91 @@
+//! Steady cycles: what the mechanics has in closed form, and what has no value.
+
+use serde_json::{Value, json};
+use std::f64::consts::PI;
+
+use crate::json::{ball, codes, number, of, timeless, with};
+use crate::{good, post};
+
+const G_STAR: f64 = 8e10;
+/// m = mu E*/G*.
+const SCALE: f64 = 0.3 * 1e11 / G_STAR;
+
+/// g = x^2 at d = 1.
+fn unit_sphere() -> Value {
+    json!({
+        "profile": {"type": "sphere", "radius": 1.0},
+        "material": {"effective": {"e_star": 1e11, "g_star": G_STAR}},
+        "friction": 0.3,
+        "preload": {"indentation": 1.0}
+    })
+}
+
+fn close(found: f64, expected: f64, tolerance: f64) {
+    assert!((found - expected).abs() <= tolerance * expected.abs(), "{found:e} is not {expected:e}");
+}
+
+#[test]
+fn work_and_describing_function_are_those_of_closed_forms() {
+    let ask = |asked: Value| good(post("/cycle", &of(&unit_sphere(), &asked)));
+    let reply = ask(json!({"drive": {"displacement": [0.9 * SCALE, SCALE]}, "harmonics": 2}));
+    let cycles = reply["cycles"].as_array().unwrap();
+    // oint q dW, q = F/(2 G* m).
+    close(number(&cycles[0]["dissipated_energy"]) / (2.0 * G_STAR * SCALE * SCALE), 0.349_307_522_852_4, 1e-12);
+    let (limit, first) = (number(&reply["contact"]["gross_slip_force"]), &cycles[1]["harmonics"][0]);
+    close(number(&first["in_phase"]) / limit, 16.0 / (5.0 * PI), 1e-12);
+    close(number(&first["quadrature"]) / limit, -4.0 / (5.0 * PI), 1e-12);
+    assert_eq!(cycles[0]["harmonics"][1], json!({"order": 2, "in_phase": 0.0, "quadrature": 0.0}));
+    assert_eq!((&cycles[0]["regime"], &cycles[1]["regime"]), (&json!("partial_slip"), &json!("gross_slip")));
+    assert!(cycles[0].get("machine_amplitude").is_none() && cycles[0].get("friction_work").is_none());
+    // d = 1 + 0.2 cos(t + phase), W = 0.3 cos t. The phase is that of the load here.
+    let oscillating = json!({"indentation": 0.2, "phase": -45.0});
+    let reply = ask(json!({"drive": {"displacement": 0.3 * SCALE}, "normal": oscillating}));
+    let work = number(&reply["cycles"][0]["dissipated_energy"]) / (2.0 * G_STAR * SCALE * SCALE);
+    close(work, 0.009_441_080_9, 1e-5);
+    // What a machine moves is shared.
+    let reply = ask(json!({"drive": {"displacement": SCALE}, "machine": {"stiffness": 1e11}}));
+    let cycle = &reply["cycles"][0];
+    let own = number(&cycle["displacement_amplitude"]) + number(&cycle["force_amplitude"]) / 1e11;
+    close(number(&cycle["machine_amplitude"]), SCALE, 1e-14);
+    close(own, SCALE, 1e-13);
+    // So little a force sees the stiffness 2 G* a alone: U = P/|K - M w^2|.
+    let natural = (2.0 * G_STAR / 5.0_f64).sqrt() / (2.0 * PI);
+    let response = json!({"mass": 5.0, "drive_force": 1.0, "frequencies": [0.5 * natural, 2.0 * natural]});
+    let reply = ask(json!({"drive": {"displacement": 0.0}, "frequency_response": response}));
+    close(number(&reply["frequency_response"]["natural_frequency"]), natural, 1e-12);
+    for (point, (share, lag)) in
+        reply["frequency_response"]["points"].as_array().unwrap().iter().zip([(0.5_f64, 0.0), (2.0, 180.0)])
+    {
+        close(number(&point["amplitude"]), (1.0 / (2.0 * G_STAR) / (1.0 - share * share)).abs(), 1e-6);
+        assert!((number(&point["phase"]) - lag).abs() < 1e-3, "{point}");
+        assert!(number(&point["amplitude_error"]) <= 1e-6 * number(&point["amplitude"]), "{point}");
+    }
+    // So slow a drive beyond friction is not followed, and says so.
+    let limit = number(&reply["contact"]["gross_slip_force"]);
+    let response = json!({"mass": 5.0, "drive_force": 1.2 * limit, "frequencies": [0.001 * natural]});
+    let asked = json!({"drive": {"displacement": 0.0}, "frequency_response": response, "tolerance": 1e-4});
+    let reply = ask(asked);
+    let point = &reply["frequency_response"]["points"][0];
+    assert!(point["amplitude_error"].is_null() && point["peak_error"].is_null(), "{point}");
+    assert!(codes(&reply).contains(&"tolerance_not_met"), "{reply}");
+    // The curve of the best load has as many points as are asked for.
+    let reply = ask(json!({"drive": {"displacement": 0.2 * SCALE}, "best_load": {"points": 30}}));
+    let curve = &reply["cycles"][0]["best_load"]["curve"];
+    assert!(["dissipated_energy", "normal_force"].iter().all(|name| curve[name].as_array().unwrap().len() == 30));
+}
+
+#[test]
+fn one_amplitude_and_a_list_of_one_give_the_same_row_and_without_friction_ratios_have_no_value() {
+    for (name, amplitude) in [("displacement", 1e-7), ("force", 1.0)] {
+        let asked = |amplitude: Value| of(&ball(), &json!({"drive": {name: amplitude}, "harmonics": 3}));
+        let one = good(post("/cycle", &asked(json!(amplitude))));
+        let list = good(post("/cycle", &asked(json!([amplitude]))));
+        assert_eq!(timeless(one), timeless(list));
+    }
+    let smooth = with(ball(), "/friction", json!(0.0));
+    let asked = of(&smooth, &json!({"drive": {"displacement": [0.0, 1e-7]}, "harmonics": 1}));
+    let reply = good(post("/cycle", &asked));
+    let (still, slides) = (&reply["cycles"][0], &reply["cycles"][1]);
+    assert_eq!((number(&still["loss_factor"]), number(&still["sliding_ratio"])), (0.0, 0.0));
+    assert!(slides["loss_factor"].is_null() && slides["sliding_ratio"].is_null() && slides["regime"] == "gross_slip");
+}
