@@ -8,12 +8,11 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from . import _native, results
 from .bodies import Material
 from .contact import definition, encoded, guarded
-from .documents import HasDocument, Quantity
+from .documents import HasDocument, Quantities, Quantity, floats
 from .result import Floats, parse
 
 
@@ -44,13 +43,21 @@ class Contacts:
     def __len__(self) -> int:
         return len(self._native)
 
-    def step(self, indentation: ArrayLike, displacement: ArrayLike) -> tuple[Floats, Floats]:
+    def step(self, indentation: Quantity | Quantities, displacement: Quantity | Quantities) -> tuple[Floats, Floats]:
         """Moves all contacts to these indentations and displacements, m; returns F_N and F_x, N, of shape (n,)."""
-        return _pair(guarded(self._native.step, self._bytes(indentation), self._bytes(displacement)))
+        return _pair(
+            guarded(
+                self._native.step, self._bytes(indentation, "indentation"), self._bytes(displacement, "displacement")
+            )
+        )
 
-    def trial(self, indentation: ArrayLike, displacement: ArrayLike) -> tuple[Floats, Floats]:
+    def trial(self, indentation: Quantity | Quantities, displacement: Quantity | Quantities) -> tuple[Floats, Floats]:
         """The forces that such a step would lead to from the committed states, until `commit` or `revert`."""
-        return _pair(guarded(self._native.trial, self._bytes(indentation), self._bytes(displacement)))
+        return _pair(
+            guarded(
+                self._native.trial, self._bytes(indentation, "indentation"), self._bytes(displacement, "displacement")
+            )
+        )
 
     def commit(self) -> None:
         """Takes over the states of the last trial."""
@@ -85,9 +92,9 @@ class Contacts:
         found: int = self._native.memory()
         return found
 
-    def _bytes(self, values: ArrayLike) -> bytes:
-        array = np.asarray(values, dtype=np.float64)
-        return np.ascontiguousarray(np.broadcast_to(array, (len(self),)) if array.ndim == 0 else array).tobytes()
+    def _bytes(self, values: Quantity | Quantities, name: str) -> bytes:
+        array = floats(values, name)
+        return np.broadcast_to(array, (len(self),)).tobytes() if array.size == 1 else array.tobytes()
 
 
 def _pair(buffers: tuple[bytearray, bytearray]) -> tuple[Floats, Floats]:

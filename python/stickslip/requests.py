@@ -5,10 +5,14 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any, TypeAlias
 
+import numpy as np
+
+from . import quantities
 from .bodies import elastic_body
 from .documents import Document, HasDocument
+from .errors import Fault, InvalidInput
 from .extras import CRITERIA
-from .quantities import from_text
+from .tables import as_csv, columns_in_si, is_table
 
 #: A number of points, or the document of a request for stresses.
 Stress: TypeAlias = int | Mapping[str, Any] | None
@@ -24,7 +28,11 @@ def stress(value: Stress) -> Any:
 
 
 def path(**given: Any) -> Document:
-    """A path by its one member that is given."""
+    """A path by its one member that is given; a table is its moves, with a column for each target."""
+    if is_table(given.get("displacement")):
+        columns = columns_in_si(given.pop("displacement"))
+        moves = [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]
+        given["moves"] = [{name: value for name, value in move.items() if value == value} for move in moves]
     for name in ("falling_amplitude", "equal_peaks"):
         given[name] = _counted(given.get(name), "reversals")
     return {name: value for name, value in given.items() if value is not None}
@@ -99,46 +107,90 @@ def outputs(given: Any) -> list[Any]:
 
 
 def scan(given: Any, units: Any) -> tuple[Any, Any]:
-    """The scan of a request and its units: of a file that was read, a document, or arrays x and z or x, y and z."""
+    """The scan of a request and its units.
+
+    It is a file that was read, a document, a table with its columns by their names, or arrays of x and z, or of all.
+    """
+    if is_table(given):
+        from .instruments import read_scan
+
+        given = read_scan(as_csv(given))
     if hasattr(given, "scan"):
         return given.scan, units or given.units
     if isinstance(given, Mapping):
         return dict(given), units
-    columns = [_with_gaps(column) for column in given]
-    names = ("x", "z") if len(columns) == 2 else ("x", "y", "z")
-    return {"line" if len(columns) == 2 else "points": dict(zip(names, columns, strict=True))}, units
+    names = {2: ("x", "z"), 3: ("x", "y", "z")}.get(len(given))
+    if names is None:
+        raise _refused("/scan", "arrays of x and z, or of x, y and z, are expected")
+    _only_one_unit(given, units)
+    columns = dict(zip(names, map(_with_gaps, given), strict=True))
+    return {"line" if len(names) == 2 else "points": columns}, units
 
 
 def _with_gaps(column: Any) -> list[float | None]:
     """Numbers, and None where one is missing."""
-    return [None if value is None or value != value else float(value) for value in column]
+    found = quantities.measured(column)
+    if found is not None:
+        column = quantities.in_si(*found, "m", "/scan")
+    array = np.asarray(column, dtype=np.float64)
+    return [None if value != value else value for value in array.tolist()]
 
 
 def loops(given: Any, units: Any) -> tuple[list[Any], Any]:
-    """The loops of a request and their units: of a file, documents, or arrays of displacement and force."""
+    """The loops of a request and their units.
+
+    A loop is a file that was read, a document, a table with its columns by their names, an array of two rows, or a pair
+    of arrays, displacement and force; several of them are a list.
+    """
+    if is_table(given):
+        from .instruments import read_loop
+
+        given = read_loop(as_csv(given))
     if hasattr(given, "loop"):
         return [given.loop], units or given.units
+    if not isinstance(given, Mapping) and _is_pair(given):
+        given = {"displacement": given[0], "force": given[1]}
     if isinstance(given, Mapping):
+        _only_one_unit([given.get("displacement"), given.get("force")], units)
         return [dict(given)], units
-    if (
-        isinstance(given, tuple)
-        and len(given) == 2
-        and not isinstance(given[0], Mapping)
-        and not hasattr(given[0], "loop")
-    ):
-        return [{"displacement": given[0], "force": given[1]}], units
+    if not isinstance(given, list | tuple):
+        raise _refused("/loops", "a loop is a file that was read, a table, a document, or two arrays of equal length")
     several = [loops(one, units) for one in given]
-    named = [unit for _, unit in several if unit]
+    named = [unit or None for _, unit in several]
     if any(unit != named[0] for unit in named):
         # A request has one pair of units for all of its loops.
         return [_in_si(one, unit) for found, unit in several for one in found], None
-    return [one for found, _ in several for one in found], named[0] if named else units
+    return [one for found, _ in several for one in found], named[0] if named else None
+
+
+def _is_pair(given: Any) -> bool:
+    """Whether it is displacements and forces: two columns of numbers."""
+    if isinstance(given, list | tuple):
+        return len(given) == 2 and all(_is_column(one) for one in given)
+    return getattr(given, "ndim", 0) == 2 and len(given) == 2
+
+
+def _is_column(one: Any) -> bool:
+    if isinstance(one, list | tuple):
+        return len(one) > 0 and isinstance(one[0], int | float | str | np.number)
+    return not is_table(one) and hasattr(one, "__array__") and np.ndim(one) == 1
+
+
+def _only_one_unit(columns: Any, units: Any) -> None:
+    """Refuses columns with units of their own where the request names units too."""
+    for column in columns:
+        first = column[0] if isinstance(column, list | tuple) and column else None
+        if units and (quantities.measured(column) or isinstance(first, str) or quantities.measured(first)):
+            raise _refused("/units", "the columns have units of their own: leave out `units`")
+
+
+def _refused(pointer: str, detail: str) -> InvalidInput:
+    return InvalidInput("invalid_input", detail, (Fault(pointer, detail),))
 
 
 def _in_si(loop: Any, units: Any) -> Any:
     """A loop with its displacements and forces in SI units."""
-    factors = {name: from_text(f"1 {unit}", None, f"/units/{name}") for name, unit in (units or {}).items()}
+    named = {name: quantities.from_text(f"1 {unit}", None, f"/units/{name}") for name, unit in (units or {}).items()}
     return {
-        name: [value * factors[name] for value in column] if name in factors else column
-        for name, column in loop.items()
+        name: [value * named[name] for value in column] if name in named else column for name, column in loop.items()
     }
