@@ -96,10 +96,3 @@ def _finite(number: float, place: str) -> float:
         detail = f"{number} is not a finite number"
         raise InvalidInput("invalid_input", detail, (Fault(place, detail),))
     return number
-
-
-def members(**given: Any) -> Document:
-    """The document with the members that are not None."""
-    document = to_document(given)
-    assert isinstance(document, dict)
-    return document

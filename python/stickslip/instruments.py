@@ -48,19 +48,34 @@ class Loop:
     rows_left_out: Document = field(default_factory=dict)
 
 
-def _content(source: str | os.PathLike[str] | bytes) -> bytes:
+def content_of(source: str | os.PathLike[str] | bytes) -> bytes:
+    """The bytes of a file."""
     return source if isinstance(source, bytes) else Path(source).read_bytes()
 
 
+def hints_of(hints: dict[str, Any]) -> dict[str, Any]:
+    """Hints as the importer takes them: a column may be given by its number."""
+    return {name: str(hint) if isinstance(hint, int) and name != "spacing" else hint for name, hint in hints.items()}
+
+
 def _read(read: Any, source: str | os.PathLike[str] | bytes, hints: dict[str, Any]) -> Document:
-    """What the importer of the service finds in a file; a column may be given by its number."""
-    texts = {name: str(hint) if isinstance(hint, int) and name != "spacing" else hint for name, hint in hints.items()}
-    found: Document = json.loads(guarded(lambda: read(_content(source), **texts)))
+    """What the importer of the service finds in a file."""
+    found: Document = json.loads(guarded(lambda: read(content_of(source), **hints_of(hints))))
     return found
 
 
 def _seen(preview: Document) -> tuple[tuple[str, ...], tuple[Document, ...], Document]:
     return tuple(preview["reading"]), tuple(preview["columns"]), preview["rows_left_out"]
+
+
+def scan_of(found: Document) -> Scan:
+    """The scan of what an importer found."""
+    return Scan(found["scan"], found["units"], *_seen(found["preview"]))
+
+
+def loop_of(found: Document) -> Loop:
+    """The loop of what an importer found."""
+    return Loop(found["loop"], found["units"], *_seen(found["preview"]))
 
 
 def read_scan(source: str | os.PathLike[str] | bytes, **hints: Any) -> Scan:
@@ -83,7 +98,7 @@ def read_scan(source: str | os.PathLike[str] | bytes, **hints: Any) -> Scan:
         if find_spec("SurfaceTopography") is None:
             raise
         return _by_surface_topography(Path(source), refusal)
-    return Scan(found["scan"], found["units"], *_seen(found["preview"]))
+    return scan_of(found)
 
 
 def _by_surface_topography(path: Path, refusal: InvalidInput) -> Scan:
@@ -135,4 +150,4 @@ def read_loop(source: str | os.PathLike[str] | bytes, **hints: Any) -> Loop:
         InvalidInput: with the line, the column and the word that is not understood; `unknown_unit` for a unit.
     """
     found = _read(_native.read_loop, source, hints)
-    return Loop(found["loop"], found["units"], *_seen(found["preview"]))
+    return loop_of(found)

@@ -12,74 +12,15 @@ from typing import Any
 
 import numpy as np
 
-from . import _native
+from . import _native, members
 from .errors import Fault, InvalidInput
 
-#: The SI unit of each number of a request by the name of its member.
-MEMBERS = {
-    "a": "m",
-    "coefficient": "",
-    "contact_radius": "m",
-    "cutoff_radius": "m",
-    "displacement": "m",
-    "drive_force": "N",
-    "dx": "m",
-    "dy": "m",
-    "e_star": "Pa",
-    "edge_radius": "m",
-    "exponent": "1",
-    "flat_radius": "m",
-    "force": "N",
-    "frequencies": "Hz",
-    "friction": "1",
-    "g_star": "Pa",
-    "gaps": "m",
-    "indentation": "m",
-    "indentation_error": "m",
-    "mass": "kg",
-    "normal_force": "N",
-    "offset": "m",
-    "phase": "deg",
-    "points": "m",
-    "poisson_ratio": "1",
-    "r": "m",
-    "radii": "m",
-    "radius": "m",
-    "slope": "1",
-    "stiffness": "N/m",
-    "target": "1",
-    "time": "s",
-    "tip_radius": "m",
-    "tolerance": "1",
-    "x": "m",
-    "xx": "Pa",
-    "xy": "Pa",
-    "xz": "Pa",
-    "y": "m",
-    "yield": "Pa",
-    "youngs_modulus": "Pa",
-    "yy": "Pa",
-    "yz": "Pa",
-    "z": "m",
-    "zz": "Pa",
-}
-#: Where the same name has another unit, by the member around it.
-WITHIN = {
-    ("bulk", "amplitude"): "Pa",
-    ("bulk", "mean"): "Pa",
-    ("crossland", "limit"): "Pa",
+#: The units that the descriptions of members leave to what is around them.
+MEMBERS = members.MEMBERS | {"dx": "m", "dy": "m"} | dict.fromkeys(("xx", "yy", "zz", "xy", "xz", "yz"), "Pa")
+WITHIN = members.WITHIN | {
     ("cycles", "mean"): "",
-    ("dang_van", "limit"): "Pa",
-    ("falling_amplitude", "amplitude"): "m",
-    ("fatemi_socie", "limit"): "1",
-    ("findley", "limit"): "Pa",
     ("friction_work", "limit"): "J/m^2",
-    ("line", "from"): "m",
-    ("line", "to"): "m",
-    ("normal_force", "from"): "N",
-    ("normal_force", "to"): "N",
     ("ruiz", "limit"): "N/m",
-    ("swt", "limit"): "Pa",
 }
 #: Members that are texts, whatever they look like.
 TEXTS = frozenset({"at", "label", "name", "pointer", "type", "id", "contact_id", "column", "lateral", "height"})

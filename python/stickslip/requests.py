@@ -1,51 +1,52 @@
-"""The documents of requests by short forms: `stress=200`, `falling_amplitude=20`, `bulk=("100 MPa", "50 MPa")`."""
+"""The documents of requests by short forms: `stress=200`, `falling_amplitude=20`, `bulk="50 MPa"`, arrays for loops."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias, Union
 
 import numpy as np
 
 from . import quantities
 from .bodies import elastic_body
-from .documents import Document, HasDocument
+from .documents import Document, HasDocument, Quantities
 from .errors import Fault, InvalidInput
-from .extras import CRITERIA
+from .members import EMPTY, SHORT
 from .tables import as_csv, columns_in_si, is_table
 
-#: A number of points, or the document of a request for stresses.
-Stress: TypeAlias = int | Mapping[str, Any] | None
+if TYPE_CHECKING:
+    from .instruments import Loop, Scan
+    from .tables import NamedTable
+
+#: A measured loop: a file that was read, a document, a table, an array of two rows, or displacements and forces.
+LoopLike: TypeAlias = Union["Loop", Mapping[str, Any], "NamedTable", "Sequence[Quantities]", Quantities]
+#: A scan: a file that was read, a document, a table, or arrays of x and z or x, y and z.
+ScanLike: TypeAlias = Union["Scan", Mapping[str, Any], "NamedTable", "Sequence[Quantities]", Quantities]
 
 
-def _counted(value: Any, name: str) -> Any:
-    return {name: value} if isinstance(value, int) and not isinstance(value, bool) else value
+def assemble(name: str, given: Document, parts: dict[str, Document]) -> Document:
+    """The document of a request of its members, each of which may have a short form; those of `parts` are within one.
+
+    `name` is the path of a computation, or what a contact is asked for.
+    """
+    given = {member: _object(member, value) for member, value in given.items() if value is not None}
+    for part, values in parts.items():
+        chosen = {member: _object(member, value) for member, value in values.items() if value is not None}
+        given[part] = dict(given.get(part, {})) | chosen
+    if "contact" in given:
+        given["contact"] = definition(given["contact"])
+    special = _SPECIAL.get(name.rpartition("/")[2] if name != "/profiles/fit" else name)
+    return special(given) if special else given
 
 
-def stress(value: Stress) -> Any:
-    """Stresses at so many points, or as the document says."""
-    return _counted(value, "points")
-
-
-def path(**given: Any) -> Document:
-    """A path by its one member that is given; a table is its moves, with a column for each target."""
-    if is_table(given.get("displacement")):
-        columns = columns_in_si(given.pop("displacement"))
-        moves = [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]
-        given["moves"] = [{name: value for name, value in move.items() if value == value} for move in moves]
-    for name in ("falling_amplitude", "equal_peaks"):
-        given[name] = _counted(given.get(name), "reversals")
-    return {name: value for name, value in given.items() if value is not None}
-
-
-PATHS = ("displacement", "force", "moves", "falling_amplitude", "equal_peaks", "cycles")
-
-
-def split_path(given: dict[str, Any]) -> Document:
-    """Takes the path out of keyword arguments: `path=`, or one of its members."""
-    if "path" in given:
-        return dict(given.pop("path"))
-    return path(**{name: given.pop(name) for name in PATHS if name in given})
+def _object(member: str, value: Any) -> Any:
+    """The object that a number alone, or True, stands for."""
+    if value is True and member in EMPTY:
+        return {}
+    short = SHORT.get(member)
+    is_plain = isinstance(value, int | float | str) and not isinstance(value, bool)
+    is_number = is_plain or hasattr(value, "to_base_units")
+    return {short: value} if short is not None and is_number else value
 
 
 def definition(contact: Any) -> Document:
@@ -57,39 +58,60 @@ def definition(contact: Any) -> Document:
     return dict(contact)
 
 
-def cycle(displacement: Any = None, force: Any = None, **rest: Any) -> Document:
-    """The body of a request for steady cycles without its contact."""
-    drive = {name: value for name, value in (("displacement", displacement), ("force", force)) if value is not None}
-    rest["work_density"] = _counted(rest.get("work_density"), "points")
-    rest["best_load"] = {} if rest.get("best_load") is True else rest.get("best_load")
-    machine = rest.get("machine")
-    if machine is not None and not isinstance(machine, Mapping):
-        rest["machine"] = {"stiffness": machine}
-    return {"drive": drive} | {name: value for name, value in rest.items() if value is not None}
+def _path(given: Document) -> Document:
+    """A path; a table of it is its moves, with a column for each target."""
+    way = given.get("path", {})
+    if is_table(way.get("displacement")):
+        columns = columns_in_si(way.pop("displacement"))
+        moves = [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]
+        way["moves"] = [{name: value for name, value in move.items() if value == value} for move in moves]
+    return given
 
 
-def fretting(contact: Any, displacement: Any = None, **rest: Any) -> Document:
-    """The body of a request for fatigue criteria: the amplitude of a cycle or a path, and a criterion by its name."""
-    defined = definition(contact)
-    way = split_path(rest)
-    if displacement is not None:
-        way = {"cycles": {"displacement": displacement, "count": 1}}
-    criteria = dict(rest.pop("criteria", {}))
-    for name in CRITERIA:
-        if name in rest:
-            asked = rest.pop(name)
-            criteria[name] = {} if asked is True else asked
-    bulk = rest.pop("bulk", None)
-    if bulk is not None and not isinstance(bulk, Mapping):
-        names = ("mean", "amplitude", "phase")
-        bulk = (
-            dict(zip(names, bulk, strict=False))
-            if isinstance(bulk, Sequence) and not isinstance(bulk, str)
-            else {"amplitude": bulk}
-        )
-    body = rest.pop("body", None) or elastic_body(defined)
-    whole = {"contact": defined, "path": way, "body": body, "bulk": bulk, "criteria": criteria} | rest
-    return {name: value for name, value in whole.items() if value is not None}
+def _fretting(given: Document) -> Document:
+    """Criteria over the cycle of an amplitude, or over a path; of the first elastic body unless it is named."""
+    amplitude = given["path"].get("displacement")
+    if amplitude is not None and not is_table(amplitude) and _is_single(amplitude):
+        given["path"] = {"cycles": {"displacement": amplitude, "count": 1}}
+    if isinstance(given.get("bulk"), list | tuple):
+        detail = "a bulk stress is its amplitude, or dict(mean=, amplitude=, phase=)"
+        raise _refused("/bulk", detail)
+    return _path({"body": elastic_body(given.get("contact", {}))} | given)
+
+
+def _is_single(value: Any) -> bool:
+    return isinstance(value, int | float | str) or np.ndim(getattr(value, "magnitude", value)) == 0
+
+
+def _loop_fit(given: Document) -> Document:
+    measured, units = loops(given.get("loops", []), given.pop("units", None))
+    start = given.pop("start", None)
+    given["loops"] = [loop if start is None else loop | {"start": start} for loop in measured]
+    free = ["friction", "g_star", "force_offset"]
+    return {"free": free} | given | ({} if units is None else {"units": units})
+
+
+def _profile_fit(given: Document) -> Document:
+    heights, units = scan(given.get("scan"), given.pop("units", None))
+    return given | {"scan": heights} | ({} if units is None else {"units": units})
+
+
+def _sweep(given: Document) -> Document:
+    base = dict(given["base"])
+    if "contact" in base:
+        base["contact"] = definition(base["contact"])
+    return given | {"base": base, "axes": axes(given["axes"]), "outputs": outputs(given["outputs"])}
+
+
+_SPECIAL = {
+    "accuracy": _path,
+    "fit": _loop_fit,
+    "fretting": _fretting,
+    "path": _path,
+    "/profiles/fit": _profile_fit,
+    "simulate": _path,
+    "sweep": _sweep,
+}
 
 
 def axes(given: Any) -> list[Any]:

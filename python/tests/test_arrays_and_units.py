@@ -75,7 +75,7 @@ def loop() -> tuple[np.ndarray, np.ndarray]:
     turn = 1.5 * contact.summary.gross_slip_displacement
     contact.path([turn])
     displacement = turn * np.cos(np.linspace(0.0, 2.0 * np.pi, 81))[1:]
-    return displacement, np.array([step.force for step in contact.path(displacement).steps])
+    return displacement, contact.path(displacement).force
 
 
 def test_a_loop_is_taken_in_every_form() -> None:

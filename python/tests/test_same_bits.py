@@ -10,7 +10,7 @@ import pytest
 
 import stickslip as ss
 from conftest import ROOT
-from stickslip.client import PATHS
+from stickslip.engine import PATHS
 
 API = json.loads((ROOT / "openapi" / "openapi.json").read_text())
 
