@@ -118,6 +118,11 @@ class Client(Engine):
         return of_module(name)
 
     @property
+    def url(self) -> str:
+        """Where the service is."""
+        return self._calls.base
+
+    @property
     def Contact(self) -> ContactMaker:  # noqa: N802
         """`stickslip.Contact`, on the server."""
         return ContactMaker(self)

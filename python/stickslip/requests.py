@@ -97,7 +97,9 @@ def _profile_fit(given: Document) -> Document:
 
 
 def _sweep(given: Document) -> Document:
-    base = dict(given["base"])
+    base = {member: _object(member, value) for member, value in given["base"].items()}
+    if isinstance(base.get("path"), Mapping):
+        base["path"] = {member: _object(member, value) for member, value in base["path"].items()}
     if "contact" in base:
         base["contact"] = definition(base["contact"])
     return given | {"base": base, "axes": axes(given["axes"]), "outputs": outputs(given["outputs"])}

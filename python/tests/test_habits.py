@@ -48,16 +48,13 @@ def test_version_is_that_of_the_engine() -> None:
     assert "__version__" in ss.__all__
 
 
-def test_planes_lines_and_surfaces_are_objects(ball: ss.Contact, api: ss.Client) -> None:
-    there = api.Contact.from_definition(ball)
-    for contact in (ball, there):
-        plane = ss.Plane(normal="y", offset=0, x=["-100 um", "100 um", 5], z=[0, 1e-4, 4])
-        section = contact.subsurface(plane=plane, fields=["von_mises"])
-        assert section.von_mises.shape == (20,)
-        line = ss.Line(from_=[0, 0, 0], to=[0, 0, "0.1 mm"], count=7)
-        assert contact.subsurface(line=line).zz.shape == (7,)
-        surface = ss.Surface(x=[-1e-4, 1e-4, 3], y=[0, 1e-4, 2])
-        assert contact.subsurface(surface=surface).xx.shape == (6,)
+def test_planes_lines_and_surfaces_are_objects(ball: ss.Contact) -> None:
+    plane = ss.Plane(normal="y", offset=0, x=["-100 um", "100 um", 5], z=[0, 1e-4, 4])
+    assert ball.subsurface(plane=plane, fields=["von_mises"]).von_mises.shape == (20,)
+    line = ss.Line(from_=[0, 0, 0], to=[0, 0, "0.1 mm"], count=7)
+    assert ball.subsurface(line=line).zz.shape == (7,)
+    surface = ss.Surface(x=[-1e-4, 1e-4, 3], y=[0, 1e-4, 2])
+    assert ball.subsurface(surface=surface).xx.shape == (6,)
 
 
 def test_bulk_is_an_amplitude_or_named(ball: ss.Contact) -> None:
