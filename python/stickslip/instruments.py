@@ -96,7 +96,8 @@ def read_scan(source: str | os.PathLike[str] | bytes, **hints: Any) -> Scan:
         if isinstance(source, bytes) or refusal.pointer != "":
             raise
         if find_spec("SurfaceTopography") is None:
-            raise
+            hint = 'other formats of instruments need SurfaceTopography: pip install "stickslip[scans]"'
+            raise InvalidInput(refusal.code, f"{refusal.detail}; {hint}") from None
         return _by_surface_topography(Path(source), refusal)
     return scan_of(found)
 
