@@ -56,13 +56,15 @@ def _flat(documents: list[dict[str, Any]], schema: str) -> Table:
     """The scalars of each row; a pair of numbers is two columns."""
     kinds = schemas.FIELDS[schema]
     present = {name: None for document in documents for name in document}
-    names = [name for name in present or kinds if kinds.get(name, ("", None))[0] == ""]
+    names = [name for name in present or kinds if name == "interval" or kinds.get(name, ("", None))[0] == ""]
     columns: dict[str, Any] = {}
     units: dict[str, str] = {}
     for name in names:
         column = as_column([document.get(name) for document in documents])
         unit = kinds.get(name, ("", None))[1]
-        if column.ndim == 2 and column.shape[1] in (2, 3):
+        if name == "interval" and column.ndim == 2:
+            parts = dict(zip(("low", "high"), column.T, strict=True))
+        elif column.ndim == 2 and column.shape[1] in (2, 3):
             parts = {f"{name}_{axis}": part for axis, part in zip("xyz", column.T, strict=False)}
         elif column.dtype == object and any(isinstance(value, dict | list) for value in column):
             continue

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-import matplotlib
+import matplotlib.pyplot
 import pytest
 
 import stickslip as ss
@@ -20,6 +20,12 @@ ROOT = Path(__file__).resolve().parents[2]
 @pytest.fixture(scope="session")
 def openapi() -> dict[str, Any]:
     return json.loads((ROOT / "openapi" / "openapi.json").read_text())
+
+
+@pytest.fixture(autouse=True)
+def _close_figures() -> Iterator[None]:
+    yield
+    matplotlib.pyplot.close("all")
 
 
 @pytest.fixture

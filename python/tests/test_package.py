@@ -13,7 +13,7 @@ import pytest
 
 import stickslip as ss
 from conftest import ROOT
-from stickslip import _native, engine, members, profiles, quantities, schemas
+from stickslip import _native, computations, engine, members, plots, profiles, quantities, schemas
 
 HERE = Path(__file__).resolve().parents[1]
 GENERATOR = HERE / "tools" / "generate.py"
@@ -54,6 +54,24 @@ def test_page_of_the_docs_runs() -> None:
     assert frame["max"].is_monotonic_decreasing
     assert frame["max"].iloc[0] == pytest.approx(0.71, abs=0.01)
     assert frame["max"].iloc[19] == pytest.approx(0.17, abs=0.01)
+
+
+def test_page_of_the_docs_has_every_function_its_result_and_its_picture() -> None:
+    table = {}
+    section = (ROOT / "docs" / "python.md").read_text().partition("## Functions\n")[2].partition("\n## ")[0]
+    for row in re.findall(r"^\| (`\w+\.\w+`.*?) \|(.*)\|$", section, re.MULTILINE):
+        _, result, picture = (*(cell.strip() for cell in row[1].split(" | ")), "")[:3]
+        table |= {name: (result, picture.strip()) for name in re.findall(r"`(\w+\.\w+)`", row[0])}
+    contact = [name for name, method in vars(computations.OfContact).items() if not name.startswith("_")]
+    wanted = {f"ss.{name}" for name in members.METHODS.values()} | {f"contact.{name}" for name in contact}
+    assert wanted <= set(table)
+    for name, (result, picture) in table.items():
+        owner = {"ss": ss, "contact": ss.Contact, "remote": ss.RemoteContact}[name.partition(".")[0]]
+        method = getattr(owner, name.partition(".")[2])
+        returned = re.search(r"results\.(\w+)", str(getattr(method, "__annotations__", {}).get("return", "")))
+        if returned is not None:
+            assert f"`{returned[1]}`" in result, name
+            assert bool(picture) == (returned[1] in plots._PAINTERS), name
 
 
 @pytest.mark.parametrize("name", sorted(generator().FILES))

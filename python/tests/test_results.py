@@ -138,6 +138,23 @@ def test_every_computation_has_a_table(ball: ss.Contact) -> None:
     assert ss.fretting(ball, 1e-8, crossland={"alpha": 0.3}).crossland.margin is None
 
 
+def test_axes_show_numbers_with_prefixes_of_their_units(ball: ss.Contact) -> None:
+    for result, x, y in (
+        (ball.path([5e-8, -5e-8, 1e-8]), "nm", "N"),
+        (ball.stress(50), "µm", "MPa"),
+        (ball.residual(), "µm", "MPa"),
+        (ball.cycle([1e-9, 1e-8, 1e-7]), "nm", "J"),
+        (ss.protocols(ball, 4), "", "nm"),
+    ):
+        axes = result.plot()
+        axes.figure.canvas.draw()
+        for axis, unit in ((axes.xaxis, x), (axes.yaxis, y)):
+            texts = [label.get_text() for label in axis.get_ticklabels()]
+            assert any(text.endswith(unit) for text in texts if text), (result.schema, texts)
+    with pytest.raises(TypeError, match="has no picture"):
+        ball.state.plot()
+
+
 def test_a_column_keeps_the_kind_of_its_values() -> None:
     assert as_column([1, 2]).dtype == np.int64
     assert as_column([1, None]).dtype == np.float64

@@ -29,10 +29,10 @@ METHODS = {"/fit": "fit_loop", "/profiles/fit": "fit_profile"}
 OF_CONTACT = [f"/contacts/{{id}}/{name}" for name in ("move", "path", "relax", "subsurface")]
 #: Computations that a contact answers too, at its present load.
 AT_PRESENT = ("/cycle", "/fretting")
-#: Objects with one key, or of named parts, whose members are keywords of the methods.
-FLATTENED = {"Path", "CycleDrive", "Criteria"}
+#: Members that are objects of one key, or of named parts, whose own members are keywords of the methods.
+FLATTENED = {"path", "drive", "criteria"}
 #: Of these, those that are no keyword themselves.
-HIDDEN = {"CycleDrive"}
+HIDDEN = {"drive"}
 #: The spelling of units in the table of the engine.
 SPELLED = {"degrees": "deg", "J/m²": "J/m^2", "m^(1−n)": ""}
 
@@ -119,7 +119,7 @@ def may_be_empty(schemas: Schema) -> set[str]:
     return {
         member
         for name, schema in schemas.items()
-        if name.endswith("Request") or name in FLATTENED
+        if name.endswith("Request") or name == "Criteria"
         for member, what in alternatives(schema, schemas).items()
         if stands_for_nothing(schemas.get(name_of(what), {}))
     }
@@ -328,12 +328,12 @@ class Method:
             self.members.pop("contact", None)
         #: The keywords, with their types, descriptions and the member that they are a part of.
         self.keywords: dict[str, tuple[str, str, str | None]] = {}
-        flattened = [member for member, what in self.members.items() if name_of(what) in FLATTENED]
+        flattened = [member for member in self.members if member in FLATTENED]
         for member in flattened:
             for name, what in alternatives(schemas[name_of(self.members[member])], schemas).items():
                 self.add(name, what, member)
         for member, what in self.members.items():
-            if name_of(what) not in HIDDEN:
+            if member not in HIDDEN:
                 self.add(member, what, None)
         for member, (shape, said) in EXTRA.get(path, {}).items():
             self.keywords[member] = (shape, said, None)

@@ -10,7 +10,7 @@ import pandas
 
 import stickslip as ss
 
-FILE = Path(__file__).parents[2] / "examples" / "data" / "ball_loop.csv"
+FILE = Path(__file__).parents[1] / "data" / "ball_loop.csv"
 
 
 def main(file: str | Path = FILE) -> pandas.DataFrame:
