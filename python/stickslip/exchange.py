@@ -118,9 +118,6 @@ class Calls:
                     raise unreachable(self.base, error) from error
                 yield pause(attempt, f"{self.base} cannot be reached")
                 continue
-            if method == "DELETE" and attempt > 0 and response.status_code in (404, 410):
-                # The attempt before has deleted it, and its response was lost.
-                return response
             if response.is_error:
                 advice = advised(response)
                 if last or response.status_code not in RETRIED or (advice or 0.0) > LONGEST_WAIT:
@@ -252,7 +249,7 @@ class ContactCalls:
         return parse(results.SessionReply, (yield from self.calls.json("GET", self.path)))
 
     def delete(self) -> Steps[None]:
-        """Deletes it on the server; what is deleted already is no error."""
+        """Deletes it on the server; what is deleted already, as by an attempt whose response was lost, is no error."""
         try:
             yield from self.calls.request("DELETE", self.path)
         except NotFound:
