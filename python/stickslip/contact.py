@@ -119,7 +119,7 @@ class AnyContact(OfContact, DefinedContact):
 
     def _repr_html_(self) -> str:
         found = self.describe()
-        return f"<b>Contact</b> after {found.sequence} moves{found.state.to_frame().T.to_html(header=False)}"
+        return f"<b>Contact</b> after {found.sequence} moves{found.state._repr_html_()}"
 
 
 def context_of(definition: Mapping[str, Any], request: Mapping[str, Any]) -> dict[str, Any]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from html import escape
 from typing import TYPE_CHECKING, Any, Generic, TypeAlias, TypeVar, overload
 
 import numpy as np
@@ -128,7 +129,10 @@ class Record:
         return f"{self.schema}({', '.join(parts)})"
 
     def _repr_html_(self) -> str:
-        html: str = self.to_frame().to_html(max_rows=20)
+        try:
+            html: str = self.to_frame().to_html(max_rows=20)
+        except ModuleNotFoundError:
+            html = f"<pre>{escape(repr(self))}</pre>"
         return f"<b>{self.schema}</b>{html}"
 
 

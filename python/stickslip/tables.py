@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from typing import Any, Protocol
 
 import numpy as np
+from numpy.typing import NDArray
 
 from . import quantities
 from .errors import Fault, InvalidInput
@@ -30,23 +31,26 @@ def is_table(value: Any) -> bool:
     return hasattr(value, "columns") and hasattr(value, "__getitem__") and not isinstance(value, Mapping)
 
 
-def _names(table: Any) -> list[tuple[Any, str]]:
-    """The columns of a table, and their names with the units that its `attrs` or the columns say."""
+def _columns(table: Any) -> list[tuple[str, NDArray[Any]]]:
+    """The columns of a table, under their names with the units that they, or the `attrs`, have."""
     units = getattr(table, "attrs", {}).get("units", {})
-    named = []
+    columns = []
     for name in table.columns:
+        column = table[name]
         unit = units.get(name) if isinstance(units, Mapping) else units
-        unit = unit or getattr(table[name], "attrs", {}).get("units", {})
-        named.append((name, f"{name} ({unit})" if isinstance(unit, str) and unit else str(name)))
-    return named
+        values, own = quantities.measured(column) or (column, None)
+        if hasattr(values, "to_base_units"):
+            values, own = values.magnitude, f"{values.units:~}"
+        unit = own or unit
+        columns.append((f"{name} ({unit})" if unit else str(name), np.asarray(values)))
+    return columns
 
 
 def as_csv(table: Any) -> bytes:
     """A table as a file, which the importer reads by its rules."""
-    named = _names(table)
-    rows = [";".join(text.replace(";", " ") for _, text in named)]
-    columns = [np.asarray(table[name]).tolist() for name, _ in named]
-    cells = zip(*columns, strict=True)
+    columns = _columns(table)
+    rows = [";".join(text.replace(";", " ") for text, _ in columns)]
+    cells = zip(*(values.tolist() for _, values in columns), strict=True)
     rows += [";".join("" if cell is None or cell != cell else str(cell) for cell in row) for row in cells]
     return "\n".join(rows).encode()
 
@@ -54,11 +58,11 @@ def as_csv(table: Any) -> bytes:
 def columns_in_si(table: Any) -> dict[str, list[float]]:
     """The columns of a table by the names of members, in SI units."""
     columns = {}
-    for name, text in _names(table):
+    for text, values in _columns(table):
         found = _NAMED.fullmatch(text)
         if found is None:
             detail = f'the column "{text}" is not named as a member, such as "displacement (um)"'
-            raise InvalidInput("invalid_input", detail, (Fault(f"/{name}", detail),))
-        values, unit = np.asarray(table[name], dtype=np.float64), quantities.unit_of(found[1], "")
-        columns[found[1]] = quantities.in_si(values, found[2], unit, f"/{found[1]}").tolist()
+            raise InvalidInput("invalid_input", detail, (Fault(f"/{text}", detail),))
+        unit = quantities.unit_of(found[1], "")
+        columns[found[1]] = quantities.in_si(values.astype(float), found[2], unit, f"/{found[1]}").tolist()
     return columns

@@ -106,6 +106,23 @@ def test_a_loop_is_taken_in_every_form() -> None:
         assert fit.estimates["friction"].value == pytest.approx(0.3, rel=1e-6), type(given)
 
 
+def test_columns_of_pint_pandas_keep_their_units(here: ss.Contact) -> None:
+    pytest.importorskip("pint_pandas")
+    u, f = loop()
+    table = pandas.DataFrame(
+        {
+            "displacement": pandas.Series(1e9 * u, dtype="pint[nm]"),
+            "force": pandas.Series(1e3 * f, dtype="pint[mN]"),
+        }
+    )
+    fit = ss.fit_loop(BALL, table, free=["friction", "g_star"])
+    assert fit.estimates["friction"].value == pytest.approx(0.3, rel=1e-6)
+    turns = pandas.Series([10.0, -20.0], dtype="pint[nm]")
+    for given in (turns, pandas.DataFrame({"displacement": turns})):
+        here.path(given)
+        assert here.state.displacement == pytest.approx(-2e-8, rel=1e-14)
+
+
 def test_a_scan_is_taken_in_every_form() -> None:
     x = np.linspace(-7e-5, 7e-5, 41)
     z = -(x**2) / (2.0 * 0.01)
