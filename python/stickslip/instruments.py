@@ -86,8 +86,10 @@ def read_scan(source: str | os.PathLike[str] | bytes, **hints: Any) -> Scan:
     places. What is neither columns of text nor a spreadsheet is read by SurfaceTopography, with the units that the
     file has (`pip install "stickslip[scans]"`).
 
-    Raises:
-        InvalidInput: with the line, the column and the word that is not understood; `unknown_unit` for a unit.
+    Raises
+    ------
+    InvalidInput
+        With the line, the column and the word that is not understood; `unknown_unit` for a unit.
     """
     try:
         found = _read(_native.read_scan, source, hints)
@@ -147,8 +149,10 @@ def read_loop(source: str | os.PathLike[str] | bytes, **hints: Any) -> Loop:
     `displacement_unit`, `force_unit`, `time_unit` and `load_unit` units ("um", "lbf", "min"), `sheet` is that of a
     spreadsheet.
 
-    Raises:
-        InvalidInput: with the line, the column and the word that is not understood; `unknown_unit` for a unit.
+    Raises
+    ------
+    InvalidInput
+        With the line, the column and the word that is not understood; `unknown_unit` for a unit.
     """
     found = _read(_native.read_loop, source, hints)
     return loop_of(found)
