@@ -18,7 +18,7 @@ from .engine import NAMES, answer, request_of
 from .errors import warn
 from .events import read_events_of
 from .exchange import Calls, ContactCalls, Following, Pause, Send, Steps
-from .instruments import Loop, Scan, content_of, hints_of, loop_of, scan_of
+from .instruments import Loop, LoopHints, Scan, ScanHints, content_of, hints_of, loop_of, scan_of
 from .optional import needed
 from .requests import definition as definition_of
 from .result import Record, parse
@@ -145,11 +145,11 @@ class AsyncClient(AsyncComputations):
             if after is None:
                 return
 
-    async def read_loop(self, source: str | os.PathLike[str] | bytes, **hints: Any) -> Loop:
+    async def read_loop(self, source: str | os.PathLike[str] | bytes, **hints: Unpack[LoopHints]) -> Loop:
         """`stickslip.read_loop`, read by the server."""
         return loop_of(await self._run(self._calls.read_file("loop", content_of(source), hints_of(hints))))
 
-    async def read_scan(self, source: str | os.PathLike[str] | bytes, **hints: Any) -> Scan:
+    async def read_scan(self, source: str | os.PathLike[str] | bytes, **hints: Unpack[ScanHints]) -> Scan:
         """`stickslip.read_scan`, read by the server, without the formats of SurfaceTopography."""
         return scan_of(await self._run(self._calls.read_file("scan", content_of(source), hints_of(hints))))
 

@@ -16,7 +16,7 @@ from .engine import Engine, path_of
 from .errors import warn
 from .events import read_events
 from .exchange import Calls, ContactCalls, Following, Pause, Send, Steps
-from .instruments import Loop, Scan, content_of, hints_of, loop_of, scan_of
+from .instruments import Loop, LoopHints, Scan, ScanHints, content_of, hints_of, loop_of, scan_of
 from .optional import needed
 from .requests import definition as definition_of
 from .result import parse
@@ -164,11 +164,11 @@ class Client(Engine):
             if after is None:
                 return
 
-    def read_loop(self, source: str | os.PathLike[str] | bytes, **hints: Any) -> Loop:
+    def read_loop(self, source: str | os.PathLike[str] | bytes, **hints: Unpack[LoopHints]) -> Loop:
         """`stickslip.read_loop`, read by the server."""
         return loop_of(self._run(self._calls.read_file("loop", content_of(source), hints_of(hints))))
 
-    def read_scan(self, source: str | os.PathLike[str] | bytes, **hints: Any) -> Scan:
+    def read_scan(self, source: str | os.PathLike[str] | bytes, **hints: Unpack[ScanHints]) -> Scan:
         """`stickslip.read_scan`, read by the server, without the formats of SurfaceTopography."""
         return scan_of(self._run(self._calls.read_file("scan", content_of(source), hints_of(hints))))
 

@@ -6,7 +6,7 @@ import json
 import os
 from abc import abstractmethod
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 from . import _native, requests
 from .bodies import Material, Shape
@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 
     from .request_types import DefinitionMembers
 
+#: The formats of tables and pictures.
+Format: TypeAlias = Literal["columns", "rows", "csv", "ndjson", "arrow", "svg", "png"]
 #: The path of each computation by its name, and its name by its path.
 PATHS: dict[str, str] = {name: path for name, path in _native.names() if path is not None}
 NAMES = {path: name for name, path in PATHS.items()}
@@ -34,7 +36,7 @@ class Engine(Computations):
         """The reply of a computation to the document of its request, as it is."""
 
     @abstractmethod
-    def compute_bytes(self, name: str, document: Document, format: str = "columns") -> bytes:  # noqa: A002
+    def compute_bytes(self, name: str, document: Document, format: Format = "columns") -> bytes:  # noqa: A002
         """The same as bytes: JSON, or another format of the computation, such as `arrow` or `svg`."""
 
     @abstractmethod
@@ -88,7 +90,7 @@ class Local(Engine):
         found: Document = json.loads(self.compute_bytes(name, document))
         return found
 
-    def compute_bytes(self, name: str, document: Document, format: str = "columns") -> bytes:  # noqa: A002
+    def compute_bytes(self, name: str, document: Document, format: Format = "columns") -> bytes:  # noqa: A002
         """The same as bytes: JSON, or another format of the computation, such as `arrow` or `svg`."""
         if name not in dict(_native.names()):
             path_of(name)

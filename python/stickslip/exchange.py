@@ -17,7 +17,7 @@ from typing import Any, TypeAlias, TypeVar
 
 from . import results
 from .documents import Document, to_document
-from .engine import PATHS, path_of
+from .engine import PATHS, Format, path_of
 from .errors import Fault, InvalidInput, NotFound, ServerError, StickslipError, refusal
 from .optional import needed
 from .result import parse
@@ -141,7 +141,7 @@ class Calls:
         """The reply of a computation to the document of its request, as it is."""
         return self.json("POST", path_of(name), json=to_document(document))
 
-    def compute_bytes(self, name: str, document: Document, format: str = "columns") -> Steps[bytes]:  # noqa: A002
+    def compute_bytes(self, name: str, document: Document, format: Format = "columns") -> Steps[bytes]:  # noqa: A002
         """The same as bytes: JSON, or another format of the computation, such as `arrow` or `svg`."""
         query = {} if format == "columns" else {"format": format}
         response = yield from self.request("POST", path_of(name), json=to_document(document), params=query)

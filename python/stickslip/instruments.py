@@ -8,7 +8,7 @@ import os
 from dataclasses import dataclass, field
 from importlib.util import find_spec
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any, TypedDict
 
 import numpy as np
 
@@ -18,8 +18,53 @@ from .documents import Document
 from .errors import InvalidInput
 from .result import Floats
 
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
 #: The most heights that a fit takes.
 MOST_HEIGHTS = 300_000
+
+
+class ScanHints(TypedDict, total=False):
+    """What is known of the file of a scan; it precedes the header."""
+
+    lateral: str
+    """The unit of places, such as "um", "mil" or "10^-6 m"."""
+    height: str
+    """The unit of heights."""
+    spacing: float
+    """The distance of neighbours in a matrix, in the unit of places."""
+    x: str | int
+    """The column of x, by name or number."""
+    y: str | int
+    """The column of y, by name or number."""
+    z: str | int
+    """The column of heights, by name or number."""
+    sheet: str | int
+    """The sheet of a spreadsheet, by name or number."""
+
+
+class LoopHints(TypedDict, total=False):
+    """What is known of the file of a loop; it precedes the header."""
+
+    displacement: str | int
+    """The column of displacements, by name or number."""
+    force: str | int
+    """The column of tangential forces, by name or number."""
+    time: str | int
+    """The column of times, by name or number."""
+    load: str | int
+    """The column of normal forces, by name or number."""
+    displacement_unit: str
+    """The unit of displacements, such as "um" or "mil"."""
+    force_unit: str
+    """The unit of tangential forces, such as "mN" or "lbf"."""
+    time_unit: str
+    """The unit of times, such as "s" or "min"."""
+    load_unit: str
+    """The unit of normal forces."""
+    sheet: str | int
+    """The sheet of a spreadsheet, by name or number."""
 
 
 @dataclass(frozen=True)
@@ -53,12 +98,12 @@ def content_of(source: str | os.PathLike[str] | bytes) -> bytes:
     return source if isinstance(source, bytes) else Path(source).read_bytes()
 
 
-def hints_of(hints: dict[str, Any]) -> dict[str, Any]:
+def hints_of(hints: ScanHints | LoopHints) -> dict[str, Any]:
     """Hints as the importer takes them: a column may be given by its number."""
     return {name: str(hint) if isinstance(hint, int) and name != "spacing" else hint for name, hint in hints.items()}
 
 
-def _read(read: Any, source: str | os.PathLike[str] | bytes, hints: dict[str, Any]) -> Document:
+def _read(read: Any, source: str | os.PathLike[str] | bytes, hints: ScanHints | LoopHints) -> Document:
     """What the importer of the service finds in a file."""
     found: Document = json.loads(guarded(lambda: read(content_of(source), **hints_of(hints))))
     return found
@@ -78,7 +123,7 @@ def loop_of(found: Document) -> Loop:
     return Loop(found["loop"], found["units"], *_seen(found["preview"]))
 
 
-def read_scan(source: str | os.PathLike[str] | bytes, **hints: Any) -> Scan:
+def read_scan(source: str | os.PathLike[str] | bytes, **hints: Unpack[ScanHints]) -> Scan:
     """Reads a scan from a file or from its bytes.
 
     Hints precede the header: `lateral` and `height` are units ("um", "mil", "10^-6 m"), `x`, `y` and `z` columns by
@@ -142,7 +187,7 @@ def _with_gaps(row: Any) -> list[float | None]:
     return [None if math.isnan(height) else float(height) for height in row]
 
 
-def read_loop(source: str | os.PathLike[str] | bytes, **hints: Any) -> Loop:
+def read_loop(source: str | os.PathLike[str] | bytes, **hints: Unpack[LoopHints]) -> Loop:
     """Reads a loop from a file or from its bytes.
 
     Hints precede the header: `displacement`, `force`, `time` and `load` are columns by name or number,

@@ -56,6 +56,8 @@ WRONG = [
     'ss.RoundedPunch("1 mm", "5 mm")',
     "ss.Contact(ss.Sphere(0.01), [steel, ss.RIGID], 0.3, normal_load=10.0)",
     'ball.subsurface(fields=["mises"])',
+    'ss.read_loop("loop.csv", colour=3)',
+    'ss.compute_bytes("cycle", {}, "pdf")',
 ]
 
 
