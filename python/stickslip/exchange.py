@@ -157,6 +157,8 @@ class Calls:
         job, wait = found["id"], 0.1
         log.info("the sweep runs as the job %s", job)
         while found["state"] not in ("done", "failed"):
+            if wait > LOGGED_WAIT:
+                log.info("the job %s is at %s; the next look is in %.1f s", job, found["progress"], wait)
             yield Pause(wait)
             wait = min(2.0 * wait, 5.0)
             found = yield from self.json("GET", f"/jobs/{job}")

@@ -231,6 +231,14 @@ def test_asyncio_computes_what_the_client_computes(api: ss.Client, here: ss.Cont
     assert count >= 1
 
 
+def test_a_sweep_that_is_a_job_is_waited_for(engine: Any) -> None:
+    base = {"contact": BALL, "path": {"falling_amplitude": 3}, "residual": True}
+    axes, outputs = {"/contact/friction": np.linspace(0.1, 0.3, 5)}, {"remaining": "/residual/relative"}
+    found = engine.sweep(base, axes, outputs, job=True)
+    assert np.array_equal(found.columns["remaining"], ss.sweep(base, axes, outputs).columns["remaining"])
+    assert (len(found), found.points, found.failed) == (5, 5, 0)
+
+
 def test_limits_are_those_in_process(ball: ss.Contact, here: ss.Contact) -> None:
     for contact in (ball, here):
         contact.path([8e-8, -5e-8])
