@@ -91,10 +91,11 @@ class Computations(ABC):
         Examples
         --------
         >>> import stickslip as ss
-        >>> request = {'contact': {'friction': 0.3, 'material': {'bodies': [{'poisson_ratio': 0.3, 'youngs_modulus':
-        ...     210000000000.0}, 'rigid']}, 'preload': {'normal_force': 10.0}, 'profile': {'radius': 0.01, 'type':
-        ...     'sphere'}}, 'falling_amplitude': {'reversals': 20}}
-        >>> reply = ss.accuracy(**request)
+        >>> reply = ss.accuracy(
+        ...     contact=ss.Definition(ss.Sphere(radius=0.01), [ss.Body(2.1e+11, 0.3), ss.RIGID], 0.3,
+        ...         normal_force=10.0),
+        ...     falling_amplitude={'reversals': 20},
+        ... )
         """
         given: Document = {
             "contact": contact,
@@ -183,10 +184,12 @@ class Computations(ABC):
         Examples
         --------
         >>> import stickslip as ss
-        >>> request = {'contact': {'friction': 0.3, 'material': {'bodies': [{'poisson_ratio': 0.3, 'youngs_modulus':
-        ...     210000000000.0}, 'rigid']}, 'preload': {'normal_force': 10.0}, 'profile': {'radius': 0.01, 'type':
-        ...     'sphere'}}, 'displacement': [5e-08, 1e-07, 2e-07], 'harmonics': 1}
-        >>> reply = ss.cycle(**request)
+        >>> reply = ss.cycle(
+        ...     contact=ss.Definition(ss.Sphere(radius=0.01), [ss.Body(2.1e+11, 0.3), ss.RIGID], 0.3,
+        ...         normal_force=10.0),
+        ...     displacement=[5e-08, 1e-07, 2e-07],
+        ...     harmonics=1,
+        ... )
         """
         given: Document = {
             "best_load": best_load,
@@ -259,15 +262,18 @@ class Computations(ABC):
         Examples
         --------
         >>> import stickslip as ss
-        >>> request = {'contact': {'friction': 0.2, 'material': {'bodies': [{'poisson_ratio': 0.3, 'youngs_modulus':
-        ...     210000000000.0}, 'rigid']}, 'preload': {'normal_force': 10.0}, 'profile': {'radius': 0.01, 'type':
-        ...     'sphere'}}, 'free': ['friction', 'g_star'], 'known': {'machine_compliance': {'value': 0.0}}, 'loops':
-        ...     [{'displacement': [0.2583, 0.2152, 0.1722, 0.1291, 0.0861, 0.043, 0.0, -0.043, -0.0861, -0.1291,
-        ...     -0.1722, -0.2152, -0.2583, -0.2152, -0.1722, -0.1291, -0.0861, -0.043, 0.0, 0.043, 0.0861, 0.1291,
-        ...     0.1722, 0.2152, 0.2583], 'force': [3.001, 1.923, 0.888, -0.025, -0.881, -1.625, -2.231, -2.733, -3.0,
-        ...     -2.993, -2.989, -3.0, -2.994, -1.921, -0.901, 0.031, 0.865, 1.607, 2.234, 2.732, 2.998, 2.997, 3.001,
-        ...     2.987, 2.999], 'start': 'steady'}], 'units': {'displacement': 'um', 'force': 'N'}}
-        >>> reply = ss.fit_loop(**request)
+        >>> reply = ss.fit_loop(
+        ...     contact=ss.Definition(ss.Sphere(radius=0.01), [ss.Body(2.1e+11, 0.3), ss.RIGID], 0.2,
+        ...         normal_force=10.0),
+        ...     loops=[{'displacement': [0.2583, 0.2152, 0.1722, 0.1291, 0.0861, 0.043, 0.0, -0.043, -0.0861,
+        ...         -0.1291, -0.1722, -0.2152, -0.2583, -0.2152, -0.1722, -0.1291, -0.0861, -0.043, 0.0, 0.043, 0.0861,
+        ...         0.1291, 0.1722, 0.2152, 0.2583], 'force': [3.001, 1.923, 0.888, -0.025, -0.881, -1.625, -2.231,
+        ...         -2.733, -3.0, -2.993, -2.989, -3.0, -2.994, -1.921, -0.901, 0.031, 0.865, 1.607, 2.234, 2.732,
+        ...         2.998, 2.997, 3.001, 2.987, 2.999], 'start': 'steady'}],
+        ...     free=['friction', 'g_star'],
+        ...     known={'machine_compliance': {'value': 0.0}},
+        ...     units={'displacement': 'um', 'force': 'N'},
+        ... )
         """
         given: Document = {
             "contact": contact,
@@ -390,12 +396,14 @@ class Computations(ABC):
         Examples
         --------
         >>> import stickslip as ss
-        >>> request = {'body': 'first', 'contact': {'friction': 0.3, 'material': {'bodies': [{'poisson_ratio': 0.3,
-        ...     'youngs_modulus': 210000000000.0}, 'rigid']}, 'preload': {'normal_force': 10.0}, 'profile': {'radius':
-        ...     0.01, 'type': 'sphere'}}, 'crossland': {'alpha': 0.3, 'limit': 300000000.0}, 'cycles': {'count': 1,
-        ...     'displacement': 1e-07}, 'plane': {'normal': 'y', 'offset': 0.0, 'x': [-0.00012, 0.00012, 25], 'z': [0.0,
-        ...     6e-05, 7]}}
-        >>> reply = ss.fretting(**request)
+        >>> reply = ss.fretting(
+        ...     contact=ss.Definition(ss.Sphere(radius=0.01), [ss.Body(2.1e+11, 0.3), ss.RIGID], 0.3,
+        ...         normal_force=10.0),
+        ...     crossland={'alpha': 0.3, 'limit': 300000000.0},
+        ...     cycles={'count': 1, 'displacement': 1e-07},
+        ...     body='first',
+        ...     plane={'normal': 'y', 'offset': 0.0, 'x': [-0.00012, 0.00012, 25], 'z': [0.0, 6e-05, 7]},
+        ... )
         """
         given: Document = {
             "body": body,
@@ -482,12 +490,14 @@ class Computations(ABC):
         Examples
         --------
         >>> import stickslip as ss
-        >>> request = {'load': {'friction': 0.3, 'material': {'bodies': [{'poisson_ratio': 0.3, 'youngs_modulus':
-        ...     210000000000.0}, 'rigid']}, 'preload': {'normal_force': 1.0}}, 'scan': {'line': {'x': [-70.0, -60.0,
-        ...     -50.0, -40.0, -30.0, -20.0, -10.0, 0.0, 10.0, 20.0, 30.0, 40.0, 50.0, 60.0, 70.0], 'z': [-245.2, -179.7,
-        ...     -125.3, -79.6, -45.3, -20.4, -4.6, 0.3, -5.1, -19.8, -44.7, -80.2, -124.9, -180.4, None]}}, 'units':
-        ...     {'height': 'nm', 'lateral': 'um'}}
-        >>> reply = ss.fit_profile(**request)
+        >>> reply = ss.fit_profile(
+        ...     scan={'line': {'x': [-70.0, -60.0, -50.0, -40.0, -30.0, -20.0, -10.0, 0.0, 10.0, 20.0, 30.0, 40.0,
+        ...         50.0, 60.0, 70.0], 'z': [-245.2, -179.7, -125.3, -79.6, -45.3, -20.4, -4.6, 0.3, -5.1, -19.8, -44.7,
+        ...         -80.2, -124.9, -180.4, None]}},
+        ...     load={'friction': 0.3, 'material': {'bodies': [{'poisson_ratio': 0.3, 'youngs_modulus':
+        ...         210000000000.0}, 'rigid']}, 'preload': {'normal_force': 1.0}},
+        ...     units={'height': 'nm', 'lateral': 'um'},
+        ... )
         """
         given: Document = {
             "centre": centre,
@@ -553,10 +563,13 @@ class Computations(ABC):
         Examples
         --------
         >>> import stickslip as ss
-        >>> request = {'contact': {'friction': 0.3, 'material': {'bodies': [{'poisson_ratio': 0.3, 'youngs_modulus':
-        ...     210000000000.0}, 'rigid']}, 'preload': {'normal_force': 10.0}, 'profile': {'radius': 0.01, 'type':
-        ...     'sphere'}}, 'end': 'free', 'kind': 'minimax', 'reversals': 20}
-        >>> reply = ss.protocols(**request)
+        >>> reply = ss.protocols(
+        ...     contact=ss.Definition(ss.Sphere(radius=0.01), [ss.Body(2.1e+11, 0.3), ss.RIGID], 0.3,
+        ...         normal_force=10.0),
+        ...     reversals=20,
+        ...     end='free',
+        ...     kind='minimax',
+        ... )
         """
         given: Document = {
             "contact": contact,
@@ -643,10 +656,13 @@ class Computations(ABC):
         Examples
         --------
         >>> import stickslip as ss
-        >>> request = {'contact': {'friction': 0.3, 'material': {'bodies': [{'poisson_ratio': 0.3, 'youngs_modulus':
-        ...     210000000000.0}, 'rigid']}, 'preload': {'normal_force': 10.0}, 'profile': {'radius': 0.01, 'type':
-        ...     'sphere'}}, 'falling_amplitude': {'reversals': 20}, 'residual': True, 'stress': {'points': 200}}
-        >>> reply = ss.simulate(**request)
+        >>> reply = ss.simulate(
+        ...     contact=ss.Definition(ss.Sphere(radius=0.01), [ss.Body(2.1e+11, 0.3), ss.RIGID], 0.3,
+        ...         normal_force=10.0),
+        ...     falling_amplitude={'reversals': 20},
+        ...     residual=True,
+        ...     stress={'points': 200},
+        ... )
         """
         given: Document = {
             "contact": contact,
@@ -713,12 +729,14 @@ class Computations(ABC):
         Examples
         --------
         >>> import stickslip as ss
-        >>> request = {'axes': [{'linear': {'count': 100, 'from': 1, 'to': 100}, 'pointer':
-        ...     '/path/falling_amplitude/reversals'}], 'base': {'contact': {'friction': 0.3, 'material': {'bodies':
-        ...     [{'poisson_ratio': 0.3, 'youngs_modulus': 210000000000.0}, 'rigid']}, 'preload': {'normal_force': 10.0},
-        ...     'profile': {'radius': 0.01, 'type': 'sphere'}}, 'path': {'falling_amplitude': {'reversals': 20}},
-        ...     'residual': True, 'steps': 'last'}, 'outputs': ['/residual/max']}
-        >>> reply = ss.sweep(**request)
+        >>> reply = ss.sweep(
+        ...     base={'contact': {'friction': 0.3, 'material': {'bodies': [{'poisson_ratio': 0.3, 'youngs_modulus':
+        ...         210000000000.0}, 'rigid']}, 'preload': {'normal_force': 10.0}, 'profile': {'radius': 0.01, 'type':
+        ...         'sphere'}}, 'path': {'falling_amplitude': {'reversals': 20}}, 'residual': True, 'steps': 'last'},
+        ...     axes=[{'linear': {'count': 100, 'from': 1, 'to': 100}, 'pointer':
+        ...         '/path/falling_amplitude/reversals'}],
+        ...     outputs=['/residual/max'],
+        ... )
         """
         given: Document = {
             "axes": axes,

@@ -255,7 +255,7 @@ def profiles_file(api: Schema) -> str:
     ]
     names = []
     for kind, reference in sorted(mapping.items()):
-        name = "".join(word.capitalize() for word in kind.split("_"))
+        name = class_name(kind)
         names.append(name)
         text += dataclass(name, "Profile", schemas[reference.rpartition("/")[2]], schemas, f'"{kind}"')
     for name, schema in PLACES.items():
@@ -292,6 +292,10 @@ def definition(schemas: Schema) -> list[str]:
         text += [f"    {name}: {type_of(what, schemas, 'types.')} | None = None"]
         text += [wrapped(what.get("description", name), "    ")]
     return [*text, ""]
+
+
+def class_name(kind: str) -> str:
+    return "".join(word.capitalize() for word in kind.split("_"))
 
 
 def dataclass(name: str, base: str, schema: Schema, schemas: Schema, kind: str = "") -> list[str]:
@@ -454,10 +458,42 @@ class Method:
                 keywords |= {inner: item for inner, item in value.items() if inner in self.keywords}
             else:
                 keywords[name] = value
-        lines = ["import stickslip as ss", f"request = {keywords!r}"]
-        wrapped_lines = textwrap.wrap(lines[1], 104, break_long_words=False, break_on_hyphens=False)
-        shown_lines = [f">>> {lines[0]}", f">>> {wrapped_lines[0]}", *(f"...     {line}" for line in wrapped_lines[1:])]
-        return [*shown_lines, f">>> reply = ss.{self.name}(**request)"]
+        lines = [">>> import stickslip as ss", f">>> reply = ss.{self.name}("]
+        for name in (name for name in self.order() if name in keywords):
+            value = keywords[name]
+            shown_value = contact_code(value) if name == "contact" else repr(value)
+            line = f"{name}={shown_value},"
+            wrapped_lines = textwrap.wrap(line, 100, break_long_words=False, break_on_hyphens=False)
+            lines += [f"...     {wrapped_lines[0]}", *(f"...         {rest}" for rest in wrapped_lines[1:])]
+        return [*lines, "... )"]
+
+
+def profile_code(profile: dict[str, Any]) -> str:
+    """The shape of a document as it is written with the package."""
+    members = {name: value for name, value in profile.items() if name != "type"}
+    if "parts" in members:
+        return f"ss.Sum([{', '.join(profile_code(part) for part in members['parts'])}])"
+    given = ", ".join(f"{name}={value!r}" for name, value in members.items())
+    return f"ss.{class_name(profile['type'])}({given})"
+
+
+def contact_code(contact: dict[str, Any]) -> str:
+    """The definition of a document as it is written with the package."""
+    material = contact["material"]
+    if "bodies" in material:
+        bodies = ", ".join(
+            "ss.RIGID" if body == "rigid" else f"ss.Body({body['youngs_modulus']:g}, {body['poisson_ratio']!r})"
+            for body in material["bodies"]
+        )
+        bodies = f"[{bodies}]"
+    else:
+        effective = material["effective"]
+        bodies = f"ss.Moduli({effective['e_star']:g}, {effective['g_star']:g})"
+    rest = {
+        name: value for name, value in contact.items() if name not in ("profile", "material", "friction", "preload")
+    }
+    load = ", ".join(f"{name}={value!r}" for name, value in (contact["preload"] | rest).items())
+    return f"ss.Definition({profile_code(contact['profile'])}, {bodies}, {contact['friction']!r}, {load})"
 
 
 #: Members whose one number may stand for the whole object, in the order in which they are looked for.
