@@ -74,7 +74,12 @@ def to_document(value: Any, name: str = "", parent: str = "", place: str = "") -
         if array.dtype.kind == "f":
             _all_finite(array, place)
         return array.tolist()
-    return value
+    if hasattr(value, "isoformat"):
+        return value.isoformat()
+    if hasattr(value, "__float__"):
+        return _finite(float(value), place)
+    detail = f"{value!r} is neither a number nor a text, an array or a part of a request"
+    raise InvalidInput("invalid_input", detail, (Fault(place, detail),))
 
 
 def floats(value: Any, name: str) -> NDArray[np.float64]:

@@ -46,12 +46,17 @@ def _columns(table: Any) -> list[tuple[str, NDArray[Any]]]:
     return columns
 
 
+def _is_missing(cell: Any) -> bool:
+    """Whether there is no value: None, NaN, or what pandas has for one of any kind."""
+    return cell is None or type(cell).__name__ in ("NAType", "NaTType") or bool(cell != cell)
+
+
 def as_csv(table: Any) -> bytes:
     """A table as a file, which the importer reads by its rules."""
     columns = _columns(table)
     rows = [";".join(text.replace(";", " ") for text, _ in columns)]
     cells = zip(*(values.tolist() for _, values in columns), strict=True)
-    rows += [";".join("" if cell is None or cell != cell else str(cell) for cell in row) for row in cells]
+    rows += [";".join("" if _is_missing(cell) else str(cell) for cell in row) for row in cells]
     return "\n".join(rows).encode()
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from datetime import datetime, timezone
+from decimal import Decimal
 from typing import Any
 
 import numpy as np
@@ -182,6 +184,25 @@ def test_a_text_that_says_no_number_is_refused_where_a_number_is_expected(text: 
     with pytest.raises(ss.InvalidInput) as refused:
         to_document({"profile": {"radius": text}})
     assert refused.value.pointer == "/profile/radius"
+
+
+def test_what_is_no_part_of_a_request_is_refused_at_its_place(here: ss.Contact) -> None:
+    for wrong in (object(), {1e-8}, [1e-8, object()], pandas.Series([1e-8, None], dtype="Float64")):
+        with pytest.raises(ss.InvalidInput) as refused:
+            here.path(wrong)  # type: ignore[arg-type]
+        assert str(refused.value.pointer).startswith("/path/displacement")
+    assert to_document({"radius": Decimal("0.01"), "at": datetime(2026, 11, 26, tzinfo=timezone.utc)}) == {
+        "radius": 0.01,
+        "at": "2026-11-26T00:00:00+00:00",
+    }
+
+
+def test_missing_cells_of_a_table_are_left_out() -> None:
+    u, f = loop()
+    table = pandas.DataFrame({"displacement (um)": 1e6 * u, "force (N)": f}).astype("Float64")
+    table.loc[3, "force (N)"] = pandas.NA
+    found, _ = requests.loops(table, None)
+    assert len(found[0]["force"]) == len(f) - 1
 
 
 def test_a_number_that_is_missing_is_refused_at_its_place(ball: ss.Contact) -> None:
