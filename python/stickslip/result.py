@@ -251,8 +251,12 @@ def as_column(values: list[Any]) -> NDArray[Any]:
 
 def _read(value: Any, kind: str, context: Mapping[str, Any]) -> Any:
     """The attribute of a JSON value: `kind` as `schemas.FIELDS` has it."""
-    if value is None or not kind:
-        return value
+    if value is None:
+        return None
+    if not kind:
+        # A pair where others of its kind are one number, such as a force in the plane.
+        is_pair = isinstance(value, list) and bool(value) and all(isinstance(one, int | float) for one in value)
+        return np.array(value, dtype=np.float64) if is_pair else value
     if kind == "[]":
         return np.array(value, dtype=np.float64)
     if kind in ("#", "?"):

@@ -163,6 +163,12 @@ def test_a_column_keeps_the_kind_of_its_values() -> None:
     assert as_column(["a", "b"]).dtype.kind == "U"
     assert as_column(["a", None]).tolist() == ["a", None]
     assert as_column([[1.0, 2.0], [3.0, 4.0]]).shape == (2, 2)
+    # In the plane a state has pairs: two columns, and an array for one state.
+    states = ss.Rows[results.State]("State", [{"force": [1.0, 2.0], "memory_depth": 1}, {"force": [3.0, 4.0]}])
+    assert states.force.shape == (2, 2)
+    assert list(states.table()[0]) == ["force_x", "force_y", "memory_depth"]
+    assert states.table()[1]["force_y"] == "N"
+    assert states[1].force.tolist() == [3.0, 4.0]
 
 
 def returned(hint: Any, into: set[str]) -> None:

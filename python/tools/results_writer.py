@@ -55,7 +55,7 @@ def kind(schema: Schema, records: set[str]) -> str:
     schema = without_null(schema)
     if name_of(schema) in records:
         return name_of(schema)
-    if "array" in kinds(schema):
+    if "array" in kinds(schema) and "number" not in kinds(schema):
         inner = schema["items"]
         if name_of(inner) in records:
             return f"[{name_of(inner)}]"
@@ -122,6 +122,8 @@ def annotation(schema: Schema, records: set[str], classes: set[str], enums: set[
     single = [scalars[one] for one in kinds(schema) if one in scalars]
     if "array" in kinds(schema) and not single:
         return "list[Any]" + null
+    if single == ["float"] and "array" in kinds(schema):
+        return "float | Floats" + null
     return (single[0] if len(single) == 1 and "array" not in kinds(schema) else "Any") + null
 
 
