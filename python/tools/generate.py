@@ -11,8 +11,9 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parent))
 
+from methods_writer import functions_file, methods_file
 from openapi_schemas import ROOT, document, fields
-from requests_writer import functions_file, members_file, methods_file, profiles_file, types_file
+from requests_writer import members_file, profiles_file, types_file
 from results_writer import reply_schemas, result_classes, results_file, schemas_file
 
 __all__ = ["FILES", "fields", "reply_schemas", "result_classes"]
