@@ -26,9 +26,7 @@ def compute():
     from SurfaceTopography.Generation import fourier_synthesis
 
     numpy.random.seed(1)
-    surface = fourier_synthesis(
-        (128, 128), (SIDE, SIDE), 0.8, rms_slope=0.05, short_cutoff=8e-6, long_cutoff=5e-5
-    )
+    surface = fourier_synthesis((128, 128), (SIDE, SIDE), 0.8, rms_slope=0.05, short_cutoff=8e-6, long_cutoff=5e-5)
     pressures = numpy.geomspace(1e-5, 1e-2, 25)
     pressure, _, _, gap, converged = surface.contact_mechanics(pressures=list(pressures), maxiter=2000)
     assert all(converged)

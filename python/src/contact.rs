@@ -82,6 +82,11 @@ impl Contact {
         PyBytes::new(py, document.to_string().as_bytes())
     }
 
+    /// The warnings of its definition, as JSON text.
+    fn warnings(&self) -> String {
+        json!(present_warnings(&self.state)).to_string()
+    }
+
     /// The definition, as GET /contacts/{id}/definition replies.
     fn definition(&self) -> String {
         json!(self.definition).to_string()

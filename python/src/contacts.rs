@@ -3,13 +3,13 @@
 use std::panic::resume_unwind;
 use std::thread;
 
+use numpy::{PyArray1, PyReadonlyArray1};
 use pyo3::exceptions::PyIndexError;
 use pyo3::prelude::*;
-use pyo3::types::PyByteArray;
 use serde_json::json;
 use stickslip_compute::Refusal;
 use stickslip_compute::Stop;
-use stickslip_compute::simulation::{self, Anew};
+use stickslip_compute::simulation::{self, Anew, present_warnings};
 use stickslip_mechanics::range::{self, Range};
 use stickslip_mechanics::{Contact, Error, Move, Normal, Tangential};
 use stickslip_wire::Code;
@@ -24,8 +24,12 @@ const PROBE: f64 = 1e-12;
 /// Contacts that are worth a thread of their own.
 const LEAST_SHARE: usize = 256;
 
-/// Two arrays of `f64` in the order of the contacts.
-type Pair<'py> = (Bound<'py, PyByteArray>, Bound<'py, PyByteArray>);
+/// Two arrays in the order of the contacts.
+type Pair<'py> = (Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>);
+/// An array of a caller: of one number for each contact, or of one for all.
+type Numbers<'py> = PyReadonlyArray1<'py, f64>;
+/// Normal and tangential numbers of the contacts.
+type Columns = [Vec<f64>; 2];
 
 /// Contacts that are stepped together.
 #[pyclass(module = "stickslip._native")]
@@ -49,18 +53,28 @@ impl Contacts {
     }
 
     /// Moves every contact straight to its indentation and displacement, m; returns normal and tangential forces, N.
-    fn step<'py>(&mut self, py: Python<'py>, indentation: &[u8], displacement: &[u8]) -> PyResult<Pair<'py>> {
-        let targets = self.targets(indentation, displacement).map_err(refused)?;
+    fn step<'py>(
+        &mut self,
+        py: Python<'py>,
+        indentation: Numbers<'_>,
+        displacement: Numbers<'_>,
+    ) -> PyResult<Pair<'py>> {
+        let targets = self.targets(&indentation, &displacement).map_err(refused)?;
         self.trial.clear();
         let threads = self.threads;
         let contacts = &mut self.committed;
         let forces = py.detach(|| move_all(contacts, &targets, threads));
-        Ok(pair(py, &forces.map_err(refused)?))
+        Ok(pair(py, forces.map_err(refused)?))
     }
 
     /// The forces that such a step would lead to, from the committed states; it is kept until `commit` or `revert`.
-    fn trial<'py>(&mut self, py: Python<'py>, indentation: &[u8], displacement: &[u8]) -> PyResult<Pair<'py>> {
-        let targets = self.targets(indentation, displacement).map_err(refused)?;
+    fn trial<'py>(
+        &mut self,
+        py: Python<'py>,
+        indentation: Numbers<'_>,
+        displacement: Numbers<'_>,
+    ) -> PyResult<Pair<'py>> {
+        let targets = self.targets(&indentation, &displacement).map_err(refused)?;
         let (committed, mut trial, threads) = (&self.committed, std::mem::take(&mut self.trial), self.threads);
         let (trial, forces) = py.detach(|| {
             trial.clone_from(committed);
@@ -69,7 +83,7 @@ impl Contacts {
         });
         let forces = forces.map_err(refused)?;
         self.trial = trial;
-        Ok(pair(py, &forces))
+        Ok(pair(py, forces))
     }
 
     /// Makes the states of the last trial the committed ones; returns whether there was a trial.
@@ -89,7 +103,10 @@ impl Contacts {
 
     /// Normal and tangential forces, N, of the committed states.
     fn forces<'py>(&self, py: Python<'py>) -> Pair<'py> {
-        pair(py, &self.committed.iter().map(|contact| [contact.normal_force(), contact.force()]).collect::<Vec<_>>())
+        pair(
+            py,
+            self.committed.iter().map(|contact| (contact.normal_force(), contact.force())).collect::<(_, _)>().into(),
+        )
     }
 
     /// Normal stiffness, and tangential stiffness of a displacement that goes on upwards or downwards, N/m, of the last
@@ -97,10 +114,14 @@ impl Contacts {
     fn stiffness<'py>(&self, py: Python<'py>, upwards: bool) -> PyResult<Pair<'py>> {
         let contacts = if self.trial.is_empty() { &self.committed } else { &self.trial };
         let direction = if upwards { 1.0 } else { -1.0 };
-        let all =
-            py.detach(|| contacts.iter().map(|contact| stiffness(contact, direction)).collect::<Result<Vec<_>, _>>());
+        let all = py.detach(|| {
+            contacts
+                .iter()
+                .map(|contact| stiffness(contact, direction))
+                .collect::<Result<(Vec<f64>, Vec<f64>), Error>>()
+        });
         let refusal = |error: Error| refused(Refusal::new(Code::InvalidInput, error.to_string()));
-        Ok(pair(py, &all.map_err(refusal)?))
+        Ok(pair(py, all.map_err(refusal)?.into()))
     }
 
     /// The committed state of one contact as JSON text.
@@ -114,11 +135,16 @@ impl Contacts {
     fn memory(&self) -> usize {
         self.committed.iter().map(Contact::memory_bytes).sum()
     }
+
+    /// The warnings of their definition, as JSON text.
+    fn warnings(&self) -> String {
+        json!(self.committed.first().map(present_warnings).unwrap_or_default()).to_string()
+    }
 }
 
 impl Contacts {
     /// The targets of a step, all within their ranges: a step that is refused has moved no contact.
-    fn targets(&self, indentation: &[u8], displacement: &[u8]) -> Result<Vec<[f64; 2]>, Refusal> {
+    fn targets(&self, indentation: &Numbers<'_>, displacement: &Numbers<'_>) -> Result<Vec<[f64; 2]>, Refusal> {
         let count = self.committed.len();
         let indentation = numbers("/indentation", indentation, count, &range::INDENTATION)?;
         let displacement = numbers("/displacement", displacement, count, &range::DISPLACEMENT)?;
@@ -143,14 +169,18 @@ fn first(body: &[u8], stop: &dyn Stop) -> Result<Contact, Refusal> {
     Ok(simulation::contact(setup, "")?)
 }
 
-/// The numbers of an array, one for each contact.
-fn numbers(pointer: &str, bytes: &[u8], count: usize, range: &Range) -> Result<Vec<f64>, Refusal> {
-    let (chunks, rest) = bytes.as_chunks();
-    if !rest.is_empty() || chunks.len() != count {
-        let detail = format!("{} elements: allowed are exactly {count}", chunks.len());
-        return Err(Refusal::at(Code::InvalidInput, pointer, detail));
-    }
-    let numbers: Vec<f64> = chunks.iter().map(|bytes| f64::from_ne_bytes(*bytes)).collect();
+/// The numbers of an array, one for each contact; they are read once, so that a caller who goes on writing to the array
+/// changes no number that has been checked.
+fn numbers(pointer: &str, given: &Numbers<'_>, count: usize, range: &Range) -> Result<Vec<f64>, Refusal> {
+    let given = given.as_array();
+    let numbers = match given.len() {
+        1 => vec![given[0]; count],
+        length if length == count => given.to_vec(),
+        length => {
+            let detail = format!("{length} elements: allowed are 1 and {count}");
+            return Err(Refusal::at(Code::InvalidInput, pointer, detail));
+        }
+    };
     match numbers.iter().position(|number| !range.contains(*number)) {
         None => Ok(numbers),
         Some(index) => {
@@ -161,30 +191,42 @@ fn numbers(pointer: &str, bytes: &[u8], count: usize, range: &Range) -> Result<V
 }
 
 /// Moves the contacts to their targets on so many threads.
-fn move_all(contacts: &mut [Contact], targets: &[[f64; 2]], threads: usize) -> Result<Vec<[f64; 2]>, Refusal> {
-    let mut forces = vec![[0.0; 2]; contacts.len()];
+fn move_all(contacts: &mut [Contact], targets: &[[f64; 2]], threads: usize) -> Result<Columns, Refusal> {
+    let [mut normal, mut tangential] = [vec![0.0; contacts.len()], vec![0.0; contacts.len()]];
     let share = contacts.len().div_ceil(threads).max(LEAST_SHARE);
     if contacts.len() <= share {
-        return move_share(contacts, targets, &mut forces).map(|()| forces).map_err(unexpected);
+        return move_share(contacts, targets, &mut normal, &mut tangential)
+            .map(|()| [normal, tangential])
+            .map_err(unexpected);
     }
-    let parts = contacts.chunks_mut(share).zip(targets.chunks(share)).zip(forces.chunks_mut(share));
+    let forces = normal.chunks_mut(share).zip(tangential.chunks_mut(share));
+    let parts = contacts.chunks_mut(share).zip(targets.chunks(share)).zip(forces);
     thread::scope(|scope| {
-        let spawn = |((contacts, targets), forces)| scope.spawn(move || move_share(contacts, targets, forces));
-        let threads: Vec<_> = parts.map(spawn).collect();
+        let threads: Vec<_> = parts
+            .map(|((contacts, targets), (normal, tangential))| {
+                scope.spawn(move || move_share(contacts, targets, normal, tangential))
+            })
+            .collect();
         threads.into_iter().try_for_each(|thread| thread.join().unwrap_or_else(|panic| resume_unwind(panic)))
     })
     .map_err(unexpected)?;
-    Ok(forces)
+    Ok([normal, tangential])
 }
 
-fn move_share(contacts: &mut [Contact], targets: &[[f64; 2]], forces: &mut [[f64; 2]]) -> Result<(), Error> {
-    for ((contact, [depth, displacement]), forces) in contacts.iter_mut().zip(targets).zip(forces) {
+fn move_share(
+    contacts: &mut [Contact],
+    targets: &[[f64; 2]],
+    normal: &mut [f64],
+    tangential: &mut [f64],
+) -> Result<(), Error> {
+    let forces = normal.iter_mut().zip(tangential);
+    for ((contact, [depth, displacement]), (normal, tangential)) in contacts.iter_mut().zip(targets).zip(forces) {
         contact.apply(&Move {
             tangential: Some(Tangential::Displacement(*displacement)),
             normal: Some(Normal::Indentation(*depth)),
             relative: false,
         })?;
-        *forces = [contact.normal_force(), contact.force()];
+        (*normal, *tangential) = (contact.normal_force(), contact.force());
     }
     Ok(())
 }
@@ -196,24 +238,20 @@ fn unexpected(error: Error) -> Refusal {
 
 /// Normal and tangential stiffness, N/m: each spring that does not slip adds its own, so that the tangential one is
 /// that of a punch as large as the part that sticks.
-fn stiffness(contact: &Contact, direction: f64) -> Result<[f64; 2], Error> {
+fn stiffness(contact: &Contact, direction: f64) -> Result<(f64, f64), Error> {
     let elasticity = contact.elasticity();
     let normal = 2.0 * elasticity.e_star() * contact.contact_radius();
     let probe = direction * PROBE * contact.gross_slip_displacement();
     if probe == 0.0 {
-        return Ok([normal, 0.0]);
+        return Ok((normal, 0.0));
     }
     let mut moved = contact.clone();
     let tangential = Some(Tangential::Displacement(probe));
     moved.apply(&Move { tangential, normal: None, relative: true })?;
-    Ok([normal, 2.0 * elasticity.g_star() * moved.state().stick_radius])
+    Ok((normal, 2.0 * elasticity.g_star() * moved.state().stick_radius))
 }
 
-/// Pairs of numbers as two arrays.
-fn pair<'py>(py: Python<'py>, numbers: &[[f64; 2]]) -> Pair<'py> {
-    let column = |index: usize| {
-        let bytes: Vec<u8> = numbers.iter().flat_map(|pair| pair[index].to_ne_bytes()).collect();
-        PyByteArray::new(py, &bytes)
-    };
-    (column(0), column(1))
+/// Two columns as arrays, which own the numbers without a copy.
+fn pair<'py>(py: Python<'py>, [normal, tangential]: Columns) -> Pair<'py> {
+    (PyArray1::from_vec(py, normal), PyArray1::from_vec(py, tangential))
 }

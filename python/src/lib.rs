@@ -1,5 +1,5 @@
 //! The native module of the Python package: computations, contacts, the command line and the server, without a process
-//! or a copy of their own. Documents go in and come out as JSON text, arrays as bytes of `f64`; the Python side makes
+//! or a copy of their own. Documents go in and come out as JSON text, arrays as arrays of NumPy; the Python side makes
 //! objects of them. The command line and the server come with the feature `server`, on Linux alone.
 
 #[cfg(all(feature = "server", target_os = "linux"))]
@@ -38,4 +38,7 @@ mod _native {
     use super::server::Server;
     #[pymodule_export]
     use super::sweep::Sweep;
+    /// The version of the package.
+    #[pymodule_export]
+    const VERSION: &str = env!("CARGO_PKG_VERSION");
 }

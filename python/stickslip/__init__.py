@@ -15,7 +15,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from .bodies import RIGID, Body, Definition, Moduli
+from . import functions, profiles
+from ._native import VERSION as __version__
+from .bodies import RIGID, Body, Moduli
 from .contact import Contact
 from .contacts import Contacts
 from .engine import Engine, Local
@@ -31,49 +33,33 @@ from .errors import (
     StickslipWarning,
     TooMuchWork,
 )
+from .functions import *
 from .instruments import Loop, Scan, read_loop, read_scan
-from .profiles import (
-    Asperities,
-    Cone,
-    Ellipsoid,
-    ExactSphere,
-    FlatPunch,
-    LoadCurve,
-    PowerLaw,
-    Profile,
-    RoundedCone,
-    RoundedPunch,
-    Sphere,
-    Sum,
-    Tabulated,
-    TruncatedCone,
-    TruncatedSphere,
-)
-from .result import Result
+from .profiles import *
+from .result import Named, Record, Result, Rows
 
 if TYPE_CHECKING:
     from .client import Client, RemoteContact
     from .server import ServedClient
 
-_local = Local()
-compute = _local.compute
-compute_bytes = _local.compute_bytes
-simulate = _local.simulate
-cycle = _local.cycle
-fretting = _local.fretting
-wear = _local.wear
-protocols = _local.protocols
-accuracy = _local.accuracy
-fit_loop = _local.fit_loop
-fit_profile = _local.fit_profile
-sweep = _local.sweep
 
+def connect(url: str, key: str | None = None, *, timeout: float = 90.0, retries: int = 4) -> Client:
+    """A client of the service at a URL, with the same methods as this module.
 
-def connect(url: str, key: str | None = None, **options: Any) -> Client:
-    """A client of the service at a URL, with the same methods as this module."""
+    Parameters
+    ----------
+    url : str
+        Where the service is, such as `http://localhost:8080`.
+    key : str
+        A key of access, if the service asks for one.
+    timeout : float
+        How long to wait for a reply, s.
+    retries : int
+        How often a request is repeated if the service is busy or cannot be reached.
+    """
     from .client import Client
 
-    return Client(url, key, **options)
+    return Client(url, key, timeout=timeout, retries=retries)
 
 
 def serve(store: str = "memory:", port: int = 0) -> ServedClient:
@@ -93,56 +79,35 @@ def __getattr__(name: str) -> Any:
 
 __all__ = [
     "RIGID",
-    "Asperities",
     "Body",
     "Client",
-    "Cone",
     "Conflict",
     "Contact",
     "Contacts",
-    "Definition",
-    "Ellipsoid",
     "Engine",
-    "ExactSphere",
     "Fault",
-    "FlatPunch",
     "InvalidInput",
-    "LoadCurve",
     "Local",
     "Loop",
     "Moduli",
+    "Named",
     "NotAllowed",
     "NotFound",
     "Overloaded",
-    "PowerLaw",
-    "Profile",
+    "Record",
     "RemoteContact",
     "Result",
-    "RoundedCone",
-    "RoundedPunch",
+    "Rows",
     "Scan",
     "ServerError",
-    "Sphere",
     "StickslipError",
     "StickslipWarning",
-    "Sum",
-    "Tabulated",
     "TooMuchWork",
-    "TruncatedCone",
-    "TruncatedSphere",
-    "accuracy",
-    "compute",
-    "compute_bytes",
+    "__version__",
     "connect",
-    "cycle",
-    "fit_loop",
-    "fit_profile",
-    "fretting",
-    "protocols",
     "read_loop",
     "read_scan",
     "serve",
-    "simulate",
-    "sweep",
-    "wear",
 ]
+__all__ += functions.__all__
+__all__ += profiles.__all__

@@ -1,78 +1,88 @@
-"""The two bodies of a contact, and the definition of one."""
+"""The two bodies of a contact, and what definitions consist of."""
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from typing import Any, Final, TypeAlias
+from dataclasses import dataclass, fields
+from typing import Any, ClassVar, Final, TypeAlias, Union
 
-from .documents import Document, HasDocument, Quantity
+from .documents import Document, HasDocument, Quantity, to_document
 
 
-@dataclass(frozen=True)
-class Body:
-    """An elastic body: Young's modulus, Pa, and Poisson's ratio, a pure number."""
+class Part:
+    """A part of a request: two of them are equal if they are the same in SI units."""
 
-    youngs_modulus: Quantity
-    poisson_ratio: float
+    TYPE: ClassVar[str] = ""
 
     def document(self) -> Document:
         """Its document, with units as they were given."""
-        return {"youngs_modulus": self.youngs_modulus, "poisson_ratio": self.poisson_ratio}
+        given = {field.name.removesuffix("_"): getattr(self, field.name) for field in fields(self)}  # type: ignore[arg-type]
+        kind = {"type": self.TYPE} if self.TYPE else {}
+        return kind | {name: value for name, value in given.items() if value is not None}
+
+    def _key(self) -> str:
+        return json.dumps(to_document(self), sort_keys=True)
+
+    def __eq__(self, other: object) -> bool:
+        return self._key() == other._key() if type(self) is type(other) and isinstance(other, Part) else NotImplemented
+
+    def __hash__(self) -> int:
+        return hash(self._key())
+
+
+@dataclass(frozen=True, eq=False)
+class Body(Part):
+    """An elastic body: Young's modulus, Pa, and Poisson's ratio, a pure number."""
+
+    youngs_modulus: Quantity
+    poisson_ratio: Quantity
 
 
 #: A rigid body.
 RIGID: Final = "rigid"
 
 
-@dataclass(frozen=True)
-class Moduli:
+@dataclass(frozen=True, eq=False)
+class Moduli(Part):
     """Reduced moduli E* and G*, Pa, in place of the two bodies."""
 
     e_star: Quantity
     g_star: Quantity
 
-    def document(self) -> Document:
-        """Its document, with units as they were given."""
-        return {"e_star": self.e_star, "g_star": self.g_star}
-
 
 #: Two bodies, or their moduli.
-Material: TypeAlias = Sequence["Body | str"] | Moduli | Mapping[str, Any]
+Material: TypeAlias = Union["Sequence[Body | str]", Moduli, Mapping[str, Any]]
+#: A shape, or its document.
+Shape: TypeAlias = HasDocument | Mapping[str, Any]
+#: A contact, a definition, or its document.
+ContactLike: TypeAlias = Union["HasDefinition", HasDocument, Mapping[str, Any]]
 
 
-@dataclass(frozen=True)
-class Definition:
-    """A contact by its shape, bodies, friction and load, of which exactly one is given.
+class HasDefinition:
+    """What has the definition of a contact."""
 
-    `normal_force` is in N, `indentation` and `contact_radius` are in m.
-    """
+    def definition(self) -> Document:
+        """The JSON document of its definition, at its preload."""
+        raise NotImplementedError
 
-    profile: HasDocument | Mapping[str, Any]
-    bodies: Material
-    friction: float
-    normal_force: Quantity | None = None
-    indentation: Quantity | None = None
-    contact_radius: Quantity | None = None
+
+class ContactPart(Part):
+    """The definition of a contact: its load is an object of one key."""
+
+    #: The names of the numbers that a preload may be.
+    PRELOADS: ClassVar[tuple[str, ...]] = ("normal_force", "indentation", "contact_radius")
 
     def document(self) -> Document:
         """Its document, with units as they were given."""
-        return {
-            "profile": self.profile,
-            "material": _material(self.bodies),
-            "friction": self.friction,
-            "preload": {
-                "normal_force": self.normal_force,
-                "indentation": self.indentation,
-                "contact_radius": self.contact_radius,
-            },
-        }
-
-
-def _material(bodies: Material) -> Any:
-    if isinstance(bodies, Moduli):
-        return {"effective": bodies}
-    return bodies if isinstance(bodies, Mapping) else {"bodies": list(bodies)}
+        given = super().document()
+        material = given.pop("bodies")
+        if isinstance(material, Moduli):
+            material = {"effective": material}
+        elif not isinstance(material, Mapping):
+            material = {"bodies": list(material)}
+        preload = {name: given.pop(name) for name in self.PRELOADS if name in given}
+        return {"profile": given.pop("profile"), "material": material, "preload": preload} | given
 
 
 def elastic_body(definition: Document) -> str:

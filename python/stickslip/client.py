@@ -2,46 +2,111 @@
 
 from __future__ import annotations
 
-import random
+import os
 import time
-import uuid
-from collections.abc import Iterator, Mapping
-from typing import Any
-
-import httpx
+from collections.abc import Callable, Iterator
+from functools import wraps
+from typing import TYPE_CHECKING, Any, Concatenate, NoReturn, ParamSpec, TypeVar
 
 from . import results
-from .bodies import Material
+from .bodies import Material, Shape
 from .contact import AnyContact, definition
-from .documents import Document, HasDocument, Quantity, members, to_document
-from .engine import Engine
-from .errors import ServerError, StickslipError, refusal, warn
-from .events import Event, read_events
+from .documents import Document, Quantity, to_document
+from .engine import Engine, path_of
+from .errors import warn
+from .events import read_events
+from .exchange import Calls, ContactCalls, Following, Pause, Send, Steps
+from .instruments import Loop, LoopHints, Scan, ScanHints, content_of, hints_of, loop_of, scan_of
+from .optional import needed
+from .requests import definition as definition_of
 from .result import parse
 
-#: The path of each computation.
-PATHS = {
-    "simulate": "/simulate",
-    "accuracy": "/accuracy",
-    "protocol": "/protocols",
-    "cycle": "/cycle",
-    "fretting": "/fretting",
-    "wear": "/wear",
-    "profile": "/profiles/fit",
-    "fit": "/fit",
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
+    from .request_types import DefinitionMembers
+
+httpx = needed("httpx", "client")
+P = ParamSpec("P")
+T = TypeVar("T")
+#: What a client does not have of the module, and what does the same.
+IN_PROCESS_ALONE = {
+    "Contacts": "stickslip.Contacts steps arrays in process alone: on a server make each by api.Contact",
+    "Local": "stickslip.Local is the engine of this process",
+    "Engine": "stickslip.Engine is what this client is one of",
+    "serve": "stickslip.serve starts a server: this is a client of one",
+    "connect": "stickslip.connect makes a client: this is one",
 }
-#: What a retry may help against, and how long it waits at the most, s.
-RETRIED = frozenset({429, 502, 503, 504})
-LONGEST_WAIT = 30.0
+
+
+def of_module(name: str) -> Any:
+    """What a client has of the module: shapes, bodies and errors, so that a notebook moves to a server by one line."""
+    import stickslip
+
+    if name in IN_PROCESS_ALONE:
+        raise AttributeError(IN_PROCESS_ALONE[name])
+    if name in stickslip.__all__:
+        return getattr(stickslip, name)
+    raise AttributeError(f"a client has no {name}")
+
+
+def _sent(call: Callable[Concatenate[Any, P], Steps[T]]) -> Callable[Concatenate[Any, P], T]:
+    """The method of a client or contact that makes a call."""
+
+    @wraps(call)
+    def method(self: Any, /, *arguments: P.args, **options: P.kwargs) -> T:
+        found: T = self._run(call(self._calls, *arguments, **options))
+        return found
+
+    return method
+
+
+class ContactMaker:
+    """`Contact` on a server: called, or by a definition, or by the bytes of a contact in process."""
+
+    def __init__(self, client: Client):
+        self._client = client
+
+    def __call__(
+        self,
+        profile: Shape,
+        bodies: Material,
+        friction: Quantity,
+        *,
+        label: str | None = None,
+        **load: Unpack[DefinitionMembers],
+    ) -> RemoteContact:
+        """A new contact on the server."""
+        return self._made(definition(profile, bodies, friction, load), label)
+
+    def from_definition(self, definition: Any) -> RemoteContact:
+        """The contact of a definition: one of this package, or a JSON document."""
+        document = to_document(definition_of(definition))
+        label = document.pop("label", None)
+        return self._made(document, label)
+
+    def from_bytes(self, data: bytes) -> RemoteContact:
+        """The contact of what `to_bytes` of a contact in process wrote: its moves are made again on the server."""
+        made, given = self._client._run(self._client._calls.restore(data))
+        return RemoteContact(self._client, made["id"], given)
+
+    def _made(self, given: Document, label: str | None) -> RemoteContact:
+        made = self._client._run(self._client._calls.create(given, label))
+        contact = RemoteContact(self._client, made["id"], given)
+        warn(made["warnings"], contact._warned)
+        return contact
 
 
 class Client(Engine):
-    """A service at a URL. Changes carry idempotency keys, so that a repeated request changes nothing twice."""
+    """A service at a URL. Changes carry idempotency keys, so that a repeated request changes nothing twice.
+
+    Waits of over a second are logged by the logger `stickslip`.
+    """
 
     def __init__(self, url: str, key: str | None = None, *, timeout: float = 90.0, retries: int = 4):
         headers = {} if key is None else {"authorization": f"Bearer {key}"}
         self._http = httpx.Client(base_url=url, headers=headers, timeout=timeout)
-        self._retries = retries
+        self._calls = Calls(url, retries)
 
     def __enter__(self) -> Client:
         return self
@@ -50,245 +115,156 @@ class Client(Engine):
         self.close()
 
     def __getattr__(self, name: str) -> Any:
-        # Shapes, bodies and errors are those of the package, so that a notebook changes by one line.
-        import stickslip
+        return of_module(name)
 
-        if name == "Contact":
-            return self.contact
-        if name in stickslip.__all__:
-            return getattr(stickslip, name)
-        raise AttributeError(name)
+    @property
+    def url(self) -> str:
+        """Where the service is."""
+        return self._calls.base
+
+    @property
+    def Contact(self) -> ContactMaker:  # noqa: N802
+        """`stickslip.Contact`, on the server."""
+        return ContactMaker(self)
 
     def close(self) -> None:
         """Closes the connections."""
         self._http.close()
 
-    def compute(self, name: str, document: Document) -> Document:
-        """The reply of a computation to the document of its request, as it is."""
-        return self.request("POST", PATHS[name], json=to_document(document)).json()  # type: ignore[no-any-return]
-
-    def sweep_document(self, document: Document) -> Document:
-        """The table of a sweep as a document; one that is run as a job is waited for."""
-        response = self.request("POST", "/sweep", json=document, idempotent=True)
-        found: Document = response.json()
-        if response.status_code != 202:
-            return found
-        job, wait = found["id"], 0.1
-        while found["state"] not in ("done", "failed"):
-            time.sleep(wait)
-            wait = min(2.0 * wait, 5.0)
-            found = self.request("GET", f"/jobs/{job}").json()
-        return self.request("GET", f"/jobs/{job}/result").json()  # type: ignore[no-any-return]
+    request = _sent(Calls.request)
+    compute = _sent(Calls.compute)
+    compute_bytes = _sent(Calls.compute_bytes)
+    sweep_document = _sent(Calls.sweep_document)
 
     def contact(
         self,
-        profile: HasDocument | Mapping[str, Any],
+        profile: Shape,
         bodies: Material,
-        friction: float,
+        friction: Quantity,
         *,
-        normal_force: Quantity | None = None,
-        indentation: Quantity | None = None,
-        contact_radius: Quantity | None = None,
         label: str | None = None,
+        **load: Unpack[DefinitionMembers],
     ) -> RemoteContact:
         """A new contact on the server."""
-        given = definition(profile, bodies, friction, normal_force, indentation, contact_radius)
-        document = given | ({} if label is None else {"label": label})
-        made = self.request("POST", "/contacts", json=document, idempotent=True).json()
-        warn(made["warnings"])
-        return RemoteContact(self, made["id"], given)
+        return self.Contact(profile, bodies, friction, label=label, **load)
 
     def open(self, id: str) -> RemoteContact:  # noqa: A002
         """The contact of an identifier."""
-        return RemoteContact(self, id, self.request("GET", f"/contacts/{id}/definition").json())
+        return RemoteContact(self, id, self._run(self._calls.json("GET", f"/contacts/{id}/definition")))
 
     def contacts(self, label: str | None = None, *, newest_first: bool = False) -> Iterator[results.SessionSummary]:
         """All contacts, oldest or newest first; of a label alone, if one is given."""
+        query = {"label": label, "order": "newest" if newest_first else None}
         after: str | None = None
-        order = "newest" if newest_first else None
         while True:
-            page = self.request("GET", "/contacts", params=members(label=label, order=order, after=after)).json()
+            given = {name: value for name, value in (query | {"after": after}).items() if value is not None}
+            page = self._run(self._calls.page(given))
             yield from (parse(results.SessionSummary, item) for item in page["items"])
             after = page["next"]
             if after is None:
                 return
 
-    def request(self, method: str, path: str, *, idempotent: bool = False, **options: Any) -> httpx.Response:
-        """The response to a request, which is repeated if the service is busy or cannot be reached."""
-        headers = dict(options.pop("headers", {}))
-        if idempotent:
-            headers["idempotency-key"] = str(uuid.uuid4())
-        for attempt in range(self._retries + 1):
-            last = attempt == self._retries
-            try:
-                response = self._http.request(method, path, headers=headers, **options)
-            except httpx.TransportError as error:
-                if last:
-                    raise ServerError("unreachable", f"{self._http.base_url} cannot be reached: {error}") from error
-                time.sleep(_pause(attempt, None))
-                continue
-            if response.status_code in RETRIED and not last:
-                time.sleep(_pause(attempt, response.headers.get("retry-after")))
-                continue
-            if response.is_error:
-                raise _failed(response)
-            return response
-        raise AssertionError("the last attempt returns or raises")
+    def read_loop(self, source: str | os.PathLike[str] | bytes, **hints: Unpack[LoopHints]) -> Loop:
+        """`stickslip.read_loop`, read by the server."""
+        return loop_of(self._run(self._calls.read_file("loop", content_of(source), hints_of(hints))))
 
-    def stream(self, path: str, last: int | None) -> Iterator[Event]:
-        """The events of a stream from the one after `last` on; a connection that breaks is made again."""
-        attempt = 0
-        while True:
-            headers = {"accept": "text/event-stream"} | ({} if last is None else {"last-event-id": str(last)})
-            try:
-                with self._http.stream("GET", path, headers=headers, timeout=httpx.Timeout(90.0)) as response:
-                    if response.is_error:
-                        response.read()
-                        raise _failed(response)
-                    for event in read_events(response.iter_lines()):
-                        attempt = 0
-                        if event.id is not None:
-                            last = int(event.id)
-                        yield event
-                        if event.name == "end" and event.data.get("reason") != "stopping":
-                            return
-            except httpx.TransportError as error:
-                if attempt >= self._retries:
-                    raise ServerError("unreachable", f"{self._http.base_url} cannot be reached: {error}") from error
-            time.sleep(_pause(attempt, None))
-            attempt += 1
+    def read_scan(self, source: str | os.PathLike[str] | bytes, **hints: Unpack[ScanHints]) -> Scan:
+        """`stickslip.read_scan`, read by the server, without the formats of SurfaceTopography."""
+        return scan_of(self._run(self._calls.read_file("scan", content_of(source), hints_of(hints))))
+
+    def _run(self, steps: Steps[T]) -> T:
+        """Sends what a call asks for, and waits where it waits."""
+        try:
+            step = next(steps)
+            while True:
+                try:
+                    found = self._perform(step)
+                except httpx.TransportError as error:
+                    step = steps.throw(error)
+                else:
+                    step = steps.send(found)
+        except StopIteration as end:
+            value: T = end.value
+            return value
+
+    def _perform(self, step: Send | Pause) -> Any:
+        if isinstance(step, Pause):
+            return time.sleep(step.seconds)
+        return self._http.request(step.method, step.path, **step.options)
 
 
 class RemoteContact(AnyContact):
     """A contact that a server keeps."""
 
-    def __init__(self, client: Client, id: str, definition: Document):  # noqa: A002
+    def __init__(self, client: Client, id: str, definition: Document, calls: ContactCalls | None = None):  # noqa: A002
         self._client = client
         self._definition = definition
-        self.id = id
-        #: The number of moves before each call that moved it.
-        self._calls: list[int] = []
+        self._warned = set()
+        self._calls = calls or ContactCalls(client._calls, id)
 
     @property
-    def _path(self) -> str:
-        return f"/contacts/{self.id}"
+    def id(self) -> str:
+        """Its identifier."""
+        return self._calls.id
 
-    def describe(self) -> results.SessionReply:
-        """Identifier, number of moves, summary of the definition and present state."""
-        return parse(results.SessionReply, self._client.request("GET", self._path).json())
-
-    def definition(self) -> Document:
-        """The JSON document of its definition, at its preload."""
-        return self._definition
+    describe = _sent(ContactCalls.describe)
+    undo = _sent(ContactCalls.undo)
+    delete = _sent(ContactCalls.delete)
+    rename = _sent(ContactCalls.rename)
+    history = _sent(ContactCalls.history)
+    moves = _sent(ContactCalls.moves)
+    loop = _sent(ContactCalls.loop)
+    cycles = _sent(ContactCalls.cycles)
+    observe = _sent(ContactCalls.observe)
+    friction = _sent(ContactCalls.friction)
+    _advance = _sent(ContactCalls.advance)
 
     def copy(self) -> RemoteContact:
         """The same contact once more on the server, with its history; it goes its own way from here."""
-        return self._fork({})
+        made = self._run(self._calls.fork({}))
+        calls = ContactCalls(self._client._calls, made["id"])
+        calls.made = list(self._calls.made)
+        copy = RemoteContact(self._client, made["id"], self._definition, calls)
+        copy._warned = set(self._warned)
+        return copy
 
-    def undo(self, calls: int = 1) -> results.State:
-        """Takes back the last calls of this object that moved it: the contact gets a new identifier."""
-        if calls > len(self._calls):
-            raise ValueError(f"{len(self._calls)} calls of this object have moved the contact")
-        kept = len(self._calls) - calls
-        fork = self._fork({"sequence": self._calls[kept]} if calls else {})
-        self.delete()
-        self.id, self._calls = fork.id, self._calls[:kept]
-        return self.state
+    def follow(self, after: int | None = None, *, patience: float = 300.0) -> Iterator[results.StateEvent]:
+        """Its states, one for each move after `after`, without end.
 
-    def delete(self) -> None:
-        """Deletes it on the server."""
-        self._client.request("DELETE", self._path)
+        A connection that breaks is made again, also while the server is started anew, until nothing has come for
+        `patience` seconds.
+        """
+        stream = Following(self._client._calls, f"{self._calls.path}/events", after, patience)
+        while True:
+            broken: Exception | None = None
+            try:
+                with self._client._http.stream("GET", stream.path, headers=stream.headers()) as response:
+                    if response.is_error:
+                        response.read()
+                        stream.refused(response)
+                    else:
+                        for event in read_events(response.iter_lines()):
+                            goes_on = stream.seen(event)
+                            if event.name == "state":
+                                yield parse(results.StateEvent, event.data)
+                            if not goes_on:
+                                return
+            except httpx.TransportError as error:
+                broken = error
+            self._client._perform(stream.pause(broken))
 
-    def rename(self, label: str | None) -> results.SessionReply:
-        """Changes its label."""
-        reply = self._client.request("PATCH", self._path, json={"label": label}, idempotent=True)
-        return parse(results.SessionReply, reply.json())
-
-    def history(self, **query: Any) -> results.HistoryPage:
-        """A page of its moves: `after`, `limit`, `last`, `cycles`."""
-        return parse(results.HistoryPage, self._client.request("GET", f"{self._path}/history", params=query).json())
-
-    def loop(self, **query: Any) -> results.LoopPage:
-        """A page of its force-displacement loop: `after`, `limit`, `last`, `points_per_move`."""
-        return parse(results.LoopPage, self._client.request("GET", f"{self._path}/loop", params=query).json())
-
-    def cycles(self, **query: Any) -> results.CyclePage:
-        """The closed cycles of its past: `last`."""
-        return parse(results.CyclePage, self._client.request("GET", f"{self._path}/cycles", params=query).json())
-
-    def observe(self, observations: Any) -> results.ObservationsReply:
-        """Follows a bench: displacements with the measured forces, beside what the contact predicts."""
-        body = members(observations=observations)
-        reply = self._client.request("POST", f"{self._path}/observations", json=body, idempotent=True)
-        return parse(results.ObservationsReply, reply.json())
-
-    def friction(self) -> results.FrictionReply:
-        """The coefficient of friction by its observations."""
-        return parse(results.FrictionReply, self._client.request("GET", f"{self._path}/friction").json())
-
-    def follow(self, after: int | None = None) -> Iterator[results.StateEvent]:
-        """Its states, one for each move after `after`, without end; a broken connection resumes by itself."""
-        for event in self._client.stream(f"{self._path}/events", after):
-            if event.name == "state":
-                yield parse(results.StateEvent, event.data)
+    def to_bytes(self) -> NoReturn:
+        """Refused: a contact is on its server. `api.Contact.from_bytes` brings one in process there."""
+        raise TypeError("a contact on a server has no bytes: api.open(contact.id) finds it again")
 
     def __repr__(self) -> str:
         return f"RemoteContact({self.id})"
 
-    def _fork(self, body: Document) -> RemoteContact:
-        made = self._client.request("POST", f"{self._path}/fork", json=body, idempotent=True).json()
-        fork = RemoteContact(self._client, made["id"], self._definition)
-        fork._calls = list(self._calls)
-        return fork
-
-    def _advance(self, kind: str, document: Document) -> Document:
-        reply = self._client.request("POST", f"{self._path}/{kind}", json=document, idempotent=True)
-        found: Document = reply.json()
-        if not found.get("dry_run"):
-            moves = 1 if kind == "move" else _moves(document, found)
-            self._calls.append(found["sequence"] - moves)
-        return found
-
     def _read(self, kind: str, document: Document) -> Document:
-        if kind == "subsurface":
-            return self._client.request("POST", f"{self._path}/{kind}", json=document).json()  # type: ignore[no-any-return]
-        if kind == "stress":
-            query = {name: _listed(value) for name, value in document.items()}
-            return self._client.request("GET", f"{self._path}/{kind}", params=query).json()  # type: ignore[no-any-return]
-        return self._compute("cycle", {"contact": self.definition_now()} | document)
+        return self._run(self._calls.read(kind, document, self._definition))
 
     def _compute(self, name: str, document: Document) -> Document:
-        return self._client.compute(name, document)
+        return self._run(self._client._calls.json("POST", path_of(name), json=document))
 
-
-def _listed(value: Any) -> Any:
-    """A value of a query."""
-    if isinstance(value, list):
-        return ",".join(str(item) for item in value)
-    return str(value).lower() if isinstance(value, bool) else value
-
-
-def _moves(document: Document, reply: Document) -> int:
-    """Number of moves of a path that has been followed."""
-    way = document.get("path", {})
-    if "cycles" in way:
-        cycles = way["cycles"]
-        return 1 + int(cycles["count"]) * int(cycles.get("points_per_cycle", 2))
-    for name in ("falling_amplitude", "equal_peaks"):
-        if name in way:
-            return int(way[name]["reversals"]) + 1
-    listed = next((moves for moves in way.values() if isinstance(moves, list)), None)
-    return len(reply["path"]["displacement"] if listed is None else listed)
-
-
-def _pause(attempt: int, advice: str | None) -> float:
-    """How long to wait before the next attempt, s."""
-    if advice is not None and advice.isdigit():
-        return min(float(advice), LONGEST_WAIT)
-    return min(0.1 * 2.0**attempt, LONGEST_WAIT) * (0.5 + random.random())
-
-
-def _failed(response: httpx.Response) -> StickslipError:
-    if response.headers.get("content-type", "").startswith("application/problem+json"):
-        return refusal(response.json())
-    return ServerError("unexpected_reply", f"status {response.status_code}, which is not a reply of the service")
+    def _run(self, steps: Steps[T]) -> T:
+        return self._client._run(steps)

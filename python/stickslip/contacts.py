@@ -4,17 +4,21 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Mapping
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from . import _native, results
-from .bodies import Material
+from .bodies import Material, Shape
 from .contact import definition, encoded, guarded
-from .documents import HasDocument, Quantity
+from .documents import Quantities, Quantity, floats
+from .errors import Fault, InvalidInput, warn
 from .result import Floats, parse
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
+    from .request_types import DefinitionMembers
 
 
 class Contacts:
@@ -22,35 +26,51 @@ class Contacts:
 
     They begin at an indentation of zero, or at the load that is given. A step is straight in indentation and
     displacement (m), and leaves every contact with all of its history. A step that is refused has moved none.
+
+    Parameters
+    ----------
+    shape : int | tuple of int
+        How many contacts, or the shape of the arrays of them.
+    profile, bodies, friction, **load
+        As of `Contact`.
+    threads : int
+        Threads that step them; left out, one for each core.
     """
 
     def __init__(
         self,
-        count: int,
-        profile: HasDocument | Mapping[str, Any],
+        shape: int | tuple[int, ...],
+        profile: Shape,
         bodies: Material,
-        friction: float,
+        friction: Quantity,
         *,
-        normal_force: Quantity | None = None,
-        indentation: Quantity | None = None,
-        contact_radius: Quantity | None = None,
         threads: int | None = None,
+        **load: Unpack[DefinitionMembers],
     ):
-        if normal_force is None and contact_radius is None:
-            indentation = 0.0 if indentation is None else indentation
-        given = definition(profile, bodies, friction, normal_force, indentation, contact_radius)
+        if load.get("normal_force") is None and load.get("contact_radius") is None:
+            load = load | {"indentation": 0.0 if load.get("indentation") is None else load["indentation"]}
+        #: The shape of the arrays of numbers of the contacts.
+        self.shape = (shape,) if isinstance(shape, int) else tuple(shape)
+        count = int(np.prod(self.shape, dtype=np.int64))
+        given = definition(profile, bodies, friction, load)
         self._native = guarded(_native.Contacts, count, encoded(given), threads or os.cpu_count() or 1)
+        warn(json.loads(self._native.warnings()), set())
 
     def __len__(self) -> int:
         return len(self._native)
 
-    def step(self, indentation: ArrayLike, displacement: ArrayLike) -> tuple[Floats, Floats]:
-        """Moves all contacts to these indentations and displacements, m; returns F_N and F_x, N, of shape (n,)."""
-        return _pair(guarded(self._native.step, self._bytes(indentation), self._bytes(displacement)))
+    def step(self, indentation: Quantity | Quantities, displacement: Quantity | Quantities) -> tuple[Floats, Floats]:
+        """Moves all contacts to these indentations and displacements, m; returns F_N and F_x, N, of their shape.
 
-    def trial(self, indentation: ArrayLike, displacement: ArrayLike) -> tuple[Floats, Floats]:
+        Arrays broadcast to the shape of the contacts.
+        """
+        targets = self._numbers(indentation, "indentation"), self._numbers(displacement, "displacement")
+        return self._shaped(guarded(self._native.step, *targets))
+
+    def trial(self, indentation: Quantity | Quantities, displacement: Quantity | Quantities) -> tuple[Floats, Floats]:
         """The forces that such a step would lead to from the committed states, until `commit` or `revert`."""
-        return _pair(guarded(self._native.trial, self._bytes(indentation), self._bytes(displacement)))
+        targets = self._numbers(indentation, "indentation"), self._numbers(displacement, "displacement")
+        return self._shaped(guarded(self._native.trial, *targets))
 
     def commit(self) -> None:
         """Takes over the states of the last trial."""
@@ -63,7 +83,7 @@ class Contacts:
 
     def forces(self) -> tuple[Floats, Floats]:
         """F_N and F_x, N, of the committed states."""
-        return _pair(self._native.forces())
+        return self._shaped(self._native.forces())
 
     def stiffness(self, direction: int = 1) -> tuple[Floats, Floats]:
         """Normal and tangential stiffness, N/m, of the last trial or else of the committed states.
@@ -73,7 +93,7 @@ class Contacts:
         """
         if direction not in (1, -1):
             raise ValueError(f"direction is {direction}: allowed are 1 and -1")
-        return _pair(self._native.stiffness(direction > 0))
+        return self._shaped(self._native.stiffness(direction > 0))
 
     def state(self, index: int) -> results.State:
         """The committed state of one contact."""
@@ -85,10 +105,16 @@ class Contacts:
         found: int = self._native.memory()
         return found
 
-    def _bytes(self, values: ArrayLike) -> bytes:
-        array = np.asarray(values, dtype=np.float64)
-        return np.ascontiguousarray(np.broadcast_to(array, (len(self),)) if array.ndim == 0 else array).tobytes()
+    def _numbers(self, values: Quantity | Quantities, name: str) -> Floats:
+        """One number, or one for each contact."""
+        array = floats(values, name)
+        if array.size == 1:
+            return array.reshape(1)
+        try:
+            return np.broadcast_to(array, self.shape).reshape(-1)
+        except ValueError:
+            detail = f"an array of shape {array.shape} does not broadcast to {self.shape}"
+            raise InvalidInput("invalid_input", detail, (Fault(f"/{name}", detail),)) from None
 
-
-def _pair(buffers: tuple[bytearray, bytearray]) -> tuple[Floats, Floats]:
-    return np.frombuffer(buffers[0], dtype=np.float64), np.frombuffer(buffers[1], dtype=np.float64)
+    def _shaped(self, pair: tuple[Floats, Floats]) -> tuple[Floats, Floats]:
+        return pair[0].reshape(self.shape), pair[1].reshape(self.shape)

@@ -12,7 +12,8 @@ import numpy as np
 
 from . import _native, requests
 from .contact import encoded, guarded
-from .documents import members
+from .documents import to_document
+from .optional import needed
 
 if TYPE_CHECKING:
     import pandas
@@ -36,13 +37,12 @@ class SweepDataset:
 
     def to_frame(self) -> pandas.DataFrame:
         """The whole table, in the order of the points."""
-        import fsspec
-        import pandas
-
+        fsspec, module = needed("fsspec", "dask"), needed("pandas", "pandas")
         files, folder = fsspec.core.url_to_fs(self.url)
         names = sorted(files.glob(posixpath.join(folder, "points-*.parquet")))
-        with_handles = [pandas.read_parquet(files.open(name)) for name in names]
-        return pandas.concat(with_handles, ignore_index=True)
+        with_handles = [module.read_parquet(files.open(name)) for name in names]
+        frame: pandas.DataFrame = module.concat(with_handles, ignore_index=True)
+        return frame
 
 
 def sweep(
@@ -57,7 +57,7 @@ def sweep(
     base = dict(base)
     if "contact" in base:
         base["contact"] = requests.definition(base["contact"])
-    request = encoded(members(base=base, axes=requests.axes(axes), outputs=requests.outputs(outputs)))
+    request = encoded(to_document({"base": base, "axes": requests.axes(axes), "outputs": requests.outputs(outputs)}))
     plan = guarded(_native.Sweep, request)
     size = points_per_task or min(SECONDS * plan.chunk, MOST_POINTS)
     _claim(to, request, size)
@@ -90,10 +90,8 @@ def _ray(ray: Any, tasks: list[Task]) -> list[int]:
 
 def compute_chunk(request: bytes, first: int, end: int, to: str) -> int:
     """Computes the points from `first` up to `end` into their file, unless it exists; returns how many failed."""
-    import fsspec
-    import pyarrow
-    import pyarrow.parquet
-
+    fsspec, pyarrow = needed("fsspec", "dask"), needed("pyarrow", "dask")
+    needed("pyarrow.parquet", "dask")
     files, folder = fsspec.core.url_to_fs(to)
     path = posixpath.join(folder, f"points-{first:012}-{end:012}.parquet")
     if files.exists(path):
@@ -114,9 +112,7 @@ def compute_chunk(request: bytes, first: int, end: int, to: str) -> int:
 
 def _claim(to: str, request: bytes, size: int) -> None:
     """Writes the request into the folder, or compares it with the one that is there."""
-    import fsspec
-
-    files, folder = fsspec.core.url_to_fs(to)
+    files, folder = needed("fsspec", "dask").core.url_to_fs(to)
     files.makedirs(folder, exist_ok=True)
     path = posixpath.join(folder, "sweep.json")
     own = {"request": json.loads(request), "points_per_task": size}

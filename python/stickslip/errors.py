@@ -42,6 +42,8 @@ class StickslipError(Exception):
         self.detail = detail
         self.errors = tuple(errors)
         self.document: Mapping[str, Any] = document or {}
+        #: When the server advises to ask again, s from its reply.
+        self.retry_after: float | None = None
         places = "".join(f"\n  {fault.pointer}: {fault.detail}" for fault in self.errors)
         super().__init__(f"{code}: {'' if places else detail}{places}")
 
@@ -125,10 +127,25 @@ class StickslipWarning(UserWarning):
         return type(self), (self.code, str(self).partition("] ")[2])
 
 
-def warn(found: Sequence[Mapping[str, str]]) -> None:
-    """Issues the warnings of a reply at the line that called the package."""
+#: The codes that have been warned of, by contacts that are given by their definitions.
+_SEEN: dict[str, set[str]] = {}
+#: Definitions that are remembered.
+_MOST_SEEN = 1000
+
+
+def seen_of(definition: Mapping[str, Any]) -> set[str]:
+    """The codes of the warnings that have been issued for a definition by the functions of the package."""
+    if len(_SEEN) >= _MOST_SEEN:
+        _SEEN.clear()
+    return _SEEN.setdefault(json.dumps(definition, sort_keys=True), set())
+
+
+def warn(found: Sequence[Mapping[str, str]], seen: set[str]) -> None:
+    """Issues the warnings of a reply at the line that called the package, each code once for a contact."""
+    found = [warning for warning in found if warning["code"] not in seen]
     if not found:
         return
+    seen.update(warning["code"] for warning in found)
     level, frame = 1, sys._getframe()
     while frame.f_back is not None and frame.f_code.co_filename.startswith(_HERE):
         level, frame = level + 1, frame.f_back

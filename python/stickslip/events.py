@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Iterator
+from collections.abc import AsyncIterable, AsyncIterator, Iterable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -17,21 +17,44 @@ class Event:
     data: dict[str, Any]
 
 
-def read_events(lines: Iterable[str]) -> Iterator[Event]:
-    """The events of the lines of a stream."""
-    name, ident = "message", None
-    data: list[str] = []
-    for line in lines:
+class _Reader:
+    """Makes events of lines."""
+
+    def __init__(self) -> None:
+        self.name = "message"
+        self.ident: str | None = None
+        self.data: list[str] = []
+
+    def read(self, line: str) -> Event | None:
+        """The event that a line ends, if it ends one."""
         if not line:
-            if data:
-                yield Event(name, ident, json.loads("\n".join(data)))
-            name, ident, data = "message", None, []
-            continue
+            event = Event(self.name, self.ident, json.loads("\n".join(self.data))) if self.data else None
+            self.name, self.ident, self.data = "message", None, []
+            return event
         field, _, value = line.partition(":")
         value = value.removeprefix(" ")
         if field == "event":
-            name = value
+            self.name = value
         elif field == "id":
-            ident = value
+            self.ident = value
         elif field == "data":
-            data.append(value)
+            self.data.append(value)
+        return None
+
+
+def read_events(lines: Iterable[str]) -> Iterator[Event]:
+    """The events of the lines of a stream."""
+    reader = _Reader()
+    for line in lines:
+        event = reader.read(line)
+        if event is not None:
+            yield event
+
+
+async def read_events_of(lines: AsyncIterable[str]) -> AsyncIterator[Event]:
+    """The same on an event loop."""
+    reader = _Reader()
+    async for line in lines:
+        event = reader.read(line)
+        if event is not None:
+            yield event

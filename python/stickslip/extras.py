@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from typing import Any
 
-import numpy as np
-
-from .result import Floats, Result
+from . import schemas
+from .result import Result
 
 #: The criteria of a rating, by their names in the reply.
-CRITERIA = ("crossland", "dang_van", "findley", "swt", "fatemi_socie", "ruiz", "ruiz_tension", "friction_work")
+CRITERIA = tuple(name for name, (kind, _) in schemas.FIELDS["FrettingReply"].items() if kind == "Rating")
 
 
 class Fretting(Result):
@@ -39,29 +38,6 @@ class Fretting(Result):
         largest = self.ratings[self.worst].largest if self.worst else None
         return None if largest is None else (*(float(part) for part in largest.point),)  # type: ignore[return-value]
 
-    def to_frame(self) -> Any:
-        """A row for each place, or, without places, for each criterion with its largest value."""
-        import pandas
-
-        x, y, z = (getattr(self, name) for name in "xyz")
-        if len(x) > 0:
-            columns = {"x": x, "y": y, "z": z}
-            for name, one in self.ratings.items():
-                columns |= {name: one.values} | ({f"{name}_cycles": one.cycles} if one.cycles is not None else {})
-            return pandas.DataFrame(columns)
-        rows = []
-        for name, rating in self.ratings.items():
-            place = [np.nan] * 3 if rating.largest is None else rating.largest.point
-            value = None if rating.largest is None else rating.largest.value
-            rows.append(
-                {"criterion": name, "largest": value, "margin": rating.margin} | dict(zip("xyz", place, strict=True))
-            )
-        return pandas.DataFrame(rows)
-
 
 class Swept(Result):
     """The table of a sweep."""
-
-    def _columns(self) -> dict[str, Any]:
-        columns: dict[str, Floats] = self.columns  # type: ignore[attr-defined]
-        return columns

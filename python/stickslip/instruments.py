@@ -8,7 +8,7 @@ import os
 from dataclasses import dataclass, field
 from importlib.util import find_spec
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any, TypedDict
 
 import numpy as np
 
@@ -18,8 +18,53 @@ from .documents import Document
 from .errors import InvalidInput
 from .result import Floats
 
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
 #: The most heights that a fit takes.
 MOST_HEIGHTS = 300_000
+
+
+class ScanHints(TypedDict, total=False):
+    """What is known of the file of a scan; it precedes the header."""
+
+    lateral: str
+    """The unit of places, such as "um", "mil" or "10^-6 m"."""
+    height: str
+    """The unit of heights."""
+    spacing: float
+    """The distance of neighbours in a matrix, in the unit of places."""
+    x: str | int
+    """The column of x, by name or number."""
+    y: str | int
+    """The column of y, by name or number."""
+    z: str | int
+    """The column of heights, by name or number."""
+    sheet: str | int
+    """The sheet of a spreadsheet, by name or number."""
+
+
+class LoopHints(TypedDict, total=False):
+    """What is known of the file of a loop; it precedes the header."""
+
+    displacement: str | int
+    """The column of displacements, by name or number."""
+    force: str | int
+    """The column of tangential forces, by name or number."""
+    time: str | int
+    """The column of times, by name or number."""
+    load: str | int
+    """The column of normal forces, by name or number."""
+    displacement_unit: str
+    """The unit of displacements, such as "um" or "mil"."""
+    force_unit: str
+    """The unit of tangential forces, such as "mN" or "lbf"."""
+    time_unit: str
+    """The unit of times, such as "s" or "min"."""
+    load_unit: str
+    """The unit of normal forces."""
+    sheet: str | int
+    """The sheet of a spreadsheet, by name or number."""
 
 
 @dataclass(frozen=True)
@@ -48,14 +93,19 @@ class Loop:
     rows_left_out: Document = field(default_factory=dict)
 
 
-def _content(source: str | os.PathLike[str] | bytes) -> bytes:
+def content_of(source: str | os.PathLike[str] | bytes) -> bytes:
+    """The bytes of a file."""
     return source if isinstance(source, bytes) else Path(source).read_bytes()
 
 
-def _read(read: Any, source: str | os.PathLike[str] | bytes, hints: dict[str, Any]) -> Document:
-    """What the importer of the service finds in a file; a column may be given by its number."""
-    texts = {name: str(hint) if isinstance(hint, int) and name != "spacing" else hint for name, hint in hints.items()}
-    found: Document = json.loads(guarded(lambda: read(_content(source), **texts)))
+def hints_of(hints: ScanHints | LoopHints) -> dict[str, Any]:
+    """Hints as the importer takes them: a column may be given by its number."""
+    return {name: str(hint) if isinstance(hint, int) and name != "spacing" else hint for name, hint in hints.items()}
+
+
+def _read(read: Any, source: str | os.PathLike[str] | bytes, hints: ScanHints | LoopHints) -> Document:
+    """What the importer of the service finds in a file."""
+    found: Document = json.loads(guarded(lambda: read(content_of(source), **hints_of(hints))))
     return found
 
 
@@ -63,7 +113,17 @@ def _seen(preview: Document) -> tuple[tuple[str, ...], tuple[Document, ...], Doc
     return tuple(preview["reading"]), tuple(preview["columns"]), preview["rows_left_out"]
 
 
-def read_scan(source: str | os.PathLike[str] | bytes, **hints: Any) -> Scan:
+def scan_of(found: Document) -> Scan:
+    """The scan of what an importer found."""
+    return Scan(found["scan"], found["units"], *_seen(found["preview"]))
+
+
+def loop_of(found: Document) -> Loop:
+    """The loop of what an importer found."""
+    return Loop(found["loop"], found["units"], *_seen(found["preview"]))
+
+
+def read_scan(source: str | os.PathLike[str] | bytes, **hints: Unpack[ScanHints]) -> Scan:
     """Reads a scan from a file or from its bytes.
 
     Hints precede the header: `lateral` and `height` are units ("um", "mil", "10^-6 m"), `x`, `y` and `z` columns by
@@ -71,8 +131,10 @@ def read_scan(source: str | os.PathLike[str] | bytes, **hints: Any) -> Scan:
     places. What is neither columns of text nor a spreadsheet is read by SurfaceTopography, with the units that the
     file has (`pip install "stickslip[scans]"`).
 
-    Raises:
-        InvalidInput: with the line, the column and the word that is not understood; `unknown_unit` for a unit.
+    Raises
+    ------
+    InvalidInput
+        With the line, the column and the word that is not understood; `unknown_unit` for a unit.
     """
     try:
         found = _read(_native.read_scan, source, hints)
@@ -81,9 +143,10 @@ def read_scan(source: str | os.PathLike[str] | bytes, **hints: Any) -> Scan:
         if isinstance(source, bytes) or refusal.pointer != "":
             raise
         if find_spec("SurfaceTopography") is None:
-            raise
+            hint = 'other formats of instruments need SurfaceTopography: pip install "stickslip[scans]"'
+            raise InvalidInput(refusal.code, f"{refusal.detail}; {hint}") from None
         return _by_surface_topography(Path(source), refusal)
-    return Scan(found["scan"], found["units"], *_seen(found["preview"]))
+    return scan_of(found)
 
 
 def _by_surface_topography(path: Path, refusal: InvalidInput) -> Scan:
@@ -124,15 +187,17 @@ def _with_gaps(row: Any) -> list[float | None]:
     return [None if math.isnan(height) else float(height) for height in row]
 
 
-def read_loop(source: str | os.PathLike[str] | bytes, **hints: Any) -> Loop:
+def read_loop(source: str | os.PathLike[str] | bytes, **hints: Unpack[LoopHints]) -> Loop:
     """Reads a loop from a file or from its bytes.
 
     Hints precede the header: `displacement`, `force`, `time` and `load` are columns by name or number,
     `displacement_unit`, `force_unit`, `time_unit` and `load_unit` units ("um", "lbf", "min"), `sheet` is that of a
     spreadsheet.
 
-    Raises:
-        InvalidInput: with the line, the column and the word that is not understood; `unknown_unit` for a unit.
+    Raises
+    ------
+    InvalidInput
+        With the line, the column and the word that is not understood; `unknown_unit` for a unit.
     """
     found = _read(_native.read_loop, source, hints)
-    return Loop(found["loop"], found["units"], *_seen(found["preview"]))
+    return loop_of(found)

@@ -1,4 +1,7 @@
-"""Pictures of results, by Matplotlib, which is imported with the first of them."""
+"""Pictures of results, by Matplotlib, which is imported with the first of them.
+
+Numbers are drawn in SI units, and axes show them with prefixes.
+"""
 
 from __future__ import annotations
 
@@ -7,16 +10,22 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from .optional import needed
+
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+#: What is on an axis, and its unit.
+Said = tuple[str, str]
+DISPLACEMENT: Said = ("displacement U", "m")
+FORCE: Said = ("tangential force F", "N")
+
 
 def draw(result: Any, ax: Axes | None, **options: Any) -> Axes:
-    """Draws a `Result` in `ax`, or in a new figure."""
-    painter = _PAINTERS.get(type(result).__name__)
-    if painter is None:
-        raise TypeError(f"{type(result).__name__} has no picture: use to_frame()")
+    """Draws a `Record` in `ax`, or in a new figure."""
+    painter: Callable[..., None] = _PAINTERS.get(result.schema, _columns)
     if ax is None:
+        needed("matplotlib", "plot")
         from matplotlib import pyplot
 
         ax = pyplot.figure().add_subplot()
@@ -24,77 +33,127 @@ def draw(result: Any, ax: Axes | None, **options: Any) -> Axes:
     return ax
 
 
+def _axes(ax: Axes, x: Said, y: Said, **options: Any) -> None:
+    """Names the axes, with prefixes at the numbers of those that have a unit."""
+    formatter: Any = needed("matplotlib.ticker", "plot").EngFormatter
+    ax.set(**options)
+    for axis, (name, unit) in ((ax.xaxis, x), (ax.yaxis, y)):
+        axis.set_label_text(name)
+        if unit not in ("", "1"):
+            axis.set_major_formatter(formatter(unit=unit))
+
+
+def _bar(ax: Axes, mapped: Any, said: Said) -> None:
+    """The scale of colours."""
+    formatter = needed("matplotlib.ticker", "plot").EngFormatter(unit=said[1])
+    ax.figure.colorbar(mapped, ax=ax, label=said[0], format=formatter)
+
+
+def _columns(ax: Axes, result: Any, **options: Any) -> None:
+    """The columns of one unit over the first."""
+    columns, units = result.table()
+    numbers = [name for name, column in columns.items() if column.dtype.kind in "if" and column.ndim == 1]
+    if len(numbers) < 2 or len(result) < 2:
+        raise TypeError(f"{result.schema} has no picture: use to_frame()")
+    x, first = numbers[:2]
+    for name in numbers[1:]:
+        if units.get(name) == units.get(first):
+            ax.plot(columns[x], columns[name], label=name, **options)
+    _axes(ax, (x, units.get(x, "")), ("" if len(numbers) > 2 else first, units.get(first, "")))
+    ax.legend()
+
+
 def _stress(ax: Axes, result: Any, **options: Any) -> None:
     friction = result.context.get("friction")
+    place = "radius" if "radius" in result.document else "x"
+    places = getattr(result, place)
     if result.pressure is not None and friction is not None:
         bound = friction * result.pressure
-        ax.plot(result.radius, bound, color="0.6", label="friction bound ±μp")
-        ax.plot(result.radius, -bound, color="0.6")
+        ax.plot(places, bound, color="0.6", label="friction bound ±μp")
+        ax.plot(places, -bound, color="0.6")
     for name, label in (("shear", "shear stress τ"), ("slip", "slip"), ("displacement", "displacement")):
         values = getattr(result, name)
         if values is not None:
-            ax.plot(result.radius, values, label=label, **options)
+            ax.plot(places, values, label=label, **options)
             break
-    ax.set(xlabel="radius r, m", ylabel="stress, Pa" if result.shear is not None else "m")
+    said = ("stress", "Pa") if result.shear is not None else ("", "m")
+    _axes(ax, ("radius r" if place == "radius" else "x", "m"), said)
     ax.legend()
 
 
 def _residual(ax: Axes, result: Any, **options: Any) -> None:
-    ax.stem([peak.radius for peak in result.peaks], [peak.shear for peak in result.peaks], **options)
-    ax.set(xlabel="radius r, m", ylabel="peak of the shear stress, Pa")
+    columns, _ = result.table()
+    place = "radius" if "radius" in columns else "x"
+    ax.stem(columns[place], columns["shear"], **options)
+    _axes(ax, (place, "m"), ("peak of the shear stress", "Pa"))
 
 
 def _loop(ax: Axes, result: Any, **options: Any) -> None:
-    ax.plot([one.displacement for one in result.steps], [one.force for one in result.steps], ".-", **options)
-    ax.set(xlabel="displacement U, m", ylabel="tangential force F, N")
+    ax.plot(result.displacement, result.force, ".-", **options)
+    _axes(ax, DISPLACEMENT, FORCE)
 
 
-def _recorded(ax: Axes, result: Any, **options: Any) -> None:
-    ax.plot(result.displacement, result.force, **options)
-    ax.set(xlabel="displacement U, m", ylabel="tangential force F, N")
+def _simulation(ax: Axes, result: Any, **options: Any) -> None:
+    _loop(ax, result.steps, **options)
+
+
+def _history(ax: Axes, result: Any, **options: Any) -> None:
+    columns, _ = result.table()
+    ax.plot(columns["displacement"], columns["force"], ".-", **options)
+    _axes(ax, DISPLACEMENT, FORCE)
+
+
+def _closed(ax: Axes, result: Any, **options: Any) -> None:
+    ax.plot(result.to, result.dissipated_energy, ".-", **options)
+    _axes(ax, ("move that closed the cycle", ""), ("friction work of a cycle", "J"))
 
 
 def _cycle(ax: Axes, result: Any, **options: Any) -> None:
-    frame = result.to_frame()
-    if "normal_force" in frame:
-        table = frame.pivot_table(index="displacement_amplitude", columns="normal_force", values="dissipated_energy")
-        mesh = ax.pcolormesh(table.columns, table.index, table.to_numpy(), **options)
-        ax.figure.colorbar(mesh, ax=ax, label="friction work of a cycle, J")
-        ax.set(xlabel="normal force, N", ylabel="displacement amplitude, m", xscale="log", yscale="log")
+    columns, _ = result.table()
+    amplitude, work = columns["displacement_amplitude"], columns["dissipated_energy"]
+    said: Said = ("friction work of a cycle", "J")
+    if "normal_force" in columns:
+        loads = np.unique(columns["normal_force"])
+        order = np.lexsort((amplitude, columns["normal_force"]))
+        grid = work[order].reshape(len(loads), -1)
+        mesh = ax.pcolormesh(loads, amplitude[order].reshape(len(loads), -1)[0], grid.T, **options)
+        _bar(ax, mesh, said)
+        _axes(ax, ("normal force", "N"), ("displacement amplitude", "m"), xscale="log", yscale="log")
         return
-    ax.plot(frame["displacement_amplitude"], frame["dissipated_energy"], ".-", **options)
-    ax.set(xlabel="displacement amplitude, m", ylabel="friction work of a cycle, J", xscale="log", yscale="log")
+    ax.plot(amplitude, work, ".-", **options)
+    _axes(ax, ("displacement amplitude", "m"), said, xscale="log", yscale="log")
 
 
-def _over_places(ax: Axes, places: tuple[Any, Any, Any], values: Any, label: str, **options: Any) -> None:
+def _over_places(ax: Axes, places: tuple[Any, Any, Any], values: Any, said: Said, **options: Any) -> None:
     varying = [(name, axis) for name, axis in zip("xyz", places, strict=True) if np.ptp(axis) > 0]
     if len(varying) == 1:
         ax.plot(varying[0][1], values, **options)
-        ax.set(xlabel=f"{varying[0][0]}, m", ylabel=label)
+        _axes(ax, (varying[0][0], "m"), said)
         return
     (across, first), (along, second) = varying[:2] if len(varying) > 1 else (("x", places[0]), ("z", places[2]))
     known = np.isfinite(values)
     colours = ax.scatter(first[known], second[known], c=values[known], marker="s", **options)
-    ax.figure.colorbar(colours, ax=ax, label=label)
-    ax.set(xlabel=f"{across}, m", ylabel=f"{along}, m")
+    _bar(ax, colours, said)
+    _axes(ax, (across, "m"), (along, "m"))
     if along == "z":
         ax.invert_yaxis()
 
 
 def _below(ax: Axes, result: Any, field: str | None = None, **options: Any) -> None:
     names = ("von_mises", "max_shear", "hydrostatic", "principal_1", "xx")
-    field = field or next(name for name in names if getattr(result, name) is not None)
-    _over_places(ax, (result.x, result.y, result.z), getattr(result, field), f"{field}, Pa", **options)
+    field = field or next(name for name in names if getattr(result, name, None) is not None)
+    _over_places(ax, (result.x, result.y, result.z), getattr(result, field), (field, "Pa"), **options)
 
 
 def _fretting(ax: Axes, result: Any, criterion: str | None = None, **options: Any) -> None:
     criterion = criterion or result.worst
+    columns, units = result.table()
     if len(result.x) == 0:
-        frame = result.to_frame()
-        ax.bar(frame["criterion"], frame["margin"].fillna(0.0), **options)
+        ax.bar(columns["criterion"], np.nan_to_num(columns["margin"]), **options)
         ax.set(ylabel="limit over largest value")
         return
-    _over_places(ax, (result.x, result.y, result.z), result.ratings[criterion].values, criterion, **options)
+    said = (str(criterion), units.get(str(criterion), ""))
+    _over_places(ax, (result.x, result.y, result.z), result.ratings[criterion].values, said, **options)
 
 
 def _wear(ax: Axes, result: Any, **options: Any) -> None:
@@ -117,18 +176,42 @@ def _fit(ax: Axes, result: Any, **options: Any) -> None:
     for loop in result.curve:
         ax.plot(loop.displacement, loop.measured, ".", color="0.6", label="measured")
         ax.plot(loop.displacement, loop.force, label="fitted", **options)
-    ax.set(xlabel="displacement U, m", ylabel="tangential force F, N")
+    _axes(ax, DISPLACEMENT, FORCE)
     ax.legend()
 
 
+def _scan(ax: Axes, result: Any, **options: Any) -> None:
+    ax.plot(result.raw.radius, result.raw.height, ".", color="0.6", label="measured")
+    ax.plot(result.used.radius, result.used.height, label="fitted", **options)
+    _axes(ax, ("radius r", "m"), ("height", "m"))
+    ax.legend()
+
+
+def _protocol(ax: Axes, result: Any, **options: Any) -> None:
+    ax.plot(np.arange(1, len(result.path.displacement) + 1), result.path.displacement, ".-", **options)
+    _axes(ax, ("move", ""), DISPLACEMENT)
+
+
+def _accuracy(ax: Axes, result: Any, **options: Any) -> None:
+    columns, _ = result.table()
+    ax.plot(columns["compute_time"], columns["force_error"], "o", **options)
+    _axes(ax, ("time", "s"), ("largest error of the force over μ F_N", ""), xscale="log", yscale="log")
+
+
 _PAINTERS: dict[str, Callable[..., None]] = {
+    "AccuracyReply": _accuracy,
+    "CyclePage": _closed,
     "CycleReply": _cycle,
     "FitReply": _fit,
     "FrettingReply": _fretting,
-    "LoopPage": _recorded,
+    "HistoryPage": _history,
+    "LoopPage": _loop,
     "PathReply": _loop,
+    "ProfileFitReply": _scan,
+    "ProtocolReply": _protocol,
+    "RelaxReply": _protocol,
     "Residual": _residual,
-    "SimulateReply": _loop,
+    "SimulateReply": _simulation,
     "Stress": _stress,
     "StressReply": _stress,
     "SubsurfaceReply": _below,

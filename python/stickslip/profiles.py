@@ -1,27 +1,27 @@
-"""Shapes of the indenter, one class for each profile of the API. Written by `tools/generate.py`."""
+"""Shapes of the indenter, one class for each profile of the API, and places in a body.
+
+Written by `tools/generate.py`.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from typing import ClassVar
 
-from .documents import Document, Quantities, Quantity
+from . import request_types as types
+from .bodies import ContactPart, Material, Part, Shape
+from .documents import Quantities, Quantity
 
 
 @dataclass(frozen=True, eq=False)
-class Profile:
+class Profile(Part):
     """A shape of the indenter before it is loaded."""
 
     TYPE: ClassVar[str] = ""
 
-    def document(self) -> Document:
-        """Its document, with units as they were given."""
-        given = {field.name: getattr(self, field.name) for field in fields(self)}
-        return {"type": self.TYPE} | {name: value for name, value in given.items() if value is not None}
 
-
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class Asperities(Profile):
     """Hertzian asperities between two rigid bodies, of which each is an elastic contact of its own."""
 
@@ -47,13 +47,13 @@ class Cone(Profile):
     """Slope dz/dr, a pure number."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class Ellipsoid(Profile):
     """A gap x²/(2 R_x) + y²/(2 R_y); `material` must name the bodies."""
 
     TYPE: ClassVar[str] = "ellipsoid"
 
-    direction: str
+    direction: types.MotionAxis
     """The axis along which the indenter moves."""
     radii: Quantities
     """The principal radii of curvature of the gap, R_x and R_y, m; their ratio is 10⁶ at the most."""
@@ -79,9 +79,12 @@ class FlatPunch(Profile):
     """Radius of the punch, m."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class LoadCurve(Profile):
-    """A load curve from the first touch on. Its slope must not fall."""
+    """A load curve from the first touch on.
+
+    Its slope must not fall.
+    """
 
     TYPE: ClassVar[str] = "load_curve"
 
@@ -91,7 +94,7 @@ class LoadCurve(Profile):
     """The normal force F_N at each, N: from 0 on."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class PowerLaw(Profile):
     """A power law."""
 
@@ -103,7 +106,7 @@ class PowerLaw(Profile):
     """Exponent n, a pure number."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class RoundedCone(Profile):
     """A cone with a rounded tip."""
 
@@ -115,7 +118,7 @@ class RoundedCone(Profile):
     """Radius up to which the tip is a parabola, m."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class RoundedPunch(Profile):
     """A flat punch with a rounded edge."""
 
@@ -143,11 +146,11 @@ class Sum(Profile):
 
     TYPE: ClassVar[str] = "sum"
 
-    parts: Sequence[Profile]
+    parts: Sequence[Shape]
     """The profiles that are added up."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class Tabulated(Profile):
     """A table of heights over radii, of equal lengths."""
 
@@ -168,7 +171,7 @@ class Tabulated(Profile):
     """
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class TruncatedCone(Profile):
     """A truncated cone."""
 
@@ -180,7 +183,7 @@ class TruncatedCone(Profile):
     """Slope dz/dr outside the flat, a pure number."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class TruncatedSphere(Profile):
     """A truncated sphere."""
 
@@ -190,6 +193,68 @@ class TruncatedSphere(Profile):
     """Radius of the flat end, m."""
     radius: Quantity
     """Radius of curvature R, m."""
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Line(Part):
+    """Points on a straight line, both ends included."""
+
+    count: int
+    """Number of points."""
+    from_: Quantities
+    """Where it begins: x, y, z, m."""
+    to: Quantities
+    """Where it ends: x, y, z, m."""
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Plane(Part):
+    """A grid in a plane of constant x, y or z.
+
+    Each of the other two coordinates is `[from, to, count]`, m, both ends included.
+    """
+
+    normal: types.Direction
+    """The coordinate that is constant."""
+    offset: Quantity
+    """Its value, m."""
+    x: Quantities | None = None
+    """x from, to and number; left out where `normal` is x."""
+    y: Quantities | None = None
+    """y from, to and number; left out where `normal` is y."""
+    z: Quantities | None = None
+    """z from, to and number; left out where `normal` is z."""
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Surface(Part):
+    """A grid on the surface, z = 0.
+
+    Each coordinate is `[from, to, count]`, m, both ends included.
+    """
+
+    x: Quantities
+    """x from, to and number."""
+    y: Quantities
+    """y from, to and number."""
+
+
+@dataclass(frozen=True, eq=False)
+class Definition(ContactPart):
+    """A contact by its shape, bodies, friction and preload, of which one number is given."""
+
+    profile: Shape
+    """The shape of the indenter."""
+    bodies: Material
+    """The two bodies, or their reduced moduli."""
+    friction: Quantity
+    """Coulomb's coefficient of friction μ, a pure number."""
+    normal_force: Quantity | None = None
+    """Normal force, N."""
+    indentation: Quantity | None = None
+    """Indentation, m."""
+    contact_radius: Quantity | None = None
+    """Contact radius, m."""
 
 
 __all__ = [
@@ -208,4 +273,8 @@ __all__ = [
     "Tabulated",
     "TruncatedCone",
     "TruncatedSphere",
+    "Line",
+    "Plane",
+    "Surface",
+    "Definition",
 ]

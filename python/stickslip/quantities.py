@@ -5,82 +5,22 @@ The units themselves are those of the engine: files, requests and texts are read
 
 from __future__ import annotations
 
+import re
+from collections.abc import Mapping
+from contextlib import suppress
 from typing import Any
 
-from . import _native
+import numpy as np
+
+from . import _native, members
 from .errors import Fault, InvalidInput
 
-#: The SI unit of each number of a request by the name of its member.
-MEMBERS = {
-    "a": "m",
-    "coefficient": "",
-    "contact_radius": "m",
-    "cutoff_radius": "m",
-    "displacement": "m",
-    "drive_force": "N",
-    "ductility": "1",
-    "ductility_exponent": "1",
-    "dx": "m",
-    "dy": "m",
-    "e_star": "Pa",
-    "edge_radius": "m",
-    "exponent": "1",
-    "flat_radius": "m",
-    "force": "N",
-    "frequencies": "Hz",
-    "friction": "1",
-    "g_star": "Pa",
-    "gaps": "m",
-    "indentation": "m",
-    "indentation_error": "m",
-    "length": "m",
-    "mass": "kg",
-    "normal_force": "N",
-    "offset": "m",
-    "phase": "deg",
-    "points": "m",
-    "poisson_ratio": "1",
-    "r": "m",
-    "radii": "m",
-    "radius": "m",
-    "slope": "1",
-    "stiffness": "N/m",
-    "strength": "Pa",
-    "strength_exponent": "1",
-    "target": "1",
-    "time": "s",
-    "tip_radius": "m",
-    "tolerance": "1",
-    "x": "m",
-    "xx": "Pa",
-    "xy": "Pa",
-    "xz": "Pa",
-    "y": "m",
-    "yield": "Pa",
-    "youngs_modulus": "Pa",
-    "yy": "Pa",
-    "yz": "Pa",
-    "z": "m",
-    "zz": "Pa",
-}
-#: Where the same name has another unit, by the member around it.
-WITHIN = {
-    ("bulk", "amplitude"): "Pa",
-    ("bulk", "mean"): "Pa",
-    ("crossland", "limit"): "Pa",
+#: The units that the descriptions of members leave to what is around them.
+MEMBERS = members.MEMBERS | {"dx": "m", "dy": "m"} | dict.fromkeys(("xx", "yy", "zz", "xy", "xz", "yz"), "Pa")
+WITHIN = members.WITHIN | {
     ("cycles", "mean"): "",
-    ("dang_van", "limit"): "Pa",
-    ("falling_amplitude", "amplitude"): "m",
-    ("fatemi_socie", "limit"): "1",
-    ("findley", "limit"): "Pa",
     ("friction_work", "limit"): "J/m^2",
-    ("line", "from"): "m",
-    ("line", "to"): "m",
-    ("normal_force", "from"): "N",
-    ("normal_force", "to"): "N",
     ("ruiz", "limit"): "N/m",
-    ("s_n", "reference"): "",
-    ("swt", "limit"): "Pa",
 }
 #: Members that are texts, whatever they look like.
 TEXTS = frozenset({"at", "label", "name", "pointer", "type", "id", "contact_id", "column", "lateral", "height"})
@@ -98,19 +38,73 @@ def _refusal(detail: str, unit: str | None, place: str) -> InvalidInput:
 
 
 def from_text(text: str, unit: str | None, place: str) -> float | None:
-    """The number in SI units that a text says; None for a text that does not begin with a number."""
+    """The number in SI units that a text says; None for a text that does not begin with a number.
+
+    A unit that is not in the table of the engine is one of pint, if pint is installed: so a number never depends on
+    whether it is.
+    """
     try:
         return _native.quantity(text, unit or None)
     except ValueError as error:
+        found = _parsed_by_pint(text)
+        with suppress(InvalidInput, TypeError):
+            return float(in_si(found, None, unit, place))
         raise _refusal(f'"{text}": {error}', unit, place) from None
 
 
-def from_pint(quantity: Any, unit: str | None, place: str) -> Any:
-    """The magnitude in SI units of a quantity of pint."""
+def of_text(text: str, unit: str | None, place: str) -> float | str:
+    """The number that a text says; a text that says none, where no number is expected."""
+    found = from_text(text, unit, place)
+    if found is None and unit:
+        raise _refusal(f'"{text}" is not a number', unit, place)
+    return text if found is None else found
+
+
+#: A number and a unit of which pint makes no more than it says: it would read "1,000" as a thousand.
+_WITH_UNIT = re.compile(r"\s*([-+]?[0-9.]+(?:[eE][-+]?[0-9]+)?)\s*([^\W\d_][\w*^/ .()-]*)")
+
+
+def _parsed_by_pint(text: str) -> Any:
+    found = _WITH_UNIT.fullmatch(text)
+    try:
+        import pint
+
+        return None if found is None else float(found[1]) * pint.application_registry.parse_units(found[2])
+    except Exception:  # pint raises errors of many kinds for a text that it cannot read.
+        return None
+
+
+def measured(value: Any) -> tuple[Any, str | None] | None:
+    """A value that has its unit with it, and the name of the unit unless it is a quantity of pint.
+
+    They are quantities and arrays of pint, also as the data of a column of pandas or xarray, and columns whose `attrs`
+    have `units`: one text, or texts by the names of the columns.
+    """
+    if hasattr(value, "to_base_units"):
+        return value, None
+    if hasattr(getattr(value, "dtype", None), "units"):
+        return value.pint.quantity, None
+    attributes = getattr(value, "attrs", None)
+    if not isinstance(attributes, Mapping):
+        return None
+    if hasattr(getattr(value, "data", None), "to_base_units"):
+        return value.data, None
+    named = attributes.get("units")
+    if isinstance(named, Mapping):
+        named = named.get(getattr(value, "name", None))
+    return (np.asarray(value), str(named)) if named else None
+
+
+def in_si(value: Any, named: str | None, unit: str | None, place: str) -> Any:
+    """Numbers in SI units: of a quantity of pint, or of an array in the unit that is named."""
+    if named is not None:
+        return value * from_text(f"1 {named}", unit, place)
+    if not hasattr(value, "to_base_units"):
+        return value
     if not unit:
-        return quantity.to_base_units().magnitude
+        return value.to_base_units().magnitude
     pint_unit = {"1": "dimensionless", "J/m^2": "J/m**2"}.get(unit, unit)
     try:
-        return quantity.to(pint_unit).magnitude
+        return value.to(pint_unit).magnitude
     except Exception as error:
-        raise _refusal(f"{quantity!s} is not a number of {unit}", unit, place) from error
+        raise _refusal(f"{value!s} is not a number of {unit}", unit, place) from error

@@ -2,73 +2,109 @@
 
 from __future__ import annotations
 
-import inspect
-import sys
-import typing
-from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar
+from collections.abc import Iterator, Mapping, Sequence
+from html import escape
+from typing import TYPE_CHECKING, Any, Generic, TypeAlias, TypeVar, overload
 
 import numpy as np
 from numpy.typing import NDArray
+
+from . import schemas
+from .optional import needed
 
 if TYPE_CHECKING:
     import pandas
     from matplotlib.axes import Axes
 
-#: An array of numbers.
+#: Arrays of numbers, whole numbers, flags and words.
 Floats: TypeAlias = NDArray[np.float64]
-T = TypeVar("T", bound="Result")
+Counts: TypeAlias = NDArray[np.int64]
+Flags: TypeAlias = NDArray[np.bool_]
+Texts: TypeAlias = NDArray[np.str_]
+#: The columns of a table, and their units.
+Table: TypeAlias = tuple[dict[str, NDArray[Any]], dict[str, str]]
+T = TypeVar("T", bound="Record")
 
-#: The members of a reply whose items are its rows, in order of preference.
-_ROWS = ("rows", "cycles", "steps", "peaks", "items", "points", "failures", "loops")
 
+class Record:
+    """An object of a reply: its fields are attributes, and do not change. `document` is it as JSON.
 
-class Result:
-    """A reply. `document` is it as JSON, `to_frame` its table, `plot` its picture.
-
-    The fields are the annotations of its class, and do not change. Classes without generated methods, unlike data
-    classes, are made in no time when the package is imported.
+    A field that was not asked for is None.
     """
 
-    @classmethod
-    def fields(cls) -> list[str]:
-        """The names of the fields."""
-        return [name for kind in reversed(cls.__mro__) for name in inspect.get_annotations(kind)]
-
-    def __setattr__(self, name: str, value: object) -> None:
-        raise AttributeError(f"{type(self).__name__} is a result: {name} cannot be set")
+    def __init__(self, schema: str, document: dict[str, Any], context: Mapping[str, Any] | None = None):
+        self.__dict__.update(_schema=schema, _document=document, _context=context or {})
 
     @property
     def document(self) -> dict[str, Any]:
         """The JSON document that the engine replied with."""
-        found: dict[str, Any] = self.__dict__.get("_document", {})
+        found: dict[str, Any] = self.__dict__["_document"]
         return found
 
     @property
     def context(self) -> Mapping[str, Any]:
         """What is known of the contact beside the reply."""
-        found: Mapping[str, Any] = self.__dict__.get("_context", {})
+        found: Mapping[str, Any] = self.__dict__["_context"]
         return found
 
-    def to_frame(self) -> pandas.DataFrame:
-        """The table of the result, with a row for each item and columns in SI units."""
-        import pandas
+    @property
+    def schema(self) -> str:
+        """The name of its schema in the OpenAPI document."""
+        found: str = self.__dict__["_schema"]
+        return found
 
-        columns = self._columns()
-        if columns:
-            return pandas.DataFrame(columns, copy=False)
-        for name in _ROWS:
-            rows = getattr(self, name, None)
-            if isinstance(rows, list) and (not rows or isinstance(rows[0], Result)):
-                return pandas.DataFrame([row.scalars() for row in rows])
-        return pandas.DataFrame([self.scalars()])
+    def fields(self) -> list[str]:
+        """The names of its fields."""
+        known = list(schemas.FIELDS[self.schema])
+        return known + [name for name in self.document if name not in schemas.FIELDS[self.schema]]
+
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("_"):
+            raise AttributeError(name)
+        member = name.removesuffix("_")
+        fields = schemas.FIELDS[self.schema]
+        if member not in fields and member not in self.document:
+            raise AttributeError(f"{self.schema} has no {name}: it has {', '.join(self.fields())}")
+        kind = fields.get(member, ("", None))[0]
+        value = self.__dict__[name] = _read(self.document.get(member), kind, self.context)
+        return value
+
+    def __setattr__(self, name: str, value: object) -> None:
+        raise AttributeError(f"{self.schema} is a result: {name} cannot be set")
+
+    def __dir__(self) -> list[str]:
+        return [*object.__dir__(self), *self.fields()]
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return record, (self.schema, self.document, self.context)
+
+    def scalars(self) -> dict[str, Any]:
+        """The members that are single numbers or words."""
+        given = {name: self.document.get(name) for name in self.fields()}
+        return {name: value for name, value in given.items() if isinstance(value, int | float | str)}
+
+    def table(self) -> Table:
+        """The columns of its table with their units: those that the engine writes in other formats."""
+        from .tables_of_results import table
+
+        return table(self)
+
+    def to_frame(self) -> pandas.DataFrame:
+        """The table of the result in SI units, which `attrs["units"]` of the frame has by column."""
+        columns, units = self.table()
+        frame: pandas.DataFrame = needed("pandas", "pandas").DataFrame(columns, copy=False)
+        frame.attrs["units"] = units
+        return frame
 
     def to_arrow(self) -> Any:
-        """The same table for Arrow (`pip install pyarrow`): columns of floats are those of the result, not copies."""
-        import pyarrow
-
-        columns = self._columns()
-        return pyarrow.table(columns) if columns else pyarrow.Table.from_pandas(self.to_frame(), preserve_index=False)
+        """The same table for Arrow; columns without a missing number are those of the result, not copies."""
+        pyarrow = needed("pyarrow", "arrow")
+        columns, units = self.table()
+        arrays = [pyarrow.array(column, from_pandas=True) for column in columns.values()]
+        units_of = [{"unit": units[name]} if name in units else None for name in columns]
+        described = zip(columns, arrays, units_of, strict=True)
+        named = [pyarrow.field(name, array.type, metadata=unit) for name, array, unit in described]
+        return pyarrow.Table.from_arrays(arrays, schema=pyarrow.schema(named))
 
     def __arrow_c_stream__(self, requested_schema: object = None) -> object:
         """The table for any library that takes Arrow, such as `polars.DataFrame(result)` or `duckdb`."""
@@ -80,76 +116,166 @@ class Result:
 
         return draw(self, ax, **options)
 
-    def scalars(self) -> dict[str, Any]:
-        """The members that are single numbers or words."""
-        given = {name: getattr(self, name) for name in self.fields()}
-        return {name: value for name, value in given.items() if isinstance(value, int | float | str)}
-
-    def _columns(self) -> dict[str, Any]:
-        """The arrays, if they are of equal length."""
-        given = {name: getattr(self, name) for name in self.fields()}
-        arrays = {name: value for name, value in given.items() if _is_column(value)}
-        lengths = {len(value) for value in arrays.values()}
-        return arrays if len(lengths) == 1 else {}
-
     def __repr__(self) -> str:
         parts = []
         for name in self.fields():
-            value = getattr(self, name)
-            if value is None:
-                continue
-            if isinstance(value, np.ndarray | list):
+            value = self.document.get(name)
+            if isinstance(value, list):
                 parts.append(f"{name}=[{len(value)}]")
-            elif isinstance(value, Result):
+            elif isinstance(value, dict):
                 parts.append(f"{name}=…")
-            else:
+            elif value is not None:
                 parts.append(f"{name}={value!r}")
-        return f"{type(self).__name__}({', '.join(parts)})"
+        return f"{self.schema}({', '.join(parts)})"
 
     def _repr_html_(self) -> str:
-        html: str = self.to_frame().to_html(max_rows=20)
-        return f"<b>{type(self).__name__}</b>{html}"
+        try:
+            html: str = self.to_frame().to_html(max_rows=20)
+        except ModuleNotFoundError:
+            html = f"<pre>{escape(repr(self))}</pre>"
+        return f"<b>{self.schema}</b>{html}"
 
 
-def _is_column(value: Any) -> bool:
-    return isinstance(value, np.ndarray) or (
-        isinstance(value, list) and bool(value) and isinstance(value[0], int | float)
-    )
+class Result(Record):
+    """A reply. `len` and iteration are those of the rows of its table."""
+
+    def __getattr__(self, name: str) -> Any:
+        rows = schemas.ROWS.get(self.__dict__.get("_schema", ""))
+        if rows is not None and name not in (rows, "_schema") and name not in schemas.FIELDS[self.schema]:
+            found = getattr(self, rows)
+            if isinstance(found, Rows) and name.removesuffix("_") in schemas.FIELDS[found.schema]:
+                return getattr(found, name)
+        return super().__getattr__(name)
+
+    def __len__(self) -> int:
+        columns, _ = self.table()
+        return max((len(column) for column in columns.values()), default=0)
+
+    def __bool__(self) -> bool:
+        return True
+
+    def __iter__(self) -> Iterator[Any]:
+        """The rows: objects where the reply has them, else tuples with the names of the columns."""
+        rows = schemas.ROWS.get(self.schema)
+        if rows is not None and isinstance(found := getattr(self, rows), Rows) and len(found) == len(self):
+            return iter(found)
+        from collections import namedtuple
+
+        columns, _ = self.table()
+        row = namedtuple("Row", columns, rename=True)  # type: ignore[misc]
+        return map(row._make, zip(*columns.values(), strict=True))
 
 
-_HINTS: dict[type, dict[str, Any]] = {}
+class Rows(Sequence[T], Generic[T]):
+    """Objects of one kind, which have each of their fields as an array too: `rows.force`."""
+
+    def __init__(self, schema: str, documents: list[dict[str, Any]], context: Mapping[str, Any] | None = None):
+        self.schema = schema
+        self.documents = documents
+        self._context = context or {}
+
+    @overload
+    def __getitem__(self, index: int) -> T: ...
+    @overload
+    def __getitem__(self, index: slice) -> Rows[T]: ...
+    def __getitem__(self, index: int | slice) -> T | Rows[T]:
+        if isinstance(index, slice):
+            return Rows(self.schema, self.documents[index], self._context)
+        found: T = record(self.schema, self.documents[index], self._context)
+        return found
+
+    def __len__(self) -> int:
+        return len(self.documents)
+
+    def __getattr__(self, name: str) -> Any:
+        member = name.removesuffix("_")
+        if name.startswith("_") or member not in schemas.FIELDS[self.schema]:
+            raise AttributeError(f"{self.schema} has no {name}")
+        return self.column(member)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return Rows, (self.schema, self.documents, self._context)
+
+    def column(self, name: str) -> NDArray[Any]:
+        """A field of each row as an array, with NaN where a number is missing."""
+        return as_column([row.get(name) for row in self.documents])
+
+    def table(self) -> Table:
+        """The columns of the rows with their units."""
+        from .tables_of_results import rows_table
+
+        return rows_table(self)
+
+    def to_frame(self) -> pandas.DataFrame:
+        """The rows as a table in SI units, which `attrs["units"]` of the frame has by column."""
+        return Record.to_frame(self)  # type: ignore[arg-type]
+
+    def to_arrow(self) -> Any:
+        """The same for Arrow."""
+        return Record.to_arrow(self)  # type: ignore[arg-type]
+
+    def __repr__(self) -> str:
+        return f"[{len(self)} × {self.schema}]"
 
 
-def _hints(kind: type[Result]) -> dict[str, Any]:
-    """The types of the fields, which are texts until they are asked for."""
-    if kind not in _HINTS:
-        _HINTS[kind] = typing.get_type_hints(kind, vars(sys.modules[kind.__module__]))
-    return _HINTS[kind]
+class Named(dict[str, T], Generic[T]):
+    """Objects of one kind by their names."""
+
+    def to_frame(self) -> pandas.DataFrame:
+        """A row for each, with its name as the index."""
+        module = needed("pandas", "pandas")
+        rows = Rows[T](
+            next(iter(self.values())).schema if self else "Estimate", [one.document for one in self.values()]
+        )
+        frame: pandas.DataFrame = module.DataFrame(rows.table()[0], index=module.Index(list(self), name="name"))
+        return frame
 
 
-def _parse(value: Any, hint: Any) -> Any:
+def as_column(values: list[Any]) -> NDArray[Any]:
+    """Values as an array: of numbers with NaN, of whole numbers, flags or words, or else of objects."""
+    known = [value for value in values if value is not None]
+    if all(isinstance(value, bool) for value in known) and len(known) == len(values) and known:
+        return np.array(values, dtype=np.bool_)
+    if all(isinstance(value, int) for value in known) and len(known) == len(values) and known:
+        return np.array(values, dtype=np.int64)
+    if all(isinstance(value, int | float) for value in known):
+        return np.array(values, dtype=np.float64)
+    if all(isinstance(value, str) for value in known):
+        return np.array(values, dtype=np.str_ if len(known) == len(values) else object)
+    if all(isinstance(value, list) for value in values) and len({len(value) for value in values}) == 1:
+        return np.array(values, dtype=np.float64)
+    column = np.empty(len(values), dtype=object)
+    column[:] = values
+    return column
+
+
+def _read(value: Any, kind: str, context: Mapping[str, Any]) -> Any:
+    """The attribute of a JSON value: `kind` as `schemas.FIELDS` has it."""
     if value is None:
         return None
-    if hint == Floats:
+    if not kind:
+        # A pair where others of its kind are one number, such as a force in the plane.
+        is_pair = isinstance(value, list) and bool(value) and all(isinstance(one, int | float) for one in value)
+        return np.array(value, dtype=np.float64) if is_pair else value
+    if kind == "[]":
         return np.array(value, dtype=np.float64)
-    if isinstance(hint, type) and issubclass(hint, Result):
-        return parse(hint, value)
-    arguments = typing.get_args(hint)
-    origin = typing.get_origin(hint)
-    if origin is list:
-        return [_parse(item, arguments[0]) for item in value]
-    if origin is dict:
-        return {key: _parse(item, arguments[1]) for key, item in value.items()}
-    if type(None) in arguments:
-        return _parse(value, next(one for one in arguments if one is not type(None)))
-    return value
+    if kind in ("#", "?"):
+        return np.array(value, dtype=np.int64 if kind == "#" else np.bool_)
+    if kind[0] == "[":
+        return Rows(kind[1:-1], value, context)
+    if kind[0] == "{":
+        read = {name: _read(item, kind[1:-1], context) for name, item in value.items()}
+        return read if kind == "{[]}" else Named(read)
+    return record(kind, value, context)
+
+
+def record(schema: str, document: dict[str, Any], context: Mapping[str, Any] | None = None) -> Any:
+    """The object of a JSON document."""
+    from . import results
+
+    return getattr(results, schema, Record)(schema, document, context)
 
 
 def parse(kind: type[T], document: dict[str, Any], **context: Any) -> T:
-    """The result of a JSON document. Members that this version does not know stay in `document`."""
-    result = kind.__new__(kind)
-    for name, hint in _hints(kind).items():
-        result.__dict__[name] = _parse(document.get(name.rstrip("_")), hint)
-    result.__dict__["_document"] = document
-    result.__dict__["_context"] = context
-    return result
+    """The result of a JSON document. Members that this version does not know are attributes too."""
+    return kind(kind.__name__, document, context)

@@ -13,11 +13,6 @@ class ServedClient(Client):
         super().__init__(server.url)
         self._server = server
 
-    @property
-    def url(self) -> str:
-        """Where the server listens."""
-        return self._server.url
-
     def close(self) -> None:
         """Closes the connections and ends the server."""
         super().close()

@@ -55,16 +55,18 @@ def test_undo_leads_back_to_the_last_bit(ball: ss.Contact) -> None:
         ball.undo()
 
 
-def test_copies_go_their_own_ways(ball: ss.Contact) -> None:
+def test_copies_go_their_own_ways(ball: ss.Contact, here: ss.Contact) -> None:
+    in_process = ball is here
     ball.path(falling_amplitude=7)
     before = ball.state.document
-    for other in (ball.copy(), copy.copy(ball), copy.deepcopy(ball)):
+    for other in (ball.copy(), *([copy.copy(ball), copy.deepcopy(ball)] if in_process else [])):
         assert other.state.document == before
         other.move("50 nm")
         assert ball.state.document == before != other.state.document
 
 
-def test_pickle_has_the_same_history_to_the_last_bit(ball: ss.Contact) -> None:
+def test_pickle_has_the_same_history_to_the_last_bit(here: ss.Contact) -> None:
+    ball = here
     ball.path(moves=[{"displacement": 8e-8}, {"force": 0.3, "normal_force": 12.0}, {"displacement": -2e-8}])
     back = pickle.loads(pickle.dumps(ball))
     assert back.state.document == ball.state.document

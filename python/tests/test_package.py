@@ -13,7 +13,7 @@ import pytest
 
 import stickslip as ss
 from conftest import ROOT
-from stickslip import _native, client, profiles, quantities, results
+from stickslip import _native, computations, engine, members, plots, profiles, quantities, schemas
 
 HERE = Path(__file__).resolve().parents[1]
 GENERATOR = HERE / "tools" / "generate.py"
@@ -56,7 +56,25 @@ def test_page_of_the_docs_runs() -> None:
     assert frame["max"].iloc[19] == pytest.approx(0.17, abs=0.01)
 
 
-@pytest.mark.parametrize("name", ["results.py", "profiles.py"])
+def test_page_of_the_docs_has_every_function_its_result_and_its_picture() -> None:
+    table = {}
+    section = (ROOT / "docs" / "python.md").read_text().partition("## Functions\n")[2].partition("\n## ")[0]
+    for row in re.findall(r"^\| (`\w+\.\w+`.*?) \|(.*)\|$", section, re.MULTILINE):
+        _, result, picture = (*(cell.strip() for cell in row[1].split(" | ")), "")[:3]
+        table |= {name: (result, picture.strip()) for name in re.findall(r"`(\w+\.\w+)`", row[0])}
+    contact = [name for name, method in vars(computations.OfContact).items() if not name.startswith("_")]
+    wanted = {f"ss.{name}" for name in members.METHODS.values()} | {f"contact.{name}" for name in contact}
+    assert wanted <= set(table)
+    for name, (result, picture) in table.items():
+        owner = {"ss": ss, "contact": ss.Contact, "remote": ss.RemoteContact}[name.partition(".")[0]]
+        method = getattr(owner, name.partition(".")[2])
+        returned = re.search(r"results\.(\w+)", str(getattr(method, "__annotations__", {}).get("return", "")))
+        if returned is not None:
+            assert f"`{returned[1]}`" in result, name
+            assert bool(picture) == (returned[1] in plots._PAINTERS), name
+
+
+@pytest.mark.parametrize("name", sorted(generator().FILES))
 def test_classes_are_those_of_the_document_of_the_api(name: str, openapi: dict[str, Any]) -> None:
     assert generator().FILES[name](openapi) == (HERE / "stickslip" / name).read_text()
 
@@ -68,10 +86,9 @@ def test_native_document_is_that_of_the_repository(openapi: dict[str, Any]) -> N
 
 
 def test_every_schema_of_a_reply_has_its_class_and_fields(openapi: dict[str, Any]) -> None:
-    module, schemas = generator(), openapi["components"]["schemas"]
+    module, stated = generator(), openapi["components"]["schemas"]
     for name in module.reply_schemas(openapi):
-        found = {field.rstrip("_") for field in getattr(results, name).fields()}
-        assert found == set(module.fields(schemas[name], schemas)[0]), name
+        assert set(schemas.FIELDS[name]) == set(module.fields(stated[name], stated)[0]), name
 
 
 def test_every_profile_has_its_class(openapi: dict[str, Any]) -> None:
@@ -83,24 +100,29 @@ def test_every_profile_has_its_class(openapi: dict[str, Any]) -> None:
 
 def test_every_computation_has_its_path_and_method(openapi: dict[str, Any]) -> None:
     served = {name: path for name, path in _native.names() if path is not None}
-    assert served == client.PATHS
-    assert set(served.values()) < set(openapi["paths"])
-    for method in ("simulate", "cycle", "fretting", "protocols", "accuracy", "fit_loop", "fit_profile", "sweep", "wear"):
+    assert served == engine.PATHS
+    assert set(members.METHODS) == {*served.values(), "/sweep"}
+    assert set(members.METHODS) < set(openapi["paths"])
+    for method in members.METHODS.values():
         assert callable(getattr(ss, method))
         assert callable(getattr(ss.Client, method))
 
 
-def test_units_of_members_are_those_that_the_document_states(openapi: dict[str, Any]) -> None:
-    schemas = openapi["components"]["schemas"]
-    stated = re.compile(r", (m|N|Pa|kg|Hz|s|N/m|degrees)(?=[.,;:]| [a-z]|$)")
-    for schema in schemas.values():
-        if schema.get("additionalProperties") is not False:
-            continue
-        for name, member in schema.get("properties", {}).items():
-            unit = quantities.MEMBERS.get(name)
-            found = stated.search(member.get("description", ""))
-            if unit and found and member.get("type") in ("number", "array"):
-                assert found[1].replace("degrees", "deg") == unit, name
+def test_units_are_read_of_the_descriptions_and_known_to_the_engine() -> None:
+    found = quantities.MEMBERS
+    for name, unit in (
+        ("youngs_modulus", "Pa"),
+        ("stiffness", "N/m"),
+        ("phase", "deg"),
+        ("radii", "m"),
+        ("slope", "1"),
+    ):
+        assert found[name] == unit
+    assert quantities.unit_of("limit", "crossland") == "Pa"
+    assert quantities.unit_of("mean", "bulk") == "Pa"
+    assert quantities.unit_of("amplitude", "falling_amplitude") == "m"
+    for unit in {*found.values(), *quantities.WITHIN.values()} - {""}:
+        assert _native.quantity(f"1 {unit}" if unit != "1" else "1", unit) == 1.0, unit
 
 
 def test_import_is_quick_and_light() -> None:

@@ -10,7 +10,7 @@ import pytest
 
 import stickslip as ss
 from conftest import ROOT
-from stickslip.client import PATHS
+from stickslip.engine import PATHS
 
 API = json.loads((ROOT / "openapi" / "openapi.json").read_text())
 
@@ -79,7 +79,8 @@ def test_moves_of_a_contact(api: ss.Client, kind: str) -> None:
             assert without_times(json.dumps(one)) == without_times(json.dumps(other))
 
 
-def test_stress_below_the_surface_and_cycles_of_a_contact(api: ss.Client, ball: ss.Contact) -> None:
+def test_stress_below_the_surface_and_cycles_of_a_contact(api: ss.Client, here: ss.Contact) -> None:
+    ball = here
     there = api.contact(ss.Sphere(0.01), [ss.Body(2.1e11, 0.3), ss.RIGID], 0.3, normal_force=10.0)
     for contact in (ball, there):
         contact.path(falling_amplitude=5)

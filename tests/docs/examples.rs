@@ -121,35 +121,6 @@ async fn the_notebook_runs_from_its_first_cell_to_its_last() {
 }
 
 #[tokio::test(flavor = "multi_thread")]
-async fn a_file_of_a_bench_becomes_friction_and_a_contact() {
-    let server = Process::start("memory:").await;
-    let folder = tempfile::tempdir().unwrap();
-    let picture = folder.path().join("loop.svg");
-    let mut script = program("python");
-    let printed = succeed(script.arg(file("examples/python/fit_loop.py")).arg(&server.base).arg(&picture), "");
-    assert!(printed.starts_with("name,value,low,high\nfriction,0.4"), "{printed}");
-    let of = |name: &str| {
-        let line = printed.lines().find_map(|line| line.strip_prefix(name)).unwrap();
-        line.split(',').skip(1).map(|cell| cell.parse::<f64>().unwrap()).collect::<Vec<_>>()
-    };
-    // What make_ball_loop.py has made the file of.
-    for (name, truth) in [("friction", 0.42), ("machine_compliance", 5e-8), ("force_offset", 0.15)] {
-        let [value, low, high] = of(name)[..] else { panic!("{printed}") };
-        let reach = high - low;
-        assert!(low < value && value < high && low - reach < truth && truth < high + reach, "{printed}");
-    }
-    assert!(std::fs::read_to_string(picture).unwrap().starts_with("<svg"));
-    let held = "codes = [warning['code'] for warning in open_ended['warnings']]\n\
-                assert 'machine_compliance_unknown' in codes and 'partial_slip_only' in codes, codes\n\
-                assert picture.startswith('<svg') and moved['force'] > 0\n\
-                friction = closed['estimates']['friction']\n\
-                assert abs(friction['value'] / 0.42 - 1) < 0.1, friction";
-    // It reads the file of the bench by the script beside it.
-    run_notebook("measured_loop.ipynb", &file("examples/python"), &server, held);
-    assert!(server.client.contacts(None, None).await.unwrap().items.is_empty());
-}
-
-#[tokio::test(flavor = "multi_thread")]
 async fn the_shell_script_makes_and_deletes_a_contact() {
     let server = Process::start("memory:").await;
     let folder = tempfile::tempdir().unwrap();

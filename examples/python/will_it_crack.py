@@ -16,7 +16,7 @@ def main() -> pandas.DataFrame:
     slip = pad.summary.gross_slip_displacement
     rows = []
     for share in (0.2, 0.5, 0.8):
-        found = pad.fretting(share * slip, bulk=("0 MPa", "150 MPa"), crossland={"alpha": 0.4, "limit": "350 MPa"})
+        found = pad.fretting(share * slip, bulk="150 MPa", crossland={"alpha": 0.4, "limit": "350 MPa"})
         assert found.place is not None
         rows.append({"amplitude over gross slip": share, "margin": found.margin, "x in um": 1e6 * found.place[0]})
     return pandas.DataFrame(rows)

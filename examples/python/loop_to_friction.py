@@ -10,7 +10,7 @@ import pandas
 
 import stickslip as ss
 
-FILE = Path(__file__).parents[2] / "examples" / "data" / "ball_loop.csv"
+FILE = Path(__file__).parents[1] / "data" / "ball_loop.csv"
 
 
 def main(file: str | Path = FILE) -> pandas.DataFrame:
@@ -20,11 +20,7 @@ def main(file: str | Path = FILE) -> pandas.DataFrame:
     loop = ss.read_loop(file)
     free = ["friction", "g_star", "machine_compliance", "force_offset"]
     fit = ss.fit_loop(guess, loop, free=free, start="steady")
-    rows = []
-    for name, one in fit.estimates.items():
-        low, high = (None, None) if one.interval is None else one.interval
-        rows.append({"name": name, "value": one.value, "low": low, "high": high})
-    return pandas.DataFrame(rows).set_index("name")
+    return fit.estimates.to_frame()
 
 
 if __name__ == "__main__":

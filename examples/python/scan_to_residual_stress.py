@@ -12,7 +12,7 @@ import pandas
 
 import stickslip as ss
 
-FILE = Path(__file__).parents[2] / "examples" / "data" / "ball_scan.txt"
+FILE = Path(__file__).parents[1] / "data" / "ball_scan.txt"
 BODIES = [ss.Body("210 GPa", 0.3), ss.Body("210 GPa", 0.3)]
 
 

@@ -1,0 +1,1815 @@
+"""The computations as methods with their keywords. Written by `tools/generate.py`."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from . import request_types as types
+from . import results
+from .bodies import ContactLike
+from .documents import Document, Quantities, Quantity
+from .profiles import Line, Plane, Surface
+from .requests import LoopLike, ScanLike
+from .result import T
+
+
+class Computations(ABC):
+    """The computations, which take a contact at the preload of its definition."""
+
+    @abstractmethod
+    def _answer(self, kind: type[T], name: str, given: Document, parts: dict[str, Document]) -> T:
+        """The reply to the members of a request, some of which are parts of one member."""
+
+    def accuracy(
+        self,
+        contact: ContactLike,
+        displacement: Quantities | None = None,
+        *,
+        moves: Sequence[types.Move | Mapping[str, Any]] | None = None,
+        force: Quantities | None = None,
+        falling_amplitude: int | types.FallingAmplitude | Mapping[str, Any] | None = None,
+        equal_peaks: int | types.EqualPeaks | Mapping[str, Any] | None = None,
+        cycles: types.CyclicPath | Mapping[str, Any] | None = None,
+        path: types.Path | None = None,
+        solvers: Sequence[types.Solver] | None = None,
+        stress: int | types.StressRequest | Mapping[str, Any] | None = None,
+        tolerance: Quantity | None = None,
+    ) -> results.AccuracyReply:
+        """Compare solvers.
+
+        Follows a path from the preloaded contact with each of the solvers, and compares the forces along it and the
+        shear stresses at its end with a reference: the exact solver, refined where moves are curved. This shows what a
+        coarser model would do to your own numbers. A solver that cannot follow the path has the reason in its row. The
+        springs of all solvers together, times moves and stress points, have the limit of one simulation. Nothing is
+        stored.
+
+        The contact is taken at the preload of its definition, never moved: of a `Contact` that has been moved, its
+        history and present load play no part.
+
+        Parameters
+        ----------
+        contact : ContactLike
+            The contact.
+        displacement : Quantities
+            Tangential displacements of the indenter, m, one move each.
+        moves : Sequence[Move | dict]
+            Moves, one after the other.
+        force : Quantities
+            Tangential forces, N, one move each.
+        falling_amplitude : int | FallingAmplitude | dict
+            Back and forth with an amplitude that falls linearly to zero (eq. 20 of the paper). A number alone is its
+            `reversals`.
+        equal_peaks : int | EqualPeaks | dict
+            Back and forth from gross slip to rest, with the amplitudes that leave equal peaks of shear stress on the
+            profile of the contact. A number alone is its `reversals`.
+        cycles : CyclicPath | dict
+            Equal cycles about a mean, under a constant load or one that oscillates too.
+        path : Path
+            The path.
+        solvers : Sequence[Solver]
+            The solvers, in the order of the rows; left out, the exact one and 10, 100, 1000 and 10 000 springs.
+        stress : int | StressRequest | dict
+            Where the shear stress at the end of the path is compared; left out, at 200 radii evenly spaced from the
+            centre to the edge. `fields`, if named, must hold `shear`; nothing else is compared. A number alone is its
+            `points`.
+        tolerance : Quantity
+            Tolerance for what is not exact, relative to μ F_N, a pure number. The reference is held to a sixteenth of
+            it. Default: 1e-10.
+
+        Returns
+        -------
+        AccuracyReply
+            The time and the error of each solver.
+
+        Raises
+        ------
+        InvalidInput
+            With the pointer of the member that is wrong, and its range.
+
+        Examples
+        --------
+        >>> import stickslip as ss
+        >>> reply = ss.accuracy(
+        ...     contact=ss.Definition(ss.Sphere(radius=0.01), [ss.Body(2.1e+11, 0.3), ss.RIGID], 0.3,
+        ...         normal_force=10.0),
+        ...     falling_amplitude={'reversals': 20},
+        ... )
+        """
+        given: Document = {
+            "contact": contact,
+            "path": path,
+            "solvers": solvers,
+            "stress": stress,
+            "tolerance": tolerance,
+        }
+        parts: dict[str, Document] = {
+            "path": {
+                "moves": moves,
+                "displacement": displacement,
+                "force": force,
+                "falling_amplitude": falling_amplitude,
+                "equal_peaks": equal_peaks,
+                "cycles": cycles,
+            },
+        }
+        return self._answer(results.AccuracyReply, "/accuracy", given, parts)
+
+    def cycle(
+        self,
+        contact: ContactLike,
+        displacement: Quantity | Quantities | None = None,
+        *,
+        force: Quantity | Quantities | None = None,
+        best_load: int | bool | types.BestLoadStudy | Mapping[str, Any] | None = None,
+        frequency_response: types.FrequencyResponse | Mapping[str, Any] | None = None,
+        harmonics: int | None = None,
+        machine: Quantity | types.Machine | Mapping[str, Any] | None = None,
+        map: types.FrettingMap | Mapping[str, Any] | None = None,
+        normal: types.NormalOscillation | Mapping[str, Any] | None = None,
+        tolerance: Quantity | None = None,
+        work_density: int | types.WorkDensity | Mapping[str, Any] | None = None,
+    ) -> results.CycleReply:
+        """Compute steady cycles.
+
+        Moves a contact back and forth at constant load until every cycle is as the one before, in closed form: a
+        displacement or a force that is a cosine, directly or through a machine of finite stiffness. Returns work,
+        stiffness, loss factor and slip for each amplitude and, if asked for, the harmonics and the friction work per
+        area, or the same cycles under many loads. Nothing is stored.
+
+        The contact is taken at the preload of its definition, never moved: of a `Contact` that has been moved, its
+        history and present load play no part.
+
+        Parameters
+        ----------
+        contact : ContactLike
+            The contact.
+        displacement : Quantity | Quantities
+            Amplitude of the tangential displacement, m: of the indenter or, with `machine`, of the machine.
+        force : Quantity | Quantities
+            Amplitude of the tangential force, N; below μ F_N.
+        best_load : int | bool | BestLoadStudy | dict
+            Ask for the normal force under which each amplitude does most friction work; with at most 100 amplitudes. A
+            number alone is its `points`.
+        frequency_response : FrequencyResponse | dict
+            Ask for the oscillations of a mass that hangs on the contact and is driven by a force.
+        harmonics : int
+            Ask for the harmonics from the first to this one.
+        machine : Quantity | Machine | dict
+            A machine in series with the contact: a displacement amplitude is then that of the machine. A number alone
+            is its `stiffness`.
+        map : FrettingMap | dict
+            Repeat all amplitudes under many loads, whatever the preload of the contact: a fretting map. At constant
+            load, with `machine` alone. At most 100 000 cycles.
+        normal : NormalOscillation | dict
+            The normal load oscillates too, about that of the contact.
+        tolerance : Quantity
+            Tolerance of cycles under a load that oscillates, relative to μ F_N and to the work of that force, and of
+            `frequency_response`, relative to the amplitude; a pure number. Default: 1e-6.
+        work_density : int | WorkDensity | dict
+            Ask for the friction work per area. Radii times amplitudes are at most 200 000. Not under a load that
+            oscillates. A number alone is its `points`.
+
+        Returns
+        -------
+        CycleReply
+            Steady cycles, one for each amplitude.
+
+        Raises
+        ------
+        InvalidInput
+            With the pointer of the member that is wrong, and its range.
+
+        Examples
+        --------
+        >>> import stickslip as ss
+        >>> reply = ss.cycle(
+        ...     contact=ss.Definition(ss.Sphere(radius=0.01), [ss.Body(2.1e+11, 0.3), ss.RIGID], 0.3,
+        ...         normal_force=10.0),
+        ...     displacement=[5e-08, 1e-07, 2e-07],
+        ...     harmonics=1,
+        ... )
+        """
+        given: Document = {
+            "best_load": best_load,
+            "contact": contact,
+            "frequency_response": frequency_response,
+            "harmonics": harmonics,
+            "machine": machine,
+            "map": map,
+            "normal": normal,
+            "tolerance": tolerance,
+            "work_density": work_density,
+        }
+        parts: dict[str, Document] = {
+            "drive": {
+                "displacement": displacement,
+                "force": force,
+            },
+        }
+        return self._answer(results.CycleReply, "/cycle", given, parts)
+
+    def fit_loop(
+        self,
+        contact: ContactLike,
+        loops: LoopLike | Sequence[LoopLike],
+        *,
+        free: Sequence[types.FitParameter] | None = None,
+        known: bool | types.KnownValues | Mapping[str, Any] | None = None,
+        noise: bool | types.FitNoise | Mapping[str, Any] | None = None,
+        units: bool | types.FitUnits | Mapping[str, Any] | None = None,
+        start: types.LoopStart | None = None,
+    ) -> results.FitReply:
+        """Fit friction and stiffness to measured loops.
+
+        Finds the turning points of force over displacement as a bench has measured them, and the coefficient of
+        friction, the moduli, the compliance of the machine, the offsets and the drift that fit best. Says what the
+        loops determine, what only in combination, and within which intervals. Nothing is stored.
+
+        The contact is taken at the preload of its definition, never moved: of a `Contact` that has been moved, its
+        history and present load play no part. A loop may be a file that was read, a table with named columns, or arrays
+        of displacement and force. `start` says how all of them begin.
+
+        Parameters
+        ----------
+        contact : ContactLike
+            The contact as far as it is known. What is free begins with its value here.
+        loops : LoopLike | Sequence[LoopLike]
+            The measured loops, which are fitted together.
+        free : Sequence[FitParameter]
+            What the fit determines.
+        known : bool | KnownValues | dict
+            What is known from elsewhere. With a standard error it takes part in the fit, whether it is free or not.
+        noise : bool | FitNoise | dict
+            The noise of the numbers; estimated from the loops if it is left out.
+        units : bool | FitUnits | dict
+            The units of `displacement` and `force` of the loops: SI if they are left out. Everything else is in SI
+            units.
+        start : LoopStart
+            How all loops begin.
+
+        Returns
+        -------
+        FitReply
+            What the loops say, and what they leave open.
+
+        Raises
+        ------
+        InvalidInput
+            With the pointer of the member that is wrong, and its range.
+
+        Examples
+        --------
+        >>> import stickslip as ss
+        >>> reply = ss.fit_loop(
+        ...     contact=ss.Definition(ss.Sphere(radius=0.01), [ss.Body(2.1e+11, 0.3), ss.RIGID], 0.2,
+        ...         normal_force=10.0),
+        ...     loops=[{'displacement': [0.2583, 0.2152, 0.1722, 0.1291, 0.0861, 0.043, 0.0, -0.043, -0.0861,
+        ...         -0.1291, -0.1722, -0.2152, -0.2583, -0.2152, -0.1722, -0.1291, -0.0861, -0.043, 0.0, 0.043, 0.0861,
+        ...         0.1291, 0.1722, 0.2152, 0.2583], 'force': [3.001, 1.923, 0.888, -0.025, -0.881, -1.625, -2.231,
+        ...         -2.733, -3.0, -2.993, -2.989, -3.0, -2.994, -1.921, -0.901, 0.031, 0.865, 1.607, 2.234, 2.732,
+        ...         2.998, 2.997, 3.001, 2.987, 2.999], 'start': 'steady'}],
+        ...     free=['friction', 'g_star'],
+        ...     known={'machine_compliance': {'value': 0.0}},
+        ...     units={'displacement': 'um', 'force': 'N'},
+        ... )
+        """
+        given: Document = {
+            "contact": contact,
+            "free": free,
+            "known": known,
+            "loops": loops,
+            "noise": noise,
+            "units": units,
+            "start": start,
+        }
+        parts: dict[str, Document] = {
+        }
+        return self._answer(results.FitReply, "/fit", given, parts)
+
+    def fretting(
+        self,
+        contact: ContactLike,
+        displacement: Quantity | Quantities | None = None,
+        *,
+        crossland: types.Weighted | Mapping[str, Any] | None = None,
+        dang_van: types.Weighted | Mapping[str, Any] | None = None,
+        fatemi_socie: types.FatemiSocie | Mapping[str, Any] | None = None,
+        findley: types.Findley | Mapping[str, Any] | None = None,
+        friction_work: bool | types.SurfaceCriterion | Mapping[str, Any] | None = None,
+        ruiz: bool | types.SurfaceCriterion | Mapping[str, Any] | None = None,
+        swt: bool | types.StrainBased | Mapping[str, Any] | None = None,
+        moves: Sequence[types.Move | Mapping[str, Any]] | None = None,
+        force: Quantities | None = None,
+        falling_amplitude: int | types.FallingAmplitude | Mapping[str, Any] | None = None,
+        equal_peaks: int | types.EqualPeaks | Mapping[str, Any] | None = None,
+        cycles: types.CyclicPath | Mapping[str, Any] | None = None,
+        body: types.BodyName | None = None,
+        bulk: Quantity | types.BulkCycle | Mapping[str, Any] | None = None,
+        criteria: bool | types.Criteria | Mapping[str, Any] | None = None,
+        line: Line | types.SubsurfaceLine | Mapping[str, Any] | None = None,
+        path: types.Path | None = None,
+        plane: Plane | types.SubsurfacePlane | Mapping[str, Any] | None = None,
+        points: Sequence[Quantities] | Quantities | None = None,
+        poisson_ratio: Quantity | None = None,
+        stress_paths: Sequence[int] | None = None,
+        surface: Surface | types.SubsurfaceSurface | Mapping[str, Any] | None = None,
+        tolerance: Quantity | None = None,
+    ) -> results.FrettingReply:
+        """Rate a cycle for fretting fatigue.
+
+        Repeats a path until it closes, computes the stress tensor at every place over the steady cycle and rates it by
+        fatigue criteria: where would a crack start, on which plane, and how far is it from a limit. Nothing is stored.
+
+        The contact is taken at the preload of its definition, never moved: of a `Contact` that has been moved, its
+        history and present load play no part. One displacement is the amplitude of a cycle, several are a path.
+
+        Parameters
+        ----------
+        contact : ContactLike
+            The contact.
+        displacement : Quantity | Quantities
+            Tangential displacements of the indenter, m, one move each.
+        crossland : Weighted | dict
+            √J2a + α · the largest hydrostatic stress, Pa (Crossland 1956).
+        dang_van : Weighted | dict
+            The largest of shear stress + α · hydrostatic stress, Pa (Dang Van 1973).
+        fatemi_socie : FatemiSocie | dict
+            The largest amplitude of the shear strain, raised by the normal stress, a pure number (Fatemi & Socie 1988).
+        findley : Findley | dict
+            The largest of shear amplitude + k · largest normal stress on a plane, Pa (Findley 1959).
+        friction_work : bool | SurfaceCriterion | dict
+            Friction work per area and cycle at the surface, J/m².
+        ruiz : bool | SurfaceCriterion | dict
+            Shear stress times slip at the surface, N/m (Ruiz, Boddington & Chen 1984).
+        swt : bool | StrainBased | dict
+            The largest of normal stress times amplitude of the normal strain on a plane, Pa (Smith, Watson & Topper
+            1970).
+        moves : Sequence[Move | dict]
+            Moves, one after the other.
+        force : Quantities
+            Tangential forces, N, one move each.
+        falling_amplitude : int | FallingAmplitude | dict
+            Back and forth with an amplitude that falls linearly to zero (eq. 20 of the paper). A number alone is its
+            `reversals`.
+        equal_peaks : int | EqualPeaks | dict
+            Back and forth from gross slip to rest, with the amplitudes that leave equal peaks of shear stress on the
+            profile of the contact. A number alone is its `reversals`.
+        cycles : CyclicPath | dict
+            Equal cycles about a mean, under a constant load or one that oscillates too.
+        body : BodyName
+            Which body.
+        bulk : Quantity | BulkCycle | dict
+            A normal stress of the body along x that goes with the cycle, mean + amplitude · cos(th + phase), where th
+            grows from 0 to 360 degrees, by as much in each move. A number alone is its `amplitude`.
+        criteria : bool | Criteria | dict
+            The criteria.
+        line : Line | SubsurfaceLine | dict
+            Where: a straight line.
+        path : Path
+            A path of at most 200 moves that ends where it began, at least when it is repeated.
+        plane : Plane | SubsurfacePlane | dict
+            Where: a grid in a plane.
+        points : Sequence[Quantities] | Quantities
+            Where: a list of x, y, z, m, with z of at least zero.
+        poisson_ratio : Quantity
+            Its Poisson's ratio, a pure number. Where the material has `bodies` it is known, and may be left out.
+        stress_paths : Sequence[int]
+            Indices of places whose stresses over the cycle are wanted too.
+        surface : Surface | SubsurfaceSurface | dict
+            Where: a grid on the surface.
+        tolerance : Quantity
+            Error of a criterion, relative to its largest value, that is accepted; a pure number. In a search it is 1e-3
+            if left out. Default: 0.0001.
+
+        Returns
+        -------
+        FrettingReply
+            The criteria over the steady cycle, each with its values at all places.
+
+        Raises
+        ------
+        InvalidInput
+            With the pointer of the member that is wrong, and its range.
+
+        Examples
+        --------
+        >>> import stickslip as ss
+        >>> reply = ss.fretting(
+        ...     contact=ss.Definition(ss.Sphere(radius=0.01), [ss.Body(2.1e+11, 0.3), ss.RIGID], 0.3,
+        ...         normal_force=10.0),
+        ...     crossland={'alpha': 0.3, 'limit': 300000000.0},
+        ...     cycles={'count': 1, 'displacement': 1e-07},
+        ...     body='first',
+        ...     plane={'normal': 'y', 'offset': 0.0, 'x': [-0.00012, 0.00012, 25], 'z': [0.0, 6e-05, 7]},
+        ... )
+        """
+        given: Document = {
+            "body": body,
+            "bulk": bulk,
+            "contact": contact,
+            "criteria": criteria,
+            "line": line,
+            "path": path,
+            "plane": plane,
+            "points": points,
+            "poisson_ratio": poisson_ratio,
+            "stress_paths": stress_paths,
+            "surface": surface,
+            "tolerance": tolerance,
+        }
+        parts: dict[str, Document] = {
+            "criteria": {
+                "crossland": crossland,
+                "dang_van": dang_van,
+                "fatemi_socie": fatemi_socie,
+                "findley": findley,
+                "friction_work": friction_work,
+                "ruiz": ruiz,
+                "swt": swt,
+            },
+            "path": {
+                "moves": moves,
+                "displacement": displacement,
+                "force": force,
+                "falling_amplitude": falling_amplitude,
+                "equal_peaks": equal_peaks,
+                "cycles": cycles,
+            },
+        }
+        return self._answer(results.FrettingReply, "/fretting", given, parts)
+
+    def fit_profile(
+        self,
+        scan: ScanLike,
+        *,
+        centre: types.Centre | None = None,
+        level: bool | None = None,
+        load: types.ScanLoad | Mapping[str, Any] | None = None,
+        orientation: types.ScanOrientation | None = None,
+        smoothing: types.Smoothing | None = None,
+        units: bool | types.ScanUnits | Mapping[str, Any] | None = None,
+    ) -> results.ProfileFitReply:
+        """Fit a profile to a scan.
+
+        Finds the axis of a scan of heights, takes off its tilt, leaves out its outliers and fits the smoothest profile
+        that its noise allows and whose contact is a full circle; with `load`, says what the scan means for the contact,
+        with standard errors. Nothing is stored.
+
+        The scan may be a file that was read, a table with named columns, or arrays of x and z.
+
+        Parameters
+        ----------
+        scan : ScanLike
+            The heights, with their places.
+        centre : Centre
+            Where the axis of the body is, m; `auto` looks for it.
+        level : bool
+            Whether a tilt is taken off where the scan distinguishes it from an axis that is off the middle. Default:
+            true.
+        load : ScanLoad | dict
+            A load, for which the reply then has the contact.
+        orientation : ScanOrientation
+            Which way up the scan is; `auto` goes by the curvature of the surface. Default: auto.
+        smoothing : Smoothing
+            What decides how smooth the profile is; `auto` is generalised cross-validation.
+        units : bool | ScanUnits | dict
+            The units of the scan: metres if it is left out. Everything else is in SI units.
+
+        Returns
+        -------
+        ProfileFitReply
+            A profile that was fitted to a scan, with what is left of the scan.
+
+        Raises
+        ------
+        InvalidInput
+            With the pointer of the member that is wrong, and its range.
+
+        Examples
+        --------
+        >>> import stickslip as ss
+        >>> reply = ss.fit_profile(
+        ...     scan={'line': {'x': [-70.0, -60.0, -50.0, -40.0, -30.0, -20.0, -10.0, 0.0, 10.0, 20.0, 30.0, 40.0,
+        ...         50.0, 60.0, 70.0], 'z': [-245.2, -179.7, -125.3, -79.6, -45.3, -20.4, -4.6, 0.3, -5.1, -19.8, -44.7,
+        ...         -80.2, -124.9, -180.4, None]}},
+        ...     load={'friction': 0.3, 'material': {'bodies': [{'poisson_ratio': 0.3, 'youngs_modulus':
+        ...         210000000000.0}, 'rigid']}, 'preload': {'normal_force': 1.0}},
+        ...     units={'height': 'nm', 'lateral': 'um'},
+        ... )
+        """
+        given: Document = {
+            "centre": centre,
+            "level": level,
+            "load": load,
+            "orientation": orientation,
+            "scan": scan,
+            "smoothing": smoothing,
+            "units": units,
+        }
+        parts: dict[str, Document] = {
+        }
+        return self._answer(results.ProfileFitReply, "/profiles/fit", given, parts)
+
+    def protocols(
+        self,
+        contact: ContactLike | None = None,
+        reversals: int | None = None,
+        *,
+        end: types.ProtocolEnd | None = None,
+        kind: types.ProtocolKind | None = None,
+        robustness: bool | types.Robustness | Mapping[str, Any] | None = None,
+        start: types.ProtocolStart | None = None,
+        target: Quantity | None = None,
+    ) -> results.ProtocolReply:
+        """Find a protocol.
+
+        Finds displacements that leave little shear stress, in a number of reversals or in as few as reach a target, and
+        says what remains, how far that may be from the optimum, and what the other laws would leave. Nothing is stored
+        or changed.
+
+        The contact is taken at the preload of its definition, never moved: of a `Contact` that has been moved, its
+        history and present load play no part.
+
+        Parameters
+        ----------
+        contact : ContactLike
+            The contact; may be left out where `start` names one on the server.
+        reversals : int
+            Number of reversals N_R; this or `target`.
+        end : ProtocolEnd
+            Where the path ends.
+        kind : ProtocolKind
+            The law of the amplitudes.
+        robustness : bool | Robustness | dict
+            Ask what remains if the protocol is not followed exactly.
+        start : ProtocolStart
+            What the reversals begin from; left out, gross slip at its full amplitude.
+        target : Quantity
+            The largest |τ|/(μ p_max) that may remain, a pure number (over the mean pressure where the largest is
+            infinite): the smallest number of reversals that reaches it is found.
+
+        Returns
+        -------
+        ProtocolReply
+            How to move so that little shear stress remains.
+
+        Raises
+        ------
+        InvalidInput
+            With the pointer of the member that is wrong, and its range.
+
+        Examples
+        --------
+        >>> import stickslip as ss
+        >>> reply = ss.protocols(
+        ...     contact=ss.Definition(ss.Sphere(radius=0.01), [ss.Body(2.1e+11, 0.3), ss.RIGID], 0.3,
+        ...         normal_force=10.0),
+        ...     reversals=20,
+        ...     end='free',
+        ...     kind='minimax',
+        ... )
+        """
+        given: Document = {
+            "contact": contact,
+            "end": end,
+            "kind": kind,
+            "reversals": reversals,
+            "robustness": robustness,
+            "start": start,
+            "target": target,
+        }
+        parts: dict[str, Document] = {
+        }
+        return self._answer(results.ProtocolReply, "/protocols", given, parts)
+
+    def simulate(
+        self,
+        contact: ContactLike,
+        displacement: Quantities | None = None,
+        *,
+        moves: Sequence[types.Move | Mapping[str, Any]] | None = None,
+        force: Quantities | None = None,
+        falling_amplitude: int | types.FallingAmplitude | Mapping[str, Any] | None = None,
+        equal_peaks: int | types.EqualPeaks | Mapping[str, Any] | None = None,
+        cycles: types.CyclicPath | Mapping[str, Any] | None = None,
+        path: types.Path | None = None,
+        residual: bool | None = None,
+        solver: types.Solver | None = None,
+        steps: types.Steps | None = None,
+        stress: int | types.StressRequest | Mapping[str, Any] | None = None,
+        subsurface: Quantity | types.SubsurfaceRequest | Mapping[str, Any] | None = None,
+        tolerance: Quantity | None = None,
+    ) -> results.SimulateReply:
+        """Simulate a path.
+
+        Follows a path from the preloaded contact and returns the states along it, and the stresses and their extrema at
+        its end if asked for. Nothing is stored, so that a repeated request simply runs again.
+
+        The contact is taken at the preload of its definition, never moved: of a `Contact` that has been moved, its
+        history and present load play no part.
+
+        Parameters
+        ----------
+        contact : ContactLike
+            The contact.
+        displacement : Quantities
+            Tangential displacements of the indenter, m, one move each.
+        moves : Sequence[Move | dict]
+            Moves, one after the other.
+        force : Quantities
+            Tangential forces, N, one move each.
+        falling_amplitude : int | FallingAmplitude | dict
+            Back and forth with an amplitude that falls linearly to zero (eq. 20 of the paper). A number alone is its
+            `reversals`.
+        equal_peaks : int | EqualPeaks | dict
+            Back and forth from gross slip to rest, with the amplitudes that leave equal peaks of shear stress on the
+            profile of the contact. A number alone is its `reversals`.
+        cycles : CyclicPath | dict
+            Equal cycles about a mean, under a constant load or one that oscillates too.
+        path : Path
+            The path.
+        residual : bool
+            Ask for the extrema of the shear stress at the end of the path.
+        solver : Solver
+            Which solver to use; left out, the cheapest that serves the request.
+        steps : Steps
+            Which states to return.
+        stress : int | StressRequest | dict
+            Ask for stresses at the end of the path. A number alone is its `points`.
+        subsurface : Quantity | SubsurfaceRequest | dict
+            Ask for the stress below the surface at the end of the path; by the exact solver.
+        tolerance : Quantity
+            Tolerance for what is not exact, relative to μ F_N, a pure number. Default: 1e-10.
+
+        Returns
+        -------
+        SimulateReply
+            The result of a simulation.
+
+        Raises
+        ------
+        InvalidInput
+            With the pointer of the member that is wrong, and its range.
+
+        Examples
+        --------
+        >>> import stickslip as ss
+        >>> reply = ss.simulate(
+        ...     contact=ss.Definition(ss.Sphere(radius=0.01), [ss.Body(2.1e+11, 0.3), ss.RIGID], 0.3,
+        ...         normal_force=10.0),
+        ...     falling_amplitude={'reversals': 20},
+        ...     residual=True,
+        ...     stress={'points': 200},
+        ... )
+        """
+        given: Document = {
+            "contact": contact,
+            "path": path,
+            "residual": residual,
+            "solver": solver,
+            "steps": steps,
+            "stress": stress,
+            "subsurface": subsurface,
+            "tolerance": tolerance,
+        }
+        parts: dict[str, Document] = {
+            "path": {
+                "moves": moves,
+                "displacement": displacement,
+                "force": force,
+                "falling_amplitude": falling_amplitude,
+                "equal_peaks": equal_peaks,
+                "cycles": cycles,
+            },
+        }
+        return self._answer(results.SimulateReply, "/simulate", given, parts)
+
+    def sweep(
+        self,
+        base: Mapping[str, Any],
+        axes: Mapping[str, Quantities] | Sequence[types.Axis],
+        outputs: str | Mapping[str, str] | Sequence[types.Output],
+        *,
+        job: bool | None = None,
+    ) -> results.SweepReply:
+        """Run a sweep.
+
+        Runs `POST /simulate` for each combination of the values of up to three axes, and returns a table of the
+        outputs. A point without an answer is a row of `null` and is listed among the failures. A small sweep is
+        answered at once. A large one becomes a job: 202 with the URL of the job in `Location` or, with `Accept:
+        text/event-stream`, its events. A retry with the same `Idempotency-Key` gets the numbers of the first attempt,
+        or its job. With a key, a table of more than 65536 numbers is the result of a job.
+
+        `axes` may be values by their pointers, `outputs` pointers by the names of their columns.
+
+        Parameters
+        ----------
+        base : Mapping[str, Any]
+            The body of `POST /simulate` that each point is made from. What an axis names may be left out of it.
+        axes : Mapping[str, Quantities] | Sequence[Axis]
+            The numbers that change.
+        outputs : str | Mapping[str, str] | Sequence[Output]
+            JSON pointers to numbers in the reply to `POST /simulate`, a column each, with or without a name. Where a
+            point does not have one, such as a peak of a number that it does not reach, the column has `null`.
+        job : bool
+            Always make a job of it, even if it is small.
+
+        Returns
+        -------
+        SweepReply
+            The table of a sweep: a row a point.
+
+        Raises
+        ------
+        InvalidInput
+            With the pointer of the member that is wrong, and its range.
+
+        Examples
+        --------
+        >>> import stickslip as ss
+        >>> reply = ss.sweep(
+        ...     base={'contact': {'friction': 0.3, 'material': {'bodies': [{'poisson_ratio': 0.3, 'youngs_modulus':
+        ...         210000000000.0}, 'rigid']}, 'preload': {'normal_force': 10.0}, 'profile': {'radius': 0.01, 'type':
+        ...         'sphere'}}, 'path': {'falling_amplitude': {'reversals': 20}}, 'residual': True, 'steps': 'last'},
+        ...     axes=[{'linear': {'count': 100, 'from': 1, 'to': 100}, 'pointer':
+        ...         '/path/falling_amplitude/reversals'}],
+        ...     outputs=['/residual/max'],
+        ... )
+        """
+        given: Document = {
+            "axes": axes,
+            "base": base,
+            "job": job,
+            "outputs": outputs,
+        }
+        parts: dict[str, Document] = {
+        }
+        return self._answer(results.SweepReply, "/sweep", given, parts)
+
+
+class AsyncComputations(ABC):
+    """The computations, which take a contact at the preload of its definition."""
+
+    @abstractmethod
+    async def _answer(self, kind: type[T], name: str, given: Document, parts: dict[str, Document]) -> T:
+        """The reply to the members of a request, some of which are parts of one member."""
+
+    async def accuracy(
+        self,
+        contact: ContactLike,
+        displacement: Quantities | None = None,
+        *,
+        moves: Sequence[types.Move | Mapping[str, Any]] | None = None,
+        force: Quantities | None = None,
+        falling_amplitude: int | types.FallingAmplitude | Mapping[str, Any] | None = None,
+        equal_peaks: int | types.EqualPeaks | Mapping[str, Any] | None = None,
+        cycles: types.CyclicPath | Mapping[str, Any] | None = None,
+        path: types.Path | None = None,
+        solvers: Sequence[types.Solver] | None = None,
+        stress: int | types.StressRequest | Mapping[str, Any] | None = None,
+        tolerance: Quantity | None = None,
+    ) -> results.AccuracyReply:
+        """`accuracy`, awaited."""
+        given: Document = {
+            "contact": contact,
+            "path": path,
+            "solvers": solvers,
+            "stress": stress,
+            "tolerance": tolerance,
+        }
+        parts: dict[str, Document] = {
+            "path": {
+                "moves": moves,
+                "displacement": displacement,
+                "force": force,
+                "falling_amplitude": falling_amplitude,
+                "equal_peaks": equal_peaks,
+                "cycles": cycles,
+            },
+        }
+        return await self._answer(results.AccuracyReply, "/accuracy", given, parts)
+
+    async def cycle(
+        self,
+        contact: ContactLike,
+        displacement: Quantity | Quantities | None = None,
+        *,
+        force: Quantity | Quantities | None = None,
+        best_load: int | bool | types.BestLoadStudy | Mapping[str, Any] | None = None,
+        frequency_response: types.FrequencyResponse | Mapping[str, Any] | None = None,
+        harmonics: int | None = None,
+        machine: Quantity | types.Machine | Mapping[str, Any] | None = None,
+        map: types.FrettingMap | Mapping[str, Any] | None = None,
+        normal: types.NormalOscillation | Mapping[str, Any] | None = None,
+        tolerance: Quantity | None = None,
+        work_density: int | types.WorkDensity | Mapping[str, Any] | None = None,
+    ) -> results.CycleReply:
+        """`cycle`, awaited."""
+        given: Document = {
+            "best_load": best_load,
+            "contact": contact,
+            "frequency_response": frequency_response,
+            "harmonics": harmonics,
+            "machine": machine,
+            "map": map,
+            "normal": normal,
+            "tolerance": tolerance,
+            "work_density": work_density,
+        }
+        parts: dict[str, Document] = {
+            "drive": {
+                "displacement": displacement,
+                "force": force,
+            },
+        }
+        return await self._answer(results.CycleReply, "/cycle", given, parts)
+
+    async def fit_loop(
+        self,
+        contact: ContactLike,
+        loops: LoopLike | Sequence[LoopLike],
+        *,
+        free: Sequence[types.FitParameter] | None = None,
+        known: bool | types.KnownValues | Mapping[str, Any] | None = None,
+        noise: bool | types.FitNoise | Mapping[str, Any] | None = None,
+        units: bool | types.FitUnits | Mapping[str, Any] | None = None,
+        start: types.LoopStart | None = None,
+    ) -> results.FitReply:
+        """`fit_loop`, awaited."""
+        given: Document = {
+            "contact": contact,
+            "free": free,
+            "known": known,
+            "loops": loops,
+            "noise": noise,
+            "units": units,
+            "start": start,
+        }
+        parts: dict[str, Document] = {
+        }
+        return await self._answer(results.FitReply, "/fit", given, parts)
+
+    async def fretting(
+        self,
+        contact: ContactLike,
+        displacement: Quantity | Quantities | None = None,
+        *,
+        crossland: types.Weighted | Mapping[str, Any] | None = None,
+        dang_van: types.Weighted | Mapping[str, Any] | None = None,
+        fatemi_socie: types.FatemiSocie | Mapping[str, Any] | None = None,
+        findley: types.Findley | Mapping[str, Any] | None = None,
+        friction_work: bool | types.SurfaceCriterion | Mapping[str, Any] | None = None,
+        ruiz: bool | types.SurfaceCriterion | Mapping[str, Any] | None = None,
+        swt: bool | types.StrainBased | Mapping[str, Any] | None = None,
+        moves: Sequence[types.Move | Mapping[str, Any]] | None = None,
+        force: Quantities | None = None,
+        falling_amplitude: int | types.FallingAmplitude | Mapping[str, Any] | None = None,
+        equal_peaks: int | types.EqualPeaks | Mapping[str, Any] | None = None,
+        cycles: types.CyclicPath | Mapping[str, Any] | None = None,
+        body: types.BodyName | None = None,
+        bulk: Quantity | types.BulkCycle | Mapping[str, Any] | None = None,
+        criteria: bool | types.Criteria | Mapping[str, Any] | None = None,
+        line: Line | types.SubsurfaceLine | Mapping[str, Any] | None = None,
+        path: types.Path | None = None,
+        plane: Plane | types.SubsurfacePlane | Mapping[str, Any] | None = None,
+        points: Sequence[Quantities] | Quantities | None = None,
+        poisson_ratio: Quantity | None = None,
+        stress_paths: Sequence[int] | None = None,
+        surface: Surface | types.SubsurfaceSurface | Mapping[str, Any] | None = None,
+        tolerance: Quantity | None = None,
+    ) -> results.FrettingReply:
+        """`fretting`, awaited."""
+        given: Document = {
+            "body": body,
+            "bulk": bulk,
+            "contact": contact,
+            "criteria": criteria,
+            "line": line,
+            "path": path,
+            "plane": plane,
+            "points": points,
+            "poisson_ratio": poisson_ratio,
+            "stress_paths": stress_paths,
+            "surface": surface,
+            "tolerance": tolerance,
+        }
+        parts: dict[str, Document] = {
+            "criteria": {
+                "crossland": crossland,
+                "dang_van": dang_van,
+                "fatemi_socie": fatemi_socie,
+                "findley": findley,
+                "friction_work": friction_work,
+                "ruiz": ruiz,
+                "swt": swt,
+            },
+            "path": {
+                "moves": moves,
+                "displacement": displacement,
+                "force": force,
+                "falling_amplitude": falling_amplitude,
+                "equal_peaks": equal_peaks,
+                "cycles": cycles,
+            },
+        }
+        return await self._answer(results.FrettingReply, "/fretting", given, parts)
+
+    async def fit_profile(
+        self,
+        scan: ScanLike,
+        *,
+        centre: types.Centre | None = None,
+        level: bool | None = None,
+        load: types.ScanLoad | Mapping[str, Any] | None = None,
+        orientation: types.ScanOrientation | None = None,
+        smoothing: types.Smoothing | None = None,
+        units: bool | types.ScanUnits | Mapping[str, Any] | None = None,
+    ) -> results.ProfileFitReply:
+        """`fit_profile`, awaited."""
+        given: Document = {
+            "centre": centre,
+            "level": level,
+            "load": load,
+            "orientation": orientation,
+            "scan": scan,
+            "smoothing": smoothing,
+            "units": units,
+        }
+        parts: dict[str, Document] = {
+        }
+        return await self._answer(results.ProfileFitReply, "/profiles/fit", given, parts)
+
+    async def protocols(
+        self,
+        contact: ContactLike | None = None,
+        reversals: int | None = None,
+        *,
+        end: types.ProtocolEnd | None = None,
+        kind: types.ProtocolKind | None = None,
+        robustness: bool | types.Robustness | Mapping[str, Any] | None = None,
+        start: types.ProtocolStart | None = None,
+        target: Quantity | None = None,
+    ) -> results.ProtocolReply:
+        """`protocols`, awaited."""
+        given: Document = {
+            "contact": contact,
+            "end": end,
+            "kind": kind,
+            "reversals": reversals,
+            "robustness": robustness,
+            "start": start,
+            "target": target,
+        }
+        parts: dict[str, Document] = {
+        }
+        return await self._answer(results.ProtocolReply, "/protocols", given, parts)
+
+    async def simulate(
+        self,
+        contact: ContactLike,
+        displacement: Quantities | None = None,
+        *,
+        moves: Sequence[types.Move | Mapping[str, Any]] | None = None,
+        force: Quantities | None = None,
+        falling_amplitude: int | types.FallingAmplitude | Mapping[str, Any] | None = None,
+        equal_peaks: int | types.EqualPeaks | Mapping[str, Any] | None = None,
+        cycles: types.CyclicPath | Mapping[str, Any] | None = None,
+        path: types.Path | None = None,
+        residual: bool | None = None,
+        solver: types.Solver | None = None,
+        steps: types.Steps | None = None,
+        stress: int | types.StressRequest | Mapping[str, Any] | None = None,
+        subsurface: Quantity | types.SubsurfaceRequest | Mapping[str, Any] | None = None,
+        tolerance: Quantity | None = None,
+    ) -> results.SimulateReply:
+        """`simulate`, awaited."""
+        given: Document = {
+            "contact": contact,
+            "path": path,
+            "residual": residual,
+            "solver": solver,
+            "steps": steps,
+            "stress": stress,
+            "subsurface": subsurface,
+            "tolerance": tolerance,
+        }
+        parts: dict[str, Document] = {
+            "path": {
+                "moves": moves,
+                "displacement": displacement,
+                "force": force,
+                "falling_amplitude": falling_amplitude,
+                "equal_peaks": equal_peaks,
+                "cycles": cycles,
+            },
+        }
+        return await self._answer(results.SimulateReply, "/simulate", given, parts)
+
+    async def sweep(
+        self,
+        base: Mapping[str, Any],
+        axes: Mapping[str, Quantities] | Sequence[types.Axis],
+        outputs: str | Mapping[str, str] | Sequence[types.Output],
+        *,
+        job: bool | None = None,
+    ) -> results.SweepReply:
+        """`sweep`, awaited."""
+        given: Document = {
+            "axes": axes,
+            "base": base,
+            "job": job,
+            "outputs": outputs,
+        }
+        parts: dict[str, Document] = {
+        }
+        return await self._answer(results.SweepReply, "/sweep", given, parts)
+
+
+class OfContact(ABC):
+    """What a contact does and is asked for in its present state."""
+
+    @abstractmethod
+    def _answer_of_contact(self, kind: type[T], name: str, given: Document, parts: dict[str, Document]) -> T:
+        """The reply to the members of a request, some of which are parts of one member."""
+
+    def move(
+        self,
+        displacement: Quantity | None = None,
+        *,
+        force: Quantity | None = None,
+        indentation: Quantity | None = None,
+        normal_force: Quantity | None = None,
+        relative: bool | None = None,
+        stress: int | types.StressRequest | Mapping[str, Any] | None = None,
+        tolerance: Quantity | None = None,
+    ) -> results.MoveReply:
+        """Applies one move.
+
+        Moves of one contact are applied one at a time, in the order of their arrival.
+
+        Parameters
+        ----------
+        displacement : Quantity
+            Tangential displacement of the indenter, m.
+        force : Quantity
+            Tangential force, N. Its magnitude must stay below the friction limit μ F_N.
+        indentation : Quantity
+            Indentation, m; below zero the bodies are apart and the slip history is lost.
+        normal_force : Quantity
+            Normal force, N.
+        relative : bool
+            Whether the numbers are increments to the present state, instead of the targets themselves.
+        stress : int | StressRequest | dict
+            Ask for stresses after the move. A number alone is its `points`.
+        tolerance : Quantity
+            Tolerance for what is not exact, relative to μ F_N, a pure number. Default: 1e-10.
+
+        Returns
+        -------
+        MoveReply
+            The result of a move.
+
+        Raises
+        ------
+        InvalidInput
+            With the pointer of the member that is wrong, and its range.
+
+        Examples
+        --------
+        >>> import stickslip as ss
+        >>> steel = ss.Body("210 GPa", 0.3)
+        >>> ball = ss.Contact(ss.Sphere("10 mm"), [steel, ss.RIGID], 0.3, normal_force="10 N")
+        >>> state = ball.move(force="1 N").state
+        """
+        given: Document = {
+            "displacement": displacement,
+            "force": force,
+            "indentation": indentation,
+            "normal_force": normal_force,
+            "relative": relative,
+            "stress": stress,
+            "tolerance": tolerance,
+        }
+        parts: dict[str, Document] = {
+        }
+        return self._answer_of_contact(results.MoveReply, "move", given, parts)
+
+    def path(
+        self,
+        displacement: Quantities | None = None,
+        *,
+        moves: Sequence[types.Move | Mapping[str, Any]] | None = None,
+        force: Quantities | None = None,
+        falling_amplitude: int | types.FallingAmplitude | Mapping[str, Any] | None = None,
+        equal_peaks: int | types.EqualPeaks | Mapping[str, Any] | None = None,
+        cycles: types.CyclicPath | Mapping[str, Any] | None = None,
+        path: types.Path | None = None,
+        steps: types.Steps | None = None,
+        stress: int | types.StressRequest | Mapping[str, Any] | None = None,
+        tolerance: Quantity | None = None,
+    ) -> results.PathReply:
+        """Applies all moves of the path, or none if one of them is refused.
+
+        Parameters
+        ----------
+        displacement : Quantities
+            Tangential displacements of the indenter, m, one move each.
+        moves : Sequence[Move | dict]
+            Moves, one after the other.
+        force : Quantities
+            Tangential forces, N, one move each.
+        falling_amplitude : int | FallingAmplitude | dict
+            Back and forth with an amplitude that falls linearly to zero (eq. 20 of the paper). A number alone is its
+            `reversals`.
+        equal_peaks : int | EqualPeaks | dict
+            Back and forth from gross slip to rest, with the amplitudes that leave equal peaks of shear stress on the
+            profile of the contact. A number alone is its `reversals`.
+        cycles : CyclicPath | dict
+            Equal cycles about a mean, under a constant load or one that oscillates too.
+        path : Path
+            The path.
+        steps : Steps
+            Which states to return.
+        stress : int | StressRequest | dict
+            Ask for stresses at the end of the path. A number alone is its `points`.
+        tolerance : Quantity
+            Tolerance for what is not exact, relative to μ F_N, a pure number. Default: 1e-10.
+
+        Returns
+        -------
+        PathReply
+            The result of a path.
+
+        Raises
+        ------
+        InvalidInput
+            With the pointer of the member that is wrong, and its range.
+
+        Examples
+        --------
+        >>> import stickslip as ss
+        >>> steel = ss.Body("210 GPa", 0.3)
+        >>> ball = ss.Contact(ss.Sphere("10 mm"), [steel, ss.RIGID], 0.3, normal_force="10 N")
+        >>> force = ball.path([5e-8, -5e-8]).force
+        """
+        given: Document = {
+            "path": path,
+            "steps": steps,
+            "stress": stress,
+            "tolerance": tolerance,
+        }
+        parts: dict[str, Document] = {
+            "path": {
+                "moves": moves,
+                "displacement": displacement,
+                "force": force,
+                "falling_amplitude": falling_amplitude,
+                "equal_peaks": equal_peaks,
+                "cycles": cycles,
+            },
+        }
+        return self._answer_of_contact(results.PathReply, "path", given, parts)
+
+    def relax(
+        self,
+        reversals: int | None = None,
+        *,
+        dry_run: bool | None = None,
+        end: types.ProtocolEnd | None = None,
+        kind: types.ProtocolKind | None = None,
+        steps: types.Steps | None = None,
+        target: Quantity | None = None,
+    ) -> results.RelaxReply:
+        """Relax a contact.
+
+        Finds the path from the present state that leaves the least shear stress, whatever the history, and applies all
+        of it or nothing. A dry run returns the same and changes nothing.
+
+        Parameters
+        ----------
+        reversals : int
+            Number of reversals N_R, at the most; this or `target`. The path begins with a stroke more.
+        dry_run : bool
+            Whether the path is only to be shown, and nothing changed. No reply of a dry run is kept for a retry.
+        end : ProtocolEnd
+            Where the path ends.
+        kind : ProtocolKind
+            The law of the amplitudes.
+        steps : Steps
+            Ask for the states along the path.
+        target : Quantity
+            The largest |τ|/(μ p_max) that may remain, a pure number (over the mean pressure where the largest is
+            infinite): the smallest number of reversals that reaches it is found.
+
+        Returns
+        -------
+        RelaxReply
+            The result of relaxing a contact, or of a dry run.
+
+        Raises
+        ------
+        InvalidInput
+            With the pointer of the member that is wrong, and its range.
+
+        Examples
+        --------
+        >>> import stickslip as ss
+        >>> steel = ss.Body("210 GPa", 0.3)
+        >>> ball = ss.Contact(ss.Sphere("10 mm"), [steel, ss.RIGID], 0.3, normal_force="10 N")
+        >>> left = ball.relax(8).residual.max
+        """
+        given: Document = {
+            "dry_run": dry_run,
+            "end": end,
+            "kind": kind,
+            "reversals": reversals,
+            "steps": steps,
+            "target": target,
+        }
+        parts: dict[str, Document] = {
+        }
+        return self._answer_of_contact(results.RelaxReply, "relax", given, parts)
+
+    def subsurface(
+        self,
+        *,
+        body: types.BodyName | None = None,
+        bulk: bool | types.Bulk | Mapping[str, Any] | None = None,
+        fields: Sequence[types.SubsurfaceField] | None = None,
+        line: Line | types.SubsurfaceLine | Mapping[str, Any] | None = None,
+        plane: Plane | types.SubsurfacePlane | Mapping[str, Any] | None = None,
+        points: Sequence[Quantities] | Quantities | None = None,
+        poisson_ratio: Quantity | None = None,
+        surface: Surface | types.SubsurfaceSurface | Mapping[str, Any] | None = None,
+    ) -> results.SubsurfaceReply:
+        """Compute the stress below the surface.
+
+        The stress tensor and its invariants in one of the two bodies, in the present state of the contact, after
+        whatever history. Nothing changes.
+
+        Parameters
+        ----------
+        body : BodyName
+            Which body.
+        bulk : bool | Bulk | dict
+            A uniform stress of the body that is added, Pa. It does not move the stick zone in this model. A number
+            alone is its `amplitude`.
+        fields : Sequence[SubsurfaceField]
+            Which fields are computed; left out, `tensor`.
+        line : Line | SubsurfaceLine | dict
+            A straight line.
+        plane : Plane | SubsurfacePlane | dict
+            A grid in a plane.
+        points : Sequence[Quantities] | Quantities
+            A list of x, y, z, m, with z of at least zero.
+        poisson_ratio : Quantity
+            Its Poisson's ratio, a pure number. Where the material has `bodies` it is known, and may be left out.
+        surface : Surface | SubsurfaceSurface | dict
+            A grid on the surface.
+
+        Returns
+        -------
+        SubsurfaceReply
+            Stresses below the surface of a contact on the server.
+
+        Raises
+        ------
+        InvalidInput
+            With the pointer of the member that is wrong, and its range.
+
+        Examples
+        --------
+        >>> import stickslip as ss
+        >>> steel = ss.Body("210 GPa", 0.3)
+        >>> ball = ss.Contact(ss.Sphere("10 mm"), [steel, ss.RIGID], 0.3, normal_force="10 N")
+        >>> plane = ss.Plane(normal="y", offset=0, x=[-1e-4, 1e-4, 5], z=[0, 1e-4, 4])
+        >>> stress = ball.subsurface(plane=plane, fields=["von_mises"]).von_mises
+        """
+        given: Document = {
+            "body": body,
+            "bulk": bulk,
+            "fields": fields,
+            "line": line,
+            "plane": plane,
+            "points": points,
+            "poisson_ratio": poisson_ratio,
+            "surface": surface,
+        }
+        parts: dict[str, Document] = {
+        }
+        return self._answer_of_contact(results.SubsurfaceReply, "subsurface", given, parts)
+
+    def cycle(
+        self,
+        displacement: Quantity | Quantities | None = None,
+        *,
+        force: Quantity | Quantities | None = None,
+        best_load: int | bool | types.BestLoadStudy | Mapping[str, Any] | None = None,
+        frequency_response: types.FrequencyResponse | Mapping[str, Any] | None = None,
+        harmonics: int | None = None,
+        machine: Quantity | types.Machine | Mapping[str, Any] | None = None,
+        map: types.FrettingMap | Mapping[str, Any] | None = None,
+        normal: types.NormalOscillation | Mapping[str, Any] | None = None,
+        tolerance: Quantity | None = None,
+        work_density: int | types.WorkDensity | Mapping[str, Any] | None = None,
+    ) -> results.CycleReply:
+        """Compute steady cycles.
+
+        Moves a contact back and forth at constant load until every cycle is as the one before, in closed form: a
+        displacement or a force that is a cosine, directly or through a machine of finite stiffness. Returns work,
+        stiffness, loss factor and slip for each amplitude and, if asked for, the harmonics and the friction work per
+        area, or the same cycles under many loads. Nothing is stored.
+
+        The load is the present one, and the history plays no part. `stickslip.cycle(contact)` is at the preload of the
+        definition instead.
+
+        Parameters
+        ----------
+        displacement : Quantity | Quantities
+            Amplitude of the tangential displacement, m: of the indenter or, with `machine`, of the machine.
+        force : Quantity | Quantities
+            Amplitude of the tangential force, N; below μ F_N.
+        best_load : int | bool | BestLoadStudy | dict
+            Ask for the normal force under which each amplitude does most friction work; with at most 100 amplitudes. A
+            number alone is its `points`.
+        frequency_response : FrequencyResponse | dict
+            Ask for the oscillations of a mass that hangs on the contact and is driven by a force.
+        harmonics : int
+            Ask for the harmonics from the first to this one.
+        machine : Quantity | Machine | dict
+            A machine in series with the contact: a displacement amplitude is then that of the machine. A number alone
+            is its `stiffness`.
+        map : FrettingMap | dict
+            Repeat all amplitudes under many loads, whatever the preload of the contact: a fretting map. At constant
+            load, with `machine` alone. At most 100 000 cycles.
+        normal : NormalOscillation | dict
+            The normal load oscillates too, about that of the contact.
+        tolerance : Quantity
+            Tolerance of cycles under a load that oscillates, relative to μ F_N and to the work of that force, and of
+            `frequency_response`, relative to the amplitude; a pure number. Default: 1e-6.
+        work_density : int | WorkDensity | dict
+            Ask for the friction work per area. Radii times amplitudes are at most 200 000. Not under a load that
+            oscillates. A number alone is its `points`.
+
+        Returns
+        -------
+        CycleReply
+            Steady cycles, one for each amplitude.
+
+        Raises
+        ------
+        InvalidInput
+            With the pointer of the member that is wrong, and its range.
+
+        Examples
+        --------
+        >>> import stickslip as ss
+        >>> steel = ss.Body("210 GPa", 0.3)
+        >>> ball = ss.Contact(ss.Sphere("10 mm"), [steel, ss.RIGID], 0.3, normal_force="10 N")
+        >>> work = ball.cycle(["10 nm", "30 nm"]).dissipated_energy
+        """
+        given: Document = {
+            "best_load": best_load,
+            "frequency_response": frequency_response,
+            "harmonics": harmonics,
+            "machine": machine,
+            "map": map,
+            "normal": normal,
+            "tolerance": tolerance,
+            "work_density": work_density,
+        }
+        parts: dict[str, Document] = {
+            "drive": {
+                "displacement": displacement,
+                "force": force,
+            },
+        }
+        return self._answer_of_contact(results.CycleReply, "cycle", given, parts)
+
+    def fretting(
+        self,
+        displacement: Quantity | Quantities | None = None,
+        *,
+        crossland: types.Weighted | Mapping[str, Any] | None = None,
+        dang_van: types.Weighted | Mapping[str, Any] | None = None,
+        fatemi_socie: types.FatemiSocie | Mapping[str, Any] | None = None,
+        findley: types.Findley | Mapping[str, Any] | None = None,
+        friction_work: bool | types.SurfaceCriterion | Mapping[str, Any] | None = None,
+        ruiz: bool | types.SurfaceCriterion | Mapping[str, Any] | None = None,
+        swt: bool | types.StrainBased | Mapping[str, Any] | None = None,
+        moves: Sequence[types.Move | Mapping[str, Any]] | None = None,
+        force: Quantities | None = None,
+        falling_amplitude: int | types.FallingAmplitude | Mapping[str, Any] | None = None,
+        equal_peaks: int | types.EqualPeaks | Mapping[str, Any] | None = None,
+        cycles: types.CyclicPath | Mapping[str, Any] | None = None,
+        body: types.BodyName | None = None,
+        bulk: Quantity | types.BulkCycle | Mapping[str, Any] | None = None,
+        criteria: bool | types.Criteria | Mapping[str, Any] | None = None,
+        line: Line | types.SubsurfaceLine | Mapping[str, Any] | None = None,
+        path: types.Path | None = None,
+        plane: Plane | types.SubsurfacePlane | Mapping[str, Any] | None = None,
+        points: Sequence[Quantities] | Quantities | None = None,
+        poisson_ratio: Quantity | None = None,
+        stress_paths: Sequence[int] | None = None,
+        surface: Surface | types.SubsurfaceSurface | Mapping[str, Any] | None = None,
+        tolerance: Quantity | None = None,
+    ) -> results.FrettingReply:
+        """Rate a cycle for fretting fatigue.
+
+        Repeats a path until it closes, computes the stress tensor at every place over the steady cycle and rates it by
+        fatigue criteria: where would a crack start, on which plane, and how far is it from a limit. Nothing is stored.
+
+        The load is the present one, and the history plays no part: the path begins with a contact that was never moved.
+        `stickslip.fretting(contact)` is at the preload of the definition instead. One displacement is the amplitude of
+        a cycle, several are a path.
+
+        Parameters
+        ----------
+        displacement : Quantity | Quantities
+            Tangential displacements of the indenter, m, one move each.
+        crossland : Weighted | dict
+            √J2a + α · the largest hydrostatic stress, Pa (Crossland 1956).
+        dang_van : Weighted | dict
+            The largest of shear stress + α · hydrostatic stress, Pa (Dang Van 1973).
+        fatemi_socie : FatemiSocie | dict
+            The largest amplitude of the shear strain, raised by the normal stress, a pure number (Fatemi & Socie 1988).
+        findley : Findley | dict
+            The largest of shear amplitude + k · largest normal stress on a plane, Pa (Findley 1959).
+        friction_work : bool | SurfaceCriterion | dict
+            Friction work per area and cycle at the surface, J/m².
+        ruiz : bool | SurfaceCriterion | dict
+            Shear stress times slip at the surface, N/m (Ruiz, Boddington & Chen 1984).
+        swt : bool | StrainBased | dict
+            The largest of normal stress times amplitude of the normal strain on a plane, Pa (Smith, Watson & Topper
+            1970).
+        moves : Sequence[Move | dict]
+            Moves, one after the other.
+        force : Quantities
+            Tangential forces, N, one move each.
+        falling_amplitude : int | FallingAmplitude | dict
+            Back and forth with an amplitude that falls linearly to zero (eq. 20 of the paper). A number alone is its
+            `reversals`.
+        equal_peaks : int | EqualPeaks | dict
+            Back and forth from gross slip to rest, with the amplitudes that leave equal peaks of shear stress on the
+            profile of the contact. A number alone is its `reversals`.
+        cycles : CyclicPath | dict
+            Equal cycles about a mean, under a constant load or one that oscillates too.
+        body : BodyName
+            Which body.
+        bulk : Quantity | BulkCycle | dict
+            A normal stress of the body along x that goes with the cycle, mean + amplitude · cos(th + phase), where th
+            grows from 0 to 360 degrees, by as much in each move. A number alone is its `amplitude`.
+        criteria : bool | Criteria | dict
+            The criteria.
+        line : Line | SubsurfaceLine | dict
+            Where: a straight line.
+        path : Path
+            A path of at most 200 moves that ends where it began, at least when it is repeated.
+        plane : Plane | SubsurfacePlane | dict
+            Where: a grid in a plane.
+        points : Sequence[Quantities] | Quantities
+            Where: a list of x, y, z, m, with z of at least zero.
+        poisson_ratio : Quantity
+            Its Poisson's ratio, a pure number. Where the material has `bodies` it is known, and may be left out.
+        stress_paths : Sequence[int]
+            Indices of places whose stresses over the cycle are wanted too.
+        surface : Surface | SubsurfaceSurface | dict
+            Where: a grid on the surface.
+        tolerance : Quantity
+            Error of a criterion, relative to its largest value, that is accepted; a pure number. In a search it is 1e-3
+            if left out. Default: 0.0001.
+
+        Returns
+        -------
+        FrettingReply
+            The criteria over the steady cycle, each with its values at all places.
+
+        Raises
+        ------
+        InvalidInput
+            With the pointer of the member that is wrong, and its range.
+
+        Examples
+        --------
+        >>> import stickslip as ss
+        >>> steel = ss.Body("210 GPa", 0.3)
+        >>> ball = ss.Contact(ss.Sphere("10 mm"), [steel, ss.RIGID], 0.3, normal_force="10 N")
+        >>> margin = ball.fretting("50 nm", crossland={"alpha": 0.3, "limit": "300 MPa"}).margin
+        """
+        given: Document = {
+            "body": body,
+            "bulk": bulk,
+            "criteria": criteria,
+            "line": line,
+            "path": path,
+            "plane": plane,
+            "points": points,
+            "poisson_ratio": poisson_ratio,
+            "stress_paths": stress_paths,
+            "surface": surface,
+            "tolerance": tolerance,
+        }
+        parts: dict[str, Document] = {
+            "criteria": {
+                "crossland": crossland,
+                "dang_van": dang_van,
+                "fatemi_socie": fatemi_socie,
+                "findley": findley,
+                "friction_work": friction_work,
+                "ruiz": ruiz,
+                "swt": swt,
+            },
+            "path": {
+                "moves": moves,
+                "displacement": displacement,
+                "force": force,
+                "falling_amplitude": falling_amplitude,
+                "equal_peaks": equal_peaks,
+                "cycles": cycles,
+            },
+        }
+        return self._answer_of_contact(results.FrettingReply, "fretting", given, parts)
+
+    def stress(
+        self,
+        points: int | None = None,
+        *,
+        fields: Sequence[types.Field] | None = None,
+        radii: Quantities | None = None,
+        residual: bool | None = None,
+    ) -> results.StressReply:
+        """Get the stresses of a contact.
+
+        Pressure, shear stress, slip and displacement over the radius, as they are now, and the residual stress on
+        request.
+
+        Parameters
+        ----------
+        points : int
+            Number of radii, evenly spaced from the centre to the edge of the contact, both included.
+        fields : Sequence[Field]
+            Which fields are computed; left out, `pressure` and `shear`.
+        radii : Quantities
+            Radii, m; outside the contact the stresses are zero.
+        residual : bool
+            Ask for the extrema of the shear stress too.
+
+        Returns
+        -------
+        StressReply
+            The stresses of a contact, and their extrema if asked for.
+
+        Raises
+        ------
+        InvalidInput
+            With the pointer of the member that is wrong, and its range.
+
+        Examples
+        --------
+        >>> import stickslip as ss
+        >>> steel = ss.Body("210 GPa", 0.3)
+        >>> ball = ss.Contact(ss.Sphere("10 mm"), [steel, ss.RIGID], 0.3, normal_force="10 N")
+        >>> shear = ball.stress(200).shear
+        """
+        given: Document = {
+            "fields": fields,
+            "points": points,
+            "radii": radii,
+            "residual": residual,
+        }
+        parts: dict[str, Document] = {
+        }
+        return self._answer_of_contact(results.StressReply, "stress", given, parts)
+
+
+class AsyncOfContact(ABC):
+    """What a contact does and is asked for in its present state."""
+
+    @abstractmethod
+    async def _answer_of_contact(self, kind: type[T], name: str, given: Document, parts: dict[str, Document]) -> T:
+        """The reply to the members of a request, some of which are parts of one member."""
+
+    async def move(
+        self,
+        displacement: Quantity | None = None,
+        *,
+        force: Quantity | None = None,
+        indentation: Quantity | None = None,
+        normal_force: Quantity | None = None,
+        relative: bool | None = None,
+        stress: int | types.StressRequest | Mapping[str, Any] | None = None,
+        tolerance: Quantity | None = None,
+    ) -> results.MoveReply:
+        """`move`, awaited."""
+        given: Document = {
+            "displacement": displacement,
+            "force": force,
+            "indentation": indentation,
+            "normal_force": normal_force,
+            "relative": relative,
+            "stress": stress,
+            "tolerance": tolerance,
+        }
+        parts: dict[str, Document] = {
+        }
+        return await self._answer_of_contact(results.MoveReply, "move", given, parts)
+
+    async def path(
+        self,
+        displacement: Quantities | None = None,
+        *,
+        moves: Sequence[types.Move | Mapping[str, Any]] | None = None,
+        force: Quantities | None = None,
+        falling_amplitude: int | types.FallingAmplitude | Mapping[str, Any] | None = None,
+        equal_peaks: int | types.EqualPeaks | Mapping[str, Any] | None = None,
+        cycles: types.CyclicPath | Mapping[str, Any] | None = None,
+        path: types.Path | None = None,
+        steps: types.Steps | None = None,
+        stress: int | types.StressRequest | Mapping[str, Any] | None = None,
+        tolerance: Quantity | None = None,
+    ) -> results.PathReply:
+        """`path`, awaited."""
+        given: Document = {
+            "path": path,
+            "steps": steps,
+            "stress": stress,
+            "tolerance": tolerance,
+        }
+        parts: dict[str, Document] = {
+            "path": {
+                "moves": moves,
+                "displacement": displacement,
+                "force": force,
+                "falling_amplitude": falling_amplitude,
+                "equal_peaks": equal_peaks,
+                "cycles": cycles,
+            },
+        }
+        return await self._answer_of_contact(results.PathReply, "path", given, parts)
+
+    async def relax(
+        self,
+        reversals: int | None = None,
+        *,
+        dry_run: bool | None = None,
+        end: types.ProtocolEnd | None = None,
+        kind: types.ProtocolKind | None = None,
+        steps: types.Steps | None = None,
+        target: Quantity | None = None,
+    ) -> results.RelaxReply:
+        """`relax`, awaited."""
+        given: Document = {
+            "dry_run": dry_run,
+            "end": end,
+            "kind": kind,
+            "reversals": reversals,
+            "steps": steps,
+            "target": target,
+        }
+        parts: dict[str, Document] = {
+        }
+        return await self._answer_of_contact(results.RelaxReply, "relax", given, parts)
+
+    async def subsurface(
+        self,
+        *,
+        body: types.BodyName | None = None,
+        bulk: bool | types.Bulk | Mapping[str, Any] | None = None,
+        fields: Sequence[types.SubsurfaceField] | None = None,
+        line: Line | types.SubsurfaceLine | Mapping[str, Any] | None = None,
+        plane: Plane | types.SubsurfacePlane | Mapping[str, Any] | None = None,
+        points: Sequence[Quantities] | Quantities | None = None,
+        poisson_ratio: Quantity | None = None,
+        surface: Surface | types.SubsurfaceSurface | Mapping[str, Any] | None = None,
+    ) -> results.SubsurfaceReply:
+        """`subsurface`, awaited."""
+        given: Document = {
+            "body": body,
+            "bulk": bulk,
+            "fields": fields,
+            "line": line,
+            "plane": plane,
+            "points": points,
+            "poisson_ratio": poisson_ratio,
+            "surface": surface,
+        }
+        parts: dict[str, Document] = {
+        }
+        return await self._answer_of_contact(results.SubsurfaceReply, "subsurface", given, parts)
+
+    async def cycle(
+        self,
+        displacement: Quantity | Quantities | None = None,
+        *,
+        force: Quantity | Quantities | None = None,
+        best_load: int | bool | types.BestLoadStudy | Mapping[str, Any] | None = None,
+        frequency_response: types.FrequencyResponse | Mapping[str, Any] | None = None,
+        harmonics: int | None = None,
+        machine: Quantity | types.Machine | Mapping[str, Any] | None = None,
+        map: types.FrettingMap | Mapping[str, Any] | None = None,
+        normal: types.NormalOscillation | Mapping[str, Any] | None = None,
+        tolerance: Quantity | None = None,
+        work_density: int | types.WorkDensity | Mapping[str, Any] | None = None,
+    ) -> results.CycleReply:
+        """`cycle`, awaited."""
+        given: Document = {
+            "best_load": best_load,
+            "frequency_response": frequency_response,
+            "harmonics": harmonics,
+            "machine": machine,
+            "map": map,
+            "normal": normal,
+            "tolerance": tolerance,
+            "work_density": work_density,
+        }
+        parts: dict[str, Document] = {
+            "drive": {
+                "displacement": displacement,
+                "force": force,
+            },
+        }
+        return await self._answer_of_contact(results.CycleReply, "cycle", given, parts)
+
+    async def fretting(
+        self,
+        displacement: Quantity | Quantities | None = None,
+        *,
+        crossland: types.Weighted | Mapping[str, Any] | None = None,
+        dang_van: types.Weighted | Mapping[str, Any] | None = None,
+        fatemi_socie: types.FatemiSocie | Mapping[str, Any] | None = None,
+        findley: types.Findley | Mapping[str, Any] | None = None,
+        friction_work: bool | types.SurfaceCriterion | Mapping[str, Any] | None = None,
+        ruiz: bool | types.SurfaceCriterion | Mapping[str, Any] | None = None,
+        swt: bool | types.StrainBased | Mapping[str, Any] | None = None,
+        moves: Sequence[types.Move | Mapping[str, Any]] | None = None,
+        force: Quantities | None = None,
+        falling_amplitude: int | types.FallingAmplitude | Mapping[str, Any] | None = None,
+        equal_peaks: int | types.EqualPeaks | Mapping[str, Any] | None = None,
+        cycles: types.CyclicPath | Mapping[str, Any] | None = None,
+        body: types.BodyName | None = None,
+        bulk: Quantity | types.BulkCycle | Mapping[str, Any] | None = None,
+        criteria: bool | types.Criteria | Mapping[str, Any] | None = None,
+        line: Line | types.SubsurfaceLine | Mapping[str, Any] | None = None,
+        path: types.Path | None = None,
+        plane: Plane | types.SubsurfacePlane | Mapping[str, Any] | None = None,
+        points: Sequence[Quantities] | Quantities | None = None,
+        poisson_ratio: Quantity | None = None,
+        stress_paths: Sequence[int] | None = None,
+        surface: Surface | types.SubsurfaceSurface | Mapping[str, Any] | None = None,
+        tolerance: Quantity | None = None,
+    ) -> results.FrettingReply:
+        """`fretting`, awaited."""
+        given: Document = {
+            "body": body,
+            "bulk": bulk,
+            "criteria": criteria,
+            "line": line,
+            "path": path,
+            "plane": plane,
+            "points": points,
+            "poisson_ratio": poisson_ratio,
+            "stress_paths": stress_paths,
+            "surface": surface,
+            "tolerance": tolerance,
+        }
+        parts: dict[str, Document] = {
+            "criteria": {
+                "crossland": crossland,
+                "dang_van": dang_van,
+                "fatemi_socie": fatemi_socie,
+                "findley": findley,
+                "friction_work": friction_work,
+                "ruiz": ruiz,
+                "swt": swt,
+            },
+            "path": {
+                "moves": moves,
+                "displacement": displacement,
+                "force": force,
+                "falling_amplitude": falling_amplitude,
+                "equal_peaks": equal_peaks,
+                "cycles": cycles,
+            },
+        }
+        return await self._answer_of_contact(results.FrettingReply, "fretting", given, parts)
+
+    async def stress(
+        self,
+        points: int | None = None,
+        *,
+        fields: Sequence[types.Field] | None = None,
+        radii: Quantities | None = None,
+        residual: bool | None = None,
+    ) -> results.StressReply:
+        """`stress`, awaited."""
+        given: Document = {
+            "fields": fields,
+            "points": points,
+            "radii": radii,
+            "residual": residual,
+        }
+        parts: dict[str, Document] = {
+        }
+        return await self._answer_of_contact(results.StressReply, "stress", given, parts)

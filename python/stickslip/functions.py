@@ -1,0 +1,28 @@
+"""The computations of this process as functions. Written by `tools/generate.py`."""
+
+from .engine import Local
+
+_local = Local()
+compute = _local.compute
+compute_bytes = _local.compute_bytes
+accuracy = _local.accuracy
+cycle = _local.cycle
+fit_loop = _local.fit_loop
+fit_profile = _local.fit_profile
+fretting = _local.fretting
+protocols = _local.protocols
+simulate = _local.simulate
+sweep = _local.sweep
+
+__all__ = [
+    "compute",
+    "compute_bytes",
+    "accuracy",
+    "cycle",
+    "fit_loop",
+    "fit_profile",
+    "fretting",
+    "protocols",
+    "simulate",
+    "sweep",
+]

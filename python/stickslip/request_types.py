@@ -1,0 +1,772 @@
+"""The types of the members of requests: words, and objects as dictionaries.
+
+Written by `tools/generate.py`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any, Literal, TypeAlias, TypedDict, Union
+
+from .bodies import Material
+from .documents import Quantities, Quantity
+
+Auto: TypeAlias = Literal["auto"]
+"""The word for what the service chooses."""
+BodyName: TypeAlias = Literal["first", "second"]
+"""One of the two bodies in contact."""
+Direction: TypeAlias = Literal["x", "y", "z"]
+"""An axis: x along the motion of the first body, z into the body asked for."""
+EndReason: TypeAlias = Literal["deleted", "expired", "stopping", "damaged", "failed"]
+"""Why there are no more events."""
+Field: TypeAlias = Literal["pressure", "shear", "slip", "displacement"]
+"""A quantity along the radius."""
+FirstStroke: TypeAlias = Literal["given", "gross_slip", "partial", "stay"]
+"""The beginning of a path."""
+FirstTurn: TypeAlias = Literal["up", "down"]
+"""Where cycles begin and end."""
+FitParameter: TypeAlias = Literal["friction", "g_star", "e_star", "radius", "machine_compliance", "displacement_offset", "force_offset", "drift"]
+"""A quantity of the contact or of the bench that a fit can determine."""
+ForceUnit: TypeAlias = Literal["N", "mN", "uN", "kN"]
+"""A unit of force."""
+JobState: TypeAlias = Literal["running", "done", "failed"]
+"""The state of a job."""
+LengthUnit: TypeAlias = Literal["m", "mm", "um", "nm"]
+"""A unit of length."""
+LoopStart: TypeAlias = Literal["steady", "virgin"]
+"""How a record begins."""
+MotionAxis: TypeAlias = Literal["x", "y"]
+"""The axis of the tangential motion."""
+PressureUnit: TypeAlias = Literal["largest", "mean"]
+"""The pressure that stresses are compared with."""
+ProtocolEnd: TypeAlias = Literal["displacement_zero", "force_zero", "free"]
+"""Where a path ends."""
+ProtocolKind: TypeAlias = Literal["linear", "equal_peaks", "minimax"]
+"""The law of the amplitudes."""
+Regime: TypeAlias = Literal["stick", "partial_slip", "gross_slip", "separated"]
+"""How much of the contact slipped in the last move."""
+Rigid: TypeAlias = Literal["rigid"]
+"""The name of a body that does not deform."""
+ScanOrientation: TypeAlias = Literal["auto", "peak_up", "peak_down"]
+"""Which way up a scan is."""
+SolverKind: TypeAlias = Literal["exact", "springs"]
+"""The two solvers."""
+Steps: TypeAlias = Literal["all", "last"]
+"""Which states of a path to return."""
+SubsurfaceField: TypeAlias = Literal["tensor", "principal", "von_mises", "max_shear", "hydrostatic"]
+"""A quantity below the surface."""
+
+
+class _AxisNeeded(TypedDict):
+    pointer: str
+
+
+class Axis(_AxisNeeded, total=False):
+    """A number of the base and the values that it takes.
+
+    `pointer`, and one key out of `linear`, `logarithmic` and `values`.
+    """
+
+    linear: Span | Mapping[str, Any]
+    """Evenly spaced values."""
+    logarithmic: Span | Mapping[str, Any]
+    """Values with the same ratio from one to the next; both ends positive, or both negative."""
+    name: str
+    """The name of the column; left out, the pointer."""
+    values: Quantities
+    """These values."""
+
+
+class BestLoadStudy(TypedDict, total=False):
+    """A search for the load that damps most."""
+
+    points: int
+    """Ask for the work at so many loads too, evenly spaced up to three times the best."""
+
+
+class Bulk(TypedDict, total=False):
+    """A uniform stress, Pa, tension positive; a component left out is zero."""
+
+    xx: Quantity
+    """Normal stress along x."""
+    xy: Quantity
+    """Shear stress in the plane of x and y."""
+    xz: Quantity
+    """Shear stress in the plane of x and z."""
+    yy: Quantity
+    """Normal stress along y."""
+    yz: Quantity
+    """Shear stress in the plane of y and z."""
+    zz: Quantity
+    """Normal stress along z."""
+
+
+class BulkCycle(TypedDict, total=False):
+    """A bulk stress along x that goes with the cycle."""
+
+    amplitude: Quantity
+    """Its amplitude, Pa; zero if left out."""
+    mean: Quantity
+    """Its mean, Pa; zero if left out."""
+    phase: Quantity
+    """Its phase, degrees; zero if left out."""
+
+
+class _CentrePlaceNeeded(TypedDict):
+    x: Quantity
+
+
+class CentrePlace(_CentrePlaceNeeded, total=False):
+    """The place of an axis."""
+
+    y: Quantity
+    """Along the columns of a map, m; 0 if it is left out, as for a line."""
+
+
+class Criteria(TypedDict, total=False):
+    """Which criteria, at least one."""
+
+    crossland: Weighted | Mapping[str, Any]
+    """√J2a + α · the largest hydrostatic stress, Pa (Crossland 1956)."""
+    dang_van: Weighted | Mapping[str, Any]
+    """The largest of shear stress + α · hydrostatic stress, Pa (Dang Van 1973)."""
+    fatemi_socie: FatemiSocie | Mapping[str, Any]
+    """The largest amplitude of the shear strain, raised by the normal stress, a pure number (Fatemi & Socie 1988)."""
+    findley: Findley | Mapping[str, Any]
+    """The largest of shear amplitude + k · largest normal stress on a plane, Pa (Findley 1959)."""
+    friction_work: SurfaceCriterion | Mapping[str, Any]
+    """Friction work per area and cycle at the surface, J/m²."""
+    ruiz: SurfaceCriterion | Mapping[str, Any]
+    """Shear stress times slip at the surface, N/m (Ruiz, Boddington & Chen 1984)."""
+    swt: StrainBased | Mapping[str, Any]
+    """The largest of normal stress times amplitude of the normal strain on a plane, Pa (Smith, Watson & Topper 1970).
+    """
+
+
+class CycleDriveDisplacement(TypedDict):
+    """Amplitude of the tangential displacement, m: of the indenter or, with `machine`, of the machine."""
+
+    displacement: Quantity | Quantities
+    """Amplitude of the tangential displacement, m: of the indenter or, with `machine`, of the machine."""
+
+
+class CycleDriveForce(TypedDict):
+    """Amplitude of the tangential force, N; below μ F_N."""
+
+    force: Quantity | Quantities
+    """Amplitude of the tangential force, N; below μ F_N."""
+
+
+class _CyclicPathNeeded(TypedDict):
+    count: int
+
+
+class CyclicPath(_CyclicPathNeeded, total=False):
+    """Equal cycles: exactly one of `displacement` and `force`, the amplitude.
+
+    The path has 1 + n k moves, at most 100 000, for n cycles of k moves: the first from the present state to the
+    first turn, then k each cycle, which ends at that turn again. Under a constant load the difference of the
+    dissipated energies of two states k moves apart is the friction work of a cycle.
+    """
+
+    displacement: Quantity
+    """Amplitude A of the tangential displacement of the indenter, m."""
+    force: Quantity
+    """Amplitude A of the tangential force, N. The magnitude of the force must stay below the friction limit μ F_N."""
+    mean: Quantity
+    """The value in the middle between both turns, m or N; left out, zero."""
+    normal: NormalOscillation | Mapping[str, Any]
+    """Oscillation of the load in the same cycles; left out, the load is constant."""
+    points_per_cycle: int
+    """Moves per cycle k, an even number: the points of mean + A cos(2π t), or mean - A cos(2π t) from the lower turn,
+    at t = j/k. Left out, under a constant load 2 (the turns; more points add recorded states between them), else
+    64.
+    """
+    start: FirstTurn
+    """The first turn."""
+
+
+class _EqualPeaksNeeded(TypedDict):
+    reversals: int
+
+
+class EqualPeaks(_EqualPeaksNeeded, total=False):
+    """A tangential oscillation that dies away by the law of equal peaks; it ends at displacement zero."""
+
+    cutoff_radius: Quantity
+    """Radius from which on the peaks are equal, m, up to the contact radius. The law needs one where the slope of the
+    profile jumps (the tip of a cone, the rim of a flat), from that radius on; left out, it is there a tenth of the
+    way from that radius to the edge, else zero.
+    """
+
+
+class _FallingAmplitudeNeeded(TypedDict):
+    reversals: int
+
+
+class FallingAmplitude(_FallingAmplitudeNeeded, total=False):
+    """A tangential oscillation that dies away; it ends at displacement zero."""
+
+    amplitude: Quantity
+    """Displacement of the first reversal, m; left out, the displacement at which the contact just slips as a whole."""
+
+FatemiSocie = TypedDict("FatemiSocie", {"k": "Quantity", "limit": "Quantity", "yield": "Quantity", "youngs_modulus": "Quantity"}, total=False)
+
+
+class _FindleyNeeded(TypedDict):
+    k: Quantity
+
+
+class Findley(_FindleyNeeded, total=False):
+    """Findley's criterion."""
+
+    limit: Quantity
+    """The value that the material bears, Pa."""
+
+
+class FitNoise(TypedDict, total=False):
+    """Standard deviations of the noise of a measurement, in SI units."""
+
+    displacement: Quantity
+    """Of a displacement, m."""
+    force: Quantity
+    """Of a force, N."""
+
+
+class FitUnits(TypedDict, total=False):
+    """The units of measured loops."""
+
+    displacement: LengthUnit
+    """Of `displacement`."""
+    force: ForceUnit
+    """Of `force`."""
+
+
+class _FrequencyResponseNeeded(TypedDict):
+    drive_force: Quantity
+    mass: Quantity
+
+
+class FrequencyResponse(_FrequencyResponseNeeded, total=False):
+    """A mass that hangs on the contact alone, and a force on it that is a cosine of the time."""
+
+    frequencies: Quantities
+    """Frequencies, Hz; left out, 200 from 0.3 to 1.5 of that of small oscillations."""
+
+
+class FrettingMap(TypedDict):
+    """Steady cycles under many loads: each amplitude under each of them."""
+
+    normal_force: LoadSpan | Mapping[str, Any]
+    """The loads."""
+
+
+class _KnownValueNeeded(TypedDict):
+    value: Quantity
+
+
+class KnownValue(_KnownValueNeeded, total=False):
+    """A value that is known from elsewhere."""
+
+    standard_error: Quantity
+    """Its standard error, in the same unit; zero, which is the default, holds the value."""
+
+
+class KnownValues(TypedDict, total=False):
+    """What is known beforehand, by name."""
+
+    displacement_offset: KnownValue | Mapping[str, Any]
+    """Measured displacement at which the contact is not displaced, m."""
+    drift: KnownValue | Mapping[str, Any]
+    """How fast the zero of the displacement wanders, m/s."""
+    e_star: KnownValue | Mapping[str, Any]
+    """Reduced modulus E*, Pa."""
+    force_offset: KnownValue | Mapping[str, Any]
+    """Measured force at which there is none, N."""
+    friction: KnownValue | Mapping[str, Any]
+    """Coulomb's coefficient of friction μ, a pure number."""
+    g_star: KnownValue | Mapping[str, Any]
+    """Reduced shear modulus G*, Pa."""
+    machine_compliance: KnownValue | Mapping[str, Any]
+    """Compliance of the machine in series with the contact, m/N."""
+    radius: KnownValue | Mapping[str, Any]
+    """Radius of a sphere, m."""
+
+
+class LineScan(TypedDict):
+    """A scan along a line through the axis, in any order."""
+
+    x: Quantities
+    """Places along the line, in the unit of `units.lateral`."""
+    z: Quantities
+    """Heights, as many, in the unit of `units.height`."""
+
+LoadSpan = TypedDict("LoadSpan", {"count": "int", "from": "Quantity", "to": "Quantity"}, total=True)
+
+
+class Machine(TypedDict):
+    """A machine in series with the contact."""
+
+    stiffness: Quantity
+    """Its stiffness, N/m."""
+
+
+class MapScan(TypedDict):
+    """A scan on a grid.
+
+    The first height is at x = y = 0.
+    """
+
+    dx: Quantity
+    """The distance of neighbours in a row, along x, in the unit of `units.lateral`."""
+    dy: Quantity
+    """The distance of rows, along y, in the unit of `units.lateral`."""
+    z: Sequence[Quantities] | Quantities
+    """The rows of heights, each as long, in the unit of `units.height`."""
+
+
+class _MeasuredLoopNeeded(TypedDict):
+    displacement: Quantities
+    force: Quantities
+
+
+class MeasuredLoop(_MeasuredLoopNeeded, total=False):
+    """Force over displacement as a bench has measured them, point by point in the order of time.
+
+    Under a constant load.
+    """
+
+    normal_force: Quantity
+    """The load, N; that of the contact if it is left out."""
+    start: LoopStart
+    """How the record begins; as `steady` if it is left out, with a warning."""
+    time: Quantities
+    """Times, s, rising, as many; only `drift` needs them."""
+    weight: Quantity
+    """How much the loop counts beside the others, a pure number. Default: 1.0."""
+
+
+class Move(TypedDict, total=False):
+    """One move, straight to its targets.
+
+    At most one tangential target (`displacement` or `force`) and one normal target (`indentation` or
+    `normal_force`), at least one in all. Without a tangential target the displacement stays, without a normal one
+    the indentation stays.
+    """
+
+    displacement: Quantity
+    """Tangential displacement of the indenter, m."""
+    force: Quantity
+    """Tangential force, N. Its magnitude must stay below the friction limit μ F_N."""
+    indentation: Quantity
+    """Indentation, m; below zero the bodies are apart and the slip history is lost."""
+    normal_force: Quantity
+    """Normal force, N."""
+    relative: bool
+    """Whether the numbers are increments to the present state, instead of the targets themselves."""
+
+
+class NamedOutput(TypedDict):
+    """A number of the reply to `POST /simulate`, and the name of its column."""
+
+    name: str
+    """The name of the column."""
+    pointer: str
+    """JSON pointer to the number in the reply."""
+
+
+class NormalOscillation(TypedDict, total=False):
+    """An oscillation of the load.
+
+    Its value at the beginning + amplitude cos(2π t + phase), with the t of the cycles. Exactly one of
+    `normal_force` and `indentation`, the amplitude. Moves in displacement and indentation are exact; those with a
+    force are followed to the tolerance.
+    """
+
+    indentation: Quantity
+    """Amplitude of the indentation, m. Below zero the bodies are apart and the slip history is lost."""
+    normal_force: Quantity
+    """Amplitude of the normal force, N, at most the normal force at the beginning."""
+    phase: Quantity
+    """Phase, degrees; left out, zero."""
+
+
+class _ObservationNeeded(TypedDict):
+    displacement: Quantity
+    force: Quantity
+
+
+class Observation(_ObservationNeeded, total=False):
+    """A displacement and the force that was measured there."""
+
+    at: str
+    """When it was measured (RFC 3339, from 1678 to 2261); not before the measurement that precedes it."""
+
+
+class PathMoves(TypedDict):
+    """Moves, one after the other."""
+
+    moves: Sequence[Move | Mapping[str, Any]]
+    """Moves, one after the other."""
+
+
+class PathDisplacement(TypedDict):
+    """Tangential displacements of the indenter, m, one move each."""
+
+    displacement: Quantities
+    """Tangential displacements of the indenter, m, one move each."""
+
+
+class PathForce(TypedDict):
+    """Tangential forces, N, one move each."""
+
+    force: Quantities
+    """Tangential forces, N, one move each."""
+
+
+class PathFallingAmplitude(TypedDict):
+    """Back and forth with an amplitude that falls linearly to zero (eq.
+
+    20 of the paper).
+    """
+
+    falling_amplitude: FallingAmplitude | Mapping[str, Any]
+    """Back and forth with an amplitude that falls linearly to zero (eq. 20 of the paper)."""
+
+
+class PathEqualPeaks(TypedDict):
+    """Back and forth from gross slip to rest.
+
+    With the amplitudes that leave equal peaks of shear stress on the profile of the contact.
+    """
+
+    equal_peaks: EqualPeaks | Mapping[str, Any]
+    """Back and forth from gross slip to rest, with the amplitudes that leave equal peaks of shear stress on the
+    profile of the contact.
+    """
+
+
+class PathCycles(TypedDict):
+    """Equal cycles about a mean, under a constant load or one that oscillates too."""
+
+    cycles: CyclicPath | Mapping[str, Any]
+    """Equal cycles about a mean, under a constant load or one that oscillates too."""
+
+
+class PointScan(TypedDict):
+    """Heights at places, in any order."""
+
+    x: Quantities
+    """Places along x, in the unit of `units.lateral`."""
+    y: Quantities
+    """Places along y, as many, in the unit of `units.lateral`."""
+    z: Quantities
+    """Heights, as many, in the unit of `units.height`."""
+
+
+class PreloadNormalForce(TypedDict):
+    """Normal force, N."""
+
+    normal_force: Quantity
+    """Normal force, N."""
+
+
+class PreloadIndentation(TypedDict):
+    """Indentation, m."""
+
+    indentation: Quantity
+    """Indentation, m."""
+
+
+class PreloadContactRadius(TypedDict):
+    """Contact radius, m."""
+
+    contact_radius: Quantity
+    """Contact radius, m."""
+
+
+class ProtocolStartDisplacement(TypedDict):
+    """This displacement of a contact that has never moved, m; the path begins with it."""
+
+    displacement: Quantity
+    """This displacement of a contact that has never moved, m; the path begins with it."""
+
+
+class ProtocolStartContactId(TypedDict):
+    """The present state of the contact of this identifier, whatever its history."""
+
+    contact_id: str
+    """The present state of the contact of this identifier, whatever its history."""
+
+
+class Robustness(TypedDict, total=False):
+    """Errors with which a protocol is followed: it is tried many times, each with errors of its own."""
+
+    amplitude_error: Quantity
+    """Standard deviation of each displacement, relative to itself, a pure number; normally distributed."""
+    friction_error: Quantity
+    """The fraction that the coefficient of friction may be off either way, a pure number; evenly distributed. Not for
+    a start from a contact on the server, whose history belongs to its own coefficient.
+    """
+    samples: int
+    """How many times it is tried."""
+    seed: int
+    """Where the sequence of random numbers begins: the same seed gives the same reply."""
+
+
+class ScanDataLine(TypedDict):
+    """A profile along a line through the axis."""
+
+    line: LineScan | Mapping[str, Any]
+    """A profile along a line through the axis."""
+
+
+class ScanDataMap(TypedDict):
+    """Heights on a grid."""
+
+    map: MapScan | Mapping[str, Any]
+    """Heights on a grid."""
+
+
+class ScanDataPoints(TypedDict):
+    """Heights anywhere."""
+
+    points: PointScan | Mapping[str, Any]
+    """Heights anywhere."""
+
+
+class ScanLoad(TypedDict):
+    """A load on the body that was scanned."""
+
+    friction: Quantity
+    """Coulomb's coefficient of friction μ, a pure number."""
+    material: Material
+    """The elastic constants."""
+    preload: Preload
+    """The normal load."""
+
+
+class ScanUnits(TypedDict, total=False):
+    """The units of a scan."""
+
+    height: LengthUnit
+    """That of z."""
+    lateral: LengthUnit
+    """That of x and y, and of dx and dy."""
+
+
+class SmoothingNoise(TypedDict):
+    """The standard deviation of the noise of a height, m."""
+
+    noise: Quantity
+    """The standard deviation of the noise of a height, m."""
+
+
+class SmoothingKnots(TypedDict):
+    """So many intervals of constant curvature, without a penalty on their differences."""
+
+    knots: int
+    """So many intervals of constant curvature, without a penalty on their differences."""
+
+
+class SolverSprings(TypedDict):
+    """The spring foundation of the paper: a reference for comparison, slower and approximate.
+
+    It follows a tangential force only at constant indentation, and a normal force only without a tangential target
+    (else `unsupported_move`).
+    """
+
+    springs: Springs | Mapping[str, Any]
+    """The spring foundation of the paper: a reference for comparison, slower and approximate. It follows a tangential
+    force only at constant indentation, and a normal force only without a tangential target (else
+    `unsupported_move`).
+    """
+
+Span = TypedDict("Span", {"count": "int", "from": "Quantity", "to": "Quantity"}, total=True)
+
+
+class Springs(TypedDict):
+    """The spring foundation."""
+
+    count: int
+    """Number of springs across the diameter of the contact."""
+
+
+class StrainBased(TypedDict, total=False):
+    """A criterion that needs strains."""
+
+    limit: Quantity
+    """The value that the material bears, Pa."""
+    youngs_modulus: Quantity
+    """Young's modulus of the body, Pa. Where the material has `bodies` it is known, and may be left out."""
+
+
+class StressRequest(TypedDict, total=False):
+    """Where stresses are asked for: exactly one of `points` and `radii`, and which `fields`."""
+
+    fields: Sequence[Field]
+    """Which fields are computed; left out, `pressure` and `shear`."""
+    points: int
+    """Number of radii, evenly spaced from the centre to the edge of the contact, both included."""
+    radii: Quantities
+    """Radii, m; outside the contact the stresses are zero."""
+
+SubsurfaceLine = TypedDict("SubsurfaceLine", {"count": "int", "from": "Quantities", "to": "Quantities"}, total=True)
+
+
+class _SubsurfacePlaneNeeded(TypedDict):
+    normal: Direction
+    offset: Quantity
+
+
+class SubsurfacePlane(_SubsurfacePlaneNeeded, total=False):
+    """A grid in a plane of constant x, y or z.
+
+    Each of the other two coordinates is `[from, to, count]`, m, both ends included.
+    """
+
+    x: Quantities
+    """x from, to and number; left out where `normal` is x."""
+    y: Quantities
+    """y from, to and number; left out where `normal` is y."""
+    z: Quantities
+    """z from, to and number; left out where `normal` is z."""
+
+
+class _SubsurfaceRequestNeeded(TypedDict):
+    body: BodyName
+
+
+class SubsurfaceRequest(_SubsurfaceRequestNeeded, total=False):
+    """The stress in one of the bodies, tension positive.
+
+    X along the motion of the first body, which carries the profile, z into the body asked for, the origin on the
+    axis of the contact. Exactly one of `points`, `line`, `plane` and `surface` says where.
+    """
+
+    bulk: Bulk | Mapping[str, Any]
+    """A uniform stress of the body that is added, Pa. It does not move the stick zone in this model."""
+    fields: Sequence[SubsurfaceField]
+    """Which fields are computed; left out, `tensor`."""
+    line: SubsurfaceLine | Mapping[str, Any]
+    """A straight line."""
+    plane: SubsurfacePlane | Mapping[str, Any]
+    """A grid in a plane."""
+    points: Sequence[Quantities] | Quantities
+    """A list of x, y, z, m, with z of at least zero."""
+    poisson_ratio: Quantity
+    """Its Poisson's ratio, a pure number. Where the material has `bodies` it is known, and may be left out."""
+    surface: SubsurfaceSurface | Mapping[str, Any]
+    """A grid on the surface."""
+
+
+class SubsurfaceSurface(TypedDict):
+    """A grid on the surface, z = 0.
+
+    Each coordinate is `[from, to, count]`, m, both ends included.
+    """
+
+    x: Quantities
+    """x from, to and number."""
+    y: Quantities
+    """y from, to and number."""
+
+
+class SurfaceCriterion(TypedDict, total=False):
+    """A quantity of the surface."""
+
+    limit: Quantity
+    """The value that the material bears."""
+
+
+class _WeightedNeeded(TypedDict):
+    alpha: Quantity
+
+
+class Weighted(_WeightedNeeded, total=False):
+    """A criterion with a weight of the hydrostatic stress."""
+
+    limit: Quantity
+    """The value that the material bears, Pa."""
+
+
+class WorkDensity(TypedDict, total=False):
+    """Where the friction work per area is asked for: exactly one of `points` and `radii`."""
+
+    points: int
+    """Number of radii, evenly spaced from the centre to the edge of the contact, both included."""
+    radii: Quantities
+    """Radii, m; outside the contact there is no work."""
+
+
+class DefinitionMembers(TypedDict, total=False):
+    """The preload of a contact, of which one number is given, and what may be left out."""
+
+    normal_force: Quantity | None
+    """Normal force, N."""
+    indentation: Quantity | None
+    """Indentation, m."""
+    contact_radius: Quantity | None
+    """Contact radius, m."""
+
+Centre: TypeAlias = Union[
+    "Auto",
+    "CentrePlace | Mapping[str, Any]",
+    "Mapping[str, Any]",
+]
+"""Where the axis is: the string `"auto"`, or a place."""
+CycleDrive: TypeAlias = Union[
+    "CycleDriveDisplacement",
+    "CycleDriveForce",
+    "Mapping[str, Any]",
+]
+"""What is prescribed as a cosine, one key: its amplitude, or a list of amplitudes with a cycle for each."""
+Output: TypeAlias = Union[
+    "str",
+    "NamedOutput | Mapping[str, Any]",
+    "Mapping[str, Any]",
+]
+"""A number of the reply to `POST /simulate`: a JSON pointer, or an object that names its column too."""
+Path: TypeAlias = Union[
+    "PathMoves",
+    "PathDisplacement",
+    "PathForce",
+    "PathFallingAmplitude",
+    "PathEqualPeaks",
+    "PathCycles",
+    "Mapping[str, Any]",
+]
+"""A path, one key: a list of moves, or a short form of one."""
+Preload: TypeAlias = Union[
+    "PreloadNormalForce",
+    "PreloadIndentation",
+    "PreloadContactRadius",
+    "Mapping[str, Any]",
+]
+"""The normal load that the contact starts with, one key. Zero is a contact just touching."""
+ProtocolStart: TypeAlias = Union[
+    "ProtocolStartDisplacement",
+    "ProtocolStartContactId",
+    "Mapping[str, Any]",
+]
+"""What the reversals begin from, one key."""
+ScanData: TypeAlias = Union[
+    "ScanDataLine",
+    "ScanDataMap",
+    "ScanDataPoints",
+    "Mapping[str, Any]",
+]
+"""Heights with their places, one key. A height of `null` is missing."""
+Smoothing: TypeAlias = Union[
+    "Literal[\"auto\"]",
+    "SmoothingNoise",
+    "SmoothingKnots",
+    "Mapping[str, Any]",
+]
+"""What decides how smooth a profile is, one key or `"auto"`."""
+Solver: TypeAlias = Union[
+    "Literal[\"exact\"]",
+    "SolverSprings",
+    "Mapping[str, Any]",
+]
+"""A solver: the string `"exact"`, or an object with one key."""

@@ -1,0 +1,109 @@
+"""What the generator reads of the OpenAPI document: schemas, their fields, units and names."""
+
+from __future__ import annotations
+
+import json
+import keyword
+import re
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+ROOT = Path(__file__).resolve().parents[2]
+Schema = dict[str, Any]
+#: Units of fields, longer ones before those that they begin with, as in `docs/reference.md`.
+UNITS = ["N²/m³", "J/m²", "Pa/N", "N/m", "m/N", "m/s", "m^(1−n)", "Pa", "Hz", "kg", "N", "J", "m³", "m", "s", "degrees"]
+_STATED = re.compile(", (?:(pure numbers?|a pure number)|(" + "|".join(map(re.escape, UNITS)) + r"))(?![\w/²^'′])")
+METHODS = ("get", "post", "put", "patch", "delete")
+
+
+def document() -> Schema:
+    found: Schema = json.loads((ROOT / "openapi" / "openapi.json").read_text())
+    return found
+
+
+def name_of(schema: Schema) -> str:
+    """The name of the schema that is referred to."""
+    return str(schema.get("$ref", "")).rpartition("/")[2]
+
+
+def references(part: Any) -> Iterator[str]:
+    if isinstance(part, dict):
+        if "$ref" in part:
+            yield name_of(part)
+        for item in part.values():
+            yield from references(item)
+    elif isinstance(part, list):
+        for item in part:
+            yield from references(item)
+
+
+def closure(names: set[str], schemas: Schema) -> set[str]:
+    """These schemas and all that they refer to."""
+    found, left = set[str](), list(names)
+    while left:
+        name = left.pop()
+        if name not in found:
+            found.add(name)
+            left += references(schemas[name])
+    return found
+
+
+def operations(api: Schema) -> Iterator[tuple[str, str, Schema]]:
+    for path, methods in api["paths"].items():
+        for method, operation in methods.items():
+            if method in METHODS:
+                yield path, method, operation
+
+
+def request_of(operation: Schema) -> str:
+    """The schema of the JSON body."""
+    content = operation.get("requestBody", {}).get("content", {})
+    return name_of(content.get("application/json", {}).get("schema", {}))
+
+
+def reply_of(operation: Schema) -> str:
+    """The schema of a successful JSON reply."""
+    for status, response in operation["responses"].items():
+        schema = response.get("content", {}).get("application/json", {}).get("schema", {})
+        if status.startswith("2") and schema:
+            return name_of(schema)
+    return ""
+
+
+def is_object(schema: Schema) -> bool:
+    return "properties" in schema or "allOf" in schema
+
+
+def fields(schema: Schema, schemas: Schema) -> tuple[dict[str, Schema], set[str]]:
+    """The members of an object, and those that are always there."""
+    properties, required = dict(schema.get("properties", {})), set(schema.get("required", []))
+    for part in schema.get("allOf", []):
+        more, needed = fields(schemas[name_of(part)] if "$ref" in part else part, schemas)
+        properties |= more
+        required |= needed
+    return properties, required
+
+
+def kinds(schema: Schema) -> list[str]:
+    """The JSON types of a schema."""
+    found = schema.get("type", [])
+    return [found] if isinstance(found, str) else list(found)
+
+
+def without_null(schema: Schema) -> Schema:
+    """A reference that may be null, without that."""
+    choices = [one for one in schema.get("oneOf", schema.get("anyOf", [])) if one.get("type") != "null"]
+    return choices[0] if len(choices) == 1 else schema
+
+
+def unit(description: str) -> str | None:
+    """The unit that a description states."""
+    found = _STATED.search(" ".join(description.split()))
+    if found is None:
+        return None
+    return "1" if found[1] else found[2]
+
+
+def attribute(name: str) -> str:
+    return f"{name}_" if keyword.iskeyword(name) else name
