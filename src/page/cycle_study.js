@@ -97,7 +97,7 @@ export function cycleStudyCard(model) {
     hold: "indentation",
   });
   /** Whether wear at this load has a limit that the service computes. */
-  const hasLimit = () => load.value === undefined && model.hasStress;
+  const hasLimit = () => load.value === undefined && model.hasStress && !model.isLine;
   const request = () => {
     const isConstant = load.value === undefined;
     return {
