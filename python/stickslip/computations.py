@@ -308,6 +308,7 @@ class Computations(ABC):
         body: types.BodyName | None = None,
         bulk: Quantity | types.BulkCycle | Mapping[str, Any] | None = None,
         criteria: bool | types.Criteria | Mapping[str, Any] | None = None,
+        critical_distance: types.CriticalDistance | Mapping[str, Any] | None = None,
         line: Line | types.SubsurfaceLine | Mapping[str, Any] | None = None,
         path: types.Path | None = None,
         plane: Plane | types.SubsurfacePlane | Mapping[str, Any] | None = None,
@@ -365,6 +366,8 @@ class Computations(ABC):
             grows from 0 to 360 degrees, by as much in each move. A number alone is its `amplitude`.
         criteria : bool | Criteria | dict
             The criteria.
+        critical_distance : CriticalDistance | dict
+            The depth below the worst place of the surface at which criteria of stress are evaluated too.
         line : Line | SubsurfaceLine | dict
             Where: a straight line.
         path : Path
@@ -399,10 +402,14 @@ class Computations(ABC):
         >>> reply = ss.fretting(
         ...     contact=ss.Definition(ss.Sphere(radius=0.01), [ss.Body(2.1e+11, 0.3), ss.RIGID], 0.3,
         ...         normal_force=10.0),
-        ...     crossland={'alpha': 0.3, 'limit': 300000000.0},
+        ...     crossland={'alpha': 0.3, 'life': {'s_n': {'cycles': 1000000.0, 'exponent': 8.0, 'reference':
+        ...         300000000.0}}},
+        ...     swt={'life': {'strain_life': {'ductility': 0.26, 'ductility_exponent': -0.6, 'strength':
+        ...         950000000.0, 'strength_exponent': -0.09}}},
         ...     cycles={'count': 1, 'displacement': 1e-07},
         ...     body='first',
-        ...     plane={'normal': 'y', 'offset': 0.0, 'x': [-0.00012, 0.00012, 25], 'z': [0.0, 6e-05, 7]},
+        ...     critical_distance={'length': 1e-05, 'method': 'point'},
+        ...     surface={'x': [-0.00012, 0.00012, 13], 'y': [0.0, 1e-05, 2]},
         ... )
         """
         given: Document = {
@@ -410,6 +417,7 @@ class Computations(ABC):
             "bulk": bulk,
             "contact": contact,
             "criteria": criteria,
+            "critical_distance": critical_distance,
             "line": line,
             "path": path,
             "plane": plane,
@@ -471,7 +479,7 @@ class Computations(ABC):
         load : ScanLoad | dict
             A load, for which the reply then has the contact.
         orientation : ScanOrientation
-            Which way up the scan is; `auto` goes by the curvature of the surface. Default: auto.
+            Which way up the scan is; `auto` derives it from the curvature of the surface. Default: auto.
         smoothing : Smoothing
             What decides how smooth the profile is; `auto` is generalised cross-validation.
         units : bool | ScanUnits | dict
@@ -748,6 +756,70 @@ class Computations(ABC):
         }
         return self._answer(results.SweepReply, "/sweep", given, parts)
 
+    def wear(
+        self,
+        contact: ContactLike,
+        displacement: Quantity | None = None,
+        *,
+        hold: types.Hold | None = None,
+        points: int | None = None,
+    ) -> results.WearReply:
+        """Compute what fretting wear leaves.
+
+        Moves a contact back and forth at a constant indentation until it has worn to its limit, in closed form: the
+        disc that never slips stays as it is, and around it wear goes on until nothing presses. Returns the shape and
+        the pressure before and after, the removed volume, and the limiting shape as a profile for other computations.
+        Nothing is stored.
+
+        The contact is taken at the preload of its definition, never moved: of a `Contact` that has been moved, its
+        history and present load play no part.
+
+        Parameters
+        ----------
+        contact : ContactLike
+            The contact. Its profile must have a stress field.
+        displacement : Quantity
+            Amplitude of the tangential displacement, m; below that of gross slip.
+        hold : Hold
+            What is held meanwhile: `indentation`. Under a held normal force the end depends on the way, so that
+            `normal_force` is refused.
+        points : int
+            Number of radii of the curves, evenly spaced and with both ends; 200 if left out. Stick radius, contact
+            radius and worn radius are added to them.
+
+        Returns
+        -------
+        WearReply
+            What wear leaves of a contact.
+
+        Raises
+        ------
+        InvalidInput
+            With the pointer of the member that is wrong, and its range.
+
+        Examples
+        --------
+        >>> import stickslip as ss
+        >>> reply = ss.wear(
+        ...     contact=ss.Definition(ss.Sphere(radius=0.01), [ss.Body(2.1e+11, 0.3), ss.RIGID], 0.3,
+        ...         normal_force=10.0),
+        ...     displacement=1e-07,
+        ...     hold='indentation',
+        ...     points=50,
+        ... )
+        """
+        given: Document = {
+            "contact": contact,
+            "hold": hold,
+            "points": points,
+        }
+        parts: dict[str, Document] = {
+            "drive": {
+                "displacement": displacement,
+            },
+        }
+        return self._answer(results.WearReply, "/wear", given, parts)
+
 
 class AsyncComputations(ABC):
     """The computations, which take a contact at the preload of its definition."""
@@ -871,6 +943,7 @@ class AsyncComputations(ABC):
         body: types.BodyName | None = None,
         bulk: Quantity | types.BulkCycle | Mapping[str, Any] | None = None,
         criteria: bool | types.Criteria | Mapping[str, Any] | None = None,
+        critical_distance: types.CriticalDistance | Mapping[str, Any] | None = None,
         line: Line | types.SubsurfaceLine | Mapping[str, Any] | None = None,
         path: types.Path | None = None,
         plane: Plane | types.SubsurfacePlane | Mapping[str, Any] | None = None,
@@ -886,6 +959,7 @@ class AsyncComputations(ABC):
             "bulk": bulk,
             "contact": contact,
             "criteria": criteria,
+            "critical_distance": critical_distance,
             "line": line,
             "path": path,
             "plane": plane,
@@ -1025,6 +1099,27 @@ class AsyncComputations(ABC):
         parts: dict[str, Document] = {
         }
         return await self._answer(results.SweepReply, "/sweep", given, parts)
+
+    async def wear(
+        self,
+        contact: ContactLike,
+        displacement: Quantity | None = None,
+        *,
+        hold: types.Hold | None = None,
+        points: int | None = None,
+    ) -> results.WearReply:
+        """`wear`, awaited."""
+        given: Document = {
+            "contact": contact,
+            "hold": hold,
+            "points": points,
+        }
+        parts: dict[str, Document] = {
+            "drive": {
+                "displacement": displacement,
+            },
+        }
+        return await self._answer(results.WearReply, "/wear", given, parts)
 
 
 class OfContact(ABC):
@@ -1407,6 +1502,7 @@ class OfContact(ABC):
         body: types.BodyName | None = None,
         bulk: Quantity | types.BulkCycle | Mapping[str, Any] | None = None,
         criteria: bool | types.Criteria | Mapping[str, Any] | None = None,
+        critical_distance: types.CriticalDistance | Mapping[str, Any] | None = None,
         line: Line | types.SubsurfaceLine | Mapping[str, Any] | None = None,
         path: types.Path | None = None,
         plane: Plane | types.SubsurfacePlane | Mapping[str, Any] | None = None,
@@ -1463,6 +1559,8 @@ class OfContact(ABC):
             grows from 0 to 360 degrees, by as much in each move. A number alone is its `amplitude`.
         criteria : bool | Criteria | dict
             The criteria.
+        critical_distance : CriticalDistance | dict
+            The depth below the worst place of the surface at which criteria of stress are evaluated too.
         line : Line | SubsurfaceLine | dict
             Where: a straight line.
         path : Path
@@ -1502,6 +1600,7 @@ class OfContact(ABC):
             "body": body,
             "bulk": bulk,
             "criteria": criteria,
+            "critical_distance": critical_distance,
             "line": line,
             "path": path,
             "plane": plane,
@@ -1538,6 +1637,7 @@ class OfContact(ABC):
         *,
         fields: Sequence[types.Field] | None = None,
         radii: Quantities | None = None,
+        x: Quantities | None = None,
         residual: bool | None = None,
     ) -> results.StressReply:
         """Get the stresses of a contact.
@@ -1548,11 +1648,14 @@ class OfContact(ABC):
         Parameters
         ----------
         points : int
-            Number of radii, evenly spaced from the centre to the edge of the contact, both included.
+            Number of radii, evenly spaced from the centre to the edge of the contact, both included; of a line contact
+            from the edge at −a to that at a.
         fields : Sequence[Field]
             Which fields are computed; left out, `pressure` and `shear`.
         radii : Quantities
-            Radii, m; outside the contact the stresses are zero.
+            Radii, m, of a round contact; outside the contact the stresses are zero.
+        x : Quantities
+            Places along x, m, of a line contact.
         residual : bool
             Ask for the extrema of the shear stress too.
 
@@ -1577,6 +1680,7 @@ class OfContact(ABC):
             "fields": fields,
             "points": points,
             "radii": radii,
+            "x": x,
             "residual": residual,
         }
         parts: dict[str, Document] = {
@@ -1751,6 +1855,7 @@ class AsyncOfContact(ABC):
         body: types.BodyName | None = None,
         bulk: Quantity | types.BulkCycle | Mapping[str, Any] | None = None,
         criteria: bool | types.Criteria | Mapping[str, Any] | None = None,
+        critical_distance: types.CriticalDistance | Mapping[str, Any] | None = None,
         line: Line | types.SubsurfaceLine | Mapping[str, Any] | None = None,
         path: types.Path | None = None,
         plane: Plane | types.SubsurfacePlane | Mapping[str, Any] | None = None,
@@ -1765,6 +1870,7 @@ class AsyncOfContact(ABC):
             "body": body,
             "bulk": bulk,
             "criteria": criteria,
+            "critical_distance": critical_distance,
             "line": line,
             "path": path,
             "plane": plane,
@@ -1801,6 +1907,7 @@ class AsyncOfContact(ABC):
         *,
         fields: Sequence[types.Field] | None = None,
         radii: Quantities | None = None,
+        x: Quantities | None = None,
         residual: bool | None = None,
     ) -> results.StressReply:
         """`stress`, awaited."""
@@ -1808,6 +1915,7 @@ class AsyncOfContact(ABC):
             "fields": fields,
             "points": points,
             "radii": radii,
+            "x": x,
             "residual": residual,
         }
         parts: dict[str, Document] = {

@@ -13,6 +13,7 @@ fretting = _local.fretting
 protocols = _local.protocols
 simulate = _local.simulate
 sweep = _local.sweep
+wear = _local.wear
 
 __all__ = [
     "compute",
@@ -25,4 +26,5 @@ __all__ = [
     "protocols",
     "simulate",
     "sweep",
+    "wear",
 ]

@@ -6,7 +6,7 @@ Written by `tools/generate.py`.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import KW_ONLY, dataclass
 from typing import ClassVar
 
 from . import request_types as types
@@ -45,6 +45,24 @@ class Cone(Profile):
 
     slope: Quantity
     """Slope dz/dr, a pure number."""
+
+
+@dataclass(frozen=True, eq=False)
+class Cylinder(Profile):
+    """A cylinder pressed along a line on a flat, in plane strain."""
+
+    TYPE: ClassVar[str] = "cylinder"
+
+    radius: Quantity
+    """Radius R, m; for two cylinders 1/R = 1/R₁ + 1/R₂."""
+    _: KW_ONLY
+    length: Quantity
+    """Length L of the contact, m: forces are those of all of it."""
+    reference_length: Quantity | None = None
+    """The length that fixes the displacements, m: dδ = 2/(π E* L) ln(reference_length/t) dF_N for the half-width t.
+    Left out, twice the radius. Half-widths stay below nine tenths of it; stresses, forces and the work of closed
+    cycles under a force do not depend on it.
+    """
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -116,6 +134,22 @@ class RoundedCone(Profile):
     """Slope dz/dr of the cone, a pure number."""
     tip_radius: Quantity
     """Radius up to which the tip is a parabola, m."""
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class RoundedPad(Profile):
+    """A flat pad with rounded edges pressed along a line on a flat, in plane strain."""
+
+    TYPE: ClassVar[str] = "rounded_pad"
+
+    edge_radius: Quantity
+    """Radius R of the edges, m."""
+    flat_half_width: Quantity
+    """Half-width b of the flat, m."""
+    length: Quantity
+    """Length L of the contact, m: forces are those of all of it."""
+    reference_length: Quantity | None = None
+    """The length that fixes the displacements, m, as of a cylinder. Left out, `length`."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -255,18 +289,24 @@ class Definition(ContactPart):
     """Indentation, m."""
     contact_radius: Quantity | None = None
     """Contact radius, m."""
+    bulk: types.BulkPerForce | Mapping[str, Any] | None = None
+    """A stress along x that comes with the tangential force and moves the stick zone: with a `cylinder`, under a
+    constant load.
+    """
 
 
 __all__ = [
     "Profile",
     "Asperities",
     "Cone",
+    "Cylinder",
     "Ellipsoid",
     "ExactSphere",
     "FlatPunch",
     "LoadCurve",
     "PowerLaw",
     "RoundedCone",
+    "RoundedPad",
     "RoundedPunch",
     "Sphere",
     "Sum",

@@ -15,6 +15,8 @@ Auto: TypeAlias = Literal["auto"]
 """The word for what the service chooses."""
 BodyName: TypeAlias = Literal["first", "second"]
 """One of the two bodies in contact."""
+CriticalMethod: TypeAlias = Literal["point", "line"]
+"""How a critical distance L is used along the inward normal."""
 Direction: TypeAlias = Literal["x", "y", "z"]
 """An axis: x along the motion of the first body, z into the body asked for."""
 EndReason: TypeAlias = Literal["deleted", "expired", "stopping", "damaged", "failed"]
@@ -29,6 +31,8 @@ FitParameter: TypeAlias = Literal["friction", "g_star", "e_star", "radius", "mac
 """A quantity of the contact or of the bench that a fit can determine."""
 ForceUnit: TypeAlias = Literal["N", "mN", "uN", "kN"]
 """A unit of force."""
+Hold: TypeAlias = Literal["indentation", "normal_force"]
+"""What is held while a contact wears."""
 JobState: TypeAlias = Literal["running", "done", "failed"]
 """The state of a job."""
 LengthUnit: TypeAlias = Literal["m", "mm", "um", "nm"]
@@ -37,6 +41,8 @@ LoopStart: TypeAlias = Literal["steady", "virgin"]
 """How a record begins."""
 MotionAxis: TypeAlias = Literal["x", "y"]
 """The axis of the tangential motion."""
+NoLife: TypeAlias = Literal["not_positive", "too_long", "too_short", "infinite_stress"]
+"""Why a value has no life."""
 PressureUnit: TypeAlias = Literal["largest", "mean"]
 """The pressure that stresses are compared with."""
 ProtocolEnd: TypeAlias = Literal["displacement_zero", "force_zero", "free"]
@@ -112,6 +118,15 @@ class BulkCycle(TypedDict, total=False):
     """Its phase, degrees; zero if left out."""
 
 
+class BulkPerForce(TypedDict):
+    """A stress along x in one of the bodies that comes with the tangential force, as a bulk load in phase does."""
+
+    body: BodyName
+    """The body that carries it."""
+    stress_per_force: Quantity
+    """The stress over the tangential force, Pa/N; tension is positive."""
+
+
 class _CentrePlaceNeeded(TypedDict):
     x: Quantity
 
@@ -141,6 +156,15 @@ class Criteria(TypedDict, total=False):
     swt: StrainBased | Mapping[str, Any]
     """The largest of normal stress times amplitude of the normal strain on a plane, Pa (Smith, Watson & Topper 1970).
     """
+
+
+class CriticalDistance(TypedDict):
+    """The critical distance of the material (Taylor 2007)."""
+
+    length: Quantity
+    """The critical distance L, m: (threshold of the stress intensity range/range of the fatigue limit)²/π."""
+    method: CriticalMethod
+    """How it is used."""
 
 
 class CycleDriveDisplacement(TypedDict):
@@ -210,7 +234,7 @@ class FallingAmplitude(_FallingAmplitudeNeeded, total=False):
     amplitude: Quantity
     """Displacement of the first reversal, m; left out, the displacement at which the contact just slips as a whole."""
 
-FatemiSocie = TypedDict("FatemiSocie", {"k": "Quantity", "limit": "Quantity", "yield": "Quantity", "youngs_modulus": "Quantity"}, total=False)
+FatemiSocie = TypedDict("FatemiSocie", {"k": "Quantity", "life": "StrainLife", "limit": "Quantity", "yield": "Quantity", "youngs_modulus": "Quantity"}, total=False)
 
 
 class _FindleyNeeded(TypedDict):
@@ -220,6 +244,8 @@ class _FindleyNeeded(TypedDict):
 class Findley(_FindleyNeeded, total=False):
     """Findley's criterion."""
 
+    life: StressLife
+    """How many cycles it bears, from tests."""
     limit: Quantity
     """The value that the material bears, Pa."""
 
@@ -278,11 +304,11 @@ class KnownValues(TypedDict, total=False):
     displacement_offset: KnownValue | Mapping[str, Any]
     """Measured displacement at which the contact is not displaced, m."""
     drift: KnownValue | Mapping[str, Any]
-    """How fast the zero of the displacement wanders, m/s."""
+    """Drift rate of the zero of the displacement, m/s."""
     e_star: KnownValue | Mapping[str, Any]
     """Reduced modulus E*, Pa."""
     force_offset: KnownValue | Mapping[str, Any]
-    """Measured force at which there is none, N."""
+    """Measured force at zero force on the contact, N."""
     friction: KnownValue | Mapping[str, Any]
     """Coulomb's coefficient of friction μ, a pure number."""
     g_star: KnownValue | Mapping[str, Any]
@@ -569,6 +595,17 @@ class SmoothingKnots(TypedDict):
     """So many intervals of constant curvature, without a penalty on their differences."""
 
 
+class SnCurve(TypedDict):
+    """An S-N curve of the values of a criterion."""
+
+    cycles: Quantity
+    """The cycles that the material bears there, a pure number."""
+    exponent: Quantity
+    """The exponent k, a pure number: cycles fall like value^(−k)."""
+    reference: Quantity
+    """A value, in the unit of the criterion."""
+
+
 class SolverSprings(TypedDict):
     """The spring foundation of the paper: a reference for comparison, slower and approximate.
 
@@ -595,21 +632,72 @@ class Springs(TypedDict):
 class StrainBased(TypedDict, total=False):
     """A criterion that needs strains."""
 
+    life: StrainLife
+    """How many cycles it bears, from tests."""
     limit: Quantity
     """The value that the material bears, Pa."""
     youngs_modulus: Quantity
     """Young's modulus of the body, Pa. Where the material has `bodies` it is known, and may be left out."""
 
 
+class StrainLifeSN(TypedDict):
+    """Cycles = `cycles` · (value/`reference`)^(−`exponent`) (Basquin 1910)."""
+
+    s_n: SnCurve | Mapping[str, Any]
+    """Cycles = `cycles` · (value/`reference`)^(−`exponent`) (Basquin 1910)."""
+
+
+class StrainLifeStrainLife(TypedDict):
+    """For `swt`: value = (σf'²/E) (2N)^(2b) + σf' εf' (2N)^(b + c); for `fatemi_socie`.
+
+    Value = (τf'/G) (2N)^b + γf' (2N)^c.
+    """
+
+    strain_life: StrainLifeCurve | Mapping[str, Any]
+    """For `swt`: value = (σf'²/E) (2N)^(2b) + σf' εf' (2N)^(b + c); for `fatemi_socie`: value = (τf'/G) (2N)^b + γf'
+    (2N)^c.
+    """
+
+
+class StrainLifeCurve(TypedDict):
+    """The constants of Basquin, Coffin and Manson.
+
+    Of normal stress and strain for `swt`, of shear stress and shear strain for `fatemi_socie`.
+    """
+
+    ductility: Quantity
+    """Fatigue ductility coefficient, a pure number: εf' or, of shear strain, γf'."""
+    ductility_exponent: Quantity
+    """Fatigue ductility exponent c, a pure number."""
+    strength: Quantity
+    """Fatigue strength coefficient, Pa: σf' or, of shear stress, τf'."""
+    strength_exponent: Quantity
+    """Fatigue strength exponent b, a pure number."""
+
+
+class StressLifeSN(TypedDict):
+    """Cycles = `cycles` · (value/`reference`)^(−`exponent`) (Basquin 1910)."""
+
+    s_n: SnCurve | Mapping[str, Any]
+    """Cycles = `cycles` · (value/`reference`)^(−`exponent`) (Basquin 1910)."""
+
+
 class StressRequest(TypedDict, total=False):
-    """Where stresses are asked for: exactly one of `points` and `radii`, and which `fields`."""
+    """Where stresses are asked for.
+
+    Exactly one of `points` and `radii` (of a line contact `x`), and which `fields`.
+    """
 
     fields: Sequence[Field]
     """Which fields are computed; left out, `pressure` and `shear`."""
     points: int
-    """Number of radii, evenly spaced from the centre to the edge of the contact, both included."""
+    """Number of radii, evenly spaced from the centre to the edge of the contact, both included; of a line contact from
+    the edge at −a to that at a.
+    """
     radii: Quantities
-    """Radii, m; outside the contact the stresses are zero."""
+    """Radii, m, of a round contact; outside the contact the stresses are zero."""
+    x: Quantities
+    """Places along x, m, of a line contact."""
 
 SubsurfaceLine = TypedDict("SubsurfaceLine", {"count": "int", "from": "Quantities", "to": "Quantities"}, total=True)
 
@@ -675,8 +763,17 @@ class SubsurfaceSurface(TypedDict):
 class SurfaceCriterion(TypedDict, total=False):
     """A quantity of the surface."""
 
+    life: StressLife
+    """How many cycles it bears, from tests."""
     limit: Quantity
     """The value that the material bears."""
+
+
+class WearDrive(TypedDict):
+    """The cycles that wear a contact."""
+
+    displacement: Quantity
+    """Amplitude of the tangential displacement, m; below that of gross slip."""
 
 
 class _WeightedNeeded(TypedDict):
@@ -686,17 +783,23 @@ class _WeightedNeeded(TypedDict):
 class Weighted(_WeightedNeeded, total=False):
     """A criterion with a weight of the hydrostatic stress."""
 
+    life: StressLife
+    """How many cycles it bears, from tests."""
     limit: Quantity
     """The value that the material bears, Pa."""
 
 
 class WorkDensity(TypedDict, total=False):
-    """Where the friction work per area is asked for: exactly one of `points` and `radii`."""
+    """Where the friction work per area is asked for: exactly one of `points` and `radii` (of a line contact `x`)."""
 
     points: int
-    """Number of radii, evenly spaced from the centre to the edge of the contact, both included."""
+    """Number of radii, evenly spaced from the centre to the edge of the contact, both included; of a line contact from
+    the edge at −a to that at a.
+    """
     radii: Quantities
     """Radii, m; outside the contact there is no work."""
+    x: Quantities
+    """Places along x, m, of a line contact."""
 
 
 class DefinitionMembers(TypedDict, total=False):
@@ -708,6 +811,10 @@ class DefinitionMembers(TypedDict, total=False):
     """Indentation, m."""
     contact_radius: Quantity | None
     """Contact radius, m."""
+    bulk: BulkPerForce | Mapping[str, Any] | None
+    """A stress along x that comes with the tangential force and moves the stick zone: with a `cylinder`, under a
+    constant load.
+    """
 
 Centre: TypeAlias = Union[
     "Auto",
@@ -770,3 +877,14 @@ Solver: TypeAlias = Union[
     "Mapping[str, Any]",
 ]
 """A solver: the string `"exact"`, or an object with one key."""
+StrainLife: TypeAlias = Union[
+    "StrainLifeSN",
+    "StrainLifeStrainLife",
+    "Mapping[str, Any]",
+]
+"""The life of a criterion with strains: an S-N curve, or that of the criterion."""
+StressLife: TypeAlias = Union[
+    "StressLifeSN",
+    "Mapping[str, Any]",
+]
+"""The life of a criterion: an S-N curve."""

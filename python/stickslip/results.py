@@ -19,12 +19,13 @@ class Accuracy(Result):
 
     compute_time: float
     """Processor time that the request took but for HTTP, s: with the check, the preparation of the profile unless it
-    was ready, and the loading of a stored contact; without the time for which the work gave way to that of others.
+    was ready, and the loading of a stored contact; without the time in which it yielded to other work.
     """
 
     force_error: float
     """Estimated error of the forces, relative to the friction limit μ F_N, a pure number: of rounding, of curved
-    paths, of the interpolation of a table, of springs.
+    paths, of the interpolation of a table, of springs. That of curved paths is the largest of the states in the
+    reply, that of springs the largest over all moves.
     """
 
     reason: str
@@ -62,14 +63,15 @@ class AccuracyReply(Result):
 
         @property
         def estimated_force_error(self) -> Floats:
-            """Of each row: Error of the force as the solver estimates it, without a reference, relative to
-            `force_unit`, a pure number; likewise.
+            """Of each row: Error of the force over all moves as the solver states it itself, relative to the friction
+            limit μ F_N, a pure number; `null` without an answer, or where it is infinite.
             """
 
         @property
         def estimated_stress_error(self) -> Floats:
-            """Of each row: Error of the stress as the solver estimates it, relative to `stress_unit`, a pure number:
-            for radii some cells away from kinks; likewise.
+            """Of each row: Error of the stress at the end as the solver states it itself, relative to `stress_unit`, a
+            pure number: the largest over the contact, but for springs within some cells of a singular radius of the
+            profile; `null` without an answer, or where it is infinite.
             """
 
         @property
@@ -81,7 +83,7 @@ class AccuracyReply(Result):
         @property
         def stress_error(self) -> Floats:
             """Of each row: Largest difference of the shear stress at the end, over the radii, relative to
-            `stress_unit`, a pure number; likewise.
+            `stress_unit`, a pure number; `null` without an answer, or where it is infinite.
             """
 
 
@@ -152,11 +154,17 @@ class CycleReply(Result):
 
         @property
         def dissipated_energy(self) -> Floats:
-            """Of each row: Friction work of a cycle, J."""
+            """Of each row: Friction work of a cycle, J: the area of the loop of the force over the displacement."""
 
         @property
         def force_amplitude(self) -> Floats:
             """Of each row: Amplitude of the tangential force, N."""
+
+        @property
+        def friction_energy(self) -> Floats:
+            """Of each row: All that friction dissipates in a cycle, J, where a bulk stress does work too: the integral
+            of `friction_work` over the contact. Else it is `dissipated_energy`, and left out.
+            """
 
         @property
         def gross_slip_displacement(self) -> Floats:
@@ -211,7 +219,9 @@ class Figures(Result):
     """What follows from the definition of a contact at its preload."""
 
     contact_radius: float
-    """Contact radius a, m; of a profile without a stress field F_N′/(2 E*), which governs the stiffness."""
+    """Contact radius a, m; the half-width of a line contact; of a profile without a stress field F_N′/(2 E*), which
+    governs the stiffness.
+    """
 
     e_star: float
     """Reduced modulus E*, Pa."""
@@ -471,7 +481,9 @@ class PathReply(Result):
 
         @property
         def contact_radius(self) -> Floats:
-            """Of each row: Contact radius a, m; of a profile without a stress field F_N′/(2 E*)."""
+            """Of each row: Contact radius a, m; the half-width of a line contact; of a profile without a stress field
+            F_N′/(2 E*).
+            """
 
         @property
         def displacement(self) -> Floats:
@@ -504,6 +516,10 @@ class PathReply(Result):
         @property
         def regime(self) -> Texts:
             """Of each row: How much of the contact slipped in the last move."""
+
+        @property
+        def stick_centre(self) -> Floats:
+            """Of each row: Where the middle of that part is along x, m: of a contact whose bulk stress moves it."""
 
         @property
         def stick_radius(self) -> Floats:
@@ -685,7 +701,9 @@ class RelaxReply(Result):
 
         @property
         def contact_radius(self) -> Floats:
-            """Of each row: Contact radius a, m; of a profile without a stress field F_N′/(2 E*)."""
+            """Of each row: Contact radius a, m; the half-width of a line contact; of a profile without a stress field
+            F_N′/(2 E*).
+            """
 
         @property
         def elastic_energy(self) -> Floats:
@@ -706,6 +724,10 @@ class RelaxReply(Result):
         @property
         def regime(self) -> Texts:
             """Of each row: How much of the contact slipped in the last move."""
+
+        @property
+        def stick_centre(self) -> Floats:
+            """Of each row: Where the middle of that part is along x, m: of a contact whose bulk stress moves it."""
 
         @property
         def stick_radius(self) -> Floats:
@@ -746,12 +768,18 @@ class Residual(Result):
 
         @property
         def radius(self) -> Floats:
-            """Of each row: Where, m."""
+            """Of each row: Where, m: of a round contact."""
 
         @property
         def shear(self) -> Floats:
             """Of each row: Shear stress there, Pa, positive as a positive displacement causes it; `null` where it is
             infinite.
+            """
+
+        @property
+        def x(self) -> Floats:
+            """Of each row: Where along x, m: of a line contact. Without a bulk stress those at −x are alike and left
+            out.
             """
 
 
@@ -830,7 +858,9 @@ class SimulateReply(Result):
 
         @property
         def contact_radius(self) -> Floats:
-            """Of each row: Contact radius a, m; of a profile without a stress field F_N′/(2 E*)."""
+            """Of each row: Contact radius a, m; the half-width of a line contact; of a profile without a stress field
+            F_N′/(2 E*).
+            """
 
         @property
         def displacement(self) -> Floats:
@@ -865,6 +895,10 @@ class SimulateReply(Result):
             """Of each row: How much of the contact slipped in the last move."""
 
         @property
+        def stick_centre(self) -> Floats:
+            """Of each row: Where the middle of that part is along x, m: of a contact whose bulk stress moves it."""
+
+        @property
         def stick_radius(self) -> Floats:
             """Of each row: Radius inside which the last move did not slip, m: the contact radius if nothing slipped,
             zero in gross slip.
@@ -875,7 +909,7 @@ class State(Result):
     """The state after a move."""
 
     contact_radius: float
-    """Contact radius a, m; of a profile without a stress field F_N′/(2 E*)."""
+    """Contact radius a, m; the half-width of a line contact; of a profile without a stress field F_N′/(2 E*)."""
 
     displacement: float
     """Tangential displacement U of the indenter, m; positive along x."""
@@ -903,6 +937,9 @@ class State(Result):
 
     stick_radius: float
     """Radius inside which the last move did not slip, m: the contact radius if nothing slipped, zero in gross slip."""
+
+    stick_centre: float | None
+    """Where the middle of that part is along x, m: of a contact whose bulk stress moves it."""
 
 
 class StateEvent(Result):
@@ -933,14 +970,14 @@ class StateEvent(Result):
 class StressReply(Result):
     """The stresses of a contact, and their extrema if asked for."""
 
-    radius: Floats
-    """Radii, m."""
-
     displacement: Floats | None
     """Tangential displacement u(r) of the surface, m; positive along x."""
 
     pressure: Floats | None
     """Normal pressure, Pa; compression is positive; `null` where it is infinite."""
+
+    radius: Floats | None
+    """Radii, m: of a round contact."""
 
     residual: Residual | None
     """The extrema of the shear stress, if asked for."""
@@ -950,6 +987,9 @@ class StressReply(Result):
 
     slip: Floats | None
     """Slip U − u(r), the displacement of the indenter less that of the surface, m; `null` outside the contact."""
+
+    x: Floats | None
+    """Places along x, m: of a line contact."""
 
 
 class SubsurfaceReply(Result):
@@ -1025,6 +1065,57 @@ class SweepReply(Swept):
     """How many points, and numbers in each column."""
 
 
+class WearReply(Result):
+    """What wear leaves of a contact."""
+
+    accuracy: Accuracy
+    """Solver, errors and time: of the forces before wear, and of the table if the profile has one."""
+
+    contact: Figures
+    """The contact before."""
+
+    depth: Record
+    """The largest depth that is removed."""
+
+    force_amplitude: float
+    """Amplitude of the tangential force in the limit, N: all of the contact sticks."""
+
+    indentation: float
+    """The indentation, which is held, m."""
+
+    normal_force: Record
+    """The normal force, N."""
+
+    pressure: Record
+    """The pressure, Pa, at the same radii; in the limit it is infinite, and so `null`, at the stick radius."""
+
+    removed_volume: float
+    """The volume that is removed, m³."""
+
+    shape: Record
+    """The height of the undeformed surface above its lowest point, m, from the centre to beyond the worn radius."""
+
+    stick_radius: float
+    """Radius of the disc that never slips, m: the contact radius in the limit."""
+
+    warnings: Rows[Record]
+    """Warnings about the result."""
+
+    worn_radius: float
+    """Radius up to which the surface wears, m."""
+
+    profile: Any
+    """The limiting shape for the computations that follow: a table, or the profile itself if nothing wears; left out
+    where there is none, with a warning that says why. In the table a steep rise of g takes the place of the jump at
+    the stick radius: with the jump itself the contact at this indentation would be ambiguous.
+    """
+
+    profile_error: Record | None
+    """How far `profile` is from the limit; left out without it. The errors that other computations state do not
+    include it.
+    """
+
+
 NAMES = [
     "Accuracy",
     "AccuracyReply",
@@ -1051,4 +1142,5 @@ NAMES = [
     "StressReply",
     "SubsurfaceReply",
     "SweepReply",
+    "WearReply",
 ]

@@ -29,6 +29,15 @@ FIELDS: dict[str, dict[str, tuple[str, str | None]]] = {
         "x": ("", None),
         "y": ("", None),
     },
+    "BelowSurface": {
+        "at": ("Instant", None),
+        "error": ("", None),
+        "life": ("Life", None),
+        "margin": ("", "1"),
+        "plane": ("[]", "1"),
+        "point": ("[]", "m"),
+        "value": ("", None),
+    },
     "BestLoad": {
         "curve": ("LoadCurve", None),
         "dissipated_energy": ("", "J"),
@@ -77,6 +86,10 @@ FIELDS: dict[str, dict[str, tuple[str, str | None]]] = {
     },
     "Fault": {
         "detail": ("", None),
+        "exclusive_maximum": ("", "N"),
+        "exclusive_minimum": ("", "N"),
+        "maximum": ("", None),
+        "minimum": ("", None),
         "pointer": ("", None),
     },
     "Figures": {
@@ -169,6 +182,7 @@ FIELDS: dict[str, dict[str, tuple[str, str | None]]] = {
     "FrictionWork": {
         "density": ("[]", "J/m²"),
         "radius": ("[]", "m"),
+        "x": ("[]", "m"),
     },
     "Gap": {
         "lower_bound": ("", "Pa"),
@@ -230,6 +244,12 @@ FIELDS: dict[str, dict[str, tuple[str, str | None]]] = {
         "plane": ("[]", "1"),
         "point": ("[]", "m"),
         "value": ("", None),
+    },
+    "Life": {
+        "cycles": ("", "1"),
+        "longest": ("", "1"),
+        "no_life": ("", None),
+        "shortest": ("", "1"),
     },
     "LineInFile": {
         "x": ("[]", None),
@@ -323,6 +343,7 @@ FIELDS: dict[str, dict[str, tuple[str, str | None]]] = {
     "Peak": {
         "radius": ("", "m"),
         "shear": ("", "Pa"),
+        "x": ("", "m"),
     },
     "PointFailure": {
         "code": ("", None),
@@ -374,7 +395,10 @@ FIELDS: dict[str, dict[str, tuple[str, str | None]]] = {
         "warnings": ("[Warning]", None),
     },
     "Rating": {
+        "critical_distance": ("BelowSurface", None),
+        "cycles": ("[]", "1"),
         "largest": ("Largest", None),
+        "life": ("Life", None),
         "margin": ("", "1"),
         "values": ("[]", None),
     },
@@ -502,6 +526,7 @@ FIELDS: dict[str, dict[str, tuple[str, str | None]]] = {
         "memory_depth": ("", "1"),
         "normal_force": ("", "N"),
         "regime": ("", None),
+        "stick_centre": ("", "m"),
         "stick_radius": ("", "m"),
     },
     "StateEvent": {
@@ -518,6 +543,7 @@ FIELDS: dict[str, dict[str, tuple[str, str | None]]] = {
         "displacement_amplitude": ("", "m"),
         "dissipated_energy": ("", "J"),
         "force_amplitude": ("", "N"),
+        "friction_energy": ("", "J"),
         "friction_work": ("FrictionWork", None),
         "gross_slip_displacement": ("", "m"),
         "harmonics": ("[Harmonic]", "N"),
@@ -537,6 +563,7 @@ FIELDS: dict[str, dict[str, tuple[str, str | None]]] = {
         "radius": ("[]", "m"),
         "shear": ("[]", "Pa"),
         "slip": ("[]", "m"),
+        "x": ("[]", "m"),
     },
     "StressPath": {
         "move": ("#", "1"),
@@ -556,6 +583,7 @@ FIELDS: dict[str, dict[str, tuple[str, str | None]]] = {
         "residual": ("Residual", None),
         "shear": ("[]", "Pa"),
         "slip": ("[]", "m"),
+        "x": ("[]", "m"),
     },
     "Subsurface": {
         "hydrostatic": ("[]", "Pa"),
@@ -602,6 +630,44 @@ FIELDS: dict[str, dict[str, tuple[str, str | None]]] = {
     "Warning": {
         "code": ("", None),
         "message": ("", None),
+    },
+    "WearDepth": {
+        "largest": ("", "m"),
+        "radius": ("", "m"),
+    },
+    "WearReply": {
+        "accuracy": ("Accuracy", None),
+        "contact": ("Figures", None),
+        "depth": ("WearDepth", None),
+        "force_amplitude": ("", "N"),
+        "indentation": ("", "m"),
+        "normal_force": ("WornForce", "N"),
+        "pressure": ("WornPressure", "Pa"),
+        "profile": ("", None),
+        "profile_error": ("WornProfileError", None),
+        "removed_volume": ("", "m³"),
+        "shape": ("WornShape", "m"),
+        "stick_radius": ("", "m"),
+        "warnings": ("[Warning]", None),
+        "worn_radius": ("", "m"),
+    },
+    "WornForce": {
+        "after": ("", "N"),
+        "before": ("", "N"),
+    },
+    "WornPressure": {
+        "after": ("[]", "Pa"),
+        "before": ("[]", "Pa"),
+        "radius": ("[]", "m"),
+    },
+    "WornProfileError": {
+        "normal_force": ("", "1"),
+        "rise_width": ("", "m"),
+    },
+    "WornShape": {
+        "after": ("[]", "m"),
+        "before": ("[]", "m"),
+        "radius": ("[]", "m"),
     },
 }
 

@@ -211,6 +211,13 @@ def _rating(result: Record) -> Table:
     return columns, _units("xyz", result.schema) | {"margin": "1"}
 
 
+def _wear(result: Record) -> Table:
+    shape, pressure = result.shape, result.pressure
+    columns = {"radius": shape.radius, "height_before": shape.before, "height_after": shape.after}
+    columns |= {"pressure_before": pressure.before, "pressure_after": pressure.after}
+    return columns, dict(zip(columns, ("m", "m", "m", "Pa", "Pa"), strict=True))
+
+
 def _sweep(result: Record) -> Table:
     columns: dict[str, Any] = result.columns
     return columns, {}
@@ -224,6 +231,7 @@ _REPLIES: dict[str, Callable[[Any], Table]] = {
     "Residual": _peaks,
     "SimulateReply": _simulation,
     "SweepReply": _sweep,
+    "WearReply": _wear,
 }
 _ROWS: dict[str, Callable[[Rows[Any]], Table]] = {
     "AccuracyRow": _solvers,

@@ -234,7 +234,7 @@ def profiles_file(api: Schema) -> str:
         'Written by `tools/generate.py`.\n"""\n',
         "from __future__ import annotations\n",
         "from collections.abc import Sequence",
-        "from dataclasses import dataclass",
+        "from dataclasses import KW_ONLY, dataclass",
         "from typing import ClassVar\n",
         "from . import request_types as types",
         "from .bodies import ContactPart, Material, Part, Shape",
@@ -290,19 +290,23 @@ def class_name(kind: str) -> str:
 
 
 def dataclass(name: str, base: str, schema: Schema, schemas: Schema, kind: str = "") -> list[str]:
-    """A shape or a place; of more than one parameter each is given by its name."""
+    """A shape or a place; of more than one parameter each is given by its name, but for the radius of a cylinder."""
     members, required = fields(schema, schemas)
     members = {member: what for member, what in members.items() if member != "type"}
-    keywords = ", kw_only=True" if len(members) > 1 else ""
+    # A cylinder is called by its radius, as a sphere is.
+    first = "radius" if kind == '"cylinder"' else ""
+    keywords = ", kw_only=True" if len(members) > 1 and not first else ""
     text = [f"\n@dataclass(frozen=True, eq=False{keywords})", f"class {name}({base}):", summary(schema["description"])]
     if kind:
         text.append(f"\n    TYPE: ClassVar[str] = {kind}")
     text.append("")
-    for member in sorted(members, key=lambda one: (one not in required, list(members).index(one))):
+    for member in sorted(members, key=lambda one: (one != first, one not in required, list(members).index(one))):
         what = members[member]
         shape = "Sequence[Shape]" if name_of(what.get("items", {})) == "Profile" else type_of(what, schemas, "types.")
         text.append(f"    {attribute(member)}: {shape}" + ("" if member in required else " | None = None"))
         if "description" in what:
             text.append(wrapped(what["description"], "    "))
+        if member == first:
+            text.append("    _: KW_ONLY")
     text.append("")
     return text

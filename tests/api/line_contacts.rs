@@ -159,7 +159,7 @@ async fn what_is_no_line_contact_is_refused_at_its_place() {
             path.clone(),
             "bulk_too_large",
             "/contact/bulk/stress_per_force",
-            "up to 3.304",
+            "up to 330.4",
         ),
         (changed(sphere, &bulk(1e5)), path.clone(), "bulk_too_large", "/contact/bulk", "cylinder alone"),
         (changed(pad(), &bulk(1e5)), path.clone(), "bulk_too_large", "/contact/bulk", "cylinder alone"),
@@ -177,6 +177,6 @@ async fn what_is_no_line_contact_is_refused_at_its_place() {
     let fault = problem(server.post("/simulate", &body).await).await.errors.remove(0);
     assert!((fault.exclusive_maximum.unwrap() - 0.6 * 968.466409034).abs() < 1e-9);
     let pad = with(pad(), "/profile/reference_length", json!(4e-4));
-    let place = ("invalid_input", "/contact/profile/reference_length", "above 5.5");
+    let place = ("invalid_input", "/contact/profile/reference_length", "above 555");
     assert_refused(&server, "/simulate", &of(&pad, &path), place).await;
 }

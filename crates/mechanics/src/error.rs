@@ -42,10 +42,10 @@ pub enum Error {
     },
     /// A bulk stress under which the stick zones of a history would not be nested.
     #[error(
-        "stress_per_force = {} {}", short(*stress_per_force), if *largest > 0.0 {
+        "stress_per_force = {} {}", in_unit(*stress_per_force, "Pa/N"), if *largest > 0.0 {
             format!(
-                "is too large: allowed is up to {} Pa/N either way, beyond which slip begins on both sides in opposite \
-                    directions", short(*largest)
+                "is too large: allowed is up to {} either way, beyond which slip begins on both sides in opposite \
+                    directions", in_unit(*largest, "Pa/N")
             )
         } else {
             "is not available with this profile: the stick zone that it moves is known of a cylinder alone".to_owned()

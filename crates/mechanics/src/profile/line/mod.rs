@@ -119,8 +119,8 @@ impl LineContact {
             quantity: Quantity::Parameter("reference_length"),
             value: self.reference_length,
             allowed: format!(
-                "above {} m, the half-width of the flat over {WIDEST}",
-                crate::unit_prefix::short(least / WIDEST)
+                "above {}, the half-width of the flat over {WIDEST}",
+                crate::unit_prefix::in_unit(least / WIDEST, "m")
             ),
         })
     }
