@@ -198,8 +198,12 @@ def _rating(result: Record) -> Table:
     ratings = result.ratings
     if len(result.x) > 0:
         columns = {name: getattr(result, name) for name in "xyz"}
-        columns |= {name: rating.values for name, rating in ratings.items()}
-        return columns, _units(columns, result.schema)
+        for name, rating in ratings.items():
+            columns[name] = rating.values
+            if rating.cycles is not None:
+                columns[f"{name}_cycles"] = rating.cycles
+        lives = {name: "1" for name in columns if name.endswith("_cycles")}
+        return columns, _units(columns, result.schema) | lives
     largest = [rating.largest for rating in ratings.values()]
     points = np.array([[np.nan] * 3 if one is None else one.point for one in largest], dtype=np.float64)
     columns = {

@@ -5,7 +5,7 @@ use reqwest::Method;
 use serde_json::json;
 use stickslip_wire::{Amplitudes, CycleDrive, Machine, WorkDensity};
 
-use crate::common::{Server, assert_refused, ball, changed, good, number, of, problem, run, timeless, with};
+use crate::common::{Server, ball, changed, good, number, of, problem, run, timeless, with};
 
 fn close(found: f64, expected: f64, tolerance: f64) {
     assert!((found - expected).abs() <= tolerance * expected.abs(), "{found:e} is not {expected:e}");
@@ -37,42 +37,8 @@ async fn a_contact_with_a_history_has_the_cycles_of_its_load_and_stays_as_it_is(
 }
 
 #[tokio::test]
-async fn what_cannot_be_asked_for_together_is_refused_at_its_place() {
+async fn a_query_of_a_contact_is_refused_at_its_place() {
     let server = Server::start().await;
-    let force = json!({"drive": {"force": 1.0}});
-    for (asked, code, pointer) in [
-        (json!({"drive": {"force": 3.0}}), "force_exceeds_friction", "/drive/force"),
-        (json!({"drive": {"force": [1.0, 3.5]}}), "force_exceeds_friction", "/drive/force/1"),
-        (json!({"normal": {"normal_force": 9.0}}), "force_exceeds_friction", "/drive/force"),
-        (json!({"drive": {"displacement": -1e-8}}), "invalid_input", "/drive/displacement"),
-        (json!({"drive": {"displacement": []}}), "invalid_input", "/drive/displacement"),
-        (json!({"drive": {"displacement": vec![1e-8; 10_001]}}), "invalid_input", "/drive/displacement"),
-        (json!({"drive": {"force": 1.0, "displacement": 1e-8}}), "invalid_input", "/drive"),
-        (json!({"machine": {"stiffness": 0.0}}), "invalid_input", "/machine/stiffness"),
-        (json!({"work_density": {}}), "invalid_input", "/work_density"),
-        (
-            json!({"drive": {"displacement": vec![1e-8; 101]}, "work_density": {"points": 2000}}),
-            "invalid_input",
-            "/work_density",
-        ),
-        (json!({"normal": {"normal_force": 1.0}, "work_density": {"points": 5}}), "invalid_input", "/work_density"),
-        (json!({"normal": {}}), "invalid_input", "/normal"),
-        (json!({"normal": {"normal_force": 11.0}}), "invalid_input", "/normal/normal_force"),
-        (json!({"normal": {"normal_force": 1.0, "phase": 400.0}}), "invalid_input", "/normal/phase"),
-        (
-            json!({"frequency_response": {"mass": 1.0, "drive_force": 1.0, "frequencies": [0.0]}}),
-            "invalid_input",
-            "/frequency_response/frequencies/0",
-        ),
-        (
-            json!({"machine": {"stiffness": 1.0}, "frequency_response": {"mass": 1.0, "drive_force": 1.0}}),
-            "invalid_input",
-            "/frequency_response",
-        ),
-        (json!({"drive": {"displacement": vec![1e-8; 101]}, "best_load": {}}), "invalid_input", "/best_load"),
-    ] {
-        assert_refused(&server, "/cycle", &of(&ball(), &changed(force.clone(), &asked)), (code, pointer, "")).await;
-    }
     let contact = format!("/contacts/{}", server.contact().await);
     for (query, code, pointer) in [
         ("", "invalid_input", "/displacement"),
@@ -123,27 +89,4 @@ async fn a_map_has_the_cycles_of_each_load_over_http_and_by_a_flag() {
     for text in ["Fretting map", "log₁₀(normal force / N)", "gross slip above"] {
         assert!(picture.contains(text), "{text}");
     }
-    for (wrong, pointer) in [
-        (json!({"map": {"normal_force": {"from": 2.0, "to": 1.0, "count": 3}}}), "/map/normal_force/to"),
-        (json!({"map": {}}), "/map/normal_force"),
-        (json!({"harmonics": 3}), "/harmonics"),
-        (json!({"normal": {"normal_force": 1.0}}), "/normal"),
-        (json!({"work_density": {"points": 5}}), "/work_density"),
-        (json!({"best_load": {}}), "/best_load"),
-        (json!({"frequency_response": {"mass": 1.0, "drive_force": 1.0}}), "/frequency_response"),
-        // Too many of both together, and a force that the smallest load does not hold.
-        (
-            json!({"drive": {"displacement": vec![1e-8; 5_001]},
-                "map": {"normal_force": {"from": 1, "to": 9, "count": 20}}}),
-            "/map/normal_force/count",
-        ),
-        (json!({"drive": {"force": 1.0}}), "/drive/force"),
-    ] {
-        let refused = problem(server.post("/cycle", &of(&ball(), &changed(map.clone(), &wrong))).await).await;
-        assert_eq!((refused.status, refused.errors[0].pointer.as_str()), (422, pointer), "{wrong}");
-    }
-    // A load beyond the end of the shape.
-    let table = json!({"type": "tabulated", "r": [0.0, 1e-5, 2e-5, 3e-5], "z": [0.0, 5e-9, 2e-8, 4.5e-8]});
-    let ended = with(with(ball(), "/profile", table), "/preload", json!({"normal_force": 1e-3}));
-    assert_refused(&server, "/cycle", &of(&ended, &map), ("beyond_profile", "/map/normal_force", "")).await;
 }

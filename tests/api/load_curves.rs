@@ -98,42 +98,6 @@ async fn they_are_stored_moved_swept_and_cycled_and_have_no_stresses() {
 }
 
 #[tokio::test]
-async fn what_is_no_such_profile_is_refused_at_its_place() {
-    let server = Server::start().await;
-    let rough = |members: Value| changed(json!({"type": "asperities"}), &members);
-    let curve = |d: [f64; 3], force: [f64; 3]| curve(json!(d), json!(force));
-    for (profile, place) in [
-        (rough(json!({"gaps": [0.0]})), ""),
-        (rough(json!({"radius": 1.0, "radii": [1.0], "gaps": [0.0]})), ""),
-        (rough(json!({"radii": [1.0, 2.0], "gaps": [0.0]})), "/gaps"),
-        (rough(json!({"radius": 1.0, "gaps": []})), "/gaps"),
-        (rough(json!({"radii": [-1.0], "gaps": [0.0]})), "/radii/0"),
-        (rough(json!({"radius": 1.0, "gaps": ["NaN"]})), "/gaps/0"),
-        (rough(json!({"radius": 1.0, "gaps": vec![0; 1_000_001]})), "/gaps"),
-        (json!({"type": "load_curve", "indentation": [0.0, 1e-6], "normal_force": [0.0, 1.0]}), "/indentation"),
-        (json!({"type": "load_curve", "indentation": [0, 1, 2], "normal_force": [0, 1, 2, 3]}), "/normal_force"),
-        (curve([1e-7, 1e-6, 2e-6], [0.0, 1.0, 2.0]), "/indentation/0"),
-        (curve([0.0, 1e-6, 2e-6], [0.1, 1.0, 2.0]), "/normal_force/0"),
-        (curve([0.0, 2e-6, 1e-6], [0.0, 1.0, 2.0]), "/indentation/2"),
-        (curve([0.0, 1e-6, 2e-6], [0.0, 1.0, 1.9]), "/normal_force/2"),
-        (curve([0.0, 1e-6, 2e-6], [0.0, 0.0, 1.9]), "/normal_force/1"),
-        (ellipsoid(json!([1.0])), "/radii"),
-        (ellipsoid(json!([1.0, 2.0, 3.0])), "/radii"),
-        (ellipsoid(json!([1.0, 1e-7])), "/radii"),
-        (json!({"type": "ellipsoid", "radii": [1.0, 1.0], "direction": "z"}), "/direction"),
-        (json!({"type": "ellipsoid", "radii": [1.0, 1.0]}), "/direction"),
-    ] {
-        let place = format!("/profile{place}");
-        assert_refused(&server, "/contacts", &contact(profile), ("invalid_input", &place, "")).await;
-    }
-    let moduli = json!({"effective": {"e_star": 1e11, "g_star": 8e10}});
-    let unknown = with(contact(ellipsoid(json!([0.01, 0.02]))), "/material", moduli);
-    assert_refused(&server, "/contacts", &unknown, ("invalid_input", "/material/effective", "")).await;
-    let beyond = contact(curve([0.0, 1e-6, 2e-6], [0.0, 1.0, 3.0]));
-    assert_refused(&server, "/contacts", &beyond, ("beyond_profile", "/preload/normal_force", "")).await;
-}
-
-#[tokio::test]
 async fn a_hundred_thousand_asperities_are_taken() {
     let server = Server::start().await;
     let gaps: Vec<f64> = (1..=100_000).map(|index| 1e-6 * f64::from(index).ln()).collect();

@@ -15,7 +15,7 @@ pub mod raw;
 pub mod small_disk;
 pub mod tables;
 
-#[allow(unused_imports, reason = "as above")]
+#[allow(unused_imports, reason = "each test binary uses a part of it")]
 pub use json::{ball, changed, codes, number, of, timeless, with};
 
 use std::process::{Child, Command, Output, Stdio};

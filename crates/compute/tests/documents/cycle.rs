@@ -3,8 +3,8 @@
 use serde_json::{Value, json};
 use std::f64::consts::PI;
 
-use crate::json::{ball, codes, number, of, timeless, with};
-use crate::{good, post};
+use crate::json::{ball, changed, codes, number, of, timeless, with};
+use crate::{assert_refused, good, post, problem};
 
 const G_STAR: f64 = 8e10;
 /// m = mu E*/G*.
@@ -88,4 +88,71 @@ fn one_amplitude_and_a_list_of_one_give_the_same_row_and_without_friction_ratios
     let (still, slides) = (&reply["cycles"][0], &reply["cycles"][1]);
     assert_eq!((number(&still["loss_factor"]), number(&still["sliding_ratio"])), (0.0, 0.0));
     assert!(slides["loss_factor"].is_null() && slides["sliding_ratio"].is_null() && slides["regime"] == "gross_slip");
+}
+
+#[test]
+fn what_cannot_be_asked_for_together_is_refused_at_its_place() {
+    let force = json!({"drive": {"force": 1.0}});
+    for (asked, code, pointer) in [
+        (json!({"drive": {"force": 3.0}}), "force_exceeds_friction", "/drive/force"),
+        (json!({"drive": {"force": [1.0, 3.5]}}), "force_exceeds_friction", "/drive/force/1"),
+        (json!({"normal": {"normal_force": 9.0}}), "force_exceeds_friction", "/drive/force"),
+        (json!({"drive": {"displacement": -1e-8}}), "invalid_input", "/drive/displacement"),
+        (json!({"drive": {"displacement": []}}), "invalid_input", "/drive/displacement"),
+        (json!({"drive": {"displacement": vec![1e-8; 10_001]}}), "invalid_input", "/drive/displacement"),
+        (json!({"drive": {"force": 1.0, "displacement": 1e-8}}), "invalid_input", "/drive"),
+        (json!({"machine": {"stiffness": 0.0}}), "invalid_input", "/machine/stiffness"),
+        (json!({"work_density": {}}), "invalid_input", "/work_density"),
+        (
+            json!({"drive": {"displacement": vec![1e-8; 101]}, "work_density": {"points": 2000}}),
+            "invalid_input",
+            "/work_density",
+        ),
+        (json!({"normal": {"normal_force": 1.0}, "work_density": {"points": 5}}), "invalid_input", "/work_density"),
+        (json!({"normal": {}}), "invalid_input", "/normal"),
+        (json!({"normal": {"normal_force": 11.0}}), "invalid_input", "/normal/normal_force"),
+        (json!({"normal": {"normal_force": 1.0, "phase": 400.0}}), "invalid_input", "/normal/phase"),
+        (
+            json!({"frequency_response": {"mass": 1.0, "drive_force": 1.0, "frequencies": [0.0]}}),
+            "invalid_input",
+            "/frequency_response/frequencies/0",
+        ),
+        (
+            json!({"machine": {"stiffness": 1.0}, "frequency_response": {"mass": 1.0, "drive_force": 1.0}}),
+            "invalid_input",
+            "/frequency_response",
+        ),
+        (json!({"drive": {"displacement": vec![1e-8; 101]}, "best_load": {}}), "invalid_input", "/best_load"),
+    ] {
+        assert_refused("/cycle", &of(&ball(), &changed(force.clone(), &asked)), (code, pointer, ""));
+    }
+}
+
+#[test]
+fn a_map_is_refused_at_its_place() {
+    let drive = json!({"drive": {"displacement": [1e-8, 1e-7, 1e-6]}});
+    let map = changed(drive, &json!({"map": {"normal_force": {"from": 1.0, "to": 100.0, "count": 3}}}));
+    for (wrong, pointer) in [
+        (json!({"map": {"normal_force": {"from": 2.0, "to": 1.0, "count": 3}}}), "/map/normal_force/to"),
+        (json!({"map": {}}), "/map/normal_force"),
+        (json!({"harmonics": 3}), "/harmonics"),
+        (json!({"normal": {"normal_force": 1.0}}), "/normal"),
+        (json!({"work_density": {"points": 5}}), "/work_density"),
+        (json!({"best_load": {}}), "/best_load"),
+        (json!({"frequency_response": {"mass": 1.0, "drive_force": 1.0}}), "/frequency_response"),
+        // Too many of both together, and a force that the smallest load does not hold.
+        (
+            json!({"drive": {"displacement": vec![1e-8; 5_001]},
+                "map": {"normal_force": {"from": 1, "to": 9, "count": 20}}}),
+            "/map/normal_force/count",
+        ),
+        (json!({"drive": {"force": 1.0}}), "/drive/force"),
+    ] {
+        let refused = problem(post("/cycle", &of(&ball(), &changed(map.clone(), &wrong))));
+        assert_eq!((refused.status, refused.errors[0].pointer.as_str()), (422, pointer), "{wrong}");
+    }
+    // A load beyond the end of the shape.
+    let table = json!({"type": "tabulated", "r": [0.0, 1e-5, 2e-5, 3e-5], "z": [0.0, 5e-9, 2e-8, 4.5e-8]});
+    let ended = with(with(ball(), "/profile", table), "/preload", json!({"normal_force": 1e-3}));
+    assert_refused("/cycle", &of(&ended, &map), ("beyond_profile", "/map/normal_force", ""));
 }

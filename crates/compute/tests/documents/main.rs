@@ -6,6 +6,7 @@ mod cycle;
 mod cycles_path;
 mod fretting;
 mod json;
+mod load_curves;
 mod parse;
 mod profile_fit;
 mod profiles;
@@ -20,23 +21,23 @@ use stickslip_compute::{Flag, Refusal};
 use stickslip_wire::ProblemDocument;
 
 /// The reply of the computation at this path, or its refusal.
-fn post(path: &str, body: &Value) -> Result<Value, ProblemDocument> {
+fn post(path: &str, body: &Value) -> Result<Value, Box<ProblemDocument>> {
     let entry = entries().into_iter().find(|entry| entry.about.route.is_some_and(|route| route.path == path));
     let name = entry.unwrap_or_else(|| panic!("there is no computation at {path}")).about.name;
     let options = DisplayOptions::in_format(Format::Columns);
     let reply = compute(name, body.to_string().as_bytes(), options, &Flag::default());
     match reply {
         Ok(text) => Ok(serde_json::from_slice(&text).unwrap()),
-        Err(error) => Err(Refusal::from(error).document("test")),
+        Err(error) => Err(Box::new(Refusal::from(error).document("test"))),
     }
 }
 
-fn good(reply: Result<Value, ProblemDocument>) -> Value {
+fn good(reply: Result<Value, Box<ProblemDocument>>) -> Value {
     reply.unwrap_or_else(|refused| panic!("{refused:?}"))
 }
 
-fn problem(reply: Result<Value, ProblemDocument>) -> ProblemDocument {
-    reply.unwrap_err()
+fn problem(reply: Result<Value, Box<ProblemDocument>>) -> ProblemDocument {
+    *reply.unwrap_err()
 }
 
 /// Asserts that a body is refused with a code, at a place, by a text with these words.
