@@ -178,8 +178,8 @@ export class Fields {
     return wrong[0];
   }
 
-  /** What `read` makes of the form with the numbers of the beginning in place of texts that are not numbers, so that the
-   *  service finds the faults of the other fields too. */
+  /** What `read` makes of the form with the numbers of the beginning in place of texts that are not numbers, so that
+   *  the service finds the faults of the other fields too. */
   standingIn(read) {
     this.isStandingIn = true;
     try {

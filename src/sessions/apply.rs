@@ -118,8 +118,8 @@ impl Mover {
     }
 
     /// Stores moves after a sequence, and publishes them, even if the client hangs up meanwhile. Until the store has
-    /// answered it is unknown whether the new state is stored. What the guard holds meanwhile is the state before, or nothing: if the store
-    /// fails, the next request asks the store.
+    /// answered it is unknown whether the new state is stored. What the guard holds meanwhile is the state
+    /// before, or nothing: if the store fails, the next request asks the store.
     async fn store(
         &self,
         guard: Guard,

@@ -136,8 +136,8 @@ impl Sessions {
         Ok((self.context.pool.run(cost::writing_table(points), work).await??, held))
     }
 
-    /// The reply of a computation on a session, which is `expected` to have this definition, with the sequence that it belongs
-    /// to. The memory of the request becomes what that takes.
+    /// The reply of a computation on a session, which is `expected` to have this definition, with the sequence that it
+    /// belongs to. The memory of the request becomes what that takes.
     ///
     /// # Errors
     /// [`SessionError`], among them [`SessionError::OtherDefinition`].

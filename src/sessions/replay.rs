@@ -270,8 +270,8 @@ impl TenantContext {
         Ok((live, followed.map_err(stopped)))
     }
 
-    /// A copy of the contact, which is `expected` to have this definition, with its sequence and memory for it; `stop` counts
-    /// what loading it takes. The lock is held for the copy alone, so that the session can move on meanwhile.
+    /// A copy of the contact, which is `expected` to have this definition, with its sequence and memory for it; `stop`
+    /// counts what loading it takes. The lock is held for the copy alone, so that the session can move on meanwhile.
     pub(super) async fn copy(
         &self,
         id: Uuid,

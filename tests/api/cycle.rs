@@ -1,5 +1,5 @@
-//! Steady cycles over HTTP: what cannot be asked for together, and a contact that they do not change. The rest is tested
-//! in `crates/compute/tests/documents/cycle.rs`.
+//! Steady cycles over HTTP: what cannot be asked for together, and a contact that they do not change. The rest is
+//! tested in `crates/compute/tests/documents/cycle.rs`.
 
 use reqwest::Method;
 use serde_json::json;

@@ -1,5 +1,6 @@
 //! Computations: each takes a document and gives a document, and stores nothing. A computation is one file here and one
-//! line of [`for_each_computation`]; its route, its part of the OpenAPI document, its command and [`compute`] follow from them.
+//! line of [`for_each_computation`]; its route, its part of the OpenAPI document, its command and [`compute`]
+//! follow from them.
 //!
 //! [`OnContact`] is the same on a contact in its present state, and [`make_moves`] changes that state.
 

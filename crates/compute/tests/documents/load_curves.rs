@@ -1,5 +1,5 @@
-//! Contacts that are known by their load curve alone: what is no such profile is refused. Their loads and radii are tested
-//! in `crates/mechanics/tests/physics/load_curves.rs`.
+//! Contacts that are known by their load curve alone: what is no such profile is refused. Their loads and radii are
+//! tested in `crates/mechanics/tests/physics/load_curves.rs`.
 
 use serde_json::{Value, json};
 

@@ -9,8 +9,8 @@ use crate::request::requests;
 
 /// A place or a height of a scan, in its unit.
 pub const SCAN_NUMBER: Range = Range { quantity: Quantity::Place, unit: "", min: -1e12, max: 1e12 };
-/// A height of this size or more is missing, in whatever unit: instruments put 1e30, 1.70141e38 or the largest number of
-/// single precision for those that they have not measured.
+/// A height of this size or more is missing, in whatever unit: instruments put 1e30, 1.70141e38 or the largest number
+/// of single precision for those that they have not measured.
 const FILL_VALUE: f64 = 1e29;
 /// The distance of neighbouring points of a map, in its unit.
 pub const SCAN_STEP: Range = Range { quantity: Quantity::Place, unit: "", min: 1e-9, max: 1e9 };
