@@ -94,7 +94,7 @@ fn a_certificate_without_its_key_ends_the_start() {
         (vec!["--tls-key".to_owned(), text(&key)], "without the other"),
         (
             vec!["--tls-cert".to_owned(), text(&certificate), "--tls-key".to_owned(), text(&other)],
-            "no certificate with its key",
+            "not a certificate and its key",
         ),
         (vec!["--tls-cert".to_owned(), text(&key), "--tls-key".to_owned(), text(&key)], "no certificate"),
         (vec!["--tls-cert".to_owned(), "/nowhere".to_owned(), "--tls-key".to_owned(), text(&key)], "/nowhere"),

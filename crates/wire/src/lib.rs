@@ -104,7 +104,7 @@ pub fn all_limits() -> Vec<(&'static str, &'static str, serde_json::Value)> {
         };
     }
     of_all! {
-        AccuracyRequest, Axis, BestLoadStudy, Bulk, BulkCycle, profile_fit::CentrePlace, ContactDefinition,
+        AccuracyRequest, Axis, BestLoadStudy, Bulk, BulkCycle, line_profiles::BulkPerForce, profile_fit::CentrePlace, ContactDefinition,
         CreateRequest, CriticalDistance, CycleDrive, CycleRequest, CyclicPath, Effective, ElasticBody, EqualPeaks, FallingAmplitude,
         FatemiSocie, Findley, fit::FitNoise, FitRequest, ForkRequest, FrequencyResponse, FrettingRequest,
         fit::KnownValue, profile_fit::LineScan, LoadSpan, Machine, profile_fit::MapScan, Material, fit::MeasuredLoop,

@@ -102,8 +102,12 @@ impl StressRequest {
                 faults.add(at, "give one of `points` and `radii`, or `x` of a line contact");
                 return None;
             }
-            _ => {
-                faults.add(at, "`points`, `radii` and `x` conflict: give one of them");
+            (Some(_), Some(_), _) => {
+                faults.add(at, "`points` conflicts with `radii`: give one of them");
+                return None;
+            }
+            (.., Some(_)) => {
+                faults.add(at.member("x"), "it conflicts with `points` and `radii`: give one of them");
                 return None;
             }
         };
