@@ -101,6 +101,7 @@ quantities! {
         "The weight of a normal or hydrostatic stress in a fatigue criterion.";
     YieldStress = "yield_stress", YIELD_STRESS: 1e-3 to 1e18 "Pa", "The yield stress of a fatigue criterion.";
     SpringCount = "count", SPRING_COUNT: 2.0 to 1e6 "", "How many springs the foundation may have.";
+    RingCount = "count", RING_COUNT: 4.0 to 160.0 "", "How many rings a contact may have that is moved in the plane.";
     CutoffRadius = "cutoff_radius", "Radius from which on the peaks of a protocol are equal.";
     ProtocolTarget = "target", "Shear stress that a protocol may leave, relative to mu times the pressure.";
     AmplitudeError = "amplitude_error", "Relative error of the displacements of a protocol.";
