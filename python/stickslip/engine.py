@@ -41,8 +41,12 @@ class Engine(ABC):
     ) -> AnyContact:
         """A new contact."""
 
-    def simulate(self, contact: Any, *, stress: requests.Stress = None, **request: Any) -> results.SimulateReply:
-        """Moves a virgin contact along a path: `displacement=[...]`, `falling_amplitude=20` and so on."""
+    def simulate(self, contact: Any, *, stress: requests.Stress = None, **request: Any) -> Any:
+        """Moves a virgin contact along a path: `displacement=[...]`, `falling_amplitude=20` and so on.
+
+        Returns a :class:`~stickslip.results.SimulateReply`; of a path in the plane (`ellipse=...`, `moves` with pairs)
+        a :class:`~stickslip.results.PlanarReply`.
+        """
         way = requests.split_path(request)
         document = {"contact": requests.definition(contact), "path": way, "stress": requests.stress(stress)} | request
         return self._answer(results.SimulateReply, "simulate", document)
@@ -109,7 +113,15 @@ class Engine(ABC):
         request = to_document(document)
         reply = self.compute(name, request)
         warn(reply.get("warnings", ()))
+        kind = _in_plane(reply) or kind
         return parse(kind, reply, **definition_context(request.get("contact", {})))
+
+
+def _in_plane(reply: Document) -> Any:
+    """The class of the reply of a simulation whose states have pairs."""
+    steps = reply.get("steps")
+    pairs = isinstance(steps, list) and bool(steps) and isinstance(steps[0].get("displacement"), list)
+    return results.PlanarReply if pairs else None
 
 
 class Local(Engine):

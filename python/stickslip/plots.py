@@ -97,6 +97,12 @@ def _fretting(ax: Axes, result: Any, criterion: str | None = None, **options: An
     _over_places(ax, (result.x, result.y, result.z), result.ratings[criterion].values, criterion, **options)
 
 
+def _force_in_plane(ax: Axes, result: Any, **options: Any) -> None:
+    columns = result._columns()
+    ax.plot(columns["force_x"], columns["force_y"], **options)
+    ax.set(xlabel="tangential force along x, N", ylabel="tangential force along y, N", aspect="equal")
+
+
 def _sweep(ax: Axes, result: Any, x: str | None = None, y: str | None = None, **options: Any) -> None:
     names = list(result.columns)
     x, y = x or names[0], y or names[-1]
@@ -118,6 +124,7 @@ _PAINTERS: dict[str, Callable[..., None]] = {
     "FrettingReply": _fretting,
     "LoopPage": _recorded,
     "PathReply": _loop,
+    "PlanarReply": _force_in_plane,
     "Residual": _residual,
     "SimulateReply": _loop,
     "Stress": _stress,

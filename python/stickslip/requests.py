@@ -30,7 +30,7 @@ def path(**given: Any) -> Document:
     return {name: value for name, value in given.items() if value is not None}
 
 
-PATHS = ("displacement", "force", "moves", "falling_amplitude", "equal_peaks", "cycles")
+PATHS = ("displacement", "force", "moves", "falling_amplitude", "equal_peaks", "cycles", "ellipse")
 
 
 def split_path(given: dict[str, Any]) -> Document:

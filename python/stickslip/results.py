@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from .extras import Fretting, Swept
+from .extras import Fretting, Plane, Swept
 from .result import Floats, Result
 
 
@@ -22,7 +22,8 @@ class Accuracy(Result):
 
     force_error: float
     """Estimated error of the forces, relative to the friction limit μ F_N, a pure number: of rounding, of curved
-    paths, of the interpolation of a table, of springs.
+    paths, of the interpolation of a table, of springs; of rings, of every force on the path and relative to its
+    largest load.
     """
 
     reason: str
@@ -36,9 +37,20 @@ class Accuracy(Result):
     mean), a pure number; of no meaning for a profile without a stress field.
     """
 
+    count: int | None = None
+    """Number of rings, of the solver in the plane."""
+
+    steps: int | None = None
+    """Steps of the finest of its discretisations on the whole path."""
+
     subsurface_error: float | None = None
     """Estimated error of the stress below the surface, relative to the largest pressure (or to the mean), a pure
     number, if it was asked for.
+    """
+
+    work_error: float | None = None
+    """Estimated error of the dissipated energies, relative to μ F_N and the displacement of gross slip at the largest
+    load of the path, a pure number: of rings.
     """
 
 
@@ -935,6 +947,89 @@ class Peak(Result):
     """Shear stress there, Pa, positive as a positive displacement causes it; `null` where it is infinite."""
 
 
+class PlanarReply(Plane):
+    """The result of a simulation in the plane."""
+
+    accuracy: Accuracy
+    """Solver, errors and time."""
+
+    contact: Figures
+    """What follows from the definition at the preload."""
+
+    steps: list[PlanarState]
+    """The states along the path: all of them, or the last."""
+
+    warnings: list[Warning]
+    """Warnings about the result."""
+
+    stress: PlanarStress | None = None
+    """The stresses at the end, if asked for."""
+
+    turn_losses: Floats | None = None
+    """Friction work of each turn of an ellipse, J; the first one begins at rest."""
+
+
+class PlanarState(Result):
+    """The state after a move in the plane."""
+
+    contact_radius: float
+    """Contact radius a, m."""
+
+    displacement: Floats
+    """Tangential displacement of the indenter along x and y, m."""
+
+    dissipated_energy: float
+    """Work dissipated by friction since the start, J; never falls."""
+
+    elastic_energy: float
+    """Energy stored in the tangential deformation, J."""
+
+    force: Floats
+    """Tangential force along x and y, N; along the displacement of a virgin contact."""
+
+    indentation: float
+    """Indentation d, m; positive when pressed in, below zero the bodies are apart."""
+
+    normal_force: float
+    """Normal force F_N, N; compression is positive."""
+
+    regime: Any
+    """How much of the contact slipped in the last move."""
+
+    stick_radius: float
+    """Radius inside which the last move did not slip, m, to the width of a ring: the contact radius if nothing
+    slipped, zero in gross slip.
+    """
+
+
+class PlanarStress(Result):
+    """Stresses along the radius at the end of a path in the plane; they are the same at every angle.
+
+    An array that was not asked for is left out.
+    """
+
+    radius: Floats
+    """Radii, m."""
+
+    friction_work: Floats | None = None
+    """Friction work per area since the start, J/m²: with `slip`, where rings follow the path."""
+
+    pressure: Floats | None = None
+    """Normal pressure, Pa; compression is positive; `null` where it is infinite."""
+
+    shear_x: Floats | None = None
+    """Shear stress along x, Pa; `null` where it is infinite."""
+
+    shear_y: Floats | None = None
+    """Shear stress along y, Pa; `null` where it is infinite."""
+
+    slip_x: Floats | None = None
+    """Slip along x, the displacement of the indenter less that of the surface, m; `null` outside the contact."""
+
+    slip_y: Floats | None = None
+    """Slip along y, m; `null` outside the contact."""
+
+
 class PointFailure(Result):
     """A point without an answer."""
 
@@ -1805,6 +1900,9 @@ NAMES = [
     "Outcome",
     "PathReply",
     "Peak",
+    "PlanarReply",
+    "PlanarState",
+    "PlanarStress",
     "PointFailure",
     "PointsInFile",
     "ProfileFitReply",

@@ -15,7 +15,7 @@ from typing import Any
 
 HERE = Path(__file__).resolve().parent.parent
 #: Classes of the package that give a reply more than its fields.
-BASES = {"FrettingReply": "Fretting", "SweepReply": "Swept"}
+BASES = {"FrettingReply": "Fretting", "PlanarReply": "Plane", "SweepReply": "Swept"}
 METHODS = ("get", "post", "put", "patch", "delete")
 Schema = dict[str, Any]
 
@@ -128,7 +128,7 @@ def results(api: Schema) -> str:
         'Written by `tools/generate.py`.\n"""\n',
         "from __future__ import annotations\n",
         "from typing import Any\n",
-        "from .extras import Fretting, Swept",
+        "from .extras import Fretting, Plane, Swept",
         "from .result import Floats, Result\n",
     ]
     for name in names:

@@ -34,6 +34,7 @@ pub mod limits;
 pub mod observation;
 pub mod parse;
 pub mod path;
+pub mod plane;
 pub mod pointer_lookup;
 pub mod prepare;
 pub mod problem;
@@ -71,6 +72,10 @@ pub use observation::{
 };
 pub use parse::{parse, parse_value};
 pub use path::{CyclicPath, EqualPeaks, FallingAmplitude, FirstTurn, Move, NormalOscillation, Observation, Path, Plan};
+pub use plane::{
+    Components, Ellipse, PlanarPlan, PlanarReply, PlanarState, PlanarStress, SimulatedMove, SimulatedPath,
+    SimulationReply,
+};
 pub use prepare::{Prepare, PrepareAnew, PrepareOnce};
 pub use problem::{Code, ProblemDocument};
 pub use profile::Profile;
@@ -81,7 +86,7 @@ pub use session::{
     ContactOrder, CreateRequest, ForkRequest, MoveReply, MoveRequest, NewSession, PathReply, PathRequest,
     RenameRequest, SessionPage, SessionReply, SessionSummary, StressReply,
 };
-pub use simulate::{SimulateReply, SimulateRequest, Solver, Springs, Steps};
+pub use simulate::{Rings, SimulateReply, SimulateRequest, Solver, Springs, Steps};
 pub use stress::{Field, Points, Sampling, Stress, StressRequest};
 pub use subsurface::{
     Bulk, Direction, Subsurface, SubsurfaceField, SubsurfaceLine, SubsurfacePlane, SubsurfaceReply, SubsurfaceRequest,
@@ -99,12 +104,14 @@ pub fn all_limits() -> Vec<(&'static str, &'static str, serde_json::Value)> {
     }
     of_all! {
         AccuracyRequest, Axis, BestLoadStudy, Bulk, BulkCycle, profile_fit::CentrePlace, ContactDefinition,
-        CreateRequest, CycleDrive, CycleRequest, CyclicPath, Effective, ElasticBody, EqualPeaks, FallingAmplitude,
-        FatemiSocie, Findley, fit::FitNoise, FitRequest, ForkRequest, FrequencyResponse, FrettingRequest,
+        CreateRequest, CycleDrive, CycleRequest, CyclicPath, Effective, ElasticBody, Ellipse, EqualPeaks,
+        FallingAmplitude, FatemiSocie, Findley, fit::FitNoise, FitRequest, ForkRequest, FrequencyResponse,
+        FrettingRequest,
         fit::KnownValue, profile_fit::LineScan, LoadSpan, Machine, profile_fit::MapScan, Material, fit::MeasuredLoop,
         Move, MoveRequest, NamedOutput, NormalOscillation, Observation, ObservationsRequest, Path, PathRequest,
-        profile_fit::PointScan, Preload, ProtocolRequest, protocol::ProtocolStart, RelaxRequest, RenameRequest,
-        protocol::Robustness, profile_fit::ScanLoad, SimulateRequest, profile_fit::Smoothing, Span, Springs,
+        profile_fit::PointScan, Preload, ProtocolRequest, protocol::ProtocolStart, RelaxRequest, RenameRequest, Rings,
+        protocol::Robustness, profile_fit::ScanLoad, SimulatedMove, SimulatedPath, SimulateRequest,
+        profile_fit::Smoothing, Span, Springs,
         StrainBased, StressRequest, SubsurfaceLine, SubsurfacePlane, SubsurfaceRequest, SubsurfaceSurface,
         SurfaceCriterion, SweepRequest, Weighted, WorkDensity
     }
