@@ -25,9 +25,10 @@ const RINGS: f64 = 1.25;
 const CHOSEN_RINGS: [usize; 2] = [20, 160];
 /// The shortest step that a tolerance asks for, over the displacement of gross slip.
 const SHORTEST_STEP: f64 = 1e-3;
-/// Length over the displacement of gross slip after which a straight move slips in its own direction all over.
+/// Length over the displacement of gross slip after which a straight move slips in its own direction all over, and the
+/// radius of an arc from which on its angle counts alone.
 const TURNED: f64 = 4.0;
-/// The most of the coarsest steps of a move: more are needed only on an arc far beyond gross slip.
+/// The most of the coarsest steps of a move.
 const MOST_STEPS: usize = 10_000;
 /// How often rings or steps are refined.
 const REFINEMENTS: usize = 6;
@@ -285,7 +286,9 @@ impl<'a> Scene<'a> {
             Some(PlanarTarget::Force(_)) => distance(level.force, self.target(level, step).0),
             Some(PlanarTarget::Arc(arc)) => {
                 let [begin, end] = arc.turns;
-                std::f64::consts::TAU * (end - begin).abs() * arc.radii[0].hypot(arc.radii[1]) / self.unit_displacement
+                std::f64::consts::TAU
+                    * (end - begin).abs()
+                    * (arc.radii[0].hypot(arc.radii[1]) / self.unit_displacement).min(TURNED)
             }
         };
         let whole = moved + pressed;
