@@ -18,6 +18,7 @@ async fn every_command_of_the_pages_runs_as_printed() {
     let server = Process::start("memory:").await;
     for (name, blocks) in [
         ("simulate.md", 4),
+        ("plane.md", 2),
         ("cycles.md", 3),
         ("fretting.md", 1),
         ("rough-contacts.md", 1),
