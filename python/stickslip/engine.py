@@ -82,6 +82,13 @@ def path_of(name: str) -> str:
     return PATHS[name]
 
 
+def _in_plane(reply: Document) -> Any:
+    """The class of the reply of a simulation whose states have pairs."""
+    steps = reply.get("steps")
+    pairs = isinstance(steps, list) and bool(steps) and isinstance(steps[0].get("displacement"), list)
+    return results.PlanarReply if pairs else None
+
+
 class Local(Engine):
     """The engine of this process."""
 

@@ -165,6 +165,12 @@ def _wear(ax: Axes, result: Any, **options: Any) -> None:
     ax.legend()
 
 
+def _force_in_plane(ax: Axes, result: Any, **options: Any) -> None:
+    columns = result._columns()
+    ax.plot(columns["force_x"], columns["force_y"], **options)
+    ax.set(xlabel="tangential force along x, N", ylabel="tangential force along y, N", aspect="equal")
+
+
 def _sweep(ax: Axes, result: Any, x: str | None = None, y: str | None = None, **options: Any) -> None:
     names = list(result.columns)
     x, y = x or names[0], y or names[-1]
@@ -207,6 +213,7 @@ _PAINTERS: dict[str, Callable[..., None]] = {
     "HistoryPage": _history,
     "LoopPage": _loop,
     "PathReply": _loop,
+    "PlanarReply": _force_in_plane,
     "ProfileFitReply": _scan,
     "ProtocolReply": _protocol,
     "RelaxReply": _protocol,

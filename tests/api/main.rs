@@ -36,6 +36,7 @@ mod observations;
 mod openapi;
 mod otlp;
 mod pictures;
+mod plane;
 mod profile_fit;
 mod profiles;
 mod protocols;

@@ -18,6 +18,7 @@ async fn every_command_of_the_pages_runs_as_printed() {
     let server = Process::start("memory:").await;
     for (name, blocks) in [
         ("simulate.md", 4),
+        ("plane.md", 2),
         ("cycles.md", 4),
         ("fretting.md", 2),
         ("line-contacts.md", 2),

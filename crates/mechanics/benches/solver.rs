@@ -6,6 +6,7 @@ use criterion::{Criterion, criterion_group, criterion_main};
 use stickslip_mechanics::cycle::{Drive, OscillatingLoad, Oscillation, SteadyCycle};
 use stickslip_mechanics::profile::{Asperities, Cone, ExactSphere, PowerLaw, RoundedPunch, Tabulated, TruncatedCone};
 use stickslip_mechanics::protocol::falling_amplitude;
+use stickslip_mechanics::rings::{Arc, Options, PlanarMove, PlanarTarget, follow};
 use stickslip_mechanics::subsurface::Side;
 use stickslip_mechanics::{Contact, Elasticity, Move, Normal, Preload, Profile, Setup, Sphere, Springs, Tangential};
 
@@ -257,5 +258,25 @@ fn asperities(criterion: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, moves, profiles, asperities, cycles, depths, growth_in_depth, scenes, stresses);
+/// A turn of 160 moves round a circle of 0.6 u_max, to the default tolerance.
+fn plane(criterion: &mut Criterion) {
+    const MOVES: usize = 160;
+    let radius = 0.6 * virgin().summary().gross_slip_displacement;
+    let target = |target| PlanarMove { tangential: Some(target), ..PlanarMove::default() };
+    let turn = |index: usize| index as f64 / MOVES as f64;
+    let arc = |index: usize| Arc { radii: [radius; 2], phase: 0.0, turns: [turn(index), turn(index + 1)] };
+    let begin = target(PlanarTarget::Displacement([radius, 0.0]));
+    let turns = (0..MOVES).map(|index| target(PlanarTarget::Arc(arc(index))));
+    let moves: Vec<PlanarMove> = std::iter::once(begin).chain(turns).collect();
+    let mut group = criterion.benchmark_group("a turn of 160 moves in the plane");
+    for (name, count) in [("to 1e-3", None), ("20 rings", Some(20)), ("80 rings", Some(80))] {
+        let options = Options { count, tolerance: 1e-3 };
+        group.bench_function(name, |bencher| {
+            bencher.iter(|| follow(setup(), &moves, &options, &|| true).expect("a displacement has no limit").steps);
+        });
+    }
+    group.finish();
+}
+
+criterion_group!(benches, moves, profiles, asperities, cycles, depths, growth_in_depth, plane, scenes, stresses);
 criterion_main!(benches);

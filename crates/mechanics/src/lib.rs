@@ -66,6 +66,7 @@
 //! | `packed` | how is a contact stored as bytes? |
 //! | [`protocol`] | which paths leave little shear stress? |
 //! | [`springs`] | what is the result of the discrete foundation of the paper? |
+//! | [`rings`] | what does a contact do that is moved in the plane? |
 //! | [`range`](mod@range), `error` | which numbers are accepted, and what is refused? |
 //! | `numerics` | how are differences kept exact, roots found, functions integrated, and what is far away summed? |
 
@@ -91,6 +92,7 @@ pub mod profile;
 pub mod protocol;
 mod quantity;
 pub mod range;
+pub mod rings;
 mod shear_stress;
 mod slip_history;
 pub mod springs;

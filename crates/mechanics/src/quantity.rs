@@ -113,6 +113,7 @@ quantities! {
         "The exponent of a fatigue strength or ductility; lives end, so it is negative.";
     CriticalLength = "length", CRITICAL_LENGTH: 1e-9 to 1.0 "m", "A critical distance of a material.";
     SpringCount = "count", SPRING_COUNT: 2.0 to 1e6 "", "How many springs the foundation may have.";
+    RingCount = "count", RING_COUNT: 4.0 to 160.0 "", "How many rings a contact may have that is moved in the plane.";
     CutoffRadius = "cutoff_radius", "Radius from which on the peaks of a protocol are equal.";
     ProtocolTarget = "target", "Shear stress that a protocol may leave, relative to mu times the pressure.";
     AmplitudeError = "amplitude_error", "Relative error of the displacements of a protocol.";

@@ -126,7 +126,7 @@ impl Comparison {
     pub fn springs(&self) -> impl Iterator<Item = usize> + '_ {
         self.solvers.iter().filter_map(|solver| match solver {
             Solver::Springs(springs) => Some(springs.count),
-            Solver::Exact => None,
+            Solver::Exact | Solver::Rings(_) => None,
         })
     }
 }

@@ -35,6 +35,7 @@ pub mod line_profiles;
 pub mod observation;
 pub mod parse;
 pub mod path;
+pub mod plane;
 pub mod pointer_lookup;
 pub mod prepare;
 pub mod problem;
@@ -74,6 +75,10 @@ pub use observation::{
 };
 pub use parse::{parse, parse_value};
 pub use path::{CyclicPath, EqualPeaks, FallingAmplitude, FirstTurn, Move, NormalOscillation, Observation, Path, Plan};
+pub use plane::{
+    Components, Ellipse, PlanarPlan, PlanarReply, PlanarState, PlanarStress, SimulatedMove, SimulatedPath,
+    SimulationReply,
+};
 pub use prepare::{Prepare, PrepareAnew, PrepareOnce};
 pub use problem::{Code, ProblemDocument};
 pub use profile::Profile;
@@ -84,7 +89,7 @@ pub use session::{
     ContactOrder, CreateRequest, ForkRequest, MoveReply, MoveRequest, NewSession, PathReply, PathRequest,
     RenameRequest, SessionPage, SessionReply, SessionSummary, StressReply,
 };
-pub use simulate::{SimulateReply, SimulateRequest, Solver, Springs, Steps};
+pub use simulate::{Rings, SimulateReply, SimulateRequest, Solver, Springs, Steps};
 pub use stress::{Field, Points, Sampling, Stress, StressRequest};
 pub use subsurface::{
     Bulk, Direction, Subsurface, SubsurfaceField, SubsurfaceLine, SubsurfacePlane, SubsurfaceReply, SubsurfaceRequest,
@@ -105,12 +110,12 @@ pub fn all_limits() -> Vec<(&'static str, &'static str, serde_json::Value)> {
     }
     of_all! {
         AccuracyRequest, Axis, BestLoadStudy, Bulk, BulkCycle, line_profiles::BulkPerForce, profile_fit::CentrePlace, ContactDefinition,
-        CreateRequest, CriticalDistance, CycleDrive, CycleRequest, CyclicPath, Effective, ElasticBody, EqualPeaks, FallingAmplitude,
+        CreateRequest, CriticalDistance, CycleDrive, CycleRequest, CyclicPath, Effective, ElasticBody, Ellipse, EqualPeaks, FallingAmplitude,
         FatemiSocie, Findley, fit::FitNoise, FitRequest, ForkRequest, FrequencyResponse, FrettingRequest,
         fit::KnownValue, profile_fit::LineScan, LoadSpan, Machine, profile_fit::MapScan, Material, fit::MeasuredLoop,
         Move, MoveRequest, NamedOutput, NormalOscillation, Observation, ObservationsRequest, Path, PathRequest,
-        profile_fit::PointScan, Preload, ProtocolRequest, protocol::ProtocolStart, RelaxRequest, RenameRequest,
-        protocol::Robustness, profile_fit::ScanLoad, SimulateRequest, profile_fit::Smoothing, Span, Springs,
+        profile_fit::PointScan, Preload, ProtocolRequest, protocol::ProtocolStart, RelaxRequest, RenameRequest, Rings,
+        protocol::Robustness, profile_fit::ScanLoad, SimulatedMove, SimulatedPath, SimulateRequest, profile_fit::Smoothing, Span, Springs,
         SnCurve, StrainBased, StrainLifeCurve, StressRequest, SubsurfaceLine, SubsurfacePlane, SubsurfaceRequest,
         SubsurfaceSurface, SurfaceCriterion, SweepRequest, WearDrive, WearRequest, Weighted, WorkDensity
     }

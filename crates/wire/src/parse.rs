@@ -12,6 +12,9 @@ const LONGEST_TEXT: usize = 400;
 /// How a body in UTF-8 may begin, and how one in UTF-16 does.
 const MARK: &[u8] = b"\xef\xbb\xbf";
 const WIDE_MARKS: [&[u8]; 2] = [b"\xff\xfe", b"\xfe\xff"];
+/// Where motion in the plane has a place, for the documents that have none.
+const IN_PLANE: &str = ": motion in the plane, a pair [x, y] in `moves` or an `ellipse`, is for `/simulate` and \
+                        `/sweep` alone";
 /// Values that are no JSON, in lower case and without a sign.
 const NOT_NUMBERS: [&str; 3] = ["nan", "inf", "infinity"];
 
@@ -89,7 +92,11 @@ fn fault(path: &Path, message: &str) -> Fault {
             pointer.push_str(&format!("/{}", escaped(name)));
         }
     }
-    Fault::new(shortened(pointer), shortened(in_json_terms(message)))
+    let name = path.iter().rev().find_map(|segment| if let Segment::Map { key } = segment { Some(key) } else { None });
+    let tangential = name.is_some_and(|name| ["displacement", "force"].contains(&name.as_str()));
+    let is_pair = tangential && message.starts_with("invalid type: sequence, expected f64");
+    let hint = if is_pair || message.starts_with("unknown variant `ellipse`") { IN_PLANE } else { "" };
+    Fault::new(shortened(pointer), shortened(in_json_terms(message) + hint))
 }
 
 fn pointer(path: &Path) -> String {

@@ -17,6 +17,7 @@ use stickslip_mechanics::{
 use super::check::{Faults, JsonPath};
 use super::choice::choices;
 use super::limits::{Array, Items, Limit, Limited, OfItsMembers, PATH_MOVES};
+use super::plane::PlanarPlan;
 use super::request::{not_null, object, requests};
 
 pub(crate) use cycles::PHASE;
@@ -134,6 +135,8 @@ pub enum Plan {
     Single(Move),
     /// Displacements with the forces that were measured there.
     Observations(Vec<Observation>),
+    /// Moves in the plane, which only `POST /simulate` follows.
+    Plane(PlanarPlan),
 }
 
 impl Move {
@@ -239,6 +242,7 @@ impl Plan {
             Plan::Cycles(cycles) => cycles.length(),
             Plan::Single(_) => 1,
             Plan::Observations(observations) => observations.len(),
+            Plan::Plane(plane) => plane.moves.len(),
         }
     }
 
@@ -254,7 +258,8 @@ impl Plan {
             | Plan::FallingAmplitude(_)
             | Plan::EqualPeaks(_)
             | Plan::Cycles(_)
-            | Plan::Observations(_) => 0,
+            | Plan::Observations(_)
+            | Plan::Plane(_) => 0,
         }
     }
 
@@ -272,6 +277,7 @@ impl Plan {
             Plan::Cycles(cycles) => format!("/path/cycles{}", cycles.place_of(quantity)),
             Plan::Single(_) => member,
             Plan::Observations(_) => format!("/observations/{index}/displacement"),
+            Plan::Plane(plane) => plane.place_of(index, quantity),
         }
     }
 }

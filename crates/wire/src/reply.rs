@@ -116,8 +116,8 @@ pub struct Accuracy: Default omits Option {
     /// Why this one.
     pub reason: String,
     /// Estimated error of the forces, relative to the friction limit μ F_N, a pure number: of rounding, of curved
-    /// paths, of the interpolation of a table, of springs. That of curved paths is the largest of the states in the
-    /// reply, that of springs the largest over all moves.
+    /// paths, of the interpolation of a table, of springs, of rings. That of curved paths is the largest of the states in
+    /// the reply, that of springs and rings the largest over all moves, of rings relative to the largest load.
     pub force_error: f64,
     /// Estimated error of the stresses, relative to μ times the largest pressure (or, where that is infinite, to the
     /// mean), a pure number; of no meaning for a profile without a stress field.
@@ -125,6 +125,13 @@ pub struct Accuracy: Default omits Option {
     /// Estimated error of the stress below the surface, relative to the largest pressure (or to the mean), a pure
     /// number, if it was asked for.
     pub subsurface_error: Option<f64>,
+    /// Estimated error of the dissipated energies, relative to μ F_N and the displacement of gross slip at the largest
+    /// load of the path, a pure number: of rings.
+    pub work_error: Option<f64>,
+    /// Number of rings, of the solver in the plane.
+    pub count: Option<usize>,
+    /// Steps of the finest of its discretisations on the whole path.
+    pub steps: Option<usize>,
     /// Processor time that the request took but for HTTP, s: with the check, the preparation of the profile unless it
     /// was ready, and the loading of a stored contact; without the time in which it yielded to other work.
     pub compute_time: f64,
@@ -132,13 +139,15 @@ pub struct Accuracy: Default omits Option {
 }
 
 words! {
-/// The two solvers.
+/// The solvers.
 pub enum SolverKind: Default {
     /// The exact solver, which stores turning points of the path.
     #[default]
     Exact = "exact",
     /// The spring foundation of the paper.
     Springs = "springs",
+    /// Rings, for motion in the plane.
+    Rings = "rings",
 }
 }
 

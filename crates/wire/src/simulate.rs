@@ -7,12 +7,18 @@ use super::choice::{choices, words};
 use super::definition::{ContactDefinition, DefinedProfile, SharedSetup};
 use super::document::Document;
 use super::limits::{Limited as _, SPRING_SEARCH, SPRING_STEPS, Tolerance, Whole};
-use super::path::{Path, Plan};
+use super::path::Plan;
+use super::plane::{PlanarPlan, SimulatedPath};
 use super::prepare::Prepare;
 use super::reply::{Accuracy, ContactSummary, Protocol, Residual, State, Warning};
 use super::request::{replies, requests};
-use super::stress::{Sampling, Stress, StressRequest};
+use super::stress::{Field, Sampling, Stress, StressRequest};
 use super::subsurface::{Subsurface, SubsurfaceRequest, SubsurfaceTask};
+
+/// The tolerance of rings, unless the request names one.
+const RINGS_TOLERANCE: f64 = 1e-3;
+/// The smallest tolerance that rings are asked for: they are at most 160, and the steps of a thousandth of gross slip.
+const LEAST_RINGS_TOLERANCE: f64 = 1e-5;
 
 requests! {
 /// A contact and the path that it follows; the server keeps nothing of it. Only what is asked for is computed.
@@ -26,7 +32,7 @@ pub struct SimulateRequest {
     /// The contact.
     pub contact: ContactDefinition,
     /// The path.
-    pub path: Path,
+    pub path: SimulatedPath,
     /// Ask for stresses at the end of the path.
     pub stress: Option<StressRequest>,
     /// Ask for the extrema of the shear stress at the end of the path.
@@ -39,8 +45,16 @@ pub struct SimulateRequest {
     pub steps: Steps,
     /// Which solver to use; left out, the cheapest that serves the request.
     pub solver: Option<Solver>,
-    /// Tolerance for what is not exact, relative to μ F_N, a pure number.
+    /// Tolerance for what is not exact, relative to μ F_N, a pure number. For rings it is at least 1e-5; left out,
+    /// 1e-3.
     pub tolerance: Option<f64> = Tolerance(DEFAULT_TOLERANCE),
+}
+
+/// Rings of constant traction, for motion in the plane.
+#[schema(example = json!({"count": 40}))]
+pub struct Rings: Copy, Eq {
+    /// Number of rings across the radius of the largest contact.
+    pub count: usize = Whole(range::RING_COUNT),
 }
 
 /// The spring foundation.
@@ -74,6 +88,9 @@ pub enum Solver: Copy, Eq {
     /// force only at constant indentation, and a normal force only without a tangential target (else
     /// `unsupported_move`).
     "springs" => Springs(Springs),
+    /// Rings, also along a line: the solver for motion in the plane, approximate. A path with pairs that leaves its
+    /// first line is followed by as many as the tolerance needs, if no number is asked for.
+    "rings" => Rings(Rings),
 }
 }
 
@@ -125,13 +142,17 @@ pub struct Simulation {
 impl Document for SimulateRequest {
     type Checked = Simulation;
 
+    /// `{}` and a comma become a move that may have pairs, which is 35 bytes for each of theirs.
+    const PARSED: usize = 48;
+
     fn profile(&self) -> Option<DefinedProfile<'_>> {
         Some(self.contact.defined_profile("/contact/profile"))
     }
 
     fn checked(self, profiles: &dyn Prepare, faults: &mut Faults) -> Option<Self::Checked> {
         let setup = self.contact.check(JsonPath::Root.member("contact"), profiles, faults);
-        let plan = self.path.check(JsonPath::Root.member("path"), faults);
+        let rings = matches!(self.solver, Some(Solver::Rings(_)));
+        let plan = self.path.check(rings, JsonPath::Root.member("path"), faults);
         let stress = self.stress.and_then(|stress| stress.check(JsonPath::Root.member("stress"), faults));
         let at = JsonPath::Root.member("subsurface");
         let subsurface = self.subsurface.and_then(|asked| asked.at(&self.contact, at, faults));
@@ -142,7 +163,15 @@ impl Document for SimulateRequest {
         for (name, _) in needing.into_iter().filter(|(_, asked)| *asked) {
             faults.needs_stress_field(setup.as_ref(), JsonPath::Root.member(name));
         }
-        let tolerance = Tolerance(DEFAULT_TOLERANCE).of(self.tolerance, faults);
+        let mut tolerance = Tolerance(DEFAULT_TOLERANCE).of(self.tolerance, faults);
+        if let Some(Plan::Plane(plane)) = &plan {
+            faults.needs_stress_field(setup.as_ref(), JsonPath::Pointer(&plane.first_pair()));
+            faults.needs_round_contact(setup.as_ref(), JsonPath::Pointer(&plane.first_pair()), "motion in the plane");
+            check_in_plane(&needing[1..], stress.as_ref(), self.solver, plane, faults);
+            if plane.line.is_none() {
+                tolerance = in_plane(self.tolerance, faults);
+            }
+        }
         let no_surface = setup.as_ref().is_some_and(|setup| !setup.profile.has_stress_field());
         if matches!(self.solver, Some(Solver::Springs(_))) && no_surface {
             let detail = "springs stand under a surface, which this profile has not: leave `solver` out";
@@ -174,10 +203,50 @@ impl Document for SimulateRequest {
     }
 }
 
+/// Notes what is asked for and not defined in the plane.
+fn check_in_plane(
+    asked: &[(&'static str, bool)],
+    stress: Option<&Sampling>,
+    solver: Option<Solver>,
+    plane: &PlanarPlan,
+    faults: &mut Faults,
+) {
+    for (name, _) in asked.iter().filter(|(_, asked)| *asked) {
+        let detail = format_args!("`{name}` is not defined for motion in the plane: leave it out, or the pairs");
+        faults.add(JsonPath::Root.member(name), detail);
+    }
+    if stress.is_some_and(|stress| stress.fields.contains(&Field::Displacement)) {
+        let at = JsonPath::Root.member("stress");
+        faults.add(at.member("fields"), "`displacement` is not computed for motion in the plane: name `slip`");
+    }
+    let detail = match solver {
+        Some(Solver::Springs(_)) => "springs follow no motion in the plane: leave `solver` out, or ask for rings",
+        Some(Solver::Exact) if plane.line.is_none() => {
+            "the exact solver follows motion along one line alone: leave `solver` out, or ask for rings"
+        }
+        _ => return,
+    };
+    faults.add(JsonPath::Root.member("solver"), detail);
+}
+
+/// The tolerance of rings.
+fn in_plane(asked: Option<f64>, faults: &mut Faults) -> f64 {
+    let tolerance = asked.unwrap_or(RINGS_TOLERANCE);
+    if tolerance < LEAST_RINGS_TOLERANCE {
+        let at = JsonPath::Root.member("tolerance");
+        faults.add(at, format_args!("{tolerance:e} is out of range for motion in the plane: allowed is 1e-5 to 1e-2"));
+    }
+    tolerance
+}
+
 impl Solver {
     /// Notes the faults of the solver at `at`, each of whose springs is evaluated `passes` times.
     pub(super) fn check(&self, at: JsonPath<'_>, passes: usize, faults: &mut Faults) {
-        let Solver::Springs(springs) = self else { return };
+        let springs = match self {
+            Solver::Exact => return,
+            Solver::Springs(springs) => springs,
+            Solver::Rings(rings) => return rings.check_members(at.member("rings"), faults),
+        };
         let at = at.member("springs");
         springs.check_members(at, faults);
         let (count, most) = (springs.count, most_springs(passes));

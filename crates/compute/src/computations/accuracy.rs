@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 
 use serde_json::json;
 
-use stickslip_mechanics::{Contact, ErrorEstimate};
+use stickslip_mechanics::{self as mechanics, Contact, ErrorEstimate, Tangential, rings};
 use stickslip_wire::reply::finite;
 use stickslip_wire::{
     AccuracyReply, AccuracyRequest, AccuracyRow, Comparison, ContactDefinition, Fault, Field, Points, Protocol,
@@ -18,12 +18,16 @@ use stickslip_wire::{
 use super::{About, Computation, Example, Plain, Route, example, example_contact};
 use crate::simulation::bytes::{SPRING, of_moves, of_shape, of_stress};
 use crate::simulation::cost::{Work, of_springs};
-use crate::simulation::{Cause, Failure, Solver, contact, equal_peaks, follow, spring_foundation, stresses};
+use crate::simulation::{
+    Cause, Failure, Solver, contact, cycle_moves, equal_peaks, follow, spring_foundation, stresses,
+};
 use crate::{Nanoseconds, Stop};
 
 /// The reference is held to this part of the tolerance: some two and a half times the chords, with a
 /// sixteenth of the error of their forces and a quarter of that of their stresses.
 const REFERENCE_TOLERANCE: f64 = 1.0 / 16.0;
+/// The tolerance of the steps of rings.
+const RINGS_TOLERANCE: f64 = 1e-4;
 /// A solver runs again, for the median of the times, until its runs together have taken this long.
 const REPEAT_UNTIL: Duration = Duration::from_millis(5);
 /// The most runs of one solver.
@@ -175,6 +179,7 @@ fn row(solver: Named, task: &Task<'_>, truth: &Answer, reference: &Reference) ->
     let begin = Instant::now();
     let found = match solver {
         Named::Exact => answer(|| contact(setup.clone(), "/contact"), task),
+        Named::Rings(rings) => by_rings(rings.count, task),
         Named::Springs(springs) => answer(|| spring_foundation(setup, plan, springs.count, task.stop), task),
     };
     let (found, refused) = match found {
@@ -208,6 +213,34 @@ fn row(solver: Named, task: &Task<'_>, truth: &Answer, reference: &Reference) ->
 fn relative(differences: impl Iterator<Item = f64>, unit: f64) -> Option<f64> {
     let largest = differences.fold(0.0, f64::max);
     finite(if largest > 0.0 { largest / unit } else { 0.0 })
+}
+
+/// The answer of rings, as of any solver but for the repetitions.
+fn by_rings(count: usize, task: &Task<'_>) -> Result<Answer, Failure> {
+    let Comparison { setup, plan, .. } = task.comparison;
+    let begin = Instant::now();
+    let start = contact(setup.clone(), "/contact")?;
+    let in_plane = |step: mechanics::Move| rings::PlanarMove {
+        tangential: step.tangential.map(|target| match target {
+            Tangential::Displacement(to) => rings::PlanarTarget::Displacement([to, 0.0]),
+            Tangential::Force(to) => rings::PlanarTarget::Force([to, 0.0]),
+        }),
+        normal: step.normal,
+        relative: step.relative,
+    };
+    let moves: Vec<_> = cycle_moves(plan, &start)?.into_iter().map(in_plane).collect();
+    let options = rings::Options { count: Some(count), tolerance: RINGS_TOLERANCE };
+    let solution =
+        rings::follow(setup.clone(), &moves, &options, &|| task.stop.check().is_ok()).map_err(|refusal| {
+            let at = refusal.index.map_or_else(|| "/contact".to_owned(), |index| plan.place_of(index, None));
+            Failure::at(at, refusal.error).unless_interrupted(task.stop, "")
+        })?;
+    let radii = task.sampling.radii(solution.pressed().contact_radius());
+    let shears = solution.shears(&radii).into_iter().map(|shear| finite(shear[0])).collect();
+    let estimate =
+        ErrorEstimate { force_error: solution.force_error(), path_error: 0.0, stress_error: solution.stress_error() };
+    let forces = solution.states.iter().map(|state| state.force[0]).collect();
+    Ok(Answer { forces, shears, estimate, time: begin.elapsed().as_secs_f64() })
 }
 
 fn answer<S: Solver>(start: impl Fn() -> Result<S, Failure>, task: &Task<'_>) -> Result<Answer, Failure> {

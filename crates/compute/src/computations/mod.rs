@@ -10,6 +10,7 @@ pub mod files;
 mod fretting;
 mod loop_fit;
 mod moves;
+mod plane;
 mod profile_fit;
 mod protocol;
 mod residual;

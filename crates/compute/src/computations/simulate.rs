@@ -4,10 +4,13 @@ use serde_json::json;
 
 use stickslip_plot::{Axis, Colour, Curve, Drawing, Panel, Plot};
 use stickslip_wire::simulate::Simulation;
-use stickslip_wire::{ContactDefinition, Fault, Field, Sampling, SimulateReply, SimulateRequest, State, Stress};
+use stickslip_wire::{
+    ContactDefinition, Fault, Field, PlanarReply, Sampling, SimulateReply, SimulateRequest, SimulationReply, State,
+    Stress,
+};
 
 use super::{
-    About, Choice, Computation, DisplayOptions, Example, Outcome, Route, example, example_contact, line_contact,
+    About, Choice, Computation, DisplayOptions, Example, Outcome, Route, example, example_contact, line_contact, plane,
     residual, stress,
 };
 use crate::formats::{Column, Table};
@@ -38,7 +41,7 @@ impl Computation for Simulate {
     };
 
     type Request = SimulateRequest;
-    type Outcome = SimulateReply;
+    type Outcome = SimulationReply;
 
     fn examples() -> Vec<Example> {
         vec![
@@ -79,6 +82,15 @@ impl Computation for Simulate {
                     "solver": {"springs": {"count": 1000}}
                 }),
             ),
+            example(
+                "in the plane",
+                "Once round a circle, with the stresses at its end",
+                json!({
+                    "contact": example_contact(json!({"type": "sphere", "radius": 0.01}), json!({"indentation": 1e-6})),
+                    "path": {"ellipse": {"radii": [2e-7, 2e-7], "turns": 1, "steps_per_turn": 32}},
+                    "stress": {"points": 50, "fields": ["pressure", "shear", "slip"]}
+                }),
+            ),
         ]
     }
 
@@ -106,8 +118,42 @@ impl Computation for Simulate {
         cost::of_simulation(task)
     }
 
-    fn run(task: Simulation, stop: &dyn Stop) -> Result<SimulateReply, Failure> {
-        simulation::simulate(&task, stop)
+    fn run(task: Simulation, stop: &dyn Stop) -> Result<SimulationReply, Failure> {
+        simulation::simulate_any(&task, stop)
+    }
+}
+
+impl Outcome for SimulationReply {
+    type Reply = SimulationReply;
+
+    fn reply(&self) -> &SimulationReply {
+        self
+    }
+
+    fn length(&self) -> usize {
+        match self {
+            SimulationReply::Line(reply) => reply.length(),
+            SimulationReply::Plane(PlanarReply { steps, stress, .. }) => {
+                let radii = stress.as_ref().map_or(0, |stress| stress.radius.len());
+                REPLY_LENGTH + steps.len() * STATE_LENGTH + radii * 7 * NUMBER_LENGTH
+            }
+        }
+    }
+
+    fn table(&self, shown: &DisplayOptions) -> Option<Table<'_>> {
+        match self {
+            SimulationReply::Line(reply) => reply.table(shown),
+            SimulationReply::Plane(reply) => plane::table(reply, part(shown, false, reply.stress.is_some())),
+        }
+    }
+
+    fn picture(&self, shown: &DisplayOptions) -> Option<Drawing> {
+        match self {
+            SimulationReply::Line(reply) => reply.picture(shown),
+            SimulationReply::Plane(reply) => {
+                plane::plot(reply, part(shown, false, reply.stress.is_some())).map(Drawing::Plot)
+            }
+        }
     }
 }
 

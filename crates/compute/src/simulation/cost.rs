@@ -8,10 +8,10 @@ use std::time::Duration;
 
 use crate::Nanoseconds;
 use serde_json::Value;
-use stickslip_mechanics::Profile;
+use stickslip_mechanics::{Profile, rings};
 use stickslip_wire::simulate::Simulation;
 use stickslip_wire::subsurface::SubsurfaceTask;
-use stickslip_wire::{self as wire, Solver, limits};
+use stickslip_wire::{self as wire, Plan, Solver, limits};
 
 /// A body longer than this (bytes) is parsed on the pool.
 pub const INLINE_BODY: usize = 1024;
@@ -34,6 +34,10 @@ pub const KINK_COST: u64 = 50;
 pub const PLACE_COST: u64 = 20_000;
 /// One number of a reply, written as JSON.
 pub const NUMBER_COST: u64 = 60;
+/// One step of rings, over the square of their number.
+const RING_STEP_COST: u64 = 60;
+/// Steps of all rings, and of half of them, for each of the coarsest steps; and all of it again for a refinement.
+const STEPS_OF_RINGS: u64 = 2 * 3;
 /// One spring in one move, or its contribution at one radius.
 const SPRING_COST: u64 = 3;
 
@@ -178,6 +182,11 @@ fn relative_cost_of_moves(profile: &Profile) -> u64 {
 /// The cost of a simulation.
 #[must_use]
 pub fn of_simulation(simulation: &Simulation) -> Nanoseconds {
+    if let Plan::Plane(plane) = &simulation.plan
+        && plane.line.is_none()
+    {
+        return of_rings(simulation, &plane.moves);
+    }
     let moves = simulation.plan.length();
     let radii = simulation.stress.as_ref().map_or(0, |stress| stress.length());
     let curved = simulation.plan.curved();
@@ -185,12 +194,25 @@ pub fn of_simulation(simulation: &Simulation) -> Nanoseconds {
     let below = |task| of_subsurface(&simulation.setup.profile, task, moves);
     let exact = exact.saturating_add(simulation.subsurface.as_ref().map_or(0, below));
     match simulation.solver {
-        None | Some(Solver::Exact) => exact,
+        None | Some(Solver::Exact | Solver::Rings(_)) => exact,
         Some(Solver::Springs(springs)) => {
             let search = if simulation.residual { limits::SPRING_SEARCH } else { 0 };
             exact.saturating_add(of_springs(springs.count, moves + radii + search))
         }
     }
+}
+
+/// The cost of a path by rings, whose steps follow from its length.
+fn of_rings(simulation: &Simulation, moves: &[rings::PlanarMove]) -> Nanoseconds {
+    let count = if let Some(Solver::Rings(rings)) = simulation.solver { Some(rings.count) } else { None };
+    let options = rings::Options { count, tolerance: simulation.tolerance };
+    let (count, steps) = rings::first_choice(&simulation.setup, moves, &options);
+    let radii = simulation.stress.as_ref().map_or(0, |stress| stress.length() as u64);
+    (steps as u64)
+        .saturating_mul(STEPS_OF_RINGS * RING_STEP_COST)
+        .saturating_mul((count as u64).pow(2))
+        .saturating_add(moves.len() as u64 * MOVE_COST)
+        .saturating_add(on_profile(&simulation.setup.profile, radii * RADIUS_COST, false))
 }
 
 /// The cost of this many springs, each evaluated this many times.

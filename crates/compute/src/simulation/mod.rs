@@ -6,6 +6,7 @@
 
 pub mod bytes;
 pub mod cost;
+mod plane;
 mod prepare;
 mod prepared_profiles;
 mod run;
@@ -17,6 +18,7 @@ mod sweep;
 mod tests;
 mod warnings;
 
+pub use plane::simulate_any;
 pub use prepare::{Anew, check, cost_of_preparation};
 pub use prepared_profiles::{ProfileCache, ProfileKey, Profiles};
 pub use run::{

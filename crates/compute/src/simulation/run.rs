@@ -193,6 +193,8 @@ fn moves<'a>(
         Plan::Observations(observations) => {
             Box::new(observations.iter().map(|observation| Move::displacement(observation.displacement)))
         }
+        // Rings follow these.
+        Plan::Plane(_) => Box::new(std::iter::empty()),
     })
 }
 

@@ -41,7 +41,7 @@ pub fn accuracy<S: Solver>(solver: &S, timer: Timer<'_>, reason: &str) -> Accura
         reason: format!("{reason}{}", assumed.unwrap_or_default()),
         force_error: estimate.force_error,
         stress_error: estimate.stress_error,
-        subsurface_error: None,
         compute_time: timer.elapsed().as_secs_f64(),
+        ..Accuracy::default()
     }
 }

@@ -72,13 +72,18 @@ impl FarMove {
     /// is.
     pub fn reach(&mut self, solver: &impl Solver) {
         let (displacement, gross_slip) = (solver.displacement(), solver.gross_slip_displacement());
+        self.reach_to(displacement, gross_slip, solver.exact().profile(), solver.contact_radius());
+    }
+
+    /// The same of a move that led to this displacement, m, and contact radius, m.
+    pub(super) fn reach_to(&mut self, displacement: f64, gross_slip: f64, profile: &Profile, contact_radius: f64) {
         let (size, before) = (displacement.abs(), std::mem::replace(&mut self.displacement, displacement));
         let is_farther = size > self.farthest.map_or(0.0, |(farthest, _)| farthest.abs());
         let moved = displacement.to_bits() != before.to_bits();
         if moved
             && is_farther
             && size > MAX_GROSS_SLIPS * gross_slip
-            && size > MAX_PART_OF_LENGTH * length_scale(solver.exact().profile(), solver.contact_radius())
+            && size > MAX_PART_OF_LENGTH * length_scale(profile, contact_radius)
         {
             self.farthest = Some((displacement, gross_slip));
         }

@@ -35,6 +35,7 @@ mod protocol_search;
 mod protocols;
 mod relative_moves;
 mod resonance;
+mod rings;
 mod scaling;
 mod slip_history;
 mod springs;

@@ -1,6 +1,7 @@
 //! Figures 1 to 5 of Kraft & Pohrt (2016), drawn from the exact solver, figures 6 to 9 about protocols, and figures 10
 //! and 11 about steady cycles, figures 12 and 13 about fretting fatigue, figure 14 about rough contacts, figure 15 about
-//! measured loops, and figures 16 and 17 about line contacts: SVG, and CSV with the data.
+//! measured loops, figures 16 and 17 about line contacts, and figure 18 about motion in the plane: SVG, and CSV with the
+//! data.
 //!
 //! All are normalised — displacement by that of gross slip, force by mu F_N, stress by mu p_max, radius by a — so
 //! that they hold for every sphere, whatever the reference contact below is made of.
@@ -10,6 +11,7 @@ mod cycles;
 mod fretting;
 mod identifiability;
 mod line;
+mod plane;
 mod protocols;
 mod rough;
 
@@ -28,7 +30,7 @@ const POINTS: usize = 400;
 /// The last number of reversals in figure 5.
 const MAX_REVERSALS: usize = 40;
 
-/// Writes `figure1.svg` to `figure17.svg` and the CSV file of each into `dir`, which is created if it does not exist.
+/// Writes `figure1.svg` to `figure18.svg` and the CSV file of each into `dir`, which is created if it does not exist.
 ///
 /// # Errors
 /// An error of the file system; a figure that cannot be drawn is [`io::ErrorKind::Other`].
@@ -49,7 +51,8 @@ type Failure = Box<dyn std::error::Error + Send + Sync>;
 /// Figures 1 to 5, and those from 10 on: all but those of protocols, which take long.
 fn without_protocols() -> Result<[Vec<Drawing>; 2], Failure> {
     let (cycles, fretting) = (cycles::charts()?.map(Drawing::Plot), fretting::sections()?.map(Drawing::Section));
-    let last = [rough::chart()?, identifiability::chart()?].into_iter().chain(line::charts()?).map(Drawing::Plot);
+    let last = [rough::chart()?, identifiability::chart()?].into_iter().chain(line::charts()?).chain([plane::chart()?]);
+    let last = last.map(Drawing::Plot);
     Ok([paper()?.map(Drawing::Plot).into(), cycles.into_iter().chain(fretting).chain(last).collect()])
 }
 

@@ -9,11 +9,11 @@ use std::time::{Duration, Instant};
 use serde_json::Value;
 
 use super::{Sweep, SweepResult};
-use crate::simulation::{Anew, Cause, Failure, check, simulate};
+use crate::simulation::{Anew, Cause, Failure, check, simulate_any};
 use crate::{Nanoseconds, Part, Stop};
 use stickslip_wire::check::Fault;
 use stickslip_wire::pointer_lookup::{Lookup, lookup};
-use stickslip_wire::{Code, PointFailure, Rejection, SimulateReply, SimulateRequest};
+use stickslip_wire::{Code, PointFailure, Rejection, SimulateRequest, SimulationReply};
 
 /// How long a sweep keeps its threads.
 const SLICE_TIME: Duration = Duration::from_millis(25);
@@ -145,7 +145,7 @@ impl Sweep {
         Ok(result)
     }
 
-    fn point(&self, document: &mut Value, point: usize, stop: &dyn Stop) -> Result<SimulateReply, PointFailure> {
+    fn point(&self, document: &mut Value, point: usize, stop: &dyn Stop) -> Result<SimulationReply, PointFailure> {
         self.checked.put(document, point);
         let request = SimulateRequest::deserialize(&*document)
             .map_err(|error| Rejection::Invalid(vec![Fault::new("", error.to_string())]));
@@ -153,7 +153,7 @@ impl Sweep {
         let simulation = checked.map_err(of_rejection)?;
         let reply = match &self.shared {
             Some(shared) => shared.simulate(simulation, stop),
-            None => simulate(&simulation, stop),
+            None => simulate_any(&simulation, stop),
         };
         reply.map_err(of_failure)
     }

@@ -13,8 +13,9 @@ use stickslip_wire::pointer_lookup::{Lookup, lookup};
 use stickslip_wire::simulate::Simulation;
 use stickslip_wire::sweep::CheckedSweep;
 use stickslip_wire::{
-    Accuracy, ContactSummary, Document as _, Field, Peak, Plan, Prepare, PrepareOnce, Protocol, Rejection, Residual,
-    Sampling, SimulateReply, SimulateRequest, State, Steps, Stress, parse_value,
+    Accuracy, ContactSummary, Document as _, Field, Peak, Plan, PlanarPlan, PlanarReply, PlanarState, PlanarStress,
+    Prepare, PrepareOnce, Protocol, Rejection, Residual, Sampling, SimulateReply, SimulateRequest, SimulationReply,
+    State, Steps, Stress, parse_value,
 };
 
 /// What planning takes besides profiles: a thread of the solver, however small the sweep is.
@@ -144,8 +145,11 @@ fn first_peak(output: &Pointer) -> Pointer {
 
 /// A reply with a zero or none for each number that the simulation will compute, and one peak in place of however many
 /// there will be.
-fn reply_template(simulation: &Simulation) -> SimulateReply {
+fn reply_template(simulation: &Simulation) -> SimulationReply {
     let moves = simulation.plan.length();
+    if let Plan::Plane(plane) = &simulation.plan {
+        return SimulationReply::Plane(planar_template(simulation, plane, moves));
+    }
     let line = simulation.setup.profile.line();
     let along = |along_line: bool| (along_line == line.is_some()).then_some(0.0);
     let peak = Peak { radius: along(false), x: along(true), shear: None };
@@ -153,7 +157,7 @@ fn reply_template(simulation: &Simulation) -> SimulateReply {
     let stick_centre = line.and_then(LineContact::bulk).map(|_| 0.0);
     let state = State { stick_centre, ..State::default() };
     let protocol = || Protocol { displacement: vec![0.0; moves], cutoff_radius: 0.0 };
-    SimulateReply {
+    SimulationReply::Line(SimulateReply {
         contact: ContactSummary::default(),
         steps: vec![state; if simulation.steps == Steps::All { moves } else { 1 }],
         stress: simulation.stress.as_ref().map(|sampling| stress_template(sampling, line.is_some())),
@@ -162,6 +166,36 @@ fn reply_template(simulation: &Simulation) -> SimulateReply {
         subsurface: None,
         protocol: matches!(simulation.plan, Plan::EqualPeaks(_)).then(protocol),
         accuracy: Accuracy::default(),
+        warnings: Vec::new(),
+    })
+}
+
+fn planar_template(simulation: &Simulation, plane: &PlanarPlan, moves: usize) -> PlanarReply {
+    let stress = |sampling: &Sampling| {
+        let length = sampling.length();
+        let column = |field: Field| sampling.fields.contains(&field).then(|| vec![None; length]);
+        PlanarStress {
+            radius: vec![0.0; length],
+            pressure: column(Field::Pressure),
+            shear_x: column(Field::Shear),
+            shear_y: column(Field::Shear),
+            slip_x: column(Field::Slip),
+            slip_y: column(Field::Slip),
+            friction_work: column(Field::Slip),
+        }
+    };
+    let (by_rings, turn) = (plane.line.is_none(), plane.steps_per_turn());
+    PlanarReply {
+        contact: ContactSummary::default(),
+        steps: vec![PlanarState::default(); if simulation.steps == Steps::All { moves } else { 1 }],
+        stress: simulation.stress.as_ref().map(stress),
+        turn_losses: turn.map(|turn| vec![0.0; moves / turn]),
+        accuracy: Accuracy {
+            work_error: by_rings.then_some(0.0),
+            count: by_rings.then_some(0),
+            steps: by_rings.then_some(0),
+            ..Accuracy::default()
+        },
         warnings: Vec::new(),
     }
 }

@@ -7,12 +7,12 @@ use serde_json::{Value, json};
 use stickslip_mechanics::{Contact, Profile};
 use stickslip_wire::simulate::Simulation;
 use stickslip_wire::sweep::AxisValues;
-use stickslip_wire::{SimulateReply, Solver};
+use stickslip_wire::{Plan, SimulationReply, Solver};
 
 use crate::Stop;
 use crate::simulation::run::{contact, simulate_on};
 use crate::simulation::stated_accuracy::Timer;
-use crate::simulation::{Failure, simulate};
+use crate::simulation::{Failure, simulate_any};
 
 #[derive(Debug)]
 pub(super) struct Shared {
@@ -44,10 +44,10 @@ impl Shared {
     }
 
     /// The reply to a point whose profile is the placeholder.
-    pub(super) fn simulate(&self, mut point: Simulation, stop: &dyn Stop) -> Result<SimulateReply, Failure> {
-        if matches!(point.solver, Some(Solver::Springs(_))) {
+    pub(super) fn simulate(&self, mut point: Simulation, stop: &dyn Stop) -> Result<SimulationReply, Failure> {
+        if matches!(point.solver, Some(Solver::Springs(_))) || matches!(point.plan, Plan::Plane(_)) {
             point.setup.profile = Arc::clone(&self.profile);
-            return simulate(&point, stop);
+            return simulate_any(&point, stop);
         }
         let timer = Timer::start(stop);
         let contact = match &self.contact {
@@ -57,6 +57,6 @@ impl Shared {
                 contact(point.setup.clone(), "/contact")?
             }
         };
-        simulate_on(contact, &point, timer, stop)
+        simulate_on(contact, &point, timer, stop).map(SimulationReply::Line)
     }
 }

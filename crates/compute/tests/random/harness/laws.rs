@@ -212,9 +212,13 @@ fn listed(path: &Path) -> Option<Vec<Move>> {
     }
 }
 
+fn along_a_line(request: &SimulateRequest) -> Path {
+    request.path.clone().along_a_line().expect("these requests have no pairs")
+}
+
 /// The same path as a list of moves.
 fn moves(request: &SimulateRequest, reply: &SimulateReply) -> Vec<Move> {
-    if let Path::Cycles(_) = request.path {
+    if let Path::Cycles(_) = along_a_line(request) {
         // Their targets may be forces, which the states have to the tolerance alone.
         let Ok(Simulation { plan: Plan::Cycles(cycles), .. }) = request.clone().check() else {
             panic!("the path of an answered request is sound");
@@ -223,7 +227,7 @@ fn moves(request: &SimulateRequest, reply: &SimulateReply) -> Vec<Move> {
         return moves.expect("the load presses").collect();
     }
     let taken = || reply.steps.iter().map(|state| Move::displacement(state.displacement)).collect();
-    listed(&request.path).unwrap_or_else(taken)
+    listed(&along_a_line(request)).unwrap_or_else(taken)
 }
 
 /// Absolute targets are reached: to the bit, a tangential force to the tolerance.
@@ -300,8 +304,8 @@ fn residual(simulation: &Simulation, reply: &SimulateReply) {
 
 /// A short form of a path gives the states of the moves that it expands to, bit for bit.
 fn short_form(request: &SimulateRequest, reply: &SimulateReply) {
-    if listed(&request.path).is_none() {
-        let moves = Path::Moves(moves(request, reply));
+    if listed(&along_a_line(request)).is_none() {
+        let moves = Path::Moves(moves(request, reply)).into();
         assert_eq!(again(&SimulateRequest { path: moves, ..request.clone() }, "as a list").steps, reply.steps);
     }
 }
@@ -318,7 +322,7 @@ fn repeat_last_move(request: &SimulateRequest, reply: &SimulateReply) {
         normal_force: still(last.normal_force),
         relative: last.relative,
     });
-    let request = SimulateRequest { path: Path::Moves(path), ..request.clone() };
+    let request = SimulateRequest { path: Path::Moves(path).into(), ..request.clone() };
     let longer = match run(&request) {
         Ok(longer) => longer,
         // In gross slip a force is at its limit to round-off, on either side of it.

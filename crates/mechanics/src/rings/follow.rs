@@ -1,0 +1,428 @@
+//! A path followed to a tolerance: by several discretisations at once, which are extrapolated and compared.
+
+use std::sync::Arc as Shared;
+
+use super::level::{Level, Target};
+use super::load::beyond;
+use super::mesh::{Mesh, Vector};
+use super::solution::{Blend, Solution};
+use super::{PlanarMove, PlanarTarget};
+use crate::contact::Contact;
+use crate::error::Error;
+use crate::numerics::double_double::DoubleDouble;
+use crate::profile::Profile;
+use crate::range;
+use crate::state::{Move, Normal, Setup, Tangential};
+
+/// Steps of a move in the discretisations, over those of the coarsest. The last one has all the rings, the others half
+/// of them: the error by the steps hardly depends on the rings.
+const STEPS: [usize; 4] = [1, 2, 4, 1];
+/// Length of a step of the coarsest discretisation, over the displacement of gross slip, for a tolerance of 1.
+const STEP_LENGTH: f64 = 1.6;
+/// Rings for a tolerance of 1.
+const RINGS: f64 = 1.25;
+/// The fewest and the most rings that a tolerance asks for.
+const CHOSEN_RINGS: [usize; 2] = [20, 160];
+/// The shortest step that a tolerance asks for, over the displacement of gross slip.
+const SHORTEST_STEP: f64 = 1e-3;
+/// Length over the displacement of gross slip after which a straight move slips in its own direction all over, and the
+/// radius of an arc from which on its angle counts alone.
+const TURNED: f64 = 4.0;
+/// The most of the coarsest steps of a move.
+const MOST_STEPS: usize = 10_000;
+/// How often rings or steps are refined.
+const REFINEMENTS: usize = 6;
+/// The sine of an angle up to which two directions are one, but for rounding.
+const ONE_LINE: f64 = 8.0 * f64::EPSILON;
+
+/// How a path is followed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Options {
+    /// Number of rings by [`range::RING_COUNT`], also along a line; left out, as many as the tolerance needs, and none
+    /// as long as the moves lead along one line.
+    pub count: Option<usize>,
+    /// What [`Solution::force_error`] is to stay below, as far as steps and rings suffice.
+    pub tolerance: f64,
+}
+
+impl Options {
+    /// The rings to begin with, and the length of the coarsest steps over the displacement of gross slip.
+    fn first(&self) -> (usize, f64) {
+        let chosen = 2 * (0.5 * RINGS / self.tolerance.sqrt()).ceil() as usize;
+        let count = self.count.unwrap_or(chosen.clamp(CHOSEN_RINGS[0], CHOSEN_RINGS[1]));
+        (count, STEP_LENGTH * self.tolerance.cbrt().min(0.25))
+    }
+}
+
+/// Why a path has no solution.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Refusal {
+    /// The move at fault; `None` for the contact itself.
+    pub index: Option<usize>,
+    /// What is wrong with it.
+    pub error: Error,
+}
+
+/// The normal load after a move.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Load {
+    pub(super) indentation: f64,
+    pub(super) normal_force: f64,
+    pub(super) radius: f64,
+    /// Whether the move was straight in the normal force.
+    by_force: bool,
+}
+
+/// What a path is made of, and the units of its discretisations.
+pub(super) struct Scene<'a> {
+    /// At its preload.
+    pub(super) contact: Contact,
+    /// Under the load at the end.
+    pub(super) pressed: Contact,
+    moves: &'a [PlanarMove],
+    /// The normal load before the first move and after each.
+    pub(super) loads: Vec<Load>,
+    pub(super) constant_load: bool,
+    /// The largest normal force, N, and the largest indentation, m.
+    pub(super) largest_load: f64,
+    depth: f64,
+    kinks: Vec<f64>,
+    /// The largest contact radius, m.
+    pub(super) reach: f64,
+    /// E* times the reach and the largest indentation, N.
+    unit_load: f64,
+    /// The displacement of gross slip at the largest indentation, m.
+    pub(super) unit_displacement: f64,
+    /// The tangential force of the reach and that displacement, N.
+    pub(super) unit_force: f64,
+}
+
+/// How many of the moves lead along one line from the start, and its direction, the unit vector of the first of them
+/// that leads anywhere.
+///
+/// ```
+/// use stickslip_mechanics::rings::{PlanarMove, PlanarTarget, straight_moves};
+///
+/// let to = |x, y| PlanarMove { tangential: Some(PlanarTarget::Displacement([x, y])), ..PlanarMove::default() };
+/// assert_eq!(straight_moves(&[to(3.0, 4.0), to(-6.0, -8.0), to(1.0, 0.0)]), (2, [0.6, 0.8]));
+/// ```
+#[must_use]
+pub fn straight_moves(moves: &[PlanarMove]) -> (usize, [f64; 2]) {
+    let mut direction: Option<Vector> = None;
+    let mut on_line = |step: &PlanarMove| match step.tangential {
+        None => true,
+        Some(PlanarTarget::Arc(_)) => false,
+        Some(PlanarTarget::Displacement([x, y]) | PlanarTarget::Force([x, y])) => {
+            let size = x.hypot(y);
+            if size <= 0.0 {
+                return true;
+            }
+            let [along, across] = *direction.get_or_insert([x / size, y / size]);
+            (x / size * across - y / size * along).abs() <= ONE_LINE
+        }
+    };
+    let count = moves.iter().take_while(|step| on_line(step)).count();
+    (count, direction.unwrap_or([1.0, 0.0]))
+}
+
+/// A move on the line of this direction as a move along it.
+fn along(step: &PlanarMove, [x, y]: Vector) -> Move {
+    let tangential = step.tangential.map(|target| match target {
+        PlanarTarget::Displacement(to) => Tangential::Displacement(to[0] * x + to[1] * y),
+        PlanarTarget::Force(to) => Tangential::Force(to[0] * x + to[1] * y),
+        PlanarTarget::Arc(arc) => Tangential::Displacement(arc.at(1.0)[0] * x + arc.at(1.0)[1] * y),
+    });
+    Move { tangential, normal: step.normal, relative: step.relative }
+}
+
+/// Follows a path from the virgin contact, while `keep_going` returns true, which is asked at every step.
+///
+/// As long as the moves lead along one line and no number of rings is given, the states are those of the exact contact.
+///
+/// # Errors
+/// Those of [`Contact::new`] and [`Contact::apply`] with the move that they are about;
+/// [`Error::NoStressField`] for a profile whose pressure is not known; [`Error::Interrupted`].
+///
+/// ```
+/// use stickslip_mechanics::rings::{Arc, Options, PlanarMove, PlanarTarget, follow};
+#[doc = include_str!("../example.txt")]
+/// // Once round a circle of 0.6 u_max after a move to its beginning.
+/// let radius = 0.6 * contact.gross_slip_displacement();
+/// let target = |target| PlanarMove { tangential: Some(target), ..PlanarMove::default() };
+/// let mut moves = vec![target(PlanarTarget::Displacement([radius, 0.0]))];
+/// moves.extend((0..64).map(|index| {
+///     let turns = [f64::from(index) / 64.0, f64::from(index + 1) / 64.0];
+///     target(PlanarTarget::Arc(Arc { radii: [radius, radius], phase: 0.0, turns }))
+/// }));
+/// let solution = follow(setup, &moves, &Options { count: None, tolerance: 1e-3 }, &|| true).unwrap();
+/// let work = solution.states[64].dissipated_energy - solution.states[0].dissipated_energy;
+/// assert!((work / (2000.0 * 0.0075) - 0.4337).abs() < 1e-3);
+/// # Ok::<(), Error>(())
+/// ```
+pub fn follow<P: Into<Shared<Profile>>>(
+    setup: Setup<P>,
+    moves: &[PlanarMove],
+    options: &Options,
+    keep_going: &dyn Fn() -> bool,
+) -> Result<Solution, Refusal> {
+    let of_contact = |error| Refusal { index: None, error };
+    if let Some(count) = options.count {
+        range::RING_COUNT.check(count as f64).map_err(of_contact)?;
+    }
+    let scene = Scene::new(setup, moves)?;
+    let (mut count, mut length) = options.first();
+    for refinement in 0.. {
+        let (solution, longest) = scene.pass(count, length, keep_going)?;
+        let [by_steps, by_rings] = solution.errors;
+        let finer = [by_steps > 0.5 * options.tolerance, by_rings > 0.5 * options.tolerance];
+        let possible = [longest > SHORTEST_STEP, options.count.is_none() && count < CHOSEN_RINGS[1]];
+        let wanted = [finer[0] && possible[0], finer[1] && possible[1]];
+        if by_steps + by_rings <= options.tolerance || wanted == [false; 2] || refinement == REFINEMENTS {
+            return if options.count.is_some() { Ok(solution) } else { scene.with_exact(solution) };
+        }
+        if wanted[0] {
+            length = (0.5 * longest).max(SHORTEST_STEP);
+        }
+        if wanted[1] {
+            count = (2 * count).min(CHOSEN_RINGS[1]);
+        }
+    }
+    unreachable!("the last refinement returns")
+}
+
+impl<'a> Scene<'a> {
+    fn new<P: Into<Shared<Profile>>>(setup: Setup<P>, moves: &'a [PlanarMove]) -> Result<Scene<'a>, Refusal> {
+        let of_contact = |error| Refusal { index: None, error };
+        let setup = setup.shared();
+        setup.profile.check_round("motion in the plane").map_err(of_contact)?;
+        setup.profile.check_stress_field().map_err(of_contact)?;
+        let contact = Contact::new(setup).map_err(of_contact)?;
+        let load = |contact: &Contact, by_force| Load {
+            indentation: contact.indentation(),
+            normal_force: contact.normal_force(),
+            radius: contact.contact_radius(),
+            by_force,
+        };
+        let mut loads = vec![load(&contact, false)];
+        let mut pressed = contact.clone();
+        for (index, step) in moves.iter().enumerate() {
+            if step.normal.is_some() {
+                let normal = Move { tangential: None, normal: step.normal, relative: step.relative };
+                pressed.apply(&normal).map_err(|error| Refusal { index: Some(index), error })?;
+            }
+            loads.push(load(&pressed, matches!(step.normal, Some(Normal::NormalForce(_)))));
+        }
+        // Without a contact on all of the path any units do.
+        let positive = |value: f64| if value > 0.0 { value } else { 1.0 };
+        let largest = |of: fn(&Load) -> f64| positive(loads.iter().map(of).fold(0.0, f64::max));
+        let (reach, depth) = (largest(|load| load.radius), largest(|load| load.indentation));
+        let (e_star, g_star) = (contact.elasticity().e_star(), contact.elasticity().g_star());
+        let unit_displacement = positive(contact.friction()) * e_star / g_star * depth;
+        Ok(Scene {
+            kinks: contact.profile().knots_below(reach),
+            constant_load: loads.iter().all(|load| load.indentation.to_bits() == loads[0].indentation.to_bits()),
+            largest_load: loads.iter().map(|load| load.normal_force).fold(0.0, f64::max),
+            depth,
+            unit_load: e_star * reach * depth,
+            unit_force: g_star * reach * unit_displacement,
+            unit_displacement,
+            reach,
+            loads,
+            moves,
+            pressed,
+            contact,
+        })
+    }
+
+    /// Friction times the load of each ring.
+    fn bounds(&self, mesh: &Mesh, indentation: f64, normal_force: f64) -> Vec<f64> {
+        let edge = if indentation > 0.0 { self.contact.profile().radius(indentation) } else { 0.0 };
+        let at = |index: usize| {
+            let radius = self.reach * mesh.radius(index);
+            if index == mesh.count {
+                0.0
+            } else {
+                beyond(self.contact.profile(), &self.kinks, indentation, edge, radius)
+            }
+        };
+        let outside: Vec<f64> = (0..=mesh.count).map(at).collect();
+        let frictional = if self.contact.friction() > 0.0 { 1.0 } else { 0.0 };
+        let unit = if outside[0] > 0.0 { frictional * normal_force / self.unit_load / outside[0] } else { 0.0 };
+        outside.windows(2).map(|ends| unit * (ends[0] - ends[1]).max(0.0)).collect()
+    }
+
+    /// Follows the path by [`STEPS`] at once; returns the solution and the length of the longest step of the coarsest.
+    fn pass(&self, count: usize, length: f64, keep_going: &dyn Fn() -> bool) -> Result<(Solution, f64), Refusal> {
+        let [fine, coarse] = [count, count / 2].map(|count| Shared::new(Mesh::new(count)));
+        let start = self.loads[0];
+        let level = |mesh: &Shared<Mesh>| {
+            Level::new(Shared::clone(mesh), self.bounds(mesh, start.indentation, start.normal_force))
+        };
+        let mut levels = [level(&coarse), level(&coarse), level(&coarse), level(&fine)];
+        let mut blend = Blend::new(self);
+        let mut longest: f64 = 0.0;
+        for index in 0..self.moves.len() {
+            let sections = self.sections(&levels[0], index, length);
+            for (level, multiple) in levels.iter_mut().zip(STEPS) {
+                level.slipped.fill(false);
+                self.run(level, index, &sections, multiple, keep_going)
+                    .map_err(|error| Refusal { index: Some(index), error })?;
+            }
+            for section in &sections {
+                longest = longest.max(section.length / section.steps as f64);
+                blend.steps += section.steps * STEPS[2];
+            }
+            blend.add(self, &levels, index);
+        }
+        Ok((blend.solution(self, &levels), longest))
+    }
+
+    /// The sections of a move: what turns the slip, in steps of at most `length`, and the rest, which is straight.
+    fn sections(&self, level: &Level, index: usize, length: f64) -> Vec<Section> {
+        let (step, from, to) = (&self.moves[index], &self.loads[index], &self.loads[index + 1]);
+        let pressed = (to.indentation - from.indentation).abs() / self.depth;
+        let moved = match step.tangential {
+            None => 0.0,
+            Some(PlanarTarget::Displacement(_)) => distance(level.displacement, self.target(level, step).0),
+            Some(PlanarTarget::Force(_)) => distance(level.force, self.target(level, step).0),
+            Some(PlanarTarget::Arc(arc)) => {
+                let [begin, end] = arc.turns;
+                std::f64::consts::TAU
+                    * (end - begin).abs()
+                    * (arc.radii[0].hypot(arc.radii[1]) / self.unit_displacement).min(TURNED)
+            }
+        };
+        let whole = moved + pressed;
+        let steps = |part: f64| ((part / length).ceil() as usize).clamp(1, MOST_STEPS);
+        let straight = !matches!(step.tangential, Some(PlanarTarget::Arc(_)));
+        if straight && whole > TURNED {
+            let part = TURNED / whole;
+            let first = Section { ends: [0.0, part], length: TURNED, steps: steps(TURNED) };
+            return vec![first, Section { ends: [part, 1.0], length: 0.0, steps: 1 }];
+        }
+        vec![Section { ends: [0.0, 1.0], length: whole, steps: steps(whole) }]
+    }
+
+    /// The end of a move for this discretisation, in its units, and whether it is a force.
+    fn target(&self, level: &Level, step: &PlanarMove) -> (Vector, bool) {
+        let from = |begin: Vector, by: Vector, unit: f64| {
+            let by = by.map(|component| component / unit);
+            if step.relative { [begin[0] + by[0], begin[1] + by[1]] } else { by }
+        };
+        match step.tangential {
+            None => (level.displacement, false),
+            Some(PlanarTarget::Displacement(to)) => (from(level.displacement, to, self.unit_displacement), false),
+            Some(PlanarTarget::Force(to)) => (from(level.force, to, self.unit_force), true),
+            Some(PlanarTarget::Arc(arc)) => (arc.at(1.0).map(|component| component / self.unit_displacement), false),
+        }
+    }
+
+    fn run(
+        &self,
+        level: &mut Level,
+        index: usize,
+        sections: &[Section],
+        multiple: usize,
+        keep_going: &dyn Fn() -> bool,
+    ) -> Result<(), Error> {
+        let (step, from, to) = (&self.moves[index], self.loads[index], self.loads[index + 1]);
+        let (target, is_force) = self.target(level, step);
+        let begin = if is_force { level.force } else { level.displacement };
+        let straight = |part: f64| [0, 1].map(|axis| begin[axis] + part * (target[axis] - begin[axis]));
+        for section in sections {
+            let count = section.steps * multiple;
+            for number in 1..=count {
+                if !keep_going() {
+                    return Err(Error::Interrupted);
+                }
+                let [first, last] = section.ends;
+                let part = if number == count { last } else { first + (last - first) * number as f64 / count as f64 };
+                if from.indentation.to_bits() != to.indentation.to_bits() {
+                    let (indentation, normal_force) = self.load_at(from, to, part);
+                    level.bounds = self.bounds(&level.mesh, indentation, normal_force);
+                }
+                let here = match step.tangential {
+                    Some(PlanarTarget::Arc(arc)) => arc.at(part).map(|component| component / self.unit_displacement),
+                    _ if part >= 1.0 => target,
+                    _ => straight(part),
+                };
+                if !is_force {
+                    level.step(Target::Displacement(here));
+                    continue;
+                }
+                let limit: f64 = level.bounds.iter().sum();
+                if here[0].hypot(here[1]) >= limit {
+                    let size = target[0].hypot(target[1]) * self.unit_force;
+                    return Err(Error::ForceExceedsFriction { target: size, limit: limit * self.unit_force, part });
+                }
+                level.step(Target::Force(here));
+            }
+        }
+        Ok(())
+    }
+
+    /// Indentation, m, and normal force, N, at a part of a move.
+    fn load_at(&self, from: Load, to: Load, part: f64) -> (f64, f64) {
+        if part >= 1.0 {
+            return (to.indentation, to.normal_force);
+        }
+        if to.by_force {
+            let force = from.normal_force + part * (to.normal_force - from.normal_force);
+            return (self.contact.indentation_for(force).value(), force);
+        }
+        let indentation = from.indentation + part * (to.indentation - from.indentation);
+        (indentation, self.contact.normal_force_at(DoubleDouble::from(indentation)))
+    }
+
+    /// The solution with the exact states of the first moves, as far as they lead along one line.
+    fn with_exact(&self, mut solution: Solution) -> Result<Solution, Refusal> {
+        let (count, direction) = straight_moves(self.moves);
+        let mut exact = self.contact.clone();
+        let states = self.moves.iter().take(count).enumerate().map(|(index, step)| {
+            exact.apply(&along(step, direction)).map_err(|error| Refusal { index: Some(index), error })?;
+            Ok(exact.state())
+        });
+        let states: Vec<_> = states.collect::<Result<_, _>>()?;
+        solution.replace(&states, direction);
+        Ok(solution)
+    }
+}
+
+/// A part of a move that is made in equal steps.
+struct Section {
+    ends: [f64; 2],
+    /// Over the displacement of gross slip.
+    length: f64,
+    steps: usize,
+}
+
+fn distance(one: Vector, other: Vector) -> f64 {
+    (one[0] - other[0]).hypot(one[1] - other[1])
+}
+
+/// How many rings a path is followed by at first, and in how many of the coarsest steps, up to where its forces lead:
+/// what it costs.
+#[must_use]
+pub fn first_choice<P: Into<Shared<Profile>> + Clone>(
+    setup: &Setup<P>,
+    moves: &[PlanarMove],
+    options: &Options,
+) -> (usize, usize) {
+    let (count, length) = options.first();
+    let unit = Contact::new(setup.clone()).map_or(0.0, |contact| contact.gross_slip_displacement());
+    let mut here = [0.0; 2];
+    let mut steps = |step: &PlanarMove| {
+        let to = match step.tangential {
+            Some(PlanarTarget::Displacement(to)) if step.relative => [here[0] + to[0], here[1] + to[1]],
+            Some(PlanarTarget::Displacement(to)) => to,
+            Some(PlanarTarget::Arc(arc)) => arc.at(1.0),
+            Some(PlanarTarget::Force(_)) | None => here,
+        };
+        let moved = if unit > 0.0 { (distance(here, to) / unit).min(TURNED) } else { TURNED };
+        here = to;
+        let forced = if matches!(step.tangential, Some(PlanarTarget::Force(_))) { 1.0 } else { 0.0 };
+        let pressed = if step.normal.is_some() { 1.0 } else { 0.0 };
+        ((moved + forced + pressed) / length).ceil().max(1.0) as usize
+    };
+    (count, moves.iter().map(&mut steps).sum())
+}

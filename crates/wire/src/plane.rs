@@ -1,0 +1,509 @@
+//! Motion in the plane: paths with pairs, and the reply of `POST /simulate` to them.
+
+use std::ops::RangeInclusive;
+
+use serde::{Deserialize, Deserializer, Serialize, de};
+use serde_json::{Value, json};
+use utoipa::openapi::schema::{ArrayBuilder, OneOfBuilder, SchemaFormat, Type};
+use utoipa::openapi::{KnownFormat, ObjectBuilder, RefOr, Schema};
+use utoipa::{PartialSchema, ToSchema};
+
+use stickslip_mechanics::rings::{self, Arc, PlanarTarget, straight_moves};
+use stickslip_mechanics::{
+    Normal, range,
+    range::{Quantity, Range},
+};
+
+use super::check::{Faults, JsonPath};
+use super::choice::choices;
+use super::limits::{Array, Items, Limit, Limited as _, OfItsMembers, PATH_MOVES};
+use super::path::{CyclicPath, EqualPeaks, FallingAmplitude, Move, PHASE, Path, Plan};
+use super::reply::{Accuracy, ContactSummary, Regime, Warning};
+use super::request::{replies, requests};
+use super::simulate::SimulateReply;
+
+/// Turns of an ellipse.
+const TURNS: RangeInclusive<usize> = 1..=10_000;
+/// Moves of a turn.
+const STEPS_PER_TURN: RangeInclusive<usize> = 4..=10_000;
+/// Moves of a turn, unless the path says how many.
+const DEFAULT_STEPS_PER_TURN: usize = 64;
+/// A semi-axis, m.
+const SEMI_AXIS: Range = Range { min: 0.0, ..range::DISPLACEMENT };
+
+/// A number along x, or a pair [x, y].
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[serde(untagged)]
+pub enum Components {
+    /// Along x alone.
+    Along(f64),
+    /// Along x and y.
+    Plane([f64; 2]),
+}
+
+impl ToSchema for Components {}
+
+impl PartialSchema for Components {
+    #[expect(deprecated, reason = "tools of version 3.0 of OpenAPI read `example`")]
+    fn schema() -> RefOr<Schema> {
+        // The widest range of a component: the member that has them narrows it.
+        let number = || {
+            let double = Some(SchemaFormat::KnownFormat(KnownFormat::Double));
+            let number = ObjectBuilder::new().schema_type(Type::Number).format(double);
+            number.minimum(Some(range::FORCE.min)).maximum(Some(range::FORCE.max))
+        };
+        let pair = ArrayBuilder::new().items(number()).min_items(Some(2)).max_items(Some(2));
+        OneOfBuilder::new()
+            .description(Some("A number along x, or a pair [x, y]."))
+            .example(Some(json!([1e-7, 5e-8])))
+            .item(number())
+            .item(pair)
+            .into()
+    }
+}
+
+impl Components {
+    /// Both components.
+    #[must_use]
+    pub fn pair(self) -> [f64; 2] {
+        match self {
+            Components::Along(x) => [x, 0.0],
+            Components::Plane(pair) => pair,
+        }
+    }
+}
+
+impl<'de> Deserialize<'de> for Components {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Components, D::Error> {
+        struct NumberOrPair;
+
+        impl<'de> de::Visitor<'de> for NumberOrPair {
+            type Value = Components;
+
+            fn expecting(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                f.write_str("a number, or a pair [x, y] of numbers")
+            }
+
+            fn visit_f64<E: de::Error>(self, value: f64) -> Result<Components, E> {
+                Ok(Components::Along(value))
+            }
+
+            fn visit_i64<E: de::Error>(self, value: i64) -> Result<Components, E> {
+                Ok(Components::Along(value as f64))
+            }
+
+            fn visit_u64<E: de::Error>(self, value: u64) -> Result<Components, E> {
+                Ok(Components::Along(value as f64))
+            }
+
+            fn visit_seq<A: de::SeqAccess<'de>>(self, mut items: A) -> Result<Components, A::Error> {
+                let mut next =
+                    |count: usize| items.next_element()?.ok_or_else(|| de::Error::invalid_length(count, &self));
+                let pair = [next(0)?, next(1)?];
+                match items.next_element::<de::IgnoredAny>()? {
+                    None => Ok(Components::Plane(pair)),
+                    Some(_) => Err(de::Error::invalid_length(3, &self)),
+                }
+            }
+        }
+
+        deserializer.deserialize_any(NumberOrPair)
+    }
+}
+
+/// The range of each component.
+struct Each(Range);
+
+impl Limit<Components> for Each {
+    fn keywords(&self) -> Value {
+        json!({"minimum": self.0.min, "maximum": self.0.max})
+    }
+
+    fn check(&self, value: &Components, at: JsonPath<'_>, faults: &mut Faults) {
+        match value {
+            Components::Along(value) => faults.number(at, *value, &self.0),
+            Components::Plane(pair) => {
+                pair.iter().enumerate().for_each(|(axis, value)| faults.number(at.index(axis), *value, &self.0));
+            }
+        }
+    }
+}
+
+impl Limit<[f64; 2]> for Each {
+    fn keywords(&self) -> Value {
+        Limit::<Vec<f64>>::keywords(&Array(2..=2, self.0))
+    }
+
+    fn check(&self, value: &[f64; 2], at: JsonPath<'_>, faults: &mut Faults) {
+        value.iter().enumerate().for_each(|(axis, value)| faults.number(at.index(axis), *value, &self.0));
+    }
+}
+
+requests! {
+/// One move, straight to its targets: at most one tangential target (`displacement` or `force`) and one normal target
+/// (`indentation` or `normal_force`), at least one in all. Without a tangential target the displacement stays, without
+/// a normal one the indentation stays. A pair [x, y] is a target in the plane.
+#[schema(example = json!({"displacement": [1e-7, 5e-8]}))]
+pub struct SimulatedMove: Copy, Default {
+    /// Tangential displacement of the indenter, m, along x or [x, y].
+    pub displacement: Option<Components> = Each(range::DISPLACEMENT),
+    /// Tangential force, N, along x or [x, y]. Its magnitude must stay below the friction limit μ F_N.
+    pub force: Option<Components> = Each(range::FORCE),
+    /// Indentation, m; below zero the bodies are apart and the slip history is lost.
+    pub indentation: Option<f64> = range::INDENTATION,
+    /// Normal force, N; negative only as an increment.
+    pub normal_force: Option<f64> = range::FORCE,
+    /// Whether the numbers are increments to the present state, instead of the targets themselves.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub relative: bool,
+}
+
+/// Turns round the ellipse x = a cos θ, y = b sin(θ + phase), after a move to its beginning. Between its points the
+/// path follows the curve.
+#[schema(example = json!({"radii": [1e-7, 1e-7], "turns": 2}))]
+pub struct Ellipse: Copy {
+    /// a and b, m.
+    pub radii: [f64; 2] = Each(SEMI_AXIS),
+    /// Number of turns.
+    pub turns: usize = TURNS,
+    /// Moves of a turn, each with its state; left out, 64. The path has one move more, at most 100 000 in all.
+    pub steps_per_turn: Option<usize> = STEPS_PER_TURN,
+    /// Phase, degrees: an upright ellipse at 0, a line at 90; left out, 0.
+    pub phase: Option<f64> = PHASE,
+}
+}
+
+choices! {
+/// A path, one key: a list of moves, or a short form of one.
+#[schema(example = json!({"displacement": [1e-7, -1e-7, 0.0]}))]
+pub enum SimulatedPath {
+    /// Moves, one after the other.
+    "moves" => Moves(Vec<SimulatedMove>) = Items(PATH_MOVES),
+    /// Tangential displacements of the indenter, m, one move each.
+    "displacement" => Displacement(Vec<f64>) = Array(PATH_MOVES, range::DISPLACEMENT),
+    /// Tangential forces, N, one move each.
+    "force" => Force(Vec<f64>) = Array(PATH_MOVES, range::FORCE),
+    /// Back and forth with an amplitude that falls linearly to zero (eq. 20 of the paper).
+    "falling_amplitude" => FallingAmplitude(FallingAmplitude) = OfItsMembers,
+    /// Back and forth from gross slip to rest, with the amplitudes that leave equal peaks of shear stress on the
+    /// profile of the contact.
+    "equal_peaks" => EqualPeaks(EqualPeaks) = OfItsMembers,
+    /// Equal cycles about a mean, under a constant load or one that oscillates too.
+    "cycles" => Cycles(CyclicPath),
+    /// Round an ellipse.
+    "ellipse" => Ellipse(Ellipse) = OfItsMembers,
+}
+}
+
+replies! {
+/// The state after a move in the plane.
+pub struct PlanarState: Copy, Default {
+    /// Tangential displacement of the indenter along x and y, m.
+    pub displacement: [f64; 2],
+    /// Tangential force along x and y, N; along the displacement of a virgin contact.
+    pub force: [f64; 2],
+    /// Indentation d, m; positive when pressed in, below zero the bodies are apart.
+    pub indentation: f64,
+    /// Normal force F_N, N; compression is positive.
+    pub normal_force: f64,
+    /// Contact radius a, m.
+    pub contact_radius: f64,
+    /// Radius inside which the last move did not slip, m, to the width of a ring: the contact radius if nothing
+    /// slipped, zero in gross slip.
+    pub stick_radius: f64,
+    /// How much of the contact slipped in the last move.
+    pub regime: Regime,
+    /// Work dissipated by friction since the start, J; never falls.
+    pub dissipated_energy: f64,
+    /// Energy stored in the tangential deformation, J.
+    pub elastic_energy: f64,
+}
+
+/// Stresses along the radius at the end of a path in the plane; they are the same at every angle. An array that was not
+/// asked for is left out.
+pub struct PlanarStress: Default omits Option {
+    /// Radii, m.
+    pub radius: Vec<f64>,
+    /// Normal pressure, Pa; compression is positive; `null` where it is infinite.
+    pub pressure: Option<Vec<Option<f64>>>,
+    /// Shear stress along x, Pa; `null` where it is infinite.
+    pub shear_x: Option<Vec<Option<f64>>>,
+    /// Shear stress along y, Pa; `null` where it is infinite.
+    pub shear_y: Option<Vec<Option<f64>>>,
+    /// Slip along x, the displacement of the indenter less that of the surface, m; `null` outside the contact.
+    pub slip_x: Option<Vec<Option<f64>>>,
+    /// Slip along y, m; `null` outside the contact.
+    pub slip_y: Option<Vec<Option<f64>>>,
+    /// Friction work per area since the start, J/m²: with `slip`, where rings follow the path.
+    pub friction_work: Option<Vec<Option<f64>>>,
+}
+
+/// The result of a simulation in the plane.
+pub struct PlanarReply omits Option {
+    /// What follows from the definition at the preload.
+    pub contact: ContactSummary,
+    /// The states along the path: all of them, or the last.
+    pub steps: Vec<PlanarState>,
+    /// The stresses at the end, if asked for.
+    pub stress: Option<PlanarStress>,
+    /// Friction work of each turn of an ellipse, J; the first one begins at rest.
+    pub turn_losses: Option<Vec<f64>>,
+    /// Solver, errors and time.
+    pub accuracy: Accuracy,
+    /// Warnings about the result.
+    pub warnings: Vec<Warning>,
+}
+}
+
+/// The result of a simulation, along a line or in the plane: the latter if the path has pairs or is an ellipse, or
+/// rings are asked for.
+#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
+#[serde(untagged)]
+#[expect(clippy::large_enum_variant, reason = "there is one of it for a request")]
+pub enum SimulationReply {
+    /// Along a line.
+    Line(SimulateReply),
+    /// In the plane.
+    Plane(PlanarReply),
+}
+
+/// A checked path in the plane.
+#[derive(Clone, Debug)]
+pub struct PlanarPlan {
+    /// The moves.
+    pub moves: Vec<rings::PlanarMove>,
+    /// The direction of the line that all moves lead along, if they do and no rings are asked for.
+    pub line: Option<[f64; 2]>,
+    /// The pointer, below the path, to the first pair; the ellipse itself.
+    first_pair: String,
+    form: Form,
+}
+
+/// How the path was sent.
+#[derive(Clone, Copy, Debug)]
+enum Form {
+    Moves,
+    /// A list of this name.
+    Targets(&'static str),
+    /// By so many moves a turn.
+    Ellipse(usize),
+}
+
+impl From<Move> for SimulatedMove {
+    fn from(step: Move) -> SimulatedMove {
+        SimulatedMove {
+            displacement: step.displacement.map(Components::Along),
+            force: step.force.map(Components::Along),
+            indentation: step.indentation,
+            normal_force: step.normal_force,
+            relative: step.relative,
+        }
+    }
+}
+
+impl From<Path> for SimulatedPath {
+    fn from(path: Path) -> SimulatedPath {
+        match path {
+            Path::Moves(moves) => SimulatedPath::Moves(moves.into_iter().map(SimulatedMove::from).collect()),
+            Path::Displacement(targets) => SimulatedPath::Displacement(targets),
+            Path::Force(targets) => SimulatedPath::Force(targets),
+            Path::FallingAmplitude(fall) => SimulatedPath::FallingAmplitude(fall),
+            Path::EqualPeaks(peaks) => SimulatedPath::EqualPeaks(peaks),
+            Path::Cycles(cycles) => SimulatedPath::Cycles(cycles),
+        }
+    }
+}
+
+impl SimulatedMove {
+    fn pairs(&self) -> [(&'static str, Option<Components>); 2] {
+        [("displacement", self.displacement), ("force", self.force)]
+    }
+
+    /// The move along x.
+    fn along_x(&self) -> Move {
+        let [x, force] = self.pairs().map(|(_, components)| components.map(|components| components.pair()[0]));
+        let SimulatedMove { indentation, normal_force, relative, .. } = *self;
+        Move { displacement: x, force, indentation, normal_force, relative }
+    }
+
+    fn in_plane(&self) -> rings::PlanarMove {
+        let displacement = self.displacement.map(|target| PlanarTarget::Displacement(target.pair()));
+        let force = self.force.map(|target| PlanarTarget::Force(target.pair()));
+        let normal = self.indentation.map(Normal::Indentation).or(self.normal_force.map(Normal::NormalForce));
+        rings::PlanarMove { tangential: displacement.or(force), normal, relative: self.relative }
+    }
+
+    fn check(&self, at: JsonPath<'_>, faults: &mut Faults) {
+        self.along_x().check(at, faults);
+        for (name, target) in self.pairs() {
+            if let Some(Components::Plane([_, y])) = target {
+                let range = if name == "force" { &range::FORCE } else { &range::DISPLACEMENT };
+                faults.number(at.member(name).index(1), y, range);
+            }
+        }
+    }
+}
+
+impl SimulatedPath {
+    /// The path without pairs; `None` if it has any.
+    #[must_use]
+    pub fn along_a_line(self) -> Option<Path> {
+        let is_pair = |target: Option<Components>| matches!(target, Some(Components::Plane(_)));
+        Some(match self {
+            SimulatedPath::Moves(moves) => {
+                if moves.iter().any(|step| step.pairs().iter().any(|(_, target)| is_pair(*target))) {
+                    return None;
+                }
+                Path::Moves(moves.iter().map(SimulatedMove::along_x).collect())
+            }
+            SimulatedPath::Displacement(targets) => Path::Displacement(targets),
+            SimulatedPath::Force(targets) => Path::Force(targets),
+            SimulatedPath::FallingAmplitude(fall) => Path::FallingAmplitude(fall),
+            SimulatedPath::EqualPeaks(peaks) => Path::EqualPeaks(peaks),
+            SimulatedPath::Cycles(cycles) => Path::Cycles(cycles),
+            SimulatedPath::Ellipse(_) => return None,
+        })
+    }
+
+    /// The checked path, in the plane if it has pairs, is an ellipse, or `rings` are asked for.
+    pub(crate) fn check(self, rings: bool, at: JsonPath<'_>, faults: &mut Faults) -> Option<Plan> {
+        let followed = match &self {
+            SimulatedPath::Moves(moves) => {
+                let at = at.member("moves");
+                faults.part(|faults| {
+                    Items(PATH_MOVES).check(moves, at, faults);
+                    moves.iter().enumerate().for_each(|(index, step)| step.check(at.index(index), faults));
+                })?;
+                Some(moves.clone())
+            }
+            SimulatedPath::Displacement(targets) if rings => {
+                Some(self.listed(targets, Move::displacement, at, faults)?)
+            }
+            SimulatedPath::Force(targets) if rings => Some(self.listed(targets, Move::force, at, faults)?),
+            SimulatedPath::Ellipse(ellipse) => {
+                return ellipse.check(rings, at.member("ellipse"), faults).map(Plan::Plane);
+            }
+            _ => None,
+        };
+        let form = match &self {
+            SimulatedPath::Displacement(_) => Form::Targets("displacement"),
+            SimulatedPath::Force(_) => Form::Targets("force"),
+            _ => Form::Moves,
+        };
+        let first_pair = followed.as_deref().and_then(first_pair);
+        match (followed, first_pair, rings) {
+            (Some(moves), first_pair, _) if rings || first_pair.is_some() => {
+                let moves: Vec<_> = moves.iter().map(SimulatedMove::in_plane).collect();
+                Some(Plan::Plane(PlanarPlan::new(moves, form, rings, first_pair.unwrap_or_default())))
+            }
+            (_, _, true) => {
+                faults.add(
+                    JsonPath::Root.member("solver"),
+                    "rings follow `moves`, `displacement`, `force` and `ellipse`: leave `solver` out",
+                );
+                None
+            }
+            _ => self.along_a_line().and_then(|path| path.check(at, faults)),
+        }
+    }
+
+    fn listed(
+        &self,
+        targets: &[f64],
+        to: fn(f64) -> Move,
+        at: JsonPath<'_>,
+        faults: &mut Faults,
+    ) -> Option<Vec<SimulatedMove>> {
+        faults.part(|faults| self.check_members(at, faults))?;
+        Some(targets.iter().map(|target| SimulatedMove::from(to(*target))).collect())
+    }
+}
+
+/// The pointer to the first pair of some moves.
+fn first_pair(moves: &[SimulatedMove]) -> Option<String> {
+    let in_move = |(index, step): (usize, &SimulatedMove)| {
+        let mut pairs = step.pairs().into_iter();
+        let (name, _) = pairs.find(|(_, target)| matches!(target, Some(Components::Plane(_))))?;
+        Some(format!("/moves/{index}/{name}"))
+    };
+    moves.iter().enumerate().find_map(in_move)
+}
+
+impl Ellipse {
+    fn check(&self, rings: bool, at: JsonPath<'_>, faults: &mut Faults) -> Option<PlanarPlan> {
+        faults.part(|faults| self.check_members(at, faults))?;
+        let steps = self.steps_per_turn.unwrap_or(DEFAULT_STEPS_PER_TURN);
+        let moves = self.turns.saturating_mul(steps);
+        if moves >= *PATH_MOVES.end() {
+            let most = PATH_MOVES.end().saturating_sub(1).checked_div(steps).unwrap_or(0);
+            let detail = format_args!("{} turns of {steps} moves: allowed are 1 to {most}", self.turns);
+            faults.add(at.member("turns"), detail);
+            return None;
+        }
+        let phase = self.phase.unwrap_or(0.0).to_radians();
+        let arc = |turns| Arc { radii: self.radii, phase, turns };
+        let to = |target| rings::PlanarMove { tangential: Some(target), ..rings::PlanarMove::default() };
+        // The turning points of a line are among its points.
+        let flat = self.radii.iter().any(|radius| *radius <= 0.0);
+        let straight = flat && phase.abs() <= 0.0 && steps.is_multiple_of(4);
+        let turns = |index: usize| index as f64 / steps as f64;
+        let along = |index: usize| {
+            let arc = arc([turns(index), turns(index.saturating_add(1))]);
+            to(if straight { PlanarTarget::Displacement(arc.at(1.0)) } else { PlanarTarget::Arc(arc) })
+        };
+        let begin = to(PlanarTarget::Displacement(arc([0.0; 2]).at(0.0)));
+        let moves = std::iter::once(begin).chain((0..moves).map(along)).collect();
+        Some(PlanarPlan::new(moves, Form::Ellipse(steps), rings, "/ellipse".to_owned()))
+    }
+}
+
+impl PlanarPlan {
+    fn new(moves: Vec<rings::PlanarMove>, form: Form, rings: bool, first_pair: String) -> PlanarPlan {
+        let (count, direction) = straight_moves(&moves);
+        let line = (!rings && count == moves.len()).then_some(direction);
+        PlanarPlan { moves, line, first_pair, form }
+    }
+
+    /// The pointer to the first pair, or to the ellipse.
+    #[must_use]
+    pub fn first_pair(&self) -> String {
+        format!("/path{}", self.first_pair)
+    }
+
+    /// The pointer to the move of this number in the body; `quantity` is the member at fault, if one is.
+    pub(crate) fn place_of(&self, index: usize, quantity: Option<Quantity>) -> String {
+        let member = quantity.map(|quantity| format!("/{quantity}")).unwrap_or_default();
+        match self.form {
+            Form::Moves => format!("/path/moves/{index}{member}"),
+            Form::Targets(name) => format!("/path/{name}/{index}"),
+            Form::Ellipse(_) => "/path/ellipse".to_owned(),
+        }
+    }
+
+    /// Moves of a turn, of an ellipse.
+    #[must_use]
+    pub fn steps_per_turn(&self) -> Option<usize> {
+        if let Form::Ellipse(steps) = self.form { Some(steps) } else { None }
+    }
+
+    /// The moves along the line of this direction.
+    #[must_use]
+    pub fn along(&self, [x, y]: [f64; 2]) -> Vec<Move> {
+        let on_line = |[to_x, to_y]: [f64; 2]| to_x * x + to_y * y;
+        let along = |step: &rings::PlanarMove| {
+            let mut found = match step.tangential {
+                None => Move::default(),
+                Some(PlanarTarget::Displacement(to)) => Move::displacement(on_line(to)),
+                Some(PlanarTarget::Force(to)) => Move::force(on_line(to)),
+                Some(PlanarTarget::Arc(arc)) => Move::displacement(on_line(arc.at(1.0))),
+            };
+            match step.normal {
+                Some(Normal::Indentation(depth)) => found.indentation = Some(depth),
+                Some(Normal::NormalForce(force)) => found.normal_force = Some(force),
+                None => {}
+            }
+            Move { relative: step.relative, ..found }
+        };
+        self.moves.iter().map(along).collect()
+    }
+}
