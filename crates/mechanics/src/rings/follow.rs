@@ -171,15 +171,20 @@ pub fn follow<P: Into<Shared<Profile>>>(
     }
     let scene = Scene::new(setup, moves)?;
     let (mut count, mut length) = options.first();
+    let mut last = f64::INFINITY;
     for refinement in 0.. {
         let (solution, longest) = scene.pass(count, length, keep_going)?;
         let [by_steps, by_rings] = solution.errors;
         let finer = [by_steps > 0.5 * options.tolerance, by_rings > 0.5 * options.tolerance];
         let possible = [longest > SHORTEST_STEP, options.count.is_none() && count < CHOSEN_RINGS[1]];
         let wanted = [finer[0] && possible[0], finer[1] && possible[1]];
-        if by_steps + by_rings <= options.tolerance || wanted == [false; 2] || refinement == REFINEMENTS {
+        let error = by_steps + by_rings;
+        // Where rounding is what is left, as on arcs of a billion times gross slip, more steps gain nothing.
+        let gained = error < last;
+        if error <= options.tolerance || wanted == [false; 2] || refinement == REFINEMENTS || !gained {
             return if options.count.is_some() { Ok(solution) } else { scene.with_exact(solution) };
         }
+        last = error;
         if wanted[0] {
             length = (0.5 * longest).max(SHORTEST_STEP);
         }
