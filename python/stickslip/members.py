@@ -110,7 +110,6 @@ METHODS: dict[str, str] = {
     "/fretting": "fretting",
     "/profiles/fit": "fit_profile",
     "/protocols": "protocols",
-    "/simulate": "simulate",
     "/sweep": "sweep",
     "/wear": "wear",
 }

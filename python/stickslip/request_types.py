@@ -55,8 +55,8 @@ Rigid: TypeAlias = Literal["rigid"]
 """The name of a body that does not deform."""
 ScanOrientation: TypeAlias = Literal["auto", "peak_up", "peak_down"]
 """Which way up a scan is."""
-SolverKind: TypeAlias = Literal["exact", "springs"]
-"""The two solvers."""
+SolverKind: TypeAlias = Literal["exact", "springs", "rings"]
+"""The solvers."""
 Steps: TypeAlias = Literal["all", "last"]
 """Which states of a path to return."""
 SubsurfaceField: TypeAlias = Literal["tensor", "principal", "von_mises", "max_shear", "hydrostatic"]
@@ -208,6 +208,23 @@ class CyclicPath(_CyclicPathNeeded, total=False):
     """
     start: FirstTurn
     """The first turn."""
+
+
+class _EllipseNeeded(TypedDict):
+    radii: Quantities
+    turns: int
+
+
+class Ellipse(_EllipseNeeded, total=False):
+    """Turns round the ellipse x = a cos θ, y = b sin(θ + phase), after a move to its beginning.
+
+    Between its points the path follows the curve.
+    """
+
+    phase: Quantity
+    """Phase, degrees: an upright ellipse at 0, a line at 90; left out, 0."""
+    steps_per_turn: int
+    """Moves of a turn, each with its state; left out, 64. The path has one move more, at most 100 000 in all."""
 
 
 class _EqualPeaksNeeded(TypedDict):
@@ -525,6 +542,13 @@ class ProtocolStartContactId(TypedDict):
     """The present state of the contact of this identifier, whatever its history."""
 
 
+class Rings(TypedDict):
+    """Rings of constant traction, for motion in the plane."""
+
+    count: int
+    """Number of rings across the radius of the largest contact."""
+
+
 class Robustness(TypedDict, total=False):
     """Errors with which a protocol is followed: it is tried many times, each with errors of its own."""
 
@@ -581,6 +605,83 @@ class ScanUnits(TypedDict, total=False):
     """That of x and y, and of dx and dy."""
 
 
+class SimulatedMove(TypedDict, total=False):
+    """One move, straight to its targets.
+
+    At most one tangential target (`displacement` or `force`) and one normal target (`indentation` or
+    `normal_force`), at least one in all. Without a tangential target the displacement stays, without a normal one
+    the indentation stays. A pair [x, y] is a target in the plane.
+    """
+
+    displacement: Components
+    """Tangential displacement of the indenter, m, along x or [x, y]."""
+    force: Components
+    """Tangential force, N, along x or [x, y]. Its magnitude must stay below the friction limit μ F_N."""
+    indentation: Quantity
+    """Indentation, m; below zero the bodies are apart and the slip history is lost."""
+    normal_force: Quantity
+    """Normal force, N; negative only as an increment."""
+    relative: bool
+    """Whether the numbers are increments to the present state, instead of the targets themselves."""
+
+
+class SimulatedPathMoves(TypedDict):
+    """Moves, one after the other."""
+
+    moves: Sequence[SimulatedMove | Mapping[str, Any]]
+    """Moves, one after the other."""
+
+
+class SimulatedPathDisplacement(TypedDict):
+    """Tangential displacements of the indenter, m, one move each."""
+
+    displacement: Quantities
+    """Tangential displacements of the indenter, m, one move each."""
+
+
+class SimulatedPathForce(TypedDict):
+    """Tangential forces, N, one move each."""
+
+    force: Quantities
+    """Tangential forces, N, one move each."""
+
+
+class SimulatedPathFallingAmplitude(TypedDict):
+    """Back and forth with an amplitude that falls linearly to zero (eq.
+
+    20 of the paper).
+    """
+
+    falling_amplitude: FallingAmplitude | Mapping[str, Any]
+    """Back and forth with an amplitude that falls linearly to zero (eq. 20 of the paper)."""
+
+
+class SimulatedPathEqualPeaks(TypedDict):
+    """Back and forth from gross slip to rest.
+
+    With the amplitudes that leave equal peaks of shear stress on the profile of the contact.
+    """
+
+    equal_peaks: EqualPeaks | Mapping[str, Any]
+    """Back and forth from gross slip to rest, with the amplitudes that leave equal peaks of shear stress on the
+    profile of the contact.
+    """
+
+
+class SimulatedPathCycles(TypedDict):
+    """Equal cycles about a mean, under a constant load or one that oscillates too."""
+
+    cycles: CyclicPath | Mapping[str, Any]
+    """Equal cycles about a mean, under a constant load or one that oscillates too."""
+
+
+class SimulatedPathEllipse(TypedDict):
+    """Round an ellipse."""
+
+    ellipse: Ellipse | Mapping[str, Any]
+    """Round an ellipse."""
+
+
 class SmoothingNoise(TypedDict):
     """The standard deviation of the noise of a height, m."""
 
@@ -617,6 +718,19 @@ class SolverSprings(TypedDict):
     """The spring foundation of the paper: a reference for comparison, slower and approximate. It follows a tangential
     force only at constant indentation, and a normal force only without a tangential target (else
     `unsupported_move`).
+    """
+
+
+class SolverRings(TypedDict):
+    """Rings, also along a line: the solver for motion in the plane, approximate.
+
+    A path with pairs that leaves its first line is followed by as many as the tolerance needs, if no number is
+    asked for.
+    """
+
+    rings: Rings | Mapping[str, Any]
+    """Rings, also along a line: the solver for motion in the plane, approximate. A path with pairs that leaves its
+    first line is followed by as many as the tolerance needs, if no number is asked for.
     """
 
 Span = TypedDict("Span", {"count": "int", "from": "Quantity", "to": "Quantity"}, total=True)
@@ -822,6 +936,12 @@ Centre: TypeAlias = Union[
     "Mapping[str, Any]",
 ]
 """Where the axis is: the string `"auto"`, or a place."""
+Components: TypeAlias = Union[
+    "Quantity",
+    "Quantities",
+    "Mapping[str, Any]",
+]
+"""A number along x, or a pair [x, y]."""
 CycleDrive: TypeAlias = Union[
     "CycleDriveDisplacement",
     "CycleDriveForce",
@@ -864,6 +984,17 @@ ScanData: TypeAlias = Union[
     "Mapping[str, Any]",
 ]
 """Heights with their places, one key. A height of `null` is missing."""
+SimulatedPath: TypeAlias = Union[
+    "SimulatedPathMoves",
+    "SimulatedPathDisplacement",
+    "SimulatedPathForce",
+    "SimulatedPathFallingAmplitude",
+    "SimulatedPathEqualPeaks",
+    "SimulatedPathCycles",
+    "SimulatedPathEllipse",
+    "Mapping[str, Any]",
+]
+"""A path, one key: a list of moves, or a short form of one."""
 Smoothing: TypeAlias = Union[
     "Literal[\"auto\"]",
     "SmoothingNoise",
@@ -874,6 +1005,7 @@ Smoothing: TypeAlias = Union[
 Solver: TypeAlias = Union[
     "Literal[\"exact\"]",
     "SolverSprings",
+    "SolverRings",
     "Mapping[str, Any]",
 ]
 """A solver: the string `"exact"`, or an object with one key."""

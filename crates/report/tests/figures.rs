@@ -18,7 +18,7 @@ fn the_figures_of_the_documentation_are_those_that_the_command_draws() {
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let written = fs::read_dir(folder.path()).unwrap().map(|file| file.unwrap().path());
     let drawn: Vec<_> = written.filter(|file| file.extension().is_some_and(|end| end == "svg")).collect();
-    assert_eq!(drawn.len(), 16, "{drawn:?}");
+    assert_eq!(drawn.len(), 18, "{drawn:?}");
     let kept = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/figures");
     for file in drawn {
         let reference = kept.join(file.file_name().unwrap());
