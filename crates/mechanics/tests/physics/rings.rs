@@ -251,5 +251,7 @@ fn without_friction_or_contact_nothing_is_carried() {
     let lifted: Vec<PlanarMove> =
         path.into_iter().map(|step| PlanarMove { normal: Some(Normal::Indentation(-0.1)), ..step }).collect();
     let apart = solve(UNIT.setup(), &lifted, &DEFAULT);
-    assert!(!apart.states.iter().any(|state| carries(state) || state.contact_radius > 0.0));
+    // The move that lifts off slips until then.
+    let held = |state: &PlanarState| state.force[0].hypot(state.force[1]) > 0.0 || state.contact_radius > 0.0;
+    assert!(!apart.states.iter().any(held));
 }
