@@ -8,8 +8,8 @@ use serde_json::Value;
 use crate::python::file;
 
 /// The units of the fields of replies, longer ones before those that they begin with.
-const UNITS: [&str; 14] =
-    ["N²/m³", "m³", "J/m²", "N/m", "m/N", "m/s", "m^(1−n)", "Pa", "Hz", "N", "J", "m", "s", "degrees"];
+const UNITS: [&str; 15] =
+    ["N²/m³", "m³", "J/m²", "Pa/N", "N/m", "m/N", "m/s", "m^(1−n)", "Pa", "Hz", "N", "J", "m", "s", "degrees"];
 /// What fields write that take their unit from the one that they belong to.
 const OF_ANOTHER: [&str; 2] = ["in the unit of ", "in the SI unit of "];
 
