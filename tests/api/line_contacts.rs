@@ -19,7 +19,7 @@ pub fn cylinder() -> Value {
 }
 
 fn with_bulk() -> Value {
-    changed(cylinder(), &json!({"bulk": {"body": "second", "stress_per_force": 198_251.58437}}))
+    changed(cylinder(), &json!({"bulk": {"body": "second", "stress_per_force": 198_251.584_37}}))
 }
 
 fn pad() -> Value {
@@ -81,7 +81,7 @@ async fn stresses_are_over_x_and_the_stuck_zone_is_off_the_middle() {
         [good(server.post("/cycle", &plain).await).await, good(server.post("/cycle", &shifted).await).await];
     assert_eq!(plain["cycles"][0]["dissipated_energy"], shifted["cycles"][0]["dissipated_energy"]);
     let density = |reply: &Value, index: usize| number(&reply["cycles"][0]["friction_work"]["density"][index]);
-    assert_eq!(density(&plain, 0), density(&plain, 1));
+    assert_eq!(density(&plain, 0).to_bits(), density(&plain, 1).to_bits());
     assert!(density(&shifted, 0) > 2.0 * density(&shifted, 1));
     let more = number(&shifted["cycles"][0]["friction_energy"]);
     assert!(

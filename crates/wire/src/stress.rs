@@ -133,7 +133,7 @@ impl Sampling {
             Points::Uniform(count) => {
                 let last = count.saturating_sub(1);
                 // Mirror images of each other to the last bit.
-                let place = |index: usize| (2 * index) as f64 - last as f64;
+                let place = |index: usize| 2.0 * index as f64 - last as f64;
                 (0..*count).map(|index| half_width * (place(index) / last as f64)).collect()
             }
             Points::Radii(places) | Points::Places(places) => places.clone(),

@@ -1,10 +1,12 @@
 //! The stress below a line contact, in plane strain, by one analytic function of zeta = x + i z for each traction.
 //!
-//! With C(zeta) = int p/(zeta - xi) dxi (Muskhelishvili; Johnson 1985, 2.5), tension positive: from a pressure xx + zz =
-//! (2/pi) Im C, zz - xx = -(2/pi) z Re C', xz = -(1/pi) z Im C'; from a shear stress along +x xx + zz = -(2/pi) Re C, zz
-//! - xx = (2/pi)(Re C - z Im C'), xz = (1/pi)(Im C + z Re C'); yy = nu (xx + zz). A flat punch of the half-width t under
-//! a unit load has C = 1/sqrt(zeta^2 - t^2), so that C = E* int dG/sqrt(zeta^2 - t^2): closed for a cylinder, whose
-//! zones may be off the middle, and for a pad (`pad_potential`).
+//! With C(zeta) = int p/(zeta - xi) dxi (Muskhelishvili; Johnson 1985, 2.5) and tension positive, a pressure makes xx +
+//! zz = (2/pi) Im C, zz - xx = -(2/pi) z Re C', xz = -(1/pi) z Im C'. A shear stress along +x makes
+//! xx + zz = -(2/pi) Re C, zz - xx = (2/pi)(Re C - z Im C'), xz = (1/pi)(Im C + z Re C'). In both, yy = nu (xx + zz).
+//!
+//! A flat punch of the half-width t under a unit load has C = 1/sqrt(zeta^2 - t^2), so that the contact has
+//! C = E* int dG/sqrt(zeta^2 - t^2): closed for a cylinder, whose zones may be off the middle, and for a pad
+//! (`pad_potential`).
 
 use super::complex::Complex;
 use crate::contact::Contact;

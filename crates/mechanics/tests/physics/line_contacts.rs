@@ -197,7 +197,7 @@ fn work_of_bulk(start: &Contact, bulk: &LineBulk, zones: &[f64]) -> f64 {
             let state = contact.state();
             let (c, e) = (state.stick_radius, state.stick_centre.unwrap());
             assert_near(e, reach * (1.0 - c * c / (a * a)), 1e-12);
-            let ends = [&zones[..], &[e + c, e - c]].concat();
+            let ends = [zones, &[e + c, e - c]].concat();
             let moment = 0.01 * over_contact(&contact, &ends, &|x| x * contact.shear(x));
             let followed = force * 2.0 * 0.6 / 0.05 * e * reach / (2.0 * limit);
             weight * from.abs() * (followed - strain * moment)
@@ -323,7 +323,8 @@ fn without_bulk_stress_or_in_a_rigid_body_nothing_moves_and_a_mirror_image_is_on
     // The same strain in the other body has the other sign.
     assert_eq!(after(with_bulk(cylinder(), Side::First, -1e5), 1.0).0, moved);
     // The zones, the loss and the rest of the state are those without it.
-    assert!(second.stick_centre.unwrap() > 0.0 && second.dissipated_energy == state.dissipated_energy);
+    assert!(second.stick_centre.unwrap() > 0.0);
+    assert_eq!(second.dissipated_energy.to_bits(), state.dissipated_energy.to_bits());
     assert_eq!(
         (second.force, second.displacement, second.stick_radius),
         (state.force, state.displacement, state.stick_radius)
@@ -538,9 +539,8 @@ fn solved(mut rows: Vec<Vec<f64>>) -> Vec<f64> {
         rows.swap(column, pivot);
         for row in column + 1..n {
             let factor = rows[row][column] / rows[column][column];
-            for index in column..=n {
-                rows[row][index] -= factor * rows[column][index];
-            }
+            let (above, below) = rows.split_at_mut(row);
+            below[0].iter_mut().zip(&above[column]).skip(column).for_each(|(value, pivot)| *value -= factor * pivot);
         }
     }
     let mut solution = vec![0.0; n];
@@ -587,9 +587,9 @@ fn boundary_elements_have_the_same_shear_after_oblique_strokes_and_bulk_stress()
                 let change = strain * limit * (share - before.0) / f64::from(steps);
                 elements.step(&bound, now.0 * limit / 0.01, change);
             }
-            before = (share, load);
             let tangential = Some(Tangential::Force(share * limit));
-            let normal = (load != exact.normal_force() / 500.0).then_some(Normal::NormalForce(500.0 * load));
+            let normal = ((load - before.1).abs() > 0.0).then_some(Normal::NormalForce(500.0 * load));
+            before = (share, load);
             exact.apply(&Move { tangential, normal, relative: false }).unwrap();
             let errors: Vec<f64> =
                 elements.places.iter().zip(&elements.shear).map(|(x, q)| (exact.shear(*x) - q).abs() / unit).collect();

@@ -38,10 +38,7 @@ impl Subject<'_> {
             Error::OutOfRange { quantity: Quantity::Friction, .. } if self.setup.is_some() => "/contact/friction",
             Error::OutOfRange { quantity: Quantity::Indentation, .. } if self.setup.is_some() => "/contact/preload",
             Error::OutOfRange { quantity: Quantity::Displacement, .. } => "/start/displacement",
-            Error::LineContact(_) if self.contact.profile().line().is_some_and(|line| line.bulk().is_some()) => {
-                if self.setup.is_some() { "/contact/bulk" } else { "" }
-            }
-            Error::LineContact(_) => "/end",
+            Error::LineContact(_) if self.setup.is_some() => "/contact/bulk",
             _ => "",
         }
     }
