@@ -261,7 +261,7 @@ class _FindleyNeeded(TypedDict):
 class Findley(_FindleyNeeded, total=False):
     """Findley's criterion."""
 
-    life: StressLife
+    life: StressLife | Mapping[str, Any]
     """How many cycles it bears, from tests."""
     limit: Quantity
     """The value that the material bears, Pa."""
@@ -789,8 +789,8 @@ class StrainLifeCurve(TypedDict):
     """Fatigue strength exponent b, a pure number."""
 
 
-class StressLifeSN(TypedDict):
-    """Cycles = `cycles` · (value/`reference`)^(−`exponent`) (Basquin 1910)."""
+class StressLife(TypedDict):
+    """The life of a criterion: an S-N curve."""
 
     s_n: SnCurve | Mapping[str, Any]
     """Cycles = `cycles` · (value/`reference`)^(−`exponent`) (Basquin 1910)."""
@@ -877,7 +877,7 @@ class SubsurfaceSurface(TypedDict):
 class SurfaceCriterion(TypedDict, total=False):
     """A quantity of the surface."""
 
-    life: StressLife
+    life: StressLife | Mapping[str, Any]
     """How many cycles it bears, from tests."""
     limit: Quantity
     """The value that the material bears."""
@@ -897,7 +897,7 @@ class _WeightedNeeded(TypedDict):
 class Weighted(_WeightedNeeded, total=False):
     """A criterion with a weight of the hydrostatic stress."""
 
-    life: StressLife
+    life: StressLife | Mapping[str, Any]
     """How many cycles it bears, from tests."""
     limit: Quantity
     """The value that the material bears, Pa."""
@@ -1015,8 +1015,3 @@ StrainLife: TypeAlias = Union[
     "Mapping[str, Any]",
 ]
 """The life of a criterion with strains: an S-N curve, or that of the criterion."""
-StressLife: TypeAlias = Union[
-    "StressLifeSN",
-    "Mapping[str, Any]",
-]
-"""The life of a criterion: an S-N curve."""

@@ -10,8 +10,10 @@ SAYABLE = re.compile(r"unknown|missing|invalid (type|value|length)|elements: all
 # JSON Schema takes 20.0 for a whole number, and this service does not.
 WHOLE = re.compile(r"floating point `[0-9]+\.0(e[0-9]+)?`, expected a whole number")
 OUT_OF_RANGE = re.compile(r"^(?:\w+ = )?(\S+) is out of range")
-# Their ranges depend on the contact, or on whether the numbers of a move are increments.
-DEPENDENT = ("cutoff_radius", "contact_radius", "indentation", "normal_force", "force", "displacement")
+# Their ranges depend on the contact, on another member, or on whether the numbers of a move are increments.
+DEPENDENT = (
+    "reference_length", "cutoff_radius", "contact_radius", "indentation", "normal_force", "force", "displacement",
+)
 SEQUENCE = re.compile(r'"[0-9]{1,19}"|\*')
 
 
@@ -28,8 +30,9 @@ def at(body, pointer):
 def is_sayable(fault, body):
     """Whether the document should have excluded this request."""
     detail, pointer = fault["detail"], fault["pointer"]
-    if pointer.startswith("/base"):
-        # The base of a sweep is a simulation of which the axes may leave anything out.
+    if pointer.startswith("/base") or "for motion in the plane" in detail:
+        # The base of a sweep is a simulation of which the axes may leave anything out; the tolerance of motion in the
+        # plane has a range of its own, which depends on the path.
         return False
     found = OUT_OF_RANGE.match(detail)
     if not found:

@@ -18,11 +18,11 @@ pub struct Fault {
     /// What is wrong there, and what is allowed.
     #[schema(example = "-1 is out of range: allowed is 1e-15 to 1e9 m")]
     pub detail: String,
-    /// The least number allowed, where a number is out of range.
+    /// The least number allowed, in the unit of the member, where a number is out of range.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub minimum: Option<f64>,
-    /// The largest number allowed, where a number is out of range.
+    /// The largest number allowed, in the unit of the member, where a number is out of range.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub maximum: Option<f64>,

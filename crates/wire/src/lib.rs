@@ -116,7 +116,7 @@ pub fn all_limits() -> Vec<(&'static str, &'static str, serde_json::Value)> {
         Move, MoveRequest, NamedOutput, NormalOscillation, Observation, ObservationsRequest, Path, PathRequest,
         profile_fit::PointScan, Preload, ProtocolRequest, protocol::ProtocolStart, RelaxRequest, RenameRequest, Rings,
         protocol::Robustness, profile_fit::ScanLoad, SimulatedMove, SimulatedPath, SimulateRequest, profile_fit::Smoothing, Span, Springs,
-        SnCurve, StrainBased, StrainLifeCurve, StressRequest, SubsurfaceLine, SubsurfacePlane, SubsurfaceRequest,
+        SnCurve, StrainBased, StrainLifeCurve, StressLife, StressRequest, SubsurfaceLine, SubsurfacePlane, SubsurfaceRequest,
         SubsurfaceSurface, SurfaceCriterion, SweepRequest, WearDrive, WearRequest, Weighted, WorkDensity
     }
 }

@@ -4,8 +4,8 @@ use std::ops::RangeInclusive;
 
 use serde::{Deserialize, Deserializer, Serialize, de};
 use serde_json::{Value, json};
-use utoipa::openapi::schema::{ArrayBuilder, OneOfBuilder, SchemaFormat, Type};
-use utoipa::openapi::{KnownFormat, ObjectBuilder, RefOr, Schema};
+use utoipa::openapi::schema::{AnyOfBuilder, ArrayBuilder, OneOfBuilder, SchemaFormat, Type};
+use utoipa::openapi::{KnownFormat, ObjectBuilder, Ref, RefOr, Schema};
 use utoipa::{PartialSchema, ToSchema};
 
 use stickslip_mechanics::rings::{self, Arc, PlanarTarget, straight_moves};
@@ -257,7 +257,7 @@ pub struct PlanarReply omits Option {
 
 /// The result of a simulation, along a line or in the plane: the latter if the path has pairs or is an ellipse, or
 /// rings are asked for.
-#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
 #[expect(clippy::large_enum_variant, reason = "there is one of it for a request")]
 pub enum SimulationReply {
@@ -265,6 +265,28 @@ pub enum SimulationReply {
     Line(SimulateReply),
     /// In the plane.
     Plane(PlanarReply),
+}
+
+impl ToSchema for SimulationReply {
+    fn schemas(schemas: &mut Vec<(String, RefOr<Schema>)>) {
+        fn add<T: ToSchema>(schemas: &mut Vec<(String, RefOr<Schema>)>) {
+            schemas.push((T::name().into_owned(), T::schema()));
+            T::schemas(schemas);
+        }
+        add::<SimulateReply>(schemas);
+        add::<PlanarReply>(schemas);
+    }
+}
+
+impl PartialSchema for SimulationReply {
+    fn schema() -> RefOr<Schema> {
+        // Some members of both are alike, so that no schema could say that one of them alone fits.
+        let about = "The result of a simulation, along a line or in the plane: the latter if the path has pairs or is an \
+                     ellipse, or rings are asked for.";
+        let of = |name: std::borrow::Cow<'static, str>| Ref::from_schema_name(name);
+        let either = AnyOfBuilder::new().description(Some(about));
+        either.item(of(SimulateReply::name())).item(of(PlanarReply::name())).into()
+    }
 }
 
 /// A checked path in the plane.

@@ -34,7 +34,7 @@ impl Source {
             return Err(ImportError::of_file(refusal));
         }
         if sheet.is_some() {
-            return Err(ImportError::of_file("this is not a spreadsheet: leave `sheet` out"));
+            return Err(ImportError::of_file("only a spreadsheet has sheets: leave `sheet` out"));
         }
         let guess = Encoding::for_bom(bytes).map_or_else(|| without_mark(bytes), |(encoding, _)| encoding);
         if let Some(refusal) = (guess != UTF_16LE && guess != UTF_16BE).then(|| kinds::binary(bytes)).flatten() {

@@ -8,12 +8,6 @@ use crate::limits::OfItsMembers;
 use crate::request::requests;
 
 choices! {
-/// The life of a criterion: an S-N curve.
-pub enum StressLife: Copy {
-    /// Cycles = `cycles` · (value/`reference`)^(−`exponent`) (Basquin 1910).
-    "s_n" => SN(SnCurve) = OfItsMembers,
-}
-
 /// The life of a criterion with strains: an S-N curve, or that of the criterion.
 pub enum StrainLife: Copy {
     /// Cycles = `cycles` · (value/`reference`)^(−`exponent`) (Basquin 1910).
@@ -25,6 +19,12 @@ pub enum StrainLife: Copy {
 }
 
 requests! {
+/// The life of a criterion: an S-N curve.
+pub struct StressLife: Copy {
+    /// Cycles = `cycles` · (value/`reference`)^(−`exponent`) (Basquin 1910).
+    pub s_n: SnCurve = OfItsMembers,
+}
+
 /// An S-N curve of the values of a criterion.
 pub struct SnCurve: Copy {
     /// A value, in the unit of the criterion.
@@ -52,8 +52,7 @@ pub struct StrainLifeCurve: Copy {
 impl StressLife {
     /// The curve, unless its members are out of their limits.
     pub(super) fn curve(self) -> Option<LifeCurve> {
-        let StressLife::SN(curve) = self;
-        curve.checked()
+        self.s_n.checked()
     }
 }
 

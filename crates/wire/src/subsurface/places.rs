@@ -100,7 +100,7 @@ impl Steps {
             }
             let most = *SUBSURFACE_POINTS.end() as f64;
             if !(count >= 2.0 && count <= most && count.fract() == 0.0) {
-                faults.add(at.index(2), format_args!("{count:?} is not a number of points from 2 to {most}"));
+                faults.add(at.index(2), format_args!("{count:?} points: a grid has 2 to {most}, a whole number"));
             }
             Steps { from, to, count: count as usize }
         })
