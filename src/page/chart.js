@@ -9,7 +9,10 @@ import { formatQuantity } from "./units.js";
 
 const PAD = { left: 62, right: 14, top: 12, bottom: 46 };
 
-/** A bare axis has no numbers. @typedef {{ label: string, unit?: string, log?: boolean, isBare?: boolean }} AxisOptions */
+/**
+ * A bare axis has no numbers.
+ * @typedef {{ label: string, unit?: string, log?: boolean, isBare?: boolean }} AxisOptions
+ */
 
 /** A plot. `draw` sets its data; `onhover` is called with what is under the pointer. */
 export class Chart {

@@ -1,5 +1,5 @@
-// What a line contact has that a round one has not: places along x in place of radii, two edges that a bulk stress makes
-// unlike, and another area.
+// What a line contact has that a round one has not: places along x in place of radii, two edges that a bulk stress
+// makes unlike, and another area.
 import { LINE_CONTACTS } from "./form_options.js";
 
 /** Whether the contact of a definition is along a line. */

@@ -1,7 +1,7 @@
 // Small pictures of the specimens of line contacts, from the side, for the form that creates a contact.
 import { svg } from "./dom.js";
 
-/** Where the side of each specimen is, its outline above the contact, what is measured on it, and the picture in words. */
+/** Where the side of each specimen is, its outline above the contact, what is measured on it, and it in words. */
 const SPECIMENS = {
   cylinder: {
     side: 210,

@@ -31,7 +31,8 @@ function sentence(state, moved, isLine) {
   if (isLine) {
     const { from, to } = zonesOf(state, true).find(({ kind }) => kind === "stick");
     const part = `${formatNumber((100 * c) / a, 2)} % of the contact`;
-    return `From x = ${formatInterval([from, to], "m", 3)} (${part}) the surfaces stuck in the last move; beside that they slipped.`;
+    const where = formatInterval([from, to], "m", 3);
+    return `From x = ${where} (${part}) the surfaces stuck in the last move; beside that they slipped.`;
   }
   const inside = `Inside r = ${formatQuantity(c, "m", 3)} (${formatNumber((100 * c) / a, 2)} % of the contact radius)`;
   return `${inside} the surfaces stuck in the last move; the ring outside slipped.`;

@@ -131,7 +131,8 @@ test("a line contact has two edges, a stick zone off the middle, and extrema on 
   const ends = (zones) => zones.map(({ from, to, kind }) => [from, to, kind]);
   assert.deepEqual(ends(zonesOf(state, false)), [[0, 2, "stick"], [2, 4, "slip"]]); // prettier-ignore
   const shifted = { ...state, stick_centre: 1 };
-  assert.deepEqual(ends(zonesOf(shifted, true)), [[-4, -1, "slip"], [-1, 3, "stick"], [3, 4, "slip"]]); // prettier-ignore
+  const zones = [[-4, -1, "slip"], [-1, 3, "stick"], [3, 4, "slip"]]; // prettier-ignore
+  assert.deepEqual(ends(zonesOf(shifted, true)), zones);
   // In gross slip a bulk stress still has a middle, but of nothing.
   assert.deepEqual(ends(zonesOf({ ...shifted, stick_radius: 0 }, true)), [[-4, 4, "slip"]]);
   assert.deepEqual(ends(zonesOf({ ...state, stick_radius: 4, stick_centre: 0 }, true)), [[-4, 4, "stick"]]);

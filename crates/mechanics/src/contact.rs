@@ -274,8 +274,8 @@ impl Contact {
         self.normal_force
     }
 
-    /// Pressure, Pa, at a radius (m) of at least zero, or at the x of a line contact; zero outside the contact, infinite
-    /// at a sharp edge.
+    /// Pressure, Pa, at a radius (m) of at least zero, or at the x of a line contact; zero outside the contact,
+    /// infinite at a sharp edge.
     #[must_use]
     pub fn pressure(&self, radius: f64) -> f64 {
         let (profile, edge) = self.profile.face(self.history.edge());

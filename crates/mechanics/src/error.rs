@@ -74,8 +74,8 @@ pub enum Error {
     },
     /// The part of the surface that wears reaches beyond what is known of the profile.
     #[error(
-        "the worn part reaches beyond the radius {} m, where the profile ends, or its g falls: give the surface further \
-            out",
+        "the worn part reaches beyond the radius {} m, where the profile ends, or its g falls: give the surface \
+            further out",
         short(*limit)
     )]
     WornBeyondProfile {

@@ -4,10 +4,10 @@
 //! from the levels of displacement to those of G, are the history of a round contact whose pressure and shear stress
 //! over r are those of the line contact over x ([`Contact::face`]).
 //!
-//! A flat punch of half-width t under the tangential force dQ moves the surface at x > t less than itself by
-//! (2/(pi E*)) arcosh(x/t) dQ. So slip is U - u(0) + (2 mu/pi) sum -beta_i int arcosh(x/t) dG over the rings inside x. On a
-//! cylinder that is closed: (mu/R) times the difference of S(x, c) = (x sqrt(x^2 - c^2) - c^2 arcosh(x/c))/2 at the ends
-//! of each ring. Where a bulk stress comes with the force, the zone of half-width c has its centre at e(c) (see
+//! A flat punch of half-width t under the tangential force dQ moves the surface at x > t less than itself by (2/(pi
+//! E*)) arcosh(x/t) dQ. So slip is U - u(0) + (2 mu/pi) sum -beta_i int arcosh(x/t) dG over the rings inside x. On a
+//! cylinder that is closed: (mu/R) times the difference of S(x, c) = (x sqrt(x^2 - c^2) - c^2 arcosh(x/c))/2 at the
+//! ends of each ring. Where a bulk stress comes with the force, the zone of half-width c has its centre at e(c) (see
 //! `profile/line/bulk.rs`): all terms are those of x - e.
 
 use std::borrow::Cow;
@@ -40,7 +40,8 @@ impl Contact {
         Cow::Owned(Contact { profile: line.shared_face(), history, ..self.clone_without_history() })
     }
 
-    /// Centre of the stuck zone of the half-width c, m, in a contact of the half-width a: e = R k kappa F_N (1 - c^2/a^2).
+    /// Centre of the stuck zone of the half-width c, m, in a contact of the half-width a: e = R k kappa F_N (1 -
+    /// c^2/a^2).
     pub(super) fn zone_centre(&self, line: &LineContact, half_width: f64) -> f64 {
         let edge = self.contact_radius();
         let reach = line.reach_of_bulk(self.normal_force);

@@ -109,14 +109,15 @@ pub fn all_limits() -> Vec<(&'static str, &'static str, serde_json::Value)> {
         };
     }
     of_all! {
-        AccuracyRequest, Axis, BestLoadStudy, Bulk, BulkCycle, line_profiles::BulkPerForce, profile_fit::CentrePlace, ContactDefinition,
-        CreateRequest, CriticalDistance, CycleDrive, CycleRequest, CyclicPath, Effective, ElasticBody, Ellipse, EqualPeaks, FallingAmplitude,
-        FatemiSocie, Findley, fit::FitNoise, FitRequest, ForkRequest, FrequencyResponse, FrettingRequest,
-        fit::KnownValue, profile_fit::LineScan, LoadSpan, Machine, profile_fit::MapScan, Material, fit::MeasuredLoop,
-        Move, MoveRequest, NamedOutput, NormalOscillation, Observation, ObservationsRequest, Path, PathRequest,
-        profile_fit::PointScan, Preload, ProtocolRequest, protocol::ProtocolStart, RelaxRequest, RenameRequest, Rings,
-        protocol::Robustness, profile_fit::ScanLoad, SimulatedMove, SimulatedPath, SimulateRequest, profile_fit::Smoothing, Span, Springs,
-        SnCurve, StrainBased, StrainLifeCurve, StressLife, StressRequest, SubsurfaceLine, SubsurfacePlane, SubsurfaceRequest,
+        AccuracyRequest, Axis, BestLoadStudy, Bulk, BulkCycle, line_profiles::BulkPerForce, profile_fit::CentrePlace,
+        ContactDefinition, CreateRequest, CriticalDistance, CycleDrive, CycleRequest, CyclicPath, Effective,
+        ElasticBody, Ellipse, EqualPeaks, FallingAmplitude, FatemiSocie, Findley, fit::FitNoise, FitRequest,
+        ForkRequest, FrequencyResponse, FrettingRequest, fit::KnownValue, profile_fit::LineScan, LoadSpan, Machine,
+        profile_fit::MapScan, Material, fit::MeasuredLoop, Move, MoveRequest, NamedOutput, NormalOscillation,
+        Observation, ObservationsRequest, Path, PathRequest, profile_fit::PointScan, Preload, ProtocolRequest,
+        protocol::ProtocolStart, RelaxRequest, RenameRequest, Rings, protocol::Robustness, profile_fit::ScanLoad,
+        SimulatedMove, SimulatedPath, SimulateRequest, profile_fit::Smoothing, Span, Springs, SnCurve, StrainBased,
+        StrainLifeCurve, StressLife, StressRequest, SubsurfaceLine, SubsurfacePlane, SubsurfaceRequest,
         SubsurfaceSurface, SurfaceCriterion, SweepRequest, WearDrive, WearRequest, Weighted, WorkDensity
     }
 }

@@ -281,8 +281,8 @@ impl ToSchema for SimulationReply {
 impl PartialSchema for SimulationReply {
     fn schema() -> RefOr<Schema> {
         // Some members of both are alike, so that no schema could say that one of them alone fits.
-        let about = "The result of a simulation, along a line or in the plane: the latter if the path has pairs or is an \
-                     ellipse, or rings are asked for.";
+        let about = "The result of a simulation, along a line or in the plane: the latter if the path has pairs or is \
+                     an ellipse, or rings are asked for.";
         let of = |name: std::borrow::Cow<'static, str>| Ref::from_schema_name(name);
         let either = AnyOfBuilder::new().description(Some(about));
         either.item(of(SimulateReply::name())).item(of(PlanarReply::name())).into()

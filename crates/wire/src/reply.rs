@@ -116,8 +116,8 @@ pub struct Accuracy: Default omits Option {
     /// Why this one.
     pub reason: String,
     /// Estimated error of the forces, relative to the friction limit μ F_N, a pure number: of rounding, of curved
-    /// paths, of the interpolation of a table, of springs, of rings. That of curved paths is the largest of the states in
-    /// the reply, that of springs and rings the largest over all moves, of rings relative to the largest load.
+    /// paths, of the interpolation of a table, of springs, of rings. That of curved paths is the largest of the states
+    /// in the reply, that of springs and rings the largest over all moves, of rings relative to the largest load.
     pub force_error: f64,
     /// Estimated error of the stresses, relative to μ times the largest pressure (or, where that is infinite, to the
     /// mean), a pure number; of no meaning for a profile without a stress field.

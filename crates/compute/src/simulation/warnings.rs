@@ -225,8 +225,8 @@ pub fn warnings_at(
     if profile.line().is_some_and(|line| line.bulk().is_some_and(|bulk| bulk.stress_per_force != 0.0)) {
         warn(
             "bulk_work_neglected",
-            "displacements, energies and the loss are those without the bulk stress, which does work of its own: friction \
-             dissipates more than that, as slip and friction work by place say"
+            "displacements, energies and the loss are those without the bulk stress, which does work of its own: \
+             friction dissipates more than that, as slip and friction work by place say"
                 .to_owned(),
         );
     }

@@ -204,10 +204,11 @@ impl<'a> SteadyCycle<'a> {
         factor * (self.ring.depth * first - second).max(0.0) + 4.0 * limit * self.slide
     }
 
-    /// All that friction dissipates in a cycle, J: [`SteadyCycle::dissipated_energy`], unless a bulk stress does work too.
+    /// All that friction dissipates in a cycle, J: [`SteadyCycle::dissipated_energy`], unless a bulk stress does work
+    /// too.
     ///
-    /// Then it is the integral of [`SteadyCycle::friction_work`] on both sides of the stuck zone, over an angle in which
-    /// the roots at their ends are smooth.
+    /// Then it is the integral of [`SteadyCycle::friction_work`] on both sides of the stuck zone, over an angle in
+    /// which the roots at their ends are smooth.
     #[must_use]
     pub fn friction_energy(&self) -> f64 {
         let Some(line) = self.contact.eccentric() else { return self.dissipated_energy() };

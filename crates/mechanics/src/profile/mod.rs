@@ -202,7 +202,8 @@ impl Profile {
         }
     }
 
-    /// The contact radius, m, at a level, m; of a line contact the half-width, where [`Profile::radius`] is F_N'/(2 E*).
+    /// The contact radius, m, at a level, m; of a line contact the half-width, where [`Profile::radius`] is F_N'/(2
+    /// E*).
     #[must_use]
     pub fn contact_radius(&self, level: f64) -> f64 {
         self.line().map_or_else(|| self.radius(level), |line| line.half_width(level))

@@ -1,7 +1,7 @@
 //! Figures 1 to 5 of Kraft & Pohrt (2016), drawn from the exact solver, figures 6 to 9 about protocols, and figures 10
-//! and 11 about steady cycles, figures 12 and 13 about fretting fatigue, figure 14 about rough contacts, figure 15 about
-//! measured loops, figures 16 and 17 about line contacts, and figure 18 about motion in the plane: SVG, and CSV with the
-//! data.
+//! and 11 about steady cycles, figures 12 and 13 about fretting fatigue, figure 14 about rough contacts, figure 15
+//! about measured loops, figures 16 and 17 about line contacts, and figure 18 about motion in the plane: SVG, and CSV
+//! with the data.
 //!
 //! All are normalised — displacement by that of gross slip, force by mu F_N, stress by mu p_max, radius by a — so
 //! that they hold for every sphere, whatever the reference contact below is made of.
