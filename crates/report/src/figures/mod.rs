@@ -243,7 +243,7 @@ mod tests {
     fn the_figures_of_the_documentation_are_those_that_are_drawn() {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/figures");
         let [paper, later] = super::without_protocols().unwrap();
-        assert_eq!((paper.len(), later.len()), (5, 6));
+        assert_eq!((paper.len(), later.len()), (5, 9));
         for (number, figure) in (1..).zip(paper).chain((10..).zip(later)) {
             let name = format!("figure{number}.svg");
             let kept = std::fs::read(folder.join(&name)).unwrap();
