@@ -25,7 +25,7 @@ use super::curve_family::CurveFamily;
 use super::{Moments, Point, Profile, Ring, Sphere};
 use crate::error::Error;
 use crate::numerics::double_double::DoubleDouble;
-use crate::numerics::gauss::{TWENTY_POINTS, integral};
+use crate::numerics::gauss::{TWELVE_POINTS, integral};
 use crate::numerics::roots::increasing;
 use crate::range::{self, Quantity, Range};
 
@@ -239,7 +239,8 @@ impl LineContact {
 
     /// Half-width at s, m.
     fn width_at(&self, s: f64) -> f64 {
-        self.flat_half_width().hypot(s)
+        let b = self.flat_half_width();
+        if b > 0.0 { b.hypot(s) } else { s }
     }
 
     /// ln(l/t) at s, m.
@@ -266,7 +267,7 @@ impl LineContact {
         match self.specimen {
             Specimen::Cylinder { radius } => 0.25 * PI * s * s / radius,
             Specimen::RoundedPad { flat_half_width: b, .. } if s < 0.5 * b => {
-                integral(&TWENTY_POINTS, s, |s| self.gamma(s))
+                integral(&TWELVE_POINTS, s, |s| self.gamma(s))
             }
             Specimen::RoundedPad { flat_half_width: b, edge_radius } => {
                 0.5 * ((b * b + s * s) * s.atan2(b) - b * s) / edge_radius
@@ -282,7 +283,7 @@ impl LineContact {
         match self.specimen {
             Specimen::Cylinder { radius } => 0.25 * s * s * (2.0 * self.log_at(s) + 1.0) / radius,
             Specimen::RoundedPad { flat_half_width: b, .. } if s < 0.5 * b => {
-                integral(&TWENTY_POINTS, s, |s| self.rise(s))
+                integral(&TWELVE_POINTS, s, |s| self.rise(s))
             }
             Specimen::RoundedPad { flat_half_width: b, edge_radius } => {
                 let angle = s.atan2(b);
@@ -294,11 +295,46 @@ impl LineContact {
 
     /// s, m, of a level, m, no further than where contacts end.
     fn side_of_level(&self, level: f64) -> f64 {
-        self.side(level, |s| [self.level_to(s), self.rise(s)])
+        match self.specimen {
+            Specimen::Cylinder { radius } => self.side_of_cylinder(radius, level),
+            Specimen::RoundedPad { flat_half_width, edge_radius } => {
+                let load = level / (FRAC_2_PI * self.log_at(0.0));
+                let guess = (3.0 * edge_radius * flat_half_width * load).cbrt();
+                self.side(level, guess, |s| [self.level_to(s), self.rise(s)])
+            }
+        }
     }
 
-    /// s at which an increasing function with its slope has a value, no further than where contacts end.
-    fn side(&self, value: f64, of: impl Fn(f64) -> [f64; 2]) -> f64 {
+    /// The same of a cylinder: with u = 2 ln(l/s) + 1 and z = 4 R y/(e l^2), u - ln u = -ln z. Newton's steps for u,
+    /// and a last one for s, since an error of u is multiplied by it.
+    fn side_of_cylinder(&self, radius: f64, level: f64) -> f64 {
+        let (length, most) = (self.reference_length, self.last_side());
+        if level <= 0.0 {
+            return 0.0;
+        }
+        // Roots, since the product of a small radius and a small level may underflow.
+        let q = 1.0 - 2.0 * (2.0 * radius.sqrt() * level.sqrt() / length).ln();
+        // Contacts end at u = 1 + 2 ln(1/WIDEST), above the least of u - ln u at one.
+        let mut u = 1.0 + (q - 1.0).max(0.0) + (2.0 * (q - 1.0).max(0.0)).sqrt();
+        let end = 1.0 - 2.0 * WIDEST.ln();
+        for _ in 0..8 {
+            let next = (u * (q + u.ln() - 1.0) / (u - 1.0)).max(end);
+            let step = (next - u).abs();
+            u = next;
+            if step <= 1e-8 * u {
+                break;
+            }
+        }
+        if u < 1.01 * end && level >= self.level_to(most) {
+            return most;
+        }
+        let s = length * (0.5 * (1.0 - u)).exp();
+        (s + (level - self.level_to(s)) / self.rise(s)).min(most)
+    }
+
+    /// s at which an increasing function with its slope has a value, no further than where contacts end; the guess is
+    /// what a narrow edge has, G = s^3/(3 R b).
+    fn side(&self, value: f64, guess: f64, of: impl Fn(f64) -> [f64; 2]) -> f64 {
         let most = self.last_side();
         if value <= 0.0 {
             return 0.0;
@@ -306,8 +342,7 @@ impl LineContact {
         if value >= of(most)[0] {
             return most;
         }
-        // Both specimens curve at the first like s^2, and the level of a pad like s^3.
-        increasing(0.5 * most * (value / of(0.5 * most)[0]).sqrt(), |s| {
+        increasing(guess.min(most), |s| {
             let [found, slope] = of(s.min(most));
             (found - value, slope)
         })
@@ -357,7 +392,10 @@ impl CurveFamily for LineContact {
         let wanted = 2.0 * load / self.length;
         self.level_to(match self.specimen {
             Specimen::Cylinder { radius } => (4.0 * radius * wanted / PI).sqrt().min(self.last_side()),
-            Specimen::RoundedPad { .. } => self.side(wanted, |s| [self.load_to(s), self.gamma(s)]),
+            Specimen::RoundedPad { flat_half_width, edge_radius } => {
+                let guess = (3.0 * edge_radius * flat_half_width * wanted).cbrt();
+                self.side(wanted, guess, |s| [self.load_to(s), self.gamma(s)])
+            }
         })
     }
 }

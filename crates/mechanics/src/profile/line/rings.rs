@@ -1,13 +1,13 @@
 //! The integrals of a line contact over a ring of levels, each to round-off of itself however thin the ring is.
 //!
 //! With y(s) the level, dX = X(s) - X(inner) and h = y(outer) - y: int h dX = int dX dy and int h^2 dX = 2 int h dX dy,
-//! all of whose factors are positive. The rule of twenty points serves panels that are no longer than their distance
+//! all of whose factors are positive. The rule of twelve points serves panels that are no longer than their distance
 //! from s = 0, where a cylinder has a logarithm, or than b, beside whose i b a pad has one.
 
-use std::f64::consts::PI;
+use std::f64::consts::{FRAC_2_PI, PI};
 
 use super::{LineContact, Specimen};
-use crate::numerics::gauss::{TWELVE_POINTS, TWENTY_POINTS, integral};
+use crate::numerics::gauss::{EIGHT_POINTS, TWELVE_POINTS, TWENTY_POINTS, integral};
 use crate::profile::Moments;
 
 impl LineContact {
@@ -44,25 +44,39 @@ impl LineContact {
     fn of_panel(&self, inner: f64, outer: f64, depth: f64) -> Moments {
         let (width, b) = (outer - inner, self.flat_half_width());
         let square = b * b + inner * inner;
-        // X - X(inner) is this over ln(l/t).
-        let unit = 0.25 * PI * self.length / self.log_at(inner);
-        let gained = |step: f64| unit * 0.5 * (step * (2.0 * inner + step) / square).ln_1p();
-        let mut moments = Moments { width: gained(width) / self.log_at(outer), ..Moments::default() };
-        for (share, weight) in TWENTY_POINTS {
-            let s = inner + width * share;
-            let rise = self.rise(s);
-            let term = width * weight * rise * gained(width * share) / self.log_at(s);
-            let rest = width * (1.0 - share);
-            // The shorter of the two ways to h keeps its digits.
-            let left = if share < 0.5 {
-                depth - integral(&TWELVE_POINTS, width * share, |step| self.rise(inner + step))
-            } else {
-                integral(&TWELVE_POINTS, rest, |step| self.rise(s + step))
+        // ln(t/t(inner)); X - X(inner) is the unit times it over ln(l/t).
+        let log = self.log_at(inner);
+        let unit = 0.25 * PI * self.length / log;
+        let widened = |step: f64| 0.5 * (step * (2.0 * inner + step) / square).ln_1p();
+        let mut moments = Moments { width: unit * widened(width) / self.log_at(outer), ..Moments::default() };
+        // Near nothing singular, eight points are as good.
+        let near = width > 0.4 * square.sqrt();
+        let rule = if near { &TWELVE_POINTS[..] } else { &EIGHT_POINTS[..] };
+        for &(share, weight) in rule {
+            let (step, rest) = (width * share, width * (1.0 - share));
+            let (s, widened) = (inner + step, widened(step));
+            // The logarithm of X cancels that of the level.
+            let term = width * weight * FRAC_2_PI * self.gamma(s) * unit * widened;
+            let left = match self.specimen {
+                Specimen::Cylinder { radius } => {
+                    let twice = step * (inner + s) * (2.0 * log + 1.0) - 2.0 * s * s * widened;
+                    depth - 0.25 * twice / radius
+                }
+                // The shorter of the two ways keeps its digits.
+                Specimen::RoundedPad { .. } if share < 0.5 => depth - self.rise_over(inner, step),
+                Specimen::RoundedPad { .. } => self.rise_over(s, rest),
             };
             moments.first += term;
             moments.second += 2.0 * left * term;
         }
         moments
+    }
+
+    /// By how much the level of a pad rises over a step from s, m, that is no longer than half a panel.
+    fn rise_over(&self, s: f64, step: f64) -> f64 {
+        let near = step > 0.4 * self.width_at(s);
+        let rule = if near { &TWELVE_POINTS[..] } else { &EIGHT_POINTS[..] };
+        integral(rule, step, |step| self.rise(s + step))
     }
 
     /// In closed form, where the ring is thick: int X dy = (L/2) G, int G dy = (G^2/pi)(ln(l/t) + 1/4).
