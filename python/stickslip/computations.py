@@ -592,6 +592,113 @@ class Computations(ABC):
         }
         return self._answer(results.ProtocolReply, "/protocols", given, parts)
 
+    def simulate(
+        self,
+        contact: ContactLike,
+        displacement: Quantities | None = None,
+        *,
+        moves: Sequence[types.SimulatedMove | Mapping[str, Any]] | None = None,
+        force: Quantities | None = None,
+        falling_amplitude: int | types.FallingAmplitude | Mapping[str, Any] | None = None,
+        equal_peaks: int | types.EqualPeaks | Mapping[str, Any] | None = None,
+        cycles: types.CyclicPath | Mapping[str, Any] | None = None,
+        ellipse: types.Ellipse | Mapping[str, Any] | None = None,
+        path: types.SimulatedPath | None = None,
+        residual: bool | None = None,
+        solver: types.Solver | None = None,
+        steps: types.Steps | None = None,
+        stress: int | types.StressRequest | Mapping[str, Any] | None = None,
+        subsurface: Quantity | types.SubsurfaceRequest | Mapping[str, Any] | None = None,
+        tolerance: Quantity | None = None,
+    ) -> results.SimulateReply:
+        """Simulate a path.
+
+        Follows a path from the preloaded contact and returns the states along it, and the stresses and their extrema at
+        its end if asked for. Nothing is stored, so that a repeated request simply runs again.
+
+        The contact is taken at the preload of its definition, never moved: of a `Contact` that has been moved, its
+        history and present load play no part.
+
+        Parameters
+        ----------
+        contact : ContactLike
+            The contact.
+        displacement : Quantities
+            Tangential displacements of the indenter, m, one move each.
+        moves : Sequence[SimulatedMove | dict]
+            Moves, one after the other.
+        force : Quantities
+            Tangential forces, N, one move each.
+        falling_amplitude : int | FallingAmplitude | dict
+            Back and forth with an amplitude that falls linearly to zero (eq. 20 of the paper). A number alone is its
+            `reversals`.
+        equal_peaks : int | EqualPeaks | dict
+            Back and forth from gross slip to rest, with the amplitudes that leave equal peaks of shear stress on the
+            profile of the contact. A number alone is its `reversals`.
+        cycles : CyclicPath | dict
+            Equal cycles about a mean, under a constant load or one that oscillates too.
+        ellipse : Ellipse | dict
+            Round an ellipse.
+        path : SimulatedPath
+            The path.
+        residual : bool
+            Ask for the extrema of the shear stress at the end of the path.
+        solver : Solver
+            Which solver to use; left out, the cheapest that serves the request.
+        steps : Steps
+            Which states to return.
+        stress : int | StressRequest | dict
+            Ask for stresses at the end of the path. A number alone is its `points`.
+        subsurface : Quantity | SubsurfaceRequest | dict
+            Ask for the stress below the surface at the end of the path; by the exact solver.
+        tolerance : Quantity
+            Tolerance for what is not exact, relative to μ F_N, a pure number. For rings it is at least 1e-5; left out,
+            1e-3. Default: 1e-10.
+
+        Returns
+        -------
+        SimulateReply
+            The result of a simulation.
+
+        Raises
+        ------
+        InvalidInput
+            With the pointer of the member that is wrong, and its range.
+
+        Examples
+        --------
+        >>> import stickslip as ss
+        >>> reply = ss.simulate(
+        ...     contact=ss.Definition(ss.Sphere(radius=0.01), [ss.Body(2.1e+11, 0.3), ss.RIGID], 0.3,
+        ...         normal_force=10.0),
+        ...     falling_amplitude={'reversals': 20},
+        ...     residual=True,
+        ...     stress={'points': 200},
+        ... )
+        """
+        given: Document = {
+            "contact": contact,
+            "path": path,
+            "residual": residual,
+            "solver": solver,
+            "steps": steps,
+            "stress": stress,
+            "subsurface": subsurface,
+            "tolerance": tolerance,
+        }
+        parts: dict[str, Document] = {
+            "path": {
+                "moves": moves,
+                "displacement": displacement,
+                "force": force,
+                "falling_amplitude": falling_amplitude,
+                "equal_peaks": equal_peaks,
+                "cycles": cycles,
+                "ellipse": ellipse,
+            },
+        }
+        return self._answer(results.SimulateReply, "/simulate", given, parts)
+
     def sweep(
         self,
         base: Mapping[str, Any],
@@ -937,6 +1044,49 @@ class AsyncComputations(ABC):
         parts: dict[str, Document] = {
         }
         return await self._answer(results.ProtocolReply, "/protocols", given, parts)
+
+    async def simulate(
+        self,
+        contact: ContactLike,
+        displacement: Quantities | None = None,
+        *,
+        moves: Sequence[types.SimulatedMove | Mapping[str, Any]] | None = None,
+        force: Quantities | None = None,
+        falling_amplitude: int | types.FallingAmplitude | Mapping[str, Any] | None = None,
+        equal_peaks: int | types.EqualPeaks | Mapping[str, Any] | None = None,
+        cycles: types.CyclicPath | Mapping[str, Any] | None = None,
+        ellipse: types.Ellipse | Mapping[str, Any] | None = None,
+        path: types.SimulatedPath | None = None,
+        residual: bool | None = None,
+        solver: types.Solver | None = None,
+        steps: types.Steps | None = None,
+        stress: int | types.StressRequest | Mapping[str, Any] | None = None,
+        subsurface: Quantity | types.SubsurfaceRequest | Mapping[str, Any] | None = None,
+        tolerance: Quantity | None = None,
+    ) -> results.SimulateReply:
+        """`simulate`, awaited."""
+        given: Document = {
+            "contact": contact,
+            "path": path,
+            "residual": residual,
+            "solver": solver,
+            "steps": steps,
+            "stress": stress,
+            "subsurface": subsurface,
+            "tolerance": tolerance,
+        }
+        parts: dict[str, Document] = {
+            "path": {
+                "moves": moves,
+                "displacement": displacement,
+                "force": force,
+                "falling_amplitude": falling_amplitude,
+                "equal_peaks": equal_peaks,
+                "cycles": cycles,
+                "ellipse": ellipse,
+            },
+        }
+        return await self._answer(results.SimulateReply, "/simulate", given, parts)
 
     async def sweep(
         self,

@@ -11,6 +11,7 @@ fit_loop = _local.fit_loop
 fit_profile = _local.fit_profile
 fretting = _local.fretting
 protocols = _local.protocols
+simulate = _local.simulate
 sweep = _local.sweep
 wear = _local.wear
 
@@ -23,6 +24,7 @@ __all__ = [
     "fit_profile",
     "fretting",
     "protocols",
+    "simulate",
     "sweep",
     "wear",
 ]

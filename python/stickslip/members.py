@@ -110,6 +110,7 @@ METHODS: dict[str, str] = {
     "/fretting": "fretting",
     "/profiles/fit": "fit_profile",
     "/protocols": "protocols",
+    "/simulate": "simulate",
     "/sweep": "sweep",
     "/wear": "wear",
 }

@@ -838,6 +838,84 @@ class SessionSummary(Result):
     """Its label, if it has one."""
 
 
+class SimulateReply(Result):
+    """The result of a simulation."""
+
+    accuracy: Accuracy
+    """Solver, errors and time."""
+
+    contact: Figures
+    """What follows from the definition at the preload."""
+
+    steps: Rows[State]
+    """The states along the path: all of them, or the last."""
+
+    warnings: Rows[Record]
+    """Warnings about the result."""
+
+    protocol: Record | None
+    """The path, if it follows the law of equal peaks."""
+
+    residual: Residual | None
+    """The extrema of the shear stress at the end, if asked for."""
+
+    stress: Record | None
+    """The stresses at the end, if asked for."""
+
+    subsurface: Record | None
+    """The stress below the surface at the end, if asked for."""
+
+    if TYPE_CHECKING:
+
+        @property
+        def contact_radius(self) -> Floats:
+            """Of each row: Contact radius a, m; the half-width of a line contact; of a profile without a stress field
+            F_N′/(2 E*).
+            """
+
+        @property
+        def displacement(self) -> Floats:
+            """Of each row: Tangential displacement U of the indenter, m; positive along x."""
+
+        @property
+        def dissipated_energy(self) -> Floats:
+            """Of each row: Work dissipated by friction since the start, J; never falls."""
+
+        @property
+        def elastic_energy(self) -> Floats:
+            """Of each row: Energy stored in the tangential deformation, J."""
+
+        @property
+        def force(self) -> Floats:
+            """Of each row: Tangential force F, N; positive for a positive displacement of a virgin contact."""
+
+        @property
+        def indentation(self) -> Floats:
+            """Of each row: Indentation d, m; positive when pressed in, below zero the bodies are apart."""
+
+        @property
+        def memory_depth(self) -> Counts:
+            """Of each row: Number of pieces of the slip history."""
+
+        @property
+        def normal_force(self) -> Floats:
+            """Of each row: Normal force F_N, N; compression is positive."""
+
+        @property
+        def regime(self) -> Texts:
+            """Of each row: How much of the contact slipped in the last move."""
+
+        @property
+        def stick_centre(self) -> Floats:
+            """Of each row: Where the middle of that part is along x, m: of a contact whose bulk stress moves it."""
+
+        @property
+        def stick_radius(self) -> Floats:
+            """Of each row: Radius inside which the last move did not slip, m: the contact radius if nothing slipped,
+            zero in gross slip.
+            """
+
+
 class State(Result):
     """The state after a move."""
 
@@ -1069,6 +1147,7 @@ NAMES = [
     "Residual",
     "SessionReply",
     "SessionSummary",
+    "SimulateReply",
     "State",
     "StateEvent",
     "StressReply",

@@ -6,7 +6,7 @@ import json
 import textwrap
 from typing import Any
 
-from openapi_schemas import Schema, attribute, fields, kinds, name_of, operations, reply_of, request_of
+from openapi_schemas import Schema, attribute, class_of, fields, kinds, name_of, operations, request_of
 from requests_writer import (
     SHORT_MEMBERS,
     alternatives,
@@ -35,7 +35,7 @@ class Method:
     def __init__(self, path: str, operation: Schema, schemas: Schema, *, request: str = "", of_contact: bool = False):
         self.path, self.operation, self.schemas, self.of_contact = path, operation, schemas, of_contact
         self.name = method_name(path)
-        self.reply = reply_of(operation)
+        self.reply = class_of(operation, schemas)
         self.members, self.required = fields(schemas[request or request_of(operation)], schemas)
         if of_contact:
             self.members.pop("contact", None)

@@ -71,6 +71,13 @@ def reply_of(operation: Schema) -> str:
     return ""
 
 
+def class_of(operation: Schema, schemas: Schema) -> str:
+    """The schema that is the class of the reply: of replies of several shapes, the first."""
+    name = reply_of(operation)
+    shapes = schemas.get(name, {}).get("anyOf", [])
+    return name_of(shapes[0]) if shapes else name
+
+
 def is_object(schema: Schema) -> bool:
     return "properties" in schema or "allOf" in schema
 

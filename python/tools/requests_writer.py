@@ -7,13 +7,13 @@ import json
 from openapi_schemas import (
     Schema,
     attribute,
+    class_of,
     closure,
     fields,
     kinds,
     name_of,
     operations,
     references,
-    reply_of,
     request_of,
     unit,
 )
@@ -31,11 +31,9 @@ SPELLED = {"degrees": "deg", "J/m²": "J/m^2", "m^(1−n)": ""}
 
 def computations(api: Schema) -> list[tuple[str, Schema]]:
     """The paths of all computations that are given a document and reply with one."""
-    return [
-        (path, operation)
-        for path, method, operation in operations(api)
-        if method == "post" and "{" not in path and request_of(operation) and reply_of(operation) in result_classes(api)
-    ]
+    schemas, classes = api["components"]["schemas"], result_classes(api)
+    posts = [(path, one) for path, method, one in operations(api) if method == "post" and "{" not in path]
+    return [(path, one) for path, one in posts if request_of(one) and class_of(one, schemas) in classes]
 
 
 def alternatives(schema: Schema, schemas: Schema) -> dict[str, Schema]:

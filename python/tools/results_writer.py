@@ -7,6 +7,7 @@ import textwrap
 from openapi_schemas import (
     Schema,
     attribute,
+    class_of,
     closure,
     fields,
     is_object,
@@ -39,7 +40,7 @@ def reply_schemas(api: Schema) -> list[str]:
 
 def result_classes(api: Schema) -> list[str]:
     """The replies that methods return, and the parts of them that have a class."""
-    replies = {reply_of(one) for *_, one in operations(api)} - {"", *UNSEEN}
+    replies = {class_of(one, api["components"]["schemas"]) for *_, one in operations(api)} - {"", *UNSEEN}
     return sorted(replies & set(reply_schemas(api)) | set(PARTS))
 
 
