@@ -8,7 +8,7 @@ from abc import abstractmethod
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
-from . import _native, requests
+from . import _native, requests, results
 from .bodies import Material, Shape
 from .computations import Computations
 from .contact import AnyContact, Contact, DefinedContact, context_of, encoded, guarded

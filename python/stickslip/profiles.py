@@ -5,9 +5,9 @@ Written by `tools/generate.py`.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import KW_ONLY, dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
 from . import request_types as types
 from .bodies import ContactPart, Material, Part, Shape

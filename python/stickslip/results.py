@@ -10,7 +10,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from . import request_types as types
-from .extras import Fretting, Swept
+from .extras import Fretting, Plane, Swept
 from .result import Counts, Flags, Floats, Named, Record, Result, Rows, Texts
 
 
@@ -536,6 +536,60 @@ class PathReply(Result):
         def stick_radius(self) -> Floats:
             """Of each row: Radius inside which the last move did not slip, m: the contact radius if nothing slipped,
             zero in gross slip.
+            """
+
+
+class PlanarReply(Plane):
+    """The result of a simulation in the plane."""
+
+    accuracy: Accuracy
+    """Solver, errors and time."""
+
+    contact: Figures
+    """What follows from the definition at the preload."""
+
+    steps: Rows[Record]
+    """The states along the path: all of them, or the last."""
+
+    warnings: Rows[Record]
+    """Warnings about the result."""
+
+    stress: Record | None
+    """The stresses at the end, if asked for."""
+
+    turn_losses: Floats | None
+    """Friction work of each turn of an ellipse, J; the first one begins at rest."""
+
+    if TYPE_CHECKING:
+
+        @property
+        def contact_radius(self) -> Floats:
+            """Of each row: Contact radius a, m."""
+
+        @property
+        def dissipated_energy(self) -> Floats:
+            """Of each row: Work dissipated by friction since the start, J; never falls."""
+
+        @property
+        def elastic_energy(self) -> Floats:
+            """Of each row: Energy stored in the tangential deformation, J."""
+
+        @property
+        def indentation(self) -> Floats:
+            """Of each row: Indentation d, m; positive when pressed in, below zero the bodies are apart."""
+
+        @property
+        def normal_force(self) -> Floats:
+            """Of each row: Normal force F_N, N; compression is positive."""
+
+        @property
+        def regime(self) -> Texts:
+            """Of each row: How much of the contact slipped in the last move."""
+
+        @property
+        def stick_radius(self) -> Floats:
+            """Of each row: Radius inside which the last move did not slip, m, to the width of a ring: the contact
+            radius if nothing slipped, zero in gross slip.
             """
 
 
@@ -1141,6 +1195,7 @@ NAMES = [
     "MoveReply",
     "ObservationsReply",
     "PathReply",
+    "PlanarReply",
     "ProfileFitReply",
     "ProtocolReply",
     "RelaxReply",

@@ -231,9 +231,9 @@ def profiles_file(api: Schema) -> str:
         '"""Shapes of the indenter, one class for each profile of the API, and places in a body.\n\n'
         'Written by `tools/generate.py`.\n"""\n',
         "from __future__ import annotations\n",
-        "from collections.abc import Sequence",
+        "from collections.abc import Mapping, Sequence",
         "from dataclasses import KW_ONLY, dataclass",
-        "from typing import ClassVar\n",
+        "from typing import Any, ClassVar\n",
         "from . import request_types as types",
         "from .bodies import ContactPart, Material, Part, Shape",
         "from .documents import Quantities, Quantity\n",
