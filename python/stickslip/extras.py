@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from typing import Any
 
-import numpy as np
-
 from . import schemas
 from .result import Result
 
@@ -39,19 +37,6 @@ class Fretting(Result):
         """Where the worst criterion is largest: x, y, z, m."""
         largest = self.ratings[self.worst].largest if self.worst else None
         return None if largest is None else (*(float(part) for part in largest.point),)  # type: ignore[return-value]
-
-
-class Plane(Result):
-    """The states of a simulation in the plane."""
-
-    def _columns(self) -> dict[str, Any]:
-        """A row for each state, with the components of its pairs as columns."""
-        rows = [state.document for state in getattr(self, "steps", ())]
-        names = ("displacement", "force")
-        pairs = {f"{name}_{axis}": (name, index) for name in names for index, axis in enumerate("xy")}
-        columns = {column: np.array([row[name][index] for row in rows]) for column, (name, index) in pairs.items()}
-        others = [name for name in (rows[0] if rows else ()) if name not in names]
-        return columns | {name: np.array([row[name] for row in rows]) for name in others}
 
 
 class Swept(Result):

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from .optional import needed
+from .tables_of_results import rows_table
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -166,7 +167,7 @@ def _wear(ax: Axes, result: Any, **options: Any) -> None:
 
 
 def _force_in_plane(ax: Axes, result: Any, **options: Any) -> None:
-    columns = result._columns()
+    columns, _ = rows_table(result.steps)
     ax.plot(columns["force_x"], columns["force_y"], **options)
     ax.set(xlabel="tangential force along x, N", ylabel="tangential force along y, N", aspect="equal")
 

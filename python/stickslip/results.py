@@ -10,7 +10,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from . import request_types as types
-from .extras import Fretting, Plane, Swept
+from .extras import Fretting, Swept
 from .result import Counts, Flags, Floats, Named, Record, Result, Rows, Texts
 
 
@@ -539,7 +539,7 @@ class PathReply(Result):
             """
 
 
-class PlanarReply(Plane):
+class PlanarReply(Result):
     """The result of a simulation in the plane."""
 
     accuracy: Accuracy

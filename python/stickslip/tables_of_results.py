@@ -52,11 +52,11 @@ def _units(columns: Any, schema: str) -> dict[str, str]:
     return {name: unit for name in columns if (unit := stated.get(name)) is not None}
 
 
-def _flat(documents: list[dict[str, Any]], schema: str) -> Table:
-    """The scalars of each row; a pair of numbers is two columns."""
+def _flat(documents: list[dict[str, Any]], schema: str, pairs: tuple[str, ...] = ("interval",)) -> Table:
+    """The scalars of each row, and these pairs of numbers as two columns each."""
     kinds = schemas.FIELDS[schema]
     present = {name: None for document in documents for name in document}
-    names = [name for name in present or kinds if name == "interval" or kinds.get(name, ("", None))[0] == ""]
+    names = [name for name in present or kinds if name in pairs or kinds.get(name, ("", None))[0] == ""]
     columns: dict[str, Any] = {}
     units: dict[str, str] = {}
     for name in names:
@@ -189,8 +189,12 @@ def _peaks(result: Record) -> Table:
 
 def _simulation(result: Record) -> Table:
     """The extrema if they were asked for, else the stresses, else the states."""
-    part = result.residual or result.stress
+    part = getattr(result, "residual", None) or result.stress
     return rows_table(result.steps) if part is None else table(part)
+
+
+def _states_in_plane(rows: Rows[Any]) -> Table:
+    return _flat(rows.documents, rows.schema, ("displacement", "force"))
 
 
 def _rating(result: Record) -> Table:
@@ -231,6 +235,7 @@ _REPLIES: dict[str, Callable[[Any], Table]] = {
     "CycleReply": _cycle_reply,
     "FrettingReply": _rating,
     "LoopPage": _loop,
+    "PlanarReply": _simulation,
     "ProfileFitReply": _scan,
     "Residual": _peaks,
     "SimulateReply": _simulation,
@@ -241,5 +246,6 @@ _ROWS: dict[str, Callable[[Rows[Any]], Table]] = {
     "AccuracyRow": _solvers,
     "FittedLoop": _fitted,
     "HistoryItem": _history,
+    "PlanarState": _states_in_plane,
     "SteadyCycle": _cycles,
 }

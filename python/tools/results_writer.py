@@ -21,7 +21,7 @@ from openapi_schemas import (
 )
 
 #: Classes of the package that give a reply more than its fields.
-BASES = {"FrettingReply": "Fretting", "PlanarReply": "Plane", "SweepReply": "Swept"}
+BASES = {"FrettingReply": "Fretting", "SweepReply": "Swept"}
 #: What has a class without being a reply of its own, or the first shape of one.
 PARTS = ("Accuracy", "Figures", "PlanarReply", "SessionSummary", "State", "StateEvent")
 #: Replies that no method returns: pages of what is iterated over, files that are read in process, and jobs.
@@ -149,7 +149,7 @@ def results_file(api: Schema) -> str:
         "from __future__ import annotations\n",
         "from typing import TYPE_CHECKING, Any\n",
         "from . import request_types as types",
-        "from .extras import Fretting, Plane, Swept",
+        "from .extras import Fretting, Swept",
         "from .result import Counts, Flags, Floats, Named, Record, Result, Rows, Texts\n",
     ]
     for name in classes:
