@@ -72,7 +72,8 @@ def answer(kind: type[T], reply: Document, contact: Any, request: Mapping[str, A
     definition = request.get("contact", {})
     seen = contact._warned if isinstance(contact, DefinedContact) else seen_of(definition) if definition else set()
     warn(reply.get("warnings", ()), seen)
-    return parse(_in_plane(reply) or kind, reply, **context_of(definition, request))
+    found: type[T] = _in_plane(reply) or kind
+    return parse(found, reply, **context_of(definition, request))
 
 
 def path_of(name: str) -> str:

@@ -89,7 +89,8 @@ def test_results_have_tables_and_pictures(ball: ss.Contact) -> None:
     assert fretting.crossland.critical_distance.life.cycles > fretting.crossland.life.cycles
     assert list(fretting.to_frame().columns) == ["x", "y", "z", "crossland", "crossland_cycles"]
     wear = ss.wear(ball, "50 nm", hold="indentation", points=20)
-    assert wear.profile_error is not None and wear.shape.radius.size == 23
+    assert wear.profile_error is not None
+    assert wear.shape.radius.size == 23
     for result in (path, stress, ball.residual(), below, cycle, fretting, wear):
         result.plot()
         assert "<table" in result._repr_html_()
