@@ -297,10 +297,9 @@ impl LineContact {
     fn side_of_level(&self, level: f64) -> f64 {
         match self.specimen {
             Specimen::Cylinder { radius } => self.side_of_cylinder(radius, level),
-            Specimen::RoundedPad { flat_half_width, edge_radius } => {
+            Specimen::RoundedPad { .. } => {
                 let load = level / (FRAC_2_PI * self.log_at(0.0));
-                let guess = (3.0 * edge_radius * flat_half_width * load).cbrt();
-                self.side(level, guess, |s| [self.level_to(s), self.rise(s)])
+                self.side(level, load, |s| [self.level_to(s), self.rise(s)])
             }
         }
     }
@@ -332,9 +331,9 @@ impl LineContact {
         (s + (level - self.level_to(s)) / self.rise(s)).min(most)
     }
 
-    /// s at which an increasing function with its slope has a value, no further than where contacts end; the guess is
-    /// what a narrow edge has, G = s^3/(3 R b).
-    fn side(&self, value: f64, guess: f64, of: impl Fn(f64) -> [f64; 2]) -> f64 {
+    /// s at which an increasing function with its slope has a value, no further than where contacts end. The start is
+    /// what a narrow edge has for about this load, G = s^3/(3 R b).
+    fn side(&self, value: f64, load: f64, of: impl Fn(f64) -> [f64; 2]) -> f64 {
         let most = self.last_side();
         if value <= 0.0 {
             return 0.0;
@@ -342,7 +341,8 @@ impl LineContact {
         if value >= of(most)[0] {
             return most;
         }
-        increasing(guess.min(most), |s| {
+        let start = (3.0 * self.curvature_radius() * self.flat_half_width() * load).cbrt();
+        increasing(start.min(most), |s| {
             let [found, slope] = of(s.min(most));
             (found - value, slope)
         })
@@ -392,10 +392,7 @@ impl CurveFamily for LineContact {
         let wanted = 2.0 * load / self.length;
         self.level_to(match self.specimen {
             Specimen::Cylinder { radius } => (4.0 * radius * wanted / PI).sqrt().min(self.last_side()),
-            Specimen::RoundedPad { flat_half_width, edge_radius } => {
-                let guess = (3.0 * edge_radius * flat_half_width * wanted).cbrt();
-                self.side(wanted, guess, |s| [self.load_to(s), self.gamma(s)])
-            }
+            Specimen::RoundedPad { .. } => self.side(wanted, wanted, |s| [self.load_to(s), self.gamma(s)]),
         })
     }
 }

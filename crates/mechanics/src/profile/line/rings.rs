@@ -7,7 +7,7 @@
 use std::f64::consts::{FRAC_2_PI, PI};
 
 use super::{LineContact, Specimen};
-use crate::numerics::gauss::{EIGHT_POINTS, TWELVE_POINTS, TWENTY_POINTS, integral};
+use crate::numerics::gauss::{EIGHT_POINTS, TWELVE_POINTS, integral};
 use crate::profile::Moments;
 
 impl LineContact {
@@ -36,7 +36,7 @@ impl LineContact {
         let panels = ends.windows(2).rev();
         panels.fold(Moments::default(), |sum, panel| {
             let [high, low] = [panel[0], panel[1]];
-            let depth = integral(&TWENTY_POINTS, high - low, |s| self.rise(low + s));
+            let depth = self.rise_over(low, high - low);
             Moments::stack(sum, self.of_panel(low, high, depth), depth)
         })
     }
@@ -49,10 +49,7 @@ impl LineContact {
         let unit = 0.25 * PI * self.length / log;
         let widened = |step: f64| 0.5 * (step * (2.0 * inner + step) / square).ln_1p();
         let mut moments = Moments { width: unit * widened(width) / self.log_at(outer), ..Moments::default() };
-        // Near nothing singular, eight points are as good.
-        let near = width > 0.4 * square.sqrt();
-        let rule = if near { &TWELVE_POINTS[..] } else { &EIGHT_POINTS[..] };
-        for &(share, weight) in rule {
+        for &(share, weight) in self.rule(inner, width) {
             let (step, rest) = (width * share, width * (1.0 - share));
             let (s, widened) = (inner + step, widened(step));
             // The logarithm of X cancels that of the level.
@@ -72,11 +69,14 @@ impl LineContact {
         moments
     }
 
-    /// By how much the level of a pad rises over a step from s, m, that is no longer than half a panel.
+    /// By how much the level of a pad rises over a step from s, m, within a panel.
     fn rise_over(&self, s: f64, step: f64) -> f64 {
-        let near = step > 0.4 * self.width_at(s);
-        let rule = if near { &TWELVE_POINTS[..] } else { &EIGHT_POINTS[..] };
-        integral(rule, step, |step| self.rise(s + step))
+        integral(self.rule(s, step), step, |step| self.rise(s + step))
+    }
+
+    /// The rule of a step from s, m, within a panel: eight points are as good as twelve where nothing singular is near.
+    fn rule(&self, s: f64, step: f64) -> &'static [(f64, f64)] {
+        if step > 0.4 * self.width_at(s) { &TWELVE_POINTS } else { &EIGHT_POINTS }
     }
 
     /// In closed form, where the ring is thick: int X dy = (L/2) G, int G dy = (G^2/pi)(ln(l/t) + 1/4).
