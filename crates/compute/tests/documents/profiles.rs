@@ -132,3 +132,40 @@ fn equal_peaks_say_which_path_they_are_and_refuse_a_cutoff_outside_the_contact()
         }
     }
 }
+
+#[test]
+fn limiting_cases_are_the_same_for_both_solvers() {
+    let small = json!({"type": "exact_sphere", "radius": 1e-4});
+    let small = request(&small, &json!({"indentation": 1e-7}));
+    for (moves, place) in [
+        (json!([{"displacement": 0.0}, {"indentation": 1.0}]), "/path/moves/1"),
+        (json!([{"normal_force": -1e9, "relative": true}]), "/path/moves/0/normal_force"),
+        (json!([{"indentation": 2e-7}, {"displacement": 0.0}, {"normal_force": 1e17}]), "/path/moves/2"),
+        // The first fault counts, whichever it is.
+        (json!([{"force": 1e9}, {"indentation": 1.0}]), "/path/moves/0"),
+    ] {
+        let mut pointers = Vec::new();
+        for solver in [json!("exact"), json!({"springs": {"count": 50}})] {
+            let body = changed(small.clone(), &json!({"path": {"moves": moves}, "solver": solver}));
+            let refused = problem(post("/simulate", &body));
+            pointers.push((refused.status, refused.errors[0].pointer.clone()));
+        }
+        assert!(pointers[0].1.starts_with(place) && pointers[0] == pointers[1], "{moves}: {pointers:?}");
+    }
+    // Without friction the surface stays behind, and a zero has no sign.
+    let sphere = request(&families()[0], &json!({"normal_force": 10.0}));
+    for friction in [0.0, 0.3] {
+        let smooth = with(sphere.clone(), "/contact/friction", json!(friction));
+        for solver in [json!("exact"), json!({"springs": {"count": 50}})] {
+            let fields = json!({"points": 3, "fields": ["slip", "displacement"]});
+            let asked = json!({"path": {"displacement": [1.0, -0.25]}, "stress": fields, "solver": solver});
+            let reply = good(post("/simulate", &changed(smooth.clone(), &asked)));
+            let stays = reply["stress"]["slip"] == json!([-0.25, -0.25, -0.25])
+                && reply["stress"]["displacement"] == json!([0.0, 0.0, 0.0]);
+            assert_eq!(stays, friction == 0.0, "{solver}: {reply}");
+        }
+        let still = changed(smooth.clone(), &json!({"path": {"displacement": [0.0, -0.0]}, "steps": "all"}));
+        let text = good(post("/simulate", &still)).to_string();
+        assert!(!text.contains("\"force\":-0.0"), "{text}");
+    }
+}
