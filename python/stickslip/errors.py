@@ -70,7 +70,7 @@ class TooMuchWork(StickslipError):
 
 
 class NotFound(StickslipError, LookupError):
-    """There is no such contact, job, computation or page."""
+    """A contact, job, computation or page was not found."""
 
 
 class Conflict(StickslipError):

@@ -68,14 +68,14 @@ codes! {
     /// The path does not exist.
     NotFound = 404 "not_found": "There is nothing at this path", "no such path";
     /// The contact does not exist.
-    ContactNotFound = 404 "contact_not_found": "There is no such contact", "no such contact, or one of another tenant";
+    ContactNotFound = 404 "contact_not_found": "The contact was not found", "no such contact, or one of another tenant";
     /// The job does not exist.
-    JobNotFound = 404 "job_not_found": "There is no such job",
+    JobNotFound = 404 "job_not_found": "The job was not found",
         "no such job, one of another tenant, or one that ended more than a day ago";
     /// The path exists, but not with this method.
     MethodNotAllowed = 405 "method_not_allowed": "This path has no such method", "`Allow` says which methods there are";
     /// `Accept` admits no format that the path has.
-    NotAcceptable = 406 "not_acceptable": "There is no such format",
+    NotAcceptable = 406 "not_acceptable": "The format is not available",
         "`Accept` admits no format: [those there are](contacts.md#formats)";
     /// The body takes too long to arrive.
     RequestTimeout = 408 "request_timeout": "The request did not arrive in time", "the body came too slowly";
