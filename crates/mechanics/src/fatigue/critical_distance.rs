@@ -6,7 +6,7 @@
 
 use super::{Rated, Study};
 use crate::error::Error;
-use crate::numerics::gauss::EIGHT_POINTS;
+use crate::numerics::gauss::{EIGHT_POINTS, by_halves};
 use crate::subsurface::{Stress, Subsurface};
 
 /// Halvings of the interval over which a stress is averaged.
@@ -44,26 +44,16 @@ impl Study<'_> {
 ///
 /// Over s with z = depth s^2 the roots and poles of the stress at the surface, sqrt(z) and 1/sqrt(z), are smooth.
 pub(super) fn mean_over_depth(field: &Subsurface, [x, y, _]: [f64; 3], depth: f64, allowed: f64) -> (Stress, f64) {
-    let rule = |from: f64, to: f64| {
+    let rule = |[from, to]: [f64; 2]| {
         let at = |(part, weight): &(f64, f64)| {
             let s = from + part * (to - from);
             field.at([x, y, depth * s * s]) * (2.0 * s * weight * (to - from))
         };
         EIGHT_POINTS.iter().map(at).fold(Stress::default(), |sum, part| sum + part)
     };
-    let (mut mean, mut error) = (Stress::default(), 0.0);
-    let mut panels = vec![([0.0, 1.0], rule(0.0, 1.0), 0)];
-    while let Some(([from, to], whole, halvings)) = panels.pop() {
-        let middle = 0.5 * (from + to);
-        let halves = [([from, middle], rule(from, middle)), ([middle, to], rule(middle, to))];
-        let sum = halves[0].1 + halves[1].1;
-        let off = (sum + whole * -1.0).norm();
-        if off <= allowed * (to - from) || halvings == MOST_HALVINGS {
-            mean = mean + sum;
-            error += off;
-        } else {
-            panels.extend(halves.map(|(ends, part)| (ends, part, halvings + 1)));
-        }
-    }
-    (mean, error)
+    let off = |whole: Stress, sum: Stress| (sum + whole * -1.0).norm();
+    let coarse = |[from, to]: [f64; 2], whole, sum| off(whole, sum) > allowed * (to - from);
+    by_halves([0.0, 1.0], MOST_HALVINGS, rule, coarse)
+        .into_iter()
+        .fold((Stress::default(), 0.0), |(mean, error), (whole, sum)| (mean + sum, error + off(whole, sum)))
 }

@@ -5,6 +5,8 @@
 //! twelve 4.6 and twenty 2.6 to reach round-off; so the width of a panel follows from how far the integrand's nearest
 //! singularities are.
 
+use std::ops::Add;
+
 /// The rule of eight points over 0..1: abscissae, rising, and weights.
 pub(crate) const EIGHT_POINTS: [(f64, f64); 8] = both_halves(&[
     (0.019_855_071_751_231_884, 0.050_614_268_145_188_13),
@@ -53,4 +55,26 @@ const fn both_halves<const N: usize>(lower: &[(f64, f64)]) -> [(f64, f64); N] {
 /// The integral of a function from zero to `width` by a rule.
 pub(crate) fn integral(rule: &[(f64, f64)], width: f64, function: impl Fn(f64) -> f64) -> f64 {
     width * rule.iter().map(|(at, weight)| weight * function(width * at)).sum::<f64>()
+}
+
+/// The panels of an integral, each halved as long as its value is `coarse` beside the sum of those of its halves, at
+/// most `most` times: both numbers of each, by a rule for the ends of a panel. NaNs end it.
+pub(crate) fn by_halves<T: Copy + Add<Output = T>>(
+    ends: [f64; 2],
+    most: u32,
+    rule: impl Fn([f64; 2]) -> T,
+    coarse: impl Fn([f64; 2], T, T) -> bool,
+) -> Vec<(T, T)> {
+    let (mut found, mut waiting) = (Vec::new(), vec![(ends, rule(ends), 0)]);
+    while let Some((ends @ [low, high], whole, halvings)) = waiting.pop() {
+        let middle = 0.5 * (low + high);
+        let halves = [[low, middle], [middle, high]].map(|half| (half, rule(half), halvings + 1));
+        let sum = halves[0].1 + halves[1].1;
+        if halvings < most && coarse(ends, whole, sum) {
+            waiting.extend(halves);
+        } else {
+            found.push((whole, sum));
+        }
+    }
+    found
 }

@@ -20,7 +20,7 @@ use crate::contact::Contact;
 use crate::error::Error;
 use crate::normal;
 use crate::numerics::double_double::DoubleDouble;
-use crate::numerics::gauss::{TWENTY_POINTS, integral};
+use crate::numerics::gauss::{TWENTY_POINTS, by_halves, integral};
 use crate::numerics::roots::{between, largest};
 use crate::profile::{Point, Profile, Ring, StressRadius};
 use crate::range::Quantity;
@@ -29,7 +29,7 @@ use crate::unit_prefix::short;
 /// Squares of radii of the first scan for the largest depth, evenly spaced, and levels of it.
 const DEPTH_SCAN: usize = 24;
 /// How often a panel of the removed volume is halved at most: a safeguard only.
-const MOST_HALVINGS: usize = 40;
+const MOST_HALVINGS: u32 = 40;
 /// Radii whose heights are summed together: within a factor of two to the power of one over this.
 const BANDS: f64 = 3.0;
 /// A radius that is rounded lies within this factor of it.
@@ -257,12 +257,11 @@ impl<'a> WornContact<'a> {
         let mut kinks = profile.knots_below(worn);
         kinks.retain(|&kink| kink > stick);
         let ends: Vec<f64> = [stick].into_iter().chain(kinks).chain([worn]).collect();
-        let panels: Vec<[f64; 2]> = ends.windows(2).map(|ends| [ends[0], ends[1]]).collect();
         let scale = self.step * (self.worn.square - self.stick.square).value();
         let mut sum = DoubleDouble::ZERO;
-        for [inner, outer] in panels {
-            let base = profile.kink_below(outer);
-            sum = sum + DoubleDouble::from(self.volume_between(base, [inner, outer], VOLUME_ERROR * scale));
+        for ends in ends.windows(2) {
+            let base = profile.kink_below(ends[1]);
+            sum = sum + DoubleDouble::from(self.volume_between(base, [ends[0], ends[1]], VOLUME_ERROR * scale));
         }
         4.0 * sum.value()
     }
@@ -282,19 +281,9 @@ impl<'a> WornContact<'a> {
             (depth - DoubleDouble::from(profile.level(x))).value() * total * total.sqrt() * sin * sin * cos / x
         };
         let rule = |[low, high]: [f64; 2]| integral(&TWENTY_POINTS, high - low, |psi| integrand(low + psi));
-        let first = [angle(outer), angle(inner)];
-        let (mut waiting, mut sum) = (vec![(first, rule(first), 0)], 0.0);
-        while let Some(([low, high], value, halvings)) = waiting.pop() {
-            let middle = 0.5 * (low + high);
-            let halves = [[low, middle], [middle, high]].map(|half| (half, rule(half), halvings + 1));
-            let refined = halves[0].1 + halves[1].1;
-            if (refined - value).abs() <= error.max(1e-14 * value.abs()) || halvings >= MOST_HALVINGS {
-                sum += refined;
-            } else {
-                waiting.extend(halves);
-            }
-        }
-        sum
+        let coarse = |_, whole: f64, sum: f64| (sum - whole).abs() > error.max(1e-14 * whole.abs());
+        let panels = by_halves([angle(outer), angle(inner)], MOST_HALVINGS, rule, coarse);
+        panels.into_iter().map(|(_, sum)| sum).sum()
     }
 
     /// H(r) = int_c^r (d - g) dx/sqrt(r^2 - x^2), m, at a radius from c to that of `end`, which is not inside the edge.
