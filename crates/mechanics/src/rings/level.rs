@@ -35,8 +35,9 @@ pub(super) struct Level {
     pub(super) dissipated: Vec<f64>,
     /// Which rings have slipped in the present move.
     pub(super) slipped: Vec<bool>,
-    /// Slip of the last step, with which the next one begins its search.
+    /// Slip of the last step and of the one before, from which the next one begins its search.
     slip: Vec<Vector>,
+    earlier: Vec<Vector>,
     before: Vec<Vector>,
     forces: Vec<Vector>,
     workspace: Workspace,
@@ -56,6 +57,7 @@ impl Level {
             dissipated: vec![0.0; mesh.count],
             slipped: vec![false; mesh.count],
             slip: still.clone(),
+            earlier: still.clone(),
             before: still.clone(),
             forces: still,
             workspace: Workspace::default(),
@@ -80,6 +82,14 @@ impl Level {
                 for (ring, share) in self.forces.iter_mut().zip(mesh.together()) {
                     *ring = [ring[0] + share / total * force[0], ring[1] + share / total * force[1]];
                 }
+            }
+        }
+        // The guess of this slip: that of the last two steps drawn straight on, where it does not turn round.
+        for (slip, earlier) in self.slip.iter_mut().zip(&mut self.earlier) {
+            let before = std::mem::replace(earlier, *slip);
+            let ahead = [2.0 * slip[0] - before[0], 2.0 * slip[1] - before[1]];
+            if ahead[0] * slip[0] + ahead[1] * slip[1] > 0.0 {
+                *slip = ahead;
             }
         }
         solve(stiffness, &self.bounds, &self.forces, &mut self.traction, &mut self.slip, &mut self.workspace);

@@ -11,8 +11,13 @@ use super::mesh::Vector;
 const MOST_SWEEPS: usize = 2_000;
 /// Steps of Newton's method that may fail to lower the function before sweeps go on alone for a while.
 const MOST_FAILURES: usize = 3;
-/// Largest change of a force in the last sweep, relative to the largest bound.
-const SETTLED: f64 = 1e-13;
+/// Largest change of a force in a sweep, relative to the largest bound, from which on only rounding is left once sweeps
+/// no longer halve it.
+const SETTLED: f64 = 1e-12;
+/// Roundings of the largest force that a ring may be off by, for each ring.
+const ROUNDINGS: f64 = 16.0;
+/// Sweeps after which Newton's method is tried again once it has failed.
+const PAUSE: usize = 10;
 
 /// What a step needs besides its problem, kept from step to step.
 #[derive(Clone, Debug, Default)]
@@ -35,17 +40,26 @@ pub(super) fn solve(
     workspace: &mut Workspace,
 ) {
     let largest = forces.iter().map(norm).fold(0.0, f64::max);
-    let limit = SETTLED * bounds.iter().copied().fold(0.0, f64::max) + f64::EPSILON * largest;
+    let rounding = f64::EPSILON * largest;
+    let settled = SETTLED * bounds.iter().copied().fold(0.0, f64::max) + ROUNDINGS * bounds.len() as f64 * rounding;
     traction.copy_from_slice(forces);
     for (row, slip) in stiffness.chunks_exact(bounds.len()).zip(slip.iter()).filter(|(_, slip)| norm(slip) > 0.0) {
         subtract(traction, row, *slip);
     }
-    let mut failures = 0;
+    // A guess worse than none, as after a far longer step, would leave its rounding in the tractions.
+    if function(bounds, traction, forces, slip) > 0.0 {
+        slip.fill([0.0; 2]);
+        traction.copy_from_slice(forces);
+    }
+    let (mut failures, mut least) = (0, f64::INFINITY);
     for sweep in 0..MOST_SWEEPS {
-        if pass(stiffness, bounds, traction, slip) <= limit {
+        let change = pass(stiffness, bounds, traction, slip);
+        if change <= rounding || (change <= settled && change > 0.5 * least) {
             break;
         }
-        if sweep % 50 == 49 {
+        debug_assert!(sweep + 1 < MOST_SWEEPS, "sweeps of {} rings do not settle: {change:e}", bounds.len());
+        least = least.min(change);
+        if sweep % PAUSE == PAUSE - 1 {
             failures = 0;
         }
         if failures < MOST_FAILURES && !newton(stiffness, bounds, forces, traction, slip, workspace) {
