@@ -229,3 +229,13 @@ fn a_code_names_one_kind() {
     }
     assert_eq!(Code::parse("teapot"), None);
 }
+
+#[test]
+fn the_description_of_a_warning_lists_the_codes_of_the_page() {
+    let specification: serde_json::Value = serde_json::from_str(include_str!("../../openapi/openapi.json")).unwrap();
+    let described = &specification["components"]["schemas"]["Warning"]["properties"]["code"]["description"];
+    let listed: BTreeSet<&str> = described.as_str().unwrap().split('`').skip(1).step_by(2).collect();
+    let text = page("warnings.md");
+    let explained: BTreeSet<&str> = text.lines().filter_map(|line| line.strip_prefix("## ")).collect();
+    assert_eq!(listed, explained);
+}

@@ -75,8 +75,9 @@ fn description(node: &Value) -> String {
 /// The unit that a description states: after a comma, or as that of another field, or none as a pure number.
 fn stated_unit(text: &str) -> Option<String> {
     if let Some(rest) = OF_ANOTHER.iter().find_map(|words| text.split_once(words).map(|(_, rest)| rest)) {
-        let named = rest.split([',', ';', ':', '.']).next().unwrap_or_default();
-        return Some(format!("that of {named}"));
+        let sentence = rest.split(". ").next().unwrap_or_default();
+        let named = sentence.split([',', ';', ':']).next().unwrap_or_default();
+        return Some(format!("that of {}", named.trim_end_matches('.')));
     }
     units_after_commas(text).next().map(str::to_owned)
 }

@@ -163,11 +163,13 @@ pub struct Protocol {
 /// A caveat about a result.
 #[schema(example = json!({"code": "dundurs_beta", "message": "the bodies are unlike"}))]
 pub struct Warning: Eq {
-    /// A name for programs: `dundurs_beta`, `large_contact`, `slip_direction`, `noisy_table`, `tolerance_not_met`,
-    /// `units`, `interaction_neglected`, `load_curve_alone`, `elliptic_slip`, `bulk_shift_neglected`; of fits also
-    /// `many_outliers`, `fill_values`, `one_sided_scan`, `short_scan`, `machine_compliance_unknown`,
-    /// `partial_slip_only`, `beyond_gross_slip`, `first_branch_unknown`, `turns_as_sampled`, `quantised`,
-    /// `not_coulomb`, `not_converged`.
+    /// A name for programs: `dundurs_beta`, `slip_direction`, `large_contact`, `units`, `far_beyond_slip`,
+    /// `beyond_model`, `noisy_table`, `many_outliers`, `fill_values`, `one_sided_scan`, `short_scan`,
+    /// `machine_compliance_unknown`, `partial_slip_only`, `beyond_gross_slip`, `first_branch_unknown`, `not_coulomb`,
+    /// `quantised`, `not_converged`, `turns_as_sampled`, `tolerance_not_met`, `stress_error`, `interaction_neglected`,
+    /// `load_curve_alone`, `elliptic_slip`, `bulk_shift_neglected`, `bulk_work_neglected`, `no_worn_profile`,
+    /// `unbounded_stress`, `no_positive_value`, `life_scatter`, `grid_outside_contact`, `grid_rim`,
+    /// `grid_misses_largest`.
     pub code: String,
     /// An explanation for people.
     pub message: String,
