@@ -320,7 +320,7 @@ fn the_reference_knows_the_units_of_the_contract() {
         ("FrettingReply", "ruiz_tension", "N²/m³"),
         ("Rating", "values[]", "that of the criterion"),
         ("Body", "youngs_modulus", "Pa"),
-        ("CycleReply", "cycles[].harmonics[].in_phase", "that of the answer"),
+        ("CycleReply", "cycles[].harmonics[].in_phase", "that of the response"),
         ("FitReply", "correlations.{name}.{name}", "1"),
         ("PowerLawProfile", "coefficient", "m^(1−n)"),
     ] {

@@ -21,7 +21,7 @@ const SPRING_LADDER: [usize; 4] = [10, 100, 1_000, 10_000];
 const COMPARED_RADII: usize = 200;
 
 requests! {
-/// A contact, the path that it follows, and the solvers to compare on it; the server keeps nothing of it.
+/// A contact, the path that it follows, and the solvers to compare on it. Nothing is stored.
 #[schema(example = json!({
     "contact": ContactDefinition::example(),
     "path": {"falling_amplitude": {"reversals": 20}}
@@ -31,12 +31,13 @@ pub struct AccuracyRequest {
     pub contact: ContactDefinition,
     /// The path.
     pub path: Path,
-    /// Where the shear stress at the end of the path is compared; left out, at 200 radii evenly spaced from the centre
-    /// to the edge. `fields`, if named, must hold `shear`; nothing else is compared.
+    /// Where the shear stress at the end of the path is compared; if left out, at 200 radii evenly spaced from the
+    /// centre to the edge. `fields`, if given, must include `shear`; only the shear stress is compared.
     pub stress: Option<StressRequest>,
-    /// The solvers, in the order of the rows; left out, the exact one and 10, 100, 1000 and 10 000 springs.
+    /// The solvers, in the order of the rows; if left out, the exact one and 10, 100, 1000 and 10 000 springs.
     pub solvers: Option<Vec<Solver>> = SOLVERS,
-    /// Tolerance for what is not exact, relative to μ F_N, a pure number. The reference is held to a sixteenth of it.
+    /// Tolerance of results that are not exact, relative to μ F_N, a pure number. The reference is computed to a
+    /// sixteenth of this.
     pub tolerance: Option<f64> = Tolerance(DEFAULT_TOLERANCE),
 }
 }
@@ -44,9 +45,9 @@ pub struct AccuracyRequest {
 replies! {
 /// The time and the error of each solver.
 pub struct AccuracyReply {
-    /// What the rows are compared with.
+    /// The solution that the rows are compared with.
     pub reference: Reference,
-    /// One row a solver.
+    /// One row for each solver.
     pub rows: Vec<AccuracyRow>,
 }
 
@@ -54,7 +55,7 @@ pub struct AccuracyReply {
 pub struct Reference {
     /// The solver.
     pub solver: SolverKind,
-    /// What makes it a reference.
+    /// Why this solution serves as the reference.
     pub reason: String,
     /// Its own estimated error of the forces, relative to `force_unit`, a pure number: smaller
     /// differences have no meaning.
@@ -77,21 +78,21 @@ pub struct AccuracyRow {
     /// The solver.
     pub solver: Solver,
     /// Largest difference of the force from that of the reference, over all moves, relative to `force_unit`, a pure
-    /// number; `null` without an answer, or where it is infinite.
+    /// number; `null` without a result, or where it is infinite.
     pub force_error: Option<f64>,
     /// Largest difference of the shear stress at the end, over the radii, relative to `stress_unit`, a pure number;
-    /// `null` without an answer, or where it is infinite.
+    /// `null` without a result, or where it is infinite.
     pub stress_error: Option<f64>,
-    /// Error of the force over all moves as the solver states it itself, relative to the friction limit μ F_N, a pure
-    /// number; `null` without an answer, or where it is infinite.
+    /// Error of the force over all moves as the solver estimates it, relative to the friction limit μ F_N, a pure
+    /// number; `null` without a result, or where it is infinite.
     pub estimated_force_error: Option<f64>,
-    /// Error of the stress at the end as the solver states it itself, relative to `stress_unit`, a pure number: the
-    /// largest over the contact, but for springs within some cells of a singular radius of the profile; `null` without
-    /// an answer, or where it is infinite.
+    /// Error of the stress at the end as the solver estimates it, relative to `stress_unit`, a pure number: the
+    /// largest over the contact, for springs without the cells near a singular radius of the profile; `null` without a
+    /// result, or where it is infinite.
     pub estimated_stress_error: Option<f64>,
-    /// Time spent computing, s: the median of a few runs if one takes less than some milliseconds.
+    /// Time spent computing, s: the median of a few runs if one takes less than a few milliseconds.
     pub compute_time: f64,
-    /// Why this solver has no answer, if it has none: the move that it cannot follow.
+    /// Why this solver has no result: the move that it cannot follow. Left out if there is a result.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub refused: Option<Fault>,
@@ -111,7 +112,7 @@ pub struct Comparison {
     pub sampling: Sampling,
     /// The solvers.
     pub solvers: Vec<Solver>,
-    /// The tolerance for what is not exact.
+    /// The tolerance of results that are not exact.
     pub tolerance: f64,
 }
 
@@ -158,7 +159,7 @@ impl Document for AccuracyRequest {
         let at = JsonPath::Root.member("stress");
         let sampling = stress.check(at, faults);
         if sampling.as_ref().is_some_and(|sampling| !sampling.fields.contains(&Field::Shear)) {
-            faults.add(at.member("fields"), "the shear stress is what is compared: name `shear`");
+            faults.add(at.member("fields"), "only the shear stress is compared: include `shear`");
         }
         let tolerance = Tolerance(DEFAULT_TOLERANCE).of(self.tolerance, faults);
         let at = JsonPath::Root.member("solvers");

@@ -18,7 +18,7 @@ pub struct Fault {
     /// What is wrong there, and what is allowed.
     #[schema(example = "-1 is out of range: allowed is 1e-15 to 1e9 m")]
     pub detail: String,
-    /// The least number allowed, in the unit of the member, where a number is out of range.
+    /// The smallest number allowed, in the unit of the member, where a number is out of range.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub minimum: Option<f64>,
@@ -26,11 +26,11 @@ pub struct Fault {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub maximum: Option<f64>,
-    /// What a force must stay above, N, where friction cannot hold it.
+    /// The bound above which a force must stay, N, if friction cannot hold it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub exclusive_minimum: Option<f64>,
-    /// What a force must stay below, N, where friction cannot hold it.
+    /// The bound below which a force must stay, N, if friction cannot hold it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub exclusive_maximum: Option<f64>,
@@ -54,8 +54,8 @@ impl Fault {
 /// Why a body is refused.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Rejection {
-    /// It is not JSON at all.
-    #[error("the body is not JSON: {0}")]
+    /// The body is not JSON.
+    #[error("the body is not valid JSON: {0}")]
     NotJson(String),
     /// It is JSON, but not a valid document of this call.
     #[error("{}", summary(.0))]

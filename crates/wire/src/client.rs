@@ -62,7 +62,7 @@ pub enum Error {
     /// The service refused, and says why.
     #[error("{} ({}): {}", .0.title, .0.code, .0.detail)]
     Problem(Box<ProblemDocument>),
-    /// The service could not be reached, or its reply not be read.
+    /// The service could not be reached, or its reply could not be read.
     #[error(transparent)]
     Transport(#[from] reqwest::Error),
     /// The reply does not come from this service.
@@ -224,7 +224,7 @@ impl Client {
     }
 
     /// `GET /contacts/{id}/events`: the states beyond the move `after`, or the present one and then each new one. The
-    /// stream ends when the service or the connection does; go on from the sequence of the last state then.
+    /// stream ends when the service or the connection does; continue from the sequence of the last state then.
     pub async fn events(
         &self,
         id: Uuid,

@@ -11,7 +11,7 @@ use super::limits::{Array, Limited as _, count};
 use super::request::requests;
 
 requests! {
-/// Hertzian asperities between two rigid bodies, of which each is an elastic contact of its own.
+/// Hertzian asperities between two rigid bodies; each asperity is an elastic contact of its own.
 pub struct AsperitiesProfile {
     /// Radii of curvature, m, one for each gap; or give one `radius` for all.
     pub radii: Option<Vec<f64>> = Array(ASPERITIES, range::RADIUS),
@@ -24,15 +24,15 @@ pub struct AsperitiesProfile {
 
 /// A load curve from the first touch on. Its slope must not fall.
 pub struct LoadCurveProfile {
-    /// Indentations d, m: from 0 on, increasing. The indentation never exceeds the last.
+    /// Indentations d, m: increasing from 0. The indentation must not exceed the last.
     pub indentation: Vec<f64> = Array(CURVE_POINTS, range::PRELOAD_INDENTATION),
-    /// The normal force F_N at each, N: from 0 on.
+    /// The normal force F_N at each indentation, N: increasing from 0.
     pub normal_force: Vec<f64> = Array(CURVE_POINTS, range::NORMAL_FORCE),
 }
 
 /// A gap x²/(2 R_x) + y²/(2 R_y); `material` must name the bodies.
 pub struct EllipsoidProfile {
-    /// The principal radii of curvature of the gap, R_x and R_y, m; their ratio is 10⁶ at the most.
+    /// The principal radii of curvature of the gap, R_x and R_y, m; their ratio is at most 10⁶.
     pub radii: Vec<f64> = Array(2..=2, range::RADIUS),
     /// The axis along which the indenter moves.
     pub direction: MotionAxis,
@@ -64,7 +64,7 @@ impl AsperitiesProfile {
         let radii = self.radii.as_deref().unwrap_or(self.radius.as_slice());
         if self.radii.is_some() && radii.len() != self.gaps.len() {
             let (radii, gaps) = (radii.len(), self.gaps.len());
-            faults.add(at.member("gaps"), format_args!("{gaps} gaps for {radii} radii: there must be as many"));
+            faults.add(at.member("gaps"), format_args!("{gaps} gaps for {radii} radii: give one radius for each gap"));
             return None;
         }
         accepted(Asperities::new_while(radii, &self.gaps, keep_going).map(Shape::Asperities), at, faults)
@@ -112,7 +112,7 @@ impl EllipsoidProfile {
         let ratio = x.max(y) / x.min(y);
         let Range { max, .. } = range::RADIUS_RATIO;
         if ratio > max {
-            faults.add(place, format_args!("one radius is {ratio:e} times the other: {max:e} times is the most"));
+            faults.add(place, format_args!("one radius is {ratio:e} times the other: at most {max:e} is allowed"));
             return None;
         }
         accepted(Ellipsoid::new([x, y], self.direction.into()).map(Shape::Ellipsoid), at, faults)

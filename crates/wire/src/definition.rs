@@ -28,8 +28,8 @@ pub struct ContactDefinition {
     pub friction: f64 = range::FRICTION,
     /// The normal load that the contact starts with.
     pub preload: Preload,
-    /// A stress along x that comes with the tangential force and moves the stick zone: with a `cylinder`, under a
-    /// constant load.
+    /// A bulk stress along x in proportion to the tangential force, which shifts the stick zone: only with a `cylinder`
+    /// and under a constant load.
     pub bulk: Option<BulkPerForce>,
 }
 
@@ -47,8 +47,8 @@ pub struct Effective {
     pub e_star: f64 = range::E_STAR,
     /// G*, Pa: 1/G* = Σ (2−νᵢ)/(4Gᵢ).
     pub g_star: f64 = range::G_STAR,
-    /// The two bodies that they were measured of, where these are known: the contact has the moduli above, and the
-    /// stress below its surface, the fatigue criteria and the warnings the constants of these.
+    /// The two bodies on which the moduli were measured, if they are known. The contact has the moduli above; the
+    /// stress below its surface, the fatigue criteria and the warnings use the constants of these bodies.
     pub bodies: Option<Vec<Body>> = BODIES,
 }
 }
@@ -70,9 +70,9 @@ pub struct DefinedProfile<'a> {
 words! {
 /// One of the two bodies in contact.
 pub enum BodyName of Side {
-    /// The one with the profile, which moves along x: its surface feels −τ.
+    /// The body with the profile, which moves along x; the shear stress on its surface is −τ.
     First = "first",
-    /// The plane one: its surface feels +τ.
+    /// The plane body; the shear stress on its surface is +τ.
     Second = "second",
 }
 }
@@ -82,7 +82,7 @@ choices! {
 pub enum Material {
     /// The two bodies in contact; one of them may be rigid.
     "bodies" => Bodies(Vec<Body>) = BODIES,
-    /// The reduced moduli themselves.
+    /// The reduced moduli.
     "effective" => Effective(Effective),
 }
 }

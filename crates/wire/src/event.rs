@@ -15,24 +15,24 @@ replies! {
 pub struct StateEvent omits Option {
     /// The identifier of the contact.
     pub id: Uuid,
-    /// The number of the move, and of moves so far; the identifier of the event.
+    /// The number of the move, which is the number of moves so far and the identifier of the event.
     pub sequence: u64,
-    /// The move as it was given; absent before the first.
+    /// The move as it was given; absent before the first move.
     #[serde(rename = "move")]
     pub step: Option<Move>,
     /// The state after it.
     pub state: State,
     /// The cycle that it closed; the outermost if several.
     pub cycle: Option<Cycle>,
-    /// What was measured there, if it is an observation.
+    /// The measurement, if the move is an observation.
     pub observation: Option<ObservedForce>,
     /// When it was applied, or the contact created (ISO 8601, UTC).
     pub at: Timestamp,
 }
 
-/// The data of the event `end`, the last one.
+/// The data of the last event, `end`.
 pub struct EndEvent: Copy, Eq {
-    /// Why there are no more.
+    /// Why there are no more events.
     pub reason: EndReason,
 }
 }
@@ -46,9 +46,9 @@ pub enum EndReason {
     Expired = "expired",
     /// The server stops. After a restart, or on another server, the stream continues from `Last-Event-ID`.
     Stopping = "stopping",
-    /// What is stored of the contact is damaged: there are moves that cannot be shown.
+    /// The stored contact is damaged: some moves cannot be shown.
     Damaged = "damaged",
-    /// The server cannot read what comes next; the operator finds the cause in the log.
+    /// The server cannot read the next move; the operator finds the cause in the log.
     Failed = "failed",
 }
 }

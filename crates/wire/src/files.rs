@@ -7,7 +7,7 @@ use crate::fit::{FitUnits, MeasuredLoop};
 use crate::profile_fit::{ScanData, ScanUnits};
 use crate::request::replies;
 
-/// What is known of a scan beside its file: the query of `POST /files/scan`. Units are texts such as `um`, `mil` or
+/// What is known of a scan besides its file: the query of `POST /files/scan`. Units are texts such as `um`, `mil` or
 /// `10^-6 m`; a column is its number, from 1 on, or the beginning of its name in the header.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct ScanFileHints {
@@ -27,7 +27,7 @@ pub struct ScanFileHints {
     pub sheet: Option<String>,
 }
 
-/// What is known of a loop beside its file: the query of `POST /files/loop`. Units are texts such as `um`, `mil` or
+/// What is known of a loop besides its file: the query of `POST /files/loop`. Units are texts such as `um`, `mil` or
 /// `10^-6 m`; a column is its number, from 1 on, or the beginning of its name in the header.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct LoopFileHints {
@@ -63,8 +63,8 @@ pub struct ScanFileReply {
     pub preview: FilePreview,
 }
 
-/// A measured loop that was read from a file. `loop` is one of the `loops` of the body of `POST /fit`, and `units` its
-/// member.
+/// A measured loop that was read from a file. In the body of `POST /fit`, `loop` is an item of `loops`, and `units` is
+/// the member `units`.
 pub struct LoopFileReply {
     /// Displacement and force, with the time and the mean load if the file has them.
     #[serde(rename = "loop")]
@@ -77,7 +77,7 @@ pub struct LoopFileReply {
 }
 }
 
-/// A scan as a file has it: that of `POST /profiles/fit`, with however few or many points.
+/// A scan as read from a file: that of `POST /profiles/fit`, with any number of points.
 #[derive(Serialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum ScanInFile {
@@ -85,7 +85,7 @@ pub enum ScanInFile {
     Line(LineInFile),
     /// Heights on a grid.
     Map(MapInFile),
-    /// Heights anywhere.
+    /// Heights at arbitrary places.
     Points(PointsInFile),
 }
 
@@ -94,7 +94,7 @@ pub enum ScanInFile {
 pub struct LineInFile {
     /// Places along the line, in the unit of `units.lateral`.
     pub x: Vec<f64>,
-    /// Heights, as many, in the unit of `units.height`.
+    /// Heights, one for each place, in the unit of `units.height`.
     pub z: Vec<Option<f64>>,
 }
 
@@ -109,25 +109,25 @@ pub struct MapInFile {
     pub z: Vec<Vec<Option<f64>>>,
 }
 
-/// Heights anywhere.
+/// Heights at arbitrary places.
 #[derive(Serialize, ToSchema)]
 pub struct PointsInFile {
     /// Places along x, in the unit of `units.lateral`.
     pub x: Vec<f64>,
-    /// Places along y, as many, in the unit of `units.lateral`.
+    /// Places along y, one for each x, in the unit of `units.lateral`.
     pub y: Vec<f64>,
-    /// Heights, as many, in the unit of `units.height`.
+    /// Heights, one for each place, in the unit of `units.height`.
     pub z: Vec<Option<f64>>,
 }
 
-/// A loop as a file has it: one of those of `POST /fit`, with however few or many points.
+/// A loop as read from a file: one of those of `POST /fit`, with any number of points.
 #[derive(Serialize, ToSchema)]
 pub struct LoopInFile {
     /// Displacements, in the unit of `units.displacement`.
     pub displacement: Vec<f64>,
-    /// Tangential forces, as many, in the unit of `units.force`.
+    /// Tangential forces, one for each displacement, in the unit of `units.force`.
     pub force: Vec<f64>,
-    /// Times, s, as many, if the file has them.
+    /// Times, s, one for each point, if the file has them.
     #[schema(nullable = false)]
     pub time: Option<Vec<f64>>,
     /// The mean load, N, if the file has one.
@@ -142,19 +142,19 @@ pub struct FilePreview {
     pub encoding: String,
     /// What separates the columns: `semicolon`, `tab`, `white_space` or `comma`.
     pub separator: String,
-    /// What separates whole numbers from decimals: `.` or `,`.
+    /// The decimal mark: `.` or `,`.
     pub decimal_mark: String,
     /// Number of rows of numbers.
     pub rows: usize,
-    /// Lines that are not in the reply: headers, remarks, and rows without a number that they need.
+    /// Lines that are not in the reply: headers, remarks, and rows that lack a number.
     pub rows_left_out: RowsLeftOut,
     /// The first lines before the numbers.
     pub header: Vec<String>,
-    /// The columns in order, with what each was taken for; none of a matrix of heights.
+    /// The columns in order, with the quantity that each was taken for; empty for a matrix of heights.
     pub columns: Vec<FileColumn>,
-    /// The stride: one row in so many, and one column of a matrix, is in the reply; 1 if all are.
+    /// The stride n: one row in n, and of a matrix one column in n, is in the reply; 1 if all are.
     pub thinned: usize,
-    /// What was taken for what, in sentences.
+    /// How columns and units were interpreted, in sentences.
     pub reading: Vec<String>,
 }
 
@@ -162,15 +162,15 @@ pub struct FilePreview {
 pub struct FileColumn: Eq {
     /// Its name in the header, if it has one.
     pub name: Option<String>,
-    /// What it was taken for: `x`, `y`, `z`, `displacement`, `force`, `time` or `normal_force`; `null` if it was left
-    /// out.
+    /// The quantity that it was taken for: `x`, `y`, `z`, `displacement`, `force`, `time` or `normal_force`; `null` if
+    /// it was left out.
     pub quantity: Option<String>,
     /// Its unit in the file, by its symbol (`um`) or as the file names it (`mil`); `null` if it was left out. The
     /// numbers of the reply are in `units`.
     pub unit: Option<String>,
-    /// Whether neither the file nor the query names that unit.
+    /// Whether the unit was assumed because neither the file nor the query names it.
     pub assumed: bool,
-    /// Why it was left out.
+    /// Why the column was left out.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub left_out: Option<String>,
@@ -178,9 +178,9 @@ pub struct FileColumn: Eq {
 
 /// Lines of a file that are not in the reply.
 pub struct RowsLeftOut: Eq {
-    /// How many there are.
+    /// Number of lines.
     pub count: usize,
-    /// Their numbers from 1 on, of the first 100.
+    /// Line numbers of the first 100, counted from 1.
     pub lines: Vec<usize>,
 }
 }

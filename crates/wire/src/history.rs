@@ -20,9 +20,9 @@ pub struct HistoryItem omits Option {
     pub state: State,
     /// The cycle that it closed; the outermost if several.
     pub cycle: Option<Cycle>,
-    /// What was measured there, if it is an observation.
+    /// The measurement, if the move is an observation.
     pub observation: Option<ObservedForce>,
-    /// The name of the key that made it. Left out of a move that was made without a key, and where no keys are in use.
+    /// The name of the key that made it. Left out for a move that was made without a key, and where no keys are in use.
     pub by: Option<String>,
     /// When it was applied (ISO 8601, UTC).
     pub at: Timestamp,
@@ -32,7 +32,7 @@ pub struct HistoryItem omits Option {
 pub struct HistoryPage {
     /// The moves.
     pub items: Vec<HistoryItem>,
-    /// What to give as `after` for the next page; `null` on the last.
+    /// The value of `after` for the next page; `null` on the last page.
     pub next: Option<u64>,
 }
 
@@ -41,17 +41,18 @@ pub struct HistoryPage {
 pub struct LoopPage: Default {
     /// The number of the move that a point belongs to.
     pub sequence: Vec<u64>,
-    /// Fraction of that move, a pure number: 1 at its end.
+    /// Fraction of that move at the point, a pure number: 1 at its end.
     pub part: Vec<f64>,
     /// Tangential displacement U of the indenter, m; positive along x.
     pub displacement: Vec<f64>,
     /// Tangential force F, N.
     pub force: Vec<f64>,
-    /// Force that was measured at a point, N, `null` where none was; left out if there is none on the page.
+    /// Force that was measured at each point, N, `null` where none was measured; left out if the page has no measured
+    /// force.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     #[schema(required = false)]
     pub observed_force: Vec<Option<f64>>,
-    /// What to give as `after` for the next page; `null` on the last.
+    /// The value of `after` for the next page; `null` on the last page.
     pub next: Option<u64>,
 }
 }

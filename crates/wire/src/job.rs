@@ -8,7 +8,7 @@ use super::event::EndReason;
 use super::request::replies;
 
 replies! {
-/// A sweep that the server computes after its request has been answered.
+/// A sweep that the server computes in the background.
 pub struct JobReply omits Option {
     /// Its identifier.
     pub id: Uuid,
@@ -16,10 +16,10 @@ pub struct JobReply omits Option {
     pub state: JobState,
     /// Its progress.
     pub progress: JobProgress,
-    /// Time that the solver is estimated to take for a point, on one thread, s.
+    /// Estimated time of the solver for one point, on one thread, s.
     #[schema(example = 0.012)]
     pub point_time: f64,
-    /// When it was asked for (ISO 8601, UTC).
+    /// When it was created (ISO 8601, UTC).
     pub created_at: Timestamp,
     /// When it ended (ISO 8601, UTC).
     pub finished_at: Option<Timestamp>,
@@ -54,17 +54,17 @@ pub enum JobState {
 replies! {
 /// The progress of a job.
 pub struct JobProgress: Copy, Eq {
-    /// Points in all.
+    /// Number of points in all.
     pub points: u64,
-    /// Points that are computed and stored.
+    /// Number of points that are computed and stored.
     pub done: u64,
-    /// Points among them that have no answer.
+    /// Number of computed points without a result.
     pub failed: u64,
 }
 
-/// The data of the event `end`, the last one before a job has ended itself.
+/// The data of the event `end`, which ends the stream before the job has ended.
 pub struct JobEndEvent: Copy, Eq {
-    /// Why there are no more.
+    /// Why there are no more events.
     pub reason: EndReason,
 }
 }

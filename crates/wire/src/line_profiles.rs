@@ -13,11 +13,11 @@ requests! {
 pub struct CylinderProfile {
     /// Radius R, m; for two cylinders 1/R = 1/R₁ + 1/R₂.
     pub radius: f64 = range::LENGTH,
-    /// Length L of the contact, m: forces are those of all of it.
+    /// Length L of the contact, m; forces are totals over this length.
     pub length: f64 = range::LENGTH,
     /// The length that fixes the displacements, m: dδ = 2/(π E* L) ln(reference_length/t) dF_N for the half-width t.
-    /// Left out, twice the radius. Half-widths stay below nine tenths of it; stresses, forces and the work of closed
-    /// cycles under a force do not depend on it.
+    /// If left out, twice the radius. Half-widths must stay below nine tenths of it; stresses, forces and the work of
+    /// closed cycles under a force do not depend on it.
     pub reference_length: Option<f64> = range::LENGTH,
 }
 
@@ -27,15 +27,15 @@ pub struct RoundedPadProfile {
     pub flat_half_width: f64 = range::LENGTH,
     /// Radius R of the edges, m.
     pub edge_radius: f64 = range::LENGTH,
-    /// Length L of the contact, m: forces are those of all of it.
+    /// Length L of the contact, m; forces are totals over this length.
     pub length: f64 = range::LENGTH,
-    /// The length that fixes the displacements, m, as of a cylinder. Left out, `length`.
+    /// The length that fixes the displacements, m, as for a cylinder. If left out, `length`.
     pub reference_length: Option<f64> = range::LENGTH,
 }
 
-/// A stress along x in one of the bodies that comes with the tangential force, as a bulk load in phase does.
+/// A bulk stress along x in one of the bodies, in proportion to the tangential force and in phase with it.
 pub struct BulkPerForce {
-    /// The body that carries it.
+    /// The body that carries the stress.
     pub body: BodyName,
     /// The stress over the tangential force, Pa/N; tension is positive.
     pub stress_per_force: f64 = range::STRESS_PER_FORCE,

@@ -15,7 +15,7 @@ use super::session::Advance;
 use super::simulate::Steps;
 
 requests! {
-/// Measurements on a bench, in their order: the contact follows all of them, or none.
+/// Measurements on a bench, in the order of time: the contact follows all of them or, if one is refused, none.
 #[schema(example = json!({
     "observations": [{"displacement": 1e-7, "force": 1.21}, {"displacement": 2e-7, "force": 2.04}]
 }))]
@@ -30,16 +30,16 @@ replies! {
 pub struct ObservationsReply omits Option {
     /// The identifier of the contact.
     pub id: Uuid,
-    /// The number of the last move, and of moves so far.
+    /// The number of the last move, which is the number of moves so far.
     pub sequence: u64,
-    /// The observations beside what the contact predicts.
+    /// The observations with the forces that the contact predicts.
     pub items: Vec<ObservedMove>,
-    /// The coefficient of friction by the last measured cycle; left out as long as the observations do not determine
+    /// The coefficient of friction from the last measured cycle; left out as long as the observations do not determine
     /// it.
     pub friction: Option<FrictionEstimate>,
 }
 
-/// An observation beside what the contact predicts.
+/// An observation with the force that the contact predicts.
 pub struct ObservedMove: Copy {
     /// Tangential displacement, m.
     pub displacement: f64,
@@ -51,7 +51,7 @@ pub struct ObservedMove: Copy {
     pub innovation: f64,
 }
 
-/// What was measured at the displacement of a move.
+/// The force that was measured at the displacement of a move.
 pub struct ObservedForce: Copy omits Option {
     /// Measured tangential force, N; positive along x.
     pub force: f64,
@@ -76,7 +76,7 @@ pub struct FrictionEstimate: Copy {
     pub to: u64,
 }
 
-/// The coefficient of friction that the observations of a contact have last determined.
+/// The latest coefficient of friction that the observations of a contact determine.
 pub struct FrictionReply: Copy omits Option {
     /// The identifier of the contact.
     pub id: Uuid,
@@ -108,7 +108,7 @@ impl Document for ObservationsRequest {
                 observation.check_members(at, faults);
                 let Some(instant) = observation.at else { continue };
                 if i64::try_from(instant.as_nanosecond()).is_err() {
-                    faults.add(at.member("at"), format_args!("{instant} is too far off: 1678 to 2261 can be stored"));
+                    faults.add(at.member("at"), format_args!("{instant} is out of range: allowed are 1678 to 2261"));
                 } else if instant < latest {
                     faults.add(at.member("at"), format_args!("{instant} is before {latest} of an earlier measurement"));
                 }

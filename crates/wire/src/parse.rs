@@ -13,8 +13,7 @@ const LONGEST_TEXT: usize = 400;
 const MARK: &[u8] = b"\xef\xbb\xbf";
 const WIDE_MARKS: [&[u8]; 2] = [b"\xff\xfe", b"\xfe\xff"];
 /// Where motion in the plane has a place, for the documents that have none.
-const IN_PLANE: &str = ": motion in the plane, a pair [x, y] in `moves` or an `ellipse`, is for `/simulate` and \
-                        `/sweep` alone";
+const IN_PLANE: &str = ": motion in the plane, a pair [x, y] in `moves` or an `ellipse`, needs `/simulate` or `/sweep`";
 /// Values that are no JSON, in lower case and without a sign.
 const NOT_NUMBERS: [&str; 3] = ["nan", "inf", "infinity"];
 

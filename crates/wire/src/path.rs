@@ -73,20 +73,20 @@ requests! {
 /// A tangential oscillation that dies away by the law of equal peaks; it ends at displacement zero.
 #[schema(example = json!({"reversals": 20}))]
 pub struct EqualPeaks {
-    /// Number of reversals N_R; the path has one move more.
+    /// Number of reversals N_R; the path has one more move.
     pub reversals: usize = REVERSALS,
-    /// Radius from which on the peaks are equal, m, up to the contact radius. The law needs one where the slope of the
-    /// profile jumps (the tip of a cone, the rim of a flat), from that radius on; left out, it is there a tenth of the
-    /// way from that radius to the edge, else zero.
+    /// Radius outside which the peaks are equal, m, up to the contact radius. For a profile whose slope jumps (the tip
+    /// of a cone, the rim of a flat) it must lie outside the jump; if left out, it is then a tenth of the way from the
+    /// jump to the edge, and zero for other profiles.
     pub cutoff_radius: Option<f64> = range::CONTACT_RADIUS,
 }
 
 /// A tangential oscillation that dies away; it ends at displacement zero.
 #[schema(example = json!({"reversals": 20}))]
 pub struct FallingAmplitude {
-    /// Number of reversals N_R; the path has one move more.
+    /// Number of reversals N_R; the path has one more move.
     pub reversals: usize = REVERSALS,
-    /// Displacement of the first reversal, m; left out, the displacement at which the contact just slips as a whole.
+    /// Displacement of the first reversal, m; if left out, the displacement at which the contact just slips as a whole.
     pub amplitude: Option<f64> = range::DISPLACEMENT,
 }
 

@@ -158,17 +158,17 @@ pub struct SimulatedMove: Copy, Default {
     pub relative: bool,
 }
 
-/// Turns round the ellipse x = a cos θ, y = b sin(θ + phase), after a move to its beginning. Between its points the
-/// path follows the curve.
+/// Turns around the ellipse x = a cos θ, y = b sin(θ + phase), after a move to its beginning. Between the points of the
+/// ellipse the path follows the curve.
 #[schema(example = json!({"radii": [1e-7, 1e-7], "turns": 2}))]
 pub struct Ellipse: Copy {
     /// a and b, m.
     pub radii: [f64; 2] = Each(SEMI_AXIS),
     /// Number of turns.
     pub turns: usize = TURNS,
-    /// Moves of a turn, each with its state; left out, 64. The path has one move more, at most 100 000 in all.
+    /// Moves in each turn, each with its state; if left out, 64. The path has one more move, at most 100 000 in all.
     pub steps_per_turn: Option<usize> = STEPS_PER_TURN,
-    /// Phase, degrees: an upright ellipse at 0, a line at 90; left out, 0.
+    /// Phase, degrees: an upright ellipse at 0, a line at 90; if left out, 0.
     pub phase: Option<f64> = PHASE,
 }
 }
@@ -190,7 +190,7 @@ pub enum SimulatedPath {
     "equal_peaks" => EqualPeaks(EqualPeaks) = OfItsMembers,
     /// Equal cycles about a mean, under a constant load or one that oscillates too.
     "cycles" => Cycles(CyclicPath),
-    /// Round an ellipse.
+    /// Turns around an ellipse.
     "ellipse" => Ellipse(Ellipse) = OfItsMembers,
 }
 }
@@ -200,7 +200,7 @@ replies! {
 pub struct PlanarState: Copy, Default {
     /// Tangential displacement of the indenter along x and y, m.
     pub displacement: [f64; 2],
-    /// Tangential force along x and y, N; along the displacement of a virgin contact.
+    /// Tangential force along x and y, N; in a virgin contact it points along the displacement.
     pub force: [f64; 2],
     /// Indentation d, m; positive when pressed in, below zero the bodies are apart.
     pub indentation: f64,
@@ -208,8 +208,8 @@ pub struct PlanarState: Copy, Default {
     pub normal_force: f64,
     /// Contact radius a, m.
     pub contact_radius: f64,
-    /// Radius inside which the last move did not slip, m, to the width of a ring: the contact radius if nothing
-    /// slipped, zero in gross slip.
+    /// Radius inside which the last move did not slip, m, resolved to the width of a ring: the contact radius if
+    /// nothing slipped, zero in gross slip.
     pub stick_radius: f64,
     /// How much of the contact slipped in the last move.
     pub regime: Regime,
@@ -234,13 +234,13 @@ pub struct PlanarStress: Default omits Option {
     pub slip_x: Option<Vec<Option<f64>>>,
     /// Slip along y, m; `null` outside the contact.
     pub slip_y: Option<Vec<Option<f64>>>,
-    /// Friction work per area since the start, J/m²: with `slip`, where rings follow the path.
+    /// Friction work per area since the start, J/m²; returned with `slip` if rings follow the path.
     pub friction_work: Option<Vec<Option<f64>>>,
 }
 
 /// The result of a simulation in the plane.
 pub struct PlanarReply omits Option {
-    /// What follows from the definition at the preload.
+    /// Quantities that follow from the definition at the preload.
     pub contact: ContactSummary,
     /// The states along the path: all of them, or the last.
     pub steps: Vec<PlanarState>,

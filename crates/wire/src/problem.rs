@@ -52,47 +52,50 @@ macro_rules! codes {
 }
 
 codes! {
-    /// The body is not JSON. What is JSON but wrong in itself is [`Code::InvalidInput`], as its syntax is not to blame.
-    NotJson = 400 "not_json": "The body is not JSON", "the body is not valid JSON";
+    /// The body is not JSON. A body that is JSON but not a valid request is [`Code::InvalidInput`].
+    NotJson = 400 "not_json": "The body is not valid JSON", "`detail` says what was found, with line and column";
     /// A proxy might read the head of the request in another way than this server.
     AmbiguousRequest = 400 "ambiguous_request": "The head of the request is ambiguous",
-        "the head can be read in two ways (two lengths, two keys, no host): a proxy or a client is at fault";
+        "the head can be read in two ways (two lengths, two keys, no host): correct the client or the proxy";
     /// The request has no key, or one that is not known.
     Unauthorized = 401 "unauthorized": "A key is needed", "send a key: `Authorization: Bearer KEY`";
-    /// The key does not allow it. What belongs to another tenant does not exist: [`Code::ContactNotFound`].
+    /// The key does not allow this. The contacts of other tenants are hidden: [`Code::ContactNotFound`].
     Forbidden = 403 "forbidden": "The key does not allow this", "the role of this key does not allow this";
     /// The service has no keys, and the request names a host that is not its own, or comes from a page of another site.
     ForeignOrigin = 403 "foreign_origin": "The request comes from another site",
         "call the service by an address or a name of its own, or have its operator add yours: \
             [browsers](access.md#browsers)";
     /// The path does not exist.
-    NotFound = 404 "not_found": "There is nothing at this path", "no such path";
+    NotFound = 404 "not_found": "The path was not found", "`/docs` lists the paths of the service";
     /// The contact does not exist.
-    ContactNotFound = 404 "contact_not_found": "The contact was not found", "no such contact, or one of another tenant";
+    ContactNotFound = 404 "contact_not_found": "The contact was not found",
+        "check the identifier; contacts of other tenants are hidden";
     /// The job does not exist.
     JobNotFound = 404 "job_not_found": "The job was not found",
-        "no such job, one of another tenant, or one that ended more than a day ago";
+        "check the identifier; jobs of other tenants are hidden, and jobs are deleted a day after their end";
     /// The path exists, but not with this method.
-    MethodNotAllowed = 405 "method_not_allowed": "This path has no such method", "`Allow` says which methods there are";
+    MethodNotAllowed = 405 "method_not_allowed": "The path does not allow this method",
+        "use a method that `Allow` lists";
     /// `Accept` admits no format that the path has.
     NotAcceptable = 406 "not_acceptable": "The format is not available",
-        "`Accept` admits no format: [those there are](contacts.md#formats)";
+        "let `Accept` admit one of the [formats](contacts.md#formats)";
     /// The body takes too long to arrive.
-    RequestTimeout = 408 "request_timeout": "The request did not arrive in time", "the body came too slowly";
+    RequestTimeout = 408 "request_timeout": "The request did not arrive in time",
+        "send the body again, without long pauses";
     /// The request is sound, but the present state of the contact forbids it; [`Code::StaleSequence`] if the client has
     /// said which state it expects.
     Conflict = 409 "conflict": "The state of the contact forbids this",
-        "the contact does not allow it as it stands: its memory is full, or other clients kept moving it";
+        "`detail` gives the reason: the slip history of the contact is full, or other clients kept moving it";
     /// The result of a job that has not ended, and may yet have one.
     JobNotDone = 409 "job_not_done": "The job has not ended",
         "the job has not ended: wait for its events, or ask again";
     /// The result of a job that will never have one.
-    JobFailed = 409 "job_failed": "The job has failed", "the job ended with an error, which its document names";
+    JobFailed = 409 "job_failed": "The job has failed", "the document of the job gives the error that ended it";
     /// The contact was idle for so long that it has been deleted.
     ContactExpired = 410 "contact_expired": "The contact has expired",
-        "it was idle for longer than `--expire-after`: make a new one";
+        "the contact was idle for longer than `--expire-after`: create a new one";
     /// The contact is not at the sequence that `If-Match` names.
-    StaleSequence = 412 "stale_sequence": "The contact has moved on",
+    StaleSequence = 412 "stale_sequence": "The contact has changed",
         "the contact has changed since: read it, then decide";
     /// The body is too large.
     TooLarge = 413 "too_large": "The body is too large", "bodies have at most 8 MiB, files of instruments 16 MiB";
@@ -110,7 +113,7 @@ codes! {
         "the force must stay below μ F_N, which `detail` gives";
     /// The request is valid, but the contact would outgrow the profile.
     BeyondProfile = 422 "beyond_profile": "The contact outgrows the profile",
-        "the contact outgrows the table or the sphere: less load, or a larger profile";
+        "the contact outgrows the table or the sphere: reduce the load, or give a larger profile";
     /// The request is valid, but its bulk stress is too large for the contact, or the profile takes none.
     BulkTooLarge = 422 "bulk_too_large": "The bulk stress is too large for nested stick zones",
         "slip would begin on both sides in opposite directions; `detail` gives the largest stress: [line \
@@ -120,7 +123,7 @@ codes! {
         "forces and energies follow from a load curve, stresses do not: [rough contacts](rough-contacts.md)";
     /// The request is valid, but the contact area would be a ring.
     ProfileNotConvexEnough = 422 "profile_not_convex_enough": "The contact area would not be a full circle",
-        "the contact would be a ring: [limits](limits.md)";
+        "the contact area would be a ring, which the model does not treat: [limits](limits.md)";
     /// The request is valid, but the solver that it names cannot follow a move of it.
     UnsupportedMove = 422 "unsupported_move": "The solver cannot follow this move",
         "springs cannot follow this move: leave `solver` out";
@@ -130,9 +133,9 @@ codes! {
             [loaded](overload.md#work-that-ends), send the request again";
     /// The idempotency key belongs to another request.
     IdempotencyKeyReused = 422 "idempotency_key_reused": "The idempotency key belongs to another request",
-        "the key belongs to another request: choose a new one";
+        "choose a new key";
     /// The tenant has as many jobs as it may have.
-    TooManyJobs = 429 "too_many_jobs": "There are too many jobs",
+    TooManyJobs = 429 "too_many_jobs": "The tenant has too many jobs",
         "wait for a job to end, or delete one; `Retry-After` says when to try again";
     /// A quota of the client is used up.
     QuotaExceeded = 429 "quota_exceeded": "A quota of the client is used up",
@@ -140,10 +143,10 @@ codes! {
             `Retry-After` says";
     /// A fault of this program. Its cause goes to the log; the client gets the identifier of the request.
     Internal = 500 "internal": "The server has failed",
-        "a fault of the server: tell its operator the `request_id`; a change may have been stored";
+        "a fault of the server: give its operator the `request_id`; a change may have been stored";
     /// What is stored of the contact is not what has been stored: moves are missing, or cannot be made again.
     DamagedContact = 500 "damaged_contact": "The stored contact is damaged",
-        "moves of the contact are missing in the store: its operator must restore it; other contacts are not affected";
+        "moves of the contact are missing in the store: the operator must restore it; other contacts are not affected";
     /// Nothing is wrong with the request, but there is no capacity at present.
     Overloaded = 503 "overloaded": "The server is busy", "wait as long as `Retry-After` says, and repeat";
     /// The server stops before the request is done.
@@ -178,15 +181,16 @@ pub struct ProblemDocument {
     /// The status code of the response.
     #[schema(example = 422)]
     pub status: u16,
-    /// What happened this time.
+    /// What happened in this request.
     pub detail: String,
-    /// The name of the kind, for programs.
+    /// The name of the kind of problem, for programs.
     #[schema(example = "invalid_input")]
     pub code: String,
     /// Each fault of the request with its place.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub errors: Vec<Fault>,
-    /// The identifier of the request, by which its operator finds it in the log; also in the header `x-request-id`.
+    /// The identifier of the request, by which the operator of the server finds it in the log; also in the header
+    /// `x-request-id`.
     pub request_id: String,
 }
 }

@@ -36,11 +36,11 @@ pub enum Profile {
     Tabulated(TabulatedProfile),
     /// Several profiles added up, z = Σ zᵢ.
     Sum(SumProfile),
-    /// Hertzian asperities on one rigid motion, which do not interact elastically. No stresses.
+    /// Hertzian asperities on one rigid body, which do not interact elastically. Without a stress field.
     Asperities(AsperitiesProfile),
-    /// A load curve F_N(d), measured or computed elsewhere. No stresses.
+    /// A load curve F_N(d), measured or computed elsewhere. Without a stress field.
     LoadCurve(LoadCurveProfile),
-    /// An ellipsoid, or two bodies crossed: Hertz's ellipse of contact. No stresses.
+    /// An ellipsoid, or two bodies crossed: Hertz's ellipse of contact. Without a stress field.
     Ellipsoid(EllipsoidProfile),
     /// A cylinder pressed along a line.
     Cylinder(CylinderProfile),
@@ -268,16 +268,16 @@ impl Profile {
 requests! {
 /// A table of heights over radii, of equal lengths.
 pub struct TabulatedProfile {
-    /// Radii, m: from 0 on, increasing. The contact radius stays below the last.
+    /// Radii, m: increasing from 0. The contact radius must stay below the last.
     pub r: Vec<f64> = Array(TABLE_POINTS, range::TABLE_RADIUS),
     /// Heights z above the plane, m; an offset does not matter.
     pub z: Vec<f64> = Array(TABLE_POINTS, range::TABLE_HEIGHT),
     /// Standard errors of the indentation at which a contact has each radius, m, as `POST /profiles/fit` gives them:
-    /// they take the place of what the heights say of their noise and of the shape between them. Of the length of `r`,
-    /// and together with `pressure_error`.
+    /// they replace the estimates from the noise of the heights and from the shape between them. One for each radius in
+    /// `r`; requires `pressure_error`.
     pub indentation_error: Option<Vec<f64>> = Array(TABLE_POINTS, range::INDENTATION_ERROR),
-    /// The largest standard error of the pressure in a contact of each radius, over E*, a pure number. Of the length of
-    /// `r`, and together with `indentation_error`.
+    /// The largest standard error of the pressure in a contact of each radius, over E*, a pure number. One for each
+    /// radius in `r`; requires `indentation_error`.
     pub pressure_error: Option<Vec<f64>> = Array(TABLE_POINTS, range::PRESSURE_ERROR),
 }
 
@@ -314,7 +314,7 @@ fn check_table(
                 faults.add(at.member(name), "the two errors of a table go together: give both or neither");
             }
             Some(errors) if errors.len() != r.len() => {
-                faults.add(at.member(name), format_args!("{} elements: r has {}", errors.len(), r.len()));
+                faults.add(at.member(name), format_args!("{} elements, but r has {}", errors.len(), r.len()));
             }
             _ => {}
         }

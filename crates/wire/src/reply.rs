@@ -5,7 +5,7 @@ use super::request::replies;
 use stickslip_mechanics as mechanics;
 
 replies! {
-/// What follows from the definition of a contact at its preload.
+/// Quantities that follow from the definition of a contact at its preload.
 #[schema(as = Figures)]
 pub struct ContactSummary: Default omits Option {
     /// Reduced modulus E*, Pa.
@@ -14,19 +14,19 @@ pub struct ContactSummary: Default omits Option {
     pub g_star: f64,
     /// Indentation d, m.
     pub indentation: f64,
-    /// Contact radius a, m; the half-width of a line contact; of a profile without a stress field F_N′/(2 E*), which
+    /// Contact radius a, m; for a line contact the half-width; for a profile without a stress field F_N′/(2 E*), which
     /// governs the stiffness.
     pub contact_radius: f64,
     /// Normal force F_N, N.
     pub normal_force: f64,
-    /// Largest pressure, Pa; `null` where it is infinite, and of a profile without a stress field.
+    /// Largest pressure, Pa; `null` where it is infinite, and for a profile without a stress field.
     #[serde_with(skip_apply)]
     pub max_pressure: Option<f64>,
-    /// Semi-axes of the contact along x and y, m: of an ellipsoid.
+    /// Semi-axes of the contact along x and y, m; only for an ellipsoid.
     pub semi_axes: Option<[f64; 2]>,
     /// Displacement at which a virgin contact just slips as a whole, μ (E*/G*) d, m.
     pub gross_slip_displacement: f64,
-    /// Tangential force then, μ F_N, N.
+    /// Tangential force at gross slip, μ F_N, N.
     pub gross_slip_force: f64,
 }
 
@@ -40,11 +40,11 @@ pub struct State: Copy, Default {
     pub indentation: f64,
     /// Normal force F_N, N; compression is positive.
     pub normal_force: f64,
-    /// Contact radius a, m; the half-width of a line contact; of a profile without a stress field F_N′/(2 E*).
+    /// Contact radius a, m; for a line contact the half-width; for a profile without a stress field F_N′/(2 E*).
     pub contact_radius: f64,
     /// Radius inside which the last move did not slip, m: the contact radius if nothing slipped, zero in gross slip.
     pub stick_radius: f64,
-    /// Where the middle of that part is along x, m: of a contact whose bulk stress moves it.
+    /// Middle of the stick zone along x, m; only with a bulk stress that shifts it.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub stick_centre: Option<f64>,
@@ -77,12 +77,12 @@ pub enum Regime: Default of mechanics::Regime {
 replies! {
 /// The extrema of the shear stress of a contact.
 pub struct Residual: Default {
-    /// Shear stress in the centre, Pa, positive as a positive displacement causes it; `null` where it is infinite.
+    /// Shear stress at the centre, Pa, positive as a positive displacement causes it; `null` where it is infinite.
     pub centre: Option<f64>,
     /// The local extrema strictly between centre and edge, from the centre outwards, each with its position to
     /// round-off. Where the history does not say how often the stress turns between two of its kinks, the derivative
-    /// of the stress is sampled there, and two extrema closer together than the samples could be missed; dense
-    /// searches have found none that was.
+    /// of the stress is sampled there, and two extrema closer together than the samples could be missed; dense searches
+    /// have found no such case.
     pub peaks: Vec<Peak>,
     /// Largest magnitude of the shear stress over the whole contact, centre included, Pa; `null` where it is infinite.
     pub max: Option<f64>,
@@ -97,11 +97,11 @@ pub struct Residual: Default {
 
 /// A local extremum of the shear stress.
 pub struct Peak: Copy, Default {
-    /// Where, m: of a round contact.
+    /// Radius in a round contact, m.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub radius: Option<f64>,
-    /// Where along x, m: of a line contact. Without a bulk stress those at −x are alike and left out.
+    /// Place along x in a line contact, m. Without a bulk stress the extrema at −x equal those at x and are left out.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub x: Option<f64>,
@@ -109,31 +109,31 @@ pub struct Peak: Copy, Default {
     pub shear: Option<f64>,
 }
 
-/// Which solver answered, and how accurate its answer is.
+/// The solver that was used, and the accuracy of its results.
 pub struct Accuracy: Default omits Option {
-    /// The solver that answered.
+    /// The solver that was used.
     pub solver: SolverKind,
-    /// Why this one.
+    /// Why this solver was chosen.
     pub reason: String,
-    /// Estimated error of the forces, relative to the friction limit μ F_N, a pure number: of rounding, of curved
-    /// paths, of the interpolation of a table, of springs, of rings. That of curved paths is the largest of the states
-    /// in the reply, that of springs and rings the largest over all moves, of rings relative to the largest load.
+    /// Estimated error of the forces, relative to the friction limit μ F_N, a pure number: from rounding, curved paths,
+    /// the interpolation of a table, springs and rings. For curved paths it is the largest over the states in the
+    /// reply, for springs and rings the largest over all moves, with rings relative to the largest load.
     pub force_error: f64,
     /// Estimated error of the stresses, relative to μ times the largest pressure (or, where that is infinite, to the
-    /// mean), a pure number; of no meaning for a profile without a stress field.
+    /// mean), a pure number; meaningless for a profile without a stress field.
     pub stress_error: f64,
     /// Estimated error of the stress below the surface, relative to the largest pressure (or to the mean), a pure
     /// number, if it was asked for.
     pub subsurface_error: Option<f64>,
     /// Estimated error of the dissipated energies, relative to μ F_N and the displacement of gross slip at the largest
-    /// load of the path, a pure number: of rings.
+    /// load of the path, a pure number; stated for rings only.
     pub work_error: Option<f64>,
-    /// Number of rings, of the solver in the plane.
+    /// Number of rings of the solver in the plane.
     pub count: Option<usize>,
-    /// Steps of the finest of its discretisations on the whole path.
+    /// Number of steps on the whole path in the finest discretisation of the rings.
     pub steps: Option<usize>,
-    /// Processor time that the request took but for HTTP, s: with the check, the preparation of the profile unless it
-    /// was ready, and the loading of a stored contact; without the time in which it yielded to other work.
+    /// Processor time of the request without HTTP, s. It includes the check, the preparation of the profile unless that
+    /// was cached, and the loading of a stored contact, and excludes the time in which other requests ran instead.
     pub compute_time: f64,
 }
 }
@@ -152,11 +152,11 @@ pub enum SolverKind: Default {
 }
 
 replies! {
-/// The path that the law of equal peaks has given.
+/// The path from the law of equal peaks.
 pub struct Protocol {
-    /// Displacements, m; usable as a path of their own.
+    /// Displacements, m; they can be sent as a path.
     pub displacement: Vec<f64>,
-    /// Radius from which on the peaks are equal, m.
+    /// Radius outside which the peaks are equal, m.
     pub cutoff_radius: f64,
 }
 
@@ -177,7 +177,7 @@ pub struct Warning: Eq {
 }
 
 impl Peak {
-    /// The radius or, of a line contact, x, m.
+    /// The radius or, in a line contact, x, m.
     #[must_use]
     pub fn place(&self) -> f64 {
         self.radius.or(self.x).unwrap_or(f64::NAN)

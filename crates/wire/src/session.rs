@@ -47,8 +47,8 @@ pub struct CreateRequest and ContactDefinition {
     pub friction: f64,
     /// The normal load that the contact starts with.
     pub preload: Preload,
-    /// A stress along x that comes with the tangential force and moves the stick zone: with a `cylinder`, under a
-    /// constant load.
+    /// A bulk stress along x in proportion to the tangential force, which shifts the stick zone: only with a `cylinder`
+    /// and under a constant load.
     pub bulk: Option<BulkPerForce>,
 }
 
@@ -68,7 +68,7 @@ pub struct MoveRequest: Default and Move {
     pub relative: bool,
     /// Ask for stresses after the move.
     pub stress: Option<StressRequest>,
-    /// Tolerance for what is not exact, relative to μ F_N, a pure number.
+    /// Tolerance of results that are not exact, relative to μ F_N, a pure number.
     pub tolerance: Option<f64> = Tolerance(DEFAULT_TOLERANCE),
 }
 
@@ -82,21 +82,21 @@ pub struct PathRequest {
     /// Which states to return.
     #[serde(default)]
     pub steps: Steps,
-    /// Tolerance for what is not exact, relative to μ F_N, a pure number.
+    /// Tolerance of results that are not exact, relative to μ F_N, a pure number.
     pub tolerance: Option<f64> = Tolerance(DEFAULT_TOLERANCE),
 }
 
 /// Options of a fork; the body may be empty.
 #[schema(example = json!({"label": "what if"}))]
 pub struct ForkRequest: Default {
-    /// A label for the new contact; left out, that of the original.
+    /// A label for the new contact; if left out, that of the original.
     pub label: Option<String> = LABEL,
-    /// After how many moves of the original the new contact begins; left out, after all of them. It has made these
-    /// moves itself, and none of the later ones.
+    /// Number of moves of the original that the new contact starts with; if left out, all of them. Its history has
+    /// these moves and no later ones.
     pub sequence: Option<u64> = SEQUENCE,
 }
 
-/// What of a contact can be changed without a move.
+/// The properties of a contact that can be changed without a move.
 #[schema(example = json!({"label": "steel ball, third run"}))]
 pub struct RenameRequest {
     /// The new label, or `null` for none.
@@ -119,7 +119,7 @@ pub enum ContactOrder {
 }
 
 replies! {
-/// A contact that has just been made.
+/// A contact that has just been created.
 pub struct NewSession {
     /// Its identifier.
     pub id: Uuid,
@@ -127,7 +127,7 @@ pub struct NewSession {
     pub label: Option<String>,
     /// Number of moves so far: zero, or those of the contact that it was forked from.
     pub sequence: u64,
-    /// What follows from the definition at the preload.
+    /// Quantities that follow from the definition at the preload.
     pub contact: ContactSummary,
     /// Its state.
     pub state: State,
@@ -143,11 +143,11 @@ pub struct SessionReply {
     pub label: Option<String>,
     /// Number of moves so far.
     pub sequence: u64,
-    /// What follows from the definition at the preload.
+    /// Quantities that follow from the definition at the preload.
     pub contact: ContactSummary,
     /// Its state after the last move.
     pub state: State,
-    /// When it was made (ISO 8601, UTC).
+    /// When it was created (ISO 8601, UTC).
     pub created_at: Timestamp,
     /// When it was last moved (ISO 8601, UTC).
     pub updated_at: Timestamp,
@@ -161,7 +161,7 @@ pub struct SessionSummary {
     pub label: Option<String>,
     /// Number of moves so far.
     pub sequence: u64,
-    /// When it was made (ISO 8601, UTC).
+    /// When it was created (ISO 8601, UTC).
     pub created_at: Timestamp,
     /// When it was last moved (ISO 8601, UTC).
     pub updated_at: Timestamp,
@@ -171,7 +171,7 @@ pub struct SessionSummary {
 pub struct SessionPage {
     /// The contacts.
     pub items: Vec<SessionSummary>,
-    /// What to give as `after` for the next page; `null` on the last.
+    /// The value of `after` for the next page; `null` on the last page.
     pub next: Option<Uuid>,
 }
 
@@ -179,7 +179,7 @@ pub struct SessionPage {
 pub struct MoveReply omits Option {
     /// The identifier of the contact.
     pub id: Uuid,
-    /// The number of this move, and of moves so far.
+    /// The number of this move, which is the number of moves so far.
     pub sequence: u64,
     /// The state after it.
     pub state: State,
@@ -187,7 +187,7 @@ pub struct MoveReply omits Option {
     pub stress: Option<Stress>,
     /// Solver, errors and time.
     pub accuracy: Accuracy,
-    /// Warnings about the results from this move on that earlier replies have not given.
+    /// Warnings that apply from this move on and that earlier replies have not given.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     #[schema(required = false)]
     pub warnings: Vec<Warning>,
@@ -197,7 +197,7 @@ pub struct MoveReply omits Option {
 pub struct PathReply omits Option {
     /// The identifier of the contact.
     pub id: Uuid,
-    /// The number of the last move, and of moves so far.
+    /// The number of the last move, which is the number of moves so far.
     pub sequence: u64,
     /// The states along the path: all of them, or the last.
     pub steps: Vec<State>,
@@ -207,7 +207,7 @@ pub struct PathReply omits Option {
     pub protocol: Option<Protocol>,
     /// Solver, errors and time.
     pub accuracy: Accuracy,
-    /// Warnings about the results from this path on that earlier replies have not given.
+    /// Warnings that apply from this path on and that earlier replies have not given.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     #[schema(required = false)]
     pub warnings: Vec<Warning>,
@@ -215,9 +215,9 @@ pub struct PathReply omits Option {
 
 /// The stresses of a contact, and their extrema if asked for.
 pub struct StressReply omits Option {
-    /// Radii, m: of a round contact.
+    /// Radii in a round contact, m.
     pub radius: Option<Vec<f64>>,
-    /// Places along x, m: of a line contact.
+    /// Places along x in a line contact, m.
     pub x: Option<Vec<f64>>,
     /// Normal pressure, Pa; compression is positive; `null` where it is infinite.
     pub pressure: Option<Vec<Option<f64>>>,
@@ -260,7 +260,7 @@ pub struct Advance {
     pub stress: Option<Sampling>,
     /// Which states are requested.
     pub steps: Steps,
-    /// The tolerance for what is not exact.
+    /// The tolerance of results that are not exact.
     pub tolerance: f64,
     /// The protocol that finds the moves, if there is one; `plan` is then empty.
     pub relax: Option<Relaxation>,

@@ -21,7 +21,7 @@ const RINGS_TOLERANCE: f64 = 1e-3;
 const LEAST_RINGS_TOLERANCE: f64 = 1e-5;
 
 requests! {
-/// A contact and the path that it follows; the server keeps nothing of it. Only what is asked for is computed.
+/// A contact and the path that it follows. Nothing is stored. Only what is asked for is computed.
 #[schema(example = json!({
     "contact": ContactDefinition::example(),
     "path": {"falling_amplitude": {"reversals": 20}},
@@ -38,15 +38,15 @@ pub struct SimulateRequest {
     /// Ask for the extrema of the shear stress at the end of the path.
     #[serde(default)]
     pub residual: bool,
-    /// Ask for the stress below the surface at the end of the path; by the exact solver.
+    /// Ask for the stress below the surface at the end of the path; only with the exact solver.
     pub subsurface: Option<SubsurfaceRequest>,
     /// Which states to return.
     #[serde(default)]
     pub steps: Steps,
-    /// Which solver to use; left out, the cheapest that serves the request.
+    /// The solver to use; if left out, the cheapest that can serve the request.
     pub solver: Option<Solver>,
-    /// Tolerance for what is not exact, relative to μ F_N, a pure number. For rings it is at least 1e-5; left out,
-    /// 1e-3.
+    /// Tolerance of results that are not exact, relative to μ F_N, a pure number. For rings it is at least 1e-5 and, if
+    /// left out, 1e-3.
     pub tolerance: Option<f64> = Tolerance(DEFAULT_TOLERANCE),
 }
 
@@ -68,10 +68,10 @@ pub struct Springs: Copy, Eq {
 words! {
 /// Which states of a path to return.
 pub enum Steps: Default {
-    /// One state a move.
+    /// One state for each move.
     #[default]
     All = "all",
-    /// The state after the last move alone.
+    /// Only the state after the last move.
     Last = "last",
 }
 }
@@ -88,8 +88,8 @@ pub enum Solver: Copy, Eq {
     /// force only at constant indentation, and a normal force only without a tangential target (else
     /// `unsupported_move`).
     "springs" => Springs(Springs),
-    /// Rings, also along a line: the solver for motion in the plane, approximate. A path with pairs that leaves its
-    /// first line is followed by as many as the tolerance needs, if no number is asked for.
+    /// Rings: the approximate solver for motion in the plane, which also follows motion along a line. Without a number,
+    /// a path with pairs that leaves its first line is followed by as many rings as the tolerance needs.
     "rings" => Rings(Rings),
 }
 }
@@ -97,7 +97,7 @@ pub enum Solver: Copy, Eq {
 replies! {
 /// The result of a simulation.
 pub struct SimulateReply omits Option {
-    /// What follows from the definition at the preload.
+    /// Quantities that follow from the definition at the preload.
     pub contact: ContactSummary,
     /// The states along the path: all of them, or the last.
     pub steps: Vec<State>,
@@ -135,7 +135,7 @@ pub struct Simulation {
     pub steps: Steps,
     /// The requested solver.
     pub solver: Option<Solver>,
-    /// The tolerance for what is not exact.
+    /// The tolerance of results that are not exact.
     pub tolerance: f64,
 }
 
@@ -174,7 +174,7 @@ impl Document for SimulateRequest {
         }
         let no_surface = setup.as_ref().is_some_and(|setup| !setup.profile.has_stress_field());
         if matches!(self.solver, Some(Solver::Springs(_))) && no_surface {
-            let detail = "springs stand under a surface, which this profile has not: leave `solver` out";
+            let detail = "springs need a profile with a stress field: leave `solver` out";
             faults.add(JsonPath::Root.member("solver"), detail);
         }
         if matches!(self.solver, Some(Solver::Springs(_))) {
@@ -212,17 +212,17 @@ fn check_in_plane(
     faults: &mut Faults,
 ) {
     for (name, _) in asked.iter().filter(|(_, asked)| *asked) {
-        let detail = format_args!("`{name}` is not defined for motion in the plane: leave it out, or the pairs");
+        let detail = format_args!("`{name}` is not defined for motion in the plane: leave it or the pairs out");
         faults.add(JsonPath::Root.member(name), detail);
     }
     if stress.is_some_and(|stress| stress.fields.contains(&Field::Displacement)) {
         let at = JsonPath::Root.member("stress");
-        faults.add(at.member("fields"), "`displacement` is not computed for motion in the plane: name `slip`");
+        faults.add(at.member("fields"), "`displacement` is not computed for motion in the plane: ask for `slip`");
     }
     let detail = match solver {
-        Some(Solver::Springs(_)) => "springs follow no motion in the plane: leave `solver` out, or ask for rings",
+        Some(Solver::Springs(_)) => "springs do not follow motion in the plane: leave `solver` out, or ask for rings",
         Some(Solver::Exact) if plane.line.is_none() => {
-            "the exact solver follows motion along one line alone: leave `solver` out, or ask for rings"
+            "the exact solver follows motion along one line only: leave `solver` out, or ask for rings"
         }
         _ => return,
     };

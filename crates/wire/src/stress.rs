@@ -8,17 +8,17 @@ use super::limits::{Array, Limited as _, STRESS_POINTS};
 use super::request::{replies, requests};
 
 requests! {
-/// Where stresses are asked for: exactly one of `points` and `radii` (of a line contact `x`), and which `fields`.
+/// Where stresses are asked for: exactly one of `points` and `radii` (for a line contact `x`), and which `fields`.
 #[schema(example = json!({"points": 200}))]
 pub struct StressRequest: Default {
-    /// Number of radii, evenly spaced from the centre to the edge of the contact, both included; of a line contact from
-    /// the edge at −a to that at a.
+    /// Number of radii, evenly spaced from the centre to the edge of the contact, both included; for a line contact
+    /// from the edge at −a to the edge at a.
     pub points: Option<usize> = STRESS_POINTS,
-    /// Radii, m, of a round contact; outside the contact the stresses are zero.
+    /// Radii in a round contact, m; outside the contact the stresses are zero.
     pub radii: Option<Vec<f64>> = Array(1..=10_000, range::CONTACT_RADIUS),
-    /// Places along x, m, of a line contact.
+    /// Places along x in a line contact, m.
     pub x: Option<Vec<f64>> = Array(1..=10_000, range::PLACE),
-    /// Which fields are computed; left out, `pressure` and `shear`.
+    /// Which fields are computed; if left out, `pressure` and `shear`.
     pub fields: Option<Vec<Field>>,
 }
 }
@@ -30,7 +30,7 @@ pub enum Field {
     Pressure = "pressure",
     /// Shear stress τ(r), Pa; a positive displacement of the indenter gives a positive stress.
     Shear = "shear",
-    /// Slip U − u(r) under the indenter since the preload, m; none outside the contact.
+    /// Slip U − u(r) under the indenter since the preload, m; `null` outside the contact.
     Slip = "slip",
     /// Tangential displacement u(r) of the surface, m, inside the contact and outside.
     Displacement = "displacement",
@@ -40,9 +40,9 @@ pub enum Field {
 replies! {
 /// Stresses along the radius; an array that was not asked for is left out.
 pub struct Stress: Default omits Option {
-    /// Radii, m: of a round contact.
+    /// Radii in a round contact, m.
     pub radius: Option<Vec<f64>>,
-    /// Places along x, m: of a line contact.
+    /// Places along x in a line contact, m.
     pub x: Option<Vec<f64>>,
     /// Normal pressure, Pa; compression is positive; `null` where it is infinite.
     pub pressure: Option<Vec<Option<f64>>>,

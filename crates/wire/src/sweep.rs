@@ -39,8 +39,8 @@ const SWEEP_POINTS: usize = 2_000_000;
 const SWEEP_NUMBERS: usize = 8_000_000;
 
 requests! {
-/// Many simulations that differ in up to three numbers, and which numbers of each reply are wanted. The points are all
-/// combinations of the values of the axes, the last axis running fastest.
+/// Many simulations that differ in up to three numbers, and the numbers of each reply to return. The points are all
+/// combinations of the values of the axes, with the last axis changing fastest.
 #[schema(example = json!({
     "base": {
         "contact": ContactDefinition::example(),
@@ -50,16 +50,16 @@ requests! {
     "outputs": ["/residual/max"]
 }))]
 pub struct SweepRequest {
-    /// The body of `POST /simulate` that each point is made from. What an axis names may be left out of it.
+    /// The body of `POST /simulate` that each point is made from. A number that an axis sets may be left out.
     #[schema(value_type = Object)]
     pub base: JsonValue,
     /// The numbers that change.
     pub axes: Vec<Axis> = Items(AXES),
-    /// JSON pointers to numbers in the reply to `POST /simulate`, a column each, with or without a name. Where a point
-    /// does not have one, such as a peak of a number that it does not reach, the column has `null`.
+    /// JSON pointers to numbers in the reply to `POST /simulate`, one column each, with or without a name. Where a
+    /// point lacks the number, such as the third of two peaks, the column has `null`.
     #[schema(example = json!(["/residual/max"]))]
     pub outputs: Vec<Output> = Items(OUTPUTS),
-    /// Always make a job of it, even if it is small.
+    /// Run the sweep as a job even if it is small.
     #[serde(default)]
     pub job: bool,
 }
@@ -70,7 +70,7 @@ pub struct Axis {
     /// JSON pointer to the number in the base, or to a member for a number that the base leaves out.
     #[schema(example = "/contact/friction")]
     pub pointer: String,
-    /// The name of the column; left out, the pointer.
+    /// The name of the column; if left out, the pointer.
     #[schema(example = "friction")]
     pub name: Option<String> = ColumnName,
     /// Evenly spaced values.
@@ -81,40 +81,40 @@ pub struct Axis {
     pub values: Option<Vec<f64>> = AXIS_VALUES,
 }
 
-/// Values from one to another. Where the field takes whole numbers, each of them must be whole to one part in 1e9, and
-/// is rounded; else list the values.
+/// Values from one to another. For a field of whole numbers each value must be whole to one part in 1e9, and is
+/// rounded; otherwise list the values.
 pub struct Span: Copy {
     /// The first value.
     pub from: f64 = AXIS_VALUE,
     /// The last value.
     pub to: f64 = AXIS_VALUE,
-    /// How many values, both ends included.
+    /// Number of values, both ends included.
     pub count: usize = 2..=2_000_000_usize,
 }
 }
 
 replies! {
-/// The table of a sweep: a row a point.
+/// The table of a sweep: one row for each point.
 pub struct SweepReply {
-    /// How many points, and numbers in each column.
+    /// Number of points, which is the length of each column.
     pub points: usize,
     /// The columns by their names or pointers: the axes, then the outputs, in the unit of the field; `null` where a
-    /// point has no such number or no answer.
+    /// point lacks the number or has no result.
     pub columns: BTreeMap<String, Vec<Option<f64>>>,
-    /// How many points have no answer.
+    /// Number of points without a result.
     pub failed: u64,
-    /// The first of them.
+    /// The first points without a result.
     pub failures: Vec<PointFailure>,
 }
 
-/// A point without an answer.
+/// A point without a result.
 pub struct PointFailure: Eq {
     /// The row, counted from 0.
     pub index: u64,
-    /// What `POST /simulate` would give as the code of the problem.
+    /// The problem code that `POST /simulate` would reply with.
     #[schema(example = "beyond_profile")]
     pub code: String,
-    /// JSON pointer into the base, if a place is to blame.
+    /// JSON pointer to the fault in the base, if it has a place.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub pointer: String,
     /// What is wrong.
@@ -351,7 +351,7 @@ fn find_kinds(base: &Value, axes: &mut [AxisValues], faults: &mut Faults) {
         for (index, axis) in axes.iter().enumerate() {
             let number = if axis.whole { Number::from(1) } else { fraction.clone() };
             if !axis.pointer.put(&mut document, number) {
-                faults.add(at.index(index).member("pointer"), "the base has no number there, and no place for one");
+                faults.add(at.index(index).member("pointer"), "the base has no number there, and no member for one");
                 return;
             }
         }
@@ -366,7 +366,7 @@ fn find_kinds(base: &Value, axes: &mut [AxisValues], faults: &mut Faults) {
         if let Some(broken) = axis.broken() {
             let value = axis.raw(broken);
             let detail =
-                format_args!("the field takes whole numbers, and value {broken} is {value:?}: list the values");
+                format_args!("the field takes whole numbers, but value {broken} is {value:?}: list the values");
             faults.add(at.index(index), detail);
         }
     }

@@ -16,7 +16,7 @@ use crate::request::{replies, requests};
 const DEFAULT_POINTS: usize = 200;
 
 requests! {
-/// A contact that is moved back and forth until it has worn to its limit; the server keeps nothing of it.
+/// A contact that is moved back and forth until it has worn to its limit. Nothing is stored.
 #[schema(example = json!({
     "contact": ContactDefinition::example(),
     "drive": {"displacement": 1e-7},
@@ -27,8 +27,8 @@ pub struct WearRequest {
     pub contact: ContactDefinition,
     /// How it is moved.
     pub drive: WearDrive,
-    /// What is held meanwhile: `indentation`. Under a held normal force the end depends on the way, so that
-    /// `normal_force` is refused.
+    /// The quantity that is held constant: `indentation`. Under a constant normal force the final shape depends on the
+    /// course of wear, so `normal_force` is refused.
     pub hold: Hold,
     /// Number of radii of the curves, evenly spaced and with both ends; 200 if left out. Stick radius, contact radius
     /// and worn radius are added to them.
@@ -43,7 +43,7 @@ pub struct WearDrive: Copy {
 }
 
 words! {
-/// What is held while a contact wears.
+/// The quantity that is held constant while a contact wears.
 pub enum Hold {
     /// The indentation.
     Indentation = "indentation",
@@ -53,9 +53,9 @@ pub enum Hold {
 }
 
 replies! {
-/// What wear leaves of a contact.
+/// The limit that wear approaches in a contact.
 pub struct WearReply omits Option {
-    /// The contact before.
+    /// The contact before wear.
     pub contact: ContactSummary,
     /// Radius of the disc that never slips, m: the contact radius in the limit.
     pub stick_radius: f64,
@@ -65,7 +65,7 @@ pub struct WearReply omits Option {
     pub indentation: f64,
     /// The normal force, N.
     pub normal_force: WornForce,
-    /// Amplitude of the tangential force in the limit, N: all of the contact sticks.
+    /// Amplitude of the tangential force in the limit, N, where the whole contact sticks.
     pub force_amplitude: f64,
     /// The volume that is removed, m³.
     pub removed_volume: f64,
@@ -76,10 +76,10 @@ pub struct WearReply omits Option {
     /// The pressure, Pa, at the same radii; in the limit it is infinite, and so `null`, at the stick radius.
     pub pressure: WornPressure,
     /// The limiting shape for the computations that follow: a table, or the profile itself if nothing wears; left out
-    /// where there is none, with a warning that says why. In the table a steep rise of g takes the place of the jump at
-    /// the stick radius: with the jump itself the contact at this indentation would be ambiguous.
+    /// if it has none, with a warning that gives the reason. In the table a steep rise of g takes the place of the jump
+    /// at the stick radius: with the jump itself the contact at this indentation would be ambiguous.
     pub profile: Option<Profile>,
-    /// How far `profile` is from the limit; left out without it. The errors that other computations state do not
+    /// How far `profile` is from the limit; left out without `profile`. The errors that other computations state do not
     /// include it.
     pub profile_error: Option<WornProfileError>,
     /// Solver, errors and time: of the forces before wear, and of the table if the profile has one.
@@ -88,19 +88,19 @@ pub struct WearReply omits Option {
     pub warnings: Vec<Warning>,
 }
 
-/// How far a table of the limiting shape is from it.
+/// How far a table is from the limiting shape.
 pub struct WornProfileError: Copy, Default {
-    /// Error of its normal force at this indentation, relative to that of the limit, a pure number.
+    /// Error of the normal force on the table at this indentation, relative to the limit, a pure number.
     pub normal_force: f64,
-    /// Width about the stick radius within which its g rises, where that of the limit jumps, m.
+    /// Width of the range about the stick radius in which g of the table rises, where g of the limit jumps, m.
     pub rise_width: f64,
 }
 
 /// The normal force before wear, and in the limit.
 pub struct WornForce: Copy, Default {
-    /// Before, N.
+    /// Normal force before wear, N.
     pub before: f64,
-    /// In the limit, N.
+    /// Normal force in the limit, N.
     pub after: f64,
 }
 
@@ -108,7 +108,7 @@ pub struct WornForce: Copy, Default {
 pub struct WearDepth: Copy, Default {
     /// The depth, m.
     pub largest: f64,
-    /// Where it is, m.
+    /// The radius where it is, m.
     pub radius: f64,
 }
 
@@ -116,7 +116,7 @@ pub struct WearDepth: Copy, Default {
 pub struct WornShape: Default {
     /// Radii, m, increasing.
     pub radius: Vec<f64>,
-    /// Heights before, m.
+    /// Heights before wear, m.
     pub before: Vec<f64>,
     /// Heights in the limit, m.
     pub after: Vec<f64>,
@@ -126,7 +126,7 @@ pub struct WornShape: Default {
 pub struct WornPressure: Default {
     /// Radii, m, increasing.
     pub radius: Vec<f64>,
-    /// Pressure before, Pa; `null` where it is infinite.
+    /// Pressure before wear, Pa; `null` where it is infinite.
     pub before: Vec<Option<f64>>,
     /// Pressure in the limit, Pa; `null` where it is infinite.
     pub after: Vec<Option<f64>>,
@@ -160,8 +160,8 @@ impl Document for WearRequest {
         if self.hold == Hold::NormalForce {
             faults.add(
                 at("hold"),
-                "normal_force: the indentation would grow while the surface wears, and where it ends depends on the \
-                 way, so that there is no limit to compute; allowed is indentation",
+                "normal_force: the indentation would grow while the surface wears, and its final shape depends on the \
+                 course of wear, so there is no limit to compute; allowed is indentation",
             );
         }
         let task = WearTask { displacement: self.drive.displacement, points: self.points.unwrap_or(DEFAULT_POINTS) };

@@ -19,7 +19,7 @@ use stickslip_compute::formats::Format;
 
 /// Of every operation with a body.
 const OF_BODIES: &[Refusal] = &[
-    ("400", "The body is not JSON"),
+    ("400", "The body is not valid JSON"),
     ("408", "The body did not arrive in time"),
     ("413", "The body is too large"),
     ("415", "The body is not declared as a media type that the operation takes"),

@@ -16,11 +16,11 @@ pub struct FrettingMap: Copy {
 
 /// Normal forces with the same ratio from one to the next.
 pub struct LoadSpan: Copy {
-    /// The first, N.
+    /// The first load, N.
     pub from: f64 = LOAD,
-    /// The last, N; above the first.
+    /// The last load, N; above the first.
     pub to: f64 = LOAD,
-    /// How many, both ends included.
+    /// Number of loads, both ends included.
     pub count: usize = 2..=1_000_usize,
 }
 }

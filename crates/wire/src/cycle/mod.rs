@@ -30,13 +30,12 @@ use crate::prepare::Prepare;
 use crate::request::requests;
 use crate::stress::{Sampling, StressRequest};
 
-/// What cycles under a load that oscillates and oscillations of a mass are held to if the request does not say: steps
-/// cost, and what is left of the former falls with a low power of them.
+/// The default tolerance of cycles under an oscillating load and of oscillations of a mass: the error of the former
+/// falls with a low power of the number of steps, which cost time.
 const DEFAULT_TOLERANCE: f64 = 1e-6;
 
 requests! {
-/// A contact that is moved back and forth for so long that every cycle is as the one before; the server keeps nothing
-/// of it.
+/// A contact that is moved back and forth until every cycle repeats the one before it. Nothing is stored.
 #[schema(example = json!({
     "contact": ContactDefinition::example(),
     "drive": {"displacement": [5e-8, 1e-7, 2e-7]},
@@ -51,20 +50,21 @@ pub struct CycleRequest {
     pub machine: Option<Machine>,
     /// Ask for the harmonics from the first to this one.
     pub harmonics: Option<usize> = HARMONICS,
-    /// Ask for the friction work per area. Radii times amplitudes are at most 200 000. Not under a load that
-    /// oscillates.
+    /// Ask for the friction work per area. Radii times amplitudes are at most 200 000. Not with `normal`.
     pub work_density: Option<WorkDensity>,
     /// The normal load oscillates too, about that of the contact.
     pub normal: Option<NormalOscillation>,
-    /// Tolerance of cycles under a load that oscillates, relative to μ F_N and to the work of that force, and of
-    /// `frequency_response`, relative to the amplitude; a pure number.
+    /// Tolerance, a pure number: of cycles with `normal` relative to μ F_N and to the work of that force, of
+    /// `frequency_response` relative to the amplitude.
     pub tolerance: Option<f64> = Tolerance(DEFAULT_TOLERANCE),
-    /// Ask for the oscillations of a mass that hangs on the contact and is driven by a force.
+    /// Ask for the oscillations of a mass that only the contact holds and a force drives. Not with `machine` or
+    /// `normal`.
     pub frequency_response: Option<FrequencyResponse>,
-    /// Ask for the normal force under which each amplitude does most friction work; with at most 100 amplitudes.
+    /// Ask for the normal force under which each amplitude does the most friction work; with at most 100 amplitudes,
+    /// not with `normal`.
     pub best_load: Option<BestLoadStudy>,
-    /// Repeat all amplitudes under many loads, whatever the preload of the contact: a fretting map. At constant load,
-    /// with `machine` alone. At most 100 000 cycles.
+    /// Repeat all amplitudes under many loads, whatever the preload of the contact: a fretting map. Of the other
+    /// options only `machine` is allowed. At most 100 000 cycles.
     pub map: Option<FrettingMap>,
 }
 
@@ -74,14 +74,14 @@ pub struct Machine: Copy {
     pub stiffness: f64 = range::MACHINE_STIFFNESS,
 }
 
-/// Where the friction work per area is asked for: exactly one of `points` and `radii` (of a line contact `x`).
+/// Where the friction work per area is asked for: exactly one of `points` and `radii` (for a line contact `x`).
 pub struct WorkDensity: Default and StressRequest {
-    /// Number of radii, evenly spaced from the centre to the edge of the contact, both included; of a line contact from
-    /// the edge at −a to that at a.
+    /// Number of radii, evenly spaced from the centre to the edge of the contact, both included; for a line contact
+    /// from the edge at −a to the edge at a.
     pub points: Option<usize>,
     /// Radii, m; outside the contact there is no work.
     pub radii: Option<Vec<f64>>,
-    /// Places along x, m, of a line contact.
+    /// Places along x in a line contact, m.
     pub x: Option<Vec<f64>>,
 }
 }
@@ -338,7 +338,7 @@ impl Document for CycleRequest {
         if let Some(best) = &best_load {
             best.check_members(at("best_load"), faults);
             if task.as_ref().is_some_and(|task| task.drives().len() > *BEST_LOADS.end()) {
-                faults.add(at("best_load"), format_args!("too many amplitudes: allowed are {}", BEST_LOADS.end()));
+                faults.add(at("best_load"), format_args!("too many amplitudes: at most {} allowed", BEST_LOADS.end()));
             }
         }
         let constant = [
@@ -347,16 +347,16 @@ impl Document for CycleRequest {
             ("best_load", best_load.is_some()),
         ];
         for (name, _) in constant.into_iter().filter(|(_, asked)| *asked && normal.is_some()) {
-            faults.add(at(name), "not under a load that oscillates: leave this or `normal` out");
+            faults.add(at(name), "not available under an oscillating load: leave this or `normal` out");
         }
         if response.is_some() && stiffness.is_some() {
-            faults.add(at("frequency_response"), "the mass hangs on the contact alone: leave this or `machine` out");
+            faults.add(at("frequency_response"), "only the contact holds the mass: leave this or `machine` out");
         }
         if let Some(map) = &map {
             map.check(task.as_ref().map_or(0, |task| task.drives().len()), at("map"), faults);
             let others = [("harmonics", harmonics.is_some()), ("normal", normal.is_some())];
             for (name, _) in constant.into_iter().chain(others).filter(|(_, asked)| *asked) {
-                faults.add(at(name), "not in a fretting map: leave this or `map` out");
+                faults.add(at(name), "not available in a fretting map: leave this or `map` out");
             }
         }
         if task.as_ref().is_some_and(|task| task.radii() > 0) {

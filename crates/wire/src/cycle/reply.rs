@@ -7,13 +7,13 @@ use crate::request::replies;
 replies! {
 /// Steady cycles, one for each amplitude.
 pub struct CycleReply omits Option {
-    /// The contact at its load, in a map at its preload.
+    /// The contact at its load; in a map, at its preload.
     pub contact: ContactSummary,
     /// The cycles, in the order of the amplitudes; in a map load by load.
     pub cycles: Vec<SteadyCycle>,
     /// The oscillations of a mass on the contact, if asked for.
     pub frequency_response: Option<Resonance>,
-    /// Solver, errors and time. `force_error` is that of the harmonics too, relative to the amplitude of the answer.
+    /// Solver, errors and time. `force_error` also holds for the harmonics, relative to the amplitude of the response.
     pub accuracy: Accuracy,
     /// Warnings about the result.
     pub warnings: Vec<Warning>,
@@ -21,21 +21,21 @@ pub struct CycleReply omits Option {
 
 /// One steady cycle.
 pub struct SteadyCycle: Default omits Option {
-    /// Normal force, N; in a map alone.
+    /// Normal force, N; only in a map.
     pub normal_force: Option<f64>,
-    /// Displacement amplitude of the indenter at which gross slip begins under this load, m; in a map alone.
+    /// Displacement amplitude of the indenter at which gross slip begins under this load, m; only in a map.
     pub gross_slip_displacement: Option<f64>,
     /// Amplitude of the displacement of the indenter, m.
     pub displacement_amplitude: f64,
     /// Amplitude of the tangential force, N.
     pub force_amplitude: f64,
-    /// Amplitude of the displacement at the machine, m; with `machine` alone.
+    /// Amplitude of the displacement at the machine, m; only with `machine`.
     pub machine_amplitude: Option<f64>,
-    /// Friction work of a cycle, J: the area of the loop of the force over the displacement.
+    /// Friction work of a cycle, J: the area of the force-displacement loop.
     pub dissipated_energy: f64,
     /// The largest elastic energy of the tangential deformation in a cycle, J.
     pub max_elastic_energy: f64,
-    /// Force amplitude over displacement amplitude of the indenter, N/m; at the amplitude zero the tangent stiffness.
+    /// Force amplitude over displacement amplitude of the indenter, N/m; at zero amplitude the tangent stiffness.
     pub secant_stiffness: f64,
     /// Stiffness of the contact just after a reversal, 2 G* a, N/m; zero without friction.
     pub tangent_stiffness: f64,
@@ -43,42 +43,42 @@ pub struct SteadyCycle: Default omits Option {
     /// nothing is stored, as without friction and without load.
     #[serde_with(skip_apply)]
     pub loss_factor: Option<f64>,
-    /// Displacement at zero force over the amplitude of the indenter, a pure number; `null` where it moves and there is
-    /// no force, as without friction and without load.
+    /// Displacement at zero force over the amplitude of the indenter, a pure number; `null` where the indenter moves
+    /// without a force, as without friction and without load.
     #[serde_with(skip_apply)]
     pub sliding_ratio: Option<f64>,
-    /// All that friction dissipates in a cycle, J, where a bulk stress does work too: the integral of `friction_work`
-    /// over the contact. Else it is `dissipated_energy`, and left out.
+    /// All energy that friction dissipates in a cycle, J, where a bulk stress does work too: the integral of
+    /// `friction_work` over the contact. Otherwise it equals `dissipated_energy` and is left out.
     pub friction_energy: Option<f64>,
     /// Radius of the part that never slips, m; zero in gross slip.
     pub stick_radius: f64,
     /// How much of the contact slips.
     pub regime: Regime,
     /// The harmonics, if asked for: of the force, N, where the displacement is driven, and of the displacement of the
-    /// indenter, m, where the force is.
+    /// indenter, m, where the force is driven.
     pub harmonics: Option<Vec<Harmonic>>,
     /// The friction work per area, if asked for.
     pub friction_work: Option<FrictionWork>,
-    /// The load under which this amplitude does most friction work, if asked for and if there is one.
+    /// The load under which this amplitude does the most friction work, if asked for and if there is such a load.
     pub best_load: Option<BestLoad>,
 }
 
-/// One harmonic of the answer to a drive that is a cosine.
+/// One harmonic of the response to a drive that is a cosine.
 pub struct Harmonic: Copy {
     /// 1 for the fundamental. Even ones vanish at constant load.
     pub order: usize,
-    /// Amplitude of the cosine, in the unit of the answer.
+    /// Amplitude of the cosine, in the unit of the response.
     pub in_phase: f64,
-    /// Amplitude of the sine, in the unit of the answer: at the fundamental at most zero for a force, at least zero for
-    /// a displacement.
+    /// Amplitude of the sine, in the unit of the response: for the fundamental not positive for a force, not negative
+    /// for a displacement.
     pub quadrature: f64,
 }
 
 /// Friction work of a cycle per area, along the radius.
 pub struct FrictionWork omits Option {
-    /// Radii, m: of a round contact.
+    /// Radii in a round contact, m.
     pub radius: Option<Vec<f64>>,
-    /// Places along x, m: of a line contact.
+    /// Places along x in a line contact, m.
     pub x: Option<Vec<f64>>,
     /// Friction work per area, J/m²; `null` where it is infinite.
     pub density: Vec<Option<f64>>,

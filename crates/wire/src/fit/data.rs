@@ -18,28 +18,28 @@ const LOAD: Range = Range { min: MIN_POSITIVE_NORMAL_FORCE, ..range::NORMAL_FORC
 const WEIGHT: Range = Range { quantity: Quantity::Number, unit: "", min: 1e-9, max: 1e9 };
 
 requests! {
-/// Force over displacement as a bench has measured them, point by point in the order of time, under a constant load.
+/// Force over displacement as measured on a bench, point by point in the order of time, under a constant load.
 pub struct MeasuredLoop {
     /// Displacements, in the unit of `units.displacement`.
     pub displacement: Vec<f64> = Array(FIT_POINTS, NUMBER),
-    /// Tangential forces, as many, in the unit of `units.force`.
+    /// Tangential forces, one for each displacement, in the unit of `units.force`.
     pub force: Vec<f64> = Array(FIT_POINTS, NUMBER),
-    /// Times, s, rising, as many; only `drift` needs them.
+    /// Times, s, increasing, one for each point; only `drift` needs them.
     pub time: Option<Vec<f64>> = Array(FIT_POINTS, TIME),
-    /// The load, N; that of the contact if it is left out.
+    /// The load, N; if left out, that of the contact.
     pub normal_force: Option<f64> = LOAD,
-    /// How the record begins; as `steady` if it is left out, with a warning.
+    /// How the record begins; if left out, it is taken as `steady`, with a warning.
     pub start: Option<LoopStart>,
-    /// How much the loop counts beside the others, a pure number.
+    /// Weight of the loop relative to the others, a pure number.
     #[schema(default = 1.0)]
     pub weight: Option<f64> = WEIGHT,
 }
 
 /// The units of measured loops.
 pub struct FitUnits: Copy, Default {
-    /// Of `displacement`.
+    /// Unit of `displacement`.
     pub displacement: Option<LengthUnit>,
-    /// Of `force`.
+    /// Unit of `force`.
     pub force: Option<ForceUnit>,
 }
 }
@@ -122,14 +122,14 @@ impl MeasuredLoop {
             for (name, length) in [("force", Some(self.force.len())), ("time", self.time.as_ref().map(Vec::len))] {
                 if let Some(length) = length.filter(|length| *length != points) {
                     let detail =
-                        format_args!("has {length} numbers, and `displacement` has {points}: give one for each point");
+                        format_args!("has {length} numbers, but `displacement` has {points}: give one for each point");
                     faults.add(at.member(name), detail);
                 }
             }
             match &self.time {
                 Some(time) => {
                     if let Some(index) = time.windows(2).position(|pair| pair[1] <= pair[0]) {
-                        let detail = "not later than the time before it: points are in the order of time";
+                        let detail = "not later than the time before it: give the points in the order of time";
                         faults.add(at.member("time").index(index.saturating_add(1)), detail);
                     }
                 }

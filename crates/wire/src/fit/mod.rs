@@ -25,19 +25,19 @@ const FORCE_NOISE: Range = Range { quantity: Quantity::Force, unit: "N", min: 1e
 const DISPLACEMENT_NOISE: Range = Range { quantity: Quantity::Displacement, unit: "m", min: 0.0, max: 1e9 };
 
 requests! {
-/// Loops that a bench has measured, and what a fit is to find out from them; the server keeps nothing of it.
+/// Measured loops, and the quantities that a fit is to determine from them. Nothing is stored.
 pub struct FitRequest {
-    /// The contact as far as it is known. What is free begins with its value here.
+    /// The contact as far as it is known. Free quantities start from their values here.
     pub contact: ContactDefinition,
     /// The measured loops, which are fitted together.
     pub loops: Vec<MeasuredLoop> = Items(FIT_LOOPS),
-    /// The units of `displacement` and `force` of the loops: SI if they are left out. Everything else is in SI units.
+    /// The units of `displacement` and `force` of the loops; if left out, SI. Everything else is in SI units.
     pub units: Option<FitUnits>,
-    /// What the fit determines.
+    /// The quantities that the fit determines.
     pub free: Vec<FitParameter> = Distinct,
-    /// What is known from elsewhere. With a standard error it takes part in the fit, whether it is free or not.
+    /// Values known from elsewhere. One with a standard error takes part in the fit, whether it is free or not.
     pub known: Option<KnownValues>,
-    /// The noise of the numbers; estimated from the loops if it is left out.
+    /// The noise of the measured numbers; if left out, it is estimated from the loops.
     pub noise: Option<FitNoise>,
 }
 

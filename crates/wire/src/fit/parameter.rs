@@ -37,7 +37,7 @@ macro_rules! parameters {
         }
 
         requests! {
-            /// What is known beforehand, by name.
+            /// Values known beforehand, by name.
             pub struct KnownValues: Copy, Default {
                 $(#[doc = $doc] pub $name: Option<KnownValue>,)*
             }
@@ -78,7 +78,7 @@ requests! {
 pub struct KnownValue: Copy {
     /// The value, in the SI unit of its quantity.
     pub value: f64 = VALUE,
-    /// Its standard error, in the same unit; zero, which is the default, holds the value.
+    /// Its standard error, in the same unit; zero, the default, holds the value fixed.
     pub standard_error: Option<f64> = STANDARD_ERROR,
 }
 }
@@ -90,7 +90,7 @@ impl KnownValues {
             let at = at.member(name);
             known.check_members(at, faults);
             if VALUE.contains(known.value) && !range.contains(known.value) {
-                faults.add(at.member("value"), format_args!("{:?} is no {name}, which is {range}", known.value));
+                faults.add(at.member("value"), format_args!("{:?} is out of range: {name} is {range}", known.value));
             }
         }
     }

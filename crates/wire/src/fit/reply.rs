@@ -12,21 +12,21 @@ use crate::reply::Warning;
 use crate::request::replies;
 
 replies! {
-/// What the loops say, and what they leave open.
+/// The quantities that the loops determine, and the ones that they leave undetermined.
 pub struct FitReply {
-    /// What is free, and what is known with a standard error, by name.
+    /// Estimates of the free quantities, and of those known with a standard error, by name.
     pub estimates: BTreeMap<FitParameter, FitEstimate>,
-    /// Their correlation coefficients, pure numbers, by both names; `null` where one is not determined.
+    /// Correlation coefficients of the estimates, pure numbers, by both names; `null` where one is not determined.
     pub correlations: BTreeMap<FitParameter, BTreeMap<FitParameter, Option<f64>>>,
-    /// What the loops determine: names, and combinations of them where one alone is not determined.
+    /// What the loops determine: quantities by name, or combinations of them where a single one is not determined.
     pub identifiable: Vec<String>,
-    /// What the fit leaves of the measured forces.
+    /// Measured less fitted forces.
     pub residual: FitResidual,
-    /// The noise: as it was given, else as estimated.
+    /// The noise as given, otherwise as estimated.
     pub noise: NoiseLevels,
     /// The loops as they were fitted, in SI units; long ones are thinned.
     pub curve: Vec<FittedLoop>,
-    /// The contact with what was fitted, for `POST /contacts` and `/simulate`.
+    /// The contact with the fitted values, for `POST /contacts` and `/simulate`.
     pub contact: ContactDefinition,
     /// Warnings about the fit.
     pub warnings: Vec<Warning>,
@@ -39,35 +39,35 @@ pub struct FitReply {
 pub struct FitEstimate {
     /// The value of the best fit, in the SI unit of the quantity.
     pub value: f64,
-    /// Its standard error, if the fit were linear, in the SI unit of the quantity; `null` where it is not determined.
+    /// Its standard error from the linearised fit, in the SI unit of the quantity; `null` where it is not determined.
     pub standard_error: Option<f64>,
-    /// Both ends of the interval that contains it with a probability of 95 %, by profile likelihood, in the SI unit of
-    /// the quantity; `null` where there is no end.
+    /// Both ends of the 95 % confidence interval by profile likelihood, in the SI unit of the quantity; `null` for an
+    /// end without a bound.
     pub interval: [Option<f64>; 2],
     /// Whether the value is at the end of its range; left out if not.
     pub at_bound: bool,
 }
 
 replies! {
-/// What a fit leaves of the forces.
+/// Measured less fitted forces, in a few numbers.
 pub struct FitResidual: Copy {
     /// Root mean square without outliers, N.
     pub rms: f64,
     /// The largest magnitude without outliers, N.
     pub largest: f64,
-    /// Share of the points that were left out because they are far off, a pure number from 0 to 1.
+    /// Fraction of the points that were left out as outliers, a pure number from 0 to 1.
     pub outliers: f64,
-    /// Whether it looks like noise.
+    /// The runs of one sign, which show whether the residual looks like noise.
     pub runs: SignRuns,
 }
 
-/// Stretches of one sign in a residual: few of them are a systematic deviation.
+/// Runs of one sign in a residual; few runs mean a systematic deviation.
 pub struct SignRuns: Copy {
-    /// How many there are.
+    /// Number of runs.
     pub count: usize,
-    /// How many noise would have on average, a pure number.
+    /// Number of runs that noise has on average, a pure number.
     pub expected: f64,
-    /// Whether the two agree.
+    /// Whether the two numbers agree, as for noise.
     pub random: bool,
 }
 

@@ -8,7 +8,7 @@ use crate::limits::OfItsMembers;
 use crate::request::requests;
 
 choices! {
-/// The life of a criterion with strains: an S-N curve, or that of the criterion.
+/// The life of a criterion with strains: an S-N curve, or the strain-life curve of the criterion.
 pub enum StrainLife: Copy {
     /// Cycles = `cycles` · (value/`reference`)^(−`exponent`) (Basquin 1910).
     "s_n" => SN(SnCurve) = OfItsMembers,
@@ -29,9 +29,9 @@ pub struct StressLife: Copy {
 pub struct SnCurve: Copy {
     /// A value, in the unit of the criterion.
     pub reference: f64 = range::LIFE_REFERENCE,
-    /// The cycles that the material bears there, a pure number.
+    /// Number of cycles that the material withstands at `reference`, a pure number.
     pub cycles: f64 = range::LIFE_CYCLES,
-    /// The exponent k, a pure number: cycles fall like value^(−k).
+    /// The exponent k, a pure number: the number of cycles falls as value^(−k).
     pub exponent: f64 = range::LIFE_EXPONENT,
 }
 

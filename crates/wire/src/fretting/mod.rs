@@ -27,9 +27,8 @@ const DEFAULT_TOLERANCE: f64 = 1e-4;
 const SEARCH_TOLERANCE: f64 = 1e-3;
 
 requests! {
-/// A contact, a path that closes, and the fatigue criteria that its steady cycle is rated by; the server keeps nothing
-/// of it. Without `points`, `line`, `plane` and `surface` the largest value of each criterion in the body is searched
-/// for.
+/// A contact, a path that closes, and the fatigue criteria that its steady cycle is rated by. Nothing is stored.
+/// Without `points`, `line`, `plane` and `surface` the largest value of each criterion in the body is searched for.
 #[schema(example = json!({
     "contact": ContactDefinition::example(),
     "path": {"cycles": {"displacement": 1e-7, "count": 1}},
@@ -42,11 +41,11 @@ pub struct FrettingRequest {
     pub contact: ContactDefinition,
     /// A path of at most 200 moves that ends where it began, at least when it is repeated.
     pub path: Path,
-    /// Which body.
+    /// The body that is rated.
     pub body: BodyName,
-    /// Its Poisson's ratio, a pure number. Where the material has `bodies` it is known, and may be left out.
+    /// Poisson's ratio of the body, a pure number; it may be left out if the material has `bodies`.
     pub poisson_ratio: Option<f64> = range::POISSON_RATIO,
-    /// Where: a list of x, y, z, m, with z of at least zero.
+    /// Where: a list of x, y, z, m, with z not negative.
     pub points: Option<Vec<[f64; 3]>> = Array(SUBSURFACE_POINTS, Triple(range::PLACE)),
     /// Where: a straight line.
     pub line: Option<SubsurfaceLine>,
@@ -54,21 +53,20 @@ pub struct FrettingRequest {
     pub plane: Option<SubsurfacePlane>,
     /// Where: a grid on the surface.
     pub surface: Option<SubsurfaceSurface>,
-    /// A normal stress of the body along x that goes with the cycle, mean + amplitude · cos(th + phase), where th
-    /// grows from 0 to 360 degrees, by as much in each move.
+    /// A normal stress of the body along x that varies with the cycle, mean + amplitude · cos(θ + phase), where θ grows
+    /// from 0 to 360 degrees, by the same amount in each move.
     pub bulk: Option<BulkCycle>,
     /// The criteria.
     pub criteria: Criteria,
-    /// The depth below the worst place of the surface at which criteria of stress are evaluated too.
+    /// The distance below the worst point of the surface at which criteria of stress are also evaluated.
     pub critical_distance: Option<CriticalDistance> = OfItsMembers,
-    /// Indices of places whose stresses over the cycle are wanted too.
+    /// Indices of places for which to return the stresses over the cycle.
     pub stress_paths: Option<Vec<usize>> = PATHS,
-    /// Error of a criterion, relative to its largest value, that is accepted; a pure number. In a search it is 1e-3 if
-    /// left out.
+    /// Accepted error of a criterion, relative to its largest value, a pure number. In a search the default is 1e-3.
     pub tolerance: Option<f64> = Tolerance(DEFAULT_TOLERANCE),
 }
 
-/// A bulk stress along x that goes with the cycle.
+/// A bulk stress along x that varies with the cycle.
 pub struct BulkCycle: Copy, Default {
     /// Its mean, Pa; zero if left out.
     pub mean: Option<f64> = range::BULK_STRESS,
@@ -82,11 +80,11 @@ pub struct BulkCycle: Copy, Default {
 pub struct CriticalDistance: Copy {
     /// The critical distance L, m: (threshold of the stress intensity range/range of the fatigue limit)²/π.
     pub length: f64 = range::CRITICAL_LENGTH,
-    /// How it is used.
+    /// How the critical distance is used.
     pub method: CriticalMethod,
 }
 
-/// Which criteria, at least one.
+/// The criteria, at least one.
 pub struct Criteria: Copy, Default {
     /// √J2a + α · the largest hydrostatic stress, Pa (Crossland 1956).
     pub crossland: Option<Weighted> = OfItsMembers,
@@ -108,9 +106,9 @@ pub struct Criteria: Copy, Default {
 pub struct Weighted: Copy {
     /// The weight, a pure number.
     pub alpha: f64 = range::FATIGUE_WEIGHT,
-    /// The value that the material bears, Pa.
+    /// The value that the material withstands, Pa.
     pub limit: Option<f64> = BEARABLE,
-    /// How many cycles it bears, from tests.
+    /// Number of cycles that the material withstands, from tests.
     pub life: Option<StressLife> = OfItsMembers,
 }
 
@@ -118,19 +116,19 @@ pub struct Weighted: Copy {
 pub struct Findley: Copy {
     /// The weight of the normal stress, a pure number.
     pub k: f64 = range::FATIGUE_WEIGHT,
-    /// The value that the material bears, Pa.
+    /// The value that the material withstands, Pa.
     pub limit: Option<f64> = BEARABLE,
-    /// How many cycles it bears, from tests.
+    /// Number of cycles that the material withstands, from tests.
     pub life: Option<StressLife> = OfItsMembers,
 }
 
 /// A criterion that needs strains.
 pub struct StrainBased: Copy, Default {
-    /// Young's modulus of the body, Pa. Where the material has `bodies` it is known, and may be left out.
+    /// Young's modulus of the body, Pa; it may be left out if the material has `bodies`.
     pub youngs_modulus: Option<f64> = range::YOUNGS_MODULUS,
-    /// The value that the material bears, Pa.
+    /// The value that the material withstands, Pa.
     pub limit: Option<f64> = BEARABLE,
-    /// How many cycles it bears, from tests.
+    /// Number of cycles that the material withstands, from tests.
     pub life: Option<StrainLife> = OfItsMembers,
 }
 
@@ -140,19 +138,19 @@ pub struct FatemiSocie: Copy {
     pub k: f64 = range::FATIGUE_WEIGHT,
     /// The yield stress, Pa.
     pub r#yield: f64 = range::YIELD_STRESS,
-    /// Young's modulus of the body, Pa. Where the material has `bodies` it is known, and may be left out.
+    /// Young's modulus of the body, Pa; it may be left out if the material has `bodies`.
     pub youngs_modulus: Option<f64> = range::YOUNGS_MODULUS,
-    /// The value that the material bears, a pure number.
+    /// The value that the material withstands, a pure number.
     pub limit: Option<f64> = BEARABLE,
-    /// How many cycles it bears, from tests.
+    /// Number of cycles that the material withstands, from tests.
     pub life: Option<StrainLife> = OfItsMembers,
 }
 
-/// A quantity of the surface.
+/// A quantity that is defined on the surface.
 pub struct SurfaceCriterion: Copy, Default {
-    /// The value that the material bears.
+    /// The value that the material withstands.
     pub limit: Option<f64> = BEARABLE,
-    /// How many cycles it bears, from tests.
+    /// Number of cycles that the material withstands, from tests.
     pub life: Option<StressLife> = OfItsMembers,
 }
 }
@@ -177,7 +175,7 @@ const BEARABLE: Range = Range { quantity: Quantity::Number, unit: "", min: 1e-30
 pub struct AskedMeasure {
     /// What is computed.
     pub measure: Measure,
-    /// The value that the material bears.
+    /// The value that the material withstands.
     pub limit: Option<f64>,
     /// The cycles that it bears.
     pub life: Option<LifeCurve>,
@@ -274,17 +272,17 @@ impl Document for FrettingRequest {
             if self.critical_distance.is_some() {
                 self.criteria.check_depth(at("criteria"), faults);
                 if !searches && (0..asked.places.count()).all(|index| asked.places.at(index)[2] > 0.0) {
-                    let detail = "begins at the surface: ask for a place with z = 0, or for none to search";
+                    let detail = "starts from the surface: ask for a place with z = 0, or for no places, to search";
                     faults.add(at("critical_distance"), detail);
                 }
             }
             for (index, place) in stress_paths.iter().enumerate() {
                 if searches {
-                    let detail = "a search finds its places itself: name them, or leave `stress_paths` out";
+                    let detail = "a search has no list of places: give one, or leave `stress_paths` out";
                     faults.add(at("stress_paths").index(index), detail);
                 } else if *place >= asked.places.count() {
                     let most = asked.places.count().saturating_sub(1);
-                    let detail = format_args!("there is no place {place}: the last is {most}");
+                    let detail = format_args!("place {place} is not in the list: its last is {most}");
                     faults.add(at("stress_paths").index(index), detail);
                 }
             }
@@ -375,7 +373,7 @@ impl Criteria {
     /// Notes the criteria of the surface that are asked for at a critical distance.
     fn check_depth(&self, at: JsonPath<'_>, faults: &mut Faults) {
         for name in self.of_surface() {
-            faults.add(at.member(name), "is of the surface: leave this or `critical_distance` out");
+            faults.add(at.member(name), "is defined on the surface only: leave this or `critical_distance` out");
         }
     }
 
@@ -385,7 +383,7 @@ impl Criteria {
             return;
         }
         for name in self.of_surface() {
-            faults.add(at.member(name), "is of the surface: ask for places with z = 0, or leave this out");
+            faults.add(at.member(name), "is defined on the surface only: ask for places with z = 0, or leave this out");
         }
     }
 }

@@ -9,11 +9,11 @@ use crate::request::replies;
 replies! {
 /// The criteria over the steady cycle, each with its values at all places.
 pub struct FrettingReply omits Option {
-    /// What follows from the definition at the preload.
+    /// Quantities that follow from the definition at the preload.
     pub contact: ContactSummary,
     /// Place along the motion of the first body, m.
     pub x: Vec<f64>,
-    /// Place across it, m.
+    /// Place across the motion of the first body, m.
     pub y: Vec<f64>,
     /// Depth into the body, m; never negative.
     pub z: Vec<f64>,
@@ -29,15 +29,15 @@ pub struct FrettingReply omits Option {
     pub fatemi_socie: Option<Rating>,
     /// Ruiz's first parameter, shear stress times slip, N/m.
     pub ruiz: Option<Rating>,
-    /// Ruiz's second parameter, that times the largest tension along x, N²/m³; comes with the first.
+    /// Ruiz's second parameter, the first times the largest tension along x, N²/m³; returned with the first.
     pub ruiz_tension: Option<Rating>,
     /// Friction work per area and cycle, J/m²; never negative.
     pub friction_work: Option<Rating>,
     /// The stresses over the cycle at the places of `stress_paths`.
     pub stress_paths: Option<Vec<StressPath>>,
-    /// Instants of the move that took most, at the places of the largest values.
+    /// Number of instants in the move that needed most, at the places of the largest values.
     pub instants: usize,
-    /// The largest of the errors of the largest values, relative to these, a pure number.
+    /// The largest relative error among the largest values of the criteria, a pure number.
     pub change: f64,
     /// Solver, errors and time.
     pub accuracy: Accuracy,
@@ -48,9 +48,9 @@ pub struct FrettingReply omits Option {
 /// A criterion at all places.
 pub struct Rating omits Option {
     /// Its values, place by place, in the unit of the criterion; `null` where a stress is infinite, and below the
-    /// surface for a quantity of the surface.
+    /// surface for a quantity that is defined on the surface.
     pub values: Vec<Option<f64>>,
-    /// The largest of those that are not `null`; in a search left out if there is no largest value in the body.
+    /// The largest value that is not `null`; in a search left out if there is no largest value in the body.
     pub largest: Option<Largest>,
     /// The limit over the largest value, a pure number, if a limit was given: below 1 the criterion predicts crack
     /// growth. Left out where the value is nowhere positive, and where it is infinite somewhere.
@@ -59,18 +59,18 @@ pub struct Rating omits Option {
     pub life: Option<Life>,
     /// The cycles at all places, pure numbers, if a curve was given; `null` where a value has no life.
     pub cycles: Option<Vec<Option<f64>>>,
-    /// The criterion below its worst place of the surface, if `critical_distance` was given.
+    /// The criterion below its worst point of the surface, if `critical_distance` was given.
     pub critical_distance: Option<BelowSurface>,
 }
 
-/// A criterion at the critical distance below a place of the surface.
+/// A criterion at the critical distance below a point of the surface.
 pub struct BelowSurface omits Option {
     /// The value, in the unit of the criterion.
     pub value: f64,
-    /// The estimated distance of the value from that over the whole cycle, in the unit of the criterion.
+    /// Estimated error of the value over the whole cycle, in the unit of the criterion.
     pub error: f64,
-    /// The place of the surface below which it is: x, y, z, m. It is where the criterion is largest on the surface,
-    /// though a deeper place may be worse.
+    /// The point of the surface above: x, y, z, m. The criterion is larger there than elsewhere on the surface; a
+    /// deeper point may be worse.
     pub point: [f64; 3],
     /// Unit normal of the critical plane along x, y and z, pure numbers, if the criterion has one.
     pub plane: Option<[f64; 3]>,
@@ -82,15 +82,16 @@ pub struct BelowSurface omits Option {
     pub life: Option<Life>,
 }
 
-/// How many cycles the material bears. Tested lives scatter by a factor of three and more about such a curve.
+/// Number of cycles that the material withstands. Tested lives scatter by a factor of three and more about such a
+/// curve.
 pub struct Life: Copy {
-    /// Cycles N, a pure number; `null` where `no_life` says why there are none.
+    /// Cycles N, a pure number; `null` if there is none, for the reason in `no_life`.
     pub cycles: Option<f64>,
-    /// The fewest cycles that the stated error of the value leaves, a pure number; zero for less than 0.5.
+    /// Lower bound of the cycles within the stated error of the value, a pure number; zero for less than 0.5.
     pub shortest: f64,
-    /// The most cycles that it leaves, a pure number; `null` where that is more than 1e12 or has no bound.
+    /// Upper bound of the cycles within that error, a pure number; `null` if above 1e12 or infinite.
     pub longest: Option<f64>,
-    /// Why there is no number of cycles; left out where there is one.
+    /// Why `cycles` is `null`; left out if it is not.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub no_life: Option<NoLife>,
@@ -100,10 +101,10 @@ pub struct Life: Copy {
 pub struct Largest omits Option {
     /// The value, in the unit of the criterion.
     pub value: f64,
-    /// The estimated distance of the value from the largest over the cycle and, in a search, over the body, in the unit
-    /// of the criterion.
+    /// Estimated error of the value as the largest over the cycle and, in a search, over the body, in the unit of the
+    /// criterion.
     pub error: f64,
-    /// Its place: x, y, z, m.
+    /// The place: x, y, z, m.
     pub point: [f64; 3],
     /// Unit normal of the critical plane along x, y and z, pure numbers, if the criterion has one.
     pub plane: Option<[f64; 3]>,
@@ -116,7 +117,7 @@ pub struct Instant: Copy {
     /// Index of the move.
     #[serde(rename = "move")]
     pub step: usize,
-    /// The part of the move that has been made, a pure number above 0 and up to 1.
+    /// Fraction of the move that has been made, a pure number above 0 and up to 1.
     pub part: f64,
 }
 
@@ -127,7 +128,7 @@ pub struct StressPath: Default {
     /// Index of the move.
     #[serde(rename = "move")]
     pub step: Vec<usize>,
-    /// The part of the move that has been made, a pure number above 0 and up to 1.
+    /// Fraction of the move that has been made, a pure number above 0 and up to 1.
     pub part: Vec<f64>,
     /// Normal stress along x, Pa; tension is positive.
     pub xx: Vec<Option<f64>>,

@@ -44,12 +44,12 @@ pub struct CyclicPath: Copy {
     #[serde(default)]
     pub start: FirstTurn,
     /// Moves per cycle k, an even number: the points of mean + A cos(2π t), or mean - A cos(2π t) from the lower
-    /// turn, at t = j/k. Left out, under a constant load 2 (the turns; more points add recorded states between them),
-    /// else 64.
+    /// turn, at t = j/k. If left out, 2 under a constant load (the turns; more points add recorded states between
+    /// them), otherwise 64.
     pub points_per_cycle: Option<usize> = POINTS_PER_CYCLE,
-    /// The value in the middle between both turns, m or N; left out, zero.
+    /// The value halfway between the turns, m or N; if left out, zero.
     pub mean: Option<f64> = range::FORCE,
-    /// Oscillation of the load in the same cycles; left out, the load is constant.
+    /// Oscillation of the load in the same cycles; if left out, the load is constant.
     pub normal: Option<NormalOscillation>,
 }
 
@@ -62,7 +62,7 @@ pub struct NormalOscillation: Copy {
     pub normal_force: Option<f64> = range::NORMAL_FORCE,
     /// Amplitude of the indentation, m. Below zero the bodies are apart and the slip history is lost.
     pub indentation: Option<f64> = Range { min: 0.0, ..range::INDENTATION },
-    /// Phase, degrees; left out, zero.
+    /// Phase, degrees; if left out, zero.
     pub phase: Option<f64> = PHASE,
 }
 }
@@ -116,7 +116,7 @@ impl CyclicPath {
             self.points_per_cycle.unwrap_or(if load.is_some() { DEFAULT_POINTS } else { TURNS_PER_CYCLE });
         if !moves_per_cycle.is_multiple_of(2) {
             let (least, most) = (POINTS_PER_CYCLE.start(), POINTS_PER_CYCLE.end());
-            let detail = format_args!("{moves_per_cycle} is odd: allowed are even numbers from {least} to {most}");
+            let detail = format_args!("{moves_per_cycle} is odd: even numbers from {least} to {most} are allowed");
             faults.add(at.member("points_per_cycle"), detail);
         }
         let (count, mean) = (self.count, self.mean.unwrap_or(0.0));

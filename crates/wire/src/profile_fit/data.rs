@@ -22,7 +22,7 @@ pub enum ScanData {
     "line" => Line(LineScan),
     /// Heights on a grid.
     "map" => Map(MapScan),
-    /// Heights anywhere.
+    /// Heights at arbitrary places.
     "points" => Points(PointScan),
 }
 }
@@ -32,7 +32,7 @@ requests! {
 pub struct LineScan {
     /// Places along the line, in the unit of `units.lateral`.
     pub x: Vec<f64> = Array(SCAN_POINTS, SCAN_NUMBER),
-    /// Heights, as many, in the unit of `units.height`.
+    /// Heights, one for each place, in the unit of `units.height`.
     pub z: Vec<Option<f64>> = Array(SCAN_POINTS, SCAN_NUMBER),
 }
 
@@ -42,7 +42,7 @@ pub struct MapScan {
     pub dx: f64 = SCAN_STEP,
     /// The distance of rows, along y, in the unit of `units.lateral`.
     pub dy: f64 = SCAN_STEP,
-    /// The rows of heights, each as long, in the unit of `units.height`.
+    /// The rows of heights, all of equal length, in the unit of `units.height`.
     pub z: Vec<Vec<Option<f64>>> = Array(SCAN_ROWS, Array(SCAN_ROWS, SCAN_NUMBER)),
 }
 
@@ -50,9 +50,9 @@ pub struct MapScan {
 pub struct PointScan {
     /// Places along x, in the unit of `units.lateral`.
     pub x: Vec<f64> = Array(SCAN_POINTS, SCAN_NUMBER),
-    /// Places along y, as many, in the unit of `units.lateral`.
+    /// Places along y, one for each x, in the unit of `units.lateral`.
     pub y: Vec<f64> = Array(SCAN_POINTS, SCAN_NUMBER),
-    /// Heights, as many, in the unit of `units.height`.
+    /// Heights, one for each place, in the unit of `units.height`.
     pub z: Vec<Option<f64>> = Array(SCAN_POINTS, SCAN_NUMBER),
 }
 }
@@ -60,7 +60,7 @@ pub struct PointScan {
 /// Notes a column that is not as long as the first.
 fn as_long(at: JsonPath<'_>, length: usize, first: usize, faults: &mut Faults) {
     if length != first {
-        faults.add(at, format_args!("has {length} numbers, and `x` has {first}: give one for each point"));
+        faults.add(at, format_args!("has {length} numbers, but `x` has {first}: give one for each point"));
     }
 }
 
@@ -117,7 +117,7 @@ impl ScanData {
                 let heights = at.member("z");
                 for (index, row) in scan.z.iter().enumerate().filter(|(_, row)| row.len() != length) {
                     let detail =
-                        format_args!("has {} heights, and the first row {length}: rows are equally long", row.len());
+                        format_args!("has {} heights, but the first row {length}: make rows equally long", row.len());
                     faults.add(heights.index(index), detail);
                 }
                 if scan.z.len().saturating_mul(length) > *SCAN_POINTS.end() {

@@ -26,31 +26,31 @@ pub const SCAN_NOISE: Range = Range { quantity: Quantity::Place, unit: "m", min:
 pub const SCAN_AXIS: Range = Range { quantity: Quantity::Place, unit: "m", min: -1e3, max: 1e3 };
 
 requests! {
-/// A scan of heights, and how a profile is to be fitted to it; the server keeps nothing of it.
+/// A scan of heights, and how to fit a profile to it. Nothing is stored.
 pub struct ProfileFitRequest {
     /// The heights, with their places.
     pub scan: ScanData,
-    /// The units of the scan: metres if it is left out. Everything else is in SI units.
+    /// The units of the scan; if left out, metres. Everything else is in SI units.
     pub units: Option<ScanUnits>,
     /// Which way up the scan is; `auto` derives it from the curvature of the surface.
     #[schema(default = "auto")]
     pub orientation: Option<ScanOrientation>,
-    /// Where the axis of the body is, m; `auto` looks for it.
+    /// Where the axis of the body is, m; `auto` searches for it.
     pub centre: Option<Centre>,
-    /// Whether a tilt is taken off where the scan distinguishes it from an axis that is off the middle.
+    /// Whether to subtract a tilt, if the scan distinguishes it from an off-centre axis.
     #[schema(default = true)]
     pub level: Option<bool>,
-    /// What decides how smooth the profile is; `auto` is generalised cross-validation.
+    /// How the smoothness of the profile is chosen; `auto` is generalised cross-validation.
     pub smoothing: Option<Smoothing>,
-    /// A load, for which the reply then has the contact.
+    /// A load, for which the reply then describes the contact.
     pub load: Option<ScanLoad>,
 }
 
 /// The units of a scan.
 pub struct ScanUnits: Copy, Default {
-    /// That of x and y, and of dx and dy.
+    /// Unit of x and y, and of dx and dy.
     pub lateral: Option<LengthUnit>,
-    /// That of z.
+    /// Unit of z.
     pub height: Option<LengthUnit>,
 }
 
@@ -58,7 +58,7 @@ pub struct ScanUnits: Copy, Default {
 pub struct CentrePlace: Copy {
     /// Along the line, or along the rows of a map, m.
     pub x: f64 = SCAN_AXIS,
-    /// Along the columns of a map, m; 0 if it is left out, as for a line.
+    /// Along the columns of a map, m; if left out, 0, as for a line.
     pub y: Option<f64> = SCAN_AXIS,
 }
 
@@ -118,13 +118,13 @@ pub enum ScanOrientation: Default {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, ToSchema)]
 #[serde(untagged)]
 pub enum Centre {
-    /// It is looked for.
+    /// The service searches for it.
     Auto(Auto),
     /// A place.
     At(CentrePlace),
 }
 
-/// The word for what the service chooses.
+/// The string that leaves a choice to the service.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Auto {
@@ -133,7 +133,7 @@ pub enum Auto {
 }
 
 choices! {
-/// What decides how smooth a profile is, one key or `"auto"`.
+/// How the smoothness of a profile is chosen, one key or `"auto"`.
 pub enum Smoothing: Copy {
     words {
         /// Generalised cross-validation.
@@ -141,7 +141,7 @@ pub enum Smoothing: Copy {
     }
     /// The standard deviation of the noise of a height, m.
     "noise" => Noise(f64) = SCAN_NOISE,
-    /// So many intervals of constant curvature, without a penalty on their differences.
+    /// This many intervals of constant curvature, without a penalty on their differences.
     "knots" => Knots(usize) = 4..=100_usize,
 }
 }

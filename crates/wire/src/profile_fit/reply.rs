@@ -6,7 +6,7 @@ use crate::reply::Warning;
 use crate::request::replies;
 
 replies! {
-/// A profile that was fitted to a scan, with what is left of the scan.
+/// A profile that was fitted to a scan, with the residual of the scan.
 pub struct ProfileFitReply omits Option {
     /// The profile, for `/simulate` and `/contacts`.
     pub profile: Profile,
@@ -14,17 +14,17 @@ pub struct ProfileFitReply omits Option {
     pub radius_of_curvature: Estimate,
     /// The axis, m.
     pub centre: Axis2,
-    /// The slopes of the plane that was taken off, pure numbers.
+    /// The slopes of the plane that was subtracted, pure numbers.
     pub tilt: Axis2,
     /// Which way up the scan is: `peak_up` or `peak_down`.
     pub orientation: ScanOrientation,
-    /// What the profile leaves of the heights.
+    /// Measured heights less the profile.
     pub residual: ScanResidual,
     /// The points that were fitted, as heights of the gap above the axis; at most 4000 of them, evenly thinned.
     pub raw: ColumnPair,
-    /// The points that were left out as outliers, thinned alike.
+    /// The points that were left out as outliers, thinned in the same way.
     pub left_out: ColumnPair,
-    /// The profile that was fitted, as the table of `profile`.
+    /// The fitted profile, as the table of `profile`.
     pub used: ColumnPair,
     /// The least g′(x)/x over its mean, a pure number: 1 for a ball, 0 where g is about to fall or, at a flat end,
     /// constant.
@@ -51,13 +51,13 @@ pub struct Axis2: Copy omits Option {
     pub y: Option<f64>,
 }
 
-/// What a profile leaves of a scan.
+/// Measured heights less the profile, in a few numbers.
 pub struct ScanResidual: Copy {
     /// Root mean square of the points that were fitted, m: noise and roughness.
     pub rms: f64,
-    /// Distance along the scan over which it is correlated, to 1/e, m.
+    /// Distance along the scan at which the correlation of the residual falls to 1/e, m.
     pub correlation_length: f64,
-    /// Points that were left out, fill values of the instrument among them.
+    /// Number of points that were left out, including fill values of the instrument.
     pub outliers: usize,
 }
 

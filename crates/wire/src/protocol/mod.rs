@@ -35,7 +35,7 @@ requests! {
 pub struct ProtocolRequest {
     /// The contact; may be left out where `start` names one on the server.
     pub contact: Option<ContactDefinition>,
-    /// Number of reversals N_R; this or `target`.
+    /// Number of reversals N_R; give this or `target`.
     pub reversals: Option<usize> = PROTOCOL_REVERSALS,
     /// The largest |τ|/(μ p_max) that may remain, a pure number (over the mean pressure where the largest is
     /// infinite): the smallest number of reversals that reaches it is found.
@@ -43,19 +43,19 @@ pub struct ProtocolRequest {
     /// The law of the amplitudes.
     #[serde(default)]
     pub kind: ProtocolKind,
-    /// What the reversals begin from; left out, gross slip at its full amplitude.
+    /// The state that the reversals begin from; if left out, gross slip at its full amplitude.
     pub start: Option<ProtocolStart>,
     /// Where the path ends.
     #[serde(default)]
     pub end: ProtocolEnd,
-    /// Ask what remains if the protocol is not followed exactly.
+    /// Ask for the stress that remains if the protocol is not followed exactly.
     pub robustness: Option<Robustness>,
 }
 
 /// How a contact on the server is to be relaxed; `reversals` or `target` is needed, all else has a default.
 #[schema(example = json!({"reversals": 20, "dry_run": true}))]
 pub struct RelaxRequest {
-    /// Number of reversals N_R, at the most; this or `target`. The path begins with a stroke more.
+    /// Largest number of reversals N_R; give this or `target`. The path begins with one more stroke.
     pub reversals: Option<usize> = PROTOCOL_REVERSALS,
     /// The largest |τ|/(μ p_max) that may remain, a pure number (over the mean pressure where the largest is
     /// infinite): the smallest number of reversals that reaches it is found.
@@ -66,27 +66,27 @@ pub struct RelaxRequest {
     /// Where the path ends.
     #[serde(default)]
     pub end: ProtocolEnd,
-    /// Whether the path is only to be shown, and nothing changed. No reply of a dry run is kept for a retry.
+    /// Whether to compute the path without applying it. The reply of a dry run is not kept for a retry.
     #[serde(default)]
     pub dry_run: bool,
     /// Ask for the states along the path.
     pub steps: Option<Steps>,
 }
 
-/// Errors with which a protocol is followed: it is tried many times, each with errors of its own.
+/// Errors with which a protocol is followed. It is tried many times, each time with different random errors.
 #[schema(example = json!({"amplitude_error": 0.01, "friction_error": 0.05, "samples": 100, "seed": 1}))]
 pub struct Robustness: Copy {
     /// Standard deviation of each displacement, relative to itself, a pure number; normally distributed.
     #[serde(default)]
     pub amplitude_error: f64 = Range { quantity: Quantity::AmplitudeError, unit: "", min: 0.0, max: 1.0 },
-    /// The fraction that the coefficient of friction may be off either way, a pure number; evenly distributed. Not for
+    /// Largest relative error of the coefficient of friction, up or down, a pure number; uniformly distributed. Not for
     /// a start from a contact on the server, whose history belongs to its own coefficient.
     #[serde(default)]
     pub friction_error: f64 = Range { quantity: Quantity::FrictionError, unit: "", min: 0.0, max: 0.9 },
-    /// How many times it is tried.
+    /// Number of trials.
     #[serde(default = "samples")]
     pub samples: usize = 2..=10_000_usize,
-    /// Where the sequence of random numbers begins: the same seed gives the same reply.
+    /// Seed of the random numbers: the same seed gives the same reply.
     #[serde(default)]
     // Integers that every JSON parser reads exactly.
     pub seed: u64 = 0..=0x1f_ffff_ffff_ffff_u64,
@@ -96,18 +96,18 @@ pub struct Robustness: Copy {
 words! {
 /// The law of the amplitudes.
 pub enum ProtocolKind: Default of AmplitudeLaw {
-    /// They fall linearly (eq. 20 of the paper).
+    /// The amplitudes fall linearly (eq. 20 of the paper).
     Linear = "linear",
-    /// They leave equal peaks on the profile of the contact, by steps proportional to x/g'(x).
+    /// The amplitudes leave equal peaks on the profile of the contact, by steps proportional to x/g'(x).
     EqualPeaks = "equal_peaks",
-    /// They minimise the largest stress that remains, as far as a search finds.
+    /// The amplitudes minimise the largest stress that remains, as far as a search finds.
     #[default]
     Minimax = "minimax",
 }
 }
 
 choices! {
-/// What the reversals begin from, one key.
+/// The state that the reversals begin from, one key.
 pub enum ProtocolStart {
     /// This displacement of a contact that has never moved, m; the path begins with it.
     "displacement" => Displacement(f64) = DISPLACEMENT,

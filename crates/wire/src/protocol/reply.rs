@@ -10,7 +10,7 @@ use crate::request::replies;
 replies! {
 /// How to move so that little shear stress remains.
 pub struct ProtocolReply omits Option {
-    /// What follows from the definition at the present load.
+    /// Quantities that follow from the definition at the present load.
     pub contact: ContactSummary,
     /// The law of the amplitudes.
     pub kind: ProtocolKind,
@@ -18,18 +18,18 @@ pub struct ProtocolReply omits Option {
     pub end: ProtocolEnd,
     /// Number of reversals N_R.
     pub reversals: usize,
-    /// The path, to be given to `/simulate` or `/contacts/{id}/path` as it is.
+    /// The path, which `/simulate` and `/contacts/{id}/path` take as it is.
     pub path: DisplacementPath,
     /// How the path begins.
     pub start: StartReply,
     /// Where and in which unit the remaining stress is measured.
     pub judged: JudgedReply,
-    /// What remains.
+    /// The extrema of the shear stress that remains.
     pub residual: Residual,
     /// The largest magnitude of the shear stress that remains where it is measured, Pa; `null` where it is infinite.
     #[serde_with(skip_apply)]
     pub largest: Option<f64>,
-    /// The same over `judged.unit`, a pure number.
+    /// `largest` over `judged.unit`, a pure number.
     #[serde_with(skip_apply)]
     pub relative: Option<f64>,
     /// Tangential displacement at the end, m.
@@ -38,11 +38,11 @@ pub struct ProtocolReply omits Option {
     pub force: f64,
     /// Work done against friction on the path, J.
     pub dissipated_energy: f64,
-    /// How far the path may be from the optimum; of `minimax` alone.
+    /// How far the path may be from the optimum; only for `minimax`.
     pub gap: Option<Gap>,
-    /// What remains if it is not followed exactly, if asked for.
+    /// The stress that remains if the path is not followed exactly, if asked for.
     pub robustness: Option<RobustnessReply>,
-    /// The same for the other laws, with as many reversals.
+    /// The results of the other laws, with the same number of reversals.
     pub comparison: Comparison,
     /// Solver, errors and time.
     pub accuracy: Accuracy,
@@ -60,7 +60,7 @@ pub struct DisplacementPath {
 pub struct StartReply {
     /// The first displacement of the path, m.
     pub displacement: f64,
-    /// Which beginning was chosen.
+    /// The beginning that was chosen.
     pub stroke: FirstStroke,
 }
 }
@@ -74,7 +74,7 @@ pub enum FirstStroke of stickslip_mechanics::protocol::FirstMove {
     GrossSlip = "gross_slip",
     /// A stroke that erases the outer part of the slip history and keeps the inner one.
     Partial = "partial",
-    /// None: less stress is present already than any other path would leave.
+    /// No path: less stress is present already than any path would leave.
     Stay = "stay",
 }
 }
@@ -82,16 +82,16 @@ pub enum FirstStroke of stickslip_mechanics::protocol::FirstMove {
 replies! {
 /// Where and in which unit the remaining stress is measured.
 pub struct JudgedReply {
-    /// From this radius on, m: zero, but where the stress is infinite whatever is done (the tip of a cone, the rim of a
-    /// truncated profile).
+    /// Smallest radius where it is measured, m: zero, unless the slope of the profile jumps and the stress is infinite
+    /// there after any path (the tip of a cone, the rim of a truncated profile).
     pub from_radius: f64,
-    /// Up to this radius, m: the contact radius, but at a vertical edge.
+    /// Largest radius where it is measured, m: the contact radius, unless the edge is vertical.
     pub to_radius: f64,
     /// μ times the pressure that stresses are compared with, Pa.
     pub unit: f64,
-    /// Which pressure that is.
+    /// Which pressure `unit` refers to.
     pub pressure: PressureUnit,
-    /// What is made small, in words.
+    /// The quantity that is minimised, in words.
     pub objective: String,
 }
 }
@@ -99,9 +99,9 @@ pub struct JudgedReply {
 words! {
 /// The pressure that stresses are compared with.
 pub enum PressureUnit {
-    /// The largest one.
+    /// The largest pressure.
     Largest = "largest",
-    /// The mean one, where the largest is infinite.
+    /// The mean pressure, where the largest is infinite.
     Mean = "mean",
 }
 }
@@ -110,33 +110,33 @@ replies! {
 /// How far a path may be from the optimum.
 pub struct Gap {
     /// By how much the smallest of the alternating extrema falls short of the largest, relative to it, a pure number;
-    /// `null` where they are not all meant to be equal: with a prescribed end, or a start from a history.
+    /// `null` where the law does not make all of them equal: with a prescribed end, or a start from a history.
     pub spread: Option<f64>,
-    /// What some point of the contact carries after gross slip and so many reversals, whatever they are, Pa: proven.
-    /// `null` for other starts, and at a vertical edge.
+    /// Proven lower bound of the largest shear stress after gross slip and this number of reversals, whatever their
+    /// amplitudes, Pa. `null` for other starts, and at a vertical edge.
     pub lower_bound: Option<f64>,
     /// 1 - `lower_bound`/`largest`, a pure number: the largest gap that is not ruled out by proof.
     pub proven: Option<f64>,
-    /// How the path was found, and what speaks for it.
+    /// How the path was found, and the evidence that it is optimal.
     pub method: String,
 }
 
-/// What remains when a protocol is not followed exactly: of the largest stress over `judged.unit`, pure numbers. `null`
-/// where it is infinite.
+/// Statistics of the largest stress over `judged.unit` that remains when a protocol is not followed exactly, pure
+/// numbers. `null` where it is infinite.
 pub struct RobustnessReply {
-    /// How many times it was tried.
+    /// Number of trials.
     pub samples: usize,
     /// The mean, a pure number.
     pub mean: Option<f64>,
     /// The standard error of the mean, a pure number.
     pub standard_error: Option<f64>,
-    /// The value that 95 of 100 stay below, a pure number.
+    /// The value below which 95 of 100 trials stay, a pure number.
     pub percentile_95: Option<f64>,
 }
 
 /// The results of the other laws.
 pub struct Comparison: Default omits Option {
-    /// The linear fall.
+    /// Amplitudes that fall linearly.
     pub linear: Option<Outcome>,
     /// Equal peaks.
     pub equal_peaks: Option<Outcome>,
@@ -144,14 +144,14 @@ pub struct Comparison: Default omits Option {
     pub minimax: Option<Outcome>,
 }
 
-/// What a law leaves.
+/// The stress that a law leaves, and the end of its path.
 pub struct Outcome omits Option {
-    /// What remains.
+    /// The extrema of the shear stress that remains.
     pub residual: Residual,
     /// The largest magnitude of the shear stress that remains where it is measured, Pa; `null` where it is infinite.
     #[serde_with(skip_apply)]
     pub largest: Option<f64>,
-    /// The same over `judged.unit`, a pure number.
+    /// `largest` over `judged.unit`, a pure number.
     #[serde_with(skip_apply)]
     pub relative: Option<f64>,
     /// Tangential displacement at the end, m.
@@ -160,9 +160,9 @@ pub struct Outcome omits Option {
     pub force: f64,
     /// Work done against friction on the path, J.
     pub dissipated_energy: f64,
-    /// How far the path may be from the optimum; of `minimax` alone.
+    /// How far the path may be from the optimum; only for `minimax`.
     pub gap: Option<Gap>,
-    /// What remains if it is not followed exactly, if asked for.
+    /// The stress that remains if the path is not followed exactly, if asked for.
     pub robustness: Option<RobustnessReply>,
 }
 
@@ -172,11 +172,11 @@ pub struct RelaxReply omits Option {
     pub id: Uuid,
     /// Number of moves so far.
     pub sequence: u64,
-    /// Whether the path was only shown.
+    /// Whether this was a dry run, which applies nothing.
     pub dry_run: bool,
     /// The states along the path: all of them, or the last; if asked for.
     pub steps: Option<Vec<State>>,
-    /// The path and what it leaves.
+    /// The path and the stress that it leaves.
     #[serde(flatten)]
     pub protocol: ProtocolReply,
 }

@@ -24,11 +24,11 @@ requests! {
     "fields": ["von_mises"]
 }))]
 pub struct SubsurfaceRequest {
-    /// Which body.
+    /// The body whose stress is asked for.
     pub body: BodyName,
-    /// Its Poisson's ratio, a pure number. Where the material has `bodies` it is known, and may be left out.
+    /// Poisson's ratio of the body, a pure number; it may be left out if the material has `bodies`.
     pub poisson_ratio: Option<f64> = range::POISSON_RATIO,
-    /// A list of x, y, z, m, with z of at least zero.
+    /// A list of x, y, z, m, with z not negative.
     pub points: Option<Vec<[f64; 3]>> = Array(SUBSURFACE_POINTS, Triple(range::PLACE)),
     /// A straight line.
     pub line: Option<SubsurfaceLine>,
@@ -36,9 +36,9 @@ pub struct SubsurfaceRequest {
     pub plane: Option<SubsurfacePlane>,
     /// A grid on the surface.
     pub surface: Option<SubsurfaceSurface>,
-    /// Which fields are computed; left out, `tensor`.
+    /// Which fields are computed; if left out, `tensor`.
     pub fields: Option<Vec<SubsurfaceField>>,
-    /// A uniform stress of the body that is added, Pa. It does not move the stick zone in this model.
+    /// A uniform stress of the body that is added, Pa. In this model it does not shift the stick zone.
     pub bulk: Option<Bulk>,
 }
 
@@ -64,7 +64,7 @@ words! {
 pub enum SubsurfaceField {
     /// The six components `xx`, `yy`, `zz`, `xy`, `yz`, `xz`, Pa.
     Tensor = "tensor",
-    /// The principal stresses `principal_1` to `principal_3`, falling, Pa.
+    /// The principal stresses `principal_1` to `principal_3`, in decreasing order, Pa.
     Principal = "principal",
     /// Von Mises's equivalent stress `von_mises`, Pa.
     VonMises = "von_mises",
@@ -76,12 +76,12 @@ pub enum SubsurfaceField {
 }
 
 replies! {
-/// Stresses below the surface, in columns; an array that was not asked for is left out, and `null` is where a stress is
-/// infinite.
+/// Stresses below the surface, in columns; an array that was not asked for is left out, and an infinite stress is
+/// `null`.
 pub struct Subsurface: Default omits Option {
     /// Place along the motion of the first body, m.
     pub x: Vec<f64>,
-    /// Place across it, m.
+    /// Place across the motion of the first body, m.
     pub y: Vec<f64>,
     /// Depth into the body, m; never negative.
     pub z: Vec<f64>,
@@ -257,7 +257,7 @@ impl SubsurfaceRequest {
             None => None,
             Some(bodies) => match bodies.get(index)? {
                 Body::Rigid(_) => {
-                    faults.add(at.member("body"), "this body is rigid, and has no stress that its motion would give");
+                    faults.add(at.member("body"), "the stress in a rigid body is not known: ask for the other body");
                     return None;
                 }
                 Body::Elastic(body) => Some(body.poisson_ratio),

@@ -25,19 +25,19 @@ pub struct SubsurfacePlane {
     pub normal: Direction,
     /// Its value, m.
     pub offset: f64 = range::PLACE,
-    /// x from, to and number; left out where `normal` is x.
+    /// Range of x as `[from, to, count]`; left out where `normal` is x.
     pub x: Option<[f64; 3]> = Triple(range::PLACE),
-    /// y from, to and number; left out where `normal` is y.
+    /// Range of y as `[from, to, count]`; left out where `normal` is y.
     pub y: Option<[f64; 3]> = Triple(range::PLACE),
-    /// z from, to and number; left out where `normal` is z.
+    /// Range of z as `[from, to, count]`; left out where `normal` is z.
     pub z: Option<[f64; 3]> = Triple(range::PLACE),
 }
 
 /// A grid on the surface, z = 0. Each coordinate is `[from, to, count]`, m, both ends included.
 pub struct SubsurfaceSurface {
-    /// x from, to and number.
+    /// Range of x as `[from, to, count]`.
     pub x: [f64; 3] = Triple(range::PLACE),
-    /// y from, to and number.
+    /// Range of y as `[from, to, count]`.
     pub y: [f64; 3] = Triple(range::PLACE),
 }
 }
@@ -96,7 +96,7 @@ impl Steps {
     fn read([from, to, count]: [f64; 3], at: JsonPath<'_>, faults: &mut Faults) -> Option<Steps> {
         faults.part(|faults| {
             if from >= to {
-                faults.add(at.index(1), format_args!("{to:?} is not above {from:?}: a grid has an extent"));
+                faults.add(at.index(1), format_args!("{to:?} must be above {from:?}"));
             }
             let most = *SUBSURFACE_POINTS.end() as f64;
             if !(count >= 2.0 && count <= most && count.fract() == 0.0) {
@@ -180,7 +180,7 @@ impl Places {
         let count = steps.iter().fold(1_usize, |count, steps| count.saturating_mul(steps.count));
         let most = *SUBSURFACE_POINTS.end();
         if count > most {
-            faults.add(at, format_args!("{count} places: at most {most} can be asked for"));
+            faults.add(at, format_args!("{count} places: at most {most} are allowed"));
         }
         (count <= most).then_some(Places::Grid(steps))
     }

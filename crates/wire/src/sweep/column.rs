@@ -109,7 +109,7 @@ impl Limit<String> for ColumnName {
             let most = NAME_LENGTH;
             faults.add(
                 at,
-                format_args!("not a name of a column: a letter, then letters, digits and `_`, at most {most}"),
+                format_args!("not a valid column name: a letter, then letters, digits and `_`, at most {most} in all"),
             );
         }
     }
