@@ -39,7 +39,8 @@ impl Refusal {
     /// A fault of this program; the cause is for the log.
     #[must_use]
     pub fn internal(cause: impl Into<String>) -> Refusal {
-        let detail = "this is not your fault; the operator finds the cause in the log under the request_id";
+        let detail = "a fault of the server, not of the request: its operator finds the cause in the log under the \
+                      request_id";
         Refusal { cause: Some(cause.into()), ..Refusal::new(Code::Internal, detail) }
     }
 

@@ -139,8 +139,8 @@ pub enum Error {
     },
     /// A cycle whose states cannot be held together.
     #[error(
-        "the states of this cycle take too much memory: make it of fewer moves, or straight in displacement and \
-            indentation"
+        "the states of this cycle take too much memory: use fewer moves, or moves that are straight in displacement \
+         and indentation"
     )]
     CycleTooLarge,
     /// The caller has ended the computation before it was complete.

@@ -67,7 +67,7 @@ pub async fn follow_path(
         ("relax" = (summary = "As few as leave a fifth, with the states along the path",
             value = json!({"target": 0.2, "steps": "all"})))
     )),
-    responses((status = 200, description = "The path, and what remains", body = RelaxReply,
+    responses((status = 200, description = "The path, and the stress that remains", body = RelaxReply,
         headers(("ETag" = String, description = "The sequence in quotes: the new one, or the present one after a dry \
             run"))))
 )]

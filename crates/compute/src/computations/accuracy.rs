@@ -35,10 +35,10 @@ const MAX_RUNS: usize = 9;
 
 /// Why the reference is exact enough.
 const REASON_EXACT: &str =
-    "every move of this path has an exact solution: what is left is rounding, or the points of a table";
+    "every move of this path has an exact solution: the errors left are of rounding or of a table";
 const REASON_REFINED: &str = "the exact solver, held to a sixteenth of the tolerance where moves are curved";
 const REASON_UNREFINED: &str =
-    "the exact solver, held to the tolerance where moves are curved: a smaller one needs too long a slip history";
+    "the exact solver, held to the tolerance where moves are curved: a smaller one would need too long a slip history";
 
 /// The result of one solver: forces, N, after each move, and shear stresses, Pa, at the end.
 struct Answer {
@@ -66,10 +66,10 @@ impl Computation for CompareSolvers {
         title: "Compare solvers",
         description: "Follows a path from the preloaded contact with each of the solvers, and compares the forces \
                       along it and the shear stresses at its end with a reference: the exact solver, refined where \
-                      moves are curved. This shows what a coarser model would do to your own numbers. A solver that \
-                      cannot follow the path has the reason in its row. The springs of all solvers together, times \
-                      moves and stress points, have the limit of one simulation. Nothing is stored.",
-        reply: "The reference, and a row a solver",
+                      moves are curved. This shows what a coarser model would do to your own numbers. The row of a \
+                      solver that cannot follow the path gives the reason. The springs of all solvers together, times \
+                      moves and stress points, are limited as in one simulation. Nothing is stored.",
+        reply: "The reference, and a row for each solver",
         ..About::DOCUMENT
     };
 

@@ -325,7 +325,7 @@ impl DisplayOptions {
 #[derive(Debug, thiserror::Error)]
 pub enum ComputeError {
     /// No computation has this name.
-    #[error("there is no computation `{0}`")]
+    #[error("the computation `{0}` is unknown")]
     Unknown(String),
     /// The request is invalid.
     #[error(transparent)]

@@ -42,10 +42,10 @@ impl Computation for FitProfile {
         name: "profile",
         route: Some(Route { path: "/profiles/fit", operation: "fit_profile", tag: "simulation" }),
         title: "Fit a profile to a scan",
-        description: "Finds the axis of a scan of heights, takes off its tilt, leaves out its outliers and fits the \
-                      smoothest profile that its noise allows and whose contact is a full circle; with `load`, says \
-                      what the scan means for the contact, with standard errors. Nothing is stored.",
-        reply: "The profile, and what is left of the scan",
+        description: "Finds the axis of a scan of heights, subtracts its tilt, leaves out its outliers and fits the \
+                      smoothest profile that its noise allows and whose contact is a full circle; with `load`, it also \
+                      computes the contact, with standard errors. Nothing is stored.",
+        reply: "The profile, and the residual of the scan",
         shows: "The table has the points, each `fitted`, `left_out` or of the `profile`; a picture shows them.",
         ..About::TABLE
     };
@@ -250,7 +250,7 @@ fn warnings(fit: &ScanFit, contact: Option<&scan::ContactEstimate>) -> Vec<Warni
     }
     let share = fit.outliers as f64 / fit.used as f64;
     if share > MANY_OUTLIERS {
-        let message = format!("{:.1} % of the points were left out as outliers: look at the residual", 100.0 * share);
+        let message = format!("{:.1} % of the points were left out as outliers: check the residual", 100.0 * share);
         warn("many_outliers", message);
     }
     if fit.fill_values > 0 {
@@ -267,7 +267,7 @@ fn warnings(fit: &ScanFit, contact: Option<&scan::ContactEstimate>) -> Vec<Warni
     }
     if let Some(contact) = contact.filter(|contact| contact.contact_radius.value > NEAR_EDGE * reach) {
         let part = 100.0 * contact.contact_radius.value / reach;
-        warn("short_scan", format!("the contact takes {part:.0} % of the scan's radius: its edge is poorly known"));
+        warn("short_scan", format!("the contact takes {part:.0} % of the scan's radius, whose edge is poorly known"));
     }
     warnings
 }

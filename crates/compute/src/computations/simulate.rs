@@ -32,10 +32,10 @@ impl Computation for Simulate {
         description: "Follows a path from the preloaded contact and returns the states along it, and the stresses \
                       and their extrema at its end if asked for. Nothing is stored, so that a repeated request \
                       simply runs again.",
-        reply: "States, and what else was asked for",
-        shows: "All but `columns` show one part of the document: the residual stress if it is asked for, a row for \
-                each extremum; else the stresses over the radius; else the states along the path. `show` names \
-                another.",
+        reply: "The states, and the other results that were asked for",
+        shows: "All formats but `columns` show one part of the document: the residual stress if it is asked for, a row \
+                for each extremum; otherwise the stresses over the radius; otherwise the states along the path. `show` \
+                names another part.",
         choice: Some(SHOW),
         ..About::TABLE
     };
@@ -56,7 +56,7 @@ impl Computation for Simulate {
             ),
             example(
                 "by force",
-                "A cycle of the tangential force, the last state alone",
+                "A cycle of the tangential force, with the last state only",
                 json!({
                     "contact": example_contact(json!({"type": "sphere", "radius": 0.01}), json!({"indentation": 1e-6})),
                     "path": {"force": [0.5, -0.5, 0.5]}, "steps": "last", "solver": "exact"
@@ -64,7 +64,7 @@ impl Computation for Simulate {
             ),
             example(
                 "line contact",
-                "A cylinder on a flat whose bulk stress comes with the tangential force",
+                "A cylinder on a flat with a bulk stress in proportion to the tangential force",
                 json!({
                     "contact": line_contact(), "path": {"force": [290.0, -290.0, 0.0]},
                     "stress": {"points": 101}, "residual": true

@@ -20,7 +20,7 @@ use crate::{Nanoseconds, Stop};
 const REASON: &str = "the stress below the surface follows from the slip history without a mesh";
 /// Why some stresses below the surface have no picture.
 const NO_SECTION: &str =
-    "a picture is of one of `von_mises`, `max_shear` and `hydrostatic` over a `plane` or the `surface`";
+    "a picture shows one of `von_mises`, `max_shear` and `hydrostatic` over a `plane` or the `surface`";
 
 /// The stress below the surface at the end of a path.
 pub struct SubsurfaceOfPath;
@@ -38,7 +38,7 @@ impl Computation for SubsurfaceOfPath {
         description: "The stress tensor and its invariants in one of the two bodies, at the end of a path.",
         reply: "The stresses at the end of the path",
         printed: Format::Csv,
-        shows: "A picture is of one of `von_mises`, `max_shear` and `hydrostatic` over a `plane` or the `surface`.",
+        shows: "A picture shows one of `von_mises`, `max_shear` and `hydrostatic` over a `plane` or the `surface`.",
         ..About::TABLE
     };
 
@@ -64,7 +64,7 @@ impl Computation for SubsurfaceOfPath {
     fn check_shown(task: &Simulation, shown: &DisplayOptions) -> Result<(), Fault> {
         let at = |detail: &str| Fault::new("/subsurface", detail.to_owned());
         match &task.subsurface {
-            None => Err(at("missing: it says where the stress is asked for")),
+            None => Err(at("missing: give the places and the fields of the stress")),
             Some(task) => can_show(task, shown).map_err(at),
         }
     }

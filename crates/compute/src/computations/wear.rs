@@ -43,11 +43,11 @@ impl Computation for Wear {
         route: Some(Route { path: "/wear", operation: "compute_wear", tag: "simulation" }),
         title: "Compute what fretting wear leaves",
         description: "Moves a contact back and forth at a constant indentation until it has worn to its limit, in \
-                      closed form: the disc that never slips stays as it is, and around it wear goes on until \
-                      nothing presses. Returns the shape and the pressure before and after, the removed volume, and \
-                      the limiting shape as a profile for other computations. Nothing is stored.",
-        reply: "The limit",
-        shows: "A table has shape and pressure over the radius; `profile` is in `columns` alone.",
+                      closed form: the disc that never slips stays as it is, and around it wear goes on until the \
+                      pressure there is zero. Returns the shape and the pressure before and after, the removed volume, \
+                      and the limiting shape as a profile for other computations. Nothing is stored.",
+        reply: "The limit of wear",
+        shows: "A table has shape and pressure over the radius; only `columns` has `profile`.",
         ..About::TABLE
     };
 
@@ -160,7 +160,7 @@ fn limiting_profile(
     (
         None,
         None,
-        Some(Warning::new("no_worn_profile", format!("there is no `profile` of the limiting shape: {reason}"))),
+        Some(Warning::new("no_worn_profile", format!("the limiting shape cannot be given as a `profile`: {reason}"))),
     )
 }
 

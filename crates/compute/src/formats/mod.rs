@@ -120,7 +120,7 @@ impl Format {
             let is_short = length > CAPACITY && length < PIECE;
             return if is_short { json(length, document) } else { json_while(length, document, keep_going) };
         }
-        let none = || Unwritable::new(format_args!("it has no {}", self.name()));
+        let none = || Unwritable::new(format_args!("the reply has no {} format", self.name()));
         if self.is_plot() {
             let picture = picture().ok_or_else(none)?;
             if self == Format::Svg { picture.svg() } else { picture.png(keep_going) }.map_err(Unwritable::new)

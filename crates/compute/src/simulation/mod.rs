@@ -70,8 +70,8 @@ pub enum Cause {
     },
     /// The states of a cycle are too many, or too large, to be held together.
     #[error(
-        "the states of this cycle take too much memory: make it of fewer moves, or straight in displacement and \
-            indentation"
+        "the states of this cycle take too much memory: use fewer moves, or moves that are straight in displacement \
+         and indentation"
     )]
     CycleTooLarge,
     /// The work exceeds the time limit of one request.
@@ -94,7 +94,7 @@ pub enum Cause {
     /// The extrema cannot be found within the time limit of one request.
     #[error(
         "finding the extrema of a slip history of up to {depth} pieces is estimated at {estimate} s, and {} s are \
-            allowed: up to {fits} pieces fit",
+            allowed: up to {fits} pieces are possible",
         allowed.as_secs_f64()
     )]
     Search {

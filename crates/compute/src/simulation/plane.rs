@@ -91,7 +91,7 @@ fn by_rings(simulation: &Simulation, plane: &PlanarPlan, stop: &dyn Stop) -> Res
     let timer = Timer::start(stop);
     let (count, reason) = match simulation.solver {
         Some(Solver::Rings(rings)) => (Some(rings.count), "as asked for; steps by the tolerance"),
-        _ => (None, "the path leaves its first line, which only rings follow; rings and steps by the tolerance"),
+        _ => (None, "the path leaves its first line, and only rings follow it; rings and steps by the tolerance"),
     };
     let options = Options { count, tolerance: simulation.tolerance };
     let go_on = || stop.check().is_ok();

@@ -114,7 +114,7 @@ fn length_scale(profile: &Profile, contact_radius: f64) -> f64 {
 pub(super) fn stress_warning(asked: bool, error: f64) -> Option<Warning> {
     (asked && error > MAX_STRESS_ERROR).then(|| {
         let share = 100.0 * error.min(10.0);
-        let message = format!("the stresses have an estimated error of {share:.0} % of the largest there can be");
+        let message = format!("the stresses have an estimated error of {share:.0} % of the largest possible stress");
         Warning::new("stress_error", message)
     })
 }
@@ -131,17 +131,17 @@ pub(super) fn assumption(profile: &Profile) -> Option<(&'static str, &'static st
     match profile {
         Profile::Asperities(_) => Some((
             "interaction_neglected",
-            "the asperities are taken not to interact elastically: each is a contact of its own",
+            "the elastic interaction of the asperities is neglected: each is a contact of its own",
         )),
         Profile::LoadCurve(_) => Some((
             "load_curve_alone",
-            "the tangential compliance is taken to be in proportion to that of the load curve (Ciavarella 1998; Jaeger \
-                1998)",
+            "the tangential compliance is assumed to be in proportion to that of the load curve (Ciavarella 1998; \
+                Jaeger 1998)",
         )),
         Profile::Ellipsoid(_) => Some((
             "elliptic_slip",
-            "partial slip of the ellipse is taken to follow from its load curve (Ciavarella 1998; Jaeger 1998), which \
-             is exact for a circle",
+            "partial slip of the ellipse is assumed to follow from its load curve (Ciavarella 1998; Jaeger 1998), \
+             which is exact for a circle",
         )),
         _ => None,
     }
@@ -215,8 +215,8 @@ pub fn warnings_at(
         warn(
             "noisy_table",
             format!(
-                "the table's heights seem to carry noise, which comes out {amplification:.1} times as large in the \
-                 contact: some {} against an indentation of {}; smooth them first",
+                "the table's heights seem to carry noise, which is amplified {amplification:.1} times in the contact: \
+                 about {} against an indentation of {}; smooth the heights first",
                 in_unit(noise, "m"),
                 in_unit(indentation, "m")
             ),
@@ -225,8 +225,8 @@ pub fn warnings_at(
     if profile.line().is_some_and(|line| line.bulk().is_some_and(|bulk| bulk.stress_per_force != 0.0)) {
         warn(
             "bulk_work_neglected",
-            "displacements, energies and the loss are those without the bulk stress, which does work of its own: \
-             friction dissipates more than that, as slip and friction work by place say"
+            "displacements, energies and the loss factor leave out the bulk stress, which does work of its own: \
+             friction dissipates more, as slip and friction work over x show"
                 .to_owned(),
         );
     }

@@ -49,13 +49,13 @@ impl Computation for Cycle {
         name: "cycle",
         route: Some(Route { path: "/cycle", operation: "compute_steady_cycle", tag: "simulation" }),
         title: "Compute steady cycles",
-        description: "Moves a contact back and forth at constant load until every cycle is as the one before, in \
-                      closed form: a displacement or a force that is a cosine, directly or through a machine of \
-                      finite stiffness. Returns work, stiffness, loss factor and slip for each amplitude and, if \
-                      asked for, the harmonics and the friction work per area, or the same cycles under many loads. \
-                      Nothing is stored.",
+        description: "Moves a contact back and forth at constant load until every cycle repeats the one before it, in \
+                      closed form: a displacement or a force that is a cosine, directly or through a machine of finite \
+                      stiffness. Returns work, stiffness, loss factor and slip for each amplitude and, if asked for, \
+                      the harmonics and the friction work per area, or the same cycles under many loads. Nothing is \
+                      stored.",
         reply: "The cycles, one for each amplitude, under each load of a map",
-        shows: "The friction work per area is in `columns` alone.",
+        shows: "Only `columns` has the friction work per area.",
         ..About::TABLE
     };
 

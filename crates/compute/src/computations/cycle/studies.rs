@@ -81,8 +81,8 @@ fn tolerance_not_met(error: f64) -> Warning {
             "an oscillation of the mass may be off by {error:.1e} of its amplitude, more than the tolerance asked for"
         )
     } else {
-        "at some frequencies the steady oscillation was not found: `amplitude_error` is null there, and the numbers \
-         are what the first harmonic of the force alone would make of it"
+        "at some frequencies the steady oscillation was not found: `amplitude_error` is null there, and the other \
+         numbers follow from the first harmonic of the force alone"
             .to_owned()
     };
     Warning::new("tolerance_not_met", message)

@@ -65,7 +65,7 @@ impl Computation for Fretting {
                       cycle and rates it by fatigue criteria: where would a crack start, on which plane, and how far \
                       is it from a limit. Nothing is stored.",
         reply: "The criteria, place by place",
-        shows: "A picture is of one criterion over a `plane`, the `surface` or a `line`.",
+        shows: "A picture shows one criterion over a `plane`, the `surface` or a `line`.",
         choice: Some(CRITERION),
         ..About::TABLE
     };
@@ -176,8 +176,8 @@ impl Computation for Fretting {
 const CRITERION: Choice = Choice {
     name: "criterion",
     description: "Which criterion a picture shows, by its name in the reply: `crossland`, `dang_van`, `findley`, \
-                  `swt`, `fatemi_socie`, `ruiz`, `ruiz_tension` or `friction_work`. It must be asked for in \
-                  `criteria`, and may be left out where one alone is. Other formats have all criteria.",
+                  `swt`, `fatemi_socie`, `ruiz`, `ruiz_tension` or `friction_work`. It must be one of `criteria`, and \
+                  may be left out if there is only one. Other formats have all criteria.",
     words: &picture::NAMES,
 };
 

@@ -23,7 +23,7 @@ const EDGE: &str = "edge of the contact at the preload";
 const SAME_PLANE: f64 = 1e-9;
 
 /// Why some places have no picture.
-const NO_PICTURE: &str = "places without an order have no picture: ask for a `plane`, the `surface` or a `line`";
+const NO_PICTURE: &str = "a list of points has no picture: ask for a `plane`, the `surface` or a `line`";
 
 /// The name of the criterion that a picture shows: the one that the query names, or the only one that the request asks
 /// for. `None` in a format that shows all.
@@ -45,7 +45,7 @@ pub fn criterion(task: &FrettingTask, shown: &DisplayOptions) -> Result<Option<&
         (Some(name), ..) => return Err(refused(&format!("`{name}` is not asked for in `criteria`"))),
         (None, ..) if !is_plot => return Ok(None),
         (None, Some(only), None) => only,
-        (None, ..) => return Err(refused("a picture is of one criterion")),
+        (None, ..) => return Err(refused("a picture shows one criterion")),
     };
     match &task.places {
         Places::Points(_) if is_plot => Err(Fault::new("/points", NO_PICTURE.to_owned())),

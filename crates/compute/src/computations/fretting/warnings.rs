@@ -61,7 +61,7 @@ pub(super) fn fretting_warnings(reply: &FrettingReply, rated: &Rated<'_>) -> Vec
             vec![format!(
                 "all places are farther than {REACH} contact radii ({radius}) from the centre of the contact"
             )],
-            ": the largest stresses are near it; are the places in m?",
+            ": the largest stresses are near the contact; are the places in m?",
         );
     }
     warn(
@@ -77,7 +77,7 @@ pub(super) fn fretting_warnings(reply: &FrettingReply, rated: &Rated<'_>) -> Vec
         "life_scatter",
         of_each(&|index, name, _| reply.ratings().nth(index)?.2.life.map(|_| format!("life by {name}"))),
         ": tested lives scatter about such a curve by a factor of three and more, and a small error of the friction or \
-         the load changes them by as much; `shortest` and `longest` have the stated error of the value alone",
+         the load changes them by as much; `shortest` and `longest` cover only the stated error of the value",
     );
     warn(
         "grid_misses_largest",

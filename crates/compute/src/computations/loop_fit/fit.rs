@@ -148,31 +148,31 @@ fn warning(note: Note) -> Warning {
     let (code, message) = match note {
         Note::MachineComplianceUnknown => (
             "machine_compliance_unknown",
-            "the compliance of the machine is taken for zero: a soft machine makes friction and stiffness wrong, and \
+            "the compliance of the machine is taken as zero: a soft machine makes friction and stiffness wrong, and \
              the fit looks perfect all the same. Give it as `known`, or free it where the loop reaches gross slip",
         ),
         Note::PartialSlipOnly => (
             "partial_slip_only",
-            "no loop reaches gross slip: friction and stiffness follow from the curvature of the branches alone",
+            "no loop reaches gross slip: friction and stiffness follow only from the curvature of the branches",
         ),
         Note::BeyondGrossSlip => (
             "beyond_gross_slip",
-            "most of the loop is gross slip: it determines the friction, and the stiffness by few points alone",
+            "most of the loop is gross slip: it determines the friction, but only few points determine the stiffness",
         ),
         Note::FirstBranchUnknown => (
             "first_branch_unknown",
-            "how a record begins, or where its displacement is zero, is not known: it is taken for a part of a steady \
-             cycle about its own middle. Say `start`; in a steady cycle nothing determines `displacement_offset`",
+            "how a record begins, or where its displacement is zero, is not known: it is taken as part of a steady \
+             cycle centred on its middle. Give `start`; a steady cycle does not determine `displacement_offset`",
         ),
         Note::Quantised => (
             "quantised",
-            "the forces come in steps that are not small beside their noise: where the contact slides their rounding \
-             does not average out. Standard errors and intervals are wider by what it may shift",
+            "the forces come in steps that are not small beside their noise: where the contact slides, their rounding \
+             does not average out. Standard errors and intervals are widened by the shift that it may cause",
         ),
         Note::TurnsAsSampled => (
             "turns_as_sampled",
-            "a record has more turning points than can be fitted, and they do not repeat: they are taken where they \
-             were sampled, and the intervals leave out how far off that may be. Send fewer cycles",
+            "a record has more turning points than can be fitted, and they do not repeat: they are placed at sampled \
+             points, and the intervals leave out the error of this. Send fewer cycles",
         ),
         Note::NotCoulomb => (
             "not_coulomb",
@@ -181,8 +181,8 @@ fn warning(note: Note) -> Warning {
         ),
         Note::NotConverged => (
             "not_converged",
-            "the search for the best values ended before it had found them: values and intervals are those of where it \
-             stopped. Free fewer parameters, or give known ones",
+            "the search for the best values did not converge: values and intervals are those where it stopped. Free \
+             fewer parameters, or give known values",
         ),
     };
     Warning::new(code, message)

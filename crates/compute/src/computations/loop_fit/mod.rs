@@ -26,11 +26,11 @@ impl Computation for FitLoops {
         name: "fit",
         route: Some(Route { path: "/fit", operation: "fit_loops", tag: "simulation" }),
         title: "Fit friction and stiffness to measured loops",
-        description: "Finds the turning points of force over displacement as a bench has measured them, and the \
-                      coefficient of friction, the moduli, the compliance of the machine, the offsets and the drift \
-                      that fit best. Says what the loops determine, what only in combination, and within which \
+        description: "Finds the turning points of measured loops of force over displacement, and the coefficient of \
+                      friction, the moduli, the compliance of the machine, the offsets and the drift that fit best. \
+                      States what the loops determine, what they determine only in combination, and within which \
                       intervals. Nothing is stored.",
-        reply: "What the loops say, and what they leave open",
+        reply: "The quantities that the loops determine, and the curves of the fit",
         shows: "The table has the points of the loops, measured and fitted; a picture shows them and the residual.",
         ..About::TABLE
     };

@@ -62,7 +62,7 @@ impl Subject<'_> {
             Fewest::Found(reversals, design) => Ok((reversals, design)),
             Fewest::OutOfReach(design) => {
                 let least = target * design.largest / largest;
-                let allowed = format!("what {most} reversals reach, {least:.3e}, or more");
+                let allowed = format!("at least {least:.3e}, which {most} reversals reach");
                 let error = Error::OutOfRange { quantity: Quantity::ProtocolTarget, value: target, allowed };
                 Err(Failure::at("/target", error))
             }
@@ -153,7 +153,7 @@ fn objective(judged: &EvaluationRange) -> String {
         (false, false) => "the largest shear stress of the whole contact".to_owned(),
         (true, false) => format!(
             "the largest shear stress from the radius {from:e} m on: further in it is infinite at a radius where the \
-             slope of the profile jumps, whatever is done"
+             slope of the profile jumps, whatever the path"
         ),
         (false, true) => format!(
             "the largest shear stress up to the radius {to:e} m: at the vertical edge it is infinite unless the path \
@@ -171,14 +171,14 @@ fn gap(design: &Design, bound: Option<f64>) -> Gap {
         (true, _) => {
             "equal alternating extrema; a search with restarts found nothing better, and `lower_bound` is proven"
         }
-        (false, FirstMove::Stay) => "the present state has less than any path that was found would leave",
+        (false, FirstMove::Stay) => "the present state has less stress than any path that was found would leave",
         (false, FirstMove::Partial) => {
-            "alternating extrema outside, and inside the part of the history that leaves least with them; found by \
-             search, no bound is known"
+            "alternating extrema outside, and inside them the part of the slip history that leaves the least stress; \
+             found by search, no bound is known"
         }
         (false, FirstMove::Given | FirstMove::GrossSlip) => {
-            "alternating extrema, all but one equal for the sake of the end, or the better one of the two laws; found \
-                by search"
+            "alternating extrema, all but one equal because of the prescribed end, or the better of the two other \
+             laws; found by search"
         }
     };
     let proven = bound.map(|bound| 1.0 - bound / design.largest).filter(|gap| gap.is_finite());

@@ -34,10 +34,10 @@ impl Computation for FindProtocol {
         name: "protocol",
         route: Some(Route { path: "/protocols", operation: "find_protocol", tag: "protocols" }),
         title: "Find a protocol",
-        description: "Finds displacements that leave little shear stress, in a number of reversals or in as few as \
-                      reach a target, and says what remains, how far that may be from the optimum, and what the \
-                      other laws would leave. Nothing is stored or changed.",
-        reply: "The path, and what remains",
+        description: "Finds displacements that leave little shear stress, in a given number of reversals or in the \
+                      fewest that reach a target. States the stress that remains, how far it may be from the optimum, \
+                      and the stress that the other laws would leave. Nothing is stored or changed.",
+        reply: "The path, and the stress that remains",
         ..About::DOCUMENT
     };
 
