@@ -275,7 +275,7 @@ async fn the_query_wins_over_the_file_and_a_map_over_the_limit_is_thinned_and_sa
     assert_eq!((map["z"].as_array().unwrap().len(), &found["preview"]["thinned"]), (512, &json!(2)));
     assert!((number(&map["dx"]) - 0.2).abs() < 1e-12, "{}", map["dx"]);
     let reading = found["preview"]["reading"].as_array().unwrap();
-    assert!(reading.iter().any(|line| line.as_str().unwrap().starts_with("Thinned 2 times")), "{reading:?}");
+    assert!(reading.iter().any(|line| line.as_str().unwrap().starts_with("One height in 2 ")), "{reading:?}");
 }
 
 #[tokio::test]

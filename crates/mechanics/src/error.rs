@@ -32,7 +32,7 @@ pub enum Error {
     /// The half-width of a line contact would come near the length that fixes its displacements.
     #[error(
         "a half-width of {} is not below {}, nine tenths of reference_length: displacements of a line contact are \
-            known within that length alone", in_unit(*half_width, "m"), in_unit(*limit, "m")
+         defined only within that length", in_unit(*half_width, "m"), in_unit(*limit, "m")
     )]
     BeyondReferenceLength {
         /// The half-width needed, m; the limit itself if none would do.
@@ -44,11 +44,11 @@ pub enum Error {
     #[error(
         "stress_per_force = {} {}", in_unit(*stress_per_force, "Pa/N"), if *largest > 0.0 {
             format!(
-                "is too large: allowed is up to {} either way, beyond which slip begins on both sides in opposite \
-                    directions", in_unit(*largest, "Pa/N")
+                "is too large: allowed is up to {} in both signs; beyond that, slip begins on both sides in opposite \
+                 directions", in_unit(*largest, "Pa/N")
             )
         } else {
-            "is not available with this profile: the stick zone that it moves is known of a cylinder alone".to_owned()
+            "is not available with this profile: the stick zone that it shifts is known for a cylinder only".to_owned()
         }
     )]
     BulkTooLarge {
@@ -58,10 +58,10 @@ pub enum Error {
         largest: f64,
     },
     /// A normal target of a contact whose bulk stress moves the stick zone.
-    #[error("the stick zone that a bulk stress moves is known at a constant normal force: leave the normal target out")]
+    #[error("a bulk stress needs a constant normal force: leave the normal target out")]
     BulkNeedsConstantLoad,
     /// Places along x where there are radii alone.
-    #[error("{0} is known of line contacts alone")]
+    #[error("{0} is available for line contacts only")]
     RoundContact(&'static str),
     /// What is defined for round contacts alone.
     #[error("{0} is not available for a line contact")]
@@ -74,8 +74,8 @@ pub enum Error {
     },
     /// The part of the surface that wears reaches beyond what is known of the profile.
     #[error(
-        "the worn part reaches beyond the radius {} m, where the profile ends, or its g falls: give the surface \
-            further out",
+        "the worn part reaches beyond the radius {} m, where the profile ends, or g of the profile falls: give the \
+         surface further out",
         short(*limit)
     )]
     WornBeyondProfile {
@@ -99,14 +99,14 @@ pub enum Error {
         index: usize,
     },
     /// A part of a sum that is known by its load curve alone: only surfaces add up.
-    #[error("part {part} of the sum is known by its load curve alone: only surfaces can be added up")]
+    #[error("part {part} of the sum is known only by its load curve: only surfaces can be added up")]
     NoSurface {
         /// Its index.
         part: usize,
     },
     /// A stress of a contact that is known by its load curve alone.
     #[error(
-        "the profile `{profile}` is known by its load curve alone: forces and energies follow from it, stresses do not"
+        "the profile `{profile}` is known only by its load curve: forces and energies follow from it, stresses do not"
     )]
     NoStressField {
         /// Its type in JSON.
@@ -117,7 +117,7 @@ pub enum Error {
     BodiesNeeded,
     /// No quasi-static state carries this tangential force: the contact would slide away.
     #[error(
-        "friction holds no more than mu F_N = {}{}, and {} was asked for", in_unit(*limit, "N"),
+        "friction holds no more than mu F_N = {}{}, but {} was asked for", in_unit(*limit, "N"),
         if target.abs() >= *limit { WITHIN_LIMIT } else { " on the way" },
         in_unit(*target, "N")
     )]

@@ -125,7 +125,7 @@ impl Needed {
     ) -> String {
         let why = match (&sheet.labels[column].unit, hint) {
             (Mention::Known(_, said) | Mention::Unknown(said), Some(hint)) if *said != hint.text => {
-                format!(", as was asked, and not in {said}")
+                format!(", as asked for, and not in {said}")
             }
             _ if unit.is_assumed => ", because nothing names another unit".to_owned(),
             _ => String::new(),

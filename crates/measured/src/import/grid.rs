@@ -50,7 +50,7 @@ fn value(text: &str, name: &str) -> Result<(usize, f64), ImportError> {
     });
     let (line, value) = found.ok_or_else(|| ImportError::of_file(format!("the header has no `{name}`")))?;
     let value = number(value, Mark::Point)
-        .ok_or_else(|| ImportError::at_line(line, format!("has no number behind `{name}`: `{value:.40}`")))?;
+        .ok_or_else(|| ImportError::at_line(line, format!("has no number after `{name}`: `{value:.40}`")))?;
     Ok((line, value))
 }
 

@@ -166,9 +166,9 @@ fn times(
     } else {
         let Some(times) = clock::seconds(sheet.texts(column)) else {
             if is_wanted {
-                return Err(ImportError::of_file(format!("{title} is neither a number nor a date that is known here")));
+                return Err(ImportError::of_file(format!("{title} is neither a number nor a date in a known format")));
             }
-            preview.leave_out(column, "dates that are not understood, or that may be read in two ways");
+            preview.leave_out(column, "dates of an unknown format, or that can be read in two ways");
             return Ok(None);
         };
         let unit = ColumnUnit { is_assumed: false, ..TIME.beside(None) };
@@ -206,7 +206,7 @@ fn load(
     let is_constant = loads.iter().all(|one| (one - mean).abs() <= CONSTANT * mean.abs());
     let sentence = match (is_constant, mean) {
         (true, 0.0) => "not used, because it is zero",
-        (true, ..0.0) => "it is negative throughout, so its amount is the load",
+        (true, ..0.0) => "it is negative throughout, so its magnitude is the load",
         (true, _) => "its mean is the load",
         (false, _) => "not used, because it is not constant",
     };

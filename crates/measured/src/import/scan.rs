@@ -164,7 +164,7 @@ impl Columns {
         let fitting: Vec<usize> = open.iter().copied().filter(|column| !excluded(column)).collect();
         let lacking = 2 - usize::from(x.is_some()) - usize::from(z.is_some());
         if fitting.len() >= lacking && axes_are_there(&fitting, &axes, x, z) {
-            left_out.extend(open.iter().filter(|column| excluded(column)).map(|column| (*column, "no length")));
+            left_out.extend(open.iter().filter(|column| excluded(column)).map(|column| (*column, "not a length")));
             open = fitting;
         }
         let mut take = |wanted: &mut Option<usize>, axis: Axis| {
@@ -208,8 +208,8 @@ impl Columns {
         match (x, z) {
             (Some(x), Some(z)) if x != z && y != Some(x) && y != Some(z) => Ok(Some(Columns { x, y, z, left_out })),
             _ => Err(ImportError::of_file(format!(
-                "a line needs two columns of numbers, places and heights, and {}: choose them by `x` and `z`",
-                if x.is_none() && z.is_none() { "neither is here" } else { "one of them is not here" }
+                "a line needs two columns of numbers, places and heights, but {}: choose them by `x` and `z`",
+                if x.is_none() && z.is_none() { "neither was found" } else { "one of them was not found" }
             ))),
         }
     }
@@ -242,7 +242,7 @@ fn stride(rows: usize, hints: &ScanHints, preview: &mut Preview) -> usize {
     let stride = if hints.most == 0 { 1 } else { rows.div_ceil(hints.most).max(1) };
     if stride > 1 {
         preview.thinned = stride;
-        preview.reading.push(format!("Thinned {stride} times, to {} of {rows} heights.", rows.div_ceil(stride)));
+        preview.reading.push(format!("One height in {stride} is kept: {} of {rows} heights.", rows.div_ceil(stride)));
     }
     stride
 }
@@ -304,7 +304,7 @@ fn fill_value(sheet: &Sheet<'_>, heights: impl Iterator<Item = f64> + Clone, pre
             .then(|| line.split([' ', '\t', '=', ':', ';', ',']).next_back())?
     });
     if let Some(value) = named.and_then(|value| number(value, Mark::Point)) {
-        preview.reading.push(format!("{value} stands where a height is missing, by the header."));
+        preview.reading.push(format!("{value} marks a missing height, by the header."));
         return Some(value);
     }
     let is = |height: f64, value: f64| height.to_bits() == value.to_bits();
@@ -317,8 +317,8 @@ fn fill_value(sheet: &Sheet<'_>, heights: impl Iterator<Item = f64> + Clone, pre
     let is_there = |value: f64| heights.clone().any(|height| is(height, value));
     let value = FILLS.into_iter().find(|value| is_there(*value) && is_far(*value))?;
     preview.reading.push(format!(
-        "{value} is taken for a missing height: it is customary for that, and more than {FAR} times as far from all \
-         others as they are from each other."
+        "{value} is taken as a missing height: it is a customary mark of that, and more than {FAR} times as far from \
+         all others as they are from each other."
     ));
     Some(value)
 }
@@ -417,7 +417,7 @@ fn matrix(sheet: &Sheet<'_>, hints: &ScanHints, mut preview: Preview) -> Result<
         let unit = LATERAL.beside(hints.lateral.as_ref());
         let lateral = Length::nearest(unit.unit);
         let step = unit.unit.convert(spacing, lateral.unit());
-        (lateral, step, step, format!("Neighbours are {spacing} {} apart, as was asked.", unit.text))
+        (lateral, step, step, format!("Neighbours are {spacing} {} apart, as asked for.", unit.text))
     } else {
         let (wide, high) = (measure(sheet, &["Width", "Breite"])?, measure(sheet, &["Height", "H\u{f6}he"])?);
         let (Some((wide, unit)), Some((high, other))) = (wide, high) else {
@@ -466,7 +466,7 @@ pub(super) fn thinned(
     if stride > 1 {
         let kept = format!("{} x {}", z[0].len(), z.len());
         preview.thinned = stride;
-        preview.reading.push(format!("Thinned {stride} times along both sides, to {kept} heights."));
+        preview.reading.push(format!("One height in {stride} along each side is kept: {kept} heights."));
     }
     say_missing(z.iter().flatten().filter(|height| height.is_none()).count(), preview);
     z
@@ -525,7 +525,7 @@ mod tests {
         let hints = ScanHints { height: UnitHint::of("mm", Dimension::LENGTH).ok(), ..ScanHints::default() };
         let hinted = read_scan(b"X [um];Z [nm]\n1;2\n", &hints).unwrap();
         assert_eq!((hinted.lateral, hinted.height), (Length::Micrometre, Length::Millimetre));
-        assert!(hinted.preview.reading[2].contains("as was asked, and not in nm"), "{:?}", hinted.preview.reading);
+        assert!(hinted.preview.reading[2].contains("as asked for, and not in nm"), "{:?}", hinted.preview.reading);
     }
 
     #[test]
@@ -557,7 +557,7 @@ mod tests {
         assert!((dx - 4.0).abs() < 1e-12 && (dy - 6.0).abs() < 1e-12 && (z.len(), z[0].len()) == (2, 4));
         assert_eq!(z[1][1], Some(4e-9));
         assert!(
-            thinned.preview.reading.last().unwrap().contains("Thinned 2 times along both sides, to 4 x 2 heights"),
+            thinned.preview.reading.last().unwrap().contains("One height in 2 along each side is kept: 4 x 2 heights"),
             "{:?}",
             thinned.preview.reading
         );

@@ -272,7 +272,7 @@ impl<'a> Sheet<'a> {
                 cells.iter().map(|cell| (*cell).to_owned()).collect()
             };
             let named = names.iter().filter(|name| is_named(name)).count();
-            let fault = format!("names {} columns, and the rows have {}", names.len(), self.width);
+            let fault = format!("names {} columns, but the rows have {}", names.len(), self.width);
             (named > 1 && names.len() != self.width).then(|| ImportError::at_line(*line, fault))
         })
     }
@@ -393,7 +393,7 @@ impl<'a> Sheet<'a> {
     fn ambiguous(&self, row: usize, column: usize) -> ImportError {
         let cell = self.texts(column).nth(row).unwrap_or("");
         let fault = format!(
-            "`{cell:.40}` may have thousands or decimals behind its mark: write the numbers without separators of \
+            "the mark in `{cell:.40}` may separate thousands or decimals: write the numbers without separators of \
              thousands"
         );
         ImportError::at(self.line(row), column + 1, fault)
@@ -544,7 +544,7 @@ fn no_table(text: &str, all: &[Row]) -> ImportError {
         }
         has_column |= shape(line).is_some();
     }
-    ImportError::of_file(if has_column { ONE_COLUMN } else { "there are no rows of numbers" })
+    ImportError::of_file(if has_column { ONE_COLUMN } else { "no rows of numbers were found" })
 }
 
 /// A number of columns in words.

@@ -12,7 +12,7 @@ pub enum Error {
         record: usize,
     },
     /// The displacement never turns.
-    #[error("the displacement never turns back: one branch does not show what is friction and what is stiffness")]
+    #[error("the displacement never turns back: a single branch cannot separate friction from stiffness")]
     SingleBranch {
         /// Which record.
         record: usize,
@@ -56,7 +56,7 @@ pub enum Error {
     },
     /// The stiffness is out of proportion to the contact.
     #[error(
-        "just after a reversal the loop has a stiffness of {} N/m, and the contact one of {} N/m: check the units and \
+        "just after a reversal the loop has a stiffness of {} N/m, but the contact one of {} N/m: check the units and \
          the contact",
         number(*measured), number(*expected)
     )]
@@ -74,9 +74,9 @@ pub enum Error {
         /// Which record.
         record: usize,
     },
-    /// No loop tells these apart.
+    /// No loop separates the two.
     #[error(
-        "`{}` and `{}` cannot be separated: loops determine only `{combination}`, at whatever load; hold one of them, \
+        "`{}` and `{}` cannot be separated: loops determine only `{combination}`, at any load; hold one of them, \
          or give it in `known` with its standard error",
         parameter.name(), with.name()
     )]
@@ -104,7 +104,7 @@ pub enum Error {
         record: Option<usize>,
     },
     /// The search found no minimum.
-    #[error("no contact of this kind has such loops: the search for the best one does not converge")]
+    #[error("no contact of this kind fits these loops, as the search does not converge: check `contact` and the units")]
     NoSolution,
     /// The mechanics refuses a load.
     #[error(transparent)]

@@ -33,14 +33,14 @@ pub enum Error {
     },
     /// No axis about which the surface falls away to all sides.
     #[error(
-        "about no axis does the surface fall away from a peak: is it a hollow, or the other way up than `orientation` \
-            says?"
+        "the surface does not fall away from a peak about any axis: is it a hollow, or is `orientation` the wrong way \
+         up?"
     )]
     Hollow,
     /// The curve follows the noise so closely that no rising profile is near it.
     #[error(
-        "so fine a curve follows the noise, and its profile would not rise: give fewer `knots`, or leave `smoothing` \
-            out"
+        "a curve this fine follows the noise, and its profile would not rise: give fewer `knots`, or leave `smoothing` \
+         out"
     )]
     Rough,
     /// The axis given is not in the scan.

@@ -117,7 +117,8 @@ impl<'a> WornContact<'a> {
         let gross_slip = contact.gross_slip_displacement();
         if amplitude.is_nan() || amplitude < 0.0 || amplitude >= gross_slip || level.value() <= 0.0 {
             let allowed = format!(
-                "below the displacement of gross slip, {} m: from there on all of the contact slips and wears on",
+                "below the displacement of gross slip, {} m: at and above it the whole contact slips and wears without \
+                 a limit",
                 short(gross_slip)
             );
             return Err(Error::OutOfRange { quantity: Quantity::Displacement, value: amplitude, allowed });
