@@ -51,7 +51,7 @@ pub fn new_key_until(
     expires_at: Option<Timestamp>,
 ) -> Result<NewKey, String> {
     let mut random = [0; RANDOM];
-    getrandom::fill(&mut random).map_err(|error| format!("the system has no randomness: {error}"))?;
+    getrandom::fill(&mut random).map_err(|error| format!("the system gives no random numbers: {error}"))?;
     let key = format!("{PREFIX}{}", const_hex::encode(random));
     let roles: Vec<&str> = roles.iter().map(|role| role.name()).collect();
     let hash = const_hex::encode(Sha256::digest(key.as_bytes()));
@@ -66,7 +66,7 @@ pub(super) fn parse(entry: &str) -> Result<Holder, String> {
     let parts: [Option<&str>; 6] = std::array::from_fn(|_| parts.next());
     let [Some(name), Some(roles), Some(tenant), Some("sha256"), Some(hash), end] = parts else {
         let expected =
-            "expected name:roles:tenant:sha256:hash, where the tenant may be empty, and then perhaps :expires_at";
+            "expected name:roles:tenant:sha256:hash, where the tenant may be empty and :expires_at may follow";
         return Err(expected.to_owned());
     };
     if name.is_empty() || !is_name(name) {
@@ -81,7 +81,7 @@ pub(super) fn parse(entry: &str) -> Result<Holder, String> {
         const_hex::decode_to_array(hash).ok().filter(|hashed: &Hash| hash.len() == 2 * hashed.len());
     let hash = hash.ok_or("expected the SHA-256 of the key as 64 hexadecimal digits")?;
     let expires_at = end.map(str::parse).transpose();
-    let expires_at = expires_at.map_err(|_| "expected the end of the key as 2027-01-31T12:00:00Z")?;
+    let expires_at = expires_at.map_err(|_| "expected the expiry of the key as 2027-01-31T12:00:00Z")?;
     Ok(Holder { name: name.into(), roles, tenant: Tenant::new(tenant), expires_at, hash })
 }
 

@@ -56,7 +56,7 @@ impl FromStr for Role {
 
     fn from_str(text: &str) -> Result<Role, String> {
         let role = Role::ALL.into_iter().find(|role| role.name() == text);
-        role.ok_or_else(|| "expected roles out of write, read, metrics, with a + between them".to_owned())
+        role.ok_or_else(|| "expected one or more of the roles write, read, metrics, joined by +".to_owned())
     }
 }
 
@@ -110,7 +110,7 @@ impl Keys {
                 let holder = entry::parse(entry).map_err(|why| wrong(&why))?;
                 let mut known = self.by_prefix.values().flatten();
                 if known.any(|other| other.name == holder.name) {
-                    return Err(wrong("there is another key of this name"));
+                    return Err(wrong("another key has this name"));
                 }
                 if self.find(&holder.hash).is_some() {
                     return Err(wrong("the same key has two entries"));

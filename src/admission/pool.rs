@@ -114,10 +114,10 @@ pub struct Taken {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum PoolError {
     /// Nothing became free in time.
-    #[error("the server is busy, and nothing became free in time")]
+    #[error("the server is busy: no capacity became free in time")]
     Busy,
     /// The queue is full.
-    #[error("the server is busy, and its queue is full")]
+    #[error("the server is busy: its queue is full")]
     QueueFull,
     /// The client has as much as it may.
     #[error("{0}")]

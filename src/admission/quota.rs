@@ -116,13 +116,13 @@ impl fmt::Display for QuotaExceeded {
             Quota::Contacts => write!(f, "you have {limit} contacts, as many as `{name}` allows: delete some"),
             Quota::BodyBytes => write!(
                 f,
-                "bodies that are arriving from you would take more than the {bytes} that `{name}` allows: send fewer \
-                 at a time"
+                "the bodies that are arriving from you would take more than the {bytes} that `{name}` allows: send \
+                 fewer at a time"
             ),
             Quota::StoreBytes => write!(
                 f,
-                "beyond the {bytes} in the store that `{name}` allows your contacts: delete some, or do with fewer \
-                 moves"
+                "your contacts would take more than the {bytes} in the store that `{name}` allows: delete some, or \
+                 make fewer moves"
             ),
         }
     }
@@ -154,7 +154,7 @@ impl Quotas {
     /// Never: the name of the metric is one that is allowed.
     #[must_use]
     pub fn new(limits: QuotaLimits) -> Quotas {
-        let options = Opts::new("stickslip_quota_refused_total", "Requests beyond a quota of their client.");
+        let options = Opts::new("stickslip_quota_refused_total", "Requests refused by a quota of the client.");
         let refused = IntCounterVec::new(options, &["quota"]).expect(OWN_NAME);
         for quota in Quota::ALL {
             let _ = refused.with_label_values(&[quota.name()]);

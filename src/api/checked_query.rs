@@ -25,9 +25,9 @@ parameters! {
     pub struct MovesQuery {
         /// The `next` of the previous page.
         after: Option<u64> = MOVE_NUMBER;
-        /// How many moves at most. Without `after`, `limit` and `last`, `csv`, `ndjson` and `arrow` are of all moves.
+        /// Largest number of moves. Without `after`, `limit` and `last`, `csv`, `ndjson` and `arrow` have all moves.
         limit: Option<usize> = Number { suggestion: Some(DEFAULT_PAGE), ..count(&PAGE) };
-        /// The newest moves, so many; in place of `after` and `limit`. A plot shows the newest unless `after` is given.
+        /// Number of newest moves, in place of `after` and `limit`. A plot shows the newest unless `after` is given.
         last: Option<usize> = count(&PAGE);
     }
 }
@@ -61,7 +61,7 @@ impl<T: QueryParams> QueryParams for (MovesQuery, T) {
     fn take(query: &mut QueryReader, headers: &HeaderMap) -> Option<(MovesQuery, T)> {
         let moves = MovesQuery::take(query, headers)?;
         if moves.last.is_some() && (moves.after.is_some() || moves.limit.is_some()) {
-            query.faults.add(JsonPath::Root.member("last"), "the newest moves need no `after` and no `limit`");
+            query.faults.add(JsonPath::Root.member("last"), "conflicts with `after` and `limit`: leave them out");
         }
         Some((moves, T::take(query, headers)?))
     }

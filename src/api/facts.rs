@@ -50,7 +50,7 @@ const LIMITED: &[Refusal] = &[
 const EXPIRED: &[Refusal] = &[("410", "The contact was idle for so long that it has expired")];
 /// Of a change of a stored contact.
 const CHANGES: &[Refusal] =
-    &[FORBIDDEN, ("412", "The contact has another sequence than If-Match gives, or another label")];
+    &[FORBIDDEN, ("412", "The contact has another sequence, or another label, than If-Match gives")];
 const FORBIDDEN: Refusal = ("409", "The state of the contact forbids this");
 /// Of a computation that may begin from a stored contact.
 const STORED: &[Refusal] = &[("404", "Not found"), FORBIDDEN];

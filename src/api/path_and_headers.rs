@@ -39,9 +39,9 @@ pub struct JobPath {
 #[derive(IntoParams)]
 #[into_params(parameter_in = Header)]
 pub struct IfMatch {
-    /// The sequence that the contact must have, in quotes: an `ETag` of it. If it has another one, nothing changes and
-    /// the answer is 412. With the checksum of a label behind a dot, as `GET /contacts/{id}` gives it, the label must
-    /// be the same too; `.00000000` is that of no label. The `W/` of a compressed reply may stand before it.
+    /// The sequence that the contact must have, in quotes: its `ETag`. If the contact has another sequence, nothing
+    /// changes and the answer is 412. With the checksum of the label after a dot, as `GET /contacts/{id}` gives it, the
+    /// label must be the same too; `.00000000` stands for no label. The prefix `W/` of a compressed reply is allowed.
     #[param(rename = "If-Match", value_type = Option<String>, nullable = false,
         pattern = r#"^((W/)?"[0-9]{1,19}(\.[0-9a-f]{8})?"|\*)$"#)]
     pub expected: Option<Expected>,
@@ -52,8 +52,8 @@ pub struct IfMatch {
 #[into_params(parameter_in = Header)]
 pub struct IdempotencyKey {
     /// A name of your choice for this request. A repetition with the same name and body within 24 hours changes nothing
-    /// and gets the first reply again; with another body it is refused. A server with the store `memory:` forgets the
-    /// oldest replies earlier once they take more than 256 MiB.
+    /// and gets the first reply again; with another body it is refused. A server with the store `memory:` drops the
+    /// oldest replies earlier, once the replies take more than 256 MiB.
     #[param(rename = "Idempotency-Key", nullable = false, min_length = 1, max_length = 255, pattern = "^[!-~]+$")]
     pub key: Option<String>,
 }
@@ -78,7 +78,7 @@ impl IntoParams for LastEventId {
 #[derive(IntoParams)]
 #[into_params(parameter_in = Header)]
 pub struct Prefer {
-    /// `respond-async` makes a job of the sweep, however small it is (RFC 7240).
+    /// `respond-async` runs the sweep as a job even if it is small (RFC 7240).
     #[param(rename = "Prefer", value_type = Option<String>, nullable = false)]
     pub respond_async: bool,
 }
@@ -104,7 +104,7 @@ impl FromRequestParts<Arc<App>> for JobPath {
 async fn identifier(parts: &mut Parts, app: &Arc<App>, kind: Code, noun: &str) -> Result<Uuid, Problem> {
     let missing = |id: &str| {
         let shown: String = id.chars().take(40).collect();
-        Problem::new(kind, format!("there is no {noun} {shown}"))
+        Problem::new(kind, format!("the {noun} {shown} was not found"))
     };
     match Path::<String>::from_request_parts(parts, app).await {
         Ok(Path(id)) => Uuid::parse_str(&id).map_err(|_| missing(&id)),

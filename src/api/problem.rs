@@ -173,13 +173,13 @@ impl From<SessionError> for Problem {
             }
             SessionError::Store(StoreError::Damaged { contact, .. }) => {
                 let advice = format!(
-                    "what is stored of contact {contact} is damaged: the operator finds the cause in the log under the \
+                    "the stored contact {contact} is damaged: the operator finds the cause in the log under the \
                      request_id"
                 );
                 Problem::new(Code::DamagedContact, advice).because(detail)
             }
             SessionError::Store(StoreError::Locked(_)) => {
-                let advice = "another transaction of the database holds it: nothing has changed, try again";
+                let advice = "another transaction of the database holds a lock: nothing has changed, try again";
                 Problem::new(Code::StorageUnavailable, advice).because(detail)
             }
             SessionError::Store(StoreError::Unavailable(_)) => {

@@ -41,11 +41,11 @@ impl RequestMetrics {
     /// Nothing has passed yet. What the OpenAPI document describes is shown from the beginning: a rate needs a zero to
     /// rise from.
     pub fn of(document: &Value) -> RequestMetrics {
-        let help = "Requests answered, by route, method and status; 499 where the client left before.";
+        let help = "Requests answered, by route, method and status; 499 where the client disconnected first.";
         let requests = Opts::new("stickslip_http_requests_total", help);
-        let help = "Time from the head of a request to that of its answer.";
+        let help = "Time from the head of a request to the head of its response.";
         let duration = HistogramOpts::new("stickslip_http_request_duration_seconds", help).buckets(SECONDS.to_vec());
-        let in_flight = Opts::new("stickslip_http_requests_in_flight", "Requests without an answer yet.");
+        let in_flight = Opts::new("stickslip_http_requests_in_flight", "Requests in progress.");
         let mut metrics = RequestMetrics {
             requests: IntCounterVec::new(requests, &["route", "method", "status"]).expect(OWN_NAME),
             duration: HistogramVec::new(duration, &["route", "method"]).expect(OWN_NAME),

@@ -106,7 +106,8 @@ async fn a_client_that_leaves_has_its_line_too() {
     assert!(call.await.unwrap_err().is_cancelled(), "too quick to leave");
     server.client.healthz().await.unwrap();
     let log = end(server);
-    let line = log.iter().find(|line| line["message"] == "the client left").unwrap_or_else(|| panic!("{log:?}"));
+    let line =
+        log.iter().find(|line| line["message"] == "the client disconnected").unwrap_or_else(|| panic!("{log:?}"));
     assert_eq!(
         (&line["request_id"], &line["status"], &line["route"]),
         (&"mine".into(), &499.into(), &"/simulate".into())

@@ -96,7 +96,7 @@ pub async fn log_request(
         response = next.run(request).instrument(span) => response,
         // Otherwise the service has been stopped.
         Ok(_) = stops.wait_for(|stops| *stops) => {
-            Problem::in_doubt(Code::Stopping, "the server stops before this is done").into_response()
+            Problem::in_doubt(Code::Stopping, "the server stops before this request is done").into_response()
         }
     };
     let made = response.headers().get(header::LOCATION).and_then(|location| location.to_str().ok());
@@ -194,7 +194,7 @@ impl Drop for RequestGuard<'_> {
             let time = self.start.elapsed();
             self.metrics.answered(self.endpoint, ABANDONED, time);
             self.span.record("http.response.status_code", ABANDONED);
-            line!(info, self, ABANDONED, time, "the client left");
+            line!(info, self, ABANDONED, time, "the client disconnected");
         }
     }
 }

@@ -18,10 +18,10 @@ use crate::api::request_limits::BODY_LIMIT;
     components(schemas(ProblemDocument, EndEvent, JobEndEvent)),
     tags(
         (name = "simulation", description = "A path from beginning to end, in one call"),
-        (name = "protocols", description = "How to move so that little shear stress remains"),
+        (name = "protocols", description = "Motions that leave little shear stress"),
         (name = "contacts", description = "Stored contacts with their history"),
         (name = "jobs", description = "Background sweeps"),
-        (name = "service", description = "Health, and this document")
+        (name = "service", description = "Health, and the OpenAPI document")
     )
 )]
 struct Base;
@@ -33,8 +33,8 @@ pub fn base() -> utoipa::openapi::OpenApi {
     components.schemas.extend(profile::schemas());
     let roles = Role::ALL.map(|role| format!("`{}`", role.name())).join(", ");
     let key = HttpBuilder::new().scheme(HttpAuthScheme::Bearer).description(Some(format!(
-        "A key of the server, where it has keys. Each has one role or several out of {roles}; the first includes the \
-         second. A key shows the contacts of its tenant alone."
+        "A key of the server, if it uses keys. Each key has one or more of the roles {roles}; the first includes the \
+         second. A key gives access only to the contacts of its tenant."
     )));
     components.add_security_scheme("key", SecurityScheme::Http(key.build()));
     base
@@ -42,13 +42,13 @@ pub fn base() -> utoipa::openapi::OpenApi {
 
 fn introduction() -> String {
     format!(
-        "Frictional contact of two elastic bodies, with memory: tangential displacement, force, slip and stress along \
-         any path, exactly. All quantities are in SI units. Positive displacement gives positive force and positive \
-         shear stress. Numbers that are infinite are `null`.\n\nEvery refusal is a problem document (RFC 9457, \
-         `{MEDIA_TYPE}`) with a JSON pointer to each fault. A refused call has changed nothing, but after \
-         `internal`, `stopping` and `storage_unavailable` a change may have been stored; a read never changes \
-         anything.\n\nThe work for a request ends when its client hangs up, and at the deadline of the server (422 \
-         `too_much_work`). Loading a contact is a part of it, and what has been loaded is kept for the next \
+        "Frictional contact of two elastic bodies with its slip history: tangential displacement, force, slip and \
+         stress along any path, exactly. All quantities are in SI units. Positive displacement gives positive force \
+         and positive shear stress. Numbers that are infinite are `null`.\n\nEvery refusal is a problem document (RFC \
+         9457, `{MEDIA_TYPE}`) with a JSON pointer to each fault. A refused call has changed nothing, except that \
+         after `internal`, `stopping` and `storage_unavailable` a change may have been stored; a read never changes \
+         anything.\n\nThe work for a request ends when its client disconnects, and at the deadline of the server (422 \
+         `too_much_work`). Loading a contact counts as work for the request; what has been loaded is kept for the next \
          request.\n\nLimits: a body has at most {} bytes, a path {} moves, a stress request {} radii, the memory of a \
          contact {} pieces, a page {} items; the springs of the spring foundation times moves and stress points are at \
          most {}.",

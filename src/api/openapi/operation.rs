@@ -90,7 +90,7 @@ fn refuse(path: &str, operation: &mut Operation, facts: &Facts) {
     }
     let mut security = Vec::new();
     if let Need::Key(role) = facts.need {
-        insert(operation, "401", refusal("There is no key with the request, or it is not a key of the server"));
+        insert(operation, "401", refusal("The request has no key, or one that is not a key of the server"));
         let role = role.name();
         let forbidden =
             format!("The key does not have the role `{role}`, or, without keys, the request comes from another site");
@@ -143,10 +143,10 @@ fn tell_versions(operation: &mut Operation, varies: bool) {
     let mut unchanged = Response::new("The client already has this version (If-None-Match)");
     unchanged.headers.extend(ok(operation).headers.get("ETag").map(|tag| ("ETag".to_owned(), tag.clone())));
     for reply in [&mut unchanged, ok(operation)] {
-        let cache = text("`private, no-cache`: the client may keep the reply, and asks before using it again");
+        let cache = text("`private, no-cache`: the client may cache the reply, but must ask before using it again");
         reply.headers.insert("Cache-Control".to_owned(), cache.into());
         if varies {
-            let vary = text("`accept`: another format is another reply");
+            let vary = text("`accept`: the reply depends on the format");
             reply.headers.insert("Vary".to_owned(), vary.into());
         }
     }
@@ -156,7 +156,7 @@ fn tell_versions(operation: &mut Operation, varies: bool) {
         .parameter_in(ParameterIn::Header)
         .required(Required::False)
         .schema(Some(Object::with_type(Type::String)))
-        .description(Some("The `ETag` of the version that the client has; if it is still current, the answer is 304"));
+        .description(Some("The `ETag` of the version that the client has; if it is still current, the reply is 304"));
     operation.parameters.get_or_insert_default().push(condition.build().into());
 }
 
@@ -168,7 +168,7 @@ fn event(operation: &str, data: &[&str]) -> ObjectBuilder {
     let content = content.into_iter().collect();
     ObjectBuilder::new()
         .title(Some(format!("{operation}_event")))
-        .description(Some("One event, by its lines"))
+        .description(Some("One event, as its lines"))
         .property("event", text("The kind of event"))
         .property("id", text("The sequence, with an event `state`"))
         .property("data", text(&format!("A `{}`", data.join("` or, in the last event, a `"))).extensions(Some(content)))

@@ -33,21 +33,21 @@ pub async fn create_contact(
 
 parameters! {
     pub struct ListQuery {
-        /// Those alone whose label contains this text. Upper and lower case are the same for the letters A to Z; the
-        /// empty text finds all that have a label.
+        /// Only contacts whose label contains this text. Upper and lower case are the same for the letters A to Z; the
+        /// empty text finds all contacts with a label.
         label: Option<String> = Text(LABEL);
         /// The order: `oldest` or `newest` first.
         order: ContactOrder = CONTACT_ORDER, or ContactOrder::Oldest;
         /// The `next` of the previous page, in the same order.
         after: Option<Uuid> = IDENTIFIER;
-        /// How many contacts at most.
+        /// Largest number of contacts.
         limit: usize = count(&PAGE), or DEFAULT_PAGE;
     }
 }
 
 /// List contacts
 ///
-/// A page of contacts, the oldest first or the newest.
+/// A page of contacts, with the oldest or the newest first.
 #[utoipa::path(
     get, path = "/contacts", tag = "contacts", params(ListQuery),
     responses((status = 200, description = "A page of contacts", body = SessionPage))
@@ -63,11 +63,11 @@ pub async fn list_contacts(
 
 /// Get a contact
 ///
-/// What it is and in which state: none of its moves.
+/// The contact with its present state, without its moves.
 #[utoipa::path(
     get, path = "/contacts/{id}", tag = "contacts", params(ContactPath),
     responses((status = 200, description = "The contact and its state", body = SessionReply,
-        headers(("ETag" = String, description = "Its sequence, and a checksum of its label behind a dot if it has one, \
+        headers(("ETag" = String, description = "Its sequence, and a checksum of its label after a dot if it has one, \
             in quotes"))))
 )]
 pub async fn get_contact(
@@ -88,13 +88,13 @@ fn tag(sequence: u64, label: Option<&str>) -> String {
 
 /// Rename a contact
 ///
-/// Gives the contact another label, or none. This is no move: its sequence, its history and the time of its last move
-/// stay.
+/// Gives the contact another label, or none. This is not a move: its sequence, its history and the time of its last
+/// move do not change.
 #[utoipa::path(
     patch, path = "/contacts/{id}", tag = "contacts", params(ContactPath, IfMatch, IdempotencyKey),
     request_body = RenameRequest,
     responses((status = 200, description = "The contact and its state", body = SessionReply,
-        headers(("ETag" = String, description = "Its sequence, and a checksum of its label behind a dot if it has one, \
+        headers(("ETag" = String, description = "Its sequence, and a checksum of its label after a dot if it has one, \
             in quotes"))))
 )]
 pub async fn rename_contact(
@@ -127,8 +127,8 @@ pub async fn delete_contact(
 
 /// Get the definition of a contact
 ///
-/// As it was sent: with another preload, or another path, it serves as the `contact` of a simulation. A fork has the
-/// definition of its original.
+/// The definition as it was sent: with another preload, or another path, it serves as the `contact` of a simulation. A
+/// fork has the definition of its original.
 #[utoipa::path(
     get, path = "/contacts/{id}/definition", tag = "contacts", params(ContactPath),
     responses((status = 200, description = "Profile, material, friction and preload", body = ContactDefinition))
@@ -144,8 +144,8 @@ pub async fn get_definition(
 
 /// Fork a contact
 ///
-/// Creates a new contact with the same history, or with its first `sequence` moves, which then evolves independently:
-/// so a move is undone, and the original keeps it. The body may be left out.
+/// Creates a new contact with the same history, or with its first `sequence` moves, which then evolves independently.
+/// This undoes moves, while the original keeps them. The body may be left out.
 #[utoipa::path(
     post, path = "/contacts/{id}/fork", tag = "contacts", params(ContactPath, IdempotencyKey),
     request_body(content = ForkRequest, example = json!({"label": "what if"})),

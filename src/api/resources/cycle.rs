@@ -23,12 +23,12 @@ parameters! {
         x: Option<Vec<f64>> = List(Array(QUERY_RADII, range::PLACE));
         /// The stiffness of a machine in series with the contact, N/m.
         machine_stiffness: Option<f64> = number(&range::MACHINE_STIFFNESS);
-        /// The number of harmonics.
+        /// Number of harmonics, from the first on.
         harmonics: Option<usize> = Number { is_checked: false, ..count(&limits::HARMONICS) };
         /// Number of radii for the friction work per area, evenly spaced from the centre to the edge, both included.
         points: Option<usize> = Number { is_checked: false, ..count(&limits::STRESS_POINTS) };
         /// `columns` (this document), `rows` (a JSON array of flat objects), `csv`, `ndjson`, `arrow` (an Arrow IPC
-        /// stream), or a plot as `svg` or `png`. The friction work per area is in `columns` alone. If it is left out,
+        /// stream), or a plot as `svg` or `png`. Only `columns` has the friction work per area. If it is left out,
         /// `Accept` decides.
         format: Option<Format> = formats(&Format::ALL);
     }
@@ -71,7 +71,7 @@ impl QueryParams for CheckedCycle {
 
 /// Get the steady cycles of a contact
 ///
-/// As `POST /cycle`, of the contact at its present load, whatever its history. Nothing changes.
+/// As `POST /cycle`, for the contact at its present load, whatever its history. Nothing changes.
 #[utoipa::path(
     get, path = "/contacts/{id}/cycle", tag = "contacts", params(ContactPath, CycleQuery),
     responses((status = 200, description = "The cycles, one for each amplitude", body = CycleReply,

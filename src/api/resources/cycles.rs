@@ -10,7 +10,7 @@ use stickslip_compute::simulation::bytes::OBJECT;
 
 parameters! {
     pub struct CyclesQuery {
-        /// How many of the newest cycles at most.
+        /// Largest number of the newest cycles.
         last: usize = count(&limits::CYCLES), or DEFAULT_PAGE;
         /// `columns` (this document), `rows` (a JSON array of flat objects), `csv`, `ndjson`, `arrow` (an Arrow IPC
         /// stream), or a plot as `svg` or `png`. If it is left out, `Accept` decides.
@@ -20,7 +20,7 @@ parameters! {
 
 /// Get the cycles of a contact
 ///
-/// The newest closed cycles of its displacement, oldest first.
+/// The newest closed cycles of the displacement of the contact, oldest first.
 #[utoipa::path(
     get, path = "/contacts/{id}/cycles", tag = "contacts", params(ContactPath, CyclesQuery),
     responses((status = 200, description = "The newest cycles", body = CyclePage,

@@ -13,7 +13,7 @@ use stickslip_wire::{EndEvent, StateEvent};
 parameters! {
     /// When a stream of events ends by itself.
     pub struct EventsQuery {
-        /// End the stream after so many events. Without it the stream lasts as long as the contact.
+        /// End the stream after this number of events. Without it the stream lasts as long as the contact.
         limit: Option<usize> = count(&PAGE);
     }
 }
@@ -22,8 +22,8 @@ parameters! {
 ///
 /// Server-sent events: an event `state` for each move, whose `id` is the sequence, in order and without a gap. A
 /// browser's `EventSource` resumes by itself after an interruption. The last event is `end` (its data an `EndEvent`),
-/// when the contact is deleted or expires, or the server stops. With `limit` the stream ends after so many states, for
-/// clients that read a reply whole. Comments keep an idle connection open.
+/// when the contact is deleted or expires, or the server stops. With `limit` the stream ends after that number of
+/// states, for clients that read a reply whole. Comments keep an idle connection open.
 #[utoipa::path(
     get, path = "/contacts/{id}/events", tag = "contacts", params(ContactPath, LastEventId, EventsQuery),
     responses((status = 200, description = "The events",

@@ -51,18 +51,19 @@ parameters! {
         lateral: Option<UnitHint> = LENGTH;
         /// The unit of heights; without it the one that the header names, or m.
         height: Option<UnitHint> = LENGTH;
-        /// The distance of neighbours in a matrix of heights, in the unit of places; without it that of the header.
+        /// The distance between neighbours in a matrix of heights, in the unit of places; without it that of the
+        /// header.
         spacing: Option<f64> = Number { is_checked: true, ..number(&SPACING) };
-        /// The column of places along the line, or along the one axis, by its number from 1 on or the beginning of its
-        /// name in the header; without it the one that is called so, or the first.
+        /// The column of places along the line, or along the first axis, by its number from 1 on or the beginning of
+        /// its name in the header; without it the column with such a name, or the first.
         x: Option<String> = COLUMN;
-        /// The column of places along the other axis, by its number or the beginning of its name; without it the one
-        /// that is called so, if there is one.
+        /// The column of places along the second axis, by its number or the beginning of its name; without it the
+        /// column with such a name, if the file has one.
         y: Option<String> = COLUMN;
-        /// The column of heights, by its number or the beginning of its name; without it the one that is called so, or
-        /// the last.
+        /// The column of heights, by its number or the beginning of its name; without it the column with such a name,
+        /// or the last.
         z: Option<String> = COLUMN;
-        /// The sheet of a spreadsheet, by its name or its number from 1 on; without it the first with numbers.
+        /// The sheet of a spreadsheet, by its name or its number from 1 on; without it the first sheet with numbers.
         sheet: Option<String> = COLUMN;
     }
 }
@@ -71,14 +72,14 @@ parameters! {
     /// What is known of a loop beside its file.
     pub struct LoopFileQuery {
         /// The column of displacements, by its number from 1 on or the beginning of its name in the header; without it
-        /// the one that is called so, or the first of two.
+        /// the column with such a name, or the first of two.
         displacement: Option<String> = COLUMN;
-        /// The column of forces, by its number or the beginning of its name; without it the one that is called so, or
+        /// The column of forces, by its number or the beginning of its name; without it the column with such a name, or
         /// the second of two.
         force: Option<String> = COLUMN;
-        /// The column of times; without it the one that is called so, if its times rise.
+        /// The column of times; without it the column with such a name, if its times increase.
         time: Option<String> = COLUMN;
-        /// The column of loads, whose mean is the load if they are constant; without it the one that is called so.
+        /// The column of loads, whose mean is the load if they are constant; without it the column with such a name.
         load: Option<String> = COLUMN;
         /// The unit of displacements; without it the one that the header names, or m.
         displacement_unit: Option<UnitHint> = LENGTH;
@@ -88,19 +89,19 @@ parameters! {
         time_unit: Option<UnitHint> = TIME;
         /// The unit of loads; without it the one that the header names, or N.
         load_unit: Option<UnitHint> = FORCE;
-        /// The sheet of a spreadsheet, by its name or its number from 1 on; without it the first with numbers.
+        /// The sheet of a spreadsheet, by its name or its number from 1 on; without it the first sheet with numbers.
         sheet: Option<String> = COLUMN;
     }
 }
 
 /// Read a scan from a file
 ///
-/// Takes a file of an instrument as it is, and replies with the members of the body of `POST /profiles/fit`, and with
-/// what was taken for what. Columns and units are found by the header; without one, two columns are x and z of a line,
-/// three are x, y and z, and more are a matrix, as Gwyddion exports it. Zygo's text format, ISO 25178-71 and grids are
-/// known by their first line. A unit that is named and not known is refused with the code `unknown_unit`, its line and
-/// its column. A file with more heights than a scan may have is thinned.
-/// The body may also be sent as `text/csv` or `text/plain`.
+/// Takes a file of an instrument as it is, and replies with members of the body of `POST /profiles/fit`, and with how
+/// columns and units were interpreted. Columns and units are found by the header; without one, two columns are x and z
+/// of a line, three are x, y and z, and more are a matrix, as Gwyddion exports it. Zygo's text format, ISO 25178-71 and
+/// grids are known by their first line. An unknown unit is refused with the code `unknown_unit`, its line and its
+/// column. A file with more heights than a scan may have is thinned. The body may also be sent as `text/csv` or
+/// `text/plain`.
 #[utoipa::path(
     post, path = "/files/scan", tag = "simulation", params(ScanFileQuery),
     request_body(content = String, content_type = "application/octet-stream",
@@ -119,9 +120,9 @@ pub async fn read_scan_file(
 
 /// Read a measured loop from a file
 ///
-/// Takes a file of a bench as it is, with a row for each point, and replies with one of the `loops` of the body of
-/// `POST /fit`, its `units`, and what was taken for what. Columns and units are found by the header. A unit that is
-/// named and not known is refused with the code `unknown_unit`, its line and its column. The body may also be sent as
+/// Takes a file of a bench as it is, with a row for each point, and replies with an item of `loops` and the `units` of
+/// the body of `POST /fit`, and with how columns and units were interpreted. Columns and units are found by the header.
+/// An unknown unit is refused with the code `unknown_unit`, its line and its column. The body may also be sent as
 /// `text/csv` or `text/plain`.
 #[utoipa::path(
     post, path = "/files/loop", tag = "simulation", params(LoopFileQuery),

@@ -14,8 +14,7 @@ use stickslip_compute::formats::{Cells, Column, Table};
 parameters! {
     /// What a history has of each move.
     pub struct HistoryQuery {
-        /// Whether to add the cycle that a move closed to it. This needs the moves before the page too, once: without
-        /// it nothing but the page is read.
+        /// Whether to add to each move the cycle that it closed. This also reads the moves before the page, once.
         cycles: bool = FLAG, or true;
         /// `columns` (this document), `rows` (a JSON array of flat objects), `csv`, `ndjson`, `arrow` (an Arrow IPC
         /// stream), or a plot as `svg` or `png`. If it is left out, `Accept` decides.

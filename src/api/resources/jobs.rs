@@ -21,7 +21,7 @@ parameters! {
 
 parameters! {
     pub struct JobsQuery {
-        /// Only those in this state.
+        /// Only jobs in this state.
         state: Option<JobState> = JOB_STATE;
     }
 }
@@ -42,10 +42,10 @@ pub async fn list_jobs(
 
 /// Get a job
 ///
-/// Its state, its progress, and the path of its result once it is done.
+/// The state and the progress of the job, and the path of its result once it is done.
 #[utoipa::path(
     get, path = "/jobs/{id}", tag = "jobs", params(JobPath),
-    responses((status = 200, description = "Its state and progress", body = JobReply))
+    responses((status = 200, description = "The state and the progress of the job", body = JobReply))
 )]
 pub async fn get_job(
     TenantApp(app): TenantApp,

@@ -18,10 +18,10 @@ use crate::store::StoreError;
 
 /// Check that the process is alive
 ///
-/// It says nothing of the store: restart a process that does not answer.
+/// The reply does not depend on the store. Restart a process that does not reply.
 #[utoipa::path(
     get, path = "/healthz", tag = "service",
-    responses((status = 200, description = "It is alive", body = serde_json::Value, example = json!({"status": "ok"})))
+    responses((status = 200, description = "Alive", body = serde_json::Value, example = json!({"status": "ok"})))
 )]
 pub async fn check_health() -> Result<Response, Problem> {
     Ok(reply::json(reply::written(&json!({"status": "ok"}))?))
@@ -29,12 +29,11 @@ pub async fn check_health() -> Result<Response, Problem> {
 
 /// Check that the service is ready
 ///
-/// The store can be read and accepts changes. If not, the answer is 503, or 507 where the storage is full: send
+/// Checks that the store can be read and accepts changes. If not, the reply is 503, or 507 if the storage is full: send
 /// requests elsewhere.
 #[utoipa::path(
     get, path = "/readyz", tag = "service",
-    responses((status = 200, description = "It is \
-        ready", body = serde_json::Value, example = json!({"status": "ready"})))
+    responses((status = 200, description = "Ready", body = serde_json::Value, example = json!({"status": "ready"})))
 )]
 pub async fn check_readiness(State(app): State<Arc<App>>) -> Result<Response, Problem> {
     match app.sessions.ready().await {
@@ -50,7 +49,7 @@ pub struct OpenApiText(pub &'static str);
 
 /// Get this document
 ///
-/// What `/docs` shows, and what clients are generated from.
+/// The document that `/docs` shows and that clients are generated from.
 #[utoipa::path(
     get, path = "/openapi.json", tag = "service",
     responses((status = 200, description = "The specification (OpenAPI 3.1)", body = serde_json::Value))
@@ -65,7 +64,7 @@ pub async fn get_openapi(Extension(OpenApiText(text)): Extension<OpenApiText>) -
 #[utoipa::path(
     get, path = "/problems/{code}", tag = "service",
     params(("code" = String, Path, description = "The code of the problem", example = "invalid_input")),
-    responses((status = 200, description = "Its title and status", body = serde_json::Value,
+    responses((status = 200, description = "The title and the status of the problem", body = serde_json::Value,
         example = json!({"code": "invalid_input", "title": "The request is invalid", "status": 422})))
 )]
 pub async fn get_problem(Path(code): Path<String>, uri: Uri) -> Result<Response, Problem> {
@@ -77,7 +76,7 @@ pub async fn get_problem(Path(code): Path<String>, uri: Uri) -> Result<Response,
 
 pub async fn not_found(uri: Uri) -> Problem {
     let path: String = uri.path().chars().take(100).collect();
-    Problem::new(Code::NotFound, format!("there is nothing at {path}; /docs shows what there is"))
+    Problem::new(Code::NotFound, format!("the path {path} was not found; /docs lists the paths"))
 }
 
 /// The answer to a request that is refused before routing.

@@ -46,7 +46,7 @@ fn page(app: &App, traffic: &RequestMetrics) -> prometheus::Result<String> {
     }
     sessions(&page, &readings)?;
     let threads = app.pool.capacity().threads.max(1);
-    gauge(&page, Opts::new("stickslip_solver_threads", "Threads for long work."), threads as f64)?;
+    gauge(&page, Opts::new("stickslip_solver_threads", "Threads of the solver."), threads as f64)?;
     show!(page, app.pool.quotas().refused);
     if let Some(commits) = readings.commits {
         show!(page, commits.time, commits.size, commits.failed, commits.pending);
@@ -64,18 +64,18 @@ fn gauge(page: &Registry, options: Opts, value: f64) -> prometheus::Result<()> {
 
 fn sessions(page: &Registry, readings: &Readings<'_>) -> prometheus::Result<()> {
     let misses =
-        IntCounter::new("stickslip_cache_misses_total", "Times that it was not, and was brought from the store.")?;
+        IntCounter::new("stickslip_cache_misses_total", "Requests for a contact that was loaded from the store.")?;
     misses.inc_by(readings.counted.open.get_sample_count());
     show!(page, misses);
     for (name, help, value) in [
-        ("stickslip_cache_contacts", "Contacts in memory that nobody works on.", readings.cached),
-        ("stickslip_cache_bytes", "Bytes of their states, and of profiles that are ready.", readings.bytes),
+        ("stickslip_cache_contacts", "Contacts in memory that no request uses.", readings.cached),
+        ("stickslip_cache_bytes", "Bytes of the states of these contacts, and of prepared profiles.", readings.bytes),
         (
             "stickslip_cache_capacity_bytes",
             "Bytes that the states may take, as set by --cache-bytes.",
             readings.capacity,
         ),
-        ("stickslip_event_streams", "Clients that listen to events.", readings.streams),
+        ("stickslip_event_streams", "Clients that follow events.", readings.streams),
     ] {
         gauge(page, Opts::new(name, help), value as f64)?;
     }
@@ -83,7 +83,7 @@ fn sessions(page: &Registry, readings: &Readings<'_>) -> prometheus::Result<()> 
 }
 
 fn this_program(page: &Registry) -> prometheus::Result<()> {
-    let build = Opts::new("stickslip_build_info", "1, with what this program was built from.")
+    let build = Opts::new("stickslip_build_info", "Always 1; the labels give the version and the build.")
         .const_label("version", env!("CARGO_PKG_VERSION"))
         .const_label("engine", ENGINE.to_string())
         .const_label("rustc", env!("BUILD_COMPILER"))

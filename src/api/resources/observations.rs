@@ -7,8 +7,8 @@ use super::prelude::*;
 
 /// Follow a bench
 ///
-/// Moves the contact to each measured displacement, and keeps the measured force beside the force that it predicts: all
-/// of the observations or none.
+/// Moves the contact to each measured displacement, and stores the measured force with the force that the contact
+/// predicts: all of the observations or none.
 #[utoipa::path(
     post, path = "/contacts/{id}/observations", tag = "contacts", params(ContactPath, IfMatch, IdempotencyKey),
     request_body(content = ObservationsRequest, examples(
@@ -19,7 +19,7 @@ use super::prelude::*;
         ("with its time" = (summary = "With the instant of the measurement",
             value = json!({"observations": [{"displacement": 1e-7, "force": 1.21, "at": "2026-03-01T12:00:00.25Z"}]})))
     )),
-    responses((status = 200, description = "The observations beside what the contact \
+    responses((status = 200, description = "The observations with the forces that the contact \
         predicts", body = ObservationsReply,
         headers(("ETag" = String, description = "The new sequence in quotes"))))
 )]
@@ -34,10 +34,10 @@ pub async fn follow_bench(
 
 /// Get the measured friction of a contact
 ///
-/// The coefficient of friction by the last measured cycle of the contact, from its stored observations.
+/// The coefficient of friction from the last measured cycle of the contact, from its stored observations.
 #[utoipa::path(
     get, path = "/contacts/{id}/friction", tag = "contacts", params(ContactPath),
-    responses((status = 200, description = "The estimate, if there is one", body = FrictionReply,
+    responses((status = 200, description = "The estimate, if the observations determine one", body = FrictionReply,
         headers(("ETag" = String, description = "The sequence in quotes"))))
 )]
 pub async fn get_friction(

@@ -19,10 +19,10 @@ parameters! {
 
 /// Get the residual stress of a contact
 ///
-/// The extrema of the shear stress in its present state, with their positions to round-off.
+/// The extrema of the shear stress in the present state of the contact, with their positions to round-off.
 #[utoipa::path(
     get, path = "/contacts/{id}/residual", tag = "contacts", params(ContactPath, ResidualQuery),
-    responses((status = 200, description = "The extrema of the shear stress in its present state", body = Residual,
+    responses((status = 200, description = "The extrema of the shear stress in the present state", body = Residual,
         headers(("ETag" = String, description = "The sequence that they belong to, in quotes"))))
 )]
 pub async fn get_residual(

@@ -63,10 +63,11 @@ impl QueryParams for CheckedStress {
 
 /// Get the stresses of a contact
 ///
-/// Pressure, shear stress, slip and displacement over the radius, as they are now, and the residual stress on request.
+/// Pressure, shear stress, slip and displacement over the radius in the present state, and the residual stress on
+/// request.
 #[utoipa::path(
     get, path = "/contacts/{id}/stress", tag = "contacts", params(ContactPath, StressQuery),
-    responses((status = 200, description = "The stresses in its present state", body = StressReply,
+    responses((status = 200, description = "The stresses in the present state", body = StressReply,
         headers(("ETag" = String, description = "The sequence that they belong to, in quotes"))))
 )]
 pub async fn get_stress(
@@ -78,7 +79,7 @@ pub async fn get_stress(
     let CheckedStress { sampling, residual, format } = query;
     if residual && Format::chosen(format, &headers, &Format::ALL)? != Format::Columns {
         let detail =
-            "the extrema are not a column: ask for them with the format `columns`, or at /contacts/{id}/residual";
+            "a table does not have the extrema: ask for them with the format `columns`, or at /contacts/{id}/residual";
         return Err(Problem::at(Code::InvalidInput, "/residual", detail));
     }
     computations::get_of_contact(&app, id, &headers, format, StressTask { sampling, residual }).await

@@ -15,7 +15,7 @@ parameters! {
 
 /// Compute the stress below the surface
 ///
-/// The stress tensor and its invariants in one of the two bodies, in the present state of the contact, after whatever
+/// The stress tensor and its invariants in one of the two bodies, in the present state of the contact, whatever its
 /// history. Nothing changes.
 #[utoipa::path(
     post, path = "/contacts/{id}/subsurface", tag = "contacts", params(ContactPath, SubsurfaceFormat),
@@ -28,7 +28,7 @@ parameters! {
             "body": "first", "points": [[0.0, 0.0, 5e-5], [1e-4, 0.0, 0.0]], "bulk": {"xx": 1e8}
         })))
     )),
-    responses((status = 200, description = "The stresses in its present state", body = SubsurfaceReply,
+    responses((status = 200, description = "The stresses in the present state", body = SubsurfaceReply,
         headers(("ETag" = String, description = "The sequence that they belong to, in quotes"))))
 )]
 pub async fn compute_subsurface_stress(

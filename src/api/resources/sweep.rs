@@ -19,7 +19,7 @@ const KEPT_NUMBERS: usize = 65_536;
 /// Run a sweep
 ///
 /// Runs `POST /simulate` for each combination of the values of up to three axes, and returns a table of the outputs. A
-/// point without an answer is a row of `null` and is listed among the failures. A small sweep is answered at once. A
+/// point without a result is a row of `null` and is listed among the failures. A small sweep is answered at once. A
 /// large one becomes a job: 202 with the URL of the job in `Location` or, with `Accept: text/event-stream`, its events.
 /// A retry with the same `Idempotency-Key` gets the numbers of the first attempt, or its job. With a key, a table of
 /// more than 65536 numbers is the result of a job.

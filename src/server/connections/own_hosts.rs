@@ -35,7 +35,7 @@ impl OwnHosts {
         // Without a host the request has the version before that of all browsers.
         if headers.contains_key(header::HOST) && !host.as_ref().is_some_and(|host| self.is_own(host)) {
             return Some(
-                "the service has no keys, and is not called by the host of this request: --allowed-hosts adds it",
+                "the service has no keys, and the host of this request is not one of its own: --allowed-hosts adds it",
             );
         }
         if matches!(*request.method(), Method::GET | Method::HEAD | Method::OPTIONS) {
