@@ -127,7 +127,7 @@ fn client(endpoint: &str) -> Result<Http, String> {
     if endpoint.starts_with("https:") {
         let (added, _) = roots.add_parsable_certificates(rustls_native_certs::load_native_certs().certs);
         if added == 0 {
-            return Err("no certificate authority found to verify the collector with".to_owned());
+            return Err("no certificate authority was found to verify the collector".to_owned());
         }
     }
     let tls = ClientConfig::builder_with_provider(Arc::new(ring::default_provider()));
@@ -158,7 +158,7 @@ impl HttpClient for Collector {
             Err(error) => Some(error.to_string()),
         };
         match (self.reached.swap(problem.is_none(), Relaxed), problem) {
-            (true, Some(error)) => tracing::warn!(error, "traces cannot be sent, and are lost until they can"),
+            (true, Some(error)) => tracing::warn!(error, "traces cannot be sent, and are dropped for now"),
             (false, None) => tracing::info!("traces are sent again"),
             _ => {}
         }

@@ -16,7 +16,7 @@ pub struct Check {
     /// The store, `sqlite:PATH` or `postgres://…`; the service may be running.
     #[arg(long, env = "STICKSLIP_STORE", default_value = "sqlite:stickslip.db")]
     store: String,
-    /// How far recorded states may differ from replayed ones, relatively; zero requires equality to the last bit. Moves
+    /// Largest relative difference of recorded states from replayed ones; zero requires equality to the last bit. Moves
     /// made by another version of the solver may differ by 1e-12.
     #[arg(long, env = "STICKSLIP_CHECK_TOLERANCE", default_value_t = 0.0)]
     tolerance: f64,
@@ -42,6 +42,6 @@ impl Check {
             checked.map_err(|error| error.to_string())
         })?;
         print(checked)?;
-        if checked.findings == 0 { Ok(()) } else { Err("the store is not sound".to_owned()) }
+        if checked.findings == 0 { Ok(()) } else { Err("the store has faults".to_owned()) }
     }
 }

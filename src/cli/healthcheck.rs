@@ -23,7 +23,7 @@ pub struct Healthcheck {
     /// File with the certificate of a service with TLS. It is not verified: the service is on this machine.
     #[arg(long, env = "STICKSLIP_TLS_CERT")]
     tls_cert: Option<PathBuf>,
-    /// Its private key, which is not read.
+    /// Private key of the certificate; it is not read.
     #[arg(long, env = "STICKSLIP_TLS_KEY")]
     tls_key: Option<PathBuf>,
 }

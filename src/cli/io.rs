@@ -65,5 +65,5 @@ pub fn fault(refusal: impl Into<Refusal>, as_json: bool) -> String {
 }
 
 pub fn parsed(text: &[u8]) -> Result<Value, String> {
-    serde_json::from_slice(text).map_err(|error| format!("not JSON: {error}"))
+    serde_json::from_slice(text).map_err(|error| format!("not valid JSON: {error}"))
 }

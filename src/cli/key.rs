@@ -18,7 +18,7 @@ const ENTRY: &str = ":sha256:";
 /// Commands about keys.
 #[derive(Subcommand)]
 pub enum Key {
-    /// Make a key: print it, which happens only once, and its entry for --keys of the service.
+    /// Make a key, and print it with its entry for --keys of the service. The key is shown only this once.
     New {
         /// Name of the owner or the purpose.
         #[arg(long)]
@@ -29,10 +29,10 @@ pub enum Key {
         /// Tenant whose contacts it can access [default: the tenant without a name].
         #[arg(long, default_value = "")]
         tenant: String,
-        /// When the key ends, such as 2027-01-31T12:00:00Z [default: never].
+        /// When the key expires, such as 2027-01-31T12:00:00Z [default: never].
         #[arg(long)]
         expires_at: Option<Timestamp>,
-        /// What the key is for, as a note behind its entry.
+        /// A note after the entry: what the key is for.
         #[arg(long, value_parser = note)]
         note: Option<String>,
     },
@@ -49,7 +49,7 @@ fn roles(text: &str) -> Result<Roles, String> {
 /// A note must not look like another entry, in a file or in a variable.
 fn note(text: &str) -> Result<String, String> {
     let sound = !text.contains(|letter: char| letter.is_control() || letter == ',');
-    if sound { Ok(text.to_owned()) } else { Err("a note is one line without commas".to_owned()) }
+    if sound { Ok(text.to_owned()) } else { Err("a note must be one line without commas".to_owned()) }
 }
 
 pub fn key(key: Key) -> Result<(), String> {
@@ -77,7 +77,7 @@ pub fn make_first_key(file: &Path) -> Result<(), String> {
         // Half an entry would end the next start.
         written.inspect_err(|_| drop(fs::remove_file(file)))
     };
-    write().map_err(|error| format!("--first-key {name}: cannot make the file: {error}"))?;
+    write().map_err(|error| format!("--first-key {name}: cannot create the file: {error}"))?;
     print(format_args!("key {}\nis the first key, shown this once; its entry is in {name}", new.key))
 }
 
@@ -104,7 +104,7 @@ pub fn read_keys(setting: &[String]) -> Result<Option<Keys>, String> {
         }
     }
     if keys.count() == 0 {
-        return Err("--keys: no key is given".to_owned());
+        return Err("--keys: no key was found".to_owned());
     }
     Ok(Some(keys))
 }

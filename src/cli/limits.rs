@@ -20,38 +20,39 @@ const LONGEST_TIME: Duration = Duration::from_secs(24 * 60 * 60);
 /// Limits against overload; see docs/overload.md.
 #[derive(Args)]
 pub struct Limits {
-    /// Most connections at a time.
+    /// Maximum number of connections at a time.
     #[arg(long, env = "STICKSLIP_MAX_CONNECTIONS", default_value_t = DEFAULT_CONNECTIONS, value_parser = at_least_one)]
     max_connections: usize,
-    /// Most connections of one client address [default: half of all]; does not hold for --trusted-proxies.
+    /// Maximum number of connections of one client address [default: half of all]; not applied to --trusted-proxies.
     #[arg(long, env = "STICKSLIP_MAX_CONNECTIONS_PER_CLIENT", value_parser = at_least_one)]
     max_connections_per_client: Option<usize>,
-    /// Proxies whose X-Forwarded-For is believed, as addresses or networks such as 10.0.0.0/8, separated by commas.
+    /// Proxies whose X-Forwarded-For is trusted, as addresses or networks such as 10.0.0.0/8, separated by commas.
     #[arg(long, env = "STICKSLIP_TRUSTED_PROXIES", value_delimiter = ',', value_parser = network)]
     pub trusted_proxies: Vec<IpNet>,
-    /// Most requests processed at a time; more wait.
+    /// Maximum number of requests processed at a time; more wait.
     #[arg(long, env = "STICKSLIP_MAX_REQUESTS", default_value_t = admission::REQUESTS, value_parser = at_least_one)]
     max_requests: usize,
-    /// Most requests that wait; more are refused.
+    /// Maximum number of requests that wait; more are refused.
     #[arg(long, env = "STICKSLIP_MAX_QUEUE", default_value_t = admission::QUEUE, value_parser = at_least_one)]
     max_queue: usize,
-    /// Most requests of one client processed or waiting at a time [default: half of --max-requests]. A client is a
-    /// tenant where there are keys, else an address. Behind a proxy without keys all clients have one address.
+    /// Maximum number of requests of one client processed or waiting at a time [default: half of --max-requests]. A
+    /// client is a tenant if the service has keys, otherwise an address. Behind a proxy without keys all clients have
+    /// one address.
     #[arg(long, env = "STICKSLIP_MAX_REQUESTS_PER_CLIENT", value_parser = at_least_one)]
     max_requests_per_client: Option<usize>,
-    /// Most streams of events that one client follows.
+    /// Maximum number of streams of events that one client follows.
     #[arg(long, env = "STICKSLIP_MAX_STREAMS_PER_CLIENT", default_value_t = admission::STREAMS_PER_CLIENT,
         value_parser = at_least_one)]
     max_streams_per_client: usize,
-    /// Most contacts of one tenant.
+    /// Maximum number of contacts of one tenant.
     #[arg(long, env = "STICKSLIP_MAX_CONTACTS_PER_TENANT", default_value_t = admission::CONTACTS_PER_TENANT,
         value_parser = at_least_one)]
     max_contacts_per_tenant: usize,
-    /// Most bytes that the contacts of one tenant take in the store, with their moves and the replies kept for retries.
+    /// Maximum bytes of the contacts of one tenant in the store, with their moves and the replies kept for retries.
     #[arg(long, env = "STICKSLIP_MAX_STORE_BYTES_PER_TENANT",
         default_value_t = ByteSize::b(admission::STORE_BYTES_PER_TENANT as u64))]
     max_store_bytes_per_tenant: ByteSize,
-    /// Most bytes of memory for bodies that are arriving from one client [default: a quarter of --work-bytes].
+    /// Maximum bytes of memory for bodies that are arriving from one client [default: a quarter of --work-bytes].
     #[arg(long, env = "STICKSLIP_MAX_BODY_BYTES_PER_CLIENT", value_parser = body_bytes)]
     max_body_bytes_per_client: Option<ByteSize>,
     /// How long a request waits before it is refused.
@@ -77,10 +78,10 @@ pub struct Limits {
     /// How long a connection may be idle between requests.
     #[arg(long, env = "STICKSLIP_IDLE_TIME", default_value = "60s", value_parser = duration)]
     idle_time: Duration,
-    /// How long a client may take nothing of a reply or of events.
+    /// How long a client may read nothing of a reply or of events.
     #[arg(long, env = "STICKSLIP_STALL_TIME", default_value = "30s", value_parser = duration)]
     stall_time: Duration,
-    /// How long requests may take to be done once the server stops; what is left then is refused.
+    /// How long requests may take to finish once the server stops; the rest are refused then.
     #[arg(long, env = "STICKSLIP_DRAIN_TIME", default_value = "8s", value_parser = duration)]
     drain_time: Duration,
 }

@@ -33,7 +33,7 @@ use serve::Serve;
 use settings::{Settings, SettingsError};
 use sweep::Sweep;
 
-/// Simulate the frictional contact of two elastic bodies exactly: as a service, or from the command line.
+/// Simulate the frictional contact of two elastic bodies exactly, as a service or from the command line.
 #[derive(Parser)]
 #[command(version = env!("BUILD_VERSION"), about, args_conflicts_with_subcommands = true)]
 struct Cli {
@@ -45,7 +45,7 @@ struct Cli {
 
 #[derive(Subcommand)]
 enum Command {
-    /// Serve HTTP; the same as no command at all where there is a store or one is named.
+    /// Serve HTTP; the default command if the store exists or is named.
     Serve(Serve),
     /// Print the settings of `serve` with the source of each; secrets are masked.
     Config(Serve),
@@ -61,11 +61,11 @@ enum Command {
     /// Make API keys.
     #[command(subcommand)]
     Key(Key),
-    /// Copy the store to a file, while the service runs or not.
+    /// Copy the store to a file; the service may be running.
     Backup(Backup),
     /// Verify a store: replay the moves of every contact, and compare the states. Nothing is written.
     Check(Check),
-    /// Print the script with which a shell completes commands and flags.
+    /// Print a script for a shell that completes commands and flags.
     Completions(Completions),
     /// Write the manual pages of all commands.
     Man(Man),

@@ -57,20 +57,21 @@ const DEFAULT_STORE: &str = "sqlite:stickslip.db";
 pub struct Serve {
     #[command(flatten)]
     _file: ConfigFile,
-    /// Address and port to listen on; port 0 takes a free one.
+    /// Address and port to listen on; port 0 takes any free port.
     #[arg(long, env = "STICKSLIP_LISTEN", default_value = "127.0.0.1:8080")]
     listen: SocketAddr,
     /// API keys: entries as `stickslip key new` prints them, or files with such entries, separated by commas.
     #[arg(long, env = "STICKSLIP_KEYS", value_delimiter = ',')]
     keys: Vec<String>,
-    /// File of keys for a service that has no --keys and is not --insecure; if there is none, it is made, with one key
-    /// of the roles write and metrics, which is printed this once.
+    /// File of keys for a service without --keys and without --insecure. If it does not exist, it is created with one
+    /// key of the roles write and metrics, which is printed only this once.
     #[arg(long, env = "STICKSLIP_FIRST_KEY", value_name = "FILE")]
     first_key: Option<PathBuf>,
-    /// File with the certificate of the service and those of its authorities (PEM): TLS, with --tls-key.
+    /// File with the certificate of the service and the certificates of its authorities (PEM), for TLS; needs
+    /// --tls-key.
     #[arg(long, env = "STICKSLIP_TLS_CERT")]
     tls_cert: Option<PathBuf>,
-    /// File with the private key of the certificate (PEM).
+    /// File with the private key of --tls-cert (PEM).
     #[arg(long, env = "STICKSLIP_TLS_KEY")]
     tls_key: Option<PathBuf>,
     /// Allow a service without keys on an address that others can reach: true or false.
@@ -94,13 +95,13 @@ pub struct Serve {
     /// Delete contacts that have not moved for this time, such as 30d or 12h [default: never].
     #[arg(long, env = "STICKSLIP_EXPIRE_AFTER", value_parser = time)]
     expire_after: Option<Duration>,
-    /// How long a process may be silent before others on the same database take over its chunks of jobs.
+    /// How long a process may be silent before other processes on the same database take over its chunks of jobs.
     #[arg(long, env = "STICKSLIP_JOB_LEASE", default_value = humantime::format_duration(jobs::LEASE).to_string(),
         value_parser = time)]
     job_lease: Duration,
     #[command(flatten)]
     limits: Limits,
-    /// What to log, as a filter with levels from `error` to `trace`: `info`, `warn`, `stickslip=debug`.
+    /// Filter of the log, with levels from `error` to `trace`, such as `info`, `warn` or `stickslip=debug`.
     #[arg(long, env = "STICKSLIP_LOG", default_value = "info", value_parser = filter)]
     log: Targets,
     /// Format of the log.
@@ -228,16 +229,16 @@ fn access(options: &Serve) -> Result<(Access, Option<KeysInForce>), String> {
         if !options.insecure {
             return Err(format!(
                 "refusing to listen on {listen} without keys: give --keys, or --first-key to have one made, or a \
-                 loopback address such as 127.0.0.1:{}, or --insecure to let in everybody who can reach it",
+                 loopback address such as 127.0.0.1:{}, or --insecure to admit everybody who can reach the address",
                 listen.port()
             ));
         }
-        tracing::warn!(%listen, "there are no keys: everybody who can reach this address may do everything");
+        tracing::warn!(%listen, "no keys are set: everybody who can reach this address has full access");
     }
     if let Some(keys) = &keys {
-        tracing::info!(keys = keys.count(), "a key is needed");
+        tracing::info!(keys = keys.count(), "access requires a key");
         if !listen.ip().to_canonical().is_loopback() && options.tls_cert.is_none() {
-            tracing::warn!(%listen, "keys are sent unencrypted: give --tls-cert and --tls-key, or let no one but a \
+            tracing::warn!(%listen, "keys are sent unencrypted: give --tls-cert and --tls-key, or let only a \
                 proxy reach this address");
         }
     }
@@ -254,7 +255,7 @@ fn tls(options: &Serve) -> Result<Option<Tls>, String> {
     let tls = match (options.tls_cert.clone(), options.tls_key.clone()) {
         (None, None) => return Ok(None),
         (Some(certificate), Some(key)) => Tls::open(TlsFiles { certificate, key }),
-        _ => Err("one of them is given without the other".to_owned()),
+        _ => Err("one is given without the other: give both or neither".to_owned()),
     };
     tls.map(Some).map_err(|error| format!("--tls-cert, --tls-key: {error}"))
 }
@@ -278,7 +279,7 @@ fn reload(options: &Serve, keys: Option<KeysInForce>, tls: Option<Tls>) -> (Vec<
         if let Some(tls) = &tls {
             match tls.reload() {
                 Ok(()) => tracing::info!("certificate read again"),
-                Err(error) => tracing::error!(error, "the certificate is still the one before"),
+                Err(error) => tracing::error!(error, "certificate unchanged"),
             }
         }
     };
@@ -304,8 +305,8 @@ fn filter(text: &str) -> Result<Targets, String> {
 fn cannot_listen(address: SocketAddr, error: &io::Error) -> String {
     match error.kind() {
         io::ErrorKind::AddrInUse => format!(
-            "cannot listen on {address}: another program does already. End it, or choose another address, such as \
-             --listen {}:0 for any port that is free",
+            "cannot listen on {address}: another program already does. Stop it, or choose another address, such as \
+             --listen {}:0 for any free port",
             if address.is_ipv6() { format!("[{}]", address.ip()) } else { address.ip().to_string() }
         ),
         _ => format!("cannot listen on {address}: {error}"),

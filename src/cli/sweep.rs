@@ -18,12 +18,12 @@ use stickslip_compute::simulation::{Sweep as Plan, SweepResult};
 /// The sweep, and how to run it.
 #[derive(Args)]
 pub struct Sweep {
-    /// The file, or - for standard input.
+    /// File with the body of POST /sweep, or - for standard input.
     file: PathBuf,
     /// Format of the table.
     #[arg(long, value_parser = PossibleValuesParser::new(Format::TABLES.map(Format::name)), default_value = "csv")]
     format: String,
-    /// Print the JSON document in place of the table, and faults as JSON.
+    /// Print the JSON document instead of the table, and faults as JSON.
     #[arg(long, conflicts_with = "format")]
     json: bool,
     /// Number of threads [default: the number of cores].

@@ -12,7 +12,7 @@ use stickslip_compute::simulation::Failure;
 #[derive(Debug, thiserror::Error)]
 pub enum JobError {
     /// The job was not found, or has been deleted.
-    #[error("there is no job {0}")]
+    #[error("the job {0} was not found")]
     NotFound(Uuid),
     /// It has not ended.
     #[error("{done} of {points} points are done")]
@@ -47,7 +47,7 @@ pub enum JobError {
     #[error("{} clients follow jobs, which is the limit", super::STREAMS)]
     TooManyStreams,
     /// The tenant has as many jobs as it may have.
-    #[error("{why}: GET /jobs lists them, delete some or wait until they are gone")]
+    #[error("{why}: GET /jobs lists them; delete some, or wait until they end")]
     TooMany {
         /// Which limit is reached.
         why: String,

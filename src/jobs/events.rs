@@ -65,7 +65,7 @@ impl Follower {
                 Ok(_) => self.has_failed = false,
                 Err(JobError::Store(error)) if error.is_transient() => {
                     if !self.has_failed {
-                        tracing::warn!(job = %self.id, %error, "events wait for what cannot be read for now");
+                        tracing::warn!(job = %self.id, %error, "events are delayed: the store cannot be read");
                     }
                     self.has_failed = true;
                 }

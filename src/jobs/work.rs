@@ -90,7 +90,7 @@ impl Jobs {
             }
         };
         if let Err(error) = done {
-            tracing::warn!(job = %claim.job, %error, "a chunk stays claimed until its lease is over");
+            tracing::warn!(job = %claim.job, %error, "a chunk stays claimed until its lease expires");
         }
         tokio::time::sleep(PAUSE).await;
     }

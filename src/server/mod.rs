@@ -57,7 +57,7 @@ pub async fn serve(
             Ok((stream, address)) => accept(&limiter, stream, address, tls.as_ref(), &service, &closing),
             Err(error) if is_client_fault(&error) => {}
             Err(error) => {
-                tracing::warn!(%error, "no connection can be accepted; another attempt follows");
+                tracing::warn!(%error, "no connection can be accepted; the server tries again");
                 sleep(ACCEPT_RETRY_DELAY).await;
             }
         }
@@ -77,7 +77,7 @@ pub async fn serve(
     // Fails if there is no connection.
     let _ = closing.send(());
     if timeout(drain, closing.closed()).await.is_err() {
-        tracing::warn!("requests that are not done are refused: the server stops");
+        tracing::warn!("the server stops: requests that have not finished are refused");
         service.stopping.send_replace(true);
     }
     if timeout(GRACE, closing.closed()).await.is_err() {
@@ -119,8 +119,8 @@ fn accept(
             };
             match accepted {
                 Ok(Ok(stream)) => serve_connection(stream, peer, permit, limits, service, closing).await,
-                Ok(Err(error)) => tracing::debug!(%error, "a client did not speak TLS as the server does"),
-                Err(_) => tracing::debug!("a client has taken too long to begin TLS"),
+                Ok(Err(error)) => tracing::debug!(%error, "a TLS handshake has failed"),
+                Err(_) => tracing::debug!("a client has taken too long for the TLS handshake"),
             }
         }),
     };

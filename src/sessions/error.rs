@@ -14,13 +14,13 @@ use stickslip_wire::Rejection;
 #[derive(Debug, thiserror::Error)]
 pub enum SessionError {
     /// The session was not found.
-    #[error("there is no contact {0}")]
+    #[error("the contact {0} was not found")]
     NotFound(Uuid),
     /// There was such a session, and it has expired.
     #[error("the contact {0} has expired")]
     Expired(Uuid),
     /// The definition differs from the one that the client gave.
-    #[error("the contact {0} has another definition: leave `contact` out, or give it as it was made")]
+    #[error("the contact {0} has another definition: leave `contact` out, or give the original one")]
     OtherDefinition(Uuid),
     /// The sequence is not the one that the client expects.
     #[error("the contact is at sequence {found}, not at {expected}")]
@@ -49,7 +49,7 @@ pub enum SessionError {
         found: u64,
     },
     /// Events are asked for from a move on that has not been made.
-    #[error("the contact is at sequence {found}: there is no event {after} yet")]
+    #[error("the contact is at sequence {found}: event {after} does not exist yet")]
     Ahead {
         /// The last event that the client has received.
         after: u64,
@@ -57,7 +57,7 @@ pub enum SessionError {
         found: u64,
     },
     /// The limit of clients that listen to events is reached.
-    #[error("{} clients listen to events, which is the limit", crate::admission::STREAMS)]
+    #[error("{} clients follow events, which is the limit", crate::admission::STREAMS)]
     TooManyStreams,
     /// The mechanics has no answer, or the client no longer waits for it.
     #[error(transparent)]
@@ -66,7 +66,7 @@ pub enum SessionError {
     /// replayed is kept.
     #[error(
         "the contact is being loaded, which takes longer than the {} s that are allowed: {replayed} of its moves have \
-         been replayed, and the next request goes on from there; send this one again", allowed.as_secs_f64()
+         been replayed, and the next request continues from there; send this request again", allowed.as_secs_f64()
     )]
     Loading {
         /// Moves that have been replayed.

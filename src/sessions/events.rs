@@ -126,18 +126,18 @@ impl Follower {
                 Err(SessionError::NotFound(_)) => break StreamEvent::End(EndReason::Deleted),
                 Err(SessionError::Expired(_)) => break StreamEvent::End(EndReason::Expired),
                 Err(SessionError::Store(StoreError::Damaged { contact, what })) => {
-                    tracing::error!(%contact, what, "events end: what is stored of the contact is damaged");
+                    tracing::error!(%contact, what, "events end: the stored contact is damaged");
                     break StreamEvent::End(EndReason::Damaged);
                 }
                 Err(error) if self.may_succeed_later(&error) => {
                     if self.failures == 0 {
-                        tracing::warn!(contact = %self.id, %error, "events wait for what cannot be read for now");
+                        tracing::warn!(contact = %self.id, %error, "events are delayed: the store cannot be read");
                     }
                     self.failures += 1;
                     self.listener.pause(RETRY_DELAY).await;
                 }
                 Err(error) => {
-                    tracing::error!(contact = %self.id, %error, "events end: what comes next cannot be read");
+                    tracing::error!(contact = %self.id, %error, "events end: the next move cannot be read");
                     break StreamEvent::End(EndReason::Failed);
                 }
             }

@@ -22,7 +22,7 @@ pub async fn run_expiry_loop(store: Arc<dyn Store>, expire_after: Option<Duratio
         match store.purge_expired(idle_since).await {
             Ok(0) => {}
             Ok(expired) => tracing::info!(expired, "idle contacts have expired"),
-            Err(error) => tracing::warn!(%error, "expired contacts could not be deleted; another attempt follows"),
+            Err(error) => tracing::warn!(%error, "expired contacts could not be deleted; the server tries again"),
         }
         tokio::time::sleep(period).await;
     }

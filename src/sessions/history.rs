@@ -41,7 +41,7 @@ impl History {
         while at < end {
             at += self.context.page(id, at, end).await?.len() as u64;
         }
-        Err(damaged(id, &format_args!("of its {end} moves some are missing")))
+        Err(damaged(id, &format_args!("some of its {end} moves are missing")))
     }
 
     /// A page of a session's moves, oldest first.

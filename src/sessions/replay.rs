@@ -260,7 +260,7 @@ impl TenantContext {
         let (live, followed, loading) = self.pool.run(cost, replay).await?;
         guard.loading = loading;
         let followed = followed.map_err(|error: stickslip_mechanics::Error| {
-            damaged(id, &format_args!("a stored move cannot be made again: {error}"))
+            damaged(id, &format_args!("a stored move cannot be replayed: {error}"))
         })?;
         let replayed = live.session.sequence;
         let stopped = |interrupted| match interrupted {

@@ -116,6 +116,6 @@ fn trace_move(
     check()?;
     contact.apply_while(&step, record.tolerance, &go_on).map_err(|error| match check() {
         Err(failure) => failure.into(),
-        Ok(()) => damaged(id, &format_args!("a stored move cannot be made again: {error}")),
+        Ok(()) => damaged(id, &format_args!("a stored move cannot be replayed: {error}")),
     })
 }

@@ -240,7 +240,7 @@ pub const RECEIPT_OVERHEAD: u64 = 256;
 #[derive(Clone, Debug, thiserror::Error)]
 pub enum StoreError {
     /// The session was not found.
-    #[error("there is no such contact")]
+    #[error("the contact was not found")]
     NotFound,
     /// There was such a session, of this tenant; it has expired, within [`EXPIRED_LIFETIME`].
     #[error("the contact has expired")]
@@ -272,7 +272,7 @@ pub enum StoreError {
     #[error("the storage is full: {0}")]
     Full(String),
     /// Another transaction of the database holds what is to be changed. Nothing has changed.
-    #[error("another transaction holds what is to be changed: {0}")]
+    #[error("another transaction holds the lock of this change: {0}")]
     Locked(String),
     /// The storage cannot be reached for now; whether the change was made is unknown.
     #[error("the storage is unreachable: {0}")]

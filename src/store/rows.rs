@@ -39,7 +39,7 @@ pub(super) trait RowReader {
     fn invalid(&self, error: impl Into<Box<dyn Error + Send + Sync>>) -> Self::Error;
 
     fn uuid(&mut self) -> Result<Uuid, Self::Error> {
-        self.optional_uuid()?.ok_or_else(|| self.invalid("there is no identifier"))
+        self.optional_uuid()?.ok_or_else(|| self.invalid("an identifier is missing"))
     }
 
     fn count(&mut self) -> Result<u64, Self::Error> {
@@ -142,7 +142,7 @@ fn measured<R: RowReader>(row: &mut R) -> Result<Option<Measured>, R::Error> {
     let (force, at): (Option<f64>, Option<i64>) = (row.next()?, row.next()?);
     let at = at.map(|at| Timestamp::from_nanosecond(at.into())).transpose().map_err(|error| row.invalid(error))?;
     match (force, at) {
-        (None, Some(_)) => Err(row.invalid("there is no force for the instant of a measurement")),
+        (None, Some(_)) => Err(row.invalid("a measurement has an instant, but no force")),
         (force, at) => Ok(force.map(|force| Measured { force, at })),
     }
 }

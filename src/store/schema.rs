@@ -10,7 +10,7 @@ use std::cmp::Ordering;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum VersionError {
     /// A later version of this program has migrated the store.
-    #[error("it has schema version {found}, and this program supports versions up to {known}: start the newer program")]
+    #[error("it has schema version {found}, but this program supports versions up to {known}: start the newer program")]
     Newer {
         /// The version of the tables.
         found: i32,

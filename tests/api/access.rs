@@ -520,7 +520,7 @@ fn an_entry_that_is_wrong_is_refused_by_its_line_and_not_shown() {
         (format!("a:read::sha256:{}g", &hash[1..]), "64 hexadecimal digits"),
         (format!("a:read::sha256:{hash}:soon"), "2027-01-31T12:00:00Z"),
         (format!("a:read::sha256:{hash}"), "two entries"),
-        (good.replace(&hash[..4], "0000"), "of this name"),
+        (good.replace(&hash[..4], "0000"), "this name"),
     ] {
         let mut keys = Keys::default();
         let wrong = keys.add(&format!("{good}\n\n{entry}")).unwrap_err();

@@ -69,7 +69,7 @@ async fn without_keys_it_listens_on_loopback_only_unless_insecure() {
         let process = Process::of(command).await;
         let said = std::fs::read_to_string(&log).unwrap();
         assert_eq!(said.contains("keys are sent unencrypted"), keyed, "{said}");
-        assert_eq!(said.contains("there are no keys"), !keyed, "{said}");
+        assert_eq!(said.contains("no keys are set"), !keyed, "{said}");
         let client = Client::new(process.base.replace("0.0.0.0", "127.0.0.1"));
         client.healthz().await.unwrap();
         let address = process.base.trim_start_matches("http://").to_owned();

@@ -155,7 +155,7 @@ async fn every_fault_is_named_with_its_place() {
         (at(distance(LENGTH, "area")), "/critical_distance/method", "`point`"),
         (at(json!({"length": LENGTH})), "/critical_distance/method", ""),
         (deep, "/critical_distance", "z = 0"),
-        (slip, "/criteria/ruiz", "of the surface"),
+        (slip, "/criteria/ruiz", "on the surface only"),
         (crossland(json!({})), "/criteria/crossland/life/s_n", "`s_n`"),
         (crossland(strain_life(9e8, -0.1, 0.3, -0.6)), "/criteria/crossland/life/strain_life", "`s_n`"),
         (crossland(s_n(0.0)), "/criteria/crossland/life/s_n/reference", "allowed is"),

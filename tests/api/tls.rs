@@ -74,7 +74,7 @@ async fn a_service_with_a_certificate_speaks_tls_alone_and_takes_a_new_one_while
     // What is no certificate leaves the one in force.
     std::fs::write(&certificate, "nothing yet").unwrap();
     let said = || std::fs::read_to_string(&log).unwrap();
-    until("the log says so", async || said().contains("the certificate is still the one before").then_some(())).await;
+    until("the log says so", async || said().contains("certificate unchanged").then_some(())).await;
     assert!(call(&address, &first, &both).await.is_some());
     let second = write_certificate(&certificate, &key);
     until("the new certificate", async || call(&address, &second, &both).await).await;

@@ -95,7 +95,7 @@ async fn what_has_no_limit_is_refused_at_its_place() {
         assert_refused(&server, "/wear", &of(contact, &asked), expected).await;
     };
     let held = json!({"drive": {"displacement": 1e-7}, "hold": "normal_force"});
-    refuse(&ball(), held, ("invalid_input", "/hold", "depends on the way")).await;
+    refuse(&ball(), held, ("invalid_input", "/hold", "depends on the course")).await;
     for amplitude in [1.0, 2.0] {
         refuse(&unit_sphere(), asked(amplitude), ("invalid_input", "/drive/displacement", "gross slip, 1 m")).await;
     }

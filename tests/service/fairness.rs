@@ -202,7 +202,7 @@ async fn a_search_that_cannot_end_in_time_is_refused_at_once_with_what_would_fit
     let service = Service::start(&["--deadline", "1s", "--log", "warn"]);
     let refused = service.ask(HONEST, &post("/simulate", &search(99_999).to_string())).await.unwrap();
     assert_eq!(refused.statuses, [422], "{}", refused.text);
-    for part in ["too_much_work", "\"pointer\":\"/residual\"", "is estimated at", "pieces fit"] {
+    for part in ["too_much_work", "\"pointer\":\"/residual\"", "is estimated at", "pieces are possible"] {
         assert!(refused.text.contains(part), "{part}: {}", refused.text);
     }
     let axes = json!([{"pointer": "/contact/friction", "values": [0.1, 0.2]}]);

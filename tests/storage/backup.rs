@@ -108,7 +108,7 @@ async fn what_cannot_be_copied_is_refused_in_one_line_and_nothing_is_touched() {
         assert!(!said.contains("secret"), "{said}");
     };
     fs::write(&copy, "precious").unwrap();
-    refused(&url(&store), &copy, "is there already");
+    refused(&url(&store), &copy, "already exists");
     assert_eq!(fs::read_to_string(&copy).unwrap(), "precious");
 
     let other = folder.path().join("other.db");

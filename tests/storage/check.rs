@@ -204,7 +204,7 @@ async fn damage_is_found_in_a_database_beside_its_service() {
     ordered.sort();
     is_found(&store, &ordered.map(|(_, words)| words)).await;
     Cluster::shared().execute(name, &format!("DELETE FROM contacts WHERE id = '{fork}'")).await;
-    let words: Vec<&str> = ["and the contact is not"].into_iter().chain(ordered.map(|(_, words)| words)).collect();
+    let words: Vec<&str> = ["but the contact is not"].into_iter().chain(ordered.map(|(_, words)| words)).collect();
     is_found(&store, &words).await;
     server.stop().await;
 }

@@ -33,7 +33,7 @@ fn loads(text: &str) -> Result<FrettingMap, &'static str> {
         map.check(1, JsonPath::Root, &mut faults);
         faults.is_empty()
     };
-    read().filter(sound).ok_or("from:to:count is needed, with 0 < from < to in N and 2 to 1000 loads")
+    read().filter(sound).ok_or("expected from:to:count, with 0 < from < to in N and 2 to 1000 loads")
 }
 
 impl Flags for CycleFlags {
@@ -41,7 +41,7 @@ impl Flags for CycleFlags {
         let text = read(file.unwrap_or(Path::new("-")))?;
         let Some(map) = &self.map else { return Ok(Body { text, ..Body::default() }) };
         let mut body: Value = parsed(&text)?;
-        body.as_object_mut().ok_or("the body is not an object")?.insert("map".to_owned(), json!(map));
+        body.as_object_mut().ok_or("the body must be a JSON object")?.insert("map".to_owned(), json!(map));
         Ok(Body { text: body.to_string().into_bytes(), format: Some(Format::Csv), ..Body::default() })
     }
 }

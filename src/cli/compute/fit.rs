@@ -21,15 +21,15 @@ pub struct FitFlags {
     /// A file with the definition of the contact, for a file of columns.
     #[arg(long)]
     contact: Option<PathBuf>,
-    /// The column of displacements, by its number or its name in the header; without it the one that is called so, or
+    /// The column of displacements, by its number or its name in the header; without it the column with such a name, or
     /// the first.
     #[arg(long, value_name = "COLUMN")]
     displacement: Option<String>,
-    /// The column of forces, by its number or its name in the header; without it the one that is called so, or the
+    /// The column of forces, by its number or its name in the header; without it the column with such a name, or the
     /// second.
     #[arg(long, value_name = "COLUMN")]
     force: Option<String>,
-    /// The column of times, if there is one; without it the one that is called so.
+    /// The column of times, if the file has one; without it the column with such a name.
     #[arg(long, value_name = "COLUMN")]
     time: Option<String>,
     /// The unit of displacements; without it the one that the header names, or m.
@@ -44,26 +44,26 @@ pub struct FitFlags {
     /// The unit of loads; without it the one that the header names, or N.
     #[arg(long, value_name = "UNIT", value_parser = force)]
     load_unit: Option<UnitHint>,
-    /// The sheet of a spreadsheet, by its name or its number; without it the first with numbers.
+    /// The sheet of a spreadsheet, by its name or its number; without it the first sheet with numbers.
     #[arg(long)]
     sheet: Option<String>,
-    /// The column of loads, if there is one; without it the one that is called so.
+    /// The column of loads, if the file has one; without it the column with such a name.
     #[arg(long, value_name = "COLUMN")]
     load: Option<String>,
-    /// The load, N, if it is neither that of the contact nor in the file.
+    /// The load, N, if it is not in the file and not that of the contact.
     #[arg(long)]
     normal_force: Option<f64>,
-    /// How the record begins: `steady` in a cycle that has been repeated before, `virgin` with a contact that was never
+    /// How the record begins: `steady` within a cycle that was repeated before, `virgin` with a contact that was never
     /// moved.
     #[arg(long, value_parser = one_of(&LoopStart::ALL, LoopStart::name))]
     start: Option<LoopStart>,
-    /// What is to be determined, separated by commas: friction, g_star and force_offset if left out.
+    /// Quantities to determine, separated by commas [default: friction,g_star,force_offset].
     #[arg(long, value_delimiter = ',', value_parser = one_of(&FitParameter::ALL, FitParameter::name))]
     free: Vec<FitParameter>,
-    /// What is known in SI units, such as machine_compliance=5e-8+-5e-9, separated by commas.
+    /// Known values in SI units, such as machine_compliance=5e-8+-5e-9, separated by commas.
     #[arg(long, value_delimiter = ',', value_parser = known)]
     known: Vec<(FitParameter, KnownValue)>,
-    /// Print the fitted contact alone, for POST /contacts.
+    /// Print only the fitted contact, for POST /contacts.
     #[arg(long, conflicts_with = "format")]
     only_contact: bool,
 }
@@ -122,7 +122,7 @@ fn known(text: &str) -> Result<(FitParameter, KnownValue), String> {
     let (name, rest) = text.split_once('=').ok_or_else(malformed)?;
     let parameter = FitParameter::ALL.into_iter().find(|one| one.name() == name.trim());
     let parameter = parameter
-        .ok_or_else(|| format!("`{name}` is none of {}", FitParameter::ALL.map(FitParameter::name).join(", ")))?;
+        .ok_or_else(|| format!("`{name}` is not one of {}", FitParameter::ALL.map(FitParameter::name).join(", ")))?;
     let number = |text: &str| text.trim().parse::<f64>().map_err(|_| malformed());
     let (value, error) = rest.split_once("+-").map_or((rest, None), |(value, error)| (value, Some(error)));
     Ok((parameter, KnownValue { value: number(value)?, standard_error: error.map(number).transpose()? }))

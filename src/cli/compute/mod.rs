@@ -67,7 +67,7 @@ fn one_of<V: Clone + Send + Sync>(
 ) -> impl TypedValueParser<Value = V> {
     let names = values.iter().cloned().map(name);
     let found = move |chosen: String| values.iter().find(|value| name((*value).clone()) == chosen).cloned();
-    PossibleValuesParser::new(names).try_map(move |chosen| found(chosen).ok_or("not possible"))
+    PossibleValuesParser::new(names).try_map(move |chosen| found(chosen).ok_or("not allowed"))
 }
 
 /// Parses a unit of length of the table.
@@ -127,7 +127,7 @@ fn command(about: &About) -> Command {
                 .value_name("FILE")
                 .value_parser(clap::value_parser!(PathBuf))
                 .required(true)
-                .help("The body of the request, or - for standard input"),
+                .help("File with the body of the request, or - for standard input"),
         )
         .arg(
             Arg::new("format")
@@ -140,7 +140,7 @@ fn command(about: &About) -> Command {
                 .long("json")
                 .action(ArgAction::SetTrue)
                 .conflicts_with("format")
-                .help("Print the JSON document in place of a summary, and faults as JSON, even on a terminal"),
+                .help("Print the JSON document instead of a summary, and faults as JSON, even on a terminal"),
         );
     if let Some(choice) = about.choice {
         let words = PossibleValuesParser::new(choice.words.iter().copied());

@@ -21,28 +21,28 @@ pub struct ProfileFlags {
     /// The unit of heights in a file of columns; without it the one that the header names, or m.
     #[arg(long, value_name = "UNIT", value_parser = length)]
     height: Option<UnitHint>,
-    /// The distance of neighbours in a matrix of heights, in the unit of places.
+    /// The distance between neighbours in a matrix of heights, in the unit of places.
     #[arg(long)]
     spacing: Option<f64>,
-    /// The column of places along the line, or along the one axis, by its number or its name in the header; without it
-    /// the one that is called so, or the first.
+    /// The column of places along the line, or along the first axis, by its number or its name in the header; without
+    /// it the column with such a name, or the first.
     #[arg(long, value_name = "COLUMN")]
     x: Option<String>,
-    /// The column of places along the other axis, by its number or its name in the header; without it the one that
-    /// is called so.
+    /// The column of places along the second axis, by its number or its name in the header; without it the column with
+    /// such a name.
     #[arg(long, value_name = "COLUMN")]
     y: Option<String>,
-    /// The column of heights, by its number or its name in the header; without it the one that is called so, or the
+    /// The column of heights, by its number or its name in the header; without it the column with such a name, or the
     /// last.
     #[arg(long, value_name = "COLUMN")]
     z: Option<String>,
-    /// The sheet of a spreadsheet, by its name or its number; without it the first with numbers.
+    /// The sheet of a spreadsheet, by its name or its number; without it the first sheet with numbers.
     #[arg(long)]
     sheet: Option<String>,
-    /// A file with the `material`, `friction` and `preload` under which to compute the contact of a file of columns.
+    /// A file with `material`, `friction` and `preload`, for which to compute the contact of a file of columns.
     #[arg(long)]
     load: Option<PathBuf>,
-    /// Print the profile alone, for the definition of a contact.
+    /// Print only the profile, for the definition of a contact.
     #[arg(long, conflicts_with = "format")]
     only_profile: bool,
 }

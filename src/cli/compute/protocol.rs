@@ -24,7 +24,8 @@ pub struct ProtocolFlags {
     /// Number of reversals.
     #[arg(long, conflicts_with = "target")]
     reversals: Option<usize>,
-    /// Find the fewest reversals after which at most this shear stress remains, over mu times the largest pressure.
+    /// Find the fewest reversals after which at most this shear stress remains, relative to mu times the largest
+    /// pressure.
     #[arg(long)]
     target: Option<f64>,
     /// Kind of protocol.
@@ -36,10 +37,10 @@ pub struct ProtocolFlags {
     /// First displacement, m [default: that of gross slip].
     #[arg(long)]
     start: Option<f64>,
-    /// Estimate the robustness against errors of the displacements: their relative standard deviation.
+    /// Estimate the robustness against random errors of the displacements with this relative standard deviation.
     #[arg(long)]
     amplitude_error: Option<f64>,
-    /// Estimate the robustness against errors of the coefficient of friction: their largest relative size.
+    /// Estimate the robustness against errors of the coefficient of friction up to this relative size.
     #[arg(long)]
     friction_error: Option<f64>,
 }
@@ -68,7 +69,7 @@ impl Flags for ProtocolFlags {
             Some(text) => parsed(&text)?,
             None => json!({}),
         };
-        let members = body.as_object_mut().ok_or("the body is not an object")?;
+        let members = body.as_object_mut().ok_or("the body must be a JSON object")?;
         if flags.contains_key("reversals") || flags.contains_key("target") {
             members.retain(|name, _| name != "reversals" && name != "target");
         }

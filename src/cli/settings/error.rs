@@ -34,7 +34,7 @@ pub fn unknown_setting<'a>(name: &str, written: &str, known: impl Iterator<Item 
         Some((_, near)) => format!("is it {near}?"),
         None => format!("expected one of {}", known.join(", ")),
     };
-    SettingsError::Invalid(format!("{written}: there is no such setting, {advice}"))
+    SettingsError::Invalid(format!("{written}: unknown setting, {advice}"))
 }
 
 /// The error of the parser of arguments. `invoked` is the command that they name.
@@ -60,7 +60,7 @@ pub fn from_clap(error: clap::Error, command: &Command, invoked: &Command, origi
             let why = match (error.source(), value) {
                 (Some(source), _) => masked(&source.to_string()),
                 (None, "") => "a value is missing".to_owned(),
-                (None, _) => "not possible".to_owned(),
+                (None, _) => "not allowed".to_owned(),
             };
             format!("{name}: {why}; expected: {}", expected(arg, &error))
         }

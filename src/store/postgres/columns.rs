@@ -49,7 +49,7 @@ impl RowReader for Reader<'_> {
     }
 
     fn time(&mut self) -> Result<Timestamp> {
-        let whole = self.optional_time()?.ok_or_else(|| self.invalid("there is no time"))?;
+        let whole = self.optional_time()?.ok_or_else(|| self.invalid("a time is missing"))?;
         let beyond: i16 = self.get()?;
         Timestamp::from_nanosecond(whole.as_nanosecond() + i128::from(beyond)).map_err(|error| self.invalid(error))
     }

@@ -203,7 +203,7 @@ async fn outcome_of(pool: &ClientPool, request: &WriteRequest) -> Result<bool> {
         _ if request.in_doubt && stored => Ok(true),
         _ if taken => Err(StoreError::KeyTaken),
         (None, None) => Ok(false),
-        (None, Some(_)) => Err(StoreError::Failed(format!("there is a contact {id} already"))),
+        (None, Some(_)) => Err(StoreError::Failed(format!("the contact {id} already exists"))),
         (Some(_), None) => Err(expired.map(Tenant::new).map_or(StoreError::NotFound, StoreError::Expired)),
         (Some(expected), Some(found)) if found == expected => Ok(false),
         (Some(_), Some(found)) => Err(StoreError::Stale { found }),

@@ -137,7 +137,7 @@ impl Verification {
         let mut roots = RootCertStore::empty();
         let (added, _) = roots.add_parsable_certificates(certificates);
         if added == 0 {
-            return Err("no certificate authority found to verify the server with".to_owned());
+            return Err("no certificate authority was found to verify the server".to_owned());
         }
         Ok(Some(roots))
     }

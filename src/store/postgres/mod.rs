@@ -300,7 +300,7 @@ impl Store for PostgresStore {
 
     async fn check_integrity(&self) -> Result<Vec<String>> {
         let orphans = self.pool.rows(sql::ORPHANED_MOVES, &[]).await?;
-        let line = |id: Uuid| format!("the moves of contact {id} are there, and the contact is not");
+        let line = |id: Uuid| format!("moves of contact {id} are stored, but the contact is not");
         let jobs = self.pool.rows(sql::JOB_FAULTS, &[]).await?;
         Ok(orphans.iter().map(|row| line(row.get(0))).chain(jobs.iter().map(|row| row.get(0))).collect())
     }

@@ -46,7 +46,7 @@ fn mark(path: &Path) -> io::Result<i32> {
 pub(super) fn backup(path: &Path, copy: &Path, progress: impl FnMut(u64, u64) + Send) -> Result<u64, String> {
     let describe = |error: io::Error| format!("{}: {error}", copy.display());
     if fs::symlink_metadata(copy).is_ok() {
-        return Err(format!("{} is there already, and is not overwritten", copy.display()));
+        return Err(format!("{} already exists, and is not overwritten", copy.display()));
     }
     let database = open_read_only(path)?;
     let partial = beside(copy, ".new");

@@ -116,7 +116,7 @@ fn open_full(path: &Path, lock: Arc<File>) -> Result<Readers, String> {
 fn create(path: &Path) -> Result<File, String> {
     let log = beside(path, "-wal");
     if std::fs::metadata(&log).is_ok_and(|log| log.len() > 0) {
-        return Err(format!("the file is missing, yet {} is there: put it back beside its log", log.display()));
+        return Err(format!("the file is missing, but its log {} exists: put the file back beside it", log.display()));
     }
     let partial = beside(path, ".new");
     let made = make(path, &partial);
@@ -162,7 +162,7 @@ pub(super) fn check_mark(mark: i32, path: &Path, has_log: bool) -> Result<(), St
         APPLICATION => Ok(()),
         IN_USE if has_log => Ok(()),
         IN_USE => Err(format!(
-            "it was not closed, and its log {0} is missing, which may have had its last changes: put the log back; to \
+            "it was not closed, and its log {0} is missing, which may have its last changes: put the log back; to \
              accept the file as it is, make an empty {0}",
             beside(path, "-wal").display()
         )),

@@ -80,7 +80,7 @@ impl SqliteStore {
             file::Access::Full { why, readers } => {
                 tracing::error!(
                     why,
-                    "there is no room to write: contacts can be read, and changed after the next start"
+                    "no room to write: contacts can be read; they can be changed again after a start with room"
                 );
                 return Ok(SqliteStore::reading(readers, Some(why)));
             }
