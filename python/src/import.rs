@@ -84,7 +84,7 @@ pub fn quantity(text: &str, needed: Option<&str>) -> PyResult<Option<f64>> {
     }
     let found = match needed.and_then(Unit::parse) {
         Some(needed) => Unit::of(rest, needed.dimension).map_err(|error| PyValueError::new_err(error.to_string()))?,
-        None => Unit::parse(rest).ok_or_else(|| PyValueError::new_err(format!("`{rest}` is not a known unit")))?,
+        None => Unit::parse(rest).ok_or_else(|| PyValueError::new_err(format!("`{rest}` is not known as a unit")))?,
     };
     Ok(Some(found.to_si(number)))
 }

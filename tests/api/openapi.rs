@@ -189,7 +189,7 @@ async fn what_is_refused_for_one_number_alone_is_not_allowed_by_the_document() {
                     allowed_and_refused.extend(refusal.errors.into_iter().filter(|fault| {
                         let of_itself = fault.detail.contains(&format!(" = {end:?} is out of range"))
                             || fault.detail.contains(&format!(" = {end} is out of range"))
-                            || ["is outside the range of ", "lies above", "without friction"]
+                            || ["is invalid: ", "lies above", "without friction"]
                                 .iter()
                                 .any(|text| fault.detail.contains(text));
                         // What a target reaches depends on the profile.

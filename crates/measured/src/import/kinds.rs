@@ -73,7 +73,7 @@ pub(super) fn binary(bytes: &[u8]) -> Option<String> {
     let shown = &bytes[..bytes.len().min(LOOKED_AT)];
     let end = shown.iter().rposition(|byte| !matches!(byte, 0 | 0x1a)).map_or(0, |last| last + 1);
     let has_zeros = shown[..end].contains(&0);
-    has_zeros.then(|| sentence("a binary file of an unknown kind", TEXT))
+    has_zeros.then(|| sentence("a binary file of a kind that is not supported", TEXT))
 }
 
 /// Why an archive with these members is not read.

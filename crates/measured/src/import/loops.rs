@@ -168,7 +168,7 @@ fn times(
             if is_wanted {
                 return Err(ImportError::of_file(format!("{title} is neither a number nor a date in a known format")));
             }
-            preview.leave_out(column, "dates of an unknown format, or that can be read in two ways");
+            preview.leave_out(column, "dates that are not understood, or that can be read in two ways");
             return Ok(None);
         };
         let unit = ColumnUnit { is_assumed: false, ..TIME.beside(None) };

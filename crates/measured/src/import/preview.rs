@@ -126,6 +126,6 @@ pub(super) fn said_of(unit: &Mention) -> Option<String> {
     match unit {
         Mention::Absent => None,
         Mention::Known(unit, text) => Some(format!("`{text}` is a unit of {}", unit.dimension.noun())),
-        Mention::Unknown(text) => Some(format!("`{text}` is not a known unit")),
+        Mention::Unknown(text) => Some(format!("`{text}` is not known as a unit")),
     }
 }

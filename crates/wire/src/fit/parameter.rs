@@ -90,7 +90,7 @@ impl KnownValues {
             let at = at.member(name);
             known.check_members(at, faults);
             if VALUE.contains(known.value) && !range.contains(known.value) {
-                faults.add(at.member("value"), format_args!("{:?} is outside the range of {name}, {range}", known.value));
+                faults.add(at.member("value"), format_args!("{:?} is invalid: {name} is {range}", known.value));
             }
         }
     }

@@ -282,7 +282,7 @@ impl Document for FrettingRequest {
                     faults.add(at("stress_paths").index(index), detail);
                 } else if *place >= asked.places.count() {
                     let most = asked.places.count().saturating_sub(1);
-                    let detail = format_args!("place {place} is not in the list: its last is {most}");
+                    let detail = format_args!("place {place} is not in the list: the last is {most}");
                     faults.add(at("stress_paths").index(index), detail);
                 }
             }

@@ -154,7 +154,7 @@ impl fmt::Display for UnknownUnit {
         let UnknownUnit { text, expected, found } = self;
         match found {
             Some(found) => write!(out, "`{text}` is a unit of {}, but {} is needed", found.noun(), expected.kind()),
-            None => write!(out, "`{text}` is not a known unit of {}", expected.noun()),
+            None => write!(out, "`{text}` is not known as a unit of {}", expected.noun()),
         }
     }
 }
@@ -298,7 +298,7 @@ mod tests {
             "*",
         ] {
             let error = Unit::of(text, Dimension::LENGTH).unwrap_err().to_string();
-            assert!(error.contains("is not a known unit of length"), "{text}: {error}");
+            assert!(error.contains("is not known as a unit of length"), "{text}: {error}");
         }
         for (text, kind) in
             [("V", "voltage"), ("A", "current"), ("mm/s", "velocity"), ("N", "force"), ("-", "pure number")]
