@@ -8,7 +8,7 @@ let asking = null;
 /** The service did not answer at all, and what was asked may or may not have been done. */
 export class Away extends Error {
   constructor() {
-    super("The service does not answer. The page shows what was done when it is back.");
+    super("The service does not answer. The page will show what was done when it is back.");
   }
 }
 

@@ -36,7 +36,7 @@ export function contactPlots({ hasStress, definition }) {
     x: { label: "Move" },
     y: { label: "Energy", unit: "J" },
     note:
-      "Friction work only grows; stored energy is released on unloading. Both are those at the ends of moves, " +
+      "Friction work only grows; stored energy is released on unloading. Both are shown at the ends of moves, " +
       "joined by straight lines.",
   });
 
@@ -140,7 +140,7 @@ function loopData({ path, state, friction, first, history, slip, isComplete }, o
   // What is far beyond slip has to be wide beside the least range, too.
   const reach = least.x ? [...least.x, ...least.x].map((x) => [x, 0, Infinity]) : [];
   const recent = recentPart([...path, ...reach], first, history);
-  const notes = [isComplete ? TURNS : "Of this long history the last moves are drawn."];
+  const notes = [isComplete ? TURNS : "Only the last moves of this long history are drawn."];
   return {
     recent,
     series: [

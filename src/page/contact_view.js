@@ -154,7 +154,7 @@ function forkButton({ id }) {
   const fork = noticing(async () => {
     location.hash = `#/contacts/${(await call("POST", `/contacts/${id}/fork`, {})).id}`;
   });
-  return el("button", { type: "button", class: "quiet", onclick: fork }, "Fork: a copy to go on with");
+  return el("button", { type: "button", class: "quiet", onclick: fork }, "Fork: a copy to continue with");
 }
 
 function removeButton({ id }) {

@@ -109,7 +109,7 @@ export function verdict(key, { largest, margin }, hasLimit) {
     const says = margin < 1 ? "the criterion predicts crack growth" : "the criterion does not predict crack growth";
     lines.push(el("p", { class: margin < 1 ? "bad" : "good" }, `Margin ${formatNumber(margin, 3)}: ${says}.`));
   } else if (hasLimit) lines.push(el("p", { class: "bad" }, "There is no margin; the warnings say why."));
-  else lines.push(el("p", { class: "note" }, "With a limit, what the material bears, there is a margin."));
+  else lines.push(el("p", { class: "note" }, "Give a limit, the value that the material withstands, to get a margin."));
   if (largest?.plane) {
     const normal = largest.plane.map((part) => formatNumber(Math.abs(part) < 1e-9 ? 0 : part, 2)).join(", ");
     lines.push(el("p", { class: "note" }, `The critical plane has the normal (${normal}).`));

@@ -76,7 +76,7 @@ export function crackCard(model) {
     amplitude: optional("/bulk/amplitude", "Amplitude", stress),
     phase: optional("/bulk/phase", "Phase in degrees"),
   };
-  const tolerance = optional("/tolerance", "Error that is accepted, of the largest value");
+  const tolerance = optional("/tolerance", "Accepted error, relative to the largest value");
   const request = () => {
     return {
       contact: path.contact(),
@@ -162,7 +162,7 @@ export function crackCard(model) {
     title: "Will it crack?",
     text:
       "A cycle at the present load is repeated until it is steady, and the body is searched for the largest value of " +
-      "each criterion. What the material bears comes from tests; the criteria are empirical.",
+      "each criterion. Limits of the material come from tests; the criteria are empirical.",
     form,
     parts: [
       path.element,
@@ -174,7 +174,7 @@ export function crackCard(model) {
         {},
         el("summary", {}, "Bulk stress of the body, and accuracy"),
         model.hasBulk
-          ? el("p", { class: "note" }, "The bulk stress of the contact is added by itself; here is what comes besides.")
+          ? el("p", { class: "note" }, "The bulk stress of the contact is included already; enter only what is added.")
           : null,
         ...Object.values(bulk).map((field) => field.element),
         tolerance.element,
@@ -186,9 +186,9 @@ export function crackCard(model) {
   });
   const results = el(
     "section",
-    { class: "card", "aria-label": "What the criteria say" },
-    el("h2", {}, "What the criteria say"),
-    el("p", { class: "note" }, "A margin above one is no proof that a part is safe."),
+    { class: "card", "aria-label": "Results of the criteria" },
+    el("h2", {}, "Results of the criteria"),
+    el("p", { class: "note" }, "A margin above one does not prove that a part is safe."),
     status,
     verdicts,
     warnings,

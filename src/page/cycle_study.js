@@ -25,7 +25,7 @@ function figureRows(cycle, unit) {
     ...(best
       ? [
           figure("Load that damps most", formatQuantity(best.normal_force, "N")),
-          figure("Friction work under it", formatQuantity(best.dissipated_energy, "J")),
+          figure("Friction work under that load", formatQuantity(best.dissipated_energy, "J")),
         ]
       : []),
     ...harmonics
@@ -48,7 +48,7 @@ function wearRows({ stick_radius: stick, worn_radius: worn, normal_force: force,
     figure("Worn up to", formatQuantity(worn, "m")),
     figure("Largest depth", formatQuantity(depth.largest, "m")),
     figure("Removed volume", `${formatNumber(volume * 1e18)} µm³`),
-    figure("Load that is left", formatQuantity(force.after, "N")),
+    figure("Remaining load", formatQuantity(force.after, "N")),
   ];
 }
 
@@ -69,7 +69,7 @@ export function cycleStudyCard(model) {
     unit: "N",
     optional: true,
   });
-  const phase = field("/normal/phase", { label: "Its phase before the displacement, degrees", optional: true });
+  const phase = field("/normal/phase", { label: "Its phase lead over the displacement, degrees", optional: true });
   const work = new Chart({
     name: "density",
     title: "Friction work per area and cycle",
@@ -86,7 +86,7 @@ export function cycleStudyCard(model) {
   });
   const shape = new Chart({
     name: "wear",
-    title: "Shape before wear, and in the end, at a held indentation",
+    title: "Shape before wear and in the limit, at constant indentation",
     height: 220,
     x: { label: "Radius r", unit: "m" },
     y: { label: "Height z", unit: "m" },
@@ -117,7 +117,7 @@ export function cycleStudyCard(model) {
     if (best?.curve) draw(loads, "friction work", best.curve.normal_force, best.curve.dissipated_energy);
     if (!hasLimit()) return;
     if (regime === "gross_slip") {
-      figures.append(figure("Wear", "All of the contact slips: it wears on without a limit"));
+      figures.append(figure("Wear", "The whole contact slips: it wears without a limit"));
       return;
     }
     try {
@@ -128,7 +128,7 @@ export function cycleStudyCard(model) {
       shape.draw({
         series: [
           { name: "before", kind: "past", points: points(before) },
-          { name: "in the end", kind: "work", points: points(after) },
+          { name: "in the limit", kind: "work", points: points(after) },
         ],
         least: { y: [0] },
       });
@@ -142,7 +142,7 @@ export function cycleStudyCard(model) {
     title: "Load, harmonics and wear",
     text:
       "A cycle at the present load, or while the load oscillates with it: its harmonics and, at a constant load, " +
-      "where it wears, which load damps most, and the shape that wear at a held indentation leaves in the end.",
+      "where it wears, which load damps most, and the limiting shape of wear at constant indentation.",
     form,
     parts: [
       amplitude.element,

@@ -81,7 +81,7 @@ export function columnsTable() {
   const element = el("div", { class: "columns", hidden: true }, el("table", {}, el("thead", {}, head), rows), rest);
   const taken = ({ quantity, unit, assumed, left_out: why }) =>
     quantity
-      ? `${NAMES[quantity] ?? quantity}, in ${unit}${assumed ? ", which nothing names" : ""}`
+      ? `${NAMES[quantity] ?? quantity}, in ${unit}${assumed ? ", which is assumed" : ""}`
       : `left out: ${plain(why ?? "")}`;
   const row = (column, index) =>
     el(
@@ -95,7 +95,7 @@ export function columnsTable() {
     rows.replaceChildren(...columns.slice(0, MOST_COLUMNS).map(row));
     const more = columns.length > MOST_COLUMNS ? `${columns.length - MOST_COLUMNS} more columns are not shown. ` : "";
     const lines = left.lines.slice(0, 10).join(", ") + (left.count > 10 ? ` and ${left.count - 10} more` : "");
-    rest.textContent = more + (left.count ? `Lines that are not in it: ${lines}.` : "");
+    rest.textContent = more + (left.count ? `Lines that were left out: ${lines}.` : "");
   };
   return { element, show };
 }

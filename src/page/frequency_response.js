@@ -66,7 +66,7 @@ function plots() {
     x: { label: "Amplitude U_0", unit: "m", log: true },
     y: { label: "Loss factor; stiffness of 1 when small" },
     note:
-      "Stiffness is force over displacement amplitude, as a part of that of small motions; the loss factor is the " +
+      "Stiffness is force over displacement amplitude, relative to small motions; the loss factor is the " +
       "friction work of a cycle over 2π times the largest stored energy.",
   });
   const response = new Chart({
@@ -158,9 +158,9 @@ export function responseCard(model) {
     }),
     from: field(`${response}/frequencies/0`, { label: "From, Hz", optional: true }),
     to: field(`${response}/frequencies`, { label: "To, Hz", optional: true }),
-    count: field(`${response}/frequencies/count`, { label: "How many frequencies", optional: true }),
+    count: field(`${response}/frequencies/count`, { label: "Number of frequencies", optional: true }),
     machine: field("/machine/stiffness", { label: "Stiffness of a machine in series, N/m", optional: true }),
-    tolerance: field("/tolerance", { label: "Relative error that is accepted", optional: true }),
+    tolerance: field("/tolerance", { label: "Accepted relative error", optional: true }),
   };
   const { from, to, count, machine, tolerance } = fields;
   const charts = plots();
@@ -168,7 +168,7 @@ export function responseCard(model) {
     name: "response",
     title: "Frequency response",
     text:
-      "A mass hangs on the contact at the present load, and a force drives it: how far it swings, and how far behind " +
+      "A force drives a mass that only the contact holds, at the present load: how far it swings, and how far behind " +
       "the force.",
     form,
     parts: [

@@ -122,7 +122,7 @@ export function fittedLoop(model) {
   });
   const left = new Chart({
     name: "left",
-    title: "What the fit leaves",
+    title: "Residual of the fit",
     mode: "nearest",
     height: 200,
     x: { label: "Displacement", unit: "m" },
@@ -184,7 +184,7 @@ export function fittedLoop(model) {
     name: "loop",
     button: "Fit",
     title: "Fit a measured loop",
-    text: "Force over displacement of a bench, for this contact: which friction and stiffness it has, and how surely.",
+    text: "Force over displacement of a bench, for this contact: its friction and stiffness, with their intervals.",
     form,
     parts: [
       list,
@@ -192,17 +192,17 @@ export function fittedLoop(model) {
       el(
         "fieldset",
         {},
-        el("legend", {}, "To be found"),
+        el("legend", {}, "Quantities to fit"),
         el("div", { class: "row" }, ...boxes.map((box) => el("label", {}, box, ` ${PARAMETERS[box.name][0]}`))),
       ),
       el(
         "details",
         {},
-        el("summary", {}, "What is known from elsewhere, and the noise"),
+        el("summary", {}, "Known values, and the noise"),
         el(
           "p",
           { class: "note" },
-          "With a standard error a known value takes part in the fit; without one it is held.",
+          "With a standard error a known value takes part in the fit; without one it is held fixed.",
         ),
         ...known.map((one) => one.element),
         ...Object.values(noise).map((one) => one.element),
@@ -215,8 +215,8 @@ export function fittedLoop(model) {
   });
   const results = el(
     "section",
-    { class: "card", "aria-label": "What was found" },
-    el("h2", {}, "What was found"),
+    { class: "card", "aria-label": "Results of the fit" },
+    el("h2", {}, "Results of the fit"),
     estimates,
     said,
     warnings,

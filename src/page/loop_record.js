@@ -16,7 +16,7 @@ export function loopRecord(form, index) {
   const text = new TextField(
     form,
     at,
-    "Displacement and force, one point a line",
+    "Displacement and force, one point per line",
     el("textarea", { name: "loop", rows: 6, spellcheck: "false", value: "" }),
   );
   const prefix = index ? `record ${index + 1}: ` : "";
@@ -25,7 +25,7 @@ export function loopRecord(form, index) {
   const optional = (name, label, more) =>
     new NumberField(form, () => `${at()}/${name}`, { label, optional: true, ...more });
   const load = optional("normal_force", "Load, if not that of the contact", { units: FORCE, unit: "N" });
-  const weight = optional("weight", "Weight beside the other records");
+  const weight = optional("weight", "Weight relative to the other records");
   const said = el("p", { class: "note", "aria-live": "polite" });
   const table = columnsTable();
   let found = null;

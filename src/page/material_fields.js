@@ -72,7 +72,7 @@ export function bulkFields(form) {
       value: "100",
     });
     const note =
-      "In phase with the force, at a constant load: it moves the stick zone off the middle. The constants of both " +
+      "In phase with the force, at a constant load: it shifts the stick zone off the middle. The constants of both " +
       "bodies must be given.";
     const given = el("div", {}, stress.element, el("p", { class: "note" }, note));
     const fold = () => (given.hidden = stress.isLeftOut = side.value === "none");

@@ -8,7 +8,7 @@ import { specimenPicture } from "./specimens.js";
 import { inPower } from "./units.js";
 
 const LINE_NOTE =
-  "In plane strain; forces are those of the whole length. The reference length fixes the displacements, which a line " +
+  "In plane strain; forces are totals over the length. The reference length fixes the displacements, which a line " +
   "contact leaves open: stresses and the work of closed cycles do not depend on it.";
 
 /** An editor of a profile at the pointer that `at` gives; `changed` is called when its fields change. */

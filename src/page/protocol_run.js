@@ -79,7 +79,7 @@ export function protocolCard(model) {
     }
     const after = await remaining();
     const stopped = halt.signal.aborted ? "Stopped. " : "";
-    const nothing = before.max === 0 ? " There was nothing to reduce: the moves brought this stress." : "";
+    const nothing = before.max === 0 ? " There was nothing to reduce: the moves caused this stress." : "";
     status.replaceChildren(...withSubscripts(`${stopped}Before: ${amount(before)}. Now: ${amount(after)}.${nothing}`));
   };
   const begin = async (event) => {

@@ -61,7 +61,7 @@ export function protocolSearchCard(model) {
     text:
       "Which path leaves no more than that much shear stress on a contact that was never moved, and how much it " +
       "leaves " +
-      "where it is not followed exactly.",
+      "if it is not followed exactly.",
     form,
     parts: [
       target.element,

@@ -23,7 +23,7 @@ export function sideView() {
     y: { label: "Height, not to scale", isBare: true },
     note:
       "Colour is the shear stress between the bodies, green towards +x and purple towards −x, on a scale up to the " +
-      "largest that is there; where it is striped the last move slipped.",
+      "largest value in the contact; it is striped where the last move slipped.",
   });
   let stress = null;
   let half = 0;

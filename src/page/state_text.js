@@ -26,7 +26,7 @@ function sentence(state, moved, isLine) {
   if (c > MOST_SHOWN * a) {
     const outermost = `the outermost ${formatQuantity(isLine ? 2 * (a - c) : a - c, "m", 2)}`;
     const ring = isLine ? `${outermost}, both edges together` : `${outermost} of the contact radius`;
-    return `The last move has just turned: all sticks but ${ring}.`;
+    return `The last move has just turned: all but ${ring} sticks.`;
   }
   if (isLine) {
     const { from, to } = zonesOf(state, true).find(({ kind }) => kind === "stick");

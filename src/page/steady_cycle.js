@@ -28,7 +28,7 @@ function figures(cycle) {
     figure("Friction work of a cycle", formatQuantity(cycle.dissipated_energy, "J")),
     ...(cycle.friction_energy === undefined
       ? []
-      : [figure("All that friction dissipates, with the bulk stress", formatQuantity(cycle.friction_energy, "J"))]),
+      : [figure("All friction work, with the bulk stress", formatQuantity(cycle.friction_energy, "J"))]),
     figure("Secant stiffness", formatQuantity(cycle.secant_stiffness, "N/m")),
     figure("Loss factor", ratio(cycle.loss_factor)),
     figure("Sliding ratio", ratio(cycle.sliding_ratio)),

@@ -34,12 +34,12 @@ export function residualCard(model) {
   const full = model.figures.max_pressure && model.friction * model.figures.max_pressure;
   const chart = new Chart({
     name: "residual",
-    title: "What remains after N_R reversals",
+    title: "Shear stress after N_R reversals",
     x: { label: "Reversals N_R", log: true },
     y: full ? { label: "Residual |τ| / (μ p_max)", log: true } : { label: "Residual |τ| (Pa)", log: true },
     note: full
       ? "μ p_max is that of the preload."
-      : "The stress is infinite at one radius; the largest that is not is shown.",
+      : "The stress is infinite at one radius; the largest finite one is shown.",
   });
   const request = (kind, reversals) => ({
     contact: model.definition,

@@ -19,7 +19,7 @@ export function topView() {
     y: { label: "y", unit: "m" },
     note:
       "Colour is the shear stress on the contact, green towards +x and purple towards −x, on a scale up to the " +
-      "largest that is there; in the striped ring the last move slipped.",
+      "largest value in the contact; in the striped ring the last move slipped.",
   });
   let stress = null;
   let radius = 0;

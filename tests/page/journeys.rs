@@ -115,7 +115,7 @@ async fn loop_a_file_of_a_bench_becomes_the_coefficient_of_friction_and_a_contac
         let shown = browser.value(&format!("{TABLE}[{row}].toLowerCase()")).await;
         assert!(texts.iter().all(|text| shown.as_str().unwrap().contains(text)), "{shown}: {texts:?}");
     }
-    browser.says("#loop-card", "Lines that are not in it: 1.").await;
+    browser.says("#loop-card", "Lines that were left out: 1.").await;
     assert_eq!(axe::serious(browser).await, [""; 0]);
     // A unit that lost its first character: named by line, column and text, and chosen here.
     upload("tests/lab_files/loop_unit_question.csv").await;
