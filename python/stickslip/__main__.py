@@ -11,7 +11,7 @@ def main() -> int:
     from . import _native
 
     if not hasattr(_native, "main"):
-        print("stickslip: the command line is in the wheels for Linux alone", file=sys.stderr)
+        print("stickslip: only the wheels for Linux have the command line", file=sys.stderr)
         return 2
     # Without the handler of Python, an interrupt ends a command at once; `serve` sets its own.
     signal.signal(signal.SIGINT, signal.SIG_DFL)

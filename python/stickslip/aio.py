@@ -46,7 +46,7 @@ def _sent(call: Callable[Concatenate[Any, P], Steps[T]]) -> Callable[Concatenate
 
 
 class AsyncContactMaker:
-    """`Contact` on a server: called, or by a definition, or by the bytes of a contact in process."""
+    """`Contact` on a server: from keywords, a definition, or the bytes of a contact in process."""
 
     def __init__(self, client: AsyncClient):
         self._client = client
@@ -70,7 +70,7 @@ class AsyncContactMaker:
         return await self._made(document, label)
 
     async def from_bytes(self, data: bytes) -> AsyncContact:
-        """The contact of what `to_bytes` of a contact in process wrote: its moves are made again on the server."""
+        """The contact that `to_bytes` of a contact in process wrote: its moves are repeated on the server."""
         made, given = await self._client._run(self._client._calls.restore(data))
         return AsyncContact(self._client, made["id"], given)
 
@@ -133,7 +133,7 @@ class AsyncClient(AsyncComputations):
     async def contacts(
         self, label: str | None = None, *, newest_first: bool = False
     ) -> AsyncIterator[results.SessionSummary]:
-        """All contacts, oldest or newest first; of a label alone, if one is given."""
+        """All contacts, oldest or newest first; with `label`, only those whose label contains it."""
         query = {"label": label, "order": "newest" if newest_first else None}
         after: str | None = None
         while True:
@@ -159,7 +159,7 @@ class AsyncClient(AsyncComputations):
         return answer(kind, await call, given.get("contact"), request)
 
     async def _run(self, steps: Steps[T]) -> T:
-        """Sends what a call asks for, and waits where it waits."""
+        """Runs a call: sends its requests, and waits during its pauses."""
         try:
             step = next(steps)
             while True:
@@ -190,7 +190,7 @@ class AsyncContact(AsyncOfContact, DefinedContact):
 
     @property
     def id(self) -> str:
-        """Its identifier."""
+        """The identifier of the contact."""
         return self._calls.id
 
     describe = _sent(ContactCalls.describe)
@@ -209,7 +209,7 @@ class AsyncContact(AsyncOfContact, DefinedContact):
         return (await self.describe()).state
 
     async def summary(self) -> results.Figures:
-        """What follows from the definition at its preload."""
+        """Quantities that follow from the definition at its preload."""
         return (await self.describe()).contact
 
     async def sequence(self) -> int:
@@ -227,7 +227,7 @@ class AsyncContact(AsyncOfContact, DefinedContact):
         return found
 
     async def copy(self) -> AsyncContact:
-        """The same contact once more on the server, with its history; it goes its own way from here."""
+        """A copy of the contact on the server, with its history; it evolves independently from here."""
         made = await self._run(self._calls.fork({}))
         copy = AsyncContact(self._client, made["id"], self._definition)
         copy._calls.made = list(self._calls.made)
@@ -235,10 +235,9 @@ class AsyncContact(AsyncOfContact, DefinedContact):
         return copy
 
     async def follow(self, after: int | None = None, *, patience: float = 300.0) -> AsyncIterator[results.StateEvent]:
-        """Its states, one for each move after `after`, without end.
+        """The states of the contact, one for each move after `after`, without end.
 
-        A connection that breaks is made again, also while the server is started anew, until nothing has come for
-        `patience` seconds.
+        A broken connection is restored, also when the server restarts, until nothing has come for `patience` seconds.
         """
         stream = Following(self._client._calls, f"{self._calls.path}/events", after, patience)
         while True:

@@ -1,4 +1,4 @@
-"""The two bodies of a contact, and what definitions consist of."""
+"""The two bodies of a contact, and the parts of definitions."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from .documents import Document, HasDocument, Quantity, to_document
 
 
 class Part:
-    """A part of a request: two of them are equal if they are the same in SI units."""
+    """A part of a request. Two parts are equal if they are the same in SI units."""
 
     TYPE: ClassVar[str] = ""
 
     def document(self) -> Document:
-        """Its document, with units as they were given."""
+        """The JSON document, with units as they were given."""
         given = {field.name.removesuffix("_"): getattr(self, field.name) for field in fields(self)}  # type: ignore[arg-type]
         kind = {"type": self.TYPE} if self.TYPE else {}
         return kind | {name: value for name, value in given.items() if value is not None}
@@ -60,7 +60,7 @@ ContactLike: TypeAlias = Union["HasDefinition", HasDocument, Mapping[str, Any]]
 
 
 class HasDefinition:
-    """What has the definition of a contact."""
+    """An object that has the definition of a contact."""
 
     def definition(self) -> Document:
         """The JSON document of its definition, at its preload."""
@@ -74,7 +74,7 @@ class ContactPart(Part):
     PRELOADS: ClassVar[tuple[str, ...]] = ("normal_force", "indentation", "contact_radius")
 
     def document(self) -> Document:
-        """Its document, with units as they were given."""
+        """The JSON document, with units as they were given."""
         given = super().document()
         material = given.pop("bodies")
         if isinstance(material, Moduli):

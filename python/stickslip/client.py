@@ -29,18 +29,18 @@ if TYPE_CHECKING:
 httpx = needed("httpx", "client")
 P = ParamSpec("P")
 T = TypeVar("T")
-#: What a client does not have of the module, and what does the same.
+#: Names of the module that a client does not have, and what does the same.
 IN_PROCESS_ALONE = {
-    "Contacts": "stickslip.Contacts steps arrays in process alone: on a server make each by api.Contact",
+    "Contacts": "stickslip.Contacts works in process only: on a server make each contact by api.Contact",
     "Local": "stickslip.Local is the engine of this process",
-    "Engine": "stickslip.Engine is what this client is one of",
-    "serve": "stickslip.serve starts a server: this is a client of one",
-    "connect": "stickslip.connect makes a client: this is one",
+    "Engine": "stickslip.Engine is the base of this client",
+    "serve": "stickslip.serve starts a server: this is already a client of one",
+    "connect": "stickslip.connect makes a client: this is one already",
 }
 
 
 def of_module(name: str) -> Any:
-    """What a client has of the module: shapes, bodies and errors, so that a notebook moves to a server by one line."""
+    """Names of the module that a client has too, such as shapes: one line moves a notebook to a server."""
     import stickslip
 
     if name in IN_PROCESS_ALONE:
@@ -62,7 +62,7 @@ def _sent(call: Callable[Concatenate[Any, P], Steps[T]]) -> Callable[Concatenate
 
 
 class ContactMaker:
-    """`Contact` on a server: called, or by a definition, or by the bytes of a contact in process."""
+    """`Contact` on a server: from keywords, a definition, or the bytes of a contact in process."""
 
     def __init__(self, client: Client):
         self._client = client
@@ -86,7 +86,7 @@ class ContactMaker:
         return self._made(document, label)
 
     def from_bytes(self, data: bytes) -> RemoteContact:
-        """The contact of what `to_bytes` of a contact in process wrote: its moves are made again on the server."""
+        """The contact that `to_bytes` of a contact in process wrote: its moves are repeated on the server."""
         made, given = self._client._run(self._client._calls.restore(data))
         return RemoteContact(self._client, made["id"], given)
 
@@ -153,7 +153,7 @@ class Client(Engine):
         return RemoteContact(self, id, self._run(self._calls.json("GET", f"/contacts/{id}/definition")))
 
     def contacts(self, label: str | None = None, *, newest_first: bool = False) -> Iterator[results.SessionSummary]:
-        """All contacts, oldest or newest first; of a label alone, if one is given."""
+        """All contacts, oldest or newest first; with `label`, only those whose label contains it."""
         query = {"label": label, "order": "newest" if newest_first else None}
         after: str | None = None
         while True:
@@ -173,7 +173,7 @@ class Client(Engine):
         return scan_of(self._run(self._calls.read_file("scan", content_of(source), hints_of(hints))))
 
     def _run(self, steps: Steps[T]) -> T:
-        """Sends what a call asks for, and waits where it waits."""
+        """Runs a call: sends its requests, and waits during its pauses."""
         try:
             step = next(steps)
             while True:
@@ -204,7 +204,7 @@ class RemoteContact(AnyContact):
 
     @property
     def id(self) -> str:
-        """Its identifier."""
+        """The identifier of the contact."""
         return self._calls.id
 
     describe = _sent(ContactCalls.describe)
@@ -220,7 +220,7 @@ class RemoteContact(AnyContact):
     _advance = _sent(ContactCalls.advance)
 
     def copy(self) -> RemoteContact:
-        """The same contact once more on the server, with its history; it goes its own way from here."""
+        """A copy of the contact on the server, with its history; it evolves independently from here."""
         made = self._run(self._calls.fork({}))
         calls = ContactCalls(self._client._calls, made["id"])
         calls.made = list(self._calls.made)
@@ -229,10 +229,9 @@ class RemoteContact(AnyContact):
         return copy
 
     def follow(self, after: int | None = None, *, patience: float = 300.0) -> Iterator[results.StateEvent]:
-        """Its states, one for each move after `after`, without end.
+        """The states of the contact, one for each move after `after`, without end.
 
-        A connection that breaks is made again, also while the server is started anew, until nothing has come for
-        `patience` seconds.
+        A broken connection is restored, also when the server restarts, until nothing has come for `patience` seconds.
         """
         stream = Following(self._client._calls, f"{self._calls.path}/events", after, patience)
         while True:
@@ -254,7 +253,7 @@ class RemoteContact(AnyContact):
             self._client._perform(stream.pause(broken))
 
     def to_bytes(self) -> NoReturn:
-        """Refused: a contact is on its server. `api.Contact.from_bytes` brings one in process there."""
+        """Refused: the contact is on its server. `api.Contact.from_bytes` moves a contact in process there."""
         raise TypeError("a contact on a server has no bytes: api.open(contact.id) finds it again")
 
     def __repr__(self) -> str:

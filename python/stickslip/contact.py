@@ -1,4 +1,4 @@
-"""A contact that lives: it is moved, and read in its present state."""
+"""A contact that is moved, and read in its present state."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ if TYPE_CHECKING:
     from . import _native
     from .request_types import DefinitionMembers
 
-#: What moves a contact, and what is read of its present state.
+#: The calls that move a contact, and those that read its present state.
 MOVES = frozenset({"move", "path", "relax"})
 
 
 class DefinedContact(HasDefinition):
-    """What contacts in process, on a server and for asyncio share."""
+    """The common base of contacts in process, on a server and for asyncio."""
 
     _definition: Document
     #: The codes of the warnings that have been issued for it.
@@ -72,15 +72,15 @@ class AnyContact(OfContact, DefinedContact):
 
     @abstractmethod
     def copy(self) -> AnyContact:
-        """The same contact once more, with its history; it goes its own way from here."""
+        """A copy of the contact, with its history; it evolves independently from here."""
 
     @abstractmethod
     def undo(self, calls: int = 1) -> results.State:
-        """Takes back the last calls that moved it."""
+        """Takes back the last calls that moved the contact."""
 
     @abstractmethod
     def moves(self) -> list[Document]:
-        """The moves so far, as a path takes them."""
+        """The moves so far, in the form of a path."""
 
     @property
     def state(self) -> results.State:
@@ -89,7 +89,7 @@ class AnyContact(OfContact, DefinedContact):
 
     @property
     def summary(self) -> results.Figures:
-        """What follows from the definition at its preload."""
+        """Quantities that follow from the definition at its preload."""
         return self.describe().contact
 
     @property
@@ -143,7 +143,7 @@ class Contact(AnyContact):
     label : str
         A label of your own.
     **load
-        One of `normal_force` (N), `indentation` (m) and `contact_radius` (m), and what else a definition may have.
+        One of `normal_force` (N), `indentation` (m) and `contact_radius` (m), and other members of a definition.
     """
 
     def __init__(
@@ -184,11 +184,11 @@ class Contact(AnyContact):
             warn(json.loads(native.warnings()), self._warned)
 
     def to_bytes(self) -> bytes:
-        """Definition and moves, from which the same contact is made again."""
+        """The definition and the moves as bytes, from which `from_bytes` makes the same contact."""
         return self._native.to_bytes()
 
     def moves(self) -> list[Document]:
-        """The moves so far, as a path takes them."""
+        """The moves so far, in the form of a path."""
         found: list[Document] = json.loads(self._native.moves())
         return found
 
@@ -197,11 +197,11 @@ class Contact(AnyContact):
         return parse(results.SessionReply, json.loads(self._native.describe()))
 
     def copy(self) -> Contact:
-        """The same contact once more, with its history; it goes its own way from here."""
+        """A copy of the contact, with its history; it evolves independently from here."""
         return Contact._of(self._native.copy(), self._warned)
 
     def undo(self, calls: int = 1) -> results.State:
-        """Takes back the last calls that moved it, which are made again up to there."""
+        """Takes back the last calls that moved the contact; the moves before them are repeated."""
         guarded(self._native.undo, calls)
         return self.state
 

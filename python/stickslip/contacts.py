@@ -1,4 +1,4 @@
-"""Many contacts stepped together over arrays: the exact contact law for codes with equations of motion of their own."""
+"""Many contacts stepped together over arrays: the exact contact law for programs with their own equations of motion."""
 
 from __future__ import annotations
 
@@ -22,19 +22,19 @@ if TYPE_CHECKING:
 
 
 class Contacts:
-    """So many contacts of one definition.
+    """An array of contacts with one definition.
 
-    They begin at an indentation of zero, or at the load that is given. A step is straight in indentation and
-    displacement (m), and leaves every contact with all of its history. A step that is refused has moved none.
+    They begin at zero indentation, or at the given load. A step is straight in indentation and displacement (m), and
+    keeps the whole history of every contact. A refused step moves no contact.
 
     Parameters
     ----------
     shape : int | tuple of int
-        How many contacts, or the shape of the arrays of them.
+        Number of contacts, or the shape of the array of contacts.
     profile, bodies, friction, **load
-        As of `Contact`.
+        As for `Contact`.
     threads : int
-        Threads that step them; left out, one for each core.
+        Number of threads; if left out, one for each core.
     """
 
     def __init__(
@@ -60,7 +60,7 @@ class Contacts:
         return len(self._native)
 
     def step(self, indentation: Quantity | Quantities, displacement: Quantity | Quantities) -> tuple[Floats, Floats]:
-        """Moves all contacts to these indentations and displacements, m; returns F_N and F_x, N, of their shape.
+        """Moves all contacts to these indentations and displacements, m; returns F_N and F_x, N, as such arrays.
 
         Arrays broadcast to the shape of the contacts.
         """
@@ -68,17 +68,17 @@ class Contacts:
         return self._shaped(guarded(self._native.step, *targets))
 
     def trial(self, indentation: Quantity | Quantities, displacement: Quantity | Quantities) -> tuple[Floats, Floats]:
-        """The forces that such a step would lead to from the committed states, until `commit` or `revert`."""
+        """The forces after such a step from the committed states; `commit` keeps the step, `revert` discards it."""
         targets = self._numbers(indentation, "indentation"), self._numbers(displacement, "displacement")
         return self._shaped(guarded(self._native.trial, *targets))
 
     def commit(self) -> None:
-        """Takes over the states of the last trial."""
+        """Commits the states of the last trial."""
         if not self._native.commit():
             raise RuntimeError("there is no trial to commit: call trial() first")
 
     def revert(self) -> None:
-        """Forgets the last trial."""
+        """Discards the last trial."""
         self._native.revert()
 
     def forces(self) -> tuple[Floats, Floats]:
@@ -88,8 +88,8 @@ class Contacts:
     def stiffness(self, direction: int = 1) -> tuple[Floats, Floats]:
         """Normal and tangential stiffness, N/m, of the last trial or else of the committed states.
 
-        The tangential one is that of a displacement which goes on upwards (1) or downwards (-1) at constant
-        indentation: after a turn the whole contact sticks, and on the way on only a part of it does.
+        The tangential stiffness is that of a displacement that continues upwards (1) or downwards (-1) at constant
+        indentation: after a reversal the whole contact sticks, without one only a part of it.
         """
         if direction not in (1, -1):
             raise ValueError(f"direction is {direction}: allowed are 1 and -1")

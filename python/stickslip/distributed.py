@@ -51,8 +51,8 @@ def sweep(
     """Computes a sweep on a cluster into the folder `to`, any URL that fsspec writes to and the workers reach.
 
     `on` is a client of Dask, or the module `ray`. The rows are those of `stickslip.sweep` to the last bit. A chunk
-    whose worker dies is computed by another. Chunks that exist are skipped: what was broken off goes on if it is
-    called again. A folder of another sweep is refused. An exception or an interrupt cancels the tasks.
+    whose worker dies is computed by another. Chunks that exist are skipped, so that an interrupted sweep continues when
+    the function is called again. A folder of another sweep is refused. An exception or an interrupt cancels the tasks.
     """
     base = dict(base)
     if "contact" in base:

@@ -33,7 +33,7 @@ class HasUnit(Protocol):
 
 
 class HasArray(Protocol):
-    """What NumPy makes an array of."""
+    """An object that NumPy makes an array of."""
 
     def __array__(self, dtype: Any = None, copy: Any = None, /) -> NDArray[Any]:
         """Its numbers."""
@@ -41,10 +41,10 @@ class HasArray(Protocol):
 
 @runtime_checkable
 class HasDocument(Protocol):
-    """What is a part of a request."""
+    """An object that is a part of a request."""
 
     def document(self) -> Document:
-        """Its document, with units as they were given."""
+        """The JSON document, with units as they were given."""
 
 
 def to_document(value: Any, name: str = "", parent: str = "", place: str = "") -> Any:

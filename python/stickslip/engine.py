@@ -29,11 +29,11 @@ NAMES = {path: name for name, path in PATHS.items()}
 
 
 class Engine(Computations):
-    """What computes: in this process, or a server."""
+    """The interface of all computations: in this process, or on a server."""
 
     @abstractmethod
     def compute(self, name: str, document: Document) -> Document:
-        """The reply of a computation to the document of its request, as it is."""
+        """The reply of a computation to the document of its request, unchanged."""
 
     @abstractmethod
     def compute_bytes(self, name: str, document: Document, format: Format = "columns") -> bytes:  # noqa: A002
@@ -94,7 +94,7 @@ class Local(Engine):
     """The engine of this process."""
 
     def compute(self, name: str, document: Document) -> Document:
-        """The reply of a computation to the document of its request, as it is."""
+        """The reply of a computation to the document of its request, unchanged."""
         found: Document = json.loads(self.compute_bytes(name, document))
         return found
 

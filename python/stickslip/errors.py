@@ -24,7 +24,7 @@ class Fault:
 
     @property
     def range(self) -> tuple[float, float] | None:
-        """The least and the largest value that are allowed, in SI units, if the fault is about a range."""
+        """The smallest and the largest allowed value, in SI units, if the fault is about a range."""
         found = _RANGE.search(self.detail)
         if found is None:
             return None
@@ -86,7 +86,7 @@ class Overloaded(StickslipError):
 
 
 class ServerError(StickslipError):
-    """A fault of the server, or something else than a server of this kind answers."""
+    """A fault of the server, or a reply that does not come from a server of this kind."""
 
 
 _BY_CODE: dict[str, type[StickslipError]] = {"too_much_work": TooMuchWork, "not_json": InvalidInput}
@@ -127,7 +127,7 @@ class StickslipWarning(UserWarning):
         return type(self), (self.code, str(self).partition("] ")[2])
 
 
-#: The codes that have been warned of, by contacts that are given by their definitions.
+#: The codes of the warnings that have been issued, by the definitions of contacts.
 _SEEN: dict[str, set[str]] = {}
 #: Definitions that are remembered.
 _MOST_SEEN = 1000

@@ -24,7 +24,7 @@ from .result import parse
 
 httpx = needed("httpx", "client")
 
-#: What a retry may help against, and how long it waits at the most, s.
+#: Statuses after which a retry may help, and the longest wait, s.
 RETRIED = frozenset({429, 502, 503, 504})
 LONGEST_WAIT = 30.0
 #: Waits that are logged, s.
@@ -138,7 +138,7 @@ class Calls:
         return found
 
     def compute(self, name: str, document: Document) -> Steps[Document]:
-        """The reply of a computation to the document of its request, as it is."""
+        """The reply of a computation to the document of its request, unchanged."""
         return self.json("POST", path_of(name), json=to_document(document))
 
     def compute_bytes(self, name: str, document: Document, format: Format = "columns") -> Steps[bytes]:  # noqa: A002
@@ -149,7 +149,7 @@ class Calls:
         return content
 
     def sweep_document(self, document: Document) -> Steps[Document]:
-        """The table of a sweep as a document; one that is run as a job is waited for."""
+        """The table of a sweep as a document; the call waits for a sweep that runs as a job."""
         response = yield from self.request("POST", "/sweep", json=document, idempotent=True)
         found: Document = response.json()
         if response.status_code != 202:
@@ -216,7 +216,7 @@ class Calls:
         raise InvalidInput("conflict", detail, (Fault(f"/{axis}", detail),))
 
     def read_file(self, kind: str, content: bytes, hints: Document) -> Steps[Document]:
-        """What the importer of the server finds in a file."""
+        """The scan or loop that the importer of the server finds in a file."""
         body = {"content": content, "headers": {"content-type": "application/octet-stream"}}
         return self.json("POST", f"/files/{kind}", params=hints, **body)
 
@@ -251,14 +251,14 @@ class ContactCalls:
         return parse(results.SessionReply, (yield from self.calls.json("GET", self.path)))
 
     def delete(self) -> Steps[None]:
-        """Deletes it on the server; what is deleted already, as by an attempt whose response was lost, is no error."""
+        """Deletes the contact on the server; one that is already deleted, as by a lost response, is no error."""
         try:
             yield from self.calls.request("DELETE", self.path)
         except NotFound:
             return
 
     def rename(self, label: str | None) -> Steps[results.SessionReply]:
-        """Changes its label."""
+        """Changes the label of the contact."""
         body = {"label": label}
         return parse(results.SessionReply, (yield from self.calls.json("PATCH", self.path, json=body, idempotent=True)))
 
@@ -270,7 +270,7 @@ class ContactCalls:
         return parse(results.HistoryPage, (yield from self.calls.json("GET", f"{self.path}/history", params=query)))
 
     def moves(self) -> Steps[list[Document]]:
-        """The moves so far, as a path takes them."""
+        """The moves so far, in the form of a path."""
         moves: list[Document] = []
         after: int | None = 0
         while after is not None:
@@ -293,18 +293,18 @@ class ContactCalls:
         return parse(results.LoopPage, (yield from self.calls.json("GET", f"{self.path}/loop", params=query)))
 
     def cycles(self, *, last: int | None = None) -> Steps[results.CyclePage]:
-        """The closed cycles of its past, or the last ones."""
+        """The closed cycles of the history, or the last ones."""
         query = _given(last=last)
         return parse(results.CyclePage, (yield from self.calls.json("GET", f"{self.path}/cycles", params=query)))
 
     def observe(self, observations: Any) -> Steps[results.ObservationsReply]:
-        """Follows a bench: displacements with the measured forces, beside what the contact predicts."""
+        """Follows a bench: displacements with the measured forces, and the forces that the contact predicts."""
         body = to_document({"observations": observations})
         reply = yield from self.calls.json("POST", f"{self.path}/observations", json=body, idempotent=True)
         return parse(results.ObservationsReply, reply)
 
     def friction(self) -> Steps[results.FrictionReply]:
-        """The coefficient of friction by its observations."""
+        """The coefficient of friction from the observations of the contact."""
         return parse(results.FrictionReply, (yield from self.calls.json("GET", f"{self.path}/friction")))
 
     def fork(self, body: Document) -> Steps[Document]:
@@ -312,7 +312,7 @@ class ContactCalls:
         return self.calls.json("POST", f"{self.path}/fork", json=body, idempotent=True)
 
     def undo(self, calls: int = 1) -> Steps[results.State]:
-        """Takes back the last calls of this object that moved it: the contact gets a new identifier."""
+        """Takes back the last calls of this object that moved the contact, which gets a new identifier."""
         kept = len(self.made) - calls
         if kept < 0:
             detail = f"{len(self.made)} calls have moved this contact"

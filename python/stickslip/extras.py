@@ -1,4 +1,4 @@
-"""What some results have beside their fields."""
+"""Attributes of some results besides their fields."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Files of instruments: scans and loops in whatever encoding, separator, unit and, for scans, format."""
+"""Files of instruments: scans and loops in any encoding, separator and unit and, for scans, format."""
 
 from __future__ import annotations
 
@@ -26,14 +26,14 @@ MOST_HEIGHTS = 300_000
 
 
 class ScanHints(TypedDict, total=False):
-    """What is known of the file of a scan; it precedes the header."""
+    """Hints about the file of a scan; they take precedence over the header."""
 
     lateral: str
     """The unit of places, such as "um", "mil" or "10^-6 m"."""
     height: str
     """The unit of heights."""
     spacing: float
-    """The distance of neighbours in a matrix, in the unit of places."""
+    """The distance between neighbours in a matrix, in the unit of places."""
     x: str | int
     """The column of x, by name or number."""
     y: str | int
@@ -45,7 +45,7 @@ class ScanHints(TypedDict, total=False):
 
 
 class LoopHints(TypedDict, total=False):
-    """What is known of the file of a loop; it precedes the header."""
+    """Hints about the file of a loop; they take precedence over the header."""
 
     displacement: str | int
     """The column of displacements, by name or number."""
@@ -69,12 +69,13 @@ class LoopHints(TypedDict, total=False):
 
 @dataclass(frozen=True)
 class Scan:
-    """Measured heights: the members `scan` and `units` of a request, and what was taken for what."""
+    """Measured heights: the members `scan` and `units` of a request, and how the file was read."""
 
     scan: Document
     units: dict[str, str]
     reading: tuple[str, ...]
-    #: What each column was taken for, with its `name`, `quantity`, `unit`, or why it was `left_out`; none of a matrix.
+    #: What each column was taken for, with its `name`, `quantity`, `unit`, or why it was `left_out`; empty for a
+    #: matrix.
     columns: tuple[Document, ...] = ()
     #: The lines that are not in the scan: their `count`, and the first of their numbers as `lines`.
     rows_left_out: Document = field(default_factory=dict)
@@ -82,7 +83,7 @@ class Scan:
 
 @dataclass(frozen=True)
 class Loop:
-    """A measured loop: a member of `loops` and the `units` of a request, and what was taken for what."""
+    """A measured loop: a member of `loops` and the `units` of a request, and how the file was read."""
 
     loop: Document
     units: dict[str, str]
@@ -104,7 +105,7 @@ def hints_of(hints: ScanHints | LoopHints) -> dict[str, Any]:
 
 
 def _read(read: Any, source: str | os.PathLike[str] | bytes, hints: ScanHints | LoopHints) -> Document:
-    """What the importer of the service finds in a file."""
+    """The scan or loop that the importer of the service finds in a file."""
     found: Document = json.loads(guarded(lambda: read(content_of(source), **hints_of(hints))))
     return found
 
@@ -126,10 +127,10 @@ def loop_of(found: Document) -> Loop:
 def read_scan(source: str | os.PathLike[str] | bytes, **hints: Unpack[ScanHints]) -> Scan:
     """Reads a scan from a file or from its bytes.
 
-    Hints precede the header: `lateral` and `height` are units ("um", "mil", "10^-6 m"), `x`, `y` and `z` columns by
-    name or number, `sheet` that of a spreadsheet, `spacing` the distance of neighbours in a matrix, in the unit of
-    places. What is neither columns of text nor a spreadsheet is read by SurfaceTopography, with the units that the
-    file has (`pip install "stickslip[scans]"`).
+    Hints take precedence over the header: `lateral` and `height` are units ("um", "mil", "10^-6 m"), `x`, `y` and `z`
+    columns by name or number, `sheet` that of a spreadsheet, `spacing` the distance of neighbours in a matrix, in the
+    unit of places. Files other than columns of text and spreadsheets are read by SurfaceTopography, with the units that
+    the file has (`pip install "stickslip[scans]"`).
 
     Raises
     ------
@@ -190,7 +191,7 @@ def _with_gaps(row: Any) -> list[float | None]:
 def read_loop(source: str | os.PathLike[str] | bytes, **hints: Unpack[LoopHints]) -> Loop:
     """Reads a loop from a file or from its bytes.
 
-    Hints precede the header: `displacement`, `force`, `time` and `load` are columns by name or number,
+    Hints take precedence over the header: `displacement`, `force`, `time` and `load` are columns by name or number,
     `displacement_unit`, `force_unit`, `time_unit` and `load_unit` units ("um", "lbf", "min"), `sheet` is that of a
     spreadsheet.
 

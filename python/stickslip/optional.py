@@ -7,12 +7,12 @@ from typing import Any
 
 
 def needed(module: str, extra: str) -> Any:
-    """A module that an extra brings.
+    """A module that an extra installs.
 
     Raises
     ------
     ModuleNotFoundError
-        With the extra that brings it.
+        With the name of the extra that installs it.
     """
     try:
         return import_module(module)

@@ -38,10 +38,10 @@ def _refusal(detail: str, unit: str | None, place: str) -> InvalidInput:
 
 
 def from_text(text: str, unit: str | None, place: str) -> float | None:
-    """The number in SI units that a text says; None for a text that does not begin with a number.
+    """The number in SI units that a text states; None for a text that does not begin with a number.
 
-    A unit that is not in the table of the engine is one of pint, if pint is installed: so a number never depends on
-    whether it is.
+    A unit that is not in the table of the engine is read by pint, if it is installed: so a number never depends on
+    whether pint is installed.
     """
     try:
         return _native.quantity(text, unit or None)
@@ -53,7 +53,7 @@ def from_text(text: str, unit: str | None, place: str) -> float | None:
 
 
 def of_text(text: str, unit: str | None, place: str) -> float | str:
-    """The number that a text says; a text that says none, where no number is expected."""
+    """The number that a text states; the text itself if it states none and no number is expected."""
     found = from_text(text, unit, place)
     if found is None and unit:
         raise _refusal(f'"{text}" is not a number', unit, place)

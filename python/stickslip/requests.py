@@ -27,7 +27,7 @@ ScanLike: TypeAlias = Union["Scan", Mapping[str, Any], "NamedTable", "Sequence[Q
 def assemble(name: str, given: Document, parts: dict[str, Document]) -> Document:
     """The document of a request of its members, each of which may have a short form; those of `parts` are within one.
 
-    `name` is the path of a computation, or what a contact is asked for.
+    `name` is the path of a computation, or the name of a call of a contact.
     """
     given = {member: _object(member, value) for member, value in given.items() if value is not None}
     for part, values in parts.items():
@@ -133,7 +133,8 @@ def outputs(given: Any) -> list[Any]:
 def scan(given: Any, units: Any) -> tuple[Any, Any]:
     """The scan of a request and its units.
 
-    It is a file that was read, a document, a table with its columns by their names, or arrays of x and z, or of all.
+    It is a file that was read, a document, a table with its columns by their names, or arrays of x and z, or of x, y
+    and z.
     """
     if is_table(given):
         from .instruments import read_scan

@@ -1,4 +1,4 @@
-"""What all results have: fields, a table, a picture and a view in notebooks."""
+"""The common parts of all results: fields, a table, a picture and a view in notebooks."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ T = TypeVar("T", bound="Record")
 
 
 class Record:
-    """An object of a reply: its fields are attributes, and do not change. `document` is it as JSON.
+    """An object of a reply: its fields are attributes, and do not change. `document` is the JSON.
 
     A field that was not asked for is None.
     """
@@ -43,7 +43,7 @@ class Record:
 
     @property
     def context(self) -> Mapping[str, Any]:
-        """What is known of the contact beside the reply."""
+        """What is known of the contact besides the reply."""
         found: Mapping[str, Any] = self.__dict__["_context"]
         return found
 
@@ -155,7 +155,7 @@ class Result(Record):
         return True
 
     def __iter__(self) -> Iterator[Any]:
-        """The rows: objects where the reply has them, else tuples with the names of the columns."""
+        """The rows: objects where the reply has them, otherwise tuples with the names of the columns."""
         rows = schemas.ROWS.get(self.schema)
         if rows is not None and isinstance(found := getattr(self, rows), Rows) and len(found) == len(self):
             return iter(found)

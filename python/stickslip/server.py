@@ -20,11 +20,11 @@ class ServedClient(Client):
 
 
 def serve(store: str = "memory:", port: int = 0) -> ServedClient:
-    """Starts a server on a loopback port, a free one if it is 0, and connects to it: `with serve() as api:`.
+    """Starts a server on a loopback port (0 for any free one) and connects to it: `with serve() as api:`.
 
     It runs in threads of this process, with a store of its own unless one is named, and ends with the process at the
     latest.
     """
     if not hasattr(_native, "Server"):
-        raise OSError("the server is in the wheels for Linux alone")
+        raise OSError("only the wheels for Linux have the server")
     return ServedClient(_native.Server(store, port))
