@@ -139,7 +139,7 @@ impl Contact {
         Ok(moves)
     }
 
-    /// The same contact once more, which goes its own way from here.
+    /// A copy of the contact, which evolves independently from here.
     fn copy(&self) -> Contact {
         Contact {
             id: Uuid::now_v7(),
@@ -160,7 +160,7 @@ impl Contact {
         PyBytes::new(py, document.to_string().as_bytes())
     }
 
-    /// The contact of what `to_bytes` returned.
+    /// The contact of the bytes that `to_bytes` returned.
     #[staticmethod]
     fn from_bytes(py: Python<'_>, bytes: &[u8]) -> PyResult<Contact> {
         interruptible(py, |stop| Contact::restore(bytes, stop))?.map_err(refused)

@@ -41,7 +41,7 @@ pub struct Contacts {
 
 #[pymethods]
 impl Contacts {
-    /// So many contacts of the JSON text of a definition.
+    /// This number of contacts of the JSON text of a definition.
     #[new]
     fn new(py: Python<'_>, count: usize, body: &[u8], threads: usize) -> PyResult<Contacts> {
         let first = interruptible(py, |stop| first(body, stop))?.map_err(refused)?;
@@ -96,7 +96,7 @@ impl Contacts {
         tried
     }
 
-    /// Forgets the last trial.
+    /// Discards the last trial.
     fn revert(&mut self) {
         self.trial.clear();
     }

@@ -219,7 +219,7 @@ LOOSE = {
 }
 #: Keywords that no member of the document has.
 EXTRA = {
-    "/contacts/{id}/stress": {"residual": ("bool", "Ask for the extrema of the shear stress too.")},
+    "/contacts/{id}/stress": {"residual": ("bool", "Also ask for the extrema of the shear stress.")},
     "/fit": {"start": ("types.LoopStart", "How all loops begin.")},
 }
 #: The keywords that may be given without their names.
@@ -233,16 +233,16 @@ POSITIONAL = {
     "/contacts/{id}/stress": ["points"],
 }
 OF_DEFINITION = (
-    "The contact is taken at the preload of its definition, never moved: of a `Contact` that has been moved, its "
-    "history and present load play no part."
+    "The contact is taken at the preload of its definition, as if it was never moved: the history and the present "
+    "load of a `Contact` that has been moved do not matter."
 )
 NOTES = {
     ("cycle", True): (
-        "The load is the present one, and the history plays no part. `stickslip.cycle(contact)` is at the preload of "
+        "The load is the present one, and the history does not matter. `stickslip.cycle(contact)` is at the preload of "
         "the definition instead."
     ),
     ("fretting", True): (
-        "The load is the present one, and the history plays no part: the path begins with a contact that was never "
+        "The load is the present one, and the history does not matter: the path begins with a contact that was never "
         "moved. `stickslip.fretting(contact)` is at the preload of the definition instead. One displacement is the "
         "amplitude of a cycle, several are a path."
     ),
@@ -252,7 +252,7 @@ NOTES = {
     ("fit_loop", False): (
         OF_DEFINITION
         + " A loop may be a file that was read, a table with named columns, or arrays of displacement and "
-        "force. `start` says how all of them begin."
+        "force. `start` states how all of them begin."
     ),
 }
 _BALL = [
@@ -302,7 +302,7 @@ def methods_file(api: Schema) -> str:
     ]
     for name, methods, call, says in (
         ("Computations", every, "_answer", "The computations, which take a contact at the preload of its definition."),
-        ("OfContact", of_contact, "_answer_of_contact", "What a contact does and is asked for in its present state."),
+        ("OfContact", of_contact, "_answer_of_contact", "The calls that move a contact or read its present state."),
     ):
         for is_async in (False, True):
             word = "async def" if is_async else "def"
