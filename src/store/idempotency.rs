@@ -46,7 +46,7 @@ impl<'a> IdempotentRequest<'a> {
     /// its reply.
     ///
     /// # Errors
-    /// As [`IdempotentRequest::earlier_reply`], or `error` itself if there is no such reply.
+    /// As [`IdempotentRequest::earlier_reply`], or `error` itself if no reply is kept.
     pub async fn after_refusal(&self, error: StoreError) -> Result<Reply> {
         let earlier = if matches!(error, StoreError::KeyTaken) { self.earlier_reply().await? } else { None };
         earlier.ok_or(error)

@@ -98,7 +98,7 @@ impl MemoryStore {
 }
 
 impl Inner {
-    /// Why there is no such session, if there is none.
+    /// Why the session was not found, if it was not.
     fn missing(&self, id: Uuid) -> StoreError {
         self.expired.0.get(&id).map_or(StoreError::NotFound, |(_, tenant)| StoreError::Expired(tenant.clone()))
     }

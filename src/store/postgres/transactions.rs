@@ -30,7 +30,7 @@ const IDLE: usize = 50;
 const IDLE_PAGE: i64 = 10_000;
 
 impl ClientPool {
-    /// Why there is no such session.
+    /// Why the session was not found.
     pub(super) async fn missing(&self, id: Uuid) -> StoreError {
         match self.row(sql::EXPIRED, &[&id]).await {
             Ok(Some(row)) => StoreError::Expired(Tenant::new(row.get(0))),

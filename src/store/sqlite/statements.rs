@@ -63,7 +63,7 @@ pub(super) fn number_at(database: &Connection, id: Uuid, expected: u64) -> Resul
     }
 }
 
-/// Why there is no such session.
+/// Why the session was not found.
 pub(super) fn missing(database: &Connection, id: Uuid) -> Fault {
     let expired = first(database, "SELECT tenant FROM expired WHERE id = ?1", [id.to_string()], |row| tenant(row));
     expired.map_or_else(Fault::from, |tenant| tenant.map_or(StoreError::NotFound, StoreError::Expired).into())
