@@ -1,15 +1,16 @@
 //! A document in, a document out: what the service computes, without HTTP, storage or async. The service, its command
 //! line and the Python package call it.
 //!
-//! [`computations`] are what takes a document and gives one, each with its name, cost, table and picture, in one list;
-//! and the moves of a contact.
+//! [`computations`] lists the computations, each with its name, cost, table and picture, and has the moves of a
+//! contact.
 //!
-//! [`simulation`] is what they share: solvers on their paths, stresses, warnings, sweeps, prepared profiles, costs.
+//! [`simulation`] has the parts that the computations share: solvers on their paths, stresses, warnings, sweeps,
+//! prepared profiles, costs.
 //!
 //! [`formats`] writes tables and pictures.
 //!
-//! Long work asks its [`Stop`] whether to go on. A [`Refusal`] says why there is no reply. What work costs is estimated
-//! in [`Nanoseconds`].
+//! Long work asks its [`Stop`] whether to continue. A [`Refusal`] gives the reason for a missing reply. The cost of
+//! work is estimated in [`Nanoseconds`].
 
 pub mod computations;
 pub mod formats;
@@ -20,5 +21,5 @@ mod stop;
 pub use refusal::Refusal;
 pub use stop::{Flag, Interrupted, LONGEST_WORK, Part, Stop};
 
-/// Estimated nanoseconds of work.
+/// Estimated work, nanoseconds.
 pub type Nanoseconds = u64;

@@ -8,12 +8,12 @@ use crate::computations::ComputeError;
 use crate::formats::Unwritable;
 use crate::simulation::{Cause, Failure};
 
-/// A refusal: its kind, what happened this time, and where in the request.
+/// A refusal: its kind, what happened, and the place in the request.
 #[derive(Clone, Debug)]
 pub struct Refusal {
     /// The kind.
     pub code: Code,
-    /// What happened this time.
+    /// What happened.
     pub detail: String,
     /// Each fault of the request with its place.
     pub errors: Vec<Fault>,
@@ -22,7 +22,7 @@ pub struct Refusal {
 }
 
 impl Refusal {
-    /// A refusal of this kind, with what happened this time.
+    /// A refusal of this kind, with a text of what happened.
     #[must_use]
     pub fn new(code: Code, detail: impl Into<String>) -> Refusal {
         Refusal { code, detail: detail.into(), errors: Vec::new(), cause: None }
@@ -44,7 +44,7 @@ impl Refusal {
         Refusal { cause: Some(cause.into()), ..Refusal::new(Code::Internal, detail) }
     }
 
-    /// The document that tells it.
+    /// The problem document of the refusal.
     #[must_use]
     pub fn document(self, request_id: &str) -> ProblemDocument {
         ProblemDocument::new(self.code, self.detail, self.errors, request_id)
@@ -69,7 +69,7 @@ impl From<Fault> for Refusal {
 }
 
 impl From<ImportError> for Refusal {
-    /// At the line and column of the file, from 1 on.
+    /// At the line and column of the file, counted from 1.
     fn from(error: ImportError) -> Self {
         let place = |name: &str, number: Option<usize>| number.map_or_else(String::new, |at| format!("/{name}/{at}"));
         let pointer = place("line", error.line) + &place("column", error.column);

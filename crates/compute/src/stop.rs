@@ -7,19 +7,19 @@ use std::time::{Duration, Instant};
 /// How long the solver works for one request by default.
 pub const LONGEST_WORK: Duration = Duration::from_secs(60);
 
-/// Why work was broken off.
+/// Why work was stopped.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Interrupted {
     /// The client no longer waits for the result.
     #[error("stopped: the client no longer waits for the result")]
     Abandoned,
-    /// The work has taken as long as it may.
+    /// The work has reached its time limit.
     #[error("this takes longer than the {} s that are allowed", .0.as_secs_f64())]
     TimeLimit(Duration),
 }
 
-/// What long loops ask whether to go on. No more than some milliseconds may pass between two questions, since at each
-/// of them the work may yield to others.
+/// Tells long loops whether to continue. At most some milliseconds may pass between two checks, because at each of them
+/// the work may yield to other work.
 pub trait Stop: Send + Sync {
     /// The flag that ends the work, and the times that have been counted for it.
     fn flag(&self) -> &Flag;
@@ -32,12 +32,13 @@ pub trait Stop: Send + Sync {
     /// Ends the work if the flag is raised.
     ///
     /// # Errors
-    /// [`Interrupted::Abandoned`] if nobody waits for it any more, [`Interrupted::TimeLimit`] if the time is up.
+    /// [`Interrupted::Abandoned`] if no client waits for the result any more, [`Interrupted::TimeLimit`] if the time is
+    /// up.
     fn check(&self) -> Result<(), Interrupted> {
         self.check_after(self.yield_slot())
     }
 
-    /// The same, when the work has just yielded for so long.
+    /// As [`Stop::check`], after the work has just yielded for this time.
     ///
     /// # Errors
     /// As [`Stop::check`].
@@ -46,7 +47,7 @@ pub trait Stop: Send + Sync {
     }
 }
 
-/// A flag that is raised by another thread, or after as much work as is allowed. The default one has no time limit.
+/// A flag that is raised by another thread, or once the allowed work is used up. The default flag has no time limit.
 #[derive(Debug, Default)]
 pub struct Flag {
     raised: AtomicBool,
@@ -62,7 +63,7 @@ pub struct Flag {
 }
 
 impl Flag {
-    /// A flag that is also raised after so much work.
+    /// A flag that is also raised after this much work.
     #[must_use]
     pub fn within(allowed: Option<Duration>) -> Flag {
         Flag { allowed, ..Flag::default() }
@@ -142,7 +143,7 @@ impl<S: Stop + ?Sized> Stop for &S {
     }
 }
 
-/// A part of some work: it ends with the whole, or after it has taken so long itself.
+/// A part of some work: it ends with the whole, or after a time limit of its own.
 #[derive(Debug)]
 pub struct Part<S> {
     whole: S,
@@ -150,7 +151,7 @@ pub struct Part<S> {
 }
 
 impl<S: Stop> Part<S> {
-    /// A part of this work that may take so long.
+    /// A part of this work with this time limit.
     #[must_use]
     pub fn of(whole: S, allowed: Option<Duration>) -> Part<S> {
         Part { whole, flag: Flag::within(allowed) }

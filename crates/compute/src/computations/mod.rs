@@ -54,12 +54,12 @@ pub fn for_each_computation(visitor: &mut impl Visitor) {
     visitor.visit::<loop_fit::FitLoops>();
 }
 
-/// What is done with every computation.
+/// A visitor of every computation.
 pub trait Visitor {
-    /// One that works on what its document defines.
+    /// A computation on the contact that its document defines.
     fn visit<C: Computation>(&mut self);
 
-    /// One whose document may name a stored contact instead.
+    /// A computation whose document may name a stored contact instead.
     fn visit_stored<C: FromStored>(&mut self) {
         self.visit::<C>();
     }
@@ -70,17 +70,17 @@ pub type Task<C> = <<C as Computation>::Request as Document>::Checked;
 
 /// A computation.
 pub trait Computation: Sized + 'static {
-    /// What its users read of it.
+    /// The texts that its users read.
     const ABOUT: About;
     /// Its request.
     type Request: Document + ToSchema + 'static;
     /// Its result.
     type Outcome: Outcome + 'static;
 
-    /// Requests that work as they stand.
+    /// Complete requests as examples.
     fn examples() -> Vec<Example>;
 
-    /// Refuses what cannot be shown, before it is computed.
+    /// Refuses display options that are not possible, before the computation.
     ///
     /// # Errors
     /// The [`Fault`].
@@ -88,7 +88,7 @@ pub trait Computation: Sized + 'static {
         Ok(())
     }
 
-    /// Bytes of memory that it takes with its reply in columns; rather too many than too few.
+    /// Upper estimate of the memory of the computation with its reply in columns, bytes.
     fn bytes(task: &Task<Self>) -> usize;
 
     /// Rows of its table, and the bytes of each in the longest of the formats.
@@ -96,22 +96,22 @@ pub trait Computation: Sized + 'static {
         (0, 0)
     }
 
-    /// The time that it takes.
+    /// The estimated time of the computation.
     fn cost(task: &Task<Self>) -> Nanoseconds;
 
     /// Computes.
     ///
     /// # Errors
-    /// [`Failure`] if there is no answer, or the work was ended.
+    /// [`Failure`] if the mechanics has no answer, or the work was stopped.
     fn run(task: Task<Self>, stop: &dyn Stop) -> Result<Self::Outcome, Failure>;
 }
 
 /// A computation whose document may name a stored contact in place of a definition.
 pub trait FromStored: Computation {
-    /// The same on a contact.
+    /// The same computation on a contact.
     type OnContact: OnContact<Outcome = Self::Outcome>;
 
-    /// The stored contact and the definition that it is said to have, or else the request as it was.
+    /// The stored contact and the definition that the request gives for it, or else the unchanged request.
     ///
     /// # Errors
     /// The request, if it defines its contact itself.
@@ -139,13 +139,13 @@ pub trait OnContact: Send + 'static {
         Ok(())
     }
 
-    /// The time that it takes on a contact of this profile, with so many pieces of slip history.
+    /// The estimated time on a contact of this profile, with this many pieces of slip history.
     fn cost(&self, profile: &Profile, depth: usize) -> Nanoseconds;
 
     /// Computes, on a contact after its move number `sequence`.
     ///
     /// # Errors
-    /// [`Failure`] if there is no answer, or the work was ended.
+    /// [`Failure`] if the mechanics has no answer, or the work was stopped.
     fn run(self, contact: Contact, sequence: u64, stop: &dyn Stop) -> Result<Self::Outcome, Failure>;
 }
 
@@ -157,7 +157,7 @@ pub trait Outcome: Send + Sized {
     /// The JSON document.
     fn reply(&self) -> &Self::Reply;
 
-    /// About how long that is, bytes.
+    /// Approximate length of the JSON document, bytes.
     fn length(&self) -> usize {
         CAPACITY
     }
@@ -184,12 +184,12 @@ impl<R: Serialize + ToSchema + Send> Outcome for Plain<R> {
     }
 }
 
-/// What users read of a computation.
+/// The texts of a computation that users read.
 #[derive(Clone, Copy, Debug)]
 pub struct About {
     /// Its name, which is that of its command.
     pub name: &'static str,
-    /// Where it is served; none for one that only the command line has.
+    /// Where it is served; `None` for a computation of the command line only.
     pub route: Option<Route>,
     /// What it does, in a line.
     pub title: &'static str,
@@ -242,16 +242,16 @@ pub struct Choice {
     pub name: &'static str,
     /// What it chooses.
     pub description: &'static str,
-    /// What there is to choose from.
+    /// The words to choose from.
     pub words: &'static [&'static str],
 }
 
-/// A request that works as it stands.
+/// A complete request as an example.
 #[derive(Clone, Debug)]
 pub struct Example {
     /// Its name.
     pub name: &'static str,
-    /// What it asks for.
+    /// What the request asks for.
     pub summary: &'static str,
     /// The request.
     pub value: Value,
@@ -286,7 +286,7 @@ pub struct DisplayOptions {
     pub format: Format,
     /// What a picture or a table shows, by one of the words of the [`Choice`].
     pub choice: Option<&'static str>,
-    /// Whether JSON is indented, for readers.
+    /// Whether JSON is indented for human readers.
     pub indented: bool,
 }
 
@@ -297,7 +297,7 @@ impl DisplayOptions {
         DisplayOptions { format, choice: None, indented: false }
     }
 
-    /// Bytes that this takes beyond the columns of a table of so many rows of so many bytes.
+    /// Bytes beyond the columns, for a table of this many rows of this many bytes.
     #[must_use]
     pub fn bytes(&self, (rows, row): (usize, usize)) -> usize {
         self.format.bytes(rows, row)
@@ -330,7 +330,7 @@ pub enum ComputeError {
     /// The request is invalid.
     #[error(transparent)]
     Rejected(#[from] Rejection),
-    /// There is no answer to it.
+    /// The request has no answer.
     #[error(transparent)]
     Failed(#[from] Failure),
     /// The reply cannot be written.
@@ -338,10 +338,10 @@ pub enum ComputeError {
     Unwritable(#[from] Unwritable),
 }
 
-/// A computation without its types: what users read of it, and its reply to the JSON text of a request.
+/// A computation without its types: its texts for users, and its reply to the JSON text of a request.
 #[derive(Clone, Copy, Debug)]
 pub struct Entry {
-    /// What users read of it.
+    /// The texts that users read.
     pub about: About,
     compute: Compute,
 }

@@ -13,7 +13,7 @@ use crate::simulation::{
     Cause, Failure, FarMove, Timer, accuracy, equal_peaks, excess_error, follow, new_warnings, stresses,
 };
 
-/// Why the exact solver answers for a contact with a history.
+/// The reason for the exact solver on a contact with a history.
 const REASON: &str = "stored contacts use the exact solver";
 
 /// The result of moves besides the states after them.
@@ -82,10 +82,10 @@ pub fn shown_states(steps: Steps, all: impl Iterator<Item = State>, end: State) 
     }
 }
 
-/// What would relax a contact, and the states on the way if they are asked for; the contact is used up.
+/// The protocol that would relax a contact, and the states along it if they are asked for; the contact is consumed.
 ///
 /// # Errors
-/// [`Failure`] if there is no such protocol, or the work was ended.
+/// [`Failure`] if no protocol reaches the target, or the work was stopped.
 pub fn dry_run_relax(
     mut contact: Contact,
     relaxation: &Relaxation,

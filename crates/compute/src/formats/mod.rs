@@ -14,7 +14,7 @@ pub use table::{Block, Cells, Column, Table, TableStream};
 
 /// Bytes that a plot takes while it is drawn: its pixels, and the outlines of a rough field.
 const PLOT: usize = 32 * 1024 * 1024;
-/// The time that drawing it takes at the least.
+/// The least time that drawing a plot takes.
 const PLOT_COST: Nanoseconds = 1_000_000;
 
 /// How a table is written.
@@ -26,9 +26,9 @@ pub enum Format {
     Rows,
     /// Comma-separated values under a line of names; a missing value is an empty cell.
     Csv,
-    /// One flat JSON object a line.
+    /// One flat JSON object per line.
     Ndjson,
-    /// A stream of Arrow's record batches: typed columns, read without parsing.
+    /// A stream of Arrow record batches: typed columns, read without parsing.
     Arrow,
     /// A vector plot.
     Svg,
@@ -63,7 +63,7 @@ impl Format {
         self.names().0
     }
 
-    /// The one of `formats` with this name.
+    /// The format of this name in `formats`.
     #[must_use]
     pub fn named(name: &str, formats: &[Format]) -> Option<Format> {
         formats.iter().copied().find(|format| format.name() == name)
@@ -139,7 +139,7 @@ pub const CAPACITY: usize = 128;
 pub struct Unwritable(String);
 
 impl Unwritable {
-    /// By what the library says.
+    /// From the message of the library.
     pub fn new(error: impl Display) -> Unwritable {
         Unwritable(error.to_string())
     }

@@ -1,5 +1,5 @@
-//! What computations and stored contacts share: a solver follows a path, stresses, warnings, sweeps, and why a request
-//! has no result.
+//! The parts that computations and stored contacts share: a solver follows a path, stresses, warnings, sweeps, and the
+//! failures of requests.
 //!
 //! Nothing here depends on HTTP or storage. Long loops check a [`Stop`] between moves and between radii. [`cost`] and
 //! [`bytes`] estimate the work.
@@ -44,7 +44,7 @@ use crate::{Interrupted, Stop};
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{pointer}{}{cause}", if pointer.is_empty() { "" } else { ": " })]
 pub struct Failure {
-    /// JSON pointer to the member that asks for what has no answer; empty for the request as a whole.
+    /// JSON pointer to the member whose request has no answer; empty for the request as a whole.
     pub pointer: String,
     /// What is wrong with it.
     pub cause: Cause,
@@ -53,13 +53,13 @@ pub struct Failure {
 /// What is wrong with a request that has no result.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Cause {
-    /// The mechanics has no answer to it.
+    /// The mechanics has no answer to the request.
     #[error(transparent)]
     Refused(#[from] mechanics::Error),
     /// The scan yields no profile, or none that reaches the edge of the contact.
     #[error(transparent)]
     Scan(#[from] scan::Error),
-    /// The loops determine nothing, or not what is free.
+    /// The loops determine nothing, or not the free quantities.
     #[error(transparent)]
     Loops(#[from] loops::Error),
     /// The slip history would exceed its limit.
@@ -102,7 +102,7 @@ pub enum Cause {
         estimate: u64,
         /// Pieces of slip history.
         depth: usize,
-        /// How many would not be refused.
+        /// The most pieces that would not be refused.
         fits: usize,
         /// How long work may take.
         allowed: Duration,
@@ -110,7 +110,7 @@ pub enum Cause {
     /// A contact that is to be relaxed does not touch.
     #[error("the indenter is lifted off, so there is no stress to relax: move it back into contact first")]
     Lifted,
-    /// The request names a stored contact, and only a server has any.
+    /// The request names a stored contact, which only a server has.
     #[error("needs a running service")]
     NeedsServer,
     /// The client no longer waits for the result.

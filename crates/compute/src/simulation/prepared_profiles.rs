@@ -11,7 +11,7 @@ use stickslip_wire::{self as wire, DefinedProfile, Document, Prepare, Rejection}
 use super::{Failure, bytes, check, cost_of_preparation};
 use crate::{Nanoseconds, Stop};
 
-/// What distinguishes prepared profiles: a digest.
+/// The key of a prepared profile: a digest.
 pub type ProfileKey = [u8; 32];
 
 /// Where prepared profiles are kept, as long as there is room.
@@ -19,11 +19,11 @@ pub trait ProfileCache: Send + Sync {
     /// Whether a profile is kept.
     fn holds(&self, key: &ProfileKey) -> bool;
 
-    /// A profile, for one more who uses it.
+    /// A profile, for one more user.
     fn get(&self, key: &ProfileKey) -> Option<Arc<Profile>>;
 
-    /// Keeps a profile of so many bytes that has just been prepared, unless there is one with this key already; returns
-    /// the one that is to be used.
+    /// Keeps a profile of this many bytes that has just been prepared, unless one with this key is kept already;
+    /// returns the profile to use.
     fn keep(&self, key: ProfileKey, profile: Arc<Profile>, bytes: usize) -> Arc<Profile>;
 }
 
@@ -43,7 +43,7 @@ impl<S: Stop> Profiles<S> {
         Profiles { cache, stop, allowed }
     }
 
-    /// The cost of preparing the profile of a document: none if it is ready.
+    /// The cost of preparing the profile of a document: zero if it is cached.
     ///
     /// # Errors
     /// [`Cause::Preparation`](super::Cause) if it cannot end in time.
@@ -92,7 +92,7 @@ impl<S: Stop> Prepare for Profiles<S> {
     }
 }
 
-/// What tells profiles apart: all their numbers, and the moduli where they belong to bodies.
+/// What distinguishes profiles: all their numbers, and the moduli where they belong to bodies.
 fn key_of(profile: &wire::Profile, bodies: Option<&Elasticity>) -> ProfileKey {
     let mut hash = Sha256::new();
     add(profile, &mut hash);

@@ -19,7 +19,7 @@ use super::{
 };
 use crate::{LONGEST_WORK, Stop};
 
-/// Why the solver is the one that the request names.
+/// The reason for a solver that the request names.
 const AS_ASKED: &str = "as asked for";
 
 /// Runs a simulation.
@@ -300,7 +300,7 @@ pub fn sampled(
 /// Refuses a search for extrema that cannot end in time.
 ///
 /// # Errors
-/// [`Cause::Search`] with the estimate, and what would fit.
+/// [`Cause::Search`] with the estimate, and the most pieces that are possible.
 fn check_search(profile: &Profile, depth: usize, stop: &dyn Stop) -> Result<(), Failure> {
     let (estimate, allowed) =
         (Duration::from_nanos(cost::of_search(profile, depth)), stop.flag().time_limit().unwrap_or(LONGEST_WORK));

@@ -1,4 +1,4 @@
-//! What a reply states of itself: its solver, its errors, and the time that it took.
+//! What a reply states about itself: its solver, its errors, and the time that it took.
 
 use std::time::{Duration, Instant};
 
@@ -32,7 +32,7 @@ impl Timer<'_> {
     }
 }
 
-/// Which solver answered, how well, and how long it took.
+/// The solver that was used, its errors, and the time that it took.
 pub fn accuracy<S: Solver>(solver: &S, timer: Timer<'_>, reason: &str) -> Accuracy {
     let estimate = solver.accuracy(&|| timer.stop.check().is_ok());
     let assumed = assumption(solver.exact().profile()).map(|(_, assumed)| format!("; {assumed}"));

@@ -1,4 +1,4 @@
-//! Warnings: what to know about a result that is valid nevertheless. Each code has its paragraph in `docs/warnings.md`.
+//! Warnings about results that are valid nevertheless. Each code has its paragraph in `docs/warnings.md`.
 
 use stickslip_mechanics::{Contact, Profile, in_unit};
 use stickslip_wire::Warning;
@@ -22,8 +22,8 @@ pub const HUGE_TABLE_RADIUS: f64 = 100.0;
 /// Noise of g over the indentation beyond which a table is called noisy.
 const MAX_RELATIVE_NOISE: f64 = 1e-3;
 
-/// Error of the stresses, over the largest shear stress there can be, beyond which they show hardly more than their
-/// order.
+/// Error of the stresses, over the largest possible shear stress, beyond which they show hardly more than their order
+/// of magnitude.
 const MAX_STRESS_ERROR: f64 = 0.05;
 
 /// The warnings for a contact in its present state.
@@ -48,12 +48,12 @@ pub fn new_warnings(contact: &Contact, before: f64, largest: f64, excess_error: 
     found
 }
 
-/// A displacement that is meant stays below so many times that of gross slip, or such a part of the length scale of the
-/// profile.
+/// An intended displacement stays below this multiple of that of gross slip, or below this part of the length scale of
+/// the profile.
 const MAX_GROSS_SLIPS: f64 = 100.0;
 const MAX_PART_OF_LENGTH: f64 = 0.1;
 
-/// The farthest displacement of some moves that is probably not meant.
+/// The farthest displacement of some moves that is probably not intended.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct FarMove {
     /// The displacement before, m.
@@ -126,7 +126,7 @@ pub fn excess_error(error: f64, tolerance: f64, curved: usize) -> Option<f64> {
     (error > tolerance * curved.max(1) as f64 + 1e-13).then_some(error)
 }
 
-/// What a contact that is known by its load curve alone takes for granted: the code of its warning, and a sentence.
+/// The assumption of a contact that is known by its load curve alone: the code of its warning, and a sentence.
 pub(super) fn assumption(profile: &Profile) -> Option<(&'static str, &'static str)> {
     match profile {
         Profile::Asperities(_) => Some((

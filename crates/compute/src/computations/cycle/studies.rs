@@ -1,4 +1,4 @@
-//! What is asked for beside steady cycles: the load that damps most, and the response of a mass.
+//! Studies besides steady cycles: the load that damps most, and the response of a mass.
 
 use stickslip_mechanics::Contact;
 use stickslip_mechanics::cycle::{Drive, Resonator, best_load as best_of, work_under_load};
@@ -14,8 +14,8 @@ const SWEPT: [f64; 2] = [0.3, 1.5];
 /// The largest load of a curve over the best.
 const CURVE_END: f64 = 3.0;
 
-/// The load under which a drive, through a machine of this compliance, m/N, does most friction work; `None` if no load
-/// does any, or the profile has no contact for any that could.
+/// The load under which a drive, through a machine of this compliance, m/N, does the most friction work; `None` if no
+/// load does any, or the profile does not allow the loads that could.
 pub fn best_load(
     contact: &Contact,
     (drive, compliance): (Drive, f64),

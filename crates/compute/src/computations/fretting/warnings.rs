@@ -1,4 +1,4 @@
-//! What to know about the largest value of a fatigue criterion, and of a cycle, before it is trusted.
+//! Warnings about the largest value of a fatigue criterion, and about a cycle.
 
 use stickslip_mechanics::fatigue::{Criterion, Measure, Ratings, Worst};
 use stickslip_mechanics::{Contact, Move, in_unit};

@@ -28,20 +28,20 @@ const CHUNKS: usize = 10_000;
 pub struct Sweep {
     checked: CheckedSweep,
     base: Value,
-    /// What the points share, if no axis changes the profile; the base has a sphere in its place then.
+    /// The parts that the points share, if no axis changes the profile; the base then has a sphere in its place.
     shared: Option<Shared>,
     cost_per_point: Nanoseconds,
     bytes: usize,
 }
 
 impl Sweep {
-    /// The sweep as it was asked for, with its axes.
+    /// The sweep as requested, with its axes.
     #[must_use]
     pub fn checked(&self) -> &CheckedSweep {
         &self.checked
     }
 
-    /// How many points.
+    /// Number of points.
     #[must_use]
     pub fn points(&self) -> usize {
         self.checked.points

@@ -12,11 +12,11 @@ use crate::formats::{Cells, Column, Table};
 /// The outputs of consecutive points.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SweepResult {
-    /// The numbers, point by point; not a number where there is none.
+    /// The numbers, point by point; NaN where one is missing.
     pub values: Vec<f64>,
-    /// How many points have no answer.
+    /// Number of points without an answer.
     pub failed: u64,
-    /// The first of them.
+    /// The first points without an answer.
     pub failures: Vec<PointFailure>,
 }
 
