@@ -25,7 +25,7 @@ pub fn json(value: &impl serde::Serialize) -> String {
     serde_json::to_string_pretty(value).unwrap_or_else(|error| error.to_string())
 }
 
-/// A problem as the message of an error: two lines on a terminal, else the document that the service would send.
+/// A problem as the message of an error: two lines on a terminal, otherwise the document that the service would send.
 pub fn problem(refusal: impl Into<Refusal>) -> String {
     fault(refusal, !io::stderr().is_terminal())
 }
@@ -34,7 +34,7 @@ pub fn print(text: impl Display) -> Result<(), String> {
     write(|out| writeln!(out, "{text}"))
 }
 
-/// Says on standard error what was taken for what in a file. Where that cannot be written, the result counts still.
+/// Prints to standard error how a file was interpreted. If that fails, the result still counts.
 pub fn say(file: &Path, sentences: &[String]) {
     let mut err = io::stderr().lock();
     for sentence in sentences {

@@ -27,7 +27,7 @@ pub async fn reload_on_change(files: Vec<PathBuf>, mut signal: Signal, read: imp
     }
 }
 
-/// What changes with a file, whether it is written to or replaced.
+/// The metadata that changes with a file, whether it is written to or replaced.
 fn stamp(file: &Path) -> Option<[i64; 4]> {
     let data = std::fs::metadata(file).ok()?;
     Some([data.ino().cast_signed(), data.size().cast_signed(), data.ctime(), data.ctime_nsec()])

@@ -119,8 +119,8 @@ enum LogFormat {
 }
 
 impl Serve {
-    /// Checks that it is meant where no command was given: that a store is named, or that there is one. Otherwise a
-    /// file would be made wherever somebody tries the program.
+    /// Without a command, checks that a store is named or exists: otherwise a file would be created wherever somebody
+    /// tries the program.
     ///
     /// # Errors
     /// A line that says what to do.
@@ -260,7 +260,8 @@ fn tls(options: &Serve) -> Result<Option<Tls>, String> {
     tls.map(Some).map_err(|error| format!("--tls-cert, --tls-key: {error}"))
 }
 
-/// The files that may change while the service runs, and what reads them again. What is wrong then changes nothing.
+/// The files that may change while the service runs, and the function that reads them again. A faulty file changes
+/// nothing.
 fn reload(options: &Serve, keys: Option<KeysInForce>, tls: Option<Tls>) -> (Vec<PathBuf>, impl Fn() + Send + use<>) {
     let certificate = [&options.tls_cert, &options.tls_key].into_iter().flatten().cloned();
     let files = key::key_files(&options.keys).chain(certificate).collect();
@@ -291,7 +292,7 @@ fn time(text: &str) -> Result<Duration, String> {
     if time < SHORTEST_TIME { Err(format!("at least {SHORTEST_TIME:?}")) } else { Ok(time) }
 }
 
-/// A filter of the log. The library takes an empty part for all that there is.
+/// A filter of the log. The library takes an empty part as everything.
 fn filter(text: &str) -> Result<Targets, String> {
     let parts: Vec<&str> = text.split(',').map(str::trim).filter(|part| !part.is_empty()).collect();
     if let Some(part) = parts.iter().find(|part| part.contains(['[', '{'])) {
@@ -301,7 +302,7 @@ fn filter(text: &str) -> Result<Targets, String> {
     text.parse().map_err(|error: ParseError| error.to_string())
 }
 
-/// Why an address cannot be had, with the remedy where there is one.
+/// Why an address cannot be used, with a remedy if one is known.
 fn cannot_listen(address: SocketAddr, error: &io::Error) -> String {
     match error.kind() {
         io::ErrorKind::AddrInUse => format!(

@@ -128,9 +128,9 @@ pub fn escaped(name: &str) -> String {
 #[derive(Debug, Default)]
 pub struct Faults {
     found: Vec<Fault>,
-    /// How many there are, those that are not listed included.
+    /// Number of faults, including those that are not listed.
     count: usize,
-    /// What the mechanics refuses, and where: a kind of its own if there are no other faults.
+    /// The refusal of the mechanics, and its place: a kind of its own if there are no other faults.
     unanswerable: Option<(String, Error)>,
 }
 

@@ -140,7 +140,7 @@ replies! {
 pub struct FilePreview {
     /// The encoding, such as `UTF-8` or `UTF-16LE`, or the kind of a spreadsheet.
     pub encoding: String,
-    /// What separates the columns: `semicolon`, `tab`, `white_space` or `comma`.
+    /// The separator of columns: `semicolon`, `tab`, `white_space` or `comma`.
     pub separator: String,
     /// The decimal mark: `.` or `,`.
     pub decimal_mark: String,

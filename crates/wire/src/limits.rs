@@ -49,7 +49,7 @@ pub const SPRING_SEARCH: usize = 2_000;
 pub const SPRING_STEPS: usize = 2_000_000_000;
 /// Pieces that the slip history of a contact may have. A move adds one at most, unless it is curved, when it adds many.
 pub const MEMORY_DEPTH: usize = 200_000;
-/// Relative tolerance for what is not exact.
+/// Relative tolerance of results that are not exact.
 pub const TOLERANCE: RangeInclusive<f64> = 1e-14..=1e-2;
 /// Points without an answer that the reply to a sweep lists; all of them are counted.
 pub const SWEEP_FAILURES: usize = 100;
@@ -105,7 +105,7 @@ pub struct Characters(pub usize);
 pub struct Tolerance(pub f64);
 
 impl Tolerance {
-    /// The member `tolerance` of a request, or else the default.
+    /// The member `tolerance` of a request, otherwise the default.
     pub(super) fn of(&self, tolerance: Option<f64>, faults: &mut Faults) -> f64 {
         self.check(&tolerance, JsonPath::Root.member("tolerance"), faults);
         tolerance.unwrap_or(self.0)

@@ -32,7 +32,7 @@ macro_rules! codes {
                 }
             }
 
-            /// What this kind of refusal is.
+            /// The title of this kind of refusal.
             #[must_use]
             pub fn title(self) -> &'static str {
                 match self {
@@ -105,7 +105,7 @@ codes! {
     /// Something in the request is missing, unknown, of the wrong type or out of range, whatever the state of the
     /// server. Each fault comes with a pointer to its place.
     InvalidInput = 422 "invalid_input": "The request is invalid", "`errors` names each fault and what is allowed";
-    /// A file names a unit that is not in the table of units, or one of something else than is needed there.
+    /// A file names a unit that is not in the table of units, or a unit of another quantity than is needed there.
     UnknownUnit = 422 "unknown_unit": "A unit of the file is not known",
         "correct the header of the file, or name the unit in the query: [units](measured-surfaces.md#units)";
     /// The request is valid, but no state carries the tangential force that it asks for.
@@ -134,7 +134,7 @@ codes! {
     /// The idempotency key belongs to another request.
     IdempotencyKeyReused = 422 "idempotency_key_reused": "The idempotency key belongs to another request",
         "choose a new key";
-    /// The tenant has as many jobs as it may have.
+    /// The tenant has reached its limit of jobs.
     TooManyJobs = 429 "too_many_jobs": "The tenant has too many jobs",
         "wait for a job to end, or delete one; `Retry-After` says when to try again";
     /// A quota of the client is used up.
@@ -144,7 +144,7 @@ codes! {
     /// A fault of this program. Its cause goes to the log; the client gets the identifier of the request.
     Internal = 500 "internal": "The server has failed",
         "a fault of the server: give its operator the `request_id`; a change may have been stored";
-    /// What is stored of the contact is not what has been stored: moves are missing, or cannot be made again.
+    /// The stored contact is damaged: moves are missing, or cannot be replayed.
     DamagedContact = 500 "damaged_contact": "The stored contact is damaged",
         "moves of the contact are missing in the store: the operator must restore it; other contacts are not affected";
     /// Nothing is wrong with the request, but there is no capacity at present.

@@ -203,7 +203,7 @@ impl Document for SimulateRequest {
     }
 }
 
-/// Notes what is asked for and not defined in the plane.
+/// Notes requested results that are not defined in the plane.
 fn check_in_plane(
     asked: &[(&'static str, bool)],
     stress: Option<&Sampling>,
@@ -259,7 +259,7 @@ impl Solver {
     }
 }
 
-/// What springs are called where they are refused.
+/// The name of springs in refusals.
 pub(super) const SPRINGS: &str = "the spring foundation";
 
 /// How many springs may be evaluated `passes` times each.

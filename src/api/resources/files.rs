@@ -45,7 +45,7 @@ const LOOP: &str =
     "Displacement (um);Force (mN)\n0;0\n0,5;120\n0,2;40\n-0,1;-35\n-0,5;-120\n-0,2;-40\n0,1;35\n0,5;120\n";
 
 parameters! {
-    /// What is known of a scan beside its file.
+    /// What is known of a scan besides its file.
     pub struct ScanFileQuery {
         /// The unit of places; without it the one that the header names, or m.
         lateral: Option<UnitHint> = LENGTH;
@@ -69,7 +69,7 @@ parameters! {
 }
 
 parameters! {
-    /// What is known of a loop beside its file.
+    /// What is known of a loop besides its file.
     pub struct LoopFileQuery {
         /// The column of displacements, by its number from 1 on or the beginning of its name in the header; without it
         /// the column with such a name, or the first of two.

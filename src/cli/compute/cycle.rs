@@ -11,7 +11,7 @@ use crate::cli::command_error::CommandError;
 use crate::cli::io::{parsed, read};
 use stickslip_compute::formats::Format;
 
-/// What to make of the body.
+/// The flags that change the body.
 #[derive(Args)]
 pub struct CycleFlags {
     /// A fretting map: a row for each amplitude under each of these normal forces, N, as `from:to:count`, evenly spaced

@@ -12,10 +12,10 @@ use super::{Body, Flags, force, length, member, one_of, time};
 use crate::cli::command_error::CommandError;
 use crate::cli::io::read;
 
-/// What is free if the command line does not say.
+/// The free quantities if the command line names none.
 const USUALLY_FREE: [FitParameter; 3] = [FitParameter::Friction, FitParameter::GStar, FitParameter::ForceOffset];
 
-/// What a file of columns leaves open.
+/// The flags for what a file of columns leaves open.
 #[derive(Args)]
 pub struct FitFlags {
     /// A file with the definition of the contact, for a file of columns.
@@ -116,7 +116,7 @@ impl FitFlags {
     }
 }
 
-/// What `NAME=VALUE` or `NAME=VALUE+-ERROR` says.
+/// The name and the known value in `NAME=VALUE` or `NAME=VALUE+-ERROR`.
 fn known(text: &str) -> Result<(FitParameter, KnownValue), String> {
     let malformed = || format!("`{text}` is not NAME=VALUE or NAME=VALUE+-STANDARD_ERROR");
     let (name, rest) = text.split_once('=').ok_or_else(malformed)?;

@@ -32,20 +32,20 @@ pub struct Compute {
 /// Takes a part out of a reply in JSON.
 type ReplyPart = fn(&[u8]) -> Result<String, String>;
 
-/// What flags make of a request.
+/// The request that the flags and the file make.
 #[derive(Default)]
 struct Body {
     text: Vec<u8>,
     /// The format if the command line does not name one.
     format: Option<Format>,
-    /// Takes out of the reply what alone is printed.
+    /// Takes the part to print out of the reply.
     only: Option<ReplyPart>,
-    /// What was taken for what in a measured file.
+    /// How a measured file was interpreted.
     reading: Vec<String>,
 }
 
 impl Body {
-    /// A file that is a body, or else one that `made` makes a body of, with what it took for what.
+    /// A file that is a body, or otherwise one that `made` makes a body of, with how it was interpreted.
     fn of_file<R: Serialize>(
         file: Option<&Path>,
         made: impl FnOnce(&[u8], &Path) -> Result<(R, Vec<String>), CommandError>,
@@ -85,7 +85,7 @@ fn time(text: &str) -> Result<UnitHint, UnknownUnit> {
     UnitHint::of(text, Dimension::TIME)
 }
 
-/// Flags of a computation beside those that all have.
+/// Flags of a computation besides those that all have.
 trait Flags: Args {
     fn add(command: Command) -> Command {
         Self::augment_args(command)

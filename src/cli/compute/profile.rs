@@ -12,7 +12,7 @@ use super::{Body, Flags, length, member};
 use crate::cli::command_error::CommandError;
 use crate::cli::io::read;
 
-/// What a file of columns leaves open.
+/// The flags for what a file of columns leaves open.
 #[derive(Args)]
 pub struct ProfileFlags {
     /// The unit of places in a file of columns; without it the one that the header names, or m.

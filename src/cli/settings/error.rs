@@ -80,7 +80,7 @@ fn name_of(arg: &Arg, value: &str, origin: &Origin<'_>) -> String {
     }
 }
 
-/// What is allowed: the possible values, or else what the help says.
+/// The allowed values: the possible ones, otherwise the help text.
 fn expected(arg: &Arg, error: &clap::Error) -> String {
     match error.get(ContextKind::ValidValue) {
         Some(ContextValue::Strings(possible)) if !possible.is_empty() => possible.join(" or "),

@@ -170,14 +170,14 @@ const PATHS: Array<RangeInclusive<usize>> = Array(0..=100, 0..=*SUBSURFACE_POINT
 /// A value that a material bears.
 const BEARABLE: Range = Range { quantity: Quantity::Number, unit: "", min: 1e-300, max: 1e30 };
 
-/// What is computed, and what the material bears.
+/// The criterion to compute, and the limit and life of the material.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AskedMeasure {
     /// What is computed.
     pub measure: Measure,
     /// The value that the material withstands.
     pub limit: Option<f64>,
-    /// The cycles that it bears.
+    /// The cycles that the material withstands.
     pub life: Option<LifeCurve>,
 }
 

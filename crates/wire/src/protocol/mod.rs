@@ -52,7 +52,7 @@ pub struct ProtocolRequest {
     pub robustness: Option<Robustness>,
 }
 
-/// How a contact on the server is to be relaxed; `reversals` or `target` is needed, all else has a default.
+/// How a contact on the server is to be relaxed; `reversals` or `target` is needed, everything else has a default.
 #[schema(example = json!({"reversals": 20, "dry_run": true}))]
 pub struct RelaxRequest {
     /// Largest number of reversals N_R; give this or `target`. The path begins with one more stroke.
@@ -134,7 +134,7 @@ fn samples() -> usize {
     200
 }
 
-/// A number of reversals, or what they are to reach.
+/// A number of reversals, or the target that they must reach.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Aim {
     /// This many reversals.
