@@ -265,7 +265,7 @@ def test_errors_are_those_in_process(ball: ss.Contact, engine: Any) -> None:
 
 
 def test_nothing_is_computed_in_process_in_silence(api: ss.Client) -> None:
-    with pytest.raises(AttributeError, match="in process alone"):
+    with pytest.raises(AttributeError, match="in process only"):
         api.Contacts  # noqa: B018
     with pytest.raises(TypeError, match="has no bytes"):
         remote_ball(api).to_bytes()

@@ -58,7 +58,7 @@ def measured(found: Any, name: str) -> float:
 def test_another_kind_of_file_is_named(tmp_path: Path) -> None:
     for name, content in (("scan.gwy", b"GWYP" + bytes(200)), ("loop.tdms", b"TDSm" + bytes(200))):
         (tmp_path / name).write_bytes(content)
-        with pytest.raises(ss.InvalidInput, match="this is a (Gwyddion|LabVIEW) file"):
+        with pytest.raises(ss.InvalidInput, match=r"this is a (Gwyddion|LabVIEW) file"):
             ss.read_loop(tmp_path / name)
-        with pytest.raises(ss.InvalidInput, match="this is a (Gwyddion|LabVIEW) file"):
+        with pytest.raises(ss.InvalidInput, match=r"this is a (Gwyddion|LabVIEW) file"):
             ss.read_scan(content)
