@@ -41,12 +41,12 @@ class Computations(ABC):
 
         Follows a path from the preloaded contact with each of the solvers, and compares the forces along it and the
         shear stresses at its end with a reference: the exact solver, refined where moves are curved. This shows what a
-        coarser model would do to your own numbers. A solver that cannot follow the path has the reason in its row. The
-        springs of all solvers together, times moves and stress points, have the limit of one simulation. Nothing is
+        coarser model would do to your own numbers. The row of a solver that cannot follow the path gives the reason.
+        The springs of all solvers together, times moves and stress points, are limited as in one simulation. Nothing is
         stored.
 
-        The contact is taken at the preload of its definition, never moved: of a `Contact` that has been moved, its
-        history and present load play no part.
+        The contact is taken at the preload of its definition, as if it was never moved: the history and the present
+        load of a `Contact` that has been moved do not matter.
 
         Parameters
         ----------
@@ -69,14 +69,14 @@ class Computations(ABC):
         path : Path
             The path.
         solvers : Sequence[Solver]
-            The solvers, in the order of the rows; left out, the exact one and 10, 100, 1000 and 10 000 springs.
+            The solvers, in the order of the rows; if left out, the exact one and 10, 100, 1000 and 10 000 springs.
         stress : int | StressRequest | dict
-            Where the shear stress at the end of the path is compared; left out, at 200 radii evenly spaced from the
-            centre to the edge. `fields`, if named, must hold `shear`; nothing else is compared. A number alone is its
-            `points`.
+            Where the shear stress at the end of the path is compared; if left out, at 200 radii evenly spaced from the
+            centre to the edge. `fields`, if given, must include `shear`; only the shear stress is compared. A number
+            alone is its `points`.
         tolerance : Quantity
-            Tolerance for what is not exact, relative to μ F_N, a pure number. The reference is held to a sixteenth of
-            it. Default: 1e-10.
+            Tolerance of results that are not exact, relative to μ F_N, a pure number. The reference is computed to a
+            sixteenth of this. Default: 1e-10.
 
         Returns
         -------
@@ -133,13 +133,13 @@ class Computations(ABC):
     ) -> results.CycleReply:
         """Compute steady cycles.
 
-        Moves a contact back and forth at constant load until every cycle is as the one before, in closed form: a
+        Moves a contact back and forth at constant load until every cycle repeats the one before it, in closed form: a
         displacement or a force that is a cosine, directly or through a machine of finite stiffness. Returns work,
         stiffness, loss factor and slip for each amplitude and, if asked for, the harmonics and the friction work per
         area, or the same cycles under many loads. Nothing is stored.
 
-        The contact is taken at the preload of its definition, never moved: of a `Contact` that has been moved, its
-        history and present load play no part.
+        The contact is taken at the preload of its definition, as if it was never moved: the history and the present
+        load of a `Contact` that has been moved do not matter.
 
         Parameters
         ----------
@@ -150,26 +150,27 @@ class Computations(ABC):
         force : Quantity | Quantities
             Amplitude of the tangential force, N; below μ F_N.
         best_load : int | bool | BestLoadStudy | dict
-            Ask for the normal force under which each amplitude does most friction work; with at most 100 amplitudes. A
-            number alone is its `points`.
+            Ask for the normal force under which each amplitude does the most friction work; with at most 100
+            amplitudes, not with `normal`. A number alone is its `points`.
         frequency_response : FrequencyResponse | dict
-            Ask for the oscillations of a mass that hangs on the contact and is driven by a force.
+            Ask for the oscillations of a mass that only the contact holds and a force drives. Not with `machine` or
+            `normal`.
         harmonics : int
             Ask for the harmonics from the first to this one.
         machine : Quantity | Machine | dict
             A machine in series with the contact: a displacement amplitude is then that of the machine. A number alone
             is its `stiffness`.
         map : FrettingMap | dict
-            Repeat all amplitudes under many loads, whatever the preload of the contact: a fretting map. At constant
-            load, with `machine` alone. At most 100 000 cycles.
+            Repeat all amplitudes under many loads, whatever the preload of the contact: a fretting map. Of the other
+            options only `machine` is allowed. At most 100 000 cycles.
         normal : NormalOscillation | dict
             The normal load oscillates too, about that of the contact.
         tolerance : Quantity
-            Tolerance of cycles under a load that oscillates, relative to μ F_N and to the work of that force, and of
-            `frequency_response`, relative to the amplitude; a pure number. Default: 1e-6.
+            Tolerance, a pure number: of cycles with `normal` relative to μ F_N and to the work of that force, of
+            `frequency_response` relative to the amplitude. Default: 1e-6.
         work_density : int | WorkDensity | dict
-            Ask for the friction work per area. Radii times amplitudes are at most 200 000. Not under a load that
-            oscillates. A number alone is its `points`.
+            Ask for the friction work per area. Radii times amplitudes are at most 200 000. Not with `normal`. A number
+            alone is its `points`.
 
         Returns
         -------
@@ -223,36 +224,35 @@ class Computations(ABC):
     ) -> results.FitReply:
         """Fit friction and stiffness to measured loops.
 
-        Finds the turning points of force over displacement as a bench has measured them, and the coefficient of
-        friction, the moduli, the compliance of the machine, the offsets and the drift that fit best. Says what the
-        loops determine, what only in combination, and within which intervals. Nothing is stored.
+        Finds the turning points of measured loops of force over displacement, and the coefficient of friction, the
+        moduli, the compliance of the machine, the offsets and the drift that fit best. States what the loops determine,
+        what they determine only in combination, and within which intervals. Nothing is stored.
 
-        The contact is taken at the preload of its definition, never moved: of a `Contact` that has been moved, its
-        history and present load play no part. A loop may be a file that was read, a table with named columns, or arrays
-        of displacement and force. `start` says how all of them begin.
+        The contact is taken at the preload of its definition, as if it was never moved: the history and the present
+        load of a `Contact` that has been moved do not matter. A loop may be a file that was read, a table with named
+        columns, or arrays of displacement and force. `start` states how all of them begin.
 
         Parameters
         ----------
         contact : ContactLike
-            The contact as far as it is known. What is free begins with its value here.
+            The contact as far as it is known. Free quantities start from their values here.
         loops : LoopLike | Sequence[LoopLike]
             The measured loops, which are fitted together.
         free : Sequence[FitParameter]
-            What the fit determines.
+            The quantities that the fit determines.
         known : bool | KnownValues | dict
-            What is known from elsewhere. With a standard error it takes part in the fit, whether it is free or not.
+            Values known from elsewhere. One with a standard error takes part in the fit, whether it is free or not.
         noise : bool | FitNoise | dict
-            The noise of the numbers; estimated from the loops if it is left out.
+            The noise of the measured numbers; if left out, it is estimated from the loops.
         units : bool | FitUnits | dict
-            The units of `displacement` and `force` of the loops: SI if they are left out. Everything else is in SI
-            units.
+            The units of `displacement` and `force` of the loops; if left out, SI. Everything else is in SI units.
         start : LoopStart
             How all loops begin.
 
         Returns
         -------
         FitReply
-            What the loops say, and what they leave open.
+            The quantities that the loops determine, and the ones that they leave undetermined.
 
         Raises
         ------
@@ -323,8 +323,9 @@ class Computations(ABC):
         Repeats a path until it closes, computes the stress tensor at every place over the steady cycle and rates it by
         fatigue criteria: where would a crack start, on which plane, and how far is it from a limit. Nothing is stored.
 
-        The contact is taken at the preload of its definition, never moved: of a `Contact` that has been moved, its
-        history and present load play no part. One displacement is the amplitude of a cycle, several are a path.
+        The contact is taken at the preload of its definition, as if it was never moved: the history and the present
+        load of a `Contact` that has been moved do not matter. One displacement is the amplitude of a cycle, several are
+        a path.
 
         Parameters
         ----------
@@ -360,14 +361,14 @@ class Computations(ABC):
         cycles : CyclicPath | dict
             Equal cycles about a mean, under a constant load or one that oscillates too.
         body : BodyName
-            Which body.
+            The body that is rated.
         bulk : Quantity | BulkCycle | dict
-            A normal stress of the body along x that goes with the cycle, mean + amplitude · cos(th + phase), where th
-            grows from 0 to 360 degrees, by as much in each move. A number alone is its `amplitude`.
+            A normal stress of the body along x that varies with the cycle, mean + amplitude · cos(θ + phase), where θ
+            grows from 0 to 360 degrees, by the same amount in each move. A number alone is its `amplitude`.
         criteria : bool | Criteria | dict
             The criteria.
         critical_distance : CriticalDistance | dict
-            The depth below the worst place of the surface at which criteria of stress are evaluated too.
+            The distance below the worst point of the surface at which criteria of stress are also evaluated.
         line : Line | SubsurfaceLine | dict
             Where: a straight line.
         path : Path
@@ -375,16 +376,16 @@ class Computations(ABC):
         plane : Plane | SubsurfacePlane | dict
             Where: a grid in a plane.
         points : Sequence[Quantities] | Quantities
-            Where: a list of x, y, z, m, with z of at least zero.
+            Where: a list of x, y, z, m, with z not negative.
         poisson_ratio : Quantity
-            Its Poisson's ratio, a pure number. Where the material has `bodies` it is known, and may be left out.
+            Poisson's ratio of the body, a pure number; it may be left out if the material has `bodies`.
         stress_paths : Sequence[int]
-            Indices of places whose stresses over the cycle are wanted too.
+            Indices of places for which to return the stresses over the cycle.
         surface : Surface | SubsurfaceSurface | dict
             Where: a grid on the surface.
         tolerance : Quantity
-            Error of a criterion, relative to its largest value, that is accepted; a pure number. In a search it is 1e-3
-            if left out. Default: 0.0001.
+            Accepted error of a criterion, relative to its largest value, a pure number. In a search the default is
+            1e-3. Default: 0.0001.
 
         Returns
         -------
@@ -461,9 +462,9 @@ class Computations(ABC):
     ) -> results.ProfileFitReply:
         """Fit a profile to a scan.
 
-        Finds the axis of a scan of heights, takes off its tilt, leaves out its outliers and fits the smoothest profile
-        that its noise allows and whose contact is a full circle; with `load`, says what the scan means for the contact,
-        with standard errors. Nothing is stored.
+        Finds the axis of a scan of heights, subtracts its tilt, leaves out its outliers and fits the smoothest profile
+        that its noise allows and whose contact is a full circle; with `load`, it also computes the contact, with
+        standard errors. Nothing is stored.
 
         The scan may be a file that was read, a table with named columns, or arrays of x and z.
 
@@ -472,23 +473,22 @@ class Computations(ABC):
         scan : ScanLike
             The heights, with their places.
         centre : Centre
-            Where the axis of the body is, m; `auto` looks for it.
+            Where the axis of the body is, m; `auto` searches for it.
         level : bool
-            Whether a tilt is taken off where the scan distinguishes it from an axis that is off the middle. Default:
-            true.
+            Whether to subtract a tilt, if the scan distinguishes it from an off-centre axis. Default: true.
         load : ScanLoad | dict
-            A load, for which the reply then has the contact.
+            A load, for which the reply then describes the contact.
         orientation : ScanOrientation
             Which way up the scan is; `auto` derives it from the curvature of the surface. Default: auto.
         smoothing : Smoothing
-            What decides how smooth the profile is; `auto` is generalised cross-validation.
+            How the smoothness of the profile is chosen; `auto` is generalised cross-validation.
         units : bool | ScanUnits | dict
-            The units of the scan: metres if it is left out. Everything else is in SI units.
+            The units of the scan; if left out, metres. Everything else is in SI units.
 
         Returns
         -------
         ProfileFitReply
-            A profile that was fitted to a scan, with what is left of the scan.
+            A profile that was fitted to a scan, with the residual of the scan.
 
         Raises
         ------
@@ -533,27 +533,27 @@ class Computations(ABC):
     ) -> results.ProtocolReply:
         """Find a protocol.
 
-        Finds displacements that leave little shear stress, in a number of reversals or in as few as reach a target, and
-        says what remains, how far that may be from the optimum, and what the other laws would leave. Nothing is stored
-        or changed.
+        Finds displacements that leave little shear stress, in a given number of reversals or in the fewest that reach a
+        target. States the stress that remains, how far it may be from the optimum, and the stress that the other laws
+        would leave. Nothing is stored or changed.
 
-        The contact is taken at the preload of its definition, never moved: of a `Contact` that has been moved, its
-        history and present load play no part.
+        The contact is taken at the preload of its definition, as if it was never moved: the history and the present
+        load of a `Contact` that has been moved do not matter.
 
         Parameters
         ----------
         contact : ContactLike
             The contact; may be left out where `start` names one on the server.
         reversals : int
-            Number of reversals N_R; this or `target`.
+            Number of reversals N_R; give this or `target`.
         end : ProtocolEnd
             Where the path ends.
         kind : ProtocolKind
             The law of the amplitudes.
         robustness : bool | Robustness | dict
-            Ask what remains if the protocol is not followed exactly.
+            Ask for the stress that remains if the protocol is not followed exactly.
         start : ProtocolStart
-            What the reversals begin from; left out, gross slip at its full amplitude.
+            The state that the reversals begin from; if left out, gross slip at its full amplitude.
         target : Quantity
             The largest |τ|/(μ p_max) that may remain, a pure number (over the mean pressure where the largest is
             infinite): the smallest number of reversals that reaches it is found.
@@ -616,8 +616,8 @@ class Computations(ABC):
         Follows a path from the preloaded contact and returns the states along it, and the stresses and their extrema at
         its end if asked for. Nothing is stored, so that a repeated request simply runs again.
 
-        The contact is taken at the preload of its definition, never moved: of a `Contact` that has been moved, its
-        history and present load play no part.
+        The contact is taken at the preload of its definition, as if it was never moved: the history and the present
+        load of a `Contact` that has been moved do not matter.
 
         Parameters
         ----------
@@ -638,22 +638,22 @@ class Computations(ABC):
         cycles : CyclicPath | dict
             Equal cycles about a mean, under a constant load or one that oscillates too.
         ellipse : Ellipse | dict
-            Round an ellipse.
+            Turns around an ellipse.
         path : SimulatedPath
             The path.
         residual : bool
             Ask for the extrema of the shear stress at the end of the path.
         solver : Solver
-            Which solver to use; left out, the cheapest that serves the request.
+            The solver to use; if left out, the cheapest that can serve the request.
         steps : Steps
             Which states to return.
         stress : int | StressRequest | dict
             Ask for stresses at the end of the path. A number alone is its `points`.
         subsurface : Quantity | SubsurfaceRequest | dict
-            Ask for the stress below the surface at the end of the path; by the exact solver.
+            Ask for the stress below the surface at the end of the path; only with the exact solver.
         tolerance : Quantity
-            Tolerance for what is not exact, relative to μ F_N, a pure number. For rings it is at least 1e-5; left out,
-            1e-3. Default: 1e-10.
+            Tolerance of results that are not exact, relative to μ F_N, a pure number. For rings it is at least 1e-5
+            and, if left out, 1e-3. Default: 1e-10.
 
         Returns
         -------
@@ -710,29 +710,29 @@ class Computations(ABC):
         """Run a sweep.
 
         Runs `POST /simulate` for each combination of the values of up to three axes, and returns a table of the
-        outputs. A point without an answer is a row of `null` and is listed among the failures. A small sweep is
-        answered at once. A large one becomes a job: 202 with the URL of the job in `Location` or, with `Accept:
-        text/event-stream`, its events. A retry with the same `Idempotency-Key` gets the numbers of the first attempt,
-        or its job. With a key, a table of more than 65536 numbers is the result of a job.
+        outputs. A point without a result is a row of `null` and is listed among the failures. A small sweep is answered
+        at once. A large one becomes a job: 202 with the URL of the job in `Location` or, with `Accept: text/event-
+        stream`, its events. A retry with the same `Idempotency-Key` gets the numbers of the first attempt, or its job.
+        With a key, a table of more than 65536 numbers is the result of a job.
 
         `axes` may be values by their pointers, `outputs` pointers by the names of their columns.
 
         Parameters
         ----------
         base : Mapping[str, Any]
-            The body of `POST /simulate` that each point is made from. What an axis names may be left out of it.
+            The body of `POST /simulate` that each point is made from. A number that an axis sets may be left out.
         axes : Mapping[str, Quantities] | Sequence[Axis]
             The numbers that change.
         outputs : str | Mapping[str, str] | Sequence[Output]
-            JSON pointers to numbers in the reply to `POST /simulate`, a column each, with or without a name. Where a
-            point does not have one, such as a peak of a number that it does not reach, the column has `null`.
+            JSON pointers to numbers in the reply to `POST /simulate`, one column each, with or without a name. Where a
+            point lacks the number, such as the third of two peaks, the column has `null`.
         job : bool
-            Always make a job of it, even if it is small.
+            Run the sweep as a job even if it is small.
 
         Returns
         -------
         SweepReply
-            The table of a sweep: a row a point.
+            The table of a sweep: one row for each point.
 
         Raises
         ------
@@ -772,12 +772,12 @@ class Computations(ABC):
         """Compute what fretting wear leaves.
 
         Moves a contact back and forth at a constant indentation until it has worn to its limit, in closed form: the
-        disc that never slips stays as it is, and around it wear goes on until nothing presses. Returns the shape and
-        the pressure before and after, the removed volume, and the limiting shape as a profile for other computations.
-        Nothing is stored.
+        disc that never slips stays as it is, and around it wear goes on until the pressure there is zero. Returns the
+        shape and the pressure before and after, the removed volume, and the limiting shape as a profile for other
+        computations. Nothing is stored.
 
-        The contact is taken at the preload of its definition, never moved: of a `Contact` that has been moved, its
-        history and present load play no part.
+        The contact is taken at the preload of its definition, as if it was never moved: the history and the present
+        load of a `Contact` that has been moved do not matter.
 
         Parameters
         ----------
@@ -786,8 +786,8 @@ class Computations(ABC):
         displacement : Quantity
             Amplitude of the tangential displacement, m; below that of gross slip.
         hold : Hold
-            What is held meanwhile: `indentation`. Under a held normal force the end depends on the way, so that
-            `normal_force` is refused.
+            The quantity that is held constant: `indentation`. Under a constant normal force the final shape depends on
+            the course of wear, so `normal_force` is refused.
         points : int
             Number of radii of the curves, evenly spaced and with both ends; 200 if left out. Stick radius, contact
             radius and worn radius are added to them.
@@ -795,7 +795,7 @@ class Computations(ABC):
         Returns
         -------
         WearReply
-            What wear leaves of a contact.
+            The limit that wear approaches in a contact.
 
         Raises
         ------
@@ -1130,7 +1130,7 @@ class AsyncComputations(ABC):
 
 
 class OfContact(ABC):
-    """What a contact does and is asked for in its present state."""
+    """The calls that move a contact or read its present state."""
 
     @abstractmethod
     def _answer_of_contact(self, kind: type[T], name: str, given: Document, parts: dict[str, Document]) -> T:
@@ -1166,7 +1166,7 @@ class OfContact(ABC):
         stress : int | StressRequest | dict
             Ask for stresses after the move. A number alone is its `points`.
         tolerance : Quantity
-            Tolerance for what is not exact, relative to μ F_N, a pure number. Default: 1e-10.
+            Tolerance of results that are not exact, relative to μ F_N, a pure number. Default: 1e-10.
 
         Returns
         -------
@@ -1237,7 +1237,7 @@ class OfContact(ABC):
         stress : int | StressRequest | dict
             Ask for stresses at the end of the path. A number alone is its `points`.
         tolerance : Quantity
-            Tolerance for what is not exact, relative to μ F_N, a pure number. Default: 1e-10.
+            Tolerance of results that are not exact, relative to μ F_N, a pure number. Default: 1e-10.
 
         Returns
         -------
@@ -1292,9 +1292,9 @@ class OfContact(ABC):
         Parameters
         ----------
         reversals : int
-            Number of reversals N_R, at the most; this or `target`. The path begins with a stroke more.
+            Largest number of reversals N_R; give this or `target`. The path begins with one more stroke.
         dry_run : bool
-            Whether the path is only to be shown, and nothing changed. No reply of a dry run is kept for a retry.
+            Whether to compute the path without applying it. The reply of a dry run is not kept for a retry.
         end : ProtocolEnd
             Where the path ends.
         kind : ProtocolKind
@@ -1348,26 +1348,26 @@ class OfContact(ABC):
     ) -> results.SubsurfaceReply:
         """Compute the stress below the surface.
 
-        The stress tensor and its invariants in one of the two bodies, in the present state of the contact, after
-        whatever history. Nothing changes.
+        The stress tensor and its invariants in one of the two bodies, in the present state of the contact, whatever its
+        history. Nothing changes.
 
         Parameters
         ----------
         body : BodyName
-            Which body.
+            The body whose stress is asked for.
         bulk : bool | Bulk | dict
-            A uniform stress of the body that is added, Pa. It does not move the stick zone in this model. A number
+            A uniform stress of the body that is added, Pa. In this model it does not shift the stick zone. A number
             alone is its `amplitude`.
         fields : Sequence[SubsurfaceField]
-            Which fields are computed; left out, `tensor`.
+            Which fields are computed; if left out, `tensor`.
         line : Line | SubsurfaceLine | dict
             A straight line.
         plane : Plane | SubsurfacePlane | dict
             A grid in a plane.
         points : Sequence[Quantities] | Quantities
-            A list of x, y, z, m, with z of at least zero.
+            A list of x, y, z, m, with z not negative.
         poisson_ratio : Quantity
-            Its Poisson's ratio, a pure number. Where the material has `bodies` it is known, and may be left out.
+            Poisson's ratio of the body, a pure number; it may be left out if the material has `bodies`.
         surface : Surface | SubsurfaceSurface | dict
             A grid on the surface.
 
@@ -1419,13 +1419,13 @@ class OfContact(ABC):
     ) -> results.CycleReply:
         """Compute steady cycles.
 
-        Moves a contact back and forth at constant load until every cycle is as the one before, in closed form: a
+        Moves a contact back and forth at constant load until every cycle repeats the one before it, in closed form: a
         displacement or a force that is a cosine, directly or through a machine of finite stiffness. Returns work,
         stiffness, loss factor and slip for each amplitude and, if asked for, the harmonics and the friction work per
         area, or the same cycles under many loads. Nothing is stored.
 
-        The load is the present one, and the history plays no part. `stickslip.cycle(contact)` is at the preload of the
-        definition instead.
+        The load is the present one, and the history does not matter. `stickslip.cycle(contact)` is at the preload of
+        the definition instead.
 
         Parameters
         ----------
@@ -1434,26 +1434,27 @@ class OfContact(ABC):
         force : Quantity | Quantities
             Amplitude of the tangential force, N; below μ F_N.
         best_load : int | bool | BestLoadStudy | dict
-            Ask for the normal force under which each amplitude does most friction work; with at most 100 amplitudes. A
-            number alone is its `points`.
+            Ask for the normal force under which each amplitude does the most friction work; with at most 100
+            amplitudes, not with `normal`. A number alone is its `points`.
         frequency_response : FrequencyResponse | dict
-            Ask for the oscillations of a mass that hangs on the contact and is driven by a force.
+            Ask for the oscillations of a mass that only the contact holds and a force drives. Not with `machine` or
+            `normal`.
         harmonics : int
             Ask for the harmonics from the first to this one.
         machine : Quantity | Machine | dict
             A machine in series with the contact: a displacement amplitude is then that of the machine. A number alone
             is its `stiffness`.
         map : FrettingMap | dict
-            Repeat all amplitudes under many loads, whatever the preload of the contact: a fretting map. At constant
-            load, with `machine` alone. At most 100 000 cycles.
+            Repeat all amplitudes under many loads, whatever the preload of the contact: a fretting map. Of the other
+            options only `machine` is allowed. At most 100 000 cycles.
         normal : NormalOscillation | dict
             The normal load oscillates too, about that of the contact.
         tolerance : Quantity
-            Tolerance of cycles under a load that oscillates, relative to μ F_N and to the work of that force, and of
-            `frequency_response`, relative to the amplitude; a pure number. Default: 1e-6.
+            Tolerance, a pure number: of cycles with `normal` relative to μ F_N and to the work of that force, of
+            `frequency_response` relative to the amplitude. Default: 1e-6.
         work_density : int | WorkDensity | dict
-            Ask for the friction work per area. Radii times amplitudes are at most 200 000. Not under a load that
-            oscillates. A number alone is its `points`.
+            Ask for the friction work per area. Radii times amplitudes are at most 200 000. Not with `normal`. A number
+            alone is its `points`.
 
         Returns
         -------
@@ -1524,9 +1525,9 @@ class OfContact(ABC):
         Repeats a path until it closes, computes the stress tensor at every place over the steady cycle and rates it by
         fatigue criteria: where would a crack start, on which plane, and how far is it from a limit. Nothing is stored.
 
-        The load is the present one, and the history plays no part: the path begins with a contact that was never moved.
-        `stickslip.fretting(contact)` is at the preload of the definition instead. One displacement is the amplitude of
-        a cycle, several are a path.
+        The load is the present one, and the history does not matter: the path begins with a contact that was never
+        moved. `stickslip.fretting(contact)` is at the preload of the definition instead. One displacement is the
+        amplitude of a cycle, several are a path.
 
         Parameters
         ----------
@@ -1560,14 +1561,14 @@ class OfContact(ABC):
         cycles : CyclicPath | dict
             Equal cycles about a mean, under a constant load or one that oscillates too.
         body : BodyName
-            Which body.
+            The body that is rated.
         bulk : Quantity | BulkCycle | dict
-            A normal stress of the body along x that goes with the cycle, mean + amplitude · cos(th + phase), where th
-            grows from 0 to 360 degrees, by as much in each move. A number alone is its `amplitude`.
+            A normal stress of the body along x that varies with the cycle, mean + amplitude · cos(θ + phase), where θ
+            grows from 0 to 360 degrees, by the same amount in each move. A number alone is its `amplitude`.
         criteria : bool | Criteria | dict
             The criteria.
         critical_distance : CriticalDistance | dict
-            The depth below the worst place of the surface at which criteria of stress are evaluated too.
+            The distance below the worst point of the surface at which criteria of stress are also evaluated.
         line : Line | SubsurfaceLine | dict
             Where: a straight line.
         path : Path
@@ -1575,16 +1576,16 @@ class OfContact(ABC):
         plane : Plane | SubsurfacePlane | dict
             Where: a grid in a plane.
         points : Sequence[Quantities] | Quantities
-            Where: a list of x, y, z, m, with z of at least zero.
+            Where: a list of x, y, z, m, with z not negative.
         poisson_ratio : Quantity
-            Its Poisson's ratio, a pure number. Where the material has `bodies` it is known, and may be left out.
+            Poisson's ratio of the body, a pure number; it may be left out if the material has `bodies`.
         stress_paths : Sequence[int]
-            Indices of places whose stresses over the cycle are wanted too.
+            Indices of places for which to return the stresses over the cycle.
         surface : Surface | SubsurfaceSurface | dict
             Where: a grid on the surface.
         tolerance : Quantity
-            Error of a criterion, relative to its largest value, that is accepted; a pure number. In a search it is 1e-3
-            if left out. Default: 0.0001.
+            Accepted error of a criterion, relative to its largest value, a pure number. In a search the default is
+            1e-3. Default: 0.0001.
 
         Returns
         -------
@@ -1649,22 +1650,22 @@ class OfContact(ABC):
     ) -> results.StressReply:
         """Get the stresses of a contact.
 
-        Pressure, shear stress, slip and displacement over the radius, as they are now, and the residual stress on
+        Pressure, shear stress, slip and displacement over the radius in the present state, and the residual stress on
         request.
 
         Parameters
         ----------
         points : int
-            Number of radii, evenly spaced from the centre to the edge of the contact, both included; of a line contact
-            from the edge at −a to that at a.
+            Number of radii, evenly spaced from the centre to the edge of the contact, both included; for a line contact
+            from the edge at −a to the edge at a.
         fields : Sequence[Field]
-            Which fields are computed; left out, `pressure` and `shear`.
+            Which fields are computed; if left out, `pressure` and `shear`.
         radii : Quantities
-            Radii, m, of a round contact; outside the contact the stresses are zero.
+            Radii in a round contact, m; outside the contact the stresses are zero.
         x : Quantities
-            Places along x, m, of a line contact.
+            Places along x in a line contact, m.
         residual : bool
-            Ask for the extrema of the shear stress too.
+            Also ask for the extrema of the shear stress.
 
         Returns
         -------
@@ -1696,7 +1697,7 @@ class OfContact(ABC):
 
 
 class AsyncOfContact(ABC):
-    """What a contact does and is asked for in its present state."""
+    """The calls that move a contact or read its present state."""
 
     @abstractmethod
     async def _answer_of_contact(self, kind: type[T], name: str, given: Document, parts: dict[str, Document]) -> T:

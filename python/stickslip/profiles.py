@@ -23,7 +23,7 @@ class Profile(Part):
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Asperities(Profile):
-    """Hertzian asperities between two rigid bodies, of which each is an elastic contact of its own."""
+    """Hertzian asperities between two rigid bodies; each asperity is an elastic contact of its own."""
 
     TYPE: ClassVar[str] = "asperities"
 
@@ -57,11 +57,11 @@ class Cylinder(Profile):
     """Radius R, m; for two cylinders 1/R = 1/R₁ + 1/R₂."""
     _: KW_ONLY
     length: Quantity
-    """Length L of the contact, m: forces are those of all of it."""
+    """Length L of the contact, m; forces are totals over this length."""
     reference_length: Quantity | None = None
-    """The length that fixes the displacements, m: dδ = 2/(π E* L) ln(reference_length/t) dF_N for the half-width t.
-    Left out, twice the radius. Half-widths stay below nine tenths of it; stresses, forces and the work of closed
-    cycles under a force do not depend on it.
+    """The length that fixes the displacements, m: dδ = 2/(π E* L) ln(reference_length/t) dF_N for the half-width t. If
+    left out, twice the radius. Half-widths must stay below nine tenths of it; stresses, forces and the work of
+    closed cycles under a force do not depend on it.
     """
 
 
@@ -74,7 +74,7 @@ class Ellipsoid(Profile):
     direction: types.MotionAxis
     """The axis along which the indenter moves."""
     radii: Quantities
-    """The principal radii of curvature of the gap, R_x and R_y, m; their ratio is 10⁶ at the most."""
+    """The principal radii of curvature of the gap, R_x and R_y, m; their ratio is at most 10⁶."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -107,9 +107,9 @@ class LoadCurve(Profile):
     TYPE: ClassVar[str] = "load_curve"
 
     indentation: Quantities
-    """Indentations d, m: from 0 on, increasing. The indentation never exceeds the last."""
+    """Indentations d, m: increasing from 0. The indentation must not exceed the last."""
     normal_force: Quantities
-    """The normal force F_N at each, N: from 0 on."""
+    """The normal force F_N at each indentation, N: increasing from 0."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -147,9 +147,9 @@ class RoundedPad(Profile):
     flat_half_width: Quantity
     """Half-width b of the flat, m."""
     length: Quantity
-    """Length L of the contact, m: forces are those of all of it."""
+    """Length L of the contact, m; forces are totals over this length."""
     reference_length: Quantity | None = None
-    """The length that fixes the displacements, m, as of a cylinder. Left out, `length`."""
+    """The length that fixes the displacements, m, as for a cylinder. If left out, `length`."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -191,17 +191,17 @@ class Tabulated(Profile):
     TYPE: ClassVar[str] = "tabulated"
 
     r: Quantities
-    """Radii, m: from 0 on, increasing. The contact radius stays below the last."""
+    """Radii, m: increasing from 0. The contact radius must stay below the last."""
     z: Quantities
     """Heights z above the plane, m; an offset does not matter."""
     indentation_error: Quantities | None = None
     """Standard errors of the indentation at which a contact has each radius, m, as `POST /profiles/fit` gives them:
-    they take the place of what the heights say of their noise and of the shape between them. Of the length of `r`,
-    and together with `pressure_error`.
+    they replace the estimates from the noise of the heights and from the shape between them. One for each radius in
+    `r`; requires `pressure_error`.
     """
     pressure_error: Quantities | None = None
-    """The largest standard error of the pressure in a contact of each radius, over E*, a pure number. Of the length of
-    `r`, and together with `indentation_error`.
+    """The largest standard error of the pressure in a contact of each radius, over E*, a pure number. One for each
+    radius in `r`; requires `indentation_error`.
     """
 
 
@@ -253,11 +253,11 @@ class Plane(Part):
     offset: Quantity
     """Its value, m."""
     x: Quantities | None = None
-    """x from, to and number; left out where `normal` is x."""
+    """Range of x as `[from, to, count]`; left out where `normal` is x."""
     y: Quantities | None = None
-    """y from, to and number; left out where `normal` is y."""
+    """Range of y as `[from, to, count]`; left out where `normal` is y."""
     z: Quantities | None = None
-    """z from, to and number; left out where `normal` is z."""
+    """Range of z as `[from, to, count]`; left out where `normal` is z."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -268,9 +268,9 @@ class Surface(Part):
     """
 
     x: Quantities
-    """x from, to and number."""
+    """Range of x as `[from, to, count]`."""
     y: Quantities
-    """y from, to and number."""
+    """Range of y as `[from, to, count]`."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -290,8 +290,8 @@ class Definition(ContactPart):
     contact_radius: Quantity | None = None
     """Contact radius, m."""
     bulk: types.BulkPerForce | Mapping[str, Any] | None = None
-    """A stress along x that comes with the tangential force and moves the stick zone: with a `cylinder`, under a
-    constant load.
+    """A bulk stress along x in proportion to the tangential force, which shifts the stick zone: only with a `cylinder`
+    and under a constant load.
     """
 
 

@@ -12,7 +12,7 @@ from .bodies import Material
 from .documents import Quantities, Quantity
 
 Auto: TypeAlias = Literal["auto"]
-"""The word for what the service chooses."""
+"""The string that leaves a choice to the service."""
 BodyName: TypeAlias = Literal["first", "second"]
 """One of the two bodies in contact."""
 CriticalMethod: TypeAlias = Literal["point", "line"]
@@ -32,7 +32,7 @@ FitParameter: TypeAlias = Literal["friction", "g_star", "e_star", "radius", "mac
 ForceUnit: TypeAlias = Literal["N", "mN", "uN", "kN"]
 """A unit of force."""
 Hold: TypeAlias = Literal["indentation", "normal_force"]
-"""What is held while a contact wears."""
+"""The quantity that is held constant while a contact wears."""
 JobState: TypeAlias = Literal["running", "done", "failed"]
 """The state of a job."""
 LengthUnit: TypeAlias = Literal["m", "mm", "um", "nm"]
@@ -78,7 +78,7 @@ class Axis(_AxisNeeded, total=False):
     logarithmic: Span | Mapping[str, Any]
     """Values with the same ratio from one to the next; both ends positive, or both negative."""
     name: str
-    """The name of the column; left out, the pointer."""
+    """The name of the column; if left out, the pointer."""
     values: Quantities
     """These values."""
 
@@ -87,7 +87,7 @@ class BestLoadStudy(TypedDict, total=False):
     """A search for the load that damps most."""
 
     points: int
-    """Ask for the work at so many loads too, evenly spaced up to three times the best."""
+    """Also ask for the work at this many loads, evenly spaced up to three times the best one."""
 
 
 class Bulk(TypedDict, total=False):
@@ -108,7 +108,7 @@ class Bulk(TypedDict, total=False):
 
 
 class BulkCycle(TypedDict, total=False):
-    """A bulk stress along x that goes with the cycle."""
+    """A bulk stress along x that varies with the cycle."""
 
     amplitude: Quantity
     """Its amplitude, Pa; zero if left out."""
@@ -119,10 +119,10 @@ class BulkCycle(TypedDict, total=False):
 
 
 class BulkPerForce(TypedDict):
-    """A stress along x in one of the bodies that comes with the tangential force, as a bulk load in phase does."""
+    """A bulk stress along x in one of the bodies, in proportion to the tangential force and in phase with it."""
 
     body: BodyName
-    """The body that carries it."""
+    """The body that carries the stress."""
     stress_per_force: Quantity
     """The stress over the tangential force, Pa/N; tension is positive."""
 
@@ -135,11 +135,11 @@ class CentrePlace(_CentrePlaceNeeded, total=False):
     """The place of an axis."""
 
     y: Quantity
-    """Along the columns of a map, m; 0 if it is left out, as for a line."""
+    """Along the columns of a map, m; if left out, 0, as for a line."""
 
 
 class Criteria(TypedDict, total=False):
-    """Which criteria, at least one."""
+    """The criteria, at least one."""
 
     crossland: Weighted | Mapping[str, Any]
     """√J2a + α · the largest hydrostatic stress, Pa (Crossland 1956)."""
@@ -164,7 +164,7 @@ class CriticalDistance(TypedDict):
     length: Quantity
     """The critical distance L, m: (threshold of the stress intensity range/range of the fatigue limit)²/π."""
     method: CriticalMethod
-    """How it is used."""
+    """How the critical distance is used."""
 
 
 class CycleDriveDisplacement(TypedDict):
@@ -198,13 +198,13 @@ class CyclicPath(_CyclicPathNeeded, total=False):
     force: Quantity
     """Amplitude A of the tangential force, N. The magnitude of the force must stay below the friction limit μ F_N."""
     mean: Quantity
-    """The value in the middle between both turns, m or N; left out, zero."""
+    """The value halfway between the turns, m or N; if left out, zero."""
     normal: NormalOscillation | Mapping[str, Any]
-    """Oscillation of the load in the same cycles; left out, the load is constant."""
+    """Oscillation of the load in the same cycles; if left out, the load is constant."""
     points_per_cycle: int
     """Moves per cycle k, an even number: the points of mean + A cos(2π t), or mean - A cos(2π t) from the lower turn,
-    at t = j/k. Left out, under a constant load 2 (the turns; more points add recorded states between them), else
-    64.
+    at t = j/k. If left out, 2 under a constant load (the turns; more points add recorded states between them),
+    otherwise 64.
     """
     start: FirstTurn
     """The first turn."""
@@ -216,15 +216,15 @@ class _EllipseNeeded(TypedDict):
 
 
 class Ellipse(_EllipseNeeded, total=False):
-    """Turns round the ellipse x = a cos θ, y = b sin(θ + phase), after a move to its beginning.
+    """Turns around the ellipse x = a cos θ, y = b sin(θ + phase), after a move to its beginning.
 
-    Between its points the path follows the curve.
+    Between the points of the ellipse the path follows the curve.
     """
 
     phase: Quantity
-    """Phase, degrees: an upright ellipse at 0, a line at 90; left out, 0."""
+    """Phase, degrees: an upright ellipse at 0, a line at 90; if left out, 0."""
     steps_per_turn: int
-    """Moves of a turn, each with its state; left out, 64. The path has one move more, at most 100 000 in all."""
+    """Moves in each turn, each with its state; if left out, 64. The path has one more move, at most 100 000 in all."""
 
 
 class _EqualPeaksNeeded(TypedDict):
@@ -235,9 +235,9 @@ class EqualPeaks(_EqualPeaksNeeded, total=False):
     """A tangential oscillation that dies away by the law of equal peaks; it ends at displacement zero."""
 
     cutoff_radius: Quantity
-    """Radius from which on the peaks are equal, m, up to the contact radius. The law needs one where the slope of the
-    profile jumps (the tip of a cone, the rim of a flat), from that radius on; left out, it is there a tenth of the
-    way from that radius to the edge, else zero.
+    """Radius outside which the peaks are equal, m, up to the contact radius. For a profile whose slope jumps (the tip
+    of a cone, the rim of a flat) it must lie outside the jump; if left out, it is then a tenth of the way from the
+    jump to the edge, and zero for other profiles.
     """
 
 
@@ -249,7 +249,8 @@ class FallingAmplitude(_FallingAmplitudeNeeded, total=False):
     """A tangential oscillation that dies away; it ends at displacement zero."""
 
     amplitude: Quantity
-    """Displacement of the first reversal, m; left out, the displacement at which the contact just slips as a whole."""
+    """Displacement of the first reversal, m; if left out, the displacement at which the contact just slips as a whole.
+    """
 
 FatemiSocie = TypedDict("FatemiSocie", {"k": "Quantity", "life": "StrainLife", "limit": "Quantity", "yield": "Quantity", "youngs_modulus": "Quantity"}, total=False)
 
@@ -262,9 +263,9 @@ class Findley(_FindleyNeeded, total=False):
     """Findley's criterion."""
 
     life: StressLife | Mapping[str, Any]
-    """How many cycles it bears, from tests."""
+    """Number of cycles that the material withstands, from tests."""
     limit: Quantity
-    """The value that the material bears, Pa."""
+    """The value that the material withstands, Pa."""
 
 
 class FitNoise(TypedDict, total=False):
@@ -280,9 +281,9 @@ class FitUnits(TypedDict, total=False):
     """The units of measured loops."""
 
     displacement: LengthUnit
-    """Of `displacement`."""
+    """Unit of `displacement`."""
     force: ForceUnit
-    """Of `force`."""
+    """Unit of `force`."""
 
 
 class _FrequencyResponseNeeded(TypedDict):
@@ -291,10 +292,10 @@ class _FrequencyResponseNeeded(TypedDict):
 
 
 class FrequencyResponse(_FrequencyResponseNeeded, total=False):
-    """A mass that hangs on the contact alone, and a force on it that is a cosine of the time."""
+    """A mass that only the contact holds, and a force on it that is a cosine of time."""
 
     frequencies: Quantities
-    """Frequencies, Hz; left out, 200 from 0.3 to 1.5 of that of small oscillations."""
+    """Frequencies, Hz; if left out, 200 from 0.3 to 1.5 times the frequency of small oscillations."""
 
 
 class FrettingMap(TypedDict):
@@ -312,11 +313,11 @@ class KnownValue(_KnownValueNeeded, total=False):
     """A value that is known from elsewhere."""
 
     standard_error: Quantity
-    """Its standard error, in the same unit; zero, which is the default, holds the value."""
+    """Its standard error, in the same unit; zero, the default, holds the value fixed."""
 
 
 class KnownValues(TypedDict, total=False):
-    """What is known beforehand, by name."""
+    """Values known beforehand, by name."""
 
     displacement_offset: KnownValue | Mapping[str, Any]
     """Measured displacement at which the contact is not displaced, m."""
@@ -342,7 +343,7 @@ class LineScan(TypedDict):
     x: Quantities
     """Places along the line, in the unit of `units.lateral`."""
     z: Quantities
-    """Heights, as many, in the unit of `units.height`."""
+    """Heights, one for each place, in the unit of `units.height`."""
 
 LoadSpan = TypedDict("LoadSpan", {"count": "int", "from": "Quantity", "to": "Quantity"}, total=True)
 
@@ -365,7 +366,7 @@ class MapScan(TypedDict):
     dy: Quantity
     """The distance of rows, along y, in the unit of `units.lateral`."""
     z: Sequence[Quantities] | Quantities
-    """The rows of heights, each as long, in the unit of `units.height`."""
+    """The rows of heights, all of equal length, in the unit of `units.height`."""
 
 
 class _MeasuredLoopNeeded(TypedDict):
@@ -374,19 +375,16 @@ class _MeasuredLoopNeeded(TypedDict):
 
 
 class MeasuredLoop(_MeasuredLoopNeeded, total=False):
-    """Force over displacement as a bench has measured them, point by point in the order of time.
-
-    Under a constant load.
-    """
+    """Force over displacement as measured on a bench, point by point in the order of time, under a constant load."""
 
     normal_force: Quantity
-    """The load, N; that of the contact if it is left out."""
+    """The load, N; if left out, that of the contact."""
     start: LoopStart
-    """How the record begins; as `steady` if it is left out, with a warning."""
+    """How the record begins; if left out, it is taken as `steady`, with a warning."""
     time: Quantities
-    """Times, s, rising, as many; only `drift` needs them."""
+    """Times, s, increasing, one for each point; only `drift` needs them."""
     weight: Quantity
-    """How much the loop counts beside the others, a pure number. Default: 1.0."""
+    """Weight of the loop relative to the others, a pure number. Default: 1.0."""
 
 
 class Move(TypedDict, total=False):
@@ -431,7 +429,7 @@ class NormalOscillation(TypedDict, total=False):
     normal_force: Quantity
     """Amplitude of the normal force, N, at most the normal force at the beginning."""
     phase: Quantity
-    """Phase, degrees; left out, zero."""
+    """Phase, degrees; if left out, zero."""
 
 
 class _ObservationNeeded(TypedDict):
@@ -502,9 +500,9 @@ class PointScan(TypedDict):
     x: Quantities
     """Places along x, in the unit of `units.lateral`."""
     y: Quantities
-    """Places along y, as many, in the unit of `units.lateral`."""
+    """Places along y, one for each x, in the unit of `units.lateral`."""
     z: Quantities
-    """Heights, as many, in the unit of `units.height`."""
+    """Heights, one for each place, in the unit of `units.height`."""
 
 
 class PreloadNormalForce(TypedDict):
@@ -550,18 +548,21 @@ class Rings(TypedDict):
 
 
 class Robustness(TypedDict, total=False):
-    """Errors with which a protocol is followed: it is tried many times, each with errors of its own."""
+    """Errors with which a protocol is followed.
+
+    It is tried many times, each time with different random errors.
+    """
 
     amplitude_error: Quantity
     """Standard deviation of each displacement, relative to itself, a pure number; normally distributed."""
     friction_error: Quantity
-    """The fraction that the coefficient of friction may be off either way, a pure number; evenly distributed. Not for
+    """Largest relative error of the coefficient of friction, up or down, a pure number; uniformly distributed. Not for
     a start from a contact on the server, whose history belongs to its own coefficient.
     """
     samples: int
-    """How many times it is tried."""
+    """Number of trials."""
     seed: int
-    """Where the sequence of random numbers begins: the same seed gives the same reply."""
+    """Seed of the random numbers: the same seed gives the same reply."""
 
 
 class ScanDataLine(TypedDict):
@@ -579,10 +580,10 @@ class ScanDataMap(TypedDict):
 
 
 class ScanDataPoints(TypedDict):
-    """Heights anywhere."""
+    """Heights at arbitrary places."""
 
     points: PointScan | Mapping[str, Any]
-    """Heights anywhere."""
+    """Heights at arbitrary places."""
 
 
 class ScanLoad(TypedDict):
@@ -600,9 +601,9 @@ class ScanUnits(TypedDict, total=False):
     """The units of a scan."""
 
     height: LengthUnit
-    """That of z."""
+    """Unit of z."""
     lateral: LengthUnit
-    """That of x and y, and of dx and dy."""
+    """Unit of x and y, and of dx and dy."""
 
 
 class SimulatedMove(TypedDict, total=False):
@@ -676,10 +677,10 @@ class SimulatedPathCycles(TypedDict):
 
 
 class SimulatedPathEllipse(TypedDict):
-    """Round an ellipse."""
+    """Turns around an ellipse."""
 
     ellipse: Ellipse | Mapping[str, Any]
-    """Round an ellipse."""
+    """Turns around an ellipse."""
 
 
 class SmoothingNoise(TypedDict):
@@ -690,19 +691,19 @@ class SmoothingNoise(TypedDict):
 
 
 class SmoothingKnots(TypedDict):
-    """So many intervals of constant curvature, without a penalty on their differences."""
+    """This many intervals of constant curvature, without a penalty on their differences."""
 
     knots: int
-    """So many intervals of constant curvature, without a penalty on their differences."""
+    """This many intervals of constant curvature, without a penalty on their differences."""
 
 
 class SnCurve(TypedDict):
     """An S-N curve of the values of a criterion."""
 
     cycles: Quantity
-    """The cycles that the material bears there, a pure number."""
+    """Number of cycles that the material withstands at `reference`, a pure number."""
     exponent: Quantity
-    """The exponent k, a pure number: cycles fall like value^(−k)."""
+    """The exponent k, a pure number: the number of cycles falls as value^(−k)."""
     reference: Quantity
     """A value, in the unit of the criterion."""
 
@@ -722,15 +723,15 @@ class SolverSprings(TypedDict):
 
 
 class SolverRings(TypedDict):
-    """Rings, also along a line: the solver for motion in the plane, approximate.
+    """Rings: the approximate solver for motion in the plane, which also follows motion along a line.
 
-    A path with pairs that leaves its first line is followed by as many as the tolerance needs, if no number is
-    asked for.
+    Without a number, a path with pairs that leaves its first line is followed by as many rings as the tolerance
+    needs.
     """
 
     rings: Rings | Mapping[str, Any]
-    """Rings, also along a line: the solver for motion in the plane, approximate. A path with pairs that leaves its
-    first line is followed by as many as the tolerance needs, if no number is asked for.
+    """Rings: the approximate solver for motion in the plane, which also follows motion along a line. Without a number,
+    a path with pairs that leaves its first line is followed by as many rings as the tolerance needs.
     """
 
 Span = TypedDict("Span", {"count": "int", "from": "Quantity", "to": "Quantity"}, total=True)
@@ -747,11 +748,11 @@ class StrainBased(TypedDict, total=False):
     """A criterion that needs strains."""
 
     life: StrainLife
-    """How many cycles it bears, from tests."""
+    """Number of cycles that the material withstands, from tests."""
     limit: Quantity
-    """The value that the material bears, Pa."""
+    """The value that the material withstands, Pa."""
     youngs_modulus: Quantity
-    """Young's modulus of the body, Pa. Where the material has `bodies` it is known, and may be left out."""
+    """Young's modulus of the body, Pa; it may be left out if the material has `bodies`."""
 
 
 class StrainLifeSN(TypedDict):
@@ -799,19 +800,19 @@ class StressLife(TypedDict):
 class StressRequest(TypedDict, total=False):
     """Where stresses are asked for.
 
-    Exactly one of `points` and `radii` (of a line contact `x`), and which `fields`.
+    Exactly one of `points` and `radii` (for a line contact `x`), and which `fields`.
     """
 
     fields: Sequence[Field]
-    """Which fields are computed; left out, `pressure` and `shear`."""
+    """Which fields are computed; if left out, `pressure` and `shear`."""
     points: int
-    """Number of radii, evenly spaced from the centre to the edge of the contact, both included; of a line contact from
-    the edge at −a to that at a.
+    """Number of radii, evenly spaced from the centre to the edge of the contact, both included; for a line contact
+    from the edge at −a to the edge at a.
     """
     radii: Quantities
-    """Radii, m, of a round contact; outside the contact the stresses are zero."""
+    """Radii in a round contact, m; outside the contact the stresses are zero."""
     x: Quantities
-    """Places along x, m, of a line contact."""
+    """Places along x in a line contact, m."""
 
 SubsurfaceLine = TypedDict("SubsurfaceLine", {"count": "int", "from": "Quantities", "to": "Quantities"}, total=True)
 
@@ -828,11 +829,11 @@ class SubsurfacePlane(_SubsurfacePlaneNeeded, total=False):
     """
 
     x: Quantities
-    """x from, to and number; left out where `normal` is x."""
+    """Range of x as `[from, to, count]`; left out where `normal` is x."""
     y: Quantities
-    """y from, to and number; left out where `normal` is y."""
+    """Range of y as `[from, to, count]`; left out where `normal` is y."""
     z: Quantities
-    """z from, to and number; left out where `normal` is z."""
+    """Range of z as `[from, to, count]`; left out where `normal` is z."""
 
 
 class _SubsurfaceRequestNeeded(TypedDict):
@@ -847,17 +848,17 @@ class SubsurfaceRequest(_SubsurfaceRequestNeeded, total=False):
     """
 
     bulk: Bulk | Mapping[str, Any]
-    """A uniform stress of the body that is added, Pa. It does not move the stick zone in this model."""
+    """A uniform stress of the body that is added, Pa. In this model it does not shift the stick zone."""
     fields: Sequence[SubsurfaceField]
-    """Which fields are computed; left out, `tensor`."""
+    """Which fields are computed; if left out, `tensor`."""
     line: SubsurfaceLine | Mapping[str, Any]
     """A straight line."""
     plane: SubsurfacePlane | Mapping[str, Any]
     """A grid in a plane."""
     points: Sequence[Quantities] | Quantities
-    """A list of x, y, z, m, with z of at least zero."""
+    """A list of x, y, z, m, with z not negative."""
     poisson_ratio: Quantity
-    """Its Poisson's ratio, a pure number. Where the material has `bodies` it is known, and may be left out."""
+    """Poisson's ratio of the body, a pure number; it may be left out if the material has `bodies`."""
     surface: SubsurfaceSurface | Mapping[str, Any]
     """A grid on the surface."""
 
@@ -869,18 +870,18 @@ class SubsurfaceSurface(TypedDict):
     """
 
     x: Quantities
-    """x from, to and number."""
+    """Range of x as `[from, to, count]`."""
     y: Quantities
-    """y from, to and number."""
+    """Range of y as `[from, to, count]`."""
 
 
 class SurfaceCriterion(TypedDict, total=False):
-    """A quantity of the surface."""
+    """A quantity that is defined on the surface."""
 
     life: StressLife | Mapping[str, Any]
-    """How many cycles it bears, from tests."""
+    """Number of cycles that the material withstands, from tests."""
     limit: Quantity
-    """The value that the material bears."""
+    """The value that the material withstands."""
 
 
 class WearDrive(TypedDict):
@@ -898,22 +899,22 @@ class Weighted(_WeightedNeeded, total=False):
     """A criterion with a weight of the hydrostatic stress."""
 
     life: StressLife | Mapping[str, Any]
-    """How many cycles it bears, from tests."""
+    """Number of cycles that the material withstands, from tests."""
     limit: Quantity
-    """The value that the material bears, Pa."""
+    """The value that the material withstands, Pa."""
 
 
 class WorkDensity(TypedDict, total=False):
-    """Where the friction work per area is asked for: exactly one of `points` and `radii` (of a line contact `x`)."""
+    """Where the friction work per area is asked for: exactly one of `points` and `radii` (for a line contact `x`)."""
 
     points: int
-    """Number of radii, evenly spaced from the centre to the edge of the contact, both included; of a line contact from
-    the edge at −a to that at a.
+    """Number of radii, evenly spaced from the centre to the edge of the contact, both included; for a line contact
+    from the edge at −a to the edge at a.
     """
     radii: Quantities
     """Radii, m; outside the contact there is no work."""
     x: Quantities
-    """Places along x, m, of a line contact."""
+    """Places along x in a line contact, m."""
 
 
 class DefinitionMembers(TypedDict, total=False):
@@ -926,8 +927,8 @@ class DefinitionMembers(TypedDict, total=False):
     contact_radius: Quantity | None
     """Contact radius, m."""
     bulk: BulkPerForce | Mapping[str, Any] | None
-    """A stress along x that comes with the tangential force and moves the stick zone: with a `cylinder`, under a
-    constant load.
+    """A bulk stress along x in proportion to the tangential force, which shifts the stick zone: only with a `cylinder`
+    and under a constant load.
     """
 
 Centre: TypeAlias = Union[
@@ -976,7 +977,7 @@ ProtocolStart: TypeAlias = Union[
     "ProtocolStartContactId",
     "Mapping[str, Any]",
 ]
-"""What the reversals begin from, one key."""
+"""The state that the reversals begin from, one key."""
 ScanData: TypeAlias = Union[
     "ScanDataLine",
     "ScanDataMap",
@@ -1001,7 +1002,7 @@ Smoothing: TypeAlias = Union[
     "SmoothingKnots",
     "Mapping[str, Any]",
 ]
-"""What decides how smooth a profile is, one key or `"auto"`."""
+"""How the smoothness of a profile is chosen, one key or `"auto"`."""
 Solver: TypeAlias = Union[
     "Literal[\"exact\"]",
     "SolverSprings",
@@ -1014,4 +1015,4 @@ StrainLife: TypeAlias = Union[
     "StrainLifeStrainLife",
     "Mapping[str, Any]",
 ]
-"""The life of a criterion with strains: an S-N curve, or that of the criterion."""
+"""The life of a criterion with strains: an S-N curve, or the strain-life curve of the criterion."""

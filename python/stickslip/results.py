@@ -15,35 +15,35 @@ from .result import Counts, Flags, Floats, Named, Record, Result, Rows, Texts
 
 
 class Accuracy(Result):
-    """Which solver answered, and how accurate its answer is."""
+    """The solver that was used, and the accuracy of its results."""
 
     compute_time: float
-    """Processor time that the request took but for HTTP, s: with the check, the preparation of the profile unless it
-    was ready, and the loading of a stored contact; without the time in which it yielded to other work.
+    """Processor time of the request without HTTP, s. It includes the check, the preparation of the profile unless that
+    was cached, and the loading of a stored contact, and excludes the time in which other requests ran instead.
     """
 
     force_error: float
-    """Estimated error of the forces, relative to the friction limit μ F_N, a pure number: of rounding, of curved
-    paths, of the interpolation of a table, of springs, of rings. That of curved paths is the largest of the states
-    in the reply, that of springs and rings the largest over all moves, of rings relative to the largest load.
+    """Estimated error of the forces, relative to the friction limit μ F_N, a pure number: from rounding, curved paths,
+    the interpolation of a table, springs and rings. For curved paths it is the largest over the states in the
+    reply, for springs and rings the largest over all moves, with rings relative to the largest load.
     """
 
     reason: str
-    """Why this one."""
+    """Why this solver was chosen."""
 
     solver: types.SolverKind
-    """The solver that answered."""
+    """The solver that was used."""
 
     stress_error: float
     """Estimated error of the stresses, relative to μ times the largest pressure (or, where that is infinite, to the
-    mean), a pure number; of no meaning for a profile without a stress field.
+    mean), a pure number; meaningless for a profile without a stress field.
     """
 
     count: int | None
-    """Number of rings, of the solver in the plane."""
+    """Number of rings of the solver in the plane."""
 
     steps: int | None
-    """Steps of the finest of its discretisations on the whole path."""
+    """Number of steps on the whole path in the finest discretisation of the rings."""
 
     subsurface_error: float | None
     """Estimated error of the stress below the surface, relative to the largest pressure (or to the mean), a pure
@@ -52,7 +52,7 @@ class Accuracy(Result):
 
     work_error: float | None
     """Estimated error of the dissipated energies, relative to μ F_N and the displacement of gross slip at the largest
-    load of the path, a pure number: of rings.
+    load of the path, a pure number; stated for rings only.
     """
 
 
@@ -60,41 +60,42 @@ class AccuracyReply(Result):
     """The time and the error of each solver."""
 
     reference: Record
-    """What the rows are compared with."""
+    """The solution that the rows are compared with."""
 
     rows: Rows[Record]
-    """One row a solver."""
+    """One row for each solver."""
 
     if TYPE_CHECKING:
 
         @property
         def compute_time(self) -> Floats:
-            """Of each row: Time spent computing, s: the median of a few runs if one takes less than some milliseconds.
+            """Of each row: Time spent computing, s: the median of a few runs if one takes less than a few
+            milliseconds.
             """
 
         @property
         def estimated_force_error(self) -> Floats:
-            """Of each row: Error of the force over all moves as the solver states it itself, relative to the friction
-            limit μ F_N, a pure number; `null` without an answer, or where it is infinite.
+            """Of each row: Error of the force over all moves as the solver estimates it, relative to the friction
+            limit μ F_N, a pure number; `null` without a result, or where it is infinite.
             """
 
         @property
         def estimated_stress_error(self) -> Floats:
-            """Of each row: Error of the stress at the end as the solver states it itself, relative to `stress_unit`, a
-            pure number: the largest over the contact, but for springs within some cells of a singular radius of the
-            profile; `null` without an answer, or where it is infinite.
+            """Of each row: Error of the stress at the end as the solver estimates it, relative to `stress_unit`, a
+            pure number: the largest over the contact, for springs without the cells near a singular radius of the
+            profile; `null` without a result, or where it is infinite.
             """
 
         @property
         def force_error(self) -> Floats:
             """Of each row: Largest difference of the force from that of the reference, over all moves, relative to
-            `force_unit`, a pure number; `null` without an answer, or where it is infinite.
+            `force_unit`, a pure number; `null` without a result, or where it is infinite.
             """
 
         @property
         def stress_error(self) -> Floats:
             """Of each row: Largest difference of the shear stress at the end, over the radii, relative to
-            `stress_unit`, a pure number; `null` without an answer, or where it is infinite.
+            `stress_unit`, a pure number; `null` without a result, or where it is infinite.
             """
 
 
@@ -102,13 +103,13 @@ class CyclePage(Result):
     """The newest closed cycles of a contact, oldest first."""
 
     items: Rows[Record]
-    """The cycles, in the order in which they closed; of those that one move closed the inner ones first."""
+    """The cycles, in the order in which they closed; if one move closed several, the inner ones first."""
 
     if TYPE_CHECKING:
 
         @property
         def displacement_amplitude(self) -> Floats:
-            """Of each row: Half the distance of its turning points, m."""
+            """Of each row: Half the distance between its turning points, m."""
 
         @property
         def dissipated_energy(self) -> Floats:
@@ -120,33 +121,34 @@ class CyclePage(Result):
 
         @property
         def from_(self) -> Counts:
-            """Of each row: The number of the move after which it began, at its first turning point."""
+            """Of each row: The number of the move after which the cycle began, at its first turning point."""
 
         @property
         def secant_stiffness(self) -> Floats:
-            """Of each row: Force amplitude over displacement amplitude, N/m; `null` beyond all numbers."""
+            """Of each row: Force amplitude over displacement amplitude, N/m; `null` if it is too large for a number."""
 
         @property
         def sliding_ratio(self) -> Floats:
-            """Of each row: Displacement at zero force over the displacement amplitude, both from the middle of the
-            loop, a pure number; `null` without friction, and if the cycle is not steady: the load changed within
-            it, or so shortly before that the force does not come back with the displacement. Amplitude and work are
-            then those of the recorded states.
+            """Of each row: Displacement at zero force over the displacement amplitude, both measured from the middle
+            of the loop, a pure number; `null` without friction, and if the cycle is not steady. A cycle is not
+            steady if the load changed within it, or so shortly before it that the force does not return with the
+            displacement; amplitude and work are then those of the recorded states.
             """
 
         @property
         def to(self) -> Counts:
-            """Of each row: The number of the move that closed it."""
+            """Of each row: The number of the move that closed the cycle."""
 
 
 class CycleReply(Result):
     """Steady cycles, one for each amplitude."""
 
     accuracy: Accuracy
-    """Solver, errors and time. `force_error` is that of the harmonics too, relative to the amplitude of the answer."""
+    """Solver, errors and time. `force_error` also holds for the harmonics, relative to the amplitude of the response.
+    """
 
     contact: Figures
-    """The contact at its load, in a map at its preload."""
+    """The contact at its load; in a map, at its preload."""
 
     cycles: Rows[Record]
     """The cycles, in the order of the amplitudes; in a map load by load."""
@@ -165,7 +167,7 @@ class CycleReply(Result):
 
         @property
         def dissipated_energy(self) -> Floats:
-            """Of each row: Friction work of a cycle, J: the area of the loop of the force over the displacement."""
+            """Of each row: Friction work of a cycle, J: the area of the force-displacement loop."""
 
         @property
         def force_amplitude(self) -> Floats:
@@ -173,14 +175,14 @@ class CycleReply(Result):
 
         @property
         def friction_energy(self) -> Floats:
-            """Of each row: All that friction dissipates in a cycle, J, where a bulk stress does work too: the integral
-            of `friction_work` over the contact. Else it is `dissipated_energy`, and left out.
+            """Of each row: All energy that friction dissipates in a cycle, J, where a bulk stress does work too: the
+            integral of `friction_work` over the contact. Otherwise it equals `dissipated_energy` and is left out.
             """
 
         @property
         def gross_slip_displacement(self) -> Floats:
-            """Of each row: Displacement amplitude of the indenter at which gross slip begins under this load, m; in a
-            map alone.
+            """Of each row: Displacement amplitude of the indenter at which gross slip begins under this load, m; only
+            in a map.
             """
 
         @property
@@ -191,7 +193,7 @@ class CycleReply(Result):
 
         @property
         def machine_amplitude(self) -> Floats:
-            """Of each row: Amplitude of the displacement at the machine, m; with `machine` alone."""
+            """Of each row: Amplitude of the displacement at the machine, m; only with `machine`."""
 
         @property
         def max_elastic_energy(self) -> Floats:
@@ -199,7 +201,7 @@ class CycleReply(Result):
 
         @property
         def normal_force(self) -> Floats:
-            """Of each row: Normal force, N; in a map alone."""
+            """Of each row: Normal force, N; only in a map."""
 
         @property
         def regime(self) -> Texts:
@@ -207,14 +209,14 @@ class CycleReply(Result):
 
         @property
         def secant_stiffness(self) -> Floats:
-            """Of each row: Force amplitude over displacement amplitude of the indenter, N/m; at the amplitude zero the
+            """Of each row: Force amplitude over displacement amplitude of the indenter, N/m; at zero amplitude the
             tangent stiffness.
             """
 
         @property
         def sliding_ratio(self) -> Floats:
             """Of each row: Displacement at zero force over the amplitude of the indenter, a pure number; `null` where
-            it moves and there is no force, as without friction and without load.
+            the indenter moves without a force, as without friction and without load.
             """
 
         @property
@@ -227,10 +229,10 @@ class CycleReply(Result):
 
 
 class Figures(Result):
-    """What follows from the definition of a contact at its preload."""
+    """Quantities that follow from the definition of a contact at its preload."""
 
     contact_radius: float
-    """Contact radius a, m; the half-width of a line contact; of a profile without a stress field F_N′/(2 E*), which
+    """Contact radius a, m; for a line contact the half-width; for a profile without a stress field F_N′/(2 E*), which
     governs the stiffness.
     """
 
@@ -244,7 +246,7 @@ class Figures(Result):
     """Displacement at which a virgin contact just slips as a whole, μ (E*/G*) d, m."""
 
     gross_slip_force: float
-    """Tangential force then, μ F_N, N."""
+    """Tangential force at gross slip, μ F_N, N."""
 
     indentation: float
     """Indentation d, m."""
@@ -253,35 +255,35 @@ class Figures(Result):
     """Normal force F_N, N."""
 
     max_pressure: float | None
-    """Largest pressure, Pa; `null` where it is infinite, and of a profile without a stress field."""
+    """Largest pressure, Pa; `null` where it is infinite, and for a profile without a stress field."""
 
     semi_axes: Floats | None
-    """Semi-axes of the contact along x and y, m: of an ellipsoid."""
+    """Semi-axes of the contact along x and y, m; only for an ellipsoid."""
 
 
 class FitReply(Result):
-    """What the loops say, and what they leave open."""
+    """The quantities that the loops determine, and the ones that they leave undetermined."""
 
     contact: Any
-    """The contact with what was fitted, for `POST /contacts` and `/simulate`."""
+    """The contact with the fitted values, for `POST /contacts` and `/simulate`."""
 
     correlations: Any
-    """Their correlation coefficients, pure numbers, by both names; `null` where one is not determined."""
+    """Correlation coefficients of the estimates, pure numbers, by both names; `null` where one is not determined."""
 
     curve: Rows[Record]
     """The loops as they were fitted, in SI units; long ones are thinned."""
 
     estimates: Named[Record]
-    """What is free, and what is known with a standard error, by name."""
+    """Estimates of the free quantities, and of those known with a standard error, by name."""
 
     identifiable: list[Any]
-    """What the loops determine: names, and combinations of them where one alone is not determined."""
+    """What the loops determine: quantities by name, or combinations of them where a single one is not determined."""
 
     noise: Record
-    """The noise: as it was given, else as estimated."""
+    """The noise as given, otherwise as estimated."""
 
     residual: Record
-    """What the fit leaves of the measured forces."""
+    """Measured less fitted forces."""
 
     warnings: Rows[Record]
     """Warnings about the fit."""
@@ -294,13 +296,13 @@ class FrettingReply(Fretting):
     """Solver, errors and time."""
 
     change: float
-    """The largest of the errors of the largest values, relative to these, a pure number."""
+    """The largest relative error among the largest values of the criteria, a pure number."""
 
     contact: Figures
-    """What follows from the definition at the preload."""
+    """Quantities that follow from the definition at the preload."""
 
     instants: int
-    """Instants of the move that took most, at the places of the largest values."""
+    """Number of instants in the move that needed most, at the places of the largest values."""
 
     warnings: Rows[Record]
     """Warnings about the result."""
@@ -309,7 +311,7 @@ class FrettingReply(Fretting):
     """Place along the motion of the first body, m."""
 
     y: Floats
-    """Place across it, m."""
+    """Place across the motion of the first body, m."""
 
     z: Floats
     """Depth into the body, m; never negative."""
@@ -333,7 +335,7 @@ class FrettingReply(Fretting):
     """Ruiz's first parameter, shear stress times slip, N/m."""
 
     ruiz_tension: Record | None
-    """Ruiz's second parameter, that times the largest tension along x, N²/m³; comes with the first."""
+    """Ruiz's second parameter, the first times the largest tension along x, N²/m³; returned with the first."""
 
     stress_paths: Rows[Record] | None
     """The stresses over the cycle at the places of `stress_paths`."""
@@ -343,7 +345,7 @@ class FrettingReply(Fretting):
 
 
 class FrictionReply(Result):
-    """The coefficient of friction that the observations of a contact have last determined."""
+    """The latest coefficient of friction that the observations of a contact determine."""
 
     id: str
     """The identifier of the contact."""
@@ -362,7 +364,7 @@ class HistoryPage(Result):
     """The moves."""
 
     next: int | None
-    """What to give as `after` for the next page; `null` on the last."""
+    """The value of `after` for the next page; `null` on the last page."""
 
     if TYPE_CHECKING:
 
@@ -372,8 +374,8 @@ class HistoryPage(Result):
 
         @property
         def by(self) -> Texts:
-            """Of each row: The name of the key that made it. Left out of a move that was made without a key, and where
-            no keys are in use.
+            """Of each row: The name of the key that made it. Left out for a move that was made without a key, and
+            where no keys are in use.
             """
 
         @property
@@ -394,16 +396,18 @@ class LoopPage(Result):
     """Tangential force F, N."""
 
     part: Floats
-    """Fraction of that move, a pure number: 1 at its end."""
+    """Fraction of that move at the point, a pure number: 1 at its end."""
 
     sequence: Counts
     """The number of the move that a point belongs to."""
 
     next: int | None
-    """What to give as `after` for the next page; `null` on the last."""
+    """The value of `after` for the next page; `null` on the last page."""
 
     observed_force: Floats | None
-    """Force that was measured at a point, N, `null` where none was; left out if there is none on the page."""
+    """Force that was measured at each point, N, `null` where none was measured; left out if the page has no measured
+    force.
+    """
 
 
 class MoveReply(Result):
@@ -416,7 +420,7 @@ class MoveReply(Result):
     """The identifier of the contact."""
 
     sequence: int
-    """The number of this move, and of moves so far."""
+    """The number of this move, which is the number of moves so far."""
 
     state: State
     """The state after it."""
@@ -425,7 +429,7 @@ class MoveReply(Result):
     """The stresses after it, if asked for."""
 
     warnings: Rows[Record] | None
-    """Warnings about the results from this move on that earlier replies have not given."""
+    """Warnings that apply from this move on and that earlier replies have not given."""
 
 
 class ObservationsReply(Result):
@@ -435,13 +439,13 @@ class ObservationsReply(Result):
     """The identifier of the contact."""
 
     items: Rows[Record]
-    """The observations beside what the contact predicts."""
+    """The observations with the forces that the contact predicts."""
 
     sequence: int
-    """The number of the last move, and of moves so far."""
+    """The number of the last move, which is the number of moves so far."""
 
     friction: Record | None
-    """The coefficient of friction by the last measured cycle; left out as long as the observations do not determine
+    """The coefficient of friction from the last measured cycle; left out as long as the observations do not determine
     it.
     """
 
@@ -474,7 +478,7 @@ class PathReply(Result):
     """The identifier of the contact."""
 
     sequence: int
-    """The number of the last move, and of moves so far."""
+    """The number of the last move, which is the number of moves so far."""
 
     steps: Rows[State]
     """The states along the path: all of them, or the last."""
@@ -486,14 +490,14 @@ class PathReply(Result):
     """The stresses at the end, if asked for."""
 
     warnings: Rows[Record] | None
-    """Warnings about the results from this path on that earlier replies have not given."""
+    """Warnings that apply from this path on and that earlier replies have not given."""
 
     if TYPE_CHECKING:
 
         @property
         def contact_radius(self) -> Floats:
-            """Of each row: Contact radius a, m; the half-width of a line contact; of a profile without a stress field
-            F_N′/(2 E*).
+            """Of each row: Contact radius a, m; for a line contact the half-width; for a profile without a stress
+            field F_N′/(2 E*).
             """
 
         @property
@@ -530,7 +534,7 @@ class PathReply(Result):
 
         @property
         def stick_centre(self) -> Floats:
-            """Of each row: Where the middle of that part is along x, m: of a contact whose bulk stress moves it."""
+            """Of each row: Middle of the stick zone along x, m; only with a bulk stress that shifts it."""
 
         @property
         def stick_radius(self) -> Floats:
@@ -546,7 +550,7 @@ class PlanarReply(Result):
     """Solver, errors and time."""
 
     contact: Figures
-    """What follows from the definition at the preload."""
+    """Quantities that follow from the definition at the preload."""
 
     steps: Rows[Record]
     """The states along the path: all of them, or the last."""
@@ -588,13 +592,13 @@ class PlanarReply(Result):
 
         @property
         def stick_radius(self) -> Floats:
-            """Of each row: Radius inside which the last move did not slip, m, to the width of a ring: the contact
-            radius if nothing slipped, zero in gross slip.
+            """Of each row: Radius inside which the last move did not slip, m, resolved to the width of a ring: the
+            contact radius if nothing slipped, zero in gross slip.
             """
 
 
 class ProfileFitReply(Result):
-    """A profile that was fitted to a scan, with what is left of the scan."""
+    """A profile that was fitted to a scan, with the residual of the scan."""
 
     centre: Record
     """The axis, m."""
@@ -605,7 +609,7 @@ class ProfileFitReply(Result):
     """
 
     left_out: Record
-    """The points that were left out as outliers, thinned alike."""
+    """The points that were left out as outliers, thinned in the same way."""
 
     orientation: types.ScanOrientation
     """Which way up the scan is: `peak_up` or `peak_down`."""
@@ -620,13 +624,13 @@ class ProfileFitReply(Result):
     """The points that were fitted, as heights of the gap above the axis; at most 4000 of them, evenly thinned."""
 
     residual: Record
-    """What the profile leaves of the heights."""
+    """Measured heights less the profile."""
 
     tilt: Record
-    """The slopes of the plane that was taken off, pure numbers."""
+    """The slopes of the plane that was subtracted, pure numbers."""
 
     used: Record
-    """The profile that was fitted, as the table of `profile`."""
+    """The fitted profile, as the table of `profile`."""
 
     warnings: Rows[Record]
     """Warnings about the scan."""
@@ -642,10 +646,10 @@ class ProtocolReply(Result):
     """Solver, errors and time."""
 
     comparison: Record
-    """The same for the other laws, with as many reversals."""
+    """The results of the other laws, with the same number of reversals."""
 
     contact: Figures
-    """What follows from the definition at the present load."""
+    """Quantities that follow from the definition at the present load."""
 
     displacement: float
     """Tangential displacement at the end, m."""
@@ -666,10 +670,10 @@ class ProtocolReply(Result):
     """The law of the amplitudes."""
 
     path: Record
-    """The path, to be given to `/simulate` or `/contacts/{id}/path` as it is."""
+    """The path, which `/simulate` and `/contacts/{id}/path` take as it is."""
 
     residual: Residual
-    """What remains."""
+    """The extrema of the shear stress that remains."""
 
     reversals: int
     """Number of reversals N_R."""
@@ -681,16 +685,16 @@ class ProtocolReply(Result):
     """Warnings about the results."""
 
     gap: Record | None
-    """How far the path may be from the optimum; of `minimax` alone."""
+    """How far the path may be from the optimum; only for `minimax`."""
 
     largest: float | None
     """The largest magnitude of the shear stress that remains where it is measured, Pa; `null` where it is infinite."""
 
     relative: float | None
-    """The same over `judged.unit`, a pure number."""
+    """`largest` over `judged.unit`, a pure number."""
 
     robustness: Record | None
-    """What remains if it is not followed exactly, if asked for."""
+    """The stress that remains if the path is not followed exactly, if asked for."""
 
 
 class RelaxReply(Result):
@@ -700,10 +704,10 @@ class RelaxReply(Result):
     """Solver, errors and time."""
 
     comparison: Record
-    """The same for the other laws, with as many reversals."""
+    """The results of the other laws, with the same number of reversals."""
 
     contact: Figures
-    """What follows from the definition at the present load."""
+    """Quantities that follow from the definition at the present load."""
 
     displacement: float
     """Tangential displacement at the end, m."""
@@ -724,10 +728,10 @@ class RelaxReply(Result):
     """The law of the amplitudes."""
 
     path: Record
-    """The path, to be given to `/simulate` or `/contacts/{id}/path` as it is."""
+    """The path, which `/simulate` and `/contacts/{id}/path` take as it is."""
 
     residual: Residual
-    """What remains."""
+    """The extrema of the shear stress that remains."""
 
     reversals: int
     """Number of reversals N_R."""
@@ -739,7 +743,7 @@ class RelaxReply(Result):
     """Warnings about the results."""
 
     dry_run: bool
-    """Whether the path was only shown."""
+    """Whether this was a dry run, which applies nothing."""
 
     id: str
     """The contact."""
@@ -748,16 +752,16 @@ class RelaxReply(Result):
     """Number of moves so far."""
 
     gap: Record | None
-    """How far the path may be from the optimum; of `minimax` alone."""
+    """How far the path may be from the optimum; only for `minimax`."""
 
     largest: float | None
     """The largest magnitude of the shear stress that remains where it is measured, Pa; `null` where it is infinite."""
 
     relative: float | None
-    """The same over `judged.unit`, a pure number."""
+    """`largest` over `judged.unit`, a pure number."""
 
     robustness: Record | None
-    """What remains if it is not followed exactly, if asked for."""
+    """The stress that remains if the path is not followed exactly, if asked for."""
 
     steps: Rows[State] | None
     """The states along the path: all of them, or the last; if asked for."""
@@ -766,8 +770,8 @@ class RelaxReply(Result):
 
         @property
         def contact_radius(self) -> Floats:
-            """Of each row: Contact radius a, m; the half-width of a line contact; of a profile without a stress field
-            F_N′/(2 E*).
+            """Of each row: Contact radius a, m; for a line contact the half-width; for a profile without a stress
+            field F_N′/(2 E*).
             """
 
         @property
@@ -792,7 +796,7 @@ class RelaxReply(Result):
 
         @property
         def stick_centre(self) -> Floats:
-            """Of each row: Where the middle of that part is along x, m: of a contact whose bulk stress moves it."""
+            """Of each row: Middle of the stick zone along x, m; only with a bulk stress that shifts it."""
 
         @property
         def stick_radius(self) -> Floats:
@@ -808,11 +812,11 @@ class Residual(Result):
     """The local extrema strictly between centre and edge, from the centre outwards, each with its position to round-
     off. Where the history does not say how often the stress turns between two of its kinks, the derivative of the
     stress is sampled there, and two extrema closer together than the samples could be missed; dense searches have
-    found none that was.
+    found no such case.
     """
 
     centre: float | None
-    """Shear stress in the centre, Pa, positive as a positive displacement causes it; `null` where it is infinite."""
+    """Shear stress at the centre, Pa, positive as a positive displacement causes it; `null` where it is infinite."""
 
     max: float | None
     """Largest magnitude of the shear stress over the whole contact, centre included, Pa; `null` where it is infinite.
@@ -833,7 +837,7 @@ class Residual(Result):
 
         @property
         def radius(self) -> Floats:
-            """Of each row: Where, m: of a round contact."""
+            """Of each row: Radius in a round contact, m."""
 
         @property
         def shear(self) -> Floats:
@@ -843,8 +847,8 @@ class Residual(Result):
 
         @property
         def x(self) -> Floats:
-            """Of each row: Where along x, m: of a line contact. Without a bulk stress those at −x are alike and left
-            out.
+            """Of each row: Place along x in a line contact, m. Without a bulk stress the extrema at −x equal those at
+            x and are left out.
             """
 
 
@@ -852,10 +856,10 @@ class SessionReply(Result):
     """A contact."""
 
     contact: Figures
-    """What follows from the definition at the preload."""
+    """Quantities that follow from the definition at the preload."""
 
     created_at: str
-    """When it was made (ISO 8601, UTC)."""
+    """When it was created (ISO 8601, UTC)."""
 
     id: str
     """Its identifier."""
@@ -877,7 +881,7 @@ class SessionSummary(Result):
     """A contact as an item of a list."""
 
     created_at: str
-    """When it was made (ISO 8601, UTC)."""
+    """When it was created (ISO 8601, UTC)."""
 
     id: str
     """Its identifier."""
@@ -899,7 +903,7 @@ class SimulateReply(Result):
     """Solver, errors and time."""
 
     contact: Figures
-    """What follows from the definition at the preload."""
+    """Quantities that follow from the definition at the preload."""
 
     steps: Rows[State]
     """The states along the path: all of them, or the last."""
@@ -923,8 +927,8 @@ class SimulateReply(Result):
 
         @property
         def contact_radius(self) -> Floats:
-            """Of each row: Contact radius a, m; the half-width of a line contact; of a profile without a stress field
-            F_N′/(2 E*).
+            """Of each row: Contact radius a, m; for a line contact the half-width; for a profile without a stress
+            field F_N′/(2 E*).
             """
 
         @property
@@ -961,7 +965,7 @@ class SimulateReply(Result):
 
         @property
         def stick_centre(self) -> Floats:
-            """Of each row: Where the middle of that part is along x, m: of a contact whose bulk stress moves it."""
+            """Of each row: Middle of the stick zone along x, m; only with a bulk stress that shifts it."""
 
         @property
         def stick_radius(self) -> Floats:
@@ -974,7 +978,7 @@ class State(Result):
     """The state after a move."""
 
     contact_radius: float
-    """Contact radius a, m; the half-width of a line contact; of a profile without a stress field F_N′/(2 E*)."""
+    """Contact radius a, m; for a line contact the half-width; for a profile without a stress field F_N′/(2 E*)."""
 
     displacement: float
     """Tangential displacement U of the indenter, m; positive along x."""
@@ -1004,7 +1008,7 @@ class State(Result):
     """Radius inside which the last move did not slip, m: the contact radius if nothing slipped, zero in gross slip."""
 
     stick_centre: float | None
-    """Where the middle of that part is along x, m: of a contact whose bulk stress moves it."""
+    """Middle of the stick zone along x, m; only with a bulk stress that shifts it."""
 
 
 class StateEvent(Result):
@@ -1017,7 +1021,7 @@ class StateEvent(Result):
     """The identifier of the contact."""
 
     sequence: int
-    """The number of the move, and of moves so far; the identifier of the event."""
+    """The number of the move, which is the number of moves so far and the identifier of the event."""
 
     state: State
     """The state after it."""
@@ -1026,10 +1030,10 @@ class StateEvent(Result):
     """The cycle that it closed; the outermost if several."""
 
     move: Any
-    """The move as it was given; absent before the first."""
+    """The move as it was given; absent before the first move."""
 
     observation: Record | None
-    """What was measured there, if it is an observation."""
+    """The measurement, if the move is an observation."""
 
 
 class StressReply(Result):
@@ -1042,7 +1046,7 @@ class StressReply(Result):
     """Normal pressure, Pa; compression is positive; `null` where it is infinite."""
 
     radius: Floats | None
-    """Radii, m: of a round contact."""
+    """Radii in a round contact, m."""
 
     residual: Residual | None
     """The extrema of the shear stress, if asked for."""
@@ -1054,7 +1058,7 @@ class StressReply(Result):
     """Slip U − u(r), the displacement of the indenter less that of the surface, m; `null` outside the contact."""
 
     x: Floats | None
-    """Places along x, m: of a line contact."""
+    """Places along x in a line contact, m."""
 
 
 class SubsurfaceReply(Result):
@@ -1064,7 +1068,7 @@ class SubsurfaceReply(Result):
     """Place along the motion of the first body, m."""
 
     y: Floats
-    """Place across it, m."""
+    """Place across the motion of the first body, m."""
 
     z: Floats
     """Depth into the body, m; never negative."""
@@ -1113,37 +1117,37 @@ class SubsurfaceReply(Result):
 
 
 class SweepReply(Swept):
-    """The table of a sweep: a row a point."""
+    """The table of a sweep: one row for each point."""
 
     columns: dict[str, Floats]
     """The columns by their names or pointers: the axes, then the outputs, in the unit of the field; `null` where a
-    point has no such number or no answer.
+    point lacks the number or has no result.
     """
 
     failed: int
-    """How many points have no answer."""
+    """Number of points without a result."""
 
     failures: Rows[Record]
-    """The first of them."""
+    """The first points without a result."""
 
     points: int
-    """How many points, and numbers in each column."""
+    """Number of points, which is the length of each column."""
 
 
 class WearReply(Result):
-    """What wear leaves of a contact."""
+    """The limit that wear approaches in a contact."""
 
     accuracy: Accuracy
     """Solver, errors and time: of the forces before wear, and of the table if the profile has one."""
 
     contact: Figures
-    """The contact before."""
+    """The contact before wear."""
 
     depth: Record
     """The largest depth that is removed."""
 
     force_amplitude: float
-    """Amplitude of the tangential force in the limit, N: all of the contact sticks."""
+    """Amplitude of the tangential force in the limit, N, where the whole contact sticks."""
 
     indentation: float
     """The indentation, which is held, m."""
@@ -1171,12 +1175,12 @@ class WearReply(Result):
 
     profile: Any
     """The limiting shape for the computations that follow: a table, or the profile itself if nothing wears; left out
-    where there is none, with a warning that says why. In the table a steep rise of g takes the place of the jump at
-    the stick radius: with the jump itself the contact at this indentation would be ambiguous.
+    if it has none, with a warning that gives the reason. In the table a steep rise of g takes the place of the jump
+    at the stick radius: with the jump itself the contact at this indentation would be ambiguous.
     """
 
     profile_error: Record | None
-    """How far `profile` is from the limit; left out without it. The errors that other computations state do not
+    """How far `profile` is from the limit; left out without `profile`. The errors that other computations state do not
     include it.
     """
 

@@ -217,7 +217,7 @@ fn the_page_of_errors_is_printed_from_the_table() {
     let rows: String = Code::ALL.iter().map(row).collect();
     let printed = format!("{before}|---|---|---|\n{rows}\n{after}");
     if std::env::var_os("UPDATE").is_some() {
-        std::fs::write(path, &printed).unwrap();
+        return std::fs::write(path, &printed).unwrap();
     }
     assert_eq!(page, printed, "run this test with UPDATE=1");
 }
