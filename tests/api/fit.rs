@@ -242,7 +242,7 @@ fn a_file_of_a_bench_is_fitted_without_a_server() {
     assert_eq!(table.stdout.iter().filter(|byte| **byte == b'\n').count(), 752);
     for (wrong, said) in [
         (["--force", "load"], "no column `load` among 3 columns with time (s), displacement (um), force (n)"),
-        (["--known", "mu=1"], "none of friction"),
+        (["--known", "mu=1"], "not one of friction"),
         (["--force-unit", "kN"], "/units/force"),
     ] {
         let refused = fit(&wrong);

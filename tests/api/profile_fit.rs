@@ -92,7 +92,7 @@ fn a_file_of_an_instrument_is_read_as_it_is() {
     let matrix = format!("{header}{}\n", rows.collect::<Vec<_>>().join("\n"));
     let (good, printed, said) = read("map.txt", matrix.as_bytes());
     assert!(good && (radius(&serde_json::from_slice(&printed).unwrap()) / 0.01 - 1.0).abs() < 0.01, "{said}");
-    assert!(said.contains("600 x 560 heights in m") && said.contains("to 300 x 280 heights"), "{said}");
+    assert!(said.contains("600 x 560 heights in m") && said.contains("kept: 300 x 280 heights"), "{said}");
     // What a column was taken for is said.
     let scan = &line()["scan"]["line"];
     let rows = (0..401).map(|index| format!("{};{}\n", scan["x"][index], scan["z"][index])).collect::<String>();
