@@ -18,7 +18,7 @@ use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::gauss::{EIGHT_POINTS, TWELVE_POINTS, TWENTY_POINTS};
 use crate::numerics::multipole::Multipole;
 use crate::numerics::root_kernel::{MOST_TERMS, Series, Stretch, kernels};
-use crate::numerics::roots::{distance_below, within};
+use crate::numerics::roots::within;
 
 /// The most terms of a Chebyshev series.
 const POINTS: usize = 24;
@@ -273,11 +273,11 @@ impl Cell {
         }
         let start = if plain > 1e-10 * high { plain / (top + low.sqrt()) } else { (depth / steep).min(0.5 * top) };
         let mut flat = false;
-        let drop = distance_below(start, top, depth, |drop| {
+        let drop = within([0.0, top], start, |drop| {
             let low = (top - drop).max(0.0);
             let steep = self.gamma(low);
             flat |= steep <= 0.0;
-            (self.rise(Part { low, high: top, drop }), steep)
+            (self.rise(Part { low, high: top, drop }) - depth, steep)
         });
         if flat { plain } else { drop * (top + top - drop) }
     }

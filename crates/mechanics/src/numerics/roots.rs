@@ -2,46 +2,12 @@
 
 /// More steps than any of these functions takes; a safeguard only.
 const MOST_STEPS: usize = 200;
-
-/// The positive root of an increasing function: bracketed from `guess` by growing factors, then Newton's steps, and the
-/// geometric mean where one would leave the bracket or go far. `f` gives value and slope.
-pub(crate) fn increasing(guess: f64, f: impl Fn(f64) -> (f64, f64)) -> f64 {
-    let mut x = guess.clamp(f64::MIN_POSITIVE, f64::MAX.sqrt());
-    let (mut low, mut high) = (0.0f64, f64::INFINITY);
-    let mut factor = 2.0f64;
-    for count in 1..MOST_STEPS {
-        let (value, slope) = f(x);
-        if value > 0.0 {
-            high = x;
-        } else if value < 0.0 {
-            low = x;
-        } else {
-            return x;
-        }
-        let newton = x - value / slope;
-        let step = (newton - x).abs();
-        let bracketed = low > 0.0 && high < f64::INFINITY;
-        // Every eighth step uses the bracket alone: Newton's steps may be tiny.
-        let near = step <= if bracketed { 0.4 * x } else { 0.1 * x };
-        let next = if near && newton > low && newton < high && count % 8 > 0 {
-            newton
-        } else if bracketed {
-            low.sqrt() * high.sqrt()
-        } else {
-            factor *= factor;
-            if low > 0.0 { low * factor.min(1e100) } else { high / factor.min(1e100) }
-        };
-        if step <= 2e-16 * x || bracketed && high - low <= 4e-16 * high || !(next > 0.0 && next < f64::INFINITY) {
-            return x;
-        }
-        x = next;
-    }
-    x
-}
+/// A step of Newton's method below this share of the root is followed by one below rounding.
+const SQUARE: f64 = 1e-11;
 
 /// The root of an increasing function between two places, from a start between them: Newton's steps, and the middle of
 /// what is left of the bracket where one would leave it. `f` gives value and slope.
-pub(crate) fn within([mut low, mut high]: [f64; 2], start: f64, f: impl Fn(f64) -> (f64, f64)) -> f64 {
+pub(crate) fn within([mut low, mut high]: [f64; 2], start: f64, mut f: impl FnMut(f64) -> (f64, f64)) -> f64 {
     let mut x = start.clamp(low, high);
     for _ in 0..MOST_STEPS {
         let (value, slope) = f(x);
@@ -51,10 +17,12 @@ pub(crate) fn within([mut low, mut high]: [f64; 2], start: f64, f: impl Fn(f64) 
             low = x;
         }
         let newton = x - value / slope;
-        let next = if newton >= low && newton <= high { newton } else { 0.5 * (low + high) };
+        let holds = newton >= low && newton <= high;
+        let next = if holds { newton } else { 0.5 * (low + high) };
         let step = (next - x).abs();
         x = next;
-        if step <= 3e-16 * x || high - low <= 3e-16 * high {
+        // Each of Newton's steps is about the square of the one before.
+        if holds && step <= SQUARE * x || high - low <= 3e-16 * high {
             break;
         }
     }
@@ -90,22 +58,6 @@ pub(crate) fn between(ends: [(f64, f64); 2], width: f64, mut f: impl FnMut(f64) 
         at_last = value;
     }
     if last.1.abs() <= kept.1.abs() { last.0 } else { kept.0 }
-}
-
-/// How far, in a quantity that has fallen by `drop`, m or m^2, lies below its upper end: Newton's steps for a concave
-/// fall, given at each distance with its slope, none of which goes below half of the distance or beyond `most`.
-pub(crate) fn distance_below(start: f64, most: f64, drop: f64, mut fall: impl FnMut(f64) -> (f64, f64)) -> f64 {
-    let mut distance = start;
-    for _ in 0..8 {
-        let (fallen, slope) = fall(distance);
-        let step = (drop - fallen) / slope;
-        distance = (distance + step).clamp(0.5 * distance, most);
-        // Quadratic convergence, as above.
-        if step.abs() <= 1e-9 * distance {
-            break;
-        }
-    }
-    distance
 }
 
 /// Where something turns from false at the first place to true at the second: two places as near to each other as
@@ -154,7 +106,7 @@ pub(crate) fn largest([mut low, mut high]: [f64; 2], part: f64, mut f: impl FnMu
 
 #[cfg(test)]
 mod tests {
-    use super::{between, distance_below, increasing, largest, turning, within};
+    use super::{between, largest, turning, within};
 
     #[test]
     fn a_maximum_is_found_to_half_the_digits_of_its_place_and_all_of_its_value() {
@@ -178,6 +130,11 @@ mod tests {
             let root = within([0.0, 1.0], start, |x| (x.powi(9) - 1e-3, 9.0 * x.powi(8)));
             assert!((root - 1e-3_f64.powf(1.0 / 9.0)).abs() < 1e-15, "{start}: {root}");
         }
+        for decade in -20..0 {
+            let root = 10f64.powi(decade) * 1.37;
+            let found = within([0.0, 2.0], 1.0, |x| (x * x * x - root * root * root, 3.0 * x * x));
+            assert!((found / root - 1.0).abs() < 4e-16, "{root}: {found}");
+        }
     }
 
     #[test]
@@ -187,13 +144,6 @@ mod tests {
             let [before, after] = turning([low, high], at);
             assert!(!at(before) && at(after) && (before - after).abs() < 1e-15, "{before} {after}");
         }
-    }
-
-    #[test]
-    fn a_distance_below_the_end_of_a_parabola() {
-        // x^2 falls from one by 2 w - w^2 over a width w.
-        let width = distance_below(0.1, 1.0, 0.19, |w| (w * (2.0 - w), 2.0 * (1.0 - w)));
-        assert!((width - 0.1).abs() < 1e-15, "{width}");
     }
 
     #[test]
@@ -215,15 +165,6 @@ mod tests {
             let allowed = if index == 2 { 1e-2 } else { 1e-14 };
             assert!((found - root).abs() <= allowed, "{index}: {found}");
             assert!(count <= [20, 8, 160, 190, 3][index], "{index}: {count} evaluations");
-        }
-    }
-
-    #[test]
-    fn twenty_decades_from_one_guess() {
-        for decade in -60..60 {
-            let root = 10f64.powi(decade) * 1.37;
-            let found = increasing(1.0, |x| (x * x * x - root * root * root, 3.0 * x * x));
-            assert!((found / root - 1.0).abs() < 4e-16, "{root}: {found}");
         }
     }
 }

@@ -21,7 +21,7 @@ use crate::numerics::cluster_tree::{Cluster, ClusterTree};
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::gauss::TWELVE_POINTS;
 use crate::numerics::multipole::Multipole;
-use crate::numerics::roots::increasing;
+use crate::numerics::roots::within;
 use crate::range;
 
 /// Asperities in the smallest cluster.
@@ -241,7 +241,8 @@ impl Set {
         [first, width]
     }
 
-    /// The level at which a function that rises from zero, given with its slope, has this value; `least` is no larger.
+    /// The level at which a function that rises from zero, given with its slope, has this value; `least` is that
+    /// level without gaps.
     fn invert(&self, target: f64, least: f64, value: impl Fn(&Set, DoubleDouble) -> [f64; 2]) -> f64 {
         if target <= 0.0 {
             return 0.0;
@@ -250,13 +251,13 @@ impl Set {
         let gaps = &self.gaps;
         let index = gaps.partition_point(|&gap| value(self, gap.into())[0] < target);
         let base = gaps[index.saturating_sub(1)];
-        let room = gaps.get(index).map_or(f64::INFINITY, |next| next - base);
-        let guess = if least > base { least - base } else { room.min(least) };
-        let step = increasing(guess, |step| {
+        // Beyond all gaps, no farther above the last than if all were there.
+        let room = gaps.get(index).map_or(least, |next| next - base);
+        let start = if least > base { least - base } else { room.min(least) };
+        base + within([0.0, room], start, |step| {
             let [here, slope] = value(self, DoubleDouble::sum(base, step));
             (here - target, slope)
-        });
-        base + step.min(room)
+        })
     }
 }
 

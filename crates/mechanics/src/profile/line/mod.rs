@@ -26,7 +26,7 @@ use super::{Moments, Point, Profile, Ring, Sphere};
 use crate::error::Error;
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::gauss::{TWELVE_POINTS, integral};
-use crate::numerics::roots::increasing;
+use crate::numerics::roots::within;
 use crate::range::{self, Quantity, Range};
 
 /// The part of the reference length that half-widths stay below: at the length itself the approach would no longer
@@ -295,44 +295,13 @@ impl LineContact {
 
     /// s, m, of a level, m, no further than where contacts end.
     fn side_of_level(&self, level: f64) -> f64 {
-        match self.specimen {
-            Specimen::Cylinder { radius } => self.side_of_cylinder(radius, level),
-            Specimen::RoundedPad { .. } => {
-                let load = level / (FRAC_2_PI * self.log_at(0.0));
-                self.side(level, load, |s| [self.level_to(s), self.rise(s)])
-            }
-        }
-    }
-
-    /// The same of a cylinder: with u = 2 ln(l/s) + 1 and z = 4 R y/(e l^2), u - ln u = -ln z. Newton's steps for u,
-    /// and a last one for s, since an error of u is multiplied by it.
-    fn side_of_cylinder(&self, radius: f64, level: f64) -> f64 {
-        let (length, most) = (self.reference_length, self.last_side());
-        if level <= 0.0 {
-            return 0.0;
-        }
         // Roots, since the product of a small radius and a small level may underflow.
-        let q = 1.0 - 2.0 * (2.0 * radius.sqrt() * level.sqrt() / length).ln();
-        // Contacts end at u = 1 + 2 ln(1/WIDEST), above the least of u - ln u at one.
-        let mut u = 1.0 + (q - 1.0).max(0.0) + (2.0 * (q - 1.0).max(0.0)).sqrt();
-        let end = 1.0 - 2.0 * WIDEST.ln();
-        for _ in 0..8 {
-            let next = (u * (q + u.ln() - 1.0) / (u - 1.0)).max(end);
-            let step = (next - u).abs();
-            u = next;
-            if step <= 1e-8 * u {
-                break;
-            }
-        }
-        if u < 1.01 * end && level >= self.level_to(most) {
-            return most;
-        }
-        let s = length * (0.5 * (1.0 - u)).exp();
-        (s + (level - self.level_to(s)) / self.rise(s)).min(most)
+        let about = (self.curvature_radius().sqrt() * level.max(0.0).sqrt()).min(self.last_side());
+        self.side(level, level / (FRAC_2_PI * self.log_at(about)), |s| [self.level_to(s), self.rise(s)])
     }
 
-    /// s at which an increasing function with its slope has a value, no further than where contacts end. The start is
-    /// what a narrow edge has for about this load, G = s^3/(3 R b).
+    /// s at which an increasing function with its slope has a value, no further than where contacts end, from what
+    /// about this load has: s^3/(3 R b) of a narrow edge and pi s^2/(4 R) of a wide one are both above G.
     fn side(&self, value: f64, load: f64, of: impl Fn(f64) -> [f64; 2]) -> f64 {
         let most = self.last_side();
         if value <= 0.0 {
@@ -341,12 +310,13 @@ impl LineContact {
         if value >= of(most)[0] {
             return most;
         }
-        let start = (3.0 * self.curvature_radius() * self.flat_half_width() * load).cbrt();
-        increasing(start.min(most), |s| {
-            let [found, slope] = of(s.min(most));
+        let radius = self.curvature_radius();
+        let (narrow, wide) =
+            ((3.0 * radius * self.flat_half_width() * load).cbrt(), (4.0 / PI * load).sqrt() * radius.sqrt());
+        within([0.0, most], narrow.max(wide), |s| {
+            let [found, slope] = of(s);
             (found - value, slope)
         })
-        .min(most)
     }
 
     /// s of the widest contact, m.
@@ -390,9 +360,6 @@ impl CurveFamily for LineContact {
 
     fn indentation_of(&self, load: f64) -> f64 {
         let wanted = 2.0 * load / self.length;
-        self.level_to(match self.specimen {
-            Specimen::Cylinder { radius } => (4.0 * radius * wanted / PI).sqrt().min(self.last_side()),
-            Specimen::RoundedPad { .. } => self.side(wanted, wanted, |s| [self.load_to(s), self.gamma(s)]),
-        })
+        self.level_to(self.side(wanted, wanted, |s| [self.load_to(s), self.gamma(s)]))
     }
 }
