@@ -119,7 +119,7 @@ impl Profile {
         elasticity: &Elasticity,
         keep_going: &dyn Fn() -> bool,
     ) -> Result<(), Error> {
-        let Some(shape) = self.shape().filter(|shape| shape.stages().is_some()) else { return Ok(()) };
+        let Some(shape) = self.shape() else { return Ok(()) };
         let reach = match *preload {
             Preload::NormalForce(force) => Reach::Load(force / (2.0 * elasticity.e_star())),
             Preload::Indentation(depth) => Reach::Level(depth),

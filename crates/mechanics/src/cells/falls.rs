@@ -26,6 +26,11 @@ pub(crate) struct Falls {
     pub(crate) concavely: bool,
 }
 
+impl Falls {
+    /// Where nothing is known.
+    pub(crate) const UNKNOWN: Falls = Falls { least: f64::NEG_INFINITY, concavely: false };
+}
+
 /// A cell and those before it.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Steepness {
@@ -41,8 +46,7 @@ impl Cells {
     /// Bounds on the kernel up to `outer`, m, from r = `inner`, m, on.
     pub(crate) fn falls(&self, inner: f64, outer: f64) -> Falls {
         let (first, last) = (self.find(inner), self.find(outer));
-        let unknown = Falls { least: f64::NEG_INFINITY, concavely: false };
-        let Some(innermost) = self.cells.get(first) else { return unknown };
+        let Some(innermost) = self.cells.get(first) else { return Falls::UNKNOWN };
         let sums = self.steepness.get_or_init(|| {
             let mut sum = Steepness::default();
             let add = |cell: &Cell| {
@@ -59,7 +63,7 @@ impl Cells {
         let (start, end) = (sums[first], sums[last + 1]);
         // Where f' jumps beyond the inner radius q rises to infinity.
         if end.jumps > start.jumps + usize::from(innermost.jumps() && innermost.radius <= inner) {
-            return unknown;
+            return Falls::UNKNOWN;
         }
         // 2 v int q' dt is v int (dq/dzeta) dzeta/sqrt(zeta^2 - kappa), summed over the cells.
         let rise = ((outer - inner) * (outer + inner)).sqrt() * LOGARITHM * (end.rise - start.rise);

@@ -26,7 +26,7 @@ use crate::numerics::root_kernel::Series;
 const LANES: usize = 4;
 
 /// For fewer radii than this, larger clusters than the next are summed half by half.
-const MANY: usize = 64;
+pub(crate) const MANY: usize = 64;
 
 /// The moments of a cluster of so many cells are made of what is in it at once, not half by half.
 const FEW_CELLS: usize = 2;

@@ -131,8 +131,8 @@ pub(crate) trait Shape {
     /// f'(r), the slope of the undeformed surface.
     fn surface_slope(&self, r: f64) -> f64;
 
-    /// Its cells as far as they have been asked for; none of a parabola, which has closed forms.
-    fn stages(&self) -> Option<&Stages>;
+    /// Its cells as far as they have been asked for.
+    fn stages(&self) -> &Stages;
 
     /// Where contacts end. A shape that went on beyond its own end would give numbers where there is no surface, so
     /// that each has to say.
@@ -151,6 +151,6 @@ pub(crate) trait Shape {
 
     /// Its cells that reach beyond something, or to its end; `None` once `keep_going` has returned false.
     fn cells_while(&self, reach: Reach, keep_going: &dyn Fn() -> bool) -> Option<&Cells> {
-        self.stages()?.up_to(self, reach, keep_going)
+        self.stages().up_to(self, reach, keep_going)
     }
 }

@@ -53,8 +53,8 @@ impl Shape for Cone {
         self.slope
     }
 
-    fn stages(&self) -> Option<&Stages> {
-        Some(&self.stages)
+    fn stages(&self) -> &Stages {
+        &self.stages
     }
 
     fn end(&self) -> Option<End> {

@@ -25,7 +25,7 @@ pub enum Direction {
 }
 
 /// An ellipsoid on a plane, or two bodies crossed.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Ellipsoid {
     /// The ball with the same load curve.
     pub(super) ball: Sphere,

@@ -62,8 +62,8 @@ impl Shape for ExactSphere {
         r / ((self.radius - r) * (self.radius + r)).sqrt()
     }
 
-    fn stages(&self) -> Option<&Stages> {
-        Some(&self.stages)
+    fn stages(&self) -> &Stages {
+        &self.stages
     }
 
     fn end(&self) -> Option<End> {

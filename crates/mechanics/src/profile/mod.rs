@@ -233,20 +233,17 @@ impl Profile {
     /// g'(x) (pure number), infinite where f' jumps.
     #[must_use]
     pub fn slope(&self, radius: f64) -> f64 {
-        match (self.curve(), self.ball(), self.cells(Reach::Radius(radius))) {
-            (Some(curve), ..) => curve.rate(curve.level_of(radius)).recip(),
-            (_, Some(ball), _) => ball.slope(radius),
-            (.., cells) => cells.map_or(f64::NAN, |cells| cells.slope(radius)),
+        match self.curve() {
+            Some(curve) => curve.rate(curve.level_of(radius)).recip(),
+            None => self.cells(Reach::Radius(radius)).map_or(f64::NAN, |cells| cells.slope(radius)),
         }
     }
 
     /// dg/dt (pure number) at several t = sqrt(x^2 - b^2), m, above a kink b = `base`, m, or above zero.
     pub(super) fn slopes_above<const N: usize>(&self, base: f64, t: [f64; N]) -> [f64; N] {
         let outer = base.hypot(t.iter().copied().fold(0.0, f64::max));
-        match (self.ball(), self.cells(Reach::Radius(outer))) {
-            (Some(ball), _) => t.map(|t| ball.slope(t)),
-            (_, cells) => t.map(|t| cells.map_or(f64::NAN, |cells| cells.gamma(base, t))),
-        }
+        let cells = self.cells(Reach::Radius(outer));
+        t.map(|t| cells.map_or(f64::NAN, |cells| cells.gamma(base, t)))
     }
 
     /// The largest radius below `radius`, m, at which g is not analytic; zero, the tip, if there is none.
@@ -376,10 +373,7 @@ impl Profile {
 
     /// Bounds on the kernel up to c = `outer`, m, from r = `inner`, m, on.
     pub(super) fn falls(&self, inner: f64, outer: f64) -> Falls {
-        match (self.ball(), self.cells(Reach::Radius(outer))) {
-            (None, Some(cells)) => cells.falls(inner, outer),
-            (ball, _) => Falls { least: ball.map_or(f64::NAN, |ball| ball.slope(1.0)), concavely: true },
-        }
+        self.cells(Reach::Radius(outer)).map_or(Falls::UNKNOWN, |cells| cells.falls(inner, outer))
     }
 
     /// The radii, m, increasing, at which pressure and shear are infinite once the contact has grown over them: the tip

@@ -104,8 +104,8 @@ impl Shape for PowerLaw {
         self.exponent * self.coefficient * self.raised(r, 1)
     }
 
-    fn stages(&self) -> Option<&Stages> {
-        Some(&self.stages)
+    fn stages(&self) -> &Stages {
+        &self.stages
     }
 
     fn end(&self) -> Option<End> {

@@ -97,12 +97,8 @@ impl Profile {
         #[cfg(test)]
         call_count::add(|calls| &mut calls.displacement_integral);
         let span = self.span(ring);
-        let face = match self.ball() {
-            Some(ball) => ball.displacement_integral(at, &span),
-            None => {
-                self.cells(Reach::Radius(span.outer_radius)).map_or(f64::NAN, |c| c.displacement_integral(at, &span))
-            }
-        };
+        let face =
+            self.cells(Reach::Radius(span.outer_radius)).map_or(f64::NAN, |c| c.displacement_integral(at, &span));
         if span.edge > 0.0 { face + span.edge * span.arc(at) } else { face }
     }
 

@@ -5,7 +5,7 @@ use crate::cells::Cells;
 #[cfg(test)]
 use crate::cells::call_count;
 use crate::cells::displacement::displacements;
-use crate::cells::field::{SumAndSize, WeightedCells};
+use crate::cells::field::{MANY, SumAndSize, WeightedCells};
 use crate::cells::kernel::Kernel;
 use crate::cells::shape::Reach;
 use crate::cells::sources::Sources;
@@ -16,6 +16,8 @@ const CELL_TERMS: usize = 8;
 const BETWEEN_QUESTIONS: usize = 4096;
 /// Radii from which on a search for extrema may ask for.
 const SEARCH: usize = usize::MAX;
+/// From so many rings on cells are quicker than closed forms at many radii.
+const MANY_RINGS: usize = 128;
 
 impl Profile {
     /// The sum of [`Profile::kernel`] times a weight over rings that adjoin each other from the centre outward, at each
@@ -37,18 +39,14 @@ impl Profile {
 
     /// (2/pi) int v dx/sqrt(r^2 - x^2) over the radii x of the contact below r, m, at each of `radii`, at once: v, m,
     /// is straight in g over rings that adjoin each other from the centre to the edge, each with its dv/dg, and `ends`
-    /// are its values at the centre and at the edge. `None` of a ball, where ring by ring is no slower.
-    pub(crate) fn displacements(
-        &self,
-        rings: &[(Ring, f64)],
-        ends: (f64, f64),
-        radii: &[StressRadius],
-    ) -> Option<Vec<f64>> {
-        let edge = &rings.last()?.0.outer;
-        let cells = WeightedCells::new(self.cells(Reach::Radius(edge.radius))?, &self.spans(rings), radii.len());
+    /// are its values at the centre and at the edge. NaN without a surface.
+    pub(crate) fn displacements(&self, rings: &[(Ring, f64)], ends: (f64, f64), radii: &[StressRadius]) -> Vec<f64> {
+        let edge = rings.last().map_or(Point::default(), |(ring, _)| ring.outer);
+        let Some(cells) = self.cells(Reach::Radius(edge.radius)) else { return vec![f64::NAN; radii.len()] };
+        let cells = WeightedCells::new(cells, &self.spans(rings), radii.len());
         #[cfg(test)]
         radii.iter().for_each(|_| call_count::add(|calls| &mut calls.displacement_integral));
-        Some(displacements(edge, ends, radii, |angle, radii| cells.sums(angle, radii)))
+        displacements(&edge, ends, radii, |angle, radii| cells.sums(angle, radii))
     }
 
     /// The spans of weighted rings.
@@ -70,7 +68,7 @@ impl<'a> RingSum<'a> {
     fn new(profile: &'a Profile, rings: &[(Ring, f64)], radii: usize) -> RingSum<'a> {
         let edge = rings.last().map_or(0.0, |(ring, _)| ring.outer.radius);
         match (profile.ball(), profile.cells(Reach::Radius(edge))) {
-            (Some(ball), _) => RingSum::Ball(ball, rings.to_vec()),
+            (Some(ball), _) if rings.len() < MANY_RINGS || radii < MANY => RingSum::Ball(ball, rings.to_vec()),
             (_, Some(cells)) => RingSum::Cells(WeightedCells::new(cells, &profile.spans(rings), radii)),
             _ => RingSum::Unknown,
         }

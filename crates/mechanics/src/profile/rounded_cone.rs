@@ -76,8 +76,8 @@ impl Shape for RoundedCone {
         self.slope * (r / self.tip_radius).min(1.0)
     }
 
-    fn stages(&self) -> Option<&Stages> {
-        Some(&self.stages)
+    fn stages(&self) -> &Stages {
+        &self.stages
     }
 
     fn end(&self) -> Option<End> {

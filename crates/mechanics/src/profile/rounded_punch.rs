@@ -66,8 +66,8 @@ impl Shape for RoundedPunch {
         (r - self.flat_radius).max(0.0) / self.edge_radius
     }
 
-    fn stages(&self) -> Option<&Stages> {
-        Some(&self.stages)
+    fn stages(&self) -> &Stages {
+        &self.stages
     }
 
     fn end(&self) -> Option<End> {

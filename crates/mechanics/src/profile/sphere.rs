@@ -1,27 +1,18 @@
 //! Hertz's parabola f = r^2/(2R), the paper's sphere: g(x) = x^2/R, K(r, c) = (2/R) sqrt(c^2 - r^2).
 //!
-//! Everything follows from one difference, x_outer^2 - x_inner^2 = R (y_outer - y_inner), which is never taken between
-//! rounded radii (Hertz 1881; Popov & Hess 2015). The forms are closed, so that no cells are made; as a part of a sum
-//! it is a shape like others.
-
-use std::ops::Range;
+//! Moves and stresses follow from one difference, x_outer^2 - x_inner^2 = R (y_outer - y_inner), which is never taken
+//! between rounded radii (Hertz 1881; Popov & Hess 2015): closed forms, for speed alone. For all else it is a shape like
+//! others.
 
 use super::{DoubleDouble, Error, Family, Moments, Parameter, Point, Profile, Ring, Span, StressRadius, range};
 #[cfg(test)]
 use crate::cells::call_count;
 use crate::cells::field::SumAndSize;
-use crate::cells::kernel::Kernel;
 use crate::cells::shape::{End, Kink, Powers, Shape};
-use crate::cells::sources::Sources;
 use crate::cells::stages::Stages;
-use crate::numerics::cluster_tree::{Cluster, ClusterTree};
-use crate::numerics::gauss::TWELVE_POINTS;
 
 /// Radii that are summed for side by side.
 const LANES: usize = 8;
-/// From so many rings and radii on they are summed by clusters, the smallest of so many rings.
-const MANY: (usize, usize) = (128, 48);
-const CLUSTER: usize = 12;
 /// Squares of radii that differ by less, over that of the outer one, have lost digits that the depth of their ring has.
 const THIN: f64 = 1e-3;
 
@@ -42,9 +33,10 @@ pub(super) static FAMILY: Family = Family {
 };
 
 /// A paraboloid of revolution.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Sphere {
     curvature_radius: f64,
+    stages: Stages,
 }
 
 impl Sphere {
@@ -53,23 +45,18 @@ impl Sphere {
     /// # Errors
     /// [`Error::OutOfRange`] with the name of the parameter.
     pub fn new(radius: f64) -> Result<Sphere, Error> {
-        FAMILY.check([radius]).map(|[curvature_radius]| Sphere { curvature_radius })
+        FAMILY.check([radius]).map(|[radius]| Sphere::of_curvature(radius))
     }
 
     /// The same where R follows from other, checked numbers.
     pub(super) fn of_curvature(radius: f64) -> Sphere {
-        Sphere { curvature_radius: radius }
+        Sphere { curvature_radius: radius, stages: Stages::new() }
     }
 
     /// Curvature radius R, m.
     #[must_use]
     pub fn curvature_radius(&self) -> f64 {
         self.curvature_radius
-    }
-
-    /// g', m.
-    pub(super) fn slope(&self, radius: f64) -> f64 {
-        2.0 * radius / self.curvature_radius
     }
 
     /// A level with its radius.
@@ -131,12 +118,7 @@ impl Sphere {
         let Some((outermost, _)) = rings.last() else { return sums };
         let ends = rings.iter().rev().map(|(ring, weight)| self.ball_ring(ring, *weight)).collect();
         let inward = InwardRings { edge: outermost.outer.square, rings: ends };
-        if rings.len() >= MANY.0 && radii.len() >= MANY.1 {
-            let tree = inward.clusters();
-            tree.root().into_iter().for_each(|root| inward.visit::<SLOPE>(&tree, root, radii, &mut sums));
-        } else {
-            inward.add::<SLOPE>(0..rings.len(), radii, &mut sums);
-        }
+        inward.add::<SLOPE>(radii, &mut sums);
         let unit = 2.0 / self.curvature_radius;
         sums.into_iter().map(|(sum, size)| (unit * sum, unit * size)).collect()
     }
@@ -145,23 +127,6 @@ impl Sphere {
         let plain = (ring.outer.square - ring.inner.square).value();
         let thin = plain <= THIN * ring.outer.square.value();
         BallRing { end: ring.inner.square, gap: if thin { self.gap(ring) } else { plain }, thin, weight }
-    }
-
-    /// int (y_outer - g) dx/sqrt(r^2 - x^2), m, over the radii x of a ring below r: over the angle whose sine is x/r.
-    pub(super) fn displacement_integral(&self, at: &StressRadius, span: &Span) -> f64 {
-        let (inner, outer) = span.excess(at.square);
-        if inner >= 0.0 {
-            return 0.0;
-        }
-        let (angle, missing) = (span.arc(at), outer.max(0.0));
-        let (top, root) = (span.outer_radius.min(at.radius), (-outer).max(0.0).sqrt());
-        // r^2 (sin^2(a) - sin^2(a - b)) = r^2 sin(b) sin(2 a - b), and r sin(a) is the outer end.
-        let height = |turn: f64| {
-            let half = turn.sin();
-            half * (2.0 * top * root * turn.cos() + (top * top - root * root) * half)
-        };
-        let sum: f64 = TWELVE_POINTS.iter().map(|(share, weight)| weight * (missing + height(angle * share))).sum();
-        angle * sum / self.curvature_radius
     }
 }
 
@@ -182,21 +147,16 @@ struct InwardRings {
 }
 
 impl InwardRings {
-    /// The square where the rings from this one on begin.
-    fn outer(&self, first: usize) -> DoubleDouble {
-        first.checked_sub(1).map_or(self.edge, |outer| self.rings[outer].end)
-    }
-
-    /// Adds R/2 times what some rings do at radii in rising order.
-    fn add<const SLOPE: bool>(&self, some: Range<usize>, radii: &[StressRadius], sums: &mut [SumAndSize]) {
-        let edge = self.outer(some.start).parts();
+    /// Adds R/2 times what they do at radii in rising order.
+    fn add<const SLOPE: bool>(&self, radii: &[StressRadius], sums: &mut [SumAndSize]) {
+        let edge = self.edge.parts();
         for (radii, sums) in radii.chunks(LANES).zip(sums.chunks_mut(LANES)) {
             // Lanes left over repeat the last.
             let square: [_; LANES] = std::array::from_fn(|lane| radii[lane.min(radii.len() - 1)].square.parts());
             let excess = |end: (f64, f64)| square.map(|(high, low)| (end.0 - high) + (end.1 - low));
             let (mut sum, mut size) = ([0.0; LANES], [0.0; LANES]);
             let mut v_high = excess(edge).map(root_of);
-            for ring in &self.rings[some.clone()] {
+            for ring in &self.rings {
                 #[cfg(test)]
                 call_count::add(|calls| if SLOPE { &mut calls.kernel_slope } else { &mut calls.kernel });
                 let end = ring.end.parts();
@@ -226,54 +186,6 @@ impl InwardRings {
             for (lane, total) in sums.iter_mut().enumerate() {
                 *total = (total.0 + sum[lane], total.1 + size[lane]);
             }
-        }
-    }
-
-    /// Clusters of the rings: over x^2 each has a constant density of sources, whose moments a rule of twelve points
-    /// gives exactly.
-    fn clusters(&self) -> ClusterTree<Sources> {
-        ClusterTree::new(self.rings.len(), CLUSTER, |items, halves: Option<[&Sources; 2]>| {
-            let rings = &self.rings[items.clone()];
-            let width = rings.iter().map(|ring| ring.gap).sum();
-            let (mut sources, mut start) = (Sources::empty(rings[rings.len() - 1].end, width), 0.0);
-            if let Some([outer, inner]) = halves {
-                sources.add_beyond(0.0, inner, 1.0);
-                sources.add_beyond(inner.width(), outer, 1.0);
-                return sources;
-            }
-            for ring in rings.iter().rev() {
-                let places = TWELVE_POINTS.map(|(share, _)| start + ring.gap * share);
-                sources
-                    .beyond
-                    .add_sources(&places, &TWELVE_POINTS.map(|(_, part)| 0.5 * ring.weight * ring.gap * part));
-                start += ring.gap;
-            }
-            sources
-        })
-    }
-
-    /// Adds R/2 times what a cluster does at radii in rising order.
-    fn visit<const SLOPE: bool>(
-        &self,
-        tree: &ClusterTree<Sources>,
-        number: usize,
-        radii: &[StressRadius],
-        sums: &mut [SumAndSize],
-    ) {
-        let (Cluster { items, sources, halves }, kernel) =
-            (tree.cluster(number), if SLOPE { Kernel::RootSlope } else { Kernel::Root });
-        let outer = self.outer(items.start);
-        let met = radii.partition_point(|at| at.square < outer);
-        let far = radii[..met].partition_point(|at| kernel.is_far(sources, at.square));
-        for (at, sum) in radii[..far].iter().zip(&mut *sums) {
-            let [term] = kernel.far(sources, [at.square]);
-            *sum = (sum.0 + term, sum.1 + term.abs());
-        }
-        let (radii, sums) = (&radii[far..met], &mut sums[far..met]);
-        match halves {
-            _ if radii.is_empty() => {}
-            Some(halves) => halves.iter().for_each(|&half| self.visit::<SLOPE>(tree, half, radii, sums)),
-            None => self.add::<SLOPE>(items.clone(), radii, sums),
         }
     }
 }
@@ -307,15 +219,15 @@ impl Shape for Sphere {
 
     fn gamma(&self, _base: f64, t: f64) -> f64 {
         // g'/x is the same everywhere.
-        self.slope(t)
+        2.0 * t / self.curvature_radius
     }
 
     fn surface_slope(&self, r: f64) -> f64 {
         r / self.curvature_radius
     }
 
-    fn stages(&self) -> Option<&Stages> {
-        None
+    fn stages(&self) -> &Stages {
+        &self.stages
     }
 
     fn end(&self) -> Option<End> {

@@ -138,8 +138,8 @@ impl Shape for Sum {
         self.parts.iter().map(|part| part.surface_slope(r)).sum()
     }
 
-    fn stages(&self) -> Option<&Stages> {
-        Some(&self.stages)
+    fn stages(&self) -> &Stages {
+        &self.stages
     }
 
     fn end(&self) -> Option<End> {

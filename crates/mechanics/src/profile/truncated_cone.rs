@@ -58,8 +58,8 @@ impl Shape for TruncatedCone {
         if r > self.flat_radius { self.slope } else { 0.0 }
     }
 
-    fn stages(&self) -> Option<&Stages> {
-        Some(&self.stages)
+    fn stages(&self) -> &Stages {
+        &self.stages
     }
 
     fn end(&self) -> Option<End> {

@@ -58,8 +58,8 @@ impl Shape for TruncatedSphere {
         if r > self.flat_radius { r / self.curvature_radius } else { 0.0 }
     }
 
-    fn stages(&self) -> Option<&Stages> {
-        Some(&self.stages)
+    fn stages(&self) -> &Stages {
+        &self.stages
     }
 
     fn end(&self) -> Option<End> {

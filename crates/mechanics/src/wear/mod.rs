@@ -203,10 +203,7 @@ impl<'a> WornContact<'a> {
         let profile = &self.contact.profile;
         let whole = normal::whole(profile, &self.stick);
         let (at, level) = (StressRadius::of_all(radii), self.stick.level.value());
-        let inside = profile.displacements(&[(whole, 1.0)], (0.0, level), &at).unwrap_or_else(|| {
-            let of = |at| FRAC_2_PI * (level * profile.arc(at, &whole) - profile.displacement_integral(at, &whole));
-            at.iter().map(of).collect()
-        });
+        let inside = profile.displacements(&[(whole, 1.0)], (0.0, level), &at);
         let depth = self.edge().level.value();
         inside.into_iter().zip(&at).map(|(inside, at)| inside + FRAC_2_PI * depth * self.angle(at)).collect()
     }
@@ -341,13 +338,7 @@ fn unworn_heights(profile: &Profile, radii: &[f64]) -> Vec<f64> {
 /// The same by one sum up to the largest radius, whose rounding error all share.
 fn heights_together(profile: &Profile, radii: &[f64]) -> Vec<f64> {
     let at = StressRadius::of_all(radii);
-    let whole = |radius: f64| normal::whole(profile, &profile.point(profile.level(radius).into()));
-    let ring = whole(BEYOND * radii.iter().copied().fold(0.0, f64::max));
-    profile.displacements(&[(ring, 1.0)], (0.0, ring.outer.level.value()), &at).unwrap_or_else(|| {
-        let of = |at: &StressRadius| {
-            let ring = whole(at.radius);
-            ring.depth - FRAC_2_PI * profile.displacement_integral(at, &ring)
-        };
-        at.iter().map(|at| if at.radius > 0.0 { of(at) } else { 0.0 }).collect()
-    })
+    let outermost = profile.level(BEYOND * radii.iter().copied().fold(0.0, f64::max));
+    let ring = normal::whole(profile, &profile.point(outermost.into()));
+    profile.displacements(&[(ring, 1.0)], (0.0, ring.outer.level.value()), &at)
 }

@@ -307,7 +307,7 @@ fn stuck_ellipses_are_stiffer_along_their_minor_axis() {
     circle.relative(compliance(sphere(0.01)), 1.7 / 1.4);
     let nearly = Ellipsoid::new([0.01, 0.01 * (1.0 + 1e-9)], Direction::X).unwrap();
     let next = Worst::new("an ellipse that is nearly a circle", 1e-9);
-    next.relative(Profile::Ellipsoid(nearly).radius(1e-6), sphere(0.01).radius(1e-6));
+    next.relative(Profile::Ellipsoid(nearly.clone()).radius(1e-6), sphere(0.01).radius(1e-6));
     next.relative(compliance(Profile::Ellipsoid(nearly)), 1.7 / 1.4);
     let unknown = setup(round_profile(), Preload::NormalForce(1.0));
     assert_eq!(Contact::new(unknown).map(|_| ()), Err(Error::BodiesNeeded));

@@ -1,4 +1,5 @@
-//! A stress does not depend on how many are asked for at once: above a few radii other sums are used than for each.
+//! A stress, or a displacement of the surface, does not depend on how many are asked for at once: above a few radii
+//! other sums are used than for each.
 
 use std::f64::consts::PI;
 
@@ -65,9 +66,9 @@ fn path(random: &mut Random) -> Vec<f64> {
 }
 
 #[test]
-fn a_stress_does_not_depend_on_how_many_are_asked_for() {
+fn a_field_does_not_depend_on_how_many_radii_are_asked_for() {
     let mut random = Random(29);
-    let (mut worst, mut compared, mut wrong) = (0.0_f64, 0, Vec::new());
+    let (mut worst, mut moved_apart, mut compared, mut wrong) = (0.0_f64, 0.0_f64, 0, Vec::new());
     for case in 0..cases(2000) {
         let (profile, depth) = scene(&mut random);
         let elasticity = Elasticity::effective(1e9, 8e8).unwrap();
@@ -82,7 +83,14 @@ fn a_stress_does_not_depend_on_how_many_are_asked_for() {
         let a = contact.contact_radius();
         let mut radii: Vec<f64> = (0..40).map(|_| a * random.within(0.0, 1.0)).collect();
         radii.extend((0..20).map(|_| a * (1.0 - 10_f64.powf(random.within(-12.0, 0.0)))));
-        radii.push(0.0);
+        radii.extend([0.0, 1.5 * a, 30.0 * a, a]);
+        let moved = contact.surface_displacements(&radii);
+        for (r, all) in radii.iter().zip(moved) {
+            let alone = contact.surface_displacement(*r);
+            let error = (all - alone).abs() / (0.3 * contact.indentation() * 1e9 / 8e8);
+            moved_apart = moved_apart.max(error);
+            assert!(error < 2e-14, "{case}: {profile:?} pressed by {depth:e} at {r:e}: {all:e} is not {alone:e}");
+        }
         let together = contact.shears(&radii);
         let mean = 0.3 * contact.normal_force() / (PI * a * a);
         for (r, all) in radii.iter().zip(together) {
@@ -105,6 +113,7 @@ fn a_stress_does_not_depend_on_how_many_are_asked_for() {
         }
     }
     println!("many radii: {compared} stresses, largest difference {worst:.1e} of mu times the mean pressure");
+    println!("displacements: largest difference {moved_apart:.1e} of that of gross slip");
     wrong.sort_by(|one, other| other.0.total_cmp(&one.0));
     let names: Vec<&str> = wrong.iter().take(20).map(|(_, name)| name.as_str()).collect();
     assert!(wrong.is_empty(), "{} stresses differ:\n{}", wrong.len(), names.join("\n"));

@@ -43,8 +43,8 @@ impl Shape for PadFace {
         f64::NAN
     }
 
-    fn stages(&self) -> Option<&Stages> {
-        Some(&self.stages)
+    fn stages(&self) -> &Stages {
+        &self.stages
     }
 
     fn end(&self) -> Option<End> {

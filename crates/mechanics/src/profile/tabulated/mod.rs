@@ -198,8 +198,8 @@ impl Shape for Tabulated {
         (self.heights[index] - self.heights[index - 1]) / (self.radii[index] - self.radii[index - 1])
     }
 
-    fn stages(&self) -> Option<&Stages> {
-        Some(&self.stages)
+    fn stages(&self) -> &Stages {
+        &self.stages
     }
 
     fn end(&self) -> Option<End> {
