@@ -239,13 +239,6 @@ impl Profile {
         }
     }
 
-    /// dg/dt (pure number) at several t = sqrt(x^2 - b^2), m, above a kink b = `base`, m, or above zero.
-    pub(super) fn slopes_above<const N: usize>(&self, base: f64, t: [f64; N]) -> [f64; N] {
-        let outer = base.hypot(t.iter().copied().fold(0.0, f64::max));
-        let cells = self.cells(Reach::Radius(outer));
-        t.map(|t| cells.map_or(f64::NAN, |cells| cells.gamma(base, t)))
-    }
-
     /// The largest radius below `radius`, m, at which g is not analytic; zero, the tip, if there is none.
     pub(super) fn kink_below(&self, radius: f64) -> f64 {
         self.cells(Reach::Radius(radius)).map_or(0.0, |cells| cells.kink_below(radius))

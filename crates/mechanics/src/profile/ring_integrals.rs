@@ -34,7 +34,7 @@ impl Profile {
     }
 
     /// The span of a ring, with what it has of a vertical edge.
-    pub(super) fn span(&self, ring: &Ring) -> Span {
+    pub(crate) fn span(&self, ring: &Ring) -> Span {
         match (self.ball(), self.cells(Reach::Radius(ring.outer.radius))) {
             (Some(ball), _) => Span::of(ring, ball.gap(ring), 0.0),
             (_, Some(cells)) => self.span_by(cells, ring),

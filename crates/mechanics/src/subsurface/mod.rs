@@ -165,7 +165,7 @@ impl Subsurface {
         let radius = self.contact.contact_radius();
         let mesh = self.mesh.get_or_init(|| {
             let rings = self.contact.shear_rings().collect::<Vec<_>>();
-            Mesh::new(self.contact.profile(), &rings, radius, self.contact.accuracy().stress_error)
+            Mesh::new(self.contact.profile(), &rings, radius)
         });
         mesh.visit(self.contact.profile(), radius, (from_axis, place.z), |offset, source| {
             let (p, q) = place.kernels(offset);
