@@ -2,7 +2,7 @@
 
 /// The coefficients of (u - atan(u))/u^3 as a polynomial of u^2 for u up to [`QUARTER`], without the sign of every
 /// other one: by interpolation at the Chebyshev points, to 4e-18 of itself.
-pub(crate) const SERIES: [f64; 12] = [
+const SERIES: [f64; 12] = [
     0.333_333_333_333_333_3,
     0.199_999_999_999_998_04,
     0.142_857_142_856_598_28,
@@ -17,7 +17,7 @@ pub(crate) const SERIES: [f64; 12] = [
     0.016_285_756_855_221_028,
 ];
 /// The tangent of a quarter of a right angle.
-pub(crate) const QUARTER: f64 = std::f64::consts::SQRT_2 - 1.0;
+const QUARTER: f64 = std::f64::consts::SQRT_2 - 1.0;
 
 /// u - atan(u) of several u up to [`QUARTER`], to round-off of itself, by its polynomial.
 fn series<const N: usize>(u: [f64; N]) -> [f64; N] {

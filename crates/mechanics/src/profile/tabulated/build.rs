@@ -3,23 +3,16 @@
 //! g'(x) = int_0^x (r f')' dr/sqrt(x^2 - r^2), and (r f')' = A + 2 C r in the segment between two knots. Segments are
 //! gathered in cells of a binary tree. What lies further below a cell than the cell is wide (in the square of the
 //! radius) is a Chebyshev series there, which its halves take over: far cells add to it as [`Multipole`]s, single
-//! segments in closed form. The rest, a few segments for each of the smallest cells, is summed for every panel. As a
-//! jump J of f'' at the knot k adds to g'
-//!
-//! J (2 w - k theta), w = sqrt(x^2 - k^2), theta = atan(w/k) = 2 atan(w/(k + x)),
-//!
-//! one root and a short series in (w/k)^2 a knot do, wherever jumps are not so large that their sum would cancel; else
-//! each segment gives A (asin) + 2 C (sqrt). With w = sqrt(x^2 - r^2) the angle between r1 and r2 is atan(T),
+//! segments in closed form. The rest, a few segments for each of the smallest cells, is summed for every panel: each
+//! gives A (asin) + 2 C (sqrt). With w = sqrt(x^2 - r^2) the angle between r1 and r2 is atan(T),
 //! T = x^2 (r2^2 - r1^2)/((r2 w1 + r1 w2) (w1 w2 + r1 r2)), where nothing cancels.
 //!
 //! A panel gets as many places as its series needs: few where f'' hardly jumps about it.
 
-use std::ops::Range;
-
 use super::spline::SplineKnot;
 use crate::cells::Cell;
 use crate::cells::shape::Powers;
-use crate::numerics::angle::{self, angles};
+use crate::numerics::angle::angles;
 use crate::numerics::chebyshev::{self, EIGHT, Points, SIXTEEN, TWELVE, TWENTY, TWENTY_FOUR};
 use crate::numerics::cluster_tree::ClusterTree;
 use crate::numerics::double_double::DoubleDouble;
@@ -29,8 +22,6 @@ use crate::numerics::roots::turning;
 
 /// Segments in the smallest cells.
 const LEAF: usize = 8;
-/// The most that jumps of f'' may add to f' within a cell and what is near to it, over f' itself.
-const SMOOTH: f64 = 4.0;
 /// How far a cell may reach above a knot over the distance in t of the singularity below it, and how far the first of
 /// several does.
 const WIDEST: f64 = 1.1;
@@ -39,27 +30,12 @@ const KINK: f64 = 0.6;
 /// whole.
 const GROWTH: f64 = 0.5;
 const LEAST_CELL: f64 = 0.05;
-/// The error of g' that a jump of f'' may leave, over f'.
-const NEGLIGIBLE: f64 = 1e-17;
-/// One over 3, 5, 7 and so on.
-const fn odd<const T: usize>() -> [f64; T] {
-    let mut odd = [0.0; T];
-    let mut index = 0;
-    while index < T {
-        odd[index] = 1.0 / (2 * index + 3) as f64;
-        index += 1;
-    }
-    odd
-}
-
 /// f' between two knots, f' = A + C r.
 struct Segment {
     start: f64,
     end: f64,
     constant: f64,
     curvature: f64,
-    /// How much larger C is than in the segment below.
-    jump: f64,
 }
 
 /// A stretch above a knot still without its series, by how far its inner end is beyond the knot and how wide it is, in
@@ -86,13 +62,10 @@ pub(super) struct Built {
 
 /// The panels through knots, while `keep_going` returns true, which is asked at every cell.
 pub(super) fn cells(knots: &[SplineKnot], whole: bool, keep_going: &dyn Fn() -> bool) -> Built {
-    let mut before = 0.0;
     let segment = |pair: &[SplineKnot]| {
         let curvature = (pair[1].slope - pair[0].slope) / (pair[1].radius - pair[0].radius);
-        let jump = curvature - before;
-        before = curvature;
         let constant = pair[0].slope - curvature * pair[0].radius;
-        Segment { start: pair[0].radius, end: pair[1].radius, constant, curvature, jump }
+        Segment { start: pair[0].radius, end: pair[1].radius, constant, curvature }
     };
     let segments: Vec<Segment> = knots.windows(2).map(segment).collect();
     let flat = segments.iter().take_while(|s| s.constant.abs() + s.curvature.abs() <= 0.0).count();
@@ -158,106 +131,52 @@ impl<const N: usize> Places<N> {
         Places { base, above, squares, radii: squares.map(f64::sqrt) }
     }
 
-    /// How far their squares lie above that of r.
-    fn above(&self, r: f64) -> [f64; N] {
-        let (below, mut excess) = ((self.base - r) * (self.base + r), self.above);
-        for above in &mut excess {
-            let sum = below + *above;
-            *above = if sum > 0.0 { sum } else { 0.0 };
+    /// The roots w of how far their squares lie above that of r.
+    fn roots(&self, r: f64) -> [f64; N] {
+        let (below, mut roots) = ((self.base - r) * (self.base + r), self.above);
+        for root in &mut roots {
+            let above = below + *root;
+            *root = if above > 0.0 { above.sqrt() } else { 0.0 };
         }
-        excess
-    }
-
-    /// The roots w of how far their squares lie above that of r, and theta = atan(w/r).
-    fn angles(&self, r: f64) -> ([f64; N], [f64; N]) {
-        let (mut roots, mut halves) = (self.above(r), [0.0; N]);
-        for lane in 0..N {
-            roots[lane] = roots[lane].sqrt();
-            halves[lane] = roots[lane] / (r + self.radii[lane]);
-        }
-        let (angles, _) = angles(halves);
-        (roots, angles.map(|half| 2.0 * half))
+        roots
     }
 }
 
 impl Segment {
-    /// Adds to g' at places beyond the segment.
-    fn add<const N: usize>(&self, places: &Places<N>, sums: &mut [f64; N]) {
+    /// Adds to g' at places beyond the segment, whose roots w of its start become those of its end.
+    fn add<const N: usize>(&self, places: &Places<N>, roots: &mut [f64; N], sums: &mut [f64; N]) {
         let (start, end) = (self.start, self.end);
         let gap = (end - start) * (end + start);
-        let (inner, outer) = (places.above(start), places.above(end));
+        let outer = places.roots(end);
         let (mut tangents, mut drops) = ([0.0; N], [0.0; N]);
         for lane in 0..N {
-            let (w1, w2) = (inner[lane].sqrt(), outer[lane].sqrt());
+            let (w1, w2) = (roots[lane], outer[lane]);
             tangents[lane] = places.squares[lane] * gap / ((end * w1 + start * w2) * (w1 * w2 + start * end));
             drops[lane] = gap / (w1 + w2);
         }
+        *roots = outer;
         let (turns, _) = angles(tangents);
         for lane in 0..N {
             sums[lane] += self.constant * turns[lane] + 2.0 * self.curvature * drops[lane];
         }
     }
 
-    /// Adds to g' what the segment would add if it had no end.
-    fn add_endless<const N: usize>(&self, places: &Places<N>, sums: &mut [f64; N]) {
-        let (roots, turns) = places.angles(self.start);
+    /// Adds to g' what the segment adds that holds the places, whose roots w of its start are given: w/(r + x) is the
+    /// tangent of half the angle.
+    fn add_own<const N: usize>(&self, places: &Places<N>, roots: &[f64; N], sums: &mut [f64; N]) {
+        let tangents: [f64; N] = std::array::from_fn(|lane| roots[lane] / (self.start + places.radii[lane]));
+        let (halves, _) = angles(tangents);
         for lane in 0..N {
-            sums[lane] += self.constant * turns[lane] + 2.0 * self.curvature * roots[lane];
+            sums[lane] += 2.0 * (self.constant * halves[lane] + self.curvature * roots[lane]);
         }
     }
+}
 
-    /// Adds to g' what the jump of f'' at its start adds, to `least`.
-    fn add_jump<const N: usize>(&self, least: f64, places: &Places<N>, sums: &mut [f64; N]) {
-        let share = (self.start * self.start).recip();
-        let above = (places.base - self.start) * (places.base + self.start) + places.above[0];
-        let (size, square) = (self.jump.abs() * above.sqrt(), above * share);
-        let fourth = square * square;
-        if size <= least {
-            return;
-        }
-        // The error of a truncated series of atan is no more than the next term.
-        if size * square <= 3.0 * least {
-            self.add_short(odd::<0>(), share, places, sums);
-        } else if size * fourth <= 5.0 * least {
-            self.add_short(odd::<1>(), share, places, sums);
-        } else if size * fourth * fourth <= 9.0 * least {
-            self.add_short(odd::<3>(), share, places, sums);
-        } else if size * fourth * fourth * fourth <= 13.0 * least {
-            self.add_short(odd::<5>(), share, places, sums);
-        } else if size * fourth * fourth * fourth * fourth <= 17.0 * least {
-            self.add_short(odd::<7>(), share, places, sums);
-        } else if square <= angle::QUARTER * angle::QUARTER {
-            self.add_short(angle::SERIES, share, places, sums);
-        } else {
-            let (roots, turns) = places.angles(self.start);
-            for lane in 0..N {
-                sums[lane] += self.jump * (2.0 * roots[lane] - self.start * turns[lane]);
-            }
-        }
-    }
-
-    /// The same by a series in (w/k)^2, which is `share` of the difference of the squares.
-    fn add_short<const T: usize, const N: usize>(
-        &self,
-        terms: [f64; T],
-        share: f64,
-        places: &Places<N>,
-        sums: &mut [f64; N],
-    ) {
-        let above = places.above(self.start);
-        // Four side by side.
-        for (above, sums) in above.as_chunks::<4>().0.iter().zip(sums.as_chunks_mut::<4>().0) {
-            let (squares, mut series) = (above.map(|above| above * share), [0.0; 4]);
-            for term in terms.iter().rev() {
-                for lane in 0..4 {
-                    series[lane] = term - squares[lane] * series[lane];
-                }
-            }
-            for lane in 0..4 {
-                sums[lane] += self.jump * above[lane].sqrt() * (1.0 + squares[lane] * series[lane]);
-            }
-        }
-    }
+/// Adds to g' at places beyond all of some adjoining segments; the roots w of where these end.
+fn add_all<const N: usize>(segments: &[Segment], places: &Places<N>, start: f64, sums: &mut [f64; N]) -> [f64; N] {
+    let mut roots = places.roots(start);
+    segments.iter().for_each(|segment| segment.add(places, &mut roots, sums));
+    roots
 }
 
 /// The part of g' in a cell by the sources far below it: a series over the squares of the radii.
@@ -281,10 +200,8 @@ impl CellField {
 /// The sources of the panels of one of the smallest cells.
 struct NearSources {
     far: CellField,
-    /// The first of the near segments, or that of the jumps of f''.
+    /// The first of the near segments.
     first: usize,
-    /// The error that a jump may leave, m; `None` where segments are summed instead of jumps.
-    least: Option<f64>,
 }
 
 struct Build<'a> {
@@ -325,7 +242,8 @@ impl Build<'_> {
             } else if let Some([inner, outer]) = source.halves.filter(|_| is_beyond || source.items.len() > most) {
                 open.extend([outer, inner]);
             } else if is_beyond {
-                self.segments[source.items.clone()].iter().for_each(|segment| segment.add(&places, &mut sums));
+                let segments = &self.segments[source.items.clone()];
+                add_all(segments, &places, segments[0].start, &mut sums);
             } else {
                 near.push(number);
             }
@@ -338,28 +256,12 @@ impl Build<'_> {
             return;
         }
         let first = near.first().map_or(cell.items.start, |&first| self.clusters.cluster(first).items.start);
-        let mut first = first.max(self.flat);
-        let least = self.smooth_slope(first..cell.items.end).map(|slope| NEGLIGIBLE * slope);
-        if least.is_some() && first > self.flat {
-            // What is far and what the first of the near segments would add without end are smooth together.
-            self.segments[first].add_endless(&places, &mut sums);
-            first += 1;
-        }
-        let sources = NearSources { far: CellField { low, high, series: TWENTY.series(&sums) }, first, least };
+        let far = CellField { low, high, series: TWENTY.series(&sums) };
+        let sources = NearSources { far, first: first.max(self.flat) };
         for knot in cell.items.start.max(self.flat)..cell.items.end {
             let Segment { start, end, .. } = self.segments[knot];
             self.add_stretches(knot, ((end - start) * (end + start)).sqrt(), &sources);
         }
-    }
-
-    /// The size of f' in these segments, if the jumps of f'' add no more to it than can be summed up without loss.
-    fn smooth_slope(&self, segments: Range<usize>) -> Option<f64> {
-        let (start, end) = (&self.segments[segments.start], &self.segments[segments.end - 1]);
-        let slope = |segment: &Segment, r: f64| (segment.constant + segment.curvature * r).abs();
-        let size = slope(start, start.start).max(slope(end, end.end));
-        let jumps = self.segments[segments].iter().skip(1).map(|segment| (segment.jump, segment.start));
-        let all = jumps.chain([(start.curvature, start.start)]);
-        (all.map(|(jump, r)| jump.abs() * (end.end - r)).sum::<f64>() <= SMOOTH * size).then_some(size)
     }
 
     /// Adds the cells above a knot up to the t `high`: one, or several where the knot below it is too near for one
@@ -439,14 +341,9 @@ impl Build<'_> {
         let places = Places::new(stretch.base, above);
         let mut sums = [0.0; N];
         sources.far.add(&places.squares, &mut sums);
-        let below = self.segments[sources.first.min(stretch.knot)..=stretch.knot].iter();
-        if let Some(least) = sources.least {
-            below.skip(sources.first.saturating_sub(stretch.knot)).for_each(|s| s.add_jump(least, &places, &mut sums));
-        } else {
-            let own = &self.segments[stretch.knot];
-            below.take(stretch.knot - sources.first).for_each(|segment| segment.add(&places, &mut sums));
-            own.add_endless(&places, &mut sums);
-        }
+        let (segments, own) = (&self.segments[sources.first..stretch.knot], &self.segments[stretch.knot]);
+        let roots = add_all(segments, &places, self.segments[sources.first].start, &mut sums);
+        own.add_own(&places, &roots, &mut sums);
         sums.iter_mut().zip(places.radii).for_each(|(sum, radius)| *sum /= radius);
         let series = points.series(&sums);
         let resolved = Points::<N>::resolve(&series);
