@@ -17,14 +17,10 @@ use crate::numerics::chebyshev::TWENTY_FOUR;
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::gauss::{EIGHT_POINTS, TWELVE_POINTS, TWENTY_POINTS};
 use crate::numerics::multipole::Multipole;
-use crate::numerics::root_kernel::{MOST_TERMS, Series, Stretch, kernels};
 use crate::numerics::roots::within;
 
 /// The most terms of a Chebyshev series.
 const POINTS: usize = 24;
-/// The least kappa = r^2 - b^2 over the square of the outer end for which the antiderivative serves: below it, a rule
-/// of twelve points is exact to rounding (rho = 6.9), and the antiderivative would cancel.
-const LEAST_KAPPA: f64 = -2.0;
 /// Two ends whose squares differ by more than this share of the outer one have a difference with all its digits.
 const APART: f64 = 0.2;
 /// The share of a cell's width up to which eight points integrate the square of a rise.
@@ -327,32 +323,6 @@ impl Cell {
         })
     }
 
-    /// The series over a part, in units of its outer end.
-    pub(crate) fn scaled(&self, high: f64) -> ([f64; MOST_TERMS], usize) {
-        let (mut terms, ratio) = ([0.0; MOST_TERMS], high / self.high);
-        let mut unit = 1.0;
-        for (term, a) in terms.iter_mut().zip(&self.powers) {
-            *term = unit * a;
-            unit *= ratio;
-        }
-        (terms, self.powers.len())
-    }
-
-    /// int gamma dzeta/sqrt(zeta^2 - kappa) over what a span, which lies inside the cell, has beyond r, kappa = r^2 -
-    /// b^2; or its derivative with respect to r^2, 1/m^2, from the right.
-    pub(crate) fn kernel<const SLOPE: bool>(&self, at: &StressRadius, span: &Span) -> f64 {
-        let (below, above) = span.excess(at.square);
-        if above <= 0.0 {
-            return 0.0;
-        }
-        let part = self.part(span);
-        let (terms, count) = self.scaled(part.high);
-        let series = Series { terms: &terms[..count], odd: self.odd };
-        let near = NearPart { cell: self, part, series };
-        let [kernel] = near.kernels::<1, SLOPE>([(at.square - self.square).value()], [below], [above], span.gap);
-        kernel
-    }
-
     /// Adds the sources dg over x^2 of a part to a multipole above whose lower end the part begins at `start`, m^2.
     pub(crate) fn add_sources(&self, sources: &mut Multipole, start: f64, part: Part, weight: f64) {
         let beyond = TWENTY_POINTS.map(|(share, _)| part.drop * (1.0 - share));
@@ -430,78 +400,5 @@ fn root(share: f64, order: i32) -> f64 {
         2 => share.sqrt(),
         3 => share.cbrt(),
         _ => share.powf(f64::from(order).recip()),
-    }
-}
-
-/// A part of a cell whose kernels at several radii are asked for, with its series in units of its outer end.
-#[derive(Clone, Copy)]
-pub(crate) struct NearPart<'a> {
-    pub(crate) cell: &'a Cell,
-    pub(crate) part: Part,
-    pub(crate) series: Series<'a>,
-}
-
-impl NearPart<'_> {
-    /// The kernels at radii of these kappa, by how far the squares of the part's ends lie beyond theirs, m^2, and the
-    /// difference of the two.
-    pub(crate) fn kernels<const N: usize, const SLOPE: bool>(
-        &self,
-        kappa: [f64; N],
-        below: [f64; N],
-        above: [f64; N],
-        gap: f64,
-    ) -> [f64; N] {
-        let Part { low, high, .. } = self.part;
-        if kappa.iter().all(|&kappa| kappa < LEAST_KAPPA * high * high) {
-            return self.by_rule::<N, SLOPE>(kappa);
-        }
-        let unit = high.recip();
-        let share = unit * unit;
-        let mut stretch = Stretch {
-            kappa: kappa.map(|kappa| kappa * share),
-            low: [low * unit; N],
-            high: 1.0,
-            v_low: [0.0; N],
-            v_high: [0.0; N],
-            gap: [gap * share; N],
-        };
-        for lane in 0..N {
-            let above = if above[lane] > 0.0 { above[lane] } else { 0.0 };
-            stretch.v_high[lane] = above.sqrt() * unit;
-            if below[lane] > 0.0 {
-                stretch.v_low[lane] = below[lane].sqrt() * unit;
-            } else {
-                stretch.low[lane] = if kappa[lane] > 0.0 { kappa[lane].sqrt() * unit } else { 0.0 };
-                stretch.gap[lane] = above * share;
-            }
-        }
-        let (mut values, slopes) = kernels::<N, SLOPE>(self.series, &stretch);
-        if SLOPE {
-            values = slopes.map(|slope| slope * share);
-        }
-        if kappa.iter().any(|&kappa| kappa < LEAST_KAPPA * high * high) {
-            let far = self.by_rule::<N, SLOPE>(kappa);
-            for lane in 0..N {
-                if kappa[lane] < LEAST_KAPPA * high * high {
-                    values[lane] = far[lane];
-                }
-            }
-        }
-        values
-    }
-
-    fn by_rule<const N: usize, const SLOPE: bool>(&self, kappa: [f64; N]) -> [f64; N] {
-        let Part { high, drop, .. } = self.part;
-        let places = TWELVE_POINTS.map(|(share, _)| high - drop * share);
-        let gammas = self.cell.gammas(places);
-        let mut sums = [0.0; N];
-        for (index, (_, weight)) in TWELVE_POINTS.iter().enumerate() {
-            let (square, term) = (places[index] * places[index], weight * drop * gammas[index]);
-            for lane in 0..N {
-                let distance = square - kappa[lane];
-                sums[lane] += term / if SLOPE { 2.0 * distance * distance.sqrt() } else { distance.sqrt() };
-            }
-        }
-        sums
     }
 }

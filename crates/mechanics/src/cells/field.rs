@@ -15,12 +15,11 @@ use std::ops::Range;
 use super::call_count;
 use super::kernel::Kernel;
 use super::ring::StressRadius;
-use super::sources::Sources;
 use super::span::Span;
 use super::{Cell, Cells, NearPart, SpanParts};
 use crate::numerics::cluster_tree::{Cluster, ClusterTree};
 use crate::numerics::double_double::DoubleDouble;
-use crate::numerics::root_kernel::Series;
+use crate::numerics::multipole::Multipole;
 
 /// Radii side by side.
 const LANES: usize = 4;
@@ -45,9 +44,9 @@ pub(crate) struct WeightedCells<'a> {
     /// The parts of cells that rings cut, by their cells.
     parts: Vec<Part>,
     /// The clusters that have moments of their own, by their numbers.
-    own: Vec<(usize, Sources)>,
+    own: Vec<(usize, Multipole)>,
     /// The cells that many rings cut, by their numbers.
-    crowds: Vec<(usize, ClusterTree<Sources>)>,
+    crowds: Vec<(usize, ClusterTree<Multipole>)>,
     /// What rings cross at a vertical edge.
     rim: Option<Rim>,
 }
@@ -129,21 +128,21 @@ impl WeightedCells<'_> {
 
     /// Clusters of the parts of each cell that many rings cut, over x^2 from their own inner ends on, so that rings
     /// within a millionth of the edge keep their digits.
-    fn crowds(&self) -> Vec<(usize, ClusterTree<Sources>)> {
+    fn crowds(&self) -> Vec<(usize, ClusterTree<Multipole>)> {
         let cut = self.parts.chunk_by(|one, next| one.0 == next.0).filter(|parts| parts.len() > CROWD);
         let clusters = |parts: &[Part]| {
             let cell = &self.cells.cells[parts[0].0];
-            let tree = ClusterTree::new(parts.len(), CROWD / 2, |items, halves: Option<[&Sources; 2]>| {
+            let tree = ClusterTree::new(parts.len(), CROWD / 2, |items, halves: Option<[&Multipole; 2]>| {
                 let width = parts[items.clone()].iter().map(|(_, span, _)| span.gap).sum();
-                let (mut sources, mut start) = (Sources::empty(parts[items.start].1.inner, width), 0.0);
+                let (mut sources, mut start) = (Multipole::empty(parts[items.start].1.inner, width), 0.0);
                 if let Some(halves) = halves {
                     for half in halves {
                         sources.add_beyond(start, half, 1.0);
-                        start += half.width();
+                        start += half.width;
                     }
                 } else {
                     for (_, span, weight) in &parts[items.clone()] {
-                        cell.add_sources(&mut sources.beyond, start, cell.part(span), *weight);
+                        cell.add_sources(&mut sources, start, cell.part(span), *weight);
                         start += span.gap;
                     }
                 }
@@ -164,24 +163,24 @@ impl WeightedCells<'_> {
         let is_small = cluster.items.len() <= FEW_CELLS;
         // Wider than it is far from the centre, it is far from no radius, and neither is a cluster that holds it.
         let wanted = (all || is_small) && Kernel::Root.is_far(&cluster.sources, DoubleDouble::ZERO);
-        let (origin, width) = (cluster.sources.origin, cluster.sources.width());
+        let (origin, width) = (cluster.sources.origin, cluster.sources.width);
         if let Some(halves) = cluster.halves.filter(|_| !is_small) {
             halves.into_iter().for_each(|half| self.gather(half, all));
         }
         if wanted {
-            let mut sources = Sources::empty(origin, width);
+            let mut sources = Multipole::empty(origin, width);
             self.add_cluster(number, &mut sources);
             self.own.push((number, sources));
         }
     }
 
     /// The moments that a cluster has of its own.
-    fn own(&self, number: usize) -> Option<&Sources> {
+    fn own(&self, number: usize) -> Option<&Multipole> {
         self.own.binary_search_by_key(&number, |own| own.0).ok().map(|index| &self.own[index].1)
     }
 
     /// Adds the weighted sources of a cluster.
-    fn add_cluster(&self, number: usize, sources: &mut Sources) {
+    fn add_cluster(&self, number: usize, sources: &mut Multipole) {
         let cluster = self.cells.sources().cluster(number);
         match (self.weight(&cluster.items), self.own(number), cluster.halves) {
             (Some(weight), _, _) if weight.abs() > 0.0 => sources.add(&cluster.sources, weight),
@@ -194,7 +193,7 @@ impl WeightedCells<'_> {
 
     /// Adds the sources of the parts of a cell. All but the first make the most of the cell: the first counts as what
     /// is left by them.
-    fn add_parts(&self, cluster: &Cluster<Sources>, sources: &mut Sources) {
+    fn add_parts(&self, cluster: &Cluster<Multipole>, sources: &mut Multipole) {
         let index = cluster.items.start;
         let (cell, parts) = (&self.cells.cells[index], self.parts_of(index));
         let covered = parts.windows(2).all(|pair| pair[0].1.outer == pair[1].1.inner)
@@ -206,7 +205,7 @@ impl WeightedCells<'_> {
         }
         for (_, span, weight) in parts {
             if (weight - base).abs() > 0.0 {
-                sources.add_part(cell, span.inner, cell.part(span), weight - base);
+                cell.add_sources(sources, sources.place(span.inner), cell.part(span), weight - base);
             }
         }
     }
@@ -276,7 +275,7 @@ impl WeightedCells<'_> {
     /// Adds what a cluster of parts of a cell does at radii in rising order.
     fn visit_crowd(
         &self,
-        tree: &ClusterTree<Sources>,
+        tree: &ClusterTree<Multipole>,
         number: usize,
         parts: &[Part],
         kernel: Kernel,
@@ -326,26 +325,19 @@ impl Rim {
 
 /// Adds the kernels of a part of a cell, which radii are near, times its weight.
 fn add_near<const SLOPE: bool>(cell: &Cell, span: &Span, weight: f64, radii: &[Held], sums: &mut [SumAndSize]) {
-    let part = cell.part(span);
-    let (terms, count) = cell.scaled(part.high);
-    let near = NearPart { cell, part, series: Series { terms: &terms[..count], odd: cell.odd() } };
+    let near = NearPart::new(cell, span);
     for (radii, sums) in radii.chunks(LANES).zip(sums.chunks_mut(LANES)) {
         #[cfg(test)]
         call_count::add(|calls| if SLOPE { &mut calls.kernel_slope } else { &mut calls.kernel });
         // Lanes left over repeat the last.
-        let at = |lane: usize| radii[lane.min(radii.len() - 1)].at.square;
-        let (mut kappa, mut below, mut above) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
-        for lane in 0..LANES {
-            kappa[lane] = (at(lane) - cell.square).value();
-            (below[lane], above[lane]) = span.excess(at(lane));
-        }
-        let kernels = near.kernels::<LANES, SLOPE>(kappa, below, above, span.gap);
+        let squares = std::array::from_fn(|lane| radii[lane.min(radii.len() - 1)].at.square);
+        let kernels = near.kernels::<LANES, SLOPE>(squares);
         sums.iter_mut().zip(kernels).for_each(|(sum, kernel)| add_to(sum, weight * kernel));
     }
 }
 
 /// Adds what sources do at radii that are far from them.
-fn add_far(kernel: Kernel, sources: &Sources, weight: f64, radii: &[Held], sums: &mut [SumAndSize]) {
+fn add_far(kernel: Kernel, sources: &Multipole, weight: f64, radii: &[Held], sums: &mut [SumAndSize]) {
     for (radii, sums) in radii.chunks(LANES).zip(sums.chunks_mut(LANES)) {
         if let ([held], [sum]) = (radii, &mut *sums) {
             add_to(sum, weight * kernel.far(sources, [held.at.square])[0]);

@@ -15,11 +15,10 @@ use std::sync::LazyLock;
 use super::call_count;
 use super::cell::Cell;
 use super::ring::StressRadius;
-use super::sources::Sources;
 use super::span::Span;
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::gauss::TWENTY_POINTS;
-use crate::numerics::multipole::{ORDERS, add_polynomials};
+use crate::numerics::multipole::{Multipole, ORDERS, add_polynomials};
 
 /// A kernel.
 #[derive(Clone, Copy, PartialEq)]
@@ -46,21 +45,17 @@ impl Kernel {
     }
 
     /// Whether sources are far from a radius of this square, m^2.
-    pub(crate) fn is_far(self, sources: &Sources, square: DoubleDouble) -> bool {
-        let (place, width) = (sources.place(square), sources.width());
-        if self.is_angle() {
-            (place - width).min(sources.origin.value()) >= width
-        } else {
-            sources.beyond.is_far(place)
-        }
+    pub(crate) fn is_far(self, sources: &Multipole, square: DoubleDouble) -> bool {
+        let (place, width) = (sources.place(square), sources.width);
+        if self.is_angle() { (place - width).min(sources.origin.value()) >= width } else { sources.is_far(place) }
     }
 
     /// The sums over sources that are far from radii of these squares.
-    pub(crate) fn far<const N: usize>(self, sources: &Sources, squares: [DoubleDouble; N]) -> [f64; N] {
+    pub(crate) fn far<const N: usize>(self, sources: &Multipole, squares: [DoubleDouble; N]) -> [f64; N] {
         let places = squares.map(|square| sources.place(square));
         match self {
-            Kernel::Root => sources.beyond.potentials(places),
-            Kernel::RootSlope => sources.beyond.potential_slopes(places),
+            Kernel::Root => sources.potentials(places),
+            Kernel::RootSlope => sources.potential_slopes(places),
             Kernel::Arccos | Kernel::Arcsin => self.far_angles(sources, places),
         }
     }
@@ -113,8 +108,8 @@ impl Kernel {
         if self == Kernel::Arccos { -1.0 } else { 1.0 }
     }
 
-    fn far_angles<const N: usize>(self, sources: &Sources, places: [f64; N]) -> [f64; N] {
-        let (half, origin, moments) = (0.5 * sources.width(), sources.origin.value(), &sources.beyond.moments);
+    fn far_angles<const N: usize>(self, sources: &Multipole, places: [f64; N]) -> [f64; N] {
+        let (half, origin, moments) = (0.5 * sources.width, sources.origin.value(), &sources.moments);
         let mut sums = [0.0; N];
         for (differences, place) in NODES.primitives.iter().zip(&NODES.places) {
             let products: [f64; ORDERS] = std::array::from_fn(|order| differences[order] * moments[order]);

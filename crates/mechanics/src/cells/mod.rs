@@ -15,25 +15,26 @@ mod grid;
 pub(crate) mod kernel;
 mod lookup;
 pub(crate) mod moment_tree;
+mod near_part;
 pub(crate) mod ring;
 pub(crate) mod shape;
-pub(crate) mod sources;
 pub(crate) mod span;
 pub(crate) mod stages;
 
 use std::ops::Range;
 use std::sync::OnceLock;
 
-pub(crate) use cell::{Cell, NearPart};
+pub(crate) use cell::Cell;
+use near_part::NearPart;
 
 use crate::numerics::cluster_tree::{Cluster, ClusterTree};
 use crate::numerics::double_double::DoubleDouble;
+use crate::numerics::multipole::Multipole;
 use falls::Steepness;
 use kernel::Kernel;
 use lookup::Lookup;
 use moment_tree::MomentTree;
 use ring::{Moments, Point, Ring, StressRadius};
-use sources::Sources;
 use span::Span;
 
 /// Of a ring thinner than this share of its square, the part inside a border of two cells is found from its depth.
@@ -71,7 +72,7 @@ pub(crate) struct Cells {
     /// Moments and depth of all runs of cells.
     tree: MomentTree,
     /// The kernel's sources, made when a stress is first asked for.
-    sources: OnceLock<ClusterTree<Sources>>,
+    sources: OnceLock<ClusterTree<Multipole>>,
     /// Where g is not analytic, m.
     pub(crate) kinks: Vec<f64>,
     /// How steep the cells before each are, and all of them, made when first asked for.
@@ -121,15 +122,15 @@ impl Cells {
     }
 
     /// The kernel's sources g' dx over x^2.
-    pub(crate) fn sources(&self) -> &ClusterTree<Sources> {
+    pub(crate) fn sources(&self) -> &ClusterTree<Multipole> {
         self.sources.get_or_init(|| {
             ClusterTree::new(self.cells.len(), 1, |items, halves| {
                 let (first, last) = (&self.cells[items.start], &self.cells[items.end - 1]);
                 let end = self.cells.get(items.end).map_or(self.top.square, |next| next.square);
-                let mut sources = Sources::empty(first.square, (end - first.square).value());
+                let mut sources = Multipole::empty(first.square, (end - first.square).value());
                 match halves {
                     Some(halves) => halves.into_iter().for_each(|half| sources.add(half, 1.0)),
-                    None => sources.add_part(last, last.square, last.whole(), 1.0),
+                    None => last.add_sources(&mut sources, 0.0, last.whole(), 1.0),
                 }
                 sources
             })
@@ -137,14 +138,14 @@ impl Cells {
     }
 
     /// The sources of a span.
-    pub(crate) fn sources_of(&self, span: &Span) -> Sources {
-        let mut sources = Sources::empty(span.inner, span.gap);
+    pub(crate) fn sources_of(&self, span: &Span) -> Multipole {
+        let mut sources = Multipole::empty(span.inner, span.gap);
         let SpanParts { low, whole, high } = self.parts(span);
         for (index, part) in low.into_iter().chain(high) {
             let cell = &self.cells[index];
-            sources.add_part(cell, part.inner, cell.part(&part), 1.0);
+            cell.add_sources(&mut sources, (part.inner - span.inner).value(), cell.part(&part), 1.0);
         }
-        let mut add = |cluster: &Cluster<Sources>| {
+        let mut add = |cluster: &Cluster<Multipole>| {
             sources.add(&cluster.sources, 1.0);
             true
         };

@@ -12,6 +12,8 @@
 //! most |sigma|^n (1 + |sigma|)/(1 - |sigma|) of it. At the least distance, once the interval, sigma = -0.1716, and
 //! twenty orders leave 7e-16; at three times the interval, 1e-23.
 
+use super::double_double::DoubleDouble;
+
 /// Moments of a cluster.
 pub(crate) const ORDERS: usize = 20;
 
@@ -65,51 +67,55 @@ pub(crate) fn add_polynomials<const M: usize, const N: usize>(
     }
 }
 
-/// Sources in an interval of X, by their moments.
+/// Sources in an interval of X, by their moments; from where it begins on, so that those of a narrow one keep their
+/// digits.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Multipole {
-    pub(crate) interval: (f64, f64),
+    /// Where it begins, and its width.
+    pub(crate) origin: DoubleDouble,
+    pub(crate) width: f64,
     /// Their sums of weights times the Legendre polynomials of each order.
     pub(crate) moments: [f64; ORDERS],
 }
 
 impl Multipole {
     /// An interval without sources.
-    pub(crate) fn empty(interval: (f64, f64)) -> Multipole {
-        Multipole { interval, moments: [0.0; ORDERS] }
+    pub(crate) fn empty(origin: DoubleDouble, width: f64) -> Multipole {
+        Multipole { origin, width, moments: [0.0; ORDERS] }
     }
 
-    fn width(&self) -> f64 {
-        self.interval.1 - self.interval.0
+    /// How far a place lies beyond the origin.
+    pub(crate) fn place(&self, x: DoubleDouble) -> f64 {
+        (x - self.origin).value()
     }
 
-    /// Adds sources of these weights, this far above the lower end.
+    /// Adds sources of these weights, this far above the origin.
     pub(crate) fn add_sources<const N: usize>(&mut self, above: &[f64; N], weights: &[f64; N]) {
-        let half = (0.5 * self.width()).max(f64::MIN_POSITIVE);
+        let half = (0.5 * self.width).max(f64::MIN_POSITIVE);
         add_polynomials(&mut self.moments, &above.map(|above| (above / half - 1.0).clamp(-1.0, 1.0)), weights);
     }
 
     /// Adds the sources in a part of the interval, times a factor.
     pub(crate) fn add(&mut self, part: &Multipole, factor: f64) {
-        self.add_part(part.interval, &part.moments, factor);
+        self.add_beyond(self.place(part.origin), part, factor);
     }
 
-    /// Adds sources of the moments `of_part` over a part (low, high) of the interval, times a factor.
+    /// Adds the sources of a part that begins at `start` above the origin, times a factor.
     ///
     /// Row k of the recurrence holds the sums of w P_k(eta) P_j(xi), eta and xi the places in the whole and in the
     /// part. It begins with the moments of the part, its first element is the moment of the whole, and a step takes it
     /// to the next k by Bonnet's recurrence in both. An unknown column beyond the last order is taken as zero, and is
     /// one column nearer after each step.
-    pub(crate) fn add_part(&mut self, part: (f64, f64), of_part: &[f64; ORDERS], factor: f64) {
-        let half = (0.5 * self.width()).max(f64::MIN_POSITIVE);
+    pub(crate) fn add_beyond(&mut self, start: f64, part: &Multipole, factor: f64) {
+        let half = (0.5 * self.width).max(f64::MIN_POSITIVE);
         // An interval of a few units in the last place has no centre of its own.
-        let scale = (0.5 * (part.1 - part.0) / half).min(1.0);
-        let offset = 0.5 * ((part.0 - self.interval.0) + (part.1 - self.interval.1)) / half;
+        let scale = (0.5 * part.width / half).min(1.0);
+        let offset = 0.5 * (start + (start + part.width - self.width)) / half;
         let offset = offset.clamp(scale - 1.0, 1.0 - scale);
         let up = FACTORS.map(|(up, _)| scale * up);
         let down = FACTORS.map(|(_, down)| scale * down);
         let mut rows = Rows { this: [0.0; ORDERS + 2], before: [0.0; ORDERS + 2], up, down, offset };
-        for (column, moment) in rows.this[1..].iter_mut().zip(of_part) {
+        for (column, moment) in rows.this[1..].iter_mut().zip(&part.moments) {
             *column = factor * moment;
         }
         // The row of order k is used up to the column 19 - k.
@@ -120,15 +126,14 @@ impl Multipole {
         rows.add::<4>(&mut self.moments, 16);
     }
 
-    /// Whether the interval is at least as far above a place Y as it is wide.
-    pub(crate) fn is_far(&self, below: f64) -> bool {
-        let distance = self.interval.0 - below;
-        distance >= self.width() && distance > 0.0
+    /// Whether the interval is at least as far above a place as it is wide; places count from the origin.
+    pub(crate) fn is_far(&self, place: f64) -> bool {
+        -place >= self.width && place < 0.0
     }
 
     /// The sums of w/sqrt(X - Y) at several places Y far below the interval, side by side.
-    pub(crate) fn potentials<const N: usize>(&self, below: [f64; N]) -> [f64; N] {
-        let Roots { inverse, sigma, .. } = self.roots(below);
+    pub(crate) fn potentials<const N: usize>(&self, places: [f64; N]) -> [f64; N] {
+        let Roots { inverse, sigma, .. } = self.roots(places);
         let mut sums = polynomial::<N, false>(&self.moments, sigma);
         for lane in 0..N {
             sums[lane] *= 2.0 * inverse[lane];
@@ -137,8 +142,8 @@ impl Multipole {
     }
 
     /// Their derivatives with respect to Y: that of 1/(p + q) is 1/(2pq) of itself, and that of sigma 1/(pq).
-    pub(crate) fn potential_slopes<const N: usize>(&self, below: [f64; N]) -> [f64; N] {
-        let Roots { inverse, sigma, product } = self.roots(below);
+    pub(crate) fn potential_slopes<const N: usize>(&self, places: [f64; N]) -> [f64; N] {
+        let Roots { inverse, sigma, product } = self.roots(places);
         let mut sums = polynomial::<N, true>(&self.moments, sigma);
         for lane in 0..N {
             sums[lane] *= 2.0 * inverse[lane] / product[lane];
@@ -147,13 +152,13 @@ impl Multipole {
     }
 
     /// The roots p and q of the distances of both ends from places, as the sums need them.
-    fn roots<const N: usize>(&self, below: [f64; N]) -> Roots<N> {
+    fn roots<const N: usize>(&self, places: [f64; N]) -> Roots<N> {
         let mut roots = Roots { inverse: [0.0; N], sigma: [0.0; N], product: [0.0; N] };
-        for (lane, below) in below.into_iter().enumerate() {
-            let (p, q) = ((self.interval.0 - below).sqrt(), (self.interval.1 - below).sqrt());
+        for (lane, place) in places.into_iter().enumerate() {
+            let (p, q) = ((-place).sqrt(), (self.width - place).sqrt());
             let inverse = 1.0 / (p + q);
             roots.inverse[lane] = inverse;
-            roots.sigma[lane] = -self.width() * inverse * inverse;
+            roots.sigma[lane] = -self.width * inverse * inverse;
             roots.product[lane] = p * q;
         }
         roots
@@ -226,27 +231,29 @@ impl Rows {
 
 #[cfg(test)]
 mod tests {
-    use super::Multipole;
+    use super::{DoubleDouble, Multipole};
 
     #[test]
     fn moments_add_up_to_the_sources_wherever_they_are_taken_over_to() {
         let places: [f64; 12] = std::array::from_fn(|index| (1.0 + 3.7 * index as f64).sin());
         let weights: [f64; 12] = std::array::from_fn(|index| 1.0 + 0.9 * (2.3 * index as f64).cos());
-        let mut part = Multipole::empty((3.0, 3.8));
+        let empty = |(low, high): (f64, f64)| Multipole::empty(DoubleDouble::from(low), high - low);
+        let mut part = empty((3.0, 3.8));
         let sources: Vec<(f64, f64)> = places.iter().map(|place| 3.4 + 0.4 * place).zip(weights).collect();
         part.add_sources(&places.map(|place| 0.4 + 0.4 * place), &weights);
-        for interval in [part.interval, (3.0, 4.6), (2.2, 3.8), (2.9, 3.81)] {
-            let mut whole = Multipole::empty(interval);
+        for interval in [(3.0, 3.8), (3.0, 4.6), (2.2, 3.8), (2.9, 3.81)] {
+            let mut whole = empty(interval);
             whole.add(&part, 0.7);
             for distance in [1.0, 1.02, 1.5, 2.5, 4.0, 10.0, 1e3] {
                 let below = interval.0 - distance * (interval.1 - interval.0);
                 let exact: f64 = sources.iter().map(|&(x, w)| 0.7 * w / (x - below).sqrt()).sum();
-                let ([alone], [beside, _]) = (whole.potentials([below]), whole.potentials([below; 2]));
+                let place = whole.place(DoubleDouble::from(below));
+                let ([alone], [beside, _]) = (whole.potentials([place]), whole.potentials([place; 2]));
                 for ours in [alone, beside] {
                     assert!((ours / exact - 1.0).abs() < 3e-15, "{interval:?} {distance}: {ours} {exact}");
                 }
                 let exact: f64 = sources.iter().map(|&(x, w)| 0.35 * w / (x - below).powf(1.5)).sum();
-                let [ours] = whole.potential_slopes([below]);
+                let [ours] = whole.potential_slopes([place]);
                 assert!((ours / exact - 1.0).abs() < 1e-14, "{interval:?} {distance}: {ours} {exact}");
             }
         }

@@ -299,7 +299,7 @@ fn cells(gaps: &[f64], roots: &[f64], keep_going: &dyn Fn() -> bool) -> Option<V
     // X' = sum sqrt(R)/(2 sqrt(y - h)), with -h as the place of a source.
     let clusters = ClusterTree::new(gaps.len(), LEAF, |items, halves| {
         let last = gaps[items.end - 1];
-        let mut sources = Multipole::empty((-last, -gaps[items.start]));
+        let mut sources = Multipole::empty((-last).into(), last - gaps[items.start]);
         match halves {
             Some(halves) => halves.into_iter().for_each(|half| sources.add(half, 1.0)),
             None => items.clone().for_each(|item| sources.add_sources(&[last - gaps[item]], &[0.5 * roots[item]])),
@@ -313,12 +313,11 @@ fn cells(gaps: &[f64], roots: &[f64], keep_going: &dyn Fn() -> bool) -> Option<V
         let offsets = TWENTY.places(0.0, *high - *low);
         let (mut near, mut far) = ([0.0; 20], [0.0; 20]);
         let mut visit_far = |cluster: &Cluster<Multipole>| {
-            let Multipole { interval: (last, first), moments } = cluster.sources;
-            // Seen from the lower end, from which small distances keep their digits.
-            let sources = Multipole { interval: (*low + last, *low + first), moments };
-            let is_far = sources.is_far(0.0);
+            // Places from the last gap on, by which small distances keep their digits.
+            let place = -(*low + cluster.sources.origin.value());
+            let is_far = cluster.sources.is_far(place);
             if is_far {
-                let potentials = sources.potentials(offsets.map(|offset| -offset));
+                let potentials = cluster.sources.potentials(offsets.map(|offset| place - offset));
                 far.iter_mut().zip(potentials).for_each(|(sum, potential)| *sum += potential);
             }
             is_far

@@ -8,7 +8,7 @@ use crate::cells::displacement::displacements;
 use crate::cells::field::{MANY, SumAndSize, WeightedCells};
 use crate::cells::kernel::Kernel;
 use crate::cells::shape::Reach;
-use crate::cells::sources::Sources;
+use crate::numerics::multipole::Multipole;
 
 /// The cost of the derivative of the kernels of a cell, in terms of a sum over rings.
 const CELL_TERMS: usize = 8;
@@ -125,7 +125,7 @@ struct InwardRing {
     ring: Ring,
     span: Span,
     weight: f64,
-    far: Option<Sources>,
+    far: Option<Multipole>,
 }
 
 impl<'a> InwardSum<'a> {

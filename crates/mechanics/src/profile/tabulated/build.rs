@@ -89,7 +89,7 @@ pub(super) fn cells(knots: &[SplineKnot], whole: bool, keep_going: &dyn Fn() -> 
 fn clusters(segments: &[Segment], keep_going: &dyn Fn() -> bool) -> ClusterTree<Multipole> {
     ClusterTree::new(segments.len(), LEAF, |items, halves| {
         let (start, end) = (segments[items.start].start, segments[items.end - 1].end);
-        let mut sources = Multipole::empty((-end * end, -start * start));
+        let mut sources = Multipole::empty((-end * end).into(), (end - start) * (end + start));
         let width = end - start;
         match halves {
             Some(halves) => halves.into_iter().for_each(|half: &Multipole| sources.add(half, 1.0)),
@@ -236,8 +236,9 @@ impl Build<'_> {
         let most = if cell.halves.is_none() { LEAF } else { cell.items.len() };
         while let Some(number) = open.pop() {
             let source = self.clusters.cluster(number);
-            let is_beyond = low + source.sources.interval.0 >= high - low;
-            if is_beyond && source.sources.is_far(-low) {
+            let beyond = low + source.sources.origin.value();
+            let is_beyond = beyond >= high - low;
+            if is_beyond && source.sources.is_far(-beyond) {
                 add_far(&source.sources, &places.squares, &mut sums);
             } else if let Some([inner, outer]) = source.halves.filter(|_| is_beyond || source.items.len() > most) {
                 open.extend([outer, inner]);
@@ -354,8 +355,8 @@ impl Build<'_> {
 /// Adds to g' what sources do at squares of radii that are far from them.
 fn add_far(sources: &Multipole, squares: &[f64; 20], sums: &mut [f64; 20]) {
     for (sums, squares) in sums.chunks_exact_mut(4).zip(squares.chunks_exact(4)) {
-        let below = [-squares[0], -squares[1], -squares[2], -squares[3]];
-        sums.iter_mut().zip(sources.potentials(below)).for_each(|(sum, value)| *sum += value);
+        let places = [0, 1, 2, 3].map(|lane| -(squares[lane] + sources.origin.value()));
+        sums.iter_mut().zip(sources.potentials(places)).for_each(|(sum, value)| *sum += value);
     }
 }
 
