@@ -4,7 +4,7 @@ use crate::common;
 
 use std::sync::Arc;
 
-use common::{Server, ball, create, good, problem, with};
+use common::{Server, ball, create, good, problem, varied_moves, with};
 use futures::future::join_all;
 use reqwest::{Method, Response, StatusCode};
 use serde_json::{Value, json};
@@ -16,18 +16,6 @@ use stickslip_wire::{ForkRequest, Move, Path, PathRequest, Steps};
 
 fn along(moves: Vec<Move>) -> PathRequest {
     PathRequest { path: Path::Moves(moves), stress: None, steps: Steps::All, tolerance: None }
-}
-
-/// Slip back and forth, deeper and less deep, by displacement and by force.
-fn varied_moves(count: usize) -> Vec<Move> {
-    let turn = |index: usize| (index as f64 * 2.399).sin();
-    let step = |index: usize| match index % 4 {
-        0 => Move::displacement(2e-7 * turn(index)),
-        1 => Move { indentation: Some(4.7e-7 * (1.0 + 0.4 * turn(index))), ..Move::displacement(1e-7 * turn(index)) },
-        2 => Move { normal_force: Some(8.0 + 3.0 * turn(index)), ..Move::default() },
-        _ => Move::force(0.8 * turn(index)),
-    };
-    (0..count).map(step).collect()
 }
 
 #[tokio::test]
@@ -61,8 +49,8 @@ async fn a_fork_begins_after_any_move_and_is_what_the_contact_was_then() {
     let (client, options) = (&server.client, Options::default());
     let id = client.create(&create(), &options).await.unwrap().id;
     let virgin = client.contact(id).await.unwrap().state;
-    let path = client.path(id, &along(varied_moves(40)), &options).await.unwrap();
-    for sequence in [0_u64, 1, 17, 39, 40] {
+    let path = client.path(id, &along(varied_moves(100, 0.0)), &options).await.unwrap();
+    for sequence in [0_u64, 1, 33, 99, 100] {
         let wanted = ForkRequest { sequence: Some(sequence), label: None };
         let fork = client.fork(id, &wanted, &options).await.unwrap();
         let then = usize::try_from(sequence).unwrap();
@@ -71,15 +59,15 @@ async fn a_fork_begins_after_any_move_and_is_what_the_contact_was_then() {
         let past = client.history(fork.id, None, None).await.unwrap().items;
         assert_eq!(past, client.history(id, None, None).await.unwrap().items[..then]);
         // It goes on as the contact did.
-        let rest = client.path(fork.id, &along(varied_moves(40).split_off(then)), &options).await;
-        assert!(then == 40 || rest.unwrap().steps == path.steps[then..]);
+        let rest = client.path(fork.id, &along(varied_moves(100, 0.0).split_off(then)), &options).await;
+        assert!(then == 100 || rest.unwrap().steps == path.steps[then..]);
     }
     let target = format!("/contacts/{id}/fork");
-    for wrong in ["41", "9223372036854775807"] {
+    for wrong in ["101", "9223372036854775807"] {
         let body = format!("{{\"sequence\": {wrong}}}");
         let refused = problem(server.send(Method::POST, &target, Some(&body), &[]).await).await;
         let place = (refused.status, refused.errors[0].pointer.as_str(), refused.errors[0].detail.as_str());
-        assert_eq!(place, (422, "/sequence", "the contact has made 40 moves: give 0 to 40"));
+        assert_eq!(place, (422, "/sequence", "the contact has made 100 moves: give 0 to 100"));
     }
     for wrong in ["-1", "1.5", "9223372036854775808", "\"3\"", "null"] {
         let body = format!("{{\"sequence\": {wrong}}}");

@@ -1,16 +1,11 @@
 //! Random moves, and the past of a session held against what they give on a fresh contact.
 
-use std::time::Duration;
-
 use stickslip_mechanics::{Contact, DEFAULT_TOLERANCE};
 use stickslip_wire::client::Client;
 use stickslip_wire::{Document as _, HistoryItem, Move, State};
 use uuid::Uuid;
 
 use super::create;
-
-/// How long a test waits for what should take no time.
-pub const PATIENCE: Duration = Duration::from_secs(30);
 
 /// A generator of random numbers that a seed determines (SplitMix64).
 pub struct Random(pub u64);

@@ -7,6 +7,7 @@ pub mod json;
 pub mod kill;
 pub mod openapi;
 pub mod pictures;
+pub mod place;
 pub mod port;
 pub mod postgres;
 pub mod process;
@@ -30,7 +31,7 @@ use stickslip::jobs::Jobs;
 use stickslip::sessions::{CAPACITY, Sessions};
 use stickslip::store::{MemoryStore, Store};
 use stickslip_wire::client::Client;
-use stickslip_wire::{CreateRequest, ProblemDocument};
+use stickslip_wire::{CreateRequest, Move, ProblemDocument};
 use tokio::net::TcpListener;
 
 /// How long a test waits before it gives up. It guards against hanging; nothing is measured by it.
@@ -179,6 +180,18 @@ pub fn slow_contact() -> Value {
 /// One of many curved moves.
 pub fn curved_move(index: u64) -> Value {
     json!({"force": 0.2 * (index % 7) as f64, "normal_force": 5.0 + (index % 9) as f64})
+}
+
+/// Moves of all kinds, some of them curved, many small ones among them that leave a deep slip history.
+pub fn varied_moves(count: usize, seed: f64) -> Vec<Move> {
+    let turn = |index: usize| (seed + index as f64 * 2.399).sin();
+    let step = |index: usize| match index % 97 {
+        0 => Move { indentation: Some(4.7e-7 * (1.0 + 0.3 * turn(index))), ..Move::displacement(5e-8 * turn(index)) },
+        31 => Move { normal_force: Some(10.0 + 2.0 * turn(index)), ..Move::default() },
+        62 => Move { normal_force: Some(10.0 + 2.0 * turn(index)), ..Move::force(0.5 * turn(index)) },
+        _ => Move::displacement(2e-7 * turn(index) * (1.0 - (index % 97) as f64 / 100.0)),
+    };
+    (0..count).map(step).collect()
 }
 
 /// A path that takes the slow contact most of an hour: each move is followed in thousands of small steps.

@@ -108,9 +108,23 @@ impl Cluster {
 
     /// The URL of a new, empty database.
     pub async fn database(&self) -> String {
+        self.made_of("template1").await
+    }
+
+    /// The URL of a copy of a database, once nobody is connected to that.
+    pub async fn copy(&self, url: &str) -> String {
+        let name = url.rsplit('/').next().unwrap();
+        let client = connected(&self.url("postgres")).await;
+        let used = format!("SELECT 1 FROM pg_stat_activity WHERE datname = '{name}'");
+        let unused = async || client.query(&used, &[]).await.unwrap().is_empty().then_some(());
+        super::until("nobody is connected", unused).await;
+        self.made_of(name).await
+    }
+
+    async fn made_of(&self, template: &str) -> String {
         static COUNT: AtomicU32 = AtomicU32::new(0);
         let name = format!("test_{}", COUNT.fetch_add(1, Ordering::Relaxed));
-        self.execute("postgres", &format!("CREATE DATABASE {name}")).await;
+        self.execute("postgres", &format!("CREATE DATABASE {name} TEMPLATE {template}")).await;
         self.url(&name)
     }
 

@@ -27,7 +27,7 @@ fn line(line: &str) -> Vec<u8> {
 const HIDDEN: &[u8] = b"GET /healthz HTTP/1.1\r\nHost: localhost\r\n\r\n";
 
 /// The bytes that are sent, and the one status of the reply; 0 if the connection is closed without a reply.
-pub fn cases() -> Vec<(&'static str, Vec<u8>, u16)> {
+fn cases() -> Vec<(&'static str, Vec<u8>, u16)> {
     let chunked = "Transfer-Encoding: chunked";
     let with = |body: &[u8]| [body, HIDDEN].concat();
     vec![

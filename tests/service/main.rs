@@ -13,6 +13,4 @@ mod overload;
 mod profiles;
 mod quotas;
 mod searches;
-mod soak;
-mod soak_round;
 mod stops;

@@ -9,11 +9,10 @@ use std::fs;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
-use std::time::Duration;
 
-use common::kill::{PATIENCE, Random, exact, history, replays_to_the_last_bit};
+use common::kill::{Random, exact, history, replays_to_the_last_bit};
 use common::process::Process;
-use common::{create, run};
+use common::{create, run, until};
 use rusqlite::Connection;
 use stickslip_wire::client::Options;
 use tempfile::tempdir;
@@ -54,12 +53,8 @@ async fn a_copy_taken_under_load_holds_every_acknowledged_move() {
     }
     let mut copies = Vec::new();
     for number in 1..=COPIES as u64 {
-        let moved = async {
-            while acknowledged.lock().unwrap().values().any(|sequence| *sequence < number * MOVES) {
-                tokio::time::sleep(Duration::from_millis(2)).await;
-            }
-        };
-        tokio::time::timeout(PATIENCE, moved).await.expect("nothing moves");
+        let all = || acknowledged.lock().unwrap().values().all(|sequence| *sequence >= number * MOVES);
+        until("all have moved", async || all().then_some(())).await;
         let before = acknowledged.lock().unwrap().clone();
         let (store, copy) = (url(&store), folder.path().join(format!("copy {number}.db")));
         let path = copy.clone();

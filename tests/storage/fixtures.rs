@@ -6,15 +6,14 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use jiff::{SignedDuration, Timestamp};
-use stickslip::store::{Measured, Receipt, Record, Reply, RequestKey, Session, Snapshot, Store, Tenant};
+use stickslip::store::{
+    Job, JobLimits, Measured, Receipt, Record, Reply, RequestKey, Session, Snapshot, Store, Tenant,
+};
 use stickslip_wire::client::Options;
 use stickslip_wire::{CreateRequest, Document as _, Move, Path as Moves, PathRequest, Regime, State, Steps};
 use uuid::Uuid;
 
 use crate::common;
-
-/// How long a test waits for what should take no time.
-const PATIENCE: Duration = Duration::from_secs(120);
 
 /// The store in a file, as a URL.
 pub fn url(path: &Path) -> String {
@@ -23,7 +22,7 @@ pub fn url(path: &Path) -> String {
 
 /// The result of a future, which must be ready within seconds.
 pub async fn soon<T>(future: impl Future<Output = T>) -> T {
-    tokio::time::timeout(PATIENCE, future).await.expect("nothing happened")
+    tokio::time::timeout(common::PATIENCE, future).await.expect("nothing happened")
 }
 
 /// A path through moves, of whose states only the last is requested.
@@ -97,6 +96,28 @@ pub fn receipt(key: &str, created: Option<Uuid>, sequence: u64) -> Receipt {
 
 pub fn snapshot(sequence: u64) -> Snapshot {
     Snapshot { sequence, state: (0..=u8::MAX).rev().chain([0, sequence as u8]).collect() }
+}
+
+/// How long a chunk is claimed for: nothing ends it.
+pub const LEASE: Duration = Duration::from_secs(600);
+/// More than any test asks for.
+pub const JOB_LIMITS: JobLimits = JobLimits { jobs: 100, bytes: 1_000_000, cost: 1_000_000 };
+
+/// A job that is not stored yet, of three chunks.
+pub fn job(tenant: &str) -> Job {
+    Job {
+        id: Uuid::now_v7(),
+        tenant: Tenant::new(tenant),
+        created_at: Timestamp::now(),
+        finished_at: None,
+        error: None,
+        points: 7,
+        chunk: 3,
+        done: 0,
+        failed: 0,
+        bytes: 100,
+        cost: 100,
+    }
 }
 
 /// A stored session with this many moves, and its moves.

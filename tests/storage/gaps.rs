@@ -2,18 +2,16 @@
 //! served.
 
 use crate::common;
-use crate::fixtures::{along, url};
+use crate::fixtures::{along, soon};
 
 use std::path::Path;
-use std::time::Duration;
 
 use common::kill::Random;
-use common::postgres::Cluster;
+use common::place::Place;
 use common::process::Process;
-use common::{Server, create, problem, run, until};
+use common::{Server, create, problem, run};
 use futures::StreamExt as _;
 use reqwest::Method;
-use rusqlite::Connection;
 use stickslip_wire::client::{Client, Event, Options};
 use stickslip_wire::{EndReason, ForkRequest};
 use tempfile::tempdir;
@@ -73,46 +71,31 @@ async fn is_damaged(base: &str, log: &Path, store: &str, (damaged, whole): (Uuid
 }
 
 #[tokio::test]
-async fn a_gap_in_the_moves_is_answered_by_an_error_of_its_own_from_a_file() {
-    let folder = tempdir().unwrap();
-    let (path, log) = (folder.path().join("gap.db"), folder.path().join("log"));
-    let arguments = ["--log", "warn", "--store", &url(&path)];
-    let process = Process::start_with(&arguments, &log).await;
-    let (damaged, whole) = (moved(&process.client).await, moved(&process.client).await);
-    process.stop().await;
-    let statement = "DELETE FROM moves WHERE sequence = 7
-        AND contact = (SELECT number FROM contacts WHERE id = ?1)";
-    assert_eq!(Connection::open(&path).unwrap().execute(statement, [damaged.to_string()]).unwrap(), 1);
-    let process = Process::start_with(&arguments, &log).await;
-    is_damaged(&process.base, &log, &url(&path), (damaged, whole), "move 7 is missing").await;
-    process.stop().await;
-}
-
-#[tokio::test]
-async fn a_gap_in_the_moves_is_answered_by_an_error_of_its_own_from_a_database() {
-    for (missing, condition) in [("move 7 is missing", "= 7"), ("move 11 is missing", "> 10")] {
-        let store = Cluster::shared().database().await;
-        let folder = tempdir().unwrap();
-        let log = folder.path().join("log");
-        let arguments = ["--log", "warn", "--store", &store];
-        let process = Process::start_with(&arguments, &log).await;
-        let (damaged, whole) = (moved(&process.client).await, moved(&process.client).await);
-        process.stop().await;
-        let statement = format!("DELETE FROM moves WHERE contact = '{damaged}' AND sequence {condition}");
-        Cluster::shared().execute(store.rsplit('/').next().unwrap(), &statement).await;
-        let process = Process::start_with(&arguments, &log).await;
-        is_damaged(&process.base, &log, &store, (damaged, whole), missing).await;
-        process.stop().await;
+async fn a_gap_in_the_moves_is_answered_by_an_error_of_its_own() {
+    for (missing, which) in [("move 7 is missing", "= 7"), ("move 11 is missing", "> 10")] {
+        // In a file the last move itself says how many there are.
+        for place in Place::both().await.into_iter().skip(usize::from(which == "> 10")) {
+            let folder = tempdir().unwrap();
+            let (log, store) = (folder.path().join("log"), place.url());
+            let arguments = ["--log", "warn", "--store", &store];
+            let process = Process::start_with(&arguments, &log).await;
+            let (damaged, whole) = (moved(&process.client).await, moved(&process.client).await);
+            process.stop().await;
+            let contact = place.key("contacts", damaged);
+            place.change(&format!("DELETE FROM moves WHERE contact = {contact} AND sequence {which}")).await;
+            let process = Process::start_with(&arguments, &log).await;
+            is_damaged(&process.base, &log, &store, (damaged, whole), missing).await;
+            process.stop().await;
+        }
     }
 }
 
 #[tokio::test]
 async fn a_gap_that_comes_while_a_contact_is_cached_ends_its_events_and_refuses_its_forks() {
-    let folder = tempdir().unwrap();
-    let path = folder.path().join("live.db");
-    let process = Process::start(&url(&path)).await;
+    let place = Place::file();
+    let process = Process::start(&place.url()).await;
     let id = moved(&process.client).await;
-    Connection::open(&path).unwrap().execute("DELETE FROM moves WHERE sequence = 7", []).unwrap();
+    place.change("DELETE FROM moves WHERE sequence = 7").await;
     let mut events = Box::pin(process.client.events(id, Some(0)).await.unwrap());
     assert_eq!(events.next().await.unwrap().unwrap(), Event::End(EndReason::Damaged));
     let server = Server::at(&process.base);
@@ -122,44 +105,35 @@ async fn a_gap_that_comes_while_a_contact_is_cached_ends_its_events_and_refuses_
     // The refused fork has left nothing behind.
     process.stop().await;
     let unowned = "SELECT count(*) FROM moves WHERE contact NOT IN (SELECT number FROM contacts)";
-    let left: i64 = Connection::open(&path).unwrap().query_row(unowned, [], |row| row.get(0)).unwrap();
-    assert_eq!(left, 0);
+    assert_eq!(place.number(unowned).await, 0);
 }
 
 #[tokio::test]
 async fn a_snapshot_of_moves_that_are_not_stored_is_not_believed() {
-    let folder = tempdir().unwrap();
-    let path = folder.path().join("ahead.db");
-    let process = Process::start(&url(&path)).await;
+    let place = Place::file();
+    let process = Process::start(&place.url()).await;
     let (options, mut random) = (Options::default(), Random(5));
     let id = process.client.create(&create(), &options).await.unwrap().id;
     for _ in 0..6 {
         process.client.path(id, &along((0..2_000).map(|_| random.step()).collect()), &options).await.unwrap();
     }
-    let database = Connection::open(&path).unwrap();
-    until("a snapshot is stored", async || {
-        database.prepare("SELECT 1 FROM snapshots").unwrap().exists([]).unwrap().then_some(())
-    })
-    .await;
+    place.has_snapshot().await;
     process.stop().await;
-    let last = "DELETE FROM moves WHERE sequence > (SELECT sequence - 1 FROM snapshots)";
-    assert!(database.execute(last, []).unwrap() > 0);
-    let process = Process::start(&url(&path)).await;
+    place.change("DELETE FROM moves WHERE sequence > (SELECT sequence - 1 FROM snapshots)").await;
+    let process = Process::start(&place.url()).await;
     let server = Server::at(&process.base);
     assert_eq!(problem(server.get(&format!("/contacts/{id}")).await).await.code, "damaged_contact");
 }
 
 #[tokio::test]
 async fn events_that_can_never_be_read_end_by_a_reason_and_a_line_of_the_log() {
-    let folder = tempdir().unwrap();
-    let (path, log) = (folder.path().join("unreadable.db"), folder.path().join("log"));
-    let process = Process::start_with(&["--log", "warn", "--store", &url(&path)], &log).await;
+    let (place, folder) = (Place::file(), tempdir().unwrap());
+    let log = folder.path().join("log");
+    let process = Process::start_with(&["--log", "warn", "--store", &place.url()], &log).await;
     let id = moved(&process.client).await;
-    let statement = "UPDATE moves SET regime = 'unknown' WHERE sequence = 7";
-    assert_eq!(Connection::open(&path).unwrap().execute(statement, []).unwrap(), 1);
+    place.change("UPDATE moves SET regime = 'unknown' WHERE sequence = 7").await;
     let mut events = Box::pin(process.client.events(id, Some(0)).await.unwrap());
-    let last = tokio::time::timeout(Duration::from_secs(60), events.next()).await.expect("it tries for ever");
-    assert_eq!(last.unwrap().unwrap(), Event::End(EndReason::Failed));
+    assert_eq!(soon(events.next()).await.unwrap().unwrap(), Event::End(EndReason::Failed));
     assert!(events.next().await.is_none());
     process.stop().await;
     let lines = std::fs::read_to_string(log).unwrap();

@@ -3,6 +3,7 @@
 //! answer.
 
 use crate::common;
+use crate::fixtures::{JOB_LIMITS, job};
 
 use std::future::poll_fn;
 use std::pin::pin;
@@ -13,7 +14,7 @@ use std::time::Duration;
 
 use async_trait::async_trait;
 use common::kill::exact;
-use common::postgres::Cluster;
+use common::place::Place;
 use common::{ball, create, until};
 use jiff::Timestamp;
 use serde_json::json;
@@ -21,14 +22,13 @@ use stickslip::admission::{Capacity, Pool, QuotaLimits};
 use stickslip::jobs::{JobError, Jobs, LEASE};
 use stickslip::sessions::{CAPACITY, SessionError, Sessions};
 use stickslip::store::{
-    Changes, ChunkResult, Claim, Extent, IsSmall, Job, JobLimits, JobStore, MemoryStore, Page, PostgresStore, Receipt,
-    Record, Reply, RequestKey, Session, Snapshot, SqliteStore, Store, StoreError, Tenant, Usage, Whole,
+    Changes, ChunkResult, Claim, Extent, IsSmall, Job, JobLimits, JobStore, MemoryStore, Page, Receipt, Record, Reply,
+    RequestKey, Session, Snapshot, Store, StoreError, Tenant, Usage, Whole,
 };
 use stickslip_compute::simulation::Sweep;
 use stickslip_wire::{
     Document as _, ForkRequest, JobState, Move, MoveRequest, PrepareAnew, SessionSummary, SweepRequest,
 };
-use tempfile::tempdir;
 use tokio::task::yield_now;
 use uuid::Uuid;
 
@@ -258,8 +258,6 @@ async fn quotas_count_what_is_stored(store: Arc<Yielding>) {
     store.uncountable.store(false, Ordering::SeqCst);
 }
 
-const LIMITS: JobLimits = JobLimits { jobs: 10_000, bytes: 1_000_000, cost: 1_000_000 };
-
 /// Whether a worker could claim a chunk.
 async fn is_claimable(store: &dyn Store) -> bool {
     store.claim(Uuid::now_v7(), None, LEASE).await.unwrap().is_some()
@@ -267,27 +265,15 @@ async fn is_claimable(store: &dyn Store) -> bool {
 
 /// A chunk is no longer claimed once its result is stored, its job has failed or is deleted; and a new job is claimed.
 async fn claims_follow_what_is_stored(store: Arc<Yielding>) {
-    let job = || Job {
-        id: Uuid::now_v7(),
-        tenant: Tenant::default(),
-        created_at: Timestamp::now(),
-        finished_at: None,
-        error: None,
-        points: 2,
-        chunk: 1,
-        done: 0,
-        failed: 0,
-        bytes: 1,
-        cost: 1,
-    };
+    let new_job = || Job { points: 2, chunk: 1, ..job("") };
     let result = ChunkResult { points: 1, failed: 0, content: vec![1] };
     for awaits in 0.. {
-        let (new, mut all) = (job(), true);
-        all &= dropped_after(awaits, store.create_job(new.clone(), String::new(), LIMITS, None)).await.is_some();
+        let (new, mut all) = (new_job(), true);
+        all &= dropped_after(awaits, store.create_job(new.clone(), String::new(), JOB_LIMITS, None)).await.is_some();
         pause().await;
         if is_gone(&store.job(new.id).await) {
             // Refused if the first is stored late.
-            let _ = store.create_job(new.clone(), String::new(), LIMITS, None).await;
+            let _ = store.create_job(new.clone(), String::new(), JOB_LIMITS, None).await;
         }
         let claim =
             async || store.claim(Uuid::now_v7(), None, LEASE).await.unwrap().filter(|claim| claim.job == new.id);
@@ -309,8 +295,8 @@ async fn claims_follow_what_is_stored(store: Arc<Yielding>) {
         }
         store.delete_job(new.id).await.unwrap();
 
-        let deleted = job();
-        store.create_job(deleted.clone(), String::new(), LIMITS, None).await.unwrap();
+        let deleted = new_job();
+        store.create_job(deleted.clone(), String::new(), JOB_LIMITS, None).await.unwrap();
         let claim = store.claim(Uuid::now_v7(), None, LEASE).await.unwrap().unwrap();
         all &= dropped_after(awaits, store.delete_job(deleted.id)).await.is_some();
         pause().await;
@@ -378,13 +364,8 @@ async fn no_step_after_a_commit_in_memory_needs_its_client() {
 }
 
 #[tokio::test]
-async fn no_step_after_a_commit_in_a_file_needs_its_client() {
-    let folder = tempdir().unwrap();
-    all_of_it(Arc::new(SqliteStore::open(&folder.path().join("hang_ups.db")).unwrap())).await;
-}
-
-#[tokio::test]
-async fn no_step_after_a_commit_in_a_database_needs_its_client() {
-    let url = Cluster::shared().database().await;
-    all_of_it(Arc::new(PostgresStore::open(&url).await.unwrap())).await;
+async fn no_step_after_a_commit_in_a_file_or_a_database_needs_its_client() {
+    for place in Place::both().await {
+        all_of_it(place.open().await).await;
+    }
 }

@@ -2,7 +2,7 @@
 //! test says what happens while the lock is held, and none how long it takes.
 
 use crate::common;
-use crate::fixtures::{receipt, record, records, session, soon};
+use crate::fixtures::{JOB_LIMITS, LEASE, job, receipt, record, records, session, soon};
 use crate::freezing_proxy::{FreezingProxy, Silence};
 
 use std::sync::Arc;
@@ -15,7 +15,7 @@ use reqwest::{Method, StatusCode};
 use serde_json::{Value, json};
 use stickslip::admission::{Capacity, Pool, QuotaLimits};
 use stickslip::sessions::{CAPACITY, Sessions};
-use stickslip::store::{ChunkResult, Job, JobLimits, JobStore as _, PostgresStore, Session, Store, StoreError, Tenant};
+use stickslip::store::{ChunkResult, Job, JobStore as _, PostgresStore, Store, StoreError, Tenant};
 use tokio_postgres::Client;
 use uuid::Uuid;
 
@@ -114,21 +114,14 @@ async fn frozen_inside(statement: &'static str, method: Method, of: &str, body: 
 }
 
 #[tokio::test(flavor = "multi_thread")]
-async fn a_replica_frozen_inside_a_rename_stops_only_that_contact() {
-    let label = json!({"label": "new"});
-    assert_eq!(frozen_inside("UPDATE contacts SET label", Method::PATCH, "", label, None).await, 1);
-}
-
-#[tokio::test(flavor = "multi_thread")]
-async fn a_replica_frozen_inside_a_fork_stops_only_its_repetition() {
-    let sequence = frozen_inside("FROM moves", Method::POST, "/fork", json!({}), Some("fork")).await;
-    assert_eq!(sequence, 1);
-}
-
-#[tokio::test(flavor = "multi_thread")]
-async fn a_replica_frozen_inside_a_batch_stops_only_its_contacts() {
+async fn a_replica_frozen_inside_a_change_stops_only_its_contacts() {
     let step = json!({"displacement": 1e-8, "relative": true});
-    assert_eq!(frozen_inside("SET sequence", Method::POST, "/move", step, None).await, 1);
+    let sequences = futures::join!(
+        frozen_inside("UPDATE contacts SET label", Method::PATCH, "", json!({"label": "new"}), None),
+        frozen_inside("FROM moves", Method::POST, "/fork", json!({}), Some("fork")),
+        frozen_inside("SET sequence", Method::POST, "/move", step, None),
+    );
+    assert_eq!(sequences, (json!(1), json!(1), json!(1)));
 }
 
 #[tokio::test(flavor = "multi_thread")]
@@ -197,10 +190,9 @@ async fn changes_that_wait_for_rows_hold_no_connection() {
     let (store, other) = (PostgresStore::open(&url).await.unwrap(), connected(&url).await);
     // More than there are connections.
     let ids = join_all((0..24).map(|_| stored(&store))).await;
-    let job = Job { chunk: 1, ..job(1) };
-    let limits = JobLimits { jobs: 10, bytes: 1_000, cost: 1_000 };
-    store.create_job(job.clone(), "{}".to_owned(), limits, None).await.unwrap();
-    let claim = store.claim(Uuid::now_v7(), None, Duration::from_secs(600)).await.unwrap().unwrap();
+    let job = Job { points: 1, chunk: 1, ..job("lab") };
+    store.create_job(job.clone(), "{}".to_owned(), JOB_LIMITS, None).await.unwrap();
+    let claim = store.claim(Uuid::now_v7(), None, LEASE).await.unwrap().unwrap();
     let result = || ChunkResult { content: b"done".to_vec(), points: 1, failed: 0 };
     other.batch_execute("BEGIN").await.unwrap();
     other.query("SELECT id FROM contacts WHERE id = ANY($1) FOR UPDATE", &[&ids]).await.unwrap();
@@ -286,36 +278,18 @@ async fn a_creation_that_fills_the_quota_and_is_sent_twice_has_one_reply() {
     }
 }
 
-fn job(points: u64) -> Job {
-    let Session { id, tenant, created_at, .. } = Session { tenant: Tenant::new("lab"), ..session(None) };
-    Job {
-        id,
-        tenant,
-        created_at,
-        finished_at: None,
-        error: None,
-        points,
-        chunk: 1,
-        done: 0,
-        failed: 0,
-        bytes: 1,
-        cost: 1,
-    }
-}
-
 #[tokio::test(flavor = "multi_thread")]
 async fn a_transaction_of_a_replica_that_falls_silent_is_ended_by_the_server() {
     let url = Cluster::shared().database().await;
     let proxy = FreezingProxy::start(&url).await;
     let (here, there) = (PostgresStore::open(&proxy.url).await.unwrap(), PostgresStore::open(&url).await.unwrap());
-    let limits = JobLimits { jobs: 10, bytes: 1_000, cost: 1_000 };
     // It holds the lock of the tenant, and the server waits for what comes next.
     proxy.arm("pg_try_advisory_xact_lock", Silence::After);
-    let frozen = here.create_job(job(1), "{}".to_owned(), limits, None);
+    let frozen = here.create_job(job("lab"), "{}".to_owned(), JOB_LIMITS, None);
     let other = async {
         proxy.silent().await;
         until("another replica makes a job", async || {
-            there.create_job(job(1), "{}".to_owned(), limits, None).await.ok()
+            there.create_job(job("lab"), "{}".to_owned(), JOB_LIMITS, None).await.ok()
         })
         .await;
     };

@@ -3,10 +3,10 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod ages;
 mod backup;
 mod check;
 mod disk_full;
-mod durability;
 mod fixtures;
 mod freezing_proxy;
 mod frozen;

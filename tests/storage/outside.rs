@@ -7,11 +7,12 @@ use std::fs;
 use std::os::unix::fs::PermissionsExt as _;
 use std::path::{Path, PathBuf};
 
+use common::kill::{exact, history};
 use common::process::{Process, refused};
 use common::{Server, ball, create, problem, run, until};
 use serde_json::json;
-use stickslip_wire::Move;
 use stickslip_wire::client::Options;
+use stickslip_wire::{Observation, ObservationsRequest};
 use tempfile::tempdir;
 
 fn beside(path: &Path, ending: &str) -> PathBuf {
@@ -84,13 +85,16 @@ async fn a_file_that_is_replaced_or_removed_takes_no_more_changes() {
 }
 
 #[tokio::test]
-async fn a_log_that_is_missing_after_a_crash_is_noticed() {
+async fn a_log_that_is_missing_after_a_crash_is_noticed_and_with_it_no_measurement_is_lost() {
     let folder = tempdir().unwrap();
     let path = folder.path().join("crashed.db");
     let log = beside(&path, "-wal");
     let process = Process::start(&url(&path)).await;
     let id = process.client.create(&create(), &Options::default()).await.unwrap().id;
-    process.client.apply(id, &Move::force(0.1).into(), &Options::default()).await.unwrap();
+    let at = Some("2026-03-01T12:00:00.000000001Z".parse().unwrap());
+    let observations = [1e-7, -2e-7].map(|displacement| Observation { displacement, force: -0.0, at }).to_vec();
+    process.client.observe(id, &ObservationsRequest { observations }, &Options::default()).await.unwrap();
+    let measured = history(&process.client, id).await;
     process.kill().await;
     let kept = folder.path().join("kept");
     fs::rename(&log, &kept).unwrap();
@@ -106,7 +110,7 @@ async fn a_log_that_is_missing_after_a_crash_is_noticed() {
     // With its log it is whole; and a copy of the file in use is a store that is closed.
     fs::rename(&kept, &log).unwrap();
     let process = Process::start(&file).await;
-    assert_eq!(process.client.contact(id).await.unwrap().sequence, 1);
+    assert_eq!(exact(&history(&process.client, id).await), exact(&measured));
     assert!(run(&["backup", copy.to_str().unwrap(), "--store", &file]).status.success());
     Process::start(&url(&copy)).await.stop().await;
     process.stop().await;
@@ -116,7 +120,7 @@ async fn a_log_that_is_missing_after_a_crash_is_noticed() {
     // An operator may accept the file as it is.
     fs::write(&log, "").unwrap();
     let process = Process::start(&file).await;
-    assert_eq!(process.client.contact(id).await.unwrap().sequence, 1);
+    assert_eq!(process.client.contact(id).await.unwrap().sequence, 2);
 }
 
 #[tokio::test]

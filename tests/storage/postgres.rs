@@ -21,10 +21,6 @@ fn receipt(key: &str) -> Option<Receipt> {
     Some(fixtures::receipt(key, None, 1))
 }
 
-async fn open() -> PostgresStore {
-    PostgresStore::open(&Cluster::shared().database().await).await.unwrap()
-}
-
 #[tokio::test]
 async fn of_many_who_move_one_session_at_once_one_wins_in_every_process() {
     let url = Cluster::shared().database().await;
@@ -55,39 +51,6 @@ async fn of_many_who_move_one_session_at_once_one_wins_in_every_process() {
     for id in ids {
         assert_eq!(stores[0].history(id, 0, 100).await.unwrap().len(), 20);
     }
-}
-
-#[tokio::test]
-async fn one_that_fails_does_not_fail_those_beside_it() {
-    let store = open().await;
-    let (good, stale) = (session(), session());
-    store.create(good.clone(), None).await.unwrap();
-    store.create(stale.clone(), receipt("taken")).await.unwrap();
-    let other = session();
-    store.create(other.clone(), None).await.unwrap();
-    // Started together, they wait for the same transaction.
-    let (a, b, c, d) = futures::join!(
-        store.append(good.id, 0, vec![record(1)], receipt("fresh")),
-        store.append(stale.id, 7, vec![record(8)], receipt("unused")),
-        store.append(Uuid::now_v7(), 0, vec![record(1)], receipt("unused too")),
-        store.create(session(), None),
-    );
-    assert!(a.is_ok() && d.is_ok(), "{a:?} {d:?}");
-    assert!(matches!(b, Err(StoreError::Stale { found: 0 })), "{b:?}");
-    assert!(matches!(c, Err(StoreError::NotFound)), "{c:?}");
-    // A key in use rolls the transaction back.
-    let (a, b, c) = futures::join!(
-        store.append(good.id, 1, vec![record(2)], None),
-        store.append(other.id, 0, vec![record(1)], receipt("taken")),
-        store.create(session(), receipt("another")),
-    );
-    assert!(a.is_ok() && c.is_ok(), "{a:?} {c:?}");
-    assert!(matches!(b, Err(StoreError::KeyTaken)), "{b:?}");
-    assert_eq!(store.find(other.id).await.unwrap().sequence, 0);
-    assert!(store.history(other.id, 0, 10).await.unwrap().is_empty());
-    assert_eq!(store.receipt("unused").await.unwrap(), None);
-    assert_eq!(store.receipt("unused too").await.unwrap(), None);
-    assert_eq!(store.receipt("fresh").await.unwrap(), receipt("fresh"));
 }
 
 #[tokio::test]
@@ -131,52 +94,6 @@ async fn replicas_that_start_together_make_the_tables_once_and_a_newer_schema_is
     cluster.execute(name, "INSERT INTO stickslip_schema (version) VALUES (999)").await;
     let refused = PostgresStore::open(&url).await.err().unwrap().to_string();
     assert!(refused.contains("schema version 999") && !refused.contains('@'), "{refused}");
-}
-
-#[tokio::test]
-async fn a_key_may_be_used_again_after_its_time() {
-    let cluster = Cluster::shared();
-    let url = cluster.database().await;
-    let store = PostgresStore::open(&url).await.unwrap();
-    let new = session();
-    store.create(new.clone(), receipt("key")).await.unwrap();
-    let name = url.rsplit('/').next().unwrap();
-    let older = |hours: u32| format!("UPDATE receipts SET created_at = now() - INTERVAL '{hours} hours'");
-    cluster.execute(name, &older(23)).await;
-    assert!(matches!(store.append(new.id, 0, vec![record(1)], receipt("key")).await, Err(StoreError::KeyTaken)));
-    cluster.execute(name, &older(25)).await;
-    assert_eq!(store.receipt("key").await.unwrap(), None);
-    store.append(new.id, 0, vec![record(1)], receipt("key")).await.unwrap();
-    cluster.execute(name, &older(25)).await;
-    store.fork(new.id, Session { id: Uuid::now_v7(), sequence: 1, ..new.clone() }, receipt("key")).await.unwrap();
-    cluster.execute(name, &older(25)).await;
-    store.purge_expired(None).await.unwrap();
-    cluster.execute(name, &older(1)).await;
-    assert_eq!(store.receipt("key").await.unwrap(), None);
-}
-
-#[tokio::test]
-async fn a_contact_that_expired_a_month_ago_leaves_nothing() {
-    let cluster = Cluster::shared();
-    let url = cluster.database().await;
-    let store = PostgresStore::open(&url).await.unwrap();
-    let (old, young) = (session(), session());
-    for idle in [&old, &young] {
-        store.create(idle.clone(), None).await.unwrap();
-    }
-    assert_eq!(store.purge_expired(Some(Timestamp::now())).await.unwrap(), 2);
-    let name = url.rsplit('/').next().unwrap();
-    let age = |days: u32| format!("UPDATE expired SET at = now() - INTERVAL '{days} days' WHERE id = '{}'", old.id);
-    for (days, is_kept) in [(29, true), (31, false)] {
-        cluster.execute(name, &age(days)).await;
-        store.purge_expired(None).await.unwrap();
-        let found = store.find(old.id).await;
-        assert!(
-            matches!(&found, Err(StoreError::Expired(_)) if is_kept)
-                || matches!(found, Err(StoreError::NotFound) if !is_kept)
-        );
-    }
-    assert!(matches!(store.find(young.id).await, Err(StoreError::Expired(_))));
 }
 
 /// The database counts how often it uses an index, and how many updates change no column of an index.

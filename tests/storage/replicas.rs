@@ -1,7 +1,7 @@
 //! Several servers on one PostgreSQL: they serve as one, and go on when a part of them fails.
 
 use crate::common;
-use crate::fixtures::soon;
+use crate::fixtures::{keyed, soon};
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -9,7 +9,7 @@ use std::time::Duration;
 
 use common::postgres::Cluster;
 use common::process::Process;
-use common::{Server, ball, create, problem};
+use common::{Server, ball, create, problem, until, varied_moves};
 use futures::StreamExt as _;
 use reqwest::{Method, StatusCode};
 use serde_json::{Value, json};
@@ -18,16 +18,6 @@ use stickslip::store::PostgresStore;
 use stickslip_wire::client::{Client, Event, Options};
 use stickslip_wire::{ForkRequest, HistoryItem, Move};
 use uuid::Uuid;
-
-/// Moves whose order matters: relative ones, and every kind of target.
-fn step(index: usize) -> Move {
-    let turn = (index as f64 * 2.399).sin();
-    match index % 4 {
-        0 | 1 => Move { relative: true, ..Move::displacement(1e-7 * turn) },
-        2 => Move { indentation: Some(4.7e-7 * (1.0 + 0.4 * turn)), ..Move::displacement(1e-7 * turn) },
-        _ => Move::force(0.5 * turn),
-    }
-}
 
 async fn history(client: &Client, id: Uuid) -> Vec<HistoryItem> {
     client.history(id, None, Some(1000)).await.unwrap().items
@@ -138,12 +128,7 @@ async fn a_lost_database_is_admitted_and_found_again() {
     }
     assert_eq!(server.get("/healthz").await.status(), StatusCode::OK);
     cluster.resume();
-    soon(async {
-        while server.get("/readyz").await.status() != StatusCode::OK {
-            tokio::time::sleep(Duration::from_millis(20)).await;
-        }
-    })
-    .await;
+    until("it is ready", async || (server.get("/readyz").await.status() == StatusCode::OK).then_some(())).await;
     let reply: Value = server.post(&moved, &step).await.json().await.unwrap();
     assert_eq!(reply["sequence"], 1);
     // Clients do not notice a short interruption: what is safe to repeat is repeated.
@@ -178,20 +163,13 @@ async fn moves_made_at_one_replica_are_sent_by_the_other_also_after_the_database
     let id = here.client.create(&create(), &Options::default()).await.unwrap().id;
     let mut events = Box::pin(there.client.events(id, Some(0)).await.unwrap());
     let mut seen_events = Vec::new();
-    for index in 0..40 {
+    for (index, step) in varied_moves(40, 0.0).into_iter().enumerate() {
         if index == 20 {
             cluster.crash();
             cluster.resume();
         }
-        let keyed = Options { idempotency_key: Some(format!("event-{index}")), ..Options::default() };
-        soon(async {
-            while here.client.apply(id, &step(index).into(), &keyed).await.is_err() {
-                tokio::time::sleep(Duration::from_millis(20)).await;
-            }
-        })
-        .await;
-        let event = tokio::time::timeout(Duration::from_secs(30), events.next()).await.expect("no event came");
-        match event.expect("the events ended").unwrap() {
+        until("it is made", async || here.client.apply(id, &step.into(), &keyed(index)).await.ok()).await;
+        match soon(events.next()).await.expect("the events ended").unwrap() {
             Event::State(state) => seen_events.push((state.sequence, state.step, state.state)),
             Event::End(reason) => panic!("the events ended: {reason:?}"),
         }

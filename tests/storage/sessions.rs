@@ -1,11 +1,12 @@
 //! The session layer over a store: snapshots that change nothing but time, a cache of bounded bytes, expiry.
 
 use crate::common;
+use crate::fixtures::{self, soon};
 
 use std::sync::Arc;
-use std::time::Duration;
 
-use common::{Binary, Server, ball, create, problem, run};
+use common::kill::exact;
+use common::{Binary, Server, ball, create, problem, run, until, varied_moves};
 use futures::StreamExt as _;
 use futures::future::join_all;
 use jiff::{SignedDuration, Timestamp};
@@ -17,28 +18,17 @@ use stickslip::store::{MemoryStore, Snapshot, SqliteStore, Store};
 use stickslip_mechanics::Contact;
 use stickslip_wire::client::{Client, Event, Options};
 use stickslip_wire::{
-    CreateRequest, Document as _, EndReason, Faults, ForkRequest, JsonPath, Move, Path, PathRequest, PrepareAnew,
-    State, Steps, StressRequest,
+    CreateRequest, Document as _, EndReason, Faults, ForkRequest, JsonPath, Move, PathRequest, PrepareAnew, State,
+    StressRequest,
 };
 use uuid::Uuid;
 
 /// No state is cached.
 const NO_CACHE: usize = 0;
 
-/// Moves of all kinds, some of them curved, many small ones among them that leave a deep slip history.
-fn varied_moves(count: usize, seed: f64) -> Vec<Move> {
-    let turn = |index: usize| (seed + index as f64 * 2.399).sin();
-    let step = |index: usize| match index % 97 {
-        0 => Move { indentation: Some(4.7e-7 * (1.0 + 0.3 * turn(index))), ..Move::displacement(5e-8 * turn(index)) },
-        31 => Move { normal_force: Some(10.0 + 2.0 * turn(index)), ..Move::default() },
-        62 => Move { normal_force: Some(10.0 + 2.0 * turn(index)), ..Move::force(0.5 * turn(index)) },
-        _ => Move::displacement(2e-7 * turn(index) * (1.0 - (index % 97) as f64 / 100.0)),
-    };
-    (0..count).map(step).collect()
-}
-
+/// A path to a tolerance at which curved moves are quick.
 fn along(moves: Vec<Move>) -> PathRequest {
-    PathRequest { path: Path::Moves(moves), stress: None, steps: Steps::Last, tolerance: Some(1e-6) }
+    PathRequest { tolerance: Some(1e-6), ..fixtures::along(moves) }
 }
 
 /// Every move of a session made again from its definition, with nothing of the session layer.
@@ -48,23 +38,9 @@ async fn replayed(store: &dyn Store, id: Uuid) -> Contact {
     let mut contact = Contact::new(setup).unwrap();
     for record in store.history(id, 0, 1_000_000).await.unwrap() {
         contact.apply_within(&record.step.step(), record.tolerance).unwrap();
-        assert_eq!(bits(&contact.state().into()), bits(&record.state));
+        assert_eq!(exact(&State::from(contact.state())), exact(&record.state));
     }
     contact
-}
-
-fn bits(state: &State) -> [u64; 8] {
-    [
-        state.displacement,
-        state.force,
-        state.indentation,
-        state.normal_force,
-        state.contact_radius,
-        state.stick_radius,
-        state.dissipated_energy,
-        state.elastic_energy,
-    ]
-    .map(f64::to_bits)
 }
 
 async fn shear(client: &Client, id: Uuid, contact: &Contact) {
@@ -77,15 +53,8 @@ async fn shear(client: &Client, id: Uuid, contact: &Contact) {
 
 /// Waits for the snapshot after the move `sequence`, which is kept in the background.
 async fn snapshot(store: &dyn Store, id: Uuid, sequence: u64) -> Snapshot {
-    let kept = async {
-        loop {
-            match store.snapshot(id).await.unwrap() {
-                Some(snapshot) if snapshot.sequence >= sequence => return snapshot,
-                _ => tokio::time::sleep(Duration::from_millis(5)).await,
-            }
-        }
-    };
-    tokio::time::timeout(Duration::from_secs(30), kept).await.expect("no snapshot was kept")
+    let kept = async || store.snapshot(id).await.unwrap().filter(|snapshot| snapshot.sequence >= sequence);
+    until("a snapshot is kept", kept).await
 }
 
 #[tokio::test]
@@ -102,7 +71,7 @@ async fn a_session_opened_from_a_snapshot_is_the_same_to_the_last_bit() {
         client.path(id, &along(varied_moves(200, 1.0)), &options).await.unwrap();
         let contact = replayed(&*store, id).await;
         let shown = client.contact(id).await.unwrap();
-        assert_eq!((shown.sequence, bits(&shown.state)), (11_200, bits(&contact.state().into())));
+        assert_eq!((shown.sequence, exact(&shown.state)), (11_200, exact(&State::from(contact.state()))));
         shear(client, id, &contact).await;
     }
     assert_eq!(store.snapshot(fork).await.unwrap().unwrap().sequence, 11_000);
@@ -136,7 +105,7 @@ async fn a_snapshot_is_read_where_it_is_sound_and_ignored_where_it_is_not() {
     client.apply(third, &Move::displacement(1e-9).into(), &options).await.unwrap();
     store.save_snapshot(third, Snapshot { sequence: 1, state: taken.state }, None).await.unwrap();
     let (found, expected) = (client.contact(third).await.unwrap(), client.contact(one).await.unwrap());
-    assert_eq!((found.sequence, bits(&found.state)), (1, bits(&expected.state)));
+    assert_eq!((found.sequence, exact(&found.state)), (1, exact(&expected.state)));
 }
 
 /// Small contacts are read from a file in one step, and larger ones in several.
@@ -152,7 +121,7 @@ async fn contacts_of_any_number_of_moves_are_opened_from_a_file_as_they_were() {
             client.path(id, &along(varied_moves(count, count as f64)), &options).await.unwrap();
         }
         let (shown, contact) = (client.contact(id).await.unwrap(), replayed(&*store, id).await);
-        assert_eq!((shown.sequence, bits(&shown.state)), (count as u64, bits(&contact.state().into())));
+        assert_eq!((shown.sequence, exact(&shown.state)), (count as u64, exact(&State::from(contact.state()))));
         let stored = store.find(id).await.unwrap();
         assert_eq!((shown.created_at, shown.updated_at), (stored.created_at, stored.updated_at));
     }
@@ -201,7 +170,7 @@ async fn a_tiny_cache_under_load_stays_within_its_bytes_and_changes_no_result() 
     assert!(bytes <= budget && (1..40).contains(&held), "{held} sessions in {bytes} bytes");
     for &id in &ids {
         let (shown, contact) = (client.contact(id).await.unwrap(), replayed(&*store, id).await);
-        assert_eq!((shown.sequence, bits(&shown.state)), (6 * 34, bits(&contact.state().into())));
+        assert_eq!((shown.sequence, exact(&shown.state)), (6 * 34, exact(&State::from(contact.state()))));
     }
 }
 
@@ -257,8 +226,7 @@ async fn an_expired_session_is_gone_for_reads_moves_and_events_though_it_was_cac
     assert_eq!(store.purge_expired(Some(between - SignedDuration::from_hours(1))).await.unwrap(), 0);
     assert_eq!(store.purge_expired(Some(between)).await.unwrap(), 1);
 
-    let last = tokio::time::timeout(Duration::from_secs(30), events.next()).await.expect("the events did not end");
-    assert_eq!(last.unwrap().unwrap(), Event::End(EndReason::Expired));
+    assert_eq!(soon(events.next()).await.unwrap().unwrap(), Event::End(EndReason::Expired));
     let place = format!("/contacts/{idle}");
     let (step, path) = (json!({"force": 1.0}), json!({"path": {"force": [1.0]}}));
     for refused in [
@@ -290,8 +258,7 @@ async fn the_binary_expires_idle_contacts_with_expire_after() {
     let client = &binary.client;
     let id = client.create(&create(), &Options::default()).await.unwrap().id;
     let mut events = Box::pin(client.events(id, Some(0)).await.unwrap());
-    let last = tokio::time::timeout(Duration::from_secs(30), events.next()).await.expect("it did not expire");
-    assert_eq!(last.unwrap().unwrap(), Event::End(EndReason::Expired));
+    assert_eq!(soon(events.next()).await.unwrap().unwrap(), Event::End(EndReason::Expired));
     assert_eq!(client.contact(id).await.unwrap_err().problem().unwrap().status, 410);
 }
 

@@ -2,19 +2,17 @@
 //! read.
 
 use crate::common;
-use crate::fixtures::{along, keyed, session, url};
+use crate::fixtures::{along, url};
 
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
-use common::create;
-use common::kill::{PATIENCE, exact, history};
+use common::kill::{exact, history};
 use common::process::{Process, refused};
-use futures::future::join_all;
-use jiff::Timestamp;
+use common::{create, until};
 use rusqlite::Connection;
-use stickslip::store::{Session, SqliteStore, Store as _, StoreError};
+use stickslip::store::{SqliteStore, Store as _, StoreError};
 use stickslip_wire::Move;
 use stickslip_wire::client::Options;
 use tempfile::tempdir;
@@ -155,56 +153,6 @@ async fn a_file_in_use_is_refused_and_serves_on() {
 }
 
 #[tokio::test]
-async fn receipts_are_gone_after_a_day() {
-    let folder = tempdir().unwrap();
-    let path = folder.path().join("receipts.db");
-    let process = Process::start(&url(&path)).await;
-    let client = &process.client;
-    let id = client.create(&create(), &keyed("old")).await.unwrap().id;
-    client.apply(id, &Move::force(0.5).into(), &keyed("older")).await.unwrap();
-    client.apply(id, &Move::force(0.4).into(), &keyed("young")).await.unwrap();
-    process.stop().await;
-    let day = 24 * 3600 * 1_000_000_000_i64;
-    let database = Connection::open(&path).unwrap();
-    database.execute("UPDATE receipts SET at = at - ?1 WHERE key IN ('old', 'older')", [day]).unwrap();
-    let store = SqliteStore::open(&path).unwrap();
-    assert!(store.receipt("old").await.unwrap().is_none() && store.receipt("young").await.unwrap().is_some());
-    drop(store);
-    // Past its time a key names another request, swept or not.
-    let process = Process::start(&url(&path)).await;
-    assert_eq!(process.client.apply(id, &Move::force(0.3).into(), &keyed("old")).await.unwrap().sequence, 3);
-    process.stop().await;
-    let store = SqliteStore::open(&path).unwrap();
-    store.purge_expired(None).await.unwrap();
-    let keys = || -> Vec<String> {
-        let mut statement = database.prepare("SELECT key FROM receipts ORDER BY key").unwrap();
-        statement.query_map([], |row| row.get(0)).unwrap().collect::<Result<_, _>>().unwrap()
-    };
-    assert_eq!(keys(), ["old", "young"]);
-}
-
-#[tokio::test]
-async fn a_contact_that_expired_a_month_ago_leaves_nothing() {
-    let folder = tempdir().unwrap();
-    let path = folder.path().join("expired.db");
-    let store = SqliteStore::open(&path).unwrap();
-    let idle: Vec<Session> = (0..2_500).map(|_| session(None)).collect();
-    join_all(idle.iter().map(|idle| store.create(idle.clone(), None))).await;
-    assert_eq!(store.purge_expired(Some(Timestamp::now())).await.unwrap(), 2_500);
-    let database = Connection::open(&path).unwrap();
-    let day = 24 * 3600 * 1_000_000_000_i64;
-    let age = "UPDATE expired SET at = at - ?1 WHERE id <> ?2";
-    database.execute(age, (29 * day, idle[0].id.to_string())).unwrap();
-    store.purge_expired(None).await.unwrap();
-    assert!(matches!(store.find(idle[7].id).await, Err(StoreError::Expired(_))));
-    database.execute(age, (2 * day, idle[0].id.to_string())).unwrap();
-    store.purge_expired(None).await.unwrap();
-    assert!(matches!(store.find(idle[0].id).await, Err(StoreError::Expired(_))));
-    assert!(matches!(store.find(idle[7].id).await, Err(StoreError::NotFound)));
-    assert_eq!(database.query_row("SELECT count(*) FROM expired", [], |row| row.get::<_, i64>(0)).unwrap(), 1);
-}
-
-#[tokio::test]
 async fn remains_of_a_crash_are_removed() {
     let folder = tempdir().unwrap();
     let path = folder.path().join("half.db");
@@ -221,12 +169,7 @@ async fn remains_of_a_crash_are_removed() {
     let store = SqliteStore::open(&path).unwrap();
     let left =
         || -> i64 { database.query_row("SELECT count(*) FROM moves WHERE contact = 7", [], |row| row.get(0)).unwrap() };
-    let gone = async {
-        while left() > 0 {
-            tokio::time::sleep(std::time::Duration::from_millis(5)).await;
-        }
-    };
-    tokio::time::timeout(PATIENCE, gone).await.expect("moves without a contact are never removed");
+    until("moves without a contact are removed", async || (left() == 0).then_some(())).await;
     assert_eq!(store.history(id, 0, 1_000).await.unwrap().len(), 301);
     assert!(matches!(store.find(Uuid::now_v7()).await, Err(StoreError::NotFound)));
 }

@@ -1,11 +1,8 @@
 //! The bytes that count against a quota, beside those that a file and a database take.
 
-use std::path::Path;
+use stickslip::store::{Store, Tenant};
 
-use stickslip::store::{PostgresStore, SqliteStore, Store, Tenant};
-use tempfile::tempdir;
-
-use crate::common::postgres::{Cluster, connected};
+use crate::common::place::Place;
 use crate::fixtures::{records, session};
 
 const MOVES: u64 = 20_000;
@@ -19,31 +16,21 @@ async fn fill(store: &dyn Store) {
     }
 }
 
-fn agree(counted: u64, taken: u64, moves: u64) {
-    println!("{} bytes a move, counted as {}", taken / moves, counted / moves);
-    assert!(taken <= counted && counted <= 2 * taken, "{taken} bytes are taken, and {counted} counted");
-}
-
 #[tokio::test]
-async fn what_is_counted_is_what_a_file_takes() {
-    let folder = tempdir().unwrap();
-    let [empty, full] = ["empty.db", "full.db"].map(|name| folder.path().join(name));
-    let size = |path: &Path| std::fs::metadata(path).unwrap().len();
-    drop(SqliteStore::open(&empty).unwrap());
-    let store = SqliteStore::open(&full).unwrap();
-    fill(&store).await;
-    let counted = store.usage(&Tenant::default()).await.unwrap().bytes;
-    drop(store);
-    agree(counted, size(&full) - size(&empty), MOVES);
-}
-
-#[tokio::test]
-async fn what_is_counted_is_what_a_database_takes() {
-    let url = Cluster::shared().database().await;
-    let store = PostgresStore::open(&url).await.unwrap();
-    fill(&store).await;
-    let counted = store.usage(&Tenant::default()).await.unwrap().bytes;
-    let client = connected(&url).await;
-    let taken: i64 = client.query_one("SELECT pg_total_relation_size('moves')", &[]).await.unwrap().get(0);
-    agree(counted, taken as u64, MOVES);
+async fn what_is_counted_is_what_a_file_or_a_database_takes() {
+    for place in Place::both().await {
+        let taken = async || match place.path() {
+            Some(path) => path.metadata().unwrap().len(),
+            None => place.number("SELECT pg_total_relation_size('moves')").await as u64,
+        };
+        drop(place.open().await);
+        let empty = taken().await;
+        let store = place.open().await;
+        fill(&*store).await;
+        let counted = store.usage(&Tenant::default()).await.unwrap().bytes;
+        drop(store);
+        let taken = taken().await - empty;
+        println!("{} bytes a move, counted as {}", taken / MOVES, counted / MOVES);
+        assert!(taken <= counted && counted <= 2 * taken, "{taken} bytes are taken, and {counted} counted");
+    }
 }

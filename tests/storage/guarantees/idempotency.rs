@@ -73,17 +73,24 @@ pub async fn one_of_many_with_the_same_key_or_sequence_wins(store: Arc<dyn Store
     for _ in 0..8 {
         sessions.push(stored(&*store, 0).await.0.id);
     }
-    // Mixed, so that requests that fail share transactions with those that succeed.
+    // Mixed, so that requests that fail share transactions with those that succeed: with a key of another contact, at
+    // another sequence, or of no contact.
+    let nobody = Uuid::now_v7();
     let tasks = (0..160_u64).map(|index| {
-        let (store, id) = (Arc::clone(&store), sessions[index as usize % 8]);
-        let key = (index % 3 == 0).then(|| receipt(&format!("key {}", index % 24), None, 1));
-        tokio::spawn(async move { (id, store.append(id, 0, vec![record(1)], key).await) })
+        let id = if index % 11 == 10 { nobody } else { sessions[index as usize % 8] };
+        let (store, expected) = (Arc::clone(&store), if index % 13 == 12 { 7 } else { 0 });
+        let key = (index % 3 == 0).then(|| receipt(&format!("key {}", index % 21), None, 1));
+        tokio::spawn(async move { (id, store.append(id, expected, vec![record(expected + 1)], key).await) })
     });
+    let made = join_all((0..8).map(|_| store.create(session(None), None)));
+    let (tasks, made) = futures::join!(join_all(tasks), made);
+    assert!(made.iter().all(Result::is_ok), "{made:?}");
     let mut won = Vec::new();
-    for task in join_all(tasks).await {
+    for task in tasks {
         match task.unwrap() {
             (id, Ok(())) => won.push(id),
-            (_, Err(StoreError::Stale { found: 1 } | StoreError::KeyTaken)) => {}
+            (id, Err(StoreError::NotFound)) => assert_eq!(id, nobody),
+            (_, Err(StoreError::Stale { found: 0 | 1 } | StoreError::KeyTaken)) => {}
             (_, Err(error)) => panic!("{error}"),
         }
     }

@@ -1,32 +1,13 @@
 //! Jobs: chunks are given and heard once, and what a tenant may have is bounded.
 
 use std::collections::BTreeSet;
-use std::time::Duration;
 
-use jiff::Timestamp;
-use stickslip::store::{ChunkResult, Claim, Job, JobLimits, Store, StoreError, Tenant};
+use stickslip::store::{ChunkResult, Claim, Job, JobLimits, Store, StoreError};
 use uuid::Uuid;
 
-use crate::fixtures::receipt;
+use crate::fixtures::{LEASE, job, receipt};
 
-const LEASE: Duration = Duration::from_secs(600);
 const LIMITS: JobLimits = JobLimits { jobs: 3, bytes: 1_000, cost: 1_000 };
-
-fn job(tenant: &str) -> Job {
-    Job {
-        id: Uuid::now_v7(),
-        tenant: Tenant::new(tenant),
-        created_at: Timestamp::now(),
-        finished_at: None,
-        error: None,
-        points: 7,
-        chunk: 3,
-        done: 0,
-        failed: 0,
-        bytes: 100,
-        cost: 100,
-    }
-}
 
 async fn create(store: &dyn Store, job: &Job) -> Result<(), StoreError> {
     store.create_job(job.clone(), format!("request of {}", job.id), LIMITS, None).await

@@ -23,6 +23,8 @@ const WHOLE: u64 = 1000;
 /// How long a client waits for a reply before it takes it for lost. Far more than any freeze takes: replies are lost by
 /// the seed.
 const WAIT: Duration = Duration::from_secs(20);
+/// How long it waits where the store does not answer.
+const OUTAGE: Duration = Duration::from_millis(300);
 /// How often a request of unknown outcome is repeated.
 const RETRIES: u64 = 3;
 
@@ -179,6 +181,11 @@ impl Recorder {
             match self.service.serve(replica, id, request).await {
                 Ok(reply) => return Some(reply),
                 Err(NoReply::Unknown) => return None,
+                Err(NoReply::Unavailable) => {
+                    // The more requests have no outcome, the more orders there are to try.
+                    sleep(OUTAGE).await;
+                    return None;
+                }
                 Err(NoReply::NothingDone) => {
                     sleep(Duration::from_millis(5)).await;
                     replica += 1;

@@ -1,5 +1,6 @@
-//! One order that every client agrees on: recorded histories of several clients, over replicas that are killed, frozen
-//! and cut off from the database, are linearizable; and those of services that break a promise are not.
+//! One order that every client agrees on: recorded histories of several clients, whose servers are killed, frozen and
+//! stopped and whose store is cut off, locked, frozen or crashes, are linearizable; and those of services that break a
+//! promise are not. Meanwhile the memory stays within the bound that the log states, and in the end the store is sound.
 //!
 //! `STICKSLIP_HISTORIES` says how many histories of each store are recorded and checked; without it they are a few. How
 //! the operating system schedules the processes differs from run to run, and so do the histories; that they are
@@ -10,33 +11,70 @@ mod linearizability;
 mod model;
 mod service;
 
+use std::collections::BTreeMap;
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use std::time::Duration;
 
-use tempfile::tempdir;
+use rusqlite::Connection;
+use tempfile::{TempDir, tempdir};
 use tokio::time::sleep;
 
 use crate::common::kill::Random;
 use crate::common::postgres::Cluster;
 use crate::common::process::Process;
+use crate::common::{run, until};
 use clients::{Load, Recorder};
 use linearizability::{Call, History};
 use service::{Fault, Service};
 
-/// What is asked for between two starts of the processes.
+/// What is asked for between two looks at the histories.
 const LOAD: Load = Load { contacts: 3, clients: 5, operations: 50, losses: true };
 /// Accidents in that time.
-const ACCIDENTS: u64 = 10;
+const ACCIDENTS: usize = 10;
 /// Histories of each store, unless the environment says otherwise.
 const HISTORIES: usize = 20;
+/// Limits that make the bound of the memory small.
+const LIMITS: [&str; 8] =
+    ["--cache-bytes", "8MiB", "--work-bytes", "256MiB", "--max-connections", "200", "--max-requests", "32"];
 
-/// What happens to a process, or to its connections.
-#[derive(Clone, Copy, Debug)]
+/// What happens to a process, to its connections or to its store.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Accident {
     Kill,
+    Stop,
     Freeze,
     LostDatabaseConnections,
+    LockedFile,
+    FrozenDatabase,
+    CrashedDatabase,
+}
+
+/// Where contacts are stored.
+enum Store {
+    File(PathBuf),
+    Database(Cluster, String),
+}
+
+impl Store {
+    fn url(&self) -> String {
+        match self {
+            Store::File(path) => format!("sqlite:{}", path.display()),
+            Store::Database(_, url) => url.clone(),
+        }
+    }
+
+    /// What happens all the time, the more often the more often it is named; and what happens once.
+    fn accidents(&self) -> [&'static [Accident]; 2] {
+        use Accident::*;
+        match self {
+            Store::File(_) => [&[Kill, Freeze], &[LockedFile, Stop]],
+            Store::Database(..) => {
+                [&[Kill, Freeze, Freeze, Freeze, LostDatabaseConnections], &[FrozenDatabase, CrashedDatabase, Stop]]
+            }
+        }
+    }
 }
 
 /// What has been recorded.
@@ -46,9 +84,103 @@ struct Figures {
     contradictions: usize,
     operations: usize,
     unknown_changes: usize,
-    kills: usize,
-    freezes: usize,
-    lost_database_connections: usize,
+    accidents: BTreeMap<Accident, usize>,
+    peak: u64,
+}
+
+/// Processes over a store.
+struct Scene {
+    store: Store,
+    processes: Vec<Option<(Process, PathBuf)>>,
+    logs: TempDir,
+    started: usize,
+    figures: Figures,
+}
+
+impl Scene {
+    async fn start(store: Store, processes: usize) -> Scene {
+        let (logs, figures) = (tempdir().unwrap(), Figures::default());
+        let mut scene = Scene { store, processes: Vec::new(), logs, started: 0, figures };
+        for _ in 0..processes {
+            let process = scene.process().await;
+            scene.processes.push(Some(process));
+        }
+        scene
+    }
+
+    /// A new process, and its log.
+    async fn process(&mut self) -> (Process, PathBuf) {
+        self.started += 1;
+        let (url, log) = (self.store.url(), self.logs.path().join(self.started.to_string()));
+        let arguments = [&["--store", &*url, "--log", "warn,stickslip::cli=info"][..], &LIMITS].concat();
+        (Process::start_with(&arguments, &log).await, log)
+    }
+
+    /// Ends a process. It has not taken more memory than the bound that its log states, and nothing in it has panicked.
+    async fn end(&mut self, victim: usize, gracefully: bool) {
+        let (process, log) = self.processes[victim].take().unwrap();
+        let (peak, said) = (process.peak(), std::fs::read_to_string(log).unwrap());
+        let bound = said.split_once("memory_bound=").unwrap().1.split_whitespace().next().unwrap();
+        assert!(peak < bound.parse().unwrap() && !said.contains("panicked"), "{peak} bytes: {said}");
+        self.figures.peak = self.figures.peak.max(peak);
+        if gracefully { process.stop().await } else { process.kill().await }
+    }
+
+    async fn happens(&mut self, accident: Accident, recorder: &Recorder, random: &mut Random) {
+        let victim = random.below(self.processes.len() as u64) as usize;
+        let before = recorder.service.unavailable.load(Ordering::SeqCst);
+        let refused = || recorder.service.unavailable.load(Ordering::SeqCst) > before;
+        let is_noticed = until("a request is refused", async || refused().then_some(()));
+        match (accident, &self.store) {
+            (Accident::Freeze, _) => {
+                let (process, _) = self.processes[victim].as_ref().unwrap();
+                process.signal("STOP");
+                sleep(Duration::from_micros(random.below(30_000))).await;
+                process.signal("CONT");
+            }
+            (Accident::LockedFile, Store::File(path)) => {
+                let other = Connection::open(path).unwrap();
+                other.execute_batch("BEGIN IMMEDIATE").unwrap();
+                is_noticed.await;
+            }
+            (Accident::FrozenDatabase, Store::Database(cluster, _)) => {
+                let _frozen = cluster.freeze();
+                is_noticed.await;
+            }
+            (Accident::CrashedDatabase, Store::Database(cluster, _)) => {
+                cluster.crash();
+                is_noticed.await;
+                cluster.resume();
+            }
+            (Accident::LostDatabaseConnections, Store::Database(cluster, _)) => {
+                let end = "SELECT pg_terminate_backend(pid) FROM pg_stat_activity WHERE application_name = 'stickslip'";
+                cluster.execute("postgres", end).await;
+            }
+            _ => {
+                self.end(victim, accident == Accident::Stop).await;
+                let process = self.process().await;
+                recorder.service.replicas.lock().unwrap()[victim] = process.0.client.clone();
+                self.processes[victim] = Some(process);
+            }
+        }
+        *self.figures.accidents.entry(accident).or_default() += 1;
+    }
+
+    /// Lets accidents happen at fixed shares of the work; of the rare ones each in the first round.
+    async fn accidents(&mut self, recorder: &Recorder, seed: u64) {
+        let mut random = Random(!seed);
+        let [common, once] = self.store.accidents();
+        let mut rare = once.iter().filter(|_| seed == 1);
+        for number in 1..=ACCIDENTS as u64 {
+            while recorder.done.load(Ordering::Relaxed) < recorder.requests() * number / (ACCIDENTS as u64 + 1) {
+                sleep(Duration::from_millis(1)).await;
+            }
+            sleep(Duration::from_micros(random.below(5_000))).await;
+            let usual = common[random.below(common.len() as u64) as usize];
+            let accident = if number % 2 == 0 { rare.next().copied() } else { None };
+            self.happens(accident.unwrap_or(usual), recorder, &mut random).await;
+        }
+    }
 }
 
 fn wanted() -> usize {
@@ -56,78 +188,18 @@ fn wanted() -> usize {
     text.map_or(HISTORIES, |text| text.parse().expect("STICKSLIP_HISTORIES is a number"))
 }
 
-/// Lets accidents happen to the processes, at fixed shares of the work.
-async fn accidents(
-    recorder: &Recorder,
-    store: &str,
-    processes: &mut [Option<Process>],
-    accidents: &[Accident],
-    figures: &mut Figures,
-    random: &mut Random,
-) {
-    for number in 1..=ACCIDENTS {
-        while recorder.done.load(Ordering::Relaxed) < recorder.requests() * number / (ACCIDENTS + 1) {
-            sleep(Duration::from_millis(1)).await;
-        }
-        sleep(Duration::from_micros(random.below(5_000))).await;
-        let victim = random.below(processes.len() as u64) as usize;
-        match accidents[random.below(accidents.len() as u64) as usize] {
-            Accident::Kill => {
-                processes[victim].take().unwrap().kill().await;
-                let process = Process::start(store).await;
-                recorder.service.replicas.lock().unwrap()[victim] = process.client.clone();
-                processes[victim] = Some(process);
-                figures.kills += 1;
-            }
-            Accident::Freeze => {
-                let process = processes[victim].as_ref().unwrap();
-                process.signal("STOP");
-                sleep(Duration::from_micros(random.below(30_000))).await;
-                process.signal("CONT");
-                figures.freezes += 1;
-            }
-            Accident::LostDatabaseConnections => {
-                let database = store.rsplit_once('/').unwrap().1;
-                let end = format!(
-                    "SELECT pg_terminate_backend(pid) FROM pg_stat_activity
-                     WHERE application_name = 'stickslip' AND datname = '{database}'"
-                );
-                Cluster::shared().execute("postgres", &end).await;
-                figures.lost_database_connections += 1;
-            }
-        }
-    }
-}
-
-/// What several clients see of these processes over a store.
-async fn record(
-    store: &str,
-    processes: &mut [Option<Process>],
-    kinds: &[Accident],
-    figures: &mut Figures,
-    seed: u64,
-) -> Arc<Recorder> {
-    let replicas = processes.iter().map(|process| process.as_ref().unwrap().client.clone()).collect();
-    let recorder = Arc::new(Recorder::start(Service::new(replicas, None), LOAD, seed).await);
-    let mut random = Random(!seed);
-    let happens = accidents(&recorder, store, processes, kinds, figures, &mut random);
-    futures::join!(recorder.work(), happens);
-    recorder.read_all().await;
-    recorder
-}
-
 /// Records histories on so many processes over a store, and checks each.
-async fn are_linearizable(store: &str, processes: usize, kinds: &[Accident]) {
-    let mut figures = Figures::default();
-    let mut running = Vec::new();
-    for _ in 0..processes {
-        running.push(Some(Process::start(store).await));
-    }
+async fn are_linearizable(store: Store, processes: usize) {
+    let mut scene = Scene::start(store, processes).await;
     for seed in 1.. {
-        if figures.histories >= wanted() {
+        if scene.figures.histories >= wanted() {
             break;
         }
-        let recorder = record(store, &mut running, kinds, &mut figures, seed).await;
+        let replicas = scene.processes.iter().map(|process| process.as_ref().unwrap().0.client.clone()).collect();
+        let recorder = Arc::new(Recorder::start(Service::new(replicas, None), LOAD, seed).await);
+        futures::join!(recorder.work(), scene.accidents(&recorder, seed));
+        recorder.read_all().await;
+        let figures = &mut scene.figures;
         for (_, history) in recorder.histories() {
             figures.histories += 1;
             figures.operations += history.calls.len();
@@ -142,9 +214,16 @@ async fn are_linearizable(store: &str, processes: usize, kinds: &[Accident]) {
             recorder.replay_all().await;
         }
     }
-    println!("{figures:?}");
-    assert_eq!(figures.contradictions, 0, "histories are not linearizable");
-    assert!(figures.unknown_changes > 0 && figures.freezes + figures.kills > 0, "nothing was lost: {figures:?}");
+    for process in 0..processes {
+        scene.end(process, true).await;
+    }
+    println!("{:?}", scene.figures);
+    assert_eq!(scene.figures.contradictions, 0, "histories are not linearizable");
+    assert!(scene.figures.unknown_changes > 0, "nothing was lost");
+    let kinds = scene.store.accidents().concat();
+    assert!(kinds.iter().all(|kind| scene.figures.accidents.contains_key(kind)), "{:?}", scene.figures.accidents);
+    let checked = run(&["check", "--store", &scene.store.url()]);
+    assert!(checked.status.success(), "{checked:?}");
 }
 
 /// A history up to a reply, a line for each request.
@@ -163,17 +242,15 @@ fn told(history: &History, last: usize) -> String {
 
 #[tokio::test(flavor = "multi_thread")]
 async fn histories_on_two_replicas_are_linearizable() {
-    let store = Cluster::shared().database().await;
-    let kinds =
-        [Accident::Kill, Accident::Freeze, Accident::Freeze, Accident::Freeze, Accident::LostDatabaseConnections];
-    are_linearizable(&store, 2, &kinds).await;
+    let cluster = Cluster::start();
+    let url = cluster.database().await;
+    are_linearizable(Store::Database(cluster, url), 2).await;
 }
 
 #[tokio::test(flavor = "multi_thread")]
 async fn histories_on_a_file_are_linearizable() {
     let folder = tempdir().unwrap();
-    let store = format!("sqlite:{}", folder.path().join("order.db").display());
-    are_linearizable(&store, 1, &[Accident::Kill, Accident::Freeze]).await;
+    are_linearizable(Store::File(folder.path().join("order.db")), 1).await;
 }
 
 #[tokio::test(flavor = "multi_thread")]

@@ -36,6 +36,8 @@ pub enum NoReply {
     NothingDone,
     /// The request may have been served.
     Unknown,
+    /// The same, and the service says that its store does not answer.
+    Unavailable,
 }
 
 /// The replicas by their present addresses.
@@ -43,13 +45,16 @@ pub struct Service {
     pub replicas: Mutex<Vec<Client>>,
     fault: Option<Fault>,
     count: AtomicU64,
+    /// Requests to which the service has said that its store does not answer.
+    pub unavailable: AtomicU64,
     /// What has been read, by contact and request.
     shown: Mutex<HashMap<(Uuid, Operation), Reply>>,
 }
 
 impl Service {
     pub fn new(replicas: Vec<Client>, fault: Option<Fault>) -> Service {
-        Service { replicas: Mutex::new(replicas), fault, count: AtomicU64::new(0), shown: Mutex::default() }
+        let [count, unavailable] = [const { AtomicU64::new(0) }; 2];
+        Service { replicas: Mutex::new(replicas), fault, count, unavailable, shown: Mutex::default() }
     }
 
     pub fn client(&self, replica: u64) -> Client {
@@ -87,7 +92,9 @@ impl Service {
             }
             _ => {}
         }
-        send(&client, id, &sent).await
+        let reply = send(&client, id, &sent).await;
+        self.unavailable.fetch_add((reply == Err(NoReply::Unavailable)).into(), Ordering::SeqCst);
+        reply
     }
 
     async fn acknowledge_early(
@@ -159,7 +166,8 @@ async fn send(client: &Client, id: Uuid, request: &Request) -> Result<Reply, NoR
             ("contact_not_found", _) => Ok(Reply::NotFound),
             ("invalid_input", Operation::Fork(_)) => Ok(Reply::NoSuchMove),
             ("overloaded" | "conflict", _) => Err(NoReply::NothingDone),
-            ("storage_unavailable" | "stopping", _) => Err(NoReply::Unknown),
+            ("storage_unavailable", _) => Err(NoReply::Unavailable),
+            ("stopping", _) => Err(NoReply::Unknown),
             _ => panic!("{request:?}: {error}"),
         },
         Error::Unexpected { .. } => panic!("{request:?}: {error}"),
