@@ -3,7 +3,6 @@
 use crate::common;
 
 use std::collections::BTreeSet;
-use std::path::{Path, PathBuf};
 
 use common::openapi::{document, examples, operations, with_query};
 use common::postgres::Cluster;
@@ -66,9 +65,7 @@ impl Guarded {
         let file = folder.path().join("keys");
         let entries: Vec<&str> = made.iter().map(|(_, new)| new.entry.as_str()).collect();
         std::fs::write(&file, format!("# for the test\n{}\n", entries.join("\n"))).unwrap();
-        let log = folder.path().join("log");
-        let arguments = ["--store", store, "--keys", file.to_str().unwrap()];
-        let process = Process::start_with(&[&arguments, more].concat(), &log).await;
+        let process = Process::with(store, &[&["--keys", file.to_str().unwrap()], more].concat());
         let keys = made.into_iter().map(|(name, new)| (name, new.key)).collect();
         Guarded { process, http: reqwest::Client::new(), keys, folder }
     }
@@ -323,8 +320,7 @@ async fn what_belongs_to_another_tenant_does_not_exist() {
 
 /// A server without keys shows the contacts of the tenant without a name, and no others.
 async fn without_keys_the_nameless_tenant_is_served(file: &str) {
-    let log = PathBuf::from(format!("{file}.log"));
-    let open = Process::start_with(&["--store", &format!("sqlite:{file}")], Path::new(&log)).await;
+    let open = Process::start(&format!("sqlite:{file}")).await;
     let listed = open.client.contacts(None, None).await.unwrap().items;
     assert_eq!(listed.len(), 2, "one of each round");
     let database = rusqlite::Connection::open(file).unwrap();
@@ -425,8 +421,7 @@ async fn a_changed_file_of_keys_counts_at_once_and_ends_the_events_of_revoked_ke
     server.replace(&before);
     until("the key is known again", async || (list("revoked").await == 200).then_some(())).await;
     server.replace("nonsense");
-    let said = || std::fs::read_to_string(server.folder.path().join("log")).unwrap();
-    until("the log says so", async || said().contains("keys unchanged").then_some(())).await;
+    until("the log says so", async || server.process.log().contains("keys unchanged").then_some(())).await;
     assert_eq!((list("revoked").await, list("kept").await), (200, 200));
 }
 

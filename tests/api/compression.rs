@@ -6,7 +6,7 @@ use std::io::Read as _;
 use std::sync::Arc;
 use std::time::Duration;
 
-use common::{Server, ball};
+use common::{Server, ball, until};
 use flate2::read::GzDecoder;
 use reqwest::{Method, Response};
 use serde_json::{Value, json};
@@ -182,17 +182,9 @@ async fn an_encoder_counts_as_memory_until_its_reply_is_sent() {
         let response = server.send(Method::POST, "/simulate", Some(&long), &[("accept-encoding", coding)]).await;
         assert_eq!(header(&response, "content-encoding"), Some(coding));
         // More than the sockets between the two hold is still to come.
-        let held = pool.taken().bytes;
         let whole = response.bytes().await.unwrap();
         assert!(serde_json::from_slice::<Value>(&decoded(coding, &whole)).unwrap()["steps"][1899].is_object());
-        let free = async {
-            while pool.taken().bytes > 0 {
-                tokio::time::sleep(Duration::from_millis(5)).await;
-            }
-        };
-        tokio::time::timeout(Duration::from_secs(60), free)
-            .await
-            .unwrap_or_else(|_| panic!("{held} are never released"));
+        until("its memory is released", async || (pool.taken().bytes == 0).then_some(())).await;
     }
     // Without memory for an encoder the reply goes as it is.
     let all = pool.reserve(pool.capacity().bytes / 2).await.unwrap();

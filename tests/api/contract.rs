@@ -1,7 +1,5 @@
 //! The contract: every endpoint of contacts, files and sweeps through the typed client, and what the replies promise.
 
-use std::process::Command;
-
 use serde_json::{Value, json};
 use stickslip_wire::client::{Options, Swept};
 use stickslip_wire::files::{LoopFileHints, ScanFileHints};
@@ -13,7 +11,8 @@ use stickslip_wire::{
 };
 use tokio::io::AsyncReadExt as _;
 
-use crate::common::{Binary, PATIENCE, Server, ball, create, of, run, until};
+use crate::common::process::Process;
+use crate::common::{Server, ball, create, of, run, until};
 
 #[tokio::test]
 async fn every_endpoint_answers_the_client() {
@@ -145,16 +144,13 @@ async fn headers_say_where_and_which() {
 /// The real binary: it starts, prints its address, and stops at a signal, although a connection is open.
 #[tokio::test]
 async fn the_binary_starts_and_stops_gracefully() {
-    let mut binary = Binary::start(&[]);
-    binary.client.healthz().await.unwrap();
-    let address = binary.address.trim_start_matches("http://").to_owned();
+    let server = Process::with("memory:", &[]);
+    server.client.healthz().await.unwrap();
+    let address = server.base.trim_start_matches("http://").to_owned();
     let healthcheck = |address: &str| run(&["healthcheck", "--listen", address]).status.success();
     assert!(healthcheck(&address) && !healthcheck("127.0.0.1:1"));
     let mut idle = tokio::net::TcpStream::connect(address).await.unwrap();
-    assert!(Command::new("kill").args(["-TERM", &binary.child.id().to_string()]).status().unwrap().success());
-    let ended = tokio::task::spawn_blocking(move || binary.child.wait().unwrap());
-    let status = tokio::time::timeout(PATIENCE, ended).await.expect("it waits for the connection").unwrap();
-    assert!(status.success(), "{status}");
+    server.stop().await;
     // It was the server that closed the connection.
     assert_eq!(idle.read(&mut [0]).await.unwrap_or(0), 0);
 }

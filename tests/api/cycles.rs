@@ -5,7 +5,8 @@ use crate::common;
 
 use std::sync::Arc;
 
-use common::{Binary, PATIENCE, Server, create, problem};
+use common::process::Process;
+use common::{PATIENCE, Server, create, problem};
 use futures::StreamExt as _;
 use proptest::prelude::*;
 use proptest::strategy::ValueTree as _;
@@ -133,14 +134,14 @@ async fn cycles_are_the_same_after_a_restart_in_a_fork_and_read_piece_by_piece()
     let expected_of_fork = cycles(&uncached.client, fork).await;
     assert!(expected_of_fork.len() > expected.len() && expected_of_fork.starts_with(&expected));
 
-    let server = Binary::over(&store, &[]);
+    let server = Process::with(&store, &[]);
     let (id, _) = new(&server.client).await;
     follow(&server.client, id, slide(unit, &path)).await;
     assert_eq!(cycles(&server.client, id).await, expected);
     let fork = server.client.fork(id, &ForkRequest::default(), &Options::default()).await.unwrap().id;
     follow(&server.client, fork, slide(unit, &[2.0, -2.0, 2.0])).await;
     drop(server);
-    let server = Binary::over(&store, &[]);
+    let server = Process::with(&store, &[]);
     assert_marked(&history(&server.client, id).await, &expected);
     assert_eq!(cycles(&server.client, id).await, expected);
     assert_eq!(cycles(&server.client, fork).await, expected_of_fork);

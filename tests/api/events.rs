@@ -2,12 +2,11 @@
 
 use crate::common;
 
-use std::io::Read as _;
 use std::pin::pin;
-use std::process::Command;
 use std::sync::Arc;
 
-use common::{Binary, PATIENCE, Server, create, problem};
+use common::process::Process;
+use common::{PATIENCE, Server, create, problem};
 use futures::future::join_all;
 use futures::{Stream, StreamExt as _};
 use reqwest::Method;
@@ -198,28 +197,21 @@ async fn the_number_of_listeners_is_limited() {
 
 #[tokio::test]
 async fn a_graceful_stop_ends_the_events_and_is_not_held_up_by_them() {
-    let mut binary = Binary::start(&[]);
-    let client = &binary.client;
+    let server = Process::with("memory:", &[]);
+    let client = server.client.clone();
     let id = client.create(&create(), &Options::default()).await.unwrap().id;
     let mut listeners = Vec::new();
     for _ in 0..5 {
-        let mut events = listen(client, id, None).await;
+        let mut events = listen(&client, id, None).await;
         assert_eq!(next_state(&mut events).await.sequence, 0);
         listeners.push(events);
     }
-    let sent = Command::new("kill").args(["-TERM", &binary.child.id().to_string()]).status().unwrap();
-    assert!(sent.success());
+    server.signal("TERM");
     for events in &mut listeners {
         assert_eq!(next(events).await, Event::End(EndReason::Stopping));
         assert!(events.next().await.is_none());
     }
-    let ended = tokio::task::spawn_blocking(move || {
-        let mut log = String::new();
-        binary.child.stderr.take().unwrap().read_to_string(&mut log).unwrap();
-        (binary.child.wait().unwrap(), log)
-    });
-    let (status, log) = ended.await.unwrap();
-    assert!(status.success(), "{status}");
+    let log = server.ended().await;
     // Otherwise the streams would have been closed by force when the grace was over.
     assert!(log.contains("stopping") && !log.contains("still open"), "{log}");
 }

@@ -24,8 +24,8 @@ use stickslip_wire::client::Options;
 use crate::cases::{case_count, runner, seed};
 use crate::common::kill::Random;
 use crate::common::openapi::{document, examples, operations};
-use crate::common::raw::{PATIENCE, Service, get, post};
-use crate::common::{ball, create};
+use crate::common::raw::{Service, get, post};
+use crate::common::{PATIENCE, ball, create};
 use crate::damage::damage;
 
 /// Tasks that send requests at the same time. Each has its own contacts.
@@ -191,7 +191,7 @@ async fn damaged_examples_of_every_operation() {
         contacts.push(service.client.create(&create(), &Options::default()).await.unwrap().id.to_string());
     }
     let (http, answered, refused) = (reqwest::Client::new(), AtomicU64::new(0), AtomicU64::new(0));
-    let base = format!("http://{}", service.address);
+    let base = &service.base;
     let contacts: Vec<&[String]> = contacts.chunks(CONTACTS_PER_TASK).collect();
     run([10_000, 50_000], async |task, number, random| {
         let request = request(&document, contacts[task], number, random);

@@ -2,39 +2,30 @@
 
 use crate::common;
 
-use std::io::Read as _;
-use std::process::Command;
-
-use common::{Binary, create};
+use common::process::Process;
+use common::{create, metric, until};
 use reqwest::Client;
 use serde_json::Value;
 use stickslip::access::{Role, new_key};
 use stickslip_wire::Move;
 use stickslip_wire::client::Options;
 
-async fn get_text(address: &str) -> String {
-    reqwest::get(address).await.unwrap().text().await.unwrap()
-}
-
 /// Ends the server as an operator would, and returns its log.
-fn end(mut server: Binary) -> Vec<Value> {
-    let sent = Command::new("kill").args(["-TERM", &server.child.id().to_string()]).status().unwrap();
-    assert!(sent.success() && server.child.wait().unwrap().success());
-    let mut log = String::new();
-    server.child.stderr.take().unwrap().read_to_string(&mut log).unwrap();
+async fn end(server: Process) -> Vec<Value> {
+    let log = server.stop().await;
     log.lines().map(|line| serde_json::from_str(line).unwrap_or_else(|_| panic!("not JSON: {line}"))).collect()
 }
 
 #[tokio::test]
 async fn a_request_is_one_line_and_the_life_of_the_server_a_few() {
-    let server = Binary::start(&["--log-format", "json"]);
+    let server = Process::with("memory:", &["--log-format", "json"]);
     let client = server.client.clone();
     let id = client.create(&create(), &Options::default()).await.unwrap().id;
     client.apply(id, &Move::displacement(1e-9).into(), &Options::default()).await.unwrap();
     let refused = client.apply(id, &Move::force(99.0).into(), &Options::default()).await.unwrap_err();
     let request_id = refused.problem().unwrap().request_id.clone();
 
-    let mut log = end(server);
+    let mut log = end(server).await;
     for line in &log {
         assert!(line["timestamp"].is_string() && line["level"].is_string(), "{line}");
         // A route, and not a path; a change names its contact.
@@ -57,10 +48,11 @@ async fn a_request_is_one_line_and_the_life_of_the_server_a_few() {
 #[tokio::test]
 async fn the_line_of_a_change_says_who_made_it() {
     let new = new_key("bench", &[Role::Write], "lab").unwrap();
-    let server = Binary::start(&["--log-format", "json", "--keys", &new.entry, "--trusted-proxies", "127.0.0.1"]);
+    let server =
+        Process::with("memory:", &["--log-format", "json", "--keys", &new.entry, "--trusted-proxies", "127.0.0.1"]);
     let client = server.client.clone().with_key(&new.key);
     let id = client.create(&create(), &Options::default()).await.unwrap().id;
-    let url = |path: &str| format!("{}/contacts/{id}{path}", server.address);
+    let url = |path: &str| format!("{}/contacts/{id}{path}", server.base);
     let send = async |call: reqwest::RequestBuilder, request_id: &str| {
         let call = call.bearer_auth(&new.key).header("x-request-id", request_id);
         call.header("x-forwarded-for", "10.0.0.1, 192.0.2.7").send().await.unwrap()
@@ -73,7 +65,7 @@ async fn the_line_of_a_change_says_who_made_it() {
     assert_eq!(send(http.delete(url("")), "deleted").await.status(), 204);
     assert_eq!(http.delete(url("")).header("x-request-id", "keyless").send().await.unwrap().status(), 401);
 
-    let log = end(server);
+    let log = end(server).await;
     let who = |request_id: &str| {
         let line = log.iter().find(|line| line["request_id"] == request_id).unwrap();
         ["client", "key", "tenant", "contact"].map(|name| line[name].as_str().map(str::to_owned))
@@ -92,20 +84,18 @@ async fn the_line_of_a_change_says_who_made_it() {
 
 #[tokio::test]
 async fn a_client_that_leaves_has_its_line_too() {
-    let server = Binary::start(&["--log-format", "json"]);
+    let server = Process::with("memory:", &["--log-format", "json"]);
     let long = common::long_simulation();
-    let address = server.address.clone();
+    let address = server.base.clone();
     let call = Client::new().post(format!("{address}/simulate")).json(&long).header("x-request-id", "mine").send();
     let call = tokio::spawn(call);
     // It leaves once its work has begun, however long that takes.
-    while !get_text(&format!("{address}/metrics")).await.lines().any(|line| line == "stickslip_solver_running 1") {
-        assert!(!call.is_finished(), "too quick to leave");
-        tokio::time::sleep(std::time::Duration::from_millis(10)).await;
-    }
+    let running = async || (metric(&address, "stickslip_solver_running").await == 1).then_some(());
+    until("the work has begun", running).await;
     call.abort();
     assert!(call.await.unwrap_err().is_cancelled(), "too quick to leave");
     server.client.healthz().await.unwrap();
-    let log = end(server);
+    let log = end(server).await;
     let line =
         log.iter().find(|line| line["message"] == "the client disconnected").unwrap_or_else(|| panic!("{log:?}"));
     assert_eq!(

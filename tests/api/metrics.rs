@@ -9,7 +9,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use common::prometheus::{MISSING, Prometheus};
-use common::{Server, ball, long_simulation, until};
+use common::{Server, ball, long_simulation, metric, until};
 use prometheus::core::Collector as _;
 use prometheus::{Opts, TextEncoder};
 use reqwest::{Method, StatusCode};
@@ -207,13 +207,6 @@ async fn promtool_has_nothing_against_the_page() {
     assert!(verdict.status.success(), "{}\n{page}", String::from_utf8_lossy(&verdict.stderr));
 }
 
-/// The value of a sample without labels.
-async fn sample(server: &Server, name: &str) -> u64 {
-    let page = server.get("/metrics").await.text().await.unwrap();
-    let line = page.lines().find_map(|line| line.strip_prefix(name)?.strip_prefix(' ')).unwrap();
-    whole(line.parse().unwrap())
-}
-
 #[tokio::test]
 async fn an_uncached_contact_counts_as_a_miss() {
     let server = Server::with(Arc::new(MemoryStore::new()), 1).await;
@@ -224,7 +217,7 @@ async fn an_uncached_contact_counts_as_a_miss() {
     server.get("/contacts/00000000-0000-7000-8000-000000000000").await;
     let names = ["hits_total", "misses_total", "contacts", "bytes", "capacity_bytes"];
     for (name, expected) in names.into_iter().zip([0, 3, 0, 0, 1]) {
-        assert_eq!(sample(&server, &format!("stickslip_cache_{name}")).await, expected, "{name}");
+        assert_eq!(metric(&server.base, &format!("stickslip_cache_{name}")).await, expected, "{name}");
     }
 }
 
@@ -234,29 +227,23 @@ async fn clients_that_listen_and_clients_that_leave_are_counted() {
     let id = server.contact().await;
     let path = format!("/contacts/{id}/events");
     let (first, second) = (server.get(&path).await, server.get(&path).await);
-    assert_eq!(sample(&server, "stickslip_event_streams").await, 2);
+    assert_eq!(metric(&server.base, "stickslip_event_streams").await, 2);
     drop((first, second));
 
     let long = long_simulation();
     // The client leaves once its work has begun.
-    let begun =
-        until("the work has begun", async || (sample(&server, "stickslip_solver_running").await == 1).then_some(()));
+    let begun = until("the work has begun", async || {
+        (metric(&server.base, "stickslip_solver_running").await == 1).then_some(())
+    });
     tokio::select! {
         _ = server.post("/simulate", &long) => panic!("too quick to leave"),
         () = begun => {}
     }
-    let left = "stickslip_http_requests_total{method=\"POST\",route=\"/simulate\",status=\"499\"}";
-    let streams = "stickslip_event_streams";
-    let noticed = async {
-        loop {
-            let page = server.get("/metrics").await.text().await.unwrap();
-            if page.contains(&format!("{left} 1\n")) && page.contains(&format!("\n{streams} 0\n")) {
-                break;
-            }
-            tokio::time::sleep(Duration::from_millis(20)).await;
-        }
-    };
-    tokio::time::timeout(PATIENCE, noticed).await.expect("the change was not observed");
+    let left = "stickslip_http_requests_total{method=\"POST\",route=\"/simulate\",status=\"499\"} 1\n";
+    let streams = "\nstickslip_event_streams 0\n";
+    let page = async || server.get("/metrics").await.text().await.unwrap();
+    let all = async |page: String| page.contains(left) && page.contains(streams);
+    until("they are counted", async || all(page().await).await.then_some(())).await;
 }
 
 #[tokio::test]
@@ -267,17 +254,13 @@ async fn sweeps_are_counted_at_once_and_as_jobs() {
             "axes": [{"pointer": "/contact/friction", "linear": {"from": 0.1, "to": 0.5, "count": count}}]})
     };
     assert_eq!(server.post("/sweep", &sweep(30, false)).await.status(), 200);
-    assert_eq!(sample(&server, "stickslip_sweep_points_total").await, 30);
+    assert_eq!(metric(&server.base, "stickslip_sweep_points_total").await, 30);
     assert_eq!(server.post("/sweep", &sweep(20, true)).await.status(), 202);
-    let stored = async {
-        while sample(&server, "stickslip_job_chunks_total").await == 0 {
-            tokio::time::sleep(Duration::from_millis(20)).await;
-        }
-    };
-    tokio::time::timeout(PATIENCE, stored).await.expect("a job so small is one chunk");
+    let chunks = async || metric(&server.base, "stickslip_job_chunks_total").await;
+    until("its one chunk is stored", async || (chunks().await > 0).then_some(())).await;
     let names = ["sweep_points_total", "job_chunks_total", "job_chunks_returned_total", "jobs_failed_total"];
     for (name, expected) in names.into_iter().zip([50, 1, 0, 0]) {
-        assert_eq!(sample(&server, &format!("stickslip_{name}")).await, expected, "{name}");
+        assert_eq!(metric(&server.base, &format!("stickslip_{name}")).await, expected, "{name}");
     }
 }
 

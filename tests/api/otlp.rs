@@ -4,9 +4,7 @@
 use crate::common;
 
 use std::future::pending;
-use std::io::Read as _;
 use std::net::SocketAddr;
-use std::process::Command;
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
@@ -15,7 +13,7 @@ use axum::routing::post;
 use axum::serve::Listener;
 use axum::{Json, Router};
 use common::process::Process;
-use common::{Binary, binary, create};
+use common::{binary, create};
 use opentelemetry::trace::TraceContextExt as _;
 use rustls::ServerConfig;
 use rustls::crypto::ring;
@@ -83,25 +81,11 @@ fn attribute<'a>(span: &'a Value, key: &str) -> &'a Value {
     found.map_or(&Value::Null, |attribute| attribute["value"].as_object().unwrap().values().next().unwrap())
 }
 
-/// Ends the server as an operator would, and returns its log.
-async fn end(mut server: Binary) -> String {
-    let sent = Command::new("kill").args(["-TERM", &server.child.id().to_string()]).status().unwrap();
-    assert!(sent.success());
-    tokio::task::spawn_blocking(move || {
-        let mut log = String::new();
-        server.child.stderr.take().unwrap().read_to_string(&mut log).unwrap();
-        assert!(server.child.wait().unwrap().success(), "{log}");
-        log
-    })
-    .await
-    .unwrap()
-}
-
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
 async fn a_collector_gets_a_span_for_each_request() {
     let (base, posts) = collector().await;
     // What the log shows is another matter.
-    let server = Binary::start(&["--otlp-endpoint", &base, "--log", "error"]);
+    let server = Process::with("memory:", &["--otlp-endpoint", &base, "--log", "error"]);
     let (client, options) = (server.client.clone(), Options::default());
     let id = client.create(&create(), &options).await.unwrap().id;
     for _ in 0..700 {
@@ -110,11 +94,11 @@ async fn a_collector_gets_a_span_for_each_request() {
     client.apply(id, &Move::force(99.0).into(), &options).await.unwrap_err();
     let trace = "0af7651916cd43dd8448eb211c80319c";
     for (flags, request) in [("01", "mine"), ("00", "not-to-be-traced")] {
-        let call = reqwest::Client::new().get(format!("{}/contacts", server.address));
+        let call = reqwest::Client::new().get(format!("{}/contacts", server.base));
         let parent = format!("00-{trace}-b7ad6b7169203331-{flags}");
         call.header("traceparent", parent).header("x-request-id", request).send().await.unwrap();
     }
-    end(server).await;
+    server.stop().await;
 
     assert!(posts.lock().unwrap().len() >= 2, "{} posts", posts.lock().unwrap().len());
     let all = spans(&posts);
@@ -154,13 +138,13 @@ async fn a_collector_gets_a_span_for_each_request() {
 
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
 async fn an_unreachable_collector_costs_only_traces() {
-    let server = Binary::start(&["--otlp-endpoint", "http://127.0.0.1:1"]);
+    let server = Process::with("memory:", &["--otlp-endpoint", "http://127.0.0.1:1"]);
     let id = server.client.create(&create(), &Options::default()).await.unwrap().id;
     server.client.apply(id, &Move::displacement(1e-9).into(), &Options::default()).await.unwrap();
     // Time for a batch to fail; the next one fails at the end.
     tokio::time::sleep(Duration::from_millis(1_500)).await;
     server.client.apply(id, &Move::displacement(2e-9).into(), &Options::default()).await.unwrap();
-    let log = end(server).await;
+    let log = server.stop().await;
     let warnings: Vec<&str> = log.lines().filter(|line| line.contains("WARN") && line.contains("traces")).collect();
     assert_eq!(warnings.len(), 1, "{log}");
     assert!(warnings[0].contains("traces cannot be sent"), "{log}");
@@ -177,13 +161,13 @@ async fn a_collector_that_never_answers_holds_up_neither_requests_nor_the_end() 
     let base = format!("http://{}", listener.local_addr().unwrap());
     let silent = Router::new().route("/v1/traces", post(async || pending::<()>().await));
     tokio::spawn(axum::serve(listener, silent).into_future());
-    let server = Binary::start(&["--otlp-endpoint", &base, "--log", "warn"]);
+    let server = Process::with("memory:", &["--otlp-endpoint", &base, "--log", "warn"]);
     let id = server.client.create(&create(), &Options::default()).await.unwrap().id;
     for _ in 0..1_000 {
         let increment = Move { relative: true, ..Move::displacement(1e-10) };
         server.client.apply(id, &increment.into(), &Options::default()).await.unwrap();
     }
-    end(server).await;
+    server.stop().await;
 }
 
 /// A listener for TLS, for a collector.

@@ -47,10 +47,10 @@ fn healthcheck(more: &[&str]) -> Command {
 async fn a_service_with_a_certificate_speaks_tls_alone_and_takes_a_new_one_while_it_runs() {
     let folder = tempdir().unwrap();
     let path = |name: &str| -> PathBuf { folder.path().join(name) };
-    let (certificate, key, log) = (path("cert.pem"), path("key.pem"), path("log"));
+    let (certificate, key) = (path("cert.pem"), path("key.pem"));
     let first = write_certificate(&certificate, &key);
     let files = ["--tls-cert", certificate.to_str().unwrap(), "--tls-key", key.to_str().unwrap()];
-    let server = Process::start_with(&[&["--store", "memory:"][..], &files].concat(), &log).await;
+    let server = Process::with("memory:", &files);
     let address = server.base.strip_prefix("https://").unwrap().to_owned();
     let request = "GET /contacts HTTP/1.1\r\nHost: localhost\r\n\r\n";
     // Two requests at once, the second of which asks for the end.
@@ -73,8 +73,8 @@ async fn a_service_with_a_certificate_speaks_tls_alone_and_takes_a_new_one_while
 
     // What is no certificate leaves the one in force.
     std::fs::write(&certificate, "nothing yet").unwrap();
-    let said = || std::fs::read_to_string(&log).unwrap();
-    until("the log says so", async || said().contains("certificate unchanged").then_some(())).await;
+    let kept = "certificate unchanged";
+    until("the log says so", async || server.log().contains(kept).then_some(())).await;
     assert!(call(&address, &first, &both).await.is_some());
     let second = write_certificate(&certificate, &key);
     until("the new certificate", async || call(&address, &second, &both).await).await;

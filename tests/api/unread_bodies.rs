@@ -1,7 +1,8 @@
 //! Requests that are refused by their heads while their bodies are on the way: the next request of the connection is
 //! served, or the reply says that there will be none.
 
-use crate::common::raw::{PATIENCE, Service};
+use crate::common::PATIENCE;
+use crate::common::raw::Service;
 
 use std::time::Duration;
 

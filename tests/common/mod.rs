@@ -19,7 +19,7 @@ pub mod tables;
 #[allow(unused_imports, reason = "each test binary uses a part of it")]
 pub use json::{ball, changed, codes, number, of, timeless, with};
 
-use std::process::{Child, Command, Output, Stdio};
+use std::process::{Command, Output};
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -117,33 +117,6 @@ impl Server {
     }
 }
 
-/// The real binary with a server in it; killed when it is dropped.
-pub struct Binary {
-    pub child: Child,
-    pub address: String,
-    pub client: Client,
-}
-
-impl Binary {
-    /// Starts it on a free port over a store in memory, and waits until it listens. The log goes to standard error.
-    pub fn start(arguments: &[&str]) -> Binary {
-        Binary::over("memory:", arguments)
-    }
-
-    /// The same over another store.
-    pub fn over(store: &str, arguments: &[&str]) -> Binary {
-        Binary::at("127.0.0.1:0", store, arguments)
-    }
-
-    /// The same at an address.
-    pub fn at(address: &str, store: &str, arguments: &[&str]) -> Binary {
-        let mut command = binary(&["--listen", address, "--store", store]);
-        command.args(arguments).stderr(Stdio::piped());
-        let (child, address) = process::listening(command);
-        Binary { child, client: Client::new(&*address), address }
-    }
-}
-
 /// The binary with these arguments, and without the settings of the environment.
 pub fn binary(arguments: &[&str]) -> Command {
     let mut command = clean(Command::new(env!("CARGO_BIN_EXE_stickslip")));
@@ -154,14 +127,6 @@ pub fn binary(arguments: &[&str]) -> Command {
 /// Its output, after it has exited by itself.
 pub fn run(arguments: &[&str]) -> Output {
     binary(arguments).output().unwrap()
-}
-
-impl Drop for Binary {
-    fn drop(&mut self) {
-        // It may have ended already.
-        let _ = self.child.kill();
-        let _ = self.child.wait();
-    }
 }
 
 /// Without the settings that the environment of the tests may hold.
@@ -202,6 +167,13 @@ pub fn long_path() -> Value {
 /// A simulation that ends when its client leaves, or at its time limit.
 pub fn long_simulation() -> Value {
     of(&slow_contact(), &long_path())
+}
+
+/// The whole number that a sample of the metrics of a server has.
+pub async fn metric(base: &str, sample: &str) -> u64 {
+    let page = reqwest::get(format!("{base}/metrics")).await.unwrap().text().await.unwrap();
+    let value = page.lines().find_map(|line| line.strip_prefix(sample)?.strip_prefix(' '));
+    value.unwrap_or_else(|| panic!("{sample}: {page}")).parse::<f64>().unwrap() as u64
 }
 
 /// The document of a reply that is no refusal.

@@ -1,10 +1,11 @@
 //! The real binary as a process of its own.
 
+use std::fs::File;
 use std::io::{BufRead as _, BufReader};
-use std::path::Path;
 use std::process::{Child, Command, Output, Stdio};
 
 use stickslip_wire::client::Client;
+use tempfile::TempDir;
 
 /// A server that can be killed. What still runs at the end of a test is killed too.
 pub struct Process {
@@ -12,6 +13,8 @@ pub struct Process {
     child: Option<Child>,
     pub base: String,
     pub client: Client,
+    /// Where its log is, if it is kept.
+    folder: Option<TempDir>,
 }
 
 fn command(prefix: &[String], store: &str) -> Command {
@@ -34,27 +37,37 @@ impl Process {
         Process::of(command(prefix, store)).await
     }
 
-    /// Starts a server with these arguments, and its log in a file.
-    pub async fn start_with(arguments: &[&str], log: &Path) -> Process {
-        let mut command = super::binary(&["serve", "--listen", "127.0.0.1:0"]);
-        command.args(arguments).stderr(std::fs::File::create(log).unwrap());
-        Process::of(command).await
+    /// Starts a server over a store with these arguments, keeps its log, and waits until it listens.
+    pub fn with(store: &str, arguments: &[&str]) -> Process {
+        Process::at("127.0.0.1:0", store, arguments)
+    }
+
+    /// The same at an address.
+    pub fn at(address: &str, store: &str, arguments: &[&str]) -> Process {
+        let folder = tempfile::tempdir().unwrap();
+        let mut command = super::binary(&["serve", "--listen", address, "--store", store]);
+        command.args(arguments).stderr(File::create(folder.path().join("log")).unwrap());
+        let (child, base) = listening(command);
+        let mut process = Process::running(child, &base);
+        process.folder = Some(folder);
+        process
+    }
+
+    /// Everything in its log so far.
+    pub fn log(&self) -> String {
+        let folder = self.folder.as_ref().expect("its log is not kept");
+        std::fs::read_to_string(folder.path().join("log")).unwrap()
     }
 
     /// Starts a server by a command, and waits until it listens.
     pub async fn of(command: Command) -> Process {
-        tokio::task::spawn_blocking(move || Process::at_once(command)).await.unwrap()
-    }
-
-    /// The same, for which it blocks the thread.
-    pub fn at_once(command: Command) -> Process {
-        let (child, base) = listening(command);
+        let (child, base) = tokio::task::spawn_blocking(move || listening(command)).await.unwrap();
         Process::running(child, &base)
     }
 
     /// A server that runs already, by its address.
     pub fn running(child: Child, base: &str) -> Process {
-        Process { child: Some(child), base: base.to_owned(), client: Client::new(base) }
+        Process { child: Some(child), base: base.to_owned(), client: Client::new(base), folder: None }
     }
 
     /// Its number.
@@ -63,15 +76,15 @@ impl Process {
     }
 
     /// The most memory that the process has had so far, bytes.
-    pub fn peak(&self) -> u64 {
+    pub fn peak(&self) -> usize {
         self.memory("VmHWM:")
     }
 
     /// A line of the status of the process, bytes.
-    pub fn memory(&self, name: &str) -> u64 {
+    pub fn memory(&self, name: &str) -> usize {
         let status = std::fs::read_to_string(format!("/proc/{}/status", self.id())).unwrap();
         let line = status.lines().find_map(|line| line.strip_prefix(name)).unwrap();
-        line.split_whitespace().next().unwrap().parse::<u64>().unwrap() * 1024
+        line.split_whitespace().next().unwrap().parse::<usize>().unwrap() * 1024
     }
 
     /// Sends a signal, such as `HUP`.
@@ -86,12 +99,19 @@ impl Process {
         tokio::task::spawn_blocking(move || child.wait().unwrap()).await.unwrap();
     }
 
-    /// SIGTERM, and a graceful end awaited.
-    pub async fn stop(mut self) {
+    /// SIGTERM, and a graceful end awaited; the log, if it is kept.
+    pub async fn stop(self) -> String {
         self.signal("TERM");
+        self.ended().await
+    }
+
+    /// Waits until it ends gracefully; the log, if it is kept.
+    pub async fn ended(mut self) -> String {
         let mut child = self.child.take().unwrap();
-        let status = tokio::task::spawn_blocking(move || child.wait().unwrap()).await.unwrap();
+        let end = tokio::task::spawn_blocking(move || child.wait().unwrap());
+        let status = tokio::time::timeout(super::PATIENCE, end).await.expect("it does not stop").unwrap();
         assert!(status.success(), "{status}");
+        self.folder.as_ref().map(|_| self.log()).unwrap_or_default()
     }
 }
 

@@ -1,26 +1,27 @@
 //! The real binary under hostile clients: raw sockets, and the memory and processor time of the process.
 
-use std::fs::File;
 use std::net::SocketAddr;
-use std::time::Duration;
+use std::ops::Deref;
 
-use stickslip_wire::client::Client;
-use tempfile::TempDir;
 use tokio::io::{AsyncReadExt as _, AsyncWriteExt as _};
 use tokio::net::{TcpSocket, TcpStream};
 use tokio::time::timeout;
 
+use super::PATIENCE;
 use super::process::Process;
-
-/// How long a test waits before it gives up.
-pub const PATIENCE: Duration = Duration::from_secs(60);
 
 /// A server in a process of its own, killed when dropped.
 pub struct Service {
     process: Process,
-    folder: TempDir,
     pub address: SocketAddr,
-    pub client: Client,
+}
+
+impl Deref for Service {
+    type Target = Process;
+
+    fn deref(&self) -> &Process {
+        &self.process
+    }
 }
 
 /// The bytes received on a connection until it was closed.
@@ -43,32 +44,14 @@ impl Service {
 
     /// The same with a store.
     pub fn start_on(store: &str, arguments: &[&str]) -> Service {
-        let folder = tempfile::tempdir().unwrap();
-        let mut command = super::binary(&["serve", "--listen", "127.0.0.1:0", "--store", store]);
-        command.args(arguments).stderr(File::create(folder.path().join("log")).unwrap());
-        let process = Process::at_once(command);
+        let process = Process::with(store, arguments);
         let address = process.base.trim_start_matches("http://").parse().unwrap();
-        Service { client: process.client.clone(), process, folder, address }
-    }
-
-    /// Everything in the log so far.
-    pub fn log(&self) -> String {
-        std::fs::read_to_string(self.folder.path().join("log")).unwrap()
-    }
-
-    /// The most memory that the process has had so far, bytes.
-    pub fn peak(&self) -> usize {
-        self.process.peak() as usize
+        Service { process, address }
     }
 
     /// The memory that the process has now, bytes.
     pub fn resident(&self) -> usize {
-        self.process.memory("VmRSS:") as usize
-    }
-
-    /// Tells it to stop.
-    pub fn terminate(&self) {
-        self.process.signal("TERM");
+        self.process.memory("VmRSS:")
     }
 
     /// Files that the process has open; a connection is one of them.

@@ -55,8 +55,7 @@ async fn a_key_is_added_to_a_running_server_as_the_page_says() {
     let first = stickslip::access::new_key("bench", &[stickslip::access::Role::Read], "lab").unwrap();
     let keys = folder.path().join("keys");
     std::fs::write(&keys, format!("{}\n", first.entry)).unwrap();
-    let arguments = ["--store", "memory:", "--keys", keys.to_str().unwrap()];
-    let server = Process::start_with(&arguments, &folder.path().join("log")).await;
+    let server = Process::with("memory:", &["--keys", keys.to_str().unwrap()]);
     let programs = std::path::Path::new(env!("CARGO_BIN_EXE_stickslip")).parent().unwrap();
     let path = std::env::join_paths(
         [programs.to_owned()].into_iter().chain(std::env::split_paths(&std::env::var_os("PATH").unwrap())),

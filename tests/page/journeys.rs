@@ -27,7 +27,7 @@ async fn begin(tab: &str) -> Scene {
 impl Scene {
     /// What the service answers to a document.
     async fn asked(&self, path: &str, body: &Value) -> Value {
-        let call = reqwest::Client::new().post(format!("{}{path}", self.server.address)).json(body);
+        let call = reqwest::Client::new().post(format!("{}{path}", self.server.base)).json(body);
         call.send().await.unwrap().json().await.unwrap()
     }
 

@@ -14,7 +14,7 @@ mod plots;
 mod scene;
 mod views;
 
-use common::Binary;
+use common::process::Process;
 use reqwest::header;
 
 /// A number of one to a thousand with four digits, without trailing zeros.
@@ -46,9 +46,9 @@ fn hertz(force: f64, radius: f64) -> String {
 
 #[tokio::test]
 async fn its_files_are_those_of_the_source_and_are_sent_once() {
-    let server = Binary::start(&[]);
+    let server = Process::with("memory:", &[]);
     let http = reqwest::Client::new();
-    let url = format!("{}/page/main.js", server.address);
+    let url = format!("{}/page/main.js", server.base);
     let source = std::fs::read("src/page/main.js").unwrap();
     let mut tags = Vec::new();
     for (accepted, coding) in [("identity", None), ("br, gzip;q=0.5", Some("gzip")), ("gzip;q=0", None)] {
@@ -65,6 +65,6 @@ async fn its_files_are_those_of_the_source_and_are_sent_once() {
     }
     // Weak, because it is that of two forms.
     assert!(tags.iter().all(|tag| tag == tags[0] && tag.as_bytes().starts_with(b"W/")), "{tags:?}");
-    let unknown = http.get(format!("{}/page/..%2Fmain.rs", server.address)).send().await.unwrap();
+    let unknown = http.get(format!("{}/page/..%2Fmain.rs", server.base)).send().await.unwrap();
     assert_eq!(common::problem(unknown).await.code, "not_found");
 }

@@ -5,7 +5,8 @@ use stickslip_wire::client::Options;
 use stickslip_wire::{Move, MoveRequest};
 use tempfile::tempdir;
 
-use crate::common::{Binary, until};
+use crate::common::process::Process;
+use crate::common::until;
 use crate::hertz;
 use crate::scene::{LIVE, Scene, WARNED};
 
@@ -27,9 +28,9 @@ const WAY: &str = "(document.querySelector('#plot-loop .line.past')?.getAttribut
 
 #[tokio::test]
 async fn a_contact_is_made_moved_reloaded_and_followed() {
-    let server = Binary::start(&[]);
+    let server = Process::with("memory:", &[]);
     let browser = crate::browser::Browser::start(1280, 900, false).await;
-    browser.page.goto(&server.address).await.unwrap();
+    browser.page.goto(&server.base).await.unwrap();
     browser.says("body", "No contact yet").await;
     browser.click("#new").await;
     browser.write("input[maxlength]", "Steel ball").await;
@@ -70,7 +71,7 @@ async fn a_contact_is_made_moved_reloaded_and_followed() {
     server.client.delete(id, &Options::default()).await.unwrap();
     browser.says(".badge", "deleted").await;
     // What was asked of the contact while it was deleted is logged.
-    browser.stayed_quiet_and_at(&server.address, &["status of 404"]).await;
+    browser.stayed_quiet_and_at(&server.base, &["status of 404"]).await;
     browser.close().await;
 }
 
@@ -172,7 +173,7 @@ async fn a_typed_number_keeps_its_unit_and_is_shown_before_it_is_sent() {
 
 #[tokio::test]
 async fn undo_goes_back_by_a_fork_and_a_name_changes_in_place() {
-    let scene = Scene::over(Binary::start(&[]), 400, 850, true).await;
+    let scene = Scene::over(Process::with("memory:", &[]), 400, 850, true).await;
     let browser = &scene.browser;
     scene.moved(&[0.9, -0.7, 0.5]).await;
     let path = scene.server.client.history(scene.ball.id, None, None).await.unwrap().items;
@@ -209,11 +210,10 @@ async fn undo_goes_back_by_a_fork_and_a_name_changes_in_place() {
 async fn a_service_that_is_away_is_named_and_the_page_goes_on_when_it_is_back() {
     let folder = tempdir().unwrap();
     let store = format!("sqlite:{}", folder.path().join("contacts.db").display());
-    let mut scene = Scene::over(Binary::over(&store, &[]), 1280, 900, false).await;
+    let mut scene = Scene::over(Process::with(&store, &[]), 1280, 900, false).await;
     scene.moved(&[0.5]).await;
     scene.open(&scene.ball, "").await;
-    scene.server.child.kill().unwrap();
-    scene.server.child.wait().unwrap();
+    scene.server.signal("KILL");
     let away = "!document.querySelector('#away').hidden";
     scene.browser.until(&format!("{away} && !({LIVE})")).await;
     // A move is not repeated unasked, and says why it failed.
@@ -224,8 +224,8 @@ async fn a_service_that_is_away_is_named_and_the_page_goes_on_when_it_is_back() 
     // A view that is opened meanwhile is shown when the service is back.
     scene.browser.value("location.assign('#/') ?? null").await;
     scene.browser.says("main", "Loading").await;
-    let address = scene.server.address.strip_prefix("http://").unwrap().to_owned();
-    scene.server = Binary::at(&address, &store, &[]);
+    let address = scene.server.base.strip_prefix("http://").unwrap().to_owned();
+    scene.server = Process::at(&address, &store, &[]);
     let browser = &scene.browser;
     browser.until(&format!("!({away})")).await;
     browser.says(".list strong", "Steel ball").await;

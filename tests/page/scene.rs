@@ -5,7 +5,7 @@ use stickslip_wire::{CreateRequest, Move, MoveRequest, NewSession, State};
 use uuid::Uuid;
 
 use crate::browser::Browser;
-use crate::common::Binary;
+use crate::common::process::Process;
 
 /// Whether the page follows the contact that it shows.
 pub const LIVE: &str = "document.querySelector('.badge.on') !== null";
@@ -15,7 +15,7 @@ pub const NOT_A_NUMBER: &str = "This must be a number, without its unit and with
 
 /// A service with a contact, and a browser.
 pub struct Scene {
-    pub server: Binary,
+    pub server: Process,
     pub ball: NewSession,
     pub browser: Browser,
 }
@@ -23,10 +23,10 @@ pub struct Scene {
 impl Scene {
     /// On a desk in the light.
     pub async fn start() -> Scene {
-        Scene::over(Binary::start(&[]), 1280, 900, false).await
+        Scene::over(Process::with("memory:", &[]), 1280, 900, false).await
     }
 
-    pub async fn over(server: Binary, width: u32, height: u32, dark: bool) -> Scene {
+    pub async fn over(server: Process, width: u32, height: u32, dark: bool) -> Scene {
         let file = std::fs::read_to_string("examples/data/ball_contact.json").unwrap();
         let request: CreateRequest = serde_json::from_str(&file).unwrap();
         let request = CreateRequest { label: Some("Steel ball".to_owned()), ..request };
@@ -36,7 +36,7 @@ impl Scene {
 
     /// Opens a view by what its address has behind `#/`.
     pub async fn view(&self, address: &str) {
-        self.browser.page.goto(&format!("{}/#/{address}", self.server.address)).await.unwrap();
+        self.browser.page.goto(&format!("{}/#/{address}", self.server.base)).await.unwrap();
     }
 
     /// Opens a tab of a contact, and waits until the page follows the contact.
@@ -72,7 +72,7 @@ impl Scene {
 
     /// Asserts that the browser logged nothing but lines with one of the `known` words, and asked the service alone.
     pub async fn end(self, known: &[&str]) {
-        self.browser.stayed_quiet_and_at(&self.server.address, known).await;
+        self.browser.stayed_quiet_and_at(&self.server.base, known).await;
         self.browser.close().await;
     }
 }

@@ -11,7 +11,8 @@ use tempfile::tempdir;
 
 use crate::axe;
 use crate::browser::{Browser, words};
-use crate::common::{Binary, ball, create, until};
+use crate::common::process::Process;
+use crate::common::{ball, create, until};
 use crate::scene::{LIVE, Scene};
 use crate::{four, pascals, three};
 
@@ -289,7 +290,7 @@ async fn what_is_on_screen_can_be_taken_away() {
     assert_eq!(table.lines().count(), 3, "{table}");
     // The colours go up to the largest stress that is there.
     let drawing = String::from_utf8(saved("above", 5, "svg").await).unwrap();
-    let residual = reqwest::get(format!("{}/contacts/{}/residual", scene.server.address, scene.ball.id)).await;
+    let residual = reqwest::get(format!("{}/contacts/{}/residual", scene.server.base, scene.ball.id)).await;
     let largest = residual.unwrap().json::<Value>().await.unwrap()["max"].as_f64().unwrap();
     let most = pascals(largest, 3);
     let (number, unit) = most.split_once(' ').unwrap();
@@ -301,7 +302,7 @@ async fn what_is_on_screen_can_be_taken_away() {
     let last = commands.as_str().unwrap().split("\n\n").last().unwrap();
     let url = last.split('\'').find(|word| word.starts_with("http")).unwrap();
     let body: Value = serde_json::from_str(last.rsplit('\'').nth(1).unwrap()).unwrap();
-    assert_eq!(url, format!("{}/contacts/{}/move", scene.server.address, scene.ball.id));
+    assert_eq!(url, format!("{}/contacts/{}/move", scene.server.base, scene.ball.id));
     let reply = reqwest::Client::new().post(url).json(&body).send().await.unwrap();
     assert_eq!(reply.status(), 200);
     assert_eq!(reply.json::<Value>().await.unwrap()["sequence"], 3);
@@ -312,16 +313,16 @@ async fn what_is_on_screen_can_be_taken_away() {
 #[tokio::test]
 async fn it_asks_for_a_key_where_one_is_needed_and_finds_by_label() {
     let new = new_key("page", &[Role::Write], "").unwrap();
-    let server = Binary::start(&["--keys", &new.entry]);
+    let server = Process::with("memory:", &["--keys", &new.entry]);
     let http = reqwest::Client::new();
     for label in ["Steel ball", "Rubber foot"] {
         let mut body = ball();
         body["label"] = json!(label);
-        let call = http.post(format!("{}/contacts", server.address)).bearer_auth(&new.key).json(&body);
+        let call = http.post(format!("{}/contacts", server.base)).bearer_auth(&new.key).json(&body);
         assert_eq!(call.send().await.unwrap().status(), 201);
     }
     let browser = Browser::start(400, 850, true).await;
-    browser.page.goto(&server.address).await.unwrap();
+    browser.page.goto(&server.base).await.unwrap();
     browser.until("document.querySelector('#key').open").await;
     browser.write("#key input", &new.key).await;
     browser.click("#key .primary").await;
@@ -341,13 +342,13 @@ async fn it_asks_for_a_key_where_one_is_needed_and_finds_by_label() {
     let commands = commands.as_str().unwrap();
     assert!(commands.contains("Bearer $STICKSLIP_KEY") && !commands.contains(&new.key), "{commands}");
     assert_eq!(browser.value("JSON.stringify(localStorage) + document.cookie").await, "{}");
-    browser.stayed_quiet_and_at(&server.address, &["status of 401"]).await;
+    browser.stayed_quiet_and_at(&server.base, &["status of 401"]).await;
     browser.close().await;
 }
 
 #[tokio::test]
 async fn pictures_of_the_documentation() {
-    let scene = Scene::over(Binary::start(&[]), 1440, 1130, false).await;
+    let scene = Scene::over(Process::with("memory:", &[]), 1440, 1130, false).await;
     let browser = &scene.browser;
     scene.moved(&[0.9, -0.7, 0.5, -0.3, 0.4]).await;
     scene.open(&scene.ball, "").await;

@@ -18,9 +18,9 @@ use stickslip_mechanics::profile::Cone;
 use stickslip_mechanics::{Profile, Sphere};
 use tokio::sync::Mutex as AsyncMutex;
 use tokio::task::JoinHandle;
-use tokio::time::{sleep, timeout};
+use tokio::time::sleep;
 
-use crate::common::raw::PATIENCE;
+use crate::common::{PATIENCE, until};
 
 /// Bytes are reserved in units of this size.
 const UNIT: usize = 1024;
@@ -182,12 +182,7 @@ async fn long_work_of_some_yields_to_short_work_of_others_on_a_single_thread() {
         heavy.push(tokio::spawn(client(number).serve(async move { pool.run(LONG, work).await })));
     }
     // All of them have begun, on one thread.
-    let begun = async {
-        while pool.meters().running.get() < 5 {
-            sleep(Duration::from_millis(5)).await;
-        }
-    };
-    timeout(Duration::from_secs(9), begun).await.expect("none keeps the thread to itself");
+    until("none keeps it to itself", async || (pool.meters().running.get() == 5).then_some(())).await;
     for _ in 0..10 {
         assert_eq!(client(9).serve(pool.run(2 * INLINE, || 7)).await, Ok(7));
         assert!(pool.taken().threads <= 2, "one, and one beside it if its work does not check");
@@ -216,13 +211,9 @@ impl Order {
             async move { pool.run(cost, work).await }
         });
         let asked = tokio::spawn(asked);
-        let is_queued = async {
-            // Or has had its turn already, where this machine is slow.
-            while pool.meters().waiting.get() < queued && !self.0.lock().unwrap().contains(&name) {
-                sleep(Duration::from_millis(1)).await;
-            }
-        };
-        timeout(PATIENCE, is_queued).await.expect("it waits for the only thread");
+        // Or has had its turn already, where this machine is slow.
+        let is_queued = || pool.meters().waiting.get() >= queued || self.0.lock().unwrap().contains(&name);
+        until("it waits for the only thread", async || is_queued().then_some(())).await;
         asked
     }
 
@@ -246,12 +237,7 @@ async fn occupy(pool: &Pool, who: u8, cost: Nanoseconds, longer: Duration) -> (m
         std::thread::sleep(longer);
     };
     let asked = tokio::spawn(client(who).serve(async move { busy.run(cost, work).await }));
-    let begun = async {
-        while pool.meters().running.get() == 0 {
-            sleep(Duration::from_millis(1)).await;
-        }
-    };
-    timeout(PATIENCE, begun).await.expect("the thread is free");
+    until("it has the thread", async || (pool.meters().running.get() == 1).then_some(())).await;
     (release, asked)
 }
 

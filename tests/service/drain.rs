@@ -2,8 +2,8 @@
 
 use std::time::Duration;
 
-use crate::common::raw::{PATIENCE, Service, post};
-use crate::common::until;
+use crate::common::raw::{Service, get, post};
+use crate::common::{PATIENCE, until};
 use tokio::io::{AsyncReadExt as _, AsyncWriteExt as _};
 use tokio::net::TcpStream;
 use tokio::time::{sleep, timeout};
@@ -24,12 +24,10 @@ async fn stopped_within(drain_time: &str, pause: Option<Duration>) -> String {
     let mut stream = TcpStream::connect(service.address).await.unwrap();
     stream.write_all(first.as_bytes()).await.unwrap();
     // The head has been read once the metrics count the request.
-    let counted = async {
-        let in_flight = "stickslip_http_requests_in_flight{method=\"POST\",route=\"/simulate\"} 1";
-        while !service.ask("127.0.0.1", &crate::common::raw::get("/metrics")).await.unwrap().text.contains(in_flight) {}
-    };
-    timeout(PATIENCE, counted).await.expect("the request is not in flight");
-    service.terminate();
+    let in_flight = "stickslip_http_requests_in_flight{method=\"POST\",route=\"/simulate\"} 1";
+    let page = async || service.ask("127.0.0.1", &get("/metrics")).await.unwrap().text;
+    until("it is in flight", async || page().await.contains(in_flight).then_some(())).await;
+    service.signal("TERM");
     if let Some(pause) = pause {
         sleep(pause).await;
         stream.write_all(second.as_bytes()).await.unwrap();
@@ -63,10 +61,10 @@ async fn a_spare_connection_does_not_hold_up_the_stop() {
     let mut spare = TcpStream::connect(service.address).await.unwrap();
     spare.write_all(b"GET /healthz HT").await.unwrap();
     // This one came later and is served: those before it have been accepted.
-    let health = service.ask("127.0.0.1", &crate::common::raw::get("/healthz")).await.unwrap();
+    let health = service.ask("127.0.0.1", &get("/healthz")).await.unwrap();
     assert_eq!(health.statuses, [200], "{}", health.text);
     drop(taken);
-    service.terminate();
+    service.signal("TERM");
     let mut nothing = Vec::new();
     timeout(PATIENCE, spare.read_to_end(&mut nothing)).await.unwrap().unwrap();
     assert!(nothing.is_empty());

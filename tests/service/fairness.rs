@@ -4,8 +4,8 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
-use crate::common::raw::{PATIENCE, Service, get, post};
-use crate::common::{ball, long_simulation};
+use crate::common::raw::{Service, get, post};
+use crate::common::{PATIENCE, ball, long_simulation, metric};
 use futures::future::join_all;
 use serde_json::{Value, json};
 use tokio::io::AsyncWriteExt as _;
@@ -79,9 +79,8 @@ async fn heavy_requests_and_a_job_leave_threads_to_others() {
             println!("{name}: {:?}", served.expect("an answer in time"));
         }
     }
-    let page = service.ask(HONEST, &get("/metrics")).await.unwrap().text;
-    let running = page.lines().find_map(|line| line.strip_prefix("stickslip_solver_running ")).unwrap();
-    assert!(running.parse::<f64>().unwrap() >= 2.0, "the heavy work has not ended: {running}");
+    let running = metric(&service.base, "stickslip_solver_running").await;
+    assert!(running >= 2, "the heavy work has not ended: {running}");
     drop(heavy);
 }
 

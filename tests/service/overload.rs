@@ -5,8 +5,8 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::time::Duration;
 
-use crate::common::raw::{PATIENCE, Service, get, post, room_for};
-use crate::common::{ball, create, long_path, long_simulation};
+use crate::common::raw::{Service, get, post, room_for};
+use crate::common::{PATIENCE, ball, create, long_path, long_simulation};
 use futures::future::join_all;
 use serde_json::json;
 use stickslip::admission::Capacity;

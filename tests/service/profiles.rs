@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use crate::common::raw::{Service, post};
-use crate::common::{Server, ball, good, number, of, problem, with};
+use crate::common::{Server, ball, good, metric, number, of, problem, with};
 use serde_json::{Value, json};
 use stickslip::admission::Pool;
 use stickslip::sessions::{CAPACITY, Sessions};
@@ -42,15 +42,8 @@ fn moved(contact: &Value) -> Value {
     of(contact, &json!({"path": {"displacement": [1e-8]}}))
 }
 
-/// A metric without labels.
-async fn metric(server: &Server, name: &str) -> usize {
-    let page = server.get("/metrics").await.text().await.unwrap();
-    let line = page.lines().find_map(|line| line.strip_prefix(&format!("{name} ")));
-    line.unwrap_or_else(|| panic!("{name}: {page}")).parse::<f64>().unwrap() as usize
-}
-
-async fn prepared(server: &Server) -> usize {
-    metric(server, "stickslip_profiles_prepared_total").await
+async fn prepared(server: &Server) -> u64 {
+    metric(&server.base, "stickslip_profiles_prepared_total").await
 }
 
 #[tokio::test]
@@ -70,12 +63,12 @@ async fn requests_and_contacts_with_the_same_table_prepare_it_once() {
     let sweep = json!({"base": moved(&table(200, 1)), "axes": axis, "outputs": ["/steps/0/force"]});
     good(server.post("/sweep", &sweep).await).await;
     assert_eq!(prepared(&server).await, 1);
-    assert_eq!(metric(&server, "stickslip_profiles_shared_total").await, 4);
+    assert_eq!(metric(&server.base, "stickslip_profiles_shared_total").await, 4);
     // Another process, to whom the contact is new, prepares it for the first who needs it.
     let restarted = Server::with(store, CAPACITY).await;
     good(restarted.post("/simulate", &moved(&table(200, 1))).await).await;
     good(restarted.get(&format!("/contacts/{id}")).await).await;
-    assert_eq!((prepared(&restarted).await, metric(&restarted, "stickslip_profiles_shared_total").await), (1, 1));
+    assert_eq!((prepared(&restarted).await, metric(&restarted.base, "stickslip_profiles_shared_total").await), (1, 1));
     // One number apart, a shorter one, and one that begins as another ends.
     good(server.post("/simulate", &moved(&with(table(200, 1), "/profile/z/7", json!(6.15e-8)))).await).await;
     good(server.post("/simulate", &moved(&table(201, 1))).await).await;
@@ -104,8 +97,8 @@ async fn many_profiles_and_contacts_stay_within_the_bound_of_the_cache() {
     for number in 0..20 {
         good(server.post("/simulate", &moved(&table(40, number))).await).await;
         ids.push(good(server.post("/contacts", &table(40, 100 + number)).await).await["id"].clone());
-        let bytes = metric(&server, "stickslip_cache_bytes").await;
-        assert!((160 * 1024..=MIB).contains(&bytes), "{bytes}");
+        let bytes = metric(&server.base, "stickslip_cache_bytes").await;
+        assert!((160 * 1024..=MIB as u64).contains(&bytes), "{bytes}");
     }
     // The last are there, and the first are gone; to use one keeps it.
     let before = prepared(&server).await;
@@ -122,13 +115,13 @@ async fn many_profiles_and_contacts_stay_within_the_bound_of_the_cache() {
     for _ in 0..50 {
         good(sharing.post("/contacts", &table(40, 7)).await).await;
     }
-    assert_eq!((prepared(&sharing).await, metric(&sharing, "stickslip_cache_contacts").await), (1, 50));
+    assert_eq!((prepared(&sharing).await, metric(&sharing.base, "stickslip_cache_contacts").await), (1, 50));
     // Without a cache each request has its own.
     let bare = Server::with(Arc::new(MemoryStore::new()), 0).await;
     for _ in 0..2 {
         good(bare.post("/simulate", &moved(&table(40, 1))).await).await;
     }
-    assert_eq!((prepared(&bare).await, metric(&bare, "stickslip_cache_bytes").await), (2, 0));
+    assert_eq!((prepared(&bare).await, metric(&bare.base, "stickslip_cache_bytes").await), (2, 0));
 }
 
 #[tokio::test]

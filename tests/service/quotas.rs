@@ -1,15 +1,13 @@
 //! Quotas, on the real binary: what one client may take of the store and of memory, and that the others have theirs.
 
-use std::time::Duration;
-
-use crate::common::raw::{Answer, PATIENCE, Service, get, post};
-use crate::common::{ball, create};
+use crate::common::raw::{Answer, Service, get, post};
+use crate::common::{PATIENCE, ball, create, metric, until};
 use serde_json::json;
 use stickslip_wire::ForkRequest;
 use stickslip_wire::client::{Error, Options};
 use tokio::io::AsyncWriteExt as _;
 use tokio::net::TcpStream;
-use tokio::time::{sleep, timeout};
+use tokio::time::timeout;
 use uuid::Uuid;
 
 /// A client that takes all it may, and another one.
@@ -25,11 +23,9 @@ fn assert_refused(answer: &Answer, quota: &str) {
     }
 }
 
-/// How many requests were beyond a quota, by the metrics.
-async fn refusals(service: &Service, quota: &str) -> f64 {
-    let page = service.ask(HONEST, &get("/metrics")).await.unwrap().text;
-    let name = format!("stickslip_quota_refused_total{{quota=\"{quota}\"}} ");
-    page.lines().find_map(|line| line.strip_prefix(&name)).unwrap().parse().unwrap()
+/// How many requests were beyond a quota.
+async fn refusals(service: &Service, quota: &str) -> u64 {
+    metric(&service.base, &format!("stickslip_quota_refused_total{{quota=\"{quota}\"}}")).await
 }
 
 /// Bytes of a file and of its write-ahead log.
@@ -65,7 +61,7 @@ async fn forks_fill_the_store_up_to_the_quota_also_after_a_restart_and_deleting_
     let taken = bytes(&path);
     println!("{} forks of 10 000 moves take {} KiB", forks.len(), taken / 1024);
     assert!(forks.len() >= 4 && taken < 2 * LIMIT, "{} forks take {taken} bytes", forks.len());
-    assert!(refusals(&service, QUOTA).await >= 1.0);
+    assert!(refusals(&service, QUOTA).await >= 1);
 
     // Longer than a fork with its snapshot takes.
     let far = json!({"path": {"falling_amplitude": {"reversals": 14_999}}, "steps": "last"}).to_string();
@@ -86,12 +82,8 @@ async fn forks_fill_the_store_up_to_the_quota_also_after_a_restart_and_deleting_
     }
     let other = service.client.create(&create(), &Options::default()).await.unwrap().id;
     let path = post(&format!("/contacts/{other}/path"), &way);
-    let served = async {
-        while service.ask(GREEDY, &path).await.unwrap().statuses != [200] {
-            sleep(Duration::from_millis(100)).await;
-        }
-    };
-    timeout(PATIENCE, served).await.expect("there is room again");
+    let served = async || service.ask(GREEDY, &path).await.unwrap().statuses == [200];
+    until("there is room again", async || served().await.then_some(())).await;
 }
 
 /// Replies that are kept for retries fill the store too, and stay when their contact is deleted.
@@ -155,67 +147,37 @@ async fn beyond_its_bytes_a_tenant_may_read_and_delete() {
 }
 
 #[tokio::test]
-async fn bodies_that_do_not_arrive_take_no_more_than_the_share_of_their_client() {
-    const QUOTA: &str = "max-body-bytes-per-client";
-    let service = Service::start(&["--max-body-bytes-per-client", "8MiB", "--log", "warn"]);
-    let whole = post("/simulate", &" ".repeat(4 * MIB as usize));
-    let ask = async |source: &str| service.ask(source, &whole).await.unwrap();
-    // Each of these holds room for its 4 MiB, and sends no more. One may be refused beside a whole one: then another
-    // takes its place.
-    let mut stalled: Vec<TcpStream> = Vec::new();
-    let refused = async {
-        loop {
-            let mut stream = service.connect_from(GREEDY).await.unwrap();
-            stream.write_all(&whole.as_bytes()[..3 * MIB as usize]).await.unwrap();
-            stalled.push(stream);
-            let answer = ask(GREEDY).await;
-            if answer.statuses == [429] {
-                return answer;
-            }
-            assert_eq!(answer.statuses, [400], "{}", answer.text);
-        }
-    };
-    assert_refused(&timeout(PATIENCE, refused).await.expect("never refused"), QUOTA);
-    assert!(refusals(&service, QUOTA).await >= 1.0);
-    // A small body is always read, and so is that of another client, which is blank and no JSON.
-    let small = json!({"contact": ball(), "path": {"displacement": [1e-7]}}).to_string();
-    assert_eq!(service.ask(GREEDY, &post("/simulate", &small)).await.unwrap().statuses, [200]);
-    assert_eq!(ask(HONEST).await.statuses, [400]);
-    drop(stalled);
-    let served = async {
-        while ask(GREEDY).await.statuses != [400] {
-            sleep(Duration::from_millis(50)).await;
-        }
-    };
-    timeout(PATIENCE, served).await.expect("there is room again");
-}
-
-#[tokio::test]
-async fn requests_of_one_client_beyond_its_quota_are_refused_and_those_of_others_are_not() {
-    const QUOTA: &str = "max-requests-per-client";
-    let service = Service::start(&["--max-requests-per-client", "3", "--log", "warn"]);
+async fn what_a_client_has_under_way_is_bounded_and_takes_nothing_from_others() {
     let sound = post("/simulate", &json!({"contact": ball(), "path": {"displacement": [1e-7]}}).to_string());
-    // These wait for the end of their bodies. One may be refused beside a whole one: then another takes its place.
-    let mut waiting = Vec::new();
-    let refused = async {
-        loop {
-            let mut stream = service.connect_from(GREEDY).await.unwrap();
-            stream.write_all(&sound.as_bytes()[..sound.len() - 1]).await.unwrap();
-            waiting.push(stream);
-            let answer = service.ask(GREEDY, &sound).await.unwrap();
-            if answer.statuses == [429] {
-                return answer;
+    // Blank, and no JSON.
+    let large = post("/simulate", &" ".repeat(4 * MIB as usize));
+    for (quota, limit, whole, sent, status, beside) in [
+        // Each of these holds room for its 4 MiB, and sends no more; a small body is always read.
+        ("max-body-bytes-per-client", "8MiB", &large, 3 * MIB as usize, 400, &sound),
+        // These wait for the end of their bodies.
+        ("max-requests-per-client", "3", &sound, sound.len() - 1, 200, &get("/healthz")),
+    ] {
+        let service = Service::start(&[&format!("--{quota}"), limit, "--log", "warn"]);
+        let ask = async |source: &str| service.ask(source, whole).await.unwrap();
+        // One may be refused beside a whole one: then another takes its place.
+        let mut waiting: Vec<TcpStream> = Vec::new();
+        let refused = async {
+            loop {
+                let mut stream = service.connect_from(GREEDY).await.unwrap();
+                stream.write_all(&whole.as_bytes()[..sent]).await.unwrap();
+                waiting.push(stream);
+                let answer = ask(GREEDY).await;
+                if answer.statuses == [429] {
+                    return answer;
+                }
+                assert_eq!(answer.statuses, [status], "{}", answer.text);
             }
-        }
-    };
-    assert_refused(&timeout(PATIENCE, refused).await.expect("never refused"), QUOTA);
-    assert_eq!(service.ask(HONEST, &sound).await.unwrap().statuses, [200]);
-    assert_eq!(service.ask(GREEDY, &get("/healthz")).await.unwrap().statuses, [200]);
-    drop(waiting);
-    let served = async {
-        while service.ask(GREEDY, &sound).await.unwrap().statuses != [200] {
-            sleep(Duration::from_millis(50)).await;
-        }
-    };
-    timeout(PATIENCE, served).await.expect("there is room again");
+        };
+        assert_refused(&timeout(PATIENCE, refused).await.expect("never refused"), quota);
+        assert!(refusals(&service, quota).await >= 1);
+        assert_eq!(service.ask(GREEDY, beside).await.unwrap().statuses, [200]);
+        assert_eq!(ask(HONEST).await.statuses, [status]);
+        drop(waiting);
+        until("there is room again", async || (ask(GREEDY).await.statuses == [status]).then_some(())).await;
+    }
 }

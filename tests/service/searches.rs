@@ -2,14 +2,12 @@
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::time::Duration;
 
-use crate::common::raw::{PATIENCE, Service, get};
+use crate::common::raw::{Service, get};
 use crate::common::{create, until};
 use futures::future::join_all;
 use rusqlite::Connection;
 use stickslip_wire::client::Options;
-use tokio::time::{sleep, timeout};
 
 const CONTACTS: usize = 100_000;
 const CLIENTS: usize = 64;
@@ -22,7 +20,7 @@ async fn searches_for_a_label_hold_up_no_other_reads() {
     let id = {
         let service = Service::start_on(&store, &[]);
         let id = service.client.create(&create(), &Options::default()).await.unwrap().id;
-        service.terminate();
+        service.signal("TERM");
         // The file has no log once it is closed.
         until("it stops", async || (!file.with_extension("db-wal").exists()).then_some(())).await;
         id
@@ -52,12 +50,7 @@ async fn searches_for_a_label_hold_up_no_other_reads() {
         })
     });
     let searches: Vec<_> = searches.collect();
-    let some = async {
-        while done.load(Ordering::Relaxed) == 0 {
-            sleep(Duration::from_millis(1)).await;
-        }
-    };
-    timeout(PATIENCE, some).await.expect("no search ends");
+    until("a search ends", async || (done.load(Ordering::Relaxed) > 0).then_some(())).await;
     // All of the searches have been asked for before it.
     assert_eq!(service.ask("127.0.0.1", &contact).await.unwrap().statuses, [200]);
     let before = done.load(Ordering::Relaxed);

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use crate::common::raw::{Service, get, post};
-use crate::common::{ball, curved_move, long_path, long_simulation, of, slow_contact, until, with};
+use crate::common::{ball, curved_move, long_path, long_simulation, metric, of, slow_contact, until, with};
 use jiff::Timestamp;
 use serde_json::{Value, json};
 use stickslip::store::{Record, Session, Snapshot, SqliteStore, Store as _, Tenant};
@@ -21,6 +21,9 @@ use uuid::Uuid;
 
 /// Moves of a contact that takes minutes to load.
 const LONG: u64 = 50_000;
+
+/// Threads of the solver at work.
+const RUNNING: &str = "stickslip_solver_running";
 
 /// A tolerance to which a move of the ball takes less than a thousandth of a second.
 const COARSE: f64 = 1e-12;
@@ -79,22 +82,16 @@ fn kinds(contact: Uuid, fresh: Uuid) -> Vec<(&'static str, String)> {
     ]
 }
 
-/// How many threads of the solver are at work.
-async fn running(service: &Service) -> Option<u64> {
-    let page = service.ask("127.0.0.2", &get("/metrics")).await?.text;
-    page.lines().find_map(|line| line.strip_prefix("stickslip_solver_running "))?.parse().ok()
-}
-
 /// Waits until no thread of the solver is at work.
 async fn idle(service: &Service) {
-    until("the work has ended", async || (running(service).await? == 0).then_some(())).await;
+    until("the work has ended", async || (metric(&service.base, RUNNING).await == 0).then_some(())).await;
 }
 
 /// Sends a request, and leaves once a thread of the solver is at work and has had so many ticks of processor time.
 async fn leave(service: &Service, name: &str, request: &str, ticks: u64) {
     let mut stream = TcpStream::connect(service.address).await.unwrap();
     stream.write_all(request.as_bytes()).await.unwrap();
-    until("it is at work", async || (running(service).await? == 1).then_some(())).await;
+    until("it is at work", async || (metric(&service.base, RUNNING).await == 1).then_some(())).await;
     let begun = service.processor_ticks();
     until("it has worked", async || (service.processor_ticks() - begun >= ticks).then_some(())).await;
     let mut reply = [0; 512];

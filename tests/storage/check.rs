@@ -8,6 +8,7 @@ use std::process::Output;
 
 use common::kill::Random;
 use common::place::Place;
+use common::postgres::Cluster;
 use common::process::Process;
 use common::{create, run};
 use stickslip::store::{ChunkResult, Job};
@@ -179,8 +180,9 @@ async fn damaged_jobs_are_found() {
 #[tokio::test]
 async fn what_cannot_be_checked_is_refused_in_one_line() {
     let folder = tempdir().unwrap();
-    let missing = url(&folder.path().join("missing.db"));
+    let (missing, empty) = (url(&folder.path().join("missing.db")), Cluster::shared().database().await);
     for (store, why) in [
+        (&*empty, "schema"),
         ("memory:", "only in the process"),
         (&*missing, "No such file"),
         ("postgres://me:secret@127.0.0.1:1/x", "127.0.0.1"),
@@ -188,7 +190,7 @@ async fn what_cannot_be_checked_is_refused_in_one_line() {
         let output = check(store, &[]).await;
         let said = String::from_utf8(output.stderr).unwrap();
         assert_eq!((output.status.code(), said.lines().count()), (Some(1), 1), "{said}");
-        assert!(said.contains(why) && !said.contains("secret"), "{said}");
+        assert!(said.contains(why) && !said.contains("secret") && output.stdout.is_empty(), "{said}");
     }
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
 }

@@ -4,8 +4,6 @@
 use crate::common;
 use crate::fixtures::{along, soon};
 
-use std::path::Path;
-
 use common::kill::Random;
 use common::place::Place;
 use common::process::Process;
@@ -14,7 +12,6 @@ use futures::StreamExt as _;
 use reqwest::Method;
 use stickslip_wire::client::{Client, Event, Options};
 use stickslip_wire::{EndReason, ForkRequest};
-use tempfile::tempdir;
 use uuid::Uuid;
 
 const MOVES: usize = 12;
@@ -28,8 +25,8 @@ async fn moved(client: &Client) -> Uuid {
 }
 
 /// Every question about a contact and every change of it is refused, named in the log, and found by `check`.
-async fn is_damaged(base: &str, log: &Path, store: &str, (damaged, whole): (Uuid, Uuid), missing: &str) {
-    let server = Server::at(base);
+async fn is_damaged(process: &Process, store: &str, (damaged, whole): (Uuid, Uuid), missing: &str) {
+    let server = Server::at(&process.base);
     let past = format!("/contacts/{damaged}");
     for question in [
         "",
@@ -60,7 +57,7 @@ async fn is_damaged(base: &str, log: &Path, store: &str, (damaged, whole): (Uuid
     let before = ForkRequest { sequence: Some(6), label: None };
     assert_eq!(server.client.fork(damaged, &before, &Options::default()).await.unwrap().sequence, 6);
     assert_eq!(server.client.contact(whole).await.unwrap().sequence, MOVES as u64);
-    let lines = std::fs::read_to_string(log).unwrap();
+    let lines = process.log();
     let named = lines.lines().filter(|line| line.contains("ERROR") && line.contains(&damaged.to_string()));
     assert!(named.filter(|line| line.contains(missing)).count() >= 10, "{lines}");
     let arguments = ["check".to_owned(), "--store".to_owned(), store.to_owned()];
@@ -75,16 +72,14 @@ async fn a_gap_in_the_moves_is_answered_by_an_error_of_its_own() {
     for (missing, which) in [("move 7 is missing", "= 7"), ("move 11 is missing", "> 10")] {
         // In a file the last move itself says how many there are.
         for place in Place::both().await.into_iter().skip(usize::from(which == "> 10")) {
-            let folder = tempdir().unwrap();
-            let (log, store) = (folder.path().join("log"), place.url());
-            let arguments = ["--log", "warn", "--store", &store];
-            let process = Process::start_with(&arguments, &log).await;
+            let start = || Process::with(&place.url(), &["--log", "warn"]);
+            let process = start();
             let (damaged, whole) = (moved(&process.client).await, moved(&process.client).await);
             process.stop().await;
             let contact = place.key("contacts", damaged);
             place.change(&format!("DELETE FROM moves WHERE contact = {contact} AND sequence {which}")).await;
-            let process = Process::start_with(&arguments, &log).await;
-            is_damaged(&process.base, &log, &store, (damaged, whole), missing).await;
+            let process = start();
+            is_damaged(&process, &place.url(), (damaged, whole), missing).await;
             process.stop().await;
         }
     }
@@ -127,16 +122,14 @@ async fn a_snapshot_of_moves_that_are_not_stored_is_not_believed() {
 
 #[tokio::test]
 async fn events_that_can_never_be_read_end_by_a_reason_and_a_line_of_the_log() {
-    let (place, folder) = (Place::file(), tempdir().unwrap());
-    let log = folder.path().join("log");
-    let process = Process::start_with(&["--log", "warn", "--store", &place.url()], &log).await;
+    let place = Place::file();
+    let process = Process::with(&place.url(), &["--log", "warn"]);
     let id = moved(&process.client).await;
     place.change("UPDATE moves SET regime = 'unknown' WHERE sequence = 7").await;
     let mut events = Box::pin(process.client.events(id, Some(0)).await.unwrap());
     assert_eq!(soon(events.next()).await.unwrap().unwrap(), Event::End(EndReason::Failed));
     assert!(events.next().await.is_none());
-    process.stop().await;
-    let lines = std::fs::read_to_string(log).unwrap();
+    let lines = process.stop().await;
     let named = |line: &&str| line.contains("events end") && line.contains("ERROR") && line.contains(&id.to_string());
     assert_eq!(lines.lines().filter(named).count(), 1, "{lines}");
 }

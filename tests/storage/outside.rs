@@ -43,9 +43,9 @@ async fn is_unavailable(server: &Server, id: &str) {
 #[tokio::test]
 async fn a_file_that_is_replaced_or_removed_takes_no_more_changes() {
     let folder = tempdir().unwrap();
-    let (path, other, log) = (folder.path().join("mine.db"), folder.path().join("other.db"), folder.path().join("log"));
+    let (path, other) = (folder.path().join("mine.db"), folder.path().join("other.db"));
     Process::start(&url(&other)).await.stop().await;
-    let process = Process::start_with(&["--log", "warn", "--store", &url(&path)], &log).await;
+    let process = Process::with(&url(&path), &["--log", "warn"]);
     let server = Server::at(&process.base);
     let id = server.contact().await;
     let force = async |force: f64| server.post(&format!("/contacts/{id}/move"), &json!({"force": force})).await;
@@ -68,7 +68,7 @@ async fn a_file_that_is_replaced_or_removed_takes_no_more_changes() {
         assert_eq!(reply["sequence"], sequence, "{}", file.display());
         until("it is ready again", async || (server.get("/readyz").await.status() == 200).then_some(())).await;
     }
-    let lines = fs::read_to_string(&log).unwrap();
+    let lines = process.log();
     assert!(
         lines.contains("mine.db has been replaced or removed") && lines.contains("mine.db-wal has been"),
         "{lines}"

@@ -6,7 +6,8 @@ use crate::fixtures::{self, soon};
 use std::sync::Arc;
 
 use common::kill::exact;
-use common::{Binary, Server, ball, create, problem, run, until, varied_moves};
+use common::process::Process;
+use common::{Server, ball, create, problem, run, until, varied_moves};
 use futures::StreamExt as _;
 use futures::future::join_all;
 use jiff::{SignedDuration, Timestamp};
@@ -254,7 +255,7 @@ async fn the_binary_expires_idle_contacts_with_expire_after() {
         let refused = run(&nonsense);
         assert_eq!(refused.status.code(), Some(2), "{nonsense:?}");
     }
-    let binary = Binary::start(&["--expire-after", "1s", "--cache-bytes", "1MiB"]);
+    let binary = Process::with("memory:", &["--expire-after", "1s", "--cache-bytes", "1MiB"]);
     let client = &binary.client;
     let id = client.create(&create(), &Options::default()).await.unwrap().id;
     let mut events = Box::pin(client.events(id, Some(0)).await.unwrap());

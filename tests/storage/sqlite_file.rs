@@ -49,7 +49,7 @@ async fn used(path: &Path, gracefully: bool) -> Uuid {
     client.path(id, &along(moves), &options).await.unwrap();
     client.apply(id, &Move::force(0.25).into(), &options).await.unwrap();
     if gracefully {
-        process.stop().await
+        drop(process.stop().await)
     } else {
         process.kill().await
     }

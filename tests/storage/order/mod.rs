@@ -18,7 +18,7 @@ use std::sync::atomic::Ordering;
 use std::time::Duration;
 
 use rusqlite::Connection;
-use tempfile::{TempDir, tempdir};
+use tempfile::tempdir;
 use tokio::time::sleep;
 
 use crate::common::kill::Random;
@@ -65,6 +65,10 @@ impl Store {
         }
     }
 
+    fn serve(&self) -> Process {
+        Process::with(&self.url(), &[&["--log", "warn,stickslip::cli=info"][..], &LIMITS].concat())
+    }
+
     /// What happens all the time, the more often the more often it is named; and what happens once.
     fn accidents(&self) -> [&'static [Accident]; 2] {
         use Accident::*;
@@ -85,45 +89,30 @@ struct Figures {
     operations: usize,
     unknown_changes: usize,
     accidents: BTreeMap<Accident, usize>,
-    peak: u64,
+    peak: usize,
 }
 
 /// Processes over a store.
 struct Scene {
     store: Store,
-    processes: Vec<Option<(Process, PathBuf)>>,
-    logs: TempDir,
-    started: usize,
+    processes: Vec<Option<Process>>,
     figures: Figures,
 }
 
 impl Scene {
-    async fn start(store: Store, processes: usize) -> Scene {
-        let (logs, figures) = (tempdir().unwrap(), Figures::default());
-        let mut scene = Scene { store, processes: Vec::new(), logs, started: 0, figures };
-        for _ in 0..processes {
-            let process = scene.process().await;
-            scene.processes.push(Some(process));
-        }
-        scene
-    }
-
-    /// A new process, and its log.
-    async fn process(&mut self) -> (Process, PathBuf) {
-        self.started += 1;
-        let (url, log) = (self.store.url(), self.logs.path().join(self.started.to_string()));
-        let arguments = [&["--store", &*url, "--log", "warn,stickslip::cli=info"][..], &LIMITS].concat();
-        (Process::start_with(&arguments, &log).await, log)
+    fn start(store: Store, processes: usize) -> Scene {
+        let processes = (0..processes).map(|_| Some(store.serve())).collect();
+        Scene { store, processes, figures: Figures::default() }
     }
 
     /// Ends a process. It has not taken more memory than the bound that its log states, and nothing in it has panicked.
     async fn end(&mut self, victim: usize, gracefully: bool) {
-        let (process, log) = self.processes[victim].take().unwrap();
-        let (peak, said) = (process.peak(), std::fs::read_to_string(log).unwrap());
+        let process = self.processes[victim].take().unwrap();
+        let (peak, said) = (process.peak(), process.log());
         let bound = said.split_once("memory_bound=").unwrap().1.split_whitespace().next().unwrap();
         assert!(peak < bound.parse().unwrap() && !said.contains("panicked"), "{peak} bytes: {said}");
         self.figures.peak = self.figures.peak.max(peak);
-        if gracefully { process.stop().await } else { process.kill().await }
+        if gracefully { drop(process.stop().await) } else { process.kill().await }
     }
 
     async fn happens(&mut self, accident: Accident, recorder: &Recorder, random: &mut Random) {
@@ -133,7 +122,7 @@ impl Scene {
         let is_noticed = until("a request is refused", async || refused().then_some(()));
         match (accident, &self.store) {
             (Accident::Freeze, _) => {
-                let (process, _) = self.processes[victim].as_ref().unwrap();
+                let process = self.processes[victim].as_ref().unwrap();
                 process.signal("STOP");
                 sleep(Duration::from_micros(random.below(30_000))).await;
                 process.signal("CONT");
@@ -158,8 +147,8 @@ impl Scene {
             }
             _ => {
                 self.end(victim, accident == Accident::Stop).await;
-                let process = self.process().await;
-                recorder.service.replicas.lock().unwrap()[victim] = process.0.client.clone();
+                let process = self.store.serve();
+                recorder.service.replicas.lock().unwrap()[victim] = process.client.clone();
                 self.processes[victim] = Some(process);
             }
         }
@@ -190,12 +179,12 @@ fn wanted() -> usize {
 
 /// Records histories on so many processes over a store, and checks each.
 async fn are_linearizable(store: Store, processes: usize) {
-    let mut scene = Scene::start(store, processes).await;
+    let mut scene = Scene::start(store, processes);
     for seed in 1.. {
         if scene.figures.histories >= wanted() {
             break;
         }
-        let replicas = scene.processes.iter().map(|process| process.as_ref().unwrap().0.client.clone()).collect();
+        let replicas = scene.processes.iter().map(|process| process.as_ref().unwrap().client.clone()).collect();
         let recorder = Arc::new(Recorder::start(Service::new(replicas, None), LOAD, seed).await);
         futures::join!(recorder.work(), scene.accidents(&recorder, seed));
         recorder.read_all().await;
