@@ -9,12 +9,13 @@ use common::postgres::Cluster;
 use common::process::Process;
 use common::tables::same_numbers;
 use common::{ball, problem, run, until};
+use futures::StreamExt as _;
 use reqwest::{Method, Response};
 use serde_json::{Value, json};
 use stickslip::access::{Keys, Role, new_key, new_key_until};
 use stickslip::store::Tenant;
-use stickslip_wire::JobState;
-use stickslip_wire::client::Options;
+use stickslip_wire::client::{Event, Options};
+use stickslip_wire::{EndReason, JobState};
 use tempfile::{TempDir, tempdir};
 use uuid::Uuid;
 
@@ -190,10 +191,6 @@ async fn every_role_has_its_permissions_at_every_endpoint() {
 async fn a_key_counts_only_whole_and_once_and_as_a_bearer() {
     let server = Guarded::start("memory:", &[], &[("a", &[Role::Write], ""), ("b", &[Role::Read], "")]).await;
     let (a, b) = (server.key("a"), server.key("b"));
-    let hash = |key: &str| {
-        use sha2::{Digest as _, Sha256};
-        Sha256::digest(key).iter().map(|byte| format!("{byte:02x}")).collect::<String>()
-    };
     let send = async |values: &[String]| {
         let mut call = server.http.get(format!("{}/contacts", server.process.base));
         for value in values {
@@ -210,13 +207,8 @@ async fn a_key_counts_only_whole_and_once_and_as_a_bearer() {
         "Bearer".to_owned(),
         "Bearer ".to_owned(),
         format!("Bearer{a}"),
-        format!("Bearer {}", &a[1..]),
-        format!("Bearer {}", &a[..a.len() - 1]),
-        format!("Bearer {a}0"),
-        format!("Bearer {}", a.to_uppercase()),
         format!("Bearer {a} {b}"),
         format!("Bearer {a},{b}"),
-        format!("Bearer {}", hash(a)),
         format!("Bearer {}", "x".repeat(5_000)),
     ] {
         assert_eq!(send(std::slice::from_ref(&bad)).await, 401, "{bad}");
@@ -385,7 +377,11 @@ async fn only_its_tenant_learns_that_a_contact_has_expired() {
     let id = server.contact("north").await;
     let get =
         async |who: &str| server.send(Some(who), "GET", &format!("/contacts/{id}"), None, &[]).await.status().as_u16();
-    until("it expires", async || (get("north").await == 410).then_some(())).await;
+    let client = server.process.client.clone().with_key(server.key("north"));
+    let mut events = Box::pin(client.events(id, Some(0)).await.unwrap());
+    let last = tokio::time::timeout(common::PATIENCE, events.next()).await.expect("it does not expire");
+    assert_eq!(last.unwrap().unwrap(), Event::End(EndReason::Expired));
+    assert_eq!(get("north").await, 410);
     assert_eq!(get("south").await, 404);
     let history = server.send(Some("south"), "GET", &format!("/contacts/{id}/history"), None, &[]).await;
     assert_eq!(history.status().as_u16(), 404);
@@ -493,7 +489,8 @@ fn a_key_is_known_by_its_hash_alone_and_has_its_roles() {
     let mut other = bench.key.clone();
     other.pop();
     let hash = bench.entry.rsplit(':').next().unwrap();
-    for unknown in ["", "bench", hash, &other, &format!("{}0", bench.key), &"x".repeat(100_000)] {
+    let (upper, longer) = (bench.key.to_uppercase(), format!("{}0", bench.key));
+    for unknown in ["", "bench", hash, &other, &bench.key[1..], &upper, &longer, &"x".repeat(100_000)] {
         assert_eq!(keys.holder(unknown.as_bytes()), None, "{unknown}");
     }
     assert_ne!(new_key("bench", &[Role::Write], "lab").unwrap().key, bench.key);

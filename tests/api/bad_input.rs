@@ -1,5 +1,5 @@
-//! Bad input around the members of a document, which `faults.rs` has: the envelope, queries, headers and the amount of
-//! work. Every refusal is a problem document, and nothing is ever a 500.
+//! Bad input around the members of a document, which `faults.rs` has and `crates/compute/tests/documents`: the envelope,
+//! queries, headers, moves and the amount of work. Every refusal is a problem document, and nothing is ever a 500.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -14,39 +14,6 @@ use crate::common::{Server, assert_refused, ball, changed, good, of, problem, wi
 
 fn simulation(path: Value) -> Value {
     of(&ball(), &json!({"path": path}))
-}
-
-#[tokio::test]
-async fn what_excludes_or_needs_another_member_is_named_at_its_place() {
-    let server = Server::start().await;
-    for (pointer, value, place, word) in [
-        ("/contact/material/bodies", json!(["rigid", "rigid"]), "/contact/material/bodies", "elastic"),
-        ("/contact/preload", json!({"weight": 1.0}), "/contact/preload", "`normal_force`"),
-        ("/contact/preload", json!({"normal_force": 1.0, "indentation": 1.0}), "/contact/preload", "conflicts"),
-        ("/path", json!({"displacement": vec![0.0; 100_001]}), "/path/displacement", "100000"),
-        ("/path", json!({"displacement": []}), "/path/displacement", "1 to"),
-        ("/path", json!({"moves": [{"force": 1.0}, {}]}), "/path/moves/1", "no target"),
-        ("/path", json!({"moves": [{"force": 1.0, "displacement": 0.0}]}), "/path/moves/0/force", "at most one"),
-        ("/path", json!({"falling_amplitude": {"reversals": 2.5}}), "/path/falling_amplitude/reversals", "whole"),
-        ("/path", json!({"spiral": {}}), "/path", "`falling_amplitude`"),
-        ("/stress", json!({}), "/stress", "`radii`"),
-        ("/stress", json!({"points": 2, "radii": [0.0]}), "/stress", "conflicts"),
-        ("/stress", json!({"radii": [0.0, -1.0]}), "/stress/radii/1", "0 to"),
-        ("/solver", json!({"springs": {"count": 1}}), "/solver/springs/count", "2 to"),
-    ] {
-        let body = with(simulation(json!({"displacement": [1e-7, 0.0]})), pointer, value);
-        assert_refused(&server, "/simulate", &body, ("invalid_input", place, word)).await;
-    }
-    // What the mechanics cannot answer is named with its limit.
-    let strong = simulation(json!({"moves": [{"force": 1.0}, {"force": -3.5}]}));
-    assert_refused(&server, "/simulate", &strong, ("force_exceeds_friction", "/path/moves/1", "= 3")).await;
-    // All ranges are reported at once.
-    let mut body = with(simulation(json!({"displacement": [1e10, 0.0, -1e10]})), "/contact/friction", json!(-1.0));
-    body["contact"]["profile"]["radius"] = json!(0.0);
-    let refused = problem(server.post("/simulate", &body).await).await;
-    let pointers: Vec<&str> = refused.errors.iter().map(|fault| fault.pointer.as_str()).collect();
-    let expected = ["/contact/profile/radius", "/contact/friction", "/path/displacement/0", "/path/displacement/2"];
-    assert_eq!(pointers, expected);
 }
 
 #[tokio::test]
@@ -158,6 +125,16 @@ async fn the_envelope_is_checked_too() {
     ] {
         let refused = problem(server.get(path).await).await;
         assert_eq!((refused.status, refused.errors[0].pointer.as_str()), (422, pointer), "{path}");
+    }
+    // Pairs of the plane have no meaning for a stored contact.
+    let turn = json!({"moves": [{"displacement": [1e-8, 0.0]}, {"displacement": [0.0, 1e-8]}]});
+    for (call, body, pointer) in [
+        ("move", json!({"displacement": [1e-8, 1e-8]}), "/displacement"),
+        ("path", json!({"path": turn}), "/path/moves/0/displacement"),
+        ("path", json!({"path": {"ellipse": {}}}), "/path"),
+    ] {
+        let refused = problem(server.post(&format!("{contact}/{call}"), &body).await).await;
+        assert!(refused.status == 422 && refused.errors[0].pointer.starts_with(pointer), "{call}: {refused:?}");
     }
     let allowed = server.send(Method::PUT, "/contacts", None, &type_of("application/json")).await;
     assert!(allowed.headers()["allow"].to_str().unwrap().contains("POST"));

@@ -6,7 +6,7 @@ use std::io::Read as _;
 use std::sync::Arc;
 use std::time::Duration;
 
-use common::{Server, ball, until};
+use common::{Server, ball, problem, until};
 use flate2::read::GzDecoder;
 use reqwest::{Method, Response};
 use serde_json::{Value, json};
@@ -98,13 +98,26 @@ async fn short_compressed_and_streamed_replies_stay_unchanged() {
     assert!(!first.is_empty());
 
     // The files of the page were packed when the program was built.
-    let page = get(&server, "/", &accept).await;
-    assert_eq!((header(&page, "content-encoding"), vary(&page)), (Some("gzip"), vec!["accept-encoding"]));
-    let tag = header(&page, "etag").unwrap().to_owned();
-    assert!(tag.starts_with("W/\""), "{tag}");
-    let again = get(&server, "/", &[accept[0], ("if-none-match", &tag)]).await;
-    assert_eq!((again.status().as_u16(), header(&again, "etag").unwrap()), (304, tag.as_str()));
-    assert_eq!(vary(&again), ["accept-encoding"]);
+    let source = std::fs::read("src/page/main.js").unwrap();
+    let mut tags = Vec::new();
+    for (accepted, coding) in [("identity", None), ("br, gzip;q=0.5", Some("gzip")), ("gzip;q=0", None)] {
+        let accept = ("accept-encoding", accepted);
+        let reply = get(&server, "/page/main.js", &[accept]).await;
+        assert_eq!((reply.status().as_u16(), header(&reply, "content-encoding")), (200, coding), "{accepted}");
+        assert_eq!(vary(&reply), ["accept-encoding"]);
+        let tag = header(&reply, "etag").unwrap().to_owned();
+        assert_eq!(reply.bytes().await.unwrap() == source, coding.is_none(), "{accepted}");
+        let again = get(&server, "/page/main.js", &[accept, ("if-none-match", &tag)]).await;
+        assert_eq!(
+            (again.status().as_u16(), header(&again, "etag"), vary(&again)),
+            (304, Some(&*tag), vec!["accept-encoding"])
+        );
+        assert!(again.bytes().await.unwrap().is_empty());
+        tags.push(tag);
+    }
+    // Weak, because it is that of two forms.
+    assert!(tags.iter().all(|tag| tag == &tags[0] && tag.starts_with("W/\"")), "{tags:?}");
+    assert_eq!(problem(get(&server, "/page/..%2Fmain.rs", &[]).await).await.code, "not_found");
 }
 
 #[tokio::test]

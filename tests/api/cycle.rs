@@ -5,11 +5,7 @@ use reqwest::Method;
 use serde_json::json;
 use stickslip_wire::{Amplitudes, CycleDrive, Machine, WorkDensity};
 
-use crate::common::{Server, ball, changed, good, number, of, problem, run, timeless, with};
-
-fn close(found: f64, expected: f64, tolerance: f64) {
-    assert!((found - expected).abs() <= tolerance * expected.abs(), "{found:e} is not {expected:e}");
-}
+use crate::common::{Server, ball, changed, good, of, problem, run, timeless, with};
 
 #[tokio::test]
 async fn a_contact_with_a_history_has_the_cycles_of_its_load_and_stays_as_it_is() {
@@ -55,27 +51,10 @@ async fn a_query_of_a_contact_is_refused_at_its_place() {
 }
 
 #[tokio::test]
-async fn a_map_has_the_cycles_of_each_load_over_http_and_by_a_flag() {
+async fn a_map_is_asked_for_by_a_flag_too() {
     let server = Server::start().await;
     let drive = json!({"drive": {"displacement": [1e-8, 1e-7, 1e-6]}});
     let map = changed(drive.clone(), &json!({"map": {"normal_force": {"from": 1.0, "to": 100.0, "count": 3}}}));
-    let whole = good(server.post("/cycle", &of(&ball(), &map)).await).await;
-    close(number(&whole["contact"]["normal_force"]), 10.0, 1e-12);
-    let cells = whole["cycles"].as_array().unwrap();
-    assert_eq!(cells.len(), 9);
-    for (cells, load) in cells.chunks(3).zip([1.0, 10.0, 100.0]) {
-        let pressed = with(ball(), "/preload", json!({"normal_force": load}));
-        let reply = good(server.post("/cycle", &of(&pressed, &drive)).await).await;
-        for (cell, cycle) in cells.iter().zip(reply["cycles"].as_array().unwrap()) {
-            close(number(&cell["normal_force"]), load, 1e-14);
-            let begin = number(&reply["contact"]["gross_slip_displacement"]);
-            close(number(&cell["gross_slip_displacement"]), begin, 1e-12);
-            for name in ["displacement_amplitude", "force_amplitude", "secant_stiffness", "loss_factor"] {
-                close(number(&cell[name]), number(&cycle[name]), 1e-9);
-            }
-            assert_eq!(cell["regime"], cycle["regime"]);
-        }
-    }
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("cycle.json");
     std::fs::write(&file, of(&ball(), &drive).to_string()).unwrap();
@@ -84,9 +63,5 @@ async fn a_map_has_the_cycles_of_each_load_over_http_and_by_a_flag() {
     assert_eq!(String::from_utf8(by_flag("1:100:3").stdout).unwrap(), csv);
     for wrong in ["1:100", "0:1:3", "2:1:3", "1:2:1", "1:2:1001", "a:b:c"] {
         assert!(!by_flag(wrong).status.success(), "{wrong}");
-    }
-    let picture = server.post("/cycle?format=svg", &of(&ball(), &map)).await.text().await.unwrap();
-    for text in ["Fretting map", "log₁₀(normal force / N)", "gross slip above"] {
-        assert!(picture.contains(text), "{text}");
     }
 }

@@ -99,24 +99,12 @@ async fn relaxing_is_all_or_nothing_under_a_condition_and_repeatable() {
 }
 
 #[tokio::test]
-async fn every_fault_has_its_pointer() {
+async fn a_contact_that_is_named_must_be_there_and_fit() {
     let server = Server::start().await;
     let lives = json!({"contact_id": server.contact().await});
     let friction = |friction: f64| with(ball(), "/friction", json!(friction));
-    let loose = with(ball(), "/preload", json!({"normal_force": 0.0}));
     for (body, pointer) in [
-        (of(&ball(), &json!({"kind": "linear"})), "/reversals"),
-        (of(&ball(), &json!({"reversals": 3, "target": 0.1})), "/target"),
-        (of(&ball(), &json!({"target": 1e-4, "kind": "linear"})), "/target"),
-        (of(&ball(), &json!({"reversals": 201})), "/reversals"),
-        (of(&ball(), &json!({"reversals": 3, "end": "nowhere"})), "/end"),
-        (of(&ball(), &json!({"reversals": 3, "start": {"displacement": 0.0}})), "/start/displacement"),
         (of(&ball(), &json!({"reversals": 3, "start": {"contact_id": "x"}})), "/start/contact_id"),
-        (of(&ball(), &json!({"reversals": 3, "robustness": {"samples": 1}})), "/robustness/samples"),
-        (of(&ball(), &json!({"reversals": 3, "robustness": {"amplitude_error": -0.1}})), "/robustness/amplitude_error"),
-        (of(&ball(), &json!({"reversals": 3, "robustness": {"seed": 1u64 << 60}})), "/robustness/seed"),
-        (of(&friction(0.0), &json!({"reversals": 3})), "/contact/friction"),
-        (of(&loose, &json!({"reversals": 3})), "/contact/preload"),
         (of(&friction(0.4), &json!({"reversals": 3, "start": lives})), "/contact"),
         (json!({"reversals": 3}), "/contact"),
         (json!({"reversals": 3, "start": lives, "robustness": {"friction_error": 0.1}}), "/robustness/friction_error"),

@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use crate::common::{Server, ball, changed, codes, good, of, with};
+use crate::common::{Server, changed, codes, good, with};
 
 /// A contact without warnings.
 fn flawless() -> Value {
@@ -58,30 +58,5 @@ async fn a_contact_warns_when_a_move_gives_it_cause() {
         assert_eq!(codes(&reply), expected, "{body}");
         assert_eq!(reply.get("warnings").is_some(), !expected.is_empty(), "{body}: {reply}");
         are_described(&expected);
-    }
-    // A simulation warns of the farthest move. Where a hundred times the displacement of gross slip is more than a
-    // tenth of the length, it counts: d = 1 mm on a ball of 1 m slips from 1.8 mm on; of a cone the contact radius is
-    // the only length, 6.4 mm.
-    let soft = json!({"material": {"effective": {"e_star": 1e9, "g_star": 5e8}}, "friction": 0.9,
-        "preload": {"indentation": 1e-3}});
-    let blunt = changed(soft.clone(), &json!({"profile": {"type": "sphere", "radius": 1.0}}));
-    let pointed = changed(soft, &json!({"profile": {"type": "cone", "slope": 0.1}}));
-    for (contact, path, said) in [
-        (&ball(), json!({"displacement": [1e-7, 0.9e-3, 0.0]}), None),
-        (&ball(), json!({"displacement": [-1234.5]}), Some("-1.2345 km")),
-        (&blunt, json!({"displacement": [0.179]}), None),
-        (&blunt, json!({"displacement": [0.181]}), Some("mm")),
-        (&pointed, json!({"displacement": [0.179]}), None),
-        (&pointed, json!({"displacement": [0.181]}), Some("mm")),
-        // Apart from each other the bodies do not slip at all.
-        (&ball(), json!({"moves": [{"indentation": -1e-6}, {"displacement": 1.0}]}), Some("hardly touch")),
-    ] {
-        for solver in [json!("exact"), json!({"springs": {"count": 100}})] {
-            let body = of(contact, &json!({"path": path, "solver": solver, "steps": "last"}));
-            let reply = good(server.post("/simulate", &body).await).await;
-            let far = reply["warnings"].as_array().unwrap().iter().find(|one| one["code"] == "far_beyond_slip");
-            assert_eq!(far.is_some(), said.is_some(), "{body}");
-            assert!(far.is_none_or(|far| far["message"].as_str().unwrap().contains(said.unwrap())), "{far:?}");
-        }
     }
 }

@@ -1,20 +1,13 @@
-//! Preparing profiles: work that is admitted, may end, is done once for all who need the same profile, and counts.
+//! Preparing profiles: work that is admitted, is done once for all who need the same profile, and counts.
 
-use std::cell::Cell;
 use std::sync::Arc;
-use std::time::Duration;
 
 use crate::common::raw::{Service, post};
-use crate::common::{Server, ball, good, metric, number, of, problem, with};
+use crate::common::{Server, ball, good, metric, of, with};
 use serde_json::{Value, json};
 use stickslip::admission::Pool;
 use stickslip::sessions::{CAPACITY, Sessions};
 use stickslip::store::MemoryStore;
-use stickslip_compute::Flag;
-use stickslip_compute::computations::{Computation as _, Cycle, Outcome as _};
-use stickslip_compute::simulation;
-use stickslip_mechanics::{Elasticity, Error, Profile};
-use stickslip_wire::{self as wire, CycleRequest, Document as _, Prepare, Rejection, SimulateRequest};
 
 const MIB: usize = 1024 * 1024;
 
@@ -24,11 +17,6 @@ fn table(points: usize, number: usize) -> Value {
     let radii: Vec<_> = (0..points).map(|index| 1e-3 * index as f64 / points as f64).collect();
     let heights: Vec<_> = radii.iter().map(|r| r * r / (2.0 * radius)).collect();
     with(ball(), "/profile", json!({"type": "tabulated", "r": radii, "z": heights}))
-}
-
-fn asperities(count: usize, number: usize) -> Value {
-    let gaps: Vec<_> = (0..count).map(|index| 1e-9 * ((index * 7_919) % count + number) as f64 / 7.0).collect();
-    with(ball(), "/profile", json!({"type": "asperities", "radius": 1e-4, "gaps": gaps}))
 }
 
 fn load_curve(points: usize) -> Value {
@@ -146,88 +134,6 @@ async fn a_profile_is_prepared_with_a_turn_on_a_thread_of_the_solver() {
     assert_eq!((prepared(&loading).await, turns(&pool)), (1, 1));
 }
 
-/// A preparation that rests for so long.
-struct Slow(Duration);
-
-impl Prepare for Slow {
-    fn profile(
-        &self,
-        _: &wire::Profile,
-        _: Option<&Elasticity>,
-        prepare: &mut dyn FnMut() -> Option<Profile>,
-    ) -> Option<Arc<Profile>> {
-        std::thread::sleep(self.0);
-        prepare().map(Arc::new)
-    }
-
-    fn keep_going(&self) -> bool {
-        true
-    }
-}
-
-#[test]
-fn the_time_of_a_reply_has_the_preparation_of_its_profile_in_it() {
-    let rest = Duration::from_millis(20);
-    let stop = Flag::default();
-    let body: SimulateRequest = serde_json::from_value(moved(&table(10, 1))).unwrap();
-    let checked = simulation::check(body, &Slow(rest), &stop).unwrap().unwrap();
-    let reply = simulation::simulate(&checked, &stop).unwrap();
-    assert!(reply.accuracy.compute_time >= rest.as_secs_f64(), "{:?}", reply.accuracy);
-
-    let stop = Flag::default();
-    let body = of(&table(10, 1), &json!({"drive": {"displacement": 1e-8}}));
-    let body: CycleRequest = serde_json::from_value(body).unwrap();
-    let checked = simulation::check(body, &Slow(rest), &stop).unwrap().unwrap();
-    let found = Cycle::run(checked, &stop).unwrap();
-    let reply = found.reply();
-    assert!(reply.accuracy.compute_time >= rest.as_secs_f64(), "{:?}", reply.accuracy);
-}
-
-/// Lets a preparation go on for so many questions.
-struct Patience(Cell<usize>);
-
-impl Prepare for Patience {
-    fn keep_going(&self) -> bool {
-        self.0.set(self.0.get().saturating_sub(1));
-        self.0.get() > 0
-    }
-}
-
-#[test]
-fn preparation_of_every_kind_can_be_ended_at_any_of_its_checks() {
-    let part = table(300, 1)["profile"].clone();
-    let falling = json!({"type": "tabulated", "r": part["r"],
-        "z": part["z"].as_array().unwrap().iter().map(|z| -0.5 * number(z)).collect::<Vec<_>>()});
-    let sum = json!({"type": "sum", "parts": [part, falling]});
-    // A table whose slope falls in the end; one whose slope never does is prepared where its contact reaches.
-    let radii: Vec<f64> = (0..300).map(|index| 1e-6 * f64::from(index)).collect();
-    let heights: Vec<f64> = radii.iter().map(|r| 50.0 * r * r / (1.0 + (r / 4e-4).powi(2))).collect();
-    let dome = json!({"type": "tabulated", "r": radii, "z": heights});
-    // How often it is asked at the least: so often that some milliseconds pass between two questions.
-    let kinds = [
-        (asperities(5_000, 0), 5_000 / 16),
-        (load_curve(500), 1),
-        (with(ball(), "/profile", sum), 40),
-        (with(ball(), "/profile", dome), 20),
-        (table(300, 1), 10),
-    ];
-    for (contact, least) in kinds {
-        let request: SimulateRequest = serde_json::from_value(moved(&contact)).unwrap();
-        let patience = Patience(Cell::new(usize::MAX));
-        request.clone().check_with(&patience).unwrap();
-        let asked = usize::MAX - patience.0.get();
-        assert!(asked >= least, "{asked} {}", contact["profile"]["type"]);
-        for allowed in [0, 1, 2, asked / 2, asked - 1].into_iter().filter(|allowed| *allowed < asked) {
-            let ended = request.clone().check_with(&Patience(Cell::new(allowed))).unwrap_err();
-            let pointer = match &ended {
-                Rejection::Refused { pointer, error: Error::Interrupted } => pointer,
-                other => panic!("{other:?}"),
-            };
-            assert!(pointer.starts_with("/contact/profile"), "{pointer}");
-        }
-    }
-}
-
 #[tokio::test]
 async fn a_profile_that_cannot_be_ready_in_time_is_refused_at_once_and_a_contact_of_it_too() {
     let service = Service::start(&["--deadline", "1s", "--log", "warn"]);
@@ -248,30 +154,4 @@ async fn a_profile_that_cannot_be_ready_in_time_is_refused_at_once_and_a_contact
             assert!(refused.text.contains(part), "{part}: {}", refused.text);
         }
     }
-}
-
-#[tokio::test]
-async fn what_is_wrong_with_a_table_is_refused_as_before() {
-    let server = Server::start().await;
-    let concave = with(table(50, 0), "/profile/z", json!((0..50).map(|i| -1e-6 * f64::from(i)).collect::<Vec<_>>()));
-    let short = with(table(50, 0), "/preload", json!({"contact_radius": 1.5e-3}));
-    let broken = with(table(50, 0), "/profile/r/7", json!(0.0));
-    for (contact, code, place) in [
-        (concave, "profile_not_convex_enough", "/profile"),
-        (short, "beyond_profile", "/preload/contact_radius"),
-        (broken, "invalid_input", "/profile/r/7"),
-    ] {
-        for (call, base, body) in [
-            ("/simulate", "/contact", moved(&contact)),
-            ("/accuracy", "/contact", moved(&contact)),
-            ("/cycle", "/contact", of(&contact, &json!({"drive": {"displacement": 1e-8}}))),
-            ("/protocols", "/contact", of(&contact, &json!({"reversals": 5}))),
-            ("/contacts", "", contact.clone()),
-        ] {
-            let found = problem(server.post(call, &body).await).await;
-            let expected = (422, code, format!("{base}{place}"));
-            assert_eq!((found.status, found.code.as_str(), found.errors[0].pointer.clone()), expected, "{call}");
-        }
-    }
-    assert_eq!(prepared(&server).await, 1, "the table that is sound was prepared, and no other");
 }

@@ -6,8 +6,7 @@ use crate::fixtures::{self, soon};
 use std::sync::Arc;
 
 use common::kill::exact;
-use common::process::Process;
-use common::{Server, ball, create, problem, run, until, varied_moves};
+use common::{Server, ball, create, problem, until, varied_moves};
 use futures::StreamExt as _;
 use futures::future::join_all;
 use jiff::{SignedDuration, Timestamp};
@@ -247,20 +246,6 @@ async fn an_expired_session_is_gone_for_reads_moves_and_events_though_it_was_cac
     client.contact(busy).await.unwrap();
     assert_eq!(client.contacts(None, None).await.unwrap().items.len(), 1);
     assert_eq!(store.purge_expired(Some(Timestamp::now())).await.unwrap(), 1);
-}
-
-#[tokio::test]
-async fn the_binary_expires_idle_contacts_with_expire_after() {
-    for nonsense in [["--expire-after", "0s"], ["--expire-after", "soon"], ["--cache-bytes", "-1"]] {
-        let refused = run(&nonsense);
-        assert_eq!(refused.status.code(), Some(2), "{nonsense:?}");
-    }
-    let binary = Process::with("memory:", &["--expire-after", "1s", "--cache-bytes", "1MiB"]);
-    let client = &binary.client;
-    let id = client.create(&create(), &Options::default()).await.unwrap().id;
-    let mut events = Box::pin(client.events(id, Some(0)).await.unwrap());
-    assert_eq!(soon(events.next()).await.unwrap().unwrap(), Event::End(EndReason::Expired));
-    assert_eq!(client.contact(id).await.unwrap_err().problem().unwrap().status, 410);
 }
 
 /// Two processes on one store know nothing of each other: the store decides.

@@ -1,7 +1,6 @@
-//! Sweeps: the same numbers as their points one by one, at once and as jobs, whatever happens to the processes.
+//! Sweeps: the same table at once and as jobs, whatever happens to the processes.
 
 mod jobs;
-mod refusals;
 mod survival;
 mod tables;
 

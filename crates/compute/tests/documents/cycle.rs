@@ -2,9 +2,10 @@
 
 use serde_json::{Value, json};
 use std::f64::consts::PI;
+use stickslip_compute::formats::Format;
 
 use crate::json::{ball, changed, codes, number, of, timeless, with};
-use crate::{assert_refused, good, post, problem};
+use crate::{assert_refused, good, post, problem, written};
 
 const G_STAR: f64 = 8e10;
 /// m = mu E*/G*.
@@ -155,4 +156,31 @@ fn a_map_is_refused_at_its_place() {
     let table = json!({"type": "tabulated", "r": [0.0, 1e-5, 2e-5, 3e-5], "z": [0.0, 5e-9, 2e-8, 4.5e-8]});
     let ended = with(with(ball(), "/profile", table), "/preload", json!({"normal_force": 1e-3}));
     assert_refused("/cycle", &of(&ended, &map), ("beyond_profile", "/map/normal_force", ""));
+}
+
+#[test]
+fn a_map_has_the_cycles_of_each_load() {
+    let drive = json!({"drive": {"displacement": [1e-8, 1e-7, 1e-6]}});
+    let map = changed(drive.clone(), &json!({"map": {"normal_force": {"from": 1.0, "to": 100.0, "count": 3}}}));
+    let whole = good(post("/cycle", &of(&ball(), &map)));
+    close(number(&whole["contact"]["normal_force"]), 10.0, 1e-12);
+    let cells = whole["cycles"].as_array().unwrap();
+    assert_eq!(cells.len(), 9);
+    for (cells, load) in cells.chunks(3).zip([1.0, 10.0, 100.0]) {
+        let pressed = with(ball(), "/preload", json!({"normal_force": load}));
+        let reply = good(post("/cycle", &of(&pressed, &drive)));
+        for (cell, cycle) in cells.iter().zip(reply["cycles"].as_array().unwrap()) {
+            close(number(&cell["normal_force"]), load, 1e-14);
+            let begin = number(&reply["contact"]["gross_slip_displacement"]);
+            close(number(&cell["gross_slip_displacement"]), begin, 1e-12);
+            for name in ["displacement_amplitude", "force_amplitude", "secant_stiffness", "loss_factor"] {
+                close(number(&cell[name]), number(&cycle[name]), 1e-9);
+            }
+            assert_eq!(cell["regime"], cycle["regime"]);
+        }
+    }
+    let picture = written("/cycle", Format::Svg, None, &of(&ball(), &map));
+    for text in ["Fretting map", "log₁₀(normal force / N)", "gross slip above"] {
+        assert!(picture.contains(text), "{text}");
+    }
 }

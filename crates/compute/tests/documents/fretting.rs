@@ -2,10 +2,11 @@
 //! `crates/mechanics/tests/physics/{fatigue,fretting}.rs`.
 
 use serde_json::{Value, json};
+use stickslip_compute::formats::Format;
 
 use crate::json::{ball, changed, codes, number, of, with};
 use crate::subsurface::unit_sphere;
-use crate::{assert_refused, good, post, problem};
+use crate::{assert_refused, good, post, problem, written};
 
 /// A cycle in partial slip of the ball, rated by Crossland below its middle.
 fn asked(changes: Value) -> Value {
@@ -129,4 +130,54 @@ fn every_fault_is_named_with_its_place() {
         "points": [[0.0, 0.0, 0.1]], "criteria": {"swt": {}}});
     let refused = ("invalid_input", "/criteria/swt/youngs_modulus", "");
     assert_refused("/fretting", &of(&unit_sphere(), &unknown), refused);
+}
+
+#[test]
+fn a_picture_shows_the_criterion_that_is_named_in_its_own_unit() {
+    let plane = json!({
+        "plane": {"normal": "y", "offset": 0.0, "x": [-1.2e-4, 1.2e-4, 13], "z": [0.0, 6e-5, 5]},
+        "criteria": {"crossland": {"alpha": 0.3}, "findley": {"k": 0.3}}
+    });
+    let surface = json!({
+        // The middles of its sides slip, and the trailing one is under tension.
+        "surface": {"x": [-6.6e-5, 6.6e-5, 5], "y": [-6.6e-5, 6.6e-5, 5]},
+        "criteria": {"ruiz": {}, "friction_work": {}, "dang_van": {"alpha": 0.3}}
+    });
+    for (changes, name, title, unit) in [
+        (&plane, "findley", "Findley", "MPa"),
+        (&surface, "friction_work", "Friction work per cycle", "J/m²"),
+        (&surface, "ruiz_tension", "Ruiz, with tension", "N²/m³"),
+        (&surface, "ruiz", "Ruiz, shear stress times slip", "N/m"),
+    ] {
+        let body = asked(changes.clone());
+        let exact = number(&rated(&body)[name]["largest"]["value"]);
+        let text = written("/fretting", Format::Svg, Some(name), &body);
+        // The title has the value of the reply in the unit of the scale, whatever the prefix.
+        let heading = text.lines().find(|line| line.starts_with(&format!("{title}, first body: largest "))).unwrap();
+        let shown = heading.split("largest ").nth(1).unwrap().split(" at ").next().unwrap();
+        let (digits, shown_unit) = shown.split_once(' ').unwrap();
+        let mantissa = |value: f64| value / 10f64.powf(value.log10().floor());
+        assert!((mantissa(digits.parse().unwrap()) / mantissa(exact) - 1.0).abs() < 1e-3, "{heading} {exact}");
+        assert!(heading.contains(unit), "{heading}");
+        let scale = shown_unit.trim_start_matches("· ");
+        assert!([scale.to_owned(), format!("({scale})")].iter().any(|it| text.contains(&format!("{title} / {it}"))));
+        // A ring in the legend, and one with its halo at the worst place.
+        assert_eq!(text.matches("<circle").count(), 3, "{name}");
+        assert!(text.contains("edge of the contact at the preload"));
+    }
+    let line = |from: [f64; 3], to: [f64; 3]| asked(json!({"line": {"from": from, "to": to, "count": 41}}));
+    for (body, axis, is_on_contact) in [
+        (line([-1e-4, 0.0, 0.0], [1e-4, 0.0, 0.0]), "x, along the motion / µm", true),
+        (line([-5e-5, 0.0, 0.0], [-5e-5, 0.0, 5e-5]), "z, the depth / µm", false),
+        (line([0.0, 0.0, 0.0], [5e-5, 5e-5, 0.0]), "distance along the line / µm", true),
+    ] {
+        let text = written("/fretting", Format::Svg, None, &body);
+        assert!(text.contains(axis) && text.contains("Crossland, first body: largest "), "{axis}");
+        assert_eq!(text.contains("on the contact at the preload"), is_on_contact, "{axis}");
+    }
+    // Ruiz's second parameter comes with the first. A table has all criteria, whichever is named.
+    let ruiz = asked(changed(surface, &json!({"criteria": {"ruiz": {}}})));
+    assert!(written("/fretting", Format::Svg, None, &ruiz).contains("Ruiz, shear stress times slip"));
+    let table = written("/fretting", Format::Csv, Some("findley"), &asked(plane));
+    assert!(table.starts_with("x,y,z,crossland,findley\n"));
 }

@@ -1,10 +1,11 @@
-//! Contacts that are known by their load curve alone: what is no such profile is refused. Their loads and radii are
+//! Contacts that are known by their load curve alone: what they reply, what they have no stresses
+//! for, and what is no such profile. Their loads and radii are
 //! tested in `crates/mechanics/tests/physics/load_curves.rs`.
 
 use serde_json::{Value, json};
 
-use crate::assert_refused;
-use crate::json::{ball, changed, of, with};
+use crate::json::{ball, changed, codes, number, of, with};
+use crate::{assert_refused, good, post, problem};
 
 fn contact(profile: Value) -> Value {
     with(ball(), "/profile", profile)
@@ -56,4 +57,64 @@ fn what_is_no_such_profile_is_refused_at_its_place() {
     refused(&unknown, ("invalid_input", "/contact/material/effective", ""));
     let beyond = contact(curve([0.0, 1e-6, 2e-6], [0.0, 1.0, 3.0]));
     refused(&beyond, ("beyond_profile", "/contact/preload/normal_force", ""));
+}
+
+/// One of each, and what is warned of it.
+fn profiles() -> [(Value, &'static str); 3] {
+    let indentation: Vec<f64> = (0..=20).map(|index| 2e-7 * f64::from(index)).collect();
+    let force: Vec<f64> = indentation.iter().map(|d| 3e10 * d.powf(1.5)).collect();
+    [
+        (
+            json!({"type": "asperities", "radii": [1e-3, 2e-3, 3e-3], "gaps": [0.0, -1e-7, 3e-6]}),
+            "interaction_neglected",
+        ),
+        (curve(json!(indentation), json!(force)), "load_curve_alone"),
+        (json!({"type": "ellipsoid", "radii": [0.01, 0.004], "direction": "y"}), "elliptic_slip"),
+    ]
+}
+
+#[test]
+fn they_are_cycled_and_swept_and_have_no_stresses() {
+    let path = json!({"displacement": [1e-7]});
+    let point = json!({"body": "first", "points": [[0.0, 0.0, 1e-5]]});
+    for (profile, code) in profiles() {
+        let body = of(&contact(profile.clone()), &json!({"drive": {"displacement": 1e-7}, "harmonics": 3}));
+        let cycled = good(post("/cycle", &body));
+        assert!(number(&cycled["cycles"][0]["dissipated_energy"]) > 0.0 && codes(&cycled).contains(&code), "{cycled}");
+        let base = of(&contact(profile.clone()), &json!({"path": path, "steps": "last"}));
+        let axes = json!([{"pointer": "/contact/friction", "values": [0.1, 0.2]}]);
+        good(post("/sweep", &json!({"base": base, "axes": axes, "outputs": ["/steps/0/force"]})));
+        let named = format!("`{}`", profile["type"].as_str().unwrap());
+        for (call, body, at) in [
+            ("/simulate", json!({"path": path, "stress": {"points": 3}}), "/stress"),
+            ("/simulate", json!({"path": path, "residual": true}), "/residual"),
+            ("/simulate", json!({"path": path, "subsurface": point}), "/subsurface"),
+            ("/simulate", json!({"path": {"equal_peaks": {"reversals": 3}}}), "/path/equal_peaks"),
+            ("/accuracy", json!({"path": path}), "/contact/profile"),
+            ("/protocols", json!({"reversals": 3}), "/contact/profile"),
+            ("/cycle", json!({"drive": {"displacement": 1e-7}, "work_density": {"points": 3}}), "/work_density"),
+            (
+                "/fretting",
+                changed(point.clone(), &json!({"path": path, "criteria": {"crossland": {"alpha": 0.3}}})),
+                "/contact/profile",
+            ),
+            ("/wear", json!({"drive": {"displacement": 1e-8}, "hold": "indentation"}), "/contact/profile"),
+        ] {
+            let body = of(&contact(profile.clone()), &body);
+            let refused = problem(post(call, &body));
+            assert_eq!((refused.code.as_str(), refused.errors[0].pointer.as_str()), ("no_stress_field", at), "{call}");
+            assert!(refused.detail.contains(&named), "{refused:?}");
+        }
+        let springs = json!({"path": path, "solver": {"springs": {"count": 100}}});
+        assert_refused("/simulate", &of(&contact(profile.clone()), &springs), ("invalid_input", "/solver", ""));
+        let sum = contact(json!({"type": "sum", "parts": [{"type": "sphere", "radius": 0.01}, profile]}));
+        let refused = problem(post("/simulate", &of(&sum, &json!({"path": path}))));
+        assert_eq!(refused.errors[0].pointer, "/contact/profile/parts/1", "{refused:?}");
+    }
+    // Semi-axes are along x and along y.
+    for (radii, is_longer) in [([0.01, 0.004], true), ([0.004, 0.01], false)] {
+        let body = of(&contact(ellipsoid(json!(radii))), &json!({"path": path}));
+        let axes = &good(post("/simulate", &body))["contact"]["semi_axes"];
+        assert_eq!(number(&axes[0]) > number(&axes[1]), is_longer, "{axes}");
+    }
 }

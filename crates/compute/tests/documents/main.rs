@@ -4,15 +4,23 @@
 mod accuracy;
 mod cycle;
 mod cycles_path;
+mod fit;
 mod fretting;
 mod json;
+mod line_contacts;
+mod lives;
 mod load_curves;
 mod parse;
+mod plane;
+mod preparation;
 mod profile_fit;
 mod profiles;
 mod protocols;
+mod simulate;
 mod subsurface;
+mod sweeps;
 mod warnings;
+mod wear;
 
 use serde_json::Value;
 use stickslip_compute::computations::{DisplayOptions, compute, entries};
@@ -20,23 +28,39 @@ use stickslip_compute::formats::Format;
 use stickslip_compute::{Flag, Refusal};
 use stickslip_wire::ProblemDocument;
 
-/// The reply of the computation at this path, or its refusal.
-fn post(path: &str, body: &Value) -> Result<Value, Box<ProblemDocument>> {
+type Reply<T = Value> = Result<T, Box<ProblemDocument>>;
+
+/// What the computation at this path writes, or its refusal.
+fn computed(path: &str, text: &str, options: DisplayOptions) -> Reply<Vec<u8>> {
     let entry = entries().into_iter().find(|entry| entry.about.route.is_some_and(|route| route.path == path));
     let name = entry.unwrap_or_else(|| panic!("there is no computation at {path}")).about.name;
-    let options = DisplayOptions::in_format(Format::Columns);
-    let reply = compute(name, body.to_string().as_bytes(), options, &Flag::default());
-    match reply {
-        Ok(text) => Ok(serde_json::from_slice(&text).unwrap()),
-        Err(error) => Err(Box::new(Refusal::from(error).document("test"))),
-    }
+    compute(name, text.as_bytes(), options, &Flag::default()).map_err(|error| refusal(error.into()))
 }
 
-fn good(reply: Result<Value, Box<ProblemDocument>>) -> Value {
+fn refusal(refusal: Refusal) -> Box<ProblemDocument> {
+    Box::new(refusal.document("test"))
+}
+
+/// The reply of the computation at this path, or its refusal; that of a sweep too.
+fn post(path: &str, body: &Value) -> Reply {
+    if path == "/sweep" {
+        return sweeps::swept(&body.to_string());
+    }
+    let text = computed(path, &body.to_string(), DisplayOptions::in_format(Format::Columns))?;
+    Ok(serde_json::from_slice(&text).unwrap())
+}
+
+/// What a computation writes in a format; a picture is of what is chosen.
+fn written(path: &str, format: Format, choice: Option<&'static str>, body: &Value) -> String {
+    let options = DisplayOptions { choice, ..DisplayOptions::in_format(format) };
+    String::from_utf8(computed(path, &body.to_string(), options).unwrap()).unwrap()
+}
+
+fn good(reply: Reply) -> Value {
     reply.unwrap_or_else(|refused| panic!("{refused:?}"))
 }
 
-fn problem(reply: Result<Value, Box<ProblemDocument>>) -> ProblemDocument {
+fn problem(reply: Reply) -> ProblemDocument {
     *reply.unwrap_err()
 }
 

@@ -2,9 +2,10 @@
 //! `crates/measured/tests/scans`.
 
 use serde_json::{Value, json};
+use stickslip_compute::formats::Format;
 
 use crate::json::{ball, codes, number, of, with};
-use crate::{assert_refused, good, post};
+use crate::{assert_refused, good, post, problem, written};
 
 /// Heights over a line of 401 places, in micrometres and nanometres.
 fn scan(x: impl Fn(usize) -> f64, z: impl Fn(usize, f64) -> f64) -> Value {
@@ -104,4 +105,43 @@ fn a_scan_that_can_hardly_be_meant_is_warned_of() {
     let flat = with(ball(), "/profile", fitted(&wide)["profile"].clone());
     let reply = good(post("/simulate", &of(&flat, &json!({"path": {"force": [1.0]}}))));
     assert!(codes(&reply).contains(&"units"), "{:?}", codes(&reply));
+}
+
+#[test]
+fn a_scan_of_a_ball_is_the_contact_of_that_ball() {
+    let reply = fitted(&loaded());
+    let error = number(&reply["radius_of_curvature"]["standard_error"]);
+    assert!((radius(&reply) - 0.01).abs() < 3.0 * error + 1e-5 && error < 1e-3, "{reply}");
+    assert!((number(&reply["centre"]["x"]) - 7e-6).abs() < 2e-7 && reply["centre"].get("y").is_none());
+    assert_eq!((&reply["orientation"], &reply["warnings"]), (&json!("peak_up"), &json!([])));
+    // What the reply says of the contact is what its profile has in a simulation, near Hertz's.
+    let simulate = |contact: &Value| of(contact, &json!({"path": {"force": [1.0]}}));
+    let contact = with(ball(), "/profile", reply["profile"].clone());
+    let simulated = good(post("/simulate", &simulate(&contact)));
+    let hertz = good(post("/simulate", &simulate(&ball())));
+    for name in ["indentation", "contact_radius", "max_pressure"] {
+        let [value, error] = ["value", "standard_error"].map(|part| number(&reply["contact"][name][part]));
+        assert_eq!(value.to_bits(), number(&simulated["contact"][name]).to_bits(), "{name}");
+        let truth = number(&hertz["contact"][name]);
+        assert!((value - truth).abs() < 3.0 * error + 1e-3 * truth && error < 0.01 * truth, "{name} {value} {error}");
+    }
+    // Its errors belong to its table: both lists or none, as long as that, and no negative number.
+    let errors = reply["profile"]["indentation_error"].as_array().unwrap().len();
+    assert_eq!(errors, reply["profile"]["r"].as_array().unwrap().len());
+    for (place, value) in [("/indentation_error", json!([1e-9])), ("/pressure_error/0", json!(-1e-9))] {
+        let place = format!("/contact/profile{place}");
+        let body = with(simulate(&contact), &place, value);
+        assert_refused("/simulate", &body, ("invalid_input", &place, ""));
+    }
+    let mut half = simulate(&contact);
+    half["contact"]["profile"].as_object_mut().unwrap().remove("pressure_error");
+    assert!(format!("{:?}", problem(post("/simulate", &half))).contains("pressure_error"));
+    // The document and the table have the same points.
+    let rows: Value = serde_json::from_str(&written("/profiles/fit", Format::Rows, None, &line())).unwrap();
+    let columns = fitted(&line());
+    for (part, name) in [("fitted", "raw"), ("left_out", "left_out"), ("profile", "used")] {
+        let of_part = rows.as_array().unwrap().iter().filter(|row| row["part"] == part);
+        let heights: Value = of_part.map(|row| row["height"].clone()).collect();
+        assert_eq!(heights, columns[name]["height"], "{part}");
+    }
 }

@@ -4,7 +4,7 @@
 use serde_json::{Value, json};
 
 use crate::json::{ball, changed, number, of, with};
-use crate::{good, post};
+use crate::{good, post, problem};
 
 fn table() -> Value {
     let radii: Vec<f64> = (0..=30).map(|index| 2e-4 * f64::from(index) / 30.0).collect();
@@ -87,4 +87,27 @@ fn robustness_is_the_same_for_the_same_seed_and_grows_with_the_error() {
     let worse = |reply: &Value| number(&reply["robustness"]["mean"]) - number(&reply["relative"]);
     assert!(worse(&rough) > worse(&one) && worse(&one) > 0.0, "{} {}", worse(&rough), worse(&one));
     assert!(rough["comparison"]["minimax"]["robustness"]["mean"].is_number());
+}
+
+#[test]
+fn every_fault_has_its_pointer() {
+    let friction = |friction: f64| with(ball(), "/friction", json!(friction));
+    let loose = with(ball(), "/preload", json!({"normal_force": 0.0}));
+    for (contact, asked, pointer) in [
+        (&ball(), json!({"kind": "linear"}), "/reversals"),
+        (&ball(), json!({"reversals": 3, "target": 0.1}), "/target"),
+        (&ball(), json!({"target": 1e-4, "kind": "linear"}), "/target"),
+        (&ball(), json!({"reversals": 201}), "/reversals"),
+        (&ball(), json!({"reversals": 3, "end": "nowhere"}), "/end"),
+        (&ball(), json!({"reversals": 3, "start": {"displacement": 0.0}}), "/start/displacement"),
+        (&ball(), json!({"reversals": 3, "robustness": {"samples": 1}}), "/robustness/samples"),
+        (&ball(), json!({"reversals": 3, "robustness": {"amplitude_error": -0.1}}), "/robustness/amplitude_error"),
+        (&ball(), json!({"reversals": 3, "robustness": {"seed": 1u64 << 60}}), "/robustness/seed"),
+        (&friction(0.0), json!({"reversals": 3}), "/contact/friction"),
+        (&loose, json!({"reversals": 3}), "/contact/preload"),
+    ] {
+        let refused = problem(post("/protocols", &of(contact, &asked)));
+        let found: Vec<&str> = refused.errors.iter().map(|error| error.pointer.as_str()).collect();
+        assert_eq!((refused.status, found), (422, vec![pointer]), "{asked}: {refused:?}");
+    }
 }

@@ -1,11 +1,14 @@
-//! Stress below the surface: every fault with its place. What the stresses are is tested in
+//! Stress below the surface: published figures, and every fault with its place. What the stresses are is tested in
 //! `crates/mechanics/tests/physics/subsurface.rs`.
 
 use serde_json::{Value, json};
 use std::f64::consts::PI;
+use stickslip_compute::Flag;
+use stickslip_compute::computations::{DisplayOptions, compute};
+use stickslip_compute::formats::Format;
 
-use crate::json::{ball, changed, of};
-use crate::{assert_refused, post, problem};
+use crate::json::{ball, changed, number, of};
+use crate::{assert_refused, good, post, problem};
 
 /// A sphere with a = d = p_max = 1, G* = E* and mu = 0.5.
 pub fn unit_sphere() -> Value {
@@ -53,4 +56,42 @@ fn every_fault_is_named_with_its_place() {
     assert_refused("/simulate", &of(&ball(), &springs), ("invalid_input", "/subsurface", ""));
     let unknown = ("invalid_input", "/subsurface/poisson_ratio", "");
     assert_refused("/simulate", &of(&unit_sphere(), &below), unknown);
+}
+
+#[test]
+fn a_history_of_three_moves_has_its_published_stress() {
+    let path = json!({"displacement": [0.4, -0.25, 0.05]});
+    let point = json!({"body": "second", "poisson_ratio": 0.3, "points": [[0.5, 0.3, 0.4]]});
+    let asked = of(&unit_sphere(), &json!({"path": path, "subsurface": point}));
+    let reply = good(post("/simulate", &asked));
+    let expected = [-0.202_971_224_360_7, -0.188_421_678_403_5, -0.648_046_273_458_3];
+    let sheared = [-0.012_501_917_591_47, -0.091_545_975_543_53, -0.166_739_561_424_7];
+    for (name, expected) in ["xx", "yy", "zz", "xy", "yz", "xz"].into_iter().zip(expected.into_iter().chain(sheared)) {
+        let found = number(&reply["subsurface"][name][0]);
+        assert!((found - expected).abs() < 1e-12, "{name}: {found} instead of {expected}");
+    }
+    let error = number(&reply["accuracy"]["subsurface_error"]);
+    assert!(error > 1e-13 && error < 1e-10 && reply["subsurface"].get("von_mises").is_none(), "{error:e}");
+    // Nothing of it where it was not asked for.
+    let plain = good(post("/simulate", &of(&unit_sphere(), &json!({"path": path}))));
+    assert!(plain.get("subsurface").is_none() && plain["accuracy"].get("subsurface_error").is_none());
+    // There is a computation of its own for it.
+    let alone = compute(
+        "subsurface",
+        asked.to_string().as_bytes(),
+        DisplayOptions::in_format(Format::Columns),
+        &Flag::default(),
+    );
+    let alone: Value = serde_json::from_slice(&alone.unwrap()).unwrap();
+    assert_eq!(alone["xz"], reply["subsurface"]["xz"]);
+    // What is infinite is null.
+    let cone = changed(unit_sphere(), &json!({"profile": {"type": "cone", "slope": 0.1}}));
+    let fields = ["tensor", "principal", "von_mises", "max_shear", "hydrostatic"];
+    let asked = json!({"path": {"displacement": [0.1]}, "subsurface": {"body": "second", "poisson_ratio": 0.3,
+        "points": [[0.0, 0.0, 0.0], [0.0, 0.0, 1e-5]], "fields": fields}});
+    let reply = good(post("/simulate", &of(&cone, &asked)));
+    for name in ["zz", "principal_1", "von_mises", "max_shear", "hydrostatic"] {
+        let column = &reply["subsurface"][name];
+        assert!(column[0].is_null() && column[1].is_number(), "{name}: {column}");
+    }
 }

@@ -1,12 +1,13 @@
-//! What fretting wear leaves, over HTTP: closed forms, what is infinite, the profile that other calls take, and what
+//! What fretting wear leaves: closed forms, what is infinite, the profile that other calls take, and what
 //! has no limit.
 
 use serde_json::{Value, json};
 
-use crate::common::{Server, assert_refused, ball, changed, codes, good, number, of};
+use crate::json::{ball, changed, codes, number, of};
+use crate::{assert_refused, good, post};
 
 /// R = d = m = 1.
-fn unit_sphere() -> Value {
+fn unit_ball() -> Value {
     json!({
         "profile": {"type": "sphere", "radius": 1.0},
         "material": {"effective": {"e_star": 1e11, "g_star": 1e11}},
@@ -24,10 +25,9 @@ fn close(found: &Value, expected: f64, tolerance: f64) {
     assert!((found - expected).abs() <= tolerance * expected.abs(), "{found:e} is not {expected:e}");
 }
 
-#[tokio::test]
-async fn a_ball_wears_to_the_closed_form_and_the_profile_carries_on() {
-    let server = Server::start().await;
-    let reply = good(server.post("/wear", &of(&unit_sphere(), &asked(0.36))).await).await;
+#[test]
+fn a_ball_wears_to_the_closed_form_and_the_profile_carries_on() {
+    let reply = good(post("/wear", &of(&unit_ball(), &asked(0.36))));
     close(&reply["stick_radius"], 0.8, 1e-14);
     close(&reply["worn_radius"], 1.096_897_388_221, 1e-11);
     close(&reply["indentation"], 1.0, 1e-15);
@@ -53,31 +53,30 @@ async fn a_ball_wears_to_the_closed_form_and_the_profile_carries_on() {
     // error.
     let error = number(&reply["profile_error"]["normal_force"]);
     assert!(error < 1e-3, "{error:e}");
-    let worn = changed(unit_sphere(), &json!({"profile": reply["profile"]}));
+    let worn = changed(unit_ball(), &json!({"profile": reply["profile"]}));
     let cycle = json!({"drive": {"displacement": 0.36}});
-    let next = good(server.post("/cycle", &of(&worn, &cycle)).await).await;
+    let next = good(post("/cycle", &of(&worn, &cycle)));
     close(&next["contact"]["normal_force"], 1.258_666_666_667e11, 1.01 * error + 1e-11);
     close(&next["cycles"][0]["force_amplitude"], 2e11 * 0.8 * 0.36, 2e-3);
-    let unworn = good(server.post("/cycle", &of(&unit_sphere(), &cycle)).await).await;
+    let unworn = good(post("/cycle", &of(&unit_ball(), &cycle)));
     let work = |reply: &Value| number(&reply["cycles"][0]["dissipated_energy"]);
     assert!(work(&next) < 0.1 * work(&unworn), "{} {}", work(&next), work(&unworn));
     // A heavier contact takes it, too.
     let heavier = json!({"preload": {"indentation": 1.2}});
-    good(server.post("/cycle", &of(&changed(worn, &heavier), &cycle)).await).await;
+    good(post("/cycle", &of(&changed(worn, &heavier), &cycle)));
 }
 
-#[tokio::test]
-async fn a_vertical_edge_has_a_limit_but_no_table_and_a_stuck_punch_keeps_its_profile() {
-    let server = Server::start().await;
+#[test]
+fn a_vertical_edge_has_a_limit_but_no_table_and_a_stuck_punch_keeps_its_profile() {
     let edge = json!({"type": "flat_punch", "radius": 1.2e-4});
     let edged = json!({"type": "sum", "parts": [{"type": "sphere", "radius": 0.01}, edge]});
     let contact =
         |profile: Value, depth: f64| changed(ball(), &json!({"profile": profile, "preload": {"indentation": depth}}));
-    let reply = good(server.post("/wear", &of(&contact(edged, 1e-6), &asked(2e-7))).await).await;
+    let reply = good(post("/wear", &of(&contact(edged, 1e-6), &asked(2e-7))));
     assert_eq!((&reply["profile"], &reply["profile_error"]), (&Value::Null, &Value::Null));
     assert!(codes(&reply).contains(&"no_worn_profile"), "{reply}");
     assert!(number(&reply["removed_volume"]) > 0.0);
-    let reply = good(server.post("/wear", &of(&contact(edge.clone(), 1e-6), &asked(1e-7))).await).await;
+    let reply = good(post("/wear", &of(&contact(edge.clone(), 1e-6), &asked(1e-7))));
     assert_eq!((&reply["profile"], &reply["removed_volume"]), (&edge, &json!(0.0)));
     assert!(!codes(&reply).contains(&"no_worn_profile"), "{reply}");
     assert_eq!(reply["stick_radius"], reply["worn_radius"]);
@@ -88,26 +87,23 @@ async fn a_vertical_edge_has_a_limit_but_no_table_and_a_stuck_punch_keeps_its_pr
     );
 }
 
-#[tokio::test]
-async fn what_has_no_limit_is_refused_at_its_place() {
-    let server = Server::start().await;
-    let refuse = async |contact: &Value, asked: Value, expected| {
-        assert_refused(&server, "/wear", &of(contact, &asked), expected).await;
-    };
+#[test]
+fn what_has_no_limit_is_refused_at_its_place() {
+    let refuse = |contact: &Value, asked, expected| assert_refused("/wear", &of(contact, &asked), expected);
     let held = json!({"drive": {"displacement": 1e-7}, "hold": "normal_force"});
-    refuse(&ball(), held, ("invalid_input", "/hold", "depends on the course")).await;
+    refuse(&ball(), held, ("invalid_input", "/hold", "depends on the course"));
     for amplitude in [1.0, 2.0] {
-        refuse(&unit_sphere(), asked(amplitude), ("invalid_input", "/drive/displacement", "gross slip, 1 m")).await;
+        refuse(&unit_ball(), asked(amplitude), ("invalid_input", "/drive/displacement", "gross slip, 1 m"));
     }
-    refuse(&ball(), asked(-1e-7), ("invalid_input", "/drive/displacement", "")).await;
+    refuse(&ball(), asked(-1e-7), ("invalid_input", "/drive/displacement", ""));
     let frictionless = changed(ball(), &json!({"friction": 0.0}));
-    refuse(&frictionless, asked(1e-8), ("invalid_input", "/drive/displacement", "gross slip, 0 m")).await;
+    refuse(&frictionless, asked(1e-8), ("invalid_input", "/drive/displacement", "gross slip, 0 m"));
     let (drive, few) = (json!({"force": 1.0}), json!({"points": 1}));
-    refuse(&ball(), changed(asked(1e-8), &json!({"drive": drive})), ("invalid_input", "/drive/force", "")).await;
-    refuse(&ball(), changed(asked(1e-8), &few), ("invalid_input", "/points", "")).await;
+    refuse(&ball(), changed(asked(1e-8), &json!({"drive": drive})), ("invalid_input", "/drive/force", ""));
+    refuse(&ball(), changed(asked(1e-8), &few), ("invalid_input", "/points", ""));
     let radii: Vec<f64> = (0..=20).map(|index| 5.05e-6 * f64::from(index)).collect();
     let heights: Vec<f64> = radii.iter().map(|r| r * r / 0.02).collect();
     let short = json!({"profile": {"type": "tabulated", "r": radii, "z": heights}, "preload": {"indentation": 1e-6}});
     let named = ("beyond_profile", "/contact/profile", "give the surface further out");
-    refuse(&changed(ball(), &short), asked(1e-7), named).await;
+    refuse(&changed(ball(), &short), asked(1e-7), named);
 }

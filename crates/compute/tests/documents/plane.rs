@@ -1,26 +1,28 @@
-//! Motion in the plane over HTTP: pairs and ellipses in, pairs out; and who refuses them.
+//! Motion in the plane: pairs and ellipses in, pairs out; and who refuses them.
 
 use serde_json::{Value, json};
 
-use crate::common::{Server, ball, create, good, number, of, problem};
+use stickslip_compute::formats::Format;
 
-async fn simulate(server: &Server, more: Value) -> Value {
-    good(server.post("/simulate", &of(&ball(), &more)).await).await
+use crate::json::{ball, number, of, with};
+use crate::{assert_refused, good, post, written};
+
+fn simulate(more: Value) -> Value {
+    good(post("/simulate", &of(&ball(), &more)))
 }
 
 /// The displacement of gross slip and the friction limit.
-async fn units(server: &Server) -> (f64, f64) {
-    let reply = simulate(server, json!({"path": {"displacement": [0.0]}})).await;
+fn units() -> (f64, f64) {
+    let reply = simulate(json!({"path": {"displacement": [0.0]}}));
     (number(&reply["contact"]["gross_slip_displacement"]), number(&reply["contact"]["gross_slip_force"]))
 }
 
-#[tokio::test]
-async fn turns_of_a_circle_lose_the_work_of_the_mechanics_in_every_form() {
-    let server = Server::start().await;
-    let (full, limit) = units(&server).await;
+#[test]
+fn turns_of_a_circle_lose_the_work_of_the_mechanics_in_every_form() {
+    let (full, limit) = units();
     let path = json!({"ellipse": {"radii": [0.6 * full, 0.6 * full], "turns": 2}});
     let stress = json!({"points": 5, "fields": ["pressure", "shear", "slip"]});
-    let reply = simulate(&server, json!({"path": path, "stress": stress})).await;
+    let reply = simulate(json!({"path": path, "stress": stress}));
     assert_eq!(reply["steps"].as_array().unwrap().len(), 129);
     assert_eq!((reply["accuracy"]["solver"].as_str(), number(&reply["accuracy"]["count"])), (Some("rings"), 40.0));
     assert!(number(&reply["accuracy"]["force_error"]) <= 1e-3 && number(&reply["accuracy"]["steps"]) > 500.0);
@@ -36,24 +38,21 @@ async fn turns_of_a_circle_lose_the_work_of_the_mechanics_in_every_form() {
         number(&reply["stress"]["slip_x"][0]).abs() < 1e-12 * full
             && number(&reply["stress"]["friction_work"][4]) > 0.0
     );
-    let last = simulate(&server, json!({"path": path, "steps": "last", "solver": {"rings": {"count": 20}}})).await;
+    let last = simulate(json!({"path": path, "steps": "last", "solver": {"rings": {"count": 20}}}));
     assert_eq!((last["steps"].as_array().unwrap().len(), number(&last["accuracy"]["count"])), (1, 20.0));
-    for format in ["csv", "ndjson", "rows", "arrow", "svg"] {
-        let reply = server.post(&format!("/simulate?format={format}"), &of(&ball(), &json!({"path": path}))).await;
-        assert_eq!(reply.status(), 200, "{format}");
-        let text = String::from_utf8_lossy(&reply.bytes().await.unwrap()).into_owned();
-        assert!(format != "csv" || text.starts_with("displacement_x"), "{text}");
+    for (format, start) in [(Format::Csv, "displacement_x"), (Format::Svg, "<svg")] {
+        let shown = written("/simulate", format, None, &of(&ball(), &json!({"path": path})));
+        assert!(shown.starts_with(start), "{shown:.100}");
     }
 }
 
-#[tokio::test]
-async fn a_line_at_any_angle_is_served_by_the_exact_solver() {
-    let server = Server::start().await;
-    let (full, limit) = units(&server).await;
+#[test]
+fn a_line_at_any_angle_is_served_by_the_exact_solver() {
+    let (full, limit) = units();
     let targets = [0.5, -0.3, 0.4].map(|part| part * full);
-    let straight = simulate(&server, json!({"path": {"displacement": targets}, "stress": {"points": 3}})).await;
+    let straight = simulate(json!({"path": {"displacement": targets}, "stress": {"points": 3}}));
     let moves = targets.map(|along| json!({"displacement": [0.6 * along, 0.8 * along]}));
-    let turned = simulate(&server, json!({"path": {"moves": moves}, "stress": {"points": 3}})).await;
+    let turned = simulate(json!({"path": {"moves": moves}, "stress": {"points": 3}}));
     assert_eq!(turned["accuracy"]["solver"], "exact");
     for index in 0..3 {
         let force = number(&straight["steps"][index]["force"]);
@@ -64,75 +63,68 @@ async fn a_line_at_any_angle_is_served_by_the_exact_solver() {
         let (one, other) = (&straight["stress"]["shear"][index], &turned["stress"]["shear_y"][index]);
         assert!((0.8 * number(one) - number(other)).abs() <= 1e-9 * number(one).abs(), "{one} {other}");
     }
-    let rings = simulate(&server, json!({"path": {"moves": moves}, "solver": {"rings": {"count": 20}}})).await;
+    let rings = simulate(json!({"path": {"moves": moves}, "solver": {"rings": {"count": 20}}}));
     let error = number(&rings["accuracy"]["force_error"]);
     let off = number(&rings["steps"][2]["force"][0]) - number(&turned["steps"][2]["force"][0]);
     assert!(rings["accuracy"]["solver"] == "rings" && off.abs() <= error * limit, "{off} {error}");
 }
 
-#[tokio::test]
-async fn pairs_are_refused_by_name_where_they_have_no_meaning() {
-    let server = Server::start().await;
-    let (full, limit) = units(&server).await;
+#[test]
+fn pairs_are_refused_by_name_where_they_have_no_meaning() {
+    let (full, limit) = units();
     let turn = json!({"moves": [{"displacement": [0.5 * full, 0.0]}, {"displacement": [0.0, 0.5 * full]}]});
-    let id = server.client.create(&create(), &Default::default()).await.unwrap().id;
     let on = |more: Value| of(&ball(), &more);
     let curve = json!({"type": "load_curve", "indentation": [0.0, 1e-6, 3e-6], "normal_force": [0.0, 8.0, 40.0]});
-    let mut curved = ball();
-    curved["profile"] = curve;
+    let curved = with(ball(), "/profile", curve);
     let pair = json!([0.1 * full, 0.1 * full]);
     let force = json!({"moves": [{"force": [0.8 * limit, 0.8 * limit]}]});
-    let cases = [
-        (format!("/contacts/{id}/move"), json!({"displacement": pair}), "/displacement", "plane"),
-        (format!("/contacts/{id}/path"), json!({"path": turn}), "/path/moves/0/displacement", "plane"),
-        (format!("/contacts/{id}/path"), json!({"path": {"ellipse": {}}}), "/path", "ellipse"),
-        ("/cycle".into(), on(json!({"drive": {"displacement": [pair]}})), "/drive/displacement/0", "plane"),
-        ("/accuracy".into(), on(json!({"path": turn})), "/path/moves/0/displacement", "plane"),
-        ("/simulate".into(), on(json!({"path": {"displacement": [pair]}})), "/path/displacement/0", "plane"),
-        ("/simulate".into(), on(json!({"path": turn, "residual": true})), "/residual", "plane"),
-        ("/simulate".into(), on(json!({"path": turn, "solver": "exact"})), "/solver", "one line"),
-        ("/simulate".into(), on(json!({"path": turn, "solver": {"springs": {"count": 9}}})), "/solver", "plane"),
-        ("/simulate".into(), on(json!({"path": turn, "tolerance": 1e-9})), "/tolerance", "plane"),
+    for (route, body, pointer, word) in [
+        ("/cycle", on(json!({"drive": {"displacement": [pair]}})), "/drive/displacement/0", "plane"),
+        ("/accuracy", on(json!({"path": turn})), "/path/moves/0/displacement", "plane"),
+        ("/simulate", on(json!({"path": {"displacement": [pair]}})), "/path/displacement/0", "plane"),
+        ("/simulate", on(json!({"path": turn, "residual": true})), "/residual", "plane"),
+        ("/simulate", on(json!({"path": turn, "solver": "exact"})), "/solver", "one line"),
+        ("/simulate", on(json!({"path": turn, "solver": {"springs": {"count": 9}}})), "/solver", "plane"),
+        ("/simulate", on(json!({"path": turn, "tolerance": 1e-9})), "/tolerance", "plane"),
         (
-            "/simulate".into(),
+            "/simulate",
             on(json!({"path": {"falling_amplitude": {"reversals": 3}}, "solver": {"rings": {"count": 9}}})),
             "/solver",
             "rings",
         ),
         (
-            "/simulate".into(),
+            "/simulate",
             on(json!({"path": turn, "stress": {"points": 3, "fields": ["displacement"]}})),
             "/stress/fields",
             "plane",
         ),
         (
-            "/simulate".into(),
+            "/simulate",
             on(json!({"path": {"moves": [{"displacement": [1e-8, 1e-8, 1e-8]}]}})),
             "/path/moves/0/displacement",
             "pair",
         ),
-        ("/simulate".into(), on(json!({"path": force})), "/path/moves/0", "mu F_N"),
+        ("/simulate", on(json!({"path": force})), "/path/moves/0", "mu F_N"),
         (
-            "/simulate".into(),
+            "/simulate",
             on(json!({"path": {"ellipse": {"radii": [1e-8, -1e-8], "turns": 1}}})),
             "/path/ellipse/radii/1",
             "out of range",
         ),
-        ("/simulate".into(), of(&curved, &json!({"path": turn})), "/path/moves/0/displacement", "load curve"),
-    ];
-    for (route, body, pointer, word) in cases {
-        let refused = problem(server.post(&route, &body).await).await;
-        assert_eq!(refused.status, 422, "{route} {pointer}: {refused:?}");
-        let named = refused.errors.iter().find(|error| error.pointer.starts_with(pointer));
-        let detail = &named.unwrap_or_else(|| panic!("{route} {pointer}: {refused:?}")).detail;
-        assert!(detail.contains(word), "{route} {pointer}: {detail}");
+        ("/simulate", of(&curved, &json!({"path": turn})), "/path/moves/0/displacement", "load curve"),
+    ] {
+        let code = match word {
+            "mu F_N" => "force_exceeds_friction",
+            "load curve" => "no_stress_field",
+            _ => "invalid_input",
+        };
+        assert_refused(route, &body, (code, pointer, word));
     }
 }
 
-#[tokio::test]
-async fn a_sweep_has_the_loss_over_ratio_and_phase() {
-    let server = Server::start().await;
-    let (full, limit) = units(&server).await;
+#[test]
+fn a_sweep_has_the_loss_over_ratio_and_phase() {
+    let (full, limit) = units();
     let base =
         json!({"path": {"ellipse": {"radii": [0.6 * full, 0.0], "turns": 2, "steps_per_turn": 16, "phase": 0.0}}});
     let body = json!({
@@ -143,7 +135,7 @@ async fn a_sweep_has_the_loss_over_ratio_and_phase() {
         ],
         "outputs": ["/turn_losses/1"]
     });
-    let reply = good(server.post("/sweep", &body).await).await;
+    let reply = good(post("/sweep", &body));
     let losses: Vec<f64> = (0..4).map(|point| number(&reply["columns"]["/turn_losses/1"][point])).collect();
     // A line along x, twice; a circle; a line of 0.6 sqrt(2) u_max at 45 degrees.
     assert!((losses[1] / losses[0] - 1.0).abs() < 1e-2, "{losses:?}");

@@ -1,10 +1,12 @@
-//! Lives and critical distances of `POST /fretting`: values against the same criterion asked for at the depth, lives
-//! by bisection of the printed formulas, every fault with its place. The mechanics is tested in
+//! Lives and critical distances of the computation of fretting: values against the same criterion asked for at the
+//! depth, lives put into the printed formulas, every fault with its place. The mechanics is tested in
 //! `crates/mechanics/tests/physics/{critical_distance,lives}.rs`.
 
 use serde_json::{Value, json};
+use stickslip_compute::formats::Format;
 
-use crate::common::{Server, ball, changed, codes, good, number, of, problem, with};
+use crate::json::{ball, changed, codes, number, of, with};
+use crate::{assert_refused, good, post, written};
 
 const STEEL: f64 = 2.1e11;
 const SHEAR: f64 = STEEL / 2.6;
@@ -25,32 +27,21 @@ fn s_n(reference: f64) -> Value {
     json!({"s_n": {"reference": reference, "cycles": 1e6, "exponent": 8.0}})
 }
 
-/// The cycles at which a falling function of them has a value.
-fn bisected(value: f64, of_cycles: impl Fn(f64) -> f64) -> f64 {
-    let (mut low, mut high) = (-20.0_f64, 60.0_f64);
-    for _ in 0..200 {
-        let middle = 0.5 * (low + high);
-        if of_cycles(middle.exp()) > value { low = middle } else { high = middle }
-    }
-    low.exp()
+fn rated(body: &Value) -> Value {
+    good(post("/fretting", body))
 }
 
-async fn rated(server: &Server, body: &Value) -> Value {
-    good(server.post("/fretting", body).await).await
-}
-
-#[tokio::test]
-async fn lives_and_critical_distances_follow_from_the_values_by_the_printed_formulas() {
-    let server = Server::start().await;
+#[test]
+fn lives_and_critical_distances_follow_from_the_values_by_the_printed_formulas() {
     let criteria = json!({
         "crossland": {"alpha": 0.3, "limit": 3e8, "life": s_n(2e8)},
         "swt": {"life": strain_life(9.5e8, -0.09, 0.26, -0.6)},
         "fatemi_socie": {"k": 0.5, "yield": 4e8, "life": strain_life(5.5e8, -0.1, 0.4, -0.55)}
     });
     let distance = json!({"length": LENGTH, "method": "point"});
-    let reply = rated(&server, &asked(json!({"criteria": criteria, "critical_distance": distance}))).await;
+    let reply = rated(&asked(json!({"criteria": criteria, "critical_distance": distance})));
     assert!(codes(&reply).contains(&"life_scatter"), "{reply}");
-    assert!(include_str!("../../docs/warnings.md").contains("\n## life_scatter\n"));
+    assert!(include_str!("../../../../docs/warnings.md").contains("\n## life_scatter\n"));
     let swt = |n: f64| 9.5e8 * 9.5e8 / STEEL * (2.0 * n).powf(-0.18) + 9.5e8 * 0.26 * (2.0 * n).powf(-0.69);
     let fatemi_socie = |n: f64| 5.5e8 / SHEAR * (2.0 * n).powf(-0.1) + 0.4 * (2.0 * n).powf(-0.55);
     let crossland = |n: f64| 2e8 * (n / 1e6).powf(-1.0 / 8.0);
@@ -61,8 +52,8 @@ async fn lives_and_critical_distances_follow_from_the_values_by_the_printed_form
         for (rated, life) in [(&reply[name]["largest"], &reply[name]["life"]), (below, &below["life"])] {
             let (value, error) = (number(&rated["value"]), number(&rated["error"]));
             for (of, value) in [("cycles", value), ("shortest", value + error), ("longest", value - error)] {
-                let truth = bisected(value, of_cycles);
-                assert!((number(&life[of]) / truth - 1.0).abs() < 1e-9, "{name} {of}: {truth:e} {rated} {life}");
+                let again = of_cycles(number(&life[of]));
+                assert!((again / value - 1.0).abs() < 1e-9, "{name} {of}: {again:e} {rated} {life}");
             }
             assert!(life["no_life"].is_null(), "{life}");
         }
@@ -74,7 +65,7 @@ async fn lives_and_critical_distances_follow_from_the_values_by_the_printed_form
         let mut alone = criteria[name].clone();
         alone.as_object_mut().unwrap().remove("life");
         let points = json!([[x, y, 0.5 * LENGTH]]);
-        let there = rated_alone(&server, name, &alone, &points).await;
+        let there = rated(&asked(json!({"criteria": {name: alone}, "points": points})));
         let [one, other] = [below, &there[name]["largest"]].map(|rated| number(&rated["value"]));
         let error = number(&below["error"]) + number(&there[name]["largest"]["error"]);
         assert!((one - other).abs() <= error && one < number(&reply[name]["largest"]["value"]), "{name}: {below}");
@@ -90,12 +81,12 @@ async fn lives_and_critical_distances_follow_from_the_values_by_the_printed_form
     for method in ["point", "line"] {
         let distance = json!({"length": LENGTH, "method": method});
         let body = asked(json!({"criteria": crossland, "points": points, "critical_distance": distance}));
-        let reply = rated(&server, &body).await;
+        let reply = rated(&body);
         let (all, below) = (&reply["crossland"]["values"], &reply["crossland"]["critical_distance"]);
         let worst = (0..3).max_by(|one, other| number(&all[*one]).total_cmp(&number(&all[*other]))).unwrap();
         assert_eq!(below["point"], points[worst], "{reply}");
         values.push((number(&below["value"]), number(&all[worst])));
-        let table = server.post("/fretting?format=csv", &body).await.text().await.unwrap();
+        let table = written("/fretting", Format::Csv, None, &body);
         assert!(table.starts_with("x,y,z,crossland,crossland_cycles\n"), "{table}");
         let last = table.lines().nth(1 + worst).unwrap().rsplit(',').next().unwrap().parse::<f64>().unwrap();
         assert!((last / number(&reply["crossland"]["cycles"][worst]) - 1.0).abs() < 1e-12, "{table}");
@@ -104,24 +95,19 @@ async fn lives_and_critical_distances_follow_from_the_values_by_the_printed_form
     assert!(line < local && point < local && (line / point - 1.0).abs() > 1e-3, "{values:?}");
 }
 
-async fn rated_alone(server: &Server, name: &str, criterion: &Value, points: &Value) -> Value {
-    rated(server, &asked(json!({"criteria": {name: criterion}, "points": points}))).await
-}
-
-#[tokio::test]
-async fn a_value_without_a_life_says_why() {
-    let server = Server::start().await;
+#[test]
+fn a_value_without_a_life_says_why() {
     let life = strain_life(9.5e8, -0.09, 0.26, -0.6);
     let deep = json!([[0.0, 0.0, 1e-5]]);
     let pressed = json!({"criteria": {"swt": {"life": life}}, "points": deep, "bulk": {"mean": -1e9}});
-    let reply = rated(&server, &asked(pressed)).await;
+    let reply = rated(&asked(pressed));
     let expected = json!({"cycles": null, "shortest": 1e12, "longest": null, "no_life": "not_positive"});
     assert_eq!((&reply["swt"]["life"], &reply["swt"]["cycles"]), (&expected, &json!([null])), "{reply}");
     let crossland = |reference: f64| json!({"criteria": {"crossland": {"alpha": 0.3, "life": s_n(reference)}}});
     for (reference, why, shortest, longest) in
         [(1e12, "too_long", json!(1e12), json!(null)), (1e6, "too_short", json!(0.0), json!(0.5))]
     {
-        let reply = rated(&server, &asked(crossland(reference))).await;
+        let reply = rated(&asked(crossland(reference)));
         let expected = json!({"cycles": null, "shortest": shortest, "longest": longest, "no_life": why});
         assert_eq!(reply["crossland"]["life"], expected);
     }
@@ -129,7 +115,7 @@ async fn a_value_without_a_life_says_why() {
     let distance = json!({"critical_distance": {"length": LENGTH, "method": "line"}});
     let cone =
         with(asked(changed(crossland(2e8), &distance)), "/contact/profile", json!({"type": "cone", "slope": 0.01}));
-    let reply = rated(&server, &cone).await;
+    let reply = rated(&cone);
     let expected = json!({"cycles": null, "shortest": 0.0, "longest": null, "no_life": "infinite_stress"});
     assert_eq!(reply["crossland"]["life"], expected, "{reply}");
     let below = &reply["crossland"]["critical_distance"];
@@ -139,9 +125,8 @@ async fn a_value_without_a_life_says_why() {
     assert!(number(&below["value"]) > 0.0 && number(&below["life"]["cycles"]) > 0.0, "{below}");
 }
 
-#[tokio::test]
-async fn every_fault_is_named_with_its_place() {
-    let server = Server::start().await;
+#[test]
+fn every_fault_is_named_with_its_place() {
     let distance = |length: f64, method: &str| json!({"length": length, "method": method});
     let crossland = |life: Value| json!({"criteria": {"crossland": {"alpha": 0.3, "life": life}}});
     let swt = |life: Value| json!({"criteria": {"swt": {"life": life}}});
@@ -164,8 +149,6 @@ async fn every_fault_is_named_with_its_place() {
         (swt(strain_life(0.0, -0.1, 0.3, -0.6)), "/criteria/swt/life/strain_life/strength", "Pa"),
         (swt(strain_life(9e8, -0.1, -0.3, -0.6)), "/criteria/swt/life/strain_life/ductility", "0 to 1000"),
     ] {
-        let refused = problem(server.post("/fretting", &asked(changes.clone())).await).await;
-        assert_eq!(refused.errors[0].pointer, pointer, "{changes}: {refused:?}");
-        assert!(refused.errors[0].detail.contains(detail), "{changes}: {}", refused.errors[0].detail);
+        assert_refused("/fretting", &asked(changes), ("invalid_input", pointer, detail));
     }
 }
