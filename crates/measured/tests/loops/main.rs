@@ -2,6 +2,7 @@
 
 mod bench;
 mod coverage;
+mod cycle_friction;
 mod faults;
 mod given;
 mod quantised;
