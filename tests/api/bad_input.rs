@@ -1,5 +1,6 @@
-//! Bad input around the members of a document, which `faults.rs` has and `crates/compute/tests/documents`: the envelope,
-//! queries, headers, moves and the amount of work. Every refusal is a problem document, and nothing is ever a 500.
+//! Bad input around the members of a document, which `faults.rs` has and `crates/compute/tests/documents`: the
+//! envelope, queries, headers, moves and the amount of work. Every refusal is a problem document, and nothing is ever a
+//! 500.
 
 use std::sync::Arc;
 use std::time::Duration;

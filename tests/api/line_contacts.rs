@@ -4,28 +4,9 @@
 use serde_json::{Value, json};
 use stickslip_compute::computations::entries;
 
+use crate::common::json::{cylinder, cylinder_with_bulk, pad};
 use crate::common::openapi::{document, examples};
-use crate::common::{Server, changed, good, number, of, problem, with};
-
-/// Aluminium on aluminium, p0 = 160 MPa: a = 0.385 mm.
-fn cylinder() -> Value {
-    let body = json!({"youngs_modulus": 7.4e10, "poisson_ratio": 0.33});
-    json!({
-        "profile": {"type": "cylinder", "radius": 0.05, "length": 0.01, "reference_length": 0.1},
-        "material": {"bodies": [body, body]},
-        "friction": 0.6,
-        "preload": {"normal_force": 968.466409034}
-    })
-}
-
-fn with_bulk() -> Value {
-    changed(cylinder(), &json!({"bulk": {"body": "second", "stress_per_force": 198_251.584_37}}))
-}
-
-fn pad() -> Value {
-    let pad = json!({"type": "rounded_pad", "flat_half_width": 5e-4, "edge_radius": 0.05, "length": 0.01});
-    with(with(cylinder(), "/profile", pad), "/preload", json!({"contact_radius": 8e-4}))
-}
+use crate::common::{Server, good, number, of, problem, with};
 
 #[tokio::test]
 async fn a_stored_line_contact_has_its_stresses_over_x() {
@@ -35,8 +16,8 @@ async fn a_stored_line_contact_has_its_stresses_over_x() {
     let path = json!({"force": forces});
     let x = [-0.97, -0.5, 0.1, 0.7, 0.99].map(|part| part * a);
     let asked = json!({"path": path, "stress": {"x": x}, "residual": true});
-    let reply = good(server.post("/simulate", &of(&with_bulk(), &asked)).await).await;
-    let made = good(server.post("/contacts", &with_bulk()).await).await;
+    let reply = good(server.post("/simulate", &of(&cylinder_with_bulk(), &asked)).await).await;
+    let made = good(server.post("/contacts", &cylinder_with_bulk()).await).await;
     let place = format!("/contacts/{}", made["id"].as_str().unwrap());
     let moved = good(server.post(&format!("{place}/path"), &json!({"path": path})).await).await;
     assert_eq!(moved["steps"][4], reply["steps"][4]);
@@ -67,7 +48,7 @@ async fn every_computation_serves_a_line_contact_or_refuses_it_by_name() {
             if example.get("contact").is_none_or(Value::is_string) {
                 continue;
             }
-            for contact in [cylinder(), pad(), with_bulk()] {
+            for contact in [cylinder(), pad(), cylinder_with_bulk()] {
                 let mut body = with(example.clone(), "/contact", contact);
                 if body.pointer("/stress/radii").is_some() {
                     body = with(body, "/stress", json!({"points": 7}));

@@ -1,5 +1,6 @@
-//! Contacts that are known by their load curve alone, stored ones. The rest is tested in
-//! `crates/compute/tests/documents/load_curves.rs`, their loads and radii in `crates/mechanics/tests/physics/load_curves.rs`.
+//! Stored contacts that are known by their load curve alone. The rest is tested in
+//! `crates/compute/tests/documents/load_curves.rs`, their loads and radii in
+//! `crates/mechanics/tests/physics/load_curves.rs`.
 
 use serde_json::{Value, json};
 

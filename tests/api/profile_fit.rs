@@ -1,5 +1,5 @@
-//! A scan on the command line. What becomes of it is tested in `crates/compute/tests/documents/profile_fit.rs`, what a fit
-//! finds in `crates/measured/tests/scans`.
+//! A scan on the command line. What becomes of it is tested in `crates/compute/tests/documents/profile_fit.rs`, what a
+//! fit finds in `crates/measured/tests/scans`.
 
 use serde_json::Value;
 

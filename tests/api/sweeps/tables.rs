@@ -1,5 +1,5 @@
-//! The table of a sweep: the same in every format, at once and from a job, and on the command line. Its numbers are tested
-//! in `crates/compute/tests/documents/sweeps.rs`.
+//! The table of a sweep: the same in every format, at once and from a job, and on the command line. Its numbers are
+//! tested in `crates/compute/tests/documents/sweeps.rs`.
 
 use arrow_ipc::reader::StreamReader;
 use reqwest::Method;

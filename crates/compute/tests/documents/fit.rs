@@ -1,4 +1,5 @@
-//! Measured loops: units, warnings, the contact that a fit makes, and what is no loop. What a fit finds is tested in `crates/measured/tests/loops`.
+//! Measured loops: units, warnings, the contact that a fit makes, and what is no loop. What a fit finds is tested in
+//! `crates/measured/tests/loops`.
 
 use serde_json::{Value, json};
 use stickslip_compute::formats::Format;

@@ -14,6 +14,28 @@ pub fn ball() -> Value {
     })
 }
 
+/// A cylinder, aluminium on aluminium: p0 = 160 MPa: a = 0.385 mm.
+pub fn cylinder() -> Value {
+    let body = json!({"youngs_modulus": 7.4e10, "poisson_ratio": 0.33});
+    json!({
+        "profile": {"type": "cylinder", "radius": 0.05, "length": 0.01, "reference_length": 0.1},
+        "material": {"bodies": [body, body]},
+        "friction": 0.6,
+        "preload": {"normal_force": 968.466409034}
+    })
+}
+
+/// The cylinder on a specimen that is pulled along.
+pub fn cylinder_with_bulk() -> Value {
+    changed(cylinder(), &json!({"bulk": {"body": "second", "stress_per_force": 198_251.584_37}}))
+}
+
+/// A pad of the same bodies.
+pub fn pad() -> Value {
+    let pad = json!({"type": "rounded_pad", "flat_half_width": 5e-4, "edge_radius": 0.05, "length": 0.01});
+    with(with(cylinder(), "/profile", pad), "/preload", json!({"contact_radius": 8e-4}))
+}
+
 /// A body: a contact, and members beside it.
 pub fn of(contact: &Value, rest: &Value) -> Value {
     changed(json!({"contact": contact}), rest)

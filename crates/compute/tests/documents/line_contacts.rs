@@ -3,28 +3,8 @@
 
 use serde_json::{Value, json};
 
-use crate::json::{changed, codes, number, of, with};
+use crate::json::{changed, codes, cylinder, cylinder_with_bulk, number, of, pad, with};
 use crate::{assert_refused, good, post, problem};
-
-/// Aluminium on aluminium, p0 = 160 MPa: a = 0.385 mm.
-fn cylinder() -> Value {
-    let body = json!({"youngs_modulus": 7.4e10, "poisson_ratio": 0.33});
-    json!({
-        "profile": {"type": "cylinder", "radius": 0.05, "length": 0.01, "reference_length": 0.1},
-        "material": {"bodies": [body, body]},
-        "friction": 0.6,
-        "preload": {"normal_force": 968.466409034}
-    })
-}
-
-fn with_bulk() -> Value {
-    changed(cylinder(), &json!({"bulk": {"body": "second", "stress_per_force": 198_251.584_37}}))
-}
-
-fn pad() -> Value {
-    let pad = json!({"type": "rounded_pad", "flat_half_width": 5e-4, "edge_radius": 0.05, "length": 0.01});
-    with(with(cylinder(), "/profile", pad), "/preload", json!({"contact_radius": 8e-4}))
-}
 
 #[test]
 fn stresses_are_over_x_and_the_stuck_zone_is_off_the_middle() {
@@ -35,7 +15,7 @@ fn stresses_are_over_x_and_the_stuck_zone_is_off_the_middle() {
     let x = [-0.97, -0.5, 0.1, 0.7, 0.99].map(|part| part * a);
     let point = json!({"body": "second", "points": [[0.95 * a, 1.0, 0.02 * a]]});
     let asked = json!({"path": path, "stress": {"x": x}, "residual": true, "subsurface": point});
-    let reply = good(post("/simulate", &of(&with_bulk(), &asked)));
+    let reply = good(post("/simulate", &of(&cylinder_with_bulk(), &asked)));
     for (index, expected) in
         [0.243104915623, 0.166177503909, 0.061446284913, 0.060153085570, 0.141067359797].into_iter().enumerate()
     {
@@ -49,12 +29,12 @@ fn stresses_are_over_x_and_the_stuck_zone_is_off_the_middle() {
     assert!(codes(&reply).contains(&"bulk_work_neglected"), "{reply}");
 
     let worst = json!({"path": {"force": [0.5 * limit, -0.5 * limit]}, "body": "second", "criteria": {"swt": {}}});
-    let found = good(post("/fretting", &of(&with_bulk(), &worst)));
+    let found = good(post("/fretting", &of(&cylinder_with_bulk(), &worst)));
     // Forces to the right pull the specimen to the right as it is pulled: the trailing edge cracks.
     assert!((number(&found["swt"]["largest"]["point"][0]) / a + 1.0).abs() < 1e-3, "{found}");
     assert!(!codes(&found).contains(&"bulk_shift_neglected"));
     let cycle = json!({"drive": {"force": 0.5 * limit}, "work_density": {"x": [-0.95 * a, 0.95 * a]}});
-    let [plain, shifted] = [cylinder(), with_bulk()].map(|contact| of(&contact, &cycle));
+    let [plain, shifted] = [cylinder(), cylinder_with_bulk()].map(|contact| of(&contact, &cycle));
     let [plain, shifted] = [plain, shifted].map(|body| good(post("/cycle", &body)));
     assert_eq!(plain["cycles"][0]["dissipated_energy"], shifted["cycles"][0]["dissipated_energy"]);
     let density = |reply: &Value, index: usize| number(&reply["cycles"][0]["friction_work"]["density"][index]);
@@ -107,8 +87,14 @@ fn what_is_no_line_contact_is_refused_at_its_place() {
         (changed(sphere, &bulk(1e5)), path.clone(), "bulk_too_large", "/contact/bulk", "cylinder only"),
         (changed(pad(), &bulk(1e5)), path.clone(), "bulk_too_large", "/contact/bulk", "cylinder only"),
         (changed(cylinder(), &bulk(1e40)), path.clone(), "invalid_input", "/contact/bulk/stress_per_force", "1e30"),
-        (with(with_bulk(), "/material", effective), path.clone(), "invalid_input", "/contact/bulk", "two bodies"),
-        (with_bulk(), moves, "invalid_input", "/path/moves/0", "constant normal force"),
+        (
+            with(cylinder_with_bulk(), "/material", effective),
+            path.clone(),
+            "invalid_input",
+            "/contact/bulk",
+            "two bodies",
+        ),
+        (cylinder_with_bulk(), moves, "invalid_input", "/path/moves/0", "constant normal force"),
     ] {
         assert_refused("/simulate", &of(&contact, &rest), (code, place, words));
     }

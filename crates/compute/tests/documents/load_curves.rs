@@ -1,6 +1,5 @@
-//! Contacts that are known by their load curve alone: what they reply, what they have no stresses
-//! for, and what is no such profile. Their loads and radii are
-//! tested in `crates/mechanics/tests/physics/load_curves.rs`.
+//! Contacts that are known by their load curve alone: what they reply, what they have no stresses for, and what is no
+//! such profile. Their loads and radii are tested in `crates/mechanics/tests/physics/load_curves.rs`.
 
 use serde_json::{Value, json};
 

@@ -1,5 +1,5 @@
-//! Protocols: what is promised is what comes, in as few reversals as there are. That no
-//! path leaves less is tested in `crates/mechanics/tests/physics/{minimax,protocols,protocol_search}.rs`.
+//! Protocols: what is promised is what comes, in as few reversals as there are. That no path leaves less is tested in
+//! `crates/mechanics/tests/physics/{minimax,protocols,protocol_search}.rs`.
 
 use serde_json::{Value, json};
 

@@ -1,5 +1,5 @@
-//! The friction of a contact that follows a bench, from one measured cycle, against a ball in closed form (Cattaneo 1938,
-//! Mindlin 1949; Masing 1926).
+//! The friction of a contact that follows a bench, from one measured cycle, against a ball in closed form (Cattaneo
+//! 1938, Mindlin 1949; Masing 1926).
 
 use std::f64::consts::TAU;
 
