@@ -37,9 +37,9 @@ fn loads(text: &str) -> Result<FrettingMap, &'static str> {
 }
 
 impl Flags for CycleFlags {
-    fn body(&self, file: Option<&Path>) -> Result<Body, CommandError> {
+    fn body(self, file: Option<&Path>) -> Result<Body, CommandError> {
         let text = read(file.unwrap_or(Path::new("-")))?;
-        let Some(map) = &self.map else { return Ok(Body { text, ..Body::default() }) };
+        let Some(map) = self.map else { return Ok(Body { text, ..Body::default() }) };
         let mut body: Value = parsed(&text)?;
         body.as_object_mut().ok_or("the body must be a JSON object")?.insert("map".to_owned(), json!(map));
         Ok(Body { text: body.to_string().into_bytes(), format: Some(Format::Csv), ..Body::default() })

@@ -8,7 +8,7 @@ use stickslip_measured::import::{LoopHints, UnitHint};
 use stickslip_wire::fit::{FitParameter, KnownValue, KnownValues, LoopStart, MeasuredLoop};
 use stickslip_wire::{self as wire, ContactDefinition, FitRequest};
 
-use super::{Body, Flags, force, length, member, one_of, time};
+use super::{Body, Flags, ReplyPart, force, length, member, one_of, time};
 use crate::cli::command_error::CommandError;
 use crate::cli::io::read;
 
@@ -75,40 +75,33 @@ impl Flags for FitFlags {
         Self::augment_args(command).mut_arg("file", |file| file.help(help))
     }
 
-    fn body(&self, file: Option<&Path>) -> Result<Body, CommandError> {
-        let body = Body::of_file(file, |content, file| self.of_columns(content, file))?;
-        Ok(Body { only: self.only_contact.then_some(|reply| member::<ContactDefinition>(reply, "contact")), ..body })
+    fn body(self, file: Option<&Path>) -> Result<Body, CommandError> {
+        let only = self.only_contact.then_some::<ReplyPart>(|reply| member::<ContactDefinition>(reply, "contact"));
+        Ok(Body { only, ..Body::of_file(file, |content, file| self.of_columns(content, file))? })
     }
 }
 
 impl FitFlags {
-    fn of_columns(&self, content: &[u8], file: &Path) -> Result<(FitRequest, Vec<String>), CommandError> {
-        let contact =
-            self.contact.as_ref().ok_or("a file of columns needs --contact FILE, the definition of the contact")?;
-        let contact = wire::parse::<ContactDefinition>(&read(contact)?)?;
-        let hints = LoopHints {
-            displacement: self.displacement.clone(),
-            force: self.force.clone(),
-            time: self.time.clone(),
-            load: self.load.clone(),
-            displacement_unit: self.displacement_unit.clone(),
-            force_unit: self.force_unit.clone(),
-            time_unit: self.time_unit.clone(),
-            load_unit: self.load_unit.clone(),
-            sheet: self.sheet.clone(),
-        };
+    fn of_columns(self, content: &[u8], file: &Path) -> Result<(FitRequest, Vec<String>), CommandError> {
+        let contact = self.contact.ok_or("a file of columns needs --contact FILE, the definition of the contact")?;
+        let contact = wire::parse::<ContactDefinition>(&read(&contact)?)?;
+        let FitFlags { displacement, force, time, load, displacement_unit, force_unit, time_unit, load_unit, .. } =
+            self;
+        let sheet = self.sheet;
+        let hints =
+            LoopHints { displacement, force, time, load, displacement_unit, force_unit, time_unit, load_unit, sheet };
         let found = files::measured_loop(content, &hints).map_err(|error| CommandError::of_file(file, error))?;
         let normal_force = self.normal_force.or(found.measured.normal_force);
         let measured = MeasuredLoop { normal_force, start: self.start, ..found.measured };
         let mut known = KnownValues::default();
-        for (parameter, value) in &self.known {
-            *known.entry(*parameter) = Some(*value);
+        for (parameter, value) in self.known {
+            *known.entry(parameter) = Some(value);
         }
         let request = FitRequest {
             contact,
             loops: vec![measured],
             units: Some(found.units),
-            free: if self.free.is_empty() { USUALLY_FREE.to_vec() } else { self.free.clone() },
+            free: if self.free.is_empty() { USUALLY_FREE.to_vec() } else { self.free },
             known: Some(known),
             noise: None,
         };

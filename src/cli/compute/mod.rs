@@ -92,7 +92,7 @@ trait Flags: Args {
     }
 
     /// The body of the request: the file as it is.
-    fn body(&self, file: Option<&Path>) -> Result<Body, CommandError> {
+    fn body(self, file: Option<&Path>) -> Result<Body, CommandError> {
         Ok(Body { text: read(file.unwrap_or(Path::new("-")))?, ..Body::default() })
     }
 }

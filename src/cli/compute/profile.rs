@@ -8,7 +8,7 @@ use stickslip_measured::import::{ScanHints, UnitHint};
 use stickslip_wire::profile_fit::{ScanLoad, ScanOrientation, Smoothing};
 use stickslip_wire::{self as wire, Profile, ProfileFitRequest};
 
-use super::{Body, Flags, length, member};
+use super::{Body, Flags, ReplyPart, length, member};
 use crate::cli::command_error::CommandError;
 use crate::cli::io::read;
 
@@ -54,27 +54,19 @@ impl Flags for ProfileFlags {
         Self::augment_args(command).mut_arg("file", |file| file.help(help))
     }
 
-    fn body(&self, file: Option<&Path>) -> Result<Body, CommandError> {
-        let body = Body::of_file(file, |content, file| self.of_columns(content, file))?;
-        Ok(Body { only: self.only_profile.then_some(|reply| member::<Profile>(reply, "profile")), ..body })
+    fn body(self, file: Option<&Path>) -> Result<Body, CommandError> {
+        let only = self.only_profile.then_some::<ReplyPart>(|reply| member::<Profile>(reply, "profile"));
+        Ok(Body { only, ..Body::of_file(file, |content, file| self.of_columns(content, file))? })
     }
 }
 
 impl ProfileFlags {
-    fn of_columns(&self, content: &[u8], file: &Path) -> Result<(ProfileFitRequest, Vec<String>), CommandError> {
-        let hints = ScanHints {
-            lateral: self.lateral.clone(),
-            height: self.height.clone(),
-            spacing: self.spacing,
-            x: self.x.clone(),
-            y: self.y.clone(),
-            z: self.z.clone(),
-            sheet: self.sheet.clone(),
-            most: 0,
-        };
+    fn of_columns(self, content: &[u8], file: &Path) -> Result<(ProfileFitRequest, Vec<String>), CommandError> {
+        let ProfileFlags { lateral, height, spacing, x, y, z, sheet, .. } = self;
+        let hints = ScanHints { lateral, height, spacing, x, y, z, sheet, most: 0 };
         let found = files::scan(content, hints).map_err(|error| CommandError::of_file(file, error))?;
-        let load = |file: &PathBuf| Ok::<_, CommandError>(wire::parse::<ScanLoad>(&read(file)?)?);
-        let load = self.load.as_ref().map(load).transpose()?;
+        let load = |file: PathBuf| Ok::<_, CommandError>(wire::parse::<ScanLoad>(&read(&file)?)?);
+        let load = self.load.map(load).transpose()?;
         let request = ProfileFitRequest {
             scan: found.scan,
             units: Some(found.units),

@@ -50,7 +50,7 @@ impl Flags for ProtocolFlags {
         Self::augment_args(command).mut_arg("file", |file| file.required(false).required_unless_present("contact"))
     }
 
-    fn body(&self, file: Option<&Path>) -> Result<Body, CommandError> {
+    fn body(self, file: Option<&Path>) -> Result<Body, CommandError> {
         let word = |word: &Option<String>| json!(word.as_ref().map(|word| word.replace('-', "_")));
         let contact = self.contact.as_ref().map(|contact| parsed(&read(contact)?)).transpose()?;
         let flags = given([
