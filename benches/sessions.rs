@@ -59,7 +59,7 @@ fn displacements(turns: usize) -> Vec<f64> {
 
 async fn create(sessions: &Sessions) -> Uuid {
     let creation = read::<CreateRequest>(DEFINITION).expect("a valid definition");
-    sessions.changes().create(creation, None).await.expect("room").created.expect("a new session")
+    sessions.create(creation, None).await.expect("room").created.expect("a new session")
 }
 
 async fn make(store: &Arc<dyn Store>, turns: usize) -> Uuid {
@@ -70,7 +70,7 @@ async fn make(store: &Arc<dyn Store>, turns: usize) -> Uuid {
     for path in body.chunks(PATH).chain([tail]) {
         let plan = Plan::Displacement(path.to_vec());
         let advance = Advance { plan, stress: None, steps: Steps::Last, tolerance: 1e-10, relax: None };
-        sessions.moves().apply(id, advance, None, None).await.expect("a displacement has no limit");
+        sessions.apply(id, advance, None, None).await.expect("a displacement has no limit");
         // The snapshot is kept behind the reply.
         tokio::time::sleep(Duration::from_millis(200)).await;
     }

@@ -18,21 +18,15 @@ use stickslip_wire::session::Advance;
 use super::cache::Guard;
 use super::changes::answer_once;
 use super::compute::{Computed, compute};
-use super::context::{ATTEMPTS, Common, TenantContext};
+use super::context::{ATTEMPTS, Common};
 use super::error::SessionError;
 use super::expected::Expected;
+use super::handle::Sessions;
 use super::loaded::{LoadedSession, written};
 use super::run_to_end::run_to_end;
 use super::storage_reservation::StorageReservation;
 
-/// Moves of the sessions of a tenant, for requests that come with the key of the name `by`.
-#[derive(Clone)]
-pub struct Mover {
-    pub(super) context: TenantContext,
-    pub(super) by: Option<Arc<str>>,
-}
-
-impl Mover {
+impl Sessions {
     /// Applies moves to a session, all or none of them, if it is at the sequence that the client expects.
     ///
     /// # Errors
@@ -70,7 +64,7 @@ impl Mover {
             }
             let sequence = self.load(&mut guard, expected, &mut is_current).await?;
             stop.flag().charge(std::mem::take(&mut guard.loading));
-            let computed = match compute(&self.context, &mut guard, &advance, self.by.clone(), &stop).await {
+            let computed = match compute(self, &mut guard, &advance, &stop).await {
                 Err(SessionError::Failure(_) | SessionError::Rejected(_))
                     if !is_current && Box::pin(self.context.catch_up(&mut guard, u64::MAX)).await? =>
                 {
@@ -151,7 +145,7 @@ impl Mover {
         Ok(run_to_end(append).await)
     }
 
-    /// What [`Mover::apply`] would do to relax a session at the sequence that the client expects; nothing changes. The
+    /// What [`Sessions::apply`] would do to relax a session at the sequence that the client expects; nothing changes. The
     /// memory of the request becomes what that takes.
     ///
     /// # Errors

@@ -15,15 +15,11 @@ use stickslip_wire::{ForkRequest, SessionReply};
 use super::context::{ATTEMPTS, TenantContext};
 use super::error::SessionError;
 use super::expected::Expected;
+use super::handle::Sessions;
 use super::loaded::{LoadedSession, written};
 use super::run_to_end::run_to_end;
 
-/// Changes of the sessions of a tenant, but for their moves.
-pub struct Changes {
-    pub(super) context: TenantContext,
-}
-
-impl Changes {
+impl Sessions {
     /// Makes a session.
     ///
     /// # Errors

@@ -14,10 +14,10 @@ use stickslip_wire::session::Advance;
 use stickslip_wire::{MoveReply, Observation, PathReply, Plan, RelaxReply, State, Steps, limits};
 
 use super::cache::Guard;
-use super::context::TenantContext;
 use super::error::SessionError;
+use super::handle::Sessions;
 use super::loaded::{LoadedSession, written};
-use super::observations::{Observations, check_plausible};
+use super::observations::check_plausible;
 
 /// The most pieces that one straight move can add to the slip history, with a margin.
 const PIECES_OF_A_MOVE: usize = 8;
@@ -40,18 +40,17 @@ pub fn bytes_of_moves(advance: &Advance) -> usize {
         + of_stress(radii)
 }
 
-/// Makes moves after the state in the guard, for a request that comes with the key of the name `by`. The guard keeps
-/// the state before them, or, if it has been used up, nothing.
+/// Makes moves after the state in the guard. The guard keeps the state before them, or, if it has been used up, nothing.
 ///
 /// # Errors
 /// [`SessionError`].
 pub(super) async fn compute(
-    context: &TenantContext,
+    sessions: &Sessions,
     guard: &mut Guard,
     advance: &Arc<Advance>,
-    by: Option<Arc<str>>,
     stop: &Deadline,
 ) -> Result<Computed, SessionError> {
+    let context = &sessions.context;
     let depth = guard.live.as_ref().map_or(0, |live| live.contact.memory_depth());
     // A single move that the mechanics refuses has changed nothing, so that it needs no copy to fall back on; and a
     // copy costs as much as the slip history is deep. A move that another process may have overtaken needs the copy.
@@ -71,7 +70,7 @@ pub(super) async fn compute(
     let work = Work { moves, curved, depth, radii, residual: false };
     let cost = work.cost(profile).saturating_add(sought);
     let solve = {
-        let (advance, stop) = (Arc::clone(advance), stop.clone());
+        let (advance, by, stop) = (Arc::clone(advance), sessions.by.clone(), stop.clone());
         move || {
             let made = make(&mut live, &advance, by.as_ref(), &stop);
             (live, made)
@@ -88,7 +87,7 @@ pub(super) async fn compute(
         }
     };
     if let Plan::Observations(_) = advance.plan {
-        reply.body = Box::pin(Observations::of(context).observed(guard, &mut live, &records, stop)).await?;
+        reply.body = Box::pin(sessions.observed(guard, &mut live, &records, stop)).await?;
     }
     Ok(Computed { live, records, reply })
 }

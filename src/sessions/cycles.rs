@@ -14,8 +14,8 @@ use stickslip_mechanics::closed_cycles::{ClosedCycle, CycleLog, Loop};
 use stickslip_wire::reply::finite;
 use stickslip_wire::{Cycle, CyclePage, HistoryPage, State, limits};
 
-use super::context::TenantContext;
 use super::error::SessionError;
+use super::handle::Sessions;
 use super::replay::PAGE;
 
 /// Looking at one recorded state.
@@ -27,20 +27,14 @@ const LAST: &str = "/last";
 /// JSON pointer to the choice of cycles in a history.
 const MARKED: &str = "/cycles";
 
-/// The closed cycles of the sessions of a tenant.
-#[derive(Clone)]
-pub struct ClosedCycles {
-    pub(super) context: TenantContext,
-}
-
-impl ClosedCycles {
+impl Sessions {
     /// The `last` newest closed cycles of a session, and its sequence. The memory of the request is more for as long as
     /// they are looked for.
     ///
     /// # Errors
     /// [`SessionError::NotFound`] or [`SessionError::Expired`], a failure of the store or of the pool, or
     /// [`SessionError::Failure`] if it takes too long.
-    pub async fn newest(
+    pub async fn cycles(
         &self,
         id: Uuid,
         last: usize,
@@ -60,7 +54,7 @@ impl ClosedCycles {
             known => {
                 let known = known.filter(|known| known.sequence < sequence);
                 let log = self.look_on(id, sequence, known, &virgin, (&stop, LAST), memory).await?;
-                self.keep(id, &log).await?;
+                self.keep_log(id, &log).await?;
                 log
             }
         };
@@ -77,8 +71,13 @@ impl ClosedCycles {
     /// Adds to the moves of a page the cycles that they closed. The memory of the request is more meanwhile.
     ///
     /// # Errors
-    /// As [`ClosedCycles::newest`].
-    pub async fn mark(&self, id: Uuid, page: &mut HistoryPage, memory: &mut Reservation) -> Result<(), SessionError> {
+    /// As [`Sessions::cycles`].
+    pub async fn mark_cycles(
+        &self,
+        id: Uuid,
+        page: &mut HistoryPage,
+        memory: &mut Reservation,
+    ) -> Result<(), SessionError> {
         let Some(after) = page.items.first().map(|item| item.sequence - 1) else { return Ok(()) };
         let (stop, _guard) = self.context.pool.deadline();
         let (virgin, known) = {
@@ -112,7 +111,7 @@ impl ClosedCycles {
         let (log, cycles) = pool.run(cost, look).await??;
         pool.resize(memory, before).await?;
         page.items.iter_mut().zip(cycles).for_each(|(item, cycle)| item.cycle = cycle);
-        self.keep(id, &log).await
+        self.keep_log(id, &log).await
     }
 
     /// Looks at the states up to the move `sequence` that are not in `known`. The log at the deadline is kept
@@ -128,7 +127,7 @@ impl ClosedCycles {
     ) -> Result<Arc<CycleLog>, SessionError> {
         let (log, seen) = self.read_states(id, sequence, known, virgin, stop, Some(memory)).await?;
         if let Err(interrupted) = seen {
-            self.keep(id, &log).await?;
+            self.keep_log(id, &log).await?;
             return Err(Failure::interrupted(interrupted, place).into());
         }
         Ok(log)
@@ -176,7 +175,7 @@ impl ClosedCycles {
     }
 
     /// Keeps a log with the cached session, unless the log is ahead of the session.
-    async fn keep(&self, id: Uuid, log: &Arc<CycleLog>) -> Result<(), SessionError> {
+    async fn keep_log(&self, id: Uuid, log: &Arc<CycleLog>) -> Result<(), SessionError> {
         let mut guard = self.context.lock(id).await?;
         if let Some(live) = guard.live.as_mut().filter(|live| live.session.sequence >= log.sequence) {
             live.keep_log(log);

@@ -15,10 +15,8 @@ use crate::store::{Listener, StoreError, StreamEvent};
 use stickslip_compute::simulation::{Cause, Failure};
 use stickslip_wire::{EndReason, HistoryPage, StateEvent};
 
-use super::cycles::ClosedCycles;
 use super::error::SessionError;
 use super::handle::Sessions;
-use super::history::History;
 
 /// Moves that a listener reads at a time.
 const PAGE: usize = 80;
@@ -29,8 +27,7 @@ const RETRY_DELAY: Duration = Duration::from_secs(1);
 const LONG_ATTEMPTS: u32 = 100;
 
 struct Follower {
-    history: History,
-    cycles: ClosedCycles,
+    sessions: Sessions,
     id: Uuid,
     /// The sequence of the last move that has been read.
     seen: u64,
@@ -70,16 +67,16 @@ pub async fn events(
             0
         }
     };
-    let (history, cycles) = (sessions.history(), sessions.cycles());
-    let follower = Follower { history, cycles, id, seen, ready, listener, failures: 0, _share: share };
+    let sessions = sessions.clone();
+    let follower = Follower { sessions, id, seen, ready, listener, failures: 0, _share: share };
     Ok(futures::stream::unfold(Some(follower), async |follower| Some(follower?.next().await)))
 }
 
 impl Follower {
     /// The moves beyond those that have been read.
     async fn page(&self) -> Result<HistoryPage, SessionError> {
-        let mut page = self.history.own_page(self.id, self.seen, PAGE).await?;
-        self.cycles.mark(self.id, &mut page, &mut Reservation::default()).await?;
+        let mut page = self.sessions.own_history(self.id, self.seen, PAGE).await?;
+        self.sessions.mark_cycles(self.id, &mut page, &mut Reservation::default()).await?;
         Ok(page)
     }
 

@@ -1,4 +1,5 @@
-//! The handle on the sessions of a tenant, and what it reads of a single one.
+//! The handle on the sessions of a tenant, and what it reads of them. The other files of this folder add the moves, the
+//! changes, the history, the cycles and the observations.
 
 use std::sync::Arc;
 
@@ -12,22 +13,17 @@ use stickslip_compute::simulation::{Profiles, bytes, cost};
 use stickslip_wire::subsurface::SubsurfaceTask;
 use stickslip_wire::{ContactDefinition, SessionPage, SessionReply, SubsurfaceRequest};
 
-use super::apply::Mover;
-use super::changes::Changes;
 use super::context::{Common, TenantContext};
-use super::cycles::ClosedCycles;
 use super::error::SessionError;
-use super::history::History;
 use super::loaded::written;
 use super::metrics::Readings;
-use super::observations::Observations;
 
 /// The sessions of a tenant. Clones, and those of other tenants, are handles on the same.
 #[derive(Clone)]
 pub struct Sessions {
     pub(super) context: TenantContext,
     /// The name of the key that the requests come with, where keys are in use.
-    by: Option<Arc<str>>,
+    pub(super) by: Option<Arc<str>>,
 }
 
 impl Sessions {
@@ -43,36 +39,6 @@ impl Sessions {
     #[must_use]
     pub fn for_tenant(&self, tenant: Tenant, key: Arc<str>) -> Sessions {
         Sessions { context: TenantContext { tenant, common: Arc::clone(&self.context.common) }, by: Some(key) }
-    }
-
-    /// Making, copying, naming and deleting them.
-    #[must_use]
-    pub fn changes(&self) -> Changes {
-        Changes { context: self.context.clone() }
-    }
-
-    /// Their moves to come.
-    #[must_use]
-    pub fn moves(&self) -> Mover {
-        Mover { context: self.context.clone(), by: self.by.clone() }
-    }
-
-    /// Their moves of the past.
-    #[must_use]
-    pub fn history(&self) -> History {
-        History { context: self.context.clone(), names_makers: self.names_makers() }
-    }
-
-    /// The cycles that they have closed.
-    #[must_use]
-    pub fn cycles(&self) -> ClosedCycles {
-        ClosedCycles { context: self.context.clone() }
-    }
-
-    /// What a bench has measured beside their moves.
-    #[must_use]
-    pub fn observations(&self) -> Observations {
-        Observations::of(&self.context)
     }
 
     /// The shared profiles, for work that ends when this flag is raised.

@@ -6,18 +6,11 @@ use uuid::Uuid;
 use crate::otlp;
 use stickslip_wire::{HistoryItem, HistoryPage};
 
-use super::context::TenantContext;
 use super::error::SessionError;
+use super::handle::Sessions;
 use super::replay::damaged;
 
-/// The recorded moves of the sessions of a tenant.
-#[derive(Clone)]
-pub struct History {
-    pub(super) context: TenantContext,
-    pub(super) names_makers: bool,
-}
-
-impl History {
+impl Sessions {
     /// The number of moves of a session.
     ///
     /// # Errors
@@ -48,15 +41,15 @@ impl History {
     ///
     /// # Errors
     /// [`SessionError::NotFound`] or [`SessionError::Expired`], or a failure of the store.
-    pub async fn page(&self, id: Uuid, after: u64, limit: usize) -> Result<HistoryPage, SessionError> {
+    pub async fn history(&self, id: Uuid, after: u64, limit: usize) -> Result<HistoryPage, SessionError> {
         if !self.context.cache.holds(&self.context.tenant, id) {
             self.context.extent(id).await?;
         }
-        self.own_page(id, after, limit).await
+        self.own_history(id, after, limit).await
     }
 
     /// The same of a session that is known to belong to the tenant.
-    pub(super) async fn own_page(&self, id: Uuid, after: u64, limit: usize) -> Result<HistoryPage, SessionError> {
+    pub(super) async fn own_history(&self, id: Uuid, after: u64, limit: usize) -> Result<HistoryPage, SessionError> {
         let found = self.context.store.history(id, after, limit + 1).instrument(otlp::part!("store")).await;
         let mut found = found.map_err(|error| self.context.store_error(id, error))?;
         let more = found.len() > limit;
@@ -68,7 +61,7 @@ impl History {
             state: record.state,
             cycle: None,
             observation: record.observation(),
-            by: record.by.filter(|_| self.names_makers).as_deref().map(str::to_owned),
+            by: record.by.filter(|_| self.names_makers()).as_deref().map(str::to_owned),
             at: record.at,
         });
         Ok(HistoryPage { items: items.collect(), next })

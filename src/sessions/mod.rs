@@ -37,18 +37,13 @@ mod snapshot;
 mod storage_reservation;
 mod trace;
 
-pub use apply::Mover;
 pub use cache::CAPACITY;
-pub use changes::Changes;
 pub use check::{CheckEvent, Checked, Finding, check, count_moves};
 pub use compute::bytes_of_moves;
-pub use cycles::ClosedCycles;
 pub use error::SessionError;
 pub use events::events;
 pub use expected::{Expected, label_checksum};
 pub use expiry::run_expiry_loop;
 pub use handle::Sessions;
-pub use history::History;
 pub use metrics::{Readings, SessionMetrics};
-pub use observations::Observations;
 pub use trace::{bytes_of_trace, trace};

@@ -20,9 +20,9 @@ use stickslip_wire::{
 };
 
 use super::cache::Guard;
-use super::context::TenantContext;
-use super::cycles::{ClosedCycles, STATE_COST, bytes_to_read};
+use super::cycles::{STATE_COST, bytes_to_read};
 use super::error::SessionError;
+use super::handle::Sessions;
 use super::loaded::{Estimated, LoadedSession, written};
 use super::replay::PAGE;
 
@@ -52,38 +52,29 @@ pub(super) fn check_plausible(observations: &[Observation], normal_force: f64) -
     faults.done(Some(()))
 }
 
-/// The observations of the sessions of a tenant.
-pub struct Observations {
-    pub(super) cycles: ClosedCycles,
-}
-
-impl Observations {
-    pub(super) fn of(context: &TenantContext) -> Observations {
-        Observations { cycles: ClosedCycles { context: context.clone() } }
-    }
-
+impl Sessions {
     /// The friction of a session by its observations.
     ///
     /// # Errors
     /// [`SessionError::NotFound`] or [`SessionError::Expired`], or a failure of the store or of the pool.
     pub async fn friction(&self, id: Uuid) -> Result<FrictionReply, SessionError> {
-        let (request, _raised_at_the_end) = self.cycles.context.pool.deadline();
+        let (request, _raised_at_the_end) = self.context.pool.deadline();
         let stop = Arc::new(Part::of(request.clone(), Some(TIME)));
         // The lock is held for copies alone, so that the session can move on meanwhile.
         let (virgin, sequence, known, mut estimated) = {
-            let mut guard = self.cycles.context.lock(id).await?;
-            let live = self.cycles.context.current(&mut guard).await?;
+            let mut guard = self.context.lock(id).await?;
+            let live = self.context.current(&mut guard).await?;
             let known = (live.contact.virgin(), live.session.sequence, live.cycles.clone(), live.estimated);
             request.flag().charge(guard.loading);
             known
         };
         let memory = &mut Reservation::default();
-        let (log, seen) = self.cycles.read_states(id, sequence, known, &virgin, &*stop, Some(memory)).await?;
+        let (log, seen) = self.read_states(id, sequence, known, &virgin, &*stop, Some(memory)).await?;
         if seen.is_ok() {
-            self.cycles.context.pool.resize(memory, bytes_of_fit(sequence)).await?;
+            self.context.pool.resize(memory, bytes_of_fit(sequence)).await?;
             estimated = self.estimate(id, &log, &virgin, estimated, &[], &stop).await?;
         }
-        let mut guard = self.cycles.context.lock(id).await?;
+        let mut guard = self.context.lock(id).await?;
         if let Some(live) = guard.live.as_mut().filter(|live| live.session.sequence == sequence) {
             live.keep_log(&log);
             live.estimated = estimated;
@@ -115,7 +106,7 @@ impl Observations {
         let stored = to.min(log.sequence - new.len() as u64);
         let mut read = from.saturating_sub(1);
         while read < stored {
-            let page = match self.cycles.context.page(id, read, stored).await {
+            let page = match self.context.page(id, read, stored).await {
                 // A store behind the cached state: the append that follows says so.
                 Err(SessionError::Store(StoreError::Damaged { .. })) if !new.is_empty() => return Ok(unknown),
                 page => page?,
@@ -131,7 +122,7 @@ impl Observations {
         }
         let (virgin, stop) = (virgin.clone(), Arc::clone(stop));
         let fit = move || cycle.friction(virgin, &|| stop.check().is_ok());
-        let friction = self.cycles.context.pool.run(FIT_COST + POINT_COST * moves as u64, fit).await?;
+        let friction = self.context.pool.run(FIT_COST + POINT_COST * moves as u64, fit).await?;
         Ok(match friction {
             Ok(friction) => {
                 let friction = friction.map(|(value, interval)| FrictionEstimate { value, interval, from, to });
@@ -155,10 +146,10 @@ impl Observations {
         let id = guard.id();
         let (virgin, before) = (live.contact.virgin(), live.session.sequence - records.len() as u64);
         let stop = Arc::new(Part::of(stop.clone(), Some(TIME)));
-        let (pool, known) = (&self.cycles.context.pool, live.cycles.take());
+        let (pool, known) = (&self.context.pool, live.cycles.take());
         let bytes = bytes_to_read(known.as_deref(), &virgin, live.session.sequence);
         if let Some(_held) = pool.try_reserve(bytes + bytes_of_fit(live.session.sequence)) {
-            let (mut log, seen) = self.cycles.read_states(id, before, known, &virgin, &*stop, None).await?;
+            let (mut log, seen) = self.read_states(id, before, known, &virgin, &*stop, None).await?;
             // It is not read again if these observations are overtaken.
             if let Some(live) = &mut guard.live {
                 live.keep_log(&log);
@@ -190,7 +181,7 @@ impl Observations {
         });
         let friction = live.estimated.and_then(|estimated| estimated.friction);
         let reply = ObservationsReply { id, sequence: live.session.sequence, items: items.collect(), friction };
-        self.cycles.context.pool.run(WRITING_COST * records.len() as u64, move || written(&reply)).await?
+        self.context.pool.run(WRITING_COST * records.len() as u64, move || written(&reply)).await?
     }
 }
 

@@ -14,7 +14,7 @@ use stickslip_mechanics::Contact;
 use stickslip_wire::{HistoryItem, LoopPage, limits};
 
 use super::error::SessionError;
-use super::history::History;
+use super::handle::Sessions;
 use super::replay::{PAGE, PIECE_BYTES, damaged};
 
 /// JSON pointer to the number of points.
@@ -27,14 +27,14 @@ const POINTS: &str = "/points_per_move";
 /// [`SessionError::NotFound`] or [`SessionError::Expired`], a failure of the store or of the pool, or
 /// [`SessionError::Failure`] if it takes too long.
 pub async fn trace(
-    History { context, .. }: &History,
+    sessions: &Sessions,
     id: Uuid,
     after: u64,
     past: &[HistoryItem],
     points: usize,
     memory: &mut Reservation,
 ) -> Result<LoopPage, SessionError> {
-    let mut page = LoopPage::after(after);
+    let (context, mut page) = (&sessions.context, LoopPage::after(after));
     let (Some(last), true) = (past.last().map(|item| item.sequence), points > 1) else {
         for item in past {
             page.push_end(item.sequence, &item.state, item.observation.map(|observation| observation.force));

@@ -17,12 +17,6 @@ impl<'a> IdempotentRequest<'a> {
         IdempotentRequest { store, key: key.map(|key| key.for_tenant(tenant)) }
     }
 
-    /// Whether it has a key.
-    #[must_use]
-    pub fn has_key(&self) -> bool {
-        self.key.is_some()
-    }
-
     /// The reply that an earlier request with the same key got.
     ///
     /// # Errors

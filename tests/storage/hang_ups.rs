@@ -153,27 +153,26 @@ async fn keys_replay_and_the_cache_is_true(store: Arc<Yielding>) {
     let fresh = || Sessions::new(store.clone(), pool.clone(), CAPACITY);
     let (sessions, mut made) = (fresh(), count(&*store).await);
     let new = || create().check().unwrap();
-    let contact = sessions.changes().create(new(), None).await.unwrap().created.unwrap();
+    let contact = sessions.create(new(), None).await.unwrap().created.unwrap();
     made += 1;
     for awaits in 0.. {
         let key = |what: &str| keyed(format!("{what}-{awaits}"));
         let step = |to: f64| MoveRequest::from(Move::displacement(to * 1e-9)).check().unwrap();
         let label = Some(format!("label {awaits}"));
-        let (moves, changes) = (sessions.moves(), sessions.changes());
         let fork = || ForkRequest { label: Some("fork".to_owned()), sequence: None };
         let at = sessions.get(contact).await.unwrap().sequence;
 
         let firsts: [Option<Result<Reply, SessionError>>; 4] = [
-            dropped_after(awaits, changes.create(new(), key("create"))).await,
-            dropped_after(awaits, moves.apply(contact, step(1.0 + awaits as f64), None, key("move"))).await,
-            dropped_after(awaits, changes.fork(contact, fork(), key("fork"))).await,
-            dropped_after(awaits, changes.rename(contact, label.clone(), None, key("rename"))).await,
+            dropped_after(awaits, sessions.create(new(), key("create"))).await,
+            dropped_after(awaits, sessions.apply(contact, step(1.0 + awaits as f64), None, key("move"))).await,
+            dropped_after(awaits, sessions.fork(contact, fork(), key("fork"))).await,
+            dropped_after(awaits, sessions.rename(contact, label.clone(), None, key("rename"))).await,
         ];
         let again = [
-            changes.create(new(), key("create")).await.unwrap(),
-            moves.apply(contact, step(1.0 + awaits as f64), None, key("move")).await.unwrap(),
-            changes.fork(contact, fork(), key("fork")).await.unwrap(),
-            changes.rename(contact, label.clone(), None, key("rename")).await.unwrap(),
+            sessions.create(new(), key("create")).await.unwrap(),
+            sessions.apply(contact, step(1.0 + awaits as f64), None, key("move")).await.unwrap(),
+            sessions.fork(contact, fork(), key("fork")).await.unwrap(),
+            sessions.rename(contact, label.clone(), None, key("rename")).await.unwrap(),
         ];
         let mut all = true;
         for (first, again) in firsts.into_iter().zip(&again) {
@@ -188,7 +187,7 @@ async fn keys_replay_and_the_cache_is_true(store: Arc<Yielding>) {
         assert_eq!((now.sequence, &now.label), (at + 1, &label), "after {awaits} awaits");
 
         // Without a key it is made or not; what is shown is what is stored.
-        let first = dropped_after(awaits, moves.apply(contact, step(-1.0 - awaits as f64), None, None)).await;
+        let first = dropped_after(awaits, sessions.apply(contact, step(-1.0 - awaits as f64), None, None)).await;
         all &= first.is_some();
         let now = sessions.get(contact).await.unwrap();
         assert!((at + 1..=at + 2).contains(&now.sequence));
@@ -204,9 +203,9 @@ async fn keys_replay_and_the_cache_is_true(store: Arc<Yielding>) {
 async fn what_is_deleted_is_not_cached(store: Arc<Yielding>) {
     for awaits in 0.. {
         let sessions = Sessions::new(store.clone(), Pool::with_defaults(), CAPACITY);
-        let id = sessions.changes().create(create().check().unwrap(), None).await.unwrap().created.unwrap();
+        let id = sessions.create(create().check().unwrap(), None).await.unwrap().created.unwrap();
         assert_eq!(sessions.held().1, 1);
-        let first = dropped_after(awaits, sessions.changes().delete(id, None)).await;
+        let first = dropped_after(awaits, sessions.delete(id, None)).await;
         pause().await;
         if is_gone(&store.find(id).await) {
             until("the cache forgets it", async || (sessions.held() == (0, 0)).then_some(())).await;
@@ -225,8 +224,7 @@ async fn quotas_count_what_is_stored(store: Arc<Yielding>) {
     let quotas = QuotaLimits { contacts: limit, ..QuotaLimits::default() };
     let pool = Pool::new(Capacity { quotas, ..Capacity::default() });
     let sessions = Sessions::new(store.clone(), pool, CAPACITY);
-    let changes = sessions.changes();
-    let make = || changes.create(create().check().unwrap(), None);
+    let make = || sessions.create(create().check().unwrap(), None);
     let mut ids = vec![make().await.unwrap().created.unwrap()];
     store.uncountable.store(true, Ordering::SeqCst);
     let fill = async |ids: &mut Vec<Uuid>| {
@@ -249,7 +247,7 @@ async fn quotas_count_what_is_stored(store: Arc<Yielding>) {
     fill(&mut ids).await;
     for awaits in 0..MORE / 2 {
         let Some(id) = ids.pop() else { break };
-        if dropped_after(awaits, sessions.changes().delete(id, None)).await.is_some() {
+        if dropped_after(awaits, sessions.delete(id, None)).await.is_some() {
             break;
         }
         pause().await;

@@ -254,15 +254,14 @@ async fn of_two_that_rename_by_one_tag_one_wins() {
     let folder = tempfile::tempdir().unwrap();
     let store = Arc::new(SqliteStore::open(&folder.path().join("labels.db")).unwrap());
     let [here, there] = [(); 2].map(|()| Sessions::new(store.clone(), Pool::with_defaults(), 1 << 20));
-    let id = here.changes().create(create().check().unwrap(), None).await.unwrap().created.unwrap();
+    let id = here.create(create().check().unwrap(), None).await.unwrap().created.unwrap();
     let mut label: Option<String> = None;
     for round in 0..30 {
         let expected = Some(Expected { sequence: 0, label: Some(label_checksum(label.as_deref())) });
         let [one, other] = ["here", "there"].map(|name| Some(format!("{name} {round}")));
-        let (these, those) = (here.changes(), there.changes());
         let (first, second) = futures::join!(
-            these.rename(id, one.clone(), expected, None),
-            those.rename(id, other.clone(), expected, None)
+            here.rename(id, one.clone(), expected, None),
+            there.rename(id, other.clone(), expected, None)
         );
         let (won, lost) = if first.is_ok() { (one, second) } else { (other, first) };
         assert!(matches!(lost, Err(SessionError::Relabelled { found: 0 })), "{lost:?}");

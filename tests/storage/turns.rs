@@ -15,11 +15,11 @@ use tempfile::tempdir;
 use uuid::Uuid;
 
 async fn made(sessions: &Sessions) -> Uuid {
-    sessions.changes().create(create().check().unwrap(), None).await.unwrap().created.unwrap()
+    sessions.create(create().check().unwrap(), None).await.unwrap().created.unwrap()
 }
 
 async fn moved(sessions: &Sessions, id: Uuid, step: Move, expected: Option<u64>) -> Result<Reply, SessionError> {
-    sessions.moves().apply(id, MoveRequest::from(step).check().unwrap(), expected.map(Into::into), None).await
+    sessions.apply(id, MoveRequest::from(step).check().unwrap(), expected.map(Into::into), None).await
 }
 
 fn state(reply: &Reply) -> State {
@@ -44,11 +44,10 @@ async fn requests_on_one_contact_have_their_turn_in_the_order_of_their_arrival()
         .collect();
     let path = serde_json::json!({"path": {"displacement": [5e-8, -5e-8]}});
     let path = serde_json::from_value::<PathRequest>(path).unwrap();
-    let mover = sessions.moves();
     let moves = join_all(wanted.iter().map(|(step, expected)| moved(&sessions, shared, *step, *expected)));
     // The client of a move that waits among the others hangs up before its turn.
     let mut leaves = Box::pin(moved(&sessions, shared, Move::displacement(1e-7), None));
-    let (mut moves, path_after) = (Box::pin(moves), mover.apply(shared, path.check().unwrap(), None, None));
+    let (mut moves, path_after) = (Box::pin(moves), sessions.apply(shared, path.check().unwrap(), None, None));
     let mut path_after = Box::pin(path_after);
     assert!(futures::poll!(moves.as_mut()).is_pending() && futures::poll!(leaves.as_mut()).is_pending());
     assert!(futures::poll!(path_after.as_mut()).is_pending());

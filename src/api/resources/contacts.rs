@@ -28,7 +28,7 @@ pub async fn create_contact(
     TenantApp(app): TenantApp,
     request: CheckedBody<CreateRequest>,
 ) -> Result<Response, Problem> {
-    Ok(reply::of_change(app.sessions.changes().create(request.body, request.key).await?))
+    Ok(reply::of_change(app.sessions.create(request.body, request.key).await?))
 }
 
 parameters! {
@@ -104,7 +104,7 @@ pub async fn rename_contact(
     request: CheckedBody<RenameRequest>,
 ) -> Result<Response, Problem> {
     let label = request.body.label;
-    let reply = app.sessions.changes().rename(id, label.clone(), expected, request.key).await?;
+    let reply = app.sessions.rename(id, label.clone(), expected, request.key).await?;
     let tag = tag(reply.sequence, label.as_deref());
     Ok(reply::tagged(reply::of_change(reply), &tag))
 }
@@ -121,7 +121,7 @@ pub async fn delete_contact(
     ContactPath { id }: ContactPath,
     IfMatch { expected }: IfMatch,
 ) -> Result<StatusCode, Problem> {
-    app.sessions.changes().delete(id, expected).await?;
+    app.sessions.delete(id, expected).await?;
     Ok(StatusCode::NO_CONTENT)
 }
 
@@ -159,5 +159,5 @@ pub async fn fork_contact(
     ContactPath { id }: ContactPath,
     request: OptionalBody<ForkRequest>,
 ) -> Result<Response, Problem> {
-    Ok(reply::of_change(app.sessions.changes().fork(id, request.body, request.key).await?))
+    Ok(reply::of_change(app.sessions.fork(id, request.body, request.key).await?))
 }

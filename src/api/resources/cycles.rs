@@ -38,7 +38,7 @@ pub async fn get_cycles(
         return Ok(unchanged);
     }
     let mut memory = app.pool.reserve(last * OBJECT + format.bytes(0, 0)).await?;
-    let (sequence, page) = app.sessions.cycles().newest(id, last, &mut memory).await?;
+    let (sequence, page) = app.sessions.cycles(id, last, &mut memory).await?;
     let write = move || format.write(CAPACITY, &page, || Some(plot(&page)), || Some(table(&page)), &|| true);
     let body = app.pool.run(format.cost(), write).await??;
     let tag = format.tag(&sequence.to_string());

@@ -76,7 +76,7 @@ impl MoveSeries for History {
         memory: &mut Reservation,
     ) -> Result<HistoryPage, Problem> {
         if self.cycles && !format.is_plot() {
-            app.sessions.cycles().mark(id, &mut moves, memory).await?;
+            app.sessions.mark_cycles(id, &mut moves, memory).await?;
         }
         Ok(moves)
     }

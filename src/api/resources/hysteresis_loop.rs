@@ -72,7 +72,7 @@ impl MoveSeries for Loop {
         _: Format,
         memory: &mut Reservation,
     ) -> Result<LoopPage, Problem> {
-        let page = trace(&app.sessions.history(), id, after, &moves.items, self.points_per_move, memory).await?;
+        let page = trace(&app.sessions, id, after, &moves.items, self.points_per_move, memory).await?;
         Ok(LoopPage { next: moves.next, ..page })
     }
 

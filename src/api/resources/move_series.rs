@@ -66,14 +66,13 @@ pub(super) async fn reply<T: MoveSeries>(
     shown: T,
 ) -> Result<Response, Problem> {
     let format = Format::chosen(format, headers, &Format::ALL)?;
-    let history = app.sessions.history();
     let (after, limit) = match moves.of(format) {
         Moves::Page(after, limit) => (after, limit),
-        Moves::Newest(limit) => (history.sequence(id).await?.saturating_sub(limit as u64), limit),
+        Moves::Newest(limit) => (app.sessions.sequence(id).await?.saturating_sub(limit as u64), limit),
         Moves::All => return all(app, id, headers, format, shown).await,
     };
     let mut memory = app.pool.reserve(shown.bytes(limit) + format.bytes(0, 0)).await?;
-    let moves = history.page(id, after, limit).await?;
+    let moves = app.sessions.history(id, after, limit).await?;
     let tag = format.tag(&(version(&moves, after) + shown.marking()));
     if reply::is_current(headers, &tag) {
         return Ok(reply::not_modified(&tag));
@@ -112,12 +111,12 @@ async fn all<T: MoveSeries>(
     format: Format,
     shown: T,
 ) -> Result<Response, Problem> {
-    let end = app.sessions.history().sequence(id).await?;
+    let end = app.sessions.sequence(id).await?;
     let tag = format.tag(&format!("{end}-all{}", shown.marking()));
     if reply::is_current(headers, &tag) {
         return Ok(reply::not_modified(&tag));
     }
-    app.sessions.history().check_complete(id, end).await?;
+    app.sessions.check_complete(id, end).await?;
     let memory = app.pool.reserve(shown.bytes(PAGE)).await?;
     let stream = TableStream::new(format);
     let mut table = WholeTable { app, id, shown, format, stream, end, after: 0, is_done: false, memory };
@@ -151,7 +150,7 @@ struct WholeTable<T> {
 impl<T: MoveSeries> WholeTable<T> {
     async fn next(&mut self) -> Result<Vec<u8>, Problem> {
         let limit = PAGE.min(usize::try_from(self.end - self.after).unwrap_or(PAGE));
-        let moves = self.app.sessions.history().page(self.id, self.after, limit).await?;
+        let moves = self.app.sessions.history(self.id, self.after, limit).await?;
         let memory = &mut self.memory;
         let page = self.shown.page(&self.app, self.id, self.after, moves, self.format, memory).await?;
         let mut block = self.stream.push(&self.shown.table(&page)).map_err(Unwritable::new)?;

@@ -79,12 +79,12 @@ pub async fn relax_contact(
 ) -> Result<Response, Problem> {
     let CheckedBody { body, key, mut held } = request;
     if body.dry_run {
-        let (sequence, body) = app.sessions.moves().dry_run_relax(id, body, expected, &mut held.memory).await?;
+        let (sequence, body) = app.sessions.dry_run_relax(id, body, expected, &mut held.memory).await?;
         return Ok(held.on(reply::at_sequence(sequence, body)));
     }
     let advance = Advance::from(body);
     held.resize(&app.pool, bytes_of_moves(&advance)).await?;
-    Ok(held.on(reply::of_change(app.sessions.moves().apply(id, advance, expected, key).await?)))
+    Ok(held.on(reply::of_change(app.sessions.apply(id, advance, expected, key).await?)))
 }
 
 /// Moves a contact by a checked body.
@@ -95,5 +95,5 @@ pub(super) async fn advance<T: Document<Checked = Advance>>(
     CheckedBody { body, key, mut held }: CheckedBody<T>,
 ) -> Result<Response, Problem> {
     held.resize(&app.pool, bytes_of_moves(&body)).await?;
-    Ok(held.on(reply::of_change(app.sessions.moves().apply(id, body, expected, key).await?)))
+    Ok(held.on(reply::of_change(app.sessions.apply(id, body, expected, key).await?)))
 }

@@ -46,6 +46,6 @@ pub async fn get_friction(
     headers: HeaderMap,
     _: CheckedQuery<()>,
 ) -> Result<Response, Problem> {
-    let friction = app.sessions.observations().friction(id).await?;
+    let friction = app.sessions.friction(id).await?;
     reply::versioned(&headers, &Format::Columns.tag(&friction.sequence.to_string()), &friction)
 }

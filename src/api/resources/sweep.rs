@@ -42,9 +42,8 @@ pub async fn run_sweep(
     let (CheckedQuery(query), events) = (query?, accepts_events(&headers));
     let format = if events { Format::Columns } else { Format::chosen(query.format, &headers, &Format::TABLES)? };
     let CheckedBody { body: checked, key, mut held } = body;
-    let changes = app.sessions.changes();
     let earlier = match &key {
-        Some(key) => changes.earlier_reply(key.clone()).await?,
+        Some(key) => app.sessions.earlier_reply(key.clone()).await?,
         None => None,
     };
     let wants_job = checked.request.job || respond_async || events;
@@ -83,7 +82,7 @@ pub async fn run_sweep(
             let result = app.jobs.at_once(&sweep, &stop).await?;
             match key {
                 Some(key) => {
-                    let kept = changes.keep_reply(key, result.to_bytes()).await?;
+                    let kept = app.sessions.keep_reply(key, result.to_bytes()).await?;
                     SweepResult::from_bytes(&kept.body, numbers).unwrap_or(result)
                 }
                 None => result,
