@@ -4,7 +4,6 @@ use stickslip_measured::import::ImportError;
 use stickslip_mechanics::Error;
 use stickslip_wire::{Code, Fault, ProblemDocument, Rejection};
 
-use crate::computations::ComputeError;
 use crate::formats::Unwritable;
 use crate::simulation::{Cause, Failure};
 
@@ -81,17 +80,6 @@ impl From<ImportError> for Refusal {
 impl From<Unwritable> for Refusal {
     fn from(error: Unwritable) -> Self {
         Refusal::internal(error.to_string())
-    }
-}
-
-impl From<ComputeError> for Refusal {
-    fn from(error: ComputeError) -> Self {
-        match error {
-            ComputeError::Unknown(_) => Refusal::new(Code::NotFound, error.to_string()),
-            ComputeError::Rejected(rejection) => rejection.into(),
-            ComputeError::Failed(failure) => failure.into(),
-            ComputeError::Unwritable(error) => error.into(),
-        }
     }
 }
 

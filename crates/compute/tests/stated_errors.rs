@@ -64,7 +64,7 @@ fn no_row_states_an_error_below_a_third_of_the_true_one() {
             let options = DisplayOptions::in_format(Format::Columns);
             let reply = compute("accuracy", body.to_string().as_bytes(), options, &Flag::default());
             let reply: AccuracyReply =
-                serde_json::from_slice(&reply.unwrap_or_else(|error| panic!("{body:.300}: {error}"))).unwrap();
+                serde_json::from_slice(&reply.unwrap_or_else(|error| panic!("{body:.300}: {error:?}"))).unwrap();
             for row in reply.rows {
                 let Some((error, stated)) = row.force_error.zip(row.estimated_force_error) else { continue };
                 compared += 1;

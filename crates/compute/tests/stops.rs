@@ -8,7 +8,7 @@ use rustix::time::{ClockId, clock_gettime};
 use serde_json::{Value, json};
 use stickslip_compute::computations::{DisplayOptions, compute};
 use stickslip_compute::formats::Format;
-use stickslip_compute::{Flag, Interrupted, Refusal, Stop};
+use stickslip_compute::{Flag, Interrupted, Stop};
 use stickslip_wire::Code;
 
 /// The time limit that refusals name.
@@ -215,7 +215,7 @@ fn work_of_every_kind_asks_throughout_and_ends_at_the_first_no() {
         }
         for granted in [1, whole.asked / 2, whole.asked - 1] {
             let (reply, seen) = run(granted);
-            let refusal = reply.map_err(Refusal::from).unwrap_err();
+            let refusal = reply.unwrap_err();
             let after = part(seen.last - seen.refused.unwrap());
             if refusal.code != Code::TooMuchWork || !refusal.detail.contains("7 s") || after > LARGEST_PART {
                 failed.push(format!("{kind}: {after} of the work after question {granted}, {refusal:?}"));

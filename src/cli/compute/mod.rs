@@ -19,9 +19,9 @@ use stickslip_measured::import::{Dimension, UnitHint, UnknownUnit};
 use super::command_error::CommandError;
 use super::io::{json, parsed, print, read, say, write};
 use super::summary::summary;
+use stickslip_compute::Flag;
 use stickslip_compute::computations::{About, DisplayOptions, compute, entries};
 use stickslip_compute::formats::Format;
-use stickslip_compute::{Flag, Refusal};
 
 /// A computation, and the flags that it is called with.
 pub struct Compute {
@@ -201,7 +201,7 @@ impl Compute {
         if reply.is_ok() || !wants_json {
             say(file.unwrap_or(Path::new("-")), &body.reading);
         }
-        let reply = reply.map_err(|error| CommandError::from(Refusal::from(error)).message(wants_json))?;
+        let reply = reply.map_err(|error| CommandError::from(error).message(wants_json))?;
         // A document is a wall of numbers to somebody who reads it on a terminal and has not asked for it.
         let is_read = !wants_json && named.is_none() && stdout().is_terminal();
         match (body.only, format) {

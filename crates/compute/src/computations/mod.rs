@@ -26,11 +26,11 @@ use uuid::Uuid;
 
 use stickslip_mechanics::{Contact, Profile};
 use stickslip_plot::Drawing;
-use stickslip_wire::{self as wire, ContactDefinition, Document, Fault, Rejection};
+use stickslip_wire::{self as wire, Code, ContactDefinition, Document, Fault, Rejection};
 
 use crate::formats::{CAPACITY, Format, Table, Unwritable};
 use crate::simulation::{self, Failure};
-use crate::{Nanoseconds, Stop};
+use crate::{Nanoseconds, Refusal, Stop};
 
 pub use cycle::Cycle;
 pub use fretting::Fretting;
@@ -321,23 +321,6 @@ impl DisplayOptions {
     }
 }
 
-/// Why a computation has no reply.
-#[derive(Debug, thiserror::Error)]
-pub enum ComputeError {
-    /// No computation has this name.
-    #[error("the computation `{0}` is unknown")]
-    Unknown(String),
-    /// The request is invalid.
-    #[error(transparent)]
-    Rejected(#[from] Rejection),
-    /// The request has no answer.
-    #[error(transparent)]
-    Failed(#[from] Failure),
-    /// The reply cannot be written.
-    #[error(transparent)]
-    Unwritable(#[from] Unwritable),
-}
-
 /// A computation without its types: its texts for users, and its reply to the JSON text of a request.
 #[derive(Clone, Copy, Debug)]
 pub struct Entry {
@@ -346,7 +329,7 @@ pub struct Entry {
     compute: Compute,
 }
 
-type Compute = fn(&[u8], DisplayOptions, &dyn Stop) -> Result<Vec<u8>, ComputeError>;
+type Compute = fn(&[u8], DisplayOptions, &dyn Stop) -> Result<Vec<u8>, Refusal>;
 
 /// All computations.
 #[must_use]
@@ -365,15 +348,15 @@ pub fn entries() -> Vec<Entry> {
 /// The reply of the computation of this name to the JSON text of a request.
 ///
 /// # Errors
-/// [`ComputeError`].
-pub fn compute(name: &str, body: &[u8], shown: DisplayOptions, stop: &dyn Stop) -> Result<Vec<u8>, ComputeError> {
+/// [`Refusal`].
+pub fn compute(name: &str, body: &[u8], shown: DisplayOptions, stop: &dyn Stop) -> Result<Vec<u8>, Refusal> {
     let entry = entries().into_iter().find(|entry| entry.about.name == name);
-    let entry = entry.ok_or_else(|| ComputeError::Unknown(name.to_owned()))?;
+    let entry = entry.ok_or_else(|| Refusal::new(Code::NotFound, format!("the computation `{name}` is unknown")))?;
     (entry.compute)(body, shown, stop)
 }
 
 /// The reply of a computation to the JSON text of a request.
-fn compute_by<C: Computation>(body: &[u8], shown: DisplayOptions, stop: &dyn Stop) -> Result<Vec<u8>, ComputeError> {
+fn compute_by<C: Computation>(body: &[u8], shown: DisplayOptions, stop: &dyn Stop) -> Result<Vec<u8>, Refusal> {
     let task = simulation::check(wire::parse::<C::Request>(body)?, &simulation::Anew(stop), stop)??;
     C::check_shown(&task, &shown).map_err(|fault| Rejection::Invalid(vec![fault]))?;
     Ok(shown.write(&C::run(task, stop)?, stop)??)

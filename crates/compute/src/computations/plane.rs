@@ -3,11 +3,11 @@
 use stickslip_plot::{Axis, Colour, Curve, Panel, Plot};
 use stickslip_wire::plane::{PlanarReply, PlanarState, PlanarStress};
 
-use super::stress::Values;
+use super::stress::{self, NamedField};
 use crate::formats::{Column, Table};
 
 /// The columns of stresses with their names and units.
-fn fields(stress: &PlanarStress) -> [(&'static str, &'static str, &Values); 6] {
+fn fields(stress: &PlanarStress) -> [NamedField<'_>; 6] {
     [
         ("pressure", "Pa", &stress.pressure),
         ("shear_x", "Pa", &stress.shear_x),
@@ -22,14 +22,7 @@ fn fields(stress: &PlanarStress) -> [(&'static str, &'static str, &Values); 6] {
 pub(super) fn table<'a>(reply: &'a PlanarReply, part: &str) -> Option<Table<'a>> {
     if part == "stress" {
         let stress = reply.stress.as_ref()?;
-        let radius = &stress.radius;
-        let mut columns = vec![Column::floats("radius", "m", |row| radius[row])];
-        for (name, unit, values) in fields(stress) {
-            if let Some(values) = values {
-                columns.push(Column::floats(name, unit, |row| values[row]));
-            }
-        }
-        return Some(Table::flat(radius.len(), columns));
+        return Some(stress::table(("radius", &stress.radius), &fields(stress)));
     }
     let floats = |name, unit, of: fn(&PlanarState) -> f64| Column::floats(name, unit, move |row| of(&reply.steps[row]));
     let columns = vec![
@@ -62,17 +55,8 @@ pub(super) fn plot(reply: &PlanarReply, part: &str) -> Option<Plot> {
 /// A panel for each unit.
 fn stresses(stress: &PlanarStress) -> Plot {
     let colours = [Colour::Grey, Colour::Blue, Colour::Red, Colour::Blue, Colour::Red, Colour::Blue];
-    let panel = |name, wanted| {
-        let drawn = fields(stress).into_iter().zip(colours).filter(|((_, unit, _), _)| *unit == wanted);
-        let curves: Vec<Curve> = drawn
-            .filter_map(|((name, _, values), colour)| {
-                let values = values.as_ref()?.iter().map(|value| value.unwrap_or(f64::NAN));
-                Some(Curve::line(name, colour, stress.radius.iter().copied().zip(values)))
-            })
-            .collect();
-        (!curves.is_empty()).then_some(Panel { y: Axis::of(name, wanted), curves })
-    };
-    let panels = [panel("stress", "Pa"), panel("slip", "m"), panel("friction work", "J/m²")];
-    let panels = panels.into_iter().flatten().collect();
+    let drawn: Vec<_> = fields(stress).into_iter().zip(colours).collect();
+    let names = [("stress", "Pa"), ("slip", "m"), ("friction work", "J/m²")];
+    let panels = stress::panels(&stress.radius, &drawn, &names);
     Plot::new("Stresses at the end of the path", Axis::of("radius r", "m"), panels)
 }

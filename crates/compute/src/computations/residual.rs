@@ -4,6 +4,7 @@ use stickslip_mechanics::{Contact, Profile};
 use stickslip_plot::{Axis, Colour, Curve, Drawing, Panel, Plot};
 use stickslip_wire::{Peak, Residual, Sampling};
 
+use super::stress::points;
 use super::{DisplayOptions, OnContact, Outcome};
 use crate::formats::{Column, Table};
 use crate::simulation::cost::Work;
@@ -45,10 +46,7 @@ impl OnContact for ResidualTask {
     fn run(self, contact: Contact, sequence: u64, stop: &dyn Stop) -> Result<Extrema, Failure> {
         let reply = simulation::residual(&contact, stop)?;
         let stress = self.between.map(|between| simulation::stresses(&contact, &between, stop)).transpose()?;
-        let between = stress.map_or_else(Vec::new, |stress| {
-            let shear = stress.shear.clone().unwrap_or_default().into_iter().map(|value| value.unwrap_or(f64::NAN));
-            stress.places().iter().copied().zip(shear).collect()
-        });
+        let between = stress.map(|stress| points(stress.places(), &stress.shear)).unwrap_or_default();
         let title = format!("Residual stress after move {sequence}");
         Ok(Extrema { title, reply, between })
     }

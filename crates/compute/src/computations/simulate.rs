@@ -5,8 +5,7 @@ use serde_json::json;
 use stickslip_plot::{Axis, Colour, Curve, Drawing, Panel, Plot};
 use stickslip_wire::simulate::Simulation;
 use stickslip_wire::{
-    ContactDefinition, Fault, Field, PlanarReply, Sampling, SimulateReply, SimulateRequest, SimulationReply, State,
-    Stress,
+    ContactDefinition, Fault, PlanarReply, Sampling, SimulateReply, SimulateRequest, SimulationReply, State, Stress,
 };
 
 use super::{
@@ -165,7 +164,9 @@ impl Outcome for SimulateReply {
     }
 
     fn length(&self) -> usize {
-        let along = |stress: &Stress| stress.places().len() * (1 + fields(stress).into_iter().flatten().count());
+        let along = |stress: &Stress| {
+            stress.places().len() * (1 + fields(stress).iter().filter(|field| field.2.is_some()).count())
+        };
         let below = self.subsurface.as_ref().map_or(0, |stress| {
             stress.x.len() * (3 + stress.columns().iter().filter(|(_, values)| values.is_some()).count())
         });
@@ -177,10 +178,10 @@ impl Outcome for SimulateReply {
     fn table(&self, shown: &DisplayOptions) -> Option<Table<'_>> {
         match part(shown, self.residual.is_some(), self.stress.is_some()) {
             "residual" => self.residual.as_ref().map(residual::table),
-            "stress" => self
-                .stress
-                .as_ref()
-                .map(|stress| stress::table(stress::place_column(&stress.radius, &stress.x), fields(stress))),
+            "stress" => {
+                let stress = self.stress.as_ref()?;
+                Some(stress::table(stress::place_column(&stress.radius, &stress.x), &fields(stress)))
+            }
             _ => {
                 let mut columns: Vec<Column<'_>> = state_columns(|row| &self.steps[row]).into();
                 if self.steps.first().is_some_and(|state| state.stick_centre.is_some()) {
@@ -195,8 +196,12 @@ impl Outcome for SimulateReply {
     fn picture(&self, shown: &DisplayOptions) -> Option<Drawing> {
         let plot = match part(shown, self.residual.is_some(), self.stress.is_some()) {
             "residual" => {
-                let between = self.stress.as_ref().map_or_else(Vec::new, |stress| points(stress, &stress.shear));
-                residual::plot("Residual stress at the end of the path".to_owned(), self.residual.as_ref()?, between)
+                let between = self.stress.as_ref().map(|stress| stress::points(stress.places(), &stress.shear));
+                residual::plot(
+                    "Residual stress at the end of the path".to_owned(),
+                    self.residual.as_ref()?,
+                    between.unwrap_or_default(),
+                )
             }
             "stress" => stresses(self.stress.as_ref()?),
             _ => loop_of(&self.steps),
@@ -222,8 +227,8 @@ fn part(shown: &DisplayOptions, has_residual: bool, has_stress: bool) -> &'stati
     })
 }
 
-fn fields(stress: &Stress) -> [&stress::Values; 4] {
-    [&stress.pressure, &stress.shear, &stress.slip, &stress.displacement]
+fn fields(stress: &Stress) -> [stress::NamedField<'_>; 4] {
+    stress::fields([&stress.pressure, &stress.shear, &stress.slip, &stress.displacement])
 }
 
 /// The columns of a state by its row.
@@ -243,23 +248,11 @@ pub fn state_columns<'a>(state: impl Fn(usize) -> &'a State + Copy + Send + 'a) 
     ]
 }
 
-fn points(stress: &Stress, values: &stress::Values) -> Vec<(f64, f64)> {
-    let values = values.iter().flatten().map(|value| value.unwrap_or(f64::NAN));
-    stress.places().iter().copied().zip(values).collect()
-}
-
 /// A panel for each unit.
 fn stresses(stress: &Stress) -> Plot {
-    let panel = |name, unit| {
-        let colours = [Colour::Grey, Colour::Blue, Colour::Red, Colour::Blue];
-        let drawn = Field::ALL.into_iter().zip(fields(stress)).zip(colours);
-        let of_unit = drawn.filter(|((field, values), _)| stress::unit(*field) == unit && values.is_some());
-        let curves: Vec<_> = of_unit
-            .map(|((field, values), colour)| Curve::line(field.name(), colour, points(stress, values)))
-            .collect();
-        (!curves.is_empty()).then_some(Panel { y: Axis::of(name, unit), curves })
-    };
-    let panels = [panel("stress", "Pa"), panel("displacement", "m")].into_iter().flatten().collect();
+    let [pressure, shear, slip, displacement] = fields(stress);
+    let drawn = [(pressure, Colour::Grey), (shear, Colour::Blue), (slip, Colour::Red), (displacement, Colour::Blue)];
+    let panels = stress::panels(stress.places(), &drawn, &[("stress", "Pa"), ("displacement", "m")]);
     Plot::new("Stresses at the end of the path", stress::place_axis(stress.x.is_some()), panels)
 }
 

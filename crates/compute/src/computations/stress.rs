@@ -65,15 +65,15 @@ impl Outcome for Stresses {
 
     fn table(&self, _: &DisplayOptions) -> Option<Table<'_>> {
         let StressReply { pressure, shear, slip, displacement, .. } = &self.reply;
-        Some(table(place_column(&self.reply.radius, &self.reply.x), [pressure, shear, slip, displacement]))
+        let places = place_column(&self.reply.radius, &self.reply.x);
+        Some(table(places, &fields([pressure, shear, slip, displacement])))
     }
 
     /// Shear stress between the bounds of friction, with the regions that stuck and slipped in the last move.
     fn picture(&self, _: &DisplayOptions) -> Option<Drawing> {
         let Stresses { sequence, contact, reply } = self;
-        let over = |values: &Option<Vec<Option<f64>>>, factor: f64| {
-            let values = values.iter().flatten().map(|value| factor * value.unwrap_or(f64::NAN));
-            place_column(&reply.radius, &reply.x).1.iter().copied().zip(values).collect::<Vec<_>>()
+        let over = |values: &Values, factor: f64| {
+            points(reply.places(), values).into_iter().map(move |(place, value)| (place, factor * value))
         };
         let state = contact.state();
         let friction = contact.friction();
@@ -120,21 +120,41 @@ pub(super) fn place_axis(line: bool) -> Axis {
     Axis::of(if line { "x" } else { "radius r" }, "m")
 }
 
-/// The fields over the places, in the order of [`Field::ALL`].
-pub(super) fn table<'a>((name, places): (&'static str, &'a [f64]), fields: [&'a Values; 4]) -> Table<'a> {
+/// The name of a field, its unit, and its values.
+pub(super) type NamedField<'a> = (&'static str, &'static str, &'a Values);
+
+/// The fields with these values, which have the order of [`Field::ALL`].
+pub(super) fn fields(values: [&Values; 4]) -> [NamedField<'_>; 4] {
+    let units = ["Pa", "Pa", "m", "m"];
+    std::array::from_fn(|index| (Field::ALL[index].name(), units[index], values[index]))
+}
+
+/// A row for each place, with the fields that were asked for.
+pub(super) fn table<'a>((name, places): (&'static str, &'a [f64]), fields: &[NamedField<'a>]) -> Table<'a> {
     let mut columns = vec![Column::floats(name, "m", |row| places[row])];
-    for (field, values) in Field::ALL.into_iter().zip(fields) {
-        if let Some(values) = values {
-            columns.push(Column::floats(field.name(), unit(field), |row| values[row]));
-        }
+    for &(name, unit, values) in fields {
+        columns.extend(values.as_ref().map(|values| Column::floats(name, unit, |row| values[row])));
     }
     Table::flat(places.len(), columns)
 }
 
-/// The SI unit of a field.
-pub(super) fn unit(field: Field) -> &'static str {
-    match field {
-        Field::Pressure | Field::Shear => "Pa",
-        Field::Slip | Field::Displacement => "m",
-    }
+/// A field over the places; empty if it was not asked for.
+pub(super) fn points(places: &[f64], values: &Values) -> Vec<(f64, f64)> {
+    let values = values.iter().flatten().map(|value| value.unwrap_or(f64::NAN));
+    places.iter().copied().zip(values).collect()
+}
+
+/// A panel for each of these names with its unit, unless no field of that unit was asked for.
+pub(super) fn panels(
+    places: &[f64],
+    fields: &[(NamedField<'_>, Colour)],
+    names: &[(&'static str, &'static str)],
+) -> Vec<Panel> {
+    let panel = |&(name, wanted): &(&'static str, &'static str)| {
+        let of_unit = fields.iter().filter(|((_, unit, values), _)| *unit == wanted && values.is_some());
+        let curves: Vec<_> =
+            of_unit.map(|((name, _, values), colour)| Curve::line(*name, *colour, points(places, values))).collect();
+        (!curves.is_empty()).then_some(Panel { y: Axis::of(name, wanted), curves })
+    };
+    names.iter().filter_map(panel).collect()
 }

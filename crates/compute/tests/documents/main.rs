@@ -23,9 +23,9 @@ mod warnings;
 mod wear;
 
 use serde_json::Value;
+use stickslip_compute::{Flag, Refusal};
 use stickslip_compute::computations::{DisplayOptions, compute, entries};
 use stickslip_compute::formats::Format;
-use stickslip_compute::{Flag, Refusal};
 use stickslip_wire::ProblemDocument;
 
 type Reply<T = Value> = Result<T, Box<ProblemDocument>>;
@@ -34,7 +34,7 @@ type Reply<T = Value> = Result<T, Box<ProblemDocument>>;
 fn computed(path: &str, text: &str, options: DisplayOptions) -> Reply<Vec<u8>> {
     let entry = entries().into_iter().find(|entry| entry.about.route.is_some_and(|route| route.path == path));
     let name = entry.unwrap_or_else(|| panic!("there is no computation at {path}")).about.name;
-    compute(name, text.as_bytes(), options, &Flag::default()).map_err(|error| refusal(error.into()))
+    compute(name, text.as_bytes(), options, &Flag::default()).map_err(refusal)
 }
 
 fn refusal(refusal: Refusal) -> Box<ProblemDocument> {
