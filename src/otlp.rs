@@ -172,7 +172,6 @@ async fn exchange(http: Http, request: Request<Bytes>) -> Result<Response<Bytes>
 }
 
 /// The span that a request belongs to, by its `traceparent` (W3C Trace Context); none if that is malformed.
-#[must_use]
 pub fn parent(headers: &HeaderMap) -> Option<Context> {
     let header = headers.get("traceparent")?.to_str().ok()?;
     // The library takes numbers of any length.

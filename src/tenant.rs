@@ -9,13 +9,11 @@ pub struct Tenant(Arc<str>);
 
 impl Tenant {
     /// The tenant of a name.
-    #[must_use]
     pub fn new(name: &str) -> Tenant {
         Tenant(name.into())
     }
 
     /// The name.
-    #[must_use]
     pub fn name(&self) -> &str {
         &self.0
     }

@@ -41,7 +41,6 @@ impl Role {
     pub const ALL: [Role; 3] = [Role::Write, Role::Read, Role::Metrics];
 
     /// Its name in a file of keys.
-    #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Role::Write => "write",
@@ -122,13 +121,11 @@ impl Keys {
     }
 
     /// How many there are.
-    #[must_use]
     pub fn count(&self) -> usize {
         self.by_prefix.values().map(Vec::len).sum()
     }
 
     /// The holder of the presented key, if it is known.
-    #[must_use]
     pub fn holder(&self, presented: &[u8]) -> Option<&Arc<Holder>> {
         if !KEY_LENGTH.contains(&presented.len()) {
             return None;

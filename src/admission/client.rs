@@ -23,7 +23,6 @@ pub enum Client {
 
 impl Client {
     /// The client of an address: an IPv6 client owns a whole /64 network.
-    #[must_use]
     pub fn of_address(address: IpAddr) -> Client {
         Client::Address(match address.to_canonical() {
             IpAddr::V6(address) => {
@@ -35,7 +34,6 @@ impl Client {
     }
 
     /// The client that this task serves.
-    #[must_use]
     pub fn current() -> Client {
         CURRENT.try_with(Client::clone).unwrap_or(Client::Server)
     }

@@ -14,12 +14,12 @@ pub struct Deadline(Arc<Flag>);
 
 /// Raises the flag when dropped: held by a handler, it does so when the client hangs up.
 #[derive(Debug)]
+#[must_use]
 pub struct StopOnDrop(Deadline);
 
 impl Deadline {
     /// One that ends the work when the guard is dropped, or when it has taken `allowed` in all, of which `spent` was
     /// before.
-    #[must_use]
     pub fn within(allowed: Duration, spent: Duration) -> (Deadline, StopOnDrop) {
         let (deadline, guard) = Deadline::of(Flag::within(Some(allowed)));
         deadline.flag().charge(spent);
@@ -27,7 +27,6 @@ impl Deadline {
     }
 
     /// One that ends the work when the guard is dropped, and not before.
-    #[must_use]
     pub fn unbounded() -> (Deadline, StopOnDrop) {
         Deadline::of(Flag::default())
     }

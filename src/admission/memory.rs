@@ -59,7 +59,6 @@ pub enum Stage {
 
 impl Capacity {
     /// Bytes of the reserve of a stage: as many as one request takes there at most.
-    #[must_use]
     pub fn reserve_bytes(&self, stage: Stage) -> usize {
         let largest = match stage {
             Stage::Body => LARGEST_BODY,
@@ -69,20 +68,17 @@ impl Capacity {
     }
 
     /// Bytes of bodies, work and replies at most: the ordinary ones, the reserves, and those for small needs.
-    #[must_use]
     pub fn reservable_bytes(&self) -> usize {
         let reserves = self.reserve_bytes(Stage::Body) + self.reserve_bytes(Stage::Work);
         self.bytes.saturating_add(reserves).saturating_add(self.small_bytes())
     }
 
     /// Bytes of the states that work loads and copies at a time.
-    #[must_use]
     pub fn state_bytes(&self) -> usize {
         (self.bytes / STATES_SHARE).min(u32::MAX as usize)
     }
 
     /// Bytes beside those of the work for small reservations, when the others are taken.
-    #[must_use]
     pub fn small_bytes(&self) -> usize {
         (self.bytes / SMALL_SHARE).min(u32::MAX as usize)
     }
@@ -193,13 +189,11 @@ impl Reservation {
     }
 
     /// Whether it is large enough to be counted.
-    #[must_use]
     pub fn is_counted(&self) -> bool {
         self.bytes() > 0
     }
 
     /// Bytes that are counted.
-    #[must_use]
     pub fn bytes(&self) -> usize {
         UNIT * (self.lasting_units() + self.turn.as_ref().map_or(0, |turn| held(&turn.units)))
     }

@@ -129,7 +129,6 @@ pub enum PoolError {
 
 impl Pool {
     /// A pool with these resources; at least one of each.
-    #[must_use]
     pub fn new(capacity: Capacity) -> Pool {
         let semaphore = |permits: usize| Arc::new(Semaphore::new(permits.clamp(1, Semaphore::MAX_PERMITS)));
         Pool(Arc::new(Shared {
@@ -144,13 +143,11 @@ impl Pool {
     }
 
     /// A pool with the default resources.
-    #[must_use]
     pub fn with_defaults() -> Pool {
         Pool::new(Capacity::default())
     }
 
     /// The resources.
-    #[must_use]
     pub fn capacity(&self) -> &Capacity {
         &self.0.capacity
     }
@@ -160,7 +157,6 @@ impl Pool {
     }
 
     /// What each client may have.
-    #[must_use]
     pub fn quotas(&self) -> &Quotas {
         &self.0.quotas
     }
@@ -176,7 +172,6 @@ impl Pool {
     }
 
     /// The resources in use.
-    #[must_use]
     pub fn taken(&self) -> Taken {
         let taken = |most: usize, semaphore: &Semaphore| most.max(1).saturating_sub(semaphore.available_permits());
         Taken {
@@ -188,13 +183,11 @@ impl Pool {
     }
 
     /// A flag for work that must end within the deadline.
-    #[must_use]
     pub fn deadline(&self) -> (Deadline, StopOnDrop) {
         self.deadline_after(Duration::ZERO)
     }
 
     /// The same for a request that has had so much work done before.
-    #[must_use]
     pub fn deadline_after(&self, spent: Duration) -> (Deadline, StopOnDrop) {
         Deadline::within(self.0.capacity.deadline, spent)
     }
@@ -234,7 +227,6 @@ impl Pool {
     }
 
     /// The metrics.
-    #[must_use]
     pub fn meters(&self) -> &PoolMeters {
         &self.0.meters
     }
@@ -309,7 +301,6 @@ impl Pool {
 
 impl Kind {
     /// The kind of work of this estimated cost that somebody waits for.
-    #[must_use]
     pub fn of(cost: Nanoseconds) -> Kind {
         if Duration::from_nanos(cost) > INTERACTIVE { Kind::Long } else { Kind::Interactive }
     }

@@ -44,7 +44,6 @@ impl Quota {
     pub const ALL: [Quota; 5] = [Quota::Requests, Quota::Streams, Quota::Contacts, Quota::StoreBytes, Quota::BodyBytes];
 
     /// Its name: that of its setting, without the dashes in front.
-    #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Quota::Requests => "max-requests-per-client",
@@ -85,7 +84,6 @@ impl Default for QuotaLimits {
 
 impl QuotaLimits {
     /// The limit of a quota.
-    #[must_use]
     pub fn of(&self, quota: Quota) -> usize {
         match quota {
             Quota::Requests => self.requests,
@@ -152,7 +150,6 @@ impl Quotas {
     ///
     /// # Panics
     /// Never: the name of the metric is one that is allowed.
-    #[must_use]
     pub fn new(limits: QuotaLimits) -> Quotas {
         let options = Opts::new("stickslip_quota_refused_total", "Requests refused by a quota of the client.");
         let refused = IntCounterVec::new(options, &["quota"]).expect(OWN_NAME);
@@ -163,13 +160,11 @@ impl Quotas {
     }
 
     /// A share of nothing yet, for the client that this task serves. The server itself has no quotas.
-    #[must_use]
     pub fn no_share(&self, quota: Quota) -> Share {
         Share { quotas: self.clone(), of: (quota, Client::current()), amount: 0 }
     }
 
     /// The refusal of what is beyond a quota whose count is kept elsewhere.
-    #[must_use]
     pub fn exceeded(&self, quota: Quota) -> QuotaExceeded {
         self.refused.with_label_values(&[quota.name()]).inc();
         QuotaExceeded { quota, limit: self.limits.of(quota) }

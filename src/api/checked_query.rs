@@ -45,7 +45,6 @@ pub enum Moves {
 impl MovesQuery {
     /// The moves for a reply in a format. If the query does not say, a plot shows the newest moves, and a table that
     /// programs read row by row has all of them.
-    #[must_use]
     pub fn of(&self, format: Format) -> Moves {
         match *self {
             MovesQuery { last: Some(last), .. } => Moves::Newest(last),

@@ -58,7 +58,6 @@ enum ReadBody<T: Document> {
 
 impl HeldResources {
     /// A flag for the work that is left of the request, which must end within the deadline together with its check.
-    #[must_use]
     pub fn deadline(&self, pool: &Pool) -> (Deadline, StopOnDrop) {
         pool.deadline_after(self.spent)
     }

@@ -37,25 +37,21 @@ pub struct Problem {
 
 impl Problem {
     /// A problem of this code, with what happened this time.
-    #[must_use]
     pub fn new(code: Code, detail: impl Into<String>) -> Problem {
         Refusal::new(code, detail).into()
     }
 
     /// A problem after which a change may have been stored; the document says so of a request that changes something.
-    #[must_use]
     pub fn in_doubt(code: Code, detail: impl Into<String>) -> Problem {
         Problem { in_doubt: true, ..Problem::new(code, detail) }
     }
 
     /// A problem with one place in the request.
-    #[must_use]
     pub fn at(code: Code, pointer: impl Into<String>, detail: impl Into<String>) -> Problem {
         Refusal::at(code, pointer, detail).into()
     }
 
     /// A fault of this program; the cause is for the log.
-    #[must_use]
     pub fn internal(cause: impl Into<String>) -> Problem {
         Refusal::internal(cause).into()
     }
@@ -68,19 +64,16 @@ impl Problem {
     }
 
     /// The cause for the log, which the client does not see.
-    #[must_use]
     pub fn cause(&self) -> Option<&str> {
         self.refusal.cause.as_deref()
     }
 
     /// The code.
-    #[must_use]
     pub fn code(&self) -> Code {
         self.refusal.code
     }
 
     /// The document that the client gets for a request that changes something, or only reads.
-    #[must_use]
     pub fn document(mut self, request_id: &str, changes: bool) -> ProblemDocument {
         self.refusal.detail += match (self.in_doubt, changes) {
             (false, _) => "",

@@ -85,7 +85,6 @@ metrics! {
 
 impl Jobs {
     /// Jobs in a store, of the tenant without a name.
-    #[must_use]
     pub fn new(store: Arc<dyn Store>, pool: Pool) -> Jobs {
         let common = Common {
             store,
@@ -99,7 +98,6 @@ impl Jobs {
     }
 
     /// The jobs of another tenant.
-    #[must_use]
     pub fn for_tenant(&self, tenant: Tenant) -> Jobs {
         Jobs { tenant, common: Arc::clone(&self.common) }
     }
@@ -137,7 +135,6 @@ impl Jobs {
     }
 
     /// The metrics of this process, for all tenants.
-    #[must_use]
     pub fn meters(&self) -> &JobMeters {
         &self.common.meters
     }

@@ -36,7 +36,6 @@ macro_rules! metrics {
 
         impl $group {
             /// All of them, for the page that Prometheus reads.
-            #[must_use]
             pub fn collectors(&self) -> Vec<Box<dyn ::prometheus::core::Collector>> {
                 vec![$(Box::new(self.$field.clone()),)+]
             }
@@ -50,7 +49,6 @@ pub(crate) use metrics;
 ///
 /// # Panics
 /// If the format of Prometheus does not allow the name.
-#[must_use]
 pub fn counter(options: Opts) -> IntCounter {
     IntCounter::with_opts(options).expect(OWN_NAME)
 }
@@ -59,7 +57,6 @@ pub fn counter(options: Opts) -> IntCounter {
 ///
 /// # Panics
 /// As [`counter`].
-#[must_use]
 pub fn gauge(options: Opts) -> IntGauge {
     IntGauge::with_opts(options).expect(OWN_NAME)
 }
@@ -68,7 +65,6 @@ pub fn gauge(options: Opts) -> IntGauge {
 ///
 /// # Panics
 /// As [`counter`].
-#[must_use]
 pub fn histogram(options: Opts, bounds: &[f64]) -> Histogram {
     Histogram::with_opts(HistogramOpts::from(options).buckets(bounds.to_vec())).expect(OWN_NAME)
 }

@@ -8,7 +8,6 @@ use crate::server::connection_limits::SPARE_CONNECTIONS;
 const OTHERS: usize = 128;
 
 /// Raises the limit for this many connections as far as the process may; returns how many it allows.
-#[must_use]
 pub fn room_for(connections: usize) -> usize {
     let besides = (SPARE_CONNECTIONS + OTHERS) as u64;
     let wanted = connections as u64 + besides;

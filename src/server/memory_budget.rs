@@ -21,7 +21,6 @@ pub const REQUEST: u64 = 64 * KIB;
 pub const STREAM: u64 = 64 * KIB;
 
 /// The bound, bytes.
-#[must_use]
 pub fn memory(connections: &ConnectionLimits, capacity: &Capacity, cache: u64, with_tls: bool) -> u64 {
     let connection = CONNECTION + if with_tls { TLS } else { 0 };
     let requests = (capacity.requests + capacity.queue) as u64;
@@ -36,7 +35,6 @@ pub fn memory(connections: &ConnectionLimits, capacity: &Capacity, cache: u64, w
 
 /// The memory that this process may have, bytes: that of the machine, or less where its control group (cgroup) has a
 /// limit; none if the system does not say.
-#[must_use]
 pub fn available() -> Option<u64> {
     let mut system = System::new().ok()?;
     system.refresh_memory_specifics(MemoryRefreshKind::nothing().with_ram());

@@ -31,7 +31,6 @@ pub(super) struct Computed {
 }
 
 /// Bytes that moves take, with their records and the reply; rather too many than too few.
-#[must_use]
 pub fn bytes_of_moves(advance: &Advance) -> usize {
     let radii = advance.stress.as_ref().map_or(0, |stress| stress.length());
     advance.relax.map_or(0, |relax| relax.task.bytes())

@@ -12,7 +12,6 @@ pub struct Expected {
 }
 
 /// The checksum of a label; 0 of none.
-#[must_use]
 pub fn label_checksum(label: Option<&str>) -> u32 {
     crc32fast::hash(label.unwrap_or_default().as_bytes())
 }

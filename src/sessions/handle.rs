@@ -29,20 +29,17 @@ pub struct Sessions {
 impl Sessions {
     /// Sessions in a store, of the tenant without a name. At most `capacity` bytes of states are cached; the rest is
     /// replayed when needed.
-    #[must_use]
     pub fn new(store: Arc<dyn Store>, pool: Pool, capacity: usize) -> Sessions {
         let common = Arc::new(Common::new(store, pool, capacity));
         Sessions { context: TenantContext { tenant: Tenant::default(), common }, by: None }
     }
 
     /// The sessions of another tenant, for requests that come with the key of this name.
-    #[must_use]
     pub fn for_tenant(&self, tenant: Tenant, key: Arc<str>) -> Sessions {
         Sessions { context: TenantContext { tenant, common: Arc::clone(&self.context.common) }, by: Some(key) }
     }
 
     /// The shared profiles, for work that ends when this flag is raised.
-    #[must_use]
     pub fn profiles(&self, stop: &Deadline) -> Profiles<Deadline> {
         self.context.profiles(stop)
     }
@@ -53,7 +50,6 @@ impl Sessions {
     }
 
     /// Whether requests come with keys, by whose names the history says who made a move.
-    #[must_use]
     pub fn names_makers(&self) -> bool {
         self.by.is_some()
     }
@@ -67,7 +63,6 @@ impl Sessions {
     }
 
     /// Bytes of the cached states, and how many sessions they are.
-    #[must_use]
     pub fn held(&self) -> (usize, usize) {
         self.context.cache.held()
     }
@@ -154,7 +149,6 @@ impl Sessions {
     }
 
     /// The metrics of the sessions.
-    #[must_use]
     pub fn readings(&self) -> Readings<'_> {
         let (bytes, cached) = self.context.cache.held();
         Readings {

@@ -84,7 +84,6 @@ pub async fn trace(
 }
 
 /// Bytes that a loop of this many points takes.
-#[must_use]
 pub fn bytes_of_trace(points: usize) -> usize {
     points * 2 * ROW
 }

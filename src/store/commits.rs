@@ -24,7 +24,6 @@ pub struct Commits {
 
 impl Commits {
     /// The metrics of this kind of store, all zero.
-    #[must_use]
     pub fn new(store: &'static str) -> Commits {
         let named = |name, help| Opts::new(name, help).const_label("store", store);
         let help = "Changes that wait for their transaction, or are in it.";
@@ -57,7 +56,6 @@ impl Commits {
     }
 
     /// For how long changes have waited while no transaction became durable.
-    #[must_use]
     pub fn stalled(&self) -> Duration {
         let progress = *self.progress.lock();
         if self.pending.get() == 0 { Duration::ZERO } else { progress.elapsed() }

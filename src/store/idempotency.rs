@@ -12,7 +12,6 @@ pub struct IdempotentRequest<'a> {
 
 impl<'a> IdempotentRequest<'a> {
     /// A request of a tenant, with its idempotency key if it has one.
-    #[must_use]
     pub fn new(store: &'a dyn Store, tenant: &Tenant, key: Option<RequestKey>) -> IdempotentRequest<'a> {
         IdempotentRequest { store, key: key.map(|key| key.for_tenant(tenant)) }
     }
@@ -31,7 +30,6 @@ impl<'a> IdempotentRequest<'a> {
     }
 
     /// The receipt to be stored with the change that a reply is about.
-    #[must_use]
     pub fn receipt(&self, reply: &Reply) -> Option<Receipt> {
         self.key.clone().map(|request| Receipt { request, reply: reply.clone() })
     }

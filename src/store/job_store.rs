@@ -48,13 +48,11 @@ pub struct Job {
 
 impl Job {
     /// How many chunks it has.
-    #[must_use]
     pub fn chunks(&self) -> u64 {
         self.points.div_ceil(self.chunk.max(1))
     }
 
     /// When it is deleted.
-    #[must_use]
     pub fn expires_at(&self) -> Timestamp {
         let (from, time) = match self.finished_at {
             Some(at) => (at, JOB_LIFETIME),

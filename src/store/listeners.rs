@@ -39,13 +39,11 @@ pub struct Listener {
 
 impl Listeners {
     /// At most `limit` listeners at a time.
-    #[must_use]
     pub fn new(limit: usize) -> Listeners {
         Listeners { places: Arc::new(Semaphore::new(limit)), limit, ending: watch::Sender::new(false) }
     }
 
     /// How many listen.
-    #[must_use]
     pub fn count(&self) -> usize {
         self.limit - self.places.available_permits()
     }
@@ -58,7 +56,6 @@ impl Listeners {
     }
 
     /// Becomes true when the process is about to stop.
-    #[must_use]
     pub fn ending(&self) -> watch::Receiver<bool> {
         self.ending.subscribe()
     }
@@ -71,7 +68,6 @@ impl Listeners {
 
 impl Listener {
     /// Whether the process is about to stop.
-    #[must_use]
     pub fn is_ending(&self) -> bool {
         *self.ending.borrow()
     }

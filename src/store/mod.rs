@@ -85,7 +85,6 @@ pub struct Record {
 
 impl Record {
     /// The measurement, if the move is an observation.
-    #[must_use]
     pub fn observation(&self) -> Option<ObservedForce> {
         self.measured.map(|Measured { force, at }| ObservedForce::new(force, self.state.force, at))
     }
@@ -151,7 +150,6 @@ pub struct Receipt {
 
 impl Receipt {
     /// Bytes that it takes in the store.
-    #[must_use]
     pub fn bytes(&self) -> u64 {
         RECEIPT_OVERHEAD + self.reply.body.len() as u64 + 2 * self.request.key.len() as u64
     }
@@ -194,7 +192,6 @@ pub struct Page {
 
 impl Page {
     /// The oldest first.
-    #[must_use]
     pub fn oldest(after: Option<Uuid>, limit: usize) -> Page {
         Page { order: ContactOrder::Oldest, after, limit }
     }
@@ -224,7 +221,6 @@ pub struct Usage {
 
 impl Usage {
     /// The space of a change: contacts, bytes, and the bytes of its kept reply.
-    #[must_use]
     pub fn of(contacts: u64, bytes: u64, receipt: Option<&Receipt>) -> Usage {
         Usage { contacts, bytes: bytes + receipt.map_or(0, Receipt::bytes) }
     }
@@ -284,7 +280,6 @@ pub enum StoreError {
 
 impl StoreError {
     /// Whether the same call may succeed later without a repair.
-    #[must_use]
     pub fn is_transient(&self) -> bool {
         matches!(self, StoreError::Full(_) | StoreError::Locked(_) | StoreError::Unavailable(_))
     }

@@ -22,13 +22,11 @@ pub struct Refusal {
 
 impl Refusal {
     /// A refusal of this kind, with a text of what happened.
-    #[must_use]
     pub fn new(code: Code, detail: impl Into<String>) -> Refusal {
         Refusal { code, detail: detail.into(), errors: Vec::new(), cause: None }
     }
 
     /// A refusal with one place in the request.
-    #[must_use]
     pub fn at(code: Code, pointer: impl Into<String>, detail: impl Into<String>) -> Refusal {
         let (pointer, detail) = (pointer.into(), detail.into());
         let errors = vec![Fault::new(pointer, detail.clone())];
@@ -36,7 +34,6 @@ impl Refusal {
     }
 
     /// A fault of this program; the cause is for the log.
-    #[must_use]
     pub fn internal(cause: impl Into<String>) -> Refusal {
         let detail = "a fault of the server, not of the request: its operator finds the cause in the log under the \
                       request_id";
@@ -44,7 +41,6 @@ impl Refusal {
     }
 
     /// The problem document of the refusal.
-    #[must_use]
     pub fn document(self, request_id: &str) -> ProblemDocument {
         ProblemDocument::new(self.code, self.detail, self.errors, request_id)
     }

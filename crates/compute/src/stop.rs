@@ -64,7 +64,6 @@ pub struct Flag {
 
 impl Flag {
     /// A flag that is also raised after this much work.
-    #[must_use]
     pub fn within(allowed: Option<Duration>) -> Flag {
         Flag { allowed, ..Flag::default() }
     }
@@ -76,7 +75,6 @@ impl Flag {
     }
 
     /// The time limit of the work, if it has one.
-    #[must_use]
     pub fn time_limit(&self) -> Option<Duration> {
         self.allowed
     }
@@ -94,13 +92,11 @@ impl Flag {
     }
 
     /// The work that has been counted by [`Flag::count`] and [`Flag::charge`].
-    #[must_use]
     pub fn before(&self) -> Duration {
         Duration::from_nanos(self.before.load(Ordering::Relaxed))
     }
 
     /// How long the work has yielded to others.
-    #[must_use]
     pub fn waited(&self) -> Duration {
         Duration::from_nanos(self.waited.load(Ordering::Relaxed))
     }
@@ -152,7 +148,6 @@ pub struct Part<S> {
 
 impl<S: Stop> Part<S> {
     /// A part of this work with this time limit.
-    #[must_use]
     pub fn of(whole: S, allowed: Option<Duration>) -> Part<S> {
         Part { whole, flag: Flag::within(allowed) }
     }

@@ -35,13 +35,11 @@ pub struct Plot {
 
 impl Plot {
     /// A plot without bands.
-    #[must_use]
     pub fn new(title: impl Into<String>, x: Axis, panels: Vec<Panel>) -> Plot {
         Plot { title: title.into(), x, panels, bands: Vec::new(), over_decades: false }
     }
 
     /// One panel over pure numbers, with the names of both axes.
-    #[must_use]
     pub fn of_numbers(title: impl Into<String>, x: &'static str, y: &'static str, curves: Vec<Curve>) -> Plot {
         let number = |name| Axis { name, unit: None };
         Plot::new(title, number(x), vec![Panel { y: number(y), curves }])
@@ -59,7 +57,6 @@ pub struct Axis {
 
 impl Axis {
     /// A quantity in an SI unit; a pure number has the unit 1.
-    #[must_use]
     pub fn of(name: &'static str, unit: &'static str) -> Axis {
         Axis { name, unit: Some(unit).filter(|unit| *unit != "1") }
     }
@@ -89,7 +86,6 @@ pub struct Curve {
 
 impl Curve {
     /// Joined points.
-    #[must_use]
     pub fn line(
         name: impl Into<Cow<'static, str>>,
         colour: impl Into<Option<Colour>>,
@@ -100,7 +96,6 @@ impl Curve {
     }
 
     /// Points alone.
-    #[must_use]
     pub fn dots(
         name: impl Into<Cow<'static, str>>,
         colour: impl Into<Option<Colour>>,
@@ -110,7 +105,6 @@ impl Curve {
     }
 
     /// An area within an outline.
-    #[must_use]
     pub fn area(
         name: impl Into<Cow<'static, str>>,
         colour: impl Into<Option<Colour>>,
@@ -209,7 +203,6 @@ impl Picture for Drawing {
 }
 
 /// A value, in SI units, of an axis that shows these `values`, with four digits and the unit of that axis.
-#[must_use]
 pub fn on_axis(value: f64, axis: &Axis, values: impl Iterator<Item = f64>) -> String {
     draw::scale(axis, &draw::extent(values)).shown(value)
 }

@@ -118,7 +118,6 @@ pub struct Comparison {
 
 impl Comparison {
     /// Moves and radii: how often each spring is evaluated.
-    #[must_use]
     pub fn passes(&self) -> usize {
         self.plan.length().saturating_add(self.sampling.length())
     }

@@ -95,13 +95,11 @@ pub enum JsonPath<'a> {
 
 impl<'a> JsonPath<'a> {
     /// The member `name` of the object at this place.
-    #[must_use]
     pub fn member(&'a self, name: &'a str) -> JsonPath<'a> {
         JsonPath::Member(self, name)
     }
 
     /// The element `index` of the array at this place.
-    #[must_use]
     pub fn index(&'a self, index: usize) -> JsonPath<'a> {
         JsonPath::Index(self, index)
     }
@@ -119,7 +117,6 @@ impl fmt::Display for JsonPath<'_> {
 }
 
 /// A member's name as RFC 6901 writes it.
-#[must_use]
 pub fn escaped(name: &str) -> String {
     name.replace('~', "~0").replace('/', "~1")
 }
@@ -209,7 +206,6 @@ impl Faults {
     }
 
     /// Whether there are no faults.
-    #[must_use]
     pub fn is_empty(&self) -> bool {
         self.found.is_empty() && self.unanswerable.is_none()
     }

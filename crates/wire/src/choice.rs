@@ -26,7 +26,6 @@ macro_rules! words {
             pub const ALL: [$Name; [$($word),+].len()] = [$($Name::$Choice),+];
 
             /// Its word.
-            #[must_use]
             pub const fn name(self) -> &'static str {
                 match self {
                     $($Name::$Choice => $word,)+

@@ -77,7 +77,6 @@ pub enum Error {
 
 impl Error {
     /// The problem document, if the service gave one.
-    #[must_use]
     pub fn problem(&self) -> Option<&ProblemDocument> {
         match self {
             Error::Problem(problem) => Some(problem),
@@ -115,7 +114,6 @@ macro_rules! calls {
 
 impl Client {
     /// A client for the service at `base`, such as `http://127.0.0.1:8080`.
-    #[must_use]
     pub fn new(base: impl Into<String>) -> Client {
         let base: String = base.into();
         Client { base: base.trim_end_matches('/').to_owned(), authorization: None, http: reqwest::Client::new() }

@@ -128,7 +128,6 @@ object_or_string!(
 
 impl ContactDefinition {
     /// The contact of the examples in the OpenAPI document: a steel ball on a rigid plane.
-    #[must_use]
     pub fn example() -> Value {
         json!({
             "profile": {"type": "sphere", "radius": 0.01},
@@ -139,7 +138,6 @@ impl ContactDefinition {
     }
 
     /// The profile, which is at this JSON pointer.
-    #[must_use]
     pub fn defined_profile(&self, pointer: &'static str) -> DefinedProfile<'_> {
         DefinedProfile { pointer, profile: &self.profile, material: &self.material }
     }
@@ -172,7 +170,6 @@ impl ContactDefinition {
 
     /// The JSON pointer, in a definition with this preload, to the quantity that the mechanics refuses. A preload can
     /// be at fault by what follows from it, such as the indentation under a force.
-    #[must_use]
     pub fn place_of(quantity: Quantity, preload: &mechanics::Preload) -> &'static str {
         match quantity {
             Quantity::Friction => "/friction",
@@ -191,7 +188,6 @@ impl ContactDefinition {
 
 impl Material {
     /// The two bodies, where they are known.
-    #[must_use]
     pub fn bodies(&self) -> Option<&[Body]> {
         match self {
             Material::Bodies(bodies) => Some(bodies),
@@ -200,13 +196,11 @@ impl Material {
     }
 
     /// Their elasticity, unless they are at fault.
-    #[must_use]
     pub fn elasticity(&self) -> Option<elasticity::Elasticity> {
         self.check(JsonPath::Root, &mut Faults::default())
     }
 
     /// The two bodies in their order, where they are known: `None` among them is rigid.
-    #[must_use]
     pub fn checked_bodies(&self) -> Option<[Option<elasticity::Body>; 2]> {
         let body = |body: &Body| match body {
             Body::Elastic(body) => elasticity::Body::new(body.youngs_modulus, body.poisson_ratio).ok(),
@@ -217,7 +211,6 @@ impl Material {
     }
 
     /// Young's modulus of one of the bodies, Pa, where it is known.
-    #[must_use]
     pub fn youngs_modulus(&self, body: BodyName) -> Option<f64> {
         match self.bodies()?.get(usize::from(body == BodyName::Second))? {
             Body::Elastic(body) => Some(body.youngs_modulus),

@@ -59,7 +59,6 @@ pub struct LoopPage: Default {
 
 impl LoopPage {
     /// A page without moves yet, of those after the move `after`.
-    #[must_use]
     pub fn after(after: u64) -> LoopPage {
         let mut page = LoopPage::default();
         if after == 0 {
@@ -86,7 +85,6 @@ impl LoopPage {
     }
 
     /// The force that was measured at a point, N, if one was.
-    #[must_use]
     pub fn observed_force(&self, point: usize) -> Option<f64> {
         self.observed_force.get(point).copied().flatten()
     }

@@ -96,7 +96,6 @@ pub struct Pointer(Box<[String]>);
 
 impl Pointer {
     /// Splits a pointer into its segments; none if it is not a JSON pointer.
-    #[must_use]
     pub fn parse(text: &str) -> Option<Pointer> {
         if text.is_empty() {
             return Some(Pointer(Box::default()));
@@ -109,7 +108,6 @@ impl Pointer {
     }
 
     /// Its segments.
-    #[must_use]
     pub fn segments(&self) -> &[String] {
         &self.0
     }
@@ -146,7 +144,6 @@ impl fmt::Display for Pointer {
 }
 
 /// The index of an element, as RFC 6901 writes it.
-#[must_use]
 pub fn index(segment: &str) -> Option<usize> {
     let plain = segment == "0" || !segment.starts_with(['0', '+']);
     plain.then(|| segment.parse().ok()).flatten()

@@ -101,7 +101,6 @@ pub use wear::{
 };
 
 /// Schema, member and keywords of every limit.
-#[must_use]
 pub fn all_limits() -> Vec<(&'static str, &'static str, serde_json::Value)> {
     macro_rules! of_all {
         { $($document:ty),* } => {

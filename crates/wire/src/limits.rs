@@ -80,7 +80,6 @@ pub trait Limited {
     fn check_members(&self, at: JsonPath<'_>, faults: &mut Faults);
 
     /// The same with the name of the schema.
-    #[must_use]
     fn limits_of_schema() -> Vec<(&'static str, &'static str, Value)> {
         Self::limits().into_iter().map(|(member, keywords)| (Self::SCHEMA, member, keywords)).collect()
     }

@@ -89,7 +89,6 @@ pub struct FrictionReply: Copy omits Option {
 
 impl ObservedForce {
     /// A measured force beside the predicted one, N.
-    #[must_use]
     pub fn new(force: f64, predicted: f64, at: Option<Timestamp>) -> ObservedForce {
         ObservedForce { force, predicted, innovation: force - predicted, at }
     }

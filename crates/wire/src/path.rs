@@ -141,13 +141,11 @@ pub enum Plan {
 
 impl Move {
     /// A move to a displacement, m.
-    #[must_use]
     pub fn displacement(displacement: f64) -> Move {
         Move { displacement: Some(displacement), ..Move::default() }
     }
 
     /// A move to a tangential force, N.
-    #[must_use]
     pub fn force(force: f64) -> Move {
         Move { force: Some(force), ..Move::default() }
     }
@@ -181,7 +179,6 @@ impl Move {
     }
 
     /// Whether the move has a target for this quantity.
-    #[must_use]
     pub fn names(&self, quantity: Quantity) -> bool {
         match quantity {
             Quantity::Displacement => self.displacement.is_some(),
@@ -194,14 +191,12 @@ impl Move {
 
     /// Whether the move is straight in a force while the other quantity changes. Such a move is curved in displacement
     /// and indentation, and followed in many small steps.
-    #[must_use]
     pub fn is_curved(&self) -> bool {
         let normal = self.indentation.is_some() || self.normal_force.is_some();
         (self.force.is_some() && normal) || (self.displacement.is_some() && self.normal_force.is_some())
     }
 
     /// The move for the mechanics.
-    #[must_use]
     pub fn step(&self) -> mechanics::Move {
         let tangential = self.displacement.map(Tangential::Displacement).or(self.force.map(Tangential::Force));
         let normal = self.indentation.map(Normal::Indentation).or(self.normal_force.map(Normal::NormalForce));
@@ -232,7 +227,6 @@ impl Path {
 
 impl Plan {
     /// How many moves it has.
-    #[must_use]
     pub fn length(&self) -> usize {
         match self {
             Plan::Moves(moves) => moves.len(),
@@ -247,7 +241,6 @@ impl Plan {
     }
 
     /// How many of them are curved.
-    #[must_use]
     pub fn curved(&self) -> usize {
         match self {
             Plan::Moves(moves) => moves.iter().filter(|step| step.is_curved()).count(),
@@ -264,7 +257,6 @@ impl Plan {
     }
 
     /// The JSON pointer to the move of this number in the body; `quantity` is the member at fault, if one is.
-    #[must_use]
     pub fn place_of(&self, index: usize, quantity: Option<Quantity>) -> String {
         let member = quantity.map(|quantity| format!("/{quantity}")).unwrap_or_default();
         match self {

@@ -64,7 +64,6 @@ impl PartialSchema for Components {
 
 impl Components {
     /// Both components.
-    #[must_use]
     pub fn pair(self) -> [f64; 2] {
         match self {
             Components::Along(x) => [x, 0.0],
@@ -368,7 +367,6 @@ impl SimulatedMove {
 
 impl SimulatedPath {
     /// The path without pairs; `None` if it has any.
-    #[must_use]
     pub fn along_a_line(self) -> Option<Path> {
         let is_pair = |target: Option<Components>| matches!(target, Some(Components::Plane(_)));
         Some(match self {
@@ -487,7 +485,6 @@ impl PlanarPlan {
     }
 
     /// The pointer to the first pair, or to the ellipse.
-    #[must_use]
     pub fn first_pair(&self) -> String {
         format!("/path{}", self.first_pair)
     }
@@ -503,13 +500,11 @@ impl PlanarPlan {
     }
 
     /// Moves of a turn, of an ellipse.
-    #[must_use]
     pub fn steps_per_turn(&self) -> Option<usize> {
         if let Form::Ellipse(steps) = self.form { Some(steps) } else { None }
     }
 
     /// The moves along the line of this direction.
-    #[must_use]
     pub fn along(&self, [x, y]: [f64; 2]) -> Vec<Move> {
         let on_line = |[to_x, to_y]: [f64; 2]| to_x * x + to_y * y;
         let along = |step: &rings::PlanarMove| {

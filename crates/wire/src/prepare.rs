@@ -47,7 +47,6 @@ pub struct PrepareOnce<'a> {
 
 impl<'a> PrepareOnce<'a> {
     /// Prepares by `inner`.
-    #[must_use]
     pub fn by(inner: &'a dyn Prepare) -> PrepareOnce<'a> {
         PrepareOnce { inner, last: RefCell::default() }
     }

@@ -17,7 +17,6 @@ macro_rules! codes {
             pub const ALL: &[Code] = &[$(Code::$kind),+];
 
             /// The status code of a response that refuses so.
-            #[must_use]
             pub fn status(self) -> u16 {
                 match self {
                     $(Code::$kind => $status,)+
@@ -25,7 +24,6 @@ macro_rules! codes {
             }
 
             /// The name for programs, which never changes.
-            #[must_use]
             pub fn as_str(self) -> &'static str {
                 match self {
                     $(Code::$kind => $code,)+
@@ -33,7 +31,6 @@ macro_rules! codes {
             }
 
             /// The title of this kind of refusal.
-            #[must_use]
             pub fn title(self) -> &'static str {
                 match self {
                     $(Code::$kind => $title,)+
@@ -41,7 +38,6 @@ macro_rules! codes {
             }
 
             /// What a client can do about it, in Markdown.
-            #[must_use]
             pub fn advice(self) -> &'static str {
                 match self {
                     $(Code::$kind => $advice,)+
@@ -162,7 +158,6 @@ codes! {
 
 impl Code {
     /// The kind of this name.
-    #[must_use]
     pub fn parse(code: &str) -> Option<Code> {
         Code::ALL.iter().copied().find(|known| known.as_str() == code)
     }
@@ -197,7 +192,6 @@ pub struct ProblemDocument {
 
 impl ProblemDocument {
     /// The document of a refusal.
-    #[must_use]
     pub fn new(code: Code, detail: String, errors: Vec<Fault>, request_id: &str) -> ProblemDocument {
         ProblemDocument {
             kind: format!("/problems/{}", code.as_str()),

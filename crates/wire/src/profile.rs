@@ -140,7 +140,6 @@ fn documents() -> Vec<(&'static str, String, RefOr<Schema>)> {
 
 /// The schemas of the documents that [`Profile`] chooses from, by name: its recursion keeps the derivation from finding
 /// them.
-#[must_use]
 pub fn schemas() -> Vec<(String, RefOr<Schema>)> {
     let direction = (<MotionAxis as ToSchema>::name().into_owned(), MotionAxis::schema());
     documents().into_iter().map(|(_, name, schema)| (name, schema)).chain([direction]).collect()
@@ -197,7 +196,6 @@ impl<'de> Deserialize<'de> for Kind {
 
 impl Profile {
     /// Hertz's parabola of this radius of curvature, m: the first family.
-    #[must_use]
     pub fn sphere(radius: f64) -> Profile {
         Profile::Closed(ClosedProfile { document: &CLOSED[0], numbers: vec![radius] })
     }
@@ -247,7 +245,6 @@ impl<'de> Deserialize<'de> for Profile {
 
 impl Profile {
     /// Points of all its tables and curves, and asperities: what preparing it takes time and memory for.
-    #[must_use]
     pub fn points(&self) -> usize {
         match self {
             Profile::Tabulated(TabulatedProfile { r, .. }) => r.len(),
@@ -259,7 +256,6 @@ impl Profile {
     }
 
     /// Whether what is prepared belongs to certain bodies: a load curve is scaled to their moduli.
-    #[must_use]
     pub fn depends_on_bodies(&self) -> bool {
         matches!(self, Profile::LoadCurve(_))
     }

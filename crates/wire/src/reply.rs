@@ -178,7 +178,6 @@ pub struct Warning: Eq {
 
 impl Peak {
     /// The radius or, in a line contact, x, m.
-    #[must_use]
     pub fn place(&self) -> f64 {
         self.radius.or(self.x).unwrap_or(f64::NAN)
     }
@@ -192,7 +191,6 @@ impl Warning {
 }
 
 /// The number, or none where JSON has no number for it.
-#[must_use]
 pub fn finite(value: f64) -> Option<f64> {
     value.is_finite().then_some(value)
 }
@@ -252,7 +250,6 @@ impl From<State> for mechanics::State {
 
 impl Residual {
     /// The extrema of a contact on a profile, with the shear stress that `relative` refers to, Pa.
-    #[must_use]
     pub fn new(residual: mechanics::Residual, unit: f64, profile: &mechanics::Profile) -> Residual {
         let line = profile.line().is_some();
         let peak = |mechanics::Peak { radius: at, shear }| Peak {

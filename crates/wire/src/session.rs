@@ -234,7 +234,6 @@ pub struct StressReply omits Option {
 
 impl StressReply {
     /// The places: radii or, of a line contact, x, m.
-    #[must_use]
     pub fn places(&self) -> &[f64] {
         self.radius.as_deref().or(self.x.as_deref()).unwrap_or_default()
     }
@@ -293,7 +292,6 @@ impl Document for CreateRequest {
 
 impl MoveRequest {
     /// The move itself.
-    #[must_use]
     pub fn step(&self) -> Move {
         Move {
             displacement: self.displacement,

@@ -57,7 +57,6 @@ pub struct Stress: Default omits Option {
 
 impl Stress {
     /// The places: radii or, of a line contact, x, m.
-    #[must_use]
     pub fn places(&self) -> &[f64] {
         self.radius.as_deref().or(self.x.as_deref()).unwrap_or_default()
     }
@@ -118,7 +117,6 @@ impl StressRequest {
 
 impl Sampling {
     /// How many radii there are.
-    #[must_use]
     pub fn length(&self) -> usize {
         match &self.points {
             Points::Uniform(count) => *count,
@@ -127,7 +125,6 @@ impl Sampling {
     }
 
     /// The places, m, in a line contact of the given half-width, m.
-    #[must_use]
     pub fn places(&self, half_width: f64) -> Vec<f64> {
         match &self.points {
             Points::Uniform(count) => {
@@ -141,7 +138,6 @@ impl Sampling {
     }
 
     /// The radii, m, in a contact of the given radius, m.
-    #[must_use]
     pub fn radii(&self, contact_radius: f64) -> Vec<f64> {
         match &self.points {
             // The quotient is exactly 1 at the last point, so that it is the edge itself.

@@ -255,7 +255,6 @@ impl Values {
 
 impl AxisValues {
     /// How many values.
-    #[must_use]
     pub fn count(&self) -> usize {
         match &self.values {
             Values::Linear(span) | Values::Logarithmic(span) => span.count,
@@ -274,14 +273,12 @@ impl AxisValues {
     }
 
     /// A value.
-    #[must_use]
     pub fn value(&self, index: usize) -> f64 {
         let raw = self.raw(index);
         if self.whole { raw.round() } else { raw }
     }
 
     /// The same as JSON; of a field of whole numbers without a point.
-    #[must_use]
     pub fn number(&self, index: usize) -> Number {
         let value = self.value(index);
         // Beyond the first bound no float has a fraction, and no field allows it.
@@ -292,7 +289,6 @@ impl AxisValues {
     }
 
     /// The indices of the smallest and the largest value.
-    #[must_use]
     pub fn ends(&self) -> [usize; 2] {
         match &self.values {
             Values::Linear(span) | Values::Logarithmic(span) => [0, span.last()],
@@ -322,7 +318,6 @@ impl CheckedSweep {
     }
 
     /// The JSON pointer, in the sweep, to what `pointer` is in the body of a point.
-    #[must_use]
     pub fn place_of(&self, pointer: &str) -> String {
         let axis = self.axes.iter().position(|axis| axis.pointer.to_string() == pointer);
         axis.map_or_else(|| format!("/base{pointer}"), |index| format!("/axes/{index}"))

@@ -75,13 +75,11 @@ pub struct ConnectionPermit {
 
 impl ConnectionLimiter {
     /// A limiter without connections. The bound of a client does not hold for `proxies`.
-    #[must_use]
     pub fn new(limits: ConnectionLimits, proxies: Arc<[IpNet]>) -> ConnectionLimiter {
         ConnectionLimiter { limits, proxies, table: Arc::default() }
     }
 
     /// Counts of connections.
-    #[must_use]
     pub fn counts(&self) -> ConnectionCounts {
         let table = self.table.lock();
         ConnectionCounts { open: table.connections.len(), ..table.counts }

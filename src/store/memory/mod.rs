@@ -82,7 +82,6 @@ impl Expired {
 
 impl MemoryStore {
     /// An empty store.
-    #[must_use]
     pub fn new() -> MemoryStore {
         MemoryStore::default()
     }

@@ -109,7 +109,6 @@ impl PostgresStore {
     }
 
     /// Which database it is, without the password.
-    #[must_use]
     pub fn address(&self) -> String {
         self.pool.target.address()
     }

@@ -18,13 +18,11 @@ const PACKED: [usize; 2] = [4, 10];
 const LINES_LISTED: usize = 100;
 
 /// The bytes that reading a file may take.
-#[must_use]
 pub fn memory(file: &[u8]) -> usize {
     file.len().saturating_mul(bytes::READ).saturating_mul(if is_packed(file) { PACKED[0] } else { 1 })
 }
 
 /// The time that reading a file takes.
-#[must_use]
 pub fn cost(file: &[u8]) -> Nanoseconds {
     BYTE_COST.saturating_mul(file.len().saturating_mul(if is_packed(file) { PACKED[1] } else { 1 }) as u64)
 }

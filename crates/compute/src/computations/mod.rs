@@ -292,13 +292,11 @@ pub struct DisplayOptions {
 
 impl DisplayOptions {
     /// In a format.
-    #[must_use]
     pub fn in_format(format: Format) -> DisplayOptions {
         DisplayOptions { format, choice: None, indented: false }
     }
 
     /// Bytes beyond the columns, for a table of this many rows of this many bytes.
-    #[must_use]
     pub fn bytes(&self, (rows, row): (usize, usize)) -> usize {
         self.format.bytes(rows, row)
     }
@@ -332,7 +330,6 @@ pub struct Entry {
 type Compute = fn(&[u8], DisplayOptions, &dyn Stop) -> Result<Vec<u8>, Refusal>;
 
 /// All computations.
-#[must_use]
 pub fn entries() -> Vec<Entry> {
     struct Entries(Vec<Entry>);
     impl Visitor for Entries {

@@ -74,7 +74,6 @@ pub fn make_moves(
 }
 
 /// The states that a reply shows of those after each move; `end` is the one at the end.
-#[must_use]
 pub fn shown_states(steps: Steps, all: impl Iterator<Item = State>, end: State) -> Vec<State> {
     match steps {
         Steps::All => all.collect(),

@@ -58,37 +58,31 @@ impl Format {
     }
 
     /// Its name in a query.
-    #[must_use]
     pub fn name(self) -> &'static str {
         self.names().0
     }
 
     /// The format of this name in `formats`.
-    #[must_use]
     pub fn named(name: &str, formats: &[Format]) -> Option<Format> {
         formats.iter().copied().find(|format| format.name() == name)
     }
 
     /// Its media type.
-    #[must_use]
     pub const fn media_type(self) -> &'static str {
         self.names().1
     }
 
     /// Whether it is a plot.
-    #[must_use]
     pub fn is_plot(self) -> bool {
         matches!(self, Format::Svg | Format::Png)
     }
 
     /// Whether it is a table that is read row by row, and can be sent piece by piece.
-    #[must_use]
     pub fn is_stream(self) -> bool {
         matches!(self, Format::Csv | Format::Ndjson | Format::Arrow)
     }
 
     /// Bytes that writing takes beyond the columns, for `rows` rows of `row` bytes each.
-    #[must_use]
     pub fn bytes(self, rows: usize, row: usize) -> usize {
         match self {
             Format::Columns => 0,
@@ -98,7 +92,6 @@ impl Format {
     }
 
     /// The cost of writing it, beyond the numbers.
-    #[must_use]
     pub fn cost(self) -> Nanoseconds {
         if self.is_plot() { PLOT_COST } else { 0 }
     }

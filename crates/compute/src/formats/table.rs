@@ -60,13 +60,11 @@ pub enum Cells<'a> {
 
 impl<'a> Column<'a> {
     /// A column; its unit is written in Arrow's metadata.
-    #[must_use]
     pub fn new(name: &str, unit: Option<&'static str>, cells: Cells<'a>) -> Column<'a> {
         Column { name: name.to_owned(), key: Value::from(name).to_string(), unit, cells }
     }
 
     /// A column of floats; a number that is not finite counts as missing.
-    #[must_use]
     pub fn floats<T: Into<Option<f64>>>(
         name: &str,
         unit: &'static str,
@@ -77,13 +75,11 @@ impl<'a> Column<'a> {
     }
 
     /// A column of words without commas and quotes.
-    #[must_use]
     pub fn words(name: &str, value: impl Fn(usize) -> &'static str + Send + 'a) -> Column<'a> {
         Column::new(name, Some(""), Cells::Words(Box::new(value)))
     }
 
     /// A column of whole numbers without a unit.
-    #[must_use]
     pub fn counts(name: &str, value: impl Fn(usize) -> u64 + Send + 'a) -> Column<'a> {
         Column::new(name, Some("1"), Cells::Counts(Box::new(value)))
     }
@@ -133,13 +129,11 @@ impl<'a> Column<'a> {
 
 impl<'a> Table<'a> {
     /// A table of `rows` rows; `envelope` is the JSON before and after its columns.
-    #[must_use]
     pub fn new(rows: usize, columns: Vec<Column<'a>>, envelope: [String; 2]) -> Table<'a> {
         Table { rows, columns, envelope }
     }
 
     /// A table whose JSON document is not that of [`Format::Columns`].
-    #[must_use]
     pub fn flat(rows: usize, columns: Vec<Column<'a>>) -> Table<'a> {
         Table::new(rows, columns, ["{".to_owned(), "}".to_owned()])
     }
@@ -251,7 +245,6 @@ pub struct TableStream {
 
 impl TableStream {
     /// An empty one, in a format that [is read row by row](Format::is_stream).
-    #[must_use]
     pub fn new(format: Format) -> TableStream {
         TableStream { format, begun: false, arrow: None }
     }

@@ -33,7 +33,6 @@ pub const NUMBER_LENGTH: usize = 24;
 pub const STATE_LENGTH: usize = 512;
 
 /// Bytes that stresses at this many radii take, as numbers and as JSON.
-#[must_use]
 pub fn of_stress(radii: usize) -> usize {
     // The radius, and four fields.
     radii * 5 * NUMBER
@@ -51,7 +50,6 @@ pub fn of_records(moves: usize) -> usize {
 }
 
 /// Bytes that a shape takes: the series that the mechanics makes of tables, the clusters of asperities.
-#[must_use]
 pub fn of_shape(profile: &wire::Profile) -> usize {
     match profile {
         wire::Profile::Tabulated(table) => table.r.len() * SERIES,
@@ -64,13 +62,11 @@ pub fn of_shape(profile: &wire::Profile) -> usize {
 }
 
 /// Bytes of the definition of a contact as JSON, of which the profile has so many points.
-#[must_use]
 pub fn of_definition(points: usize) -> usize {
     points * 2 * NUMBER
 }
 
 /// Bytes that a simulation takes, with its reply; rather too many than too few.
-#[must_use]
 pub fn of_simulation(simulation: &Simulation) -> usize {
     let radii = simulation.stress.as_ref().map_or(0, |stress| stress.length());
     let springs = match simulation.solver {
@@ -85,7 +81,6 @@ pub fn of_simulation(simulation: &Simulation) -> usize {
 }
 
 /// Bytes that stresses below the surface take, with their reply.
-#[must_use]
 pub fn of_subsurface(task: &SubsurfaceTask) -> usize {
     task.places.count() * task.columns() * NUMBER
 }

@@ -53,7 +53,6 @@ const SUM_POINT_COST: u64 = 2_000;
 const MOVE_ON_SUM: u64 = 13;
 
 /// The cost of preparing a profile.
-#[must_use]
 pub fn of_preparation(profile: &wire::Profile) -> Nanoseconds {
     let points = profile.points() as u64;
     match profile {
@@ -69,7 +68,6 @@ pub fn of_preparation(profile: &wire::Profile) -> Nanoseconds {
 }
 
 /// The cost of preparing the profile of a body that is still JSON: as if all its numbers were of tables.
-#[must_use]
 pub fn of_profile_in(body: &Value) -> Nanoseconds {
     fn numbers(value: &Value) -> u64 {
         match value {
@@ -98,7 +96,6 @@ pub struct Work {
 
 impl Work {
     /// The cost on a shape.
-    #[must_use]
     pub fn cost(&self, profile: &Profile) -> Nanoseconds {
         let moves = (self.moves as u64 * MOVE_COST).saturating_mul(relative_cost_of_moves(profile));
         moves.saturating_add(on_profile(profile, self.stresses(), self.residual))
@@ -128,13 +125,11 @@ impl Work {
 pub const MARGIN: u32 = 4;
 
 /// The cost of the search for extrema with a slip history of this many pieces.
-#[must_use]
 pub fn of_search(profile: &Profile, depth: usize) -> Nanoseconds {
     Work { depth, residual: true, ..Work::default() }.cost(profile)
 }
 
 /// The longest slip history whose search for extrema is not refused before it begins.
-#[must_use]
 pub fn longest_search(profile: &Profile, allowed: Duration) -> usize {
     let most = allowed.saturating_mul(MARGIN);
     let (mut fits, mut not) = (0, limits::MEMORY_DEPTH + 1);
@@ -146,7 +141,6 @@ pub fn longest_search(profile: &Profile, allowed: Duration) -> usize {
 }
 
 /// The cost of writing a table of this many points as JSON.
-#[must_use]
 pub fn writing_table(points: usize) -> Nanoseconds {
     points as u64 * RADIUS_COST
 }
@@ -180,7 +174,6 @@ fn relative_cost_of_moves(profile: &Profile) -> u64 {
 }
 
 /// The cost of a simulation.
-#[must_use]
 pub fn of_simulation(simulation: &Simulation) -> Nanoseconds {
     if let Plan::Plane(plane) = &simulation.plan
         && plane.line.is_none()
@@ -221,7 +214,6 @@ pub fn of_springs(springs: usize, passes: usize) -> Nanoseconds {
 }
 
 /// The cost of stresses below the surface, with a slip history of this many pieces.
-#[must_use]
 pub fn of_subsurface(profile: &Profile, task: &SubsurfaceTask, depth: usize) -> Nanoseconds {
     let each = match profile {
         Profile::Sphere(_) => KINK_COST.saturating_mul(depth as u64 + 1),

@@ -126,13 +126,11 @@ impl From<Interrupted> for Failure {
 
 impl Failure {
     /// The failure of what the member at `pointer` asks for.
-    #[must_use]
     pub fn at(pointer: impl Into<String>, cause: impl Into<Cause>) -> Failure {
         Failure { pointer: pointer.into(), cause: cause.into() }
     }
 
     /// The failure for interrupted work that the member at `pointer` requested.
-    #[must_use]
     pub fn interrupted(interrupted: Interrupted, pointer: &str) -> Failure {
         match interrupted {
             Interrupted::Abandoned => Failure::at("", Cause::Stopped),
@@ -150,7 +148,6 @@ impl Failure {
     }
 
     /// The code with which `POST /simulate` refuses it.
-    #[must_use]
     pub fn code(&self) -> Code {
         match &self.cause {
             Cause::Refused(error) => match error {
@@ -194,7 +191,6 @@ pub fn needs_stress_field(contact: &mechanics::Contact, pointer: &str) -> Result
 }
 
 /// The quantity that an error is about, if it is about one.
-#[must_use]
 pub fn quantity(error: &mechanics::Error) -> Option<Quantity> {
     match error {
         mechanics::Error::OutOfRange { quantity, .. } => Some(*quantity),

@@ -38,7 +38,6 @@ pub struct Profiles<S> {
 
 impl<S: Stop> Profiles<S> {
     /// Those that are kept there.
-    #[must_use]
     pub fn new(cache: Arc<dyn ProfileCache>, stop: S, allowed: Duration) -> Profiles<S> {
         Profiles { cache, stop, allowed }
     }

@@ -25,7 +25,6 @@ impl Timer<'_> {
     }
 
     /// The time up to now.
-    #[must_use]
     pub fn elapsed(&self) -> Duration {
         let flag = self.stop.flag();
         flag.before() + (self.begin.elapsed() + self.waited).saturating_sub(flag.waited())

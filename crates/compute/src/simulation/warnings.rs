@@ -27,7 +27,6 @@ const MAX_RELATIVE_NOISE: f64 = 1e-3;
 const MAX_STRESS_ERROR: f64 = 0.05;
 
 /// The warnings for a contact in its present state.
-#[must_use]
 pub fn present_warnings(contact: &Contact) -> Vec<Warning> {
     warnings_at(contact, contact.contact_radius(), contact.indentation(), None)
 }
@@ -35,7 +34,6 @@ pub fn present_warnings(contact: &Contact) -> Vec<Warning> {
 /// The warnings that a request to a stored contact causes for the first time: none that held already at the contact
 /// radius `before`, m. `largest` is the largest contact radius since, m, and `excess_error` the error of the force if
 /// it is beyond the tolerance.
-#[must_use]
 pub fn new_warnings(contact: &Contact, before: f64, largest: f64, excess_error: Option<f64>) -> Vec<Warning> {
     if largest <= before && excess_error.is_none() {
         return Vec::new();
@@ -90,7 +88,6 @@ impl FarMove {
     }
 
     /// The warning, if there was a far move.
-    #[must_use]
     pub fn warning(self) -> Option<Warning> {
         let (displacement, gross_slip) = self.farthest?;
         let slips = if gross_slip > 0.0 {
@@ -120,7 +117,6 @@ pub(super) fn stress_warning(asked: bool, error: f64) -> Option<Warning> {
 }
 
 /// The error of the force along `curved` moves, if it is more than their tolerance allows.
-#[must_use]
 pub fn excess_error(error: f64, tolerance: f64, curved: usize) -> Option<f64> {
     // The tolerance is for a move, and the errors of several add up.
     (error > tolerance * curved.max(1) as f64 + 1e-13).then_some(error)

@@ -164,7 +164,6 @@ impl<'de> Visitor<'de> for AmplitudesVisitor {
 
 impl Amplitudes {
     /// The amplitudes.
-    #[must_use]
     pub fn all(&self) -> &[f64] {
         match self {
             Amplitudes::One(amplitude) => std::slice::from_ref(amplitude),
@@ -175,7 +174,6 @@ impl Amplitudes {
 
 impl CycleDrive {
     /// Its amplitudes.
-    #[must_use]
     pub fn amplitudes(&self) -> &Amplitudes {
         match self {
             CycleDrive::Displacement(amplitudes) | CycleDrive::Force(amplitudes) => amplitudes,
@@ -183,7 +181,6 @@ impl CycleDrive {
     }
 
     /// Its name.
-    #[must_use]
     pub fn name(&self) -> &'static str {
         match self {
             CycleDrive::Displacement(_) => "displacement",
@@ -287,13 +284,11 @@ impl CycleTask {
     }
 
     /// How many cycles there are.
-    #[must_use]
     pub fn rows(&self) -> usize {
         self.drives().len().saturating_mul(self.map.map_or(1, |map| map.normal_force.count))
     }
 
     /// The JSON pointer to the amplitude of this index.
-    #[must_use]
     pub fn place_of(&self, index: usize) -> String {
         let (base, name) = (self.places.drive, self.drive.name());
         match self.drive.amplitudes() {
@@ -303,13 +298,11 @@ impl CycleTask {
     }
 
     /// Whether the force is driven.
-    #[must_use]
     pub fn is_force_driven(&self) -> bool {
         matches!(self.drive, CycleDrive::Force(_))
     }
 
     /// How many radii there are for each cycle.
-    #[must_use]
     pub fn radii(&self) -> usize {
         self.density.as_ref().map_or(0, Sampling::length)
     }

@@ -56,7 +56,6 @@ pub enum LoopStart {
 
 impl FitUnits {
     /// Those of displacement and force in m and N.
-    #[must_use]
     pub fn in_si(self) -> [f64; 2] {
         [self.displacement.unwrap_or_default().metres(), self.force.unwrap_or_default().newtons()]
     }
@@ -79,7 +78,6 @@ pub enum ForceUnit: Default {
 
 impl ForceUnit {
     /// It in newtons.
-    #[must_use]
     pub fn newtons(self) -> f64 {
         match self {
             ForceUnit::Newton => 1.0,

@@ -89,7 +89,6 @@ pub struct FitTask {
 
 impl FitTask {
     /// Points of all loops.
-    #[must_use]
     pub fn points(&self) -> usize {
         self.loops.iter().fold(0, |sum, record| sum.saturating_add(record.force.len()))
     }

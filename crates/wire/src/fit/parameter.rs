@@ -28,7 +28,6 @@ macro_rules! parameters {
 
         impl FitParameter {
             /// Its range, with its unit.
-            #[must_use]
             pub fn range(self) -> Range {
                 match self {
                     $(FitParameter::$variant => $range,)*

@@ -204,13 +204,11 @@ pub struct FrettingTask {
 
 impl FrettingTask {
     /// Whether the body is searched for the largest values.
-    #[must_use]
     pub fn searches(&self) -> bool {
         self.places.count() == 0
     }
 
     /// How many criteria search for a critical plane.
-    #[must_use]
     pub fn planes(&self) -> usize {
         use Criterion::{FatemiSocie, Findley, SmithWatsonTopper};
         let has_plane = |asked: &&AskedMeasure| {

@@ -171,13 +171,11 @@ fn one_amplitude(
 
 impl Cycles {
     /// How many moves they have.
-    #[must_use]
     pub fn length(&self) -> usize {
         self.moves.saturating_add(1)
     }
 
     /// Whether their moves are curved. All of them are, or none.
-    #[must_use]
     pub fn is_curved(&self) -> bool {
         self.load.is_some_and(|load| self.tangential == Quantity::Force || load.normal == Quantity::NormalForce)
     }

@@ -90,7 +90,6 @@ pub enum LengthUnit: Default {
 
 impl LengthUnit {
     /// It in metres.
-    #[must_use]
     pub fn metres(self) -> f64 {
         match self {
             LengthUnit::Metre => 1.0,

@@ -125,7 +125,6 @@ pub struct SubsurfaceReply {
 
 impl Subsurface {
     /// The columns of values, all in Pa, with their names; only those that are asked for have values.
-    #[must_use]
     pub fn columns(&self) -> [(&'static str, Option<&[Option<f64>]>); 12] {
         [
             ("xx", self.xx.as_deref()),
@@ -173,20 +172,17 @@ pub struct SubsurfaceTask {
 
 impl SubsurfaceTask {
     /// Whether it is for one quantity over a grid in a plane, which can be drawn.
-    #[must_use]
     pub fn is_section(&self) -> bool {
         let single = |field: &SubsurfaceField| !matches!(field, SubsurfaceField::Tensor | SubsurfaceField::Principal);
         matches!(&self.fields[..], [only] if single(only)) && matches!(self.places, Places::Grid(_))
     }
 
     /// The name of the body.
-    #[must_use]
     pub fn body_name(&self) -> &'static str {
         BodyName::from(self.side).name()
     }
 
     /// How many columns its reply has.
-    #[must_use]
     pub fn columns(&self) -> usize {
         let of = |field, columns| if self.wants(field) { columns } else { 0 };
         let single = [SubsurfaceField::VonMises, SubsurfaceField::MaxShear, SubsurfaceField::Hydrostatic];
@@ -195,7 +191,6 @@ impl SubsurfaceTask {
     }
 
     /// Whether a field is asked for.
-    #[must_use]
     pub fn wants(&self, field: SubsurfaceField) -> bool {
         self.fields.contains(&field)
     }

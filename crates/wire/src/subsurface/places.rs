@@ -79,7 +79,6 @@ pub struct Steps {
 
 impl Steps {
     /// The value of this index, m.
-    #[must_use]
     pub fn at(&self, index: usize) -> f64 {
         if index == 0 {
             self.from
@@ -186,14 +185,12 @@ impl Places {
     }
 
     /// The values along the three axes, if it is a grid.
-    #[must_use]
     pub fn axes(&self) -> Option<[Vec<f64>; 3]> {
         let Places::Grid(steps) = self else { return None };
         Some(steps.map(|steps| (0..steps.count).map(|index| steps.at(index)).collect()))
     }
 
     /// How many there are.
-    #[must_use]
     pub fn count(&self) -> usize {
         match self {
             Places::Points(points) => points.len(),
@@ -203,7 +200,6 @@ impl Places {
     }
 
     /// The place of this index: x, y, z, m.
-    #[must_use]
     pub fn at(&self, index: usize) -> [f64; 3] {
         match self {
             Places::Points(points) => points[index],

@@ -41,7 +41,6 @@ pub struct NamedOutput {
 
 impl Output {
     /// JSON pointer to the number.
-    #[must_use]
     pub fn pointer(&self) -> &str {
         match self {
             Output::Pointer(pointer) => pointer,
@@ -50,7 +49,6 @@ impl Output {
     }
 
     /// The name of the column: its own, else the pointer.
-    #[must_use]
     pub fn column(&self) -> &str {
         self.name().map_or(self.pointer(), String::as_str)
     }
@@ -63,7 +61,6 @@ impl Output {
     }
 
     /// The place of the pointer of an output at this place.
-    #[must_use]
     pub fn place_of_pointer<'a>(&self, at: &'a JsonPath<'a>) -> JsonPath<'a> {
         match self {
             Output::Pointer(_) => *at,
@@ -74,7 +71,6 @@ impl Output {
 
 impl Axis {
     /// The name of the column: its own, else the pointer.
-    #[must_use]
     pub fn column(&self) -> &str {
         self.name.as_ref().unwrap_or(&self.pointer)
     }

@@ -60,7 +60,6 @@ impl Sweep {
     }
 
     /// Points of a result.
-    #[must_use]
     pub fn points_of(&self, result: &SweepResult) -> usize {
         result.values.len() / self.checked.outputs.len().max(1)
     }

@@ -36,43 +36,36 @@ pub struct Sweep {
 
 impl Sweep {
     /// The sweep as requested, with its axes.
-    #[must_use]
     pub fn checked(&self) -> &CheckedSweep {
         &self.checked
     }
 
     /// Number of points.
-    #[must_use]
     pub fn points(&self) -> usize {
         self.checked.points
     }
 
     /// The largest cost of a point.
-    #[must_use]
     pub fn cost_per_point(&self) -> Nanoseconds {
         self.cost_per_point
     }
 
     /// The largest cost of all points together.
-    #[must_use]
     pub fn cost(&self) -> Nanoseconds {
         self.cost_per_point.saturating_mul(self.checked.points as u64)
     }
 
     /// Numbers in the result of this many points.
-    #[must_use]
     pub fn numbers(&self, points: usize) -> usize {
         points * self.checked.outputs.len()
     }
 
     /// Bytes that computing takes on this many threads, without the result.
-    #[must_use]
     pub fn bytes(&self, threads: usize) -> usize {
         self.bytes.saturating_mul(threads + 1)
     }
 
     /// Points that are stored at a time.
-    #[must_use]
     pub fn chunk(&self) -> usize {
         let worth = usize::try_from(CHUNK_COST / self.cost_per_point.max(1)).unwrap_or(usize::MAX);
         let most = CHUNK_NUMBERS / self.checked.outputs.len().max(1);

@@ -23,7 +23,6 @@ const PLANNING_COST: Nanoseconds = 100_000;
 
 impl Sweep {
     /// The cost of [`Sweep::plan`]: above all of the profile, which each corner may have its own of.
-    #[must_use]
     pub fn planning_cost(checked: &CheckedSweep) -> Nanoseconds {
         let corners = 1_u64 << checked.axes.len();
         PLANNING_COST.saturating_add(cost::of_profile_in(&checked.request.base.0).saturating_mul(corners))

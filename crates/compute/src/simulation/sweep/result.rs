@@ -39,7 +39,6 @@ impl SweepResult {
     }
 
     /// The table of the sweep: a row for each point, with the values of its axes and its outputs.
-    #[must_use]
     pub fn table(self, sweep: &CheckedSweep) -> Table<'static> {
         let SweepResult { values, failed, failures } = self;
         let (axes, values) = (Arc::new(sweep.axes.clone()), Arc::new(values));
@@ -61,7 +60,6 @@ impl SweepResult {
     }
 
     /// Its bytes: how many failed, the length of their list, the list as JSON, and the numbers.
-    #[must_use]
     pub fn to_bytes(&self) -> Vec<u8> {
         // Texts and numbers can always be written.
         let failures = serde_json::to_vec(&self.failures).unwrap_or_default();
@@ -74,7 +72,6 @@ impl SweepResult {
     }
 
     /// The result with this many numbers from its bytes; `None` if they are something else.
-    #[must_use]
     pub fn from_bytes(bytes: &[u8], numbers: usize) -> Option<SweepResult> {
         let (failed, rest) = bytes.split_first_chunk()?;
         let (length, rest) = rest.split_first_chunk()?;
