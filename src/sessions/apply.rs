@@ -17,8 +17,8 @@ use stickslip_wire::session::Advance;
 
 use super::cache::Guard;
 use super::changes::answer_once;
+use super::common::{ATTEMPTS, Common};
 use super::compute::{Computed, compute};
-use super::context::{ATTEMPTS, Common};
 use super::error::SessionError;
 use super::expected::Expected;
 use super::handle::Sessions;
@@ -38,7 +38,7 @@ impl Sessions {
         expected: Option<Expected>,
         key: Option<RequestKey>,
     ) -> Result<Reply, SessionError> {
-        let request = self.context.request(key);
+        let request = self.request(key);
         answer_once(&request, pin!(self.apply_anew(id, Arc::new(advance), expected, &request))).await
     }
 
@@ -50,10 +50,10 @@ impl Sessions {
         request: &IdempotentRequest<'_>,
     ) -> Result<Reply, SessionError> {
         // A client that hangs up while it waits leaves the queue.
-        let mut guard = self.context.lock(id).await?;
-        let (stop, _raised_at_the_end) = self.context.pool.deadline();
-        let bytes = advance.plan.length() as u64 * self.context.store.move_bytes();
-        let mut reservation = self.context.reserve_storage(Usage::of(0, bytes, None)).await?;
+        let mut guard = self.lock(id).await?;
+        let (stop, _raised_at_the_end) = self.pool.deadline();
+        let bytes = advance.plan.length() as u64 * self.store.move_bytes();
+        let mut reservation = self.reserve_storage(Usage::of(0, bytes, None)).await?;
         // A cached state may be behind the store, and its label too.
         let mut is_current = guard.live.is_none() || expected.is_some_and(|expected| expected.label.is_some());
         let mut found = 0;
@@ -62,11 +62,11 @@ impl Sessions {
             if let Some(reply) = request.earlier_reply().await? {
                 return Ok(reply);
             }
-            let sequence = self.load(&mut guard, expected, &mut is_current).await?;
+            let sequence = self.load_expected(&mut guard, expected, &mut is_current).await?;
             stop.flag().charge(std::mem::take(&mut guard.loading));
             let computed = match compute(self, &mut guard, &advance, &stop).await {
                 Err(SessionError::Failure(_) | SessionError::Rejected(_))
-                    if !is_current && Box::pin(self.context.catch_up(&mut guard, u64::MAX)).await? =>
+                    if !is_current && Box::pin(self.catch_up(&mut guard, u64::MAX)).await? =>
                 {
                     is_current = true;
                     continue;
@@ -78,11 +78,11 @@ impl Sessions {
             match stored {
                 Ok(reply) => return Ok(reply),
                 Err(error @ (StoreError::NotFound | StoreError::Expired(_))) => {
-                    return Err(self.context.store_failure(&mut guard, error));
+                    return Err(self.store_failure(&mut guard, error));
                 }
                 Err(StoreError::Stale { found: moved }) => {
                     (is_current, found) = (true, moved);
-                    self.context.current(&mut guard).await?.shared = true;
+                    self.current(&mut guard).await?.shared = true;
                 }
                 Err(other) => return Err(other.into()),
             }
@@ -92,7 +92,7 @@ impl Sessions {
 
     /// Brings the state of a session into the guard, and returns its sequence, if it is the one that the client
     /// expects. A refusal counts only once the state has caught up with the store.
-    async fn load(
+    async fn load_expected(
         &self,
         guard: &mut Guard,
         expected: Option<Expected>,
@@ -103,12 +103,12 @@ impl Sessions {
             expected.map_or(Ok(()), |expected| expected.check(sequence, label)).map(|()| sequence)
         };
         if !*is_current {
-            if let Ok(sequence) = check(self.context.cached(guard).await?) {
+            if let Ok(sequence) = check(self.cached(guard).await?) {
                 return Ok(sequence);
             }
             *is_current = true;
         }
-        check(self.context.current(guard).await?)
+        check(self.current(guard).await?)
     }
 
     /// Stores moves after a sequence, and publishes them, even if the client hangs up meanwhile. Until the store has
@@ -125,12 +125,12 @@ impl Sessions {
         let Computed { live, records, reply } = computed;
         let moves = records.len() as u64;
         let receipt = request.receipt(&reply);
-        let added = Usage::of(0, moves * self.context.store.move_bytes(), receipt.as_ref());
+        let added = Usage::of(0, moves * self.store.move_bytes(), receipt.as_ref());
         if added.bytes > reservation.bytes() {
             drop(reservation);
-            reservation = self.context.reserve_storage(added).await?;
+            reservation = self.reserve_storage(added).await?;
         }
-        let common = Arc::clone(&self.context.common);
+        let common = Arc::clone(&self.common);
         let append = async move {
             let mut guard = guard;
             let stored = common.store.append(guard.id(), sequence, records, receipt);
@@ -158,11 +158,11 @@ impl Sessions {
         memory: &mut Reservation,
     ) -> Result<(u64, Vec<u8>), SessionError> {
         let task = relaxation.task;
-        let (stop, _raised_at_the_end) = self.context.pool.deadline();
-        self.context.pool.resize(memory, task.bytes()).await?;
-        let (contact, sequence, state) = self.context.copy(id, None, &stop).await?;
+        let (stop, _raised_at_the_end) = self.pool.deadline();
+        self.pool.resize(memory, task.bytes()).await?;
+        let (contact, sequence, state) = self.copy(id, None, &stop).await?;
         if let Some(expected) = expected {
-            let label = if expected.label.is_some() { self.context.extent(id).await?.label } else { None };
+            let label = if expected.label.is_some() { self.extent(id).await?.label } else { None };
             expected.check(sequence, label.as_deref())?;
         }
         let cost = task.cost(contact.profile(), contact.memory_depth());
@@ -171,7 +171,7 @@ impl Sessions {
             let (steps, protocol) = dry_run_relax(contact, &relaxation, &stop)?;
             written(&RelaxReply { id, sequence, dry_run: true, steps, protocol })
         };
-        Ok((sequence, self.context.pool.run(cost, work).await??))
+        Ok((sequence, self.pool.run(cost, work).await??))
     }
 }
 

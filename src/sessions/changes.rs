@@ -12,7 +12,7 @@ use crate::store::{CONTACT_BYTES, IdempotentRequest, Reply, RequestKey, Session,
 use stickslip_wire::session::Creation;
 use stickslip_wire::{ForkRequest, SessionReply};
 
-use super::context::{ATTEMPTS, TenantContext};
+use super::common::ATTEMPTS;
 use super::error::SessionError;
 use super::expected::Expected;
 use super::handle::Sessions;
@@ -25,12 +25,12 @@ impl Sessions {
     /// # Errors
     /// [`SessionError`]; nothing has been made then.
     pub async fn create(&self, creation: Creation, key: Option<RequestKey>) -> Result<Reply, SessionError> {
-        let request = self.context.request(key);
+        let request = self.request(key);
         let create = pin!(async {
             let now = Timestamp::now();
             let session = Session {
                 id: Uuid::now_v7(),
-                tenant: self.context.tenant.clone(),
+                tenant: self.tenant.clone(),
                 label: creation.label,
                 definition: Arc::new(creation.definition),
                 sequence: 0,
@@ -41,10 +41,10 @@ impl Sessions {
             let reply = live.created_reply()?;
             let receipt = request.receipt(&reply);
             let added = Usage::of(1, live.stored_bytes(), receipt.as_ref());
-            let reservation = self.context.reserve_storage(added).await?;
+            let reservation = self.reserve_storage(added).await?;
             // A request that finds the new session in the store waits until it is cached.
-            let guard = self.context.cache.lock(&self.context.tenant, live.session.id).await;
-            let common = Arc::clone(&self.context.common);
+            let guard = self.cache.lock(&self.tenant, live.session.id).await;
+            let common = Arc::clone(&self.common);
             let create = async move {
                 let stored = common.store.create(live.session.clone(), receipt);
                 stored.instrument(otlp::part!("store")).await?;
@@ -62,7 +62,7 @@ impl Sessions {
     /// # Errors
     /// A key of another request, or a failure of the store.
     pub async fn earlier_reply(&self, key: RequestKey) -> Result<Option<Reply>, SessionError> {
-        Ok(self.context.request(Some(key)).earlier_reply().await?)
+        Ok(self.request(Some(key)).earlier_reply().await?)
     }
 
     /// Keeps the reply to a request that stores nothing else, within the quotas of the tenant. Returns the reply that
@@ -71,12 +71,12 @@ impl Sessions {
     /// # Errors
     /// A key of another request, a quota, or a failure of the store.
     pub async fn keep_reply(&self, key: RequestKey, body: Vec<u8>) -> Result<Reply, SessionError> {
-        let request = self.context.request(Some(key));
+        let request = self.request(Some(key));
         let reply = Reply { created: None, sequence: 0, body };
         let Some(receipt) = request.receipt(&reply) else { return Ok(reply) };
         let added = Usage::of(0, 0, Some(&receipt));
-        let reservation = self.context.reserve_storage(added).await?;
-        let common = Arc::clone(&self.context.common);
+        let reservation = self.reserve_storage(added).await?;
+        let common = Arc::clone(&self.common);
         let keep = async move {
             let stored = common.store.keep(receipt).instrument(otlp::part!("store"));
             stored.await.inspect(|()| reservation.used(added))
@@ -92,12 +92,12 @@ impl Sessions {
     /// # Errors
     /// [`SessionError`]; nothing has been made then.
     pub async fn fork(&self, id: Uuid, asked: ForkRequest, key: Option<RequestKey>) -> Result<Reply, SessionError> {
-        let request = self.context.request(key);
+        let request = self.request(key);
         let fork = pin!(async {
             // A tenant at its quota is refused before its past is read.
-            drop(self.context.reserve_storage(Usage::of(1, CONTACT_BYTES, None)).await?);
-            let mut guard = self.context.lock(id).await?;
-            let (mut copy, held) = self.context.after(&mut guard, asked.sequence).await?;
+            drop(self.reserve_storage(Usage::of(1, CONTACT_BYTES, None)).await?);
+            let mut guard = self.lock(id).await?;
+            let (mut copy, held) = self.after(&mut guard, asked.sequence).await?;
             let now = Timestamp::now();
             copy.session = Session {
                 id: Uuid::now_v7(),
@@ -108,14 +108,14 @@ impl Sessions {
             };
             let reply = copy.created_reply()?;
             let receipt = request.receipt(&reply);
-            let extent = self.context.store.extent(id).await;
-            let extent = extent.map_err(|error| self.context.store_failure(&mut guard, error))?;
-            let moves = copy.session.sequence * self.context.store.move_bytes();
+            let extent = self.store.extent(id).await;
+            let extent = extent.map_err(|error| self.store_failure(&mut guard, error))?;
+            let moves = copy.session.sequence * self.store.move_bytes();
             let added = Usage::of(1, copy.stored_bytes() + moves + extent.snapshot, receipt.as_ref());
-            let reservation = self.context.reserve_storage(added).await?;
-            let new = self.context.cache.lock(&self.context.tenant, copy.session.id).await;
+            let reservation = self.reserve_storage(added).await?;
+            let new = self.cache.lock(&self.tenant, copy.session.id).await;
             // The original may have moved on meanwhile in another process: its past stays what it was.
-            let common = Arc::clone(&self.context.common);
+            let common = Arc::clone(&self.common);
             let fork = async move {
                 let _held = held;
                 let stored = common.store.fork(id, copy.session.clone(), receipt);
@@ -127,7 +127,7 @@ impl Sessions {
             match run_to_end(fork).await {
                 Ok(()) => Ok(reply),
                 Err(error @ (StoreError::NotFound | StoreError::Expired(_))) => {
-                    Err(self.context.store_failure(&mut guard, error))
+                    Err(self.store_failure(&mut guard, error))
                 }
                 Err(StoreError::Stale { found }) => Err(SessionError::Overtaken { found }),
                 Err(error) => Err(error.into()),
@@ -147,12 +147,12 @@ impl Sessions {
         expected: Option<Expected>,
         key: Option<RequestKey>,
     ) -> Result<Reply, SessionError> {
-        let request = self.context.request(key);
+        let request = self.request(key);
         let rename = pin!(async {
-            let mut guard = self.context.lock(id).await?;
+            let mut guard = self.lock(id).await?;
             let mut overtaken = 0;
             for _ in 0..ATTEMPTS {
-                let now = self.context.current(&mut guard).await?.reply();
+                let now = self.current(&mut guard).await?.reply();
                 if let Some(expected) = expected {
                     expected.check(now.sequence, now.label.as_deref())?;
                 }
@@ -161,10 +161,10 @@ impl Sessions {
                 let reply = Reply { created: None, sequence: renamed.sequence, body: written(&renamed)? };
                 let receipt = request.receipt(&reply);
                 let added = Usage::of(0, 0, receipt.as_ref());
-                let reservation = self.context.reserve_storage(added).await?;
+                let reservation = self.reserve_storage(added).await?;
                 // The reply shows the sequence, and the client may expect it and the label: both hold only as long as
                 // no other process changes them.
-                let (common, label, at) = (Arc::clone(&self.context.common), label.clone(), reply.sequence);
+                let (common, label, at) = (Arc::clone(&self.common), label.clone(), reply.sequence);
                 let rename = async move {
                     let stored = common.store.rename(id, before, label, at, receipt);
                     stored.instrument(otlp::part!("store")).await.inspect(|()| reservation.used(added))
@@ -172,7 +172,7 @@ impl Sessions {
                 match run_to_end(rename).await {
                     Ok(()) => return Ok(reply),
                     Err(StoreError::Stale { found }) => overtaken = found,
-                    Err(error) => return Err(self.context.store_failure(&mut guard, error)),
+                    Err(error) => return Err(self.store_failure(&mut guard, error)),
                 }
             }
             Err(SessionError::Overtaken { found: overtaken })
@@ -185,18 +185,18 @@ impl Sessions {
     /// # Errors
     /// [`SessionError`]; it is still there then.
     pub async fn delete(&self, id: Uuid, expected: Option<Expected>) -> Result<(), SessionError> {
-        let mut guard = self.context.lock(id).await?;
+        let mut guard = self.lock(id).await?;
         let found = match &guard.live {
             Some(live) if expected.is_none_or(|expected| expected.label.is_none()) => live.session.sequence,
             _ => {
-                let stored = self.context.extent(id).await?;
+                let stored = self.extent(id).await?;
                 expected.map_or(Ok(()), |expected| expected.check(stored.sequence, stored.label.as_deref()))?;
                 stored.sequence
             }
         };
         let mut at = expected.map_or(found, |expected| expected.sequence);
         for _ in 0..ATTEMPTS {
-            let TenantContext { tenant, common } = self.context.clone();
+            let (tenant, common) = (self.tenant.clone(), Arc::clone(&self.common));
             let delete = async move {
                 let deleted = common.store.delete(id, at).instrument(otlp::part!("store")).await;
                 if deleted.is_ok() {
@@ -214,7 +214,7 @@ impl Sessions {
                     return Err(SessionError::Stale { expected: expected.sequence, found });
                 }
                 (Err(StoreError::Stale { found }), None) => at = found,
-                (Err(error), _) => return Err(self.context.store_failure(&mut guard, error)),
+                (Err(error), _) => return Err(self.store_failure(&mut guard, error)),
             }
         }
         Err(SessionError::Overtaken { found: at })

@@ -49,7 +49,6 @@ pub(super) async fn compute(
     advance: &Arc<Advance>,
     stop: &Deadline,
 ) -> Result<Computed, SessionError> {
-    let context = &sessions.context;
     let depth = guard.live.as_ref().map_or(0, |live| live.contact.memory_depth());
     // A single move that the mechanics refuses has changed nothing, so that it needs no copy to fall back on; and a
     // copy costs as much as the slip history is deep. A move that another process may have overtaken needs the copy.
@@ -59,7 +58,7 @@ pub(super) async fn compute(
         && guard.live.as_ref().is_some_and(|live| !live.shared);
     // A copy can be large, and many requests may be under way.
     let copied = guard.live.as_ref().filter(|_| !in_place).map_or(0, |live| live.contact.memory_bytes());
-    let _held = if copied > 0 { context.reserve_copy(guard, copied).await? } else { Reservation::default() };
+    let _held = if copied > 0 { sessions.reserve_copy(guard, copied).await? } else { Reservation::default() };
     let live = if in_place { guard.live.take() } else { guard.live.clone() };
     let mut live = live.ok_or(SessionError::NotFound(guard.id()))?;
     let radii = advance.stress.as_ref().map_or(0, |stress| stress.length());
@@ -75,7 +74,7 @@ pub(super) async fn compute(
             (live, made)
         }
     };
-    let (mut live, made) = context.pool.run(cost, solve).await?;
+    let (mut live, made) = sessions.pool.run(cost, solve).await?;
     let (records, mut reply) = match made {
         Ok(made) => made,
         Err(error) => {

@@ -40,11 +40,11 @@ impl Sessions {
         last: usize,
         memory: &mut Reservation,
     ) -> Result<(u64, CyclePage), SessionError> {
-        let (stop, _guard) = self.context.pool.deadline();
+        let (stop, _guard) = self.pool.deadline();
         // The lock is held for copies alone, so that the session can move on meanwhile.
         let (virgin, sequence, known) = {
-            let mut guard = self.context.lock(id).await?;
-            let live = self.context.current(&mut guard).await?;
+            let mut guard = self.lock(id).await?;
+            let live = self.current(&mut guard).await?;
             let known = (live.contact.virgin(), live.session.sequence, live.cycles.clone());
             stop.flag().charge(guard.loading);
             known
@@ -64,7 +64,7 @@ impl Sessions {
             let newest = log.newest.range(log.newest.len().saturating_sub(last)..);
             newest.map(|cycle| answered(cycle, &virgin, (&stop, LAST))).collect::<Result<_, _>>()
         };
-        let items = self.context.pool.run(cost, answers).await??;
+        let items = self.pool.run(cost, answers).await??;
         Ok((sequence, CyclePage { items }))
     }
 
@@ -79,10 +79,10 @@ impl Sessions {
         memory: &mut Reservation,
     ) -> Result<(), SessionError> {
         let Some(after) = page.items.first().map(|item| item.sequence - 1) else { return Ok(()) };
-        let (stop, _guard) = self.context.pool.deadline();
+        let (stop, _guard) = self.pool.deadline();
         let (virgin, known) = {
-            let mut guard = self.context.lock(id).await?;
-            let live = self.context.current(&mut guard).await?;
+            let mut guard = self.lock(id).await?;
+            let live = self.current(&mut guard).await?;
             let known = (live.contact.virgin(), live.log_for(after));
             stop.flag().charge(guard.loading);
             known
@@ -91,7 +91,7 @@ impl Sessions {
             Some(known) if known.sequence >= after => known,
             known => self.look_on(id, after, known, &virgin, (&stop, MARKED), memory).await?,
         };
-        let (pool, before) = (&self.context.pool, memory.bytes());
+        let (pool, before) = (&self.pool, memory.bytes());
         pool.resize(memory, before + bytes_with(&log, PAGE)).await?;
         let states: Vec<(u64, State)> = page.items.iter().map(|item| (item.sequence, item.state)).collect();
         let cost = Work { moves: CYCLE_MOVES * states.len(), ..Work::default() }.cost(virgin.profile());
@@ -148,7 +148,7 @@ impl Sessions {
             Some(known) if known.sequence == sequence => return Ok((known, Ok(()))),
             known => known,
         };
-        let (pool, before) = (&self.context.pool, memory.as_ref().map_or(0, |memory| memory.bytes()));
+        let (pool, before) = (&self.pool, memory.as_ref().map_or(0, |memory| memory.bytes()));
         let mut log = known.map_or_else(|| empty_log(virgin), Arc::unwrap_or_clone);
         while log.sequence < sequence {
             if let Err(interrupted) = stop.check() {
@@ -157,7 +157,7 @@ impl Sessions {
             if let Some(memory) = &mut memory {
                 pool.resize(memory, before + bytes_with(&log, PAGE)).await?;
             }
-            let records = self.context.page(id, log.sequence, sequence).await?;
+            let records = self.page(id, log.sequence, sequence).await?;
             let cost = STATE_COST * records.len() as u64;
             let look = move || {
                 for record in records {
@@ -176,7 +176,7 @@ impl Sessions {
 
     /// Keeps a log with the cached session, unless the log is ahead of the session.
     async fn keep_log(&self, id: Uuid, log: &Arc<CycleLog>) -> Result<(), SessionError> {
-        let mut guard = self.context.lock(id).await?;
+        let mut guard = self.lock(id).await?;
         if let Some(live) = guard.live.as_mut().filter(|live| live.session.sequence >= log.sequence) {
             live.keep_log(log);
         }

@@ -49,9 +49,9 @@ pub async fn events(
     id: Uuid,
     after: Option<u64>,
 ) -> Result<impl Stream<Item = StreamEvent<StateEvent>> + Send + use<>, SessionError> {
-    let share = sessions.context.pool.share_of(Quota::Streams)?;
+    let share = sessions.pool.share_of(Quota::Streams)?;
     // Every later change wakes the listener, so that none can fall between the first read and the first wait.
-    let listener = sessions.context.listeners.listen(sessions.context.store.changes(), id);
+    let listener = sessions.listeners.listen(sessions.store.changes(), id);
     let listener = listener.ok_or(SessionError::TooManyStreams)?;
     let session = sessions.get(id).await?;
     let found = session.sequence;

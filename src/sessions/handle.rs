@@ -1,19 +1,20 @@
 //! The handle on the sessions of a tenant, and what it reads of them. The other files of this folder add the moves, the
 //! changes, the history, the cycles and the observations.
 
+use std::ops::Deref;
 use std::sync::Arc;
 
 use uuid::Uuid;
 
-use crate::admission::{Deadline, Pool, Reservation};
+use crate::admission::{Pool, Reservation};
 use crate::otlp;
 use crate::store::{Page, Store, Tenant};
 use stickslip_compute::computations::{DisplayOptions, OnContact};
-use stickslip_compute::simulation::{Profiles, bytes, cost};
+use stickslip_compute::simulation::{bytes, cost};
 use stickslip_wire::subsurface::SubsurfaceTask;
 use stickslip_wire::{ContactDefinition, SessionPage, SessionReply, SubsurfaceRequest};
 
-use super::context::{Common, TenantContext};
+use super::common::Common;
 use super::error::SessionError;
 use super::loaded::written;
 use super::metrics::Readings;
@@ -21,9 +22,18 @@ use super::metrics::Readings;
 /// The sessions of a tenant. Clones, and those of other tenants, are handles on the same.
 #[derive(Clone)]
 pub struct Sessions {
-    pub(super) context: TenantContext,
+    pub(super) tenant: Tenant,
+    pub(super) common: Arc<Common>,
     /// The name of the key that the requests come with, where keys are in use.
     pub(super) by: Option<Arc<str>>,
+}
+
+impl Deref for Sessions {
+    type Target = Common;
+
+    fn deref(&self) -> &Common {
+        &self.common
+    }
 }
 
 impl Sessions {
@@ -31,22 +41,17 @@ impl Sessions {
     /// replayed when needed.
     pub fn new(store: Arc<dyn Store>, pool: Pool, capacity: usize) -> Sessions {
         let common = Arc::new(Common::new(store, pool, capacity));
-        Sessions { context: TenantContext { tenant: Tenant::default(), common }, by: None }
+        Sessions { tenant: Tenant::default(), common, by: None }
     }
 
     /// The sessions of another tenant, for requests that come with the key of this name.
     pub fn for_tenant(&self, tenant: Tenant, key: Arc<str>) -> Sessions {
-        Sessions { context: TenantContext { tenant, common: Arc::clone(&self.context.common) }, by: Some(key) }
-    }
-
-    /// The shared profiles, for work that ends when this flag is raised.
-    pub fn profiles(&self, stop: &Deadline) -> Profiles<Deadline> {
-        self.context.profiles(stop)
+        Sessions { tenant, common: Arc::clone(&self.common), by: Some(key) }
     }
 
     /// Ends all events, present and future: the process is about to stop.
     pub fn end_events(&self) {
-        self.context.listeners.end();
+        self.listeners.end();
     }
 
     /// Whether requests come with keys, by whose names the history says who made a move.
@@ -59,12 +64,12 @@ impl Sessions {
     /// # Errors
     /// [`SessionError::Store`] if it cannot.
     pub async fn ready(&self) -> Result<(), SessionError> {
-        Ok(self.context.store.ready().await?)
+        Ok(self.store.ready().await?)
     }
 
     /// Bytes of the cached states, and how many sessions they are.
     pub fn held(&self) -> (usize, usize) {
-        self.context.cache.held()
+        self.cache.held()
     }
 
     /// A session with its state.
@@ -72,8 +77,8 @@ impl Sessions {
     /// # Errors
     /// [`SessionError::NotFound`] or [`SessionError::Expired`], or a failure of the store.
     pub async fn get(&self, id: Uuid) -> Result<SessionReply, SessionError> {
-        let mut guard = self.context.lock(id).await?;
-        Ok(self.context.current(&mut guard).await?.reply())
+        let mut guard = self.lock(id).await?;
+        Ok(self.current(&mut guard).await?.reply())
     }
 
     /// The definition of a session as it was sent, as JSON, and the memory that it takes.
@@ -82,19 +87,17 @@ impl Sessions {
     /// [`SessionError::NotFound`] or [`SessionError::Expired`], or a failure of the store or of the pool.
     pub async fn definition(&self, id: Uuid) -> Result<(Vec<u8>, Reservation), SessionError> {
         let definition = {
-            let mut guard = self.context.lock(id).await?;
+            let mut guard = self.lock(id).await?;
             // It does not depend on the state, which is not loaded for it.
             match &guard.live {
-                Some(live) if !live.is_behind => {
-                    Arc::clone(&self.context.current(&mut guard).await?.session.definition)
-                }
-                _ => self.context.find_own(id).await?.definition,
+                Some(live) if !live.is_behind => Arc::clone(&self.current(&mut guard).await?.session.definition),
+                _ => self.find_own(id).await?.definition,
             }
         };
         let points = definition.profile.points();
-        let held = self.context.pool.reserve(bytes::of_definition(points)).await?;
+        let held = self.pool.reserve(bytes::of_definition(points)).await?;
         let work = move || written(&*definition);
-        Ok((self.context.pool.run(cost::writing_table(points), work).await??, held))
+        Ok((self.pool.run(cost::writing_table(points), work).await??, held))
     }
 
     /// The reply of a computation on a session, which is `expected` to have this definition, with the sequence that it
@@ -110,16 +113,16 @@ impl Sessions {
         shown: DisplayOptions,
         memory: &mut Reservation,
     ) -> Result<(u64, Vec<u8>), SessionError> {
-        let (stop, _guard) = self.context.pool.deadline();
-        self.context.pool.resize(memory, task.bytes() + shown.bytes(task.rows())).await?;
-        let (contact, sequence, state) = self.context.copy(id, expected, &stop).await?;
+        let (stop, _guard) = self.pool.deadline();
+        self.pool.resize(memory, task.bytes() + shown.bytes(task.rows())).await?;
+        let (contact, sequence, state) = self.copy(id, expected, &stop).await?;
         let cost = task.cost(contact.profile(), contact.memory_depth()).saturating_add(shown.format.cost());
         let work = move || {
             let _state = state;
             let outcome = otlp::part!("solve").in_scope(|| task.run(contact, sequence, &stop))?;
             Ok::<_, SessionError>(otlp::part!("write").in_scope(|| shown.write(&outcome, &stop))??)
         };
-        Ok((sequence, self.context.pool.run(cost, work).await??))
+        Ok((sequence, self.pool.run(cost, work).await??))
     }
 
     /// The stresses below the surface that a request asks for, checked against the definition of the session.
@@ -128,8 +131,8 @@ impl Sessions {
     /// [`SessionError::NotFound`] or [`SessionError::Expired`], a request that does not fit the definition, or a
     /// failure of the store.
     pub async fn subsurface_task(&self, id: Uuid, request: SubsurfaceRequest) -> Result<SubsurfaceTask, SessionError> {
-        let mut guard = self.context.lock(id).await?;
-        Ok(request.of_contact(&self.context.current(&mut guard).await?.session.definition)?)
+        let mut guard = self.lock(id).await?;
+        Ok(request.of_contact(&self.current(&mut guard).await?.session.definition)?)
     }
 
     /// A page of sessions; of those alone whose label contains `label`.
@@ -140,8 +143,8 @@ impl Sessions {
         let limit = page.limit;
         // One more than requested shows whether there is a next page.
         let page = Page { limit: limit + 1, ..page };
-        let listed = self.context.store.list(Some(self.context.tenant.clone()), label, page);
-        let mut found = self.context.pool.wait(listed).await??;
+        let listed = self.store.list(Some(self.tenant.clone()), label, page);
+        let mut found = self.pool.wait(listed).await??;
         let more = found.len() > limit;
         found.truncate(limit);
         let next = found.last().filter(|_| more).map(|session| session.id);
@@ -150,14 +153,14 @@ impl Sessions {
 
     /// The metrics of the sessions.
     pub fn readings(&self) -> Readings<'_> {
-        let (bytes, cached) = self.context.cache.held();
+        let (bytes, cached) = self.cache.held();
         Readings {
-            counted: &self.context.metrics,
+            counted: &self.metrics,
             cached,
             bytes,
-            capacity: self.context.cache.capacity(),
-            streams: self.context.listeners.count(),
-            commits: self.context.store.commits(),
+            capacity: self.cache.capacity(),
+            streams: self.listeners.count(),
+            commits: self.store.commits(),
         }
     }
 }

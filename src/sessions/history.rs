@@ -16,7 +16,7 @@ impl Sessions {
     /// # Errors
     /// [`SessionError::NotFound`] or [`SessionError::Expired`], or a failure of the store.
     pub async fn sequence(&self, id: Uuid) -> Result<u64, SessionError> {
-        Ok(self.context.extent(id).await?.sequence)
+        Ok(self.extent(id).await?.sequence)
     }
 
     /// Checks that the first `end` moves of a session are all stored.
@@ -25,14 +25,14 @@ impl Sessions {
     /// [`SessionError::Store`] with [`StoreError::Damaged`](crate::store::StoreError::Damaged) if they are not, or a
     /// failure of the store.
     pub async fn check_complete(&self, id: Uuid, end: u64) -> Result<(), SessionError> {
-        let count = self.context.store.count_moves(id, end).await;
-        if count.map_err(|error| self.context.store_error(id, error))? == end {
+        let count = self.store.count_moves(id, end).await;
+        if count.map_err(|error| self.store_error(id, error))? == end {
             return Ok(());
         }
         // Which one is missing is found by reading them.
         let mut at = 0;
         while at < end {
-            at += self.context.page(id, at, end).await?.len() as u64;
+            at += self.page(id, at, end).await?.len() as u64;
         }
         Err(damaged(id, &format_args!("some of its {end} moves are missing")))
     }
@@ -42,16 +42,16 @@ impl Sessions {
     /// # Errors
     /// [`SessionError::NotFound`] or [`SessionError::Expired`], or a failure of the store.
     pub async fn history(&self, id: Uuid, after: u64, limit: usize) -> Result<HistoryPage, SessionError> {
-        if !self.context.cache.holds(&self.context.tenant, id) {
-            self.context.extent(id).await?;
+        if !self.cache.holds(&self.tenant, id) {
+            self.extent(id).await?;
         }
         self.own_history(id, after, limit).await
     }
 
     /// The same of a session that is known to belong to the tenant.
     pub(super) async fn own_history(&self, id: Uuid, after: u64, limit: usize) -> Result<HistoryPage, SessionError> {
-        let found = self.context.store.history(id, after, limit + 1).instrument(otlp::part!("store")).await;
-        let mut found = found.map_err(|error| self.context.store_error(id, error))?;
+        let found = self.store.history(id, after, limit + 1).instrument(otlp::part!("store")).await;
+        let mut found = found.map_err(|error| self.store_error(id, error))?;
         let more = found.len() > limit;
         found.truncate(limit);
         let next = found.last().filter(|_| more).map(|record| record.sequence);

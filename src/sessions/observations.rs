@@ -58,12 +58,12 @@ impl Sessions {
     /// # Errors
     /// [`SessionError::NotFound`] or [`SessionError::Expired`], or a failure of the store or of the pool.
     pub async fn friction(&self, id: Uuid) -> Result<FrictionReply, SessionError> {
-        let (request, _raised_at_the_end) = self.context.pool.deadline();
+        let (request, _raised_at_the_end) = self.pool.deadline();
         let stop = Arc::new(Part::of(request.clone(), Some(TIME)));
         // The lock is held for copies alone, so that the session can move on meanwhile.
         let (virgin, sequence, known, mut estimated) = {
-            let mut guard = self.context.lock(id).await?;
-            let live = self.context.current(&mut guard).await?;
+            let mut guard = self.lock(id).await?;
+            let live = self.current(&mut guard).await?;
             let known = (live.contact.virgin(), live.session.sequence, live.cycles.clone(), live.estimated);
             request.flag().charge(guard.loading);
             known
@@ -71,10 +71,10 @@ impl Sessions {
         let memory = &mut Reservation::default();
         let (log, seen) = self.read_states(id, sequence, known, &virgin, &*stop, Some(memory)).await?;
         if seen.is_ok() {
-            self.context.pool.resize(memory, bytes_of_fit(sequence)).await?;
+            self.pool.resize(memory, bytes_of_fit(sequence)).await?;
             estimated = self.estimate(id, &log, &virgin, estimated, &[], &stop).await?;
         }
-        let mut guard = self.context.lock(id).await?;
+        let mut guard = self.lock(id).await?;
         if let Some(live) = guard.live.as_mut().filter(|live| live.session.sequence == sequence) {
             live.keep_log(&log);
             live.estimated = estimated;
@@ -106,7 +106,7 @@ impl Sessions {
         let stored = to.min(log.sequence - new.len() as u64);
         let mut read = from.saturating_sub(1);
         while read < stored {
-            let page = match self.context.page(id, read, stored).await {
+            let page = match self.page(id, read, stored).await {
                 // A store behind the cached state: the append that follows says so.
                 Err(SessionError::Store(StoreError::Damaged { .. })) if !new.is_empty() => return Ok(unknown),
                 page => page?,
@@ -122,7 +122,7 @@ impl Sessions {
         }
         let (virgin, stop) = (virgin.clone(), Arc::clone(stop));
         let fit = move || cycle.friction(virgin, &|| stop.check().is_ok());
-        let friction = self.context.pool.run(FIT_COST + POINT_COST * moves as u64, fit).await?;
+        let friction = self.pool.run(FIT_COST + POINT_COST * moves as u64, fit).await?;
         Ok(match friction {
             Ok(friction) => {
                 let friction = friction.map(|(value, interval)| FrictionEstimate { value, interval, from, to });
@@ -146,7 +146,7 @@ impl Sessions {
         let id = guard.id();
         let (virgin, before) = (live.contact.virgin(), live.session.sequence - records.len() as u64);
         let stop = Arc::new(Part::of(stop.clone(), Some(TIME)));
-        let (pool, known) = (&self.context.pool, live.cycles.take());
+        let (pool, known) = (&self.pool, live.cycles.take());
         let bytes = bytes_to_read(known.as_deref(), &virgin, live.session.sequence);
         if let Some(_held) = pool.try_reserve(bytes + bytes_of_fit(live.session.sequence)) {
             let (mut log, seen) = self.read_states(id, before, known, &virgin, &*stop, None).await?;
@@ -181,7 +181,7 @@ impl Sessions {
         });
         let friction = live.estimated.and_then(|estimated| estimated.friction);
         let reply = ObservationsReply { id, sequence: live.session.sequence, items: items.collect(), friction };
-        self.context.pool.run(WRITING_COST * records.len() as u64, move || written(&reply)).await?
+        self.pool.run(WRITING_COST * records.len() as u64, move || written(&reply)).await?
     }
 }
 

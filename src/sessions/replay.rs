@@ -15,8 +15,8 @@ use stickslip_mechanics::Contact;
 use stickslip_wire::{ContactDefinition, limits};
 
 use super::cache::Guard;
-use super::context::TenantContext;
 use super::error::SessionError;
+use super::handle::Sessions;
 use super::loaded::LoadedSession;
 use super::snapshot::Snapshots;
 
@@ -39,7 +39,7 @@ const KEPT_EVERY: Duration = Duration::from_secs(1);
 /// request.
 const SMALL_HISTORY: u64 = 64;
 
-impl TenantContext {
+impl Sessions {
     /// The cached session, or the stored one. Other processes may have moved or deleted it since: the
     /// result is to be checked against the store.
     pub(super) async fn cached<'a>(&self, guard: &'a mut Guard) -> Result<&'a mut LoadedSession, SessionError> {
@@ -144,7 +144,7 @@ impl TenantContext {
         Ok(())
     }
 
-    /// A stored session after its move `last`, from its snapshot on, or as far as [`TenantContext::follow`] came.
+    /// A stored session after its move `last`, from its snapshot on, or as far as [`Sessions::follow`] came.
     async fn replayed(
         &self,
         guard: &mut Guard,
@@ -171,7 +171,7 @@ impl TenantContext {
     /// for it.
     ///
     /// # Errors
-    /// [`SessionError::NoSuchMove`] if it has made fewer, and as [`TenantContext::current`]; damage after
+    /// [`SessionError::NoSuchMove`] if it has made fewer, and as [`Sessions::current`]; damage after
     /// the last of so many moves is no error.
     pub(super) async fn after(
         &self,
@@ -207,7 +207,7 @@ impl TenantContext {
     /// are fetched at a time.
     ///
     /// # Errors
-    /// As [`TenantContext::store_error`]; it is damaged if there is none.
+    /// As [`Sessions::store_error`]; it is damaged if there is none.
     pub(super) async fn page(&self, id: Uuid, after: u64, last: u64) -> Result<Vec<Record>, SessionError> {
         let limit = usize::try_from(last - after).map_or(PAGE, |left| left.min(PAGE));
         let page = self.store.history(id, after, limit).await.map_err(|error| self.store_error(id, error))?;

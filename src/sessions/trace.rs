@@ -34,30 +34,30 @@ pub async fn trace(
     points: usize,
     memory: &mut Reservation,
 ) -> Result<LoopPage, SessionError> {
-    let (context, mut page) = (&sessions.context, LoopPage::after(after));
+    let mut page = LoopPage::after(after);
     let (Some(last), true) = (past.last().map(|item| item.sequence), points > 1) else {
         for item in past {
             page.push_end(item.sequence, &item.state, item.observation.map(|observation| observation.force));
         }
         return Ok(page);
     };
-    let (stop, _guard) = context.pool.deadline();
+    let (stop, _guard) = sessions.pool.deadline();
     // A move is assumed to leave one piece of slip history.
     let pieces = usize::try_from(after).unwrap_or(usize::MAX).min(limits::MEMORY_DEPTH);
     let before = memory.bytes();
-    context.pool.resize(memory, before + 2 * PIECE_BYTES * pieces + PAGE * RECORD_BYTES).await?;
+    sessions.pool.resize(memory, before + 2 * PIECE_BYTES * pieces + PAGE * RECORD_BYTES).await?;
     let initial = {
-        let mut guard = context.lock(id).await?;
-        let initial = context.current(&mut guard).await?.contact.virgin();
+        let mut guard = sessions.lock(id).await?;
+        let initial = sessions.current(&mut guard).await?.contact.virgin();
         stop.flag().charge(guard.loading);
         initial
     };
-    let snapshot = context.store.snapshot(id).await;
+    let snapshot = sessions.store.snapshot(id).await;
     let mut loading = Duration::ZERO;
-    let (mut contact, mut at, _) = context.snapshots.load(&mut loading, snapshot, initial, after).await?;
+    let (mut contact, mut at, _) = sessions.snapshots.load(&mut loading, snapshot, initial, after).await?;
     stop.flag().charge(loading);
     while at < last {
-        let records = context.page(id, at, last).await?;
+        let records = sessions.page(id, at, last).await?;
         let end = at + records.len() as u64;
         let drawn = records.iter().filter(|record| record.sequence > after).count();
         let curved = records.iter().filter(|record| record.step.is_curved()).count();
@@ -76,10 +76,10 @@ pub async fn trace(
             }
             Ok::<_, SessionError>((contact, page))
         };
-        (contact, page) = context.pool.run(price, work).await??;
+        (contact, page) = sessions.pool.run(price, work).await??;
         at = end;
     }
-    context.pool.resize(memory, before).await?;
+    sessions.pool.resize(memory, before).await?;
     Ok(page)
 }
 

@@ -1,7 +1,6 @@
-//! The context of the sessions of a tenant: the store, the pool, and the cache with its locks. Every handle on these
-//! sessions holds one.
+//! What the sessions of all tenants share: the store, the pool, and the cache with its locks. A handle uses it within its
+//! tenant.
 
-use std::ops::Deref;
 use std::sync::Arc;
 
 use uuid::Uuid;
@@ -13,6 +12,7 @@ use stickslip_mechanics::Profile;
 
 use super::cache::{Cache, Guard};
 use super::error::SessionError;
+use super::handle::Sessions;
 use super::metrics::SessionMetrics;
 use super::snapshot::Snapshots;
 use super::storage_reservation::{StorageReservation, UsageByTenant};
@@ -20,15 +20,8 @@ use super::storage_reservation::{StorageReservation, UsageByTenant};
 /// How often a change is tried if other processes move the contact first. Each time, one of them has made progress.
 pub(super) const ATTEMPTS: usize = 100;
 
-/// The sessions of a tenant. Clones are handles on the same.
-#[derive(Clone)]
-pub(super) struct TenantContext {
-    pub(super) tenant: Tenant,
-    pub(super) common: Arc<Common>,
-}
-
 /// What all tenants share.
-pub(super) struct Common {
+pub struct Common {
     pub(super) store: Arc<dyn Store>,
     pub(super) pool: Pool,
     pub(super) cache: Arc<Cache>,
@@ -36,14 +29,6 @@ pub(super) struct Common {
     pub(super) listeners: Listeners,
     pub(super) metrics: SessionMetrics,
     usage: UsageByTenant,
-}
-
-impl Deref for TenantContext {
-    type Target = Common;
-
-    fn deref(&self) -> &Common {
-        &self.common
-    }
 }
 
 impl Common {
@@ -83,9 +68,9 @@ impl ProfileCache for Common {
     }
 }
 
-impl TenantContext {
+impl Sessions {
     /// The shared profiles, for work that ends when this flag is raised.
-    pub(super) fn profiles(&self, stop: &Deadline) -> Profiles<Deadline> {
+    pub fn profiles(&self, stop: &Deadline) -> Profiles<Deadline> {
         Profiles::new(self.common.clone(), stop.clone(), self.pool.capacity().deadline)
     }
 
