@@ -140,6 +140,12 @@ impl Faults {
         }
     }
 
+    /// Notes a fault in place of a value.
+    pub fn refuse<T>(&mut self, at: JsonPath<'_>, detail: impl fmt::Display) -> Option<T> {
+        self.add(at, detail);
+        None
+    }
+
     /// Notes a number that is not within a range.
     fn out_of_range(&mut self, at: JsonPath<'_>, detail: impl fmt::Display, [minimum, maximum]: [Option<f64>; 2]) {
         let listed = self.found.len();

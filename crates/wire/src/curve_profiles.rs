@@ -64,8 +64,8 @@ impl AsperitiesProfile {
         let radii = self.radii.as_deref().unwrap_or(self.radius.as_slice());
         if self.radii.is_some() && radii.len() != self.gaps.len() {
             let (radii, gaps) = (radii.len(), self.gaps.len());
-            faults.add(at.member("gaps"), format_args!("{gaps} gaps for {radii} radii: give one radius for each gap"));
-            return None;
+            let detail = format_args!("{gaps} gaps for {radii} radii: give one radius for each gap");
+            return faults.refuse(at.member("gaps"), detail);
         }
         accepted(Asperities::new_while(radii, &self.gaps, keep_going).map(Shape::Asperities), at, faults)
     }
@@ -96,8 +96,7 @@ impl LoadCurveProfile {
                 }
             };
             let place = at.member(member);
-            faults.add(if whole { place } else { place.index(index) }, fault);
-            return None;
+            return faults.refuse(if whole { place } else { place.index(index) }, fault);
         }
         accepted(curve.map(Shape::LoadCurve), at, faults)
     }
@@ -112,8 +111,8 @@ impl EllipsoidProfile {
         let ratio = x.max(y) / x.min(y);
         let Range { max, .. } = range::RADIUS_RATIO;
         if ratio > max {
-            faults.add(place, format_args!("one radius is {ratio:e} times the other: at most {max:e} is allowed"));
-            return None;
+            let detail = format_args!("one radius is {ratio:e} times the other: at most {max:e} is allowed");
+            return faults.refuse(place, detail);
         }
         accepted(Ellipsoid::new([x, y], self.direction.into()).map(Shape::Ellipsoid), at, faults)
     }

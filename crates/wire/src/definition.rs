@@ -251,11 +251,26 @@ fn check_bodies(bodies: &[Body], at: JsonPath<'_>, faults: &mut Faults) -> Optio
     match checked.collect::<Vec<_>>()[..] {
         [Some(first), Some(second)] => Some(elasticity::Elasticity::of_bodies(first?, second?)),
         [Some(body), None] | [None, Some(body)] => Some(elasticity::Elasticity::against_rigid(body?)),
-        [None, None] => {
-            faults.add(at, "both bodies are rigid: one of them must be elastic");
-            None
-        }
+        [None, None] => faults.refuse(at, "both bodies are rigid: one of them must be elastic"),
         _ => None,
+    }
+}
+
+/// The constant of a body as its material has it, or else the request. Noted at `at` if they differ or, with what is
+/// `missing`, if neither has it.
+pub(crate) fn of_body(
+    known: Option<f64>,
+    given: Option<f64>,
+    missing: &str,
+    at: JsonPath<'_>,
+    faults: &mut Faults,
+) -> Option<f64> {
+    match (known, given) {
+        (Some(known), Some(given)) if (known - given).abs() > 0.0 => {
+            faults.refuse(at, format_args!("{given:?} contradicts the {known:?} of this body: leave this out"))
+        }
+        (None, None) => faults.refuse(at, missing),
+        (known, given) => known.or(given),
     }
 }
 

@@ -78,8 +78,8 @@ impl BulkPerForce {
     ) -> Option<Shape> {
         faults.part(|faults| self.check_members(at, faults))?;
         let Some(bodies) = material.checked_bodies() else {
-            faults.add(at, "the strain of a bulk stress needs the constants of the body: name the two bodies");
-            return None;
+            return faults
+                .refuse(at, "the strain of a bulk stress needs the constants of the body: name the two bodies");
         };
         let body = bodies[usize::from(self.body == BodyName::Second)];
         let bulk = LineBulk::new(self.body.into(), self.stress_per_force, body);

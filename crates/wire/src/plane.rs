@@ -417,11 +417,8 @@ impl SimulatedPath {
                 Some(Plan::Plane(PlanarPlan::new(moves, form, rings, first_pair.unwrap_or_default())))
             }
             (_, _, true) => {
-                faults.add(
-                    JsonPath::Root.member("solver"),
-                    "rings follow `moves`, `displacement`, `force` and `ellipse`: leave `solver` out",
-                );
-                None
+                let detail = "rings follow `moves`, `displacement`, `force` and `ellipse`: leave `solver` out";
+                faults.refuse(JsonPath::Root.member("solver"), detail)
             }
             _ => self.along_a_line().and_then(|path| path.check(at, faults)),
         }
@@ -457,8 +454,7 @@ impl Ellipse {
         if moves >= *PATH_MOVES.end() {
             let most = PATH_MOVES.end().saturating_sub(1).checked_div(steps).unwrap_or(0);
             let detail = format_args!("{} turns of {steps} moves: allowed are 1 to {most}", self.turns);
-            faults.add(at.member("turns"), detail);
-            return None;
+            return faults.refuse(at.member("turns"), detail);
         }
         let phase = self.phase.unwrap_or(0.0).to_radians();
         let arc = |turns| Arc { radii: self.radii, phase, turns };

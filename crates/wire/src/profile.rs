@@ -344,10 +344,7 @@ fn check_sum(
     let shapes: Vec<_> = parts.iter().enumerate().map(&mut check).collect();
     let shapes: Option<Vec<Shape>> = shapes.into_iter().collect();
     match Sum::new_while(shapes?, keep_going) {
-        Err(error @ Error::NoSurface { part }) => {
-            faults.add(place.index(part), error);
-            None
-        }
+        Err(error @ Error::NoSurface { part }) => faults.refuse(place.index(part), error),
         sum => accepted(sum.map(Shape::Sum), at, faults),
     }
 }

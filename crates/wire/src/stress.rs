@@ -98,16 +98,11 @@ impl StressRequest {
             (None, Some(radii), None) => Points::Radii(radii.clone()),
             (None, None, Some(places)) => Points::Places(places.clone()),
             (None, None, None) => {
-                faults.add(at, "give one of `points` and `radii`, or `x` of a line contact");
-                return None;
+                return faults.refuse(at, "give one of `points` and `radii`, or `x` of a line contact");
             }
-            (Some(_), Some(_), _) => {
-                faults.add(at, "`points` conflicts with `radii`: give one of them");
-                return None;
-            }
+            (Some(_), Some(_), _) => return faults.refuse(at, "`points` conflicts with `radii`: give one of them"),
             (.., Some(_)) => {
-                faults.add(at.member("x"), "it conflicts with `points` and `radii`: give one of them");
-                return None;
+                return faults.refuse(at.member("x"), "it conflicts with `points` and `radii`: give one of them");
             }
         };
         self.check_members(at, faults);

@@ -222,8 +222,7 @@ impl Axis {
         ];
         let mut choices = choices.into_iter().flatten();
         let (Some((name, values)), None) = (choices.next(), choices.next()) else {
-            faults.add(at, "expected `pointer` and one key, one of `linear`, `logarithmic`, `values`");
-            return None;
+            return faults.refuse(at, "expected `pointer` and one key, one of `linear`, `logarithmic`, `values`");
         };
         values.check(at.member(name), faults)?;
         Some(AxisValues { pointer: pointer?, whole: false, values })
@@ -245,8 +244,7 @@ impl Values {
         })?;
         match self {
             Values::Logarithmic(Span { from, to, .. }) if !((to / from).is_normal() && to / from > 0.0) => {
-                faults.add(at, "both ends must be positive or both negative, and not too far apart");
-                None
+                faults.refuse(at, "both ends must be positive or both negative, and not too far apart")
             }
             _ => Some(()),
         }

@@ -55,12 +55,11 @@ impl QueryParams for CheckedCycle {
             (Some(all), None) => CycleDrive::Displacement(amplitudes(all)),
             (None, Some(all)) => CycleDrive::Force(amplitudes(all)),
             (None, None) => {
-                query.faults.add(JsonPath::Root.member("displacement"), "give `displacement` or `force`");
-                return None;
+                return query.faults.refuse(JsonPath::Root.member("displacement"), "give `displacement` or `force`");
             }
             (Some(_), Some(_)) => {
-                query.faults.add(JsonPath::Root.member("force"), "conflicts with `displacement`: give one of them");
-                return None;
+                let detail = "conflicts with `displacement`: give one of them";
+                return query.faults.refuse(JsonPath::Root.member("force"), detail);
             }
         };
         let density = (points.is_some() || radii.is_some() || x.is_some()).then_some(WorkDensity { points, radii, x });

@@ -14,7 +14,7 @@ use stickslip_mechanics::subsurface::Side;
 
 use crate::check::{Faults, JsonPath};
 use crate::choice::words;
-use crate::definition::{BodyName, ContactDefinition, DefinedProfile, SharedSetup};
+use crate::definition::{BodyName, ContactDefinition, DefinedProfile, SharedSetup, of_body};
 use crate::document::Document;
 use crate::limits::{Array, FRETTING_MOVES, Limit, Limited as _, OfItsMembers, SUBSURFACE_POINTS, Tolerance, Triple};
 use crate::path::{PHASE, Path, Plan};
@@ -317,19 +317,9 @@ impl Criteria {
             faults.add(at, format_args!("empty: give at least one of {}", names.join(", ")));
         }
         let modulus = |given: Option<f64>, name: &str, faults: &mut Faults| {
+            let missing = "give the body's `youngs_modulus`: this criterion needs the moduli of both bodies";
             let place = at.member(name);
-            match (given, youngs_modulus) {
-                (Some(given), Some(known)) if (given - known).abs() > 0.0 => {
-                    let detail = format_args!("{given:?} contradicts the {known:?} of this body: leave this out");
-                    faults.add(place.member("youngs_modulus"), detail);
-                }
-                (None, None) => {
-                    let detail = "give the body's `youngs_modulus`: this criterion needs the moduli of both bodies";
-                    faults.add(place.member("youngs_modulus"), detail);
-                }
-                _ => {}
-            }
-            given.or(youngs_modulus).unwrap_or(1.0)
+            of_body(youngs_modulus, given, missing, place.member("youngs_modulus"), faults).unwrap_or(1.0)
         };
         self.check_members(at, faults);
         let of = |measure, limit, life: Option<StressLife>| AskedMeasure {

@@ -160,13 +160,12 @@ fn one_amplitude(
 ) -> Option<(Quantity, f64)> {
     let [(one, first), (other, second)] = amplitudes;
     match (first, second) {
-        (Some(amplitude), None) => return Some((one, amplitude)),
-        (None, Some(amplitude)) => return Some((other, amplitude)),
+        (Some(amplitude), None) => Some((one, amplitude)),
+        (None, Some(amplitude)) => Some((other, amplitude)),
         (Some(_), Some(_)) => faults
-            .add(at.member(other.name()), format_args!("conflicts with `{one}`: exactly one amplitude is allowed")),
-        (None, None) => faults.add(at, format_args!("no amplitude: name `{one}` or `{other}`")),
+            .refuse(at.member(other.name()), format_args!("conflicts with `{one}`: exactly one amplitude is allowed")),
+        (None, None) => faults.refuse(at, format_args!("no amplitude: name `{one}` or `{other}`")),
     }
-    None
 }
 
 impl Cycles {

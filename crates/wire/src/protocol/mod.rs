@@ -149,16 +149,15 @@ fn aim(reversals: Option<usize>, target: Option<f64>, faults: &mut Faults) -> Op
     match (reversals, target) {
         (Some(reversals), None) => {
             PROTOCOL_REVERSALS.check(&reversals, at_reversals, faults);
-            return Some(Aim::Reversals(reversals));
+            Some(Aim::Reversals(reversals))
         }
         (None, Some(target)) => {
             faults.number(at_target, target, &TARGET);
-            return Some(Aim::Target(target));
+            Some(Aim::Target(target))
         }
-        (None, None) => faults.add(at_reversals, "missing: name `reversals` or `target`"),
-        (Some(_), Some(_)) => faults.add(at_target, "conflicts with `reversals`: one of the two is allowed"),
+        (None, None) => faults.refuse(at_reversals, "missing: name `reversals` or `target`"),
+        (Some(_), Some(_)) => faults.refuse(at_target, "conflicts with `reversals`: one of the two is allowed"),
     }
-    None
 }
 
 /// The checked options of a protocol.
@@ -204,11 +203,8 @@ impl Document for ProtocolRequest {
                 Some(ProtocolSubject::Living(id, definition.map(Box::new)))
             }
             (_, None, _) => {
-                faults.add(
-                    at("contact"),
-                    "missing: it may be left out only where `start` names a contact by `contact_id`",
-                );
-                None
+                let detail = "missing: it may be left out only where `start` names a contact by `contact_id`";
+                faults.refuse(at("contact"), detail)
             }
             (start, Some(definition), setup) => {
                 let first = start.and_then(|start| start.check(at("start"), faults));

@@ -8,7 +8,7 @@ use stickslip_mechanics::{self as mechanics, range, subsurface::Side};
 
 use crate::check::{Faults, JsonPath, Rejection};
 use crate::choice::words;
-use crate::definition::{Body, BodyName, ContactDefinition};
+use crate::definition::{Body, BodyName, ContactDefinition, of_body};
 use crate::document::Document;
 use crate::limits::{Array, Limited as _, SUBSURFACE_POINTS, Triple};
 use crate::prepare::Prepare;
@@ -238,8 +238,7 @@ impl SubsurfaceRequest {
             _ => {
                 let many = given.into_iter().filter(|given| *given).count() > 1;
                 let detail = if many { "more than one place: give" } else { "give" };
-                faults.add(at, format_args!("{detail} one of `points`, `line`, `plane` and `surface`"));
-                None
+                faults.refuse(at, format_args!("{detail} one of `points`, `line`, `plane` and `surface`"))
             }
         };
         Some(SubsurfaceTask { side: self.body.into(), poisson_ratio: poisson_ratio?, places: places?, fields, bulk })
@@ -252,25 +251,14 @@ impl SubsurfaceRequest {
             None => None,
             Some(bodies) => match bodies.get(index)? {
                 Body::Rigid(_) => {
-                    faults.add(at.member("body"), "the stress in a rigid body is not known: ask for the other body");
-                    return None;
+                    let detail = "the stress in a rigid body is not known: ask for the other body";
+                    return faults.refuse(at.member("body"), detail);
                 }
                 Body::Elastic(body) => Some(body.poisson_ratio),
             },
         };
-        match (known, self.poisson_ratio) {
-            (Some(known), Some(given)) if (known - given).abs() > 0.0 => {
-                let detail = format_args!("{given:?} contradicts the {known:?} of this body: leave this out");
-                faults.add(at.member("poisson_ratio"), detail);
-                None
-            }
-            (None, None) => {
-                let detail = "give the body's `poisson_ratio`: reduced moduli do not determine it";
-                faults.add(at.member("poisson_ratio"), detail);
-                None
-            }
-            (known, given) => known.or(given),
-        }
+        let missing = "give the body's `poisson_ratio`: reduced moduli do not determine it";
+        of_body(known, self.poisson_ratio, missing, at.member("poisson_ratio"), faults)
     }
 }
 

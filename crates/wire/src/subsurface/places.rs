@@ -144,14 +144,8 @@ impl Places {
                         }
                         Some(Steps::single(plane.offset))
                     }
-                    (true, Some(_)) => {
-                        faults.add(place, "is constant, and given by `offset`: leave this out");
-                        None
-                    }
-                    (false, None) => {
-                        faults.add(place, "give `[from, to, count]`");
-                        None
-                    }
+                    (true, Some(_)) => faults.refuse(place, "is constant, and given by `offset`: leave this out"),
+                    (false, None) => faults.refuse(place, "give `[from, to, count]`"),
                     (false, Some(given)) => {
                         if direction == Direction::Z {
                             check_depth(given[0], place.index(0), faults);
