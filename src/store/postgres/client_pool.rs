@@ -32,13 +32,13 @@ pub(super) const LONG_ANSWER: Duration = Duration::from_secs(90);
 const TRIES: usize = 12;
 const COLLISIONS: usize = 8;
 
-/// Does work on a connection of the pool that may be done again on another, until it is done or no further
-/// attempt is worthwhile. (A macro, because the bounds of a closure's future cannot be expressed for a function.)
-macro_rules! with_retries {
-    ($pool:expr, $limit:expr, $connection:ident => $work:expr) => {{
+/// Attempts something until it is done or no further attempt is worthwhile. (A macro, because the bounds of a closure's
+/// future cannot be expressed for a function.)
+macro_rules! retried {
+    ($pool:expr, $attempt:expr) => {{
         let mut tries = $crate::store::postgres::client_pool::Tries::default();
         loop {
-            let fault = match try_once!($pool, $limit, $connection => $work) {
+            let fault = match $attempt {
                 Ok(done) => {
                     $pool.outage.end();
                     break Ok(done);
@@ -50,6 +50,16 @@ macro_rules! with_retries {
             }
         }
     }};
+}
+
+/// The same with work on a connection of the pool that may be done again on another.
+macro_rules! with_retries {
+    ($pool:expr, $limit:expr, $connection:ident => $work:expr) => {
+        $crate::store::postgres::client_pool::retried!(
+            $pool,
+            $crate::store::postgres::client_pool::try_once!($pool, $limit, $connection => $work)
+        )
+    };
 }
 
 /// Does work on a connection of the pool. A connection that failed or did not answer in time is not given back.
@@ -69,7 +79,7 @@ macro_rules! try_once {
     };
 }
 
-pub(super) use {try_once, with_retries};
+pub(super) use {retried, try_once, with_retries};
 
 pub(super) type Parameter<'a> = &'a (dyn ToSql + Sync);
 
@@ -146,18 +156,10 @@ impl ClientPool {
     /// The same for a statement that may read much: few run at a time, and the database ends one whose client has
     /// left.
     pub(super) async fn search(&self, statement: &str, parameters: &[Parameter<'_>]) -> Result<Vec<Row>> {
-        let mut tries = Tries::default();
-        loop {
+        retried!(self, {
             let _permit = self.searches.acquire().await;
-            let fault = match self.search_once(statement, parameters).await {
-                Ok(found) => {
-                    self.outage.end();
-                    return Ok(found);
-                }
-                Err(fault) => fault,
-            };
-            tries.retry_or_fail(&self.outage, fault).await?;
-        }
+            self.search_once(statement, parameters).await
+        })
     }
 
     async fn search_once(&self, statement: &str, parameters: &[Parameter<'_>]) -> Result<Vec<Row>, Fault> {

@@ -14,9 +14,7 @@ use crate::store::rows as read;
 use crate::store::{Receipt, Result, StoreError, Tenant};
 
 use super::PostgresStore;
-use super::client_pool::{
-    ANSWER, ClientPool, LONG_ANSWER, Parameter, existed, long_rows, rows, try_once, with_retries,
-};
+use super::client_pool::{ANSWER, ClientPool, LONG_ANSWER, Parameter, existed, long_rows, rows, with_retries};
 use super::columns::{Receipts, from_bigint, reader, split_time, to_bigint};
 use super::fault::Fault;
 use super::sql;

@@ -15,9 +15,7 @@ use uuid::Uuid;
 
 use crate::store::{EXPIRED_LIFETIME, RECEIPT_LIFETIME, Receipt, Result, Session, Snapshot, StoreError, Tenant};
 
-use super::client_pool::{
-    ANSWER, ClientPool, LONG_ANSWER, Parameter, execute, long_rows, rows, try_once, with_retries,
-};
+use super::client_pool::{ANSWER, ClientPool, LONG_ANSWER, Parameter, execute, long_rows, rows, with_retries};
 use super::columns::{Receipts, Sessions, from_bigint, split_time, to_bigint};
 use super::fault::Fault;
 use super::sql;
@@ -155,14 +153,12 @@ impl ClientPool {
     }
 
     pub(super) async fn purge_expired(&self, idle_since: Option<Timestamp>) -> Result<Vec<Uuid>> {
-        let lifetime = RECEIPT_LIFETIME.as_secs_f64();
-        let which: [Parameter<'_>; 2] = [&lifetime, &RECEIPTS];
-        let purge = async |connection: &Object| execute(connection, sql::PURGE_RECEIPTS, &which).await;
-        while to_bigint(with_retries!(self, ANSWER, connection => purge(connection))?) == RECEIPTS {}
-        let lifetime = EXPIRED_LIFETIME.as_secs_f64();
-        let which: [Parameter<'_>; 2] = [&lifetime, &RECEIPTS];
-        let purge = async |connection: &Object| execute(connection, sql::PURGE_MARKS, &which).await;
-        while to_bigint(with_retries!(self, ANSWER, connection => purge(connection))?) == RECEIPTS {}
+        for (purge, lifetime) in [(sql::PURGE_RECEIPTS, RECEIPT_LIFETIME), (sql::PURGE_MARKS, EXPIRED_LIFETIME)] {
+            let lifetime = lifetime.as_secs_f64();
+            let which: [Parameter<'_>; 2] = [&lifetime, &RECEIPTS];
+            let purge = async |connection: &Object| execute(connection, purge, &which).await;
+            while to_bigint(with_retries!(self, ANSWER, connection => purge(connection))?) == RECEIPTS {}
+        }
         let Some((since, since_ns)) = idle_since.map(split_time) else {
             return Ok(Vec::new());
         };
