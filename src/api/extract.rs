@@ -20,10 +20,9 @@ use crate::otlp;
 use crate::server::RequestClient;
 use crate::server::connection_limits::DISCARDED;
 use crate::store::RequestKey;
-use stickslip_compute::Nanoseconds;
-use stickslip_compute::Stop as _;
 use stickslip_compute::computations::files;
 use stickslip_compute::simulation::{bytes, cost};
+use stickslip_compute::{Nanoseconds, Stop as _};
 use stickslip_wire::{self as wire, Document};
 
 use super::path_and_headers::IdempotencyKey;

@@ -10,10 +10,9 @@ use stickslip_wire::{self as wire, PrepareAnew, SweepRequest};
 use super::command_error::CommandError;
 use super::io::{json, read, write};
 use super::progress;
-use stickslip_compute::Flag;
-use stickslip_compute::Refusal;
 use stickslip_compute::formats::Format;
 use stickslip_compute::simulation::{Sweep as Plan, SweepResult};
+use stickslip_compute::{Flag, Refusal};
 
 /// The sweep, and how to run it.
 #[derive(Args)]

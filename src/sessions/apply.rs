@@ -3,11 +3,9 @@
 use std::pin::pin;
 use std::sync::Arc;
 
-use tracing::Instrument as _;
 use uuid::Uuid;
 
 use crate::admission::Reservation;
-use crate::otlp;
 use crate::store::{IdempotentRequest, Reply, RequestKey, StoreError, Usage};
 use stickslip_compute::Stop as _;
 use stickslip_compute::computations::{OnContact as _, dry_run_relax};
@@ -133,9 +131,7 @@ impl Sessions {
         let common = Arc::clone(&self.common);
         let append = async move {
             let mut guard = guard;
-            let stored = common.store.append(guard.id(), sequence, records, receipt);
-            let stored = stored.instrument(otlp::part!("store")).await;
-            let stored = stored.map(|()| {
+            let stored = common.store.append(guard.id(), sequence, records, receipt).await.map(|()| {
                 reservation.used(added);
                 publish(&common, &mut guard, live, moves);
                 reply

@@ -4,10 +4,8 @@ use std::pin::{Pin, pin};
 use std::sync::Arc;
 
 use jiff::Timestamp;
-use tracing::Instrument as _;
 use uuid::Uuid;
 
-use crate::otlp;
 use crate::store::{CONTACT_BYTES, IdempotentRequest, Reply, RequestKey, Session, StoreError, Usage};
 use stickslip_wire::session::Creation;
 use stickslip_wire::{ForkRequest, SessionReply};
@@ -46,8 +44,7 @@ impl Sessions {
             let guard = self.cache.lock(&self.tenant, live.session.id).await;
             let common = Arc::clone(&self.common);
             let create = async move {
-                let stored = common.store.create(live.session.clone(), receipt);
-                stored.instrument(otlp::part!("store")).await?;
+                common.store.create(live.session.clone(), receipt).await?;
                 reservation.used(added);
                 guard.finish(Box::new(live));
                 Ok::<_, StoreError>(reply)
@@ -77,10 +74,7 @@ impl Sessions {
         let added = Usage::of(0, 0, Some(&receipt));
         let reservation = self.reserve_storage(added).await?;
         let common = Arc::clone(&self.common);
-        let keep = async move {
-            let stored = common.store.keep(receipt).instrument(otlp::part!("store"));
-            stored.await.inspect(|()| reservation.used(added))
-        };
+        let keep = async move { common.store.keep(receipt).await.inspect(|()| reservation.used(added)) };
         match run_to_end(keep).await {
             Ok(()) => Ok(reply),
             Err(error) => Ok(request.after_refusal(error).await?),
@@ -118,8 +112,7 @@ impl Sessions {
             let common = Arc::clone(&self.common);
             let fork = async move {
                 let _held = held;
-                let stored = common.store.fork(id, copy.session.clone(), receipt);
-                stored.instrument(otlp::part!("store")).await?;
+                common.store.fork(id, copy.session.clone(), receipt).await?;
                 reservation.used(added);
                 new.finish(copy);
                 Ok(())
@@ -166,8 +159,8 @@ impl Sessions {
                 // no other process changes them.
                 let (common, label, at) = (Arc::clone(&self.common), label.clone(), reply.sequence);
                 let rename = async move {
-                    let stored = common.store.rename(id, before, label, at, receipt);
-                    stored.instrument(otlp::part!("store")).await.inspect(|()| reservation.used(added))
+                    let renamed = common.store.rename(id, before, label, at, receipt).await;
+                    renamed.inspect(|()| reservation.used(added))
                 };
                 match run_to_end(rename).await {
                     Ok(()) => return Ok(reply),
@@ -198,7 +191,7 @@ impl Sessions {
         for _ in 0..ATTEMPTS {
             let (tenant, common) = (self.tenant.clone(), Arc::clone(&self.common));
             let delete = async move {
-                let deleted = common.store.delete(id, at).instrument(otlp::part!("store")).await;
+                let deleted = common.store.delete(id, at).await;
                 if deleted.is_ok() {
                     guard.live = None;
                     let bytes = CONTACT_BYTES + at * common.store.move_bytes();

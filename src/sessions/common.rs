@@ -94,20 +94,23 @@ impl Sessions {
 
     /// The size of a session, with its tenant and label, if it belongs to the tenant.
     pub(super) async fn extent(&self, id: Uuid) -> Result<Extent, SessionError> {
-        match self.store.extent(id).await {
-            Ok(extent) if extent.tenant == self.tenant => Ok(extent),
-            Ok(_) => Err(SessionError::NotFound(id)),
-            Err(error) => Err(self.store_error(id, error)),
-        }
+        self.own(id, self.store.extent(id).await, |extent| &extent.tenant)
     }
 
     /// The session as it is stored, if it belongs to the tenant.
     pub(super) async fn find_own(&self, id: Uuid) -> Result<Session, SessionError> {
-        match self.store.find(id).await {
-            Ok(session) if session.tenant == self.tenant => Ok(session),
-            Ok(_) => Err(SessionError::NotFound(id)),
-            Err(error) => Err(self.store_error(id, error)),
-        }
+        self.own(id, self.store.find(id).await, |session| &session.tenant)
+    }
+
+    /// What was found of a session, if it belongs to the tenant.
+    pub(super) fn own<T>(
+        &self,
+        id: Uuid,
+        found: Result<T, StoreError>,
+        tenant: impl FnOnce(&T) -> &Tenant,
+    ) -> Result<T, SessionError> {
+        let found = found.map_err(|error| self.store_error(id, error))?;
+        if *tenant(&found) == self.tenant { Ok(found) } else { Err(SessionError::NotFound(id)) }
     }
 
     /// Converts a failure of the store. If the session is gone, its cached state is removed too.

@@ -16,6 +16,7 @@ use stickslip_wire::{Cycle, CyclePage, HistoryPage, State, limits};
 
 use super::error::SessionError;
 use super::handle::Sessions;
+use super::loaded::LoadedSession;
 use super::replay::PAGE;
 
 /// Looking at one recorded state.
@@ -41,14 +42,8 @@ impl Sessions {
         memory: &mut Reservation,
     ) -> Result<(u64, CyclePage), SessionError> {
         let (stop, _guard) = self.pool.deadline();
-        // The lock is held for copies alone, so that the session can move on meanwhile.
-        let (virgin, sequence, known) = {
-            let mut guard = self.lock(id).await?;
-            let live = self.current(&mut guard).await?;
-            let known = (live.contact.virgin(), live.session.sequence, live.cycles.clone());
-            stop.flag().charge(guard.loading);
-            known
-        };
+        let copies = |live: &LoadedSession| (live.contact.virgin(), live.session.sequence, live.cycles.clone());
+        let (virgin, sequence, known) = self.copies(id, &stop, copies).await?;
         let log = match known {
             Some(known) if known.sequence == sequence => known,
             known => {
@@ -80,13 +75,7 @@ impl Sessions {
     ) -> Result<(), SessionError> {
         let Some(after) = page.items.first().map(|item| item.sequence - 1) else { return Ok(()) };
         let (stop, _guard) = self.pool.deadline();
-        let (virgin, known) = {
-            let mut guard = self.lock(id).await?;
-            let live = self.current(&mut guard).await?;
-            let known = (live.contact.virgin(), live.log_for(after));
-            stop.flag().charge(guard.loading);
-            known
-        };
+        let (virgin, known) = self.copies(id, &stop, |live| (live.contact.virgin(), live.log_for(after))).await?;
         let mut log = match known {
             Some(known) if known.sequence >= after => known,
             known => self.look_on(id, after, known, &virgin, (&stop, MARKED), memory).await?,

@@ -60,14 +60,9 @@ impl Sessions {
     pub async fn friction(&self, id: Uuid) -> Result<FrictionReply, SessionError> {
         let (request, _raised_at_the_end) = self.pool.deadline();
         let stop = Arc::new(Part::of(request.clone(), Some(TIME)));
-        // The lock is held for copies alone, so that the session can move on meanwhile.
-        let (virgin, sequence, known, mut estimated) = {
-            let mut guard = self.lock(id).await?;
-            let live = self.current(&mut guard).await?;
-            let known = (live.contact.virgin(), live.session.sequence, live.cycles.clone(), live.estimated);
-            request.flag().charge(guard.loading);
-            known
-        };
+        let copies =
+            |live: &LoadedSession| (live.contact.virgin(), live.session.sequence, live.cycles.clone(), live.estimated);
+        let (virgin, sequence, known, mut estimated) = self.copies(id, &request, copies).await?;
         let memory = &mut Reservation::default();
         let (log, seen) = self.read_states(id, sequence, known, &virgin, &*stop, Some(memory)).await?;
         if seen.is_ok() {

@@ -7,10 +7,8 @@ use uuid::Uuid;
 
 use crate::admission::{Deadline, Reservation};
 use crate::store::{Extent, RECORD_BYTES, Record, Session, Snapshot, StoreError, Whole};
-use stickslip_compute::Interrupted;
-use stickslip_compute::Stop as _;
-use stickslip_compute::simulation::cost::Work;
-use stickslip_compute::simulation::{Failure, Timer};
+use stickslip_compute::simulation::{Failure, Timer, cost::Work};
+use stickslip_compute::{Interrupted, Stop as _};
 use stickslip_mechanics::Contact;
 use stickslip_wire::{ContactDefinition, limits};
 
@@ -107,11 +105,7 @@ impl Sessions {
             return self.catch_up(guard, u64::MAX).await.map(drop);
         }
         let (id, begin) = (guard.id(), Instant::now());
-        let (extent, whole) = match self.store.load(id, is_small).await {
-            Ok((extent, whole)) if extent.tenant == self.tenant => (extent, whole),
-            Ok(_) => return Err(SessionError::NotFound(id)),
-            Err(error) => return Err(self.store_error(id, error)),
-        };
+        let (extent, whole) = self.own(id, self.store.load(id, is_small).await, |(extent, _)| &extent.tenant)?;
         // A request that has some of this memory never waits for more of it.
         guard.held = Reservation::default();
         guard.held = self.pool.reserve_states(bytes_to_load(&extent)).await?;
@@ -268,6 +262,20 @@ impl Sessions {
             Interrupted::Abandoned => Failure::from(interrupted).into(),
         };
         Ok((live, followed.map_err(stopped)))
+    }
+
+    /// What `copy` takes of the current state; `stop` counts what loading it takes. The lock is held for that alone, so
+    /// that the session can move on meanwhile.
+    pub(super) async fn copies<T>(
+        &self,
+        id: Uuid,
+        stop: &Deadline,
+        copy: impl FnOnce(&LoadedSession) -> T,
+    ) -> Result<T, SessionError> {
+        let mut guard = self.lock(id).await?;
+        let copies = copy(self.current(&mut guard).await?);
+        stop.flag().charge(guard.loading);
+        Ok(copies)
     }
 
     /// A copy of the contact, which is `expected` to have this definition, with its sequence and memory for it; `stop`

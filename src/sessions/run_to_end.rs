@@ -7,13 +7,16 @@ use std::task::{Context, Poll};
 use futures::FutureExt as _;
 use futures::future::BoxFuture;
 use tokio::runtime::Handle;
+use tracing::Instrument as _;
+
+use crate::otlp;
 
 /// A change that continues in a task of its own if the request that waits for it is dropped.
 pub(super) struct RunToEnd<T: 'static>(Option<BoxFuture<'static, T>>);
 
 /// Sends a change to the store, and completes its consequences.
 pub(super) fn run_to_end<T>(change: impl Future<Output = T> + Send + 'static) -> RunToEnd<T> {
-    RunToEnd(Some(Box::pin(change)))
+    RunToEnd(Some(Box::pin(change.instrument(otlp::part!("store")))))
 }
 
 impl<T> Future for RunToEnd<T> {

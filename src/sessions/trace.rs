@@ -46,12 +46,7 @@ pub async fn trace(
     let pieces = usize::try_from(after).unwrap_or(usize::MAX).min(limits::MEMORY_DEPTH);
     let before = memory.bytes();
     sessions.pool.resize(memory, before + 2 * PIECE_BYTES * pieces + PAGE * RECORD_BYTES).await?;
-    let initial = {
-        let mut guard = sessions.lock(id).await?;
-        let initial = sessions.current(&mut guard).await?.contact.virgin();
-        stop.flag().charge(guard.loading);
-        initial
-    };
+    let initial = sessions.copies(id, &stop, |live| live.contact.virgin()).await?;
     let snapshot = sessions.store.snapshot(id).await;
     let mut loading = Duration::ZERO;
     let (mut contact, mut at, _) = sessions.snapshots.load(&mut loading, snapshot, initial, after).await?;
