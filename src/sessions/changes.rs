@@ -6,7 +6,7 @@ use std::sync::Arc;
 use jiff::Timestamp;
 use uuid::Uuid;
 
-use crate::store::{CONTACT_BYTES, IdempotentRequest, Reply, RequestKey, Session, StoreError, Usage};
+use crate::store::{CONTACT_BYTES, IdempotentRequest, LabelChange, Reply, RequestKey, Session, StoreError, Usage};
 use stickslip_wire::session::Creation;
 use stickslip_wire::{ForkRequest, SessionReply};
 
@@ -149,7 +149,7 @@ impl Sessions {
                 if let Some(expected) = expected {
                     expected.check(now.sequence, now.label.as_deref())?;
                 }
-                let before = now.label.clone();
+                let change = LabelChange { from: now.label.clone(), to: label.clone() };
                 let renamed = SessionReply { label: label.clone(), ..now };
                 let reply = Reply { created: None, sequence: renamed.sequence, body: written(&renamed)? };
                 let receipt = request.receipt(&reply);
@@ -157,9 +157,9 @@ impl Sessions {
                 let reservation = self.reserve_storage(added).await?;
                 // The reply shows the sequence, and the client may expect it and the label: both hold only as long as
                 // no other process changes them.
-                let (common, label, at) = (Arc::clone(&self.common), label.clone(), reply.sequence);
+                let (common, at) = (Arc::clone(&self.common), reply.sequence);
                 let rename = async move {
-                    let renamed = common.store.rename(id, before, label, at, receipt).await;
+                    let renamed = common.store.rename(id, change, at, receipt).await;
                     renamed.inspect(|()| reservation.used(added))
                 };
                 match run_to_end(rename).await {

@@ -179,6 +179,15 @@ pub struct Extent {
     pub snapshot: u64,
 }
 
+/// A label, or none, and the one that takes its place.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct LabelChange {
+    /// The label that the session must have.
+    pub from: Option<String>,
+    /// Its new label.
+    pub to: Option<String>,
+}
+
 /// A page of sessions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Page {
@@ -323,16 +332,9 @@ pub trait Store: JobStore {
     /// ends.
     async fn list(&self, tenant: Option<Tenant>, label: Option<String>, page: Page) -> Result<Vec<SessionSummary>>;
 
-    /// Gives a session that is at sequence `expected` and has the label `from` the label `to`, or none, and stores the
-    /// receipt with it. Its sequence and its times stay. [`StoreError::Stale`] also if it has another label.
-    async fn rename(
-        &self,
-        id: Uuid,
-        from: Option<String>,
-        to: Option<String>,
-        expected: u64,
-        receipt: Option<Receipt>,
-    ) -> Result<()>;
+    /// Changes the label of a session that is at sequence `expected`, and stores the receipt with it. Its sequence and
+    /// its times stay. [`StoreError::Stale`] also if it has another label than the change is from.
+    async fn rename(&self, id: Uuid, label: LabelChange, expected: u64, receipt: Option<Receipt>) -> Result<()>;
 
     /// Appends moves to a session that is at sequence `expected`, all or none of them, and the receipt with them. The
     /// records are numbered from `expected + 1`.

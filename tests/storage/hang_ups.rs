@@ -22,8 +22,8 @@ use stickslip::admission::{Capacity, Pool, QuotaLimits};
 use stickslip::jobs::{JobError, Jobs, LEASE};
 use stickslip::sessions::{CAPACITY, SessionError, Sessions};
 use stickslip::store::{
-    Changes, ChunkResult, Claim, Extent, IsSmall, Job, JobLimits, JobStore, MemoryStore, Page, Receipt, Record, Reply,
-    RequestKey, Session, Snapshot, Store, StoreError, Tenant, Usage, Whole,
+    Changes, ChunkResult, Claim, Extent, IsSmall, Job, JobLimits, JobStore, LabelChange, MemoryStore, Page, Receipt,
+    Record, Reply, RequestKey, Session, Snapshot, Store, StoreError, Tenant, Usage, Whole,
 };
 use stickslip_compute::simulation::Sweep;
 use stickslip_wire::{
@@ -73,7 +73,7 @@ passed_on! {
         read load(id: Uuid, is_small: IsSmall) -> (Extent, Option<Whole>);
         read find(id: Uuid) -> Session;
         read list(tenant: Option<Tenant>, label: Option<String>, page: Page) -> Vec<SessionSummary>;
-        change rename(id: Uuid, from: Option<String>, to: Option<String>, at: u64, receipt: Option<Receipt>) -> ();
+        change rename(id: Uuid, label: LabelChange, at: u64, receipt: Option<Receipt>) -> ();
         change append(id: Uuid, expected: u64, records: Vec<Record>, receipt: Option<Receipt>) -> ();
         read history(id: Uuid, after: u64, limit: usize) -> Vec<Record>;
         read count_moves(id: Uuid, end: u64) -> u64;

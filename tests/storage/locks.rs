@@ -15,7 +15,7 @@ use reqwest::{Method, StatusCode};
 use serde_json::{Value, json};
 use stickslip::admission::{Capacity, Pool, QuotaLimits};
 use stickslip::sessions::{CAPACITY, Sessions};
-use stickslip::store::{ChunkResult, Job, JobStore as _, PostgresStore, Store, StoreError, Tenant};
+use stickslip::store::{ChunkResult, Job, JobStore as _, LabelChange, PostgresStore, Store, StoreError, Tenant};
 use tokio_postgres::Client;
 use uuid::Uuid;
 
@@ -197,8 +197,9 @@ async fn changes_that_wait_for_rows_hold_no_connection() {
     other.batch_execute("BEGIN").await.unwrap();
     other.query("SELECT id FROM contacts WHERE id = ANY($1) FOR UPDATE", &[&ids]).await.unwrap();
     other.query("SELECT id FROM jobs WHERE id = $1 FOR UPDATE", &[&job.id]).await.unwrap();
+    let new = || LabelChange { from: None, to: Some("new".to_owned()) };
     let held = async {
-        let renamed = join_all(ids.iter().map(|id| store.rename(*id, None, Some("new".to_owned()), 0, None)));
+        let renamed = join_all(ids.iter().map(|id| store.rename(*id, new(), 0, None)));
         let deleted = join_all(ids.iter().map(|id| store.delete(*id, 0)));
         let saved = futures::future::join3(
             store.save_chunk(claim, result()),
@@ -230,7 +231,7 @@ async fn changes_that_wait_for_rows_hold_no_connection() {
         other.batch_execute("COMMIT").await.unwrap();
     };
     let (renamed, deleted, saved, ()) = futures::join!(
-        store.rename(ids[0], None, Some("new".to_owned()), 0, Some(receipt("name", None, 0))),
+        store.rename(ids[0], new(), 0, Some(receipt("name", None, 0))),
         store.delete(ids[1], 0),
         store.save_chunk(claim, result()),
         free

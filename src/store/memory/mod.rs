@@ -19,8 +19,8 @@ use jobs::StoredJob;
 
 use super::job_store::ChunkQueue;
 use super::{
-    CONTACT_BYTES, Changes, EXPIRED_LIFETIME, Extent, Page, RECEIPT_LIFETIME, RECORD_BYTES, Receipt, Record, Result,
-    Session, Snapshot, Store, StoreError, Tenant, Usage,
+    CONTACT_BYTES, Changes, EXPIRED_LIFETIME, Extent, LabelChange, Page, RECEIPT_LIFETIME, RECORD_BYTES, Receipt,
+    Record, Result, Session, Snapshot, Store, StoreError, Tenant, Usage,
 };
 
 /// Sessions that a list looks at before others have their turn.
@@ -232,20 +232,13 @@ impl Store for MemoryStore {
         }
     }
 
-    async fn rename(
-        &self,
-        id: Uuid,
-        from: Option<String>,
-        to: Option<String>,
-        expected: u64,
-        receipt: Option<Receipt>,
-    ) -> Result<()> {
+    async fn rename(&self, id: Uuid, label: LabelChange, expected: u64, receipt: Option<Receipt>) -> Result<()> {
         self.change(receipt, |inner| {
             let session = &mut inner.at(id, expected)?.session;
-            if session.label != from {
+            if session.label != label.from {
                 return Err(StoreError::Stale { found: expected });
             }
-            session.label = to;
+            session.label = label.to;
             Ok(())
         })
     }

@@ -39,8 +39,8 @@ use super::probe::Probe;
 use super::rows;
 use super::schema::SchemaError;
 use super::{
-    CONTACT_BYTES, Changes, Commits, Extent, Page, RECEIPT_LIFETIME, RECEIPT_OVERHEAD, Receipt, Record, Result,
-    Session, Snapshot, Store, StoreError, Tenant, Usage,
+    CONTACT_BYTES, Changes, Commits, Extent, LabelChange, Page, RECEIPT_LIFETIME, RECEIPT_OVERHEAD, Receipt, Record,
+    Result, Session, Snapshot, Store, StoreError, Tenant, Usage,
 };
 
 use client_pool::{ANSWER, ClientPool};
@@ -220,15 +220,8 @@ impl Store for PostgresStore {
         found.iter().map(|row| rows::summary(&mut reader(row))).collect()
     }
 
-    async fn rename(
-        &self,
-        id: Uuid,
-        from: Option<String>,
-        to: Option<String>,
-        expected: u64,
-        receipt: Option<Receipt>,
-    ) -> Result<()> {
-        self.pool.rename(id, (from, to), expected, receipt).await
+    async fn rename(&self, id: Uuid, label: LabelChange, expected: u64, receipt: Option<Receipt>) -> Result<()> {
+        self.pool.rename(id, label, expected, receipt).await
     }
 
     async fn append(&self, id: Uuid, expected: u64, records: Vec<Record>, receipt: Option<Receipt>) -> Result<()> {

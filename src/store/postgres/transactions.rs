@@ -13,7 +13,9 @@ use tokio_postgres::error::SqlState;
 use tokio_postgres::{IsolationLevel, Row};
 use uuid::Uuid;
 
-use crate::store::{EXPIRED_LIFETIME, RECEIPT_LIFETIME, Receipt, Result, Session, Snapshot, StoreError, Tenant};
+use crate::store::{
+    EXPIRED_LIFETIME, LabelChange, RECEIPT_LIFETIME, Receipt, Result, Session, Snapshot, StoreError, Tenant,
+};
 
 use super::client_pool::{ANSWER, ClientPool, LONG_ANSWER, Parameter, execute, long_rows, rows, with_retries};
 use super::columns::{Receipts, Sessions, from_bigint, split_time, to_bigint};
@@ -41,13 +43,13 @@ impl ClientPool {
     pub(super) async fn rename(
         &self,
         id: Uuid,
-        (from, to): (Option<String>, Option<String>),
+        label: LabelChange,
         expected: u64,
         receipt: Option<Receipt>,
     ) -> Result<()> {
         let receipts = self.free_key(id, receipt.as_ref()).await?;
         let (sent, sequence) = (InDoubt::default(), to_bigint(expected));
-        let parameters: [Parameter<'_>; 4] = [&id, &to, &sequence, &from];
+        let parameters: [Parameter<'_>; 4] = [&id, &label.to, &sequence, &label.from];
         let parameters: Vec<_> = parameters.into_iter().chain(receipts.parameters()).collect();
         let renamed = with_retries!(self, ANSWER, connection => async {
             let found = sent.answered(rows(connection, sql::RENAME, &parameters)).await?;

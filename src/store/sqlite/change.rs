@@ -9,7 +9,7 @@ use uuid::Uuid;
 
 use crate::store::job_store::QueueChange;
 use crate::store::rows::{RowReader as _, tenant};
-use crate::store::{EXPIRED_LIFETIME, RECEIPT_LIFETIME, Receipt, Record, Session, Snapshot, StoreError};
+use crate::store::{EXPIRED_LIFETIME, LabelChange, RECEIPT_LIFETIME, Receipt, Record, Session, Snapshot, StoreError};
 
 use super::columns::{
     CONTACTS, MOVE_COLUMNS, all, clamped_nanoseconds, execute, first, insert_move, nanoseconds_ago, to_integer,
@@ -108,15 +108,10 @@ impl Transaction<'_> {
         Ok(begun.map_or(Done::Made(0), |copying| Done::Copying(Arc::clone(fork), copying)))
     }
 
-    pub(super) fn rename(
-        &self,
-        id: Uuid,
-        (from, to): (Option<&str>, Option<&str>),
-        expected: u64,
-    ) -> Result<Done, Fault> {
+    pub(super) fn rename(&self, id: Uuid, label: &LabelChange, expected: u64) -> Result<Done, Fault> {
         let number = number_at(self.database, id, expected)?;
         let sql = "UPDATE contacts SET label = ?3 WHERE number = ?1 AND label IS ?2";
-        match execute(self.database, sql, params![number, from, to])? {
+        match execute(self.database, sql, params![number, label.from, label.to])? {
             0 => Err(StoreError::Stale { found: expected }.into()),
             _ => Ok(Done::Made(0)),
         }

@@ -33,8 +33,8 @@ use uuid::Uuid;
 use super::job_store::ChunkQueue;
 use super::probe::Probe;
 use super::{
-    Changes, Commits, Extent, IsSmall, Page, Receipt, Record, Result, Session, Snapshot, Store, StoreError, Tenant,
-    Usage, Whole,
+    Changes, Commits, Extent, IsSmall, LabelChange, Page, Receipt, Record, Result, Session, Snapshot, Store,
+    StoreError, Tenant, Usage, Whole,
 };
 use crate::metrics::Counted;
 use change::{Change, Done, Transaction};
@@ -198,16 +198,8 @@ impl Store for SqliteStore {
         if is_search { self.readers.search(list).await } else { self.readers.read(list).await }
     }
 
-    async fn rename(
-        &self,
-        id: Uuid,
-        from: Option<String>,
-        to: Option<String>,
-        expected: u64,
-        receipt: Option<Receipt>,
-    ) -> Result<()> {
-        let rename =
-            move |transaction: &mut Transaction<'_>| transaction.rename(id, (from.as_deref(), to.as_deref()), expected);
+    async fn rename(&self, id: Uuid, label: LabelChange, expected: u64, receipt: Option<Receipt>) -> Result<()> {
+        let rename = move |transaction: &mut Transaction<'_>| transaction.rename(id, &label, expected);
         self.change(1, [], receipt, rename).await.map(drop)
     }
 

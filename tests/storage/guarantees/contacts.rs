@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use futures::future::join_all;
-use stickslip::store::{Page, Session, Store, StoreError};
+use stickslip::store::{LabelChange, Page, Session, Store, StoreError};
 use stickslip_wire::{ContactOrder, SessionSummary};
 use uuid::Uuid;
 
@@ -78,7 +78,7 @@ pub async fn a_label_changes_alone_and_finds_its_session(store: &dyn Store) {
     let mut before = made.label.clone();
     for label in [Some("50 %_ Ärger of A.B\\C"), None, Some("")] {
         let label = label.map(str::to_owned);
-        store.rename(made.id, before, label.clone(), 2, None).await.unwrap();
+        store.rename(made.id, LabelChange { from: before, to: label.clone() }, 2, None).await.unwrap();
         before = label.clone();
         let renamed = Session { label: label.clone(), ..made.clone() };
         assert_eq!(exact(&store.find(made.id).await.unwrap()), exact(&renamed));
@@ -99,16 +99,17 @@ pub async fn a_label_changes_alone_and_finds_its_session(store: &dyn Store) {
         }
         assert_eq!(found("").await, label.is_some());
     }
-    let nobody = store.rename(Uuid::now_v7(), None, Some("nobody".to_owned()), 0, None).await;
+    let named = |from: &Option<String>, to: &Option<String>| LabelChange { from: from.clone(), to: to.clone() };
+    let nobody = store.rename(Uuid::now_v7(), named(&None, &Some("nobody".to_owned())), 0, None).await;
     assert!(matches!(nobody, Err(StoreError::NotFound)));
     // A key that is taken refuses it, and it takes its key.
     let [first, second, late] = ["first", "second", "late"].map(|label| Some(label.to_owned()));
-    store.rename(made.id, before, first.clone(), 2, Some(receipt("naming", None, 2))).await.unwrap();
-    let twice = store.rename(made.id, first.clone(), second.clone(), 2, Some(receipt("naming", None, 2))).await;
+    store.rename(made.id, named(&before, &first), 2, Some(receipt("naming", None, 2))).await.unwrap();
+    let twice = store.rename(made.id, named(&first, &second), 2, Some(receipt("naming", None, 2))).await;
     assert!(matches!(twice, Err(StoreError::KeyTaken)), "{twice:?}");
     // At another sequence, or with another label, it changes nothing, and takes no key.
     for (wrong, from) in [(1, &first), (3, &first), (2, &second), (2, &None)] {
-        let refused = store.rename(made.id, from.clone(), late.clone(), wrong, Some(receipt("late", None, 2))).await;
+        let refused = store.rename(made.id, named(from, &late), wrong, Some(receipt("late", None, 2))).await;
         assert!(matches!(refused, Err(StoreError::Stale { found: 2 })), "{refused:?}");
     }
     assert!(store.receipt("late").await.unwrap().is_none());

@@ -23,9 +23,9 @@ mod warnings;
 mod wear;
 
 use serde_json::Value;
-use stickslip_compute::{Flag, Refusal};
 use stickslip_compute::computations::{DisplayOptions, compute, entries};
 use stickslip_compute::formats::Format;
+use stickslip_compute::{Flag, Refusal};
 use stickslip_wire::ProblemDocument;
 
 type Reply<T = Value> = Result<T, Box<ProblemDocument>>;
