@@ -198,6 +198,10 @@ async fn promtool_has_nothing_against_the_page() {
     assert_eq!(response.status(), StatusCode::OK);
     assert_eq!(response.headers()["content-type"], "text/plain; version=0.0.4; charset=utf-8");
     let page = response.text().await.unwrap();
+    // What the document describes is there before it comes: a rate needs a zero to rise from.
+    let of = |status: u16| format!("{{method=\"POST\",route=\"/contacts/{{id}}/move\",status=\"{status}\"}}");
+    let shown = |status, count| page.contains(&format!("stickslip_http_requests_total{} {count}\n", of(status)));
+    assert!(shown(200, 1) && shown(503, 0) && !shown(499, 0), "{page}");
 
     let promtool =
         Command::new("promtool").args(["check", "metrics"]).stdin(Stdio::piped()).stderr(Stdio::piped()).spawn();
