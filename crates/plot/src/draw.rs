@@ -320,20 +320,18 @@ pub(super) fn tick(value: &f64) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Axis, Colour, Curve, Panel, Picture as _, Plot};
+    use super::super::{Colour, Curve, Picture as _, Plot};
     use super::SIZE;
 
     /// Every second of many points is high, so that each corner is sharp.
-    fn comb(dots: bool) -> Plot {
-        let points = (0..400).map(|index| (f64::from(index), if index % 2 == 0 { -1.0 } else { 1.0 })).collect();
-        let curve = Curve { name: "".into(), points, colour: Some(Colour::Red), dots, filled: false };
-        let axis = || Axis { name: "x", unit: None };
-        Plot::new("t", axis(), vec![Panel { y: axis(), curves: vec![curve] }])
+    fn comb() -> Plot {
+        let points = (0..400).map(|index| (f64::from(index), if index % 2 == 0 { -1.0 } else { 1.0 }));
+        Plot::of_numbers("t", "x", "x", vec![Curve::line("", Colour::Red, points)])
     }
 
     #[test]
     fn nothing_is_drawn_beyond_the_data_at_a_sharp_corner() {
-        let file = comb(false).png(&|| true).unwrap();
+        let file = comb().png(&|| true).unwrap();
         let mut reader = png::Decoder::new(std::io::Cursor::new(file)).read_info().unwrap();
         let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
         reader.next_frame(&mut pixels).unwrap();
@@ -344,7 +342,7 @@ mod tests {
             .filter(|(_, row)| row.chunks(3).any(red))
             .map(|(row, _)| row)
             .collect();
-        let svg = String::from_utf8(comb(false).svg().unwrap()).unwrap();
+        let svg = String::from_utf8(comb().svg().unwrap()).unwrap();
         let data = svg.split("<polyline").filter(|line| line.contains("#DC3220")).collect::<Vec<_>>();
         assert!(data.len() == 1 && data[0].contains("stroke-linejoin=\"round\""), "{}", data.len());
         let points = data[0].split("points=\"").nth(1).unwrap().split('"').next().unwrap();
@@ -366,28 +364,5 @@ mod tests {
         assert_eq!(svg.matches("<circle").count(), 2);
         // Nor do the axes reach to it.
         assert!(!svg.contains("NaN") && !svg.contains("inf") && !svg.contains("1e0") && !svg.contains("1e-2"));
-    }
-
-    #[test]
-    fn an_area_is_filled_and_has_no_line() {
-        let axis = || Axis { name: "x", unit: None };
-        let outline = [(0.0, 0.0), (1.0, 2.0), (2.0, 0.0)];
-        let area = Curve::area("removed", Colour::Red, outline);
-        let plot = Plot::new("t", axis(), vec![Panel { y: axis(), curves: vec![area] }]);
-        let svg = String::from_utf8(plot.svg().unwrap()).unwrap();
-        let filled = |part: &&str| part.contains("#DC3220") && part.contains("opacity=\"0.3\"");
-        let polygons: Vec<&str> = svg.split("<polygon").skip(1).filter_map(|part| part.split('>').next()).collect();
-        assert_eq!(polygons.iter().filter(|part| filled(part)).count(), 1, "{polygons:?}");
-        assert!(svg.contains("removed"));
-        let lines = svg.split("<polyline").skip(1).filter_map(|line| line.split('>').next());
-        assert_eq!(lines.filter(|line| line.contains("#DC3220")).count(), 0);
-    }
-
-    #[test]
-    fn measured_points_are_drawn_alone() {
-        let svg = String::from_utf8(comb(true).svg().unwrap()).unwrap();
-        assert_eq!(svg.matches("<circle").count(), 400);
-        let lines = svg.split("<polyline").skip(1).filter_map(|line| line.split('>').next());
-        assert_eq!(lines.filter(|line| line.contains("#DC3220")).count(), 0);
     }
 }
