@@ -13,7 +13,7 @@ use stickslip_wire::definition::SharedSetup;
 use stickslip_wire::{ContactSummary, Faults, FrictionEstimate, JsonPath, NewSession, Prepare, SessionReply, Warning};
 
 use super::error::SessionError;
-use super::replay_cost::ReplayCost;
+use super::snapshot::ReplayCost;
 
 /// Bytes of a session besides its pieces, its label and its tables: what is fixed, and the entry in the cache. The
 /// process grows by 800.

@@ -31,7 +31,6 @@ mod loaded;
 mod metrics;
 mod observations;
 mod replay;
-mod replay_cost;
 mod run_to_end;
 mod snapshot;
 mod storage_reservation;

@@ -1,21 +1,20 @@
 //! What a request gets of [`stickslip_compute::formats`]: the choice by the query or by `Accept`, and the reply.
 
-mod choice;
-
 use axum::body::Body;
 use axum::http::{HeaderMap, HeaderValue, header};
 use axum::response::{IntoResponse as _, Response};
 
 pub use stickslip_compute::formats::{Format, TableStream};
 
-use super::problem::Problem;
+use super::accept::{admission, list_members};
+use super::problem::{Code, Problem};
 
 /// A format over HTTP.
 pub trait Negotiated: Sized {
     /// The format that the query names, or the one out of `formats` that `Accept` prefers.
     ///
     /// # Errors
-    /// [`Code::NotAcceptable`](super::problem::Code) if `Accept` admits none of them.
+    /// [`Code::NotAcceptable`] if `Accept` admits none of them.
     fn chosen(named: Option<Self>, headers: &HeaderMap, formats: &[Self]) -> Result<Self, Problem>;
 
     /// The tag of a reply in this format; that of columns is the version alone.
@@ -27,7 +26,7 @@ pub trait Negotiated: Sized {
 
 impl Negotiated for Format {
     fn chosen(named: Option<Format>, headers: &HeaderMap, formats: &[Format]) -> Result<Format, Problem> {
-        named.map_or_else(|| choice::preferred(headers, formats), Ok)
+        named.map_or_else(|| preferred(headers, formats), Ok)
     }
 
     fn tag(self, version: &str) -> String {
@@ -44,4 +43,22 @@ impl Negotiated for Format {
         ];
         (headers, body.into()).into_response()
     }
+}
+
+/// The format out of `formats` that `Accept` prefers.
+fn preferred(headers: &HeaderMap, formats: &[Format]) -> Result<Format, Problem> {
+    if list_members(headers, "accept").all(|range| range.trim().is_empty()) {
+        return Ok(Format::Columns);
+    }
+    let weighed = formats.iter().map(|format| {
+        let essence = format.media_type().split(';').next().unwrap_or_default();
+        (admission(headers, "accept", essence).map_or(0.0, |admission| admission.quality), *format)
+    });
+    // Of equals the first.
+    let best = weighed.reduce(|best, next| if next.0 > best.0 { next } else { best });
+    best.filter(|(quality, _)| *quality > 0.0).map(|(_, format)| format).ok_or_else(|| {
+        let known: Vec<String> =
+            formats.iter().map(|format| format!("{} (`?format={}`)", format.media_type(), format.name())).collect();
+        Problem::new(Code::NotAcceptable, format!("Accept must admit one of {}", known.join(", ")))
+    })
 }
