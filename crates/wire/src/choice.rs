@@ -179,3 +179,14 @@ macro_rules! object_or_string {
     };
 }
 pub(crate) use object_or_string;
+
+/// The methods of a visitor to which every number is the same kind of value, by a function of it.
+macro_rules! visit_numbers {
+    ($of:expr) => { visit_numbers! { $of, visit_f64(f64) visit_i64(i64) visit_u64(u64) } };
+    ($of:expr, $($visit:ident($number:ty))+) => {
+        $(fn $visit<E: serde::de::Error>(self, number: $number) -> Result<Self::Value, E> {
+            Ok($of(number as f64))
+        })+
+    };
+}
+pub(crate) use visit_numbers;

@@ -15,7 +15,7 @@ use stickslip_mechanics::{
 };
 
 use super::check::{Faults, JsonPath};
-use super::choice::choices;
+use super::choice::{choices, visit_numbers};
 use super::limits::{Array, Items, Limit, Limited as _, OfItsMembers, PATH_MOVES};
 use super::path::{CyclicPath, EqualPeaks, FallingAmplitude, Move, PHASE, Path, Plan};
 use super::reply::{Accuracy, ContactSummary, Regime, Warning};
@@ -83,17 +83,7 @@ impl<'de> Deserialize<'de> for Components {
                 f.write_str("a number, or a pair [x, y] of numbers")
             }
 
-            fn visit_f64<E: de::Error>(self, value: f64) -> Result<Components, E> {
-                Ok(Components::Along(value))
-            }
-
-            fn visit_i64<E: de::Error>(self, value: i64) -> Result<Components, E> {
-                Ok(Components::Along(value as f64))
-            }
-
-            fn visit_u64<E: de::Error>(self, value: u64) -> Result<Components, E> {
-                Ok(Components::Along(value as f64))
-            }
+            visit_numbers!(Components::Along);
 
             fn visit_seq<A: de::SeqAccess<'de>>(self, mut items: A) -> Result<Components, A::Error> {
                 let mut next =

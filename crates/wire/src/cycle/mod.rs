@@ -11,7 +11,7 @@ pub use studies::{BestLoad, BestLoadStudy, FrequencyResponse, LoadCurve, Resonan
 use std::fmt;
 
 use serde::de::value::SeqAccessDeserializer;
-use serde::de::{Error, SeqAccess, Visitor};
+use serde::de::{SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize};
 use serde_json::{Value, json};
 
@@ -21,7 +21,7 @@ use stickslip_mechanics::{
 };
 
 use crate::check::{Faults, JsonPath};
-use crate::choice::choices;
+use crate::choice::{choices, visit_numbers};
 use crate::definition::{ContactDefinition, DefinedProfile, SharedSetup};
 use crate::document::Document;
 use crate::limits::{Array, BEST_LOADS, CYCLE_AMPLITUDES, CYCLE_RADII, HARMONICS, Limit, Limited as _, Tolerance};
@@ -145,17 +145,7 @@ impl<'de> Visitor<'de> for AmplitudesVisitor {
         f.write_str("a number or an array of numbers")
     }
 
-    fn visit_f64<E: Error>(self, value: f64) -> Result<Amplitudes, E> {
-        Ok(Amplitudes::One(value))
-    }
-
-    fn visit_i64<E: Error>(self, value: i64) -> Result<Amplitudes, E> {
-        Ok(Amplitudes::One(value as f64))
-    }
-
-    fn visit_u64<E: Error>(self, value: u64) -> Result<Amplitudes, E> {
-        Ok(Amplitudes::One(value as f64))
-    }
+    visit_numbers!(Amplitudes::One);
 
     fn visit_seq<A: SeqAccess<'de>>(self, elements: A) -> Result<Amplitudes, A::Error> {
         Vec::deserialize(SeqAccessDeserializer::new(elements)).map(Amplitudes::Many)
