@@ -27,7 +27,8 @@ pub struct Common {
     pub(super) cache: Arc<Cache>,
     pub(super) snapshots: Snapshots,
     pub(super) listeners: Listeners,
-    pub(super) metrics: SessionMetrics,
+    /// Metrics that are counted as events happen.
+    pub metrics: SessionMetrics,
     usage: UsageByTenant,
 }
 

@@ -8,7 +8,7 @@ use uuid::Uuid;
 
 use crate::admission::{Pool, Reservation};
 use crate::otlp;
-use crate::store::{Page, Store, Tenant};
+use crate::store::{Commits, Page, Store, Tenant};
 use stickslip_compute::computations::{DisplayOptions, OnContact};
 use stickslip_compute::simulation::{bytes, cost};
 use stickslip_wire::subsurface::SubsurfaceTask;
@@ -17,7 +17,6 @@ use stickslip_wire::{ContactDefinition, SessionPage, SessionReply, SubsurfaceReq
 use super::common::Common;
 use super::error::SessionError;
 use super::loaded::written;
-use super::metrics::Readings;
 
 /// The sessions of a tenant. Clones, and those of other tenants, are handles on the same.
 #[derive(Clone)]
@@ -151,16 +150,18 @@ impl Sessions {
         Ok(SessionPage { items: found, next })
     }
 
-    /// The metrics of the sessions.
-    pub fn readings(&self) -> Readings<'_> {
-        let (bytes, cached) = self.cache.held();
-        Readings {
-            counted: &self.metrics,
-            cached,
-            bytes,
-            capacity: self.cache.capacity(),
-            streams: self.listeners.count(),
-            commits: self.store.commits(),
-        }
+    /// How many bytes of states may be cached.
+    pub fn capacity(&self) -> usize {
+        self.cache.capacity()
+    }
+
+    /// How many clients listen to events.
+    pub fn streams(&self) -> usize {
+        self.listeners.count()
+    }
+
+    /// What the store has committed, if it commits.
+    pub fn commits(&self) -> Option<&Commits> {
+        self.store.commits()
     }
 }

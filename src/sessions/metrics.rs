@@ -3,7 +3,6 @@
 use prometheus::{Histogram, IntCounter};
 
 use crate::metrics::{SECONDS, metrics};
-use crate::store::Commits;
 
 metrics! {
     /// Metrics that are counted as events happen.
@@ -19,20 +18,4 @@ metrics! {
         /// Time to load a contact from the store: its snapshot, and the moves beyond it.
         open: Histogram = histogram("stickslip_contact_open_seconds", SECONDS),
     }
-}
-
-/// The metrics of the sessions.
-pub struct Readings<'a> {
-    /// Metrics that are counted as events happen.
-    pub counted: &'a SessionMetrics,
-    /// Cached sessions that no request uses.
-    pub cached: usize,
-    /// Bytes of their states, and of the profiles that are ready.
-    pub bytes: usize,
-    /// How many bytes there may be.
-    pub capacity: usize,
-    /// Clients that listen to events.
-    pub streams: usize,
-    /// What the store has committed, if it commits.
-    pub commits: Option<&'a Commits>,
 }

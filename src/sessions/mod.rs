@@ -44,5 +44,5 @@ pub use events::events;
 pub use expected::{Expected, label_checksum};
 pub use expiry::run_expiry_loop;
 pub use handle::Sessions;
-pub use metrics::{Readings, SessionMetrics};
+pub use metrics::SessionMetrics;
 pub use trace::{bytes_of_trace, trace};

@@ -8,7 +8,7 @@ use prometheus::{Gauge, IntCounter, Opts, Registry, TextEncoder};
 use stickslip_mechanics::ENGINE;
 
 use super::prelude::*;
-use crate::sessions::Readings;
+use crate::sessions::Sessions;
 
 use crate::api::request_metrics::RequestMetrics;
 
@@ -39,16 +39,15 @@ macro_rules! show {
 /// The current page: the registered counters, and gauges that are read at this request.
 fn page(app: &App, traffic: &RequestMetrics) -> prometheus::Result<String> {
     let page = Registry::new();
-    let readings = app.sessions.readings();
-    let counted = [readings.counted.collectors(), app.pool.meters().collectors(), app.jobs.meters().collectors()];
+    let counted = [app.sessions.metrics.collectors(), app.pool.meters().collectors(), app.jobs.meters().collectors()];
     for collector in counted.into_iter().flatten().chain(traffic.collectors()) {
         page.register(collector)?;
     }
-    sessions(&page, &readings)?;
+    sessions(&page, &app.sessions)?;
     let threads = app.pool.capacity().threads.max(1);
     gauge(&page, Opts::new("stickslip_solver_threads", "Threads of the solver."), threads as f64)?;
     show!(page, app.pool.quotas().refused);
-    if let Some(commits) = readings.commits {
+    if let Some(commits) = app.sessions.commits() {
         show!(page, commits.time, commits.size, commits.failed, commits.pending);
     }
     this_program(&page)?;
@@ -62,20 +61,21 @@ fn gauge(page: &Registry, options: Opts, value: f64) -> prometheus::Result<()> {
     Ok(())
 }
 
-fn sessions(page: &Registry, readings: &Readings<'_>) -> prometheus::Result<()> {
+fn sessions(page: &Registry, sessions: &Sessions) -> prometheus::Result<()> {
+    let (bytes, cached) = sessions.held();
     let misses =
         IntCounter::new("stickslip_cache_misses_total", "Requests for a contact that was loaded from the store.")?;
-    misses.inc_by(readings.counted.open.get_sample_count());
+    misses.inc_by(sessions.metrics.open.get_sample_count());
     show!(page, misses);
     for (name, help, value) in [
-        ("stickslip_cache_contacts", "Contacts in memory that no request uses.", readings.cached),
-        ("stickslip_cache_bytes", "Bytes of the states of these contacts, and of prepared profiles.", readings.bytes),
+        ("stickslip_cache_contacts", "Contacts in memory that no request uses.", cached),
+        ("stickslip_cache_bytes", "Bytes of the states of these contacts, and of prepared profiles.", bytes),
         (
             "stickslip_cache_capacity_bytes",
             "Bytes that the states may take, as set by --cache-bytes.",
-            readings.capacity,
+            sessions.capacity(),
         ),
-        ("stickslip_event_streams", "Clients that follow events.", readings.streams),
+        ("stickslip_event_streams", "Clients that follow events.", sessions.streams()),
     ] {
         gauge(page, Opts::new(name, help), value as f64)?;
     }
