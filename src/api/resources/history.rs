@@ -114,11 +114,11 @@ impl MoveSeries for History {
         let cycle_from = |row: usize| items[row].cycle.as_ref().map(|cycle| cycle.from);
         let mut columns = vec![
             Column::counts("sequence", |row| items[row].sequence),
-            Column::new("at", Some("UTC"), Cells::Times(Box::new(|row| items[row].at))),
+            Column::new("at", Some("UTC"), Cells::Times(Box::new(|row| Some(items[row].at)))),
         ];
         columns.extend(state_columns(|row| &items[row].state));
         columns.extend([
-            Column::new("cycle_from", Some("1"), Cells::SomeCounts(Box::new(cycle_from))),
+            Column::new("cycle_from", Some("1"), Cells::Counts(Box::new(cycle_from))),
             cycle("cycle_displacement_amplitude", "m", |cycle| Some(cycle.displacement_amplitude)),
             cycle("cycle_force_amplitude", "N", |cycle| Some(cycle.force_amplitude)),
             cycle("cycle_dissipated_energy", "J", |cycle| Some(cycle.dissipated_energy)),
@@ -129,7 +129,7 @@ impl MoveSeries for History {
             observed("innovation", |observed| observed.innovation),
         ]);
         if self.names_makers {
-            columns.push(Column::new("by", Some(""), Cells::SomeNames(Box::new(|row| items[row].by.as_deref()))));
+            columns.push(Column::new("by", Some(""), Cells::Words(Box::new(|row| items[row].by.as_deref()))));
         }
         Table::flat(items.len(), columns)
     }

@@ -33,6 +33,8 @@ pub struct Column<'a> {
     key: String,
     unit: Option<&'static str>,
     cells: Cells<'a>,
+    /// Whether cells may be missing.
+    nullable: bool,
 }
 
 /// A piece of the written table.
@@ -42,26 +44,22 @@ pub type Blocks<'a> = Box<dyn Iterator<Item = Block> + Send + 'a>;
 
 type ByRow<'a, T> = Box<dyn Fn(usize) -> T + Send + 'a>;
 
-/// The cells of a column by their row.
+/// The cells of a column by their row, where there is one.
 pub enum Cells<'a> {
-    /// Numbers, where there is one.
+    /// Numbers.
     Numbers(ByRow<'a, Option<Number>>),
     /// Whole numbers.
-    Counts(ByRow<'a, u64>),
-    /// Whole numbers, where there is one.
-    SomeCounts(ByRow<'a, Option<u64>>),
+    Counts(ByRow<'a, Option<u64>>),
     /// Moments.
-    Times(ByRow<'a, Timestamp>),
+    Times(ByRow<'a, Option<Timestamp>>),
     /// Words without commas and quotes.
-    Words(ByRow<'a, &'static str>),
-    /// Names without commas and quotes, where there is one.
-    SomeNames(ByRow<'a, Option<&'a str>>),
+    Words(ByRow<'a, Option<&'a str>>),
 }
 
 impl<'a> Column<'a> {
-    /// A column; its unit is written in Arrow's metadata.
+    /// A column of which cells may be missing; its unit is written in Arrow's metadata.
     pub fn new(name: &str, unit: Option<&'static str>, cells: Cells<'a>) -> Column<'a> {
-        Column { name: name.to_owned(), key: Value::from(name).to_string(), unit, cells }
+        Column { name: name.to_owned(), key: Value::from(name).to_string(), unit, cells, nullable: true }
     }
 
     /// A column of floats; a number that is not finite counts as missing.
@@ -76,38 +74,36 @@ impl<'a> Column<'a> {
 
     /// A column of words without commas and quotes.
     pub fn words(name: &str, value: impl Fn(usize) -> &'static str + Send + 'a) -> Column<'a> {
-        Column::new(name, Some(""), Cells::Words(Box::new(value)))
+        let words = Cells::Words(Box::new(move |row| Some(value(row))));
+        Column { nullable: false, ..Column::new(name, Some(""), words) }
     }
 
     /// A column of whole numbers without a unit.
     pub fn counts(name: &str, value: impl Fn(usize) -> u64 + Send + 'a) -> Column<'a> {
-        Column::new(name, Some("1"), Cells::Counts(Box::new(value)))
+        let counts = Cells::Counts(Box::new(move |row| Some(value(row))));
+        Column { nullable: false, ..Column::new(name, Some("1"), counts) }
     }
 
     fn write_cell(&self, row: usize, format: Format, text: &mut String) -> fmt::Result {
         let (none, quote) = if format == Format::Csv { ("", "") } else { ("null", "\"") };
         let written = match &self.cells {
             Cells::Numbers(at) => at(row).map(|number| write!(text, "{number}")),
-            Cells::Counts(at) => Some(write!(text, "{}", at(row))),
-            Cells::SomeCounts(at) => at(row).map(|count| write!(text, "{count}")),
-            Cells::Times(at) => Some(write!(text, "{quote}{}{quote}", at(row))),
-            Cells::Words(at) => Some(write!(text, "{quote}{}{quote}", at(row))),
-            Cells::SomeNames(at) => at(row).map(|name| write!(text, "{quote}{name}{quote}")),
+            Cells::Counts(at) => at(row).map(|count| write!(text, "{count}")),
+            Cells::Times(at) => at(row).map(|time| write!(text, "{quote}{time}{quote}")),
+            Cells::Words(at) => at(row).map(|word| write!(text, "{quote}{word}{quote}")),
         };
         written.unwrap_or_else(|| text.write_str(none))
     }
 
     fn field(&self) -> Field {
-        let (data_type, nullable) = match self.cells {
-            Cells::Numbers(_) => (DataType::Float64, true),
-            Cells::Counts(_) => (DataType::UInt64, false),
-            Cells::SomeCounts(_) => (DataType::UInt64, true),
-            Cells::Times(_) => (DataType::Timestamp(TimeUnit::Nanosecond, Some("UTC".into())), true),
-            Cells::Words(_) => (DataType::Utf8, false),
-            Cells::SomeNames(_) => (DataType::Utf8, true),
+        let data_type = match self.cells {
+            Cells::Numbers(_) => DataType::Float64,
+            Cells::Counts(_) => DataType::UInt64,
+            Cells::Times(_) => DataType::Timestamp(TimeUnit::Nanosecond, Some("UTC".into())),
+            Cells::Words(_) => DataType::Utf8,
         };
         let unit = self.unit.map(|unit| ("unit".to_owned(), unit.to_owned()));
-        Field::new(&self.name, data_type, nullable).with_metadata(HashMap::from_iter(unit))
+        Field::new(&self.name, data_type, self.nullable).with_metadata(HashMap::from_iter(unit))
     }
 
     fn array(&self, rows: Range<usize>) -> ArrayRef {
@@ -116,13 +112,11 @@ impl<'a> Column<'a> {
                 Arc::new(rows.map(|row| at(row).and_then(|number| number.as_f64())).collect::<Float64Array>())
             }
             Cells::Counts(at) => Arc::new(rows.map(at).collect::<UInt64Array>()),
-            Cells::SomeCounts(at) => Arc::new(rows.map(at).collect::<UInt64Array>()),
             Cells::Times(at) => {
-                let since = |row| i64::try_from(at(row).as_nanosecond()).ok();
+                let since = |row| i64::try_from(at(row)?.as_nanosecond()).ok();
                 Arc::new(rows.map(since).collect::<TimestampNanosecondArray>().with_timezone("UTC"))
             }
-            Cells::Words(at) => Arc::new(rows.map(|row| Some(at(row))).collect::<StringArray>()),
-            Cells::SomeNames(at) => Arc::new(rows.map(at).collect::<StringArray>()),
+            Cells::Words(at) => Arc::new(rows.map(at).collect::<StringArray>()),
         }
     }
 }
