@@ -13,6 +13,7 @@ use stickslip_compute::simulation::{self, Anew, present_warnings};
 use stickslip_mechanics::range::{self, Range};
 use stickslip_mechanics::{Contact, Error, Move, Normal, Tangential};
 use stickslip_wire::Code;
+use stickslip_wire::definition::SharedSetup;
 use stickslip_wire::session::Creation;
 use stickslip_wire::{self as wire, CreateRequest, State};
 
@@ -23,13 +24,15 @@ use super::problem::refused;
 const PROBE: f64 = 1e-12;
 /// Contacts that are worth a thread of their own.
 const LEAST_SHARE: usize = 256;
+/// Components of a force.
+const ALONG: usize = 1;
 
 /// Two arrays in the order of the contacts.
-type Pair<'py> = (Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>);
+pub type Pair<'py> = (Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>);
 /// An array of a caller: of one number for each contact, or of one for all.
-type Numbers<'py> = PyReadonlyArray1<'py, f64>;
+pub type Numbers<'py> = PyReadonlyArray1<'py, f64>;
 /// Normal and tangential numbers of the contacts.
-type Columns = [Vec<f64>; 2];
+pub type Columns = [Vec<f64>; 2];
 
 /// Contacts that are stepped together.
 #[pyclass(module = "stickslip._native")]
@@ -63,7 +66,7 @@ impl Contacts {
         self.trial.clear();
         let threads = self.threads;
         let contacts = &mut self.committed;
-        let forces = py.detach(|| move_all(contacts, &targets, threads));
+        let forces = py.detach(|| move_all(contacts, &targets, threads, LEAST_SHARE, ALONG, move_share));
         Ok(pair(py, forces.map_err(refused)?))
     }
 
@@ -78,7 +81,7 @@ impl Contacts {
         let (committed, mut trial, threads) = (&self.committed, std::mem::take(&mut self.trial), self.threads);
         let (trial, forces) = py.detach(|| {
             trial.clone_from(committed);
-            let forces = move_all(&mut trial, &targets, threads);
+            let forces = move_all(&mut trial, &targets, threads, LEAST_SHARE, ALONG, move_share);
             (trial, forces)
         });
         let forces = forces.map_err(refused)?;
@@ -165,41 +168,67 @@ impl Contacts {
 
 /// The first of the contacts.
 fn first(body: &[u8], stop: &dyn Stop) -> Result<Contact, Refusal> {
-    let Creation { setup, .. } = simulation::check(wire::parse::<CreateRequest>(body)?, &Anew(stop), stop)??;
-    Ok(simulation::contact(setup, "")?)
+    Ok(simulation::contact(setup(body, stop)?, "")?)
 }
 
-/// The numbers of an array, one for each contact; they are read once, so that a caller who goes on writing to the array
-/// changes no number that has been checked.
+/// What the JSON text of a definition means.
+pub fn setup(body: &[u8], stop: &dyn Stop) -> Result<SharedSetup, Refusal> {
+    let Creation { setup, .. } = simulation::check(wire::parse::<CreateRequest>(body)?, &Anew(stop), stop)??;
+    Ok(setup)
+}
+
+/// The numbers of an array, one for each contact.
 fn numbers(pointer: &str, given: &Numbers<'_>, count: usize, range: &Range) -> Result<Vec<f64>, Refusal> {
+    let rows = rows::<1>(pointer, given, count, range)?;
+    Ok(rows.into_iter().map(|[number]| number).collect())
+}
+
+/// The numbers of an array, so many for each contact, or the same for all; they are read once, so that a caller who goes
+/// on writing to the array changes no number that has been checked.
+pub fn rows<const WIDTH: usize>(
+    pointer: &str,
+    given: &Numbers<'_>,
+    count: usize,
+    range: &Range,
+) -> Result<Vec<[f64; WIDTH]>, Refusal> {
     let given = given.as_array();
-    let numbers = match given.len() {
-        1 => vec![given[0]; count],
-        length if length == count => given.to_vec(),
+    let row = |index: usize| std::array::from_fn(|column| given[WIDTH * index + column]);
+    let rows: Vec<[f64; WIDTH]> = match given.len() {
+        length if length == WIDTH => vec![row(0); count],
+        length if length == WIDTH * count => (0..count).map(row).collect(),
         length => {
-            let detail = format!("{length} elements: allowed are 1 and {count}");
+            let detail = format!("{length} elements: allowed are {WIDTH} and {}", WIDTH * count);
             return Err(Refusal::at(Code::InvalidInput, pointer, detail));
         }
     };
-    match numbers.iter().position(|number| !range.contains(*number)) {
-        None => Ok(numbers),
-        Some(index) => {
-            let detail = format!("{:?} is out of range: allowed is {range}", numbers[index]);
-            Err(Refusal::at(Code::InvalidInput, format!("{pointer}/{index}"), detail))
+    for (index, row) in rows.iter().enumerate() {
+        if let Some(column) = row.iter().position(|number| !range.contains(*number)) {
+            let detail = format!("{:?} is out of range: allowed is {range}", row[column]);
+            let at = if WIDTH > 1 { format!("{pointer}/{index}/{column}") } else { format!("{pointer}/{index}") };
+            return Err(Refusal::at(Code::InvalidInput, at, detail));
         }
     }
+    Ok(rows)
 }
 
-/// Moves the contacts to their targets on so many threads.
-fn move_all(contacts: &mut [Contact], targets: &[[f64; 2]], threads: usize) -> Result<Columns, Refusal> {
-    let [mut normal, mut tangential] = [vec![0.0; contacts.len()], vec![0.0; contacts.len()]];
-    let share = contacts.len().div_ceil(threads).max(LEAST_SHARE);
+/// Moves the contacts to their targets on so many threads, each with `least` contacts or more; forces have so many
+/// components.
+pub fn move_all<C: Send, T: Sync>(
+    contacts: &mut [C],
+    targets: &[T],
+    threads: usize,
+    least: usize,
+    components: usize,
+    move_share: impl Fn(&mut [C], &[T], &mut [f64], &mut [f64]) -> Result<(), Error> + Copy + Send,
+) -> Result<Columns, Refusal> {
+    let [mut normal, mut tangential] = [vec![0.0; contacts.len()], vec![0.0; components * contacts.len()]];
+    let share = contacts.len().div_ceil(threads).max(least);
     if contacts.len() <= share {
         return move_share(contacts, targets, &mut normal, &mut tangential)
             .map(|()| [normal, tangential])
             .map_err(unexpected);
     }
-    let forces = normal.chunks_mut(share).zip(tangential.chunks_mut(share));
+    let forces = normal.chunks_mut(share).zip(tangential.chunks_mut(components * share));
     let parts = contacts.chunks_mut(share).zip(targets.chunks(share)).zip(forces);
     thread::scope(|scope| {
         let threads: Vec<_> = parts
@@ -252,6 +281,6 @@ fn stiffness(contact: &Contact, direction: f64) -> Result<(f64, f64), Error> {
 }
 
 /// Two columns as arrays, which own the numbers without a copy.
-fn pair<'py>(py: Python<'py>, [normal, tangential]: Columns) -> Pair<'py> {
+pub fn pair<'py>(py: Python<'py>, [normal, tangential]: Columns) -> Pair<'py> {
     (PyArray1::from_vec(py, normal), PyArray1::from_vec(py, tangential))
 }

@@ -9,6 +9,7 @@ mod contact;
 mod contacts;
 mod import;
 mod interrupt;
+mod planar_contacts;
 mod problem;
 #[cfg(all(feature = "server", target_os = "linux"))]
 mod server;
@@ -31,6 +32,8 @@ mod _native {
     use super::contacts::Contacts;
     #[pymodule_export]
     use super::import::{quantity, read_loop, read_scan};
+    #[pymodule_export]
+    use super::planar_contacts::PlanarContacts;
     #[pymodule_export]
     use super::problem::Problem;
     #[cfg(all(feature = "server", target_os = "linux"))]

@@ -19,7 +19,7 @@ from . import functions, profiles
 from ._native import VERSION as __version__
 from .bodies import RIGID, Body, Moduli
 from .contact import Contact
-from .contacts import Contacts
+from .contacts import Contacts, PlanarContacts
 from .engine import Engine, Local
 from .errors import (
     Conflict,
@@ -94,6 +94,7 @@ __all__ = [
     "NotAllowed",
     "NotFound",
     "Overloaded",
+    "PlanarContacts",
     "Record",
     "RemoteContact",
     "Result",

@@ -32,6 +32,7 @@ T = TypeVar("T")
 #: Names of the module that a client does not have, and what does the same.
 IN_PROCESS_ALONE = {
     "Contacts": "stickslip.Contacts works in process only: on a server make each contact by api.Contact",
+    "PlanarContacts": "stickslip.PlanarContacts works in process only: a server has api.simulate in the plane",
     "Local": "stickslip.Local is the engine of this process",
     "Engine": "stickslip.Engine is the base of this client",
     "serve": "stickslip.serve starts a server: this is already a client of one",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import Any, overload
 
 from . import request_types as types
 from . import results
@@ -592,6 +592,49 @@ class Computations(ABC):
         }
         return self._answer(results.ProtocolReply, "/protocols", given, parts)
 
+    @overload
+    def simulate(
+        self,
+        contact: ContactLike,
+        displacement: Quantities | None = None,
+        *,
+        moves: None = None,
+        force: Quantities | None = None,
+        falling_amplitude: int | types.FallingAmplitude | Mapping[str, Any] | None = None,
+        equal_peaks: int | types.EqualPeaks | Mapping[str, Any] | None = None,
+        cycles: types.CyclicPath | Mapping[str, Any] | None = None,
+        ellipse: None = None,
+        path: None = None,
+        residual: bool | None = None,
+        solver: None = None,
+        steps: types.Steps | None = None,
+        stress: int | types.StressRequest | Mapping[str, Any] | None = None,
+        subsurface: Quantity | types.SubsurfaceRequest | Mapping[str, Any] | None = None,
+        tolerance: Quantity | None = None,
+    ) -> results.SimulateReply: ...
+
+    @overload
+    def simulate(
+        self,
+        contact: ContactLike,
+        displacement: Quantities | None = None,
+        *,
+        moves: Sequence[types.SimulatedMove | Mapping[str, Any]] | None = None,
+        force: Quantities | None = None,
+        falling_amplitude: int | types.FallingAmplitude | Mapping[str, Any] | None = None,
+        equal_peaks: int | types.EqualPeaks | Mapping[str, Any] | None = None,
+        cycles: types.CyclicPath | Mapping[str, Any] | None = None,
+        ellipse: types.Ellipse | Mapping[str, Any],
+        path: types.SimulatedPath | None = None,
+        residual: bool | None = None,
+        solver: types.Solver | None = None,
+        steps: types.Steps | None = None,
+        stress: int | types.StressRequest | Mapping[str, Any] | None = None,
+        subsurface: Quantity | types.SubsurfaceRequest | Mapping[str, Any] | None = None,
+        tolerance: Quantity | None = None,
+    ) -> results.PlanarReply: ...
+
+    @overload
     def simulate(
         self,
         contact: ContactLike,
@@ -610,7 +653,27 @@ class Computations(ABC):
         stress: int | types.StressRequest | Mapping[str, Any] | None = None,
         subsurface: Quantity | types.SubsurfaceRequest | Mapping[str, Any] | None = None,
         tolerance: Quantity | None = None,
-    ) -> results.SimulateReply:
+    ) -> results.SimulateReply | results.PlanarReply: ...
+
+    def simulate(
+        self,
+        contact: ContactLike,
+        displacement: Quantities | None = None,
+        *,
+        moves: Sequence[types.SimulatedMove | Mapping[str, Any]] | None = None,
+        force: Quantities | None = None,
+        falling_amplitude: int | types.FallingAmplitude | Mapping[str, Any] | None = None,
+        equal_peaks: int | types.EqualPeaks | Mapping[str, Any] | None = None,
+        cycles: types.CyclicPath | Mapping[str, Any] | None = None,
+        ellipse: types.Ellipse | Mapping[str, Any] | None = None,
+        path: types.SimulatedPath | None = None,
+        residual: bool | None = None,
+        solver: types.Solver | None = None,
+        steps: types.Steps | None = None,
+        stress: int | types.StressRequest | Mapping[str, Any] | None = None,
+        subsurface: Quantity | types.SubsurfaceRequest | Mapping[str, Any] | None = None,
+        tolerance: Quantity | None = None,
+    ) -> results.SimulateReply | results.PlanarReply:
         """Simulate a path.
 
         Follows a path from the preloaded contact and returns the states along it, and the stresses and their extrema at
@@ -657,8 +720,9 @@ class Computations(ABC):
 
         Returns
         -------
-        SimulateReply
-            The result of a simulation.
+        SimulateReply | PlanarReply
+            The result of a simulation, along a line or in the plane: the latter if the path has pairs or is an ellipse,
+            or rings are asked for.
 
         Raises
         ------
@@ -1045,6 +1109,49 @@ class AsyncComputations(ABC):
         }
         return await self._answer(results.ProtocolReply, "/protocols", given, parts)
 
+    @overload
+    async def simulate(
+        self,
+        contact: ContactLike,
+        displacement: Quantities | None = None,
+        *,
+        moves: None = None,
+        force: Quantities | None = None,
+        falling_amplitude: int | types.FallingAmplitude | Mapping[str, Any] | None = None,
+        equal_peaks: int | types.EqualPeaks | Mapping[str, Any] | None = None,
+        cycles: types.CyclicPath | Mapping[str, Any] | None = None,
+        ellipse: None = None,
+        path: None = None,
+        residual: bool | None = None,
+        solver: None = None,
+        steps: types.Steps | None = None,
+        stress: int | types.StressRequest | Mapping[str, Any] | None = None,
+        subsurface: Quantity | types.SubsurfaceRequest | Mapping[str, Any] | None = None,
+        tolerance: Quantity | None = None,
+    ) -> results.SimulateReply: ...
+
+    @overload
+    async def simulate(
+        self,
+        contact: ContactLike,
+        displacement: Quantities | None = None,
+        *,
+        moves: Sequence[types.SimulatedMove | Mapping[str, Any]] | None = None,
+        force: Quantities | None = None,
+        falling_amplitude: int | types.FallingAmplitude | Mapping[str, Any] | None = None,
+        equal_peaks: int | types.EqualPeaks | Mapping[str, Any] | None = None,
+        cycles: types.CyclicPath | Mapping[str, Any] | None = None,
+        ellipse: types.Ellipse | Mapping[str, Any],
+        path: types.SimulatedPath | None = None,
+        residual: bool | None = None,
+        solver: types.Solver | None = None,
+        steps: types.Steps | None = None,
+        stress: int | types.StressRequest | Mapping[str, Any] | None = None,
+        subsurface: Quantity | types.SubsurfaceRequest | Mapping[str, Any] | None = None,
+        tolerance: Quantity | None = None,
+    ) -> results.PlanarReply: ...
+
+    @overload
     async def simulate(
         self,
         contact: ContactLike,
@@ -1063,7 +1170,27 @@ class AsyncComputations(ABC):
         stress: int | types.StressRequest | Mapping[str, Any] | None = None,
         subsurface: Quantity | types.SubsurfaceRequest | Mapping[str, Any] | None = None,
         tolerance: Quantity | None = None,
-    ) -> results.SimulateReply:
+    ) -> results.SimulateReply | results.PlanarReply: ...
+
+    async def simulate(
+        self,
+        contact: ContactLike,
+        displacement: Quantities | None = None,
+        *,
+        moves: Sequence[types.SimulatedMove | Mapping[str, Any]] | None = None,
+        force: Quantities | None = None,
+        falling_amplitude: int | types.FallingAmplitude | Mapping[str, Any] | None = None,
+        equal_peaks: int | types.EqualPeaks | Mapping[str, Any] | None = None,
+        cycles: types.CyclicPath | Mapping[str, Any] | None = None,
+        ellipse: types.Ellipse | Mapping[str, Any] | None = None,
+        path: types.SimulatedPath | None = None,
+        residual: bool | None = None,
+        solver: types.Solver | None = None,
+        steps: types.Steps | None = None,
+        stress: int | types.StressRequest | Mapping[str, Any] | None = None,
+        subsurface: Quantity | types.SubsurfaceRequest | Mapping[str, Any] | None = None,
+        tolerance: Quantity | None = None,
+    ) -> results.SimulateReply | results.PlanarReply:
         """`simulate`, awaited."""
         given: Document = {
             "contact": contact,

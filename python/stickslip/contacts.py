@@ -1,10 +1,10 @@
-"""Many contacts stepped together over arrays: the exact contact law for programs with their own equations of motion."""
+"""Many contacts stepped together over arrays, along a line or in the plane: for programs with their own equations of motion."""
 
 from __future__ import annotations
 
 import json
 import os
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -21,7 +21,63 @@ if TYPE_CHECKING:
     from .request_types import DefinitionMembers
 
 
-class Contacts:
+class _Together:
+    """What contacts that are stepped together share, along a line and in the plane."""
+
+    _native: _native.Contacts | _native.PlanarContacts
+    #: The shape of the arrays of numbers of the contacts.
+    shape: tuple[int, ...]
+
+    def _start(
+        self,
+        native: Any,
+        shape: int | tuple[int, ...],
+        given: tuple[Shape, Material, Quantity, DefinitionMembers],
+        *arguments: int,
+    ) -> Any:
+        """The native contacts, and their warnings."""
+        profile, bodies, friction, load = given
+        if load.get("normal_force") is None and load.get("contact_radius") is None:
+            load = load | {"indentation": 0.0 if load.get("indentation") is None else load["indentation"]}
+        self.shape = (shape,) if isinstance(shape, int) else tuple(shape)
+        count = int(np.prod(self.shape, dtype=np.int64))
+        made = guarded(native, count, encoded(definition(profile, bodies, friction, load)), *arguments)
+        warn(json.loads(made.warnings()), set())
+        return made
+
+    def __len__(self) -> int:
+        return len(self._native)
+
+    def commit(self) -> None:
+        """Commits the states of the last trial."""
+        if not self._native.commit():
+            raise RuntimeError("there is no trial to commit: call trial() first")
+
+    def revert(self) -> None:
+        """Discards the last trial."""
+        self._native.revert()
+
+    @property
+    def memory(self) -> int:
+        """Size of the committed states, bytes."""
+        return self._native.memory()
+
+    def _numbers(self, values: Quantity | Quantities, name: str, *components: int) -> Floats:
+        """One number, or one for each contact; or so many components."""
+        array = floats(values, name)
+        if array.shape == components or (array.size == 1 and not components):
+            return array.reshape(-1)
+        try:
+            return np.broadcast_to(array, self.shape + components).reshape(-1)
+        except ValueError:
+            detail = f"an array of shape {array.shape} does not broadcast to {self.shape + components}"
+            raise refused(name, detail) from None
+
+    def _shaped(self, pair: tuple[Floats, Floats], *components: int) -> tuple[Floats, Floats]:
+        return pair[0].reshape(self.shape), pair[1].reshape(self.shape + components)
+
+
+class Contacts(_Together):
     """An array of contacts with one definition.
 
     They begin at zero indentation, or at the given load. A step is straight in indentation and displacement (m), and
@@ -47,17 +103,8 @@ class Contacts:
         threads: int | None = None,
         **load: Unpack[DefinitionMembers],
     ):
-        if load.get("normal_force") is None and load.get("contact_radius") is None:
-            load = load | {"indentation": 0.0 if load.get("indentation") is None else load["indentation"]}
-        #: The shape of the arrays of numbers of the contacts.
-        self.shape = (shape,) if isinstance(shape, int) else tuple(shape)
-        count = int(np.prod(self.shape, dtype=np.int64))
-        given = definition(profile, bodies, friction, load)
-        self._native = guarded(_native.Contacts, count, encoded(given), threads or os.cpu_count() or 1)
-        warn(json.loads(self._native.warnings()), set())
-
-    def __len__(self) -> int:
-        return len(self._native)
+        given = (profile, bodies, friction, load)
+        self._native: _native.Contacts = self._start(_native.Contacts, shape, given, threads or os.cpu_count() or 1)
 
     def step(self, indentation: Quantity | Quantities, displacement: Quantity | Quantities) -> tuple[Floats, Floats]:
         """Moves all contacts to these indentations and displacements, m; returns F_N and F_x, N, as such arrays.
@@ -71,15 +118,6 @@ class Contacts:
         """The forces after such a step from the committed states; `commit` keeps the step, `revert` discards it."""
         targets = self._numbers(indentation, "indentation"), self._numbers(displacement, "displacement")
         return self._shaped(guarded(self._native.trial, *targets))
-
-    def commit(self) -> None:
-        """Commits the states of the last trial."""
-        if not self._native.commit():
-            raise RuntimeError("there is no trial to commit: call trial() first")
-
-    def revert(self) -> None:
-        """Discards the last trial."""
-        self._native.revert()
 
     def forces(self) -> tuple[Floats, Floats]:
         """F_N and F_x, N, of the committed states."""
@@ -99,22 +137,91 @@ class Contacts:
         """The committed state of one contact."""
         return parse(results.State, json.loads(self._native.state(index)))
 
-    @property
-    def memory(self) -> int:
-        """Bytes that the committed states take."""
-        found: int = self._native.memory()
-        return found
 
-    def _numbers(self, values: Quantity | Quantities, name: str) -> Floats:
-        """One number, or one for each contact."""
-        array = floats(values, name)
-        if array.size == 1:
-            return array.reshape(1)
-        try:
-            return np.broadcast_to(array, self.shape).reshape(-1)
-        except ValueError:
-            detail = f"an array of shape {array.shape} does not broadcast to {self.shape}"
-            raise InvalidInput("invalid_input", detail, (Fault(f"/{name}", detail),)) from None
+class PlanarContacts(_Together):
+    """So many contacts of one definition that move in the plane: partial slip whose direction differs and turns.
 
-    def _shaped(self, pair: tuple[Floats, Floats]) -> tuple[Floats, Floats]:
-        return pair[0].reshape(self.shape), pair[1].reshape(self.shape)
+    The law of rings, each with a traction vector and Coulomb's law. They begin at an indentation of zero, or at the
+    load that is given. A step is straight in displacement (m) and in indentation or normal force; a contact that parts
+    loses its history, and the next one sticks where it is met. A step that is refused has moved none. The error is of
+    second order in the steps and in the number of rings: halve the steps and double the rings to see it.
+
+    Parameters
+    ----------
+    shape : int | tuple of int
+        Number of contacts, or the shape of the array of contacts. Displacements and forces have x and y as a last axis.
+    profile, bodies, friction, **load
+        As for `Contact`.
+    rings : int
+        The most rings of a contact, 4 to 160. A contact that keeps its radius has all of them, one whose radius changes
+        a quarter of them at least.
+    threads : int
+        Number of threads; if left out, one for each core.
+    """
+
+    def __init__(
+        self,
+        shape: int | tuple[int, ...],
+        profile: Shape,
+        bodies: Material,
+        friction: Quantity,
+        *,
+        rings: int = 20,
+        threads: int | None = None,
+        **load: Unpack[DefinitionMembers],
+    ):
+        given = (profile, bodies, friction, load)
+        cores = threads or os.cpu_count() or 1
+        self._native: _native.PlanarContacts = self._start(_native.PlanarContacts, shape, given, rings, cores)
+
+    def step(
+        self,
+        indentation: Quantity | Quantities | None = None,
+        displacement: Quantities | None = None,
+        *,
+        normal_force: Quantity | Quantities | None = None,
+    ) -> tuple[Floats, Floats]:
+        """Moves all contacts to these indentations, m, or normal forces, N, and to these displacements [x, y], m.
+
+        Returns F_N, N, of their shape, and F, N, of their shape and 2, to which arrays broadcast: `[x, y]` moves all.
+        """
+        return self._shaped(guarded(self._native.step, *self._targets(indentation, displacement, normal_force)), 2)
+
+    def trial(
+        self,
+        indentation: Quantity | Quantities | None = None,
+        displacement: Quantities | None = None,
+        *,
+        normal_force: Quantity | Quantities | None = None,
+    ) -> tuple[Floats, Floats]:
+        """The forces after such a step from the committed states; `commit` keeps the step, `revert` discards it."""
+        return self._shaped(guarded(self._native.trial, *self._targets(indentation, displacement, normal_force)), 2)
+
+    def forces(self) -> tuple[Floats, Floats]:
+        """F_N and F, N, of the committed states."""
+        return self._shaped(self._native.forces(), 2)
+
+    def state(self, index: int) -> results.PlanarState:
+        """The committed state of one contact."""
+        return parse(results.PlanarState, json.loads(self._native.state(index)))
+
+    def _targets(
+        self,
+        indentation: Quantity | Quantities | None,
+        displacement: Quantities | None,
+        normal_force: Quantity | Quantities | None,
+    ) -> tuple[Floats, bool, Floats]:
+        given = {"indentation": indentation, "normal_force": normal_force}
+        named = [(name, values) for name, values in given.items() if values is not None]
+        if len(named) != 1:
+            raise refused("indentation", "a step has either indentation or normal_force")
+        name, values = named[0]
+        if displacement is None or floats(displacement, "displacement").shape[-1:] != (2,):
+            raise refused("displacement", "the last axis of displacement is x and y: allowed are pairs [x, y]")
+        normal = self._numbers(values, name)
+        return normal, name == "normal_force", self._numbers(displacement, "displacement", 2)
+
+
+def refused(name: str, detail: str) -> InvalidInput:
+    """A refusal of an argument."""
+    return InvalidInput("invalid_input", detail, (Fault(f"/{name}", detail),))

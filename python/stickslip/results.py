@@ -552,7 +552,7 @@ class PlanarReply(Result):
     contact: Figures
     """Quantities that follow from the definition at the preload."""
 
-    steps: Rows[Record]
+    steps: Rows[PlanarState]
     """The states along the path: all of them, or the last."""
 
     warnings: Rows[Record]
@@ -595,6 +595,39 @@ class PlanarReply(Result):
             """Of each row: Radius inside which the last move did not slip, m, resolved to the width of a ring: the
             contact radius if nothing slipped, zero in gross slip.
             """
+
+
+class PlanarState(Result):
+    """The state after a move in the plane."""
+
+    contact_radius: float
+    """Contact radius a, m."""
+
+    displacement: Floats
+    """Tangential displacement of the indenter along x and y, m."""
+
+    dissipated_energy: float
+    """Work dissipated by friction since the start, J; never falls."""
+
+    elastic_energy: float
+    """Energy stored in the tangential deformation, J."""
+
+    force: Floats
+    """Tangential force along x and y, N; along the displacement of a virgin contact."""
+
+    indentation: float
+    """Indentation d, m; positive when pressed in, below zero the bodies are apart."""
+
+    normal_force: float
+    """Normal force F_N, N; compression is positive."""
+
+    regime: types.Regime
+    """How much of the contact slipped in the last move."""
+
+    stick_radius: float
+    """Radius inside which the last move did not slip, m, to the width of a ring: the contact radius if nothing
+    slipped, zero in gross slip.
+    """
 
 
 class ProfileFitReply(Result):
@@ -1200,6 +1233,7 @@ NAMES = [
     "ObservationsReply",
     "PathReply",
     "PlanarReply",
+    "PlanarState",
     "ProfileFitReply",
     "ProtocolReply",
     "RelaxReply",

@@ -82,21 +82,35 @@ class Method:
         first = self.first()
         return first + [name for name in self.keywords if name not in first]
 
-    def signature(self, is_async: bool) -> list[str]:
+    def signature(self, is_async: bool, given: tuple[str, ...] = (), absent: tuple[str, ...] = ()) -> list[str]:
+        """The signature, or that of an overload in which some keywords are given and others absent."""
         first, order = self.first(), self.order()
         parts = ["self"]
         for name in order:
             shape = self.keywords[name][0]
-            needed = name in self.required and name in first and name not in ("displacement",)
+            needed = name in given or (name in self.required and name in first and name not in ("displacement",))
             if name == order[len(first)] and len(order) > len(first):
                 parts.append("*")
-            parts.append(f"{attribute(name)}: {shape}" + ("" if needed else " | None = None"))
+            optional = "None = None" if name in absent else f"{shape} | None = None"
+            parts.append(f"{attribute(name)}: {shape if needed else optional}")
         if len(order) == len(first):
             parts.append("*")
             parts.pop()
         lines = [f"    {'async ' if is_async else ''}def {self.name}("]
-        lines += [f"        {part}," for part in parts]
-        return [*lines, f"    ) -> results.{self.reply}:"]
+        return [*lines, *(f"        {part}," for part in parts)]
+
+    def replies(self) -> str:
+        """The class of the reply, or those that it may have."""
+        kinds_of_reply = dict.fromkeys(kind for kind, _, _ in OVERLOADS.get(self.path, [(self.reply, (), ())]))
+        return " | ".join(kinds_of_reply)
+
+    def overloads(self, is_async: bool) -> list[str]:
+        """What is known of the reply by the keywords that are given."""
+        lines = []
+        every = [*OVERLOADS[self.path], (self.replies(), (), ())] if self.path in OVERLOADS else []
+        for kind, given, absent in every:
+            lines += ["    @overload", *self.signature(is_async, given, absent), f"    ) -> {annotated(kind)}: ...", ""]
+        return lines
 
     def body(self, is_async: bool) -> list[str]:
         lines = ["        given: Document = {"]
@@ -121,7 +135,8 @@ class Method:
 
     def write(self, is_async: bool) -> list[str]:
         docs = self.docstring() if not is_async else [f'        """`{self.name}`, awaited."""']
-        return ["", *self.signature(is_async), *docs, *self.body(is_async)]
+        signature = [*self.signature(is_async), f"    ) -> {annotated(self.replies())}:"]
+        return ["", *self.overloads(is_async), *signature, *docs, *self.body(is_async)]
 
     def docstring(self) -> list[str]:
         """A docstring in the form of NumPy."""
@@ -140,8 +155,8 @@ class Method:
             shape, said, _ = self.keywords[name]
             shape = shape.replace("types.", "").replace(" | Mapping[str, Any]", " | dict")
             lines += [f"{attribute(name)} : {shape}", *("    " + line for line in textwrap.wrap(said, 108))]
-        said = self.schemas[self.reply].get("description", self.reply)
-        lines += ["", "Returns", "-------", f"{self.reply}"]
+        said = self.schemas["SimulationReply" if self.path in OVERLOADS else self.reply].get("description", self.reply)
+        lines += ["", "Returns", "-------", self.replies()]
         lines += ["    " + line for line in textwrap.wrap(" ".join(said.split()), 108)]
         lines += [
             "",
@@ -177,6 +192,11 @@ class Method:
         return [*lines, "... )"]
 
 
+def annotated(kinds_of_reply: str) -> str:
+    """The annotation of a reply of these classes."""
+    return " | ".join(f"results.{kind}" for kind in kinds_of_reply.split(" | "))
+
+
 def profile_code(profile: dict[str, Any]) -> str:
     """The shape of a document as it is written with the package."""
     members = {name: value for name, value in profile.items() if name != "type"}
@@ -206,6 +226,13 @@ def contact_code(contact: dict[str, Any]) -> str:
 
 
 SHORT: dict[str, str] = {}
+#: Replies of more than one class: by the keywords that are given, and those that are absent.
+OVERLOADS: dict[str, list[tuple[str, tuple[str, ...], tuple[str, ...]]]] = {
+    "/simulate": [
+        ("SimulateReply", (), ("moves", "ellipse", "path", "solver")),
+        ("PlanarReply", ("ellipse",), ()),
+    ],
+}
 #: Keywords that take more than the document says.
 LOOSE = {
     "/fit": {"loops": "LoopLike | Sequence[LoopLike]", "free": "Sequence[types.FitParameter]"},
@@ -291,7 +318,7 @@ def methods_file(api: Schema) -> str:
         "from __future__ import annotations\n",
         "from abc import ABC, abstractmethod",
         "from collections.abc import Mapping, Sequence",
-        "from typing import Any\n",
+        "from typing import Any, overload\n",
         "from . import request_types as types",
         "from . import results",
         "from .bodies import ContactLike",

@@ -122,18 +122,7 @@ fn by_rings(simulation: &Simulation, plane: &PlanarPlan, stop: &dyn Stop) -> Res
         .chain(stress_warning(simulation.stress.is_some(), stress_error))
         .chain(far.warning())
         .collect();
-    let state = |state: &rings::PlanarState| PlanarState {
-        displacement: state.displacement,
-        force: state.force,
-        indentation: state.indentation,
-        normal_force: state.normal_force,
-        contact_radius: state.contact_radius,
-        stick_radius: state.stick_radius,
-        regime: state.regime.into(),
-        dissipated_energy: state.dissipated_energy,
-        elastic_energy: state.elastic_energy,
-    };
-    let states: Vec<PlanarState> = solution.states.iter().map(state).collect();
+    let states: Vec<PlanarState> = solution.states.iter().map(PlanarState::from).collect();
     let losses = turn_losses(plane, states.iter().map(|state| state.dissipated_energy));
     stop.check()?;
     Ok(PlanarReply {

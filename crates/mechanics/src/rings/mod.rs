@@ -8,6 +8,7 @@
 
 mod field;
 mod follow;
+mod law;
 mod level;
 mod load;
 mod mesh;
@@ -15,6 +16,7 @@ mod slip;
 mod solution;
 
 pub use follow::{Options, Refusal, first_choice, follow, straight_moves};
+pub use law::{PlanarBuffers, PlanarContact, PlanarLaw};
 pub use solution::{PlanarState, Solution};
 
 use std::f64::consts::TAU;

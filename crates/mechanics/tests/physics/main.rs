@@ -30,6 +30,7 @@ mod minimax;
 mod open_gaps;
 mod packed;
 mod paper;
+mod planar_law;
 mod profiles;
 mod protocol_search;
 mod protocols;
