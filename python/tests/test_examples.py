@@ -64,6 +64,14 @@ def test_an_oblique_impact_is_that_of_maw_barber_and_fawcett() -> None:
     assert np.abs(table["exact"] - table["incremental"]).max() > 0.3
 
 
+def test_a_ball_that_orbits_loses_its_energy_by_partial_slip() -> None:
+    table = run("orbiting_ball")
+    assert np.allclose(table["spring"], 1.0, rtol=1e-2)
+    assert (table["rings"].diff()[1:] < -0.05).all()
+    # What is left and what friction has taken is what there was, but for the time step.
+    assert np.allclose(table["rings"] + table["friction_work"], 1.0, rtol=1e-2)
+
+
 @pytest.mark.filterwarnings("ignore")
 def test_a_plan_of_bluesky_reads_the_first_loading_of_a_ball() -> None:
     table = run("bluesky_device")
