@@ -1,4 +1,5 @@
-//! The tool `stickslip-report`: `cargo run --release -p stickslip-report -- speed --out FOLDER`, or `figures`.
+//! The tool `stickslip-report`: `cargo run --release -p stickslip-report -- speed --out FOLDER`, `figures`,
+//! `rings` or `losses`.
 
 use std::path::PathBuf;
 use std::process::{Command, ExitCode};
@@ -6,7 +7,7 @@ use std::time::Duration;
 
 use clap::{Args, Parser};
 use stickslip_report::benchmark::{self, NAMES, Options};
-use stickslip_report::figures;
+use stickslip_report::{figures, rings};
 
 /// Speed against error of the solvers, and figures.
 #[derive(Parser)]
@@ -20,6 +21,14 @@ enum Tool {
         #[arg(long)]
         out: PathBuf,
     },
+    /// Measure speed against error of rings in the plane.
+    Rings {
+        /// The folder to write rings.md to.
+        #[arg(long)]
+        out: PathBuf,
+    },
+    /// Print what a turn of an ellipse loses, over the amplitude, the ratio of the radii and the phase.
+    Losses,
 }
 
 /// Where to write the report, and how much to measure.
@@ -54,6 +63,10 @@ fn main() -> ExitCode {
         Tool::Figures { out } => {
             figures::write(&out).map_err(|error| format!("cannot write figures to {}: {error}", out.display()))
         }
+        Tool::Rings { out } => {
+            rings::write(&out).map_err(|error| format!("cannot report to {}: {error}", out.display()))
+        }
+        Tool::Losses => rings::losses().map(|table| print!("{table}")).map_err(|error| error.to_string()),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,

@@ -23,6 +23,8 @@ use reference::Reference;
 use scenes::{DEPTH, E_STAR, FRICTION, G_STAR, Scene};
 use timing::SceneBenchmark;
 
+pub(crate) use timing::processor_time;
+
 pub use output::write;
 pub use scenes::NAMES;
 

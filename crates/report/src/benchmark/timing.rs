@@ -50,7 +50,7 @@ pub(super) struct SceneBenchmark<'a> {
 
 /// Processor time of this thread, s: on a busy machine, wall-clock time grows for long runs and not for short ones,
 /// which fit between two interruptions.
-pub(super) fn processor_time() -> f64 {
+pub(crate) fn processor_time() -> f64 {
     let now = clock_gettime(ClockId::ThreadCPUTime);
     now.tv_sec as f64 + 1e-9 * now.tv_nsec as f64
 }
