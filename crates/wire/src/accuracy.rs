@@ -6,17 +6,20 @@ use super::check::{Fault, Faults, JsonPath};
 use super::definition::{ContactDefinition, DefinedProfile, SharedSetup};
 use super::document::Document;
 use super::limits::{Items, Tolerance};
-use super::path::{Path, Plan};
+use super::path::Plan;
+use super::plane::SimulatedPath;
 use super::prepare::Prepare;
 use super::reply::SolverKind;
 use super::request::{replies, requests};
-use super::simulate::{SPRINGS, Solver, Springs, most_springs};
+use super::simulate::{Rings, SPRINGS, Solver, Springs, in_plane, most_springs};
 use super::stress::{Field, Sampling, StressRequest};
 
 /// Solvers that one comparison may name.
 const SOLVERS: Items = Items(1..=16);
 /// Springs that are compared unless the request names its solvers.
 const SPRING_LADDER: [usize; 4] = [10, 100, 1_000, 10_000];
+/// Rings that are compared on a path in the plane unless the request names its solvers.
+const RING_LADDER: [usize; 4] = [10, 20, 40, 80];
 /// Radii at which stresses are compared unless the request names some.
 const COMPARED_RADII: usize = 200;
 
@@ -29,15 +32,16 @@ requests! {
 pub struct AccuracyRequest {
     /// The contact.
     pub contact: ContactDefinition,
-    /// The path.
-    pub path: Path,
+    /// The path, along a line or in the plane.
+    pub path: SimulatedPath,
     /// Where the shear stress at the end of the path is compared; if left out, at 200 radii evenly spaced from the
     /// centre to the edge. `fields`, if given, must include `shear`; only the shear stress is compared.
     pub stress: Option<StressRequest>,
-    /// The solvers, in the order of the rows; if left out, the exact one and 10, 100, 1000 and 10 000 springs.
+    /// The solvers, in the order of the rows; if left out, the exact one and 10, 100, 1000 and 10 000 springs. In the
+    /// plane only rings; if left out, 10, 20, 40 and 80.
     pub solvers: Option<Vec<Solver>> = SOLVERS,
     /// Tolerance of results that are not exact, relative to μ F_N, a pure number. The reference is computed to a
-    /// sixteenth of this.
+    /// sixteenth of this. In the plane it determines the steps and is at least 1e-5; if left out, 1e-3.
     pub tolerance: Option<f64> = Tolerance(DEFAULT_TOLERANCE),
 }
 }
@@ -90,6 +94,15 @@ pub struct AccuracyRow {
     /// largest over the contact, for springs without the cells near a singular radius of the profile; `null` without a
     /// result, or where it is infinite.
     pub estimated_stress_error: Option<f64>,
+    /// Steps of the finest discretisation, of rings in the plane.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub steps: Option<usize>,
+    /// Difference of the friction work from that of the reference at the end of a path in the plane, over `force_unit`
+    /// times the displacement of gross slip, a pure number.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub work_error: Option<f64>,
     /// Time spent computing, s: the median of a few runs if one takes less than a few milliseconds.
     pub compute_time: f64,
     /// Why this solver has no result: the move that it cannot follow. Left out if there is a result.
@@ -122,6 +135,14 @@ impl Comparison {
         self.plan.length().saturating_add(self.sampling.length())
     }
 
+    /// The rings of each solver that has any.
+    pub fn rings(&self) -> impl Iterator<Item = usize> + '_ {
+        self.solvers.iter().filter_map(|solver| match solver {
+            Solver::Rings(rings) => Some(rings.count),
+            Solver::Exact | Solver::Springs(_) => None,
+        })
+    }
+
     /// The springs of each solver that has any.
     pub fn springs(&self) -> impl Iterator<Item = usize> + '_ {
         self.solvers.iter().filter_map(|solver| match solver {
@@ -131,10 +152,21 @@ impl Comparison {
     }
 }
 
-/// The exact solver, and springs in powers of ten.
-fn ladder() -> Vec<Solver> {
+/// The exact solver, and springs in powers of ten; in the plane rings.
+fn ladder(in_plane: bool) -> Vec<Solver> {
+    if in_plane {
+        return RING_LADDER.map(|count| Solver::Rings(Rings { count })).into();
+    }
     let springs = SPRING_LADDER.map(|count| Solver::Springs(Springs { count }));
     std::iter::once(Solver::Exact).chain(springs).collect()
+}
+
+/// A path in the plane that leads along one line as moves along it, which all solvers follow.
+fn along_its_line(plan: Plan) -> Plan {
+    match &plan {
+        Plan::Plane(plane) => plane.line.map(|direction| Plan::Moves(plane.along(direction))).unwrap_or(plan),
+        _ => plan,
+    }
 }
 
 impl Document for AccuracyRequest {
@@ -149,7 +181,8 @@ impl Document for AccuracyRequest {
         // Stresses are always compared.
         faults.needs_stress_field(setup.as_ref(), JsonPath::Root.member("contact").member("profile"));
         faults.needs_round_contact(setup.as_ref(), JsonPath::Root.member("contact").member("profile"), SPRINGS);
-        let plan = self.path.check(JsonPath::Root.member("path"), faults);
+        let plan = self.path.check(false, JsonPath::Root.member("path"), faults).map(along_its_line);
+        let plane = if let Some(Plan::Plane(plane)) = &plan { Some(plane) } else { None };
         let stress = self.stress.unwrap_or_else(|| StressRequest {
             points: Some(COMPARED_RADII),
             fields: Some(vec![Field::Shear]),
@@ -160,9 +193,16 @@ impl Document for AccuracyRequest {
         if sampling.as_ref().is_some_and(|sampling| !sampling.fields.contains(&Field::Shear)) {
             faults.add(at.member("fields"), "only the shear stress is compared: include `shear`");
         }
-        let tolerance = Tolerance(DEFAULT_TOLERANCE).of(self.tolerance, faults);
+        let mut tolerance = Tolerance(DEFAULT_TOLERANCE).of(self.tolerance, faults);
         let at = JsonPath::Root.member("solvers");
-        let solvers = self.solvers.unwrap_or_else(ladder);
+        let solvers = self.solvers.unwrap_or_else(|| ladder(plane.is_some()));
+        if plane.is_some() {
+            tolerance = in_plane(self.tolerance, faults);
+            let others = solvers.iter().enumerate().filter(|(_, solver)| !matches!(solver, Solver::Rings(_)));
+            others.for_each(|(index, _)| {
+                faults.add(at.index(index), "follows no motion in the plane: name rings, or leave `solvers` out");
+            });
+        }
         let radii = sampling.as_ref().map_or(0, Sampling::length);
         let passes = plan.as_ref().map_or(0, Plan::length).saturating_add(radii);
         if faults.length(at, solvers.len(), &SOLVERS.0) {

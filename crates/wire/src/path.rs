@@ -135,7 +135,7 @@ pub enum Plan {
     Single(Move),
     /// Displacements with the forces that were measured there.
     Observations(Vec<Observation>),
-    /// Moves in the plane, which only `POST /simulate` follows.
+    /// Moves in the plane, which `POST /simulate` and `POST /accuracy` follow.
     Plane(PlanarPlan),
 }
 

@@ -230,7 +230,7 @@ fn check_in_plane(
 }
 
 /// The tolerance of rings.
-fn in_plane(asked: Option<f64>, faults: &mut Faults) -> f64 {
+pub(super) fn in_plane(asked: Option<f64>, faults: &mut Faults) -> f64 {
     let tolerance = asked.unwrap_or(RINGS_TOLERANCE);
     if tolerance < LEAST_RINGS_TOLERANCE {
         let at = JsonPath::Root.member("tolerance");

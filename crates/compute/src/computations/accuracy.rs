@@ -2,7 +2,7 @@
 //!
 //! Every solver runs exactly as in [`simulate`](crate::simulation::simulate), so that its numbers are those of a
 //! simulation. Where all moves of the path have an exact solution, the reference is the exact solver. Where some are
-//! curved, it is the exact solver again, held to a smaller tolerance.
+//! curved, it is the exact solver again, held to a smaller tolerance; in the plane, more rings and smaller steps.
 
 use std::time::{Duration, Instant};
 
@@ -11,13 +11,14 @@ use serde_json::json;
 use stickslip_mechanics::{self as mechanics, Contact, ErrorEstimate, Tangential, rings};
 use stickslip_wire::reply::finite;
 use stickslip_wire::{
-    AccuracyReply, AccuracyRequest, AccuracyRow, Comparison, ContactDefinition, Fault, Field, Points, Protocol,
+    AccuracyReply, AccuracyRequest, AccuracyRow, Comparison, ContactDefinition, Fault, Field, Plan, Points, Protocol,
     Reference, Sampling, Solver as Named, SolverKind, Steps, limits,
 };
 
+use super::accuracy_in_plane as in_plane;
 use super::{About, Computation, Example, Plain, Route, example, example_contact};
 use crate::simulation::bytes::{SPRING, of_moves, of_shape, of_stress};
-use crate::simulation::cost::{Work, of_springs};
+use crate::simulation::cost::{Work, of_rings, of_springs};
 use crate::simulation::{
     Cause, Failure, Solver, contact, cycle_moves, equal_peaks, follow, spring_foundation, stresses,
 };
@@ -66,9 +67,10 @@ impl Computation for CompareSolvers {
         title: "Compare solvers",
         description: "Follows a path from the preloaded contact with each of the solvers, and compares the forces \
                       along it and the shear stresses at its end with a reference: the exact solver, refined where \
-                      moves are curved. This shows what a coarser model would do to your own numbers. The row of a \
-                      solver that cannot follow the path gives the reason. The springs of all solvers together, times \
-                      moves and stress points, are limited as in one simulation. Nothing is stored.",
+                      moves are curved, or in the plane more rings in smaller steps. This shows what a coarser model \
+                      would do to your own numbers. The row of a solver that cannot follow the path gives the reason. \
+                      The springs of all solvers together, times moves and stress points, are limited as in one \
+                      simulation. Nothing is stored.",
         reply: "The reference, and a row for each solver",
         ..About::DOCUMENT
     };
@@ -96,6 +98,15 @@ impl Computation for CompareSolvers {
                     "solvers": ["exact", {"springs": {"count": 200}}, {"springs": {"count": 2000}}]
                 }),
             ),
+            example(
+                "in the plane",
+                "Rings on a circle",
+                json!({
+                    "contact": ContactDefinition::example(),
+                    "path": {"ellipse": {"radii": [1e-7, 1e-7], "turns": 1, "steps_per_turn": 16}},
+                    "solvers": [{"rings": {"count": 10}}, {"rings": {"count": 20}}]
+                }),
+            ),
         ]
     }
 
@@ -111,6 +122,10 @@ impl Computation for CompareSolvers {
     /// Each solver once, and the reference.
     fn cost(task: &Comparison) -> Nanoseconds {
         let (plan, radii) = (&task.plan, task.sampling.length());
+        if let Plan::Plane(plane) = plan {
+            let costs = in_plane::every(task).map(|options| of_rings(&task.setup, &plane.moves, &options, radii));
+            return costs.fold(0, Nanoseconds::saturating_add);
+        }
         let exact = Work { moves: plan.length(), curved: plan.curved(), radii, ..Work::default() };
         let each = exact.cost(&task.setup.profile).saturating_mul(task.solvers.len() as u64 + 1);
         let springs = task.springs().map(|springs| of_springs(springs, task.passes()));
@@ -129,6 +144,9 @@ impl Computation for CompareSolvers {
 /// in its row.
 pub fn compare_solvers(comparison: &Comparison, stop: &dyn Stop) -> Result<AccuracyReply, Failure> {
     let Comparison { setup, plan, tolerance, .. } = comparison;
+    if let Plan::Plane(plane) = plan {
+        return in_plane::compare(comparison, plane, stop);
+    }
     let begin = Instant::now();
     let start = contact(setup.clone(), "/contact")?;
     let protocol = equal_peaks(plan, &start)?;
@@ -204,13 +222,15 @@ fn row(solver: Named, task: &Task<'_>, truth: &Answer, reference: &Reference) ->
         stress_error: found.and_then(stress_error),
         estimated_force_error: found.and_then(|found| finite(found.estimate.force_error)),
         estimated_stress_error: found.and_then(|found| finite(found.estimate.stress_error)),
+        steps: None,
+        work_error: None,
         compute_time: found.map_or_else(|| begin.elapsed().as_secs_f64(), |found| found.time),
         refused,
     })
 }
 
 /// The largest of the differences over a unit; zero where all are, whatever the unit.
-fn relative(differences: impl Iterator<Item = f64>, unit: f64) -> Option<f64> {
+pub(super) fn relative(differences: impl Iterator<Item = f64>, unit: f64) -> Option<f64> {
     let largest = differences.fold(0.0, f64::max);
     finite(if largest > 0.0 { largest / unit } else { 0.0 })
 }
@@ -245,9 +265,7 @@ fn by_rings(count: usize, task: &Task<'_>) -> Result<Answer, Failure> {
 
 fn answer<S: Solver>(start: impl Fn() -> Result<S, Failure>, task: &Task<'_>) -> Result<Answer, Failure> {
     let Comparison { plan, tolerance, .. } = task.comparison;
-    let (begin, mut times) = (Instant::now(), Vec::with_capacity(MAX_RUNS));
-    loop {
-        let run = Instant::now();
+    let run = || {
         let mut solver = start()?;
         let (mut forces, mut path_error) = (Vec::with_capacity(plan.length()), 0.0f64);
         follow(&mut solver, plan, task.protocol, *tolerance, task.stop, |_, solver: &S| {
@@ -258,10 +276,22 @@ fn answer<S: Solver>(start: impl Fn() -> Result<S, Failure>, task: &Task<'_>) ->
         let mut estimate = solver.accuracy(&|| task.stop.check().is_ok());
         estimate.force_error += path_error - estimate.path_error;
         task.stop.check()?;
-        times.push(run.elapsed().as_secs_f64());
+        Ok((forces, shears, estimate))
+    };
+    let ((forces, shears, estimate), time) = repeated(run)?;
+    Ok(Answer { forces, shears, estimate, time })
+}
+
+/// What a solver finds, and the median time of its runs, s.
+pub(super) fn repeated<T>(run: impl Fn() -> Result<T, Failure>) -> Result<(T, f64), Failure> {
+    let (begin, mut times) = (Instant::now(), Vec::with_capacity(MAX_RUNS));
+    loop {
+        let start = Instant::now();
+        let found = run()?;
+        times.push(start.elapsed().as_secs_f64());
         if times.len() == MAX_RUNS || begin.elapsed() >= REPEAT_UNTIL {
             times.sort_by(f64::total_cmp);
-            return Ok(Answer { forces, shears, estimate, time: times[times.len() / 2] });
+            return Ok((found, times[times.len() / 2]));
         }
     }
 }

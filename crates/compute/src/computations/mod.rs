@@ -5,6 +5,7 @@
 //! [`OnContact`] is the same on a contact in its present state, and [`make_moves`] changes that state.
 
 mod accuracy;
+mod accuracy_in_plane;
 mod cycle;
 pub mod files;
 mod fretting;

@@ -9,6 +9,7 @@ use std::time::Duration;
 use crate::Nanoseconds;
 use serde_json::Value;
 use stickslip_mechanics::{Profile, rings};
+use stickslip_wire::definition::SharedSetup;
 use stickslip_wire::simulate::Simulation;
 use stickslip_wire::subsurface::SubsurfaceTask;
 use stickslip_wire::{self as wire, Plan, Solver, limits};
@@ -178,7 +179,10 @@ pub fn of_simulation(simulation: &Simulation) -> Nanoseconds {
     if let Plan::Plane(plane) = &simulation.plan
         && plane.line.is_none()
     {
-        return of_rings(simulation, &plane.moves);
+        let count = if let Some(Solver::Rings(rings)) = simulation.solver { Some(rings.count) } else { None };
+        let options = rings::Options { count, tolerance: simulation.tolerance };
+        let radii = simulation.stress.as_ref().map_or(0, |stress| stress.length());
+        return of_rings(&simulation.setup, &plane.moves, &options, radii);
     }
     let moves = simulation.plan.length();
     let radii = simulation.stress.as_ref().map_or(0, |stress| stress.length());
@@ -196,16 +200,18 @@ pub fn of_simulation(simulation: &Simulation) -> Nanoseconds {
 }
 
 /// The cost of a path by rings, whose steps follow from its length.
-fn of_rings(simulation: &Simulation, moves: &[rings::PlanarMove]) -> Nanoseconds {
-    let count = if let Some(Solver::Rings(rings)) = simulation.solver { Some(rings.count) } else { None };
-    let options = rings::Options { count, tolerance: simulation.tolerance };
-    let (count, steps) = rings::first_choice(&simulation.setup, moves, &options);
-    let radii = simulation.stress.as_ref().map_or(0, |stress| stress.length() as u64);
+pub fn of_rings(
+    setup: &SharedSetup,
+    moves: &[rings::PlanarMove],
+    options: &rings::Options,
+    radii: usize,
+) -> Nanoseconds {
+    let (count, steps) = rings::first_choice(setup, moves, options);
     (steps as u64)
         .saturating_mul(STEPS_OF_RINGS * RING_STEP_COST)
         .saturating_mul((count as u64).pow(2))
         .saturating_add(moves.len() as u64 * MOVE_COST)
-        .saturating_add(on_profile(&simulation.setup.profile, radii * RADIUS_COST, false))
+        .saturating_add(on_profile(&setup.profile, radii as u64 * RADIUS_COST, false))
 }
 
 /// The cost of this many springs, each evaluated this many times.

@@ -18,7 +18,7 @@ mod sweep;
 mod tests;
 mod warnings;
 
-pub use plane::simulate_any;
+pub use plane::{follow_in_plane, simulate_any};
 pub use prepare::{Anew, check, cost_of_preparation};
 pub use prepared_profiles::{ProfileCache, ProfileKey, Profiles};
 pub use run::{

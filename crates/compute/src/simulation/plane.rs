@@ -1,7 +1,8 @@
 //! Simulations in the plane: by rings, or by the exact solver where all moves lead along one line.
 
-use stickslip_mechanics::rings::{self, Options, PlanarMove, Solution};
+use stickslip_mechanics::rings::{self, Options, PlanarMove, PlanarTarget, Solution};
 use stickslip_mechanics::{Normal, range::Quantity};
+use stickslip_wire::definition::SharedSetup;
 use stickslip_wire::plane::{PlanarPlan, PlanarReply, PlanarState, PlanarStress, SimulationReply};
 use stickslip_wire::reply::finite;
 use stickslip_wire::simulate::Simulation;
@@ -56,7 +57,8 @@ fn along_line(
         dissipated_energy: state.dissipated_energy,
         elastic_energy: state.elastic_energy,
     };
-    let states: Vec<PlanarState> = steps.iter().map(state).collect();
+    let mut states: Vec<PlanarState> = steps.iter().map(state).collect();
+    as_given(plane, &mut states);
     let losses = turn_losses(plane, states.iter().map(|state| state.dissipated_energy));
     Ok(PlanarReply {
         contact,
@@ -94,14 +96,7 @@ fn by_rings(simulation: &Simulation, plane: &PlanarPlan, stop: &dyn Stop) -> Res
         _ => (None, "the path leaves its first line, and only rings follow it; rings and steps by the tolerance"),
     };
     let options = Options { count, tolerance: simulation.tolerance };
-    let go_on = || stop.check().is_ok();
-    let solution = rings::follow(simulation.setup.clone(), &plane.moves, &options, &go_on).map_err(|refusal| {
-        let rings::Refusal { index, error } = refusal;
-        let Some(index) = index else { return refused_at("/contact", simulation.setup.preload)(error) };
-        let named = quantity(&error).filter(|quantity| names(&plane.moves[index], *quantity));
-        let at = simulation.plan.place_of(index, named);
-        Failure::at(at, error).unless_interrupted(stop, &simulation.plan.place_of(index, None))
-    })?;
+    let solution = follow_in_plane(&simulation.setup, &simulation.plan, plane, &options, stop)?;
     let stress = simulation.stress.as_ref().map(|sampling| stresses(&solution, sampling, stop)).transpose()?;
     let summary = solution.pressed().initial_summary();
     let table = solution.pressed().accuracy();
@@ -122,7 +117,8 @@ fn by_rings(simulation: &Simulation, plane: &PlanarPlan, stop: &dyn Stop) -> Res
         .chain(stress_warning(simulation.stress.is_some(), stress_error))
         .chain(far.warning())
         .collect();
-    let states: Vec<PlanarState> = solution.states.iter().map(PlanarState::from).collect();
+    let mut states: Vec<PlanarState> = solution.states.iter().map(PlanarState::from).collect();
+    as_given(plane, &mut states);
     let losses = turn_losses(plane, states.iter().map(|state| state.dissipated_energy));
     stop.check()?;
     Ok(PlanarReply {
@@ -145,12 +141,54 @@ fn by_rings(simulation: &Simulation, plane: &PlanarPlan, stop: &dyn Stop) -> Res
     })
 }
 
+/// Follows a path by rings.
+///
+/// # Errors
+/// [`Failure`] if the mechanics has no answer to it, at its move, or the client hung up.
+pub fn follow_in_plane(
+    setup: &SharedSetup,
+    plan: &Plan,
+    plane: &PlanarPlan,
+    options: &Options,
+    stop: &dyn Stop,
+) -> Result<Solution, Failure> {
+    let go_on = || stop.check().is_ok();
+    rings::follow(setup.clone(), &plane.moves, options, &go_on).map_err(|refusal| {
+        let rings::Refusal { index, error } = refusal;
+        let Some(index) = index else { return refused_at("/contact", setup.preload)(error) };
+        let named = quantity(&error).filter(|quantity| names(&plane.moves[index], *quantity));
+        let at = plan.place_of(index, named);
+        Failure::at(at, error).unless_interrupted(stop, &plan.place_of(index, None))
+    })
+}
+
 /// Whether a move has a normal target of this quantity.
 fn names(step: &PlanarMove, quantity: Quantity) -> bool {
     match step.normal {
         Some(Normal::Indentation(_)) => quantity == Quantity::Indentation,
         Some(Normal::NormalForce(_)) => quantity == Quantity::NormalForce,
         None => false,
+    }
+}
+
+/// Puts targets that were given in the place of those that have been through the units of a solver. The states are those
+/// after the last moves.
+fn as_given(plane: &PlanarPlan, states: &mut [PlanarState]) {
+    let skipped = plane.moves.len().saturating_sub(states.len());
+    let given = |pair: [f64; 2]| pair.map(|component| component + 0.0);
+    let mut displacement = Some([0.0; 2]);
+    for (index, step) in plane.moves.iter().enumerate() {
+        let mut force = None;
+        match step.tangential {
+            None => {}
+            Some(PlanarTarget::Arc(arc)) => displacement = Some(arc.at(1.0)),
+            Some(PlanarTarget::Displacement(to)) => displacement = (!step.relative).then_some(to),
+            Some(PlanarTarget::Force(to)) => (displacement, force) = (None, (!step.relative).then_some(to)),
+        }
+        if let Some(state) = index.checked_sub(skipped).and_then(|index| states.get_mut(index)) {
+            state.displacement = displacement.map_or(state.displacement, given);
+            state.force = force.map_or(state.force, given);
+        }
     }
 }
 

@@ -116,3 +116,67 @@ fn what_is_too_much_is_refused_at_its_place() {
     let sixteen = of(&ball(), &json!({"path": path, "solvers": many(16)}));
     assert_eq!(compared(&sixteen).rows.len(), 16);
 }
+
+fn rings(count: usize) -> Value {
+    json!({"rings": {"count": count}})
+}
+
+#[test]
+fn in_the_plane_rings_are_compared_with_more_of_them() {
+    let circle = json!({"ellipse": {"radii": [0.6 * UNIT, 0.6 * UNIT], "turns": 1, "steps_per_turn": 16}});
+    let solvers = json!([rings(10), rings(40)]);
+    let reply = compared(&of(&parabola(), &json!({"path": circle, "solvers": solvers})));
+    assert_eq!((json!(reply.reference.solver), reply.reference.radii), (json!("rings"), 200));
+    let [few, many] = [&reply.rows[0], &reply.rows[1]];
+    assert_eq!((json!(few.solver), json!(many.solver)), (rings(10), rings(40)));
+    assert!(many.force_error < few.force_error && many.stress_error < few.stress_error, "{reply:?}");
+    assert!(many.work_error.is_some_and(|error| error < 1e-3) && many.steps > Some(100), "{many:?}");
+    // As a simulation has them.
+    let simulated = good(post("/simulate", &of(&parabola(), &json!({"path": circle, "solver": rings(40)}))));
+    for (name, found) in [("force_error", many.estimated_force_error), ("stress_error", many.estimated_stress_error)] {
+        assert_eq!(simulated["accuracy"][name].as_f64(), found);
+    }
+    assert_eq!(simulated["accuracy"]["steps"], json!(many.steps));
+    // The prototype in NumPy loses 0.4337 in the first turn.
+    assert!((reply.reference.force_unit * UNIT * 0.4337 - simulated["turn_losses"][0].as_f64().unwrap()).abs() < 1e-9);
+    let usual = compared(&of(&parabola(), &json!({"path": circle, "tolerance": 1e-2})));
+    let named: Vec<Value> = usual.rows.iter().map(|row| json!(row.solver)).collect();
+    assert_eq!(named, [rings(10), rings(20), rings(40), rings(80)]);
+}
+
+#[test]
+fn pairs_along_one_line_are_compared_along_it() {
+    let along = json!({"displacement": [0.5 * UNIT, -0.3 * UNIT]});
+    let pairs =
+        json!({"moves": [{"displacement": [0.3 * UNIT, 0.4 * UNIT]}, {"displacement": [-0.18 * UNIT, -0.24 * UNIT]}]});
+    let solvers = json!(["exact", springs(50), rings(20)]);
+    let rows = |path: &Value| compared(&of(&parabola(), &json!({"path": path, "solvers": solvers}))).rows;
+    for (one, other) in rows(&along).iter().zip(rows(&pairs)) {
+        let [one, other] = [one.force_error, other.force_error].map(Option::unwrap);
+        assert!((one - other).abs() < 1e-12, "{one} {other}");
+    }
+}
+
+#[test]
+fn what_the_plane_does_not_have_is_refused_at_its_place() {
+    let pair = json!({"moves": [{"displacement": [1e-8, 0.0]}, {"displacement": [1e-8, 1e-8]}]});
+    let limit = 0.3 * 4.0 / 3.0 * 1.15e11 * (0.01 * INDENTATION).sqrt() * INDENTATION;
+    let beyond = json!({"moves": [{"displacement": [1e-8, 1e-8]}, {"force": [0.8 * limit, -0.8 * limit]}]});
+    let long = json!({"ellipse": {"radii": [1e-7, 1e-7], "turns": 99_999}});
+    for (asked, expected) in [
+        (json!({"path": pair, "solvers": [rings(20), "exact"]}), ("invalid_input", "/solvers/1", "name rings")),
+        (json!({"path": pair, "solvers": [springs(20)]}), ("invalid_input", "/solvers/0", "name rings")),
+        (
+            json!({"path": pair, "solvers": [rings(3)]}),
+            ("invalid_input", "/solvers/0/rings/count", "allowed is 4 to 160"),
+        ),
+        (json!({"path": pair, "tolerance": 1e-8}), ("invalid_input", "/tolerance", "1e-5 to 1e-2")),
+        (json!({"path": beyond}), ("force_exceeds_friction", "/path/moves/1", "friction")),
+        (json!({"path": long}), ("invalid_input", "/path/ellipse/turns", "10000")),
+    ] {
+        assert_refused("/accuracy", &of(&parabola(), &asked), expected);
+    }
+    let cylinder = with(parabola(), "/profile", json!({"type": "cylinder", "radius": 0.01, "length": 0.01}));
+    let asked = of(&cylinder, &json!({"path": pair}));
+    assert_refused("/accuracy", &asked, ("invalid_input", "/contact/profile", "line contact"));
+}

@@ -143,3 +143,36 @@ fn a_sweep_has_the_loss_over_ratio_and_phase() {
     // Of a line the work goes with the third power of the amplitude at first, and faster later.
     assert!(losses[3] > 8_f64.sqrt() * losses[0], "{losses:?}");
 }
+
+#[test]
+fn targets_come_back_as_they_were_given() {
+    let exact =
+        json!({"moves": [{"displacement": [3e-8, 1e-8]}, {"displacement": [-1.5e-8, -5e-9]}, {"normal_force": 9.0}]});
+    let turning = json!({"moves": [{"displacement": 1e-7}, {"displacement": [1e-7, 3e-8]}, {"normal_force": 9.0}, {"force": [0.7, 0.1]}]});
+    let forced = json!({"moves": [{"force": [0.3, 0.1]}, {"force": [0.6, 0.2]}]});
+    for (path, solver) in
+        [(&exact, None), (&turning, None), (&turning, Some(json!({"rings": {"count": 20}}))), (&forced, None)]
+    {
+        for steps in ["all", "last"] {
+            let mut body = json!({"path": path, "steps": steps});
+            if let Some(solver) = &solver {
+                body["solver"] = solver.clone();
+            }
+            let found = simulate(body)["steps"].as_array().unwrap().clone();
+            let moves = path["moves"].as_array().unwrap();
+            let mut held = Some(json!([0.0, 0.0]));
+            let skipped = moves.len() - found.len();
+            for (index, step) in moves.iter().enumerate() {
+                let pair = |given: &Value| if given.is_number() { json!([given, 0.0]) } else { given.clone() };
+                held = match (step.get("displacement"), step.get("force")) {
+                    (Some(given), _) => Some(pair(given)),
+                    (_, Some(_)) => None,
+                    _ => held,
+                };
+                let Some(state) = index.checked_sub(skipped).map(|index| &found[index]) else { continue };
+                assert!(held.as_ref().is_none_or(|held| *held == state["displacement"]), "{step} {state}");
+                assert!(step.get("force").is_none_or(|force| *force == state["force"]), "{step} {state}");
+            }
+        }
+    }
+}
