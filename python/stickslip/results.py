@@ -93,9 +93,19 @@ class AccuracyReply(Result):
             """
 
         @property
+        def steps(self) -> Counts:
+            """Of each row: Steps of the finest discretisation, of rings in the plane."""
+
+        @property
         def stress_error(self) -> Floats:
             """Of each row: Largest difference of the shear stress at the end, over the radii, relative to
             `stress_unit`, a pure number; `null` without a result, or where it is infinite.
+            """
+
+        @property
+        def work_error(self) -> Floats:
+            """Of each row: Difference of the friction work from that of the reference at the end of a path in the
+            plane, over `force_unit` times the displacement of gross slip, a pure number.
             """
 
 

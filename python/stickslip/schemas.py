@@ -26,7 +26,9 @@ FIELDS: dict[str, dict[str, tuple[str, str | None]]] = {
         "force_error": ("", "1"),
         "refused": ("Fault", None),
         "solver": ("", None),
+        "steps": ("", "1"),
         "stress_error": ("", "1"),
+        "work_error": ("", "1"),
     },
     "Axis2": {
         "x": ("", None),
