@@ -111,13 +111,12 @@ impl Cluster {
         self.made_of("template1").await
     }
 
-    /// The URL of a copy of a database, once nobody is connected to that.
+    /// The URL of a copy of a database, whose connections are ended.
     pub async fn copy(&self, url: &str) -> String {
         let name = url.rsplit('/').next().unwrap();
         let client = connected(&self.url("postgres")).await;
-        let used = format!("SELECT 1 FROM pg_stat_activity WHERE datname = '{name}'");
-        let unused = async || client.query(&used, &[]).await.unwrap().is_empty().then_some(());
-        super::until("nobody is connected", unused).await;
+        let end = "SELECT pg_terminate_backend(pid) FROM pg_stat_activity WHERE datname = $1";
+        client.execute(end, &[&name]).await.unwrap();
         self.made_of(name).await
     }
 
