@@ -27,12 +27,13 @@ class Computations(ABC):
         contact: ContactLike,
         displacement: Quantities | None = None,
         *,
-        moves: Sequence[types.Move | Mapping[str, Any]] | None = None,
+        moves: Sequence[types.SimulatedMove | Mapping[str, Any]] | None = None,
         force: Quantities | None = None,
         falling_amplitude: int | types.FallingAmplitude | Mapping[str, Any] | None = None,
         equal_peaks: int | types.EqualPeaks | Mapping[str, Any] | None = None,
         cycles: types.CyclicPath | Mapping[str, Any] | None = None,
-        path: types.Path | None = None,
+        ellipse: types.Ellipse | Mapping[str, Any] | None = None,
+        path: types.SimulatedPath | None = None,
         solvers: Sequence[types.Solver] | None = None,
         stress: int | types.StressRequest | Mapping[str, Any] | None = None,
         tolerance: Quantity | None = None,
@@ -40,10 +41,10 @@ class Computations(ABC):
         """Compare solvers.
 
         Follows a path from the preloaded contact with each of the solvers, and compares the forces along it and the
-        shear stresses at its end with a reference: the exact solver, refined where moves are curved. This shows what a
-        coarser model would do to your own numbers. The row of a solver that cannot follow the path gives the reason.
-        The springs of all solvers together, times moves and stress points, are limited as in one simulation. Nothing is
-        stored.
+        shear stresses at its end with a reference: the exact solver, refined where moves are curved, or in the plane
+        more rings in smaller steps. This shows what a coarser model would do to your own numbers. The row of a solver
+        that cannot follow the path gives the reason. The springs of all solvers together, times moves and stress
+        points, are limited as in one simulation. Nothing is stored.
 
         The contact is taken at the preload of its definition, as if it was never moved: the history and the present
         load of a `Contact` that has been moved do not matter.
@@ -54,7 +55,7 @@ class Computations(ABC):
             The contact.
         displacement : Quantities
             Tangential displacements of the indenter, m, one move each.
-        moves : Sequence[Move | dict]
+        moves : Sequence[SimulatedMove | dict]
             Moves, one after the other.
         force : Quantities
             Tangential forces, N, one move each.
@@ -66,17 +67,21 @@ class Computations(ABC):
             profile of the contact. A number alone is its `reversals`.
         cycles : CyclicPath | dict
             Equal cycles about a mean, under a constant load or one that oscillates too.
-        path : Path
-            The path.
+        ellipse : Ellipse | dict
+            Turns around an ellipse.
+        path : SimulatedPath
+            The path, along a line or in the plane.
         solvers : Sequence[Solver]
-            The solvers, in the order of the rows; if left out, the exact one and 10, 100, 1000 and 10 000 springs.
+            The solvers, in the order of the rows; if left out, the exact one and 10, 100, 1000 and 10 000 springs. In
+            the plane only rings; if left out, 10, 20, 40 and 80.
         stress : int | StressRequest | dict
             Where the shear stress at the end of the path is compared; if left out, at 200 radii evenly spaced from the
             centre to the edge. `fields`, if given, must include `shear`; only the shear stress is compared. A number
             alone is its `points`.
         tolerance : Quantity
             Tolerance of results that are not exact, relative to μ F_N, a pure number. The reference is computed to a
-            sixteenth of this. Default: 1e-10.
+            sixteenth of this. In the plane it determines the steps and is at least 1e-5; if left out, 1e-3. Default:
+            1e-10.
 
         Returns
         -------
@@ -112,6 +117,7 @@ class Computations(ABC):
                 "falling_amplitude": falling_amplitude,
                 "equal_peaks": equal_peaks,
                 "cycles": cycles,
+                "ellipse": ellipse,
             },
         }
         return self._answer(results.AccuracyReply, "/accuracy", given, parts)
@@ -902,12 +908,13 @@ class AsyncComputations(ABC):
         contact: ContactLike,
         displacement: Quantities | None = None,
         *,
-        moves: Sequence[types.Move | Mapping[str, Any]] | None = None,
+        moves: Sequence[types.SimulatedMove | Mapping[str, Any]] | None = None,
         force: Quantities | None = None,
         falling_amplitude: int | types.FallingAmplitude | Mapping[str, Any] | None = None,
         equal_peaks: int | types.EqualPeaks | Mapping[str, Any] | None = None,
         cycles: types.CyclicPath | Mapping[str, Any] | None = None,
-        path: types.Path | None = None,
+        ellipse: types.Ellipse | Mapping[str, Any] | None = None,
+        path: types.SimulatedPath | None = None,
         solvers: Sequence[types.Solver] | None = None,
         stress: int | types.StressRequest | Mapping[str, Any] | None = None,
         tolerance: Quantity | None = None,
@@ -928,6 +935,7 @@ class AsyncComputations(ABC):
                 "falling_amplitude": falling_amplitude,
                 "equal_peaks": equal_peaks,
                 "cycles": cycles,
+                "ellipse": ellipse,
             },
         }
         return await self._answer(results.AccuracyReply, "/accuracy", given, parts)

@@ -623,7 +623,7 @@ class PlanarState(Result):
     """Energy stored in the tangential deformation, J."""
 
     force: Floats
-    """Tangential force along x and y, N; along the displacement of a virgin contact."""
+    """Tangential force along x and y, N; in a virgin contact it points along the displacement."""
 
     indentation: float
     """Indentation d, m; positive when pressed in, below zero the bodies are apart."""
@@ -635,8 +635,8 @@ class PlanarState(Result):
     """How much of the contact slipped in the last move."""
 
     stick_radius: float
-    """Radius inside which the last move did not slip, m, to the width of a ring: the contact radius if nothing
-    slipped, zero in gross slip.
+    """Radius inside which the last move did not slip, m, resolved to the width of a ring: the contact radius if
+    nothing slipped, zero in gross slip.
     """
 
 
