@@ -183,8 +183,8 @@ fn numbers(pointer: &str, given: &Numbers<'_>, count: usize, range: &Range) -> R
     Ok(rows.into_iter().map(|[number]| number).collect())
 }
 
-/// The numbers of an array, so many for each contact, or the same for all; they are read once, so that a caller who goes
-/// on writing to the array changes no number that has been checked.
+/// The numbers of an array, so many for each contact, or the same for all; they are read once, so that a caller who
+/// goes on writing to the array changes no number that has been checked.
 pub fn rows<const WIDTH: usize>(
     pointer: &str,
     given: &Numbers<'_>,

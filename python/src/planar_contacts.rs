@@ -1,5 +1,5 @@
-//! Many contacts of one definition that are moved in the plane, step by step: the law of rings for a program that has its
-//! own equations of motion.
+//! Many contacts of one definition that are moved in the plane, step by step: the law of rings for a program that has
+//! its own equations of motion.
 
 use pyo3::exceptions::PyIndexError;
 use pyo3::prelude::*;
@@ -46,8 +46,8 @@ impl PlanarContacts {
         self.committed.len()
     }
 
-    /// Moves every contact straight to its indentation, m, or normal force, N, and to its displacement, m; returns normal
-    /// and tangential forces, N.
+    /// Moves every contact straight to its indentation, m, or normal force, N, and to its displacement, m; returns
+    /// normal and tangential forces, N.
     fn step<'py>(
         &mut self,
         py: Python<'py>,

@@ -11,7 +11,7 @@ use super::plane::SimulatedPath;
 use super::prepare::Prepare;
 use super::reply::SolverKind;
 use super::request::{replies, requests};
-use super::simulate::{Rings, SPRINGS, Solver, Springs, in_plane, most_springs};
+use super::simulate::{Rings, SPRINGS, SimulateRequest, Solver, Springs, in_plane, most_springs};
 use super::stress::{Field, Sampling, StressRequest};
 
 /// Solvers that one comparison may name.
@@ -171,6 +171,9 @@ fn along_its_line(plan: Plan) -> Plan {
 
 impl Document for AccuracyRequest {
     type Checked = Comparison;
+
+    /// As of a simulation.
+    const PARSED: usize = SimulateRequest::PARSED;
 
     fn profile(&self) -> Option<DefinedProfile<'_>> {
         Some(self.contact.defined_profile("/contact/profile"))

@@ -110,10 +110,12 @@ impl Computation for CompareSolvers {
         ]
     }
 
-    /// One solver at a time, and a force a move of the reference and of that.
+    /// One solver at a time, and a force a move of the reference and of that, or a state.
     fn bytes(task: &Comparison) -> usize {
+        let in_plane = matches!(task.plan, Plan::Plane(_));
+        let kept = if in_plane { size_of::<rings::PlanarState>() } else { size_of::<f64>() };
         of_moves(&task.plan, Steps::Last)
-            + 2 * size_of::<f64>() * task.plan.length()
+            + 2 * kept * task.plan.length()
             + 2 * of_stress(task.sampling.length())
             + of_shape(&task.definition.profile)
             + task.springs().max().unwrap_or(0) * SPRING

@@ -171,8 +171,8 @@ fn names(step: &PlanarMove, quantity: Quantity) -> bool {
     }
 }
 
-/// Puts targets that were given in the place of those that have been through the units of a solver. The states are those
-/// after the last moves.
+/// Puts targets that were given in the place of those that have been through the units of a solver. The states are
+/// those after the last moves.
 fn as_given(plane: &PlanarPlan, states: &mut [PlanarState]) {
     let skipped = plane.moves.len().saturating_sub(states.len());
     let given = |pair: [f64; 2]| pair.map(|component| component + 0.0);

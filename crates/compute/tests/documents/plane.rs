@@ -148,7 +148,9 @@ fn a_sweep_has_the_loss_over_ratio_and_phase() {
 fn targets_come_back_as_they_were_given() {
     let exact =
         json!({"moves": [{"displacement": [3e-8, 1e-8]}, {"displacement": [-1.5e-8, -5e-9]}, {"normal_force": 9.0}]});
-    let turning = json!({"moves": [{"displacement": 1e-7}, {"displacement": [1e-7, 3e-8]}, {"normal_force": 9.0}, {"force": [0.7, 0.1]}]});
+    let turning = json!({"moves": [
+        {"displacement": 1e-7}, {"displacement": [1e-7, 3e-8]}, {"normal_force": 9.0}, {"force": [0.7, 0.1]}
+    ]});
     let forced = json!({"moves": [{"force": [0.3, 0.1]}, {"force": [0.6, 0.2]}]});
     for (path, solver) in
         [(&exact, None), (&turning, None), (&turning, Some(json!({"rings": {"count": 20}}))), (&forced, None)]

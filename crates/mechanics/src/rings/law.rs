@@ -231,8 +231,8 @@ impl PlanarLaw {
     /// Indentation, m, and normal force, N, of a target.
     ///
     /// # Errors
-    /// [`Error::OutOfRange`], and [`Error::BeyondProfile`] or [`Error::NotConvexEnough`] for a load that the profile has
-    /// no contact for.
+    /// [`Error::OutOfRange`], and [`Error::BeyondProfile`] or [`Error::NotConvexEnough`] for a load that the profile
+    /// has no contact for.
     pub fn load(&self, normal: Normal) -> Result<[f64; 2], Error> {
         let [indentation, force] = match normal {
             Normal::Indentation(depth) => [depth, self.contact.normal_force_at(DoubleDouble::from(depth))],
@@ -244,10 +244,10 @@ impl PlanarLaw {
         Ok([indentation, force])
     }
 
-    /// Moves a contact straight to a load and a displacement, m. A step in which a ring slips or the load changes is made
-    /// as a whole and in halves, and what both say is extrapolated: it is of second order in the change of the load and
-    /// in that of the direction of slip. A contact that parts loses its history; the next one sticks where it is met.
-    /// An error leaves the contact as it was.
+    /// Moves a contact straight to a load and a displacement, m. A step in which a ring slips or the load changes is
+    /// made as a whole and in halves, and what both say is extrapolated: it is of second order in the change of the
+    /// load and in that of the direction of slip. A contact that parts loses its history; the next one sticks where it
+    /// is met. An error leaves the contact as it was.
     ///
     /// # Errors
     /// As [`PlanarLaw::load`], and [`Error::OutOfRange`] for a displacement outside [`range::DISPLACEMENT`].
@@ -328,8 +328,8 @@ impl PlanarLaw {
         }
     }
 
-    /// One step to a load, which is that of an indentation, m, and a normal force, N, and to a displacement, m: of first
-    /// order.
+    /// One step to a load, which is that of an indentation, m, and a normal force, N, and to a displacement, m: of
+    /// first order.
     fn single_step(
         &self,
         contact: &mut PlanarContact,
@@ -401,8 +401,8 @@ impl PlanarLaw {
         limits.extend(outside.windows(2).map(|ends| unit * (ends[0] - ends[1]).max(0.0)));
     }
 
-    /// Moves the indenter by a vector, m, and asks Coulomb's law of each ring; `full` is the displacement of gross slip,
-    /// m.
+    /// Moves the indenter by a vector, m, and asks Coulomb's law of each ring; `full` is the displacement of gross
+    /// slip, m.
     fn slip(&self, contact: &mut PlanarContact, by: Vector, full: f64, buffers: &mut PlanarBuffers) {
         let count = contact.rings.len();
         let mesh = self.meshes[count - 1].get_or_init(|| Mesh::new(count));

@@ -35,10 +35,10 @@ pub(super) fn report() -> Result<String, Error> {
         "# Speed against error of rings\n\nTwo turns of a circle of {RADIUS} u_max on a sphere. Errors are relative to \
          μ F_N for forces, the largest along the path, and to μ F_N u_max for the friction work of a turn. The \
          reference has {} rings and a tolerance of {:e}; its turns lose {first:.5} and {second:.5} ({} and {} by an \
-         independent prototype). Times are processor times of one thread: read the ratios, not the seconds.\n\n## Whole \
-         paths\n\n`rings::follow`, in 16 moves a turn; the tolerance chooses the steps.\n\n| rings | tolerance | steps | \
-         force error | stated | work of turn 1 | work of turn 2 | stated | time, ms |\n|---|---|---|---|---|---|---|---|\
-         ---|",
+         independent prototype). Times are processor times of one thread: read the ratios, not the seconds.\n\n\
+         ## Whole paths\n\n`rings::follow`, in 16 moves a turn; the tolerance chooses the steps.\n\n\
+         | rings | tolerance | steps | force error | stated | work of turn 1 | work of turn 2 | stated | time, ms |\n\
+         |---|---|---|---|---|---|---|---|---|",
         FINEST.0, FINEST.1, KNOWN[0], KNOWN[1]
     );
     for (count, tolerance) in RINGS.into_iter().flat_map(|count| TOLERANCES.map(|tolerance| (count, tolerance))) {
@@ -54,9 +54,10 @@ pub(super) fn report() -> Result<String, Error> {
     }
     let _ = writeln!(
         text,
-        "\n## Impacts\n\nThe same steps where the contact grows from nothing, shrinks and parts, along a line: indentation \
-         d sin(π t), displacement u_max/2 sin(3.4 π t). The reference is the exact law, and forces are relative to μ F_N \
-         at d.\n\n| rings | steps | force error | work, relative | a step, µs |\n|---|---|---|---|---|"
+        "\n## Impacts\n\nThe same steps where the contact grows from nothing, shrinks and parts, along a line: \
+         indentation d sin(π t), displacement u_max/2 sin(3.4 π t). The reference is the exact law, and forces are \
+         relative to μ F_N at d.\n\n| rings | steps | force error | work, relative | a step, µs |\n\
+         |---|---|---|---|---|"
     );
     for (count, steps) in few_rings().flat_map(|count| STEPS_OF_IMPACT.map(|steps| (count, steps))) {
         impact(&mut text, count, steps)?;
