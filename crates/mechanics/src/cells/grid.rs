@@ -21,7 +21,7 @@ use crate::numerics::double_double::DoubleDouble;
 const KINK: f64 = 0.6;
 const WIDEST: f64 = 1.1;
 /// The width of a cell over its distance from the kink beneath, in squares.
-const GROWTH: f64 = 0.5;
+pub(crate) const GROWTH: f64 = 0.5;
 /// The share of the largest term up to which the last terms of a series are left out.
 const NEGLIGIBLE: f64 = 1e-16;
 /// The share of the largest term up to which the last terms of a series are rounding.
@@ -107,8 +107,7 @@ pub(super) fn cells<S: Shape + ?Sized>(
             } else {
                 f64::INFINITY
             };
-            let widest = if whole <= WIDEST * WIDEST * singular { whole } else { fits(KINK * KINK * singular) };
-            let (cell, width) = above.first(widest);
+            let (cell, width) = above.first(fits(first_width(whole, singular)));
             cells.push(cell);
             width
         };
@@ -129,6 +128,12 @@ pub(super) fn cells<S: Shape + ?Sized>(
         }
     }
     Some(Cells { floor: StressRadius::new(floor), ..Cells::new(cells, end) })
+}
+
+/// How wide the cell above a kink may be, in squares, m^2, of the whole up to the next one, for a singularity beneath at
+/// this distance in squares.
+pub(crate) fn first_width(whole: f64, singular: f64) -> f64 {
+    if whole <= WIDEST * WIDEST * singular { whole } else { KINK * KINK * singular }
 }
 
 /// The radius of what stands for an uneven tip over that of the least contact.

@@ -11,7 +11,7 @@ mod cell;
 pub(crate) mod displacement;
 pub(crate) mod falls;
 pub(crate) mod field;
-mod grid;
+pub(crate) mod grid;
 pub(crate) mod kernel;
 mod lookup;
 pub(crate) mod moment_tree;

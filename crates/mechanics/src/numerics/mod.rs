@@ -7,7 +7,7 @@
 //! | `broyden` | where are two functions of two numbers zero? |
 //! | `chebyshev` | which series has these values, and its primitive? |
 //! | `gauss` | what is an integral, given where the integrand is singular? |
-//! | `angle`, `logarithm` | what are angles and logarithms of several numbers side by side, to round-off? |
+//! | `angle` | what are angles of several numbers side by side, and their tangents less them, to round-off? |
 //! | `root_kernel` | what is the integral of a power series over sqrt(t^2 - kappa)? |
 //! | `cluster_tree`, `multipole` | what do many sources add up to, far away? |
 
@@ -17,7 +17,6 @@ pub(crate) mod chebyshev;
 pub(crate) mod cluster_tree;
 pub(crate) mod double_double;
 pub(crate) mod gauss;
-pub(crate) mod logarithm;
 pub(crate) mod multipole;
 pub(crate) mod root_kernel;
 pub(crate) mod roots;

@@ -6,8 +6,6 @@
 //! L depend on kappa alone. Between the ends of a stretch differences are taken of each factor, not of the products, so
 //! that a thin one keeps its digits; where no c_k and no kappa is negative, no term is.
 
-use super::logarithm::ln_1p;
-
 /// The most terms of a series.
 pub(crate) const MOST_TERMS: usize = 48;
 /// 1/k, and one for zero.
@@ -129,7 +127,7 @@ fn add_even<const N: usize, const SLOPES: bool>(
         width[lane] = gap / (high + low).max(f64::MIN_POSITIVE);
         growth[lane] = if gap > 0.0 { (width[lane] + rise[lane]) / (low + stretch.v_low[lane]) } else { 0.0 };
     }
-    let logarithm = ln_1p(growth);
+    let logarithm = growth.map(f64::ln_1p);
     for lane in 0..N {
         let (kappa, low, gap) = (stretch.kappa[lane], stretch.low[lane], stretch.gap[lane]);
         let (v_low, v_high, rise, width) = (stretch.v_low[lane], stretch.v_high[lane], rise[lane], width[lane]);

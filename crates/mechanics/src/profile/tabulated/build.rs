@@ -11,6 +11,7 @@
 
 use super::spline::SplineKnot;
 use crate::cells::Cell;
+use crate::cells::grid::{GROWTH, first_width};
 use crate::cells::shape::Powers;
 use crate::numerics::angle::angles;
 use crate::numerics::chebyshev::{self, EIGHT, Points, SIXTEEN, TWELVE, TWENTY, TWENTY_FOUR};
@@ -22,14 +23,9 @@ use crate::numerics::roots::turning;
 
 /// Segments in the smallest cells.
 const LEAF: usize = 8;
-/// How far a cell may reach above a knot over the distance in t of the singularity below it, and how far the first of
-/// several does.
-const WIDEST: f64 = 1.1;
-const KINK: f64 = 0.6;
-/// The width of a further cell over its distance from the knot, in squares, and the least of the last one over the
-/// whole.
-const GROWTH: f64 = 0.5;
+/// The least width of the last cell above a knot over the whole, in squares.
 const LEAST_CELL: f64 = 0.05;
+
 /// f' between two knots, f' = A + C r.
 struct Segment {
     start: f64,
@@ -278,7 +274,7 @@ impl Build<'_> {
             f64::INFINITY
         };
         let whole = high * high;
-        let mut reached = if whole <= WIDEST * WIDEST * singular { whole } else { KINK * KINK * singular };
+        let mut reached = first_width(whole, singular);
         self.add_cell(&Stretch { knot, base, low: 0.0, width: reached }, sources);
         while reached < whole {
             let next =
