@@ -101,7 +101,7 @@ fn what_is_too_much_is_refused_at_its_place() {
         (
             json!({"path": path, "solvers": many(1), "stress": {"points": 2, "fields": ["pressure"]}}),
             "/stress/fields",
-            "name `shear`",
+            "include `shear`",
         ),
         (json!({"path": long, "solvers": [springs(30_000)]}), "/solvers/0/springs/count", "allowed are 19960"),
         // Each would pass alone.

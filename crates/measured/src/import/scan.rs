@@ -572,7 +572,7 @@ mod tests {
             Places::Line { x: vec![0.0, 3.0, 6.0, 9.0], z: [0.0, 3.0, 6.0, 9.0].map(Some).to_vec() }
         );
         assert_eq!(file.preview.thinned, 3);
-        assert_eq!(file.preview.reading.last().unwrap(), "Thinned 3 times, to 4 of 10 heights.");
+        assert_eq!(file.preview.reading.last().unwrap(), "One height in 3 is kept: 4 of 10 heights.");
     }
 
     #[test]

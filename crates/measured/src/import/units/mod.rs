@@ -304,7 +304,7 @@ mod tests {
             [("V", "voltage"), ("A", "current"), ("mm/s", "velocity"), ("N", "force"), ("-", "pure number")]
         {
             let error = Unit::of(text, Dimension::LENGTH).unwrap_err().to_string();
-            assert_eq!(error, format!("`{text}` is a unit of {kind}, where a length is needed"));
+            assert_eq!(error, format!("`{text}` is a unit of {kind}, but a length is needed"));
         }
     }
 }
