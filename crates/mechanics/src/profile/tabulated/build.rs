@@ -22,7 +22,7 @@ use crate::numerics::multipole::Multipole;
 use crate::numerics::roots::turning;
 
 /// Segments in the smallest cells.
-const LEAF: usize = 8;
+const LEAF: usize = 4;
 /// The least width of the last cell above a knot over the whole, in squares.
 const LEAST_CELL: f64 = 0.05;
 
