@@ -141,8 +141,8 @@ impl Sessions {
         Ok(run_to_end(append).await)
     }
 
-    /// What [`Sessions::apply`] would do to relax a session at the sequence that the client expects; nothing changes. The
-    /// memory of the request becomes what that takes.
+    /// What [`Sessions::apply`] would do to relax a session at the sequence that the client expects; nothing changes.
+    /// The memory of the request becomes what that takes.
     ///
     /// # Errors
     /// [`SessionError`].

@@ -1,5 +1,5 @@
-//! What the sessions of all tenants share: the store, the pool, and the cache with its locks. A handle uses it within its
-//! tenant.
+//! What the sessions of all tenants share: the store, the pool, and the cache with its locks. A handle uses it within
+//! its tenant.
 
 use std::sync::Arc;
 

@@ -39,7 +39,8 @@ pub fn bytes_of_moves(advance: &Advance) -> usize {
         + of_stress(radii)
 }
 
-/// Makes moves after the state in the guard. The guard keeps the state before them, or, if it has been used up, nothing.
+/// Makes moves after the state in the guard. The guard keeps the state before them, or, if it has been used up,
+/// nothing.
 ///
 /// # Errors
 /// [`SessionError`].

@@ -130,8 +130,8 @@ pub(super) fn cells<S: Shape + ?Sized>(
     Some(Cells { floor: StressRadius::new(floor), ..Cells::new(cells, end) })
 }
 
-/// How wide the cell above a kink may be, in squares, m^2, of the whole up to the next one, for a singularity beneath at
-/// this distance in squares.
+/// How wide the cell above a kink may be, in squares, m^2, of the whole up to the next one, for a singularity beneath
+/// at this distance in squares.
 pub(crate) fn first_width(whole: f64, singular: f64) -> f64 {
     if whole <= WIDEST * WIDEST * singular { whole } else { KINK * KINK * singular }
 }

@@ -2,10 +2,11 @@
 //! gathered in a tree so that a distant point sees many panels as one.
 //!
 //! The stress at a point is a sum of smooth functions of t against dy = dg(t), with a branch point at t = r + i z. A
-//! panel is a part of a cell: over its zeta = sqrt(t^2 - b^2) the rule integrates dg = gamma dzeta, and the branch point
-//! is at zeta = sqrt((r + i z)^2 - b^2). Panels are halved near there: never is one longer than its distance from it. A
-//! panel touches the branch point only at the surface; there zeta - sqrt(r^2 - b^2) = +-xi^2 takes the root away. Over a
-//! tree's node that is half as long as its distance, 16 Chebyshev points stand for all below it, with an error of 8^-16.
+//! panel is a part of a cell: over its zeta = sqrt(t^2 - b^2) the rule integrates dg = gamma dzeta, and the branch
+//! point is at zeta = sqrt((r + i z)^2 - b^2). Panels are halved near there: never is one longer than its distance
+//! from it. A panel touches the branch point only at the surface; there zeta - sqrt(r^2 - b^2) = +-xi^2 takes the
+//! root away. Over a tree's node that is half as long as its distance, 16 Chebyshev points stand for all below it,
+//! with an error of 8^-16.
 
 use super::complex::Complex;
 use crate::cells::shape::Reach;
