@@ -132,7 +132,7 @@ mod tests {
         assert_eq!((value.value.to_bits(), value.standard_error), (5e-8_f64.to_bits(), Some(5e-9)));
         assert_eq!(known("friction=-1").unwrap().1.standard_error, None);
         for (text, expected) in
-            [("friction", "is not NAME"), ("mu=1", "none of friction"), ("drift=1+-x", "is not NAME")]
+            [("friction", "is not NAME"), ("mu=1", "not one of friction"), ("drift=1+-x", "is not NAME")]
         {
             assert!(known(text).unwrap_err().contains(expected), "{text}");
         }
