@@ -31,7 +31,8 @@ pub struct FreezingProxy {
     /// The URL of the database behind it.
     pub url: String,
     shared: Arc<Shared>,
-    end: watch::Sender<bool>,
+    /// While it is set, connections are closed, and new ones wait.
+    cut: watch::Sender<bool>,
 }
 
 struct Shared {
@@ -48,29 +49,41 @@ impl FreezingProxy {
         let listener = TcpListener::bind("127.0.0.1:0").await.unwrap();
         let url = format!("{user}@{}/{database}", listener.local_addr().unwrap());
         let shared = Arc::new(Shared { armed: Mutex::default(), silent: watch::Sender::new(false) });
-        let (end, ended) = watch::channel(false);
+        let (cut, is_cut) = watch::channel(false);
         let (server, of_proxy) = (server.to_owned(), Arc::clone(&shared));
         tokio::spawn(async move {
             while let Ok((client, _)) = listener.accept().await {
-                let server = TcpStream::connect(&server).await.unwrap();
-                let (shared, mut ended) = (Arc::clone(&of_proxy), ended.clone());
+                let (server, shared, mut is_cut) = (server.clone(), Arc::clone(&of_proxy), is_cut.clone());
                 tokio::spawn(async move {
+                    let _ = is_cut.wait_for(|cut| !cut).await;
+                    let server = TcpStream::connect(&server).await.unwrap();
                     let ((from_client, to_client), (from_server, to_server)) =
                         (client.into_split(), server.into_split());
                     tokio::select! {
                         _ = requests(&shared, from_client, to_server) => {}
                         _ = answers(&shared, from_server, to_client) => {}
-                        () = set(&mut ended) => {}
+                        () = set(&mut is_cut) => {}
                     }
                 });
             }
         });
-        FreezingProxy { url, shared, end }
+        FreezingProxy { url, shared, cut }
     }
 
     /// Falls silent at the next execution of a statement with this part, on all connections.
     pub fn arm(&self, statement: &'static str, silence: Silence) {
         *self.shared.armed.lock().unwrap() = Some((statement, silence));
+    }
+
+    /// Closes all connections, and lets new ones wait until [`FreezingProxy::restore`].
+    pub fn cut(&self) {
+        self.cut.send_replace(true);
+        self.shared.silent.send_replace(false);
+    }
+
+    /// Lets connections through again.
+    pub fn restore(&self) {
+        self.cut.send_replace(false);
     }
 
     /// Waits until it is silent.
@@ -81,7 +94,7 @@ impl FreezingProxy {
 
 impl Drop for FreezingProxy {
     fn drop(&mut self) {
-        self.end.send_replace(true);
+        self.cut.send_replace(true);
     }
 }
 

@@ -2,12 +2,13 @@
 
 use crate::common;
 use crate::fixtures::{keyed, soon};
+use crate::freezing_proxy::{FreezingProxy, Silence};
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
-use common::postgres::Cluster;
+use common::postgres::{Cluster, connected};
 use common::process::Process;
 use common::{Server, ball, create, problem, until, varied_moves};
 use futures::StreamExt as _;
@@ -50,6 +51,54 @@ async fn a_retry_gets_its_reply_after_a_restart_and_from_the_other_replica() {
     }
     assert_eq!(again.client.contact(id.parse().unwrap()).await.unwrap().sequence, 2);
     assert_eq!(again.client.contacts(None, None).await.unwrap().items.len(), 2);
+}
+
+/// The connection of a replica is lost after its move was executed, before or after the commit, and the other replica
+/// moves the contact before the first one has asked what has become of its own.
+#[tokio::test(flavor = "multi_thread")]
+async fn a_move_in_doubt_is_made_once_and_a_rival_in_between_keeps_its_place() {
+    for (silence, places) in [(Silence::Inside, [2, 1]), (Silence::After, [1, 2])] {
+        let url = Cluster::shared().database().await;
+        let proxy = FreezingProxy::start(&url).await;
+        let open = async |url: &str| Server::with(Arc::new(PostgresStore::open(url).await.unwrap()), CAPACITY).await;
+        let (here, there, watcher) = (open(&proxy.url).await, open(&url).await, connected(&url).await);
+        let id = here.contact().await;
+        let path = format!("/contacts/{id}/move");
+        let (own, rival) = (json!({"displacement": 1e-8}), json!({"displacement": 2e-8}));
+        proxy.arm("SET sequence", silence);
+        let lost = here.post(&path, &own);
+        let between = async {
+            proxy.silent().await;
+            // Executed; its transaction is open, or the move is stored.
+            until("the move is executed", async || {
+                let done = match silence {
+                    Silence::Inside => "SELECT 1 FROM pg_stat_activity WHERE backend_xid IS NOT NULL",
+                    Silence::After => "SELECT 1 FROM moves",
+                };
+                (!watcher.query(done, &[]).await.unwrap().is_empty()).then_some(())
+            })
+            .await;
+            proxy.cut();
+            let made = until("the other replica moves it", async || {
+                let reply = there.post(&path, &rival).await;
+                if reply.status().is_success() { Some(reply.json::<Value>().await.unwrap()) } else { None }
+            });
+            let made = made.await;
+            proxy.restore();
+            made
+        };
+        let (lost, made) = futures::join!(lost, between);
+        let lost: Value = lost.json().await.unwrap();
+        assert_eq!(
+            [&lost["sequence"], &made["sequence"]],
+            places.map(|place| json!(place)).each_ref(),
+            "{lost} {made}"
+        );
+        let moves = history(&there.client, id.parse().unwrap()).await;
+        let ends: Vec<Value> = moves.iter().map(|item| json!(item.state.displacement)).collect();
+        let expected = if places[0] == 1 { json!([1e-8, 2e-8]) } else { json!([2e-8, 1e-8]) };
+        assert_eq!(Value::from(ends), expected);
+    }
 }
 
 /// Two servers in this process, each with a cache of its own, on one database.

@@ -227,7 +227,7 @@ mod tests {
         assert_eq!(
             message(2000.0, 3.0),
             "friction holds no more than mu F_N = 3 N: the largest tangential force that this move can meet is just \
-             below it, and 2 kN was asked for"
+             below it, but 2 kN was asked for"
         );
         assert!(
             message(-25.0, 0.012_345_678).contains("mu F_N = 12.3457 mN:")

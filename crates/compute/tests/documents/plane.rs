@@ -80,7 +80,7 @@ fn pairs_are_refused_by_name_where_they_have_no_meaning() {
     let force = json!({"moves": [{"force": [0.8 * limit, 0.8 * limit]}]});
     for (route, body, pointer, word) in [
         ("/cycle", on(json!({"drive": {"displacement": [pair]}})), "/drive/displacement/0", "plane"),
-        ("/accuracy", on(json!({"path": turn})), "/path/moves/0/displacement", "plane"),
+        ("/accuracy", on(json!({"path": turn, "solvers": ["exact"]})), "/solvers/0", "plane"),
         ("/simulate", on(json!({"path": {"displacement": [pair]}})), "/path/displacement/0", "plane"),
         ("/simulate", on(json!({"path": turn, "residual": true})), "/residual", "plane"),
         ("/simulate", on(json!({"path": turn, "solver": "exact"})), "/solver", "one line"),
