@@ -1,4 +1,4 @@
-"""Many contacts stepped together over arrays, along a line or in the plane: for programs with their own equations of motion."""
+"""Many contacts stepped together over arrays, along a line or in the plane, for programs that integrate motion."""
 
 from __future__ import annotations
 
