@@ -234,6 +234,6 @@ mod tests {
                 && message(-25.0, 3.0).ends_with("-25 N was asked for")
         );
         // Where the load falls on the way, the target itself may be held.
-        assert!(message(2.82, 7.4).starts_with("friction holds no more than mu F_N = 7.4 N on the way, and 2.82 N"));
+        assert!(message(2.82, 7.4).starts_with("friction holds no more than mu F_N = 7.4 N on the way, but 2.82 N"));
     }
 }

@@ -462,20 +462,58 @@ impl Ellipse {
             let detail = format_args!("{} turns of {steps} moves: allowed are 1 to {most}", self.turns);
             return faults.refuse(at.member("turns"), detail);
         }
-        let phase = self.phase.unwrap_or(0.0).to_radians();
-        let arc = |turns| Arc { radii: self.radii, phase, turns };
+        let arc = |turns| Arc { radii: self.radii, phase: self.phase.unwrap_or(0.0).to_radians(), turns };
         let to = |target| rings::PlanarMove { tangential: Some(target), ..rings::PlanarMove::default() };
-        // The turning points of a line are among its points.
-        let flat = self.radii.iter().any(|radius| *radius <= 0.0);
-        let straight = flat && phase.abs() <= 0.0 && steps.is_multiple_of(4);
+        let line = self.line(steps);
         let turns = |index: usize| index as f64 / steps as f64;
         let along = |index: usize| {
             let arc = arc([turns(index), turns(index.saturating_add(1))]);
-            to(if straight { PlanarTarget::Displacement(arc.at(1.0)) } else { PlanarTarget::Arc(arc) })
+            to(match line {
+                Some(line) => PlanarTarget::Displacement(line.at_end_of(&arc)),
+                None => PlanarTarget::Arc(arc),
+            })
         };
-        let begin = to(PlanarTarget::Displacement(arc([0.0; 2]).at(0.0)));
+        let begin = arc([0.0; 2]);
+        let begin = to(PlanarTarget::Displacement(line.map_or_else(|| begin.at(0.0), |line| line.at_end_of(&begin))));
         let moves = std::iter::once(begin).chain((0..moves).map(along)).collect();
         Some(PlanarPlan::new(moves, Form::Ellipse(steps), rings, "/ellipse".to_owned()))
+    }
+
+    /// The line that this ellipse is, if it is one, and its points with so many steps a turn include those where it
+    /// turns back.
+    fn line(&self, steps: usize) -> Option<EllipseLine> {
+        let ([a, b], phase) = (self.radii, self.phase.unwrap_or(0.0));
+        let upright = phase.abs() <= 0.0;
+        match (phase / 90.0).rem_euclid(4.0) {
+            // Of the cosine alone.
+            quarters if (quarters - 1.0).abs() <= 0.0 && steps.is_multiple_of(2) => Some(EllipseLine::Cosine([a, b])),
+            quarters if (quarters - 3.0).abs() <= 0.0 && steps.is_multiple_of(2) => Some(EllipseLine::Cosine([a, -b])),
+            _ if b <= 0.0 && steps.is_multiple_of(2) => Some(EllipseLine::Cosine([a, 0.0])),
+            _ if a <= 0.0 && upright && steps.is_multiple_of(4) => Some(EllipseLine::Upright),
+            _ => None,
+        }
+    }
+}
+
+/// An ellipse that is a line.
+#[derive(Clone, Copy)]
+enum EllipseLine {
+    /// Of this end, m, times cos θ.
+    Cosine([f64; 2]),
+    /// Along y.
+    Upright,
+}
+
+impl EllipseLine {
+    /// The point at the end of an arc, m.
+    fn at_end_of(self, arc: &Arc) -> [f64; 2] {
+        match self {
+            EllipseLine::Cosine(end) => {
+                let [cosine, _] = Arc { radii: [1.0, 0.0], ..*arc }.at(1.0);
+                end.map(|component| component * cosine)
+            }
+            EllipseLine::Upright => arc.at(1.0),
+        }
     }
 }
 

@@ -145,6 +145,31 @@ fn a_sweep_has_the_loss_over_ratio_and_phase() {
 }
 
 #[test]
+fn an_ellipse_that_is_a_line_is_served_by_the_exact_solver() {
+    let (full, _) = units();
+    let turned = |radii: [f64; 2], phase: f64, steps: usize| {
+        let radii = radii.map(|radius| radius * full);
+        simulate(json!({"path": {"ellipse": {"radii": radii, "turns": 2, "phase": phase, "steps_per_turn": steps}}}))
+    };
+    let along_x = turned([0.5, 0.0], 0.0, 16);
+    for (radii, phase, steps) in
+        [([0.5, 0.0], 30.0, 18), ([0.0, 0.5], 0.0, 16), ([0.3, 0.4], 90.0, 16), ([0.4, 0.3], -90.0, 22)]
+    {
+        let found = turned(radii, phase, steps);
+        assert_eq!(found["accuracy"]["solver"], "exact", "{radii:?} {phase}");
+        for turn in 0..2 {
+            let [loss, expected] = [&found, &along_x].map(|reply| number(&reply["turn_losses"][turn]));
+            let off = if radii[0] > 0.0 || turn > 0 { loss / expected - 1.0 } else { 0.0 };
+            assert!(off.abs() < 1e-12, "{radii:?} {phase}: {loss} {expected}");
+        }
+    }
+    // It turns back between its points.
+    let odd = turned([0.3, 0.4], 90.0, 15);
+    let off = number(&odd["turn_losses"][1]) / number(&along_x["turn_losses"][1]) - 1.0;
+    assert!(odd["accuracy"]["solver"] == "rings" && off.abs() < 0.01, "{off}");
+}
+
+#[test]
 fn targets_come_back_as_they_were_given() {
     let exact =
         json!({"moves": [{"displacement": [3e-8, 1e-8]}, {"displacement": [-1.5e-8, -5e-9]}, {"normal_force": 9.0}]});
