@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use parking_lot::Mutex;
 use percent_encoding::{NON_ALPHANUMERIC, percent_encode};
-use rusqlite::{Connection, InterruptHandle, OpenFlags};
+use rusqlite::{Connection, OpenFlags};
 use tokio::sync::Semaphore;
 use tokio::task::spawn_blocking;
 
@@ -22,6 +22,8 @@ use super::{BUSY, STILL_BUSY};
 const READERS: usize = 4;
 /// Searches among them at a time, so that other reads never wait behind searches.
 const SEARCHES: usize = 2;
+/// Instructions of SQLite's virtual machine between two checks whether anybody waits for a search.
+const CHECKED: i32 = 10_000;
 /// Statements that a connection keeps prepared.
 const STATEMENTS: usize = 32;
 
@@ -32,21 +34,12 @@ pub(super) struct Readers {
     idle: Arc<Idle>,
 }
 
-/// A search that ends when its request is dropped.
-struct Search(Arc<Mutex<SearchState>>);
+/// Whether nobody waits for a search any more: set when its request is dropped.
+struct Abandoned(Arc<AtomicBool>);
 
-// Locked for a moment. The handle is there while the search runs, so that nothing else on its connection is
-// interrupted.
-enum SearchState {
-    Wanted(Option<InterruptHandle>),
-    Abandoned,
-}
-
-impl Drop for Search {
+impl Drop for Abandoned {
     fn drop(&mut self) {
-        if let SearchState::Wanted(Some(running)) = std::mem::replace(&mut *self.0.lock(), SearchState::Abandoned) {
-            running.interrupt();
-        }
+        self.0.store(true, Ordering::Relaxed);
     }
 }
 
@@ -77,15 +70,29 @@ impl Readers {
         &self,
         question: impl FnOnce(&Connection) -> Result<T, Fault> + Send + 'static,
     ) -> Result<T> {
+        self.run(None, question).await
+    }
+
+    /// Runs a query that ends once it is abandoned.
+    async fn run<T: Send + 'static>(
+        &self,
+        abandoned: Option<Arc<AtomicBool>>,
+        question: impl FnOnce(&Connection) -> Result<T, Fault> + Send + 'static,
+    ) -> Result<T> {
         let permit = Arc::clone(&self.permits).acquire_owned().await;
         let idle = Arc::clone(&self.idle);
         let task = spawn_blocking(move || {
             idle.files.check()?;
-            let connection = idle.take()?;
+            let mut connection = idle.take()?;
+            if let Some(abandoned) = abandoned {
+                // Unlike an interrupt, which is lost on a statement that has not begun, this is asked again and again.
+                connection.progress_handler(CHECKED, Some(move || abandoned.load(Ordering::Relaxed)))?;
+            }
             let found =
                 connection.unchecked_transaction().map_err(Fault::from).and_then(|transaction| question(&transaction));
             let locked = matches!(&found, Err(Fault::Sqlite(error)) if is_locked(error));
             idle.locked.store(locked, Ordering::Relaxed);
+            connection.progress_handler(0, None::<fn() -> bool>)?;
             idle.put(connection);
             drop(permit);
             found
@@ -98,27 +105,20 @@ impl Readers {
         }
     }
 
-    /// The same for a query that may read much. It is interrupted when its request is dropped.
+    /// The same for a query that may read much. It ends when its request is dropped.
     pub(super) async fn search<T: Send + 'static>(
         &self,
         question: impl FnOnce(&Connection) -> Result<T, Fault> + Send + 'static,
     ) -> Result<T> {
         let permit = Arc::clone(&self.searches).acquire_owned().await;
-        let state = Arc::new(Mutex::new(SearchState::Wanted(None)));
-        let _search = Search(Arc::clone(&state));
-        self.read(move |database| {
+        let abandoned = Arc::new(AtomicBool::new(false));
+        let _abandoned = Abandoned(Arc::clone(&abandoned));
+        self.run(Some(Arc::clone(&abandoned)), move |database| {
             let _permit = permit;
-            match &mut *state.lock() {
-                SearchState::Wanted(running) => *running = Some(database.get_interrupt_handle()),
-                SearchState::Abandoned => {
-                    return Err(Fault::Refused(StoreError::Unavailable("nobody waits for this search".to_owned())));
-                }
+            if abandoned.load(Ordering::Relaxed) {
+                return Err(Fault::Refused(StoreError::Unavailable("nobody waits for this search".to_owned())));
             }
-            let found = question(database);
-            if let SearchState::Wanted(running) = &mut *state.lock() {
-                *running = None;
-            }
-            found
+            question(database)
         })
         .await
     }

@@ -93,10 +93,7 @@ fn by_rings(simulation: &Simulation, plane: &PlanarPlan, stop: &dyn Stop) -> Res
     let timer = Timer::start(stop);
     let (count, reason) = match simulation.solver {
         Some(Solver::Rings(rings)) => (Some(rings.count), "as asked for; steps by the tolerance"),
-        _ => (
-            None,
-            "the path leaves its first line, or turns back within a move, and only rings follow it; rings and steps by the tolerance",
-        ),
+        _ => (None, "the path leaves its first line or turns back within a move: rings and steps by the tolerance"),
     };
     let options = Options { count, tolerance: simulation.tolerance };
     let solution = follow_in_plane(&simulation.setup, &simulation.plan, plane, &options, stop)?;
