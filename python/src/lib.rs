@@ -13,6 +13,7 @@ mod planar_contacts;
 mod problem;
 #[cfg(all(feature = "server", target_os = "linux"))]
 mod server;
+mod stepped;
 mod sweep;
 
 /// `stickslip._native`.

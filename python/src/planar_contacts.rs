@@ -1,19 +1,18 @@
 //! Many contacts of one definition that are moved in the plane, step by step: the law of rings for a program that has
 //! its own equations of motion.
 
-use pyo3::exceptions::PyIndexError;
 use pyo3::prelude::*;
 use serde_json::json;
 use stickslip_compute::simulation::{self, Failure, present_warnings};
 use stickslip_compute::{Refusal, Stop};
 use stickslip_mechanics::rings::{PlanarBuffers, PlanarContact, PlanarLaw};
-use stickslip_mechanics::{Error, Normal, range};
+use stickslip_mechanics::{Normal, range};
 use stickslip_wire::Code;
 use stickslip_wire::plane::PlanarState;
 
-use super::contacts::{Numbers, Pair, move_all, pair, rows, setup};
 use super::interrupt::interruptible;
 use super::problem::refused;
+use super::stepped::{MoveShare, Numbers, Pair, Shares, Stepped, pair, rows, setup};
 
 /// Contacts that are worth a thread of their own.
 const LEAST_SHARE: usize = 8;
@@ -27,23 +26,22 @@ type Target = (Normal, [f64; IN_PLANE]);
 #[pyclass(module = "stickslip._native")]
 pub struct PlanarContacts {
     law: PlanarLaw,
-    committed: Vec<PlanarContact>,
-    trial: Vec<PlanarContact>,
-    threads: usize,
+    contacts: Stepped<PlanarContact>,
 }
 
 #[pymethods]
 impl PlanarContacts {
-    /// So many contacts of the JSON text of a definition, of so many rings.
+    /// This number of contacts of the JSON text of a definition, each of at most this number of rings.
     #[new]
     fn new(py: Python<'_>, count: usize, body: &[u8], rings: i64, threads: usize) -> PyResult<PlanarContacts> {
         let law = interruptible(py, |stop| law(body, rings, stop))?.map_err(refused)?;
         let committed = py.detach(|| vec![law.start(); count]);
-        Ok(PlanarContacts { law, committed, trial: Vec::new(), threads: threads.max(1) })
+        let shares = Shares { threads, least: LEAST_SHARE, components: IN_PLANE };
+        Ok(PlanarContacts { law, contacts: Stepped { committed, trial: Vec::new(), shares } })
     }
 
     fn __len__(&self) -> usize {
-        self.committed.len()
+        self.contacts.committed.len()
     }
 
     /// Moves every contact straight to its indentation, m, or normal force, N, and to its displacement, m; returns
@@ -56,9 +54,7 @@ impl PlanarContacts {
         displacement: Numbers<'_>,
     ) -> PyResult<Pair<'py>> {
         let targets = self.targets(&normal, by_force, &displacement).map_err(refused)?;
-        self.trial.clear();
-        let PlanarContacts { law, committed, threads, .. } = self;
-        Ok(pair(py, py.detach(|| step_all(law, committed, &targets, *threads)).map_err(refused)?))
+        self.contacts.step(py, &targets, share_of(&self.law))
     }
 
     /// The forces that such a step would lead to, from the committed states; it is kept until `commit` or `revert`.
@@ -70,46 +66,33 @@ impl PlanarContacts {
         displacement: Numbers<'_>,
     ) -> PyResult<Pair<'py>> {
         let targets = self.targets(&normal, by_force, &displacement).map_err(refused)?;
-        let PlanarContacts { law, committed, trial, threads } = self;
-        let forces = py.detach(|| {
-            trial.clone_from(committed);
-            step_all(law, trial, &targets, *threads)
-        });
-        // What has failed half-way is no state to commit.
-        Ok(pair(py, forces.inspect_err(|_| trial.clear()).map_err(refused)?))
+        self.contacts.trial(py, &targets, share_of(&self.law))
     }
 
     /// Makes the states of the last trial the committed ones; returns whether there was a trial.
     fn commit(&mut self) -> bool {
-        let tried = !self.trial.is_empty();
-        if tried {
-            std::mem::swap(&mut self.committed, &mut self.trial);
-            self.trial.clear();
-        }
-        tried
+        self.contacts.commit()
     }
 
-    /// Forgets the last trial.
+    /// Discards the last trial.
     fn revert(&mut self) {
-        self.trial.clear();
+        self.contacts.trial.clear();
     }
 
     /// Normal and tangential forces, N, of the committed states.
     fn forces<'py>(&self, py: Python<'py>) -> Pair<'py> {
-        let normal = self.committed.iter().map(PlanarContact::normal_force).collect();
-        pair(py, [normal, self.committed.iter().flat_map(PlanarContact::force).collect()])
+        let normal = self.contacts.committed.iter().map(PlanarContact::normal_force).collect();
+        pair(py, [normal, self.contacts.committed.iter().flat_map(PlanarContact::force).collect()])
     }
 
     /// The committed state of one contact as JSON text.
     fn state(&self, index: usize) -> PyResult<String> {
-        let contact = self.committed.get(index);
-        let contact = contact.ok_or_else(|| PyIndexError::new_err(format!("there are {}", self.committed.len())))?;
-        Ok(json!(PlanarState::from(&contact.state())).to_string())
+        self.contacts.state(index, |contact| json!(PlanarState::from(&contact.state())))
     }
 
     /// Bytes of memory that the committed states take.
     fn memory(&self) -> usize {
-        self.committed.iter().map(PlanarContact::memory_bytes).sum()
+        self.contacts.committed.iter().map(PlanarContact::memory_bytes).sum()
     }
 
     /// The warnings of their definition, as JSON text.
@@ -126,7 +109,7 @@ impl PlanarContacts {
         by_force: bool,
         displacement: &Numbers<'_>,
     ) -> Result<Vec<Target>, Refusal> {
-        let count = self.committed.len();
+        let count = self.contacts.committed.len();
         let (name, range, of): (_, _, fn(f64) -> Normal) = if by_force {
             ("/normal_force", &range::NORMAL_FORCE, Normal::NormalForce)
         } else {
@@ -152,17 +135,9 @@ fn law(body: &[u8], rings: i64, stop: &dyn Stop) -> Result<PlanarLaw, Refusal> {
     Ok(PlanarLaw::new(setup, count).map_err(|error| Failure::at("/profile", error))?)
 }
 
-fn step_all(
-    law: &PlanarLaw,
-    contacts: &mut [PlanarContact],
-    targets: &[Target],
-    threads: usize,
-) -> Result<[Vec<f64>; 2], Refusal> {
-    let step_share = |contacts: &mut [PlanarContact],
-                      targets: &[Target],
-                      normal: &mut [f64],
-                      tangential: &mut [f64]|
-     -> Result<(), Error> {
+/// The steps of a share of the contacts.
+fn share_of(law: &PlanarLaw) -> impl MoveShare<PlanarContact, Target> {
+    move |contacts, targets, normal, tangential| {
         let mut buffers = PlanarBuffers::default();
         let forces = normal.iter_mut().zip(tangential.chunks_exact_mut(IN_PLANE));
         for ((contact, (load, displacement)), (normal, tangential)) in contacts.iter_mut().zip(targets).zip(forces) {
@@ -171,6 +146,5 @@ fn step_all(
             tangential.copy_from_slice(&contact.force());
         }
         Ok(())
-    };
-    move_all(contacts, targets, threads, LEAST_SHARE, IN_PLANE, step_share)
+    }
 }

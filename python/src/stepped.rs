@@ -1,0 +1,178 @@
+//! What contacts that are stepped together share, along a line and in the plane: arrays in and out, threads, and trials.
+
+use std::panic::resume_unwind;
+use std::thread;
+
+use numpy::{PyArray1, PyReadonlyArray1};
+use pyo3::exceptions::PyIndexError;
+use pyo3::prelude::*;
+use serde_json::Value;
+use stickslip_compute::simulation::{self, Anew};
+use stickslip_compute::{Refusal, Stop};
+use stickslip_mechanics::Error;
+use stickslip_mechanics::range::Range;
+use stickslip_wire::definition::SharedSetup;
+use stickslip_wire::session::Creation;
+use stickslip_wire::{self as wire, Code, CreateRequest};
+
+use super::problem::refused;
+
+/// Two arrays in the order of the contacts.
+pub type Pair<'py> = (Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>);
+/// An array of a caller: of one number for each contact, or of one for all.
+pub type Numbers<'py> = PyReadonlyArray1<'py, f64>;
+/// Normal and tangential numbers of the contacts.
+type Columns = [Vec<f64>; 2];
+
+/// How contacts are shared among threads.
+#[derive(Clone, Copy)]
+pub struct Shares {
+    pub threads: usize,
+    /// Contacts that are worth a thread of their own.
+    pub least: usize,
+    /// Components of a tangential force.
+    pub components: usize,
+}
+
+/// The committed states of contacts, and those of a trial.
+pub struct Stepped<C> {
+    pub committed: Vec<C>,
+    pub trial: Vec<C>,
+    pub shares: Shares,
+}
+
+impl<C: Clone + Send + Sync> Stepped<C> {
+    /// Moves every contact to its target; returns normal and tangential forces, N.
+    pub fn step<'py, T: Sync>(
+        &mut self,
+        py: Python<'py>,
+        targets: &[T],
+        move_share: impl MoveShare<C, T>,
+    ) -> PyResult<Pair<'py>> {
+        self.trial.clear();
+        let Stepped { committed, shares, .. } = self;
+        let forces = py.detach(|| shares.move_all(committed, targets, move_share));
+        Ok(pair(py, forces.map_err(refused)?))
+    }
+
+    /// The forces that such a step would lead to, from the committed states; it is kept until `commit` or `revert`.
+    pub fn trial<'py, T: Sync>(
+        &mut self,
+        py: Python<'py>,
+        targets: &[T],
+        move_share: impl MoveShare<C, T>,
+    ) -> PyResult<Pair<'py>> {
+        // Taken out, so that a trial that fails half-way leaves no state to commit.
+        let mut trial = std::mem::take(&mut self.trial);
+        let Stepped { committed, shares, .. } = self;
+        let (trial, forces) = py.detach(|| {
+            trial.clone_from(committed);
+            let forces = shares.move_all(&mut trial, targets, move_share);
+            (trial, forces)
+        });
+        let forces = forces.map_err(refused)?;
+        self.trial = trial;
+        Ok(pair(py, forces))
+    }
+
+    /// Makes the states of the last trial the committed ones; returns whether there was a trial.
+    pub fn commit(&mut self) -> bool {
+        let tried = !self.trial.is_empty();
+        if tried {
+            std::mem::swap(&mut self.committed, &mut self.trial);
+            self.trial.clear();
+        }
+        tried
+    }
+
+    /// The committed state of one contact as JSON text.
+    pub fn state(&self, index: usize, of: impl Fn(&C) -> Value) -> PyResult<String> {
+        let contact = self.committed.get(index).map(of);
+        let missing = || PyIndexError::new_err(format!("there are {}", self.committed.len()));
+        Ok(contact.ok_or_else(missing)?.to_string())
+    }
+}
+
+/// What the JSON text of a definition means.
+pub fn setup(body: &[u8], stop: &dyn Stop) -> Result<SharedSetup, Refusal> {
+    let Creation { setup, .. } = simulation::check(wire::parse::<CreateRequest>(body)?, &Anew(stop), stop)??;
+    Ok(setup)
+}
+
+/// The numbers of an array, so many for each contact, or the same for all; they are read once, so that a caller who
+/// goes on writing to the array changes no number that has been checked.
+pub fn rows<const WIDTH: usize>(
+    pointer: &str,
+    given: &Numbers<'_>,
+    count: usize,
+    range: &Range,
+) -> Result<Vec<[f64; WIDTH]>, Refusal> {
+    let given = given.as_array();
+    let row = |index: usize| std::array::from_fn(|column| given[WIDTH * index + column]);
+    let rows: Vec<[f64; WIDTH]> = match given.len() {
+        length if length == WIDTH => vec![row(0); count],
+        length if length == WIDTH * count => (0..count).map(row).collect(),
+        length => {
+            let detail = format!("{length} elements: allowed are {WIDTH} and {}", WIDTH * count);
+            return Err(Refusal::at(Code::InvalidInput, pointer, detail));
+        }
+    };
+    for (index, row) in rows.iter().enumerate() {
+        if let Some(column) = row.iter().position(|number| !range.contains(*number)) {
+            let detail = format!("{:?} is out of range: allowed is {range}", row[column]);
+            let at = if WIDTH > 1 { format!("{pointer}/{index}/{column}") } else { format!("{pointer}/{index}") };
+            return Err(Refusal::at(Code::InvalidInput, at, detail));
+        }
+    }
+    Ok(rows)
+}
+
+/// Moves a share of the contacts to their targets, and writes their normal and tangential forces, N.
+pub trait MoveShare<C, T>:
+    Fn(&mut [C], &[T], &mut [f64], &mut [f64]) -> Result<(), Error> + Copy + Send + Sync
+{
+}
+
+impl<C, T, F> MoveShare<C, T> for F where
+    F: Fn(&mut [C], &[T], &mut [f64], &mut [f64]) -> Result<(), Error> + Copy + Send + Sync
+{
+}
+
+impl Shares {
+    fn move_all<C: Send, T: Sync>(
+        self,
+        contacts: &mut [C],
+        targets: &[T],
+        move_share: impl MoveShare<C, T>,
+    ) -> Result<Columns, Refusal> {
+        let Shares { threads, least, components } = self;
+        let [mut normal, mut tangential] = [vec![0.0; contacts.len()], vec![0.0; components * contacts.len()]];
+        let share = contacts.len().div_ceil(threads.max(1)).max(least);
+        if contacts.len() <= share {
+            move_share(contacts, targets, &mut normal, &mut tangential).map_err(unexpected)?;
+            return Ok([normal, tangential]);
+        }
+        let forces = normal.chunks_mut(share).zip(tangential.chunks_mut(components * share));
+        let parts = contacts.chunks_mut(share).zip(targets.chunks(share)).zip(forces);
+        thread::scope(|scope| {
+            let threads: Vec<_> = parts
+                .map(|((contacts, targets), (normal, tangential))| {
+                    scope.spawn(move || move_share(contacts, targets, normal, tangential))
+                })
+                .collect();
+            threads.into_iter().try_for_each(|thread| thread.join().unwrap_or_else(|panic| resume_unwind(panic)))
+        })
+        .map_err(unexpected)?;
+        Ok([normal, tangential])
+    }
+}
+
+/// What the mechanics refuses although every target is in its range.
+fn unexpected(error: Error) -> Refusal {
+    Refusal::internal(error.to_string())
+}
+
+/// Two columns as arrays, which own the numbers without a copy.
+pub fn pair<'py>(py: Python<'py>, [normal, tangential]: Columns) -> Pair<'py> {
+    (PyArray1::from_vec(py, normal), PyArray1::from_vec(py, tangential))
+}
