@@ -6,7 +6,7 @@ use super::level::{Level, Target};
 use super::load::beyond;
 use super::mesh::{Mesh, Vector};
 use super::solution::{Blend, Solution};
-use super::{PlanarMove, PlanarTarget};
+use super::{PlanarMove, PlanarTarget, TURNED};
 use crate::contact::Contact;
 use crate::error::Error;
 use crate::numerics::double_double::DoubleDouble;
@@ -25,9 +25,6 @@ const RINGS: f64 = 1.25;
 const CHOSEN_RINGS: [usize; 2] = [20, 160];
 /// The shortest step that a tolerance asks for, over the displacement of gross slip.
 const SHORTEST_STEP: f64 = 1e-3;
-/// Length over the displacement of gross slip after which a straight move slips in its own direction all over, and the
-/// radius of an arc from which on its angle counts alone.
-const TURNED: f64 = 4.0;
 /// The most of the coarsest steps of a move.
 const MOST_STEPS: usize = 10_000;
 /// How often rings or steps are refined.

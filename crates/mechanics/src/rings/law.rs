@@ -7,10 +7,10 @@
 
 use std::sync::{Arc, OnceLock};
 
-use super::PlanarState;
 use super::load::beyond;
 use super::mesh::{Mesh, Vector};
 use super::slip::{Workspace, solve};
+use super::{NO_SLIP, PlanarState, TURNED};
 use crate::contact::Contact;
 use crate::error::Error;
 use crate::numerics::double_double::DoubleDouble;
@@ -18,10 +18,6 @@ use crate::profile::Profile;
 use crate::range;
 use crate::state::{Normal, Regime, Setup};
 
-/// A slip up to this, over the displacement of gross slip, is rounding.
-const NO_SLIP: f64 = 1e-12;
-/// The length of a straight step over the displacement of gross slip from which on all rings slip along it at its end.
-const FAR: f64 = 4.0;
 /// The part of the indentation to which a contact is unloaded at once.
 const UNLOADED: f64 = 0.5;
 /// The part of its area by which a contact may exceed its rings: rounding.
@@ -263,7 +259,7 @@ impl PlanarLaw {
         }
         let load = self.load(normal)?;
         let by = [0, 1].map(|axis| displacement[axis] - contact.displacement[axis]);
-        let far = by[0].hypot(by[1]) > FAR * self.full(contact.indentation.max(load[0]));
+        let far = by[0].hypot(by[1]) > TURNED * self.full(contact.indentation.max(load[0]));
         while load[0] > 0.0 && load[0] < UNLOADED * contact.indentation {
             let left = UNLOADED * contact.indentation;
             let part = if far { 0.0 } else { (contact.indentation - left) / (contact.indentation - load[0]) };
@@ -313,14 +309,14 @@ impl PlanarLaw {
         let (distance, full) = (by[0].hypot(by[1]), self.full(contact.indentation.max(load[0])));
         let along = by.map(|component| component / distance);
         for _ in 0..2 {
-            let to = [0, 1].map(|axis| contact.displacement[axis] + 0.5 * FAR * full * along[axis]);
+            let to = [0, 1].map(|axis| contact.displacement[axis] + 0.5 * TURNED * full * along[axis]);
             self.single_step(contact, load, to, buffers);
         }
         contact.displacement = displacement;
         contact.force = [0.0; 2];
         for ring in &mut contact.rings {
             ring.traction = along.map(|component| component * ring.bound);
-            contact.dissipated += (distance - FAR * full) * ring.bound;
+            contact.dissipated += (distance - TURNED * full) * ring.bound;
             contact.force = [0, 1].map(|axis| contact.force[axis] + ring.traction[axis]);
         }
         if !contact.rings.is_empty() {
@@ -426,7 +422,8 @@ impl PlanarLaw {
             solve(mesh.stiffness(false), bounds, forces, traction, slip, workspace);
         }
         contact.force = [0.0; 2];
-        let mut stuck = None;
+        // The innermost ring that slips.
+        let mut first = None;
         for (index, ring) in contact.rings.iter_mut().enumerate() {
             let (limit, slip) = (limits[index], slip[index]);
             let before = ring.traction;
@@ -440,12 +437,12 @@ impl PlanarLaw {
             contact.elastic += 0.5 * (dot(before, moved) + dot(after, moved));
             contact.force = [contact.force[0] + after[0], contact.force[1] + after[1]];
             if size > NO_SLIP * full && index < touching {
-                stuck.get_or_insert(index);
+                first.get_or_insert(index);
             }
             *ring = Ring { bound: limit, traction: after, slip };
         }
         contact.elastic = contact.elastic.max(0.0);
-        contact.stick_radius = stuck.map_or(contact.radius, |stuck| (stuck as f64 * contact.area).sqrt());
+        contact.stick_radius = first.map_or(contact.radius, |first| (first as f64 * contact.area).sqrt());
         contact.rings.truncate(touching);
     }
 }

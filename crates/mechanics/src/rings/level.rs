@@ -2,11 +2,9 @@
 
 use std::sync::Arc;
 
+use super::NO_SLIP;
 use super::mesh::{Mesh, Vector, times};
 use super::slip::{Workspace, solve};
-
-/// A slip up to this, relative to the displacement of gross slip, is rounding.
-const NO_SLIP: f64 = 1e-12;
 
 /// The end of a step.
 #[derive(Clone, Copy, Debug)]

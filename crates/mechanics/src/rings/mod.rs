@@ -23,6 +23,12 @@ use std::f64::consts::TAU;
 
 use crate::state::Normal;
 
+/// A slip up to this, relative to the displacement of gross slip, is rounding.
+const NO_SLIP: f64 = 1e-12;
+/// Length over the displacement of gross slip after which a straight move slips in its own direction all over,
+/// and the radius of an arc from which on its angle counts alone.
+const TURNED: f64 = 4.0;
+
 /// The end of a move in the plane, which is straight in the quantities named, but for an [`Arc`].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PlanarMove {
