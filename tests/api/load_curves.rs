@@ -4,33 +4,17 @@
 
 use serde_json::{Value, json};
 
+use crate::common::json::known_by_load_curves;
 use crate::common::{Server, ball, codes, good, number, problem, with};
 
 fn contact(profile: Value) -> Value {
     with(ball(), "/profile", profile)
 }
 
-fn curve(indentation: Value, force: Value) -> Value {
-    json!({"type": "load_curve", "indentation": indentation, "normal_force": force})
-}
-
-fn profiles() -> [(Value, &'static str); 3] {
-    let indentation: Vec<f64> = (0..=20).map(|index| 2e-7 * f64::from(index)).collect();
-    let force: Vec<f64> = indentation.iter().map(|d| 3e10 * d.powf(1.5)).collect();
-    [
-        (
-            json!({"type": "asperities", "radii": [1e-3, 2e-3, 3e-3], "gaps": [0.0, -1e-7, 3e-6]}),
-            "interaction_neglected",
-        ),
-        (curve(json!(indentation), json!(force)), "load_curve_alone"),
-        (json!({"type": "ellipsoid", "radii": [0.01, 0.004], "direction": "y"}), "elliptic_slip"),
-    ]
-}
-
 #[tokio::test]
 async fn they_are_stored_and_moved_and_have_no_stresses() {
     let server = Server::start().await;
-    for (profile, code) in profiles() {
+    for (profile, code) in known_by_load_curves() {
         let made = good(server.post("/contacts", &contact(profile.clone())).await).await;
         assert!(codes(&made).contains(&code), "{made}");
         let place = format!("/contacts/{}", made["id"].as_str().unwrap());

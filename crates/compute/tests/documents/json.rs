@@ -36,6 +36,25 @@ pub fn pad() -> Value {
     with(with(cylinder(), "/profile", pad), "/preload", json!({"contact_radius": 8e-4}))
 }
 
+/// A profile that is known by its measured load curve.
+pub fn load_curve(indentation: Value, force: Value) -> Value {
+    json!({"type": "load_curve", "indentation": indentation, "normal_force": force})
+}
+
+/// A profile of each kind that is known by its load curve alone, and the code of its warning.
+pub fn known_by_load_curves() -> [(Value, &'static str); 3] {
+    let indentation: Vec<f64> = (0..=20).map(|index| 2e-7 * f64::from(index)).collect();
+    let force: Vec<f64> = indentation.iter().map(|d| 3e10 * d.powf(1.5)).collect();
+    [
+        (
+            json!({"type": "asperities", "radii": [1e-3, 2e-3, 3e-3], "gaps": [0.0, -1e-7, 3e-6]}),
+            "interaction_neglected",
+        ),
+        (load_curve(json!(indentation), json!(force)), "load_curve_alone"),
+        (json!({"type": "ellipsoid", "radii": [0.01, 0.004], "direction": "y"}), "elliptic_slip"),
+    ]
+}
+
 /// A body: a contact, and members beside it.
 pub fn of(contact: &Value, rest: &Value) -> Value {
     changed(json!({"contact": contact}), rest)

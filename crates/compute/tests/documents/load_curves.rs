@@ -3,7 +3,7 @@
 
 use serde_json::{Value, json};
 
-use crate::json::{ball, changed, codes, number, of, with};
+use crate::json::{ball, changed, codes, known_by_load_curves, load_curve, number, of, with};
 use crate::{assert_refused, good, post, problem};
 
 fn contact(profile: Value) -> Value {
@@ -14,10 +14,6 @@ fn ellipsoid(radii: Value) -> Value {
     json!({"type": "ellipsoid", "radii": radii, "direction": "x"})
 }
 
-fn curve(indentation: Value, force: Value) -> Value {
-    json!({"type": "load_curve", "indentation": indentation, "normal_force": force})
-}
-
 /// Asserts that a contact is refused wherever it is simulated.
 fn refused(contact: &Value, expected: (&str, &str, &str)) {
     assert_refused("/simulate", &of(contact, &json!({"path": {"displacement": [0.0]}})), expected);
@@ -26,7 +22,7 @@ fn refused(contact: &Value, expected: (&str, &str, &str)) {
 #[test]
 fn what_is_no_such_profile_is_refused_at_its_place() {
     let rough = |members: Value| changed(json!({"type": "asperities"}), &members);
-    let curve = |d: [f64; 3], force: [f64; 3]| curve(json!(d), json!(force));
+    let curve = |d: [f64; 3], force: [f64; 3]| load_curve(json!(d), json!(force));
     for (profile, place) in [
         (rough(json!({"gaps": [0.0]})), ""),
         (rough(json!({"radius": 1.0, "radii": [1.0], "gaps": [0.0]})), ""),
@@ -58,25 +54,11 @@ fn what_is_no_such_profile_is_refused_at_its_place() {
     refused(&beyond, ("beyond_profile", "/contact/preload/normal_force", ""));
 }
 
-/// One of each, and what is warned of it.
-fn profiles() -> [(Value, &'static str); 3] {
-    let indentation: Vec<f64> = (0..=20).map(|index| 2e-7 * f64::from(index)).collect();
-    let force: Vec<f64> = indentation.iter().map(|d| 3e10 * d.powf(1.5)).collect();
-    [
-        (
-            json!({"type": "asperities", "radii": [1e-3, 2e-3, 3e-3], "gaps": [0.0, -1e-7, 3e-6]}),
-            "interaction_neglected",
-        ),
-        (curve(json!(indentation), json!(force)), "load_curve_alone"),
-        (json!({"type": "ellipsoid", "radii": [0.01, 0.004], "direction": "y"}), "elliptic_slip"),
-    ]
-}
-
 #[test]
 fn they_are_cycled_and_swept_and_have_no_stresses() {
     let path = json!({"displacement": [1e-7]});
     let point = json!({"body": "first", "points": [[0.0, 0.0, 1e-5]]});
-    for (profile, code) in profiles() {
+    for (profile, code) in known_by_load_curves() {
         let body = of(&contact(profile.clone()), &json!({"drive": {"displacement": 1e-7}, "harmonics": 3}));
         let cycled = good(post("/cycle", &body));
         assert!(number(&cycled["cycles"][0]["dissipated_energy"]) > 0.0 && codes(&cycled).contains(&code), "{cycled}");
