@@ -18,7 +18,7 @@ use super::subsurface::{Subsurface, SubsurfaceRequest, SubsurfaceTask};
 /// The tolerance of rings, unless the request names one.
 const RINGS_TOLERANCE: f64 = 1e-3;
 /// The smallest tolerance that rings are asked for: they are at most 160, and the steps of a thousandth of gross slip.
-const LEAST_RINGS_TOLERANCE: f64 = 1e-5;
+pub const LEAST_RINGS_TOLERANCE: f64 = 1e-5;
 
 requests! {
 /// A contact and the path that it follows. Nothing is stored. Only what is asked for is computed.

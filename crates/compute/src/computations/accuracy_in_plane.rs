@@ -2,22 +2,21 @@
 
 use std::time::Instant;
 
+use stickslip_mechanics::range::RING_COUNT;
 use stickslip_mechanics::rings::{self, Options, Solution};
 use stickslip_wire::plane::PlanarPlan;
 use stickslip_wire::reply::finite;
-use stickslip_wire::simulate::Rings;
+use stickslip_wire::simulate::{LEAST_RINGS_TOLERANCE, Rings};
 use stickslip_wire::{AccuracyReply, AccuracyRow, Comparison, Reference, Solver as Named, SolverKind};
 
 use super::accuracy::{relative, repeated};
 use crate::Stop;
 use crate::simulation::{Failure, follow_in_plane};
 
-/// The rings of the reference over the most of the rows, at most those of [`MOST_RINGS`].
+/// The rings of the reference over the most of the rows, within [`RING_COUNT`].
 const MORE_RINGS: usize = 2;
-const MOST_RINGS: usize = 160;
-/// The tolerance of the reference over that of the rows, at least [`LEAST_TOLERANCE`].
+/// The tolerance of the reference over that of the rows, at least [`LEAST_RINGS_TOLERANCE`].
 const REFERENCE_TOLERANCE: f64 = 0.25;
-const LEAST_TOLERANCE: f64 = 1e-5;
 
 const REASON: &str = "twice as many rings as the most of the rows (at most 160), held to a quarter of the tolerance: \
                       `force_error` is what it states itself";
@@ -28,9 +27,10 @@ pub(super) fn every(task: &Comparison) -> impl Iterator<Item = Options> + '_ {
 }
 
 fn reference_of(task: &Comparison) -> Options {
-    let count = MORE_RINGS * task.rings().max().unwrap_or(MOST_RINGS);
-    let tolerance = (REFERENCE_TOLERANCE * task.tolerance).max(LEAST_TOLERANCE);
-    Options { count: Some(count.min(MOST_RINGS)), tolerance }
+    let most = RING_COUNT.max as usize;
+    let count = MORE_RINGS * task.rings().max().unwrap_or(most);
+    let tolerance = (REFERENCE_TOLERANCE * task.tolerance).max(LEAST_RINGS_TOLERANCE);
+    Options { count: Some(count.min(most)), tolerance }
 }
 
 fn of_row(count: usize, task: &Comparison) -> Options {
