@@ -63,7 +63,7 @@ class _Together:
         return self._native.memory()
 
     def _numbers(self, values: Quantity | Quantities, name: str, *components: int) -> Floats:
-        """One number, or one for each contact; or so many components."""
+        """One number, or one for each contact; or this number of components."""
         array = floats(values, name)
         if array.shape == components or (array.size == 1 and not components):
             return array.reshape(-1)
@@ -139,12 +139,13 @@ class Contacts(_Together):
 
 
 class PlanarContacts(_Together):
-    """So many contacts of one definition that move in the plane: partial slip whose direction differs and turns.
+    """An array of contacts with one definition that move in the plane, with partial slip in any direction.
 
-    The law of rings, each with a traction vector and Coulomb's law. They begin at an indentation of zero, or at the
-    load that is given. A step is straight in displacement (m) and in indentation or normal force; a contact that parts
-    loses its history, and the next one sticks where it is met. A step that is refused has moved none. The error is of
-    second order in the steps and in the number of rings: halve the steps and double the rings to see it.
+    The surface is divided into rings, each with one traction vector and Coulomb's law. The contacts begin at zero
+    indentation, or at the given load. A step is straight in displacement (m) and in indentation or normal force. A
+    contact that separates loses its history, and sticks where it touches again. A refused step moves no contact. The
+    error is of second order in the steps and in the number of rings, and is not stated: halve the steps and double the
+    rings to see it.
 
     Parameters
     ----------
@@ -153,8 +154,8 @@ class PlanarContacts(_Together):
     profile, bodies, friction, **load
         As for `Contact`.
     rings : int
-        The most rings of a contact, 4 to 160. A contact that keeps its radius has all of them, one whose radius changes
-        a quarter of them at least.
+        Largest number of rings of a contact, 4 to 160. A contact with a constant radius has all of them, one with a
+        changing radius at least a quarter of them.
     threads : int
         Number of threads; if left out, one for each core.
     """
@@ -183,7 +184,8 @@ class PlanarContacts(_Together):
     ) -> tuple[Floats, Floats]:
         """Moves all contacts to these indentations, m, or normal forces, N, and to these displacements [x, y], m.
 
-        Returns F_N, N, of their shape, and F, N, of their shape and 2, to which arrays broadcast: `[x, y]` moves all.
+        Returns F_N, N, in the shape of the contacts, and F, N, with x and y as a last axis. Arrays broadcast to these
+        shapes, so that one `[x, y]` moves all contacts.
         """
         return self._shaped(guarded(self._native.step, *self._targets(indentation, displacement, normal_force)), 2)
 
