@@ -84,15 +84,13 @@ impl Readers {
         let task = spawn_blocking(move || {
             idle.files.check()?;
             let mut connection = idle.take()?;
-            if let Some(abandoned) = abandoned {
-                // Unlike an interrupt, which is lost on a statement that has not begun, this is asked again and again.
-                connection.progress_handler(CHECKED, Some(move || abandoned.load(Ordering::Relaxed)))?;
-            }
+            // In place of that of the last query. An interrupt would be lost on a statement that has not begun.
+            let ends = abandoned.map(|abandoned| move || abandoned.load(Ordering::Relaxed));
+            connection.progress_handler(CHECKED, ends)?;
             let found =
                 connection.unchecked_transaction().map_err(Fault::from).and_then(|transaction| question(&transaction));
             let locked = matches!(&found, Err(Fault::Sqlite(error)) if is_locked(error));
             idle.locked.store(locked, Ordering::Relaxed);
-            connection.progress_handler(0, None::<fn() -> bool>)?;
             idle.put(connection);
             drop(permit);
             found
@@ -113,11 +111,8 @@ impl Readers {
         let permit = Arc::clone(&self.searches).acquire_owned().await;
         let abandoned = Arc::new(AtomicBool::new(false));
         let _abandoned = Abandoned(Arc::clone(&abandoned));
-        self.run(Some(Arc::clone(&abandoned)), move |database| {
+        self.run(Some(abandoned), move |database| {
             let _permit = permit;
-            if abandoned.load(Ordering::Relaxed) {
-                return Err(Fault::Refused(StoreError::Unavailable("nobody waits for this search".to_owned())));
-            }
             question(database)
         })
         .await
