@@ -1,4 +1,4 @@
-//! What contacts that are stepped together share, along a line and in the plane: arrays in and out, threads, and trials.
+//! What contacts that are stepped together share, along a line and in the plane: arrays, threads and trials.
 
 use std::panic::resume_unwind;
 use std::thread;
