@@ -19,7 +19,8 @@ LINE = "-" * 80
 HEAD = f"""Licences of what is shipped with stickslip
 
 stickslip itself is under the MIT licence: see LICENSE. The program, the Python package and the image contain the
-following crates and, after them, other parts, each under its own licence. `./check print` writes this file.
+following parts, each under its own licence; the texts follow in groups, below the names that they hold for.
+`./check print` writes this file.
 """
 
 
@@ -64,15 +65,22 @@ def main() -> None:
             without[licence].append(crate)
         for text in found:
             crates[text].append((*crate, licence))
-    print(HEAD)
-    for text, users in sorted(crates.items(), key=lambda item: item[1]):
-        print(LINE, *(f"  {name} {version} ({licence})" for name, version, licence in users), "", text, "", sep="\n")
     apache = next(text for text in crates if text.startswith("Apache License") and "TERMS AND CONDITIONS" in text)
-    for licence, users in sorted(without.items()):
+    for licence, users in without.items():
         # Their sources have no text of it.
         assert licence == "Apache-2.0", (licence, users)
-        print(LINE, *(f"  {name} {version} ({licence})" for name, version in users), "", apache, "", sep="\n")
-    print("\n".join(path.read_text().rstrip() + "\n" for path in sorted(HERE.glob("*.txt"))), end="")
+        crates[apache] += [(*crate, licence) for crate in users]
+    lines = {
+        text: [f"  {name} {version} ({licence})" for name, version, licence in sorted(users)]
+        for text, users in crates.items()
+    }
+    parts = [path.read_text().rstrip() for path in sorted(HERE.glob("*.txt"))]
+    print(HEAD)
+    print(*sorted({line for users in lines.values() for line in users}), "", sep="\n")
+    print(*(f"  {part.splitlines()[1].rstrip(':')}" for part in parts), "", sep="\n")
+    for text, users in sorted(lines.items(), key=lambda item: item[1]):
+        print(LINE, *users, "", text, "", sep="\n")
+    print(*parts, sep="\n\n")
 
 
 if __name__ == "__main__":
