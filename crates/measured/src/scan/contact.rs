@@ -32,23 +32,48 @@ pub struct ContactEstimate {
     pub max_pressure: Estimate,
 }
 
-/// g, L and pi/E* p of the shape (r - b)_+^2/2 in a contact of radius a.
-fn functionals(b: f64, a: f64, at: f64) -> Result<[f64; 3], Error> {
-    if a <= b {
-        return Ok([0.0; 3]);
-    }
-    let shape =
-        if b > 0.0 { Profile::RoundedPunch(RoundedPunch::new(b, 1.0)?) } else { Profile::Sphere(Sphere::new(1.0)?) };
-    let level = shape.level(a);
-    let whole = Ring::between(shape.point(0.0.into()), shape.point(level.into()));
-    let load = whole.inner.radius * whole.depth + shape.moments(&whole).first;
-    Ok([level, load, shape.kernel(&StressRadius::new(at), &whole)])
+/// The shape (r - b)_+^2/2: each curvature adds that of its interval's beginning, and takes away that of its end.
+struct Step {
+    b: f64,
+    shape: Profile,
 }
 
-/// The change of g, L and pi/E* p in a contact of radius a by each curvature, the pressure at a radius.
-fn by_curvature(curve: &Curve, a: f64, at: f64) -> Result<Vec<[f64; 3]>, Error> {
-    let from = curve.breaks.iter().map(|&b| functionals(b, a, at)).collect::<Result<Vec<_>, _>>()?;
-    Ok(from.windows(2).map(|pair| [0, 1, 2].map(|index| pair[0][index] - pair[1][index])).collect())
+impl Step {
+    fn new(b: f64) -> Result<Step, Error> {
+        let shape = if b > 0.0 {
+            Profile::RoundedPunch(RoundedPunch::new(b, 1.0)?)
+        } else {
+            Profile::Sphere(Sphere::new(1.0)?)
+        };
+        Ok(Step { b, shape })
+    }
+
+    /// g in a contact of radius a.
+    fn level(&self, a: f64) -> f64 {
+        if a > self.b { self.shape.level(a) } else { 0.0 }
+    }
+
+    /// g, L and pi/E* p in a contact of radius a, the pressure at a radius.
+    fn functionals(&self, a: f64, at: f64) -> [f64; 3] {
+        if a <= self.b {
+            return [0.0; 3];
+        }
+        let level = self.shape.level(a);
+        let whole = Ring::between(self.shape.point(0.0.into()), self.shape.point(level.into()));
+        let load = whole.inner.radius * whole.depth + self.shape.moments(&whole).first;
+        [level, load, self.shape.kernel(&StressRadius::new(at), &whole)]
+    }
+}
+
+/// The steps of a curve.
+fn steps(curve: &Curve) -> Result<Vec<Step>, Error> {
+    curve.breaks.iter().map(|&b| Step::new(b)).collect()
+}
+
+/// The change by each curvature of what is linear in them.
+fn by_curvature<const N: usize>(steps: &[Step], of: impl Fn(&Step) -> [f64; N]) -> Vec<[f64; N]> {
+    let from: Vec<[f64; N]> = steps.iter().map(of).collect();
+    from.windows(2).map(|pair| std::array::from_fn(|index| pair[0][index] - pair[1][index])).collect()
 }
 
 /// The standard errors at radii that begin, halve and end the intervals of a curve, in turns. Those of the pressure are
@@ -58,19 +83,19 @@ pub(super) fn standard_errors(
     covariance: &DMatrix<f64>,
     radii: &[f64],
 ) -> Result<StandardErrors, Error> {
-    let error = |changes: &[[f64; 3]], which: usize| {
-        let gradient: Vec<f64> = changes.iter().map(|change| change[which]).collect();
-        quadratic(covariance, &gradient).max(0.0).sqrt()
-    };
+    let steps = steps(curve)?;
+    let error = |gradient: &[f64]| quadratic(covariance, gradient).max(0.0).sqrt();
     let indentation =
-        radii.iter().map(|&a| Ok(error(&by_curvature(curve, a, 0.0)?, 0))).collect::<Result<Vec<_>, Error>>()?;
+        radii.iter().map(|&a| error(by_curvature(&steps, |step| [step.level(a)]).as_flattened())).collect();
     let at_end = |&a: &f64| {
-        (0..PRESSURES).try_fold(0.0, |largest, place| {
+        let at_place = |place: usize| {
             let at = a * place as f64 / PRESSURES as f64;
-            Ok(f64::max(largest, error(&by_curvature(curve, a, at)?, 2) / std::f64::consts::PI))
-        })
+            let gradient = by_curvature(&steps, |step| [step.functionals(a, at)[2] / std::f64::consts::PI]);
+            error(gradient.as_flattened())
+        };
+        (0..PRESSURES).map(at_place).fold(0.0, f64::max)
     };
-    let at_ends = curve.breaks[1..].iter().map(at_end).collect::<Result<Vec<f64>, Error>>()?;
+    let at_ends: Vec<f64> = curve.breaks[1..].iter().map(at_end).collect();
     let pressure = (0..radii.len()).map(|index| at_ends[(index.max(1) - 1) / 2]).collect();
     Ok(StandardErrors { indentation, pressure })
 }
@@ -91,7 +116,7 @@ impl ScanFit {
             .max_by(|&one, &other| pressures[one].total_cmp(&pressures[other]))
             .map_or(0.0, |index| radii[index]);
 
-        let from = by_curvature(&self.curve, a, at)?;
+        let from = by_curvature(&steps(&self.curve)?, |step| step.functionals(a, at));
         let slope = self.profile.slope(a);
         let edge = slope / ((a - at) * (a + at)).sqrt();
         // Per curvature: the change of radius, then those of all else.
@@ -143,7 +168,7 @@ impl ScanFit {
 
     /// g, L and pressure of the whole curve at its end.
     fn at_end(&self, reach: f64) -> Result<[f64; 3], Error> {
-        let from = by_curvature(&self.curve, reach, 0.0)?;
+        let from = by_curvature(&steps(&self.curve)?, |step| step.functionals(reach, 0.0));
         let sum = |which: usize| {
             let shares: Vec<f64> = from.iter().map(|change| change[which]).collect();
             dot(&shares, &self.curve.curvatures)
