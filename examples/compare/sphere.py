@@ -4,7 +4,7 @@
     python sphere.py [PROGRAM]        # the program stickslip, if it is not on the path
 
 Boundary elements give the pressure on a grid. The shear stress of partial slip is mu times the difference of two
-pressures of the same bodies (Ciavarella 1998, Jaeger 1998), that at the load and that at the load of the stick zone, so
+pressures of the same bodies (Ciavarella 1998, Jäger 1998), that at the load and that at the load of the stick zone, so
 that a normal solver gives it, too. Errors are the largest over the grid, relative to the largest pressure and to mu
 times that; times are processor times of one call of a solver, without imports, and of the whole process of stickslip.
 """

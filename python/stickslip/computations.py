@@ -551,7 +551,7 @@ class Computations(ABC):
         contact : ContactLike
             The contact; may be left out where `start` names one on the server.
         reversals : int
-            Number of reversals N_R; give this or `target`.
+            Number of reversals N; give this or `target`.
         end : ProtocolEnd
             Where the path ends.
         kind : ProtocolKind
@@ -1427,7 +1427,7 @@ class OfContact(ABC):
         Parameters
         ----------
         reversals : int
-            Largest number of reversals N_R; give this or `target`. The path begins with one more stroke.
+            Largest number of reversals N; give this or `target`. The path begins with one more stroke.
         dry_run : bool
             Whether to compute the path without applying it. The reply of a dry run is not kept for a retry.
         end : ProtocolEnd

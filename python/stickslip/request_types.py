@@ -16,7 +16,7 @@ Auto: TypeAlias = Literal["auto"]
 BodyName: TypeAlias = Literal["first", "second"]
 """One of the two bodies in contact."""
 CriticalMethod: TypeAlias = Literal["point", "line"]
-"""How a critical distance L is used along the inward normal."""
+"""How a critical distance L_c is used along the inward normal."""
 Direction: TypeAlias = Literal["x", "y", "z"]
 """An axis: x along the motion of the first body, z into the body asked for."""
 EndReason: TypeAlias = Literal["deleted", "expired", "stopping", "damaged", "failed"]
@@ -162,7 +162,7 @@ class CriticalDistance(TypedDict):
     """The critical distance of the material (Taylor 2007)."""
 
     length: Quantity
-    """The critical distance L, m: (threshold of the stress intensity range/range of the fatigue limit)²/π."""
+    """The critical distance L_c, m: (threshold of the stress intensity range/range of the fatigue limit)²/π."""
     method: CriticalMethod
     """How the critical distance is used."""
 

@@ -231,7 +231,9 @@ class CycleReply(Result):
 
         @property
         def stick_radius(self) -> Floats:
-            """Of each row: Radius of the part that never slips, m; zero in gross slip."""
+            """Of each row: Stick radius c of the cycle, m: inside it nothing ever slips. The contact radius if nothing
+            slips, zero in gross slip.
+            """
 
         @property
         def tangent_stiffness(self) -> Floats:
@@ -403,7 +405,7 @@ class LoopPage(Result):
     """Tangential displacement U of the indenter, m; positive along x."""
 
     force: Floats
-    """Tangential force F, N."""
+    """Tangential force F_x, N."""
 
     part: Floats
     """Fraction of that move at the point, a pure number: 1 at its end."""
@@ -524,7 +526,7 @@ class PathReply(Result):
 
         @property
         def force(self) -> Floats:
-            """Of each row: Tangential force F, N; positive for a positive displacement of a virgin contact."""
+            """Of each row: Tangential force F_x, N; positive for a positive displacement of a virgin contact."""
 
         @property
         def indentation(self) -> Floats:
@@ -548,8 +550,8 @@ class PathReply(Result):
 
         @property
         def stick_radius(self) -> Floats:
-            """Of each row: Radius inside which the last move did not slip, m: the contact radius if nothing slipped,
-            zero in gross slip.
+            """Of each row: Stick radius c of the last move, m: inside it the move did not slip. The contact radius if
+            nothing slipped, zero in gross slip.
             """
 
 
@@ -602,8 +604,8 @@ class PlanarReply(Result):
 
         @property
         def stick_radius(self) -> Floats:
-            """Of each row: Radius inside which the last move did not slip, m, resolved to the width of a ring: the
-            contact radius if nothing slipped, zero in gross slip.
+            """Of each row: Stick radius c of the last move, m: inside it the move did not slip, to the width of a
+            ring. The contact radius if nothing slipped, zero in gross slip.
             """
 
 
@@ -635,8 +637,8 @@ class PlanarState(Result):
     """How much of the contact slipped in the last move."""
 
     stick_radius: float
-    """Radius inside which the last move did not slip, m, resolved to the width of a ring: the contact radius if
-    nothing slipped, zero in gross slip.
+    """Stick radius c of the last move, m: inside it the move did not slip, to the width of a ring. The contact radius
+    if nothing slipped, zero in gross slip.
     """
 
 
@@ -719,7 +721,7 @@ class ProtocolReply(Result):
     """The extrema of the shear stress that remains."""
 
     reversals: int
-    """Number of reversals N_R."""
+    """Number of reversals N."""
 
     start: Record
     """How the path begins."""
@@ -777,7 +779,7 @@ class RelaxReply(Result):
     """The extrema of the shear stress that remains."""
 
     reversals: int
-    """Number of reversals N_R."""
+    """Number of reversals N."""
 
     start: Record
     """How the path begins."""
@@ -843,8 +845,8 @@ class RelaxReply(Result):
 
         @property
         def stick_radius(self) -> Floats:
-            """Of each row: Radius inside which the last move did not slip, m: the contact radius if nothing slipped,
-            zero in gross slip.
+            """Of each row: Stick radius c of the last move, m: inside it the move did not slip. The contact radius if
+            nothing slipped, zero in gross slip.
             """
 
 
@@ -988,7 +990,7 @@ class SimulateReply(Result):
 
         @property
         def force(self) -> Floats:
-            """Of each row: Tangential force F, N; positive for a positive displacement of a virgin contact."""
+            """Of each row: Tangential force F_x, N; positive for a positive displacement of a virgin contact."""
 
         @property
         def indentation(self) -> Floats:
@@ -1012,8 +1014,8 @@ class SimulateReply(Result):
 
         @property
         def stick_radius(self) -> Floats:
-            """Of each row: Radius inside which the last move did not slip, m: the contact radius if nothing slipped,
-            zero in gross slip.
+            """Of each row: Stick radius c of the last move, m: inside it the move did not slip. The contact radius if
+            nothing slipped, zero in gross slip.
             """
 
 
@@ -1033,7 +1035,7 @@ class State(Result):
     """Energy stored in the tangential deformation, J."""
 
     force: float
-    """Tangential force F, N; positive for a positive displacement of a virgin contact."""
+    """Tangential force F_x, N; positive for a positive displacement of a virgin contact."""
 
     indentation: float
     """Indentation d, m; positive when pressed in, below zero the bodies are apart."""
@@ -1048,7 +1050,9 @@ class State(Result):
     """How much of the contact slipped in the last move."""
 
     stick_radius: float
-    """Radius inside which the last move did not slip, m: the contact radius if nothing slipped, zero in gross slip."""
+    """Stick radius c of the last move, m: inside it the move did not slip. The contact radius if nothing slipped, zero
+    in gross slip.
+    """
 
     stick_centre: float | None
     """Middle of the stick zone along x, m; only with a bulk stress that shifts it."""
@@ -1208,7 +1212,7 @@ class WearReply(Result):
     """The height of the undeformed surface above its lowest point, m, from the centre to beyond the worn radius."""
 
     stick_radius: float
-    """Radius of the disc that never slips, m: the contact radius in the limit."""
+    """Stick radius c of the cycle, m: inside it nothing ever slips. It is the contact radius in the limit."""
 
     warnings: Rows[Record]
     """Warnings about the result."""

@@ -9,8 +9,14 @@ use stickslip_wire::Code;
 use crate::common::process::Process;
 use crate::python::{file, succeed};
 
-fn page(name: &str) -> String {
+pub fn page(name: &str) -> String {
     std::fs::read_to_string(file("docs").join(name)).unwrap()
+}
+
+/// What a link to a heading ends with.
+pub fn anchor(heading: &str) -> String {
+    let is_kept = |letter: &char| letter.is_alphanumeric() || ['-', '_'].contains(letter);
+    heading.trim_start_matches('#').trim().to_lowercase().replace(' ', "-").chars().filter(is_kept).collect()
 }
 
 #[tokio::test(flavor = "multi_thread")]
@@ -82,15 +88,11 @@ fn every_link_between_the_pages_leads_somewhere() {
             let (path, place) = target.split_once('#').unwrap_or((target, ""));
             let there = file("docs").join(if path.is_empty() { &*name } else { path });
             assert!(there.exists(), "{name}: {target}");
-            let is_kept = |letter: &char| letter.is_alphanumeric() || ['-', '_'].contains(letter);
-            let heading = |line: &str| -> String {
-                line.trim_start_matches('#').trim().to_lowercase().replace(' ', "-").chars().filter(is_kept).collect()
-            };
             let found = place.is_empty()
                 || std::fs::read_to_string(&there)
                     .unwrap()
                     .lines()
-                    .any(|line| line.starts_with('#') && heading(line) == place);
+                    .any(|line| line.starts_with('#') && anchor(line) == place);
             assert!(found, "{name}: {target}");
         }
     }

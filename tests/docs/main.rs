@@ -6,6 +6,7 @@ mod common;
 mod clients;
 mod dashboards;
 mod docs;
+mod equations;
 mod examples;
 mod node;
 mod page_forms;

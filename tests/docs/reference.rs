@@ -1,10 +1,12 @@
-//! `docs/reference.md`: every field of every reply with its unit, printed from the specification.
+//! `docs/reference.md`: every field of every reply with its unit and its equations, printed from the specification and
+//! the last table of `docs/equations.md`.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 
 use serde_json::Value;
 
+use crate::equations::{FieldTable, equations, is_end_of};
 use crate::python::file;
 
 /// The units of the fields of replies, longer ones before those that they begin with.
@@ -30,6 +32,7 @@ struct Reference<'a> {
     requests: Vec<(&'a str, Vec<String>)>,
     /// Schemas that several fields refer to.
     parts: BTreeSet<&'a str>,
+    equations: FieldTable,
 }
 
 fn name_of(node: &Value) -> Option<&str> {
@@ -147,7 +150,7 @@ impl<'a> Reference<'a> {
             is_part.then_some(name)
         };
         let parts = uses.into_iter().filter_map(is_shared).collect();
-        Reference { schemas, requests, parts }
+        Reference { schemas, requests, parts, equations: FieldTable::new() }
     }
 
     /// A schema by a link to its section.
@@ -228,6 +231,13 @@ impl<'a> Reference<'a> {
         }
     }
 
+    /// The headings under which the fields of a schema are: its name, and the requests that it is the reply of.
+    fn headings<'b>(&'b self, name: &'b str) -> Vec<&'b str> {
+        let of = |request: &'b String| request.split('`').nth(1).unwrap_or(request);
+        let requests = self.requests.iter().filter(|(schema, _)| *schema == name);
+        requests.flat_map(|(_, all)| all.iter().map(of)).chain([name]).collect()
+    }
+
     /// The rows of a schema.
     fn rows(&self, name: &str) -> Vec<Row> {
         let mut rows = Vec::new();
@@ -236,14 +246,17 @@ impl<'a> Reference<'a> {
     }
 
     /// The section of a schema under its heading.
-    fn section(&self, name: &str) -> String {
+    fn section(&self, name: &'a str) -> String {
         let schema = &self.schemas[name];
         let mut text = format!("{}{}\n\n", description(schema), self.composition(schema));
         let rows = self.rows(name);
         if !rows.is_empty() {
-            text.push_str("| field | unit | |\n|---|---|---|\n");
+            text.push_str("| field | unit | [equation](equations.md) | |\n|---|---|---|---|\n");
             for Row { place, unit, meaning, .. } in rows {
-                writeln!(text, "| `{place}` | {} | {meaning} |", unit.unwrap_or_default()).unwrap();
+                let numbers = self.equations.equations_of(&self.headings(name), &place).unwrap_or_default();
+                let numbers: Vec<String> = numbers.iter().map(usize::to_string).collect();
+                let (unit, numbers) = (unit.unwrap_or_default(), numbers.join(", "));
+                writeln!(text, "| `{place}` | {unit} | {numbers} | {meaning} |").unwrap();
             }
             text.push('\n');
         }
@@ -327,5 +340,28 @@ fn the_reference_knows_the_units_of_the_contract() {
         let rows = reference.rows(schema);
         let row = rows.iter().find(|row| row.place == place).unwrap_or_else(|| panic!("{schema}: {place}"));
         assert_eq!(row.unit.as_deref(), Some(unit), "{schema}: {place}");
+    }
+}
+
+/// Counts need no equation.
+#[test]
+fn every_number_of_a_reply_is_in_the_table_of_equations_and_every_line_of_it_is_of_a_reply() {
+    let (document, count) = (document(), equations().len());
+    let reference = Reference::new(&document);
+    let sections: BTreeSet<&str> =
+        reference.requests.iter().map(|(name, _)| *name).chain(reference.parts.iter().copied()).collect();
+    let sections: Vec<(Vec<&str>, Vec<Row>)> =
+        sections.into_iter().map(|name| (reference.headings(name), reference.rows(name))).collect();
+    for (headings, rows) in &sections {
+        for row in rows.iter().filter(|row| row.is_number && row.unit.as_deref() != Some("count")) {
+            let numbers = reference.equations.equations_of(headings, &row.place);
+            let numbers = numbers.unwrap_or_else(|| panic!("{headings:?}: {} is not in the table", row.place));
+            assert!(numbers.iter().all(|number| *number <= count), "{headings:?}: {}: {numbers:?}", row.place);
+        }
+    }
+    for (heading, field) in reference.equations.entries() {
+        let mut rows = sections.iter().filter(|(headings, _)| headings.contains(&heading)).flat_map(|(_, rows)| rows);
+        let is_there = rows.any(|row| field.is_none_or(|field| is_end_of(field, &row.place)));
+        assert!(is_there, "{heading} has no {field:?}");
     }
 }

@@ -7,7 +7,7 @@
 //!
 //! Two elastic bodies, rotationally symmetric about the z axis, are pressed together over a circle of radius a and
 //! moved sideways by U. Coulomb friction bounds the shear stress by mu times the pressure. By the method of
-//! dimensionality reduction (Popov & Hess 2015) the contact is that of a row of independent springs along x with a
+//! dimensionality reduction (Popov & Heß 2015) the contact is that of a row of independent springs along x with a
 //! plane profile g(x):
 //!
 //! | symbol | meaning | unit |
@@ -33,7 +33,7 @@
 //! u_x(a)/sqrt(a^2 - r^2) besides, as the pressure has (E*/pi) u_z(a)/sqrt(a^2 - r^2).
 //!
 //! This is the theory of Cattaneo (1938) and Mindlin (1949), extended to any shape and path by Ciavarella (1998) and
-//! Jaeger (1998): the shear stress of partial slip is mu times a difference of pressures of the same bodies. Within it
+//! Jäger (1998): the shear stress of partial slip is mu times a difference of pressures of the same bodies. Within it
 //! the solution is exact. It leaves out the coupling of normal and tangential stress (Dundurs' beta is taken as zero),
 //! slip across the motion (friction acts along x alone), and the shape of the bodies away from the contact (each is a
 //! half-space).

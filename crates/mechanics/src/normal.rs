@@ -1,7 +1,7 @@
 //! Normal contact: indentation, contact radius, normal force and pressure, each from the others.
 //!
 //! d = g(a), F_N = 2 E* int_0^a (d - g) dx = 2 E* int_0^d X(y) dy, p(r) = (E*/pi) int dy/sqrt(X(y)^2 - r^2) over
-//! X(y) > r (Popov & Hess 2015; the last form takes in a vertical edge as well).
+//! X(y) > r (Popov & Heß 2015; the last form takes in a vertical edge as well).
 
 use std::cmp::Ordering;
 

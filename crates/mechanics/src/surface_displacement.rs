@@ -1,6 +1,6 @@
 //! Tangential displacement of the surface, and how far it has slipped under the indenter.
 //!
-//! u(r) = (2/pi) int_0^min(r, a) u_x(x)/sqrt(r^2 - x^2) dx (Popov & Hess 2015). Over a piece w is straight in g, so
+//! u(r) = (2/pi) int_0^min(r, a) u_x(x)/sqrt(r^2 - x^2) dx (Popov & Heß 2015). Over a piece w is straight in g, so
 //! that it is a weighted sum over the cells of the profile. Under the indenter the slip U - u(r) is summed from w - W,
 //! as stored, so that it is zero to the last bit where nothing has ever slipped.
 

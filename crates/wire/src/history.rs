@@ -45,7 +45,7 @@ pub struct LoopPage: Default {
     pub part: Vec<f64>,
     /// Tangential displacement U of the indenter, m; positive along x.
     pub displacement: Vec<f64>,
-    /// Tangential force F, N.
+    /// Tangential force F_x, N.
     pub force: Vec<f64>,
     /// Force that was measured at each point, N, `null` where none was measured; left out if the page has no measured
     /// force.

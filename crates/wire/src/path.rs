@@ -73,7 +73,7 @@ requests! {
 /// A tangential oscillation that dies away by the law of equal peaks; it ends at displacement zero.
 #[schema(example = json!({"reversals": 20}))]
 pub struct EqualPeaks {
-    /// Number of reversals N_R; the path has one more move.
+    /// Number of reversals N; the path has one more move.
     pub reversals: usize = REVERSALS,
     /// Radius outside which the peaks are equal, m, up to the contact radius. For a profile whose slope jumps (the tip
     /// of a cone, the rim of a flat) it must lie outside the jump; if left out, it is then a tenth of the way from the
@@ -84,7 +84,7 @@ pub struct EqualPeaks {
 /// A tangential oscillation that dies away; it ends at displacement zero.
 #[schema(example = json!({"reversals": 20}))]
 pub struct FallingAmplitude {
-    /// Number of reversals N_R; the path has one more move.
+    /// Number of reversals N; the path has one more move.
     pub reversals: usize = REVERSALS,
     /// Displacement of the first reversal, m; if left out, the displacement at which the contact just slips as a whole.
     pub amplitude: Option<f64> = range::DISPLACEMENT,

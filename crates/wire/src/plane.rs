@@ -197,8 +197,8 @@ pub struct PlanarState: Copy, Default {
     pub normal_force: f64,
     /// Contact radius a, m.
     pub contact_radius: f64,
-    /// Radius inside which the last move did not slip, m, resolved to the width of a ring: the contact radius if
-    /// nothing slipped, zero in gross slip.
+    /// Stick radius c of the last move, m: inside it the move did not slip, to the width of a ring. The contact radius
+    /// if nothing slipped, zero in gross slip.
     pub stick_radius: f64,
     /// How much of the contact slipped in the last move.
     pub regime: Regime,

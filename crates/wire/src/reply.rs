@@ -34,7 +34,7 @@ pub struct ContactSummary: Default omits Option {
 pub struct State: Copy, Default {
     /// Tangential displacement U of the indenter, m; positive along x.
     pub displacement: f64,
-    /// Tangential force F, N; positive for a positive displacement of a virgin contact.
+    /// Tangential force F_x, N; positive for a positive displacement of a virgin contact.
     pub force: f64,
     /// Indentation d, m; positive when pressed in, below zero the bodies are apart.
     pub indentation: f64,
@@ -42,7 +42,8 @@ pub struct State: Copy, Default {
     pub normal_force: f64,
     /// Contact radius a, m; for a line contact the half-width; for a profile without a stress field F_N′/(2 E*).
     pub contact_radius: f64,
-    /// Radius inside which the last move did not slip, m: the contact radius if nothing slipped, zero in gross slip.
+    /// Stick radius c of the last move, m: inside it the move did not slip. The contact radius if nothing slipped, zero
+    /// in gross slip.
     pub stick_radius: f64,
     /// Middle of the stick zone along x, m; only with a bulk stress that shifts it.
     #[serde(skip_serializing_if = "Option::is_none")]

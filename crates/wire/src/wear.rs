@@ -57,7 +57,7 @@ replies! {
 pub struct WearReply omits Option {
     /// The contact before wear.
     pub contact: ContactSummary,
-    /// Radius of the disc that never slips, m: the contact radius in the limit.
+    /// Stick radius c of the cycle, m: inside it nothing ever slips. It is the contact radius in the limit.
     pub stick_radius: f64,
     /// Radius up to which the surface wears, m.
     pub worn_radius: f64,

@@ -132,11 +132,11 @@ pub(super) fn assumption(profile: &Profile) -> Option<(&'static str, &'static st
         Profile::LoadCurve(_) => Some((
             "load_curve_alone",
             "the tangential compliance is assumed to be in proportion to that of the load curve (Ciavarella 1998; \
-                Jaeger 1998)",
+                Jäger 1998)",
         )),
         Profile::Ellipsoid(_) => Some((
             "elliptic_slip",
-            "partial slip of the ellipse is assumed to follow from its load curve (Ciavarella 1998; Jaeger 1998), \
+            "partial slip of the ellipse is assumed to follow from its load curve (Ciavarella 1998; Jäger 1998), \
              which is exact for a circle",
         )),
         _ => None,

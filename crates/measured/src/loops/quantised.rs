@@ -2,7 +2,7 @@
 //!
 //! A converter rounds a force to the nearest multiple of its step q. Noise of standard deviation s before it makes the
 //! rounding random, with a variance of q^2/12, but for its mean, which over the force F is -sum (-1)^k q/(pi k) exp(-2
-//! pi^2 k^2 s^2/q^2) sin(2 pi k F/q) (Widrow, Kollar & Liu 1996): at s = q/3 some 4 % of a step, for all points that
+//! pi^2 k^2 s^2/q^2) sin(2 pi k F/q) (Widrow, Kollár & Liu 1996): at s = q/3 some 4 % of a step, for all points that
 //! have one force, as those of gross slip do. No number of points averages it out. At worst it is a wave over the force
 //! of any phase; what that shifts each value by follows from the Jacobian.
 

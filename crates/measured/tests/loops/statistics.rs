@@ -87,6 +87,10 @@ fn intervals_cover_and_standard_errors_are_right() {
     for (name, share, free, known) in cases {
         println!("{name}");
         let fits = repeated(share, free, known);
+        // Wald & Wolfowitz (1940): noise changes its sign this often.
+        let runs = |fit: &LoopFit| fit.residual.runs.count as f64 / fit.residual.runs.expected;
+        let mean = fits.iter().map(runs).sum::<f64>() / fits.len() as f64;
+        assert!((mean - 1.0).abs() < 0.02, "{name}: {mean} of the expected runs");
         for (index, &parameter) in free.iter().enumerate() {
             let Spread { deviation, stated, covered } = spread(&fits, index, truth(parameter));
             assert!((0.9..=0.99).contains(&covered), "{name}, {parameter:?}: {covered}");

@@ -1,5 +1,5 @@
 //! Many Hertzian asperities on one rigid motion, which do not interact elastically: X(y) = sum sqrt(R_i (y - h_i)) over
-//! the gaps h_i < y (Greenwood & Williamson 1966; with friction by Ciavarella 1998 and Jaeger 1998).
+//! the gaps h_i < y (Greenwood & Williamson 1966; with friction by Ciavarella 1998 and Jäger 1998).
 //!
 //! Each asperity that is touched adds the moments of a parabola from its own tip on, so that a thin ring keeps its
 //! digits. The levels are divided into cells of a few gaps each ([`LevelCell`]). Within a cell the asperities whose

@@ -1,7 +1,7 @@
 //! Families that are known by their load curve alone: X(y) = F_N'(y)/(2 E*), and no surface.
 //!
 //! The slip history asks for X and its integrals over rings of levels, which every contact has whose tangential
-//! compliance is proportional to its normal one, point by point of the load curve (Ciavarella 1998; Jaeger 1998). Such
+//! compliance is proportional to its normal one, point by point of the load curve (Ciavarella 1998; Jäger 1998). Such
 //! a family is to the rest of the mechanics the body of revolution with the same curve, g the inverse of X, but
 //! without a surface: its kernels and slopes are NaN, and every function that gives a stress checks
 //! [`Profile::check_stress_field`](super::Profile) first.

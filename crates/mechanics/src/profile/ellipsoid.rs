@@ -8,7 +8,7 @@
 //! The stuck ellipse has 1 + nu/(1 - nu) kappa times the normal compliance along its major axis, 1 - kappa instead of
 //! kappa along its minor one (Mindlin 1949), body by body:
 //! [`Elasticity::along_ellipse`](crate::Elasticity::along_ellipse). Partial slip follows from the load curve by
-//! Ciavarella (1998) and Jaeger (1998), which is exact for a circle alone.
+//! Ciavarella (1998) and Jäger (1998), which is exact for a circle alone.
 
 use super::Sphere;
 use crate::error::Error;

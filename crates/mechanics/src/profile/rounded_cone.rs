@@ -1,7 +1,7 @@
 //! Cone with a rounded tip, f' = T min(r/b, 1): inside b the paraboloid of curvature radius b/T; outside, with
 //! t = sqrt(x^2 - b^2) and phi = atan(t/b), g = T x (b/(x + t) + phi).
 //!
-//! There gamma = dg/dt = T (t/x) (2b/(x + t) + phi) (Ciavarella 1999; Popov & Hess 2015). f' bends but does not jump at
+//! There gamma = dg/dt = T (t/x) (2b/(x + t) + phi) (Ciavarella 1999; Popov & Heß 2015). f' bends but does not jump at
 //! b, so all stresses are finite.
 
 use super::{Error, Family, Parameter, Profile, range};

@@ -1,7 +1,7 @@
 //! Hertz's parabola f = r^2/(2R), the paper's sphere: g(x) = x^2/R, K(r, c) = (2/R) sqrt(c^2 - r^2).
 //!
 //! Moves and stresses follow from one difference, x_outer^2 - x_inner^2 = R (y_outer - y_inner), which is never taken
-//! between rounded radii (Hertz 1881; Popov & Hess 2015): closed forms, for speed alone. For all else it is a shape
+//! between rounded radii (Hertz 1881; Popov & Heß 2015): closed forms, for speed alone. For all else it is a shape
 //! like others.
 
 use super::{DoubleDouble, Error, Family, Moments, Parameter, Point, Profile, Ring, Span, StressRadius, range};

@@ -1,6 +1,6 @@
 //! Cone with a flat end, f' = T for r > b: g = T x phi, phi = arccos(b/x) = atan(t/b), t = sqrt(x^2 - b^2).
 //!
-//! gamma = dg/dt = T (phi t + b)/x (Shtaerman 1949; Popov & Hess 2015). f' jumps at b: pressure and shear are
+//! gamma = dg/dt = T (phi t + b)/x (Shtaerman 1949; Popov & Heß 2015). f' jumps at b: pressure and shear are
 //! log-infinite there.
 
 use super::{Error, Family, Parameter, Profile, range};

@@ -1,6 +1,6 @@
 //! Worn sphere, f' = r/R for r > b: g = x t/R, t = sqrt(x^2 - b^2).
 //!
-//! gamma = dg/dt = (b^2 + 2 t^2)/(R x) (Ejike 1981; Popov & Hess 2015). f' jumps at b: pressure and shear are
+//! gamma = dg/dt = (b^2 + 2 t^2)/(R x) (Ejike 1981; Popov & Heß 2015). f' jumps at b: pressure and shear are
 //! log-infinite there.
 
 use super::{Error, Family, Parameter, Profile, range};

@@ -1,7 +1,7 @@
 //! The normal load that each ring carries, which is all that a profile means for it.
 //!
 //! The load beyond a radius r is 2 E* int_0^T (d - g(sqrt(r^2 + t^2))) dt with T^2 = a^2 - r^2: the punches of all
-//! levels (Jaeger 1995) carry X - sqrt(X^2 - r^2) within r, and x dx/sqrt(x^2 - r^2) = dt after an integration by
+//! levels (Jäger 1995) carry X - sqrt(X^2 - r^2) within r, and x dx/sqrt(x^2 - r^2) = dt after an integration by
 //! parts.
 
 use crate::numerics::gauss::{EIGHT_POINTS, TWELVE_POINTS, integral};

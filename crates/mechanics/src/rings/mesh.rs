@@ -1,7 +1,7 @@
 //! Rings of equal area, and the stiffness of a half-space against their displacements.
 //!
 //! A constant traction tau_j on a ring is, in the foundation of the MDR, the line load tau_j phi_j(t) with
-//! phi_j(t) = 2 [sqrt(r_j^2 - t^2) - sqrt(r_(j-1)^2 - t^2)], where roots of negative numbers are zero (Popov & Hess
+//! phi_j(t) = 2 [sqrt(r_j^2 - t^2) - sqrt(r_(j-1)^2 - t^2)], where roots of negative numbers are zero (Popov & Heß
 //! 2015). So the elastic energy of all rings is tau A tau/2 with A_jk = (2/G*) int_0^a phi_j phi_k dt, and the mean
 //! displacement of a ring is (A tau)_j/W_j, W_j its area. Lengths here are relative to the outermost radius a, forces
 //! to G* a times the unit of displacement.

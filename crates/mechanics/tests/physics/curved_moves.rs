@@ -86,7 +86,7 @@ fn proportional_loading_from_nothing_never_slips() {
 
 #[test]
 fn steeper_than_the_friction_angle_slips_like_a_lighter_contact() {
-    // Ciavarella and Jaeger: the traction is mu p less mu times that of the contact under N_c = N - F/mu.
+    // Ciavarella and Jäger: the traction is mu p less mu times that of the contact under N_c = N - F/mu.
     for force in [1.0, 4.0, 9.0, 9.99] {
         let (before, after) = (LOAD, 25.0);
         let mut contact = ball(before);

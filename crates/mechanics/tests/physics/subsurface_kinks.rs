@@ -5,7 +5,7 @@
 //! The functions of a line source are those of `a_pressed_and_a_sliding_sphere_have_the_closed_forms_of_hamilton` and
 //! `every_profile_has_the_sum_of_its_point_forces`, which hold them against closed forms; what is under test here is
 //! the sum over the radii. The reference sums over intervals that shrink towards each singular point by half, and has
-//! dg/dx of each part in closed form (Popov & Hess 2015), given the distance from its kink.
+//! dg/dx of each part in closed form (Popov & Heß 2015), given the distance from its kink.
 
 use std::f64::consts::PI;
 use std::ops::{Add, Mul, Sub};

@@ -50,7 +50,8 @@ pub struct SteadyCycle: Default omits Option {
     /// All energy that friction dissipates in a cycle, J, where a bulk stress does work too: the integral of
     /// `friction_work` over the contact. Otherwise it equals `dissipated_energy` and is left out.
     pub friction_energy: Option<f64>,
-    /// Radius of the part that never slips, m; zero in gross slip.
+    /// Stick radius c of the cycle, m: inside it nothing ever slips. The contact radius if nothing slips, zero in gross
+    /// slip.
     pub stick_radius: f64,
     /// How much of the contact slips.
     pub regime: Regime,

@@ -78,7 +78,7 @@ pub struct BulkCycle: Copy, Default {
 
 /// The critical distance of the material (Taylor 2007).
 pub struct CriticalDistance: Copy {
-    /// The critical distance L, m: (threshold of the stress intensity range/range of the fatigue limit)²/π.
+    /// The critical distance L_c, m: (threshold of the stress intensity range/range of the fatigue limit)²/π.
     pub length: f64 = range::CRITICAL_LENGTH,
     /// How the critical distance is used.
     pub method: CriticalMethod,
@@ -156,11 +156,11 @@ pub struct SurfaceCriterion: Copy, Default {
 }
 
 words! {
-/// How a critical distance L is used along the inward normal.
+/// How a critical distance L_c is used along the inward normal.
 pub enum CriticalMethod {
-    /// The stress at the depth L/2.
+    /// The stress at the depth L_c/2.
     Point = "point",
-    /// At each instant the mean stress over the depth 2L.
+    /// At each instant the mean stress over the depth 2 L_c.
     Line = "line",
 }
 }

@@ -85,7 +85,7 @@ pub struct BelowSurface omits Option {
 /// Number of cycles that the material withstands. Tested lives scatter by a factor of three and more about such a
 /// curve.
 pub struct Life: Copy {
-    /// Cycles N, a pure number; `null` if there is none, for the reason in `no_life`.
+    /// Cycles N_f, a pure number; `null` if there is none, for the reason in `no_life`.
     pub cycles: Option<f64>,
     /// Lower bound of the cycles within the stated error of the value, a pure number; zero for less than 0.5.
     pub shortest: f64,

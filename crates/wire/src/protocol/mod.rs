@@ -35,7 +35,7 @@ requests! {
 pub struct ProtocolRequest {
     /// The contact; may be left out where `start` names one on the server.
     pub contact: Option<ContactDefinition>,
-    /// Number of reversals N_R; give this or `target`.
+    /// Number of reversals N; give this or `target`.
     pub reversals: Option<usize> = PROTOCOL_REVERSALS,
     /// The largest |τ|/(μ p_max) that may remain, a pure number (over the mean pressure where the largest is
     /// infinite): the smallest number of reversals that reaches it is found.
@@ -55,7 +55,7 @@ pub struct ProtocolRequest {
 /// How a contact on the server is to be relaxed; `reversals` or `target` is needed, everything else has a default.
 #[schema(example = json!({"reversals": 20, "dry_run": true}))]
 pub struct RelaxRequest {
-    /// Largest number of reversals N_R; give this or `target`. The path begins with one more stroke.
+    /// Largest number of reversals N; give this or `target`. The path begins with one more stroke.
     pub reversals: Option<usize> = PROTOCOL_REVERSALS,
     /// The largest |τ|/(μ p_max) that may remain, a pure number (over the mean pressure where the largest is
     /// infinite): the smallest number of reversals that reaches it is found.

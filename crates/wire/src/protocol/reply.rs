@@ -16,7 +16,7 @@ pub struct ProtocolReply omits Option {
     pub kind: ProtocolKind,
     /// Where the path ends.
     pub end: ProtocolEnd,
-    /// Number of reversals N_R.
+    /// Number of reversals N.
     pub reversals: usize,
     /// The path, which `/simulate` and `/contacts/{id}/path` take as it is.
     pub path: DisplacementPath,

@@ -2,7 +2,7 @@
 //!
 //! Under a load per length P the pressure is a superposition of flat punches of half-width t, p(x) = (1/pi) int_x^a
 //! P'(t)/sqrt(t^2 - x^2) dt, so that G = P/E* over the half-width t takes the place of g in every kernel
-//! ([`LineContact::face`]), and partial slip is a stack over P (Jaeger 1998; Ciavarella 1998). Half-planes alike in
+//! ([`LineContact::face`]), and partial slip is a stack over P (Jäger 1998; Ciavarella 1998). Half-planes alike in
 //! their constants have one influence function for normal and tangential tractions: G* = E*.
 //!
 //! Displacements of a half-plane are known up to a motion in proportion to the load, which one length fixes: d(delta) =
