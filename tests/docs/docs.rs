@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::process::Command;
 
-use stickslip::api::{Need, need};
+use stickslip::api::need;
 use stickslip_wire::Code;
 
 use crate::common::process::Process;
@@ -192,8 +192,8 @@ fn the_page_of_access_lists_every_route_with_what_it_needs() {
     for (path, item) in document["paths"].as_object().unwrap() {
         for method in item.as_object().unwrap().keys().map(|method| method.to_uppercase()) {
             let needs = match need(&method, path) {
-                Need::Key(role) => format!("`{}`", role.name()),
-                Need::Nothing => "no key".to_owned(),
+                Some(role) => format!("`{}`", role.name()),
+                None => "no key".to_owned(),
             };
             rows.push((path.clone(), format!("| `{method} {path}` | {needs} |")));
         }

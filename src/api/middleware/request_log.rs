@@ -18,7 +18,7 @@ use tracing_opentelemetry::OpenTelemetrySpanExt as _;
 use uuid::Uuid;
 
 use crate::access::Role;
-use crate::api::facts::Need;
+use crate::api;
 use crate::api::middleware::access_control::Caller;
 use crate::api::middleware::request_id::{self, REQUEST_ID};
 use crate::api::middleware::security_headers;
@@ -45,7 +45,15 @@ struct RequestGuard<'a> {
     metrics: &'a RequestMetrics,
     endpoint: Endpoint<'a>,
     span: Span,
-    answered: bool,
+    outcome: Outcome,
+}
+
+/// How a request has ended.
+struct Outcome {
+    status: u16,
+    code: Option<&'static str>,
+    /// Of a fault, which the client does not see.
+    cause: Option<String>,
 }
 
 /// Serves a request, and adds what is common to every reply.
@@ -89,7 +97,7 @@ pub async fn log_request(
         metrics,
         endpoint,
         span: span.clone(),
-        answered: false,
+        outcome: Outcome { status: ABANDONED, code: None, cause: None },
     };
     let mut response = tokio::select! {
         biased;
@@ -103,11 +111,13 @@ pub async fn log_request(
     guard.contact = made.and_then(contact_in).or(contact);
 
     let problem = response.extensions_mut().remove::<Problem>().or_else(|| foreign(&response));
-    let code = problem.as_ref().map(|problem| problem.code().as_str());
-    let cause = problem.as_ref().and_then(Problem::cause).map(str::to_owned);
+    let mut outcome = Outcome { status: response.status().as_u16(), code: None, cause: None };
     if let Some(problem) = problem {
-        let changes = crate::api::need(method.as_str(), route.unwrap_or_default()) == Need::Key(Role::Write);
-        response = with_document(response, problem.document(id, changes));
+        (outcome.code, outcome.cause) = (Some(problem.code().as_str()), problem.cause().map(str::to_owned));
+        let changes = api::need(method.as_str(), route.unwrap_or_default()) == Some(Role::Write);
+        let document = problem.document(id, changes);
+        outcome.status = document.status;
+        response = with_document(response, document);
     }
     let kind = match route {
         Some(routes::PAGE | routes::PAGE_FILES) => security_headers::Kind::Page,
@@ -115,7 +125,7 @@ pub async fn log_request(
         _ => security_headers::Kind::Data,
     };
     security_headers::protect(response.headers_mut(), &method, kind);
-    guard.answer(response.status(), code, cause.as_deref());
+    guard.outcome = outcome;
     drop(guard);
     response.headers_mut().insert(REQUEST_ID, request_id);
     response
@@ -153,25 +163,11 @@ fn span(request: &Request, route: &str, id: &str) -> Span {
     span
 }
 
-/// Writes the line of a request: the fields that all have, and more.
-macro_rules! line {
-    ($level:ident, $guard:ident, $status:ident, $time:ident, $($more:ident,)* $message:literal) => {{
-        let RequestGuard { id: request_id, traceparent, method, client, contact, .. } = *$guard;
-        let (route, duration_ms) = ($guard.route.unwrap_or(NO_ROUTE), $time.as_secs_f64() * 1e3);
-        let (client, contact) = (client.map(display), contact.map(display));
-        let (key, tenant) = $guard.caller.get().map(|holder| (&*holder.name, holder.tenant.name())).unzip();
-        let status = $status;
-        tracing::$level!(
-            request_id, %method, route, status, duration_ms, client, key, tenant, contact, $($more,)* traceparent,
-            $message
-        );
-    }};
-}
-
-impl RequestGuard<'_> {
-    fn answer(&mut self, status: StatusCode, code: Option<&str>, cause: Option<&str>) {
-        self.answered = true;
-        let (time, status) = (self.start.elapsed(), status.as_u16());
+impl Drop for RequestGuard<'_> {
+    fn drop(&mut self) {
+        let RequestGuard { id: request_id, traceparent, method, client, contact, .. } = *self;
+        let Outcome { status, code, ref cause } = self.outcome;
+        let (time, cause) = (self.start.elapsed(), cause.as_deref());
         self.metrics.answered(self.endpoint, status, time);
         self.span.record("http.response.status_code", status);
         self.span.record("error.type", code);
@@ -179,22 +175,24 @@ impl RequestGuard<'_> {
             self.span.record("otel.status_code", "ERROR");
             self.span.record("otel.status_description", cause);
         }
-        match status {
-            500 => line!(error, self, status, time, code, cause, "request failed"),
-            // An external fault, which may last and affect every request.
-            501.. => line!(warn, self, status, time, code, cause, "request failed"),
-            _ => line!(info, self, status, time, code, "request"),
+        let (route, duration_ms) = (self.route.unwrap_or(NO_ROUTE), time.as_secs_f64() * 1e3);
+        let (client, contact) = (client.map(display), contact.map(display));
+        let (key, tenant) = self.caller.get().map(|holder| (&*holder.name, holder.tenant.name())).unzip();
+        /// The fields that all lines have, and more.
+        macro_rules! line {
+            ($level:ident, $($more:ident,)* $message:literal) => {
+                tracing::$level!(
+                    request_id, %method, route, status, duration_ms, client, key, tenant, contact, $($more,)*
+                    traceparent, $message
+                )
+            };
         }
-    }
-}
-
-impl Drop for RequestGuard<'_> {
-    fn drop(&mut self) {
-        if !self.answered {
-            let time = self.start.elapsed();
-            self.metrics.answered(self.endpoint, ABANDONED, time);
-            self.span.record("http.response.status_code", ABANDONED);
-            line!(info, self, ABANDONED, time, "the client disconnected");
+        match status {
+            ABANDONED => line!(info, "the client disconnected"),
+            500 => line!(error, code, cause, "request failed"),
+            // An external fault, which may last and affect every request.
+            501.. => line!(warn, code, cause, "request failed"),
+            _ => line!(info, code, "request"),
         }
     }
 }

@@ -7,42 +7,39 @@ use stickslip_wire::{Amplitudes, CycleDrive, CycleReply, JsonPath, WorkDensity};
 
 use super::prelude::*;
 use super::stress::QUERY_RADII;
-use crate::api::query_parameters::{List, number};
+use crate::api::query_parameters::{number, numbers};
 
 parameters! {
     pub struct CycleQuery {
         /// Amplitudes of the displacement, m, separated by commas or given one by one: of the indenter or, with
         /// `machine_stiffness`, of the machine. Give this or `force`.
-        displacement: Option<Vec<f64>> = List(Array(QUERY_RADII, Range { min: 0.0, ..range::DISPLACEMENT }));
+        displacement: Vec<f64> = numbers(&Array(QUERY_RADII, Range { min: 0.0, ..range::DISPLACEMENT }));
         /// Amplitudes of the tangential force, N, separated by commas or given one by one.
-        force: Option<Vec<f64>> = List(Array(QUERY_RADII, Range { min: 0.0, ..range::FORCE }));
+        force: Vec<f64> = numbers(&Array(QUERY_RADII, Range { min: 0.0, ..range::FORCE }));
         /// Radii for the friction work per area, m, separated by commas or given one by one. Give this or `points`, or
         /// neither.
-        radii: Option<Vec<f64>> = List(Array(QUERY_RADII, range::CONTACT_RADIUS));
+        radii: Vec<f64> = numbers(&Array(QUERY_RADII, range::CONTACT_RADIUS));
         /// Places along x for the friction work per area of a line contact, m, in place of `radii`.
-        x: Option<Vec<f64>> = List(Array(QUERY_RADII, range::PLACE));
+        x: Vec<f64> = numbers(&Array(QUERY_RADII, range::PLACE));
         /// The stiffness of a machine in series with the contact, N/m.
-        machine_stiffness: Option<f64> = number(&range::MACHINE_STIFFNESS);
+        machine_stiffness: f64 = number(&range::MACHINE_STIFFNESS).unchecked();
         /// Number of harmonics, from the first on.
-        harmonics: Option<usize> = Number { is_checked: false, ..count(&limits::HARMONICS) };
+        harmonics: usize = count(&limits::HARMONICS).unchecked();
         /// Number of radii for the friction work per area, evenly spaced from the centre to the edge, both included.
-        points: Option<usize> = Number { is_checked: false, ..count(&limits::STRESS_POINTS) };
-        /// `columns` (this document), `rows` (a JSON array of flat objects), `csv`, `ndjson`, `arrow` (an Arrow IPC
-        /// stream), or a plot as `svg` or `png`. Only `columns` has the friction work per area. If it is left out,
-        /// `Accept` decides.
-        format: Option<Format> = formats(&Format::ALL);
+        points: usize = count(&limits::STRESS_POINTS).unchecked();
+        ..formats(&Format::ALL, "Only `columns` has the friction work per area.")
     }
 }
 
 pub struct CheckedCycle {
     task: CycleTask,
-    format: Option<Format>,
+    format: Result<Format, Problem>,
 }
 
 impl QueryParams for CheckedCycle {
-    fn take(query: &mut QueryReader, headers: &HeaderMap) -> Option<CheckedCycle> {
+    fn take(query: &mut QueryReader<'_>) -> Option<CheckedCycle> {
         let CycleQuery { displacement, force, radii, x, machine_stiffness, harmonics, points, format } =
-            CycleQuery::take(query, headers)?;
+            CycleQuery::take(query)?;
         if !query.faults.is_empty() {
             return None;
         }
@@ -77,10 +74,9 @@ impl QueryParams for CheckedCycle {
         headers(("ETag" = String, description = "The sequence that they belong to, in quotes"))))
 )]
 pub async fn get_steady_cycle(
-    TenantApp(app): TenantApp,
-    ContactPath { id }: ContactPath,
+    ContactPath { app, id }: ContactPath,
     headers: HeaderMap,
     CheckedQuery(CheckedCycle { task, format }): CheckedQuery<CheckedCycle>,
 ) -> Result<Response, Problem> {
-    computations::get_of_contact(&app, id, &headers, format, task).await
+    computations::get_of_contact(&app, id, &headers, format?, task).await
 }

@@ -14,7 +14,7 @@ parameters! {
     /// When a stream of events ends by itself.
     pub struct EventsQuery {
         /// End the stream after this number of events. Without it the stream lasts as long as the contact.
-        limit: Option<usize> = count(&PAGE);
+        limit: usize = count(&PAGE);
     }
 }
 
@@ -30,8 +30,7 @@ parameters! {
         content_type = "text/event-stream", body = StateEvent))
 )]
 pub async fn watch_contact(
-    TenantApp(app): TenantApp,
-    ContactPath { id }: ContactPath,
+    ContactPath { app, id }: ContactPath,
     LastEventId { sequence }: LastEventId,
     CheckedQuery(query): CheckedQuery<EventsQuery>,
 ) -> Result<Sse<impl Stream<Item = Result<Event, axum::Error>>>, Problem> {

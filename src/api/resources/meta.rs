@@ -12,6 +12,7 @@ use serde_json::json;
 
 use super::prelude::*;
 use crate::admission::PoolError;
+use crate::api;
 use crate::server::connections::Refusal;
 use crate::sessions::SessionError;
 use crate::store::StoreError;
@@ -43,10 +44,6 @@ pub async fn check_readiness(State(app): State<Arc<App>>) -> Result<Response, Pr
     }
 }
 
-/// The text that `/openapi.json` serves.
-#[derive(Clone, Copy)]
-pub struct OpenApiText(pub &'static str);
-
 /// Get this document
 ///
 /// The document that `/docs` shows and that clients are generated from.
@@ -54,8 +51,8 @@ pub struct OpenApiText(pub &'static str);
     get, path = "/openapi.json", tag = "service",
     responses((status = 200, description = "The specification (OpenAPI 3.1)", body = serde_json::Value))
 )]
-pub async fn get_openapi(Extension(OpenApiText(text)): Extension<OpenApiText>) -> Response {
-    reply::json(text.as_bytes().to_vec())
+pub async fn get_openapi() -> Response {
+    reply::json(api::document().into())
 }
 
 /// Explain a kind of problem
