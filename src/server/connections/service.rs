@@ -12,7 +12,7 @@ use ipnet::IpNet;
 use tokio::sync::watch;
 use tower_service::Service as _;
 
-use super::bodies::{RequestInProgress, ReturnedBody, TrackedBody, discard};
+use super::bodies::{RequestInProgress, SharedBody, TrackedBody, discard};
 use super::proxies;
 use super::{ConnectionActivity, OwnHosts};
 use crate::admission::{Client, Pool, PoolError, Quota, Reservation};
@@ -81,8 +81,8 @@ impl Service {
         }
         let in_progress = RequestInProgress(activity);
         let (head, body) = request.into_parts();
-        let (body, mut unread) = ReturnedBody::new(body);
-        let mut request = Request::from_parts(head, Body::new(body));
+        let body = SharedBody::new(body);
+        let mut request = Request::from_parts(head, Body::new(body.clone()));
         let address = proxies::client(peer, request.headers(), &self.proxies);
         request.extensions_mut().insert(RequestClient { address, body_time: self.body_time });
         let client = Client::of_address(address);
@@ -127,10 +127,8 @@ impl Service {
         // A body that took too long is not waited for again.
         let readable = readable && reply.status() != StatusCode::REQUEST_TIMEOUT;
         // The next request of the connection begins after the body.
-        if let Ok(rest) = unread.try_recv()
-            && !rest.is_end_stream()
-        {
-            last |= !readable || !discard(rest).await;
+        if !body.is_end_stream() {
+            last |= !readable || !discard(body).await;
         }
         if last {
             reply.headers_mut().insert(header::CONNECTION, HeaderValue::from_static("close"));
