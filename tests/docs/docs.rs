@@ -52,7 +52,7 @@ async fn a_key_is_added_to_a_running_server_as_the_page_says() {
     let text = page("access.md");
     let block = text.split("```sh\n").nth(2).unwrap().split("```").next().unwrap();
     let folder = tempfile::tempdir().unwrap();
-    let first = stickslip::access::new_key("bench", &[stickslip::access::Role::Read], "lab").unwrap();
+    let first = stickslip::access::new_key("bench", &[stickslip::access::Role::Read], "lab", None).unwrap();
     let keys = folder.path().join("keys");
     std::fs::write(&keys, format!("{}\n", first.entry)).unwrap();
     let server = Process::with("memory:", &["--keys", keys.to_str().unwrap()]);
