@@ -86,29 +86,22 @@ fn operation<C: Computation>(route: Route) -> Operation {
 }
 
 /// How a client wants the reply of a computation, as its query says.
-struct ShownQuery<C> {
-    format: Result<Format, Problem>,
-    choice: Option<&'static str>,
-    of: PhantomData<fn() -> C>,
-}
+struct Shown<C>(Result<DisplayOptions, Problem>, PhantomData<fn() -> C>);
 
-impl<C: Computation> QueryParams for ShownQuery<C> {
-    fn take(query: &mut QueryReader<'_>) -> Option<ShownQuery<C>> {
+impl<C: Computation> QueryParams for Shown<C> {
+    fn take(query: &mut QueryReader<'_>) -> Option<Shown<C>> {
         let format = query.format(C::ABOUT.formats);
         let choice = C::ABOUT.choice.and_then(|choice| words(choice.words, |word| word).read(choice.name, query));
-        Some(ShownQuery { format, choice, of: PhantomData })
+        let shown = format.map(|format| DisplayOptions { choice, ..DisplayOptions::in_format(format) });
+        Some(Shown(shown, PhantomData))
     }
 }
 
-type AskedFor<C> = Result<CheckedQuery<ShownQuery<C>>, Problem>;
+type AskedFor<C> = Result<CheckedQuery<Shown<C>>, Problem>;
 
 fn shown<C: Computation>(query: AskedFor<C>) -> Result<DisplayOptions, Problem> {
-    if C::ABOUT.formats.len() == 1 {
-        // It has no parameters, and never refused those that it does not have.
-        return Ok(DisplayOptions::in_format(Format::Columns));
-    }
-    let CheckedQuery(ShownQuery { format, choice, .. }) = query?;
-    Ok(DisplayOptions { choice, ..DisplayOptions::in_format(format?) })
+    // One with a single format has no parameters, and never refused those that it does not have.
+    if C::ABOUT.formats.len() == 1 { Ok(DisplayOptions::in_format(Format::Columns)) } else { query?.0.0 }
 }
 
 fn written<C: Computation>(body: Vec<u8>, shown: &DisplayOptions) -> Response {
@@ -149,7 +142,7 @@ async fn run<C: Computation>(
     mut held: HeldResources,
 ) -> Result<Response, Problem> {
     C::check_shown(&task, &shown)?;
-    let (stop, _guard) = held.deadline(&app.pool);
+    let (stop, _guard) = app.pool.deadline_after(held.spent);
     held.resize(&app.pool, C::bytes(&task) + shown.bytes(C::rows(&task))).await?;
     let cost = C::cost(&task).saturating_add(shown.format.cost());
     let work = move || {

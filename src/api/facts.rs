@@ -15,28 +15,16 @@ pub type Refusal = (&'static str, &'static str);
 pub struct Facts {
     /// The role that the key of a request needs, if it needs a key.
     pub role: Option<Role>,
-    /// The refusals beyond those of its key and its body.
-    pub refusals: &'static [&'static [Refusal]],
+    /// The refusals beyond those that follow from its key, its parameters and its body.
+    pub refusals: &'static [Refusal],
     /// The schemas of the events that it sends.
     pub events: &'static [&'static str],
     /// Whether the body may be left out.
     pub optional_body: bool,
 }
 
-/// Of what is computed or stored.
-const LIMITED: &[Refusal] = &[
-    ("429", "The quota of the client is used up; try again after Retry-After"),
-    ("422", "The request is invalid, or the mechanics has no answer to it"),
-    ("503", "The server is busy; try again after Retry-After"),
-];
-/// Of a stored contact.
-const EXPIRED: &[Refusal] = &[("410", "The contact was idle for so long that it has expired")];
-/// Of a change of a stored contact.
-const CHANGES: &[Refusal] =
-    &[FORBIDDEN, ("412", "The contact has another sequence, or another label, than If-Match gives")];
-const FORBIDDEN: Refusal = ("409", "The state of the contact forbids this");
 /// Of a computation that may begin from a stored contact.
-const STORED: &[Refusal] = &[("404", "Not found"), FORBIDDEN];
+const STORED: &[Refusal] = &[("404", "Not found"), ("409", "The state of the contact forbids this")];
 /// Of the result of a job.
 const UNFINISHED: &[Refusal] = &[("409", "The job has not ended, or has failed")];
 /// Of a store that is not ready.
@@ -44,28 +32,22 @@ const NOT_READY: &[Refusal] =
     &[("503", "The server is busy; try again after Retry-After"), ("507", "The storage has no room left")];
 
 impl Facts {
-    const fn of(role: Option<Role>, refusals: &'static [&'static [Refusal]]) -> Facts {
+    const fn of(role: Option<Role>, refusals: &'static [Refusal]) -> Facts {
         Facts { role, refusals, events: &[], optional_body: false }
     }
 
     pub const OPEN: Facts = Facts::of(None, &[]);
     /// Whether the service is ready.
-    pub const READY: Facts = Facts::of(None, &[NOT_READY]);
+    pub const READY: Facts = Facts::of(None, NOT_READY);
     pub const METRICS: Facts = Facts::of(Some(Role::Metrics), &[]);
     /// Reads or computes something, and changes nothing.
-    pub const READS: Facts = Facts::of(Some(Role::Read), &[LIMITED]);
+    pub const READS: Facts = Facts::of(Some(Role::Read), &[]);
     /// Computes something that may begin from a stored contact.
-    pub const READS_STORED: Facts = Facts::of(Some(Role::Read), &[LIMITED, STORED]);
-    /// Reads a contact.
-    pub const READS_CONTACT: Facts = Facts::of(Some(Role::Read), &[LIMITED, EXPIRED]);
+    pub const READS_STORED: Facts = Facts::of(Some(Role::Read), STORED);
     /// Reads the result of a job.
-    pub const READS_RESULT: Facts = Facts::of(Some(Role::Read), &[LIMITED, UNFINISHED]);
-    /// Makes something new, or ends a job.
-    pub const WRITES: Facts = Facts::of(Some(Role::Write), &[LIMITED]);
-    /// Copies a contact.
-    pub const COPIES_CONTACT: Facts = Facts::of(Some(Role::Write), &[LIMITED, EXPIRED]);
-    /// Changes a contact.
-    pub const CHANGES_CONTACT: Facts = Facts::of(Some(Role::Write), &[LIMITED, EXPIRED, CHANGES]);
+    pub const READS_RESULT: Facts = Facts::of(Some(Role::Read), UNFINISHED);
+    /// Makes or changes something, or ends a job.
+    pub const WRITES: Facts = Facts::of(Some(Role::Write), &[]);
 }
 
 /// The routes, and the facts of each method on a path.

@@ -14,7 +14,6 @@ mod reply;
 pub mod request_limits;
 mod request_metrics;
 mod resources;
-mod routes;
 mod state;
 
 use std::future::Future;
@@ -38,7 +37,8 @@ use crate::server::{self, ConnectionLimiter, ConnectionLimits, Service};
 use stickslip_compute::computations::for_each_computation;
 
 use facts::{Facts, Routes};
-use middleware::{Observed, access_control, observe, security_headers};
+use middleware::request_log::{Observed, observe};
+use middleware::{access_control, security_headers};
 use request_metrics::RequestMetrics;
 use resources::{
     contacts, cycle, cycles, events, files, history, hysteresis_loop, jobs, meta, metrics, moves, observations, page,
@@ -71,11 +71,8 @@ pub async fn serve_within(
     let metrics = Arc::new(RequestMetrics::of(&serde_json::from_str(document()).unwrap_or_default()));
     let hosts = app.access.hosts.clone();
     let (stopping, stops) = watch::channel(false);
-    let observed = (metrics, pool.clone(), stops);
     let service = Service {
-        router: router(app, observed.clone()),
-        // The answer to requests that are not admitted.
-        refusals: with_middleware(Router::new().fallback(meta::refused), Access::default(), observed),
+        router: router(app, (metrics, pool.clone(), stops)),
         pool,
         by_address,
         body_time: limiter.limits.body,
@@ -91,18 +88,13 @@ pub async fn serve_within(
     .await;
 }
 
+/// All routes with the middleware around them, from the outermost layer to the innermost.
 fn router(app: App, observed: Observed) -> Router {
     let (api, _) = described().router.split_for_parts();
     let docs = SwaggerUi::new("/docs").config(Config::from("/openapi.json").validator_url("none"));
-    let access = app.access.clone();
-    let routes = api.with_state(Arc::new(app)).merge(docs).merge(page::routes()).fallback(meta::not_found);
-    with_middleware(routes, access, observed)
-}
-
-/// Adds the middleware, from the outermost layer to the innermost.
-fn with_middleware(routes: Router, access: Access, observed: Observed) -> Router {
-    let origins = (!access.origins.is_empty()).then(|| security_headers::cross_origin(&access.origins));
-    let keys = access.keys.map(|keys| from_fn_with_state((keys, observed.1.clone()), access_control::admit));
+    let Access { keys, origins, .. } = app.access.clone();
+    let origins = (!origins.is_empty()).then(|| security_headers::cross_origin(&origins));
+    let keys = keys.map(|keys| from_fn_with_state((keys, observed.1.clone()), access_control::admit));
     let layers = ServiceBuilder::new()
         .layer(SetSensitiveRequestHeadersLayer::new([AUTHORIZATION]))
         .layer(from_fn_with_state(observed, observe))
@@ -110,7 +102,7 @@ fn with_middleware(routes: Router, access: Access, observed: Observed) -> Router
         // Before keys are asked for: a browser asks whether it may send one.
         .option_layer(origins)
         .option_layer(keys);
-    routes.layer(layers)
+    api.with_state(Arc::new(app)).merge(docs).merge(page::routes()).fallback(meta::not_found).layer(layers)
 }
 
 /// The OpenAPI document, as `/openapi.json` serves it and `stickslip openapi` prints it.
@@ -124,7 +116,7 @@ pub fn need(method: &str, route: &str) -> Option<Role> {
     let method = if method == "HEAD" { "GET" } else { method };
     static FACTS: LazyLock<Vec<(&str, String, Facts)>> = LazyLock::new(|| described().facts);
     // With the slash that a folder may have.
-    if method == "GET" && [routes::PAGE, routes::PAGE_FILES, "/docs", "/docs/", "/docs/{*rest}"].contains(&route) {
+    if method == "GET" && [page::PAGE, page::FILES, "/docs", "/docs/", "/docs/{*rest}"].contains(&route) {
         return None;
     }
     let known = FACTS.iter().find(|(known, path, _)| *known == method && path == route);
@@ -146,24 +138,24 @@ fn described() -> Routes {
         .with(Facts { events: &["JobReply", "JobEndEvent"], ..Facts::READS }, routes!(jobs::watch_job))
         .with(Facts::WRITES, routes!(contacts::create_contact))
         .with(Facts::READS, routes!(contacts::list_contacts))
-        .with(Facts::READS_CONTACT, routes!(contacts::get_contact))
-        .with(Facts::CHANGES_CONTACT, routes!(contacts::rename_contact))
-        .with(Facts::CHANGES_CONTACT, routes!(contacts::delete_contact))
-        .with(Facts::READS_CONTACT, routes!(contacts::get_definition))
-        .with(Facts { optional_body: true, ..Facts::COPIES_CONTACT }, routes!(contacts::fork_contact))
-        .with(Facts::CHANGES_CONTACT, routes!(moves::move_contact))
-        .with(Facts::CHANGES_CONTACT, routes!(moves::follow_path))
-        .with(Facts::CHANGES_CONTACT, routes!(moves::relax_contact))
-        .with(Facts::CHANGES_CONTACT, routes!(observations::follow_bench))
-        .with(Facts::READS_CONTACT, routes!(observations::get_friction))
-        .with(Facts::READS_CONTACT, routes!(stress::get_stress))
-        .with(Facts::READS_CONTACT, routes!(residual::get_residual))
-        .with(Facts::READS_CONTACT, routes!(subsurface::compute_subsurface_stress))
-        .with(Facts::READS_CONTACT, routes!(cycle::get_steady_cycle))
-        .with(Facts::READS_CONTACT, routes!(history::get_history))
-        .with(Facts::READS_CONTACT, routes!(hysteresis_loop::get_loop))
-        .with(Facts::READS_CONTACT, routes!(cycles::get_cycles))
-        .with(Facts { events: &["StateEvent", "EndEvent"], ..Facts::READS_CONTACT }, routes!(events::watch_contact))
+        .with(Facts::READS, routes!(contacts::get_contact))
+        .with(Facts::WRITES, routes!(contacts::rename_contact))
+        .with(Facts::WRITES, routes!(contacts::delete_contact))
+        .with(Facts::READS, routes!(contacts::get_definition))
+        .with(Facts { optional_body: true, ..Facts::WRITES }, routes!(contacts::fork_contact))
+        .with(Facts::WRITES, routes!(moves::move_contact))
+        .with(Facts::WRITES, routes!(moves::follow_path))
+        .with(Facts::WRITES, routes!(moves::relax_contact))
+        .with(Facts::WRITES, routes!(observations::follow_bench))
+        .with(Facts::READS, routes!(observations::get_friction))
+        .with(Facts::READS, routes!(stress::get_stress))
+        .with(Facts::READS, routes!(residual::get_residual))
+        .with(Facts::READS, routes!(subsurface::compute_subsurface_stress))
+        .with(Facts::READS, routes!(cycle::get_steady_cycle))
+        .with(Facts::READS, routes!(history::get_history))
+        .with(Facts::READS, routes!(hysteresis_loop::get_loop))
+        .with(Facts::READS, routes!(cycles::get_cycles))
+        .with(Facts { events: &["StateEvent", "EndEvent"], ..Facts::READS }, routes!(events::watch_contact))
         .with(Facts::OPEN, routes!(meta::get_openapi))
         .with(Facts::OPEN, routes!(meta::get_problem))
         .with(Facts::OPEN, routes!(meta::check_health))

@@ -3,7 +3,6 @@
 //! not have is refused by name.
 
 use std::ops::RangeInclusive;
-use std::str::FromStr;
 use std::sync::Arc;
 
 use axum::extract::{FromRequestParts, Query};
@@ -19,6 +18,7 @@ use stickslip_wire::limits::{Array, Characters, Limit};
 use stickslip_wire::{Fault, Faults, Field, JsonPath, Rejection};
 
 use super::formats::{self, Format};
+use super::openapi::write_keywords;
 use super::problem::Problem;
 use super::state::App;
 
@@ -156,7 +156,7 @@ pub fn described_format(values: &'static [Format], shows: &str) -> Parameter {
 pub struct Kind<V> {
     /// The value of a text, or what is expected in its place.
     parse: Parse<V>,
-    /// Notes what is wrong with a value; none where the check of the request does.
+    /// Notes what is wrong with a value that could be read.
     check: Option<Check<V>>,
     /// Whether it is a list, whose members are separated by commas or given one by one under the same name.
     is_list: bool,
@@ -192,11 +192,6 @@ impl<V> Kind<V> {
     /// The same with an example.
     pub fn with_example(self, example: Value) -> Kind<V> {
         Kind { example: Some(example), ..self }
-    }
-
-    /// The same without its limits, which the check of the request looks at.
-    pub fn unchecked(self) -> Kind<V> {
-        Kind { check: None, ..self }
     }
 
     /// The value, if the client gives one that can be read.
@@ -248,41 +243,46 @@ impl<V> Kind<V> {
 
 /// A count within limits.
 pub fn count(limit: &'static RangeInclusive<usize>) -> Kind<usize> {
-    numeric("a whole number, not negative", limit)
+    let parse = |text: &str| text.parse().ok();
+    limited("a whole number, not negative", parse, limit, || json!({"type": "integer"}))
 }
 
 /// A number within the range of a quantity.
 pub fn number(range: &'static Range) -> Kind<f64> {
-    numeric("a number", range)
+    limited("a number", |text| text.parse().ok(), range, || json!({"type": "number", "format": "double"}))
 }
 
-fn numeric<V: FromStr + 'static>(expected: &'static str, limit: &'static dyn Limit<V>) -> Kind<V> {
-    let parse = move |text: &str| text.parse().map_err(|_| expected.to_owned());
-    let schema = || {
-        let mut schema = limit.keywords();
-        let is_whole = schema["maximum"].is_u64();
-        schema["type"] = json!(if is_whole { "integer" } else { "number" });
-        if !is_whole {
-            schema["format"] = json!("double");
-        }
-        schema
-    };
-    Kind { check: Some(Box::new(|value, at, faults| limit.check(value, at, faults))), ..Kind::of(parse, schema) }
+/// A text within limits.
+pub fn text(limit: &'static Characters) -> Kind<String> {
+    limited("a text", |text| Some(text.to_owned()), limit, || json!({"type": "string"}))
 }
 
 /// Numbers with commas between them, or given one by one; the check of the request looks at their range.
 pub fn numbers(limit: &'static Array<Range>) -> Kind<Vec<f64>> {
-    let parse = |text: &str| text.split(',').map(|member| member.trim().parse().ok()).collect::<Option<_>>();
-    let schema = || {
-        let mut schema = Limit::<Vec<f64>>::keywords(limit);
-        (schema["type"], schema["items"]["type"]) = (json!("array"), json!("number"));
-        schema
-    };
+    let parse = |text: &str| text.split(',').map(|member| member.trim().parse().ok()).collect();
+    let schema = || json!({"type": "array", "items": {"type": "number"}});
     Kind {
         check: Some(Box::new(|found, at, faults| _ = faults.length(at, found.len(), &limit.0))),
         is_list: true,
-        ..Kind::of(move |text| parse(text).ok_or_else(|| "numbers with commas between them".to_owned()), schema)
+        ..limited("numbers with commas between them", parse, limit, schema)
     }
+}
+
+/// Values within limits, whose schema has more keywords than those of the limit.
+fn limited<V: 'static>(
+    expected: &'static str,
+    parse: fn(&str) -> Option<V>,
+    limit: &'static dyn Limit<V>,
+    schema: fn() -> Value,
+) -> Kind<V> {
+    let schema = move || {
+        let mut schema = schema();
+        schema.as_object_mut().into_iter().for_each(|members| write_keywords(members, &limit.keywords()));
+        schema
+    };
+    let check = |value: &V, at: JsonPath<'_>, faults: &mut Faults| limit.check(value, at, faults);
+    let parse = move |text: &str| parse(text).ok_or_else(|| expected.to_owned());
+    Kind { check: Some(Box::new(check)), ..Kind::of(parse, schema) }
 }
 
 /// Fields of stresses, with commas between them, or given one by one.
@@ -313,17 +313,6 @@ fn choice<V: Copy>(
     let parse = move |text: &str| values.iter().copied().find(|value| name(*value) == text);
     let expected = move || format!("one of `{}`", names().join("`, `"));
     Kind::of(move |text| parse(text).ok_or_else(expected), move || schema(names()))
-}
-
-/// A text within limits.
-pub fn text(limit: &'static Characters) -> Kind<String> {
-    let schema = || {
-        let mut schema = Limit::<String>::keywords(limit);
-        schema["type"] = json!("string");
-        schema
-    };
-    let check = |text: &String, at: JsonPath<'_>, faults: &mut Faults| limit.check(text, at, faults);
-    Kind { check: Some(Box::new(check)), ..Kind::of(|text| Ok(text.to_owned()), schema) }
 }
 
 /// The number of a move.

@@ -11,8 +11,6 @@ pub const BODY_LIMIT: usize = 8 * 1024 * 1024;
 pub const FILE_LIMIT: usize = 16 * 1024 * 1024;
 /// When to try again after an overload.
 pub const RETRY_AFTER: Duration = Duration::from_secs(1);
-/// How often a comment keeps a stream without events open.
-pub const KEEP_ALIVE: Duration = Duration::from_secs(15);
 /// Items of a page.
 pub const PAGE: RangeInclusive<usize> = 1..=1_000;
 /// Items of a page if the client does not say.

@@ -6,8 +6,8 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use axum::body::Body;
-use axum::extract::{MatchedPath, Request};
-use axum::http::{HeaderValue, Method, StatusCode, header};
+use axum::extract::{MatchedPath, Request, State};
+use axum::http::{HeaderMap, HeaderName, HeaderValue, Method, StatusCode, header};
 use axum::middleware::Next;
 use axum::response::{IntoResponse as _, Response};
 use stickslip_wire::ProblemDocument;
@@ -18,17 +18,21 @@ use tracing_opentelemetry::OpenTelemetrySpanExt as _;
 use uuid::Uuid;
 
 use crate::access::Role;
+use crate::admission::Pool;
 use crate::api;
 use crate::api::middleware::access_control::Caller;
-use crate::api::middleware::request_id::{self, REQUEST_ID};
-use crate::api::middleware::security_headers;
+use crate::api::middleware::{compression, security_headers};
 use crate::api::problem::{Code, MEDIA_TYPE, Problem};
 use crate::api::request_limits;
 use crate::api::request_metrics::{ABANDONED, Endpoint, RequestMetrics};
-use crate::api::routes;
+use crate::api::resources::page;
 use crate::metrics::Counted;
 use crate::otlp;
 use crate::server::RequestClient;
+use crate::server::connections::Refusal;
+
+/// The header with the identifier of a request, both ways.
+pub const REQUEST_ID: HeaderName = HeaderName::from_static("x-request-id");
 
 /// A request under way. If it is dropped before it is answered, its client has left.
 struct RequestGuard<'a> {
@@ -56,15 +60,26 @@ struct Outcome {
     cause: Option<String>,
 }
 
+/// What all requests share: their metrics, the pool, and whether those that are not done are refused.
+pub type Observed = (Arc<RequestMetrics>, Pool, watch::Receiver<bool>);
+
+/// Logs a request and compresses its reply: one layer, because each such layer puts the request and its answer into a
+/// box.
+pub async fn observe(State((metrics, pool, stops)): State<Observed>, request: Request, next: Next) -> Response {
+    let client = compression::Client::of(request.headers());
+    let response = log_request(&metrics, stops, request, next).await;
+    compression::compress(response, client, &pool).await
+}
+
 /// Serves a request, and adds what is common to every reply.
-pub async fn log_request(
+async fn log_request(
     metrics: &Arc<RequestMetrics>,
     mut stops: watch::Receiver<bool>,
     mut request: Request,
     next: Next,
 ) -> Response {
     let start = Instant::now();
-    let request_id = request_id::of(request.headers());
+    let request_id = request_id(request.headers());
     let id = request_id.to_str().unwrap_or_default();
     let method = request.method().clone();
     let traceparent =
@@ -72,7 +87,7 @@ pub async fn log_request(
     // The route rather than the path: it holds no identifier, and cannot be made up by clients.
     let route = request.extensions().get::<MatchedPath>().cloned();
     let route = route.as_ref().map(MatchedPath::as_str);
-    if route == Some(routes::METRICS) {
+    if route == Some("/metrics") {
         request.extensions_mut().insert(Arc::clone(metrics));
     }
     let endpoint = metrics.endpoint(route, &method);
@@ -99,9 +114,15 @@ pub async fn log_request(
         span: span.clone(),
         outcome: Outcome { status: ABANDONED, code: None, cause: None },
     };
+    let answer = async {
+        match request.extensions_mut().remove::<Refusal>() {
+            Some(refusal) => Problem::from(refusal).into_response(),
+            None => next.run(request).instrument(span).await,
+        }
+    };
     let mut response = tokio::select! {
         biased;
-        response = next.run(request).instrument(span) => response,
+        response = answer => response,
         // Otherwise the service has been stopped.
         Ok(_) = stops.wait_for(|stops| *stops) => {
             Problem::in_doubt(Code::Stopping, "the server stops before this request is done").into_response()
@@ -120,7 +141,7 @@ pub async fn log_request(
         response = with_document(response, document);
     }
     let kind = match route {
-        Some(routes::PAGE | routes::PAGE_FILES) => security_headers::Kind::Page,
+        Some(page::PAGE | page::FILES) => security_headers::Kind::Page,
         Some(route) if route.starts_with("/docs") => security_headers::Kind::Docs,
         _ => security_headers::Kind::Data,
     };
@@ -129,6 +150,18 @@ pub async fn log_request(
     drop(guard);
     response.headers_mut().insert(REQUEST_ID, request_id);
     response
+}
+
+/// The identifier of the request with these headers: its own if that is printable and not too long, else a new one.
+fn request_id(headers: &HeaderMap) -> HeaderValue {
+    let sound = |id: &&HeaderValue| {
+        (1..=request_limits::REQUEST_ID_LENGTH).contains(&id.len()) && id.as_bytes().iter().all(u8::is_ascii_graphic)
+    };
+    headers.get(REQUEST_ID).filter(sound).cloned().unwrap_or_else(|| {
+        let mut text = Uuid::encode_buffer();
+        HeaderValue::from_str(Uuid::now_v7().hyphenated().encode_lower(&mut text))
+            .unwrap_or(HeaderValue::from_static("-"))
+    })
 }
 
 /// The route label of a request that matches no route.

@@ -49,7 +49,7 @@ fn visit_property(node: &mut Value, property: &str, visit: &dyn Fn(&mut Map<Stri
 }
 
 /// Adds keywords to a schema, and those of `items` to the schema of its elements.
-fn write_keywords(node: &mut Map<String, Value>, keywords: &Value) {
+pub fn write_keywords(node: &mut Map<String, Value>, keywords: &Value) {
     for (name, value) in keywords.as_object().into_iter().flatten() {
         match node.get_mut(name) {
             Some(Value::Object(inner)) if value.is_object() => write_keywords(inner, value),

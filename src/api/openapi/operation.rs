@@ -5,11 +5,25 @@ use std::sync::LazyLock;
 
 use serde_json::{Map, Value, json};
 
+use crate::access::Role;
 use crate::api::facts::{Facts, Refusal};
 use crate::api::problem::MEDIA_TYPE;
 use crate::server::connection_limits::HEAD;
 use stickslip_compute::formats::Format;
 
+/// Of what is computed or stored.
+const LIMITED: &[Refusal] = &[
+    ("429", "The quota of the client is used up; try again after Retry-After"),
+    ("422", "The request is invalid, or the mechanics has no answer to it"),
+    ("503", "The server is busy; try again after Retry-After"),
+];
+/// Of a stored contact.
+const EXPIRED: &[Refusal] = &[("410", "The contact was idle for so long that it has expired")];
+/// Of a change of a stored contact.
+const CHANGES: &[Refusal] = &[
+    ("409", "The state of the contact forbids this"),
+    ("412", "The contact has another sequence, or another label, than If-Match gives"),
+];
 /// Of every operation with a body.
 const OF_BODIES: &[Refusal] = &[
     ("400", "The body is not valid JSON"),
@@ -25,8 +39,7 @@ static EXAMPLES: LazyLock<Map<String, Value>> =
 /// Completes an operation.
 pub fn complete(method: &str, path: &str, operation: &mut Value, facts: &Facts) {
     refuse(path, operation, facts);
-    let parameters = operation["parameters"].as_array().into_iter().flatten();
-    let named = parameters.filter(|parameter| parameter["name"] == "format");
+    let named = parameters(operation).filter(|parameter| parameter["name"] == "format");
     let named: Vec<Value> = named.filter_map(|format| format["schema"]["enum"].as_array()).flatten().cloned().collect();
     if !named.is_empty() {
         operation["responses"]["406"] = refusal("Accept admits none of the formats");
@@ -48,9 +61,20 @@ pub fn complete(method: &str, path: &str, operation: &mut Value, facts: &Facts) 
     show_examples(operation, &name);
 }
 
+fn parameters(operation: &Value) -> impl Iterator<Item = &Value> {
+    operation["parameters"].as_array().into_iter().flatten()
+}
+
 /// Adds the refusals that an operation can meet, and the key that it needs.
 fn refuse(path: &str, operation: &mut Value, facts: &Facts) {
-    let has_body = operation["requestBody"].is_object();
+    let is_conditional = parameters(operation).any(|parameter| parameter["name"] == "If-Match");
+    let refusals = [
+        (matches!(facts.role, Some(Role::Read | Role::Write)), LIMITED),
+        (path.starts_with("/contacts/{"), EXPIRED),
+        (is_conditional, CHANGES),
+        (operation["requestBody"].is_object(), OF_BODIES),
+        (true, facts.refusals),
+    ];
     if facts.optional_body {
         operation["requestBody"]["required"] = json!(false);
     }
@@ -60,8 +84,7 @@ fn refuse(path: &str, operation: &mut Value, facts: &Facts) {
     if path.contains('{') {
         responses["404"] = refusal("Not found");
     }
-    let of_body = if has_body { OF_BODIES } else { &[] };
-    for (status, description) in facts.refusals.iter().copied().flatten().chain(of_body) {
+    for (status, description) in refusals.iter().filter(|(applies, _)| *applies).flat_map(|(_, refusals)| *refusals) {
         responses[*status] = refusal(description);
         if ["429", "503"].contains(status) {
             let seconds = json!({"type": "integer", "minimum": 0});

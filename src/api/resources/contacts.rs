@@ -1,7 +1,6 @@
 //! `/contacts`: contacts are created, listed, read, forked and deleted.
 
 use super::prelude::*;
-use crate::api::extract::OptionalBody;
 use crate::api::query_parameters::{closed, identifier, text};
 use crate::sessions::label_checksum;
 use crate::store::Page;
@@ -149,7 +148,7 @@ pub async fn get_definition(ContactPath { app, id }: ContactPath, _: CheckedQuer
 )]
 pub async fn fork_contact(
     ContactPath { app, id }: ContactPath,
-    request: OptionalBody<ForkRequest>,
+    request: CheckedBody<ForkRequest, true>,
 ) -> Result<Response, Problem> {
     Ok(reply::of_change(app.sessions.fork(id, request.body, request.key).await?))
 }

@@ -5,7 +5,6 @@ use futures::{Stream, StreamExt as _};
 
 use super::prelude::*;
 use crate::api::path_and_headers::LastEventId;
-use crate::api::request_limits::KEEP_ALIVE;
 use crate::sessions;
 use crate::store::StreamEvent;
 use stickslip_wire::{EndEvent, StateEvent};
@@ -40,5 +39,5 @@ pub async fn watch_contact(
         StreamEvent::End(reason) => Event::default().event("end").json_data(EndEvent { reason }),
     });
     let events = events.take(query.limit.unwrap_or(usize::MAX));
-    Ok(Sse::new(events).keep_alive(KeepAlive::new().interval(KEEP_ALIVE)))
+    Ok(Sse::new(events).keep_alive(KeepAlive::default()))
 }

@@ -130,10 +130,9 @@ impl From<LoopFileQuery> for LoopHints {
 )]
 pub async fn read_scan_file(
     State(app): State<Arc<App>>,
-    query: Result<CheckedQuery<ScanFileQuery>, Problem>,
+    CheckedQuery(hints): CheckedQuery<ScanFileQuery>,
     body: FileBody,
 ) -> Result<Response, Problem> {
-    let CheckedQuery(hints) = query?;
     answer(&app, body, move |bytes| files::scan(bytes, hints.into())).await
 }
 
@@ -151,10 +150,9 @@ pub async fn read_scan_file(
 )]
 pub async fn read_loop_file(
     State(app): State<Arc<App>>,
-    query: Result<CheckedQuery<LoopFileQuery>, Problem>,
+    CheckedQuery(hints): CheckedQuery<LoopFileQuery>,
     body: FileBody,
 ) -> Result<Response, Problem> {
-    let CheckedQuery(hints) = query?;
     answer(&app, body, move |bytes| files::measured_loop(bytes, &hints.into())).await
 }
 

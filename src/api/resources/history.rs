@@ -56,10 +56,6 @@ impl MoveSeries for History {
         moves * ITEM_BYTES
     }
 
-    fn marking(&self) -> &'static str {
-        if self.cycles { "" } else { "-unmarked" }
-    }
-
     fn parameters(&self) -> String {
         if self.cycles { String::new() } else { "&cycles=false".to_owned() }
     }

@@ -53,12 +53,8 @@ impl MoveSeries for Loop {
         moves * ITEM_BYTES + bytes_of_trace(moves * self.points_per_move)
     }
 
-    fn marking(&self) -> &'static str {
-        ""
-    }
-
     fn parameters(&self) -> String {
-        format!("&points_per_move={}", self.points_per_move)
+        if self.points_per_move == 1 { String::new() } else { format!("&points_per_move={}", self.points_per_move) }
     }
 
     async fn page(

@@ -6,7 +6,6 @@ use futures::StreamExt as _;
 
 use super::prelude::*;
 use crate::api::query_parameters::closed;
-use crate::api::request_limits::KEEP_ALIVE;
 use crate::store::StreamEvent;
 use stickslip_wire::{JobEndEvent, JobList, JobReply, JobState, SweepReply};
 
@@ -104,5 +103,5 @@ pub async fn stream(app: &App, id: Uuid) -> Result<Response, Problem> {
         }
         StreamEvent::End(reason) => Event::default().event("end").json_data(JobEndEvent { reason }),
     });
-    Ok(Sse::new(events).keep_alive(KeepAlive::new().interval(KEEP_ALIVE)).into_response())
+    Ok(Sse::new(events).keep_alive(KeepAlive::default()).into_response())
 }

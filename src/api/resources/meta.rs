@@ -4,14 +4,12 @@
 use std::any::Any;
 use std::sync::Arc;
 
-use axum::Extension;
 use axum::extract::{Path, State};
 use axum::http::Uri;
 use axum::response::IntoResponse;
 use serde_json::json;
 
 use super::prelude::*;
-use crate::admission::PoolError;
 use crate::api;
 use crate::server::connections::Refusal;
 use crate::sessions::SessionError;
@@ -76,14 +74,15 @@ pub async fn not_found(uri: Uri) -> Problem {
     Problem::new(Code::NotFound, format!("the path {path} was not found; /docs lists the paths"))
 }
 
-/// The answer to a request that is refused before routing.
-pub async fn refused(refusal: Option<Extension<Refusal>>) -> Problem {
-    match refusal {
-        Some(Extension(Refusal::Ambiguous(why))) => Problem::new(Code::AmbiguousRequest, why),
-        Some(Extension(Refusal::Stopping)) => Problem::new(Code::Stopping, "the server stops: nothing has changed"),
-        Some(Extension(Refusal::Foreign(why))) => Problem::new(Code::ForeignOrigin, why),
-        Some(Extension(Refusal::Full(error))) => error.into(),
-        None => PoolError::Busy.into(),
+/// Why the server has not admitted a request.
+impl From<Refusal> for Problem {
+    fn from(refusal: Refusal) -> Problem {
+        match refusal {
+            Refusal::Ambiguous(why) => Problem::new(Code::AmbiguousRequest, why),
+            Refusal::Stopping => Problem::new(Code::Stopping, "the server stops: nothing has changed"),
+            Refusal::Foreign(why) => Problem::new(Code::ForeignOrigin, why),
+            Refusal::Full(error) => error.into(),
+        }
     }
 }
 

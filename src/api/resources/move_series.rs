@@ -14,7 +14,7 @@ use stickslip_wire::{HistoryPage, JsonPath};
 use super::prelude::*;
 use crate::admission::Reservation;
 use crate::api::formats::TableStream;
-use crate::api::query_parameters::move_number;
+use crate::api::query_parameters::{QueryParams, QueryReader, move_number};
 use stickslip_compute::Stop as _;
 use stickslip_compute::formats::{CAPACITY, Table, Unwritable};
 use stickslip_compute::simulation::Failure;
@@ -57,10 +57,7 @@ pub(super) trait MoveSeries: Clone + Send + Sync + 'static {
     /// Bytes that so many moves take.
     fn bytes(&self, moves: usize) -> usize;
 
-    /// What distinguishes it from others of the same moves, in its version.
-    fn marking(&self) -> &'static str;
-
-    /// Its own part of the query of the next page.
+    /// Its own part of the query of the next page, and of its version; nothing for what is shown by default.
     fn parameters(&self) -> String;
 
     /// The document of these moves, which come after another one, for a reply in this format. The memory of the request
@@ -99,7 +96,7 @@ pub(super) async fn reply<T: MoveSeries>(
     let after = if newest { app.sessions.sequence(id).await?.saturating_sub(limit as u64) } else { after.unwrap_or(0) };
     let mut memory = app.pool.reserve(shown.bytes(limit) + format.bytes(0, 0)).await?;
     let moves = app.sessions.history(id, after, limit).await?;
-    let tag = formats::tag(format, &(version(&moves, after) + shown.marking()));
+    let tag = formats::tag(format, &(version(&moves, after) + &shown.parameters()));
     if reply::is_current(headers, &tag) {
         return Ok(reply::not_modified(&tag));
     }
@@ -138,7 +135,7 @@ async fn all<T: MoveSeries>(
     shown: T,
 ) -> Result<Response, Problem> {
     let end = app.sessions.sequence(id).await?;
-    let tag = formats::tag(format, &format!("{end}-all{}", shown.marking()));
+    let tag = formats::tag(format, &format!("{end}-all{}", shown.parameters()));
     if reply::is_current(headers, &tag) {
         return Ok(reply::not_modified(&tag));
     }

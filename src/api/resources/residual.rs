@@ -3,10 +3,8 @@
 use stickslip_wire::{Faults, Field, JsonPath, Residual, StressRequest};
 
 use super::prelude::*;
+use super::stress::PLOT_RADII;
 use stickslip_compute::computations::ResidualTask;
-
-/// Radii between which a plot has the shear stress.
-const PLOT_RADII: usize = 1_000;
 
 parameters! {
     pub struct ResidualQuery {

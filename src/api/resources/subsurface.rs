@@ -30,10 +30,9 @@ parameters! {
 )]
 pub async fn compute_subsurface_stress(
     ContactPath { app, id }: ContactPath,
-    query: Result<CheckedQuery<SubsurfaceFormat>, Problem>,
+    CheckedQuery(query): CheckedQuery<SubsurfaceFormat>,
     request: CheckedBody<SubsurfaceRequest>,
 ) -> Result<Response, Problem> {
-    let CheckedQuery(query) = query?;
     let format = query.format?;
     let CheckedBody { body, held, .. } = request;
     let task = app.sessions.subsurface_task(id, body).await?;

@@ -36,10 +36,10 @@ pub async fn run_sweep(
     TenantApp(app): TenantApp,
     headers: HeaderMap,
     Prefer { respond_async }: Prefer,
-    query: Result<CheckedQuery<TableQuery>, Problem>,
+    CheckedQuery(query): CheckedQuery<TableQuery>,
     body: CheckedBody<SweepRequest>,
 ) -> Result<Response, Problem> {
-    let (CheckedQuery(query), events) = (query?, accepts_events(&headers));
+    let events = accepts_events(&headers);
     let format = if events { Format::Columns } else { query.format? };
     let CheckedBody { body: checked, key, mut held } = body;
     let earlier = match &key {
