@@ -32,24 +32,11 @@ pub struct NewKey {
     pub entry: String,
 }
 
-/// Generates a key without an end.
-///
-/// # Errors
-/// As [`new_key_until`].
-pub fn new_key(name: &str, roles: &[Role], tenant: &str) -> Result<NewKey, String> {
-    new_key_until(name, roles, tenant, None)
-}
-
 /// Generates a key from the randomness of the system. It counts until `expires_at`, if that is given.
 ///
 /// # Errors
 /// The reason in one line.
-pub fn new_key_until(
-    name: &str,
-    roles: &[Role],
-    tenant: &str,
-    expires_at: Option<Timestamp>,
-) -> Result<NewKey, String> {
+pub fn new_key(name: &str, roles: &[Role], tenant: &str, expires_at: Option<Timestamp>) -> Result<NewKey, String> {
     let mut random = [0; RANDOM];
     getrandom::fill(&mut random).map_err(|error| format!("the system gives no random numbers: {error}"))?;
     let key = format!("{PREFIX}{}", const_hex::encode(random));

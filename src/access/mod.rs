@@ -11,16 +11,13 @@ use std::sync::Arc;
 
 use jiff::Timestamp;
 use sha2::{Digest as _, Sha256};
-use subtle::ConstantTimeEq as _;
 
 use crate::tenant::Tenant;
 
-pub use entry::{InvalidEntry, NewKey, new_key, new_key_until};
+pub use entry::{InvalidEntry, NewKey, new_key};
 
 /// Bytes of a key that a client may present. A shorter one could be guessed.
 const KEY_LENGTH: std::ops::RangeInclusive<usize> = 32..=256;
-/// Bytes of a hash that index its key.
-const PREFIX: usize = 8;
 
 /// SHA-256 of a key.
 type Hash = [u8; 32];
@@ -87,13 +84,10 @@ impl Holder {
     }
 }
 
-/// All known keys.
+/// All known keys, by their hashes. The time of a lookup depends on hashes alone, which are no secrets: nobody finds the
+/// key to one.
 #[derive(Debug, Default)]
-pub struct Keys {
-    // By the prefix of the hash. The time of a lookup can reveal at most a prefix of the hash of the presented key,
-    // which a client cannot choose bit by bit; the rest is compared in constant time.
-    by_prefix: HashMap<[u8; PREFIX], Vec<Arc<Holder>>>,
-}
+pub struct Keys(HashMap<Hash, Arc<Holder>>);
 
 impl Keys {
     /// Adds the keys of a text: entries `name:roles:tenant:sha256:hash` or `name:roles:tenant:sha256:hash:expires_at`,
@@ -107,14 +101,13 @@ impl Keys {
             for entry in content.split(',').map(str::trim).filter(|entry| !entry.is_empty()) {
                 let wrong = |why: &str| InvalidEntry { line: index + 1, why: why.to_owned() };
                 let holder = entry::parse(entry).map_err(|why| wrong(&why))?;
-                let mut known = self.by_prefix.values().flatten();
-                if known.any(|other| other.name == holder.name) {
+                if self.0.values().any(|other| other.name == holder.name) {
                     return Err(wrong("another key has this name"));
                 }
-                if self.find(&holder.hash).is_some() {
+                if self.0.contains_key(&holder.hash) {
                     return Err(wrong("the same key has two entries"));
                 }
-                self.by_prefix.entry(prefix(&holder.hash)).or_default().push(Arc::new(holder));
+                self.0.insert(holder.hash, Arc::new(holder));
             }
         }
         Ok(())
@@ -122,7 +115,7 @@ impl Keys {
 
     /// How many there are.
     pub fn count(&self) -> usize {
-        self.by_prefix.values().map(Vec::len).sum()
+        self.0.len()
     }
 
     /// The holder of the presented key, if it is known.
@@ -130,23 +123,12 @@ impl Keys {
         if !KEY_LENGTH.contains(&presented.len()) {
             return None;
         }
-        self.find(&Sha256::digest(presented).into())
+        self.0.get(&Hash::from(Sha256::digest(presented)))
     }
 
     /// Whether this very key still counts: it is known, allows what it did, and has not ended.
     #[must_use]
     pub fn holds(&self, holder: &Holder) -> bool {
-        self.find(&holder.hash).is_some_and(|known| **known == *holder) && !holder.has_expired()
+        self.0.get(&holder.hash).is_some_and(|known| **known == *holder) && !holder.has_expired()
     }
-
-    fn find(&self, hash: &Hash) -> Option<&Arc<Holder>> {
-        let same = |known: &Arc<Holder>| bool::from(known.hash[..].ct_eq(&hash[..]));
-        self.by_prefix.get(&prefix(hash))?.iter().find(|known| same(known))
-    }
-}
-
-fn prefix(hash: &Hash) -> [u8; PREFIX] {
-    let mut prefix = [0; PREFIX];
-    prefix.copy_from_slice(&hash[..PREFIX]);
-    prefix
 }

@@ -89,16 +89,12 @@ struct WaitQueue {
     waiting: BTreeMap<u64, oneshot::Sender<SolverSlot>>,
 }
 
-struct Waiter {
+/// Takes the work out of its queue when dropped. A slot that it was given meanwhile is dropped with the receiver.
+struct Waiter<'a> {
+    scheduler: &'a FairScheduler,
     key: QueueKey,
     arrival: u64,
     slot: oneshot::Receiver<SolverSlot>,
-}
-
-/// Takes the work out of its queue when dropped. A slot that it was given meanwhile is dropped with the receiver.
-struct WaiterGuard<'a> {
-    scheduler: &'a FairScheduler,
-    waiter: Waiter,
 }
 
 /// A thread for a piece of work, until dropped.
@@ -156,15 +152,15 @@ impl FairScheduler {
 
     /// A slot for a piece of work; it is lost to others if the future is dropped.
     pub(super) async fn wait_for_slot(&self, client: Client, kind: Kind) -> SolverSlot {
-        let waiter = {
+        let key = (client, kind);
+        let mut waiter = {
             let mut queues = self.0.queues.lock();
-            let arrival = queues.arrivals;
-            queues.arrivals += 1;
-            self.queue((client, kind), arrival, &mut queues)
+            let arrival = queues.arrive();
+            let slot = self.queue(key.clone(), arrival, &mut queues);
+            Waiter { scheduler: self, key, arrival, slot }
         };
-        let mut guard = WaiterGuard { scheduler: self, waiter };
         loop {
-            match timeout(OVERDUE, &mut guard.waiter.slot).await {
+            match timeout(OVERDUE, &mut waiter.slot).await {
                 // The sender is kept until it is used.
                 Ok(slot) => return slot.unwrap_or(SolverSlot(None)),
                 Err(_) => self.admit(&mut self.0.queues.lock()),
@@ -178,8 +174,7 @@ impl FairScheduler {
         if self.0.waiting.load(Ordering::Relaxed) > 0 || !self.has_room(&queues, kind) {
             return None;
         }
-        let arrival = queues.arrivals;
-        queues.arrivals += 1;
+        let arrival = queues.arrive();
         Some(self.begin((client.clone(), kind), arrival, &mut queues))
     }
 
@@ -193,10 +188,10 @@ impl FairScheduler {
         }
     }
 
-    fn queue(&self, key: QueueKey, arrival: u64, queues: &mut WaitQueues) -> Waiter {
+    fn queue(&self, key: QueueKey, arrival: u64, queues: &mut WaitQueues) -> oneshot::Receiver<SolverSlot> {
         let (sender, slot) = oneshot::channel();
         let clock = queues.clock();
-        let queue = queues.all.entry(key.clone()).or_default();
+        let queue = queues.all.entry(key).or_default();
         if !queue.is_busy() {
             queue.charged = queue.charged.max(clock);
         }
@@ -205,7 +200,7 @@ impl FairScheduler {
             queues.contended = Some(Instant::now());
         }
         self.admit(queues);
-        Waiter { key, arrival, slot }
+        slot
     }
 
     /// Gives free threads to those who are next.
@@ -215,13 +210,11 @@ impl FairScheduler {
                 return;
             };
             self.0.waiting.fetch_sub(1, Ordering::Relaxed);
-            let mut slot = self.begin(key, arrival, queues);
             // A waiter that has left passes its slot on.
-            if let Err(unused) = sender.send(slot) {
-                slot = unused;
-                if let Some(held) = slot.0.take() {
-                    queues.end(&held);
-                }
+            if let Err(mut unused) = sender.send(self.begin(key, arrival, queues))
+                && let Some(held) = unused.0.take()
+            {
+                queues.end(&held);
             }
         }
         if self.0.waiting.load(Ordering::Relaxed) == 0 {
@@ -259,6 +252,12 @@ impl WaitQueue {
 }
 
 impl WaitQueues {
+    /// The number of a new piece of work.
+    fn arrive(&mut self) -> u64 {
+        self.arrivals += 1;
+        self.arrivals
+    }
+
     /// Moves on to the least charged of the queues at work or waiting, or to the most charged of all if all are idle.
     fn clock(&mut self) -> u64 {
         let busy = self.all.values().filter(|queue| queue.is_busy()).map(|queue| queue.charged).min();
@@ -304,9 +303,9 @@ impl Held {
         if self.key.1 == Kind::Interactive && worked > INTERACTIVE {
             self.key.1 = Kind::Long;
         }
-        let (parked, waiter) = (Instant::now(), scheduler.queue(self.key.clone(), self.arrival, &mut queues));
+        let (parked, slot) = (Instant::now(), scheduler.queue(self.key.clone(), self.arrival, &mut queues));
         drop(queues);
-        if let Ok(mut slot) = waiter.slot.blocking_recv()
+        if let Ok(mut slot) = slot.blocking_recv()
             && let Some(held) = slot.0.take()
         {
             *self = Held { worked, ..held };
@@ -315,13 +314,12 @@ impl Held {
     }
 }
 
-impl Drop for WaiterGuard<'_> {
+impl Drop for Waiter<'_> {
     fn drop(&mut self) {
-        let (scheduler, Waiter { key, arrival, .. }) = (self.scheduler, &self.waiter);
-        let mut queues = scheduler.0.queues.lock();
-        if queues.all.get_mut(key).is_some_and(|queue| queue.waiting.remove(arrival).is_some()) {
-            scheduler.0.waiting.fetch_sub(1, Ordering::Relaxed);
-            scheduler.admit(&mut queues);
+        let mut queues = self.scheduler.0.queues.lock();
+        if queues.all.get_mut(&self.key).is_some_and(|queue| queue.waiting.remove(&self.arrival).is_some()) {
+            self.scheduler.0.waiting.fetch_sub(1, Ordering::Relaxed);
+            self.scheduler.admit(&mut queues);
         }
     }
 }

@@ -87,12 +87,18 @@ impl Capacity {
 /// The memory of a pool.
 #[derive(Debug)]
 pub(super) struct Memory {
-    capacity: Capacity,
-    ordinary: Arc<Semaphore>,
-    small: Arc<Semaphore>,
-    states: Arc<Semaphore>,
-    body: Reserve,
-    work: Reserve,
+    ordinary: Units,
+    small: Units,
+    states: Units,
+    /// By their stages.
+    reserves: [Reserve; 2],
+}
+
+/// So many bytes, as permits of a unit each.
+#[derive(Debug)]
+struct Units {
+    free: Arc<Semaphore>,
+    all: usize,
 }
 
 /// The reserve of a stage.
@@ -101,40 +107,38 @@ struct Reserve {
     /// One permit.
     turn: Arc<Semaphore>,
     /// Taken by whoever has the turn.
-    units: Arc<Semaphore>,
+    units: Units,
+}
+
+impl Units {
+    fn of(bytes: usize) -> Units {
+        let all = (bytes / UNIT).clamp(1, u32::MAX as usize);
+        Units { free: Arc::new(Semaphore::new(all)), all }
+    }
+
+    fn try_take(&self, units: usize) -> Option<OwnedSemaphorePermit> {
+        Arc::clone(&self.free).try_acquire_many_owned(u32::try_from(units).ok()?).ok()
+    }
+
+    fn taken(&self) -> usize {
+        self.all - self.free.available_permits()
+    }
 }
 
 impl Memory {
     pub(super) fn new(capacity: Capacity) -> Memory {
-        let units = |bytes: usize| Arc::new(Semaphore::new((bytes / UNIT).clamp(1, u32::MAX as usize)));
-        let reserve =
-            |stage| Reserve { turn: Arc::new(Semaphore::new(1)), units: units(capacity.reserve_bytes(stage)) };
-        Memory {
-            capacity,
-            ordinary: units(capacity.bytes),
-            small: units(capacity.small_bytes()),
-            states: units(capacity.state_bytes()),
-            body: reserve(Stage::Body),
-            work: reserve(Stage::Work),
-        }
+        let reserves = [Stage::Body, Stage::Work].map(|stage| Reserve {
+            turn: Arc::new(Semaphore::new(1)),
+            units: Units::of(capacity.reserve_bytes(stage)),
+        });
+        let [ordinary, small, states] = [capacity.bytes, capacity.small_bytes(), capacity.state_bytes()].map(Units::of);
+        Memory { ordinary, small, states, reserves }
     }
 
-    fn reserve(&self, stage: Stage) -> &Reserve {
-        match stage {
-            Stage::Body => &self.body,
-            Stage::Work => &self.work,
-        }
-    }
-
-    /// Bytes that are reserved.
+    /// Bytes that are reserved, without those of states.
     pub(super) fn taken(&self) -> usize {
-        let taken =
-            |bytes: usize, semaphore: &Semaphore| (bytes / UNIT).max(1).saturating_sub(semaphore.available_permits());
-        let of = |stage| taken(self.capacity.reserve_bytes(stage), &self.reserve(stage).units);
-        UNIT * (taken(self.capacity.bytes, &self.ordinary)
-            + taken(self.capacity.small_bytes(), &self.small)
-            + of(Stage::Body)
-            + of(Stage::Work))
+        let reserves = self.reserves.iter().map(|reserve| reserve.units.taken()).sum::<usize>();
+        UNIT * (self.ordinary.taken() + self.small.taken() + reserves)
     }
 }
 
@@ -162,14 +166,8 @@ impl Reservation {
         Reservation { shared: Some(permit), ..Reservation::default() }
     }
 
-    /// This and one that was not waited for, as one.
-    #[must_use]
-    pub fn with(mut self, other: Reservation) -> Reservation {
-        self.add(other);
-        self
-    }
-
-    fn add(&mut self, other: Reservation) {
+    /// Adds one that was not waited for.
+    pub fn add(&mut self, other: Reservation) {
         merge(&mut self.shared, other.shared);
         merge(&mut self.small, other.small);
         self.turn = other.turn.or(self.turn.take());
@@ -238,8 +236,9 @@ impl Pool {
     /// # Errors
     /// As [`Pool::wait`].
     pub async fn reserve_in_background(&self, bytes: usize) -> Result<Reservation, PoolError> {
-        let units = bytes.div_ceil(UNIT).min((self.capacity().reserve_bytes(Stage::Work) / UNIT).max(1));
-        self.permits(&self.memory().ordinary, units as u32).await.map(Reservation::of_shared)
+        let memory = self.memory();
+        let units = bytes.div_ceil(UNIT).min(memory.reserves[Stage::Work as usize].units.all);
+        self.permits(&memory.ordinary.free, units as u32).await.map(Reservation::of_shared)
     }
 
     /// Reserves bytes for all the states that a piece of work loads or copies, but at most all that there are for
@@ -251,15 +250,14 @@ impl Pool {
         if bytes <= UNCOUNTED {
             return Ok(Reservation::default());
         }
-        let wanted = bytes.div_ceil(UNIT).min((self.capacity().state_bytes() / UNIT).max(1));
-        self.permits(&self.memory().states, wanted as u32).await.map(Reservation::of_shared)
+        let Units { free, all } = &self.memory().states;
+        self.permits(free, bytes.div_ceil(UNIT).min(*all) as u32).await.map(Reservation::of_shared)
     }
 
     /// Reserves bytes if they are free now.
     #[must_use]
     pub fn try_reserve(&self, bytes: usize) -> Option<Reservation> {
-        let units = u32::try_from(bytes.div_ceil(UNIT)).ok()?;
-        Arc::clone(&self.memory().ordinary).try_acquire_many_owned(units).ok().map(Reservation::of_shared)
+        self.memory().ordinary.try_take(bytes.div_ceil(UNIT)).map(Reservation::of_shared)
     }
 
     /// Grows or shrinks the reservation of a request. It may hold no lock of a contact when it grows.
@@ -279,57 +277,49 @@ impl Pool {
             *reservation = Reservation::default();
             return Ok(());
         }
-        let (memory, capacity) = (self.memory(), self.capacity());
-        let wanted = bytes.div_ceil(UNIT).min((capacity.reserve_bytes(stage) / UNIT).max(1));
+        let memory = self.memory();
+        let reserve = &memory.reserves[stage as usize];
+        let wanted = bytes.div_ceil(UNIT).min(reserve.units.all);
         let Some(more) = wanted.checked_sub(reservation.units(stage)).filter(|more| *more > 0) else {
             reservation.shrink(wanted * UNIT);
             // Others wait for the turn: it is given up as soon as it can be done without.
             if let Some(turn) = &reservation.turn
-                && let Some(ordinary) = self.try_reserve(UNIT * held(&turn.units))
+                && let Some(ordinary) = memory.ordinary.try_take(held(&turn.units))
             {
                 reservation.turn = None;
-                reservation.add(ordinary);
+                reservation.add(Reservation::of_shared(ordinary));
             }
             return Ok(());
         };
-        let reserve = |more: usize| {
-            let units = Arc::clone(&memory.reserve(stage).units).try_acquire_many_owned(more as u32);
-            // Nobody else takes of them, and nobody has more than there are.
-            units.map_err(|_| PoolError::Busy)
-        };
+        // Nobody else takes of the reserve, and nobody has more than there is.
+        let of_reserve = || reserve.units.try_take(more).map(Some).ok_or(PoolError::Busy);
         if let Some(turn) = reservation.turn.as_mut().filter(|turn| turn.stage == stage) {
-            merge(&mut turn.units, Some(reserve(more)?));
+            merge(&mut turn.units, of_reserve()?);
             return Ok(());
         }
-        if let Ok(permit) = Arc::clone(&memory.ordinary).try_acquire_many_owned(more as u32) {
-            reservation.turn = None;
-            reservation.add(Reservation::of_shared(permit));
-            return Ok(());
-        }
-        let is_small = wanted <= capacity.small_bytes().min(SMALL) / UNIT;
-        let shared = if is_small { &memory.small } else { &memory.ordinary };
-        let fits = is_small || more <= capacity.bytes / UNIT;
-        // In a box, so that a request that need not wait is not as large as one that does.
-        let got = Box::pin(self.wait(async {
-            tokio::select! {
-                biased;
-                permit = Arc::clone(shared).acquire_many_owned(more as u32), if fits => {
-                    let permit = permit.ok();
-                    let got = if is_small {
-                        Reservation { small: permit, ..Reservation::default() }
-                    } else {
-                        Reservation { shared: permit, ..Reservation::default() }
-                    };
-                    Ok(got)
+        let got = if let Some(permit) = memory.ordinary.try_take(more) {
+            Reservation::of_shared(permit)
+        } else {
+            let is_small = wanted <= self.capacity().small_bytes().min(SMALL) / UNIT;
+            let shared = if is_small { &memory.small } else { &memory.ordinary };
+            let fits = is_small || more <= memory.ordinary.all;
+            // In a box, so that a request that need not wait is not as large as one that does.
+            Box::pin(self.wait(async {
+                tokio::select! {
+                    biased;
+                    permit = Arc::clone(&shared.free).acquire_many_owned(more as u32), if fits => {
+                        let (small, shared) = if is_small { (permit.ok(), None) } else { (None, permit.ok()) };
+                        Ok(Reservation { shared, small, turn: None })
+                    }
+                    turn = Arc::clone(&reserve.turn).acquire_owned() => {
+                        let turn = turn.map_err(|_| PoolError::Busy)?;
+                        let turn = Turn { stage, units: of_reserve()?, _turn: turn };
+                        Ok(Reservation { turn: Some(turn), ..Reservation::default() })
+                    }
                 }
-                turn = Arc::clone(&memory.reserve(stage).turn).acquire_owned() => {
-                    let turn = turn.map_err(|_| PoolError::Busy)?;
-                    let turn = Turn { stage, units: Some(reserve(more)?), _turn: turn };
-                    Ok(Reservation { turn: Some(turn), ..Reservation::default() })
-                }
-            }
-        }))
-        .await??;
+            }))
+            .await??
+        };
         reservation.turn = None;
         reservation.add(got);
         Ok(())

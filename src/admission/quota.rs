@@ -24,75 +24,53 @@ pub const BODY_SHARE: usize = 4;
 /// Bytes of one tenant in the store by default.
 pub const STORE_BYTES_PER_TENANT: usize = 16 * 1024 * 1024 * 1024;
 
-/// What is counted.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Quota {
+/// Declares the quotas: what is counted, its member of [`QuotaLimits`], the name of its setting and its default.
+macro_rules! quotas {
+    ($($(#[doc = $doc:literal])* $quota:ident, $member:ident, $name:literal, $default:expr;)*) => {
+        /// What is counted.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+        pub enum Quota { $($(#[doc = $doc])* $quota,)* }
+
+        impl Quota {
+            /// All of them.
+            pub const ALL: &[Quota] = &[$(Quota::$quota),*];
+
+            /// Its name: that of its setting, without the dashes in front.
+            pub const fn name(self) -> &'static str {
+                match self { $(Quota::$quota => $name,)* }
+            }
+        }
+
+        /// How much a client may have.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        pub struct QuotaLimits { $($(#[doc = $doc])* pub $member: usize,)* }
+
+        impl QuotaLimits {
+            /// The limit of a quota.
+            pub fn of(&self, quota: Quota) -> usize {
+                match quota { $(Quota::$quota => self.$member,)* }
+            }
+        }
+
+        impl Default for QuotaLimits {
+            fn default() -> Self {
+                QuotaLimits { $($member: $default,)* }
+            }
+        }
+    };
+}
+
+quotas! {
     /// Requests that arrive, wait or are served.
-    Requests,
+    Requests, requests, "max-requests-per-client", REQUESTS_PER_CLIENT;
     /// Streams of events.
-    Streams,
-    /// Contacts in the store.
-    Contacts,
-    /// Bytes in the store.
-    StoreBytes,
+    Streams, streams, "max-streams-per-client", STREAMS_PER_CLIENT;
+    /// Contacts of a tenant in the store.
+    Contacts, contacts, "max-contacts-per-tenant", CONTACTS_PER_TENANT;
+    /// Bytes of a tenant in the store.
+    StoreBytes, store_bytes, "max-store-bytes-per-tenant", STORE_BYTES_PER_TENANT;
     /// Bytes of memory for bodies that are arriving.
-    BodyBytes,
-}
-
-impl Quota {
-    /// All of them.
-    pub const ALL: [Quota; 5] = [Quota::Requests, Quota::Streams, Quota::Contacts, Quota::StoreBytes, Quota::BodyBytes];
-
-    /// Its name: that of its setting, without the dashes in front.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Quota::Requests => "max-requests-per-client",
-            Quota::Streams => "max-streams-per-client",
-            Quota::Contacts => "max-contacts-per-tenant",
-            Quota::StoreBytes => "max-store-bytes-per-tenant",
-            Quota::BodyBytes => "max-body-bytes-per-client",
-        }
-    }
-}
-
-/// How much a client may have.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct QuotaLimits {
-    /// Requests in progress.
-    pub requests: usize,
-    /// Event streams.
-    pub streams: usize,
-    /// Contacts of its tenant.
-    pub contacts: usize,
-    /// Bytes that its tenant takes in the store.
-    pub store_bytes: usize,
-    /// Bytes of its bodies that are arriving.
-    pub body_bytes: usize,
-}
-
-impl Default for QuotaLimits {
-    fn default() -> Self {
-        QuotaLimits {
-            requests: REQUESTS_PER_CLIENT,
-            streams: STREAMS_PER_CLIENT,
-            contacts: CONTACTS_PER_TENANT,
-            store_bytes: STORE_BYTES_PER_TENANT,
-            body_bytes: super::BYTES / BODY_SHARE,
-        }
-    }
-}
-
-impl QuotaLimits {
-    /// The limit of a quota.
-    pub fn of(&self, quota: Quota) -> usize {
-        match quota {
-            Quota::Requests => self.requests,
-            Quota::Streams => self.streams,
-            Quota::Contacts => self.contacts,
-            Quota::StoreBytes => self.store_bytes,
-            Quota::BodyBytes => self.body_bytes,
-        }
-    }
+    BodyBytes, body_bytes, "max-body-bytes-per-client", super::BYTES / BODY_SHARE;
 }
 
 /// A quota that is used up.

@@ -8,25 +8,23 @@ use axum::extract::State;
 use axum::http::{HeaderMap, header};
 use axum::response::Response;
 use axum::routing::{MethodRouter, post};
-use utoipa::openapi::example::ExampleBuilder;
-use utoipa::openapi::path::{HttpMethod, OperationBuilder, PathItem, PathsBuilder};
-use utoipa::openapi::request_body::RequestBodyBuilder;
-use utoipa::openapi::{ContentBuilder, Ref, Required, ResponseBuilder};
+use serde_json::json;
+use utoipa::openapi::RefOr;
+use utoipa::openapi::path::{HttpMethod, Operation, PathItem, PathsBuilder};
 use utoipa::{PartialSchema, ToSchema};
 use uuid::Uuid;
 
 use crate::admission::Reservation;
 use crate::otlp;
 use stickslip_compute::computations::{
-    Computation, DisplayOptions, FromStored, OnContact, Outcome, Route, Task, Visitor,
+    Computation, DisplayOptions, Example, FromStored, OnContact, Outcome, Route, Task, Visitor,
 };
 
-use super::checked_query::CheckedQuery;
 use super::extract::{CheckedBody, HeldResources};
 use super::facts::{Facts, Routes};
-use super::formats::{Format, Negotiated as _};
+use super::formats::{self, Format};
 use super::problem::Problem;
-use super::query_parameters::{Kind as _, QueryParams, QueryReader, described, formats, words};
+use super::query_parameters::{CheckedQuery, QueryParams, QueryReader, described_format, words};
 use super::reply;
 use super::state::{App, TenantApp};
 
@@ -36,10 +34,9 @@ impl Routes {
         let mut schemas = Vec::new();
         add_schemas::<C::Request>(&mut schemas);
         add_schemas::<<C::Outcome as Outcome>::Reply>(&mut schemas);
-        let formats = if C::ABOUT.formats.len() > 1 { C::ABOUT.formats } else { &[] };
         let described = PathItem::new(HttpMethod::Post, operation::<C>(route));
         let paths = PathsBuilder::new().path(route.path, described).build();
-        self.add(Facts { formats, ..facts }, (schemas, paths, handler));
+        self.add(facts, (schemas, paths, handler));
     }
 }
 
@@ -54,7 +51,7 @@ impl Visitor for Routes {
     }
 }
 
-type Schemas = Vec<(String, utoipa::openapi::RefOr<utoipa::openapi::schema::Schema>)>;
+type Schemas = Vec<(String, RefOr<utoipa::openapi::schema::Schema>)>;
 
 fn add_schemas<T: ToSchema>(schemas: &mut Schemas) {
     schemas.push((T::name().into_owned(), <T as PartialSchema>::schema()));
@@ -62,88 +59,72 @@ fn add_schemas<T: ToSchema>(schemas: &mut Schemas) {
 }
 
 /// The operation of a computation.
-fn operation<C: Computation>(route: Route) -> OperationBuilder {
+fn operation<C: Computation>(route: Route) -> Operation {
     let about = C::ABOUT;
-    let json = |name: &str| ContentBuilder::new().schema(Some(Ref::from_schema_name(name)));
-    let examples = C::examples().into_iter().map(|example| {
-        let shown = ExampleBuilder::new().summary(example.summary).value(Some(example.value));
-        (example.name, shown)
+    let document = |name: &str| json!({"schema": {"$ref": format!("#/components/schemas/{name}")}});
+    let example = |Example { name, summary, value }| (name, json!({"summary": summary, "value": value}));
+    let mut request = document(&C::Request::name());
+    request["examples"] = C::examples().into_iter().map(example).collect();
+    let reply = document(&<C::Outcome as Outcome>::Reply::name());
+    let operation = json!({
+        "tags": [route.tag],
+        "summary": about.title,
+        "description": about.description,
+        "operationId": route.operation,
+        "requestBody": {"required": true, "content": {"application/json": request}},
+        "responses": {"200": {"description": about.reply, "content": {"application/json": reply}}},
     });
-    let request = json(&C::Request::name()).examples_from_iter(examples).build();
-    let reply = json(&<C::Outcome as Outcome>::Reply::name()).build();
-    let mut operation = OperationBuilder::new()
-        .tag(route.tag)
-        .summary(Some(about.title))
-        .description(Some(about.description))
-        .operation_id(Some(route.operation))
-        .request_body(Some(
-            RequestBodyBuilder::new().content("application/json", request).required(Some(Required::True)).build(),
-        ))
-        .response("200", ResponseBuilder::new().description(about.reply).content("application/json", reply));
+    let mut operation: Operation = serde_json::from_value(operation).unwrap_or_default();
     if about.formats.len() > 1 {
-        let format = format!(
-            "`columns` (this document), `rows` (a JSON array of flat objects), `csv`, `ndjson`, `arrow` (an Arrow IPC \
-             stream), or a picture as `svg` or `png`. {} If it is left out, `Accept` decides.",
-            about.shows
+        let mut parameters = vec![described_format(about.formats, about.shows)];
+        parameters.extend(
+            about.choice.map(|choice| words(choice.words, |word| word).described(choice.name, choice.description)),
         );
-        operation = operation.parameter(described("format", format, &formats(about.formats), None));
-        if let Some(choice) = about.choice {
-            let kind = words(choice.words, |word| word);
-            operation = operation.parameter(described(choice.name, choice.description.to_owned(), &kind, None));
-        }
+        operation.parameters = Some(parameters.into_iter().map(RefOr::T).collect());
     }
     operation
 }
 
 /// How a client wants the reply of a computation, as its query says.
-struct ShownQuery<C> {
-    format: Option<Format>,
-    choice: Option<&'static str>,
-    of: PhantomData<fn() -> C>,
-}
+struct Shown<C>(Result<DisplayOptions, Problem>, PhantomData<fn() -> C>);
 
-impl<C: Computation> QueryParams for ShownQuery<C> {
-    fn take(query: &mut QueryReader, _: &HeaderMap) -> Option<ShownQuery<C>> {
-        let format = formats(C::ABOUT.formats).read("format", query);
+impl<C: Computation> QueryParams for Shown<C> {
+    fn take(query: &mut QueryReader<'_>) -> Option<Shown<C>> {
+        let format = query.format(C::ABOUT.formats);
         let choice = C::ABOUT.choice.and_then(|choice| words(choice.words, |word| word).read(choice.name, query));
-        Some(ShownQuery { format, choice, of: PhantomData })
+        let shown = format.map(|format| DisplayOptions { choice, ..DisplayOptions::in_format(format) });
+        Some(Shown(shown, PhantomData))
     }
 }
 
-type AskedFor<C> = Result<CheckedQuery<ShownQuery<C>>, Problem>;
+type AskedFor<C> = Result<CheckedQuery<Shown<C>>, Problem>;
 
-fn shown<C: Computation>(query: AskedFor<C>, headers: &HeaderMap) -> Result<DisplayOptions, Problem> {
-    if C::ABOUT.formats.len() == 1 {
-        // It has no parameters, and never refused those that it does not have.
-        return Ok(DisplayOptions::in_format(Format::Columns));
-    }
-    let CheckedQuery(ShownQuery { format, choice, .. }) = query?;
-    Ok(DisplayOptions { choice, ..DisplayOptions::in_format(Format::chosen(format, headers, C::ABOUT.formats)?) })
+fn shown<C: Computation>(query: AskedFor<C>) -> Result<DisplayOptions, Problem> {
+    // One with a single format has no parameters, and never refused those that it does not have.
+    if C::ABOUT.formats.len() == 1 { Ok(DisplayOptions::in_format(Format::Columns)) } else { query?.0.0 }
 }
 
 fn written<C: Computation>(body: Vec<u8>, shown: &DisplayOptions) -> Response {
-    if C::ABOUT.formats.len() == 1 { reply::json(body) } else { shown.format.reply(body) }
+    if C::ABOUT.formats.len() == 1 { reply::json(body) } else { formats::reply(shown.format, body) }
 }
 
 /// Answers a request that defines its contact.
 async fn answer<C: Computation>(
     State(app): State<Arc<App>>,
-    headers: HeaderMap,
     query: AskedFor<C>,
     request: CheckedBody<C::Request>,
 ) -> Result<Response, Problem> {
-    let shown = shown::<C>(query, &headers)?;
+    let shown = shown::<C>(query)?;
     run::<C>(&app, request.body, shown, request.held).await
 }
 
 /// Answers a request that may name a stored contact.
 async fn answer_stored<C: FromStored>(
     TenantApp(app): TenantApp,
-    headers: HeaderMap,
     query: AskedFor<C>,
     request: CheckedBody<C::Request>,
 ) -> Result<Response, Problem> {
-    let shown = shown::<C>(query, &headers)?;
+    let shown = shown::<C>(query)?;
     let CheckedBody { body, mut held, .. } = request;
     match C::stored(body) {
         Ok((id, expected, task)) => {
@@ -161,7 +142,7 @@ async fn run<C: Computation>(
     mut held: HeldResources,
 ) -> Result<Response, Problem> {
     C::check_shown(&task, &shown)?;
-    let (stop, _guard) = held.deadline(&app.pool);
+    let (stop, _guard) = app.pool.deadline_after(held.spent);
     held.resize(&app.pool, C::bytes(&task) + shown.bytes(C::rows(&task))).await?;
     let cost = C::cost(&task).saturating_add(shown.format.cost());
     let work = move || {
@@ -171,16 +152,14 @@ async fn run<C: Computation>(
     Ok(held.on(written::<C>(app.pool.run(cost, work).await??, &shown)))
 }
 
-/// The reply of a computation on a stored contact, in the format that the query names or `Accept` prefers, with the
-/// sequence of the contact as its version.
+/// The reply of a computation on a stored contact, with the sequence of the contact as its version, or 304.
 pub async fn get_of_contact<T: OnContact>(
     app: &App,
     id: Uuid,
     headers: &HeaderMap,
-    format: Option<Format>,
+    format: Format,
     task: T,
 ) -> Result<Response, Problem> {
-    let format = Format::chosen(format, headers, &Format::ALL)?;
     match unchanged(app, id, headers, format).await? {
         Some(unchanged) => Ok(unchanged),
         None => of_contact(app, id, format, task, Reservation::default()).await,
@@ -192,7 +171,7 @@ pub async fn unchanged(app: &App, id: Uuid, headers: &HeaderMap, format: Format)
     if !headers.contains_key(header::IF_NONE_MATCH) {
         return Ok(None);
     }
-    let tag = format.tag(&app.sessions.get(id).await?.sequence.to_string());
+    let tag = formats::tag(format, &app.sessions.get(id).await?.sequence.to_string());
     Ok(reply::is_current(headers, &tag).then(|| reply::not_modified(&tag)))
 }
 
@@ -208,5 +187,6 @@ pub async fn of_contact<T: OnContact>(
     let shown = DisplayOptions::in_format(format);
     task.check_shown(&shown)?;
     let (sequence, body) = app.sessions.compute_on(id, None, task, shown, &mut memory).await?;
-    Ok(reply::holding(reply::tagged(format.reply(body), &format.tag(&sequence.to_string())), memory))
+    let tag = formats::tag(format, &sequence.to_string());
+    Ok(reply::holding(reply::tagged(formats::reply(format, body), &tag), memory))
 }

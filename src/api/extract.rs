@@ -13,16 +13,14 @@ use http_body::Body as _;
 use sha2::{Digest as _, Sha256};
 use tokio::time::{Instant, timeout};
 
-use crate::admission::{
-    Deadline, INLINE, Pool, PoolError, Quota, RequestPermit, Reservation, Stage, StopOnDrop, UNCOUNTED,
-};
+use crate::admission::{INLINE, Pool, PoolError, Quota, RequestPermit, Reservation, Stage, UNCOUNTED};
 use crate::otlp;
 use crate::server::RequestClient;
 use crate::server::connection_limits::DISCARDED;
 use crate::store::RequestKey;
+use stickslip_compute::Stop as _;
 use stickslip_compute::computations::files;
 use stickslip_compute::simulation::{bytes, cost};
-use stickslip_compute::{Nanoseconds, Stop as _};
 use stickslip_wire::{self as wire, Document};
 
 use super::path_and_headers::IdempotencyKey;
@@ -44,23 +42,11 @@ pub struct CheckedBody<T: Document, const OPTIONAL: bool = false> {
 pub struct HeldResources {
     pub memory: Reservation,
     _permit: RequestPermit,
-    /// The work of its check.
-    spent: Duration,
-}
-
-/// A body that has been read.
-enum ReadBody<T: Document> {
-    Checked(T::Checked),
-    /// The check prepares a profile, at this cost.
-    Unprepared(T, Nanoseconds),
+    /// The work of its check, which counts for its deadline.
+    pub spent: Duration,
 }
 
 impl HeldResources {
-    /// A flag for the work that is left of the request, which must end within the deadline together with its check.
-    pub fn deadline(&self, pool: &Pool) -> (Deadline, StopOnDrop) {
-        pool.deadline_after(self.spent)
-    }
-
     /// Changes the reservation to this much memory.
     ///
     /// # Errors
@@ -74,9 +60,6 @@ impl HeldResources {
         reply::holding(response, self.memory)
     }
 }
-
-/// A body that may be left out.
-pub type OptionalBody<T> = CheckedBody<T, true>;
 
 impl<T: Document + 'static, const OPTIONAL: bool> FromRequest<Arc<App>> for CheckedBody<T, OPTIONAL> {
     type Rejection = Problem;
@@ -108,17 +91,14 @@ impl<T: Document + 'static, const OPTIONAL: bool> FromRequest<Arc<App>> for Chec
             let key = key.map(|key| RequestKey { key, fingerprint: fingerprint(&parts, &bytes) });
             let document = wire::parse::<T>(&bytes)?;
             let cost = check.cost(&document)?;
-            let read = if cost < INLINE {
-                ReadBody::Checked(check.check(document)??)
-            } else {
-                ReadBody::Unprepared(document, cost)
-            };
+            // A check that prepares a profile is work of its own, at this cost.
+            let read = if cost < INLINE { Ok(check.check(document)??) } else { Err((document, cost)) };
             Ok::<_, Problem>((read, key))
         };
         let (read, key) = app.pool.run(cost, work).await??;
         let body = match read {
-            ReadBody::Checked(body) => body,
-            ReadBody::Unprepared(document, cost) => {
+            Ok(body) => body,
+            Err((document, cost)) => {
                 let shape = document.profile().map_or(0, |defined| bytes::of_shape(defined.profile));
                 app.pool.resize(&mut memory, shape + length.saturating_mul(T::PARSED)).await?;
                 let work = move || otlp::part!("prepare").in_scope(|| profiles.check(document));

@@ -1,59 +1,30 @@
-//! What is known of a route beside its handler: what it needs, how it may be refused, and how it replies. The facts
+//! What is known of a route beside its handler: the role that it needs, how it may be refused, and its events. The facts
 //! stand in the router, at the route (`api/mod.rs`).
 
 use std::sync::Arc;
 
 use utoipa_axum::router::{OpenApiRouter, UtoipaMethodRouter};
 
-use super::openapi;
 use super::state::App;
 use crate::access::Role;
-use stickslip_compute::formats::Format;
-
-/// What a request needs.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Need {
-    /// Nothing.
-    Nothing,
-    /// A key with this role.
-    Key(Role),
-}
 
 /// A status, and why a route answers with it.
 pub type Refusal = (&'static str, &'static str);
 
 #[derive(Clone, Copy, Debug)]
 pub struct Facts {
-    /// What a request needs.
-    pub need: Need,
-    /// The refusals beyond those of its need and its body.
-    pub refusals: &'static [&'static [Refusal]],
-    /// The formats of the reply; none for one document.
-    pub formats: &'static [Format],
+    /// The role that the key of a request needs, if it needs a key.
+    pub role: Option<Role>,
+    /// The refusals beyond those that follow from its key, its parameters and its body.
+    pub refusals: &'static [Refusal],
     /// The schemas of the events that it sends.
     pub events: &'static [&'static str],
-    /// Whether a client that has the current version gets 304.
-    pub conditional: bool,
-    /// Whether a reply says where the next page is.
-    pub paged: bool,
     /// Whether the body may be left out.
     pub optional_body: bool,
 }
 
-/// Of what is computed or stored.
-const LIMITED: &[Refusal] = &[
-    ("429", "The quota of the client is used up; try again after Retry-After"),
-    ("422", "The request is invalid, or the mechanics has no answer to it"),
-    ("503", "The server is busy; try again after Retry-After"),
-];
-/// Of a stored contact.
-const EXPIRED: &[Refusal] = &[("410", "The contact was idle for so long that it has expired")];
-/// Of a change of a stored contact.
-const CHANGES: &[Refusal] =
-    &[FORBIDDEN, ("412", "The contact has another sequence, or another label, than If-Match gives")];
-const FORBIDDEN: Refusal = ("409", "The state of the contact forbids this");
 /// Of a computation that may begin from a stored contact.
-const STORED: &[Refusal] = &[("404", "Not found"), FORBIDDEN];
+const STORED: &[Refusal] = &[("404", "Not found"), ("409", "The state of the contact forbids this")];
 /// Of the result of a job.
 const UNFINISHED: &[Refusal] = &[("409", "The job has not ended, or has failed")];
 /// Of a store that is not ready.
@@ -61,63 +32,37 @@ const NOT_READY: &[Refusal] =
     &[("503", "The server is busy; try again after Retry-After"), ("507", "The storage has no room left")];
 
 impl Facts {
-    const fn of(need: Need, refusals: &'static [&'static [Refusal]]) -> Facts {
-        Facts { need, refusals, formats: &[], events: &[], conditional: false, paged: false, optional_body: false }
+    const fn of(role: Option<Role>, refusals: &'static [Refusal]) -> Facts {
+        Facts { role, refusals, events: &[], optional_body: false }
     }
 
-    pub const OPEN: Facts = Facts::of(Need::Nothing, &[]);
+    pub const OPEN: Facts = Facts::of(None, &[]);
     /// Whether the service is ready.
-    pub const READY: Facts = Facts::of(Need::Nothing, &[NOT_READY]);
-    pub const METRICS: Facts = Facts::of(Need::Key(Role::Metrics), &[]);
+    pub const READY: Facts = Facts::of(None, NOT_READY);
+    pub const METRICS: Facts = Facts::of(Some(Role::Metrics), &[]);
     /// Reads or computes something, and changes nothing.
-    pub const READS: Facts = Facts::of(Need::Key(Role::Read), &[LIMITED]);
+    pub const READS: Facts = Facts::of(Some(Role::Read), &[]);
     /// Computes something that may begin from a stored contact.
-    pub const READS_STORED: Facts = Facts::of(Need::Key(Role::Read), &[LIMITED, STORED]);
-    /// Reads a contact.
-    pub const READS_CONTACT: Facts = Facts::of(Need::Key(Role::Read), &[LIMITED, EXPIRED]);
+    pub const READS_STORED: Facts = Facts::of(Some(Role::Read), STORED);
     /// Reads the result of a job.
-    pub const READS_RESULT: Facts = Facts::of(Need::Key(Role::Read), &[LIMITED, UNFINISHED]);
-    /// Makes something new, or ends a job.
-    pub const WRITES: Facts = Facts::of(Need::Key(Role::Write), &[LIMITED]);
-    /// Copies a contact.
-    pub const COPIES_CONTACT: Facts = Facts::of(Need::Key(Role::Write), &[LIMITED, EXPIRED]);
-    /// Changes a contact.
-    pub const CHANGES_CONTACT: Facts = Facts::of(Need::Key(Role::Write), &[LIMITED, EXPIRED, CHANGES]);
+    pub const READS_RESULT: Facts = Facts::of(Some(Role::Read), UNFINISHED);
+    /// Makes or changes something, or ends a job.
+    pub const WRITES: Facts = Facts::of(Some(Role::Write), &[]);
 }
 
-/// The routes with their facts.
+/// The routes, and the facts of each method on a path.
 pub struct Routes {
-    /// The routes, and what their handlers say of them.
     pub router: OpenApiRouter<Arc<App>>,
-    pub facts: FactsOfRoutes,
-}
-
-/// Method, path and facts of every operation.
-#[derive(Clone, Debug, Default)]
-pub struct FactsOfRoutes(Vec<(&'static str, String, Facts)>);
-
-impl FactsOfRoutes {
-    /// The facts of a method on a route; none of what is not listed.
-    pub fn get(&self, method: &str, path: &str) -> Option<&Facts> {
-        let method = if method == "HEAD" { "GET" } else { method };
-        let mut found = self.0.iter().filter(|(listed, at, _)| *listed == method && at == path);
-        found.next().map(|(.., facts)| facts)
-    }
-
-    /// Adds the facts of an operation.
-    pub fn add(&mut self, method: &'static str, path: &str, facts: Facts) {
-        self.0.push((method, path.to_owned(), facts));
-    }
+    pub facts: Vec<(&'static str, String, Facts)>,
 }
 
 impl Routes {
     /// Adds operations with these facts.
-    pub fn add(&mut self, facts: Facts, mut routes: UtoipaMethodRouter<Arc<App>>) {
-        for (path, item) in &mut routes.1.paths {
-            for (method, operation) in openapi::operations(item) {
-                self.facts.add(method, path, facts);
-                openapi::complete(path, operation, &facts);
-            }
+    pub fn add(&mut self, facts: Facts, routes: UtoipaMethodRouter<Arc<App>>) {
+        for (path, item) in &routes.1.paths {
+            let methods = [("GET", &item.get), ("POST", &item.post), ("PATCH", &item.patch), ("DELETE", &item.delete)];
+            let described = methods.into_iter().filter(|(_, operation)| operation.is_some());
+            self.facts.extend(described.map(|(method, _)| (method, path.clone(), facts)));
         }
         self.router = std::mem::take(&mut self.router).routes(routes);
     }

@@ -9,44 +9,14 @@ pub use stickslip_compute::formats::{Format, TableStream};
 use super::accept::{admission, list_members};
 use super::problem::{Code, Problem};
 
-/// A format over HTTP.
-pub trait Negotiated: Sized {
-    /// The format that the query names, or the one out of `formats` that `Accept` prefers.
-    ///
-    /// # Errors
-    /// [`Code::NotAcceptable`] if `Accept` admits none of them.
-    fn chosen(named: Option<Self>, headers: &HeaderMap, formats: &[Self]) -> Result<Self, Problem>;
-
-    /// The tag of a reply in this format; that of columns is the version alone.
-    fn tag(self, version: &str) -> String;
-
-    /// 200 with a body in this format.
-    fn reply(self, body: impl Into<Body>) -> Response;
-}
-
-impl Negotiated for Format {
-    fn chosen(named: Option<Format>, headers: &HeaderMap, formats: &[Format]) -> Result<Format, Problem> {
-        named.map_or_else(|| preferred(headers, formats), Ok)
+/// The format that the query names, or the one out of `formats` that `Accept` prefers.
+///
+/// # Errors
+/// [`Code::NotAcceptable`] if `Accept` admits none of them.
+pub fn chosen(named: Option<Format>, headers: &HeaderMap, formats: &[Format]) -> Result<Format, Problem> {
+    if let Some(named) = named {
+        return Ok(named);
     }
-
-    fn tag(self, version: &str) -> String {
-        match self {
-            Format::Columns => format!("\"{version}\""),
-            other => format!("\"{version}-{}\"", other.name()),
-        }
-    }
-
-    fn reply(self, body: impl Into<Body>) -> Response {
-        let headers = [
-            (header::CONTENT_TYPE, HeaderValue::from_static(self.media_type())),
-            (header::VARY, HeaderValue::from_static("accept")),
-        ];
-        (headers, body.into()).into_response()
-    }
-}
-
-/// The format out of `formats` that `Accept` prefers.
-fn preferred(headers: &HeaderMap, formats: &[Format]) -> Result<Format, Problem> {
     if list_members(headers, "accept").all(|range| range.trim().is_empty()) {
         return Ok(Format::Columns);
     }
@@ -61,4 +31,21 @@ fn preferred(headers: &HeaderMap, formats: &[Format]) -> Result<Format, Problem>
             formats.iter().map(|format| format!("{} (`?format={}`)", format.media_type(), format.name())).collect();
         Problem::new(Code::NotAcceptable, format!("Accept must admit one of {}", known.join(", ")))
     })
+}
+
+/// The tag of a reply in this format; that of columns is the version alone.
+pub fn tag(format: Format, version: &str) -> String {
+    match format {
+        Format::Columns => format!("\"{version}\""),
+        other => format!("\"{version}-{}\"", other.name()),
+    }
+}
+
+/// 200 with a body in this format.
+pub fn reply(format: Format, body: impl Into<Body>) -> Response {
+    let headers = [
+        (header::CONTENT_TYPE, HeaderValue::from_static(format.media_type())),
+        (header::VARY, HeaderValue::from_static("accept")),
+    ];
+    (headers, body.into()).into_response()
 }

@@ -1,7 +1,6 @@
 //! HTTP: `router` is the table of contents; each resource has a file; [`problem`] says which error to use when.
 
 mod accept;
-mod checked_query;
 mod computations;
 mod extract;
 mod facts;
@@ -15,40 +14,40 @@ mod reply;
 pub mod request_limits;
 mod request_metrics;
 mod resources;
-mod routes;
 mod state;
 
 use std::future::Future;
-use std::sync::{Arc, OnceLock};
+use std::sync::{Arc, LazyLock};
 
+use axum::Router;
 use axum::http::header::AUTHORIZATION;
 use axum::middleware::from_fn_with_state;
-use axum::{Extension, Router};
 use tokio::net::TcpListener;
 use tokio::sync::watch;
 use tower::ServiceBuilder;
 use tower_http::catch_panic::CatchPanicLayer;
 use tower_http::sensitive_headers::SetSensitiveRequestHeadersLayer;
-use utoipa_axum::router::{OpenApiRouter, UtoipaMethodRouterExt as _};
+use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 use utoipa_swagger_ui::{Config, SwaggerUi};
 
+use crate::access::Role;
 use crate::server::tls::Tls;
 use crate::server::{self, ConnectionLimiter, ConnectionLimits, Service};
 use stickslip_compute::computations::for_each_computation;
-use stickslip_compute::formats::Format;
 
-use facts::{Facts, FactsOfRoutes, Routes};
-use middleware::{Observed, access_control, observe, security_headers};
+use facts::{Facts, Routes};
+use middleware::request_log::{Observed, observe};
+use middleware::{access_control, security_headers};
 use request_metrics::RequestMetrics;
-use resources::meta::OpenApiText;
 use resources::{
     contacts, cycle, cycles, events, files, history, hysteresis_loop, jobs, meta, metrics, moves, observations, page,
     residual, stress, subsurface, sweep,
 };
 
-pub use facts::Need;
 pub use problem::Problem;
+pub(crate) use query_parameters::{QueryParams, QueryReader};
+pub(crate) use resources::files::{LoopFileQuery, ScanFileQuery};
 pub use state::{Access, App};
 
 /// Serves the API on `listener` within the usual limits of connections, until `stop` is done.
@@ -72,11 +71,8 @@ pub async fn serve_within(
     let metrics = Arc::new(RequestMetrics::of(&serde_json::from_str(document()).unwrap_or_default()));
     let hosts = app.access.hosts.clone();
     let (stopping, stops) = watch::channel(false);
-    let observed = (metrics, pool.clone(), stops);
     let service = Service {
-        router: router(app, observed.clone()),
-        // The answer to requests that are not admitted.
-        refusals: with_middleware(Router::new().fallback(meta::refused), Access::default(), observed),
+        router: router(app, (metrics, pool.clone(), stops)),
         pool,
         by_address,
         body_time: limiter.limits.body,
@@ -92,18 +88,13 @@ pub async fn serve_within(
     .await;
 }
 
+/// All routes with the middleware around them, from the outermost layer to the innermost.
 fn router(app: App, observed: Observed) -> Router {
-    let (api, _) = described(document()).router.split_for_parts();
+    let (api, _) = described().router.split_for_parts();
     let docs = SwaggerUi::new("/docs").config(Config::from("/openapi.json").validator_url("none"));
-    let access = app.access.clone();
-    let routes = api.with_state(Arc::new(app)).merge(docs).merge(page::routes()).fallback(meta::not_found);
-    with_middleware(routes, access, observed)
-}
-
-/// Adds the middleware, from the outermost layer to the innermost.
-fn with_middleware(routes: Router, access: Access, observed: Observed) -> Router {
-    let origins = (!access.origins.is_empty()).then(|| security_headers::cross_origin(&access.origins));
-    let keys = access.keys.map(|keys| from_fn_with_state((keys, observed.1.clone(), facts()), access_control::admit));
+    let Access { keys, origins, .. } = app.access.clone();
+    let origins = (!origins.is_empty()).then(|| security_headers::cross_origin(&origins));
+    let keys = keys.map(|keys| from_fn_with_state((keys, observed.1.clone()), access_control::admit));
     let layers = ServiceBuilder::new()
         .layer(SetSensitiveRequestHeadersLayer::new([AUTHORIZATION]))
         .layer(from_fn_with_state(observed, observe))
@@ -111,67 +102,61 @@ fn with_middleware(routes: Router, access: Access, observed: Observed) -> Router
         // Before keys are asked for: a browser asks whether it may send one.
         .option_layer(origins)
         .option_layer(keys);
-    routes.layer(layers)
+    api.with_state(Arc::new(app)).merge(docs).merge(page::routes()).fallback(meta::not_found).layer(layers)
 }
 
 /// The OpenAPI document, as `/openapi.json` serves it and `stickslip openapi` prints it.
 pub fn document() -> &'static str {
-    static DOCUMENT: OnceLock<String> = OnceLock::new();
-    DOCUMENT.get_or_init(|| openapi::text(described("").router.into_openapi()))
+    static DOCUMENT: LazyLock<String> = LazyLock::new(|| openapi::text(described()));
+    &DOCUMENT
 }
 
-fn facts() -> &'static FactsOfRoutes {
-    static FACTS: OnceLock<FactsOfRoutes> = OnceLock::new();
-    FACTS.get_or_init(|| {
-        let mut facts = described("").facts;
-        for path in [routes::PAGE, routes::PAGE_FILES, "/docs", "/docs/{*rest}"] {
-            facts.add("GET", path, Facts::OPEN);
-        }
-        facts
-    })
+/// The role that a method on a route needs, if it needs a key: the highest one, where nothing is known of it.
+pub fn need(method: &str, route: &str) -> Option<Role> {
+    let method = if method == "HEAD" { "GET" } else { method };
+    static FACTS: LazyLock<Vec<(&str, String, Facts)>> = LazyLock::new(|| described().facts);
+    // With the slash that a folder may have.
+    if method == "GET" && [page::PAGE, page::FILES, "/docs", "/docs/", "/docs/{*rest}"].contains(&route) {
+        return None;
+    }
+    let known = FACTS.iter().find(|(known, path, _)| *known == method && path == route);
+    known.map_or(Some(Role::Write), |(.., facts)| facts.role)
 }
 
-/// What a method on a route needs.
-pub fn need(method: &str, route: &str) -> Need {
-    access_control::need(facts(), method, route)
-}
-
-/// The routes that the OpenAPI document describes, with their facts. `document` is its text, which one of them serves.
-fn described(document: &'static str) -> Routes {
-    let router = OpenApiRouter::with_openapi(openapi::base());
-    let mut routes = Routes { router, facts: FactsOfRoutes::default() };
+/// The routes that the OpenAPI document describes, with their facts.
+fn described() -> Routes {
+    let mut routes = Routes { router: OpenApiRouter::with_openapi(openapi::base()), facts: Vec::new() };
     for_each_computation(&mut routes);
-    let page = Facts { formats: &Format::ALL, conditional: true, ..Facts::READS_CONTACT };
     routes
-        .with(Facts { formats: &Format::TABLES, ..Facts::WRITES }, routes!(sweep::run_sweep))
+        .with(Facts::WRITES, routes!(sweep::run_sweep))
         .with(Facts::READS, routes!(files::read_scan_file))
         .with(Facts::READS, routes!(files::read_loop_file))
         .with(Facts::READS, routes!(jobs::list_jobs))
         .with(Facts::READS, routes!(jobs::get_job))
         .with(Facts::WRITES, routes!(jobs::cancel_job))
-        .with(Facts { formats: &Format::TABLES, ..Facts::READS_RESULT }, routes!(jobs::get_job_result))
+        .with(Facts::READS_RESULT, routes!(jobs::get_job_result))
         .with(Facts { events: &["JobReply", "JobEndEvent"], ..Facts::READS }, routes!(jobs::watch_job))
         .with(Facts::WRITES, routes!(contacts::create_contact))
         .with(Facts::READS, routes!(contacts::list_contacts))
-        .with(Facts { conditional: true, ..Facts::READS_CONTACT }, routes!(contacts::get_contact))
-        .with(Facts::CHANGES_CONTACT, routes!(contacts::rename_contact))
-        .with(Facts::CHANGES_CONTACT, routes!(contacts::delete_contact))
-        .with(Facts::READS_CONTACT, routes!(contacts::get_definition))
-        .with(Facts { optional_body: true, ..Facts::COPIES_CONTACT }, routes!(contacts::fork_contact))
-        .with(Facts::CHANGES_CONTACT, routes!(moves::move_contact))
-        .with(Facts::CHANGES_CONTACT, routes!(moves::follow_path))
-        .with(Facts::CHANGES_CONTACT, routes!(moves::relax_contact))
-        .with(Facts::CHANGES_CONTACT, routes!(observations::follow_bench))
-        .with(Facts::READS_CONTACT, routes!(observations::get_friction))
-        .with(page, routes!(stress::get_stress))
-        .with(page, routes!(residual::get_residual))
-        .with(Facts { formats: &Format::ALL, ..Facts::READS_CONTACT }, routes!(subsurface::compute_subsurface_stress))
-        .with(page, routes!(cycle::get_steady_cycle))
-        .with(Facts { paged: true, ..page }, routes!(history::get_history))
-        .with(Facts { paged: true, ..page }, routes!(hysteresis_loop::get_loop))
-        .with(page, routes!(cycles::get_cycles))
-        .with(Facts { events: &["StateEvent", "EndEvent"], ..Facts::READS_CONTACT }, routes!(events::watch_contact))
-        .with(Facts::OPEN, routes!(meta::get_openapi).layer(Extension(OpenApiText(document))))
+        .with(Facts::READS, routes!(contacts::get_contact))
+        .with(Facts::WRITES, routes!(contacts::rename_contact))
+        .with(Facts::WRITES, routes!(contacts::delete_contact))
+        .with(Facts::READS, routes!(contacts::get_definition))
+        .with(Facts { optional_body: true, ..Facts::WRITES }, routes!(contacts::fork_contact))
+        .with(Facts::WRITES, routes!(moves::move_contact))
+        .with(Facts::WRITES, routes!(moves::follow_path))
+        .with(Facts::WRITES, routes!(moves::relax_contact))
+        .with(Facts::WRITES, routes!(observations::follow_bench))
+        .with(Facts::READS, routes!(observations::get_friction))
+        .with(Facts::READS, routes!(stress::get_stress))
+        .with(Facts::READS, routes!(residual::get_residual))
+        .with(Facts::READS, routes!(subsurface::compute_subsurface_stress))
+        .with(Facts::READS, routes!(cycle::get_steady_cycle))
+        .with(Facts::READS, routes!(history::get_history))
+        .with(Facts::READS, routes!(hysteresis_loop::get_loop))
+        .with(Facts::READS, routes!(cycles::get_cycles))
+        .with(Facts { events: &["StateEvent", "EndEvent"], ..Facts::READS }, routes!(events::watch_contact))
+        .with(Facts::OPEN, routes!(meta::get_openapi))
         .with(Facts::OPEN, routes!(meta::get_problem))
         .with(Facts::OPEN, routes!(meta::check_health))
         .with(Facts::READY, routes!(meta::check_readiness))

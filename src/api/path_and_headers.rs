@@ -5,15 +5,15 @@ use std::sync::Arc;
 
 use axum::extract::{FromRequestParts, Path};
 use axum::http::request::Parts;
-use axum::http::{HeaderMap, header};
+use axum::http::{HeaderMap, HeaderValue};
 use utoipa::IntoParams;
 use utoipa::openapi::path::{Parameter, ParameterIn};
 use uuid::Uuid;
 
 use super::accept::{NAMED, admission, list_members};
 use super::problem::{Code, Problem};
-use super::query_parameters::{MOVE_NUMBER, described};
-use super::state::App;
+use super::query_parameters::move_number;
+use super::state::{App, TenantApp};
 use crate::sessions::Expected;
 
 /// Characters of an idempotency key.
@@ -23,6 +23,9 @@ const KEY_LENGTH: usize = 255;
 #[derive(IntoParams)]
 #[into_params(parameter_in = Path)]
 pub struct ContactPath {
+    /// The state that its tenant sees.
+    #[param(ignore)]
+    pub app: Arc<App>,
     /// The identifier of the contact.
     pub id: Uuid,
 }
@@ -31,6 +34,9 @@ pub struct ContactPath {
 #[derive(IntoParams)]
 #[into_params(parameter_in = Path)]
 pub struct JobPath {
+    /// The state that its tenant sees.
+    #[param(ignore)]
+    pub app: Arc<App>,
     /// The identifier of the job.
     pub id: Uuid,
 }
@@ -68,7 +74,7 @@ impl IntoParams for LastEventId {
     fn into_params(_: impl Fn() -> Option<ParameterIn>) -> Vec<Parameter> {
         let description = "The sequence of the last event that the client has received. The stream continues with the \
                            next one, without a gap; if the header is left out, it begins with the present state.";
-        let mut parameter = described("Last-Event-ID", description.to_owned(), &MOVE_NUMBER, None);
+        let mut parameter = move_number().described("Last-Event-ID", description);
         parameter.parameter_in = ParameterIn::Header;
         vec![parameter]
     }
@@ -87,7 +93,8 @@ impl FromRequestParts<Arc<App>> for ContactPath {
     type Rejection = Problem;
 
     async fn from_request_parts(parts: &mut Parts, app: &Arc<App>) -> Result<Self, Problem> {
-        Ok(ContactPath { id: identifier(parts, app, Code::ContactNotFound, "contact").await? })
+        let (app, id) = identified(parts, app, Code::ContactNotFound, "contact").await?;
+        Ok(ContactPath { app, id })
     }
 }
 
@@ -95,40 +102,50 @@ impl FromRequestParts<Arc<App>> for JobPath {
     type Rejection = Problem;
 
     async fn from_request_parts(parts: &mut Parts, app: &Arc<App>) -> Result<Self, Problem> {
-        Ok(JobPath { id: identifier(parts, app, Code::JobNotFound, "job").await? })
+        let (app, id) = identified(parts, app, Code::JobNotFound, "job").await?;
+        Ok(JobPath { app, id })
     }
 }
 
-/// The identifier in the path. A text that is not a UUID cannot name anything, so it is "not found" rather than
-/// invalid.
-async fn identifier(parts: &mut Parts, app: &Arc<App>, kind: Code, noun: &str) -> Result<Uuid, Problem> {
+/// The state that the tenant of a request sees, and the identifier in the path. A text that is not a UUID cannot name
+/// anything, so it is "not found" rather than invalid.
+async fn identified(parts: &mut Parts, app: &Arc<App>, kind: Code, noun: &str) -> Result<(Arc<App>, Uuid), Problem> {
     let missing = |id: &str| {
         let shown: String = id.chars().take(40).collect();
         Problem::new(kind, format!("the {noun} {shown} was not found"))
     };
-    match Path::<String>::from_request_parts(parts, app).await {
-        Ok(Path(id)) => Uuid::parse_str(&id).map_err(|_| missing(&id)),
-        // Percent signs that do not decode.
-        Err(_) => Err(missing("of this name")),
-    }
+    // Percent signs may not decode.
+    let path = Path::<String>::from_request_parts(parts, app).await;
+    let Path(id) = path.map_err(|_| missing("of this name"))?;
+    let id = Uuid::parse_str(&id).map_err(|_| missing(&id))?;
+    let Ok(TenantApp(app)) = TenantApp::from_request_parts(parts, app).await;
+    Ok((app, id))
+}
+
+/// The value of a header as `parse` reads it, if the client sends one, which is refused if it cannot be read.
+fn header<T>(
+    headers: &HeaderMap,
+    name: &str,
+    parse: impl FnOnce(&str) -> Option<T>,
+    refused: impl FnOnce() -> Problem,
+) -> Result<Option<T>, Problem> {
+    let read = |value: &HeaderValue| value.to_str().ok().and_then(|text| parse(text.trim())).ok_or_else(refused);
+    headers.get(name).map(read).transpose()
 }
 
 impl FromRequestParts<Arc<App>> for IfMatch {
     type Rejection = Problem;
 
     async fn from_request_parts(parts: &mut Parts, _: &Arc<App>) -> Result<Self, Problem> {
-        let Some(value) = parts.headers.get(header::IF_MATCH) else {
-            return Ok(IfMatch { expected: None });
+        let parse = |text: &str| {
+            // A version is the same version in a compressed reply.
+            let tag = text.strip_prefix("W/").unwrap_or(text);
+            let tag = tag.strip_prefix('"').and_then(|rest| rest.strip_suffix('"'));
+            if text == "*" { Some(None) } else { tag.and_then(expected).map(Some) }
         };
-        let text = value.to_str().unwrap_or_default().trim();
-        // A version is the same version in a compressed reply.
-        let tag = text.strip_prefix("W/").unwrap_or(text);
-        let tag = tag.strip_prefix('"').and_then(|rest| rest.strip_suffix('"'));
-        match (text, tag.and_then(expected)) {
-            ("*", _) => Ok(IfMatch { expected: None }),
-            (_, Some(expected)) => Ok(IfMatch { expected: Some(expected) }),
-            _ => Err(Problem::new(Code::InvalidInput, "If-Match must be a sequence in quotes, such as \"3\", or *")),
-        }
+        let refusal = "If-Match must be a sequence in quotes, such as \"3\", or *";
+        let expected = header(&parts.headers, "if-match", parse, || Problem::new(Code::InvalidInput, refusal))?;
+        Ok(IfMatch { expected: expected.flatten() })
     }
 }
 
@@ -149,14 +166,12 @@ impl IdempotencyKey {
     /// # Errors
     /// A [`Problem`] if it is empty, too long, or not visible ASCII.
     pub fn read(headers: &HeaderMap) -> Result<IdempotencyKey, Problem> {
-        let Some(value) = headers.get("idempotency-key") else {
-            return Ok(IdempotencyKey { key: None });
-        };
-        let key = value.to_str().ok().filter(|key| (1..=KEY_LENGTH).contains(&key.len()));
-        let key = key.filter(|key| key.bytes().all(|byte| byte.is_ascii_graphic()));
+        let is_sound =
+            |key: &&str| (1..=KEY_LENGTH).contains(&key.len()) && key.bytes().all(|byte| byte.is_ascii_graphic());
+        let parse = |key: &str| Some(key).filter(is_sound).map(str::to_owned);
         let refusal = || format!("Idempotency-Key must be 1 to {KEY_LENGTH} visible ASCII characters");
-        let key = key.ok_or_else(|| Problem::new(Code::InvalidInput, refusal()))?;
-        Ok(IdempotencyKey { key: Some(key.to_owned()) })
+        let refused = || Problem::new(Code::InvalidInput, refusal());
+        Ok(IdempotencyKey { key: header(headers, "idempotency-key", parse, refused)? })
     }
 }
 
@@ -164,13 +179,9 @@ impl FromRequestParts<Arc<App>> for LastEventId {
     type Rejection = Problem;
 
     async fn from_request_parts(parts: &mut Parts, _: &Arc<App>) -> Result<Self, Problem> {
-        let Some(value) = parts.headers.get("last-event-id") else {
-            return Ok(LastEventId { sequence: None });
-        };
-        let sequence = value.to_str().ok().and_then(|text| text.trim().parse().ok());
         let refusal = "Last-Event-ID must be the number of a move, such as 3";
         let refused = || Problem::at(Code::InvalidInput, "/Last-Event-ID", refusal);
-        sequence.map(|sequence| LastEventId { sequence: Some(sequence) }).ok_or_else(refused)
+        Ok(LastEventId { sequence: header(&parts.headers, "last-event-id", |text| text.parse().ok(), refused)? })
     }
 }
 

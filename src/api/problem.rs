@@ -103,6 +103,12 @@ impl IntoResponse for Problem {
     }
 }
 
+impl From<Problem> for Refusal {
+    fn from(problem: Problem) -> Refusal {
+        problem.refusal
+    }
+}
+
 /// What is refused for the same reason without a server.
 macro_rules! refused {
     ($($error:ty),+) => {

@@ -1,5 +1,6 @@
 //! Limits of the server that several modules share. What a document may hold is in [`stickslip_wire::limits`].
 
+use std::ops::RangeInclusive;
 use std::time::Duration;
 
 /// Characters of a request identifier that a client may choose.
@@ -10,5 +11,7 @@ pub const BODY_LIMIT: usize = 8 * 1024 * 1024;
 pub const FILE_LIMIT: usize = 16 * 1024 * 1024;
 /// When to try again after an overload.
 pub const RETRY_AFTER: Duration = Duration::from_secs(1);
-/// How often a comment keeps a stream without events open.
-pub const KEEP_ALIVE: Duration = Duration::from_secs(15);
+/// Items of a page.
+pub const PAGE: RangeInclusive<usize> = 1..=1_000;
+/// Items of a page if the client does not say.
+pub const DEFAULT_PAGE: usize = 100;

@@ -30,12 +30,8 @@ pub struct RequestMetrics {
     routes: HashSet<String>,
 }
 
-/// The labels of a request.
-#[derive(Clone, Copy)]
-pub struct Endpoint<'a> {
-    route: &'a str,
-    method: &'static str,
-}
+/// The route and the method of a request.
+pub type Endpoint<'a> = [&'a str; 2];
 
 impl RequestMetrics {
     /// Nothing has passed yet. What the OpenAPI document describes is shown from the beginning: a rate needs a zero to
@@ -70,16 +66,16 @@ impl RequestMetrics {
     pub fn endpoint<'a>(&self, route: Option<&'a str>, method: &Method) -> Endpoint<'a> {
         let route = route.map_or(NONE, |route| if self.routes.contains(route) { route } else { OTHER });
         let method = METHODS.into_iter().find(|known| *known == method.as_str()).unwrap_or(METHODS[METHODS.len() - 1]);
-        Endpoint { route, method }
+        [route, method]
     }
 
     /// How many requests of an endpoint have no answer yet.
-    pub fn in_flight(&self, Endpoint { route, method }: Endpoint<'_>) -> IntGauge {
-        self.in_flight.with_label_values(&[route, method])
+    pub fn in_flight(&self, endpoint: Endpoint<'_>) -> IntGauge {
+        self.in_flight.with_label_values(&endpoint)
     }
 
     /// Counts a request that has been answered, or abandoned.
-    pub fn answered(&self, Endpoint { route, method }: Endpoint<'_>, status: u16, time: Duration) {
+    pub fn answered(&self, [route, method]: Endpoint<'_>, status: u16, time: Duration) {
         self.duration.with_label_values(&[route, method]).observe(time.as_secs_f64());
         self.requests.with_label_values(&[route, method, &status.to_string()]).inc();
     }

@@ -1,34 +1,45 @@
 //! Why a command has no result: in words, and as the document that the service would send.
 
+use std::io::{self, IsTerminal as _};
 use std::path::Path;
 
 use stickslip_measured::import::ImportError;
 use stickslip_wire::{Code, Rejection};
 
-use super::io::{fault, problem};
+use super::io::json;
 use stickslip_compute::Refusal;
 
 pub struct CommandError {
-    /// What is printed unless JSON is asked for.
-    text: String,
-    /// What is printed with `--json`.
+    /// What is printed in place of the refusal, unless JSON is asked for.
+    text: Option<String>,
     refusal: Refusal,
 }
 
 impl CommandError {
     /// What is wrong with a file of an instrument.
     pub fn of_file(file: &Path, error: ImportError) -> CommandError {
-        CommandError { text: format!("{}: {error}", file.display()), refusal: error.into() }
+        CommandError { text: Some(format!("{}: {error}", file.display())), refusal: error.into() }
     }
 
+    /// The message of the error: two lines or more for readers on a terminal, otherwise the document that the service
+    /// would send.
     pub fn message(self, as_json: bool) -> String {
-        if as_json { fault(self.refusal, true) } else { self.text }
+        if let Some(text) = self.text.filter(|_| !as_json) {
+            return text;
+        }
+        let document = self.refusal.document("command line");
+        if as_json || !io::stderr().is_terminal() {
+            return json(&document);
+        }
+        let places = document.errors.iter().map(|fault| format!("\n{}: {}", fault.pointer, fault.detail));
+        let detail = if document.errors.is_empty() { &document.detail } else { "" };
+        format!("{}: {detail}", document.title).trim_end().to_owned() + &places.collect::<String>()
     }
 }
 
 impl From<String> for CommandError {
     fn from(text: String) -> CommandError {
-        CommandError { refusal: Refusal::new(Code::InvalidInput, &text), text }
+        CommandError { refusal: Refusal::new(Code::InvalidInput, &text), text: Some(text) }
     }
 }
 
@@ -40,7 +51,7 @@ impl From<&str> for CommandError {
 
 impl From<Refusal> for CommandError {
     fn from(refusal: Refusal) -> CommandError {
-        CommandError { text: problem(refusal.clone()), refusal }
+        CommandError { text: None, refusal }
     }
 }
 

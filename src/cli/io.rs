@@ -2,12 +2,10 @@
 
 use std::fmt::Display;
 use std::fs::File;
-use std::io::{self, IsTerminal as _, Read as _, Write};
+use std::io::{self, Read as _, Write};
 use std::path::Path;
 
 use serde_json::Value;
-
-use stickslip_compute::Refusal;
 
 /// The content of a file, or of standard input for `-`.
 pub fn read(file: &Path) -> Result<Vec<u8>, String> {
@@ -23,11 +21,6 @@ pub fn read(file: &Path) -> Result<Vec<u8>, String> {
 /// A value as indented JSON.
 pub fn json(value: &impl serde::Serialize) -> String {
     serde_json::to_string_pretty(value).unwrap_or_else(|error| error.to_string())
-}
-
-/// A problem as the message of an error: two lines on a terminal, otherwise the document that the service would send.
-pub fn problem(refusal: impl Into<Refusal>) -> String {
-    fault(refusal, !io::stderr().is_terminal())
 }
 
 pub fn print(text: impl Display) -> Result<(), String> {
@@ -49,19 +42,6 @@ pub fn write(write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(),
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(format!("cannot write: {error}")),
         _ => Ok(()),
     }
-}
-
-/// A problem as the message of an error: the document that the service would send, or two lines for readers.
-pub fn fault(refusal: impl Into<Refusal>, as_json: bool) -> String {
-    let document = refusal.into().document("command line");
-    if as_json {
-        return json(&document);
-    }
-    let places = document.errors.iter().map(|fault| format!("\n{}: {}", fault.pointer, fault.detail));
-    format!("{}: {}", document.title, if document.errors.is_empty() { &document.detail } else { "" })
-        .trim_end()
-        .to_owned()
-        + &places.collect::<String>()
 }
 
 pub fn parsed(text: &[u8]) -> Result<Value, String> {

@@ -10,7 +10,7 @@ use jiff::Timestamp;
 
 use super::io::print;
 use super::settings::masked;
-use crate::access::{Keys, Role, new_key, new_key_until};
+use crate::access::{Keys, Role, new_key};
 
 /// Distinguishes an entry from the path of a file.
 const ENTRY: &str = ":sha256:";
@@ -25,7 +25,7 @@ pub enum Key {
         name: String,
         /// Roles of the key: `write`, `read`, `metrics`, or several as in `read+metrics`.
         #[arg(long, required = true, value_parser = roles)]
-        role: Vec<Roles>,
+        role: Vec<Vec<Role>>,
         /// Tenant whose contacts it can access [default: the tenant without a name].
         #[arg(long, default_value = "")]
         tenant: String,
@@ -38,12 +38,9 @@ pub enum Key {
     },
 }
 
-/// What one argument says of the roles.
-#[derive(Clone)]
-pub struct Roles(Vec<Role>);
-
-fn roles(text: &str) -> Result<Roles, String> {
-    text.split(['+', ',']).map(str::parse).collect::<Result<_, _>>().map(Roles)
+/// Parses what one argument says of the roles.
+fn roles(text: &str) -> Result<Vec<Role>, String> {
+    text.split(['+', ',']).map(str::parse).collect()
 }
 
 /// A note must not look like another entry, in a file or in a variable.
@@ -54,8 +51,7 @@ fn note(text: &str) -> Result<String, String> {
 
 pub fn key(key: Key) -> Result<(), String> {
     let Key::New { name, role, tenant, expires_at, note } = key;
-    let roles: Vec<Role> = role.into_iter().flat_map(|Roles(roles)| roles).collect();
-    let new = new_key_until(&name, &roles, &tenant, expires_at)?;
+    let new = new_key(&name, &role.concat(), &tenant, expires_at)?;
     let note = note.map(|note| format!(" # {note}")).unwrap_or_default();
     print(format_args!("key   {}\nentry {}{note}", new.key, new.entry))
 }
@@ -69,7 +65,7 @@ pub fn make_first_key(file: &Path) -> Result<(), String> {
     if fs::symlink_metadata(file).is_ok() {
         return Ok(());
     }
-    let new = new_key("first", &FIRST_ROLES, "")?;
+    let new = new_key("first", &FIRST_ROLES, "", None)?;
     let name = masked(&file.to_string_lossy());
     let write = || {
         let mut entries = OpenOptions::new().write(true).create_new(true).mode(0o600).open(file)?;

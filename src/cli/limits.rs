@@ -53,7 +53,7 @@ pub struct Limits {
         default_value_t = ByteSize::b(admission::STORE_BYTES_PER_TENANT as u64))]
     max_store_bytes_per_tenant: ByteSize,
     /// Maximum bytes of memory for bodies that are arriving from one client [default: a quarter of --work-bytes].
-    #[arg(long, env = "STICKSLIP_MAX_BODY_BYTES_PER_CLIENT", value_parser = body_bytes)]
+    #[arg(long, env = "STICKSLIP_MAX_BODY_BYTES_PER_CLIENT", value_parser = at_least(BODY_LIMIT, "one body"))]
     max_body_bytes_per_client: Option<ByteSize>,
     /// How long a request waits before it is refused.
     #[arg(long, env = "STICKSLIP_MAX_WAIT", default_value = "10s", value_parser = duration)]
@@ -63,7 +63,7 @@ pub struct Limits {
         long,
         env = "STICKSLIP_WORK_BYTES",
         default_value_t = ByteSize::b(admission::BYTES as u64),
-        value_parser = work_bytes
+        value_parser = at_least(admission::LARGEST, "one request")
     )]
     work_bytes: ByteSize,
     /// Longest time that the solver works for one request.
@@ -128,14 +128,13 @@ fn duration(text: &str) -> Result<Duration, String> {
     if (least..=most).contains(&time) { Ok(time) } else { Err(format!("{least:?} to {most:?} are allowed")) }
 }
 
-fn work_bytes(text: &str) -> Result<ByteSize, String> {
-    let (size, least) = (text.parse::<ByteSize>()?, ByteSize::b(admission::LARGEST as u64));
-    if size < least { Err(format!("at least {least}: one request can take as much")) } else { Ok(size) }
-}
-
-fn body_bytes(text: &str) -> Result<ByteSize, String> {
-    let (size, least) = (text.parse::<ByteSize>()?, ByteSize::b(BODY_LIMIT as u64));
-    if size < least { Err(format!("at least {least}: one body can take as much")) } else { Ok(size) }
+/// Parses a number of bytes that is not below this; the text says what can take as much.
+fn at_least(bytes: usize, one: &'static str) -> impl Fn(&str) -> Result<ByteSize, String> + Clone {
+    let least = ByteSize::b(bytes as u64);
+    move |text| {
+        let size = text.parse::<ByteSize>()?;
+        if size < least { Err(format!("at least {least}: {one} can take as much")) } else { Ok(size) }
+    }
 }
 
 fn at_least_one(text: &str) -> Result<usize, String> {

@@ -12,7 +12,7 @@ use common::{ball, problem, run, until};
 use futures::StreamExt as _;
 use reqwest::{Method, Response};
 use serde_json::{Value, json};
-use stickslip::access::{Keys, Role, new_key, new_key_until};
+use stickslip::access::{Keys, Role, new_key};
 use stickslip::store::Tenant;
 use stickslip_wire::client::{Event, Options};
 use stickslip_wire::{EndReason, JobState};
@@ -61,7 +61,7 @@ impl Guarded {
     /// Each key has a name by which it is called, its roles and its tenant.
     async fn start(store: &str, more: &[&str], keys: &[(&'static str, &[Role], &str)]) -> Guarded {
         let folder = tempdir().unwrap();
-        let made = keys.iter().map(|(name, roles, tenant)| (*name, new_key(name, roles, tenant).unwrap()));
+        let made = keys.iter().map(|(name, roles, tenant)| (*name, new_key(name, roles, tenant, None).unwrap()));
         let made: Vec<_> = made.collect();
         let file = folder.path().join("keys");
         let entries: Vec<&str> = made.iter().map(|(_, new)| new.entry.as_str()).collect();
@@ -426,7 +426,7 @@ async fn a_key_with_an_end_counts_until_then() {
     let server = Guarded::start("memory:", &[], &[("kept", &[Role::Write], "lab")]).await;
     let id = server.contact("kept").await;
     let end = jiff::Timestamp::now() + jiff::SignedDuration::from_secs(10);
-    let brief = new_key_until("brief", &[Role::Read], "lab", Some(end)).unwrap();
+    let brief = new_key("brief", &[Role::Read], "lab", Some(end)).unwrap();
     let all = std::fs::read_to_string(server.folder.path().join("keys")).unwrap() + &brief.entry + " # for a moment\n";
     server.replace(&all);
     server.process.signal("HUP");
@@ -475,8 +475,8 @@ fn the_command_line_makes_keys_with_several_roles_an_end_and_a_note() {
 
 #[test]
 fn a_key_is_known_by_its_hash_alone_and_has_its_roles() {
-    let bench = new_key("bench", &[Role::Write], "lab").unwrap();
-    let graph = new_key("graph", &[Role::Metrics, Role::Read], "").unwrap();
+    let bench = new_key("bench", &[Role::Write], "lab", None).unwrap();
+    let graph = new_key("graph", &[Role::Metrics, Role::Read], "", None).unwrap();
     let mut keys = Keys::default();
     keys.add(&format!("# keys\n{} # the bench\n\n  {},\n", bench.entry, graph.entry)).unwrap();
     assert_eq!(keys.count(), 2);
@@ -493,12 +493,12 @@ fn a_key_is_known_by_its_hash_alone_and_has_its_roles() {
     for unknown in ["", "bench", hash, &other, &bench.key[1..], &upper, &longer, &"x".repeat(100_000)] {
         assert_eq!(keys.holder(unknown.as_bytes()), None, "{unknown}");
     }
-    assert_ne!(new_key("bench", &[Role::Write], "lab").unwrap().key, bench.key);
+    assert_ne!(new_key("bench", &[Role::Write], "lab", None).unwrap().key, bench.key);
 }
 
 #[test]
 fn an_entry_that_is_wrong_is_refused_by_its_line_and_not_shown() {
-    let good = new_key("good", &[Role::Read], "").unwrap().entry;
+    let good = new_key("good", &[Role::Read], "", None).unwrap().entry;
     let hash = good.rsplit(':').next().unwrap().to_owned();
     for (entry, why) in [
         (hash.clone(), "name:roles:tenant:sha256:hash"),

@@ -45,7 +45,7 @@ async fn without_keys_it_listens_on_loopback_only_unless_insecure() {
             assert!(said.starts_with("--keys"), "{said}");
         }
     }
-    let entry = new_key("a", &[Role::Read], "").unwrap().entry;
+    let entry = new_key("a", &[Role::Read], "", None).unwrap().entry;
     std::fs::write(&empty, &entry).unwrap();
     std::fs::write(&settings, "listen = '0.0.0.0:0'\nstore = 'memory:'\ninsecure = true\n").unwrap();
     let everywhere = ["--listen", "0.0.0.0:0", "--store", "memory:"];
@@ -138,7 +138,7 @@ fn header<'a>(headers: &'a HeaderMap, name: &str) -> Option<&'a str> {
 
 #[tokio::test]
 async fn every_reply_says_what_browsers_must_not_do_with_it() {
-    let entry = new_key("a", &[Role::Read], "").unwrap().entry;
+    let entry = new_key("a", &[Role::Read], "", None).unwrap().entry;
     let server = Process::with("memory:", &["--keys", &entry]);
     let http = reqwest::Client::builder().redirect(reqwest::redirect::Policy::none()).build().unwrap();
     for (path, page, status) in [
@@ -186,7 +186,7 @@ async fn every_reply_says_what_browsers_must_not_do_with_it() {
 
 #[tokio::test]
 async fn a_page_of_a_named_origin_may_do_what_its_key_allows_and_others_nothing() {
-    let new = new_key("page", &[Role::Write], "").unwrap();
+    let new = new_key("page", &[Role::Write], "", None).unwrap();
     let origins = "https://lab.example,http://localhost:3000";
     let server = Process::with("memory:", &["--keys", &new.entry, "--cors-origins", origins]);
     let http = reqwest::Client::new();
@@ -262,9 +262,9 @@ async fn no_secret_is_ever_logged_or_printed() {
     let cluster = common::postgres::Cluster::shared();
     // The database trusts every client, so that the password is not checked.
     let url = cluster.database().await.replace("stickslip@", "stickslip:pass-word-7@");
-    let good = new_key("good", &[Role::Write, Role::Metrics], "lab").unwrap();
-    let weak = new_key("weak", &[Role::Read], "lab").unwrap();
-    let stranger = new_key("stranger", &[Role::Read], "lab").unwrap();
+    let good = new_key("good", &[Role::Write, Role::Metrics], "lab", None).unwrap();
+    let weak = new_key("weak", &[Role::Read], "lab", None).unwrap();
+    let stranger = new_key("stranger", &[Role::Read], "lab", None).unwrap();
     let keys = folder.path().join("keys");
     std::fs::write(&keys, format!("{}\n{}\n", good.entry, weak.entry)).unwrap();
     let secrets = [

@@ -76,7 +76,7 @@ async fn the_first_start_makes_a_key_and_prints_it_once() {
 async fn no_key_is_made_where_there_are_keys_or_none_are_wanted() {
     let folder = tempfile::tempdir().unwrap();
     let (file, own) = (folder.path().join("first"), folder.path().join("own"));
-    let entry = stickslip::access::new_key("own", &[stickslip::access::Role::Read], "").unwrap();
+    let entry = stickslip::access::new_key("own", &[stickslip::access::Role::Read], "", None).unwrap();
     std::fs::write(&own, &entry.entry).unwrap();
     for (more, expected) in [(["--keys", own.to_str().unwrap()], 401), (["--insecure=true", "--deadline=20s"], 200)] {
         let (server, lines) = first_lines(&file, &more).await;

@@ -47,7 +47,7 @@ async fn a_request_is_one_line_and_the_life_of_the_server_a_few() {
 
 #[tokio::test]
 async fn the_line_of_a_change_says_who_made_it() {
-    let new = new_key("bench", &[Role::Write], "lab").unwrap();
+    let new = new_key("bench", &[Role::Write], "lab", None).unwrap();
     let server =
         Process::with("memory:", &["--log-format", "json", "--keys", &new.entry, "--trusted-proxies", "127.0.0.1"]);
     let client = server.client.clone().with_key(&new.key);

@@ -21,7 +21,7 @@ fn head(line: &str, key: &str, more: &str) -> String {
 #[tokio::test(flavor = "multi_thread")]
 async fn a_refusal_by_the_head_leaves_the_connection_usable_or_says_that_it_ends() {
     let keys =
-        [("reader", Role::Read), ("writer", Role::Write)].map(|(name, role)| new_key(name, &[role], "").unwrap());
+        [("reader", Role::Read), ("writer", Role::Write)].map(|(name, role)| new_key(name, &[role], "", None).unwrap());
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("keys");
     std::fs::write(&file, keys.each_ref().map(|key| key.entry.as_str()).join("\n")).unwrap();

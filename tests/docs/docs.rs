@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::process::Command;
 
-use stickslip::api::{Need, need};
+use stickslip::api::need;
 use stickslip_wire::Code;
 
 use crate::common::process::Process;
@@ -58,7 +58,7 @@ async fn a_key_is_added_to_a_running_server_as_the_page_says() {
     let text = page("access.md");
     let block = text.split("```sh\n").nth(2).unwrap().split("```").next().unwrap();
     let folder = tempfile::tempdir().unwrap();
-    let first = stickslip::access::new_key("bench", &[stickslip::access::Role::Read], "lab").unwrap();
+    let first = stickslip::access::new_key("bench", &[stickslip::access::Role::Read], "lab", None).unwrap();
     let keys = folder.path().join("keys");
     std::fs::write(&keys, format!("{}\n", first.entry)).unwrap();
     let server = Process::with("memory:", &["--keys", keys.to_str().unwrap()]);
@@ -194,8 +194,8 @@ fn the_page_of_access_lists_every_route_with_what_it_needs() {
     for (path, item) in document["paths"].as_object().unwrap() {
         for method in item.as_object().unwrap().keys().map(|method| method.to_uppercase()) {
             let needs = match need(&method, path) {
-                Need::Key(role) => format!("`{}`", role.name()),
-                Need::Nothing => "no key".to_owned(),
+                Some(role) => format!("`{}`", role.name()),
+                None => "no key".to_owned(),
             };
             rows.push((path.clone(), format!("| `{method} {path}` | {needs} |")));
         }

@@ -312,7 +312,7 @@ async fn what_is_on_screen_can_be_taken_away() {
 
 #[tokio::test]
 async fn it_asks_for_a_key_where_one_is_needed_and_finds_by_label() {
-    let new = new_key("page", &[Role::Write], "").unwrap();
+    let new = new_key("page", &[Role::Write], "", None).unwrap();
     let server = Process::with("memory:", &["--keys", &new.entry]);
     let http = reqwest::Client::new();
     for label in ["Steel ball", "Rubber foot"] {

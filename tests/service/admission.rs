@@ -87,7 +87,8 @@ async fn small_needs_do_not_wait_behind_large_ones() {
     let large = large.await.unwrap();
     assert_eq!(pool.taken().bytes, 120 * UNIT);
     // What is reserved in both ways is one.
-    let mut both = next.with(pool.try_reserve(30 * UNIT).unwrap());
+    let mut both = next;
+    both.add(pool.try_reserve(30 * UNIT).unwrap());
     pool.resize(&mut both, 25 * UNIT).await.unwrap();
     assert_eq!(pool.taken().bytes, 125 * UNIT);
     drop((both, large));

@@ -13,18 +13,10 @@ use jiff::Timestamp;
 use tokio::sync::watch;
 use tokio::time::sleep;
 
-use crate::access::{Holder, Keys, Role};
+use crate::access::{Holder, Keys};
 use crate::admission::{Client, Pool, Quota};
-
-use crate::api::facts::{FactsOfRoutes, Need};
+use crate::api;
 use crate::api::problem::{Code, Problem};
-
-/// What a method on a route needs: the highest role, where nothing is known of it.
-pub fn need(facts: &FactsOfRoutes, method: &str, route: &str) -> Need {
-    // With the slash that a folder may have.
-    let route = if route == "/docs/" { "/docs" } else { route };
-    facts.get(method, route).map_or(Need::Key(Role::Write), |facts| facts.need)
-}
 
 /// Where the holder of the key of a request is found, once the key has been accepted.
 pub type Caller = Arc<OnceLock<Arc<Holder>>>;
@@ -35,12 +27,12 @@ const LONGEST_WAIT: Duration = Duration::from_secs(24 * 60 * 60);
 /// Admits a request whose key has the required role, and restricts it to the tenant of that key, within its quotas.
 /// Events end with the key.
 pub async fn admit(
-    State((mut keys, pool, facts)): State<(watch::Receiver<Arc<Keys>>, Pool, &'static FactsOfRoutes)>,
+    State((mut keys, pool)): State<(watch::Receiver<Arc<Keys>>, Pool)>,
     mut request: Request,
     next: Next,
 ) -> Response {
     let route = request.extensions().get::<MatchedPath>().map_or("", MatchedPath::as_str);
-    let Need::Key(role) = need(facts, request.method().as_str(), route) else {
+    let Some(role) = api::need(request.method().as_str(), route) else {
         return next.run(request).await;
     };
     let known = Arc::clone(&keys.borrow_and_update());

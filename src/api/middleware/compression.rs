@@ -69,8 +69,10 @@ pub async fn compress(mut response: Response, client: Client, pool: &Pool) -> Re
     }
     let Some(room) = pool.try_reserve(ENCODER) else { return response };
     // This is still the only handle.
-    let held = response.extensions_mut().remove::<Arc<Reservation>>().and_then(Arc::into_inner).unwrap_or_default();
-    response.extensions_mut().insert(Arc::new(held.with(room)));
+    let held = response.extensions_mut().remove::<Arc<Reservation>>().and_then(Arc::into_inner);
+    let mut held = held.unwrap_or_default();
+    held.add(room);
+    response.extensions_mut().insert(Arc::new(held));
     encode(response, client.accepted).await
 }
 

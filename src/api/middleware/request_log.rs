@@ -6,8 +6,8 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use axum::body::Body;
-use axum::extract::{MatchedPath, Request};
-use axum::http::{HeaderValue, Method, StatusCode, header};
+use axum::extract::{MatchedPath, Request, State};
+use axum::http::{HeaderMap, HeaderName, HeaderValue, Method, StatusCode, header};
 use axum::middleware::Next;
 use axum::response::{IntoResponse as _, Response};
 use stickslip_wire::ProblemDocument;
@@ -18,17 +18,21 @@ use tracing_opentelemetry::OpenTelemetrySpanExt as _;
 use uuid::Uuid;
 
 use crate::access::Role;
-use crate::api::facts::Need;
+use crate::admission::Pool;
+use crate::api;
 use crate::api::middleware::access_control::Caller;
-use crate::api::middleware::request_id::{self, REQUEST_ID};
-use crate::api::middleware::security_headers;
+use crate::api::middleware::{compression, security_headers};
 use crate::api::problem::{Code, MEDIA_TYPE, Problem};
 use crate::api::request_limits;
 use crate::api::request_metrics::{ABANDONED, Endpoint, RequestMetrics};
-use crate::api::routes;
+use crate::api::resources::page;
 use crate::metrics::Counted;
 use crate::otlp;
 use crate::server::RequestClient;
+use crate::server::connections::Refusal;
+
+/// The header with the identifier of a request, both ways.
+pub const REQUEST_ID: HeaderName = HeaderName::from_static("x-request-id");
 
 /// A request under way. If it is dropped before it is answered, its client has left.
 struct RequestGuard<'a> {
@@ -45,18 +49,37 @@ struct RequestGuard<'a> {
     metrics: &'a RequestMetrics,
     endpoint: Endpoint<'a>,
     span: Span,
-    answered: bool,
+    outcome: Outcome,
+}
+
+/// How a request has ended.
+struct Outcome {
+    status: u16,
+    code: Option<&'static str>,
+    /// Of a fault, which the client does not see.
+    cause: Option<String>,
+}
+
+/// What all requests share: their metrics, the pool, and whether those that are not done are refused.
+pub type Observed = (Arc<RequestMetrics>, Pool, watch::Receiver<bool>);
+
+/// Logs a request and compresses its reply: one layer, because each such layer puts the request and its answer into a
+/// box.
+pub async fn observe(State((metrics, pool, stops)): State<Observed>, request: Request, next: Next) -> Response {
+    let client = compression::Client::of(request.headers());
+    let response = log_request(&metrics, stops, request, next).await;
+    compression::compress(response, client, &pool).await
 }
 
 /// Serves a request, and adds what is common to every reply.
-pub async fn log_request(
+async fn log_request(
     metrics: &Arc<RequestMetrics>,
     mut stops: watch::Receiver<bool>,
     mut request: Request,
     next: Next,
 ) -> Response {
     let start = Instant::now();
-    let request_id = request_id::of(request.headers());
+    let request_id = request_id(request.headers());
     let id = request_id.to_str().unwrap_or_default();
     let method = request.method().clone();
     let traceparent =
@@ -64,7 +87,7 @@ pub async fn log_request(
     // The route rather than the path: it holds no identifier, and cannot be made up by clients.
     let route = request.extensions().get::<MatchedPath>().cloned();
     let route = route.as_ref().map(MatchedPath::as_str);
-    if route == Some(routes::METRICS) {
+    if route == Some("/metrics") {
         request.extensions_mut().insert(Arc::clone(metrics));
     }
     let endpoint = metrics.endpoint(route, &method);
@@ -89,11 +112,17 @@ pub async fn log_request(
         metrics,
         endpoint,
         span: span.clone(),
-        answered: false,
+        outcome: Outcome { status: ABANDONED, code: None, cause: None },
+    };
+    let answer = async {
+        match request.extensions_mut().remove::<Refusal>() {
+            Some(refusal) => Problem::from(refusal).into_response(),
+            None => next.run(request).instrument(span).await,
+        }
     };
     let mut response = tokio::select! {
         biased;
-        response = next.run(request).instrument(span) => response,
+        response = answer => response,
         // Otherwise the service has been stopped.
         Ok(_) = stops.wait_for(|stops| *stops) => {
             Problem::in_doubt(Code::Stopping, "the server stops before this request is done").into_response()
@@ -103,22 +132,36 @@ pub async fn log_request(
     guard.contact = made.and_then(contact_in).or(contact);
 
     let problem = response.extensions_mut().remove::<Problem>().or_else(|| foreign(&response));
-    let code = problem.as_ref().map(|problem| problem.code().as_str());
-    let cause = problem.as_ref().and_then(Problem::cause).map(str::to_owned);
+    let mut outcome = Outcome { status: response.status().as_u16(), code: None, cause: None };
     if let Some(problem) = problem {
-        let changes = crate::api::need(method.as_str(), route.unwrap_or_default()) == Need::Key(Role::Write);
-        response = with_document(response, problem.document(id, changes));
+        (outcome.code, outcome.cause) = (Some(problem.code().as_str()), problem.cause().map(str::to_owned));
+        let changes = api::need(method.as_str(), route.unwrap_or_default()) == Some(Role::Write);
+        let document = problem.document(id, changes);
+        outcome.status = document.status;
+        response = with_document(response, document);
     }
     let kind = match route {
-        Some(routes::PAGE | routes::PAGE_FILES) => security_headers::Kind::Page,
+        Some(page::PAGE | page::FILES) => security_headers::Kind::Page,
         Some(route) if route.starts_with("/docs") => security_headers::Kind::Docs,
         _ => security_headers::Kind::Data,
     };
     security_headers::protect(response.headers_mut(), &method, kind);
-    guard.answer(response.status(), code, cause.as_deref());
+    guard.outcome = outcome;
     drop(guard);
     response.headers_mut().insert(REQUEST_ID, request_id);
     response
+}
+
+/// The identifier of the request with these headers: its own if that is printable and not too long, else a new one.
+fn request_id(headers: &HeaderMap) -> HeaderValue {
+    let sound = |id: &&HeaderValue| {
+        (1..=request_limits::REQUEST_ID_LENGTH).contains(&id.len()) && id.as_bytes().iter().all(u8::is_ascii_graphic)
+    };
+    headers.get(REQUEST_ID).filter(sound).cloned().unwrap_or_else(|| {
+        let mut text = Uuid::encode_buffer();
+        HeaderValue::from_str(Uuid::now_v7().hyphenated().encode_lower(&mut text))
+            .unwrap_or(HeaderValue::from_static("-"))
+    })
 }
 
 /// The route label of a request that matches no route.
@@ -153,25 +196,11 @@ fn span(request: &Request, route: &str, id: &str) -> Span {
     span
 }
 
-/// Writes the line of a request: the fields that all have, and more.
-macro_rules! line {
-    ($level:ident, $guard:ident, $status:ident, $time:ident, $($more:ident,)* $message:literal) => {{
-        let RequestGuard { id: request_id, traceparent, method, client, contact, .. } = *$guard;
-        let (route, duration_ms) = ($guard.route.unwrap_or(NO_ROUTE), $time.as_secs_f64() * 1e3);
-        let (client, contact) = (client.map(display), contact.map(display));
-        let (key, tenant) = $guard.caller.get().map(|holder| (&*holder.name, holder.tenant.name())).unzip();
-        let status = $status;
-        tracing::$level!(
-            request_id, %method, route, status, duration_ms, client, key, tenant, contact, $($more,)* traceparent,
-            $message
-        );
-    }};
-}
-
-impl RequestGuard<'_> {
-    fn answer(&mut self, status: StatusCode, code: Option<&str>, cause: Option<&str>) {
-        self.answered = true;
-        let (time, status) = (self.start.elapsed(), status.as_u16());
+impl Drop for RequestGuard<'_> {
+    fn drop(&mut self) {
+        let RequestGuard { id: request_id, traceparent, method, client, contact, .. } = *self;
+        let Outcome { status, code, ref cause } = self.outcome;
+        let (time, cause) = (self.start.elapsed(), cause.as_deref());
         self.metrics.answered(self.endpoint, status, time);
         self.span.record("http.response.status_code", status);
         self.span.record("error.type", code);
@@ -179,22 +208,24 @@ impl RequestGuard<'_> {
             self.span.record("otel.status_code", "ERROR");
             self.span.record("otel.status_description", cause);
         }
-        match status {
-            500 => line!(error, self, status, time, code, cause, "request failed"),
-            // An external fault, which may last and affect every request.
-            501.. => line!(warn, self, status, time, code, cause, "request failed"),
-            _ => line!(info, self, status, time, code, "request"),
+        let (route, duration_ms) = (self.route.unwrap_or(NO_ROUTE), time.as_secs_f64() * 1e3);
+        let (client, contact) = (client.map(display), contact.map(display));
+        let (key, tenant) = self.caller.get().map(|holder| (&*holder.name, holder.tenant.name())).unzip();
+        /// The fields that all lines have, and more.
+        macro_rules! line {
+            ($level:ident, $($more:ident,)* $message:literal) => {
+                tracing::$level!(
+                    request_id, %method, route, status, duration_ms, client, key, tenant, contact, $($more,)*
+                    traceparent, $message
+                )
+            };
         }
-    }
-}
-
-impl Drop for RequestGuard<'_> {
-    fn drop(&mut self) {
-        if !self.answered {
-            let time = self.start.elapsed();
-            self.metrics.answered(self.endpoint, ABANDONED, time);
-            self.span.record("http.response.status_code", ABANDONED);
-            line!(info, self, ABANDONED, time, "the client disconnected");
+        match status {
+            ABANDONED => line!(info, "the client disconnected"),
+            500 => line!(error, code, cause, "request failed"),
+            // An external fault, which may last and affect every request.
+            501.. => line!(warn, code, cause, "request failed"),
+            _ => line!(info, code, "request"),
         }
     }
 }

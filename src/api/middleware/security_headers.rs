@@ -6,7 +6,7 @@ use axum::http::{HeaderMap, HeaderName, HeaderValue, Method, Uri, header};
 use tower_http::cors::CorsLayer;
 
 use crate::api::middleware::access_control::METHODS;
-use crate::api::middleware::request_id::REQUEST_ID;
+use crate::api::middleware::request_log::REQUEST_ID;
 
 /// How long a browser may cache a CORS preflight reply.
 const REMEMBERED: Duration = Duration::from_secs(600);

@@ -6,9 +6,8 @@ use utoipa::openapi::security::{HttpAuthScheme, HttpBuilder, SecurityScheme};
 use stickslip_wire::{EndEvent, JobEndEvent, ProblemDocument, limits, profile};
 
 use crate::access::Role;
-use crate::api::checked_query::PAGE;
 use crate::api::problem::MEDIA_TYPE;
-use crate::api::request_limits::BODY_LIMIT;
+use crate::api::request_limits::{BODY_LIMIT, PAGE};
 
 #[derive(OpenApi)]
 #[openapi(

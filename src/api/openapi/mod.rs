@@ -1,5 +1,5 @@
-//! The OpenAPI document: what the attributes of handlers and types generate, completed operation by operation when its
-//! route is added, and by what the derived schemas cannot express.
+//! The OpenAPI document: what the attributes of handlers and types generate, completed operation by operation, and by
+//! what the derived schemas cannot express.
 
 mod base;
 mod operation;
@@ -7,15 +7,20 @@ mod schemas;
 
 use serde_json::{Map, Value};
 
+use crate::api::facts::Routes;
 use stickslip_wire::all_limits;
 
 pub use base::base;
-pub use operation::{complete, operations};
 
-/// The text of the document, of which the operations are complete.
-pub fn text(mut document: utoipa::openapi::OpenApi) -> String {
-    operation::link(&mut document);
-    let mut document = serde_json::to_value(&document).unwrap_or_default();
+/// The text of the document with these routes.
+pub fn text(Routes { router, facts }: Routes) -> String {
+    let mut document = serde_json::to_value(router.into_openapi()).unwrap_or_default();
+    if let Some(paths) = document["paths"].as_object_mut() {
+        for (method, path, facts) in &facts {
+            operation::complete(method, path, &mut paths[path][method.to_lowercase()], facts);
+        }
+        operation::link(paths);
+    }
     write_limits(&mut document);
     schemas::write(&mut document);
     format!("{document:#}\n")
@@ -44,7 +49,7 @@ fn visit_property(node: &mut Value, property: &str, visit: &dyn Fn(&mut Map<Stri
 }
 
 /// Adds keywords to a schema, and those of `items` to the schema of its elements.
-fn write_keywords(node: &mut Map<String, Value>, keywords: &Value) {
+pub fn write_keywords(node: &mut Map<String, Value>, keywords: &Value) {
     for (name, value) in keywords.as_object().into_iter().flatten() {
         match node.get_mut(name) {
             Some(Value::Object(inner)) if value.is_object() => write_keywords(inner, value),

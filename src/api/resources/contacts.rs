@@ -1,8 +1,7 @@
 //! `/contacts`: contacts are created, listed, read, forked and deleted.
 
 use super::prelude::*;
-use crate::api::extract::OptionalBody;
-use crate::api::query_parameters::{CONTACT_ORDER, IDENTIFIER, Text};
+use crate::api::query_parameters::{closed, identifier, text};
 use crate::sessions::label_checksum;
 use crate::store::Page;
 use stickslip_compute::simulation::bytes::OBJECT;
@@ -35,11 +34,11 @@ parameters! {
     pub struct ListQuery {
         /// Only contacts whose label contains this text. Upper and lower case are the same for the letters A to Z; the
         /// empty text finds all contacts with a label.
-        label: Option<String> = Text(LABEL);
+        label: String = text(&LABEL);
         /// The order: `oldest` or `newest` first.
-        order: ContactOrder = CONTACT_ORDER, or ContactOrder::Oldest;
+        order: ContactOrder = closed(&ContactOrder::ALL, ContactOrder::name), or ContactOrder::Oldest;
         /// The `next` of the previous page, in the same order.
-        after: Option<Uuid> = IDENTIFIER;
+        after: Uuid = identifier();
         /// Largest number of contacts.
         limit: usize = count(&PAGE), or DEFAULT_PAGE;
     }
@@ -71,8 +70,7 @@ pub async fn list_contacts(
             in quotes"))))
 )]
 pub async fn get_contact(
-    TenantApp(app): TenantApp,
-    ContactPath { id }: ContactPath,
+    ContactPath { app, id }: ContactPath,
     headers: HeaderMap,
     _: CheckedQuery<()>,
 ) -> Result<Response, Problem> {
@@ -83,7 +81,7 @@ pub async fn get_contact(
 /// The version of a contact: its sequence, and a checksum of its label if it has one, which changes without a move.
 fn tag(sequence: u64, label: Option<&str>) -> String {
     let checksum = label.map(|_| format!(".{:08x}", label_checksum(label)));
-    Format::Columns.tag(&format!("{sequence}{}", checksum.unwrap_or_default()))
+    formats::tag(Format::Columns, &format!("{sequence}{}", checksum.unwrap_or_default()))
 }
 
 /// Rename a contact
@@ -98,8 +96,7 @@ fn tag(sequence: u64, label: Option<&str>) -> String {
             in quotes"))))
 )]
 pub async fn rename_contact(
-    TenantApp(app): TenantApp,
-    ContactPath { id }: ContactPath,
+    ContactPath { app, id }: ContactPath,
     IfMatch { expected }: IfMatch,
     request: CheckedBody<RenameRequest>,
 ) -> Result<Response, Problem> {
@@ -117,8 +114,7 @@ pub async fn rename_contact(
     responses((status = 204, description = "The contact is deleted"))
 )]
 pub async fn delete_contact(
-    TenantApp(app): TenantApp,
-    ContactPath { id }: ContactPath,
+    ContactPath { app, id }: ContactPath,
     IfMatch { expected }: IfMatch,
 ) -> Result<StatusCode, Problem> {
     app.sessions.delete(id, expected).await?;
@@ -133,11 +129,7 @@ pub async fn delete_contact(
     get, path = "/contacts/{id}/definition", tag = "contacts", params(ContactPath),
     responses((status = 200, description = "Profile, material, friction and preload", body = ContactDefinition))
 )]
-pub async fn get_definition(
-    TenantApp(app): TenantApp,
-    ContactPath { id }: ContactPath,
-    _: CheckedQuery<()>,
-) -> Result<Response, Problem> {
+pub async fn get_definition(ContactPath { app, id }: ContactPath, _: CheckedQuery<()>) -> Result<Response, Problem> {
     let (body, memory) = app.sessions.definition(id).await?;
     Ok(reply::holding(reply::json(body), memory))
 }
@@ -155,9 +147,8 @@ pub async fn get_definition(
     )))
 )]
 pub async fn fork_contact(
-    TenantApp(app): TenantApp,
-    ContactPath { id }: ContactPath,
-    request: OptionalBody<ForkRequest>,
+    ContactPath { app, id }: ContactPath,
+    request: CheckedBody<ForkRequest, true>,
 ) -> Result<Response, Problem> {
     Ok(reply::of_change(app.sessions.fork(id, request.body, request.key).await?))
 }

@@ -12,9 +12,7 @@ parameters! {
     pub struct CyclesQuery {
         /// Largest number of the newest cycles.
         last: usize = count(&limits::CYCLES), or DEFAULT_PAGE;
-        /// `columns` (this document), `rows` (a JSON array of flat objects), `csv`, `ndjson`, `arrow` (an Arrow IPC
-        /// stream), or a plot as `svg` or `png`. If it is left out, `Accept` decides.
-        format: Option<Format> = formats(&Format::ALL);
+        ..formats(&Format::ALL, "")
     }
 }
 
@@ -27,13 +25,11 @@ parameters! {
         headers(("ETag" = String, description = "The sequence that they belong to, in quotes"))))
 )]
 pub async fn get_cycles(
-    TenantApp(app): TenantApp,
-    ContactPath { id }: ContactPath,
+    ContactPath { app, id }: ContactPath,
     headers: HeaderMap,
     CheckedQuery(query): CheckedQuery<CyclesQuery>,
 ) -> Result<Response, Problem> {
-    let CyclesQuery { last, format } = query;
-    let format = Format::chosen(format, &headers, &Format::ALL)?;
+    let (last, format) = (query.last, query.format?);
     if let Some(unchanged) = computations::unchanged(&app, id, &headers, format).await? {
         return Ok(unchanged);
     }
@@ -41,8 +37,8 @@ pub async fn get_cycles(
     let (sequence, page) = app.sessions.cycles(id, last, &mut memory).await?;
     let write = move || format.write(CAPACITY, &page, || Some(plot(&page)), || Some(table(&page)), &|| true);
     let body = app.pool.run(format.cost(), write).await??;
-    let tag = format.tag(&sequence.to_string());
-    Ok(reply::holding(reply::tagged(format.reply(body), &tag), memory))
+    let tag = formats::tag(format, &sequence.to_string());
+    Ok(reply::holding(reply::tagged(formats::reply(format, body), &tag), memory))
 }
 
 /// Amplitudes, friction work and stiffness of the cycles over the moves that closed them.

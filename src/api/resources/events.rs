@@ -5,7 +5,6 @@ use futures::{Stream, StreamExt as _};
 
 use super::prelude::*;
 use crate::api::path_and_headers::LastEventId;
-use crate::api::request_limits::KEEP_ALIVE;
 use crate::sessions;
 use crate::store::StreamEvent;
 use stickslip_wire::{EndEvent, StateEvent};
@@ -14,7 +13,7 @@ parameters! {
     /// When a stream of events ends by itself.
     pub struct EventsQuery {
         /// End the stream after this number of events. Without it the stream lasts as long as the contact.
-        limit: Option<usize> = count(&PAGE);
+        limit: usize = count(&PAGE);
     }
 }
 
@@ -30,8 +29,7 @@ parameters! {
         content_type = "text/event-stream", body = StateEvent))
 )]
 pub async fn watch_contact(
-    TenantApp(app): TenantApp,
-    ContactPath { id }: ContactPath,
+    ContactPath { app, id }: ContactPath,
     LastEventId { sequence }: LastEventId,
     CheckedQuery(query): CheckedQuery<EventsQuery>,
 ) -> Result<Sse<impl Stream<Item = Result<Event, axum::Error>>>, Problem> {
@@ -41,5 +39,5 @@ pub async fn watch_contact(
         StreamEvent::End(reason) => Event::default().event("end").json_data(EndEvent { reason }),
     });
     let events = events.take(query.limit.unwrap_or(usize::MAX));
-    Ok(Sse::new(events).keep_alive(KeepAlive::new().interval(KEEP_ALIVE)))
+    Ok(Sse::new(events).keep_alive(KeepAlive::default()))
 }

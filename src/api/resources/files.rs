@@ -13,28 +13,33 @@ use stickslip_wire::{LoopFileReply, ScanFileReply};
 
 use super::prelude::*;
 use crate::api::extract::FileBody;
-use crate::api::query_parameters::{Plain, Text, number};
+use crate::api::query_parameters::{Kind, number, text};
 use stickslip_compute::computations::files;
 use stickslip_compute::formats;
 
 /// Units of the table. The document lists symbols; the words and other spellings of the table are taken too.
-const LENGTH: Plain<UnitHint> = Plain {
-    expected: "a unit of length, such as `um`, `mil` or `10^-6 m`",
-    schema: || json!({"type": "string", "pattern": "^(m|cm|mm|um|nm|pm|angstrom|in|mil|uin|ft)$"}),
-    parse: |text| UnitHint::of(text, Dimension::LENGTH).ok(),
-};
-const FORCE: Plain<UnitHint> = Plain {
-    expected: "a unit of force, such as `mN`, `lbf` or `10^-3 N`",
-    schema: || json!({"type": "string", "pattern": "^(N|mN|uN|nN|kN|gf|kgf|lbf|ozf)$"}),
-    parse: |text| UnitHint::of(text, Dimension::FORCE).ok(),
-};
-const TIME: Plain<UnitHint> = Plain {
-    expected: "a unit of time, such as `ms` or `min`",
-    schema: || json!({"type": "string", "pattern": "^(s|ms|us|ns|min|h)$"}),
-    parse: |text| UnitHint::of(text, Dimension::TIME).ok(),
-};
+fn length() -> Kind<UnitHint> {
+    let schema = || json!({"type": "string", "pattern": "^(m|cm|mm|um|nm|pm|angstrom|in|mil|uin|ft)$"});
+    Kind::new(
+        "a unit of length, such as `um`, `mil` or `10^-6 m`",
+        |text| UnitHint::of(text, Dimension::LENGTH).ok(),
+        schema,
+    )
+}
+fn force() -> Kind<UnitHint> {
+    let schema = || json!({"type": "string", "pattern": "^(N|mN|uN|nN|kN|gf|kgf|lbf|ozf)$"});
+    Kind::new(
+        "a unit of force, such as `mN`, `lbf` or `10^-3 N`",
+        |text| UnitHint::of(text, Dimension::FORCE).ok(),
+        schema,
+    )
+}
+fn time() -> Kind<UnitHint> {
+    let schema = || json!({"type": "string", "pattern": "^(s|ms|us|ns|min|h)$"});
+    Kind::new("a unit of time, such as `ms` or `min`", |text| UnitHint::of(text, Dimension::TIME).ok(), schema)
+}
 /// A column by its name or number.
-const COLUMN: Text = Text(Characters(100));
+const COLUMN: Characters = Characters(100);
 /// The distance of neighbours in a matrix, in its unit.
 const SPACING: Range = Range { quantity: Quantity::Place, unit: "", min: 1e-9, max: 1e9 };
 
@@ -48,23 +53,23 @@ parameters! {
     /// What is known of a scan besides its file.
     pub struct ScanFileQuery {
         /// The unit of places; without it the one that the header names, or m.
-        lateral: Option<UnitHint> = LENGTH;
+        lateral: UnitHint = length();
         /// The unit of heights; without it the one that the header names, or m.
-        height: Option<UnitHint> = LENGTH;
+        height: UnitHint = length();
         /// The distance between neighbours in a matrix of heights, in the unit of places; without it that of the
         /// header.
-        spacing: Option<f64> = Number { is_checked: true, ..number(&SPACING) };
+        spacing: f64 = number(&SPACING);
         /// The column of places along the line, or along the first axis, by its number from 1 on or the beginning of
         /// its name in the header; without it the column with such a name, or the first.
-        x: Option<String> = COLUMN;
+        x: String = text(&COLUMN);
         /// The column of places along the second axis, by its number or the beginning of its name; without it the
         /// column with such a name, if the file has one.
-        y: Option<String> = COLUMN;
+        y: String = text(&COLUMN);
         /// The column of heights, by its number or the beginning of its name; without it the column with such a name,
         /// or the last.
-        z: Option<String> = COLUMN;
+        z: String = text(&COLUMN);
         /// The sheet of a spreadsheet, by its name or its number from 1 on; without it the first sheet with numbers.
-        sheet: Option<String> = COLUMN;
+        sheet: String = text(&COLUMN);
     }
 }
 
@@ -73,24 +78,39 @@ parameters! {
     pub struct LoopFileQuery {
         /// The column of displacements, by its number from 1 on or the beginning of its name in the header; without it
         /// the column with such a name, or the first of two.
-        displacement: Option<String> = COLUMN;
+        displacement: String = text(&COLUMN);
         /// The column of forces, by its number or the beginning of its name; without it the column with such a name, or
         /// the second of two.
-        force: Option<String> = COLUMN;
+        force: String = text(&COLUMN);
         /// The column of times; without it the column with such a name, if its times increase.
-        time: Option<String> = COLUMN;
+        time: String = text(&COLUMN);
         /// The column of loads, whose mean is the load if they are constant; without it the column with such a name.
-        load: Option<String> = COLUMN;
+        load: String = text(&COLUMN);
         /// The unit of displacements; without it the one that the header names, or m.
-        displacement_unit: Option<UnitHint> = LENGTH;
+        displacement_unit: UnitHint = length();
         /// The unit of forces; without it the one that the header names, or N.
-        force_unit: Option<UnitHint> = FORCE;
+        force_unit: UnitHint = force();
         /// The unit of times; without it the one that the header names, or s.
-        time_unit: Option<UnitHint> = TIME;
+        time_unit: UnitHint = time();
         /// The unit of loads; without it the one that the header names, or N.
-        load_unit: Option<UnitHint> = FORCE;
+        load_unit: UnitHint = force();
         /// The sheet of a spreadsheet, by its name or its number from 1 on; without it the first sheet with numbers.
-        sheet: Option<String> = COLUMN;
+        sheet: String = text(&COLUMN);
+    }
+}
+
+impl From<ScanFileQuery> for ScanHints {
+    fn from(query: ScanFileQuery) -> ScanHints {
+        let ScanFileQuery { lateral, height, spacing, x, y, z, sheet } = query;
+        ScanHints { lateral, height, spacing, x, y, z, sheet, most: 0 }
+    }
+}
+
+impl From<LoopFileQuery> for LoopHints {
+    fn from(query: LoopFileQuery) -> LoopHints {
+        let LoopFileQuery { displacement, force, time, load, sheet, .. } = query;
+        let LoopFileQuery { displacement_unit, force_unit, time_unit, load_unit, .. } = query;
+        LoopHints { displacement, force, time, load, displacement_unit, force_unit, time_unit, load_unit, sheet }
     }
 }
 
@@ -110,12 +130,10 @@ parameters! {
 )]
 pub async fn read_scan_file(
     State(app): State<Arc<App>>,
-    query: Result<CheckedQuery<ScanFileQuery>, Problem>,
+    CheckedQuery(hints): CheckedQuery<ScanFileQuery>,
     body: FileBody,
 ) -> Result<Response, Problem> {
-    let CheckedQuery(ScanFileQuery { lateral, height, spacing, x, y, z, sheet }) = query?;
-    let hints = ScanHints { lateral, height, spacing, x, y, z, sheet, most: 0 };
-    answer(&app, body, move |bytes| files::scan(bytes, hints)).await
+    answer(&app, body, move |bytes| files::scan(bytes, hints.into())).await
 }
 
 /// Read a measured loop from a file
@@ -132,15 +150,10 @@ pub async fn read_scan_file(
 )]
 pub async fn read_loop_file(
     State(app): State<Arc<App>>,
-    query: Result<CheckedQuery<LoopFileQuery>, Problem>,
+    CheckedQuery(hints): CheckedQuery<LoopFileQuery>,
     body: FileBody,
 ) -> Result<Response, Problem> {
-    let CheckedQuery(query) = query?;
-    let LoopFileQuery { displacement, force, time, load, displacement_unit, force_unit, time_unit, load_unit, sheet } =
-        query;
-    let units = LoopHints { displacement_unit, force_unit, time_unit, load_unit, ..LoopHints::default() };
-    let hints = LoopHints { displacement, force, time, load, sheet, ..units };
-    answer(&app, body, move |bytes| files::measured_loop(bytes, &hints)).await
+    answer(&app, body, move |bytes| files::measured_loop(bytes, &hints.into())).await
 }
 
 async fn answer<R: Serialize>(

@@ -3,11 +3,10 @@
 use stickslip_plot::{Axis, Colour, Plot};
 use stickslip_wire::{Cycle, HistoryPage, ObservedForce, State};
 
-use super::move_series::{self, ITEM_BYTES, MoveSeries};
+use super::move_series::{self, ITEM_BYTES, MoveSeries, MovesQuery};
 use super::prelude::*;
 use crate::admission::Reservation;
-use crate::api::checked_query::MovesQuery;
-use crate::api::query_parameters::FLAG;
+use crate::api::query_parameters::flag;
 use stickslip_compute::computations::state_columns;
 use stickslip_compute::formats::{Cells, Column, Table};
 
@@ -15,10 +14,8 @@ parameters! {
     /// What a history has of each move.
     pub struct HistoryQuery {
         /// Whether to add to each move the cycle that it closed. This also reads the moves before the page, once.
-        cycles: bool = FLAG, or true;
-        /// `columns` (this document), `rows` (a JSON array of flat objects), `csv`, `ndjson`, `arrow` (an Arrow IPC
-        /// stream), or a plot as `svg` or `png`. If it is left out, `Accept` decides.
-        format: Option<Format> = formats(&Format::ALL);
+        cycles: bool = flag(), or true;
+        ..formats(&Format::ALL, "")
     }
 }
 
@@ -28,17 +25,18 @@ parameters! {
 #[utoipa::path(
     get, path = "/contacts/{id}/history", tag = "contacts", params(ContactPath, MovesQuery, HistoryQuery),
     responses((status = 200, description = "A page of moves", body = HistoryPage,
-        headers(("ETag" = String, description = "The version of this page, in quotes"))))
+        headers(
+            ("ETag" = String, description = "The version of this page, in quotes"),
+            ("Link" = String, description = "The URL of the next page (`rel=\"next\"`), if there is one"))))
 )]
 pub async fn get_history(
-    TenantApp(app): TenantApp,
-    ContactPath { id }: ContactPath,
+    ContactPath { app, id }: ContactPath,
     headers: HeaderMap,
     CheckedQuery((moves, query)): CheckedQuery<(MovesQuery, HistoryQuery)>,
 ) -> Result<Response, Problem> {
     let HistoryQuery { cycles, format } = query;
     let shown = History { cycles, names_makers: app.sessions.names_makers() };
-    move_series::reply(app, id, &headers, moves, format, shown).await
+    move_series::reply(app, id, &headers, moves, format?, shown).await
 }
 
 /// Moves with the states after them.
@@ -56,10 +54,6 @@ impl MoveSeries for History {
 
     fn bytes(&self, moves: usize) -> usize {
         moves * ITEM_BYTES
-    }
-
-    fn marking(&self) -> &'static str {
-        if self.cycles { "" } else { "-unmarked" }
     }
 
     fn parameters(&self) -> String {

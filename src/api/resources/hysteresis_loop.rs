@@ -3,10 +3,9 @@
 use stickslip_plot::{Axis, Colour, Plot};
 use stickslip_wire::{HistoryPage, LoopPage, ObservedForce, limits};
 
-use super::move_series::{self, ITEM_BYTES, MoveSeries};
+use super::move_series::{self, ITEM_BYTES, MoveSeries, MovesQuery};
 use super::prelude::*;
 use crate::admission::Reservation;
-use crate::api::checked_query::MovesQuery;
 use crate::sessions::{bytes_of_trace, trace};
 use stickslip_compute::formats::{Column, Table};
 
@@ -16,9 +15,7 @@ parameters! {
         /// Points for each move, evenly spaced in the quantity that the move prescribes. With 1 they are the recorded
         /// states; with more, the moves are repeated in small steps on a copy of the contact.
         points_per_move: usize = count(&limits::LOOP_POINTS), or 1;
-        /// `columns` (this document), `rows` (a JSON array of flat objects), `csv`, `ndjson`, `arrow` (an Arrow IPC
-        /// stream), or a plot as `svg` or `png`. If it is left out, `Accept` decides.
-        format: Option<Format> = formats(&Format::ALL);
+        ..formats(&Format::ALL, "")
     }
 }
 
@@ -28,16 +25,17 @@ parameters! {
 #[utoipa::path(
     get, path = "/contacts/{id}/loop", tag = "contacts", params(ContactPath, MovesQuery, LoopQuery),
     responses((status = 200, description = "A page of the loop", body = LoopPage,
-        headers(("ETag" = String, description = "The version of this page, in quotes"))))
+        headers(
+            ("ETag" = String, description = "The version of this page, in quotes"),
+            ("Link" = String, description = "The URL of the next page (`rel=\"next\"`), if there is one"))))
 )]
 pub async fn get_loop(
-    TenantApp(app): TenantApp,
-    ContactPath { id }: ContactPath,
+    ContactPath { app, id }: ContactPath,
     headers: HeaderMap,
     CheckedQuery((moves, query)): CheckedQuery<(MovesQuery, LoopQuery)>,
 ) -> Result<Response, Problem> {
     let LoopQuery { points_per_move, format } = query;
-    move_series::reply(app, id, &headers, moves, format, Loop { points_per_move }).await
+    move_series::reply(app, id, &headers, moves, format?, Loop { points_per_move }).await
 }
 
 /// Force and displacement along moves.
@@ -55,12 +53,8 @@ impl MoveSeries for Loop {
         moves * ITEM_BYTES + bytes_of_trace(moves * self.points_per_move)
     }
 
-    fn marking(&self) -> &'static str {
-        ""
-    }
-
     fn parameters(&self) -> String {
-        format!("&points_per_move={}", self.points_per_move)
+        if self.points_per_move == 1 { String::new() } else { format!("&points_per_move={}", self.points_per_move) }
     }
 
     async fn page(

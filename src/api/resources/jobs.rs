@@ -5,24 +5,20 @@ use axum::response::sse::{Event, KeepAlive, Sse};
 use futures::StreamExt as _;
 
 use super::prelude::*;
-use crate::api::path_and_headers::JobPath;
-use crate::api::query_parameters::JOB_STATE;
-use crate::api::request_limits::KEEP_ALIVE;
+use crate::api::query_parameters::closed;
 use crate::store::StreamEvent;
 use stickslip_wire::{JobEndEvent, JobList, JobReply, JobState, SweepReply};
 
 parameters! {
     pub struct TableQuery {
-        /// `columns` (this document), `rows` (a JSON array of flat objects), `csv`, `ndjson` or `arrow` (an Arrow IPC
-        /// stream). If it is left out, `Accept` decides.
-        format: Option<Format> = formats(&Format::TABLES);
+        ..formats(&Format::TABLES, "")
     }
 }
 
 parameters! {
     pub struct JobsQuery {
         /// Only jobs in this state.
-        state: Option<JobState> = JOB_STATE;
+        state: JobState = closed(&JobState::ALL, JobState::name);
     }
 }
 
@@ -47,11 +43,7 @@ pub async fn list_jobs(
     get, path = "/jobs/{id}", tag = "jobs", params(JobPath),
     responses((status = 200, description = "The state and the progress of the job", body = JobReply))
 )]
-pub async fn get_job(
-    TenantApp(app): TenantApp,
-    JobPath { id }: JobPath,
-    _: CheckedQuery<()>,
-) -> Result<Response, Problem> {
+pub async fn get_job(JobPath { app, id }: JobPath, _: CheckedQuery<()>) -> Result<Response, Problem> {
     Ok(reply::json(reply::written(&app.jobs.get(id).await?)?))
 }
 
@@ -63,16 +55,14 @@ pub async fn get_job(
     responses((status = 200, description = "The table", body = SweepReply))
 )]
 pub async fn get_job_result(
-    TenantApp(app): TenantApp,
-    JobPath { id }: JobPath,
-    headers: HeaderMap,
+    JobPath { app, id }: JobPath,
     CheckedQuery(query): CheckedQuery<TableQuery>,
 ) -> Result<Response, Problem> {
-    let format = Format::chosen(query.format, &headers, &Format::TABLES)?;
+    let format = query.format?;
     let memory = app.pool.reserve(app.jobs.size(id).await?).await?;
     let (sweep, result) = app.jobs.result(id).await?;
     let table = Body::from_stream(futures::stream::iter(result.table(&sweep).blocks(format)));
-    Ok(reply::holding(format.reply(table), memory))
+    Ok(reply::holding(formats::reply(format, table), memory))
 }
 
 /// Cancel a job
@@ -82,7 +72,7 @@ pub async fn get_job_result(
     delete, path = "/jobs/{id}", tag = "jobs", params(JobPath),
     responses((status = 204, description = "The job is deleted"))
 )]
-pub async fn cancel_job(TenantApp(app): TenantApp, JobPath { id }: JobPath) -> Result<StatusCode, Problem> {
+pub async fn cancel_job(JobPath { app, id }: JobPath) -> Result<StatusCode, Problem> {
     app.jobs.delete(id).await?;
     Ok(StatusCode::NO_CONTENT)
 }
@@ -97,11 +87,7 @@ pub async fn cancel_job(TenantApp(app): TenantApp, JobPath { id }: JobPath) -> R
     responses((status = 200, description = "The events",
         content_type = "text/event-stream", body = JobReply))
 )]
-pub async fn watch_job(
-    TenantApp(app): TenantApp,
-    JobPath { id }: JobPath,
-    _: CheckedQuery<()>,
-) -> Result<Response, Problem> {
+pub async fn watch_job(JobPath { app, id }: JobPath, _: CheckedQuery<()>) -> Result<Response, Problem> {
     stream(&app, id).await
 }
 
@@ -117,5 +103,5 @@ pub async fn stream(app: &App, id: Uuid) -> Result<Response, Problem> {
         }
         StreamEvent::End(reason) => Event::default().event("end").json_data(JobEndEvent { reason }),
     });
-    Ok(Sse::new(events).keep_alive(KeepAlive::new().interval(KEEP_ALIVE)).into_response())
+    Ok(Sse::new(events).keep_alive(KeepAlive::default()).into_response())
 }

@@ -4,14 +4,13 @@
 use std::any::Any;
 use std::sync::Arc;
 
-use axum::Extension;
 use axum::extract::{Path, State};
 use axum::http::Uri;
 use axum::response::IntoResponse;
 use serde_json::json;
 
 use super::prelude::*;
-use crate::admission::PoolError;
+use crate::api;
 use crate::server::connections::Refusal;
 use crate::sessions::SessionError;
 use crate::store::StoreError;
@@ -43,10 +42,6 @@ pub async fn check_readiness(State(app): State<Arc<App>>) -> Result<Response, Pr
     }
 }
 
-/// The text that `/openapi.json` serves.
-#[derive(Clone, Copy)]
-pub struct OpenApiText(pub &'static str);
-
 /// Get this document
 ///
 /// The document that `/docs` shows and that clients are generated from.
@@ -54,8 +49,8 @@ pub struct OpenApiText(pub &'static str);
     get, path = "/openapi.json", tag = "service",
     responses((status = 200, description = "The specification (OpenAPI 3.1)", body = serde_json::Value))
 )]
-pub async fn get_openapi(Extension(OpenApiText(text)): Extension<OpenApiText>) -> Response {
-    reply::json(text.as_bytes().to_vec())
+pub async fn get_openapi() -> Response {
+    reply::json(api::document().into())
 }
 
 /// Explain a kind of problem
@@ -79,14 +74,15 @@ pub async fn not_found(uri: Uri) -> Problem {
     Problem::new(Code::NotFound, format!("the path {path} was not found; /docs lists the paths"))
 }
 
-/// The answer to a request that is refused before routing.
-pub async fn refused(refusal: Option<Extension<Refusal>>) -> Problem {
-    match refusal {
-        Some(Extension(Refusal::Ambiguous(why))) => Problem::new(Code::AmbiguousRequest, why),
-        Some(Extension(Refusal::Stopping)) => Problem::new(Code::Stopping, "the server stops: nothing has changed"),
-        Some(Extension(Refusal::Foreign(why))) => Problem::new(Code::ForeignOrigin, why),
-        Some(Extension(Refusal::Full(error))) => error.into(),
-        None => PoolError::Busy.into(),
+/// Why the server has not admitted a request.
+impl From<Refusal> for Problem {
+    fn from(refusal: Refusal) -> Problem {
+        match refusal {
+            Refusal::Ambiguous(why) => Problem::new(Code::AmbiguousRequest, why),
+            Refusal::Stopping => Problem::new(Code::Stopping, "the server stops: nothing has changed"),
+            Refusal::Foreign(why) => Problem::new(Code::ForeignOrigin, why),
+            Refusal::Full(error) => error.into(),
+        }
     }
 }
 

@@ -7,22 +7,46 @@ use std::sync::Arc;
 use axum::body::Body;
 use futures::{StreamExt as _, stream};
 use serde::Serialize;
+use serde_json::json;
 use stickslip_plot::{Axis, Colour, Curve, Panel, Plot};
-use stickslip_wire::HistoryPage;
+use stickslip_wire::{HistoryPage, JsonPath};
 
 use super::prelude::*;
 use crate::admission::Reservation;
-use crate::api::checked_query::{Moves, MovesQuery};
 use crate::api::formats::TableStream;
+use crate::api::query_parameters::{QueryParams, QueryReader, move_number};
 use stickslip_compute::Stop as _;
 use stickslip_compute::formats::{CAPACITY, Table, Unwritable};
 use stickslip_compute::simulation::Failure;
 use stickslip_compute::simulation::bytes::OBJECT;
 
 /// Moves that are read at once.
-const PAGE: usize = 500;
+const BLOCK: usize = 500;
 /// Bytes of an item of a history: the move and the state after it.
 pub(super) const ITEM_BYTES: usize = 2 * OBJECT;
+
+parameters! {
+    /// Which moves of a contact a reply is of, as the query has it.
+    pub struct MovesQuery {
+        /// The `next` of the previous page.
+        after: u64 = move_number();
+        /// Largest number of moves. Without `after`, `limit` and `last`, `csv`, `ndjson` and `arrow` have all moves.
+        limit: usize = count(&PAGE).with_default(json!(DEFAULT_PAGE));
+        /// Number of newest moves, in place of `after` and `limit`. A plot shows the newest unless `after` is given.
+        last: usize = count(&PAGE);
+    }
+}
+
+/// Which moves, and what else.
+impl<T: QueryParams> QueryParams for (MovesQuery, T) {
+    fn take(query: &mut QueryReader<'_>) -> Option<(MovesQuery, T)> {
+        let moves = MovesQuery::take(query)?;
+        if moves.last.is_some() && (moves.after.is_some() || moves.limit.is_some()) {
+            query.faults.add(JsonPath::Root.member("last"), "conflicts with `after` and `limit`: leave them out");
+        }
+        Some((moves, T::take(query)?))
+    }
+}
 
 pub(super) trait MoveSeries: Clone + Send + Sync + 'static {
     type Page: Serialize + Send + 'static;
@@ -33,10 +57,7 @@ pub(super) trait MoveSeries: Clone + Send + Sync + 'static {
     /// Bytes that so many moves take.
     fn bytes(&self, moves: usize) -> usize;
 
-    /// What distinguishes it from others of the same moves, in its version.
-    fn marking(&self) -> &'static str;
-
-    /// Its own part of the query of the next page.
+    /// Its own part of the query of the next page, and of its version; nothing for what is shown by default.
     fn parameters(&self) -> String;
 
     /// The document of these moves, which come after another one, for a reply in this format. The memory of the request
@@ -56,24 +77,26 @@ pub(super) trait MoveSeries: Clone + Send + Sync + 'static {
     fn table<'a>(&self, page: &'a Self::Page) -> Table<'a>;
 }
 
-/// The reply with the moves that the query asks for.
+/// The reply with the moves that the query asks for. If it does not say, a plot shows the newest moves, and a table that
+/// programs read row by row has all of them.
 pub(super) async fn reply<T: MoveSeries>(
     app: Arc<App>,
     id: Uuid,
     headers: &HeaderMap,
     moves: MovesQuery,
-    format: Option<Format>,
+    format: Format,
     shown: T,
 ) -> Result<Response, Problem> {
-    let format = Format::chosen(format, headers, &Format::ALL)?;
-    let (after, limit) = match moves.of(format) {
-        Moves::Page(after, limit) => (after, limit),
-        Moves::Newest(limit) => (app.sessions.sequence(id).await?.saturating_sub(limit as u64), limit),
-        Moves::All => return all(app, id, headers, format, shown).await,
-    };
+    let MovesQuery { after, limit, last } = moves;
+    if (after, limit, last) == (None, None, None) && format.is_stream() {
+        return all(app, id, headers, format, shown).await;
+    }
+    let limit = last.or(limit).unwrap_or(DEFAULT_PAGE);
+    let newest = last.is_some() || after.is_none() && format.is_plot();
+    let after = if newest { app.sessions.sequence(id).await?.saturating_sub(limit as u64) } else { after.unwrap_or(0) };
     let mut memory = app.pool.reserve(shown.bytes(limit) + format.bytes(0, 0)).await?;
     let moves = app.sessions.history(id, after, limit).await?;
-    let tag = format.tag(&(version(&moves, after) + shown.marking()));
+    let tag = formats::tag(format, &(version(&moves, after) + &shown.parameters()));
     if reply::is_current(headers, &tag) {
         return Ok(reply::not_modified(&tag));
     }
@@ -91,7 +114,7 @@ pub(super) async fn reply<T: MoveSeries>(
         }
         Ok::<_, Problem>(written?)
     };
-    let mut response = reply::tagged(format.reply(app.pool.run(format.cost(), write).await??), &tag);
+    let mut response = reply::tagged(formats::reply(format, app.pool.run(format.cost(), write).await??), &tag);
     response.headers_mut().extend(next.map(|next| (header::LINK, next)));
     Ok(reply::holding(response, memory))
 }
@@ -112,12 +135,12 @@ async fn all<T: MoveSeries>(
     shown: T,
 ) -> Result<Response, Problem> {
     let end = app.sessions.sequence(id).await?;
-    let tag = format.tag(&format!("{end}-all{}", shown.marking()));
+    let tag = formats::tag(format, &format!("{end}-all{}", shown.parameters()));
     if reply::is_current(headers, &tag) {
         return Ok(reply::not_modified(&tag));
     }
     app.sessions.check_complete(id, end).await?;
-    let memory = app.pool.reserve(shown.bytes(PAGE)).await?;
+    let memory = app.pool.reserve(shown.bytes(BLOCK)).await?;
     let stream = TableStream::new(format);
     let mut table = WholeTable { app, id, shown, format, stream, end, after: 0, is_done: false, memory };
     // Before the reply begins, which cannot be taken back.
@@ -130,7 +153,7 @@ async fn all<T: MoveSeries>(
         Ok(Some((block, table)))
     });
     let body = Body::from_stream(stream::iter([Ok(first)]).chain(rest));
-    Ok(reply::tagged(format.reply(body), &tag))
+    Ok(reply::tagged(formats::reply(format, body), &tag))
 }
 
 /// The table of the moves 1 to `end`, while it is written.
@@ -149,7 +172,7 @@ struct WholeTable<T> {
 
 impl<T: MoveSeries> WholeTable<T> {
     async fn next(&mut self) -> Result<Vec<u8>, Problem> {
-        let limit = PAGE.min(usize::try_from(self.end - self.after).unwrap_or(PAGE));
+        let limit = BLOCK.min(usize::try_from(self.end - self.after).unwrap_or(BLOCK));
         let moves = self.app.sessions.history(self.id, self.after, limit).await?;
         let memory = &mut self.memory;
         let page = self.shown.page(&self.app, self.id, self.after, moves, self.format, memory).await?;

@@ -22,8 +22,7 @@ use stickslip_wire::{Document, MoveReply, MoveRequest, PathReply, PathRequest, R
         headers(("ETag" = String, description = "The new sequence in quotes"))))
 )]
 pub async fn move_contact(
-    TenantApp(app): TenantApp,
-    ContactPath { id }: ContactPath,
+    ContactPath { app, id }: ContactPath,
     IfMatch { expected }: IfMatch,
     request: CheckedBody<MoveRequest>,
 ) -> Result<Response, Problem> {
@@ -48,8 +47,7 @@ pub async fn move_contact(
         headers(("ETag" = String, description = "The new sequence in quotes"))))
 )]
 pub async fn follow_path(
-    TenantApp(app): TenantApp,
-    ContactPath { id }: ContactPath,
+    ContactPath { app, id }: ContactPath,
     IfMatch { expected }: IfMatch,
     request: CheckedBody<PathRequest>,
 ) -> Result<Response, Problem> {
@@ -72,8 +70,7 @@ pub async fn follow_path(
             run"))))
 )]
 pub async fn relax_contact(
-    TenantApp(app): TenantApp,
-    ContactPath { id }: ContactPath,
+    ContactPath { app, id }: ContactPath,
     IfMatch { expected }: IfMatch,
     request: CheckedBody<RelaxRequest>,
 ) -> Result<Response, Problem> {

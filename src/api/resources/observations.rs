@@ -24,8 +24,7 @@ use super::prelude::*;
         headers(("ETag" = String, description = "The new sequence in quotes"))))
 )]
 pub async fn follow_bench(
-    TenantApp(app): TenantApp,
-    ContactPath { id }: ContactPath,
+    ContactPath { app, id }: ContactPath,
     IfMatch { expected }: IfMatch,
     request: CheckedBody<ObservationsRequest>,
 ) -> Result<Response, Problem> {
@@ -41,11 +40,10 @@ pub async fn follow_bench(
         headers(("ETag" = String, description = "The sequence in quotes"))))
 )]
 pub async fn get_friction(
-    TenantApp(app): TenantApp,
-    ContactPath { id }: ContactPath,
+    ContactPath { app, id }: ContactPath,
     headers: HeaderMap,
     _: CheckedQuery<()>,
 ) -> Result<Response, Problem> {
     let friction = app.sessions.friction(id).await?;
-    reply::versioned(&headers, &Format::Columns.tag(&friction.sequence.to_string()), &friction)
+    reply::versioned(&headers, &formats::tag(Format::Columns, &friction.sequence.to_string()), &friction)
 }

@@ -11,7 +11,11 @@ use sha2::{Digest as _, Sha256};
 
 use super::meta;
 use crate::api::accept::admission;
-use crate::api::{reply, routes};
+use crate::api::reply;
+
+/// The path of the page, and that of its files.
+pub const PAGE: &str = "/";
+pub const FILES: &str = "/page/{name}";
 
 struct Asset {
     name: &'static str,
@@ -26,7 +30,7 @@ const ASSETS: &[Asset] = &include!(concat!(env!("OUT_DIR"), "/page.in"));
 static HASHES: LazyLock<Vec<String>> = LazyLock::new(|| ASSETS.iter().map(|asset| hash(asset.plain)).collect());
 
 pub fn routes() -> Router {
-    Router::new().route(routes::PAGE, get(index)).route(routes::PAGE_FILES, get(file))
+    Router::new().route(PAGE, get(index)).route(FILES, get(file))
 }
 
 async fn index(headers: HeaderMap, uri: Uri) -> Response {

@@ -3,17 +3,12 @@
 use stickslip_wire::{Faults, Field, JsonPath, Residual, StressRequest};
 
 use super::prelude::*;
+use super::stress::PLOT_RADII;
 use stickslip_compute::computations::ResidualTask;
-
-/// Radii between which a plot has the shear stress.
-const PLOT_RADII: usize = 1_000;
 
 parameters! {
     pub struct ResidualQuery {
-        /// `columns` (this document), or a row for each extremum with its radius, shear stress and kind (`maximum` or
-        /// `minimum`), as `rows` (a JSON array of flat objects), `csv`, `ndjson` or `arrow` (an Arrow IPC stream), or a
-        /// plot as `svg` or `png`. If it is left out, `Accept` decides.
-        format: Option<Format> = formats(&Format::ALL);
+        ..formats(&Format::ALL, "A table has a row for each extremum with its radius, shear stress and kind (`maximum` or `minimum`).")
     }
 }
 
@@ -26,13 +21,12 @@ parameters! {
         headers(("ETag" = String, description = "The sequence that they belong to, in quotes"))))
 )]
 pub async fn get_residual(
-    TenantApp(app): TenantApp,
-    ContactPath { id }: ContactPath,
+    ContactPath { app, id }: ContactPath,
     headers: HeaderMap,
-    CheckedQuery(ResidualQuery { format }): CheckedQuery<ResidualQuery>,
+    CheckedQuery(query): CheckedQuery<ResidualQuery>,
 ) -> Result<Response, Problem> {
-    let is_plot = Format::chosen(format, &headers, &Format::ALL)?.is_plot();
+    let format = query.format?;
     let request = StressRequest { points: Some(PLOT_RADII), radii: None, x: None, fields: Some(vec![Field::Shear]) };
-    let between = is_plot.then(|| request.check(JsonPath::Root, &mut Faults::default())).flatten();
+    let between = format.is_plot().then(|| request.check(JsonPath::Root, &mut Faults::default())).flatten();
     computations::get_of_contact(&app, id, &headers, format, ResidualTask { between }).await
 }

@@ -6,10 +6,7 @@ use super::prelude::*;
 
 parameters! {
     pub struct SubsurfaceFormat {
-        /// `columns` (this document), `rows` (a JSON array of flat objects), `csv`, `ndjson`, `arrow` (an Arrow IPC
-        /// stream), or a picture as `svg` or `png`: of one field in a plane or on the surface. If it is left out,
-        /// `Accept` decides.
-        format: Option<Format> = formats(&Format::ALL);
+        ..formats(&Format::ALL, "A picture is of one field in a plane or on the surface.")
     }
 }
 
@@ -32,14 +29,11 @@ parameters! {
         headers(("ETag" = String, description = "The sequence that they belong to, in quotes"))))
 )]
 pub async fn compute_subsurface_stress(
-    TenantApp(app): TenantApp,
-    ContactPath { id }: ContactPath,
-    headers: HeaderMap,
-    query: Result<CheckedQuery<SubsurfaceFormat>, Problem>,
+    ContactPath { app, id }: ContactPath,
+    CheckedQuery(query): CheckedQuery<SubsurfaceFormat>,
     request: CheckedBody<SubsurfaceRequest>,
 ) -> Result<Response, Problem> {
-    let CheckedQuery(query) = query?;
-    let format = Format::chosen(query.format, &headers, &Format::ALL)?;
+    let format = query.format?;
     let CheckedBody { body, held, .. } = request;
     let task = app.sessions.subsurface_task(id, body).await?;
     computations::of_contact(&app, id, format, task, held.memory).await

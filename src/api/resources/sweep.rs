@@ -36,11 +36,11 @@ pub async fn run_sweep(
     TenantApp(app): TenantApp,
     headers: HeaderMap,
     Prefer { respond_async }: Prefer,
-    query: Result<CheckedQuery<TableQuery>, Problem>,
+    CheckedQuery(query): CheckedQuery<TableQuery>,
     body: CheckedBody<SweepRequest>,
 ) -> Result<Response, Problem> {
-    let (CheckedQuery(query), events) = (query?, accepts_events(&headers));
-    let format = if events { Format::Columns } else { Format::chosen(query.format, &headers, &Format::TABLES)? };
+    let events = accepts_events(&headers);
+    let format = if events { Format::Columns } else { query.format? };
     let CheckedBody { body: checked, key, mut held } = body;
     let earlier = match &key {
         Some(key) => app.sessions.earlier_reply(key.clone()).await?,
@@ -91,5 +91,5 @@ pub async fn run_sweep(
     };
     held.resize(&app.pool, table_bytes).await?;
     let table = Body::from_stream(futures::stream::iter(result.table(sweep.checked()).blocks(format)));
-    Ok(held.on(format.reply(table)))
+    Ok(held.on(formats::reply(format, table)))
 }

@@ -3,12 +3,13 @@
 use std::path::{Path, PathBuf};
 
 use clap::{Args, Command};
+use stickslip_compute::Refusal;
 use stickslip_compute::computations::files;
-use stickslip_measured::import::{LoopHints, UnitHint};
 use stickslip_wire::fit::{FitParameter, KnownValue, KnownValues, LoopStart, MeasuredLoop};
 use stickslip_wire::{self as wire, ContactDefinition, FitRequest};
 
-use super::{Body, Flags, ReplyPart, force, length, member, one_of, time};
+use super::{Body, Flags, QueryFlags, ReplyPart, member, one_of};
+use crate::api::LoopFileQuery;
 use crate::cli::command_error::CommandError;
 use crate::cli::io::read;
 
@@ -21,35 +22,8 @@ pub struct FitFlags {
     /// A file with the definition of the contact, for a file of columns.
     #[arg(long)]
     contact: Option<PathBuf>,
-    /// The column of displacements, by its number or its name in the header; without it the column with such a name, or
-    /// the first.
-    #[arg(long, value_name = "COLUMN")]
-    displacement: Option<String>,
-    /// The column of forces, by its number or its name in the header; without it the column with such a name, or the
-    /// second.
-    #[arg(long, value_name = "COLUMN")]
-    force: Option<String>,
-    /// The column of times, if the file has one; without it the column with such a name.
-    #[arg(long, value_name = "COLUMN")]
-    time: Option<String>,
-    /// The unit of displacements; without it the one that the header names, or m.
-    #[arg(long, value_name = "UNIT", value_parser = length)]
-    displacement_unit: Option<UnitHint>,
-    /// The unit of forces; without it the one that the header names, or N.
-    #[arg(long, value_name = "UNIT", value_parser = force)]
-    force_unit: Option<UnitHint>,
-    /// The unit of times; without it the one that the header names, or s.
-    #[arg(long, value_name = "UNIT", value_parser = time)]
-    time_unit: Option<UnitHint>,
-    /// The unit of loads; without it the one that the header names, or N.
-    #[arg(long, value_name = "UNIT", value_parser = force)]
-    load_unit: Option<UnitHint>,
-    /// The sheet of a spreadsheet, by its name or its number; without it the first sheet with numbers.
-    #[arg(long)]
-    sheet: Option<String>,
-    /// The column of loads, if the file has one; without it the column with such a name.
-    #[arg(long, value_name = "COLUMN")]
-    load: Option<String>,
+    #[command(flatten)]
+    hints: QueryFlags<LoopFileQuery>,
     /// The load, N, if it is not in the file and not that of the contact.
     #[arg(long)]
     normal_force: Option<f64>,
@@ -85,11 +59,7 @@ impl FitFlags {
     fn of_columns(self, content: &[u8], file: &Path) -> Result<(FitRequest, Vec<String>), CommandError> {
         let contact = self.contact.ok_or("a file of columns needs --contact FILE, the definition of the contact")?;
         let contact = wire::parse::<ContactDefinition>(&read(&contact)?)?;
-        let FitFlags { displacement, force, time, load, displacement_unit, force_unit, time_unit, load_unit, .. } =
-            self;
-        let sheet = self.sheet;
-        let hints =
-            LoopHints { displacement, force, time, load, displacement_unit, force_unit, time_unit, load_unit, sheet };
+        let hints = self.hints.0.map_err(Refusal::from)?.into();
         let found = files::measured_loop(content, &hints).map_err(|error| CommandError::of_file(file, error))?;
         let normal_force = self.normal_force.or(found.measured.normal_force);
         let measured = MeasuredLoop { normal_force, start: self.start, ..found.measured };

@@ -9,16 +9,19 @@ mod protocol;
 use std::io::{IsTerminal as _, stdout};
 use std::path::{Path, PathBuf};
 
+use axum::http::HeaderMap;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::error::{Error, ErrorKind};
 use clap::{Arg, ArgAction, ArgMatches, Args, Command, FromArgMatches, Subcommand};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
-use stickslip_measured::import::{Dimension, UnitHint, UnknownUnit};
+use utoipa::IntoParams;
+use utoipa::openapi::path::Parameter;
 
 use super::command_error::CommandError;
 use super::io::{json, parsed, print, read, say, write};
 use super::summary::summary;
+use crate::api::{Problem, QueryParams, QueryReader};
 use stickslip_compute::Flag;
 use stickslip_compute::computations::{About, DisplayOptions, compute, entries};
 use stickslip_compute::formats::Format;
@@ -45,6 +48,11 @@ struct Body {
 }
 
 impl Body {
+    /// A file that is the body.
+    fn given(file: Option<&Path>) -> Result<Body, CommandError> {
+        Ok(Body { text: read(file.unwrap_or(Path::new("-")))?, ..Body::default() })
+    }
+
     /// A file that is a body, or otherwise one that `made` makes a body of, with how it was interpreted.
     fn of_file<R: Serialize>(
         file: Option<&Path>,
@@ -70,19 +78,34 @@ fn one_of<V: Clone + Send + Sync>(
     PossibleValuesParser::new(names).try_map(move |chosen| found(chosen).ok_or("not allowed"))
 }
 
-/// Parses a unit of length of the table.
-fn length(text: &str) -> Result<UnitHint, UnknownUnit> {
-    UnitHint::of(text, Dimension::LENGTH)
+/// The parameters of a query of the service as flags.
+struct QueryFlags<Q>(Result<Q, Problem>);
+
+impl<Q: QueryParams + IntoParams> Args for QueryFlags<Q> {
+    fn augment_args(command: Command) -> Command {
+        command.args(Q::into_params(|| None).into_iter().map(|Parameter { name, description, .. }| {
+            let help = description.unwrap_or_default();
+            let (long, value) = (name.replace('_', "-"), name.to_uppercase());
+            Arg::new(name).long(long).value_name(value).help(help.trim_end_matches('.').to_owned())
+        }))
+    }
+
+    fn augment_args_for_update(command: Command) -> Command {
+        Self::augment_args(command)
+    }
 }
 
-/// Parses a unit of force of the table.
-fn force(text: &str) -> Result<UnitHint, UnknownUnit> {
-    UnitHint::of(text, Dimension::FORCE)
-}
+impl<Q: QueryParams + IntoParams> FromArgMatches for QueryFlags<Q> {
+    fn from_arg_matches(matches: &ArgMatches) -> Result<Self, Error> {
+        let value = |name: String| matches.get_one::<String>(&name).cloned().map(|value| (name, value));
+        let given = Q::into_params(|| None).into_iter().filter_map(|parameter| value(parameter.name)).collect();
+        Ok(QueryFlags(QueryReader::read(given, &HeaderMap::new())))
+    }
 
-/// Parses a unit of time of the table.
-fn time(text: &str) -> Result<UnitHint, UnknownUnit> {
-    UnitHint::of(text, Dimension::TIME)
+    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), Error> {
+        *self = Self::from_arg_matches(matches)?;
+        Ok(())
+    }
 }
 
 /// Flags of a computation besides those that all have.
@@ -91,17 +114,9 @@ trait Flags: Args {
         Self::augment_args(command)
     }
 
-    /// The body of the request: the file as it is.
-    fn body(self, file: Option<&Path>) -> Result<Body, CommandError> {
-        Ok(Body { text: read(file.unwrap_or(Path::new("-")))?, ..Body::default() })
-    }
+    /// The body of the request.
+    fn body(self, file: Option<&Path>) -> Result<Body, CommandError>;
 }
-
-/// No flags: the file is the body.
-#[derive(Args)]
-struct NoFlags {}
-
-impl Flags for NoFlags {}
 
 /// How flags are added to a command, and read.
 type FlagsOf = (fn(Command) -> Command, fn(&ArgMatches, Option<&Path>) -> Result<Body, CommandError>);
@@ -115,7 +130,7 @@ fn flags(name: &str) -> FlagsOf {
         "protocol" => of::<protocol::ProtocolFlags>(),
         "profile" => of::<profile::ProfileFlags>(),
         "fit" => of::<fit::FitFlags>(),
-        _ => of::<NoFlags>(),
+        _ => (|command| command, |_, file| Body::given(file)),
     }
 }
 

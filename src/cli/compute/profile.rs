@@ -3,42 +3,21 @@
 use std::path::{Path, PathBuf};
 
 use clap::{Args, Command};
+use stickslip_compute::Refusal;
 use stickslip_compute::computations::files;
-use stickslip_measured::import::{ScanHints, UnitHint};
 use stickslip_wire::profile_fit::{ScanLoad, ScanOrientation, Smoothing};
 use stickslip_wire::{self as wire, Profile, ProfileFitRequest};
 
-use super::{Body, Flags, ReplyPart, length, member};
+use super::{Body, Flags, QueryFlags, ReplyPart, member};
+use crate::api::ScanFileQuery;
 use crate::cli::command_error::CommandError;
 use crate::cli::io::read;
 
 /// The flags for what a file of columns leaves open.
 #[derive(Args)]
 pub struct ProfileFlags {
-    /// The unit of places in a file of columns; without it the one that the header names, or m.
-    #[arg(long, value_name = "UNIT", value_parser = length)]
-    lateral: Option<UnitHint>,
-    /// The unit of heights in a file of columns; without it the one that the header names, or m.
-    #[arg(long, value_name = "UNIT", value_parser = length)]
-    height: Option<UnitHint>,
-    /// The distance between neighbours in a matrix of heights, in the unit of places.
-    #[arg(long)]
-    spacing: Option<f64>,
-    /// The column of places along the line, or along the first axis, by its number or its name in the header; without
-    /// it the column with such a name, or the first.
-    #[arg(long, value_name = "COLUMN")]
-    x: Option<String>,
-    /// The column of places along the second axis, by its number or its name in the header; without it the column with
-    /// such a name.
-    #[arg(long, value_name = "COLUMN")]
-    y: Option<String>,
-    /// The column of heights, by its number or its name in the header; without it the column with such a name, or the
-    /// last.
-    #[arg(long, value_name = "COLUMN")]
-    z: Option<String>,
-    /// The sheet of a spreadsheet, by its name or its number; without it the first sheet with numbers.
-    #[arg(long)]
-    sheet: Option<String>,
+    #[command(flatten)]
+    hints: QueryFlags<ScanFileQuery>,
     /// A file with `material`, `friction` and `preload`, for which to compute the contact of a file of columns.
     #[arg(long)]
     load: Option<PathBuf>,
@@ -62,8 +41,7 @@ impl Flags for ProfileFlags {
 
 impl ProfileFlags {
     fn of_columns(self, content: &[u8], file: &Path) -> Result<(ProfileFitRequest, Vec<String>), CommandError> {
-        let ProfileFlags { lateral, height, spacing, x, y, z, sheet, .. } = self;
-        let hints = ScanHints { lateral, height, spacing, x, y, z, sheet, most: 0 };
+        let hints = self.hints.0.map_err(Refusal::from)?.into();
         let found = files::scan(content, hints).map_err(|error| CommandError::of_file(file, error))?;
         let load = |file: PathBuf| Ok::<_, CommandError>(wire::parse::<ScanLoad>(&read(&file)?)?);
         let load = self.load.map(load).transpose()?;

@@ -1,6 +1,7 @@
 //! What is wrong with the settings, in one line: the key, its value, and what is allowed.
 
 use std::error::Error as _;
+use std::ffi::OsString;
 use std::path::Path;
 
 use clap::error::{ContextKind, ContextValue, ErrorKind};
@@ -17,13 +18,6 @@ pub enum SettingsError {
     Invalid(String),
 }
 
-/// The source of an invalid value.
-pub enum Origin<'a> {
-    Flag,
-    Environment,
-    File(&'a Path),
-}
-
 /// The error for an unknown setting: its name, how it was written, and the names that there are.
 pub fn unknown_setting<'a>(name: &str, written: &str, known: impl Iterator<Item = &'a str>) -> SettingsError {
     let mut known: Vec<&str> = known.collect();
@@ -37,8 +31,8 @@ pub fn unknown_setting<'a>(name: &str, written: &str, known: impl Iterator<Item 
     SettingsError::Invalid(format!("{written}: unknown setting, {advice}"))
 }
 
-/// The error of the parser of arguments. `invoked` is the command that they name.
-pub fn from_clap(error: clap::Error, command: &Command, invoked: &Command, origin: &Origin<'_>) -> SettingsError {
+/// The error of the parser of arguments, which may be about a value of the configuration file.
+pub fn from_clap(error: clap::Error, command: &Command, arguments: &[OsString], file: Option<&Path>) -> SettingsError {
     if !error.use_stderr() {
         return SettingsError::Help(error);
     }
@@ -50,13 +44,16 @@ pub fn from_clap(error: clap::Error, command: &Command, invoked: &Command, origi
     let arg = || all(command).into_iter().find(|arg| arg.get_long().is_some() && arg.get_long() == long(name));
     let why = match (error.kind(), arg()) {
         (ErrorKind::UnknownArgument, _) => {
+            // Of the command that the arguments name, right or wrong otherwise.
+            let names = arguments.iter().skip(1);
+            let invoked = names.fold(command, |command, name| command.find_subcommand(name).unwrap_or(command));
             let known = invoked.get_arguments().filter_map(|arg| arg.get_long().map(|long| format!("--{long}")));
             let known: Vec<String> = known.collect();
             return unknown_setting(name, &masked(name), known.iter().map(String::as_str));
         }
         (ErrorKind::InvalidValue | ErrorKind::ValueValidation, Some(arg)) => {
             let value = text(ContextKind::InvalidValue).unwrap_or_default();
-            let name = name_of(arg, value, origin);
+            let name = written(arg, value, arguments, file);
             let why = match (error.source(), value) {
                 (Some(source), _) => masked(&source.to_string()),
                 (None, "") => "a value is missing".to_owned(),
@@ -70,13 +67,15 @@ pub fn from_clap(error: clap::Error, command: &Command, invoked: &Command, origi
     SettingsError::Invalid(why)
 }
 
-/// The setting and its value as their source writes them.
-fn name_of(arg: &Arg, value: &str, origin: &Origin<'_>) -> String {
-    let (long, value) = (arg.get_long().unwrap_or_default(), masked(value));
-    match origin {
-        Origin::Flag => format!("--{long} {value}"),
-        Origin::Environment => format!("{}={value}", arg.get_env().unwrap_or_default().to_string_lossy()),
-        Origin::File(file) => format!("{}: {long} = {value}", file.display()),
+/// The setting and its value as their source writes them: the first that has one.
+fn written(arg: &Arg, value: &str, arguments: &[OsString], file: Option<&Path>) -> String {
+    let (name, value) = (arg.get_long().unwrap_or_default(), masked(value));
+    let is_flag = arguments.iter().any(|argument| argument.to_str().and_then(long) == Some(name));
+    let variable = arg.get_env().filter(|variable| std::env::var_os(variable).is_some());
+    match (is_flag, variable, file) {
+        (false, Some(variable), _) => format!("{}={value}", variable.to_string_lossy()),
+        (false, None, Some(file)) => format!("{}: {name} = {value}", file.display()),
+        _ => format!("--{name} {value}"),
     }
 }
 

@@ -2,8 +2,7 @@
 //!
 //! A setting is an argument with a long flag and a variable `STICKSLIP_…`, of a command with [`ConfigFile`]; nothing
 //! else declares it. A flag precedes the environment, then the file, then the default: the values of the file replace
-//! the defaults, and the arguments are parsed again. The sources are parsed one after the other, so that an error can
-//! name its source.
+//! the defaults, and the arguments are parsed again.
 
 mod error;
 mod file;
@@ -15,7 +14,6 @@ use std::path::PathBuf;
 
 use clap::{Arg, ArgMatches, Args, Command, CommandFactory, FromArgMatches};
 
-use error::Origin;
 pub use error::SettingsError;
 use file::ConfigValues;
 pub use mask::masked;
@@ -45,14 +43,11 @@ pub struct Settings {
 /// [`SettingsError`]: the requested help, or a line about what is wrong.
 pub fn read<T: CommandFactory + FromArgMatches>(arguments: Vec<OsString>) -> Result<(T, Settings), SettingsError> {
     let mut command = T::command();
-    let parse = |command: &Command, origin: Origin<'_>| {
-        command
-            .clone()
-            .try_get_matches_from(&arguments)
-            .map_err(|error| error::from_clap(error, command, invoked(command, &arguments), &origin))
+    let parse = |command: &Command, file| {
+        let matches = command.clone().try_get_matches_from(&arguments);
+        matches.map_err(|error| error::from_clap(error, command, &arguments, file))
     };
-    parse(&without_environment(command.clone()), Origin::Flag)?;
-    let mut matches = parse(&command, Origin::Environment)?;
+    let mut matches = parse(&command, None)?;
     let mut file = None;
     if settings_of(requested(&command, &matches)).any(|setting| setting.get_id() == "config") {
         check_variables(&command)?;
@@ -63,12 +58,11 @@ pub fn read<T: CommandFactory + FromArgMatches>(arguments: Vec<OsString>) -> Res
                 Some(name) => command.mut_subcommand(name, |own| with_defaults(own, &values)),
                 None => with_defaults(command, &values),
             };
-            matches = parse(&command, Origin::File(&values.path))?;
+            matches = parse(&command, Some(&values.path))?;
             file = Some(values);
         }
     }
-    let read = T::from_arg_matches(&matches)
-        .map_err(|error| error::from_clap(error, &command, invoked(&command, &arguments), &Origin::Flag))?;
+    let read = T::from_arg_matches(&matches).map_err(|error| error::from_clap(error, &command, &arguments, None))?;
     let settings =
         Settings { command: requested(&command, &matches).clone(), matches: requested_matches(&matches).clone(), file };
     Ok((read, settings))
@@ -79,11 +73,6 @@ fn settings_of(command: &Command) -> impl Iterator<Item = &Arg> {
     command.get_arguments().filter(|arg| arg.get_long().is_some() && arg.get_env().is_some())
 }
 
-/// The command that the arguments name, right or wrong otherwise.
-fn invoked<'a>(command: &'a Command, arguments: &[OsString]) -> &'a Command {
-    arguments.iter().skip(1).fold(command, |command, name| command.find_subcommand(name).unwrap_or(command))
-}
-
 /// The requested command: a subcommand, or the top level.
 fn requested<'a>(command: &'a Command, matches: &ArgMatches) -> &'a Command {
     matches.subcommand_name().and_then(|name| command.find_subcommand(name)).unwrap_or(command)
@@ -91,10 +80,6 @@ fn requested<'a>(command: &'a Command, matches: &ArgMatches) -> &'a Command {
 
 fn requested_matches(matches: &ArgMatches) -> &ArgMatches {
     matches.subcommand().map_or(matches, |(_, own)| own)
-}
-
-fn without_environment(command: Command) -> Command {
-    command.mut_args(|arg| arg.env(None::<&'static str>)).mut_subcommands(without_environment)
 }
 
 fn with_defaults(command: Command, values: &ConfigValues) -> Command {

@@ -6,62 +6,45 @@ use std::sync::Arc;
 use std::task::{Context, Poll};
 
 use axum::body::{Body, Bytes};
-use http_body::{Frame, SizeHint};
+use http_body::{Body as _, Frame, SizeHint};
 use http_body_util::BodyExt as _;
-use tokio::sync::oneshot;
+use hyper::body::Incoming;
+use parking_lot::Mutex;
 use tokio::time::timeout;
 
 use super::ConnectionActivity;
 use crate::admission::{Client, RequestPermit, Reservation};
 use crate::server::connection_limits::{DISCARD_TIME, DISCARDED, PIECE};
 
-/// The body of a request, of which the service gets back what a handler has not read. Nothing once it has ended.
-pub struct ReturnedBody<B: Unpin>(Option<(B, oneshot::Sender<B>)>);
+/// The body of a request, which a handler reads and the service after it.
+#[derive(Clone)]
+pub struct SharedBody(Arc<Mutex<Incoming>>);
 
-impl<B: Unpin> ReturnedBody<B> {
-    /// A body, and where its rest comes back when it is dropped before its end.
-    pub fn new(body: B) -> (ReturnedBody<B>, oneshot::Receiver<B>) {
-        let (back, returned) = oneshot::channel();
-        (ReturnedBody(Some((body, back))), returned)
+impl SharedBody {
+    pub fn new(body: Incoming) -> SharedBody {
+        SharedBody(Arc::new(Mutex::new(body)))
     }
 }
 
-impl<B: Unpin> Drop for ReturnedBody<B> {
-    fn drop(&mut self) {
-        if let Some((body, back)) = self.0.take() {
-            // The request may be over already.
-            let _ = back.send(body);
-        }
-    }
-}
+impl http_body::Body for SharedBody {
+    type Data = Bytes;
+    type Error = hyper::Error;
 
-impl<B: http_body::Body + Unpin> http_body::Body for ReturnedBody<B> {
-    type Data = B::Data;
-    type Error = B::Error;
-
-    fn poll_frame(mut self: Pin<&mut Self>, cx: &mut Context<'_>) -> Poll<Option<Result<Frame<B::Data>, B::Error>>> {
-        let Some((body, _)) = &mut self.0 else { return Poll::Ready(None) };
-        let frame = Pin::new(body).poll_frame(cx);
-        if let Poll::Ready(None | Some(Err(_))) = frame {
-            self.0 = None;
-        }
-        frame
+    fn poll_frame(self: Pin<&mut Self>, cx: &mut Context<'_>) -> Poll<Option<Result<Frame<Bytes>, hyper::Error>>> {
+        Pin::new(&mut *self.0.lock()).poll_frame(cx)
     }
 
     fn is_end_stream(&self) -> bool {
-        self.0.as_ref().is_none_or(|(body, _)| body.is_end_stream())
+        self.0.lock().is_end_stream()
     }
 
     fn size_hint(&self) -> SizeHint {
-        self.0.as_ref().map_or_else(SizeHint::default, |(body, _)| body.size_hint())
+        self.0.lock().size_hint()
     }
 }
 
 /// Reads what is left of a body and discards it; returns whether that was all of it, in time.
-pub async fn discard<B>(mut body: B) -> bool
-where
-    B: http_body::Body<Data = Bytes> + Unpin,
-{
+pub async fn discard(mut body: SharedBody) -> bool {
     let read = async {
         let mut length = 0;
         while !body.is_end_stream()

@@ -12,18 +12,13 @@ use ipnet::IpNet;
 use tokio::sync::watch;
 use tower_service::Service as _;
 
-use super::bodies::{RequestInProgress, ReturnedBody, TrackedBody, discard};
+use super::bodies::{RequestInProgress, SharedBody, TrackedBody, discard};
 use super::proxies;
 use super::{ConnectionActivity, OwnHosts};
 use crate::admission::{Client, Pool, PoolError, Quota, Reservation};
 
 /// Paths that are answered even if the server is busy.
 const ALWAYS_ANSWERED: [&str; 3] = ["/healthz", "/readyz", "/metrics"];
-
-/// The request arrived while its connection was being closed to make room.
-#[derive(Debug, thiserror::Error)]
-#[error("closed to make room")]
-pub struct Closed;
 
 /// From whom a request comes.
 #[derive(Clone, Copy, Debug)]
@@ -49,10 +44,8 @@ pub enum Refusal {
 
 /// What serves the requests of all connections.
 pub struct Service {
-    /// All routes.
+    /// All routes, which answer a request with a [`Refusal`] in place of its handler.
     pub router: Router,
-    /// Answers refused requests.
-    pub refusals: Router,
     /// Where requests get their places.
     pub pool: Pool,
     /// Whether clients are distinguished by their addresses: where there are no keys.
@@ -69,20 +62,23 @@ pub struct Service {
 
 impl Service {
     /// Serves a request; on a spare connection only those for the health of the server.
+    ///
+    /// # Errors
+    /// If the request arrived while its connection was being closed to make room.
     pub async fn serve(
         self: Arc<Self>,
         activity: Arc<ConnectionActivity>,
         spare: bool,
         peer: IpAddr,
         request: Request<Incoming>,
-    ) -> Result<Response<TrackedBody>, Closed> {
+    ) -> Result<Response<TrackedBody>, &'static str> {
         if !activity.begin_request() {
-            return Err(Closed);
+            return Err("closed to make room");
         }
         let in_progress = RequestInProgress(activity);
         let (head, body) = request.into_parts();
-        let (body, mut unread) = ReturnedBody::new(body);
-        let mut request = Request::from_parts(head, Body::new(body));
+        let body = SharedBody::new(body);
+        let mut request = Request::from_parts(head, Body::new(body.clone()));
         let address = proxies::client(peer, request.headers(), &self.proxies);
         request.extensions_mut().insert(RequestClient { address, body_time: self.body_time });
         let client = Client::of_address(address);
@@ -116,21 +112,16 @@ impl Service {
                 _ = stopping.wait_for(|stopping| *stopping) => Err(Refusal::Stopping),
             }
         };
-        let (reply, permit) = match permit {
-            Ok(permit) => (client.clone().serve(self.router.clone().call(request)).await, permit),
-            Err(refusal) => {
-                request.extensions_mut().insert(refusal);
-                (self.refusals.clone().call(request).await, None)
-            }
-        };
-        let Ok(mut reply) = reply;
+        let permit = permit.unwrap_or_else(|refusal| {
+            request.extensions_mut().insert(refusal);
+            None
+        });
+        let Ok(mut reply) = client.clone().serve(self.router.clone().call(request)).await;
         // A body that took too long is not waited for again.
         let readable = readable && reply.status() != StatusCode::REQUEST_TIMEOUT;
         // The next request of the connection begins after the body.
-        if let Ok(rest) = unread.try_recv()
-            && !rest.is_end_stream()
-        {
-            last |= !readable || !discard(rest).await;
+        if !body.is_end_stream() {
+            last |= !readable || !discard(body).await;
         }
         if last {
             reply.headers_mut().insert(header::CONNECTION, HeaderValue::from_static("close"));
