@@ -15,11 +15,10 @@ use std::time::Duration;
 use hashlink::LruCache;
 use parking_lot::Mutex;
 use prometheus::IntCounter;
-use tokio::sync::{Mutex as FairMutex, OwnedMutexGuard};
 use uuid::Uuid;
 
 use crate::admission::Reservation;
-use crate::store::Tenant;
+use crate::store::{KeyLock, KeyedLocks, Tenant};
 use stickslip_compute::simulation::ProfileKey;
 use stickslip_mechanics::Profile;
 
@@ -33,9 +32,8 @@ type Key = (Tenant, Uuid);
 
 /// States, profiles and locks.
 pub(super) struct Cache {
-    // Both are locked for a lookup, never across an await.
-    /// The locks of the sessions that requests use or wait for, who get them in the order of their arrival.
-    locks: Mutex<HashMap<Key, Arc<FairMutex<()>>>>,
+    locks: Arc<KeyedLocks<Key>>,
+    // Locked for a lookup, never across an await.
     cached: Mutex<Cached>,
     capacity: usize,
     // How often a state that was asked for was cached.
@@ -72,42 +70,33 @@ pub(super) struct Guard {
     pub(super) held: Reservation,
     /// Bytes of the state as it came out of the cache, which are counted there.
     taken: usize,
-    lock: LockEntry,
-}
-
-/// A request that has the lock of a session or waits for it. The last to leave removes the lock from the cache.
-struct LockEntry {
     cache: Arc<Cache>,
-    key: Key,
-    lock: Option<Arc<FairMutex<()>>>,
-    held: Option<OwnedMutexGuard<()>>,
+    // Dropped after the state has been put back.
+    lock: KeyLock<Key>,
 }
 
 impl Cache {
     /// A cache of at most this many bytes, and the counter of its hits.
     pub(super) fn new(capacity: usize, hits: IntCounter) -> Cache {
         let cached = Cached { items: LruCache::new_unbounded(), addresses: HashMap::new(), bytes: 0 };
-        Cache { locks: Mutex::default(), cached: Mutex::new(cached), capacity, hits }
+        Cache { locks: Arc::default(), cached: Mutex::new(cached), capacity, hits }
     }
 
     /// Waits for exclusive use of a session. A dropped future no longer waits.
     pub(super) async fn lock(self: &Arc<Self>, tenant: &Tenant, id: Uuid) -> Guard {
-        let (mut entry, lock) = self.enter(tenant, id);
-        entry.held = Some(lock.lock_owned().await);
-        entry.guard()
+        self.guard(self.locks.lock((tenant.clone(), id)).await)
     }
 
     /// Exclusive use of a session if nobody else has it.
     pub(super) fn try_lock(self: &Arc<Self>, tenant: &Tenant, id: Uuid) -> Option<Guard> {
-        let (mut entry, lock) = self.enter(tenant, id);
-        entry.held = Some(lock.try_lock_owned().ok()?);
-        Some(entry.guard())
+        Some(self.guard(self.locks.try_lock((tenant.clone(), id))?))
     }
 
-    fn enter(self: &Arc<Self>, tenant: &Tenant, id: Uuid) -> (LockEntry, Arc<FairMutex<()>>) {
-        let key = (tenant.clone(), id);
-        let lock = Arc::clone(self.locks.lock().entry(key.clone()).or_default());
-        (LockEntry { cache: Arc::clone(self), key, lock: Some(Arc::clone(&lock)), held: None }, lock)
+    /// The session with its state, if that is cached.
+    fn guard(self: &Arc<Self>, lock: KeyLock<Key>) -> Guard {
+        let (live, taken) = self.take(&lock.key).unzip();
+        let (cache, taken) = (Arc::clone(self), taken.unwrap_or(0));
+        Guard { live, loading: Duration::ZERO, held: Reservation::default(), taken, cache, lock }
     }
 
     /// Whether the state of a session is cached.
@@ -243,60 +232,10 @@ impl Guard {
     }
 }
 
-impl LockEntry {
-    /// The session with its state, if that is cached.
-    fn guard(self) -> Guard {
-        let (live, taken) = self.cache.take(&self.key).unzip();
-        let taken = taken.unwrap_or(0);
-        Guard { live, loading: Duration::ZERO, held: Reservation::default(), taken, lock: self }
-    }
-}
-
 impl Drop for Guard {
     fn drop(&mut self) {
         if self.live.is_some() || self.taken > 0 {
-            self.lock.cache.put(self.live.take(), self.taken);
+            self.cache.put(self.live.take(), self.taken);
         }
-    }
-}
-
-impl Drop for LockEntry {
-    fn drop(&mut self) {
-        let mut locks = self.cache.locks.lock();
-        // Both while nobody can enter, so that the last of those who leave at the same time finds nobody else.
-        drop((self.held.take(), self.lock.take()));
-        if locks.get(&self.key).is_some_and(|lock| Arc::strong_count(lock) == 1) {
-            locks.remove(&self.key);
-        }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[tokio::test(flavor = "multi_thread", worker_threads = 4)]
-    async fn a_lock_is_exclusive_and_nothing_of_it_stays() {
-        let hits = IntCounter::new("hits", "Hits.").unwrap();
-        let (cache, users, tenant) = (Arc::new(Cache::new(0, hits)), Arc::new(Mutex::new(0)), Tenant::default());
-        let ids = [Uuid::now_v7(), Uuid::now_v7()];
-        let tasks = (0..400).map(|number| {
-            let (cache, users, tenant) = (Arc::clone(&cache), Arc::clone(&users), tenant.clone());
-            tokio::spawn(async move {
-                let waiting = cache.lock(&tenant, ids[number % 2]);
-                let Ok(guard) = tokio::time::timeout(Duration::from_micros(50 * number as u64), waiting).await else {
-                    return;
-                };
-                if number % 2 == 0 {
-                    *users.try_lock().expect("another task has the lock") += 1;
-                    assert!(cache.try_lock(&tenant, ids[0]).is_none());
-                }
-                drop(guard);
-            })
-        });
-        for task in tasks.collect::<Vec<_>>() {
-            task.await.unwrap();
-        }
-        assert!(cache.locks.lock().is_empty());
     }
 }

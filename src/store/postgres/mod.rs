@@ -9,7 +9,6 @@
 //! `docs/postgres.md` describes the tables and what the database must support.
 
 mod batch_tx;
-mod change_locks;
 mod client_pool;
 mod columns;
 mod committer;

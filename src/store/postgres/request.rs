@@ -2,10 +2,10 @@
 
 use std::time::Instant;
 
-use tokio::sync::{OwnedMutexGuard, OwnedSemaphorePermit, oneshot};
+use tokio::sync::{OwnedSemaphorePermit, oneshot};
 use uuid::Uuid;
 
-use crate::store::{Receipt, Record, Result, Session, StoreError};
+use crate::store::{KeyLock, Receipt, Record, Result, Session, StoreError};
 
 use super::fault::LOCK_WAIT;
 
@@ -14,6 +14,13 @@ pub(super) enum Change {
     Create(Session, String),
     /// Moves for a session at a sequence.
     Append { id: Uuid, expected: u64, records: Vec<Record> },
+}
+
+/// What a change locks.
+#[derive(Clone, PartialEq, Eq, Hash)]
+pub(super) enum Locked {
+    Contact(Uuid),
+    Key(String),
 }
 
 /// A change, and the channel for its answer.
@@ -25,8 +32,9 @@ pub(super) struct WriteRequest {
     arrived: Instant,
     /// Whether an earlier attempt may have been committed.
     pub(super) in_doubt: bool,
-    /// The locks of its contact and its key: later changes wait until it is answered.
-    pub(super) locks: Vec<OwnedMutexGuard<()>>,
+    /// The locks of its contact and its key: later changes wait until it is answered, so that changes of one contact,
+    /// and those with one key, are made in the order of their arrival.
+    pub(super) locks: Vec<KeyLock<Locked>>,
     /// Its place among those that wait for other transactions, if it has one.
     pub(super) place: Option<OwnedSemaphorePermit>,
     pub(super) answer: oneshot::Sender<Result<()>>,

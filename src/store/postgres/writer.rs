@@ -6,15 +6,13 @@ use std::time::Duration;
 use tokio::sync::mpsc::error::SendError;
 use tokio::sync::{Semaphore, mpsc};
 use tokio::time::timeout;
-use uuid::Uuid;
 
-use crate::store::{Changes, Commits, Receipt, Result, StoreError, batch};
+use crate::store::{Changes, Commits, KeyedLocks, Receipt, Result, StoreError, batch};
 
-use super::change_locks::ChangeLocks;
 use super::client_pool::ClientPool;
 use super::committer::{Committer, without_overdue};
 use super::fault::Backoff;
-use super::request::{Change, WriteRequest};
+use super::request::{Change, Locked, WriteRequest};
 
 /// Changes that may wait.
 const QUEUE: usize = 4096;
@@ -27,8 +25,7 @@ const LOCKED: usize = 256;
 /// The handle to which changes are sent.
 pub(super) struct Writer {
     queue: mpsc::Sender<WriteRequest>,
-    contacts: ChangeLocks<Uuid>,
-    keys: ChangeLocks<String>,
+    locks: Arc<KeyedLocks<Locked>>,
     pub(super) commits: Arc<Commits>,
 }
 
@@ -39,7 +36,7 @@ impl Writer {
         let commits = Arc::new(Commits::new("postgres"));
         let committer = Committer::new(pool, changes, Arc::clone(&commits));
         tokio::spawn(write_batches(requests, committer));
-        Writer { queue, contacts: ChangeLocks::default(), keys: ChangeLocks::default(), commits }
+        Writer { queue, locks: Arc::default(), commits }
     }
 
     /// Makes a change, and returns when it is committed.
@@ -47,10 +44,10 @@ impl Writer {
         let _pending = self.commits.wait();
         let (mut request, answered) = WriteRequest::new(change, receipt);
         let send = async {
-            request.locks.push(self.contacts.lock(request.id()).await);
+            request.locks.push(self.locks.lock(Locked::Contact(request.id())).await);
             // After the contact, always: so nobody waits for a contact who has a key that others wait for.
             if let Some(key) = request.key().map(str::to_owned) {
-                request.locks.push(self.keys.lock(key).await);
+                request.locks.push(self.locks.lock(Locked::Key(key)).await);
             }
             // Whoever had the locks before may have waited for those of other transactions.
             if request.is_overdue() {
