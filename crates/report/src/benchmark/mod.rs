@@ -118,12 +118,13 @@ impl Speed {
         let python = python.map(|python| format!(" External solvers run on {python}.")).unwrap_or_default();
         let charted = self.scenes.iter().find(|scene| *scene == CHARTED).unwrap_or(&self.scenes[0]);
         let mut page = format!(
-            "# Speed against error\n\n{machine} It took {:.0} s.{python}\n\nTimes are processor times of one thread, so \
-             that other work on the machine is not counted. Ratios are medians over pairs, each of a run of a solver \
-             and a run of the exact solver just before it; quartiles in brackets. Errors are the largest: of the \
-             force over the path, relative to μ F_N; of the shear stress at {RADII} random radii and at the kinks, \
-             relative to μ p_max (to μ times the mean pressure for the cone).\n\nThe scene {charted}:\n\n![Error of the shear \
-             stress over the time](stress.svg)\n![Error of the force over the time](force.svg)\n\n{}",
+            "# Speed against error\n\n{machine} It took {:.0} s.{python}\n\nTimes are processor times of one thread, \
+             so that other work on the machine is not counted. Ratios are medians over pairs, each of a run of a \
+             solver and a run of the exact solver just before it; quartiles in brackets. Errors are the largest: of \
+             the force over the path, relative to μ F_N; of the shear stress at {RADII} random radii and at the \
+             kinks, relative to μ p_max (to μ times the mean pressure for the cone).\n\nThe scene {charted}:\n\n\
+             ![Error of the shear stress over the time](stress.svg)\n![Error of the force over the time](force.svg)\n\n\
+             {}",
             begin.elapsed().as_secs_f64(),
             table(COLUMNS, rows.iter().map(Row::to_markdown))
         );
