@@ -12,7 +12,7 @@ use crate::cells::shape::Reach;
 use crate::elasticity::Elasticity;
 use crate::error::Error;
 use crate::numerics::double_double::DoubleDouble;
-use crate::numerics::roots::{largest, within};
+use crate::numerics::roots::{largest_of, within};
 use crate::profile::Profile;
 
 /// Radii of the first scan for the largest pressure.
@@ -227,12 +227,9 @@ pub(super) fn max_pressure(profile: &Profile, elasticity: &Elasticity, edge: &Po
         .chain((0..LEVEL_SCAN).map(|index| profile.point(level(index)).square))
         .collect();
     squares.sort_by(|a, b| a.partial_cmp(b).unwrap_or(Ordering::Equal));
-    let scan: Vec<f64> = squares.iter().map(|&square| pressure_at(square)).collect();
     squares.push(edge.square);
-    let best = (0..scan.len()).max_by(|&a, &b| scan[a].total_cmp(&scan[b])).unwrap_or(0);
-    let (low, width) = (squares[best.saturating_sub(1)], squares[best + 1] - squares[best.saturating_sub(1)]);
-    let at_share = |share: f64| pressure_at(low + width * share);
-    Some(largest([0.0, 1.0], 1e-7, at_share).1.max(scan[best]))
+    let inside = |square: DoubleDouble| if square < edge.square { pressure_at(square) } else { 0.0 };
+    Some(largest_of(&squares, 1, 1e-7, inside).1)
 }
 
 /// The depth below `outer` (or, if `upward`, above `inner`) of the part of a ring whose load int X dy is `load`, m.

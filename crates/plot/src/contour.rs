@@ -4,12 +4,15 @@
 //! 1980, with the slopes of Fritsch & Butland 1984): smooth, and between the values at the four corners of a cell, so
 //! that no extremum appears that is not in the data. A cell with a corner that has no value has none either.
 
+use std::collections::BTreeMap;
+
 /// Cells along a side that a coarse grid is refined to, about.
 const REFINED: usize = 128;
-/// Places along a side at most: of a finer grid so many are drawn.
+/// Cells along a side at most, whatever the grid.
 const MOST: usize = 256;
 
-/// Values over a grid: all along `y` at the first of `x`, then at the next; NaN where there is none.
+/// Values over a grid: all along `y` at the first of `x`, then at the next. Where there is none, and all round, is NaN:
+/// both ends of each axis are there twice.
 pub(super) struct Grid {
     x: Vec<f64>,
     y: Vec<f64>,
@@ -18,192 +21,112 @@ pub(super) struct Grid {
 
 /// A closed line about a region, or about a hole in one.
 pub(super) struct Outline {
-    /// Its corners, the region on their left.
-    pub(super) points: Vec<(f64, f64)>,
-    /// Whether the side from the corner of this index on is where values end, not where they are equal.
-    pub(super) ends: Vec<bool>,
+    /// Its corners, the region on their left, and whether each is where values end, not where they are equal.
+    corners: Vec<((f64, f64), bool)>,
     /// The area within, above zero of a region and below zero of a hole.
     pub(super) area: f64,
 }
 
-impl Grid {
-    fn value(&self, column: usize, row: usize) -> f64 {
-        self.values[column * self.y.len() + row]
+impl Outline {
+    fn new(corners: Vec<((f64, f64), bool)>) -> Outline {
+        let next = corners.iter().cycle().skip(1);
+        let area =
+            corners.iter().zip(next).map(|((one, _), (other, _))| one.0 * other.1 - other.0 * one.1).sum::<f64>();
+        Outline { corners, area: 0.5 * area }
     }
 
+    pub(super) fn points(&self) -> impl Iterator<Item = (f64, f64)> {
+        self.corners.iter().map(|corner| corner.0)
+    }
+
+    /// The parts along which values are equal.
+    pub(super) fn lines(&self) -> Vec<Vec<(f64, f64)>> {
+        let mut corners = self.corners.clone();
+        match corners.iter().position(|corner| corner.1) {
+            Some(end) => corners.rotate_left(end),
+            None => corners.push(corners[0]),
+        }
+        let parts = corners.split(|corner| corner.1).filter(|part| part.len() > 1);
+        parts.map(|part| part.iter().map(|corner| corner.0).collect()).collect()
+    }
+}
+
+impl Grid {
     /// As many places as a picture needs, of values at given ones: all along `y` at the first of `x`, then at the next.
     pub(super) fn refined(x: &[f64], y: &[f64], values: &[f64]) -> Grid {
-        let (columns, rows) = (sampled(x.len()), sampled(y.len()));
-        let (coarse_x, coarse_y) = (at(x, &columns), at(y, &rows));
-        let (fine_x, fine_y) = (refined_axis(&coarse_x), refined_axis(&coarse_y));
-        let along = |column: &usize| {
-            let values: Vec<f64> = rows.iter().map(|row| values[column * y.len() + row]).collect();
-            interpolated(&coarse_y, &values, &fine_y)
-        };
-        let along: Vec<Vec<f64>> = columns.iter().map(along).collect();
+        let (fine_x, fine_y) = (refined_axis(x), refined_axis(y));
+        let (inner_x, inner_y) = (&fine_x[1..fine_x.len() - 1], &fine_y[1..fine_y.len() - 1]);
+        let along: Vec<Vec<f64>> = values.chunks(y.len()).map(|column| interpolated(y, column, inner_y)).collect();
         let mut fine = vec![f64::NAN; fine_x.len() * fine_y.len()];
-        for row in 0..fine_y.len() {
+        for row in 0..inner_y.len() {
             let across: Vec<f64> = along.iter().map(|column| column[row]).collect();
-            for (column, value) in interpolated(&coarse_x, &across, &fine_x).into_iter().enumerate() {
-                fine[column * fine_y.len() + row] = value;
+            for (column, value) in interpolated(x, &across, inner_x).into_iter().enumerate() {
+                if value.is_finite() {
+                    fine[(column + 1) * fine_y.len() + row + 1] = value;
+                }
             }
         }
         Grid { x: fine_x, y: fine_y, values: fine }
     }
 
-    /// The outlines of the region where the field is at least `level`, those about the largest areas first.
+    /// The outlines of the region where the field is at least `level`.
     pub(super) fn outlines(&self, level: f64) -> Vec<Outline> {
-        let mut sides = Vec::new();
-        for column in 0..self.x.len() - 1 {
-            for row in 0..self.y.len() - 1 {
-                self.sides_of(column, row, level, &mut sides);
+        let rows = self.y.len();
+        // From each crossing of the level to the next one. A crossing between two neighbours is numbered by the one
+        // nearer the origin and by the axis along which the other lies.
+        let mut next = BTreeMap::new();
+        for low in (0..self.values.len() - rows).filter(|low| low % rows + 1 < rows) {
+            let corners = [low, low + rows, low + rows + 1, low + 1].map(|place| self.values[place]);
+            let crossings = [2 * low, 2 * (low + rows) + 1, 2 * (low + 1), 2 * low + 1];
+            let inside = corners.map(|value| value >= level);
+            let is_saddle = inside[0] == inside[2] && inside[1] == inside[3] && inside[0] != inside[1];
+            // At a saddle the mean decides which corners are joined.
+            let joined = corners.iter().map(|value| 0.25 * value).sum::<f64>() >= level;
+            for side in (0..4).filter(|side| inside[*side] && !inside[(side + 1) % 4]) {
+                let steps =
+                    if is_saddle && !joined { 3 } else { (1..4).find(|n| inside[(side + n + 1) % 4]).unwrap_or(3) };
+                next.insert(crossings[side], crossings[(side + steps) % 4]);
             }
         }
-        sides.sort_unstable_by_key(|side| (side.from, side.to));
-        let mut used = vec![false; sides.len()];
         let mut outlines = Vec::new();
-        for first in 0..sides.len() {
-            if used[first] {
-                continue;
+        while let Some((first, mut last)) = next.pop_first() {
+            let mut corners = vec![self.place(first, level)];
+            while let Some(after) = next.remove(&last) {
+                corners.push(self.place(last, level));
+                last = after;
             }
-            let mut outline = Outline { points: Vec::new(), ends: Vec::new(), area: 0.0 };
-            let mut next = Some(first);
-            while let Some(index) = next {
-                used[index] = true;
-                outline.points.push(self.place(sides[index].from, level));
-                outline.ends.push(sides[index].ends);
-                let to = sides[index].to;
-                let from = sides.partition_point(|side| side.from < to);
-                next = (from..sides.len()).take_while(|index| sides[*index].from == to).find(|index| !used[*index]);
-            }
-            outline.area = area(&outline.points);
-            outlines.push(outline);
+            outlines.push(Outline::new(corners));
         }
-        outlines.sort_by(|one, other| other.area.abs().total_cmp(&one.area.abs()));
         outlines
     }
 
-    fn is_cell(&self, column: usize, row: usize) -> bool {
-        column + 1 < self.x.len()
-            && row + 1 < self.y.len()
-            && [(0, 0), (1, 0), (1, 1), (0, 1)].iter().all(|(i, j)| self.value(column + i, row + j).is_finite())
-    }
-
-    /// The sides of the part of a cell where the field is at least `level`, but for those shared with the next cell.
-    fn sides_of(&self, column: usize, row: usize, level: f64, sides: &mut Vec<Side>) {
-        if !self.is_cell(column, row) {
-            return;
-        }
-        let corners = [(column, row), (column + 1, row), (column + 1, row + 1), (column, row + 1)];
-        let values = corners.map(|(i, j)| self.value(i, j));
-        let inside = values.map(|value| value >= level);
-        // Beyond the edges below, to the right, above and to the left.
-        let ends = [
-            row == 0 || !self.is_cell(column, row - 1),
-            !self.is_cell(column + 1, row),
-            !self.is_cell(column, row + 1),
-            column == 0 || !self.is_cell(column - 1, row),
-        ];
-        let mut line: Vec<(Vertex, usize)> = Vec::with_capacity(8);
-        for edge in 0..4 {
-            let next = (edge + 1) % 4;
-            if inside[edge] {
-                line.push((self.corner(corners[edge]), edge));
-            }
-            if inside[edge] != inside[next] {
-                line.push((self.crossing(corners[edge], corners[next]), edge));
-            }
-        }
-        // At a saddle the mean decides which corners are joined.
-        let saddle = inside[0] == inside[2] && inside[1] == inside[3] && inside[0] != inside[1];
-        let joined = values.iter().map(|value| 0.25 * value).sum::<f64>() >= level;
-        let parts: Vec<Vec<(Vertex, usize)>> = if saddle && !joined {
-            // Each corner with the crossings before and after it.
-            let at = line.iter().position(|(vertex, _)| vertex.is_corner(self)).unwrap_or(0);
-            let before = (at + line.len() - 1) % line.len();
-            line.rotate_left(before);
-            vec![line[..3].to_vec(), line[3..].to_vec()]
-        } else {
-            vec![line]
+    /// Where a crossing of the level is, and whether that is where values end.
+    fn place(&self, crossing: usize, level: f64) -> ((f64, f64), bool) {
+        let (low, rows) = (crossing / 2, self.y.len());
+        let high = low + [rows, 1][crossing % 2];
+        let share = match (self.values[low], self.values[high]) {
+            (here, _) if here.is_nan() => 1.0,
+            (_, there) if there.is_nan() => 0.0,
+            (here, there) => ((level - here) / (there - here)).clamp(0.0, 1.0),
         };
-        for part in parts {
-            for (index, (from, edge)) in part.iter().enumerate() {
-                let (to, next_edge) = part[(index + 1) % part.len()];
-                // A side within one edge of the cell starts on that edge, at a corner or a crossing.
-                let along = if to.is_corner(self) { (next_edge + 3) % 4 } else { next_edge };
-                let is_edge = *edge == along;
-                if !is_edge || ends[*edge] {
-                    sides.push(Side { from: from.0, to: to.0, ends: is_edge });
-                }
-            }
-        }
-    }
-
-    fn corner(&self, (column, row): (usize, usize)) -> Vertex {
-        Vertex(column * self.y.len() + row)
-    }
-
-    /// Between two neighbours: numbered by the one nearer the origin, those along x behind all corners, those along y
-    /// behind these.
-    fn crossing(&self, one: (usize, usize), other: (usize, usize)) -> Vertex {
-        let low = one.min(other);
-        let kind = if one.0 == other.0 { 2 } else { 1 };
-        Vertex(kind * self.values.len() + self.corner(low).0)
-    }
-
-    /// Where a corner or a crossing of the level is.
-    fn place(&self, vertex: usize, level: f64) -> (f64, f64) {
-        let (kind, index) = (vertex / self.values.len(), vertex % self.values.len());
-        let (column, row) = (index / self.y.len(), index % self.y.len());
-        let (x, y, here) = (self.x[column], self.y[row], self.value(column, row));
-        let share = |there: f64| ((level - here) / (there - here)).clamp(0.0, 1.0);
-        match kind {
-            0 => (x, y),
-            1 => (x + (self.x[column + 1] - x) * share(self.value(column + 1, row)), y),
-            _ => (x, y + (self.y[row + 1] - y) * share(self.value(column, row + 1))),
-        }
+        let between = |axis: &[f64], low: usize, high: usize| axis[low] + (axis[high] - axis[low]) * share;
+        let place = (between(&self.x, low / rows, high / rows), between(&self.y, low % rows, high % rows));
+        (place, self.values[low].is_nan() || self.values[high].is_nan())
     }
 }
 
-/// A corner of the grid, or a crossing between two.
-#[derive(Clone, Copy, PartialEq)]
-struct Vertex(usize);
-
-impl Vertex {
-    fn is_corner(self, grid: &Grid) -> bool {
-        self.0 < grid.values.len()
-    }
-}
-
-/// A part of an outline, from one vertex to another.
-struct Side {
-    from: usize,
-    to: usize,
-    ends: bool,
-}
-
-fn area(points: &[(f64, f64)]) -> f64 {
-    let next = points.iter().cycle().skip(1);
-    0.5 * points.iter().zip(next).map(|(one, other)| one.0 * other.1 - other.0 * one.1).sum::<f64>()
-}
-
-/// The indices of at most [`MOST`] of `count` values, both ends among them.
-fn sampled(count: usize) -> Vec<usize> {
-    let kept = count.min(MOST);
-    (0..kept).map(|index| index * (count - 1) / (kept - 1).max(1)).collect()
-}
-
-fn at(values: &[f64], kept: &[usize]) -> Vec<f64> {
-    kept.iter().map(|index| values[*index]).collect()
-}
-
-/// An axis with its values, and as many between each two as make about [`REFINED`] cells.
+/// An axis with as many places between each two values as make about [`REFINED`] cells, and both ends twice.
 fn refined_axis(values: &[f64]) -> Vec<f64> {
-    let parts = REFINED.div_ceil(values.len().saturating_sub(1).max(1)).max(1);
-    let between = |pair: &[f64]| -> Vec<f64> {
-        (0..parts).map(|part| pair[0] + (pair[1] - pair[0]) * (part as f64 / parts as f64)).collect()
+    let cells = values.len().saturating_sub(1).max(1);
+    let parts = (REFINED.div_ceil(cells) * cells).min(MOST);
+    let place = |part: usize| {
+        let at = (part * cells) as f64 / parts as f64;
+        let low = at as usize;
+        let [from, to] = [low, low + 1].map(|index| values[index.min(values.len() - 1)]);
+        from + (to - from) * (at - low as f64)
     };
-    values.windows(2).flat_map(between).chain(values.last().copied()).collect()
+    let inner = (0..=parts).map(place);
+    [values[0]].into_iter().chain(inner).chain(values.last().copied()).collect()
 }
 
 /// The values of a monotone cubic through `(x, values)` at places that rise and lie within; NaN beside a missing value.
@@ -259,17 +182,18 @@ fn slopes(x: &[f64], values: &[f64]) -> Vec<f64> {
 
 #[cfg(test)]
 mod tests {
-    use super::{Grid, area, interpolated};
+    use super::{Grid, interpolated};
 
-    fn refined(coarse: &Grid) -> Grid {
-        Grid::refined(&coarse.x, &coarse.y, &coarse.values)
+    /// The refined grid of values over [0, 1] x [0, 1].
+    fn refined(count: usize, values: &[f64]) -> Grid {
+        let axis: Vec<f64> = (0..count).map(|index| index as f64 / (count - 1) as f64).collect();
+        Grid::refined(&axis, &axis, values)
     }
 
-    /// A grid of a function over [0, 1] x [0, 1].
-    fn grid(count: usize, of: impl Fn(f64, f64) -> f64) -> Grid {
-        let axis: Vec<f64> = (0..count).map(|index| index as f64 / (count - 1) as f64).collect();
-        let values = axis.iter().flat_map(|x| axis.iter().map(|y| of(*x, *y))).collect();
-        Grid { x: axis.clone(), y: axis, values }
+    /// The values of a function over [0, 1] x [0, 1].
+    fn sampled(count: usize, of: impl Fn(f64, f64) -> f64) -> Vec<f64> {
+        let place = |index: usize| index as f64 / (count - 1) as f64;
+        (0..count * count).map(|index| of(place(index / count), place(index % count))).collect()
     }
 
     /// Numbers between 0 and 1 that repeat in no short order.
@@ -280,17 +204,16 @@ mod tests {
     #[test]
     fn the_field_between_places_stays_between_their_values() {
         for count in [2, 3, 7, 40, 300] {
-            let mut coarse = grid(count, |_, _| 0.0);
             let rough: Vec<f64> = (0..count * count).map(scattered).collect();
-            coarse.values.clone_from(&rough);
-            let fine = refined(&coarse);
-            assert!(fine.x.len() >= count.min(128) && fine.x.len() <= 257, "{}", fine.x.len());
+            let fine = refined(count, &rough);
+            let cells = fine.x.len() - 3;
+            assert!((128..=256).contains(&cells), "{cells}");
             if count > 256 {
                 continue;
             }
-            let parts = (fine.x.len() - 1) / (count - 1);
-            for (index, value) in fine.values.iter().enumerate() {
-                let (i, j) = (index / fine.y.len(), index % fine.y.len());
+            let parts = cells / (count - 1);
+            for (i, j) in (0..=cells).flat_map(|i| (0..=cells).map(move |j| (i, j))) {
+                let value = &fine.values[(i + 1) * fine.y.len() + j + 1];
                 let near = |at: usize| [at / parts, at.div_ceil(parts)];
                 let corners = near(i).into_iter().flat_map(|i| near(j).map(|j| rough[i * count + j]));
                 let (low, high) = corners
@@ -302,14 +225,13 @@ mod tests {
 
     #[test]
     fn a_missing_value_leaves_its_cells_blank_and_no_others() {
-        let mut coarse = grid(9, |x, y| x + y);
-        coarse.values[4 * 9 + 4] = f64::NAN;
-        let fine = refined(&coarse);
-        let outlines = fine.outlines(f64::NEG_INFINITY);
+        let mut coarse = sampled(9, |x, y| x + y);
+        coarse[4 * 9 + 4] = f64::NAN;
+        let outlines = refined(9, &coarse).outlines(f64::NEG_INFINITY);
         assert_eq!(outlines.len(), 2, "the edge of the grid, and that of the hole");
         assert!((outlines[0].area - 1.0).abs() < 1e-12, "{}", outlines[0].area);
         assert!((outlines[1].area + 1.0 / 16.0).abs() < 0.005, "{}", outlines[1].area);
-        assert!(outlines.iter().all(|outline| outline.ends.iter().all(|ends| *ends)));
+        assert!(outlines.iter().all(|outline| outline.lines().is_empty()));
     }
 
     #[test]
@@ -317,15 +239,15 @@ mod tests {
         // A round hill, from a coarse grid too.
         let hill = |x: f64, y: f64| 1.0 - (x - 0.5).powi(2) - (y - 0.5).powi(2);
         for (count, allowed) in [(25, 3e-3), (161, 5e-5)] {
-            let outlines = refined(&grid(count, hill)).outlines(1.0 - 0.09);
+            let outlines = refined(count, &sampled(count, hill)).outlines(1.0 - 0.09);
             assert_eq!(outlines.len(), 1);
             let error = (outlines[0].area - std::f64::consts::PI * 0.09).abs();
             assert!(error < allowed, "{count}: {error}");
-            assert!((area(&outlines[0].points) - outlines[0].area).abs() < 1e-15);
-            assert!(outlines[0].ends.iter().all(|ends| !ends));
+            let lines = outlines[0].lines();
+            assert!(lines.len() == 1 && lines[0].len() == outlines[0].points().count() + 1);
         }
         // A bowl is a region with a hole.
-        let outlines = refined(&grid(41, |x, y| -hill(x, y))).outlines(-1.0 + 0.09);
+        let outlines = refined(41, &sampled(41, |x, y| -hill(x, y))).outlines(-1.0 + 0.09);
         assert_eq!(outlines.len(), 2);
         assert!(outlines[0].area > 0.999 && (outlines[1].area + 0.09 * std::f64::consts::PI).abs() < 1e-3);
     }
@@ -333,8 +255,8 @@ mod tests {
     #[test]
     fn the_areas_above_levels_of_a_rough_field_add_up_to_its_mean() {
         // int v = int (area above a level) d level, for a field that is straight between its places.
-        let mut rough = grid(130, |_, _| 0.0);
-        rough.values = (0..130 * 130).map(scattered).collect();
+        let values: Vec<f64> = (0..130 * 130).map(scattered).collect();
+        let rough = refined(130, &values);
         let levels = 400;
         let above: f64 = (0..levels)
             .map(|index| {
@@ -343,7 +265,7 @@ mod tests {
             })
             .sum();
         let cells = 129.0 * 129.0;
-        let corners = |i: usize, j: usize| [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(m, n)| rough.value(i + m, j + n));
+        let corners = |i: usize, j: usize| [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(m, n)| values[130 * (i + m) + j + n]);
         let mean: f64 = (0..129)
             .flat_map(|i| (0..129).map(move |j| (i, j)))
             .map(|(i, j)| 0.25 * corners(i, j).iter().sum::<f64>() / cells)

@@ -2,9 +2,11 @@
 
 use std::error::Error;
 use std::ops::Range;
+use std::sync::Once;
 
 use plotters::coord::Shift;
 use plotters::prelude::*;
+use plotters::style::register_font;
 
 use stickslip_mechanics::unit_prefix;
 
@@ -77,12 +79,16 @@ pub(super) fn pixels(
     Ok(pixels)
 }
 
-/// Draws on white, with the fonts.
+/// Draws on white, in a font that is a part of the program, because a server may have none.
 fn prepare<DB: DrawingBackend<ErrorType: 'static>>(
     picture: &(impl Picture + ?Sized),
     area: &DrawingArea<DB, Shift>,
 ) -> DrawResult {
-    super::font::register();
+    static FONT: Once = Once::new();
+    FONT.call_once(|| {
+        // The only error is that of an invalid font.
+        let _ = register_font("sans-serif", FontStyle::Normal, dejavu::sans::regular());
+    });
     area.fill(&WHITE)?;
     picture.draw(area)?;
     area.present()?;
@@ -95,36 +101,10 @@ impl Picture for Plot {
     }
 
     fn draw<DB: DrawingBackend<ErrorType: 'static>>(&self, area: &DrawingArea<DB, Shift>) -> DrawResult {
-        if self.over_decades {
-            return self.logarithms().draw_panels(area);
-        }
-        self.draw_panels(area)
-    }
-}
-
-impl Plot {
-    /// The same with the logarithm of each number, without bands; points that have none are left out.
-    fn logarithms(&self) -> Plot {
-        let curve = |curve: &Curve| Curve {
-            points: curve
-                .points
-                .iter()
-                .filter(|(x, y)| *x > 0.0 && *y > 0.0)
-                .map(|(x, y)| (x.log10(), y.log10()))
-                .collect(),
-            name: curve.name.clone(),
-            ..*curve
-        };
-        let panel = |panel: &Panel| Panel { y: panel.y, curves: panel.curves.iter().map(curve).collect() };
-        let panels = self.panels.iter().map(panel).collect();
-        Plot { over_decades: true, ..Plot::new(self.title.clone(), self.x, panels) }
-    }
-
-    fn draw_panels<DB: DrawingBackend<ErrorType: 'static>>(&self, area: &DrawingArea<DB, Shift>) -> DrawResult {
         let titled = area.margin(16, 0, 0, 0).titled(&self.title, ("sans-serif", 30))?;
         let ends = self.bands.iter().flat_map(|band| [band.from, band.to]);
-        let x_range =
-            self.panels.iter().flat_map(|panel| &panel.curves).flat_map(|curve| &curve.points).map(|point| point.0);
+        let curves = self.panels.iter().flat_map(|panel| &panel.curves);
+        let x_range = curves.flat_map(|curve| self.points(curve)).map(|point| point.0);
         let extent = self.whole(extent(x_range.chain(ends)));
         let scale = scale(&self.x, &extent);
         let last = self.panels.len().saturating_sub(1);
@@ -135,6 +115,17 @@ impl Plot {
             self.draw_panel(part, panel, bands, (&extent, &scale), index == last)?;
         }
         Ok(())
+    }
+}
+
+impl Plot {
+    /// The points of a curve as they are drawn: over decades their logarithms, without those that have none.
+    fn points(&self, curve: &Curve) -> Vec<(f64, f64)> {
+        if !self.over_decades {
+            return curve.points.clone();
+        }
+        let above_zero = curve.points.iter().filter(|(x, y)| *x > 0.0 && *y > 0.0);
+        above_zero.map(|(x, y)| (x.log10(), y.log10())).collect()
     }
 
     /// A range, or the decades that it lies in.
@@ -151,7 +142,7 @@ impl Plot {
         lowest: bool,
     ) -> DrawResult {
         let decades = self.over_decades;
-        let values = panel.curves.iter().flat_map(|curve| &curve.points).map(|point| point.1);
+        let values = panel.curves.iter().flat_map(|curve| self.points(curve)).map(|point| point.1);
         let y_range = self.whole(extent(values));
         let y = scale(&panel.y, &y_range);
         let span = (y_range.end - y_range.start) / y.unit;
@@ -173,9 +164,7 @@ impl Plot {
         for band in bands {
             let corners = [(band.from / x.unit, low), (band.to / x.unit, high)];
             let shade = band.colour.rgb().mix(0.10);
-            axes.draw_series([Rectangle::new(corners, shade.filled())])?
-                .label(band.name)
-                .legend(move |(x, y)| Rectangle::new([(x, y - 12), (x + 28, y + 12)], shade.filled()));
+            axes.draw_series([Rectangle::new(corners, shade.filled())])?.label(band.name).legend(key(12, shade));
         }
         let ticks = |range: &Range<f64>| if decades { (range.end - range.start) as usize + 1 } else { 10 };
         let label = if decades { |value: &f64| format!("1e{}", value.round()) } else { tick };
@@ -197,16 +186,15 @@ impl Plot {
         for (curve, own) in panel.curves.iter().zip(Colour::ALL.iter().cycle()) {
             let colour = curve.colour.unwrap_or(*own).rgb();
             let style = colour.stroke_width(4);
-            let points = curve.points.split(|point| !is_drawable(&point.0) || !is_drawable(&point.1));
+            let points = self.points(curve);
+            let stretches = points.split(|point| !is_drawable(&point.0) || !is_drawable(&point.1));
             let mut named = curve.name.is_empty();
-            for stretch in points.filter(|stretch| !stretch.is_empty()) {
+            for stretch in stretches.filter(|stretch| !stretch.is_empty()) {
                 let points = || stretch.iter().map(|point| (point.0 / x.unit, point.1 / y.unit));
                 if curve.filled {
                     let shade = colour.mix(AREA_SHADE);
                     let area = Polygon::new(points().collect::<Vec<_>>(), shade.filled());
-                    axes.draw_series([area])?
-                        .label(curve.name.as_ref())
-                        .legend(move |(x, y)| Rectangle::new([(x, y - 12), (x + 28, y + 12)], shade.filled()));
+                    axes.draw_series([area])?.label(curve.name.as_ref()).legend(key(12, shade));
                     continue;
                 }
                 let joined = stretch.len() > 1 && !curve.dots;
@@ -220,7 +208,7 @@ impl Plot {
                     if curve.dots {
                         label.legend(move |(x, y)| Circle::new((x + 14, y), LARGE_DOT, style.filled()));
                     } else {
-                        label.legend(move |(x, y)| Rectangle::new([(x, y - 3), (x + 28, y + 3)], style.filled()));
+                        label.legend(key(3, colour.to_rgba()));
                     }
                 }
             }
@@ -237,6 +225,11 @@ impl Plot {
             .draw()?;
         Ok(())
     }
+}
+
+/// A rectangle of this colour in the legend, up to so many pixels above and below the middle of its line.
+fn key(half: i32, colour: RGBAColor) -> impl Fn((i32, i32)) -> Rectangle<(i32, i32)> {
+    move |(x, y)| Rectangle::new([(x, y - half), (x + 28, y + half)], colour.filled())
 }
 
 /// The range of the values, widened if they are all the same.

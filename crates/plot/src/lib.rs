@@ -5,7 +5,6 @@
 
 mod contour;
 mod draw;
-mod font;
 mod png;
 mod round_joins;
 mod section;

@@ -4,7 +4,7 @@
 use plotters::prelude::{BitMapBackend, DrawingBackend};
 use plotters_backend::{BackendColor, BackendCoord, BackendStyle, DrawingErrorKind};
 
-/// The backend of pixels, but for its lines: what is not forwarded here is made of what is, as by that backend itself.
+/// The backend of pixels, but for its lines: what is not forwarded here is made of what is.
 pub(super) struct RoundJoins<'a> {
     pub(super) pixels: BitMapBackend<'a>,
     /// Asked at each straight piece of a wide line; false ends the drawing with an error.
@@ -36,16 +36,6 @@ impl<'a> DrawingBackend for RoundJoins<'a> {
         self.pixels.draw_line(from, to, style)
     }
 
-    fn draw_rect<S: BackendStyle>(
-        &mut self,
-        upper_left: BackendCoord,
-        bottom_right: BackendCoord,
-        style: &S,
-        fill: bool,
-    ) -> Drawn<'a> {
-        self.pixels.draw_rect(upper_left, bottom_right, style, fill)
-    }
-
     fn draw_path<S: BackendStyle, I: IntoIterator<Item = BackendCoord>>(&mut self, path: I, style: &S) -> Drawn<'a> {
         let width = style.stroke_width();
         // What is thin has no joins that can be seen, and where colours mix each pixel may be drawn only once.
@@ -68,9 +58,5 @@ impl<'a> DrawingBackend for RoundJoins<'a> {
             last = Some(point);
         }
         Ok(())
-    }
-
-    fn blit_bitmap(&mut self, position: BackendCoord, size: (u32, u32), source: &[u8]) -> Drawn<'a> {
-        self.pixels.blit_bitmap(position, size, source)
     }
 }

@@ -1,6 +1,5 @@
 //! A quantity over two coordinates: shades between lines of equal value, with a scale beside them and marks on them.
 
-use std::error::Error;
 use std::ops::Range;
 
 use plotters::coord::Shift;
@@ -134,25 +133,6 @@ impl Levels {
     }
 }
 
-/// The parts of an outline along which the field is equal, rather than ending.
-fn lines(outline: &Outline) -> Vec<Vec<(f64, f64)>> {
-    let count = outline.points.len();
-    // From a side where values end on, if there is one, no line is cut at the first corner.
-    let start = outline.ends.iter().position(|ends| *ends).unwrap_or(0);
-    let mut lines = vec![Vec::new()];
-    for index in (start..start + count).map(|index| index % count) {
-        let ends = [outline.points[index], outline.points[(index + 1) % count]];
-        match lines.last_mut() {
-            Some(line) if !outline.ends[index] && line.is_empty() => line.extend(ends),
-            Some(line) if !outline.ends[index] => line.push(ends[1]),
-            Some(line) if !line.is_empty() => lines.push(Vec::new()),
-            _ => {}
-        }
-    }
-    lines.retain(|line| !line.is_empty());
-    lines
-}
-
 impl Section {
     /// The title with the largest value, in the unit of the scale, and where it is.
     fn heading(&self, x: &Scale, y: &Scale, unit: &Scale) -> String {
@@ -203,36 +183,26 @@ impl Section {
         parts.filter(|part| part.len() > 1).map(<[_]>::to_vec).collect()
     }
 
-    /// Names the marks, in a row below the title.
-    fn draw_legend<DB: DrawingBackend<ErrorType: 'static>>(&self, area: &DrawingArea<DB, Shift>) -> DrawResult {
+    /// Names the marks, in a row below the title, from the left edge of the picture on.
+    fn draw_legend<DB: DrawingBackend<ErrorType: 'static>>(
+        &self,
+        area: &DrawingArea<DB, Shift>,
+        mut left: i32,
+    ) -> DrawResult {
         const ROW: i32 = 88;
         // The middle of letters is above that of their line.
         const MARK: i32 = ROW - 2;
         const SAMPLE: i32 = 56;
-        const GAP: i32 = 48;
         let style = ("sans-serif", 24).into_text_style(area).pos(Pos::new(HPos::Left, VPos::Center));
-        let is_marked = self.largest.as_ref().is_some_and(|peak| !peak.places.is_empty());
-        let names = [is_marked.then_some("largest value"), self.edge.as_ref().map(|edge| edge.name)];
-        let width = |name: &str| -> Result<i32, Box<dyn Error>> {
-            Ok(SAMPLE + area.estimate_text_size(name, &style)?.0 as i32)
-        };
-        let widths = names.map(|name| name.map(width).transpose());
-        let total: i32 = widths.iter().flatten().flatten().map(|width| width + GAP).sum();
-        let mut from = (SIZE.0 as i32 - total + GAP) / 2;
-        for (index, (name, width)) in names.into_iter().zip(widths).enumerate() {
-            let (Some(name), Some(width)) = (name, width?) else { continue };
-            if index == 0 {
-                area.draw(&Circle::new((from + 32, MARK), 11, BLACK.stroke_width(3)))?;
-            } else {
-                area.draw(&DashedPathElement::new(
-                    vec![(from, MARK), (from + 44, MARK)],
-                    12,
-                    8,
-                    BLACK.stroke_width(3),
-                ))?;
-            }
-            area.draw(&Text::new(name, (from + SAMPLE, ROW), style.clone()))?;
-            from += width + GAP;
+        if self.largest.as_ref().is_some_and(|peak| !peak.places.is_empty()) {
+            area.draw(&Circle::new((left + 32, MARK), 11, BLACK.stroke_width(3)))?;
+            area.draw(&Text::new("largest value", (left + SAMPLE, ROW), style.clone()))?;
+            left += 240;
+        }
+        if let Some(edge) = &self.edge {
+            let ends = [(left, MARK), (left + 44, MARK)];
+            area.draw(&DashedPathElement::new(ends, 12, 8, BLACK.stroke_width(3)))?;
+            area.draw(&Text::new(edge.name, (left + SAMPLE, ROW), style))?;
         }
         Ok(())
     }
@@ -280,7 +250,7 @@ impl Picture for Section {
 
         let style = ("sans-serif", 30).into_text_style(area).pos(Pos::new(HPos::Center, VPos::Center));
         area.draw(&Text::new(self.heading(&x, &y, &unit), (SIZE.0 as i32 / 2, 40), style))?;
-        self.draw_legend(area)?;
+        self.draw_legend(area, (left + LEFT) as i32)?;
         draw_scale(area, ((left + LEFT + width + 40) as i32, height as i32), &levels, &unit.label)?;
 
         let frame = area.clone().shrink((left, ABOVE), (LEFT + width, height + BELOW));
@@ -289,21 +259,21 @@ impl Picture for Section {
             x_range.start / x.unit..x_range.end / x.unit,
             if self.downwards { high..low } else { low..high },
         )?;
-        let at = |points: &[(f64, f64)]| -> Vec<(f64, f64)> {
-            points.iter().map(|point| (point.0 / x.unit, point.1 / y.unit)).collect()
-        };
+        let at = |point: (f64, f64)| (point.0 / x.unit, point.1 / y.unit);
+        let path = |line: Vec<(f64, f64)>| line.into_iter().map(at).collect::<Vec<_>>();
         let pixel = (x_range.end - x_range.start) * (y_range.end - y_range.start) / f64::from(width * height);
         for (outline, colour) in levels.fills(&grid, unit.unit, 0.5 * pixel) {
-            axes.draw_series([Polygon::new(at(&outline.points), colour.filled())])?;
+            axes.draw_series([Polygon::new(outline.points().map(at).collect::<Vec<_>>(), colour.filled())])?;
         }
         for outline in levels.lined().flat_map(|value| grid.outlines(value * unit.unit)) {
-            for line in lines(&outline) {
-                axes.draw_series([PathElement::new(at(&line), BLACK.mix(0.4))])?;
+            for line in outline.lines() {
+                axes.draw_series([PathElement::new(path(line), BLACK.mix(0.4))])?;
             }
         }
         for line in self.edge_lines(&x_range, &y_range) {
-            axes.draw_series([PathElement::new(at(&line), WHITE.mix(0.6).stroke_width(5))])?;
-            axes.draw_series([DashedPathElement::new(at(&line), 12, 8, BLACK.stroke_width(3))])?;
+            let line = path(line);
+            axes.draw_series([PathElement::new(line.clone(), WHITE.mix(0.6).stroke_width(5))])?;
+            axes.draw_series([DashedPathElement::new(line, 12, 8, BLACK.stroke_width(3))])?;
         }
         axes.configure_mesh()
             .disable_mesh()
@@ -314,7 +284,7 @@ impl Picture for Section {
             .label_style(("sans-serif", 24))
             .axis_desc_style(("sans-serif", 28))
             .draw()?;
-        for place in self.largest.iter().flat_map(|peak| at(&peak.places)) {
+        for place in self.largest.iter().flat_map(|peak| &peak.places).map(|place| at(*place)) {
             axes.draw_series([Circle::new(place, 11, WHITE.stroke_width(7))])?;
             axes.draw_series([Circle::new(place, 11, BLACK.stroke_width(3))])?;
         }

@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 
-use super::{ClosedCycle, CycleScan, State};
+use super::{ClosedCycle, CycleScan, DEPTH, Point, State};
 
 /// The closed cycles that have been found on a path so far, the newest of them.
 #[derive(Clone, Debug, Default)]
@@ -53,17 +53,21 @@ impl CycleLog {
     /// Bytes of memory.
     #[must_use]
     pub fn memory_bytes(&self) -> usize {
-        size_of::<CycleLog>() + self.scan.heap_bytes() + self.newest.capacity() * size_of::<ClosedCycle>()
+        let points = self.scan.points.capacity() * size_of::<Point>();
+        size_of::<CycleLog>() + points + self.newest.capacity() * size_of::<ClosedCycle>()
     }
 
     /// Bytes that it takes while it grows by so many states.
     #[must_use]
     pub fn memory_bytes_after(&self, states: usize) -> usize {
-        self.scan.heap_bytes_after(states) + 2 * self.most * size_of::<ClosedCycle>()
+        let points = &self.scan.points;
+        let grown = points.capacity().max(points.len().saturating_add(states).min(DEPTH + 2));
+        // A deque doubles, and copies itself to do so.
+        3 * grown * size_of::<Point>() + 2 * self.most * size_of::<ClosedCycle>()
     }
 
     /// Gives back the memory that it does not use.
     pub fn shrink(&mut self) {
-        self.scan.shrink();
+        self.scan.points.shrink_to_fit();
     }
 }

@@ -93,7 +93,7 @@ pub enum Answer {
 
 /// A path up to its last state.
 #[derive(Clone, Debug, Default)]
-pub struct CycleScan {
+struct CycleScan {
     /// Where the path began, m, infinite after gross slip; `None` while the bodies are apart.
     start: Option<f64>,
     /// The turning points that are remembered, and the last state, which may become one.
@@ -138,7 +138,7 @@ struct ConstantLoad {
 impl CycleScan {
     /// Adds the next state, and hands the cycles that it closes to `found`, inner ones first. The first state is that
     /// before the first move.
-    pub fn push(&mut self, sequence: u64, state: &State, mut found: impl FnMut(ClosedCycle)) {
+    fn push(&mut self, sequence: u64, state: &State, mut found: impl FnMut(ClosedCycle)) {
         // A contact without load has no memory either.
         if state.indentation <= 0.0 {
             *self = CycleScan::default();
@@ -169,24 +169,6 @@ impl CycleScan {
         if state.regime == Regime::GrossSlip {
             self.start = Some(self.beginning_at_infinity());
         }
-    }
-
-    /// Bytes on the heap.
-    #[must_use]
-    pub fn heap_bytes(&self) -> usize {
-        self.points.capacity() * size_of::<Point>()
-    }
-
-    /// Bytes on the heap after this many more states at the most, while they grow.
-    #[must_use]
-    pub fn heap_bytes_after(&self, states: usize) -> usize {
-        // A deque doubles, and copies itself to do so.
-        3 * self.points.capacity().max(self.points.len().saturating_add(states).min(DEPTH + 2)) * size_of::<Point>()
-    }
-
-    /// Gives the room that is not needed back.
-    pub fn shrink(&mut self) {
-        self.points.shrink_to_fit();
     }
 
     /// Whether the last point is a turning point if the path goes on to `displacement`.

@@ -10,13 +10,14 @@
 //! The two strain-life curves are those of Basquin, Coffin and Manson. Their amplitudes are half of a range, as those
 //! of the [criteria](super::Criterion) are.
 
+use std::f64::consts::LN_2;
+
 use crate::error::Error;
+use crate::numerics::roots::within;
 use crate::range;
 
 /// Cycles of a stated life: from one reversal to more than tests of materials reach.
 pub const LIVES: [f64; 2] = [0.5, 1e12];
-/// More of Newton's steps than a curve takes; a safeguard only.
-const MOST_STEPS: usize = 100;
 
 /// Why a value has no life.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -140,20 +141,16 @@ impl LifeCurve {
     fn unlimited(&self, value: f64) -> f64 {
         let log = value.max(0.0).ln();
         // Over x = ln 2N the logarithm of the sum is convex and falls. At the larger of the x at which one term alone
-        // is the value the sum is at most twice that, and Newton's steps rise from there to the root.
+        // is the value the sum is at most twice that, and the root follows where the slower one has halved.
         let alone = self.terms.map(|(coefficient, exponent)| (log - coefficient) / exponent);
-        let mut x = alone[0].max(alone[1]);
-        for _ in 0..MOST_STEPS {
+        let start = alone[0].max(alone[1]);
+        let end = start - LN_2 / self.terms[0].1.max(self.terms[1].1);
+        let fallen = |x: f64| {
             let parts = self.terms.map(|(coefficient, exponent)| (coefficient + exponent * x - log).exp());
             let sum = parts[0] + parts[1];
-            let slope = (parts[0] * self.terms[0].1 + parts[1] * self.terms[1].1) / sum;
-            let next = x - sum.ln() / slope;
-            if next.is_nan() || next - x <= f64::EPSILON * x.abs() {
-                break;
-            }
-            x = next;
-        }
-        0.5 * x.exp()
+            (-sum.ln(), -(parts[0] * self.terms[0].1 + parts[1] * self.terms[1].1) / sum)
+        };
+        0.5 * within([start, end], start, fallen).exp()
     }
 }
 

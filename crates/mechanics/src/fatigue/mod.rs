@@ -87,19 +87,6 @@ pub enum Criterion {
     },
 }
 
-/// The value of a criterion over a cycle.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Value {
-    /// In the unit of the criterion.
-    pub value: f64,
-    /// Unit normal, z not negative, of the critical plane, if the criterion has one. Where several planes have the
-    /// largest value, as mirror images do, it is one of them.
-    pub plane: Option<[f64; 3]>,
-    /// Index of the critical instant: of the largest hydrostatic stress (Crossland), of the largest sum (Dang Van), of
-    /// the largest normal stress on the plane (the others).
-    pub instant: Option<usize>,
-}
-
 impl Criterion {
     /// The criterion, if its parameters are in their ranges.
     ///
@@ -127,8 +114,8 @@ impl Criterion {
         Ok(self)
     }
 
-    /// Its value over the stresses at the instants of a closed cycle. Zero for none; infinite where a stress is, with
-    /// the first such instant.
+    /// Its value over the stresses at the ends of the moves of a closed cycle. Zero for none; infinite where a stress
+    /// is, with the first such instant.
     ///
     /// ```
     /// use stickslip_mechanics::Stress;
@@ -137,18 +124,17 @@ impl Criterion {
     /// let cycle = [Stress { xx: 200e6, ..Stress::default() }, Stress { xx: -200e6, ..Stress::default() }];
     /// let crossland = Criterion::Crossland { alpha: 0.3 }.of(&cycle);
     /// assert!((crossland.value - (200e6 / 3f64.sqrt() + 0.3 * 200e6 / 3.0)).abs() < 1e-6);
-    /// assert_eq!((crossland.plane, crossland.instant), (None, Some(0)));
+    /// assert_eq!((crossland.plane, crossland.at.unwrap().step), (None, 0));
     /// ```
     #[must_use]
-    pub fn of(&self, path: &[Stress]) -> Value {
+    pub fn of(&self, path: &[Stress]) -> Rated {
         if path.is_empty() {
-            return Value { value: 0.0, plane: None, instant: None };
+            return Rated { value: 0.0, error: 0.0, plane: None, at: None };
         }
-        if let Some(instant) = path.iter().position(|stress| !stress.is_finite()) {
-            return Value { value: f64::INFINITY, plane: None, instant: Some(instant) };
+        if let Some(step) = path.iter().position(|stress| !stress.is_finite()) {
+            return Rated { value: f64::INFINITY, error: 0.0, plane: None, at: Some(Instant { step, part: 1.0 }) };
         }
-        let Rated { value, plane, at, .. } = Measure::Stress(*self).over(&StressCurve::of_list(path), 0.0, None);
-        Value { value, plane, instant: at.map(|at| at.step) }
+        Measure::Stress(*self).over(&StressCurve::of_list(path), 0.0, None)
     }
 
     /// Its value over finite stresses as [`Criterion::of`], but on the planes of the grid alone: lower by some per

@@ -60,9 +60,11 @@ pub struct Rated {
     pub value: f64,
     /// The estimated distance from the value over the whole cycle.
     pub error: f64,
-    /// As [`Value::plane`](super::Value::plane).
+    /// Unit normal, z not negative, of the critical plane, if the criterion has one. Where several planes have the
+    /// largest value, as mirror images do, it is one of them.
     pub plane: Option<[f64; 3]>,
-    /// The critical instant, as [`Value::instant`](super::Value::instant).
+    /// The critical instant: of the largest hydrostatic stress (Crossland), of the largest sum (Dang Van), of the
+    /// largest normal stress on the plane (the others).
     pub at: Option<Instant>,
 }
 

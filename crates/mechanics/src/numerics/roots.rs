@@ -1,5 +1,7 @@
 //! Roots and maxima of functions of one number.
 
+use std::ops::{Add, Mul, Sub};
+
 /// More steps than any of these functions takes; a safeguard only.
 const MOST_STEPS: usize = 200;
 /// A step of Newton's method below this share of the root is followed by one below rounding.
@@ -104,9 +106,23 @@ pub(crate) fn largest([mut low, mut high]: [f64; 2], part: f64, mut f: impl FnMu
     best
 }
 
+/// The largest value of a function that may have several maxima, and where it is, first: at one of `places`, which rise,
+/// or between so many `neighbours` of the best of them on both sides, as [`largest`] finds it.
+pub(crate) fn largest_of<T>(places: &[T], neighbours: usize, part: f64, f: impl Fn(T) -> f64) -> (T, f64)
+where
+    T: Copy + Add<Output = T> + Sub<Output = T> + Mul<f64, Output = T>,
+{
+    let values: Vec<f64> = places.iter().map(|place| f(*place)).collect();
+    let best = (0..values.len()).max_by(|a, b| values[*a].total_cmp(&values[*b])).unwrap_or(0);
+    let low = places[best.saturating_sub(neighbours)];
+    let width = places[(best + neighbours).min(places.len() - 1)] - low;
+    let (share, value) = largest([0.0, 1.0], part, |share| f(low + width * share));
+    if value > values[best] { (low + width * share, value) } else { (places[best], values[best]) }
+}
+
 #[cfg(test)]
 mod tests {
-    use super::{between, largest, turning, within};
+    use super::{between, largest, largest_of, turning, within};
 
     #[test]
     fn a_maximum_is_found_to_half_the_digits_of_its_place_and_all_of_its_value() {
@@ -121,6 +137,16 @@ mod tests {
         assert!(largest([0.0, 1.0], 1e-9, |x| -x).1.abs() < 1e-8);
         assert!((largest([2.0, 2.0], 1e-9, |x| x).0 - 2.0).abs() < 1e-15);
         assert!(largest([0.0, 1.0], 1e-9, |_| f64::NAN).1.is_nan());
+    }
+
+    #[test]
+    fn the_highest_of_several_maxima_is_found_between_places_and_at_either_end() {
+        let places: Vec<f64> = (0..=20).map(|index| 0.1 * f64::from(index)).collect();
+        for (at, height) in [(0.0, 1.5), (0.33, 1.0), (1.07, 2.0), (2.0, 1.1)] {
+            let hills = |x: f64| height - (x - at).powi(2) + 0.4 * (20.0 * (x - at)).cos();
+            let (place, value) = largest_of(&places, 1, 1e-9, hills);
+            assert!((place - at).abs() < 1e-7 && (value - height - 0.4).abs() < 1e-14, "{at}: {place} {value}");
+        }
     }
 
     #[test]

@@ -7,7 +7,7 @@
 
 use super::alternating;
 use crate::numerics::double_double::DoubleDouble;
-use crate::numerics::roots::{between, largest};
+use crate::numerics::roots::{between, largest_of};
 use crate::profile::{InwardSum, Point, Profile, Ring, StressRadius};
 
 /// The largest number of evaluations of E, after it has been bracketed.
@@ -147,16 +147,12 @@ impl Problem<'_> {
     fn core(&self, strokes: &VirginStrokes<'_>) -> f64 {
         let sign = strokes.sign();
         let width = strokes.last().radius - self.cutoff;
-        let looks = if self.profile.falls(0.0, self.edge.radius).least > 0.0 { 1 } else { CORE };
         let value = |part: f64| sign * strokes.shear(&StressRadius::new(self.cutoff + width * part));
-        let looked = (0..looks).map(|index| index as f64 / CORE as f64).map(|part| (part, value(part)));
-        let (best, most) = looked.fold((0.0, f64::NEG_INFINITY), |a, b| if b.1 > a.1 { b } else { a });
-        if looks == 1 {
-            return most;
+        if self.profile.falls(0.0, self.edge.radius).least > 0.0 {
+            return value(0.0);
         }
-        // Between two samples it may be larger.
-        let beside = [(best - 1.0 / CORE as f64).max(0.0), (best + 1.0 / CORE as f64).min(1.0)];
-        most.max(largest(beside, BRACKET, value).1)
+        let parts: Vec<f64> = (0..=CORE).map(|index| index as f64 / CORE as f64).collect();
+        largest_of(&parts, 1, BRACKET, value).1
     }
 
     /// The kinks for one E, and a share of it for the outermost extremum; `None` if `keep_going` returned false.

@@ -16,13 +16,11 @@ mod from_any_state;
 mod line;
 mod minimax;
 mod robustness;
-mod spread;
 
 pub use bound::lower_bound;
 pub use design::{AmplitudeLaw, Design, EvaluationRange, FirstMove, PathEnd, PathStart, design};
 pub use fewest::{Fewest, fewest};
-pub use robustness::{ExecutionErrors, trials};
-pub use spread::Spread;
+pub use robustness::{ExecutionErrors, Spread, trials};
 
 use end_constraint::Equations;
 use equal_peak_measure::EqualPeakMeasure;

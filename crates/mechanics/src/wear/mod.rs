@@ -21,7 +21,7 @@ use crate::error::Error;
 use crate::normal;
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::gauss::{TWENTY_POINTS, by_halves, integral};
-use crate::numerics::roots::{between, largest};
+use crate::numerics::roots::{between, largest_of};
 use crate::profile::{Point, Profile, Ring, StressRadius};
 use crate::range::Quantity;
 use crate::unit_prefix::short;
@@ -233,14 +233,9 @@ impl<'a> WornContact<'a> {
         let depth = |square: DoubleDouble| {
             self.gap_integral(&StressRadius { radius: square.value().sqrt(), square }, &self.worn)
         };
-        let depths: Vec<f64> = squares.iter().map(|&square| depth(square)).collect();
-        let best = (0..depths.len()).max_by(|&a, &b| depths[a].total_cmp(&depths[b])).unwrap_or(0);
         // A place by its level may be one by its radius too, as on a sphere: so the neighbours but one.
-        let low = squares[best.saturating_sub(2)];
-        let width = squares[(best + 2).min(squares.len() - 1)] - low;
-        let (share, found) = largest([0.0, 1.0], 1e-8, |share| depth(low + width * share));
-        let square = if found >= depths[best] { low + width * share } else { squares[best] };
-        WearDepth { largest: FRAC_2_PI * found.max(depths[best]), radius: square.value().sqrt() }
+        let (square, found) = largest_of(&squares, 2, 1e-8, depth);
+        WearDepth { largest: FRAC_2_PI * found, radius: square.value().sqrt() }
     }
 
     /// The removed volume, m^3: 2 pi int (f - f_before) r dr = 4 int_c^b (d - g) sqrt(b^2 - x^2) dx. It has the digits

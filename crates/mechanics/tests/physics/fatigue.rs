@@ -3,7 +3,9 @@
 use std::f64::consts::{PI, SQRT_2, TAU};
 
 use proptest::prelude::*;
-use stickslip_mechanics::fatigue::{Ball, Criterion, Cycle, MAX_INSTANTS, Measure, Study, Value, enclosing_ball};
+use stickslip_mechanics::fatigue::{
+    Ball, Criterion, Cycle, Instant, MAX_INSTANTS, Measure, Rated, Study, enclosing_ball,
+};
 use stickslip_mechanics::protocol::falling_amplitude;
 use stickslip_mechanics::range::Quantity;
 use stickslip_mechanics::subsurface::Side;
@@ -114,7 +116,7 @@ fn tension_and_torsion_out_of_phase_have_a_constant_amplitude() {
         .map(|(sin, cos)| Stress { xx: s * cos, xy: torsion * sin, ..Stress::default() })
         .collect();
     let crossland = Criterion::Crossland { alpha: ALPHA }.of(&path);
-    assert!((crossland.value - (torsion + ALPHA * s / 3.0)).abs() < 1e-12 * s && crossland.instant == Some(0));
+    assert!((crossland.value - (torsion + ALPHA * s / 3.0)).abs() < 1e-12 * s && crossland.at.unwrap().step == 0);
     // Tresca's shear is largest in tension: sqrt(s^2 cos^2/4 + s^2 sin^2/3) + alpha s cos/3 at cos = 2 alpha.
     let dang_van = Criterion::DangVan { alpha: ALPHA }.of(&path).value;
     let at = |cos: f64| s * ((cos * cos / 4.0 + (1.0 - cos * cos) / 3.0).sqrt() + ALPHA * cos / 3.0);
@@ -158,8 +160,9 @@ fn a_constant_stress_has_its_mean_alone() {
 fn where_nothing_is_or_something_is_infinite() {
     let edge = Stress::from_components([f64::NEG_INFINITY; 6]);
     for criterion in all() {
-        assert_eq!(criterion.of(&[]), Value { value: 0.0, plane: None, instant: None });
-        let at_edge = Value { value: f64::INFINITY, plane: None, instant: Some(1) };
+        assert_eq!(criterion.of(&[]), Rated { value: 0.0, error: 0.0, plane: None, at: None });
+        let at = Some(Instant { step: 1, part: 1.0 });
+        let at_edge = Rated { value: f64::INFINITY, error: 0.0, plane: None, at };
         assert_eq!(criterion.of(&[tension(1.0), edge, tension(2.0)]), at_edge);
         assert_eq!(criterion.checked(), Ok(criterion));
     }

@@ -2,194 +2,297 @@
 //!
 //! Errors are measured against an independent solver in double-double arithmetic (`reference`). Times are processor
 //! times, and the exact solver runs just before each run of another, so that the ratio of the two holds on a busy
-//! machine too (`timing`). Solvers by others can be measured as well (`external_solver`).
+//! machine too. Solvers by others can be measured as well (`external_solver`).
 
 mod external_solver;
-mod output;
 mod reference;
 mod scenes;
 mod shape;
-mod timing;
 
-use std::collections::HashMap;
-use std::io;
+use std::fs;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
-use serde::Serialize;
+use clap::Args;
+use clap::builder::PossibleValuesParser;
+use serde::Deserialize;
+use stickslip_mechanics::springs::{self, ShearEvaluation};
+use stickslip_mechanics::{Contact, Error, Springs};
+use stickslip_plot::{Curve, Picture as _, Plot};
 
-use external_solver::{ExternalSolver, SCRIPTS, SolverRun};
+use crate::report::{Failure, table, timed};
+use external_solver::SCRIPTS;
 use reference::Reference;
-use scenes::{DEPTH, E_STAR, FRICTION, G_STAR, Scene};
-use timing::SceneBenchmark;
-
-pub(crate) use timing::processor_time;
-
-pub use output::write;
-pub use scenes::NAMES;
+use scenes::{FRICTION, Scene};
 
 /// Radii at which stresses are compared, beside the kinks.
 const RADII: usize = 1000;
+/// Timed runs of each solver.
+const MIN_RUNS: usize = 3;
+const MAX_RUNS: usize = 101;
+/// How long a solver is repeated once it has the fewest runs.
+const REPETITION_TIME: Duration = Duration::from_millis(200);
+/// How long the exact solver is repeated before each run of another: its first run finds cold caches.
+const EXACT_TIME: Duration = Duration::from_millis(1);
+/// The number of springs to begin with.
+const MIN_SPRINGS: usize = 10;
+const KERNELS: [(&str, ShearEvaluation); 3] = [
+    ("springs_arcosh", ShearEvaluation::Arcosh),
+    ("springs_level", ShearEvaluation::Level),
+    ("recipe", ShearEvaluation::Differences),
+];
+/// The columns of the report.
+const COLUMNS: &str = "scene | solver | springs | × exact | force error | stress error | at kinks | median, s";
+/// The scene of the charts, or else the first one that was measured: the others look alike, and the table has them.
+const CHARTED: &str = "reversals_20";
+/// The charts: the name of the file, the ordinate and its place among the errors of a row. At a kink, rounding the
+/// radius alone costs the root of the rounding error.
+const CHARTS: [(&str, &str, usize); 2] = [
+    ("stress", "largest error of the shear stress / mu p_max", 1),
+    ("force", "largest error of the force / mu F_N", 0),
+];
+/// Smaller errors are drawn as this one: a logarithmic axis has no zero.
+const SMALLEST_ERROR: f64 = 1e-17;
 
-/// What to measure.
-#[derive(Clone, Debug)]
-pub struct Options {
-    /// Names out of [`NAMES`].
-    pub scenes: Vec<String>,
-    /// The largest number of springs.
-    pub max_springs: usize,
-    /// How long one solver on one scene is repeated once there are three runs.
-    pub repetition_time: Duration,
-    /// About how long the report may take; solvers that would take longer are listed as missing.
-    pub budget: Option<Duration>,
-    /// The version of the compiler, for the description of the machine.
-    pub compiler: String,
-    /// The Python that runs the external solvers, if they are wanted.
-    pub python: Option<PathBuf>,
+/// What to measure, and where to report it.
+#[derive(Args)]
+pub struct Speed {
+    /// The folder to write report.md and the charts to.
+    #[arg(long)]
+    out: PathBuf,
+    /// Scenes by name, separated by commas.
+    #[arg(
+        long,
+        value_delimiter = ',',
+        default_values = scenes::names(),
+        value_parser = PossibleValuesParser::new(scenes::names())
+    )]
+    scenes: Vec<String>,
+    /// Largest number of springs.
+    #[arg(long, default_value_t = 10_000)]
+    largest: usize,
+    /// Also run the solvers of crates/report/external, with this Python; see docs/speed-and-accuracy.md.
+    #[arg(long, value_name = "PYTHON")]
+    external: Option<PathBuf>,
+}
+
+/// What a solver finds: forces after each move, N, shear stresses at the end, Pa, and the processor time for both, s.
+#[derive(Deserialize)]
+struct Solution {
+    forces: Vec<f64>,
+    shears: Vec<f64>,
+    seconds: f64,
+}
+
+/// A solver with its number of springs, or of points along one side of its grid, where it has any.
+struct Solver<'a> {
+    name: &'static str,
+    springs: Option<usize>,
+    run: Box<dyn Fn() -> Result<Solution, Failure> + 'a>,
 }
 
 /// One solver on one scene.
-#[derive(Clone, Debug, Serialize)]
-pub struct Row {
-    /// The scene.
-    pub scene: String,
-    /// `exact`, `springs_arcosh`, `springs_level`, `recipe`, `reference`, or the name of an external solver.
-    pub solver: String,
-    /// Springs, or points of the grid along one side, where there are any.
-    pub springs: Option<usize>,
-    /// Largest error of the force over the path, over the largest mu F_N of it.
-    pub force_error: f64,
-    /// Largest error of the stress at random radii, over mu p_max (mu times the mean pressure where that is infinite).
-    pub stress_error: f64,
-    /// The same at the kinks of the displacement.
-    pub kink_error: f64,
+struct Row {
+    scene: String,
+    solver: &'static str,
+    springs: Option<usize>,
+    /// Largest error of the force over the path, over the largest mu F_N of it; of the stress at random radii, and at
+    /// the kinks of the displacement, over mu p_max (mu times the mean pressure where that is infinite).
+    errors: [f64; 3],
     /// Median of the processor times, s.
-    pub median: f64,
-    /// Lower quartile, s.
-    pub lower: f64,
-    /// Upper quartile, s.
-    pub upper: f64,
-    /// Smallest, s.
-    pub least: f64,
-    /// How many runs.
-    pub runs: usize,
-    /// Median of the ratios of each run to the run of the exact solver just before it.
-    pub ratio: f64,
-    /// Lower quartile of these ratios.
-    pub ratio_lower: f64,
-    /// Upper quartile of these ratios.
-    pub ratio_upper: f64,
+    seconds: f64,
+    /// Quartiles of the ratios of each run to the run of the exact solver just before it.
+    ratios: [f64; 3],
 }
 
-/// A solver that was not measured, and why.
-#[derive(Clone, Debug, Serialize)]
-pub struct Missing {
-    /// The scene.
-    pub scene: String,
-    /// The solver.
-    pub solver: String,
-    /// The reason.
-    pub reason: String,
-}
-
-/// All that was measured.
-#[derive(Clone, Debug, Serialize)]
-pub struct Report {
-    /// Processor, cores, system, compiler and optimisation.
-    pub machine: String,
-    /// The external solvers with their versions.
-    #[serde(rename = "external")]
-    pub external_solvers: Vec<String>,
-    /// How long it took, s.
-    pub seconds: f64,
-    /// One row a solver and scene.
-    pub rows: Vec<Row>,
-    /// What was not measured.
-    pub missing: Vec<Missing>,
-}
-
-/// Measures every solver on the scenes, and names each scene once it is measured.
-///
-/// # Errors
-/// [`io::ErrorKind::InvalidInput`] for a scene that does not exist; an error of the mechanics as
-/// [`io::ErrorKind::Other`].
-pub fn measure(options: &Options, mut measured: impl FnMut(&str)) -> io::Result<Report> {
-    let begin = Instant::now();
-    let mut report = Report {
-        machine: output::describe_machine(&options.compiler),
-        external_solvers: Vec::new(),
-        seconds: 0.0,
-        rows: Vec::new(),
-        missing: Vec::new(),
-    };
-    for (index, name) in options.scenes.iter().enumerate() {
-        if !NAMES.contains(&name.as_str()) {
-            let unknown = format!("there is no scene `{name}`; the scenes are {}", NAMES.join(", "));
-            return Err(io::Error::new(io::ErrorKind::InvalidInput, unknown));
+impl Speed {
+    /// Measures every solver on the scenes, naming each scene as it begins, and writes the report with its charts.
+    pub fn run(&self) -> Result<(), Failure> {
+        let python = self.external.as_deref().map(external_solver::version).transpose()?;
+        let (machine, begin) = (machine(), Instant::now());
+        let (mut rows, mut missing) = (Vec::new(), Vec::new());
+        for name in &self.scenes {
+            eprintln!("{name}");
+            self.measure(name, &mut rows, &mut missing)?;
         }
-        let scene = Scene::build(name).map_err(io::Error::other)?;
-        let time_left = options.budget.map(|budget| budget.saturating_sub(begin.elapsed()));
-        let share = time_left.map(|left| left / (options.scenes.len() - index) as u32);
-        measure_scene(name, &scene, options, share, &mut report)?;
-        measured(name);
+        let python = python.map(|python| format!(" External solvers run on {python}.")).unwrap_or_default();
+        let charted = self.scenes.iter().find(|scene| *scene == CHARTED).unwrap_or(&self.scenes[0]);
+        let mut page = format!(
+            "# Speed against error\n\n{machine} It took {:.0} s.{python}\n\nTimes are processor times of one thread, \
+             so that other work on the machine is not counted. Ratios are medians over pairs, each of a run of a \
+             solver and a run of the exact solver just before it; quartiles in brackets. Errors are the largest: of \
+             the force over the path, relative to μ F_N; of the shear stress at {RADII} random radii and at the \
+             kinks, relative to μ p_max (to μ times the mean pressure for the cone).\n\nThe scene {charted}:\n\n\
+             ![Error of the shear stress over the time](stress.svg)\n![Error of the force over the time](force.svg)\n\n\
+             {}",
+            begin.elapsed().as_secs_f64(),
+            table(COLUMNS, rows.iter().map(Row::to_markdown))
+        );
+        if !missing.is_empty() {
+            page += &format!("\n## Not measured\n\n{}", table("scene | solver | why", missing));
+        }
+        fs::create_dir_all(&self.out)?;
+        fs::write(self.out.join("report.md"), page)?;
+        for (name, ordinate, error) in CHARTS {
+            fs::write(self.out.join(format!("{name}.svg")), chart(&rows, charted, ordinate, error).svg()?)?;
+        }
+        Ok(())
     }
-    report.seconds = begin.elapsed().as_secs_f64();
-    Ok(report)
-}
 
-fn measure_scene(
-    name: &str,
-    scene: &Scene,
-    options: &Options,
-    share: Option<Duration>,
-    report: &mut Report,
-) -> io::Result<()> {
-    let (begin, started) = (Instant::now(), timing::processor_time());
-    let mut reference = Reference::new(&scene.shape, E_STAR, G_STAR, FRICTION, DEPTH);
-    let mut load = reference.normal_force();
-    let forces: Vec<f64> = scene
-        .path
-        .iter()
-        .map(|&(depth, displacement)| {
-            reference.advance(depth, displacement);
-            load = load.max(reference.normal_force());
-            reference.force()
-        })
-        .collect();
-    let edge = reference.contact_radius();
-    let mut next = scenes::random(11);
-    let mut radii: Vec<f64> = (0..RADII).map(|_| edge * next()).collect();
-    radii.extend(reference.kinks());
-    let shears: Vec<f64> = radii.iter().map(|&radius| reference.shear(radius)).collect();
-    let seconds = timing::processor_time() - started;
-    let mean_pressure = reference.normal_force() / (std::f64::consts::PI * edge * edge);
-    let units = (FRICTION * load, FRICTION * reference.centre_pressure().unwrap_or(mean_pressure));
-    let reference = SolverRun { forces, shears, seconds };
-    let mut benchmark = SceneBenchmark {
-        name,
-        scene,
-        radii: &radii,
-        reference: &reference,
-        units,
-        repetition_time: options.repetition_time,
-        deadline: share.map(|share| begin + share),
-        rows: Vec::new(),
-        missing: Vec::new(),
-        last_seconds: HashMap::new(),
-    };
-    benchmark.run_own_solvers(options.max_springs)?;
-    for (python, script) in options.python.iter().flat_map(|python| SCRIPTS.iter().map(move |script| (python, script)))
-    {
-        match ExternalSolver::start(python, script, &scene.to_json(&radii))? {
-            Ok(solver) => {
-                if !report.external_solvers.contains(&solver.version) {
-                    report.external_solvers.push(solver.version.clone());
-                }
-                benchmark.run_external(solver, options.max_springs);
+    /// Adds a row for each solver on a scene, or a line that says why there is none.
+    fn measure(&self, name: &str, rows: &mut Vec<Row>, missing: &mut Vec<String>) -> Result<(), Failure> {
+        let scene = Scene::build(name)?;
+        let mut contact = Contact::new(scene.setup.clone())?;
+        let mut force = 0.0_f64;
+        for step in scene.moves() {
+            contact.apply(&step)?;
+            force = force.max(FRICTION * contact.normal_force());
+        }
+        let (stress, edge, mut next) = (contact.summary().unit_shear(), contact.contact_radius(), scenes::random(11));
+        let mut radii: Vec<f64> = (0..RADII).map(|_| edge * next()).collect();
+        radii.extend(Reference::follow(&scene, Reference::force).0.kinks());
+        let expected = by_reference(&scene, &radii)?;
+        for solver in self.solvers(&scene, &radii) {
+            let measured = (solver.run)().and_then(|found| {
+                let largest = |found: &[f64], expected: &[f64], unit: f64| {
+                    found.iter().zip(expected).map(|(found, is)| ((found - is) / unit).abs()).fold(0.0, f64::max)
+                };
+                let (seconds, ratios) = times(&solver, || exact(&scene, &radii))?;
+                let errors = [
+                    largest(&found.forces, &expected.forces, force),
+                    largest(&found.shears[..RADII], &expected.shears[..RADII], stress),
+                    largest(&found.shears[RADII..], &expected.shears[RADII..], stress),
+                ];
+                let scene = name.to_owned();
+                Ok(Row { scene, solver: solver.name, springs: solver.springs, errors, seconds, ratios })
+            });
+            match measured {
+                Ok(row) => rows.push(row),
+                Err(reason) => missing.push(format!("| {name} | {} | {reason} |", solver.name)),
             }
-            Err(reason) => benchmark.skip(script.0, reason),
+        }
+        missing.dedup();
+        Ok(())
+    }
+
+    /// The exact solver, springs from few to many by every kernel, solvers by others if they are wanted, and the
+    /// reference itself.
+    fn solvers<'a>(&'a self, scene: &'a Scene, radii: &'a [f64]) -> Vec<Solver<'a>> {
+        let solver = |name, springs, run| Solver { name, springs, run };
+        let mut solvers = vec![solver("exact", None, Box::new(|| exact(scene, radii)))];
+        let powers = std::iter::successors(Some(MIN_SPRINGS), |count| Some(10 * count));
+        for count in powers.take_while(|count| *count <= self.largest) {
+            solvers.extend(KERNELS.map(|(name, kernel)| {
+                solver(name, Some(count), Box::new(move || by_springs(scene, count, kernel, radii)))
+            }));
+        }
+        if let Some(python) = &self.external {
+            for (name, script, counts) in SCRIPTS {
+                let counts = counts.iter().filter(|count| **count <= self.largest);
+                solvers.extend(counts.map(|&count| {
+                    let run = move || external_solver::run(python, script, &scene.to_json(radii, count));
+                    solver(name, Some(count), Box::new(run))
+                }));
+            }
+        }
+        solvers.push(solver("reference", None, Box::new(|| by_reference(scene, radii))));
+        solvers
+    }
+}
+
+fn exact(scene: &Scene, radii: &[f64]) -> Result<Solution, Failure> {
+    solved(|| {
+        let mut contact = Contact::new(scene.setup.clone())?;
+        let force = |step| contact.apply(&step).map(|()| contact.force());
+        Ok((scene.moves().map(force).collect::<Result<_, _>>()?, contact.shears(radii)))
+    })
+}
+
+fn by_springs(scene: &Scene, count: usize, kernel: ShearEvaluation, radii: &[f64]) -> Result<Solution, Failure> {
+    solved(|| {
+        let reach = springs::largest_contact_radius(&scene.setup, scene.moves())?;
+        let mut row = Springs::new(scene.setup.clone(), count, reach)?;
+        let force = |step| row.apply(&step).map(|()| row.force());
+        Ok((scene.moves().map(force).collect::<Result<_, _>>()?, row.shears_by(kernel, radii)))
+    })
+}
+
+fn by_reference(scene: &Scene, radii: &[f64]) -> Result<Solution, Failure> {
+    solved(|| {
+        let (reference, forces) = Reference::follow(scene, Reference::force);
+        Ok((forces, radii.iter().map(|&radius| reference.shear(radius)).collect()))
+    })
+}
+
+/// Forces and stresses with the time for both.
+fn solved(run: impl FnOnce() -> Result<(Vec<f64>, Vec<f64>), Error>) -> Result<Solution, Failure> {
+    let (found, seconds) = timed(run);
+    let (forces, shears) = found?;
+    Ok(Solution { forces, shears, seconds })
+}
+
+/// The median time of a solver, s, and the quartiles of its ratio to the exact one.
+fn times(solver: &Solver<'_>, exact: impl Fn() -> Result<Solution, Failure>) -> Result<(f64, [f64; 3]), Failure> {
+    let (mut times, mut ratios, begin) = (Vec::new(), Vec::new(), Instant::now());
+    while times.len() < MIN_RUNS || (times.len() < MAX_RUNS && begin.elapsed() < REPETITION_TIME) {
+        let (mut just_before, begin) = (Vec::new(), Instant::now());
+        while just_before.is_empty() || begin.elapsed() < EXACT_TIME {
+            just_before.push(exact()?.seconds);
+        }
+        let seconds = (solver.run)()?.seconds;
+        times.push(seconds);
+        ratios.push(seconds / quartiles(just_before)[1]);
+    }
+    Ok((quartiles(times)[1], quartiles(ratios)))
+}
+
+/// Lower quartile, median and upper quartile; of three values all three, of one value that value.
+fn quartiles(mut values: Vec<f64>) -> [f64; 3] {
+    values.sort_by(f64::total_cmp);
+    let last = values.len() - 1;
+    [last / 4, last / 2, (3 * last).div_ceil(4)].map(|index| values[index])
+}
+
+impl Row {
+    fn to_markdown(&self) -> String {
+        let Row { scene, solver, errors: [force, stress, kinks], seconds, .. } = self;
+        let springs = self.springs.map(|count| count.to_string()).unwrap_or_default();
+        // Two or three digits, with an exponent for small values alone.
+        let [low, ratio, high] = self.ratios.map(|ratio| match ratio {
+            100.0.. => format!("{ratio:.0}"),
+            0.1.. => format!("{ratio:.2}"),
+            _ => format!("{ratio:.1e}"),
+        });
+        format!(
+            "| {scene} | {solver} | {springs} | **{ratio}** ({low} to {high}) | {force:.1e} | {stress:.1e} | \
+             {kinks:.1e} | {seconds:.2e} |"
+        )
+    }
+}
+
+fn chart(rows: &[Row], scene: &str, ordinate: &'static str, error: usize) -> Plot {
+    let rows = || rows.iter().filter(move |row| row.scene == scene && row.solver != "reference");
+    let mut solvers: Vec<&str> = Vec::new();
+    for row in rows().filter(|row| row.solver != "exact") {
+        if !solvers.contains(&row.solver) {
+            solvers.push(row.solver);
         }
     }
-    benchmark.finish(report);
-    Ok(())
+    // Its one dot lies on top of the lines.
+    solvers.push("exact");
+    let curves = solvers.into_iter().map(|solver| {
+        let rows = rows().filter(|row| row.solver == solver);
+        let points = rows.map(|row| (row.seconds, row.errors[error].max(SMALLEST_ERROR)));
+        Curve { dots: solver == "exact", ..Curve::line(solver.to_owned(), None, points) }
+    });
+    Plot { over_decades: true, ..Plot::of_numbers(scene, "processor time, s", ordinate, curves.collect()) }
+}
+
+/// Processor, cores and build.
+fn machine() -> String {
+    let cpus = fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
+    let model = cpus.lines().find_map(|line| line.strip_prefix("model name")?.split_once(": ").map(|(_, name)| name));
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    let build = if cfg!(debug_assertions) { "unoptimised build" } else { "release build" };
+    format!("{}, {cores} cores, {build}.", model.unwrap_or("unknown processor"))
 }

@@ -9,6 +9,7 @@
 
 use stickslip_mechanics::DoubleDouble;
 
+use super::scenes::{DEPTH, E_STAR, FRICTION, G_STAR, Scene};
 use super::shape::{Shape, pi};
 
 /// A corner of w(y).
@@ -21,11 +22,15 @@ struct Corner {
     bound: i8,
 }
 
+impl Corner {
+    fn new(shape: &Shape, level: DoubleDouble) -> Corner {
+        Corner { level, radius: shape.radius(level), w: DoubleDouble::ZERO, bound: 0 }
+    }
+}
+
 /// The contact of a scene.
 pub(super) struct Reference<'a> {
     shape: &'a Shape,
-    e_star: DoubleDouble,
-    g_star: DoubleDouble,
     /// m = mu E*/G*.
     scale: DoubleDouble,
     indentation: DoubleDouble,
@@ -35,37 +40,40 @@ pub(super) struct Reference<'a> {
 }
 
 impl<'a> Reference<'a> {
-    /// A virgin contact at an indentation, m, above zero.
-    pub(super) fn new(shape: &'a Shape, e_star: f64, g_star: f64, friction: f64, indentation: f64) -> Reference<'a> {
-        let (e_star, g_star, indentation) =
-            (DoubleDouble::from(e_star), DoubleDouble::from(g_star), DoubleDouble::from(indentation));
-        let corner = |level| Corner { level, radius: shape.radius(level), w: DoubleDouble::ZERO, bound: 0 };
-        Reference {
-            scale: (e_star * friction).over(g_star),
-            corners: vec![corner(DoubleDouble::ZERO), corner(indentation)],
+    /// The contact of a scene after its path, and a value of it after each move.
+    pub(super) fn follow(scene: &'a Scene, value: impl Fn(&Reference<'a>) -> f64) -> (Reference<'a>, Vec<f64>) {
+        let (shape, indentation) = (&scene.shape, DoubleDouble::from(DEPTH));
+        let mut reference = Reference {
+            scale: (DoubleDouble::from(E_STAR) * FRICTION).over(DoubleDouble::from(G_STAR)),
+            corners: [DoubleDouble::ZERO, indentation].map(|level| Corner::new(shape, level)).into(),
             displacement: DoubleDouble::ZERO,
             shape,
-            e_star,
-            g_star,
             indentation,
-        }
+        };
+        let step = |&(depth, displacement): &(f64, f64)| {
+            reference.advance(depth, displacement);
+            value(&reference)
+        };
+        let values = scene.path.iter().map(step).collect();
+        (reference, values)
     }
 
     /// Moves straight to an indentation, m, above zero and a displacement, m.
-    pub(super) fn advance(&mut self, indentation: f64, displacement: f64) {
+    fn advance(&mut self, indentation: f64, displacement: f64) {
         let (indentation, displacement) = (DoubleDouble::from(indentation), DoubleDouble::from(displacement));
         let shift = (displacement - self.displacement).over(self.scale);
-        let corner = |level| Corner { level, radius: self.shape.radius(level), w: DoubleDouble::ZERO, bound: 0 };
         let mut trial: Vec<Corner> = self.corners.iter().map(|at| Corner { w: at.w + shift, ..*at }).collect();
         if indentation > self.indentation {
             // A point that comes into contact on the way is displaced by less the later that is, at the new edge by
             // nothing.
-            trial.push(corner(indentation));
+            trial.push(Corner::new(self.shape, indentation));
         } else if indentation < self.indentation {
             let cut = trial.iter().position(|at| at.level >= indentation).unwrap_or(trial.len() - 1).max(1);
-            let w = interpolate(&trial[cut - 1], &trial[cut], indentation);
+            // On the straight piece between two corners.
+            let (inner, outer) = (trial[cut - 1], trial[cut]);
+            let w = inner.w + (outer.w - inner.w) * (indentation - inner.level).over(outer.level - inner.level);
             trial.truncate(cut);
-            trial.push(Corner { w, ..corner(indentation) });
+            trial.push(Corner { w, ..Corner::new(self.shape, indentation) });
         }
         self.indentation = indentation;
         self.displacement = displacement;
@@ -76,15 +84,15 @@ impl<'a> Reference<'a> {
     fn clamped(&self, trial: &[Corner]) -> Vec<Corner> {
         let mut all: Vec<Corner> = Vec::with_capacity(trial.len() + 2);
         let excess = |at: &Corner, sign: f64| at.w.signed(sign) - (self.indentation - at.level);
-        for (index, at) in trial.iter().enumerate() {
-            for sign in [1.0, -1.0] {
-                let Some(inner) = index.checked_sub(1).map(|before| &trial[before]) else { continue };
+        let before = std::iter::once(None).chain(trial.iter().map(Some));
+        for (at, inner) in trial.iter().zip(before) {
+            for (sign, inner) in [1.0, -1.0].into_iter().filter_map(|sign| Some((sign, inner?))) {
                 let (before, after) = (excess(inner, sign), excess(at, sign));
                 if before < DoubleDouble::ZERO && after > DoubleDouble::ZERO {
                     let part = (-before).over(after - before);
                     let level = inner.level + (at.level - inner.level) * part;
                     let w = (self.indentation - level).signed(sign);
-                    all.push(Corner { level, radius: self.shape.radius(level), w, bound: sign as i8 });
+                    all.push(Corner { w, bound: sign as i8, ..Corner::new(self.shape, level) });
                 }
             }
             let bound = self.indentation - at.level;
@@ -104,14 +112,14 @@ impl<'a> Reference<'a> {
         })
     }
 
-    /// Tangential force, N: 2 G* m int w dx, and w = alpha + beta g on each piece.
+    /// Tangential force, N: 2 mu E* int w dx, and w = alpha + beta g on each piece.
     pub(super) fn force(&self) -> f64 {
         let sum = self.pieces().fold(DoubleDouble::ZERO, |sum, (inner, outer, slope)| {
             let width = outer.radius - inner.radius;
             let grown = self.shape.integral(outer.radius) - self.shape.integral(inner.radius);
             sum + (inner.w - slope * inner.level) * width + slope * grown
         });
-        (self.g_star * self.scale * sum * 2.0).value()
+        (sum * E_STAR * FRICTION * 2.0).value()
     }
 
     /// Shear stress, Pa, at a radius, m, above zero.
@@ -123,7 +131,7 @@ impl<'a> Reference<'a> {
             inner_kernel = Some(high);
             sum - slope * (high - low)
         });
-        (self.g_star * self.scale * sum).over(pi()).value()
+        (sum * E_STAR * FRICTION).over(pi()).value()
     }
 
     /// Radii, m, where the displacement has a kink, strictly inside the contact.
@@ -131,30 +139,6 @@ impl<'a> Reference<'a> {
         let inside = self.corners.iter().skip(1).take(self.corners.len().saturating_sub(2));
         inside.map(|at| at.radius.value()).collect()
     }
-
-    /// Contact radius, m.
-    pub(super) fn contact_radius(&self) -> f64 {
-        self.shape.radius(self.indentation).value()
-    }
-
-    /// Normal force, N: 2 E* int (d - g) dx.
-    pub(super) fn normal_force(&self) -> f64 {
-        let edge = self.shape.radius(self.indentation);
-        (self.e_star * (self.indentation * edge - self.shape.integral(edge)) * 2.0).value()
-    }
-
-    /// Pressure, Pa, in the centre, where it is finite.
-    pub(super) fn centre_pressure(&self) -> Option<f64> {
-        let edge = self.shape.radius(self.indentation);
-        let pressure = || (self.e_star * self.shape.kernel(0.0, edge)).over(pi()).value();
-        matches!(self.shape, Shape::Even(..)).then(pressure)
-    }
-}
-
-/// The displacement w at a level, on the straight piece between two corners.
-fn interpolate(inner: &Corner, outer: &Corner, level: DoubleDouble) -> DoubleDouble {
-    let part = (level - inner.level).over(outer.level - inner.level);
-    inner.w + (outer.w - inner.w) * part
 }
 
 /// Drops the corners inside a slip ring, where w is straight already.

@@ -1,9 +1,11 @@
 //! The scenes: contacts, their paths, and their shapes for the reference solver.
 
 use stickslip_mechanics::profile::{Cone, ExactSphere, PowerLaw, Tabulated};
-use stickslip_mechanics::{Elasticity, Error, Move, Normal, Preload, Profile, Setup, Sphere, Tangential};
+use stickslip_mechanics::protocol::falling_amplitude;
+use stickslip_mechanics::{Elasticity, Move, Normal, Preload, Profile, Setup, Sphere, Tangential};
 
 use super::shape::Shape;
+use crate::report::Failure;
 
 pub(super) const E_STAR: f64 = 1.15e11;
 pub(super) const G_STAR: f64 = 8.5e10;
@@ -19,19 +21,37 @@ pub(super) const DEPTH: f64 = 1e-4;
 /// Points of the table.
 const TABLE_POINTS: usize = 1000;
 
-/// The names of all scenes.
-pub const NAMES: [&str; 10] = [
-    "first_loading",
-    "reversal",
-    "reversals_20",
-    "reversals_1000",
-    "random_10000",
-    "oblique",
-    "cone",
-    "power_4",
-    "exact_sphere",
-    "table_1000",
+type Path = fn(f64) -> Vec<(f64, f64)>;
+
+/// The scenes: the name, the profile in the format of external solvers, and the path for a displacement of gross slip,
+/// m: indentation and displacement, m, after each move.
+const SCENES: [(&str, &str, Path); 10] = [
+    ("first_loading", "parabola", |unit| vec![(DEPTH, 0.5 * unit)]),
+    ("reversal", "parabola", |unit| vec![(DEPTH, 0.8 * unit), (DEPTH, -0.3 * unit)]),
+    ("reversals_20", "parabola", |unit| falling(20, unit)),
+    ("reversals_1000", "parabola", |unit| falling(1000, unit)),
+    ("random_10000", "parabola", |unit| {
+        let mut next = random(7);
+        (0..10_000).map(|_| (DEPTH, (2.0 * next() - 1.0) * unit)).collect()
+    }),
+    ("oblique", "parabola", |unit| {
+        let mut next = random(7);
+        (0..30).map(|_| ((0.5 + next()) * DEPTH, (2.0 * next() - 1.0) * unit)).collect()
+    }),
+    ("cone", "cone", |unit| falling(20, unit)),
+    ("power_4", "power_4", |unit| falling(20, unit)),
+    ("exact_sphere", "exact_sphere", |unit| falling(20, unit)),
+    ("table_1000", "table", |unit| falling(20, unit)),
 ];
+
+fn falling(reversals: usize, unit: f64) -> Vec<(f64, f64)> {
+    falling_amplitude(reversals, unit).map(|displacement| (DEPTH, displacement)).collect()
+}
+
+/// The names of all scenes.
+pub(super) fn names() -> [&'static str; SCENES.len()] {
+    SCENES.map(|(name, ..)| name)
+}
 
 /// A contact and its path: indentation and displacement, m, after each move.
 pub(super) struct Scene {
@@ -52,48 +72,33 @@ pub(super) fn random(seed: u64) -> impl FnMut() -> f64 {
 }
 
 impl Scene {
-    /// The scene with that name out of [`NAMES`].
-    pub(super) fn build(name: &str) -> Result<Scene, Error> {
-        let unit = FRICTION * E_STAR / G_STAR * DEPTH;
-        let falling = |count: usize| -> Vec<(f64, f64)> {
-            stickslip_mechanics::protocol::falling_amplitude(count, unit).map(|u| (DEPTH, u)).collect()
-        };
-        let mut next = random(7);
-        let path = match name {
-            "first_loading" => vec![(DEPTH, 0.5 * unit)],
-            "reversal" => vec![(DEPTH, 0.8 * unit), (DEPTH, -0.3 * unit)],
-            "reversals_1000" => falling(1000),
-            "random_10000" => (0..10_000).map(|_| (DEPTH, (2.0 * next() - 1.0) * unit)).collect(),
-            "oblique" => (0..30).map(|_| ((0.5 + next()) * DEPTH, (2.0 * next() - 1.0) * unit)).collect(),
-            _ => falling(20),
-        };
-        let (profile_name, profile, shape) = match name {
-            "cone" => ("cone", Profile::Cone(Cone::new(SLOPE)?), Shape::cone(SLOPE)),
-            "power_4" => ("power_4", Profile::PowerLaw(PowerLaw::new(4.0, QUARTIC)?), Shape::fourth_power(QUARTIC)),
-            "exact_sphere" => ("exact_sphere", Profile::ExactSphere(ExactSphere::new(RADIUS)?), Shape::sphere(RADIUS)),
-            "table_1000" => {
-                let r: Vec<f64> =
-                    (0..TABLE_POINTS).map(|index| 1.2e-3 * index as f64 / (TABLE_POINTS - 1) as f64).collect();
+    /// The scene with that name.
+    pub(super) fn build(scene: &str) -> Result<Scene, Failure> {
+        let found = SCENES.into_iter().find(|(name, ..)| *name == scene);
+        let (_, profile_name, path) = found.ok_or_else(|| format!("there is no scene `{scene}`"))?;
+        let (profile, shape) = match profile_name {
+            "cone" => (Profile::Cone(Cone::new(SLOPE)?), Shape::cone(SLOPE)),
+            "power_4" => (Profile::PowerLaw(PowerLaw::new(4.0, QUARTIC)?), Shape::fourth_power(QUARTIC)),
+            "exact_sphere" => (Profile::ExactSphere(ExactSphere::new(RADIUS)?), Shape::sphere(RADIUS)),
+            "table" => {
+                let step = 1.2e-3 / (TABLE_POINTS - 1) as f64;
+                let r: Vec<f64> = (0..TABLE_POINTS).map(|index| step * index as f64).collect();
                 let z: Vec<f64> = r.iter().map(|r| r * r / (RADIUS + ((RADIUS - r) * (RADIUS + r)).sqrt())).collect();
-                ("table", Profile::Tabulated(Tabulated::new(&r, &z)?), Shape::sphere(RADIUS))
+                (Profile::Tabulated(Tabulated::new(&r, &z)?), Shape::sphere(RADIUS))
             }
-            _ => ("parabola", Profile::Sphere(Sphere::new(RADIUS)?), Shape::parabola(RADIUS)),
+            _ => (Profile::Sphere(Sphere::new(RADIUS)?), Shape::parabola(RADIUS)),
         };
-        let setup = Setup {
-            profile,
-            elasticity: Elasticity::effective(E_STAR, G_STAR)?,
-            friction: FRICTION,
-            preload: Preload::Indentation(DEPTH),
-        };
-        Ok(Scene { setup, shape, path, profile_name })
+        let elasticity = Elasticity::effective(E_STAR, G_STAR)?;
+        let setup = Setup { profile, elasticity, friction: FRICTION, preload: Preload::Indentation(DEPTH) };
+        Ok(Scene { setup, shape, path: path(FRICTION * E_STAR / G_STAR * DEPTH), profile_name })
     }
 
     /// The scene as an external solver gets it: numbers in SI units, moves as pairs of indentation and displacement.
-    pub(super) fn to_json(&self, radii: &[f64]) -> serde_json::Value {
+    pub(super) fn to_json(&self, radii: &[f64], count: usize) -> serde_json::Value {
         serde_json::json!({
             "profile": self.profile_name, "radius": RADIUS, "slope": SLOPE, "coefficient": QUARTIC,
             "e_star": E_STAR, "g_star": G_STAR, "friction": FRICTION,
-            "indentation": DEPTH, "moves": self.path, "radii": radii,
+            "indentation": DEPTH, "moves": self.path, "radii": radii, "count": count,
         })
     }
 

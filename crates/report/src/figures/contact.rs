@@ -1,5 +1,6 @@
 //! The contacts of the figures. All figures are normalised, so that they hold whatever these are made of.
 
+use super::POINTS;
 use stickslip_mechanics::{Contact, Elasticity, Error, Move, Preload, Profile, Setup, Sphere, Tangential};
 
 pub(super) fn contact_of(profile: Profile, friction: f64, preload: Preload) -> Result<Contact, Error> {
@@ -24,4 +25,13 @@ pub(super) fn ball() -> Result<Profile, Error> {
 /// The move to a displacement, m.
 pub(super) fn to(displacement: f64) -> Move {
     Move { tangential: Some(Tangential::Displacement(displacement)), ..Move::default() }
+}
+
+/// tau over mu p_max over r/a, through every extremum.
+pub(super) fn shear_curve(contact: &Contact) -> Vec<(f64, f64)> {
+    let (edge, unit) = (contact.contact_radius(), contact.summary().unit_shear());
+    let mut radii: Vec<f64> = (0..=POINTS).map(|index| edge * index as f64 / POINTS as f64).collect();
+    radii.extend(contact.residual().peaks.iter().map(|peak| peak.radius));
+    radii.sort_by(f64::total_cmp);
+    radii.iter().map(|&r| (r / edge, contact.shear(r) / unit)).collect()
 }

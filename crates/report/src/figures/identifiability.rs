@@ -1,8 +1,8 @@
 //! Figure 15: how well a measured loop determines friction, stiffness and the compliance of the machine, over its
 //! amplitude.
 
-use super::Failure;
 use super::contact::{ball_under_load, to};
+use crate::report::Failure;
 use stickslip_measured::loops::{self, Known, Noise, Parameter, Record, Start, Task};
 use stickslip_mechanics::{Contact, Error};
 use stickslip_plot::{Curve, Plot};
@@ -14,31 +14,39 @@ const POINTS: u32 = 400;
 const NOISE: f64 = 0.01;
 /// Compliance of the machine over that of the contact before it slips.
 const COMPLIANCE: f64 = 0.4;
+const PARAMETERS: [Parameter; 3] = [Parameter::Friction, Parameter::GStar, Parameter::MachineCompliance];
+/// The curves of the parameters: with the compliance of the machine among them, and known.
+const CURVES: [&[&str]; 2] =
+    [&["friction", "stiffness", "machine compliance"], &["friction, machine known", "stiffness, machine known"]];
 
 pub(super) fn chart() -> Result<Plot, Failure> {
     let contact = ball_under_load()?;
     let compliance = COMPLIANCE / (2.0 * contact.elasticity().g_star() * contact.contact_radius());
-    let sought = [
-        ("friction", Parameter::Friction, false),
-        ("stiffness", Parameter::GStar, false),
-        ("machine compliance", Parameter::MachineCompliance, false),
-        ("friction, machine known", Parameter::Friction, true),
-        ("stiffness, machine known", Parameter::GStar, true),
-    ];
-    let mut series: Vec<Curve> = sought.iter().map(|(name, ..)| Curve::line(*name, None, Vec::new())).collect();
-    for amplitude in AMPLITUDES {
-        let record = steady(&contact, amplitude, compliance)?;
-        for known in [false, true] {
-            let found = fitted(&contact, &record, compliance, known)?;
-            for (of, (_, parameter, _)) in sought.iter().enumerate().filter(|(_, (.., is_known))| *is_known == known) {
+    let records = AMPLITUDES.map(|amplitude| steady(&contact, amplitude, compliance));
+    let machine = Known { parameter: Parameter::MachineCompliance, value: compliance, standard_error: 0.0 };
+    let mut curves = Vec::new();
+    for (names, known) in CURVES.into_iter().zip([vec![], vec![machine]]) {
+        let free = &PARAMETERS[..names.len()];
+        let mut own: Vec<Curve> = names.iter().map(|name| Curve::line(*name, None, [])).collect();
+        for (amplitude, record) in AMPLITUDES.into_iter().zip(&records) {
+            let task = Task {
+                contact: contact.clone(),
+                records: vec![record.clone()?],
+                free: free.to_vec(),
+                known: known.clone(),
+                noise: Noise { force: Some(NOISE * contact.summary().gross_slip_force), displacement: Some(0.0) },
+            };
+            let found = loops::fit(&task, &|| true)?;
+            for (curve, parameter) in own.iter_mut().zip(free) {
                 let estimate = found.estimates.iter().find(|estimate| estimate.parameter == *parameter);
                 let error = estimate.and_then(|estimate| Some(estimate.standard_error? / estimate.value));
-                series[of].points.extend(error.map(|error| (amplitude, 100.0 * error)));
+                curve.points.extend(error.map(|error| (amplitude, 100.0 * error)));
             }
         }
+        curves.extend(own);
     }
     let title = "Figure 15: what one loop with 1 % of noise determines";
-    let chart = Plot::of_numbers(title, "amplitude / displacement of gross slip", "standard error (%)", series);
+    let chart = Plot::of_numbers(title, "amplitude / displacement of gross slip", "standard error (%)", curves);
     Ok(Plot { over_decades: true, ..chart })
 }
 
@@ -49,36 +57,14 @@ fn steady(contact: &Contact, amplitude: f64, compliance: f64) -> Result<Record, 
         contact.apply(&to(amplitude * unit * place))?;
         Ok(contact.force())
     };
-    for turn in [1.0, -1.0] {
-        at(turn)?;
-    }
-    let mut record = Record {
-        displacement: vec![],
-        force: vec![],
-        time: None,
-        normal_force: None,
-        start: Some(Start::Steady),
-        weight: 1.0,
-    };
+    at(1.0)?;
+    at(-1.0)?;
+    let (mut displacement, mut force) = (vec![], vec![]);
     for index in 0..=POINTS {
         let place = -(std::f64::consts::TAU * f64::from(index) / f64::from(POINTS)).cos();
-        let force = at(place)?;
-        record.displacement.push(amplitude * unit * place + compliance * force);
-        record.force.push(force);
+        let found = at(place)?;
+        displacement.push(amplitude * unit * place + compliance * found);
+        force.push(found);
     }
-    Ok(record)
-}
-
-fn fitted(contact: &Contact, record: &Record, compliance: f64, is_known: bool) -> Result<loops::LoopFit, loops::Error> {
-    let known = Known { parameter: Parameter::MachineCompliance, value: compliance, standard_error: 0.0 };
-    let mut free = vec![Parameter::Friction, Parameter::GStar, Parameter::MachineCompliance];
-    free.truncate(if is_known { 2 } else { 3 });
-    let task = Task {
-        contact: contact.clone(),
-        records: vec![record.clone()],
-        free,
-        known: if is_known { vec![known] } else { vec![] },
-        noise: Noise { force: Some(NOISE * contact.summary().gross_slip_force), displacement: Some(0.0) },
-    };
-    loops::fit(&task, &|| true)
+    Ok(Record { displacement, force, time: None, normal_force: None, start: Some(Start::Steady), weight: 1.0 })
 }

@@ -1,10 +1,9 @@
 //! What a steady turn of an ellipse loses, over the amplitude, the ratio of the radii and the phase.
 
-use std::fmt::Write as _;
-
 use stickslip_mechanics::Error;
 
 use super::{turn_losses, two_turns};
+use crate::report::table;
 
 /// a over the displacement of gross slip.
 const AMPLITUDES: [f64; 2] = [0.3, 0.6];
@@ -13,38 +12,24 @@ const RATIOS: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
 /// Degrees.
 const PHASES: [f64; 4] = [0.0, 30.0, 60.0, 90.0];
 const PER_TURN: usize = 16;
-const TOLERANCE: f64 = 1e-3;
+pub(super) const TOLERANCE: f64 = 1e-3;
 
-/// The friction work of the second turn over mu F_N u_max, as a table in Markdown.
-///
-/// # Errors
-/// A path without a solution.
-pub fn table() -> Result<String, Error> {
-    let mut text = "| a / u_max | b / a |".to_owned();
-    let each = |text: &mut String, what: &dyn Fn(f64) -> String| {
-        PHASES.iter().for_each(|phase| text.push_str(&what(*phase)));
-        text.push('\n');
+/// The friction work of the second turn over mu F_N u_max, as a table.
+pub(super) fn losses() -> Result<String, Error> {
+    let names = format!("a / u_max | b / a{}", PHASES.map(|phase| format!(" | phase {phase:.0}°")).concat());
+    let row = |(amplitude, ratio): (f64, f64)| {
+        let cell = |phase| Ok(format!(" {:.3} |", loss(amplitude, ratio, phase)?));
+        let cells: String = PHASES.into_iter().map(cell).collect::<Result<_, Error>>()?;
+        Ok(format!("| {amplitude} | {ratio} |{cells}"))
     };
-    // Writing to a string cannot fail.
-    each(&mut text, &|phase| format!(" phase {phase:.0}° |"));
-    text.push_str("|---|---|");
-    each(&mut text, &|_| "---|".to_owned());
-    for amplitude in AMPLITUDES {
-        for ratio in RATIOS {
-            let _ = write!(text, "| {amplitude} | {ratio} |");
-            for phase in PHASES {
-                let _ = write!(text, " {:.3} |", loss(amplitude, ratio, phase)?);
-            }
-            text.push('\n');
-        }
-    }
-    Ok(text)
+    let rows = AMPLITUDES.into_iter().flat_map(|amplitude| RATIOS.map(|ratio| (amplitude, ratio)));
+    Ok(table(&names, rows.map(row).collect::<Result<Vec<_>, Error>>()?))
 }
 
 fn loss(amplitude: f64, ratio: f64, phase: f64) -> Result<f64, Error> {
     let radii = [amplitude, ratio * amplitude];
     let solution = two_turns(radii, phase.to_radians(), PER_TURN, None, TOLERANCE)?;
-    Ok(turn_losses(&solution, PER_TURN)[1])
+    Ok(turn_losses(&solution.states, PER_TURN)[1])
 }
 
 #[cfg(test)]

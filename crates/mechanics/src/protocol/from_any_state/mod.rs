@@ -19,7 +19,7 @@ use super::{PathEnd, alternating, cutoff_of, outermost_singular, positions};
 use crate::contact::Contact;
 use crate::normal::load;
 use crate::numerics::double_double::DoubleDouble;
-use crate::numerics::roots::{largest, turning};
+use crate::numerics::roots::{largest_of, turning};
 use crate::profile::{Point, Profile, Ring, StressRadius};
 use crate::slip_history::Line;
 
@@ -202,11 +202,7 @@ impl<'a> FromAnyState<'a> {
             (0..parts).map(move |index| low + width * index as f64 / parts as f64)
         };
         let tried: Vec<f64> = bends.windows(2).flat_map(between).chain([outermost.radius]).collect();
-        let found: Vec<f64> = tried.iter().map(|radius| relief(*radius)).collect();
-        let best = (0..tried.len()).max_by(|a, b| found[*a].total_cmp(&found[*b])).unwrap_or(0);
-        let beside = [tried[best.saturating_sub(1)], tried[(best + 1).min(tried.len() - 1)]];
-        let (radius, least) = largest(beside, BRACKET, relief);
-        cut(if least > found[best] { radius } else { tried[best] })
+        cut(largest_of(&tried, 1, BRACKET, relief).0)
     }
 
     /// The cut that leads to the prescribed end, and where the first stroke leads to; `None` if no cut does.
