@@ -1,7 +1,7 @@
 //! `/contacts/{id}/cycle`: the steady cycles of a contact at its present load; nothing changes.
 
 use stickslip_mechanics::range::{self, Range};
-use stickslip_wire::cycle::{CycleOptions, CyclePlaces, CycleTask};
+use stickslip_wire::cycle::CycleTask;
 use stickslip_wire::limits::{self, Array};
 use stickslip_wire::{Amplitudes, CycleDrive, CycleReply, JsonPath, WorkDensity};
 
@@ -63,8 +63,8 @@ impl QueryParams for CheckedCycle {
             }
         };
         let density = (points.is_some() || radii.is_some() || x.is_some()).then_some(WorkDensity { points, radii, x });
-        let options = CycleOptions { drive, stiffness: machine_stiffness, harmonics, density };
-        Some(CheckedCycle { task: options.check(CyclePlaces::QUERY, &mut query.faults)?, format })
+        let task = CycleTask::of_query(drive, machine_stiffness, harmonics, density, &mut query.faults)?;
+        Some(CheckedCycle { task, format })
     }
 }
 
