@@ -43,7 +43,7 @@ pub async fn life(service: &str) -> Result<Vec<String>, Box<dyn std::error::Erro
 
     let request = StressRequest { points: Some(3), ..StressRequest::default() };
     let stress = client.stress(made.id, &request, true).await?;
-    lines.push(format!("shear stress: {:?} Pa", stress.shear.unwrap_or_default()));
+    lines.push(format!("shear stress: {:?} Pa", stress.stress.shear.unwrap_or_default()));
 
     let mut events = client.events(made.id, Some(0)).await?;
     if let Some(Event::State(state)) = events.next().await.transpose()? {

@@ -87,7 +87,7 @@ impl PlanarContacts {
 
     /// The committed state of one contact as JSON text.
     fn state(&self, index: usize) -> PyResult<String> {
-        self.contacts.state(index, |contact| json!(PlanarState::from(&contact.state())))
+        self.contacts.state(index, |contact| json!(PlanarState::from(contact.state())))
     }
 
     /// Bytes of memory that the committed states take.

@@ -687,6 +687,18 @@ class ProfileFitReply(Result):
 class ProtocolReply(Result):
     """How to move so that little shear stress remains."""
 
+    displacement: float
+    """Tangential displacement at the end, m."""
+
+    dissipated_energy: float
+    """Work done against friction on the path, J."""
+
+    force: float
+    """Tangential force at the end, N."""
+
+    residual: Residual
+    """The extrema of the shear stress that remains."""
+
     accuracy: Accuracy
     """Solver, errors and time."""
 
@@ -696,17 +708,8 @@ class ProtocolReply(Result):
     contact: Figures
     """Quantities that follow from the definition at the present load."""
 
-    displacement: float
-    """Tangential displacement at the end, m."""
-
-    dissipated_energy: float
-    """Work done against friction on the path, J."""
-
     end: types.ProtocolEnd
     """Where the path ends."""
-
-    force: float
-    """Tangential force at the end, N."""
 
     judged: Record
     """Where and in which unit the remaining stress is measured."""
@@ -716,9 +719,6 @@ class ProtocolReply(Result):
 
     path: Record
     """The path, which `/simulate` and `/contacts/{id}/path` take as it is."""
-
-    residual: Residual
-    """The extrema of the shear stress that remains."""
 
     reversals: int
     """Number of reversals N."""
@@ -745,6 +745,18 @@ class ProtocolReply(Result):
 class RelaxReply(Result):
     """The result of relaxing a contact, or of a dry run."""
 
+    displacement: float
+    """Tangential displacement at the end, m."""
+
+    dissipated_energy: float
+    """Work done against friction on the path, J."""
+
+    force: float
+    """Tangential force at the end, N."""
+
+    residual: Residual
+    """The extrema of the shear stress that remains."""
+
     accuracy: Accuracy
     """Solver, errors and time."""
 
@@ -754,17 +766,8 @@ class RelaxReply(Result):
     contact: Figures
     """Quantities that follow from the definition at the present load."""
 
-    displacement: float
-    """Tangential displacement at the end, m."""
-
-    dissipated_energy: float
-    """Work done against friction on the path, J."""
-
     end: types.ProtocolEnd
     """Where the path ends."""
-
-    force: float
-    """Tangential force at the end, N."""
 
     judged: Record
     """Where and in which unit the remaining stress is measured."""
@@ -774,9 +777,6 @@ class RelaxReply(Result):
 
     path: Record
     """The path, which `/simulate` and `/contacts/{id}/path` take as it is."""
-
-    residual: Residual
-    """The extrema of the shear stress that remains."""
 
     reversals: int
     """Number of reversals N."""
@@ -1095,9 +1095,6 @@ class StressReply(Result):
     radius: Floats | None
     """Radii in a round contact, m."""
 
-    residual: Residual | None
-    """The extrema of the shear stress, if asked for."""
-
     shear: Floats | None
     """Shear stress, Pa; positive as a positive displacement causes it; `null` where it is infinite."""
 
@@ -1106,6 +1103,9 @@ class StressReply(Result):
 
     x: Floats | None
     """Places along x in a line contact, m."""
+
+    residual: Residual | None
+    """The extrema of the shear stress, if asked for."""
 
 
 class SubsurfaceReply(Result):

@@ -12,6 +12,7 @@ use uuid::Uuid;
 
 use crate::admission::{PoolError, Quota, Reservation, Share};
 use crate::store::{Listener, StoreError, StreamEvent};
+use stickslip_compute::Interrupted;
 use stickslip_compute::simulation::{Cause, Failure};
 use stickslip_wire::{EndReason, HistoryPage, StateEvent};
 
@@ -87,7 +88,9 @@ impl Follower {
             SessionError::Pool(error) => *error != PoolError::Panicked,
             SessionError::Loading { .. } => true,
             // The states that have been read for the cycles are kept, so that the next attempt comes farther.
-            SessionError::Failure(Failure { cause: Cause::TooLong { .. }, .. }) => self.failures < LONG_ATTEMPTS,
+            SessionError::Failure(Failure { cause: Cause::Interrupted(Interrupted::TimeLimit(_)), .. }) => {
+                self.failures < LONG_ATTEMPTS
+            }
             _ => false,
         }
     }

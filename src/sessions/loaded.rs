@@ -10,6 +10,7 @@ use stickslip_compute::simulation::{self, bytes, present_warnings};
 use stickslip_mechanics::Contact;
 use stickslip_mechanics::closed_cycles::CycleLog;
 use stickslip_wire::definition::SharedSetup;
+use stickslip_wire::limits::Limited as _;
 use stickslip_wire::{ContactSummary, Faults, FrictionEstimate, JsonPath, NewSession, Prepare, SessionReply, Warning};
 
 use super::error::SessionError;
@@ -91,6 +92,7 @@ impl LoadedSession {
     /// The same of a stored session, or the reason why its definition is invalid.
     pub(super) fn of_stored(session: Session, profiles: &dyn Prepare) -> Result<LoadedSession, String> {
         let mut faults = Faults::default();
+        session.definition.check_limits(JsonPath::Root, &mut faults);
         let setup = session.definition.check(JsonPath::Root, profiles, &mut faults);
         let setup = faults.done(setup).map_err(|error| error.to_string())?;
         LoadedSession::start(session, setup).map_err(|error| error.to_string())

@@ -6,8 +6,8 @@ use stickslip_wire::files::{LoopFileHints, ScanFileHints};
 use stickslip_wire::fit::ForceUnit;
 use stickslip_wire::profile_fit::{LengthUnit, ScanData, ScanUnits};
 use stickslip_wire::{
-    FallingAmplitude, Field, ForkRequest, JobState, Move, Path, PathRequest, Regime, SolverKind, Steps, StressRequest,
-    SweepRequest,
+    FallingAmplitude, Field, ForkRequest, JobState, Move, Path, PathRequest, Regime, SolverKind, Steps, StressReply,
+    StressRequest, SweepRequest,
 };
 use tokio::io::AsyncReadExt as _;
 
@@ -39,10 +39,10 @@ async fn every_endpoint_answers_the_client() {
     assert_eq!(followed.stress.unwrap().places().len(), 5);
     let radii = Some(vec![0.0, 1e-5]);
     let wanted = StressRequest { radii, fields: Some(vec![Field::Shear]), ..StressRequest::default() };
-    let stress = client.stress(contact.id, &wanted, true).await.unwrap();
+    let StressReply { stress, residual } = client.stress(contact.id, &wanted, true).await.unwrap();
     assert_eq!(stress.places(), [0.0, 1e-5]);
     assert!(stress.pressure.is_none() && stress.shear.unwrap().len() == 2);
-    assert_eq!(client.residual(contact.id).await.unwrap(), stress.residual.unwrap());
+    assert_eq!(client.residual(contact.id).await.unwrap(), residual.unwrap());
 
     let matrix = b"1 2 3 4\n5 6 7 8\n2 4 6 8\n1 3 5 7\n".to_vec();
     let [lateral, height] = [LengthUnit::Millimetre, LengthUnit::Micrometre].map(Some);

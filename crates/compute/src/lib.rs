@@ -14,6 +14,7 @@
 
 pub mod computations;
 pub mod formats;
+mod prelude;
 mod refusal;
 pub mod simulation;
 mod stop;

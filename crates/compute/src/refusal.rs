@@ -2,10 +2,10 @@
 
 use stickslip_measured::import::ImportError;
 use stickslip_mechanics::Error;
-use stickslip_wire::{Code, Fault, ProblemDocument, Rejection};
+use stickslip_wire::ProblemDocument;
 
 use crate::formats::Unwritable;
-use crate::simulation::{Cause, Failure};
+use crate::prelude::*;
 
 /// A refusal: its kind, what happened, and the place in the request.
 #[derive(Clone, Debug)]
@@ -83,7 +83,7 @@ impl From<Failure> for Refusal {
     fn from(failure: Failure) -> Self {
         let (code, detail) = (failure.code(), failure.cause.to_string());
         match failure.cause {
-            Cause::Stopped | Cause::Lifted => Refusal::new(code, detail),
+            Cause::Interrupted(Interrupted::Abandoned) | Cause::Lifted => Refusal::new(code, detail),
             Cause::Refused(error) => {
                 let mut fault = Fault::new(failure.pointer, detail.clone());
                 match error {

@@ -121,7 +121,8 @@ impl Contact {
         let (stick_radius, regime) = self.stick();
         State {
             displacement: self.displacement.value(),
-            force: self.force(),
+            // The -0 of a virgin contact is 0.
+            force: self.force() + 0.0,
             indentation: edge.level.value(),
             normal_force: self.normal_force(),
             contact_radius: self.contact_radius(),

@@ -1,18 +1,8 @@
 //! The body of `POST /accuracy` and its reply.
 
-use stickslip_mechanics::DEFAULT_TOLERANCE;
-
-use super::check::{Fault, Faults, JsonPath};
-use super::definition::{ContactDefinition, DefinedProfile, SharedSetup};
-use super::document::Document;
-use super::limits::{Items, Tolerance};
-use super::path::Plan;
 use super::plane::SimulatedPath;
-use super::prepare::Prepare;
-use super::reply::SolverKind;
-use super::request::{replies, requests};
 use super::simulate::{Rings, SPRINGS, SimulateRequest, Solver, Springs, in_plane, most_springs};
-use super::stress::{Field, Sampling, StressRequest};
+use crate::prelude::*;
 
 /// Solvers that one comparison may name.
 const SOLVERS: Items = Items(1..=16);
@@ -78,36 +68,34 @@ pub struct Reference {
 }
 
 /// One solver on the path.
-pub struct AccuracyRow {
+pub struct AccuracyRow omits Option {
     /// The solver.
     pub solver: Solver,
     /// Largest difference of the force from that of the reference, over all moves, relative to `force_unit`, a pure
     /// number; `null` without a result, or where it is infinite.
+    #[serde_with(skip_apply)]
     pub force_error: Option<f64>,
     /// Largest difference of the shear stress at the end, over the radii, relative to `stress_unit`, a pure number;
     /// `null` without a result, or where it is infinite.
+    #[serde_with(skip_apply)]
     pub stress_error: Option<f64>,
     /// Error of the force over all moves as the solver estimates it, relative to the friction limit μ F_N, a pure
     /// number; `null` without a result, or where it is infinite.
+    #[serde_with(skip_apply)]
     pub estimated_force_error: Option<f64>,
     /// Error of the stress at the end as the solver estimates it, relative to `stress_unit`, a pure number: the
     /// largest over the contact, for springs without the cells near a singular radius of the profile; `null` without a
     /// result, or where it is infinite.
+    #[serde_with(skip_apply)]
     pub estimated_stress_error: Option<f64>,
     /// Steps of the finest discretisation, of rings in the plane.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(nullable = false)]
     pub steps: Option<usize>,
     /// Difference of the friction work from that of the reference at the end of a path in the plane, over `force_unit`
     /// times the displacement of gross slip, a pure number.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(nullable = false)]
     pub work_error: Option<f64>,
     /// Time spent computing, s: the median of a few runs if one takes less than a few milliseconds.
     pub compute_time: f64,
     /// Why this solver has no result: the move that it cannot follow. Left out if there is a result.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(nullable = false)]
     pub refused: Option<Fault>,
 }
 }
@@ -192,11 +180,11 @@ impl Document for AccuracyRequest {
             ..StressRequest::default()
         });
         let at = JsonPath::Root.member("stress");
-        let sampling = stress.check(at, faults);
+        let sampling = stress.sampling(at, faults);
         if sampling.as_ref().is_some_and(|sampling| !sampling.fields.contains(&Field::Shear)) {
             faults.add(at.member("fields"), "only the shear stress is compared: include `shear`");
         }
-        let mut tolerance = Tolerance(DEFAULT_TOLERANCE).of(self.tolerance, faults);
+        let mut tolerance = self.tolerance.unwrap_or(DEFAULT_TOLERANCE);
         let at = JsonPath::Root.member("solvers");
         let solvers = self.solvers.unwrap_or_else(|| ladder(plane.is_some()));
         if plane.is_some() {
@@ -208,10 +196,7 @@ impl Document for AccuracyRequest {
         }
         let radii = sampling.as_ref().map_or(0, Sampling::length);
         let passes = plan.as_ref().map_or(0, Plan::length).saturating_add(radii);
-        if faults.length(at, solvers.len(), &SOLVERS.0) {
-            let each = solvers.iter().enumerate();
-            each.for_each(|(index, solver)| solver.check(at.index(index), passes, faults));
-        }
+        solvers.iter().enumerate().for_each(|(index, solver)| solver.check(at.index(index), passes, faults));
         let comparison = setup.zip(plan).zip(sampling).map(|((setup, plan), sampling)| {
             let definition = self.contact;
             Comparison { definition, setup, plan, sampling, solvers, tolerance }

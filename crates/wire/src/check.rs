@@ -6,12 +6,14 @@ use std::sync::Arc;
 
 use stickslip_mechanics::{Error, Profile, Setup, TableFault, range::Range};
 
+use super::request::replies;
+
 /// Faults that one reply lists; a body can have a great many.
 const LISTED_FAULTS: usize = 100;
 
+replies! {
 /// One fault of a request.
-#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
-pub struct Fault {
+pub struct Fault: Default omits Option {
     /// JSON pointer (RFC 6901) into the body, or `/` and the name of a query parameter.
     #[schema(example = "/contact/profile/radius")]
     pub pointer: String,
@@ -19,35 +21,20 @@ pub struct Fault {
     #[schema(example = "-1 is out of range: allowed is 1e-15 to 1e9 m")]
     pub detail: String,
     /// The smallest number allowed, in the unit of the member, where a number is out of range.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(nullable = false)]
     pub minimum: Option<f64>,
     /// The largest number allowed, in the unit of the member, where a number is out of range.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(nullable = false)]
     pub maximum: Option<f64>,
     /// The bound above which a force must stay, N, if friction cannot hold it.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(nullable = false)]
     pub exclusive_minimum: Option<f64>,
     /// The bound below which a force must stay, N, if friction cannot hold it.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(nullable = false)]
     pub exclusive_maximum: Option<f64>,
+}
 }
 
 impl Fault {
     /// A fault without a range.
     pub fn new(pointer: impl Into<String>, detail: impl Into<String>) -> Fault {
-        let none = None::<f64>;
-        Fault {
-            pointer: pointer.into(),
-            detail: detail.into(),
-            minimum: none,
-            maximum: none,
-            exclusive_minimum: none,
-            exclusive_maximum: none,
-        }
+        Fault { pointer: pointer.into(), detail: detail.into(), ..Fault::default() }
     }
 }
 
@@ -125,8 +112,6 @@ pub fn escaped(name: &str) -> String {
 #[derive(Debug, Default)]
 pub struct Faults {
     found: Vec<Fault>,
-    /// Number of faults, including those that are not listed.
-    count: usize,
     /// The refusal of the mechanics, and its place: a kind of its own if there are no other faults.
     unanswerable: Option<(String, Error)>,
 }
@@ -134,7 +119,6 @@ pub struct Faults {
 impl Faults {
     /// Notes a fault; beyond one hundred they are no longer listed.
     pub fn add(&mut self, at: JsonPath<'_>, detail: impl fmt::Display) {
-        self.count = self.count.saturating_add(1);
         if self.found.len() < LISTED_FAULTS {
             self.found.push(Fault::new(at.to_string(), detail.to_string()));
         }
@@ -203,12 +187,13 @@ impl Faults {
         fits
     }
 
-    /// The result of `check` for a part of the document, unless it notes a fault: nothing is computed from numbers that
-    /// are out of range.
-    pub fn part<T>(&mut self, check: impl FnOnce(&mut Faults) -> T) -> Option<T> {
-        let before = self.count;
-        let part = check(self);
-        (self.count == before).then_some(part)
+    /// Some if there are no faults at this place or within it: nothing is computed from numbers that are out of range.
+    pub fn none_within(&self, at: JsonPath<'_>) -> Option<()> {
+        let within = |fault: &Fault| {
+            let rest = fault.pointer.strip_prefix(&at.to_string());
+            rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('/'))
+        };
+        (self.found.len() < LISTED_FAULTS && !self.found.iter().any(within)).then_some(())
     }
 
     /// Whether there are no faults.
@@ -238,7 +223,7 @@ pub(super) fn accepted(shape: Result<Profile, Error>, at: JsonPath<'_>, faults: 
     match shape {
         Ok(shape) => return Some(shape),
         // It follows from a fault that has been noted already.
-        Err(_) if !faults.is_empty() => {}
+        Err(_) if faults.none_within(at).is_none() => {}
         Err(error @ (Error::NotConvexEnough { .. } | Error::BeyondProfile { .. } | Error::Interrupted)) => {
             faults.unanswerable(at, error);
         }

@@ -1,7 +1,12 @@
-//! Declaring choices: of a word, of an object with one key, of an object or a string.
+//! Declaring choices: of a word, of an object with one key, of an object or a string; of a number or an array.
 //!
 //! serde's own externally tagged enums do as much as an object with one key, but call a second key a syntax error; here
 //! it is a fault with a name. The value is read in place, so that a fault inside it keeps its path.
+
+use std::marker::PhantomData;
+
+use serde::de::value::SeqAccessDeserializer;
+use serde::de::{Deserialize, Deserializer, Error, SeqAccess, Visitor};
 
 /// Declares choices with the word of each, `words! { pub enum Name: Trait, .. of Other { Choice = "word", .. } .. }`,
 /// the traits that they have beside those of all, and the type of the mechanics that has the same choices.
@@ -18,6 +23,8 @@ macro_rules! words {
         pub enum $Name {
             $($(#[$of_choice])* #[serde(rename = $word)] $Choice,)+
         }
+
+        impl $crate::limits::Limited for $Name {}
 
         $crate::choice::same! { $Name [$($Other)?] $($Choice)+ }
 
@@ -124,19 +131,20 @@ macro_rules! choices {
         }
 
         impl $crate::limits::Limited for $Name {
-            const SCHEMA: &'static str = stringify!($Name);
-
-            fn limits() -> Vec<(&'static str, serde_json::Value)> {
-                vec![$($(($key, $crate::limits::Limit::<$Value>::keywords(&$limit)),)?)+]
+            fn add_limits(found: &mut $crate::limits::LimitsOfSchemas) {
+                let own = vec![$($(($key, $crate::limits::Limit::<$Value>::keywords(&$limit)),)?)+];
+                if found.insert(stringify!($Name), own).is_none() {
+                    $(<$Value as $crate::limits::Limited>::add_limits(found);)+
+                }
             }
 
-            #[allow(unused_variables, unreachable_patterns, reason = "some keys have limits, or none, or all")]
-            fn check_members(&self, at: $crate::check::JsonPath<'_>, faults: &mut $crate::check::Faults) {
+            fn check_limits(&self, at: $crate::check::JsonPath<'_>, faults: &mut $crate::check::Faults) {
                 match self {
-                    $($($Name::$Choice(value) => {
-                        $crate::limits::Limit::check(&$limit, value, at.member($key), faults);
-                    })?)+
-                    _ => {}
+                    $($($Name::$Word => {})+)?
+                    $($Name::$Choice(value) => {
+                        $($crate::limits::Limit::check(&$limit, value, at.member($key), faults);)?
+                        $crate::limits::Limited::check_limits(value, at.member($key), faults);
+                    })+
                 }
             }
         }
@@ -147,7 +155,19 @@ pub(crate) use choices;
 /// Implements `Deserialize` for an untagged enum of an object and a string: not by trial, so that a fault in the object
 /// names its member.
 macro_rules! object_or_string {
-    ($Name:ident: $expected:literal, $Object:ident => $object:expr, $word:pat => $string:expr) => {
+    ($Name:ident: $expected:literal, $Object:ident => $Choice:ident, $word:pat => $string:expr) => {
+        impl $crate::limits::Limited for $Name {
+            fn add_limits(found: &mut $crate::limits::LimitsOfSchemas) {
+                $Object::add_limits(found);
+            }
+
+            fn check_limits(&self, at: $crate::check::JsonPath<'_>, faults: &mut $crate::check::Faults) {
+                if let $Name::$Choice(object) = self {
+                    object.check_limits(at, faults);
+                }
+            }
+        }
+
         impl<'de> serde::Deserialize<'de> for $Name {
             fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
                 struct Choice;
@@ -161,7 +181,7 @@ macro_rules! object_or_string {
 
                     fn visit_map<A: serde::de::MapAccess<'de>>(self, map: A) -> Result<$Name, A::Error> {
                         let object = serde::de::value::MapAccessDeserializer::new(map);
-                        <$Object as serde::Deserialize>::deserialize(object).map($object)
+                        <$Object as serde::Deserialize>::deserialize(object).map($Name::$Choice)
                     }
 
                     #[allow(unreachable_patterns, reason = "any string may be meant")]
@@ -180,13 +200,55 @@ macro_rules! object_or_string {
 }
 pub(crate) use object_or_string;
 
-/// The methods of a visitor to which every number is the same kind of value, by a function of it.
-macro_rules! visit_numbers {
-    ($of:expr) => { visit_numbers! { $of, visit_f64(f64) visit_i64(i64) visit_u64(u64) } };
-    ($of:expr, $($visit:ident($number:ty))+) => {
-        $(fn $visit<E: serde::de::Error>(self, number: $number) -> Result<Self::Value, E> {
-            Ok($of(number as f64))
-        })+
-    };
+/// A number, or an array of numbers.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+#[serde(untagged)]
+pub enum NumberOr<A> {
+    /// A number.
+    One(f64),
+    /// An array.
+    Many(A),
 }
-pub(crate) use visit_numbers;
+
+impl<A> crate::limits::Limited for NumberOr<A> {}
+
+/// An array of numbers that a single one may take the place of.
+pub trait Numbers: TryFrom<Vec<f64>> {
+    /// What is expected, for messages.
+    const EXPECTED: &'static str;
+}
+
+impl<'de, A: Numbers> Deserialize<'de> for NumberOr<A> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_any(NumberOrVisitor(PhantomData))
+    }
+}
+
+struct NumberOrVisitor<A>(PhantomData<A>);
+
+impl<'de, A: Numbers> Visitor<'de> for NumberOrVisitor<A> {
+    type Value = NumberOr<A>;
+
+    fn expecting(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(A::EXPECTED)
+    }
+
+    fn visit_f64<E: Error>(self, number: f64) -> Result<NumberOr<A>, E> {
+        Ok(NumberOr::One(number))
+    }
+
+    fn visit_i64<E: Error>(self, number: i64) -> Result<NumberOr<A>, E> {
+        Ok(NumberOr::One(number as f64))
+    }
+
+    fn visit_u64<E: Error>(self, number: u64) -> Result<NumberOr<A>, E> {
+        Ok(NumberOr::One(number as f64))
+    }
+
+    fn visit_seq<S: SeqAccess<'de>>(self, elements: S) -> Result<NumberOr<A>, S::Error> {
+        // A fault within has its index.
+        let numbers = Vec::deserialize(SeqAccessDeserializer::new(elements))?;
+        let length = numbers.len();
+        A::try_from(numbers).map(NumberOr::Many).map_err(|_| Error::invalid_length(length, &self))
+    }
+}

@@ -1,6 +1,6 @@
 //! The reply of `/contacts/{id}/cycles`: the closed cycles of a contact's past.
 
-use crate::request::replies;
+use crate::prelude::*;
 
 replies! {
 /// A closed cycle: the displacement went from one turning point to the opposite one and came back. Smaller cycles

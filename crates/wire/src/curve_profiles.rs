@@ -1,14 +1,10 @@
 //! Profiles of contacts that are known by their load curve alone: asperities, measured curves, Hertz's ellipse.
 
-use std::ops::RangeInclusive;
-
 use stickslip_mechanics::profile::{Asperities, Direction, Ellipsoid, LoadCurve, Profile as Shape};
-use stickslip_mechanics::{CurveFault, Elasticity, Error, range, range::Range};
+use stickslip_mechanics::{CurveFault, Elasticity};
 
-use super::check::{Faults, JsonPath, accepted};
-use super::choice::words;
-use super::limits::{Array, Limited as _, count};
-use super::request::requests;
+use super::check::accepted;
+use crate::prelude::*;
 
 requests! {
 /// Hertzian asperities between two rigid bodies; each asperity is an elastic contact of its own.
@@ -55,12 +51,9 @@ pub enum MotionAxis of Direction {
 impl AsperitiesProfile {
     /// The checked profile; its faults are noted at `at`.
     pub(super) fn check(&self, at: JsonPath<'_>, keep_going: &dyn Fn() -> bool, faults: &mut Faults) -> Option<Shape> {
-        faults.part(|faults| {
-            self.check_members(at, faults);
-            if self.radii.is_some() == self.radius.is_some() {
-                faults.add(at, "give either `radii`, one for each gap, or one `radius` for all");
-            }
-        })?;
+        if self.radii.is_some() == self.radius.is_some() {
+            return faults.refuse(at, "give either `radii`, one for each gap, or one `radius` for all");
+        }
         let radii = self.radii.as_deref().unwrap_or(self.radius.as_slice());
         if self.radii.is_some() && radii.len() != self.gaps.len() {
             let (radii, gaps) = (radii.len(), self.gaps.len());
@@ -81,7 +74,6 @@ impl LoadCurveProfile {
         faults: &mut Faults,
     ) -> Option<Shape> {
         let LoadCurveProfile { indentation, normal_force } = self;
-        faults.part(|faults| self.check_members(at, faults))?;
         let curve =
             if keep_going() { LoadCurve::new(indentation, normal_force, bodies) } else { Err(Error::Interrupted) };
         if let Err(Error::Curve { fault, index }) = curve {
@@ -106,7 +98,6 @@ impl EllipsoidProfile {
     /// The checked profile; its faults are noted at `at`.
     pub(super) fn check(&self, at: JsonPath<'_>, faults: &mut Faults) -> Option<Shape> {
         let place = at.member("radii");
-        faults.part(|faults| self.check_members(at, faults))?;
         let &[x, y] = self.radii.as_slice() else { return None };
         let ratio = x.max(y) / x.min(y);
         let Range { max, .. } = range::RADIUS_RATIO;

@@ -2,19 +2,12 @@
 
 use std::sync::Arc;
 
-use serde::Serialize;
-use serde_json::{Value, json};
-use utoipa::ToSchema;
+use stickslip_mechanics as mechanics;
+use stickslip_mechanics::subsurface::Side;
+use stickslip_mechanics::{Setup, elasticity};
 
-use stickslip_mechanics::{self as mechanics, Setup, elasticity, range, range::Quantity, subsurface::Side};
-
-use super::check::{Faults, JsonPath};
-use super::choice::{choices, object_or_string, words};
-use super::limits::{Items, Limited as _};
 use super::line_profiles::BulkPerForce;
-use super::prepare::Prepare;
-use super::profile::Profile;
-use super::request::requests;
+use crate::prelude::*;
 
 requests! {
 /// Two bodies pressed together, at rest and never moved tangentially.
@@ -122,7 +115,7 @@ pub enum Preload {
 
 object_or_string!(
     Body: "an object with `youngs_modulus` and `poisson_ratio`, or the string \"rigid\"",
-    ElasticBody => Body::Elastic,
+    ElasticBody => Elastic,
     "rigid" => Body::Rigid(Rigid::Rigid)
 );
 
@@ -153,13 +146,12 @@ impl ContactDefinition {
         if matches!((&self.profile, &self.material), (Profile::Ellipsoid(_), Material::Effective(_))) {
             faults.add(at.member("material").member("effective"), mechanics::Error::BodiesNeeded);
         }
-        self.check_members(at, faults);
-        let preload = self.preload.check(at.member("preload"), faults);
+        let preload = (&self.preload).into();
         let (mut profile, elasticity) = (profile?, elasticity?);
         if let Some(bulk) = &self.bulk {
             profile = Arc::new(bulk.check(&profile, &self.material, at.member("bulk"), faults)?);
         }
-        if faults.is_empty()
+        if faults.none_within(at).is_some()
             && let Err(error) = profile.prepare_for(&preload, &elasticity, &|| profiles.keep_going())
         {
             faults.unanswerable(place, error);
@@ -202,12 +194,8 @@ impl Material {
 
     /// The two bodies in their order, where they are known: `None` among them is rigid.
     pub fn checked_bodies(&self) -> Option<[Option<elasticity::Body>; 2]> {
-        let body = |body: &Body| match body {
-            Body::Elastic(body) => elasticity::Body::new(body.youngs_modulus, body.poisson_ratio).ok(),
-            Body::Rigid(_) => None,
-        };
         let [first, second] = self.bodies()? else { return None };
-        Some([body(first), body(second)])
+        Some([first, second].map(|body| body.elastic().flatten()))
     }
 
     /// Young's modulus of one of the bodies, Pa, where it is known.
@@ -221,38 +209,26 @@ impl Material {
     pub(crate) fn check(&self, at: JsonPath<'_>, faults: &mut Faults) -> Option<elasticity::Elasticity> {
         match self {
             Material::Effective(moduli) => {
-                let at = at.member("effective");
-                moduli.check_members(at, faults);
                 let Effective { e_star, g_star, bodies } = moduli;
                 match bodies {
                     Some(bodies) => {
+                        let at = at.member("effective");
                         check_bodies(bodies, at.member("bodies"), faults)?.with_moduli(*e_star, *g_star).ok()
                     }
                     None => elasticity::Elasticity::effective(*e_star, *g_star).ok(),
                 }
             }
-            Material::Bodies(bodies) => {
-                let elasticity = check_bodies(bodies, at.member("bodies"), faults);
-                self.check_members(at, faults);
-                elasticity
-            }
+            Material::Bodies(bodies) => check_bodies(bodies, at.member("bodies"), faults),
         }
     }
 }
 
 fn check_bodies(bodies: &[Body], at: JsonPath<'_>, faults: &mut Faults) -> Option<elasticity::Elasticity> {
-    let checked = bodies.iter().enumerate().map(|(index, body)| match body {
-        Body::Rigid(Rigid::Rigid) => None,
-        Body::Elastic(body) => {
-            body.check_members(at.index(index), faults);
-            Some(elasticity::Body::new(body.youngs_modulus, body.poisson_ratio).ok())
-        }
-    });
-    match checked.collect::<Vec<_>>()[..] {
+    let [first, second] = bodies else { return None };
+    match [first, second].map(Body::elastic) {
         [Some(first), Some(second)] => Some(elasticity::Elasticity::of_bodies(first?, second?)),
         [Some(body), None] | [None, Some(body)] => Some(elasticity::Elasticity::against_rigid(body?)),
         [None, None] => faults.refuse(at, "both bodies are rigid: one of them must be elastic"),
-        _ => None,
     }
 }
 
@@ -274,10 +250,19 @@ pub(crate) fn of_body(
     }
 }
 
-impl Preload {
-    pub(crate) fn check(&self, at: JsonPath<'_>, faults: &mut Faults) -> mechanics::Preload {
-        self.check_members(at, faults);
-        match *self {
+impl Body {
+    /// It for the mechanics, unless it is rigid; none within for one that is out of its limits.
+    fn elastic(&self) -> Option<Option<elasticity::Body>> {
+        match self {
+            Body::Elastic(body) => Some(elasticity::Body::new(body.youngs_modulus, body.poisson_ratio).ok()),
+            Body::Rigid(Rigid::Rigid) => None,
+        }
+    }
+}
+
+impl From<&Preload> for mechanics::Preload {
+    fn from(preload: &Preload) -> mechanics::Preload {
+        match *preload {
             Preload::NormalForce(force) => mechanics::Preload::NormalForce(force),
             Preload::Indentation(depth) => mechanics::Preload::Indentation(depth),
             Preload::ContactRadius(radius) => mechanics::Preload::ContactRadius(radius),

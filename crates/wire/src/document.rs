@@ -2,13 +2,12 @@
 
 use serde::de::DeserializeOwned;
 
-use super::check::{Faults, Rejection};
-use super::definition::DefinedProfile;
 use super::parse::parse;
-use super::prepare::{Prepare, PrepareAnew};
+use super::prepare::PrepareAnew;
+use crate::prelude::*;
 
 /// The body of a call.
-pub trait Document: DeserializeOwned + Send {
+pub trait Document: DeserializeOwned + Limited + Send {
     /// The checked document.
     type Checked: Send + 'static;
 
@@ -16,8 +15,8 @@ pub trait Document: DeserializeOwned + Send {
     /// a move, which is 26 bytes for each of theirs.
     const PARSED: usize = 32;
 
-    /// Checks every number against its range, and prepares the profile of the contact that the document defines. Faults
-    /// are noted, in any case where there is no checked document.
+    /// Checks what the limits of single members do not say, and prepares the profile of the contact that the document
+    /// defines. Faults are noted, in any case where there is no checked document.
     fn checked(self, profiles: &dyn Prepare, faults: &mut Faults) -> Option<Self::Checked>;
 
     /// The checked document.
@@ -27,6 +26,7 @@ pub trait Document: DeserializeOwned + Send {
     /// [`Interrupted`](stickslip_mechanics::Error::Interrupted) if the preparation was ended.
     fn check_with(self, profiles: &dyn Prepare) -> Result<Self::Checked, Rejection> {
         let mut faults = Faults::default();
+        self.check_limits(JsonPath::Root, &mut faults);
         let checked = self.checked(profiles, &mut faults);
         faults.done(checked)
     }

@@ -1,14 +1,8 @@
 //! What `/contacts/{id}/events` sends.
 
-use jiff::Timestamp;
-use uuid::Uuid;
-
-use super::choice::words;
 use super::closed_cycle::Cycle;
 use super::observation::ObservedForce;
-use super::path::Move;
-use super::reply::State;
-use super::request::replies;
+use crate::prelude::*;
 
 replies! {
 /// The data of an event `state`: a move that has been applied, with the state after it.

@@ -1,11 +1,8 @@
 //! What `POST /files/scan` and `POST /files/loop` are told of a file of an instrument, and what they find in it.
 
-use serde::Serialize;
-use utoipa::ToSchema;
-
 use crate::fit::{FitUnits, MeasuredLoop};
+use crate::prelude::*;
 use crate::profile_fit::{ScanData, ScanUnits};
-use crate::request::replies;
 
 /// What is known of a scan besides its file: the query of `POST /files/scan`. Units are texts such as `um`, `mil` or
 /// `10^-6 m`; a column is its number, from 1 on, or the beginning of its name in the header.

@@ -1,12 +1,8 @@
 //! What a contact has done: its moves, and its hysteresis loop.
 
-use jiff::Timestamp;
-
 use super::closed_cycle::Cycle;
 use super::observation::ObservedForce;
-use super::path::Move;
-use super::reply::State;
-use super::request::replies;
+use crate::prelude::*;
 
 replies! {
 /// A move that has been applied.

@@ -1,11 +1,7 @@
 //! Replies of `/jobs`: work that continues after its request has been answered.
 
-use jiff::Timestamp;
-use uuid::Uuid;
-
-use super::choice::words;
 use super::event::EndReason;
-use super::request::replies;
+use crate::prelude::*;
 
 replies! {
 /// A sweep that the server computes in the background.

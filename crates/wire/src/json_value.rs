@@ -4,16 +4,18 @@ use std::cell::Cell;
 use std::fmt;
 
 use serde::de::{DeserializeSeed, Error, MapAccess, SeqAccess, Visitor};
-use serde::{Deserialize, Deserializer, Serialize};
-use serde_json::{Map, Number, Value};
+use serde_json::{Map, Number};
 
 use super::check::escaped;
 use super::limits;
+use crate::prelude::*;
 
 /// A JSON value without repeated members.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(transparent)]
 pub struct JsonValue(pub Value);
+
+impl Limited for JsonValue {}
 
 /// Objects of a value at most: as many as a path has moves, and those around them. One takes some 700 bytes, however
 /// short it is.

@@ -37,6 +37,7 @@ pub mod parse;
 pub mod path;
 pub mod plane;
 pub mod pointer_lookup;
+mod prelude;
 pub mod prepare;
 pub mod problem;
 pub mod profile;
@@ -50,6 +51,8 @@ pub mod stress;
 pub mod subsurface;
 pub mod sweep;
 pub mod wear;
+
+use limits::{Limited as _, LimitsOfSchemas};
 
 pub use accuracy::{AccuracyReply, AccuracyRequest, AccuracyRow, Comparison, Reference};
 pub use check::{Fault, Faults, JsonPath, Rejection};
@@ -102,21 +105,30 @@ pub use wear::{
 
 /// Schema, member and keywords of every limit.
 pub fn all_limits() -> Vec<(&'static str, &'static str, serde_json::Value)> {
+    let mut found = LimitsOfSchemas::new();
     macro_rules! of_all {
-        { $($document:ty),* } => {
-            [profile::limits(), $(<$document as limits::Limited>::limits_of_schema()),*].concat()
-        };
+        ($($document:ty),*) => { $(<$document>::add_limits(&mut found);)* };
     }
-    of_all! {
-        AccuracyRequest, Axis, BestLoadStudy, Bulk, BulkCycle, line_profiles::BulkPerForce, profile_fit::CentrePlace,
-        ContactDefinition, CreateRequest, CriticalDistance, CycleDrive, CycleRequest, CyclicPath, Effective,
-        ElasticBody, Ellipse, EqualPeaks, FallingAmplitude, FatemiSocie, Findley, fit::FitNoise, FitRequest,
-        ForkRequest, FrequencyResponse, FrettingRequest, fit::KnownValue, profile_fit::LineScan, LoadSpan, Machine,
-        profile_fit::MapScan, Material, fit::MeasuredLoop, Move, MoveRequest, NamedOutput, NormalOscillation,
-        Observation, ObservationsRequest, Path, PathRequest, profile_fit::PointScan, Preload, ProtocolRequest,
-        protocol::ProtocolStart, RelaxRequest, RenameRequest, Rings, protocol::Robustness, profile_fit::ScanLoad,
-        SimulatedMove, SimulatedPath, SimulateRequest, profile_fit::Smoothing, Span, Springs, SnCurve, StrainBased,
-        StrainLifeCurve, StressLife, StressRequest, SubsurfaceLine, SubsurfacePlane, SubsurfaceRequest,
-        SubsurfaceSurface, SurfaceCriterion, SweepRequest, WearDrive, WearRequest, Weighted, WorkDensity
-    }
+    of_all!(
+        AccuracyRequest,
+        CreateRequest,
+        CycleRequest,
+        FitRequest,
+        ForkRequest,
+        FrettingRequest,
+        MoveRequest,
+        ObservationsRequest,
+        PathRequest,
+        ProfileFitRequest,
+        ProtocolRequest,
+        RelaxRequest,
+        RenameRequest,
+        SimulateRequest,
+        SubsurfaceRequest,
+        SweepRequest,
+        WearRequest
+    );
+    let members =
+        |(schema, members): (_, Vec<_>)| members.into_iter().map(move |(member, keywords)| (schema, member, keywords));
+    found.into_iter().flat_map(members).collect()
 }

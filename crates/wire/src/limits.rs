@@ -1,14 +1,12 @@
 //! Limits of the members of documents. Each is declared once, beside its member, by `requests!` or `choices!`: from
-//! that declaration come the check of the member and the keywords of its schema in the OpenAPI document.
+//! that declaration come the check of the member, however deep it is in a document, and the keywords of its schema in
+//! the OpenAPI document.
 //!
 //! The constants here are those that more than one document, or the service, needs.
 
-use std::ops::RangeInclusive;
+use std::collections::BTreeMap;
 
-use serde_json::{Value, json};
-use stickslip_mechanics::range::Range;
-
-use super::check::{Faults, JsonPath};
+use crate::prelude::*;
 
 /// Moves in one path.
 pub const PATH_MOVES: RangeInclusive<usize> = 1..=100_000;
@@ -68,22 +66,46 @@ pub trait Limit<T> {
     fn check(&self, value: &T, at: JsonPath<'_>, faults: &mut Faults);
 }
 
-/// A document some of whose members have limits.
+/// By the name of each schema: its members that have a limit, with the keywords of each.
+pub type LimitsOfSchemas = BTreeMap<&'static str, Vec<(&'static str, Value)>>;
+
+/// A value of a request, whose members may have limits.
 pub trait Limited {
-    /// The name of its schema.
-    const SCHEMA: &'static str;
+    /// Adds the limits of its members, and of theirs.
+    fn add_limits(_found: &mut LimitsOfSchemas) {}
 
-    /// The names of the members that have a limit, with the keywords of each.
-    fn limits() -> Vec<(&'static str, Value)>;
+    /// Notes which of its members, and of theirs, are out of their limits.
+    fn check_limits(&self, _at: JsonPath<'_>, _faults: &mut Faults) {}
+}
 
-    /// Notes which of its own members are out of their limits.
-    fn check_members(&self, at: JsonPath<'_>, faults: &mut Faults);
+macro_rules! without_members {
+    ($($value:ty),*) => {
+        $(impl Limited for $value {})*
+    };
+}
+without_members!(bool, f64, u64, usize, String, Timestamp, Uuid);
 
-    /// The same with the name of the schema.
-    fn limits_of_schema() -> Vec<(&'static str, &'static str, Value)> {
-        Self::limits().into_iter().map(|(member, keywords)| (Self::SCHEMA, member, keywords)).collect()
+impl<T: Limited> Limited for Option<T> {
+    fn add_limits(found: &mut LimitsOfSchemas) {
+        T::add_limits(found);
+    }
+
+    fn check_limits(&self, at: JsonPath<'_>, faults: &mut Faults) {
+        self.iter().for_each(|value| value.check_limits(at, faults));
     }
 }
+
+impl<T: Limited> Limited for Vec<T> {
+    fn add_limits(found: &mut LimitsOfSchemas) {
+        T::add_limits(found);
+    }
+
+    fn check_limits(&self, at: JsonPath<'_>, faults: &mut Faults) {
+        self.iter().enumerate().for_each(|(index, value)| value.check_limits(at.index(index), faults));
+    }
+}
+
+impl<const N: usize> Limited for [f64; N] {}
 
 /// The number of elements of an array, whose elements have checks of their own.
 pub struct Items(pub RangeInclusive<usize>);
@@ -91,25 +113,11 @@ pub struct Items(pub RangeInclusive<usize>);
 /// The number of elements of an array, and the limit of each.
 pub struct Array<L>(pub RangeInclusive<usize>, pub L);
 
-/// Three numbers, each within the range.
-pub struct Triple(pub Range);
-
-/// A whole number whose range the mechanics gives.
-pub struct Whole(pub Range);
-
 /// The largest number of characters of a text, in which U+0000 is not allowed either.
 pub struct Characters(pub usize);
 
 /// [`TOLERANCE`], with the default.
 pub struct Tolerance(pub f64);
-
-impl Tolerance {
-    /// The member `tolerance` of a request, otherwise the default.
-    pub(super) fn of(&self, tolerance: Option<f64>, faults: &mut Faults) -> f64 {
-        self.check(&tolerance, JsonPath::Root.member("tolerance"), faults);
-        tolerance.unwrap_or(self.0)
-    }
-}
 
 impl<T, L: Limit<T>> Limit<Option<T>> for L {
     fn keywords(&self) -> Value {
@@ -131,6 +139,28 @@ impl Limit<f64> for Range {
     }
 }
 
+/// A whole number whose range the mechanics gives.
+impl Limit<usize> for Range {
+    fn keywords(&self) -> Value {
+        Limit::<usize>::keywords(&count(self))
+    }
+
+    fn check(&self, value: &usize, at: JsonPath<'_>, faults: &mut Faults) {
+        faults.number(at, *value as f64, self);
+    }
+}
+
+/// Numbers, each within the range.
+impl<const N: usize> Limit<[f64; N]> for Range {
+    fn keywords(&self) -> Value {
+        Limit::<Vec<f64>>::keywords(&Array(N..=N, *self))
+    }
+
+    fn check(&self, value: &[f64; N], at: JsonPath<'_>, faults: &mut Faults) {
+        value.iter().enumerate().for_each(|(index, value)| faults.number(at.index(index), *value, self));
+    }
+}
+
 macro_rules! counts {
     ($($count:ty),*) => {$(
         impl Limit<$count> for RangeInclusive<$count> {
@@ -145,16 +175,6 @@ macro_rules! counts {
     )*};
 }
 counts!(usize, u64);
-
-impl Limit<usize> for Whole {
-    fn keywords(&self) -> Value {
-        Limit::<usize>::keywords(&count(&self.0))
-    }
-
-    fn check(&self, value: &usize, at: JsonPath<'_>, faults: &mut Faults) {
-        faults.number(at, *value as f64, &self.0);
-    }
-}
 
 impl<T> Limit<Vec<T>> for Items {
     fn keywords(&self) -> Value {
@@ -175,16 +195,6 @@ impl<T, L: Limit<T>> Limit<Vec<T>> for Array<L> {
         if faults.length(at, value.len(), &self.0) {
             value.iter().enumerate().for_each(|(index, value)| self.1.check(value, at.index(index), faults));
         }
-    }
-}
-
-impl Limit<[f64; 3]> for Triple {
-    fn keywords(&self) -> Value {
-        Limit::<Vec<f64>>::keywords(&Array(3..=3, self.0))
-    }
-
-    fn check(&self, value: &[f64; 3], at: JsonPath<'_>, faults: &mut Faults) {
-        value.iter().enumerate().for_each(|(index, value)| faults.number(at.index(index), *value, &self.0));
     }
 }
 
@@ -213,18 +223,5 @@ impl Limit<f64> for Tolerance {
             let (least, most) = (TOLERANCE.start(), TOLERANCE.end());
             faults.add(at, format_args!("{value:?} is out of range: allowed is {least:e} to {most:e}"));
         }
-    }
-}
-
-/// The limits of a document within a document: those of its members.
-pub struct OfItsMembers;
-
-impl<T: Limited> Limit<T> for OfItsMembers {
-    fn keywords(&self) -> Value {
-        json!({})
-    }
-
-    fn check(&self, value: &T, at: JsonPath<'_>, faults: &mut Faults) {
-        value.check_members(at, faults);
     }
 }

@@ -1,12 +1,9 @@
 //! Profiles of contacts along a line, and the bulk stress that comes with their tangential force.
 
 use stickslip_mechanics::profile::{LineBulk, LineContact, Profile as Shape};
-use stickslip_mechanics::{Error, range};
 
-use super::check::{Faults, JsonPath, accepted};
-use super::definition::{BodyName, Material};
-use super::limits::Limited as _;
-use super::request::requests;
+use super::check::accepted;
+use crate::prelude::*;
 
 requests! {
 /// A cylinder pressed along a line on a flat, in plane strain.
@@ -45,7 +42,6 @@ pub struct BulkPerForce {
 impl CylinderProfile {
     /// The checked profile; its faults are noted at `at`.
     pub(super) fn check(&self, at: JsonPath<'_>, faults: &mut Faults) -> Option<Shape> {
-        faults.part(|faults| self.check_members(at, faults))?;
         made(LineContact::cylinder(self.radius, self.length, self.reference_length), at, faults)
     }
 }
@@ -53,7 +49,6 @@ impl CylinderProfile {
 impl RoundedPadProfile {
     /// The checked profile; its faults are noted at `at`.
     pub(super) fn check(&self, at: JsonPath<'_>, faults: &mut Faults) -> Option<Shape> {
-        faults.part(|faults| self.check_members(at, faults))?;
         let RoundedPadProfile { flat_half_width, edge_radius, length, reference_length } = *self;
         made(LineContact::rounded_pad(flat_half_width, edge_radius, length, reference_length), at, faults)
     }
@@ -76,7 +71,7 @@ impl BulkPerForce {
         at: JsonPath<'_>,
         faults: &mut Faults,
     ) -> Option<Shape> {
-        faults.part(|faults| self.check_members(at, faults))?;
+        faults.none_within(at)?;
         let Some(bodies) = material.checked_bodies() else {
             return faults
                 .refuse(at, "the strain of a bulk stress needs the constants of the body: name the two bodies");

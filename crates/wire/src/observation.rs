@@ -1,18 +1,8 @@
 //! The body of `POST /contacts/{id}/observations` and its reply: a contact follows a bench.
 
-use jiff::Timestamp;
-use uuid::Uuid;
-
-use stickslip_mechanics::DEFAULT_TOLERANCE;
-
-use super::check::{Faults, JsonPath};
-use super::document::Document;
-use super::limits::{Items, Limited as _, PATH_MOVES};
-use super::path::{Observation, Plan};
-use super::prepare::Prepare;
-use super::request::{replies, requests};
+use super::path::Observation;
 use super::session::Advance;
-use super::simulate::Steps;
+use crate::prelude::*;
 
 requests! {
 /// Measurements on a bench, in the order of time: the contact follows all of them or, if one is refused, none.
@@ -98,23 +88,20 @@ impl Document for ObservationsRequest {
     type Checked = Advance;
 
     fn checked(self, _: &dyn Prepare, faults: &mut Faults) -> Option<Self::Checked> {
-        let plan = faults.part(|faults| {
-            self.check_members(JsonPath::Root, faults);
-            let at = JsonPath::Root.member("observations");
-            let mut latest = Timestamp::MIN;
-            for (index, observation) in self.observations.iter().enumerate() {
-                let at = at.index(index);
-                observation.check_members(at, faults);
-                let Some(instant) = observation.at else { continue };
-                if i64::try_from(instant.as_nanosecond()).is_err() {
-                    faults.add(at.member("at"), format_args!("{instant} is out of range: allowed are 1678 to 2261"));
-                } else if instant < latest {
-                    faults.add(at.member("at"), format_args!("{instant} is before {latest} of an earlier measurement"));
-                }
-                latest = latest.max(instant);
+        let all = JsonPath::Root.member("observations");
+        let mut latest = Timestamp::MIN;
+        for (index, observation) in self.observations.iter().enumerate() {
+            let Some(instant) = observation.at else { continue };
+            let of = all.index(index);
+            let at = of.member("at");
+            if i64::try_from(instant.as_nanosecond()).is_err() {
+                faults.add(at, format_args!("{instant} is out of range: allowed are 1678 to 2261"));
+            } else if instant < latest {
+                faults.add(at, format_args!("{instant} is before {latest} of an earlier measurement"));
             }
-        });
-        let plan = plan.map(|()| Plan::Observations(self.observations));
-        plan.map(|plan| Advance { plan, stress: None, steps: Steps::All, tolerance: DEFAULT_TOLERANCE, relax: None })
+            latest = latest.max(instant);
+        }
+        let plan = Plan::Observations(self.observations);
+        Some(Advance { plan, stress: None, steps: Steps::All, tolerance: DEFAULT_TOLERANCE, relax: None })
     }
 }

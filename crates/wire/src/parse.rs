@@ -1,10 +1,10 @@
 //! Parses bytes into a typed document, with a pointer to each fault.
 
 use serde::de::{DeserializeOwned, IgnoredAny};
-use serde_json::Value;
 use serde_path_to_error::{Deserializer, Path, Segment, Track};
 
-use super::check::{Fault, Rejection, escaped};
+use super::check::escaped;
+use crate::prelude::*;
 
 /// Longest detail or pointer of a fault: both can quote the body, which may be long.
 const LONGEST_TEXT: usize = 400;

@@ -2,23 +2,11 @@
 
 mod cycles;
 
-use std::ops::RangeInclusive;
+use stickslip_mechanics as mechanics;
+use stickslip_mechanics::{Normal, Tangential};
 
-use jiff::Timestamp;
-use serde::{Deserialize, Serialize};
-use serde_with::{apply, skip_serializing_none};
-use utoipa::ToSchema;
-
-use stickslip_mechanics::{
-    self as mechanics, Normal, Tangential, range,
-    range::{Quantity, Range},
-};
-
-use super::check::{Faults, JsonPath};
-use super::choice::choices;
-use super::limits::{Array, Items, Limit, Limited, OfItsMembers, PATH_MOVES};
 use super::plane::PlanarPlan;
-use super::request::{not_null, object, requests};
+use crate::prelude::*;
 
 pub(crate) use cycles::PHASE;
 pub use cycles::{Cycles, CyclicPath, FirstTurn, NormalOscillation};
@@ -26,28 +14,36 @@ pub use cycles::{Cycles, CyclicPath, FirstTurn, NormalOscillation};
 /// Reversals of an oscillation that dies away; each is one move, and one more ends the path at zero.
 const REVERSALS: RangeInclusive<usize> = 1..=99_999;
 
+requests! {
 /// One move, straight to its targets: at most one tangential target (`displacement` or `force`) and one normal target
 /// (`indentation` or `normal_force`), at least one in all. Without a tangential target the displacement stays, without
 /// a normal one the indentation stays.
-#[skip_serializing_none]
-#[apply(Option => #[serde(default, deserialize_with = "not_null")] #[schema(nullable = false)])]
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
-#[serde(deny_unknown_fields, remote = "Self")]
 #[schema(example = json!({"displacement": 1e-7}))]
-pub struct Move {
+pub struct Move: Copy, Default {
     /// Tangential displacement of the indenter, m.
-    pub displacement: Option<f64>,
+    pub displacement: Option<f64> = range::DISPLACEMENT,
     /// Tangential force, N. Its magnitude must stay below the friction limit μ F_N.
-    pub force: Option<f64>,
+    pub force: Option<f64> = range::FORCE,
     /// Indentation, m; below zero the bodies are apart and the slip history is lost.
-    pub indentation: Option<f64>,
+    pub indentation: Option<f64> = range::INDENTATION,
     /// Normal force, N.
-    pub normal_force: Option<f64>,
+    pub normal_force: Option<f64> = PerhapsIncrement,
     /// Whether the numbers are increments to the present state, instead of the targets themselves.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub relative: bool,
 }
-object!(Move);
+}
+
+/// A normal force, which may be negative as an increment: [`Move::check`] knows whether it is one.
+pub(super) struct PerhapsIncrement;
+
+impl Limit<f64> for PerhapsIncrement {
+    fn keywords(&self) -> Value {
+        Limit::<f64>::keywords(&range::FORCE)
+    }
+
+    fn check(&self, _: &f64, _: JsonPath<'_>, _: &mut Faults) {}
+}
 
 choices! {
 /// A path, one key: a list of moves, or a short form of one.
@@ -60,10 +56,10 @@ pub enum Path {
     /// Tangential forces, N, one move each.
     "force" => Force(Vec<f64>) = Array(PATH_MOVES, range::FORCE),
     /// Back and forth with an amplitude that falls linearly to zero (eq. 20 of the paper).
-    "falling_amplitude" => FallingAmplitude(FallingAmplitude) = OfItsMembers,
+    "falling_amplitude" => FallingAmplitude(FallingAmplitude),
     /// Back and forth from gross slip to rest, with the amplitudes that leave equal peaks of shear stress on the
     /// profile of the contact.
-    "equal_peaks" => EqualPeaks(EqualPeaks) = OfItsMembers,
+    "equal_peaks" => EqualPeaks(EqualPeaks),
     /// Equal cycles about a mean, under a constant load or one that oscillates too.
     "cycles" => Cycles(CyclicPath),
 }
@@ -102,20 +98,6 @@ pub struct Observation: Copy {
 }
 }
 
-impl Limited for Move {
-    const SCHEMA: &'static str = "Move";
-
-    /// Those of a relative move: as an increment the normal force may be negative.
-    fn limits() -> Vec<(&'static str, serde_json::Value)> {
-        let widest = Move { relative: true, ..Move::default() };
-        widest.targets().map(|(name, _, range)| (name, Limit::<f64>::keywords(range))).into()
-    }
-
-    fn check_members(&self, at: JsonPath<'_>, faults: &mut Faults) {
-        self.targets().iter().for_each(|(name, value, range)| Limit::check(*range, value, at.member(name), faults));
-    }
-}
-
 /// A checked path. Its moves may depend on the contact.
 #[derive(Clone, Debug)]
 pub enum Plan {
@@ -150,32 +132,22 @@ impl Move {
         Move { force: Some(force), ..Move::default() }
     }
 
-    /// Notes the faults of the move at `at`.
+    /// Notes the faults of the move at `at`, beside the limits of its members.
     pub fn check(&self, at: JsonPath<'_>, faults: &mut Faults) {
-        self.check_members(at, faults);
+        let range = if self.relative { range::FORCE } else { range::NORMAL_FORCE };
+        Limit::check(&range, &self.normal_force, at.member("normal_force"), faults);
         if self.displacement.is_some() && self.force.is_some() {
             faults.add(at.member("force"), "conflicts with `displacement`: at most one tangential target is allowed");
         }
         if self.indentation.is_some() && self.normal_force.is_some() {
             faults.add(at.member("normal_force"), "conflicts with `indentation`: at most one normal target is allowed");
         }
-        if self.targets().iter().all(|(_, value, _)| value.is_none()) {
+        if [self.displacement, self.force, self.indentation, self.normal_force].iter().all(Option::is_none) {
             faults.add(
                 at,
                 "no target: name `displacement` or `force`, or `indentation` or `normal_force`, or one of each",
             );
         }
-    }
-
-    /// The four targets with their names and ranges. As an increment a normal force may be negative.
-    fn targets(&self) -> [(&'static str, Option<f64>, &'static Range); 4] {
-        let normal_force = if self.relative { &range::FORCE } else { &range::NORMAL_FORCE };
-        [
-            ("displacement", self.displacement, &range::DISPLACEMENT),
-            ("force", self.force, &range::FORCE),
-            ("indentation", self.indentation, &range::INDENTATION),
-            ("normal_force", self.normal_force, normal_force),
-        ]
     }
 
     /// Whether the move has a target for this quantity.
@@ -208,20 +180,19 @@ impl Path {
     /// The checked path; its faults are noted at `at`.
     #[must_use]
     pub fn check(self, at: JsonPath<'_>, faults: &mut Faults) -> Option<Plan> {
-        faults.part(|faults| self.check_members(at, faults))?;
-        let plan = faults.part(|faults| match self {
+        faults.none_within(at)?;
+        Some(match self {
             Path::Moves(moves) => {
                 let at = at.member("moves");
                 moves.iter().enumerate().for_each(|(index, step)| step.check(at.index(index), faults));
-                Some(Plan::Moves(moves))
+                Plan::Moves(moves)
             }
-            Path::Displacement(targets) => Some(Plan::Displacement(targets)),
-            Path::Force(targets) => Some(Plan::Force(targets)),
-            Path::FallingAmplitude(fall) => Some(Plan::FallingAmplitude(fall)),
-            Path::EqualPeaks(peaks) => Some(Plan::EqualPeaks(peaks)),
-            Path::Cycles(cycles) => cycles.check(at.member("cycles"), faults).map(Plan::Cycles),
-        });
-        plan.flatten()
+            Path::Displacement(targets) => Plan::Displacement(targets),
+            Path::Force(targets) => Plan::Force(targets),
+            Path::FallingAmplitude(fall) => Plan::FallingAmplitude(fall),
+            Path::EqualPeaks(peaks) => Plan::EqualPeaks(peaks),
+            Path::Cycles(cycles) => Plan::Cycles(cycles.check(at.member("cycles"), faults)?),
+        })
     }
 }
 

@@ -1,26 +1,17 @@
 //! Motion in the plane: paths with pairs, and the reply of `POST /simulate` to them.
 
-use std::ops::RangeInclusive;
+use std::borrow::Cow;
 
-use serde::{Deserialize, Deserializer, Serialize, de};
-use serde_json::{Value, json};
+use utoipa::PartialSchema;
 use utoipa::openapi::schema::{AnyOfBuilder, ArrayBuilder, OneOfBuilder, SchemaFormat, Type};
 use utoipa::openapi::{KnownFormat, ObjectBuilder, Ref, RefOr, Schema};
-use utoipa::{PartialSchema, ToSchema};
 
+use stickslip_mechanics::Normal;
 use stickslip_mechanics::rings::{self, Arc, PlanarTarget, straight_moves};
-use stickslip_mechanics::{
-    Normal, range,
-    range::{Quantity, Range},
-};
 
-use super::check::{Faults, JsonPath};
-use super::choice::{choices, visit_numbers};
-use super::limits::{Array, Items, Limit, Limited as _, OfItsMembers, PATH_MOVES};
-use super::path::{CyclicPath, EqualPeaks, FallingAmplitude, Move, PHASE, Path, Plan};
-use super::reply::{Accuracy, ContactSummary, Regime, Warning};
-use super::request::{replies, requests};
+use super::path::{CyclicPath, EqualPeaks, FallingAmplitude, PHASE, PerhapsIncrement};
 use super::simulate::SimulateReply;
+use crate::prelude::*;
 
 /// Turns of an ellipse.
 const TURNS: RangeInclusive<usize> = 1..=10_000;
@@ -32,16 +23,17 @@ const DEFAULT_STEPS_PER_TURN: usize = 64;
 const SEMI_AXIS: Range = Range { min: 0.0, ..range::DISPLACEMENT };
 
 /// A number along x, or a pair [x, y].
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-#[serde(untagged)]
-pub enum Components {
-    /// Along x alone.
-    Along(f64),
-    /// Along x and y.
-    Plane([f64; 2]),
+pub type Components = NumberOr<[f64; 2]>;
+
+impl Numbers for [f64; 2] {
+    const EXPECTED: &'static str = "a number, or a pair [x, y] of numbers";
 }
 
-impl ToSchema for Components {}
+impl ToSchema for Components {
+    fn name() -> Cow<'static, str> {
+        "Components".into()
+    }
+}
 
 impl PartialSchema for Components {
     #[expect(deprecated, reason = "tools of version 3.0 of OpenAPI read `example`")]
@@ -66,65 +58,23 @@ impl Components {
     /// Both components.
     pub fn pair(self) -> [f64; 2] {
         match self {
-            Components::Along(x) => [x, 0.0],
-            Components::Plane(pair) => pair,
+            Components::One(x) => [x, 0.0],
+            Components::Many(pair) => pair,
         }
     }
 }
 
-impl<'de> Deserialize<'de> for Components {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Components, D::Error> {
-        struct NumberOrPair;
-
-        impl<'de> de::Visitor<'de> for NumberOrPair {
-            type Value = Components;
-
-            fn expecting(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-                f.write_str("a number, or a pair [x, y] of numbers")
-            }
-
-            visit_numbers!(Components::Along);
-
-            fn visit_seq<A: de::SeqAccess<'de>>(self, mut items: A) -> Result<Components, A::Error> {
-                let mut next =
-                    |count: usize| items.next_element()?.ok_or_else(|| de::Error::invalid_length(count, &self));
-                let pair = [next(0)?, next(1)?];
-                match items.next_element::<de::IgnoredAny>()? {
-                    None => Ok(Components::Plane(pair)),
-                    Some(_) => Err(de::Error::invalid_length(3, &self)),
-                }
-            }
-        }
-
-        deserializer.deserialize_any(NumberOrPair)
-    }
-}
-
-/// The range of each component.
-struct Each(Range);
-
-impl Limit<Components> for Each {
+/// Each component within the range.
+impl Limit<Components> for Range {
     fn keywords(&self) -> Value {
-        json!({"minimum": self.0.min, "maximum": self.0.max})
+        Limit::<f64>::keywords(self)
     }
 
     fn check(&self, value: &Components, at: JsonPath<'_>, faults: &mut Faults) {
         match value {
-            Components::Along(value) => faults.number(at, *value, &self.0),
-            Components::Plane(pair) => {
-                pair.iter().enumerate().for_each(|(axis, value)| faults.number(at.index(axis), *value, &self.0));
-            }
+            Components::One(value) => Limit::check(self, value, at, faults),
+            Components::Many(pair) => Limit::check(self, pair, at, faults),
         }
-    }
-}
-
-impl Limit<[f64; 2]> for Each {
-    fn keywords(&self) -> Value {
-        Limit::<Vec<f64>>::keywords(&Array(2..=2, self.0))
-    }
-
-    fn check(&self, value: &[f64; 2], at: JsonPath<'_>, faults: &mut Faults) {
-        value.iter().enumerate().for_each(|(axis, value)| faults.number(at.index(axis), *value, &self.0));
     }
 }
 
@@ -135,13 +85,13 @@ requests! {
 #[schema(example = json!({"displacement": [1e-7, 5e-8]}))]
 pub struct SimulatedMove: Copy, Default {
     /// Tangential displacement of the indenter, m, along x or [x, y].
-    pub displacement: Option<Components> = Each(range::DISPLACEMENT),
+    pub displacement: Option<Components> = range::DISPLACEMENT,
     /// Tangential force, N, along x or [x, y]. Its magnitude must stay below the friction limit μ F_N.
-    pub force: Option<Components> = Each(range::FORCE),
+    pub force: Option<Components> = range::FORCE,
     /// Indentation, m; below zero the bodies are apart and the slip history is lost.
     pub indentation: Option<f64> = range::INDENTATION,
     /// Normal force, N; negative only as an increment.
-    pub normal_force: Option<f64> = range::FORCE,
+    pub normal_force: Option<f64> = PerhapsIncrement,
     /// Whether the numbers are increments to the present state, instead of the targets themselves.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub relative: bool,
@@ -152,7 +102,7 @@ pub struct SimulatedMove: Copy, Default {
 #[schema(example = json!({"radii": [1e-7, 1e-7], "turns": 2}))]
 pub struct Ellipse: Copy {
     /// a and b, m.
-    pub radii: [f64; 2] = Each(SEMI_AXIS),
+    pub radii: [f64; 2] = SEMI_AXIS,
     /// Number of turns.
     pub turns: usize = TURNS,
     /// Moves in each turn, each with its state; if left out, 64. The path has one more move, at most 100 000 in all.
@@ -173,20 +123,20 @@ pub enum SimulatedPath {
     /// Tangential forces, N, one move each.
     "force" => Force(Vec<f64>) = Array(PATH_MOVES, range::FORCE),
     /// Back and forth with an amplitude that falls linearly to zero (eq. 20 of the paper).
-    "falling_amplitude" => FallingAmplitude(FallingAmplitude) = OfItsMembers,
+    "falling_amplitude" => FallingAmplitude(FallingAmplitude),
     /// Back and forth from gross slip to rest, with the amplitudes that leave equal peaks of shear stress on the
     /// profile of the contact.
-    "equal_peaks" => EqualPeaks(EqualPeaks) = OfItsMembers,
+    "equal_peaks" => EqualPeaks(EqualPeaks),
     /// Equal cycles about a mean, under a constant load or one that oscillates too.
     "cycles" => Cycles(CyclicPath),
     /// Turns around an ellipse.
-    "ellipse" => Ellipse(Ellipse) = OfItsMembers,
+    "ellipse" => Ellipse(Ellipse),
 }
 }
 
 replies! {
 /// The state after a move in the plane.
-pub struct PlanarState: Copy, Default {
+pub struct PlanarState: Copy, Default of rings::PlanarState {
     /// Tangential displacement of the indenter along x and y, m.
     pub displacement: [f64; 2],
     /// Tangential force along x and y, N; in a virgin contact it points along the displacement.
@@ -244,22 +194,6 @@ pub struct PlanarReply omits Option {
 }
 }
 
-impl From<&rings::PlanarState> for PlanarState {
-    fn from(state: &rings::PlanarState) -> PlanarState {
-        PlanarState {
-            displacement: state.displacement,
-            force: state.force,
-            indentation: state.indentation,
-            normal_force: state.normal_force,
-            contact_radius: state.contact_radius,
-            stick_radius: state.stick_radius,
-            regime: state.regime.into(),
-            dissipated_energy: state.dissipated_energy,
-            elastic_energy: state.elastic_energy,
-        }
-    }
-}
-
 /// The result of a simulation, along a line or in the plane: the latter if the path has pairs or is an ellipse, or
 /// rings are asked for.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -288,7 +222,7 @@ impl PartialSchema for SimulationReply {
         // Some members of both are alike, so that no schema could say that one of them alone fits.
         let about = "The result of a simulation, along a line or in the plane: the latter if the path has pairs or is \
                      an ellipse, or rings are asked for.";
-        let of = |name: std::borrow::Cow<'static, str>| Ref::from_schema_name(name);
+        let of = |name: Cow<'static, str>| Ref::from_schema_name(name);
         let either = AnyOfBuilder::new().description(Some(about));
         either.item(of(SimulateReply::name())).item(of(PlanarReply::name())).into()
     }
@@ -319,8 +253,8 @@ enum Form {
 impl From<Move> for SimulatedMove {
     fn from(step: Move) -> SimulatedMove {
         SimulatedMove {
-            displacement: step.displacement.map(Components::Along),
-            force: step.force.map(Components::Along),
+            displacement: step.displacement.map(Components::One),
+            force: step.force.map(Components::One),
             indentation: step.indentation,
             normal_force: step.normal_force,
             relative: step.relative,
@@ -359,22 +293,12 @@ impl SimulatedMove {
         let normal = self.indentation.map(Normal::Indentation).or(self.normal_force.map(Normal::NormalForce));
         rings::PlanarMove { tangential: displacement.or(force), normal, relative: self.relative }
     }
-
-    fn check(&self, at: JsonPath<'_>, faults: &mut Faults) {
-        self.along_x().check(at, faults);
-        for (name, target) in self.pairs() {
-            if let Some(Components::Plane([_, y])) = target {
-                let range = if name == "force" { &range::FORCE } else { &range::DISPLACEMENT };
-                faults.number(at.member(name).index(1), y, range);
-            }
-        }
-    }
 }
 
 impl SimulatedPath {
     /// The path without pairs; `None` if it has any.
     pub fn along_a_line(self) -> Option<Path> {
-        let is_pair = |target: Option<Components>| matches!(target, Some(Components::Plane(_)));
+        let is_pair = |target: Option<Components>| matches!(target, Some(Components::Many(_)));
         Some(match self {
             SimulatedPath::Moves(moves) => {
                 if moves.iter().any(|step| step.pairs().iter().any(|(_, target)| is_pair(*target))) {
@@ -393,52 +317,39 @@ impl SimulatedPath {
 
     /// The checked path, in the plane if it has pairs, is an ellipse, or `rings` are asked for.
     pub(crate) fn check(self, rings: bool, at: JsonPath<'_>, faults: &mut Faults) -> Option<Plan> {
-        let followed = match &self {
+        faults.none_within(at)?;
+        let plan = |moves: &mut dyn Iterator<Item = SimulatedMove>, form, first_pair: Option<String>| {
+            let moves = moves.map(|step| step.in_plane()).collect();
+            Some(Plan::Plane(PlanarPlan::new(moves, form, rings, first_pair.unwrap_or_default())))
+        };
+        match &self {
             SimulatedPath::Moves(moves) => {
-                let at = at.member("moves");
-                faults.part(|faults| {
-                    Items(PATH_MOVES).check(moves, at, faults);
-                    moves.iter().enumerate().for_each(|(index, step)| step.check(at.index(index), faults));
-                })?;
-                Some(moves.clone())
+                let place = at.member("moves");
+                moves.iter().enumerate().for_each(|(index, step)| step.along_x().check(place.index(index), faults));
+                faults.none_within(at)?;
+                let first_pair = first_pair(moves);
+                if rings || first_pair.is_some() {
+                    return plan(&mut moves.iter().copied(), Form::Moves, first_pair);
+                }
             }
             SimulatedPath::Displacement(targets) if rings => {
-                Some(self.listed(targets, Move::displacement, at, faults)?)
+                let moves = &mut targets.iter().map(|target| Move::displacement(*target).into());
+                return plan(moves, Form::Targets("displacement"), None);
             }
-            SimulatedPath::Force(targets) if rings => Some(self.listed(targets, Move::force, at, faults)?),
+            SimulatedPath::Force(targets) if rings => {
+                let moves = &mut targets.iter().map(|target| Move::force(*target).into());
+                return plan(moves, Form::Targets("force"), None);
+            }
             SimulatedPath::Ellipse(ellipse) => {
                 return ellipse.check(rings, at.member("ellipse"), faults).map(Plan::Plane);
             }
-            _ => None,
-        };
-        let form = match &self {
-            SimulatedPath::Displacement(_) => Form::Targets("displacement"),
-            SimulatedPath::Force(_) => Form::Targets("force"),
-            _ => Form::Moves,
-        };
-        let first_pair = followed.as_deref().and_then(first_pair);
-        match (followed, first_pair, rings) {
-            (Some(moves), first_pair, _) if rings || first_pair.is_some() => {
-                let moves: Vec<_> = moves.iter().map(SimulatedMove::in_plane).collect();
-                Some(Plan::Plane(PlanarPlan::new(moves, form, rings, first_pair.unwrap_or_default())))
-            }
-            (_, _, true) => {
+            _ if rings => {
                 let detail = "rings follow `moves`, `displacement`, `force` and `ellipse`: leave `solver` out";
-                faults.refuse(JsonPath::Root.member("solver"), detail)
+                return faults.refuse(JsonPath::Root.member("solver"), detail);
             }
-            _ => self.along_a_line().and_then(|path| path.check(at, faults)),
+            _ => {}
         }
-    }
-
-    fn listed(
-        &self,
-        targets: &[f64],
-        to: fn(f64) -> Move,
-        at: JsonPath<'_>,
-        faults: &mut Faults,
-    ) -> Option<Vec<SimulatedMove>> {
-        faults.part(|faults| self.check_members(at, faults))?;
-        Some(targets.iter().map(|target| SimulatedMove::from(to(*target))).collect())
+        self.along_a_line()?.check(at, faults)
     }
 }
 
@@ -446,7 +357,7 @@ impl SimulatedPath {
 fn first_pair(moves: &[SimulatedMove]) -> Option<String> {
     let in_move = |(index, step): (usize, &SimulatedMove)| {
         let mut pairs = step.pairs().into_iter();
-        let (name, _) = pairs.find(|(_, target)| matches!(target, Some(Components::Plane(_))))?;
+        let (name, _) = pairs.find(|(_, target)| matches!(target, Some(Components::Many(_))))?;
         Some(format!("/moves/{index}/{name}"))
     };
     moves.iter().enumerate().find_map(in_move)
@@ -454,7 +365,6 @@ fn first_pair(moves: &[SimulatedMove]) -> Option<String> {
 
 impl Ellipse {
     fn check(&self, rings: bool, at: JsonPath<'_>, faults: &mut Faults) -> Option<PlanarPlan> {
-        faults.part(|faults| self.check_members(at, faults))?;
         let steps = self.steps_per_turn.unwrap_or(DEFAULT_STEPS_PER_TURN);
         let moves = self.turns.saturating_mul(steps);
         if moves >= *PATH_MOVES.end() {
@@ -469,12 +379,12 @@ impl Ellipse {
         let along = |index: usize| {
             let arc = arc([turns(index), turns(index.saturating_add(1))]);
             to(match line {
-                Some(line) => PlanarTarget::Displacement(line.at_end_of(&arc)),
+                Some(line) => PlanarTarget::Displacement(line.point(&arc)),
                 None => PlanarTarget::Arc(arc),
             })
         };
         let begin = arc([0.0; 2]);
-        let begin = to(PlanarTarget::Displacement(line.map_or_else(|| begin.at(0.0), |line| line.at_end_of(&begin))));
+        let begin = to(PlanarTarget::Displacement(line.map_or_else(|| begin.at(0.0), |line| line.point(&begin))));
         let moves = std::iter::once(begin).chain((0..moves).map(along)).collect();
         Some(PlanarPlan::new(moves, Form::Ellipse(steps), rings, "/ellipse".to_owned()))
     }
@@ -483,37 +393,31 @@ impl Ellipse {
     /// turns back.
     fn line(&self, steps: usize) -> Option<EllipseLine> {
         let ([a, b], phase) = (self.radii, self.phase.unwrap_or(0.0));
-        let upright = phase.abs() <= 0.0;
-        match (phase / 90.0).rem_euclid(4.0) {
-            // Of the cosine alone.
-            quarters if (quarters - 1.0).abs() <= 0.0 && steps.is_multiple_of(2) => Some(EllipseLine::Cosine([a, b])),
-            quarters if (quarters - 3.0).abs() <= 0.0 && steps.is_multiple_of(2) => Some(EllipseLine::Cosine([a, -b])),
-            _ if b <= 0.0 && steps.is_multiple_of(2) => Some(EllipseLine::Cosine([a, 0.0])),
-            _ if a <= 0.0 && upright && steps.is_multiple_of(4) => Some(EllipseLine::Upright),
+        let quarters = (phase / 90.0).rem_euclid(4.0);
+        // Of the cosine alone.
+        let cosine = |y: f64| steps.is_multiple_of(2).then_some(EllipseLine { end: [a, y], axis: 0 });
+        match quarters {
+            1.0 => cosine(b),
+            3.0 => cosine(-b),
+            _ if b <= 0.0 => cosine(0.0),
+            0.0 if a <= 0.0 && steps.is_multiple_of(4) => Some(EllipseLine { end: [0.0, b], axis: 1 }),
             _ => None,
         }
     }
 }
 
-/// An ellipse that is a line.
+/// An ellipse that is a line: of this end, m, times cos θ or, for the axis 1, sin θ.
 #[derive(Clone, Copy)]
-enum EllipseLine {
-    /// Of this end, m, times cos θ.
-    Cosine([f64; 2]),
-    /// Along y.
-    Upright,
+struct EllipseLine {
+    end: [f64; 2],
+    axis: usize,
 }
 
 impl EllipseLine {
     /// The point at the end of an arc, m.
-    fn at_end_of(self, arc: &Arc) -> [f64; 2] {
-        match self {
-            EllipseLine::Cosine(end) => {
-                let [cosine, _] = Arc { radii: [1.0, 0.0], ..*arc }.at(1.0);
-                end.map(|component| component * cosine)
-            }
-            EllipseLine::Upright => arc.at(1.0),
-        }
+    fn point(self, arc: &Arc) -> [f64; 2] {
+        let size = Arc { radii: [1.0; 2], phase: 0.0, ..*arc }.at(1.0)[self.axis];
+        self.end.map(|component| component * size)
     }
 }
 

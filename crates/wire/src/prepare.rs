@@ -7,7 +7,7 @@ use std::sync::Arc;
 use stickslip_mechanics::Elasticity;
 use stickslip_mechanics::profile::Profile as Shape;
 
-use super::profile::Profile;
+use crate::prelude::*;
 
 /// Makes the profiles of documents ready for the mechanics: anew, or shared with other documents.
 pub trait Prepare {

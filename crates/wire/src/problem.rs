@@ -1,7 +1,6 @@
 //! The document that every refusal comes as (RFC 9457), and the table of its kinds.
 
-use super::check::Fault;
-use super::request::replies;
+use crate::prelude::*;
 
 /// Declares [`Code`]: for each kind when to use it, its status, code and title, and what a client can do.
 macro_rules! codes {

@@ -7,48 +7,106 @@
 
 use std::fmt;
 use std::marker::PhantomData;
-use std::ops::RangeInclusive;
 use std::sync::LazyLock;
 
 use serde::de::value::{MapDeserializer, SeqDeserializer};
 use serde::de::{DeserializeOwned, Error as _, IntoDeserializer, MapAccess, Visitor};
 use serde::ser::SerializeMap as _;
-use serde::{Deserialize, Deserializer, Serialize, Serializer, forward_to_deserialize_any};
-use serde_json::{Value, json};
+use serde::{Serializer, forward_to_deserialize_any};
+use utoipa::PartialSchema;
 use utoipa::openapi::schema::{AllOfBuilder, OneOfBuilder, SchemaFormat, Type};
 use utoipa::openapi::{KnownFormat, ObjectBuilder, Ref, RefOr, Schema};
-use utoipa::{PartialSchema, ToSchema};
 
+use stickslip_mechanics::Elasticity;
 use stickslip_mechanics::profile::{Family, Parameter, Profile as Shape, Sum, Tabulated, families};
-use stickslip_mechanics::{Elasticity, Error, range};
 
-use super::check::{Faults, JsonPath, accepted};
+use super::check::accepted;
 use super::curve_profiles::{AsperitiesProfile, EllipsoidProfile, LoadCurveProfile, MotionAxis};
-use super::limits::{Array, Items, Limit, Limited, count};
 use super::line_profiles::{CylinderProfile, RoundedPadProfile};
-use super::request::requests;
+use crate::prelude::*;
 
-/// The shape of the indenter before it is loaded, chosen by `type`.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-#[serde(tag = "type", rename_all = "snake_case")]
-pub enum Profile {
+/// Declares the profiles whose documents are written out, with the `type` of each.
+macro_rules! profiles {
+    ($($(#[doc = $about:literal])* $word:literal => $Kind:ident($Members:ident),)+) => {
+        /// The shape of the indenter before it is loaded, chosen by `type`.
+        #[derive(Clone, Debug, PartialEq, Serialize)]
+        #[serde(tag = "type")]
+        pub enum Profile {
+            $($(#[doc = $about])* #[serde(rename = $word)] $Kind($Members),)+
+            /// A shape whose parameters are plain numbers.
+            #[serde(untagged)]
+            Closed(ClosedProfile),
+        }
+
+        /// What a `type` stands for.
+        enum Kind {
+            $($Kind,)+
+            Closed(&'static Document),
+        }
+
+        impl Kind {
+            fn of(word: &str) -> Option<Kind> {
+                match word {
+                    $($word => Some(Kind::$Kind),)+
+                    _ => CLOSED.iter().find(|document| document.family.name == word).map(Kind::Closed),
+                }
+            }
+        }
+
+        /// The words of the profiles whose documents are written out, the names of their schemas, and these.
+        fn written_out() -> Vec<(&'static str, String, RefOr<Schema>)> {
+            vec![$(($word, $Members::name().into_owned(), $Members::schema())),+]
+        }
+
+        impl Limited for Profile {
+            fn add_limits(found: &mut LimitsOfSchemas) {
+                let limit = |of: &Parameter| (of.name, Limit::<f64>::keywords(&of.range));
+                for Document { family, schema, .. } in &*CLOSED {
+                    found.insert(schema, family.parameters.iter().map(limit).collect());
+                }
+                $($Members::add_limits(found);)+
+            }
+
+            fn check_limits(&self, at: JsonPath<'_>, faults: &mut Faults) {
+                match self {
+                    Profile::Closed(ClosedProfile { document, numbers }) => {
+                        for (parameter, number) in document.family.parameters.iter().zip(numbers) {
+                            faults.number(at.member(parameter.name), *number, &parameter.range);
+                        }
+                    }
+                    $(Profile::$Kind(members) => members.check_limits(at, faults),)+
+                }
+            }
+        }
+
+        impl Members {
+            #[allow(unreachable_patterns, reason = "a sum is read in another way")]
+            fn profile<E: serde::de::Error>(self, kind: Kind) -> Result<Profile, E> {
+                match kind {
+                    Kind::Closed(document) => self.closed(document).map(Profile::Closed),
+                    Kind::Sum => self.sum().map(Profile::Sum),
+                    $(Kind::$Kind => self.document().map(Profile::$Kind),)+
+                }
+            }
+        }
+    };
+}
+
+profiles! {
     /// A measured profile, through whose points a smooth curve is drawn that keeps their monotony and convexity.
-    Tabulated(TabulatedProfile),
+    "tabulated" => Tabulated(TabulatedProfile),
     /// Several profiles added up, z = Σ zᵢ.
-    Sum(SumProfile),
+    "sum" => Sum(SumProfile),
     /// Hertzian asperities on one rigid body, which do not interact elastically. Without a stress field.
-    Asperities(AsperitiesProfile),
+    "asperities" => Asperities(AsperitiesProfile),
     /// A load curve F_N(d), measured or computed elsewhere. Without a stress field.
-    LoadCurve(LoadCurveProfile),
+    "load_curve" => LoadCurve(LoadCurveProfile),
     /// An ellipsoid, or two bodies crossed: Hertz's ellipse of contact. Without a stress field.
-    Ellipsoid(EllipsoidProfile),
+    "ellipsoid" => Ellipsoid(EllipsoidProfile),
     /// A cylinder pressed along a line.
-    Cylinder(CylinderProfile),
+    "cylinder" => Cylinder(CylinderProfile),
     /// A flat pad with rounded edges pressed along a line.
-    RoundedPad(RoundedPadProfile),
-    /// A shape whose parameters are plain numbers.
-    #[serde(untagged)]
-    Closed(ClosedProfile),
+    "rounded_pad" => RoundedPad(RoundedPadProfile),
 }
 
 /// A profile of a family whose parameters are plain numbers.
@@ -94,29 +152,8 @@ impl Serialize for ClosedProfile {
     }
 }
 
-/// Schema, member and keywords of every limit.
-pub(super) fn limits() -> Vec<(&'static str, &'static str, Value)> {
-    let closed = CLOSED.iter().flat_map(|Document { family, schema, .. }| {
-        let limit = |of: &'static Parameter| (schema.as_str(), of.name, Limit::<f64>::keywords(&of.range));
-        family.parameters.iter().map(limit)
-    });
-    let others = [
-        TabulatedProfile::limits_of_schema(),
-        SumProfile::limits_of_schema(),
-        AsperitiesProfile::limits_of_schema(),
-        LoadCurveProfile::limits_of_schema(),
-        EllipsoidProfile::limits_of_schema(),
-        CylinderProfile::limits_of_schema(),
-        RoundedPadProfile::limits_of_schema(),
-    ];
-    closed.chain(others.into_iter().flatten()).collect()
-}
-
 /// The names of the families with the schemas of their documents, and the names of these.
 fn documents() -> Vec<(&'static str, String, RefOr<Schema>)> {
-    fn document<T: ToSchema>(family: &'static str) -> (&'static str, String, RefOr<Schema>) {
-        (family, T::name().into_owned(), T::schema())
-    }
     let closed = CLOSED.iter().map(|Document { family, schema, .. }| {
         let document = family.parameters.iter().fold(ObjectBuilder::new(), |document, parameter| {
             let format = SchemaFormat::KnownFormat(KnownFormat::Double);
@@ -126,16 +163,7 @@ fn documents() -> Vec<(&'static str, String, RefOr<Schema>)> {
         });
         (family.name, schema.clone(), document.description(Some(family.about)).into())
     });
-    let others = [
-        document::<TabulatedProfile>("tabulated"),
-        document::<SumProfile>("sum"),
-        document::<AsperitiesProfile>("asperities"),
-        document::<LoadCurveProfile>("load_curve"),
-        document::<EllipsoidProfile>("ellipsoid"),
-        document::<CylinderProfile>("cylinder"),
-        document::<RoundedPadProfile>("rounded_pad"),
-    ];
-    closed.chain(others).collect()
+    closed.chain(written_out()).collect()
 }
 
 /// The schemas of the documents that [`Profile`] chooses from, by name: its recursion keeps the derivation from finding
@@ -162,35 +190,11 @@ impl PartialSchema for Profile {
     }
 }
 
-/// The names of the families.
-enum Kind {
-    Closed(&'static Document),
-    Tabulated,
-    Sum,
-    Asperities,
-    LoadCurve,
-    Ellipsoid,
-    Cylinder,
-    RoundedPad,
-}
-
 impl<'de> Deserialize<'de> for Kind {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        static KINDS: LazyLock<Vec<&str>> = LazyLock::new(|| documents().into_iter().map(|kind| kind.0).collect());
-        let name = String::deserialize(deserializer)?;
-        Ok(match name.as_str() {
-            "tabulated" => Kind::Tabulated,
-            "sum" => Kind::Sum,
-            "asperities" => Kind::Asperities,
-            "load_curve" => Kind::LoadCurve,
-            "ellipsoid" => Kind::Ellipsoid,
-            "cylinder" => Kind::Cylinder,
-            "rounded_pad" => Kind::RoundedPad,
-            name => {
-                let document = CLOSED.iter().find(|document| document.family.name == name);
-                Kind::Closed(document.ok_or_else(|| D::Error::unknown_variant(name, &KINDS))?)
-            }
-        })
+        static WORDS: LazyLock<Vec<&str>> = LazyLock::new(|| documents().into_iter().map(|kind| kind.0).collect());
+        let word = String::deserialize(deserializer)?;
+        Kind::of(&word).ok_or_else(|| D::Error::unknown_variant(&word, &WORDS))
     }
 }
 
@@ -209,11 +213,9 @@ impl Profile {
         keep_going: &dyn Fn() -> bool,
         faults: &mut Faults,
     ) -> Option<Shape> {
+        faults.none_within(at)?;
         match self {
             Profile::Closed(ClosedProfile { document: Document { family, .. }, numbers }) => {
-                for (parameter, number) in family.parameters.iter().zip(numbers) {
-                    faults.number(at.member(parameter.name), *number, &parameter.range);
-                }
                 accepted((family.make)(numbers), at, faults)
             }
             Profile::Tabulated(table) => check_table(table, Tabulated::new_while, at, keep_going, faults),
@@ -230,16 +232,8 @@ impl Profile {
 impl<'de> Deserialize<'de> for Profile {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let mut members = deserializer.deserialize_map(MembersVisitor)?;
-        match members.kind.take().ok_or_else(|| D::Error::missing_field("type"))? {
-            Kind::Closed(document) => members.closed(document).map(Profile::Closed),
-            Kind::Tabulated => members.document().map(Profile::Tabulated),
-            Kind::Sum => members.sum().map(Profile::Sum),
-            Kind::Asperities => members.document().map(Profile::Asperities),
-            Kind::LoadCurve => members.document().map(Profile::LoadCurve),
-            Kind::Ellipsoid => members.document().map(Profile::Ellipsoid),
-            Kind::Cylinder => members.document().map(Profile::Cylinder),
-            Kind::RoundedPad => members.document().map(Profile::RoundedPad),
-        }
+        let kind = members.kind.take().ok_or_else(|| D::Error::missing_field("type"))?;
+        members.profile(kind)
     }
 }
 
@@ -300,7 +294,6 @@ fn check_table(
     faults: &mut Faults,
 ) -> Option<Shape> {
     let TabulatedProfile { r, z, indentation_error, pressure_error } = table;
-    table.check_members(at, faults);
     for (name, given, other) in [
         ("indentation_error", indentation_error, pressure_error),
         ("pressure_error", pressure_error, indentation_error),
@@ -315,9 +308,7 @@ fn check_table(
             _ => {}
         }
     }
-    if !faults.is_empty() {
-        return None;
-    }
+    faults.none_within(at)?;
     let errors = indentation_error.as_ref().zip(pressure_error.as_ref());
     let made = through(r, z, keep_going).and_then(|made| match errors {
         Some((indentation, pressure)) => made.with_standard_errors(indentation, pressure),
@@ -334,9 +325,6 @@ fn check_sum(
     faults: &mut Faults,
 ) -> Option<Shape> {
     let place = at.member("parts");
-    if !faults.length(place, parts.len(), &SUM_PARTS) {
-        return None;
-    }
     let mut check = |(index, part): (usize, &Profile)| match part {
         Profile::Tabulated(table) => check_table(table, Tabulated::part_while, place.index(index), keep_going, faults),
         part => part.check(bodies, place.index(index), keep_going, faults),
@@ -374,11 +362,11 @@ const COLUMNS: [&str; 8] =
 /// The names of all members, each once.
 static NAMES: LazyLock<Vec<&'static str>> = LazyLock::new(|| {
     let mut names = vec!["type"];
-    for name in limits().into_iter().map(|(_, name, _)| name).chain(["direction"]) {
-        if !names.contains(&name) {
-            names.push(name);
-        }
-    }
+    let mut limits = LimitsOfSchemas::new();
+    Profile::add_limits(&mut limits);
+    names.extend(limits.into_values().flatten().map(|(name, _)| name).chain(["direction"]));
+    names.sort_unstable();
+    names.dedup();
     names
 });
 

@@ -1,13 +1,13 @@
 //! Parts that several replies share.
 
-use super::choice::words;
-use super::request::replies;
+use super::request::same_members;
+use crate::prelude::*;
 use stickslip_mechanics as mechanics;
 
 replies! {
 /// Quantities that follow from the definition of a contact at its preload.
 #[schema(as = Figures)]
-pub struct ContactSummary: Default omits Option {
+pub struct ContactSummary: Default omits Option of mechanics::ContactSummary {
     /// Reduced modulus E*, Pa.
     pub e_star: f64,
     /// Reduced shear modulus G*, Pa.
@@ -31,7 +31,7 @@ pub struct ContactSummary: Default omits Option {
 }
 
 /// The state after a move.
-pub struct State: Copy, Default {
+pub struct State: Copy, Default omits Option of mechanics::State {
     /// Tangential displacement U of the indenter, m; positive along x.
     pub displacement: f64,
     /// Tangential force F_x, N; positive for a positive displacement of a virgin contact.
@@ -46,8 +46,6 @@ pub struct State: Copy, Default {
     /// in gross slip.
     pub stick_radius: f64,
     /// Middle of the stick zone along x, m; only with a bulk stress that shifts it.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    #[schema(nullable = false)]
     pub stick_centre: Option<f64>,
     /// How much of the contact slipped in the last move.
     pub regime: Regime,
@@ -97,16 +95,13 @@ pub struct Residual: Default {
 }
 
 /// A local extremum of the shear stress.
-pub struct Peak: Copy, Default {
+pub struct Peak: Copy, Default omits Option {
     /// Radius in a round contact, m.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    #[schema(nullable = false)]
     pub radius: Option<f64>,
     /// Place along x in a line contact, m. Without a bulk stress the extrema at −x equal those at x and are left out.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    #[schema(nullable = false)]
     pub x: Option<f64>,
     /// Shear stress there, Pa, positive as a positive displacement causes it; `null` where it is infinite.
+    #[serde_with(skip_apply)]
     pub shear: Option<f64>,
 }
 
@@ -196,57 +191,9 @@ pub fn finite(value: f64) -> Option<f64> {
     value.is_finite().then_some(value)
 }
 
-impl From<mechanics::ContactSummary> for ContactSummary {
-    fn from(summary: mechanics::ContactSummary) -> Self {
-        ContactSummary {
-            e_star: summary.e_star,
-            g_star: summary.g_star,
-            indentation: summary.indentation,
-            contact_radius: summary.contact_radius,
-            normal_force: summary.normal_force,
-            max_pressure: summary.max_pressure,
-            semi_axes: summary.semi_axes,
-            gross_slip_displacement: summary.gross_slip_displacement,
-            gross_slip_force: summary.gross_slip_force,
-        }
-    }
-}
-
-impl From<mechanics::State> for State {
-    fn from(state: mechanics::State) -> Self {
-        State {
-            displacement: state.displacement,
-            // Turns the -0 of a virgin contact into 0.
-            force: state.force + 0.0,
-            indentation: state.indentation,
-            normal_force: state.normal_force,
-            contact_radius: state.contact_radius,
-            stick_radius: state.stick_radius,
-            stick_centre: state.stick_centre,
-            regime: state.regime.into(),
-            dissipated_energy: state.dissipated_energy,
-            elastic_energy: state.elastic_energy,
-            memory_depth: state.memory_depth,
-        }
-    }
-}
-
-impl From<State> for mechanics::State {
-    fn from(state: State) -> Self {
-        mechanics::State {
-            displacement: state.displacement,
-            force: state.force,
-            indentation: state.indentation,
-            normal_force: state.normal_force,
-            contact_radius: state.contact_radius,
-            stick_radius: state.stick_radius,
-            stick_centre: state.stick_centre,
-            regime: state.regime.into(),
-            dissipated_energy: state.dissipated_energy,
-            elastic_energy: state.elastic_energy,
-            memory_depth: state.memory_depth,
-        }
-    }
+same_members! {
+    mechanics::State [State] displacement force indentation normal_force contact_radius stick_radius stick_centre regime
+    dissipated_energy elastic_energy memory_depth
 }
 
 impl Residual {

@@ -1,26 +1,10 @@
 //! The bodies and replies of `/contacts`: contacts that the server keeps.
 
-use std::ops::RangeInclusive;
-
-use jiff::Timestamp;
-use uuid::Uuid;
-
-use stickslip_mechanics::DEFAULT_TOLERANCE;
-
-use super::check::{Faults, JsonPath};
-use super::choice::words;
-use super::definition::{ContactDefinition, DefinedProfile, Material, Preload, SharedSetup};
-use super::document::Document;
-use super::limits::{Characters, Limited as _, Tolerance};
+use super::limits::Characters;
 use super::line_profiles::BulkPerForce;
-use super::path::{Move, Path, Plan};
-use super::prepare::Prepare;
-use super::profile::Profile;
+use super::path::PerhapsIncrement;
 use super::protocol::Relaxation;
-use super::reply::{Accuracy, ContactSummary, Protocol, Residual, State, Warning};
-use super::request::{replies, requests};
-use super::simulate::Steps;
-use super::stress::{Sampling, Stress, StressRequest};
+use crate::prelude::*;
 
 /// The text by which a client identifies a contact.
 pub const LABEL: Characters = Characters(200);
@@ -36,7 +20,7 @@ requests! {
     "friction": 0.3,
     "preload": {"normal_force": 10.0}
 }))]
-pub struct CreateRequest and ContactDefinition {
+pub struct CreateRequest {
     /// A label of your own.
     pub label: Option<String> = LABEL,
     /// The shape of the indenter.
@@ -44,7 +28,7 @@ pub struct CreateRequest and ContactDefinition {
     /// The elastic constants.
     pub material: Material,
     /// Coulomb's coefficient of friction μ, a pure number.
-    pub friction: f64,
+    pub friction: f64 = range::FRICTION,
     /// The normal load that the contact starts with.
     pub preload: Preload,
     /// A bulk stress along x in proportion to the tangential force, which shifts the stick zone: only with a `cylinder`
@@ -54,15 +38,15 @@ pub struct CreateRequest and ContactDefinition {
 
 /// A move, with an optional request for the stresses after it.
 #[schema(example = json!({"displacement": 1e-7}))]
-pub struct MoveRequest: Default and Move {
+pub struct MoveRequest: Default {
     /// Tangential displacement of the indenter, m.
-    pub displacement: Option<f64>,
+    pub displacement: Option<f64> = range::DISPLACEMENT,
     /// Tangential force, N. Its magnitude must stay below the friction limit μ F_N.
-    pub force: Option<f64>,
+    pub force: Option<f64> = range::FORCE,
     /// Indentation, m; below zero the bodies are apart and the slip history is lost.
-    pub indentation: Option<f64>,
+    pub indentation: Option<f64> = range::INDENTATION,
     /// Normal force, N.
-    pub normal_force: Option<f64>,
+    pub normal_force: Option<f64> = PerhapsIncrement,
     /// Whether the numbers are increments to the present state, instead of the targets themselves.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub relative: bool,
@@ -215,28 +199,12 @@ pub struct PathReply omits Option {
 
 /// The stresses of a contact, and their extrema if asked for.
 pub struct StressReply omits Option {
-    /// Radii in a round contact, m.
-    pub radius: Option<Vec<f64>>,
-    /// Places along x in a line contact, m.
-    pub x: Option<Vec<f64>>,
-    /// Normal pressure, Pa; compression is positive; `null` where it is infinite.
-    pub pressure: Option<Vec<Option<f64>>>,
-    /// Shear stress, Pa; positive as a positive displacement causes it; `null` where it is infinite.
-    pub shear: Option<Vec<Option<f64>>>,
-    /// Slip U − u(r), the displacement of the indenter less that of the surface, m; `null` outside the contact.
-    pub slip: Option<Vec<Option<f64>>>,
-    /// Tangential displacement u(r) of the surface, m; positive along x.
-    pub displacement: Option<Vec<Option<f64>>>,
+    /// The stresses.
+    #[serde(flatten)]
+    pub stress: Stress,
     /// The extrema of the shear stress, if asked for.
     pub residual: Option<Residual>,
 }
-}
-
-impl StressReply {
-    /// The places: radii or, of a line contact, x, m.
-    pub fn places(&self) -> &[f64] {
-        self.radius.as_deref().or(self.x.as_deref()).unwrap_or_default()
-    }
 }
 
 /// A contact that has passed all checks, to be created.
@@ -282,7 +250,6 @@ impl Document for CreateRequest {
     }
 
     fn checked(self, profiles: &dyn Prepare, faults: &mut Faults) -> Option<Self::Checked> {
-        self.check_members(JsonPath::Root, faults);
         let CreateRequest { label, profile, material, friction, preload, bulk } = self;
         let definition = ContactDefinition { profile, material, friction, preload, bulk };
         let setup = definition.check(JsonPath::Root, profiles, faults);
@@ -309,8 +276,8 @@ impl Document for MoveRequest {
     fn checked(self, _: &dyn Prepare, faults: &mut Faults) -> Option<Self::Checked> {
         let step = self.step();
         step.check(JsonPath::Root, faults);
-        let stress = self.stress.and_then(|stress| stress.check(JsonPath::Root.member("stress"), faults));
-        let tolerance = Tolerance(DEFAULT_TOLERANCE).of(self.tolerance, faults);
+        let stress = self.stress.and_then(|stress| stress.sampling(JsonPath::Root.member("stress"), faults));
+        let tolerance = self.tolerance.unwrap_or(DEFAULT_TOLERANCE);
         Some(Advance { plan: Plan::Single(step), stress, steps: Steps::Last, tolerance, relax: None })
     }
 }
@@ -327,8 +294,8 @@ impl Document for PathRequest {
 
     fn checked(self, _: &dyn Prepare, faults: &mut Faults) -> Option<Self::Checked> {
         let plan = self.path.check(JsonPath::Root.member("path"), faults);
-        let stress = self.stress.and_then(|stress| stress.check(JsonPath::Root.member("stress"), faults));
-        let tolerance = Tolerance(DEFAULT_TOLERANCE).of(self.tolerance, faults);
+        let stress = self.stress.and_then(|stress| stress.sampling(JsonPath::Root.member("stress"), faults));
+        let tolerance = self.tolerance.unwrap_or(DEFAULT_TOLERANCE);
         plan.map(|plan| Advance { plan, stress, steps: self.steps, tolerance, relax: None })
     }
 }
@@ -339,8 +306,7 @@ macro_rules! checked_alone {
         impl Document for $Name {
             type Checked = $Name;
 
-            fn checked(self, _: &dyn Prepare, faults: &mut Faults) -> Option<Self::Checked> {
-                self.check_members(JsonPath::Root, faults);
+            fn checked(self, _: &dyn Prepare, _: &mut Faults) -> Option<Self::Checked> {
                 Some(self)
             }
         }

@@ -1,19 +1,9 @@
 //! The body of `POST /simulate` and its reply.
 
-use stickslip_mechanics::{DEFAULT_TOLERANCE, range};
-
-use super::check::{Faults, JsonPath};
-use super::choice::{choices, words};
-use super::definition::{ContactDefinition, DefinedProfile, SharedSetup};
-use super::document::Document;
-use super::limits::{Limited as _, SPRING_SEARCH, SPRING_STEPS, Tolerance, Whole};
-use super::path::Plan;
+use super::limits::{SPRING_SEARCH, SPRING_STEPS};
 use super::plane::{PlanarPlan, SimulatedPath};
-use super::prepare::Prepare;
-use super::reply::{Accuracy, ContactSummary, Protocol, Residual, State, Warning};
-use super::request::{replies, requests};
-use super::stress::{Field, Sampling, Stress, StressRequest};
 use super::subsurface::{Subsurface, SubsurfaceRequest, SubsurfaceTask};
+use crate::prelude::*;
 
 /// The tolerance of rings, unless the request names one.
 const RINGS_TOLERANCE: f64 = 1e-3;
@@ -54,14 +44,14 @@ pub struct SimulateRequest {
 #[schema(example = json!({"count": 40}))]
 pub struct Rings: Copy, Eq {
     /// Number of rings across the radius of the largest contact.
-    pub count: usize = Whole(range::RING_COUNT),
+    pub count: usize = range::RING_COUNT,
 }
 
 /// The spring foundation.
 #[schema(example = json!({"count": 1000}))]
 pub struct Springs: Copy, Eq {
     /// Number of springs across the diameter of the contact.
-    pub count: usize = Whole(range::SPRING_COUNT),
+    pub count: usize = range::SPRING_COUNT,
 }
 }
 
@@ -153,7 +143,7 @@ impl Document for SimulateRequest {
         let setup = self.contact.check(JsonPath::Root.member("contact"), profiles, faults);
         let rings = matches!(self.solver, Some(Solver::Rings(_)));
         let plan = self.path.check(rings, JsonPath::Root.member("path"), faults);
-        let stress = self.stress.and_then(|stress| stress.check(JsonPath::Root.member("stress"), faults));
+        let stress = self.stress.and_then(|stress| stress.sampling(JsonPath::Root.member("stress"), faults));
         let at = JsonPath::Root.member("subsurface");
         let subsurface = self.subsurface.and_then(|asked| asked.at(&self.contact, at, faults));
         if subsurface.is_some() && matches!(self.solver, Some(Solver::Springs(_))) {
@@ -163,7 +153,7 @@ impl Document for SimulateRequest {
         for (name, _) in needing.into_iter().filter(|(_, asked)| *asked) {
             faults.needs_stress_field(setup.as_ref(), JsonPath::Root.member(name));
         }
-        let mut tolerance = Tolerance(DEFAULT_TOLERANCE).of(self.tolerance, faults);
+        let mut tolerance = self.tolerance.unwrap_or(DEFAULT_TOLERANCE);
         if let Some(Plan::Plane(plane)) = &plan {
             faults.needs_stress_field(setup.as_ref(), JsonPath::Pointer(&plane.first_pair()));
             faults.needs_round_contact(setup.as_ref(), JsonPath::Pointer(&plane.first_pair()), "motion in the plane");
@@ -242,19 +232,10 @@ pub(super) fn in_plane(asked: Option<f64>, faults: &mut Faults) -> f64 {
 impl Solver {
     /// Notes the faults of the solver at `at`, each of whose springs is evaluated `passes` times.
     pub(super) fn check(&self, at: JsonPath<'_>, passes: usize, faults: &mut Faults) {
-        let springs = match self {
-            Solver::Exact => return,
-            Solver::Springs(springs) => springs,
-            Solver::Rings(rings) => return rings.check_members(at.member("rings"), faults),
-        };
-        let at = at.member("springs");
-        springs.check_members(at, faults);
-        let (count, most) = (springs.count, most_springs(passes));
-        if count > most {
-            faults.add(
-                at.member("count"),
-                format_args!("{count} springs over {passes} moves and radii: allowed are {most}"),
-            );
+        let (Solver::Springs(Springs { count }), most) = (self, most_springs(passes)) else { return };
+        if *count > most {
+            let detail = format_args!("{count} springs over {passes} moves and radii: allowed are {most}");
+            faults.add(at.member("springs").member("count"), detail);
         }
     }
 }

@@ -1,11 +1,10 @@
 //! Stress requests and their answers.
 
-use stickslip_mechanics::range;
+use crate::prelude::*;
 
-use super::check::{Faults, JsonPath};
-use super::choice::words;
-use super::limits::{Array, Limited as _, STRESS_POINTS};
-use super::request::{replies, requests};
+/// Radii of a round contact, and places of a line contact.
+pub(crate) const STRESS_RADII: Array<Range> = Array(1..=10_000, range::CONTACT_RADIUS);
+pub(crate) const STRESS_PLACES: Array<Range> = Array(1..=10_000, range::PLACE);
 
 requests! {
 /// Where stresses are asked for: exactly one of `points` and `radii` (for a line contact `x`), and which `fields`.
@@ -15,9 +14,9 @@ pub struct StressRequest: Default {
     /// from the edge at −a to the edge at a.
     pub points: Option<usize> = STRESS_POINTS,
     /// Radii in a round contact, m; outside the contact the stresses are zero.
-    pub radii: Option<Vec<f64>> = Array(1..=10_000, range::CONTACT_RADIUS),
+    pub radii: Option<Vec<f64>> = STRESS_RADII,
     /// Places along x in a line contact, m.
-    pub x: Option<Vec<f64>> = Array(1..=10_000, range::PLACE),
+    pub x: Option<Vec<f64>> = STRESS_PLACES,
     /// Which fields are computed; if left out, `pressure` and `shear`.
     pub fields: Option<Vec<Field>>,
 }
@@ -85,13 +84,16 @@ pub enum Points {
 impl StressRequest {
     /// The checked request; its faults are noted at `at`.
     pub fn check(self, at: JsonPath<'_>, faults: &mut Faults) -> Option<Sampling> {
-        faults.part(|faults| self.read(at, faults)).flatten()
+        self.check_limits(at, faults);
+        self.sampling(at, faults)
     }
 
-    fn read(self, at: JsonPath<'_>, faults: &mut Faults) -> Option<Sampling> {
+    /// The same beside the limits of its members.
+    pub(crate) fn sampling(self, at: JsonPath<'_>, faults: &mut Faults) -> Option<Sampling> {
+        faults.none_within(at)?;
         if self.fields.as_ref().is_some_and(Vec::is_empty) {
             let all = Field::ALL.map(Field::name).join("`, `");
-            faults.add(at.member("fields"), format_args!("empty: name at least one of `{all}`"));
+            return faults.refuse(at.member("fields"), format_args!("empty: name at least one of `{all}`"));
         }
         let points = match (self.points, &self.radii, &self.x) {
             (Some(count), None, None) => Points::Uniform(count),
@@ -105,7 +107,6 @@ impl StressRequest {
                 return faults.refuse(at.member("x"), "it conflicts with `points` and `radii`: give one of them");
             }
         };
-        self.check_members(at, faults);
         Some(Sampling { points, fields: self.fields.unwrap_or_else(|| vec![Field::Pressure, Field::Shear]) })
     }
 }
@@ -119,28 +120,16 @@ impl Sampling {
         }
     }
 
-    /// The places, m, in a line contact of the given half-width, m.
-    pub fn places(&self, half_width: f64) -> Vec<f64> {
+    /// The places, m, in a contact of this radius or half-width, m: radii or, of a line contact, x from edge to edge.
+    pub fn places(&self, line: bool, size: f64) -> Vec<f64> {
         match &self.points {
-            Points::Uniform(count) => {
-                let last = count.saturating_sub(1);
-                // Mirror images of each other to the last bit.
-                let place = |index: usize| 2.0 * index as f64 - last as f64;
-                (0..*count).map(|index| half_width * (place(index) / last as f64)).collect()
-            }
-            Points::Radii(places) | Points::Places(places) => places.clone(),
-        }
-    }
-
-    /// The radii, m, in a contact of the given radius, m.
-    pub fn radii(&self, contact_radius: f64) -> Vec<f64> {
-        match &self.points {
-            // The quotient is exactly 1 at the last point, so that it is the edge itself.
             Points::Uniform(count) => {
                 let last = count.saturating_sub(1) as f64;
-                (0..*count).map(|index| contact_radius * (index as f64 / last)).collect()
+                // Quotients: the last point is the edge itself, and those of a line are mirror images of each other.
+                let share = |index: f64| if line { (2.0 * index - last) / last } else { index / last };
+                (0..*count).map(|index| size * share(index as f64)).collect()
             }
-            Points::Radii(radii) | Points::Places(radii) => radii.clone(),
+            Points::Radii(places) | Points::Places(places) => places.clone(),
         }
     }
 }

@@ -3,21 +3,13 @@
 mod column;
 
 use std::collections::BTreeMap;
-use std::ops::RangeInclusive;
 
-use serde_json::{Number, Value};
+use serde_json::Number;
 
-use stickslip_mechanics::range::{Quantity, Range};
-
-use super::check::{Faults, JsonPath};
-use super::definition::ContactDefinition;
-use super::document::Document;
 use super::json_value::{JsonValue, Pointer};
-use super::limits::{Array, Items, Limit, Limited as _};
 use super::parse::parse_value;
-use super::prepare::Prepare;
-use super::request::{replies, requests};
 use super::simulate::SimulateRequest;
+use crate::prelude::*;
 use column::ColumnName;
 
 pub use column::{NamedOutput, Output};
@@ -158,12 +150,13 @@ impl Document for SweepRequest {
     /// The base is a tree of values, twice while it is checked, and a small object takes 700 bytes there.
     const PARSED: usize = 200;
 
-    fn checked(self, _: &dyn Prepare, faults: &mut Faults) -> Option<Self::Checked> {
+    fn checked(mut self, _: &dyn Prepare, faults: &mut Faults) -> Option<Self::Checked> {
+        // Too many are a fault already, and each is compared with all others.
+        self.axes.truncate(*AXES.end());
+        self.outputs.truncate(*OUTPUTS.end());
         let at = JsonPath::Root.member("axes");
-        let mut axes = Vec::new();
-        if faults.length(at, self.axes.len(), &AXES) {
-            axes.extend(self.axes.iter().enumerate().filter_map(|(index, axis)| axis.check(at.index(index), faults)));
-        }
+        let checked = self.axes.iter().enumerate().map(|(index, axis)| axis.check(at.index(index), faults));
+        let mut axes: Vec<AxisValues> = checked.flatten().collect();
         let outputs = self.check_outputs(faults);
         self.check_names(faults);
         let points = axes.iter().fold(1_usize, |points, axis| points.saturating_mul(axis.count()));
@@ -189,9 +182,6 @@ impl SweepRequest {
     fn check_outputs(&self, faults: &mut Faults) -> Vec<Pointer> {
         let at = JsonPath::Root.member("outputs");
         let mut outputs: Vec<Pointer> = Vec::new();
-        if !faults.length(at, self.outputs.len(), &OUTPUTS) {
-            return outputs;
-        }
         for (index, output) in self.outputs.iter().enumerate() {
             let (at, text) = (at.index(index), output.pointer());
             let at = output.place_of_pointer(&at);
@@ -224,8 +214,14 @@ impl Axis {
         let (Some((name, values)), None) = (choices.next(), choices.next()) else {
             return faults.refuse(at, "expected `pointer` and one key, one of `linear`, `logarithmic`, `values`");
         };
-        values.check(at.member(name), faults)?;
-        Some(AxisValues { pointer: pointer?, whole: false, values })
+        let at = at.member(name);
+        faults.none_within(at)?;
+        match values {
+            Values::Logarithmic(Span { from, to, .. }) if !((to / from).is_normal() && to / from > 0.0) => {
+                faults.refuse(at, "both ends must be positive or both negative, and not too far apart")
+            }
+            _ => pointer.map(|pointer| AxisValues { pointer, whole: false, values }),
+        }
     }
 }
 
@@ -233,21 +229,6 @@ impl Span {
     /// The index of the last value.
     fn last(&self) -> usize {
         self.count.saturating_sub(1)
-    }
-}
-
-impl Values {
-    fn check(&self, at: JsonPath<'_>, faults: &mut Faults) -> Option<()> {
-        faults.part(|faults| match self {
-            Values::Listed(values) => Limit::check(&AXIS_VALUES, values, at, faults),
-            Values::Linear(span) | Values::Logarithmic(span) => span.check_members(at, faults),
-        })?;
-        match self {
-            Values::Logarithmic(Span { from, to, .. }) if !((to / from).is_normal() && to / from > 0.0) => {
-                faults.refuse(at, "both ends must be positive or both negative, and not too far apart")
-            }
-            _ => Some(()),
-        }
     }
 }
 

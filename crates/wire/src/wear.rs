@@ -1,16 +1,6 @@
 //! The body of `POST /wear` and its reply: what fretting wear leaves.
 
-use stickslip_mechanics::range::{self, Range};
-
-use crate::check::{Faults, JsonPath};
-use crate::choice::words;
-use crate::definition::{ContactDefinition, DefinedProfile, SharedSetup};
-use crate::document::Document;
-use crate::limits::{Limited as _, STRESS_POINTS};
-use crate::prepare::Prepare;
-use crate::profile::Profile;
-use crate::reply::{Accuracy, ContactSummary, Warning};
-use crate::request::{replies, requests};
+use crate::prelude::*;
 
 /// Points of the curves if the request does not say.
 const DEFAULT_POINTS: usize = 200;
@@ -105,7 +95,7 @@ pub struct WornForce: Copy, Default {
 }
 
 /// The largest depth of the removed material.
-pub struct WearDepth: Copy, Default {
+pub struct WearDepth: Copy, Default of stickslip_mechanics::wear::WearDepth {
     /// The depth, m.
     pub largest: f64,
     /// The radius where it is, m.
@@ -133,17 +123,15 @@ pub struct WornPressure: Default {
 }
 }
 
-/// A checked request.
-#[derive(Clone, Copy, Debug)]
-pub struct WearTask {
-    /// Amplitude of the displacement, m.
-    pub displacement: f64,
+impl WearRequest {
     /// Points of each curve.
-    pub points: usize,
+    pub fn points(&self) -> usize {
+        self.points.unwrap_or(DEFAULT_POINTS)
+    }
 }
 
 impl Document for WearRequest {
-    type Checked = (ContactDefinition, SharedSetup, WearTask);
+    type Checked = (WearRequest, SharedSetup);
 
     fn profile(&self) -> Option<DefinedProfile<'_>> {
         Some(self.contact.defined_profile("/contact/profile"))
@@ -155,8 +143,6 @@ impl Document for WearRequest {
         if let Some(Err(error)) = setup.as_ref().map(|setup| setup.profile.check_wear()) {
             faults.unanswerable(at("contact").member("profile"), error);
         }
-        self.drive.check_members(at("drive"), faults);
-        self.check_members(JsonPath::Root, faults);
         if self.hold == Hold::NormalForce {
             faults.add(
                 at("hold"),
@@ -164,7 +150,6 @@ impl Document for WearRequest {
                  course of wear, so there is no limit to compute; allowed is indentation",
             );
         }
-        let task = WearTask { displacement: self.drive.displacement, points: self.points.unwrap_or(DEFAULT_POINTS) };
-        Some((self.contact, setup?, task))
+        Some((self, setup?))
     }
 }

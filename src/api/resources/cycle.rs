@@ -1,7 +1,7 @@
 //! `/contacts/{id}/cycle`: the steady cycles of a contact at its present load; nothing changes.
 
 use stickslip_mechanics::range::{self, Range};
-use stickslip_wire::cycle::{CycleOptions, CyclePlaces};
+use stickslip_wire::cycle::CycleTask;
 use stickslip_wire::limits::{self, Array};
 use stickslip_wire::{Amplitudes, CycleDrive, CycleReply, Fault, Faults, WorkDensity};
 
@@ -59,8 +59,7 @@ pub async fn get_steady_cycle(
         }
     };
     let density = (points.is_some() || radii.is_some() || x.is_some()).then_some(WorkDensity { points, radii, x });
-    let options = CycleOptions { drive, stiffness: machine_stiffness, harmonics, density };
     let mut faults = Faults::default();
-    let task = options.check(CyclePlaces::QUERY, &mut faults);
+    let task = CycleTask::of_query(drive, machine_stiffness, harmonics, density, &mut faults);
     computations::get_of_contact(&app, id, &headers, format?, faults.done(task)?).await
 }

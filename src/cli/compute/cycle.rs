@@ -4,6 +4,7 @@ use std::path::Path;
 
 use clap::Args;
 use serde_json::{Value, json};
+use stickslip_wire::limits::Limited as _;
 use stickslip_wire::{Faults, FrettingMap, JsonPath, LoadSpan};
 
 use super::{Body, Flags};
@@ -30,6 +31,7 @@ fn loads(text: &str) -> Result<FrettingMap, &'static str> {
     };
     let sound = |map: &FrettingMap| {
         let mut faults = Faults::default();
+        map.check_limits(JsonPath::Root, &mut faults);
         map.check(1, JsonPath::Root, &mut faults);
         faults.is_empty()
     };

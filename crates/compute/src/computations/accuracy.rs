@@ -6,23 +6,15 @@
 
 use std::time::{Duration, Instant};
 
-use serde_json::json;
-
-use stickslip_mechanics::{self as mechanics, Contact, ErrorEstimate, Tangential, rings};
-use stickslip_wire::reply::finite;
-use stickslip_wire::{
-    AccuracyReply, AccuracyRequest, AccuracyRow, Comparison, ContactDefinition, Fault, Field, Plan, Points, Protocol,
-    Reference, Sampling, Solver as Named, SolverKind, Steps, limits,
-};
+use stickslip_mechanics as mechanics;
+use stickslip_mechanics::{ErrorEstimate, Tangential, rings};
+use stickslip_wire::{AccuracyReply, AccuracyRequest, AccuracyRow, Comparison, Points, Reference, Solver as Named};
 
 use super::accuracy_in_plane as in_plane;
-use super::{About, Computation, Example, Plain, Route, example, example_contact};
-use crate::simulation::bytes::{SPRING, of_moves, of_shape, of_stress};
-use crate::simulation::cost::{Work, of_rings, of_springs};
-use crate::simulation::{
-    Cause, Failure, Solver, contact, cycle_moves, equal_peaks, follow, spring_foundation, stresses,
-};
-use crate::{Nanoseconds, Stop};
+use crate::computations::prelude::*;
+use crate::simulation::bytes::{SPRING, of_moves, of_stress};
+use crate::simulation::cost::{of_rings, of_springs};
+use crate::simulation::{cycle_moves, equal_peaks, follow, spring_foundation, stresses};
 
 /// The reference is held to this part of the tolerance: some two and a half times the chords, with a
 /// sixteenth of the error of their forces and a quarter of that of their stresses.
@@ -76,7 +68,7 @@ impl Computation for CompareSolvers {
     };
 
     type Request = AccuracyRequest;
-    type Outcome = Plain<AccuracyReply>;
+    type Outcome = AccuracyReply;
 
     fn examples() -> Vec<Example> {
         vec![
@@ -134,9 +126,13 @@ impl Computation for CompareSolvers {
         springs.fold(each, Nanoseconds::saturating_add)
     }
 
-    fn run(task: Comparison, stop: &dyn Stop) -> Result<Plain<AccuracyReply>, Failure> {
-        compare_solvers(&task, stop).map(Plain)
+    fn run(task: Comparison, stop: &dyn Stop) -> Result<AccuracyReply, Failure> {
+        compare_solvers(&task, stop)
     }
+}
+
+impl Outcome for AccuracyReply {
+    type Reply = AccuracyReply;
 }
 
 /// Runs every solver of a comparison.
@@ -171,7 +167,7 @@ pub fn compare_solvers(comparison: &Comparison, stop: &dyn Stop) -> Result<Accur
         }
     };
     let (truth, forces, unit) = followed?;
-    let radii = comparison.sampling.radii(truth.contact_radius());
+    let radii = comparison.sampling.places(false, truth.contact_radius());
     let sampling = Sampling { points: Points::Radii(radii), fields: vec![Field::Shear] };
     let shears = stresses(&truth, &sampling, stop)?.shear.unwrap_or_default();
     let pressure = truth.summary().unit_pressure();
@@ -257,7 +253,7 @@ fn by_rings(count: usize, task: &Task<'_>) -> Result<Answer, Failure> {
             let at = refusal.index.map_or_else(|| "/contact".to_owned(), |index| plan.place_of(index, None));
             Failure::at(at, refusal.error).unless_interrupted(task.stop, "")
         })?;
-    let radii = task.sampling.radii(solution.pressed().contact_radius());
+    let radii = task.sampling.places(false, solution.pressed().contact_radius());
     let shears = solution.shears(&radii).into_iter().map(|shear| finite(shear[0])).collect();
     let estimate =
         ErrorEstimate { force_error: solution.force_error(), path_error: 0.0, stress_error: solution.stress_error() };

@@ -5,13 +5,12 @@ use std::time::Instant;
 use stickslip_mechanics::range::RING_COUNT;
 use stickslip_mechanics::rings::{self, Options, Solution};
 use stickslip_wire::plane::PlanarPlan;
-use stickslip_wire::reply::finite;
 use stickslip_wire::simulate::{LEAST_RINGS_TOLERANCE, Rings};
-use stickslip_wire::{AccuracyReply, AccuracyRow, Comparison, Reference, Solver as Named, SolverKind};
+use stickslip_wire::{AccuracyReply, AccuracyRow, Comparison, Reference, Solver as Named};
 
 use super::accuracy::{relative, repeated};
-use crate::Stop;
-use crate::simulation::{Failure, follow_in_plane};
+use crate::computations::prelude::*;
+use crate::simulation::follow_in_plane;
 
 /// The rings of the reference over the most of the rows, within [`RING_COUNT`].
 const MORE_RINGS: usize = 2;
@@ -44,7 +43,7 @@ pub(super) fn compare(task: &Comparison, plane: &PlanarPlan, stop: &dyn Stop) ->
     let truth = solve(&reference_of(task))?;
     let time = begin.elapsed().as_secs_f64();
     let pressed = truth.pressed();
-    let radii = task.sampling.radii(if pressed.indentation() > 0.0 { pressed.contact_radius() } else { 0.0 });
+    let radii = task.sampling.places(false, if pressed.indentation() > 0.0 { pressed.contact_radius() } else { 0.0 });
     let (friction, table) = (task.setup.friction, pressed.accuracy());
     let largest = |of: fn(&rings::PlanarState) -> f64, first: f64| truth.states.iter().map(of).fold(first, f64::max);
     let start = pressed.initial_summary();

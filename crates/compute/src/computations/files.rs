@@ -5,10 +5,9 @@ use stickslip_measured::import::{
 };
 use stickslip_wire::fit::{FitUnits, ForceUnit, MeasuredLoop};
 use stickslip_wire::profile_fit::{LengthUnit, LineScan, MapScan, PointScan, ScanData, ScanUnits};
-use stickslip_wire::{FileColumn, FilePreview, LoopFileReply, RowsLeftOut, ScanFileReply, limits};
+use stickslip_wire::{FileColumn, FilePreview, LoopFileReply, RowsLeftOut, ScanFileReply};
 
-use crate::Nanoseconds;
-use crate::simulation::bytes;
+use crate::computations::prelude::*;
 
 /// The time that a byte of a text takes.
 const BYTE_COST: Nanoseconds = 100;

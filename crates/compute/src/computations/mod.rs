@@ -12,6 +12,7 @@ mod fretting;
 mod loop_fit;
 mod moves;
 mod plane;
+mod prelude;
 mod profile_fit;
 mod protocol;
 mod residual;
@@ -19,6 +20,8 @@ mod simulate;
 mod stress;
 mod subsurface;
 mod wear;
+
+use std::borrow::Borrow;
 
 use serde::Serialize;
 use serde_json::{Value, json};
@@ -150,13 +153,10 @@ pub trait OnContact: Send + 'static {
     fn run(self, contact: Contact, sequence: u64, stop: &dyn Stop) -> Result<Self::Outcome, Failure>;
 }
 
-/// A result, and how it is written.
-pub trait Outcome: Send + Sized {
+/// A result, and how it is written: the JSON document itself, or what a table or a picture needs beside it.
+pub trait Outcome: Borrow<<Self as Outcome>::Reply> + Send + Sized {
     /// The JSON document.
     type Reply: Serialize + ToSchema;
-
-    /// The JSON document.
-    fn reply(&self) -> &Self::Reply;
 
     /// Approximate length of the JSON document, bytes.
     fn length(&self) -> usize {
@@ -171,17 +171,6 @@ pub trait Outcome: Send + Sized {
     /// Its picture, if it has one.
     fn picture(&self, _shown: &DisplayOptions) -> Option<Drawing> {
         None
-    }
-}
-
-/// A result without a table or a picture.
-pub struct Plain<R>(R);
-
-impl<R: Serialize + ToSchema + Send> Outcome for Plain<R> {
-    type Reply = R;
-
-    fn reply(&self) -> &R {
-        &self.0
     }
 }
 
@@ -307,12 +296,13 @@ impl DisplayOptions {
     /// # Errors
     /// [`Failure`] if `stop` has ended it; within, [`Unwritable`], which is a fault of the service.
     pub fn write<O: Outcome>(&self, outcome: &O, stop: &dyn Stop) -> Result<Result<Vec<u8>, Unwritable>, Failure> {
+        let reply: &O::Reply = outcome.borrow();
         if self.format == Format::Columns && self.indented {
-            return Ok(serde_json::to_vec_pretty(outcome.reply()).map_err(Unwritable::new));
+            return Ok(serde_json::to_vec_pretty(reply).map_err(Unwritable::new));
         }
         let (picture, table) = (|| outcome.picture(self), || outcome.table(self));
         let go_on = || stop.check().is_ok();
-        let written = self.format.write(outcome.length(), outcome.reply(), picture, table, &go_on);
+        let written = self.format.write(outcome.length(), reply, picture, table, &go_on);
         if written.is_err() {
             stop.check()?;
         }

@@ -2,16 +2,14 @@
 
 use std::time::{Duration, Instant};
 
-use stickslip_mechanics::{Contact, DEFAULT_TOLERANCE};
+use stickslip_mechanics::DEFAULT_TOLERANCE;
+use stickslip_wire::ProtocolReply;
 use stickslip_wire::protocol::Relaxation;
 use stickslip_wire::session::Advance;
-use stickslip_wire::{Accuracy, Move, Plan, Protocol, ProtocolReply, State, Steps, Stress, Warning};
 
 use super::find_from_state;
-use crate::Stop;
-use crate::simulation::{
-    Cause, Failure, FarMove, Timer, accuracy, equal_peaks, excess_error, follow, new_warnings, stresses,
-};
+use crate::computations::prelude::*;
+use crate::simulation::{FarMove, equal_peaks, follow, new_warnings, stresses};
 
 /// The reason for the exact solver on a contact with a history.
 const REASON: &str = "stored contacts use the exact solver";
@@ -101,6 +99,6 @@ pub fn dry_run_relax(
 
 /// The failure of a move that the client did not send itself.
 fn without_step(failure: Failure) -> Failure {
-    let pointer = if matches!(failure.cause, Cause::TooLong { .. }) { "/reversals" } else { "" };
+    let pointer = if matches!(failure.cause, Cause::Interrupted(_)) { "/reversals" } else { "" };
     Failure::at(pointer, failure.cause)
 }

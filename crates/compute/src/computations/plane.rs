@@ -1,10 +1,9 @@
 //! Tables and pictures of simulations in the plane.
 
-use stickslip_plot::{Axis, Colour, Curve, Panel, Plot};
 use stickslip_wire::plane::{PlanarReply, PlanarState, PlanarStress};
 
 use super::stress::{self, NamedField};
-use crate::formats::{Column, Table};
+use crate::computations::prelude::*;
 
 /// The columns of stresses with their names and units.
 fn fields(stress: &PlanarStress) -> [NamedField<'_>; 6] {

@@ -1,22 +1,16 @@
 //! `profile`: a scan becomes a profile.
 
-use serde_json::json;
-
 use stickslip_measured::scan::{self, DRAWN_POINTS, Error, Options, Orientation, Scan, ScanFit};
-use stickslip_plot::{Axis, Colour, Curve, Drawing, Panel, Plot};
 use stickslip_wire::profile::TabulatedProfile;
 use stickslip_wire::profile_fit::{
     Axis2, ColumnPair, ContactEstimate, Estimate, ProfileFitTask, ScanOrientation, ScanResidual, Smoothing,
 };
-use stickslip_wire::reply::finite;
-use stickslip_wire::{ContactDefinition, Profile, ProfileFitReply, ProfileFitRequest, Warning};
+use stickslip_wire::{Profile, ProfileFitReply, ProfileFitRequest};
 
 use super::loop_fit::{Points, clamped};
-use super::{About, Computation, DisplayOptions, Example, Outcome, Route, example};
-use crate::formats::{Column, Table};
-use crate::simulation::bytes::{ROW, WORKSPACE};
-use crate::simulation::{Failure, HUGE_TABLE_RADIUS, quantity};
-use crate::{Nanoseconds, Stop};
+use crate::computations::prelude::*;
+use crate::simulation::HUGE_TABLE_RADIUS;
+use crate::simulation::bytes::WORKSPACE;
 
 /// Time of a fit, and for each of its points.
 const SCAN_COST: Nanoseconds = 100_000_000;
@@ -124,10 +118,6 @@ impl Computation for FitProfile {
 
 impl Outcome for ProfileFitReply {
     type Reply = ProfileFitReply;
-
-    fn reply(&self) -> &ProfileFitReply {
-        self
-    }
 
     /// The points of a scan and of the profile that was fitted to it.
     fn table(&self, _: &DisplayOptions) -> Option<Table<'_>> {

@@ -1,15 +1,9 @@
 //! The residual stress: the extrema of the shear stress in the present state of a contact.
 
-use stickslip_mechanics::{Contact, Profile};
-use stickslip_plot::{Axis, Colour, Curve, Drawing, Panel, Plot};
-use stickslip_wire::{Peak, Residual, Sampling};
+use stickslip_wire::Peak;
 
 use super::stress::points;
-use super::{DisplayOptions, OnContact, Outcome};
-use crate::formats::{Column, Table};
-use crate::simulation::cost::Work;
-use crate::simulation::{self, Failure, bytes};
-use crate::{Nanoseconds, Stop};
+use crate::computations::prelude::*;
 
 /// Extrema that a contact is assumed to have.
 const ASSUMED_PEAKS: usize = 1_000;
@@ -52,12 +46,14 @@ impl OnContact for ResidualTask {
     }
 }
 
-impl Outcome for Extrema {
-    type Reply = Residual;
-
-    fn reply(&self) -> &Residual {
+impl Borrow<Residual> for Extrema {
+    fn borrow(&self) -> &Residual {
         &self.reply
     }
+}
+
+impl Outcome for Extrema {
+    type Reply = Residual;
 
     fn table(&self, _: &DisplayOptions) -> Option<Table<'_>> {
         Some(table(&self.reply))

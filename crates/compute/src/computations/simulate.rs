@@ -1,21 +1,10 @@
 //! `simulate`: the states and stresses of a contact along a path.
 
-use serde_json::json;
+use stickslip_wire::PlanarReply;
 
-use stickslip_plot::{Axis, Colour, Curve, Drawing, Panel, Plot};
-use stickslip_wire::simulate::Simulation;
-use stickslip_wire::{
-    ContactDefinition, Fault, PlanarReply, Sampling, SimulateReply, SimulateRequest, SimulationReply, State, Stress,
-};
-
-use super::{
-    About, Choice, Computation, DisplayOptions, Example, Outcome, Route, example, example_contact, line_contact, plane,
-    residual, stress,
-};
-use crate::formats::{Column, Table};
-use crate::simulation::bytes::{NUMBER_LENGTH, OBJECT, STATE_LENGTH, of_simulation};
-use crate::simulation::{self, Failure, cost};
-use crate::{Nanoseconds, Stop};
+use super::{plane, residual, stress};
+use crate::computations::prelude::*;
+use crate::simulation::bytes::{STATE_LENGTH, of_simulation};
 
 /// What a reply has besides states and stresses, bytes of JSON.
 const REPLY_LENGTH: usize = 2_048;
@@ -125,10 +114,6 @@ impl Computation for Simulate {
 impl Outcome for SimulationReply {
     type Reply = SimulationReply;
 
-    fn reply(&self) -> &SimulationReply {
-        self
-    }
-
     fn length(&self) -> usize {
         match self {
             SimulationReply::Line(reply) => reply.length(),
@@ -159,13 +144,9 @@ impl Outcome for SimulationReply {
 impl Outcome for SimulateReply {
     type Reply = SimulateReply;
 
-    fn reply(&self) -> &SimulateReply {
-        self
-    }
-
     fn length(&self) -> usize {
         let along = |stress: &Stress| {
-            stress.places().len() * (1 + fields(stress).iter().filter(|field| field.2.is_some()).count())
+            stress.places().len() * (1 + stress::fields(stress).iter().filter(|field| field.2.is_some()).count())
         };
         let below = self.subsurface.as_ref().map_or(0, |stress| {
             stress.x.len() * (3 + stress.columns().iter().filter(|(_, values)| values.is_some()).count())
@@ -180,7 +161,7 @@ impl Outcome for SimulateReply {
             "residual" => self.residual.as_ref().map(residual::table),
             "stress" => {
                 let stress = self.stress.as_ref()?;
-                Some(stress::table(stress::place_column(&stress.radius, &stress.x), &fields(stress)))
+                Some(stress::table(stress::place_column(stress), &stress::fields(stress)))
             }
             _ => {
                 let mut columns: Vec<Column<'_>> = state_columns(|row| &self.steps[row]).into();
@@ -227,10 +208,6 @@ fn part(shown: &DisplayOptions, has_residual: bool, has_stress: bool) -> &'stati
     })
 }
 
-fn fields(stress: &Stress) -> [stress::NamedField<'_>; 4] {
-    stress::fields([&stress.pressure, &stress.shear, &stress.slip, &stress.displacement])
-}
-
 /// The columns of a state by its row.
 pub fn state_columns<'a>(state: impl Fn(usize) -> &'a State + Copy + Send + 'a) -> [Column<'a>; 10] {
     let floats = |name, unit, of: fn(&State) -> f64| Column::floats(name, unit, move |row| of(state(row)));
@@ -250,7 +227,7 @@ pub fn state_columns<'a>(state: impl Fn(usize) -> &'a State + Copy + Send + 'a) 
 
 /// A panel for each unit.
 fn stresses(stress: &Stress) -> Plot {
-    let [pressure, shear, slip, displacement] = fields(stress);
+    let [pressure, shear, slip, displacement] = stress::fields(stress);
     let drawn = [(pressure, Colour::Grey), (shear, Colour::Blue), (slip, Colour::Red), (displacement, Colour::Blue)];
     let panels = stress::panels(stress.places(), &drawn, &[("stress", "Pa"), ("displacement", "m")]);
     Plot::new("Stresses at the end of the path", stress::place_axis(stress.x.is_some()), panels)

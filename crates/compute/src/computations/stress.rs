@@ -1,14 +1,10 @@
 //! The stresses in the present state of a contact.
 
-use stickslip_mechanics::{Contact, Profile, Regime};
-use stickslip_plot::{Axis, Band, Colour, Curve, Drawing, Panel, Plot};
-use stickslip_wire::{Field, Sampling, StressReply};
+use stickslip_mechanics::Regime;
+use stickslip_plot::Band;
+use stickslip_wire::StressReply;
 
-use super::{DisplayOptions, OnContact, Outcome};
-use crate::formats::{Column, Table};
-use crate::simulation::cost::Work;
-use crate::simulation::{self, Failure, bytes};
-use crate::{Nanoseconds, Stop};
+use crate::computations::prelude::*;
 
 /// Which stresses of which contact.
 pub struct StressTask {
@@ -43,37 +39,30 @@ impl OnContact for StressTask {
 
     fn run(self, contact: Contact, sequence: u64, stop: &dyn Stop) -> Result<Stresses, Failure> {
         let stress = simulation::stresses(&contact, &self.sampling, stop)?;
-        let reply = StressReply {
-            radius: stress.radius,
-            x: stress.x,
-            pressure: stress.pressure,
-            shear: stress.shear,
-            slip: stress.slip,
-            displacement: stress.displacement,
-            residual: self.residual.then(|| simulation::residual(&contact, stop)).transpose()?,
-        };
-        Ok(Stresses { sequence, contact, reply })
+        let residual = self.residual.then(|| simulation::residual(&contact, stop)).transpose()?;
+        Ok(Stresses { sequence, contact, reply: StressReply { stress, residual } })
+    }
+}
+
+impl Borrow<StressReply> for Stresses {
+    fn borrow(&self) -> &StressReply {
+        &self.reply
     }
 }
 
 impl Outcome for Stresses {
     type Reply = StressReply;
 
-    fn reply(&self) -> &StressReply {
-        &self.reply
-    }
-
     fn table(&self, _: &DisplayOptions) -> Option<Table<'_>> {
-        let StressReply { pressure, shear, slip, displacement, .. } = &self.reply;
-        let places = place_column(&self.reply.radius, &self.reply.x);
-        Some(table(places, &fields([pressure, shear, slip, displacement])))
+        let stress = &self.reply.stress;
+        Some(table(place_column(stress), &fields(stress)))
     }
 
     /// Shear stress between the bounds of friction, with the regions that stuck and slipped in the last move.
     fn picture(&self, _: &DisplayOptions) -> Option<Drawing> {
-        let Stresses { sequence, contact, reply } = self;
+        let Stresses { sequence, contact, reply: StressReply { stress, .. } } = self;
         let over = |values: &Values, factor: f64| {
-            points(reply.places(), values).into_iter().map(move |(place, value)| (place, factor * value))
+            points(stress.places(), values).into_iter().map(move |(place, value)| (place, factor * value))
         };
         let state = contact.state();
         let friction = contact.friction();
@@ -94,25 +83,22 @@ impl Outcome for Stresses {
             }
         }
         let curves = vec![
-            Curve::line("friction bound ±μp", Colour::Grey, over(&reply.pressure, friction)),
-            Curve::line("", Colour::Grey, over(&reply.pressure, -friction)),
-            Curve::line("shear stress τ", Colour::Blue, over(&reply.shear, 1.0)),
+            Curve::line("friction bound ±μp", Colour::Grey, over(&stress.pressure, friction)),
+            Curve::line("", Colour::Grey, over(&stress.pressure, -friction)),
+            Curve::line("shear stress τ", Colour::Blue, over(&stress.shear, 1.0)),
         ];
         let title = format!("Shear stress after move {sequence}");
         let panels = vec![Panel { y: Axis::of("stress", "Pa"), curves }];
-        Some(Drawing::Plot(Plot { bands, ..Plot::new(title, place_axis(reply.x.is_some()), panels) }))
+        Some(Drawing::Plot(Plot { bands, ..Plot::new(title, place_axis(stress.x.is_some()), panels) }))
     }
 }
 
 /// A field at some radii, if it was asked for.
 pub(super) type Values = Option<Vec<Option<f64>>>;
 
-/// The name of the column of places with these: radii or, of a line contact, x, m.
-pub(super) fn place_column<'a>(radius: &'a Option<Vec<f64>>, x: &'a Option<Vec<f64>>) -> (&'static str, &'a [f64]) {
-    match x {
-        Some(x) => ("x", x),
-        None => ("radius", radius.as_deref().unwrap_or_default()),
-    }
+/// The column of places: radii or, of a line contact, x, m.
+pub(super) fn place_column(stress: &Stress) -> (&'static str, &[f64]) {
+    (if stress.x.is_some() { "x" } else { "radius" }, stress.places())
 }
 
 /// The axis of a picture over these places.
@@ -123,10 +109,14 @@ pub(super) fn place_axis(line: bool) -> Axis {
 /// The name of a field, its unit, and its values.
 pub(super) type NamedField<'a> = (&'static str, &'static str, &'a Values);
 
-/// The fields with these values, which have the order of [`Field::ALL`].
-pub(super) fn fields(values: [&Values; 4]) -> [NamedField<'_>; 4] {
-    let units = ["Pa", "Pa", "m", "m"];
-    std::array::from_fn(|index| (Field::ALL[index].name(), units[index], values[index]))
+/// All fields, whether they were asked for or not.
+pub(super) fn fields(stress: &Stress) -> [NamedField<'_>; 4] {
+    [
+        (Field::Pressure.name(), "Pa", &stress.pressure),
+        (Field::Shear.name(), "Pa", &stress.shear),
+        (Field::Slip.name(), "m", &stress.slip),
+        (Field::Displacement.name(), "m", &stress.displacement),
+    ]
 }
 
 /// A row for each place, with the fields that were asked for.

@@ -1,21 +1,14 @@
 //! The stress below the surface: of a contact in its present state, and `subsurface`, at the end of a path.
 
 use serde::Serialize;
-use serde_json::json;
 use utoipa::ToSchema;
 
-use stickslip_mechanics::{Contact, Profile};
-use stickslip_plot::{Axis, Drawing, Peak, Section};
-use stickslip_wire::simulate::Simulation;
+use stickslip_plot::{Peak, Section};
 use stickslip_wire::subsurface::{Places, SubsurfaceTask};
-use stickslip_wire::{Accuracy, ContactDefinition, Fault, SimulateRequest, Steps, Subsurface, SubsurfaceReply};
+use stickslip_wire::{Subsurface, SubsurfaceReply};
 
-use super::{About, Computation, DisplayOptions, Example, OnContact, Outcome, example};
-use crate::formats::{Column, Format, Table};
-use crate::simulation::{
-    self, Failure, Timer, accuracy, bulk_warning, bytes, cost, needs_stress_field, present_warnings,
-};
-use crate::{Nanoseconds, Stop};
+use crate::computations::prelude::*;
+use crate::simulation::bulk_warning;
 
 const REASON: &str = "the stress below the surface follows from the slip history without a mesh";
 /// Why some stresses below the surface have no picture.
@@ -123,12 +116,14 @@ fn can_show(task: &SubsurfaceTask, shown: &DisplayOptions) -> Result<(), &'stati
     if shown.format.is_plot() && !task.is_section() { Err(NO_SECTION) } else { Ok(()) }
 }
 
-impl<R: AsRef<Subsurface> + Serialize + ToSchema + Send> Outcome for SubsurfaceTable<R> {
-    type Reply = R;
-
-    fn reply(&self) -> &R {
+impl<R> Borrow<R> for SubsurfaceTable<R> {
+    fn borrow(&self) -> &R {
         &self.reply
     }
+}
+
+impl<R: AsRef<Subsurface> + Serialize + ToSchema + Send> Outcome for SubsurfaceTable<R> {
+    type Reply = R;
 
     fn table(&self, _: &DisplayOptions) -> Option<Table<'_>> {
         let stress = self.reply.as_ref();

@@ -1,23 +1,12 @@
 //! `wear`: the limiting shape that fretting wear leaves at a constant indentation.
 
-use serde_json::json;
-
 use stickslip_mechanics::wear::{WornContact, WornTable};
-use stickslip_mechanics::{Contact, Error, Move, Tangential, in_unit};
-use stickslip_plot::{Axis, Colour, Curve, Drawing, Panel, Plot};
+use stickslip_mechanics::{Error, Move, Tangential, in_unit};
 use stickslip_wire::profile::TabulatedProfile;
-use stickslip_wire::reply::finite;
-use stickslip_wire::{
-    ContactDefinition, Profile, Warning, WearDepth, WearReply, WearRequest, WornForce, WornPressure, WornProfileError,
-    WornShape,
-};
+use stickslip_wire::{Profile, WearReply, WearRequest, WornForce, WornPressure, WornProfileError, WornShape};
 
-use super::{About, Computation, DisplayOptions, Example, Outcome, Route, Task, example};
-use crate::formats::{Column, Table};
-use crate::simulation::bytes::{NUMBER, NUMBER_LENGTH, SERIES, of_shape};
-use crate::simulation::cost::{RADIUS_COST, on_profile};
-use crate::simulation::{Failure, Timer, accuracy, contact, present_warnings};
-use crate::{Nanoseconds, Stop};
+use crate::computations::prelude::*;
+use crate::simulation::bytes::SERIES;
 
 /// The limit without its curves, on a sphere.
 const LIMIT_COST: u64 = 50_000;
@@ -34,9 +23,6 @@ const REASON: &str = "the limit of wear at a constant indentation follows from g
 /// The limiting shape of fretting wear.
 pub struct Wear;
 
-/// The limit.
-pub struct Worn(WearReply);
-
 impl Computation for Wear {
     const ABOUT: About = About {
         name: "wear",
@@ -52,7 +38,7 @@ impl Computation for Wear {
     };
 
     type Request = WearRequest;
-    type Outcome = Worn;
+    type Outcome = WearReply;
 
     fn examples() -> Vec<Example> {
         vec![example(
@@ -68,40 +54,39 @@ impl Computation for Wear {
     }
 
     /// The profile, the table of the limit with its series, and the curves.
-    fn bytes((definition, setup, task): &Task<Self>) -> usize {
-        let places = setup.profile.singular_radii().len() + 3;
-        let points = places * TABLE_POINTS + definition.profile.points().min(TABLE_KNOTS);
-        of_shape(&definition.profile) + points * SERIES + task.points * 5 * NUMBER
+    fn bytes((request, setup): &Task<Self>) -> usize {
+        let (places, profile) = (setup.profile.singular_radii().len() + 3, &request.contact.profile);
+        let points = places * TABLE_POINTS + profile.points().min(TABLE_KNOTS);
+        of_shape(profile) + points * SERIES + request.points() * 5 * NUMBER
     }
 
-    fn rows((.., task): &Task<Self>) -> (usize, usize) {
-        (task.points + 3, 5 * NUMBER_LENGTH)
+    fn rows((request, _): &Task<Self>) -> (usize, usize) {
+        (request.points() + 3, 5 * NUMBER_LENGTH)
     }
 
-    fn cost((definition, setup, task): &Task<Self>) -> Nanoseconds {
-        let limit = LIMIT_COST + task.points as u64 * RADIUS_COST;
-        let table = TABLE_COST + definition.profile.points() as u64 * KNOT_COST;
+    fn cost((request, setup): &Task<Self>) -> Nanoseconds {
+        let limit = LIMIT_COST + request.points() as u64 * RADIUS_COST;
+        let table = TABLE_COST + request.contact.profile.points() as u64 * KNOT_COST;
         on_profile(&setup.profile, limit, false).saturating_add(table)
     }
 
-    fn run((definition, setup, task): Task<Self>, stop: &dyn Stop) -> Result<Worn, Failure> {
+    fn run((request, setup): Task<Self>, stop: &dyn Stop) -> Result<WearReply, Failure> {
         let timer = Timer::start(stop);
-        let contact = contact(setup, "/contact")?;
-        let worn = WornContact::new(&contact, task.displacement).map_err(|error| {
+        let (contact, displacement) = (contact(setup, "/contact")?, request.drive.displacement);
+        let worn = WornContact::new(&contact, displacement).map_err(|error| {
             let place = if let Error::OutOfRange { .. } = error { "/drive/displacement" } else { "/contact/profile" };
             Failure::at(place, error)
         })?;
         stop.check()?;
-        let (shape, pressure) = curves(&contact, &worn, task.points);
+        let (shape, pressure) = curves(&contact, &worn, request.points());
         stop.check()?;
-        let (profile, profile_error, warning) = limiting_profile(&contact, &worn, &definition, stop);
+        let (profile, profile_error, warning) = limiting_profile(&contact, &worn, &request.contact, stop);
         stop.check()?;
-        let depth = worn.depth();
         let mut moved = contact.clone();
-        let step = Move { tangential: Some(Tangential::Displacement(task.displacement)), ..Move::default() };
+        let step = Move { tangential: Some(Tangential::Displacement(displacement)), ..Move::default() };
         // A displacement within its range is always reached.
         let estimated = moved.apply(&step).map_or(&contact, |()| &moved);
-        Ok(Worn(WearReply {
+        Ok(WearReply {
             contact: contact.summary().into(),
             stick_radius: worn.stick_radius(),
             worn_radius: worn.worn_radius(),
@@ -109,14 +94,14 @@ impl Computation for Wear {
             normal_force: WornForce { before: contact.normal_force(), after: worn.normal_force() },
             force_amplitude: worn.force_amplitude(),
             removed_volume: worn.removed_volume(),
-            depth: WearDepth { largest: depth.largest, radius: depth.radius },
+            depth: worn.depth().into(),
             shape,
             pressure,
             profile,
             profile_error,
             accuracy: accuracy(estimated, timer, REASON),
             warnings: present_warnings(&contact).into_iter().chain(warning).collect(),
-        }))
+        })
     }
 }
 
@@ -164,23 +149,19 @@ fn limiting_profile(
     )
 }
 
-impl Outcome for Worn {
+impl Outcome for WearReply {
     type Reply = WearReply;
 
-    fn reply(&self) -> &WearReply {
-        &self.0
-    }
-
     fn length(&self) -> usize {
-        let table = match &self.0.profile {
+        let table = match &self.profile {
             Some(Profile::Tabulated(table)) => table.r.len(),
             _ => 0,
         };
-        (6 * self.0.shape.radius.len() + 2 * table) * NUMBER_LENGTH + 4_096
+        (6 * self.shape.radius.len() + 2 * table) * NUMBER_LENGTH + 4_096
     }
 
     fn table(&self, _: &DisplayOptions) -> Option<Table<'_>> {
-        let WearReply { shape, pressure, .. } = &self.0;
+        let WearReply { shape, pressure, .. } = self;
         let columns = vec![
             Column::floats("radius", "m", |row| shape.radius[row]),
             Column::floats("height_before", "m", |row| shape.before[row]),
@@ -193,7 +174,7 @@ impl Outcome for Worn {
 
     /// The shape with the removed part filled, and the pressure.
     fn picture(&self, _: &DisplayOptions) -> Option<Drawing> {
-        let WearReply { shape, pressure: pressures, .. } = &self.0;
+        let WearReply { shape, pressure: pressures, .. } = self;
         let radii = || shape.radius.iter().copied();
         let height = |values: &[f64]| -> Vec<(f64, f64)> { radii().zip(values.iter().copied()).collect() };
         let pressure = |values: &[Option<f64>]| -> Vec<(f64, f64)> {
@@ -216,7 +197,7 @@ impl Outcome for Worn {
                 Curve::line("after", Colour::Blue, pressure(&pressures.after)),
             ],
         };
-        let title = format!("What wear leaves: {:.4e} m³ removed", self.0.removed_volume);
+        let title = format!("What wear leaves: {:.4e} m³ removed", self.removed_volume);
         Some(Drawing::Plot(Plot::new(title, Axis::of("radius r", "m"), vec![heights, pressure_panel])))
     }
 }

@@ -3,9 +3,10 @@
 //! All of them are sums of a few classes. `cargo test --test service largest_requests -- --nocapture` prints what the
 //! largest request of each endpoint takes.
 
-use stickslip_wire::simulate::Simulation;
+use stickslip_wire::Solver;
 use stickslip_wire::subsurface::SubsurfaceTask;
-use stickslip_wire::{self as wire, Plan, Solver, Steps};
+
+use crate::prelude::*;
 
 /// Bytes that a byte of a file or of a JSON value takes once it is read: a short number with its separator, as a cell,
 /// in a column and as JSON. That of a body is [`PARSED`](stickslip_wire::Document::PARSED).

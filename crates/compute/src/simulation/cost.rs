@@ -6,13 +6,11 @@
 
 use std::time::Duration;
 
-use crate::Nanoseconds;
-use serde_json::Value;
-use stickslip_mechanics::{Profile, rings};
-use stickslip_wire::definition::SharedSetup;
-use stickslip_wire::simulate::Simulation;
+use stickslip_mechanics::rings;
+use stickslip_wire::Solver;
 use stickslip_wire::subsurface::SubsurfaceTask;
-use stickslip_wire::{self as wire, Plan, Solver, limits};
+
+use crate::prelude::*;
 
 /// A body longer than this (bytes) is parsed on the pool.
 pub const INLINE_BODY: usize = 1024;

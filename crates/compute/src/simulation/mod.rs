@@ -74,12 +74,9 @@ pub enum Cause {
          and indentation"
     )]
     CycleTooLarge,
-    /// The work exceeds the time limit of one request.
-    #[error("this takes longer than the {} s that are allowed", allowed.as_secs_f64())]
-    TooLong {
-        /// How long work may take.
-        allowed: Duration,
-    },
+    /// The work exceeds the time limit of one request, or the client no longer waits for the result.
+    #[error(transparent)]
+    Interrupted(#[from] Interrupted),
     /// The profile cannot be prepared within the time limit of one request.
     #[error(
         "preparing this profile is estimated at {:.3} s, and {} s are allowed: give fewer points",
@@ -113,9 +110,6 @@ pub enum Cause {
     /// The request names a stored contact, which only a server has.
     #[error("needs a running service")]
     NeedsServer,
-    /// The client no longer waits for the result.
-    #[error("stopped: the client no longer waits for the result")]
-    Stopped,
 }
 
 impl From<Interrupted> for Failure {
@@ -132,10 +126,7 @@ impl Failure {
 
     /// The failure for interrupted work that the member at `pointer` requested.
     pub fn interrupted(interrupted: Interrupted, pointer: &str) -> Failure {
-        match interrupted {
-            Interrupted::Abandoned => Failure::at("", Cause::Stopped),
-            Interrupted::TimeLimit(allowed) => Failure::at(pointer, Cause::TooLong { allowed }),
-        }
+        Failure::at(if interrupted == Interrupted::Abandoned { "" } else { pointer }, interrupted)
     }
 
     /// This failure, unless `stop` has ended the work that the member at `pointer` requested.
@@ -173,10 +164,10 @@ impl Failure {
             Cause::Scan(scan::Error::TooShort { .. }) => Code::BeyondProfile,
             Cause::Scan(_) | Cause::Loops(_) | Cause::NeedsServer => Code::InvalidInput,
             Cause::MemoryFull { .. } | Cause::Lifted => Code::Conflict,
-            Cause::TooLong { .. } | Cause::Preparation { .. } | Cause::Search { .. } | Cause::CycleTooLarge => {
+            Cause::Interrupted(Interrupted::Abandoned) => Code::Overloaded,
+            Cause::Interrupted(_) | Cause::Preparation { .. } | Cause::Search { .. } | Cause::CycleTooLarge => {
                 Code::TooMuchWork
             }
-            Cause::Stopped => Code::Overloaded,
         }
     }
 }

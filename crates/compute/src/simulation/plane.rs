@@ -2,17 +2,12 @@
 
 use stickslip_mechanics::rings::{self, Options, PlanarMove, PlanarTarget, Solution};
 use stickslip_mechanics::{Normal, range::Quantity};
-use stickslip_wire::definition::SharedSetup;
+use stickslip_wire::Solver;
 use stickslip_wire::plane::{PlanarPlan, PlanarReply, PlanarState, PlanarStress, SimulationReply};
-use stickslip_wire::reply::finite;
-use stickslip_wire::simulate::Simulation;
-use stickslip_wire::{Accuracy, Field, Plan, Sampling, SimulateReply, Solver, SolverKind, State, Steps, Stress};
 
 use super::run::{refused_at, simulate};
-use super::stated_accuracy::Timer;
-use super::warnings::{FarMove, excess_error, stress_warning, warnings_at};
-use super::{Failure, quantity};
-use crate::Stop;
+use super::warnings::{FarMove, stress_warning, warnings_at};
+use crate::prelude::*;
 
 /// Radii between two checks of the flag.
 const RADII_PER_CHECK: usize = 512;
@@ -117,7 +112,7 @@ fn by_rings(simulation: &Simulation, plane: &PlanarPlan, stop: &dyn Stop) -> Res
         .chain(stress_warning(simulation.stress.is_some(), stress_error))
         .chain(far.warning())
         .collect();
-    let mut states: Vec<PlanarState> = solution.states.iter().map(PlanarState::from).collect();
+    let mut states: Vec<PlanarState> = solution.states.iter().map(|state| (*state).into()).collect();
     as_given(plane, &mut states);
     let losses = turn_losses(plane, states.iter().map(|state| state.dissipated_energy));
     stop.check()?;
@@ -207,7 +202,7 @@ fn turn_losses(plane: &PlanarPlan, dissipated: impl Iterator<Item = f64>) -> Opt
 
 fn stresses(solution: &Solution, sampling: &Sampling, stop: &dyn Stop) -> Result<PlanarStress, Failure> {
     let pressed = solution.pressed();
-    let radius = sampling.radii(if pressed.indentation() > 0.0 { pressed.contact_radius() } else { 0.0 });
+    let radius = sampling.places(false, if pressed.indentation() > 0.0 { pressed.contact_radius() } else { 0.0 });
     let asked = |field: Field| sampling.fields.contains(&field);
     let mut stress = PlanarStress::default();
     for radii in radius.chunks(RADII_PER_CHECK) {

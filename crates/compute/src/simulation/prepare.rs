@@ -2,9 +2,9 @@
 
 use std::time::Duration;
 
-use super::{Cause, Failure, Timer, cost};
-use crate::{Nanoseconds, Stop};
-use stickslip_wire::{DefinedProfile, Document, Prepare, Rejection};
+use stickslip_wire::DefinedProfile;
+
+use crate::prelude::*;
 
 /// Prepares every profile anew, until the flag is raised.
 pub struct Anew<'a>(pub &'a dyn Stop);
@@ -31,7 +31,7 @@ pub fn cost_of_preparation(defined: &DefinedProfile<'_>, allowed: Duration) -> R
 /// Checks a document, and has `stop` count the time that it takes.
 ///
 /// # Errors
-/// [`Cause::TooLong`] or [`Cause::Stopped`] if `stop` has ended the preparation of its profile; within, as
+/// [`Cause::Interrupted`] if `stop` has ended the preparation of its profile; within, as
 /// [`Document::check_with`].
 pub fn check<T: Document>(
     document: T,

@@ -4,12 +4,12 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use sha2::{Digest as _, Sha256};
-use stickslip_mechanics::{Elasticity, Profile};
+use stickslip_mechanics::Elasticity;
+use stickslip_wire::DefinedProfile;
 use stickslip_wire::profile::{SumProfile, TabulatedProfile};
-use stickslip_wire::{self as wire, DefinedProfile, Document, Prepare, Rejection};
 
-use super::{Failure, bytes, check, cost_of_preparation};
-use crate::{Nanoseconds, Stop};
+use super::{check, cost_of_preparation};
+use crate::prelude::*;
 
 /// The key of a prepared profile: a digest.
 pub type ProfileKey = [u8; 32];

@@ -2,22 +2,15 @@
 
 use std::time::Duration;
 
-use stickslip_mechanics::{self as mechanics, Contact, Preload, Profile, Springs, protocol, range::Quantity, springs};
-use stickslip_wire::definition::SharedSetup;
-use stickslip_wire::reply::{Accuracy, State, finite};
-use stickslip_wire::simulate::Simulation;
-use stickslip_wire::{
-    self as wire, ContactDefinition, Field, Move, Plan, Points, Protocol, Residual, Sampling, SimulateReply,
-    SolverKind, Steps, Stress, limits,
-};
+use stickslip_mechanics as mechanics;
+use stickslip_mechanics::range::Quantity;
+use stickslip_mechanics::{Preload, Springs, protocol, springs};
+use stickslip_wire::Points;
 
-use super::{
-    Cause, Failure, Solver, cost, needs_stress_field, quantity,
-    stated_accuracy::{Timer, accuracy},
-    stress_below::subsurface,
-    warnings::{FarMove, bulk_warning, excess_error, stress_warning, warnings_at},
-};
-use crate::{LONGEST_WORK, Stop};
+use super::stress_below::subsurface;
+use super::warnings::{FarMove, bulk_warning, stress_warning, warnings_at};
+use crate::LONGEST_WORK;
+use crate::prelude::*;
 
 /// The reason for a solver that the request names.
 const AS_ASKED: &str = "as asked for";
@@ -255,7 +248,7 @@ const RADII_PER_CHECK: usize = 512;
 /// The requested stresses.
 ///
 /// # Errors
-/// [`Cause::Refused`] without a stress field, [`Cause::Stopped`] if the client hung up.
+/// [`Cause::Refused`] without a stress field, [`Cause::Interrupted`] if the client hung up.
 pub fn stresses<S: Solver>(solver: &S, sampling: &Sampling, stop: &dyn Stop) -> Result<Stress, Failure> {
     needs_stress_field(solver.exact(), "/stress")?;
     let (places, line) = sampled(solver.exact(), sampling, solver.state().contact_radius, "/stress")?;
@@ -292,8 +285,7 @@ pub fn sampled(
     match (&sampling.points, contact.profile().line().is_some()) {
         (Points::Radii(_), true) => refused("radii", mechanics::Error::LineContact("`radii`")),
         (Points::Places(_), false) => refused("x", mechanics::Error::RoundContact("`x`")),
-        (_, true) => Ok((sampling.places(contact_radius), true)),
-        (_, false) => Ok((sampling.radii(contact_radius), false)),
+        (_, line) => Ok((sampling.places(line, contact_radius), line)),
     }
 }
 
@@ -323,6 +315,6 @@ pub fn residual<S: Solver>(solver: &S, stop: &dyn Stop) -> Result<Residual, Fail
             let exact = solver.exact();
             Ok(Residual::new(residual, exact.summary().unit_shear(), exact.profile()))
         }
-        None => Err(Failure::at("", Cause::Stopped).unless_interrupted(stop, "")),
+        None => Err(Failure::from(Interrupted::Abandoned).unless_interrupted(stop, "")),
     }
 }

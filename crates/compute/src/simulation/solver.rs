@@ -1,8 +1,9 @@
 //! The interface that the exact solver and the spring foundation share.
 
 use stickslip_mechanics::protocol::{self, EqualPeaks};
-use stickslip_mechanics::{Contact, Error, ErrorEstimate, Move, Residual, Springs, State};
-use stickslip_wire::{Field, SolverKind};
+use stickslip_mechanics::{Error, ErrorEstimate, Move, Residual, Springs, State};
+
+use crate::prelude::*;
 
 /// A contact that can be moved and whose fields can be read. What a solver does not define is that of its exact
 /// contact.

@@ -2,11 +2,8 @@
 
 use std::time::{Duration, Instant};
 
-use stickslip_wire::reply::Accuracy;
-
-use super::Solver;
 use super::warnings::assumption;
-use crate::Stop;
+use crate::prelude::*;
 
 /// Measures the time spent computing for a request: with what its [`Stop`] has counted before, and without the time for
 /// which it has yielded to others.

@@ -1,12 +1,10 @@
 //! Stress below the surface of a contact in its present state.
 
-use stickslip_mechanics::{Contact, Stress};
-use stickslip_wire::reply::finite;
+use stickslip_mechanics::Stress;
 use stickslip_wire::subsurface::SubsurfaceTask;
 use stickslip_wire::{Subsurface, SubsurfaceField};
 
-use super::Failure;
-use crate::Stop;
+use crate::prelude::*;
 
 /// Places between two checks of the flag.
 const PLACES_PER_CHECK: usize = 64;

@@ -5,15 +5,13 @@
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 
-use serde_json::{Value, json};
 use stickslip_mechanics::protocol::{EqualPeaks, equal_peaks};
-use stickslip_mechanics::{Contact, Error, Move, Residual, State};
-use stickslip_wire::{Field, SimulateReply, SimulateRequest, read};
+use stickslip_mechanics::{Error, Move, Residual, State};
+use stickslip_wire::read;
 
-use super::run::{contact, run};
-use super::solver::Solver;
-use super::stated_accuracy::Timer;
+use super::run::run;
 use crate::Flag;
+use crate::prelude::*;
 
 /// Reversals of the path.
 const REVERSALS: usize = 9;

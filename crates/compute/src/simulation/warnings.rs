@@ -1,9 +1,8 @@
 //! Warnings about results that are valid nevertheless. Each code has its paragraph in `docs/warnings.md`.
 
-use stickslip_mechanics::{Contact, Profile, in_unit};
-use stickslip_wire::Warning;
+use stickslip_mechanics::in_unit;
 
-use super::Solver;
+use crate::prelude::*;
 
 /// Dundurs' β beyond which the bodies are no longer treated as elastically similar; round-off of similar bodies stays
 /// below it.

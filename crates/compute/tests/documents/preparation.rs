@@ -1,14 +1,15 @@
 //! Preparing profiles: it counts in the time of the reply, and may end at each of its questions.
 
+use std::borrow::Borrow as _;
 use std::cell::Cell;
 use std::sync::Arc;
 use std::time::Duration;
 
 use serde_json::{Value, json};
-use stickslip_compute::computations::{Computation as _, Cycle, Outcome as _};
+use stickslip_compute::computations::{Computation as _, Cycle};
 use stickslip_compute::{Flag, simulation};
 use stickslip_mechanics::{Elasticity, Error, Profile};
-use stickslip_wire::{self as wire, CycleRequest, Document as _, Prepare, Rejection, SimulateRequest};
+use stickslip_wire::{self as wire, CycleReply, CycleRequest, Document as _, Prepare, Rejection, SimulateRequest};
 
 use crate::json::{ball, number, of, with};
 
@@ -63,7 +64,7 @@ fn the_time_of_a_reply_has_the_preparation_of_its_profile_in_it() {
     let body: CycleRequest = serde_json::from_value(body).unwrap();
     let checked = simulation::check(body, &Slow(rest), &stop).unwrap().unwrap();
     let found = Cycle::run(checked, &stop).unwrap();
-    let reply = found.reply();
+    let reply: &CycleReply = found.borrow();
     assert!(reply.accuracy.compute_time >= rest.as_secs_f64(), "{:?}", reply.accuracy);
 }
 

@@ -1,5 +1,7 @@
 //! What the laws of every computation begin with.
 
+use std::borrow::Borrow as _;
+
 use stickslip_compute::computations::{self, Computation, Task};
 use stickslip_compute::{Flag, Nanoseconds};
 use stickslip_wire::{Document, parse};
@@ -25,7 +27,7 @@ pub fn answered<C: Computation<Request: Document<Checked: Clone>>>(
     }
     match C::run(task.clone(), &Flag::default()) {
         Ok(found) => {
-            laws(task, computations::Outcome::reply(&found));
+            laws(task, found.borrow());
             Outcome::Answered
         }
         Err(failure) => refused(body, failure.into()),

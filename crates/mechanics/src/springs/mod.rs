@@ -330,7 +330,7 @@ impl Springs {
         };
         State {
             displacement: self.displacement,
-            force: self.force(),
+            force: self.force() + 0.0,
             indentation: self.indentation,
             normal_force: self.normal_force(),
             contact_radius: self.contact_radius(),

@@ -8,27 +8,13 @@ pub use map::{FrettingMap, LoadSpan};
 pub use reply::{CycleReply, FrictionWork, Harmonic, SteadyCycle};
 pub use studies::{BestLoad, BestLoadStudy, FrequencyResponse, LoadCurve, Resonance, ResonancePoint};
 
-use std::fmt;
+use stickslip_mechanics::cycle;
+use stickslip_mechanics::cycle::OscillatingLoad;
 
-use serde::de::value::SeqAccessDeserializer;
-use serde::de::{SeqAccess, Visitor};
-use serde::{Deserialize, Deserializer, Serialize};
-use serde_json::{Value, json};
-
-use stickslip_mechanics::{
-    cycle::{self, OscillatingLoad},
-    range::{self, Range},
-};
-
-use crate::check::{Faults, JsonPath};
-use crate::choice::{choices, visit_numbers};
-use crate::definition::{ContactDefinition, DefinedProfile, SharedSetup};
-use crate::document::Document;
-use crate::limits::{Array, BEST_LOADS, CYCLE_AMPLITUDES, CYCLE_RADII, HARMONICS, Limit, Limited as _, Tolerance};
+use crate::limits::{BEST_LOADS, CYCLE_AMPLITUDES, CYCLE_RADII, HARMONICS};
 use crate::path::NormalOscillation;
-use crate::prepare::Prepare;
-use crate::request::requests;
-use crate::stress::{Sampling, StressRequest};
+use crate::prelude::*;
+use crate::stress::{STRESS_PLACES, STRESS_RADII};
 
 /// The default tolerance of cycles under an oscillating load and of oscillations of a mass: the error of the former
 /// falls with a low power of the number of steps, which cost time.
@@ -75,14 +61,14 @@ pub struct Machine: Copy {
 }
 
 /// Where the friction work per area is asked for: exactly one of `points` and `radii` (for a line contact `x`).
-pub struct WorkDensity: Default and StressRequest {
+pub struct WorkDensity: Default {
     /// Number of radii, evenly spaced from the centre to the edge of the contact, both included; for a line contact
     /// from the edge at −a to the edge at a.
-    pub points: Option<usize>,
+    pub points: Option<usize> = STRESS_POINTS,
     /// Radii, m; outside the contact there is no work.
-    pub radii: Option<Vec<f64>>,
+    pub radii: Option<Vec<f64>> = STRESS_RADII,
     /// Places along x in a line contact, m.
-    pub x: Option<Vec<f64>>,
+    pub x: Option<Vec<f64>> = STRESS_PLACES,
 }
 }
 
@@ -99,14 +85,10 @@ pub enum CycleDrive {
 }
 
 /// One amplitude, or a list of them.
-// Untagged when written. It is read by hand below, so that a fault in the list has its index.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-#[serde(untagged)]
-pub enum Amplitudes {
-    /// One.
-    One(f64),
-    /// A list.
-    Many(Vec<f64>),
+pub type Amplitudes = NumberOr<Vec<f64>>;
+
+impl Numbers for Vec<f64> {
+    const EXPECTED: &'static str = "a number or an array of numbers";
 }
 
 /// The limits of amplitudes.
@@ -127,28 +109,6 @@ impl Limit<Amplitudes> for Within {
             Amplitudes::One(amplitude) => faults.number(at, *amplitude, &self.0),
             Amplitudes::Many(amplitudes) => Array(CYCLE_AMPLITUDES, self.0).check(amplitudes, at, faults),
         }
-    }
-}
-
-impl<'de> Deserialize<'de> for Amplitudes {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        deserializer.deserialize_any(AmplitudesVisitor)
-    }
-}
-
-struct AmplitudesVisitor;
-
-impl<'de> Visitor<'de> for AmplitudesVisitor {
-    type Value = Amplitudes;
-
-    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("a number or an array of numbers")
-    }
-
-    visit_numbers!(Amplitudes::One);
-
-    fn visit_seq<A: SeqAccess<'de>>(self, elements: A) -> Result<Amplitudes, A::Error> {
-        Vec::deserialize(SeqAccessDeserializer::new(elements)).map(Amplitudes::Many)
     }
 }
 
@@ -179,34 +139,6 @@ impl CycleDrive {
     }
 }
 
-/// What is asked of a contact, before the check.
-pub struct CycleOptions {
-    /// The drive.
-    pub drive: CycleDrive,
-    /// The stiffness of the machine, N/m, if there is one.
-    pub stiffness: Option<f64>,
-    /// The number of harmonics, if they are asked for.
-    pub harmonics: Option<usize>,
-    /// Where the friction work per area is asked for.
-    pub density: Option<WorkDensity>,
-}
-
-/// Where the options are in a request, as JSON pointers.
-#[derive(Clone, Copy, Debug)]
-pub struct CyclePlaces {
-    drive: &'static str,
-    stiffness: &'static str,
-    density: &'static str,
-}
-
-impl CyclePlaces {
-    /// In the body of `POST /cycle`.
-    pub const BODY: CyclePlaces =
-        CyclePlaces { drive: "/drive", stiffness: "/machine/stiffness", density: "/work_density" };
-    /// In a query.
-    pub const QUERY: CyclePlaces = CyclePlaces { drive: "", stiffness: "/machine_stiffness", density: "" };
-}
-
 /// Checked options.
 #[derive(Clone, Debug)]
 pub struct CycleTask {
@@ -225,45 +157,62 @@ pub struct CycleTask {
     pub best_load: Option<BestLoadStudy>,
     /// The loads of a fretting map.
     pub map: Option<FrettingMap>,
-    places: CyclePlaces,
+    /// JSON pointer to the drive.
+    drive_at: &'static str,
 }
 
-impl CycleOptions {
-    /// The checked options; their faults are noted where `places` says.
-    pub fn check(self, places: CyclePlaces, faults: &mut Faults) -> Option<CycleTask> {
-        let CycleOptions { drive, stiffness, harmonics, density } = self;
-        drive.check_members(JsonPath::Pointer(places.drive), faults);
-        Limit::check(&range::MACHINE_STIFFNESS, &stiffness, JsonPath::Pointer(places.stiffness), faults);
-        Limit::check(&HARMONICS, &harmonics, JsonPath::Root.member("harmonics"), faults);
-        let at = JsonPath::Pointer(places.density);
+impl CycleTask {
+    /// The checked options of a query, whose parameters are a machine's stiffness, N/m, and the members of the others.
+    pub fn of_query(
+        drive: CycleDrive,
+        stiffness: Option<f64>,
+        harmonics: Option<usize>,
+        density: Option<WorkDensity>,
+        faults: &mut Faults,
+    ) -> Option<CycleTask> {
+        let at = JsonPath::Root;
+        drive.check_limits(at, faults);
+        Limit::check(&range::MACHINE_STIFFNESS, &stiffness, at.member("machine_stiffness"), faults);
+        Limit::check(&HARMONICS, &harmonics, at.member("harmonics"), faults);
+        density.check_limits(at, faults);
+        CycleTask::new((drive, ""), stiffness, harmonics, (density, ""), faults)
+    }
+
+    /// The checked options, of which some come with a JSON pointer to them.
+    fn new(
+        (drive, drive_at): (CycleDrive, &'static str),
+        stiffness: Option<f64>,
+        harmonics: Option<usize>,
+        (density, density_at): (Option<WorkDensity>, &str),
+        faults: &mut Faults,
+    ) -> Option<CycleTask> {
+        let at = JsonPath::Pointer(density_at);
         let density = match density {
             None => None,
             Some(WorkDensity { points, radii, x }) => {
-                Some(StressRequest { points, radii, x, fields: None }.check(at, faults)?)
+                Some(StressRequest { points, radii, x, fields: None }.sampling(at, faults)?)
             }
         };
         let (count, radii) = (drive.amplitudes().all().len(), density.as_ref().map_or(0, Sampling::length));
         if count.saturating_mul(radii) > CYCLE_RADII {
-            faults.add(
-                at,
-                format_args!("{radii} radii at each of {count} amplitudes: allowed are {CYCLE_RADII} radii in all"),
-            );
+            let detail =
+                format_args!("{radii} radii at each of {count} amplitudes: allowed are {CYCLE_RADII} radii in all");
+            faults.add(at, detail);
         }
+        let harmonics = harmonics.unwrap_or(0);
         Some(CycleTask {
             drive,
             stiffness,
-            harmonics: harmonics.unwrap_or(0),
+            harmonics,
             density,
             normal: None,
             response: None,
             best_load: None,
             map: None,
-            places,
+            drive_at,
         })
     }
-}
 
-impl CycleTask {
     /// The drives, one for each cycle.
     pub fn drives(&self) -> impl ExactSizeIterator<Item = cycle::Drive> + '_ {
         let drive = match self.drive {
@@ -280,7 +229,7 @@ impl CycleTask {
 
     /// The JSON pointer to the amplitude of this index.
     pub fn place_of(&self, index: usize) -> String {
-        let (base, name) = (self.places.drive, self.drive.name());
+        let (base, name) = (self.drive_at, self.drive.name());
         match self.drive.amplitudes() {
             Amplitudes::One(_) => format!("{base}/{name}"),
             Amplitudes::Many(_) => format!("{base}/{name}/{index}"),
@@ -310,19 +259,12 @@ impl Document for CycleRequest {
         let (response, best_load, map) = (self.frequency_response, self.best_load, self.map);
         let setup = contact.check(JsonPath::Root.member("contact"), profiles, faults);
         let stiffness = machine.map(|machine| machine.stiffness);
-        let options = CycleOptions { drive, stiffness, harmonics, density: work_density };
-        let task = options.check(CyclePlaces::BODY, faults);
+        let task = CycleTask::new((drive, "/drive"), stiffness, harmonics, (work_density, "/work_density"), faults);
         let at = |name| JsonPath::Root.member(name);
-        let tolerance = Tolerance(DEFAULT_TOLERANCE).of(tolerance, faults);
+        let tolerance = tolerance.unwrap_or(DEFAULT_TOLERANCE);
         let load = normal.and_then(|normal| normal.swing(at("normal"), faults));
-        if let Some(response) = &response {
-            response.check_members(at("frequency_response"), faults);
-        }
-        if let Some(best) = &best_load {
-            best.check_members(at("best_load"), faults);
-            if task.as_ref().is_some_and(|task| task.drives().len() > *BEST_LOADS.end()) {
-                faults.add(at("best_load"), format_args!("too many amplitudes: at most {} allowed", BEST_LOADS.end()));
-            }
+        if best_load.is_some() && task.as_ref().is_some_and(|task| task.drives().len() > *BEST_LOADS.end()) {
+            faults.add(at("best_load"), format_args!("too many amplitudes: at most {} allowed", BEST_LOADS.end()));
         }
         let constant = [
             ("work_density", task.as_ref().is_some_and(|task| task.radii() > 0)),

@@ -1,8 +1,9 @@
 //! The reply of `POST /cycle` and `GET /contacts/{id}/cycle`.
 
+use stickslip_mechanics::cycle;
+
 use super::{BestLoad, Resonance};
-use crate::reply::{Accuracy, ContactSummary, Regime, Warning};
-use crate::request::replies;
+use crate::prelude::*;
 
 replies! {
 /// Steady cycles, one for each amplitude.
@@ -65,7 +66,7 @@ pub struct SteadyCycle: Default omits Option {
 }
 
 /// One harmonic of the response to a drive that is a cosine.
-pub struct Harmonic: Copy {
+pub struct Harmonic: Copy of cycle::Harmonic {
     /// 1 for the fundamental. Even ones vanish at constant load.
     pub order: usize,
     /// Amplitude of the cosine, in the unit of the response.

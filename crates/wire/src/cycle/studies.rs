@@ -1,9 +1,6 @@
 //! Studies of steady cycles: a mass on the contact, and the load that damps most.
 
-use stickslip_mechanics::range::{self, Quantity, Range};
-
-use crate::limits::Array;
-use crate::request::{replies, requests};
+use crate::prelude::*;
 
 requests! {
 /// A mass that only the contact holds, and a force on it that is a cosine of time.

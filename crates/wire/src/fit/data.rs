@@ -1,12 +1,10 @@
 //! Measured loops, their units, and the limits of their numbers.
 
-use stickslip_mechanics::range::{self, MIN_POSITIVE_NORMAL_FORCE, Quantity, Range};
+use stickslip_mechanics::range::MIN_POSITIVE_NORMAL_FORCE;
 
-use crate::check::{Faults, JsonPath};
-use crate::choice::words;
-use crate::limits::{Array, FIT_POINTS, Limited as _};
+use crate::limits::FIT_POINTS;
+use crate::prelude::*;
 use crate::profile_fit::LengthUnit;
-use crate::request::requests;
 
 /// A measured number, in its unit.
 const NUMBER: Range = Range { quantity: Quantity::Number, unit: "", min: -1e12, max: 1e12 };
@@ -88,65 +86,29 @@ impl ForceUnit {
     }
 }
 
-/// A checked loop, in SI units.
-#[derive(Clone, Debug, PartialEq)]
-pub struct LoopRecord {
-    /// Displacements, m.
-    pub displacement: Vec<f64>,
-    /// Tangential forces, N.
-    pub force: Vec<f64>,
-    /// Times, s, rising.
-    pub time: Option<Vec<f64>>,
-    /// The load, N, if it is not that of the contact.
-    pub normal_force: Option<f64>,
-    /// How it begins, if that is known.
-    pub start: Option<LoopStart>,
-    /// Its weight.
-    pub weight: f64,
-}
-
 impl MeasuredLoop {
-    /// The loop in SI units, `units` being those of displacement and force in m and N.
-    pub(super) fn check(
-        self,
-        units: [f64; 2],
-        drifts: bool,
-        at: JsonPath<'_>,
-        faults: &mut Faults,
-    ) -> Option<LoopRecord> {
-        faults.part(|faults| {
-            self.check_members(at, faults);
-            let points = self.displacement.len();
-            for (name, length) in [("force", Some(self.force.len())), ("time", self.time.as_ref().map(Vec::len))] {
-                if let Some(length) = length.filter(|length| *length != points) {
-                    let detail =
-                        format_args!("has {length} numbers, but `displacement` has {points}: give one for each point");
-                    faults.add(at.member(name), detail);
+    /// Checks the loop and takes it into SI units, `units` being those of displacement and force in m and N.
+    pub(super) fn check(&mut self, units: [f64; 2], drifts: bool, at: JsonPath<'_>, faults: &mut Faults) {
+        let points = self.displacement.len();
+        for (name, length) in [("force", Some(self.force.len())), ("time", self.time.as_ref().map(Vec::len))] {
+            if let Some(length) = length.filter(|length| *length != points) {
+                let detail =
+                    format_args!("has {length} numbers, but `displacement` has {points}: give one for each point");
+                faults.add(at.member(name), detail);
+            }
+        }
+        match &self.time {
+            Some(time) => {
+                if let Some(index) = time.windows(2).position(|pair| pair[1] <= pair[0]) {
+                    let detail = "not later than the time before it: give the points in the order of time";
+                    faults.add(at.member("time").index(index.saturating_add(1)), detail);
                 }
             }
-            match &self.time {
-                Some(time) => {
-                    if let Some(index) = time.windows(2).position(|pair| pair[1] <= pair[0]) {
-                        let detail = "not later than the time before it: give the points in the order of time";
-                        faults.add(at.member("time").index(index.saturating_add(1)), detail);
-                    }
-                }
-                None if drifts => faults.add(at.member("time"), "give the time of each point, or leave `drift` out"),
-                None => {}
-            }
-            let scaled = |mut column: Vec<f64>, unit: f64| {
-                column.iter_mut().for_each(|value| *value *= unit);
-                column
-            };
-            let [length, force] = units;
-            LoopRecord {
-                displacement: scaled(self.displacement, length),
-                force: scaled(self.force, force),
-                time: self.time,
-                normal_force: self.normal_force,
-                start: self.start,
-                weight: self.weight.unwrap_or(1.0),
-            }
-        })
+            None if drifts => faults.add(at.member("time"), "give the time of each point, or leave `drift` out"),
+            None => {}
+        }
+        let [length, force] = units;
+        self.displacement.iter_mut().for_each(|value| *value *= length);
+        self.force.iter_mut().for_each(|value| *value *= force);
     }
 }

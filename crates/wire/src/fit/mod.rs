@@ -4,20 +4,12 @@ mod data;
 mod parameter;
 mod reply;
 
-pub use data::{FitUnits, ForceUnit, LoopRecord, LoopStart, MeasuredLoop};
+pub use data::{FitUnits, ForceUnit, LoopStart, MeasuredLoop};
 pub use parameter::{FitParameter, KnownValue, KnownValues};
 pub use reply::{FitEstimate, FitReply, FitResidual, FittedLoop, NoiseLevels, SignRuns};
 
-use serde_json::{Value, json};
-
-use stickslip_mechanics::range::{Quantity, Range};
-
-use crate::check::{Faults, JsonPath};
-use crate::definition::{ContactDefinition, DefinedProfile, SharedSetup};
-use crate::document::Document;
-use crate::limits::{FIT_LOOPS, Items, Limit, Limited as _};
-use crate::prepare::Prepare;
-use crate::request::requests;
+use crate::limits::FIT_LOOPS;
+use crate::prelude::*;
 
 /// The standard deviation of a measured force.
 const FORCE_NOISE: Range = Range { quantity: Quantity::Force, unit: "N", min: 1e-18, max: 1e18 };
@@ -68,65 +60,32 @@ impl Limit<Vec<FitParameter>> for Distinct {
     }
 }
 
-/// A checked request, in SI units.
-#[derive(Clone, Debug, PartialEq)]
-pub struct FitTask {
-    /// The contact as it was defined.
-    pub definition: ContactDefinition,
-    /// Its checked setup.
-    pub setup: SharedSetup,
-    /// The loops.
-    pub loops: Vec<LoopRecord>,
-    /// What is to be determined.
-    pub free: Vec<FitParameter>,
-    /// What is known.
-    pub known: KnownValues,
-    /// The noise, where it is known.
-    pub noise: FitNoise,
-    /// The units that the request has named.
-    pub units: FitUnits,
-}
-
-impl FitTask {
+impl FitRequest {
     /// Points of all loops.
     pub fn points(&self) -> usize {
-        self.loops.iter().fold(0, |sum, record| sum.saturating_add(record.force.len()))
+        self.loops.iter().fold(0, |sum, measured| sum.saturating_add(measured.force.len()))
     }
 }
 
 impl Document for FitRequest {
-    type Checked = FitTask;
+    /// Its loops are in SI units, whatever `units` says.
+    type Checked = (FitRequest, SharedSetup);
 
     fn profile(&self) -> Option<DefinedProfile<'_>> {
         Some(self.contact.defined_profile("/contact/profile"))
     }
 
-    fn checked(self, profiles: &dyn Prepare, faults: &mut Faults) -> Option<Self::Checked> {
+    fn checked(mut self, profiles: &dyn Prepare, faults: &mut Faults) -> Option<Self::Checked> {
         let root = JsonPath::Root;
         let setup = self.contact.check(root.member("contact"), profiles, faults);
-        self.check_members(root, faults);
         let drifts = self.free.contains(&FitParameter::Drift);
-        let units = self.units.unwrap_or_default();
-        let in_si = units.in_si();
-        let at = root.member("loops");
-        let loops: Option<Vec<LoopRecord>> = if FIT_LOOPS.contains(&self.loops.len()) {
-            let loops = self.loops.into_iter().enumerate();
-            loops.map(|(index, one)| one.check(in_si, drifts, at.index(index), faults)).collect()
-        } else {
-            None
-        };
-        let known = self.known.unwrap_or_default();
-        known.check(root.member("known"), faults);
-        let noise = self.noise.unwrap_or_default();
-        noise.check_members(root.member("noise"), faults);
-        setup.zip(loops).map(|(setup, loops)| FitTask {
-            definition: self.contact,
-            setup,
-            loops,
-            free: self.free,
-            known,
-            noise,
-            units,
-        })
+        let (units, at) = (self.units.unwrap_or_default().in_si(), root.member("loops"));
+        for (index, measured) in self.loops.iter_mut().enumerate() {
+            measured.check(units, drifts, at.index(index), faults);
+        }
+        if let Some(known) = &self.known {
+            known.check(root.member("known"), faults);
+        }
+        Some((self, setup?))
     }
 }

@@ -2,14 +2,10 @@
 
 use std::collections::BTreeMap;
 
-use serde::{Deserialize, Serialize};
 use serde_with::apply;
-use utoipa::ToSchema;
 
 use super::FitParameter;
-use crate::definition::ContactDefinition;
-use crate::reply::Warning;
-use crate::request::replies;
+use crate::prelude::*;
 
 replies! {
 /// The quantities that the loops determine, and the ones that they leave undetermined.

@@ -1,20 +1,17 @@
 //! Curves from the value of a criterion to a number of cycles.
 
 use stickslip_mechanics::fatigue::{self, LifeCurve};
-use stickslip_mechanics::{Error, range};
 
-use crate::choice::choices;
-use crate::limits::OfItsMembers;
-use crate::request::requests;
+use crate::prelude::*;
 
 choices! {
 /// The life of a criterion with strains: an S-N curve, or the strain-life curve of the criterion.
 pub enum StrainLife: Copy {
     /// Cycles = `cycles` · (value/`reference`)^(−`exponent`) (Basquin 1910).
-    "s_n" => SN(SnCurve) = OfItsMembers,
+    "s_n" => SN(SnCurve),
     /// For `swt`: value = (σf'²/E) (2N)^(2b) + σf' εf' (2N)^(b + c); for `fatemi_socie`: value = (τf'/G) (2N)^b + γf'
     /// (2N)^c.
-    "strain_life" => StrainLife(StrainLifeCurve) = OfItsMembers,
+    "strain_life" => StrainLife(StrainLifeCurve),
 }
 }
 
@@ -22,7 +19,7 @@ requests! {
 /// The life of a criterion: an S-N curve.
 pub struct StressLife: Copy {
     /// Cycles = `cycles` · (value/`reference`)^(−`exponent`) (Basquin 1910).
-    pub s_n: SnCurve = OfItsMembers,
+    pub s_n: SnCurve,
 }
 
 /// An S-N curve of the values of a criterion.

@@ -6,20 +6,13 @@ mod reply;
 pub use life::{SnCurve, StrainLife, StrainLifeCurve, StressLife};
 pub use reply::{BelowSurface, CRITERIA, FrettingReply, Instant, Largest, Life, NoLife, Rating, StressPath};
 
-use std::ops::RangeInclusive;
-
 use stickslip_mechanics::fatigue::{self, Criterion, LifeCurve, Measure};
-use stickslip_mechanics::range::{self, Quantity, Range};
 use stickslip_mechanics::subsurface::Side;
 
-use crate::check::{Faults, JsonPath};
-use crate::choice::words;
-use crate::definition::{BodyName, ContactDefinition, DefinedProfile, SharedSetup, of_body};
-use crate::document::Document;
-use crate::limits::{Array, FRETTING_MOVES, Limit, Limited as _, OfItsMembers, SUBSURFACE_POINTS, Tolerance, Triple};
-use crate::path::{PHASE, Path, Plan};
-use crate::prepare::Prepare;
-use crate::request::requests;
+use crate::definition::of_body;
+use crate::limits::{FRETTING_MOVES, SUBSURFACE_POINTS};
+use crate::path::PHASE;
+use crate::prelude::*;
 use crate::subsurface::{Places, SubsurfaceLine, SubsurfacePlane, SubsurfaceRequest, SubsurfaceSurface};
 
 /// Error of a criterion that is accepted if the request does not say, at given places and in a search.
@@ -46,7 +39,7 @@ pub struct FrettingRequest {
     /// Poisson's ratio of the body, a pure number; it may be left out if the material has `bodies`.
     pub poisson_ratio: Option<f64> = range::POISSON_RATIO,
     /// Where: a list of x, y, z, m, with z not negative.
-    pub points: Option<Vec<[f64; 3]>> = Array(SUBSURFACE_POINTS, Triple(range::PLACE)),
+    pub points: Option<Vec<[f64; 3]>> = Array(SUBSURFACE_POINTS, range::PLACE),
     /// Where: a straight line.
     pub line: Option<SubsurfaceLine>,
     /// Where: a grid in a plane.
@@ -59,7 +52,7 @@ pub struct FrettingRequest {
     /// The criteria.
     pub criteria: Criteria,
     /// The distance below the worst point of the surface at which criteria of stress are also evaluated.
-    pub critical_distance: Option<CriticalDistance> = OfItsMembers,
+    pub critical_distance: Option<CriticalDistance>,
     /// Indices of places for which to return the stresses over the cycle.
     pub stress_paths: Option<Vec<usize>> = PATHS,
     /// Accepted error of a criterion, relative to its largest value, a pure number. In a search the default is 1e-3.
@@ -87,19 +80,19 @@ pub struct CriticalDistance: Copy {
 /// The criteria, at least one.
 pub struct Criteria: Copy, Default {
     /// √J2a + α · the largest hydrostatic stress, Pa (Crossland 1956).
-    pub crossland: Option<Weighted> = OfItsMembers,
+    pub crossland: Option<Weighted>,
     /// The largest of shear stress + α · hydrostatic stress, Pa (Dang Van 1973).
-    pub dang_van: Option<Weighted> = OfItsMembers,
+    pub dang_van: Option<Weighted>,
     /// The largest of shear amplitude + k · largest normal stress on a plane, Pa (Findley 1959).
-    pub findley: Option<Findley> = OfItsMembers,
+    pub findley: Option<Findley>,
     /// The largest of normal stress times amplitude of the normal strain on a plane, Pa (Smith, Watson & Topper 1970).
-    pub swt: Option<StrainBased> = OfItsMembers,
+    pub swt: Option<StrainBased>,
     /// The largest amplitude of the shear strain, raised by the normal stress, a pure number (Fatemi & Socie 1988).
-    pub fatemi_socie: Option<FatemiSocie> = OfItsMembers,
+    pub fatemi_socie: Option<FatemiSocie>,
     /// Shear stress times slip at the surface, N/m (Ruiz, Boddington & Chen 1984).
-    pub ruiz: Option<SurfaceCriterion> = OfItsMembers,
+    pub ruiz: Option<SurfaceCriterion>,
     /// Friction work per area and cycle at the surface, J/m².
-    pub friction_work: Option<SurfaceCriterion> = OfItsMembers,
+    pub friction_work: Option<SurfaceCriterion>,
 }
 
 /// A criterion with a weight of the hydrostatic stress.
@@ -109,7 +102,7 @@ pub struct Weighted: Copy {
     /// The value that the material withstands, Pa.
     pub limit: Option<f64> = BEARABLE,
     /// Number of cycles that the material withstands, from tests.
-    pub life: Option<StressLife> = OfItsMembers,
+    pub life: Option<StressLife>,
 }
 
 /// Findley's criterion.
@@ -119,7 +112,7 @@ pub struct Findley: Copy {
     /// The value that the material withstands, Pa.
     pub limit: Option<f64> = BEARABLE,
     /// Number of cycles that the material withstands, from tests.
-    pub life: Option<StressLife> = OfItsMembers,
+    pub life: Option<StressLife>,
 }
 
 /// A criterion that needs strains.
@@ -129,7 +122,7 @@ pub struct StrainBased: Copy, Default {
     /// The value that the material withstands, Pa.
     pub limit: Option<f64> = BEARABLE,
     /// Number of cycles that the material withstands, from tests.
-    pub life: Option<StrainLife> = OfItsMembers,
+    pub life: Option<StrainLife>,
 }
 
 /// Fatemi and Socie's criterion.
@@ -143,7 +136,7 @@ pub struct FatemiSocie: Copy {
     /// The value that the material withstands, a pure number.
     pub limit: Option<f64> = BEARABLE,
     /// Number of cycles that the material withstands, from tests.
-    pub life: Option<StrainLife> = OfItsMembers,
+    pub life: Option<StrainLife>,
 }
 
 /// A quantity that is defined on the surface.
@@ -151,7 +144,7 @@ pub struct SurfaceCriterion: Copy, Default {
     /// The value that the material withstands.
     pub limit: Option<f64> = BEARABLE,
     /// Number of cycles that the material withstands, from tests.
-    pub life: Option<StressLife> = OfItsMembers,
+    pub life: Option<StressLife>,
 }
 }
 
@@ -238,13 +231,10 @@ impl Document for FrettingRequest {
         }
         let searches = self.points.is_none() && self.line.is_none() && self.plane.is_none() && self.surface.is_none();
         let default = if searches { SEARCH_TOLERANCE } else { DEFAULT_TOLERANCE };
-        let tolerance = Tolerance(default).of(self.tolerance, faults);
         let bulk = self.bulk.map(|bulk| {
-            bulk.check_members(at("bulk"), faults);
             let [mean, amplitude, phase] = [bulk.mean, bulk.amplitude, bulk.phase].map(|part| part.unwrap_or(0.0));
             fatigue::Bulk { mean, amplitude, phase: phase.to_radians() }
         });
-        Limit::check(&OfItsMembers, &self.critical_distance, at("critical_distance"), faults);
         let places = SubsurfaceRequest {
             body: self.body,
             poisson_ratio: self.poisson_ratio,
@@ -264,7 +254,6 @@ impl Document for FrettingRequest {
         let poisson = asked.as_ref().map_or(0.0, |asked| asked.poisson_ratio);
         let measures = self.criteria.check((youngs_modulus, poisson), at("criteria"), faults);
         let stress_paths = self.stress_paths.unwrap_or_default();
-        Limit::check(&PATHS, &stress_paths, at("stress_paths"), faults);
         if let Some(asked) = &asked {
             self.criteria.check_surface(&asked.places, at("criteria"), faults);
             if self.critical_distance.is_some() {
@@ -296,7 +285,7 @@ impl Document for FrettingRequest {
                 CriticalMethod::Line => fatigue::CriticalDistance::Line(length),
             }),
             stress_paths,
-            tolerance,
+            tolerance: self.tolerance.unwrap_or(default),
         });
         setup.zip(task).map(|(setup, task)| (self.contact, setup, task))
     }
@@ -321,7 +310,6 @@ impl Criteria {
             let place = at.member(name);
             of_body(youngs_modulus, given, missing, place.member("youngs_modulus"), faults).unwrap_or(1.0)
         };
-        self.check_members(at, faults);
         let of = |measure, limit, life: Option<StressLife>| AskedMeasure {
             measure,
             limit,

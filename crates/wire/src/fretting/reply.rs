@@ -2,9 +2,7 @@
 
 use stickslip_mechanics::fatigue;
 
-use crate::choice::words;
-use crate::reply::{Accuracy, ContactSummary, Warning};
-use crate::request::replies;
+use crate::prelude::*;
 
 replies! {
 /// The criteria over the steady cycle, each with its values at all places.
@@ -113,7 +111,7 @@ pub struct Largest omits Option {
 }
 
 /// An instant of the cycle.
-pub struct Instant: Copy {
+pub struct Instant: Copy of fatigue::Instant {
     /// Index of the move.
     #[serde(rename = "move")]
     pub step: usize,

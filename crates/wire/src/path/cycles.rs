@@ -1,20 +1,11 @@
 //! Paths of equal cycles about a mean, under a constant load or one that oscillates with them.
 
 use std::f64::consts::TAU;
-use std::ops::RangeInclusive;
 
-use stickslip_mechanics::{
-    Error, Normal,
-    cycle::OscillatingLoad,
-    range,
-    range::{Quantity, Range},
-};
+use stickslip_mechanics::Normal;
+use stickslip_mechanics::cycle::OscillatingLoad;
 
-use super::Move;
-use crate::check::{Faults, JsonPath};
-use crate::choice::words;
-use crate::limits::{Limited as _, PATH_MOVES};
-use crate::request::requests;
+use crate::prelude::*;
 
 /// Cycles of a path: with two moves each, and one before them, as many as a path may have moves.
 const CYCLES: RangeInclusive<usize> = 1..=49_999;
@@ -105,13 +96,10 @@ struct Load {
 impl CyclicPath {
     /// The checked cycles; their faults are noted at `at`.
     pub(super) fn check(&self, at: JsonPath<'_>, faults: &mut Faults) -> Option<Cycles> {
-        let (tangential, amplitude, load) = faults.part(|faults| {
-            self.check_members(at, faults);
-            let tangential = [(Quantity::Displacement, self.displacement), (Quantity::Force, self.force)];
-            let tangential = one_amplitude(tangential, at, faults);
-            let load = self.normal.map(|normal| normal.check(at.member("normal"), faults));
-            tangential.map(|(quantity, amplitude)| (quantity, amplitude, load.flatten()))
-        })??;
+        let tangential = [(Quantity::Displacement, self.displacement), (Quantity::Force, self.force)];
+        let tangential = one_amplitude(tangential, at, faults);
+        let load = self.normal.and_then(|normal| normal.check(at.member("normal"), faults));
+        let (tangential, amplitude) = tangential?;
         let moves_per_cycle =
             self.points_per_cycle.unwrap_or(if load.is_some() { DEFAULT_POINTS } else { TURNS_PER_CYCLE });
         if !moves_per_cycle.is_multiple_of(2) {
@@ -138,7 +126,6 @@ impl CyclicPath {
 
 impl NormalOscillation {
     fn check(&self, at: JsonPath<'_>, faults: &mut Faults) -> Option<Load> {
-        self.check_members(at, faults);
         let normal = [(Quantity::Indentation, self.indentation), (Quantity::NormalForce, self.normal_force)];
         let (normal, amplitude) = one_amplitude(normal, at, faults)?;
         Some(Load { normal, amplitude, phase: self.phase.unwrap_or(0.0) / 360.0 })

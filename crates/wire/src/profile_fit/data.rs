@@ -1,11 +1,7 @@
 //! The heights of a scan, and the limits of their numbers.
 
-use stickslip_mechanics::range::{Quantity, Range};
-
-use crate::check::{Faults, JsonPath};
-use crate::choice::choices;
-use crate::limits::{Array, Limited as _, SCAN_POINTS, SCAN_ROWS};
-use crate::request::requests;
+use crate::limits::{SCAN_POINTS, SCAN_ROWS};
+use crate::prelude::*;
 
 /// A place or a height of a scan, in its unit.
 pub const SCAN_NUMBER: Range = Range { quantity: Quantity::Place, unit: "", min: -1e12, max: 1e12 };
@@ -14,6 +10,25 @@ pub const SCAN_NUMBER: Range = Range { quantity: Quantity::Place, unit: "", min:
 const FILL_VALUE: f64 = 1e29;
 /// The distance of neighbouring points of a map, in its unit.
 pub const SCAN_STEP: Range = Range { quantity: Quantity::Place, unit: "", min: 1e-9, max: 1e9 };
+
+/// A height, or a fill value, in its unit.
+struct Height;
+
+impl Limit<f64> for Height {
+    fn keywords(&self) -> Value {
+        Limit::<f64>::keywords(&SCAN_NUMBER)
+    }
+
+    fn check(&self, height: &f64, at: JsonPath<'_>, faults: &mut Faults) {
+        if !is_fill_value(*height) {
+            faults.number(at, *height, &SCAN_NUMBER);
+        }
+    }
+}
+
+fn is_fill_value(height: f64) -> bool {
+    height.abs() >= FILL_VALUE
+}
 
 choices! {
 /// Heights with their places, one key. A height of `null` is missing.
@@ -33,7 +48,7 @@ pub struct LineScan {
     /// Places along the line, in the unit of `units.lateral`.
     pub x: Vec<f64> = Array(SCAN_POINTS, SCAN_NUMBER),
     /// Heights, one for each place, in the unit of `units.height`.
-    pub z: Vec<Option<f64>> = Array(SCAN_POINTS, SCAN_NUMBER),
+    pub z: Vec<Option<f64>> = Array(SCAN_POINTS, Height),
 }
 
 /// A scan on a grid. The first height is at x = y = 0.
@@ -43,7 +58,7 @@ pub struct MapScan {
     /// The distance of rows, along y, in the unit of `units.lateral`.
     pub dy: f64 = SCAN_STEP,
     /// The rows of heights, all of equal length, in the unit of `units.height`.
-    pub z: Vec<Vec<Option<f64>>> = Array(SCAN_ROWS, Array(SCAN_ROWS, SCAN_NUMBER)),
+    pub z: Vec<Vec<Option<f64>>> = Array(SCAN_ROWS, Array(SCAN_ROWS, Height)),
 }
 
 /// Heights at places, in any order.
@@ -53,7 +68,7 @@ pub struct PointScan {
     /// Places along y, one for each x, in the unit of `units.lateral`.
     pub y: Vec<f64> = Array(SCAN_POINTS, SCAN_NUMBER),
     /// Heights, one for each place, in the unit of `units.height`.
-    pub z: Vec<Option<f64>> = Array(SCAN_POINTS, SCAN_NUMBER),
+    pub z: Vec<Option<f64>> = Array(SCAN_POINTS, Height),
 }
 }
 
@@ -62,18 +77,6 @@ fn as_long(at: JsonPath<'_>, length: usize, first: usize, faults: &mut Faults) {
     if length != first {
         faults.add(at, format_args!("has {length} numbers, but `x` has {first}: give one for each point"));
     }
-}
-
-/// Makes fill values missing heights, before their limits are checked: the places of those in the order of the points.
-fn take_fill_values<'a>(heights: impl Iterator<Item = &'a mut Option<f64>>) -> Vec<usize> {
-    let mut places = Vec::new();
-    for (place, height) in heights.enumerate() {
-        if height.is_some_and(|height| height.abs() >= FILL_VALUE) {
-            *height = None;
-            places.push(place);
-        }
-    }
-    places
 }
 
 impl ScanData {
@@ -87,33 +90,26 @@ impl ScanData {
     }
 
     /// Places and heights in m, `units` being those of the two; a missing height is NaN, a fill value infinite.
-    pub(super) fn check(mut self, units: [f64; 2], at: JsonPath<'_>, faults: &mut Faults) -> Option<Vec<[f64; 3]>> {
-        let [lateral, height] = units;
-        let point = |x: f64, y: f64, z: Option<f64>| [x * lateral, y * lateral, z.map_or(f64::NAN, |z| z * height)];
-        let fill_values = match &mut self {
-            ScanData::Line(scan) => take_fill_values(scan.z.iter_mut()),
-            ScanData::Map(scan) => take_fill_values(scan.z.iter_mut().flatten()),
-            ScanData::Points(scan) => take_fill_values(scan.z.iter_mut()),
-        };
-        let points: Option<Vec<[f64; 3]>> = faults.part(|faults| match self {
+    pub(super) fn check(self, units: [f64; 2], at: JsonPath<'_>, faults: &mut Faults) -> Option<Vec<[f64; 3]>> {
+        let [lateral, unit] = units;
+        let height = |z: f64| if is_fill_value(z) { f64::INFINITY } else { z * unit };
+        let point = |x: f64, y: f64, z: Option<f64>| [x * lateral, y * lateral, z.map_or(f64::NAN, height)];
+        Some(match self {
             ScanData::Line(scan) => {
                 let at = at.member("line");
-                scan.check_members(at, faults);
                 as_long(at.member("z"), scan.z.len(), scan.x.len(), faults);
                 scan.x.into_iter().zip(scan.z).map(|(x, z)| point(x, 0.0, z)).collect()
             }
             ScanData::Points(scan) => {
                 let at = at.member("points");
-                scan.check_members(at, faults);
                 as_long(at.member("y"), scan.y.len(), scan.x.len(), faults);
                 as_long(at.member("z"), scan.z.len(), scan.x.len(), faults);
                 let places = scan.x.into_iter().zip(scan.y);
                 places.zip(scan.z).map(|((x, y), z)| point(x, y, z)).collect()
             }
             ScanData::Map(scan) => {
-                let at = at.member("map");
-                scan.check_members(at, faults);
                 let length = scan.z.first().map_or(0, Vec::len);
+                let at = at.member("map");
                 let heights = at.member("z");
                 for (index, row) in scan.z.iter().enumerate().filter(|(_, row)| row.len() != length) {
                     let detail =
@@ -122,8 +118,7 @@ impl ScanData {
                 }
                 if scan.z.len().saturating_mul(length) > *SCAN_POINTS.end() {
                     let detail = format_args!("more than {} heights: leave out rows and columns", SCAN_POINTS.end());
-                    faults.add(heights, detail);
-                    return Vec::new();
+                    return faults.refuse(heights, detail);
                 }
                 let (dx, dy) = (scan.dx, scan.dy);
                 let row = |(row, heights): (usize, Vec<Option<f64>>)| {
@@ -132,14 +127,6 @@ impl ScanData {
                 };
                 scan.z.into_iter().enumerate().flat_map(row).collect()
             }
-        });
-        points.map(|mut points| {
-            for place in fill_values {
-                if let Some(point) = points.get_mut(place) {
-                    point[2] = f64::INFINITY;
-                }
-            }
-            points
         })
     }
 }

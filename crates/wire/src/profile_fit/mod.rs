@@ -6,19 +6,9 @@ mod reply;
 pub use data::{LineScan, MapScan, PointScan, ScanData};
 pub use reply::{Axis2, ColumnPair, ContactEstimate, Estimate, ProfileFitReply, ScanResidual};
 
-use serde::Serialize;
-use utoipa::ToSchema;
+use stickslip_mechanics::{Elasticity, Preload as Load};
 
-use stickslip_mechanics::range::{Quantity, Range};
-use stickslip_mechanics::{Elasticity, Preload as Load, range};
-
-use crate::check::{Faults, JsonPath};
-use crate::choice::{choices, object_or_string, words};
-use crate::definition::{Material, Preload};
-use crate::document::Document;
-use crate::limits::Limited as _;
-use crate::prepare::Prepare;
-use crate::request::requests;
+use crate::prelude::*;
 
 /// The noise of a height that a scan may be said to have.
 pub const SCAN_NOISE: Range = Range { quantity: Quantity::Place, unit: "m", min: 1e-15, max: 1.0 };
@@ -147,7 +137,7 @@ pub enum Smoothing: Copy {
 
 object_or_string!(
     Centre: "an object with `x`, or the string \"auto\"",
-    CentrePlace => Centre::At,
+    CentrePlace => At,
     "auto" => Centre::Auto(Auto::Auto)
 );
 
@@ -183,21 +173,12 @@ impl Document for ProfileFitRequest {
         let pointer = self.scan.pointer();
         let points = self.scan.check(units, root.member("scan"), faults);
         let centre = match self.centre {
-            Some(Centre::At(place)) => {
-                place.check_members(root.member("centre"), faults);
-                Some([place.x, place.y.unwrap_or(0.0)])
-            }
+            Some(Centre::At(place)) => Some([place.x, place.y.unwrap_or(0.0)]),
             Some(Centre::Auto(Auto::Auto)) | None => None,
         };
-        if let Some(smoothing) = &self.smoothing {
-            smoothing.check_members(root.member("smoothing"), faults);
-        }
-        let load = self.load.as_ref().map(|load| {
-            let at = root.member("load");
-            let elasticity = load.material.check(at.member("material"), faults);
-            load.check_members(at, faults);
-            let preload = load.preload.check(at.member("preload"), faults);
-            elasticity.map(|elasticity| (elasticity, load.friction, preload))
+        let load = self.load.as_ref().and_then(|load| {
+            let elasticity = load.material.check(root.member("load").member("material"), faults)?;
+            Some((elasticity, load.friction, (&load.preload).into()))
         });
         points.map(|points| ProfileFitTask {
             points,
@@ -207,7 +188,7 @@ impl Document for ProfileFitRequest {
             centre,
             level: self.level.unwrap_or(true),
             smoothing: self.smoothing.unwrap_or(Smoothing::Auto),
-            load: load.flatten(),
+            load,
         })
     }
 }

@@ -1,9 +1,7 @@
 //! The reply of `POST /profiles/fit`.
 
 use super::ScanOrientation;
-use crate::profile::Profile;
-use crate::reply::Warning;
-use crate::request::replies;
+use crate::prelude::*;
 
 replies! {
 /// A profile that was fitted to a scan, with the residual of the scan.

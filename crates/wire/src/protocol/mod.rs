@@ -2,20 +2,12 @@
 
 mod reply;
 
-use uuid::Uuid;
-
 use stickslip_mechanics::protocol::{AmplitudeLaw, PathEnd};
-use stickslip_mechanics::range::{DISPLACEMENT, Quantity, Range};
+use stickslip_mechanics::range::DISPLACEMENT;
 
-use super::check::{Faults, JsonPath};
-use super::definition::{ContactDefinition, DefinedProfile, SharedSetup};
-use super::document::Document;
-use super::prepare::Prepare;
-use super::simulate::Steps;
-use crate::limits::{Limit as _, Limited as _, PROTOCOL_REVERSALS};
-use crate::request::requests;
+use crate::limits::PROTOCOL_REVERSALS;
+use crate::prelude::*;
 
-use crate::choice::{choices, words};
 pub use reply::{
     Comparison, DisplacementPath, FirstStroke, Gap, JudgedReply, Outcome, PressureUnit, ProtocolReply, RelaxReply,
     RobustnessReply, StartReply,
@@ -147,14 +139,8 @@ pub enum Aim {
 fn aim(reversals: Option<usize>, target: Option<f64>, faults: &mut Faults) -> Option<Aim> {
     let (at_reversals, at_target) = (JsonPath::Root.member("reversals"), JsonPath::Root.member("target"));
     match (reversals, target) {
-        (Some(reversals), None) => {
-            PROTOCOL_REVERSALS.check(&reversals, at_reversals, faults);
-            Some(Aim::Reversals(reversals))
-        }
-        (None, Some(target)) => {
-            faults.number(at_target, target, &TARGET);
-            Some(Aim::Target(target))
-        }
+        (Some(reversals), None) => Some(Aim::Reversals(reversals)),
+        (None, Some(target)) => Some(Aim::Target(target)),
         (None, None) => faults.refuse(at_reversals, "missing: name `reversals` or `target`"),
         (Some(_), Some(_)) => faults.refuse(at_target, "conflicts with `reversals`: one of the two is allowed"),
     }
@@ -212,9 +198,6 @@ impl Document for ProtocolRequest {
             }
         };
         let aim = aim(self.reversals, self.target, faults);
-        if let Some(robustness) = &self.robustness {
-            robustness.check_members(at("robustness"), faults);
-        }
         let task = aim.map(|aim| ProtocolTask { aim, kind: self.kind, end: self.end, robustness: self.robustness });
         subject.zip(task)
     }
@@ -245,7 +228,6 @@ impl ProtocolStart {
     /// The displacement to begin with, if it is one.
     fn check(&self, at: JsonPath<'_>, faults: &mut Faults) -> Option<f64> {
         let ProtocolStart::Displacement(first) = *self else { return None };
-        self.check_members(at, faults);
         if first.abs() <= 0.0 {
             faults.add(at.member("displacement"), "must not be 0: allowed is any other displacement");
         }

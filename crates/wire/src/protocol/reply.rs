@@ -1,11 +1,7 @@
 //! What `POST /protocols` and `POST /contacts/{id}/relax` reply.
 
-use uuid::Uuid;
-
 use super::{ProtocolEnd, ProtocolKind};
-use crate::choice::words;
-use crate::reply::{Accuracy, ContactSummary, Residual, State, Warning};
-use crate::request::replies;
+use crate::prelude::*;
 
 replies! {
 /// How to move so that little shear stress remains.
@@ -24,24 +20,9 @@ pub struct ProtocolReply omits Option {
     pub start: StartReply,
     /// Where and in which unit the remaining stress is measured.
     pub judged: JudgedReply,
-    /// The extrema of the shear stress that remains.
-    pub residual: Residual,
-    /// The largest magnitude of the shear stress that remains where it is measured, Pa; `null` where it is infinite.
-    #[serde_with(skip_apply)]
-    pub largest: Option<f64>,
-    /// `largest` over `judged.unit`, a pure number.
-    #[serde_with(skip_apply)]
-    pub relative: Option<f64>,
-    /// Tangential displacement at the end, m.
-    pub displacement: f64,
-    /// Tangential force at the end, N.
-    pub force: f64,
-    /// Work done against friction on the path, J.
-    pub dissipated_energy: f64,
-    /// How far the path may be from the optimum; only for `minimax`.
-    pub gap: Option<Gap>,
-    /// The stress that remains if the path is not followed exactly, if asked for.
-    pub robustness: Option<RobustnessReply>,
+    /// The stress that the path leaves, and its end.
+    #[serde(flatten)]
+    pub outcome: Outcome,
     /// The results of the other laws, with the same number of reversals.
     pub comparison: Comparison,
     /// Solver, errors and time.

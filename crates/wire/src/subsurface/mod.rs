@@ -4,16 +4,12 @@ mod places;
 
 pub use places::{Direction, Places, Steps, SubsurfaceLine, SubsurfacePlane, SubsurfaceSurface};
 
-use stickslip_mechanics::{self as mechanics, range, subsurface::Side};
+use stickslip_mechanics as mechanics;
+use stickslip_mechanics::subsurface::Side;
 
-use crate::check::{Faults, JsonPath, Rejection};
-use crate::choice::words;
-use crate::definition::{Body, BodyName, ContactDefinition, of_body};
-use crate::document::Document;
-use crate::limits::{Array, Limited as _, SUBSURFACE_POINTS, Triple};
-use crate::prepare::Prepare;
-use crate::reply::{Accuracy, Warning};
-use crate::request::{replies, requests};
+use crate::definition::{Body, of_body};
+use crate::limits::SUBSURFACE_POINTS;
+use crate::prelude::*;
 
 requests! {
 /// The stress in one of the bodies, tension positive: x along the motion of the first body, which carries the profile,
@@ -29,7 +25,7 @@ pub struct SubsurfaceRequest {
     /// Poisson's ratio of the body, a pure number; it may be left out if the material has `bodies`.
     pub poisson_ratio: Option<f64> = range::POISSON_RATIO,
     /// A list of x, y, z, m, with z not negative.
-    pub points: Option<Vec<[f64; 3]>> = Array(SUBSURFACE_POINTS, Triple(range::PLACE)),
+    pub points: Option<Vec<[f64; 3]>> = Array(SUBSURFACE_POINTS, range::PLACE),
     /// A straight line.
     pub line: Option<SubsurfaceLine>,
     /// A grid in a plane.
@@ -212,27 +208,25 @@ impl SubsurfaceRequest {
     /// [`Rejection::Invalid`] with every fault.
     pub fn of_contact(self, contact: &ContactDefinition) -> Result<SubsurfaceTask, Rejection> {
         let mut faults = Faults::default();
+        self.check_limits(JsonPath::Root, &mut faults);
         let task = self.at(contact, JsonPath::Root, &mut faults);
         faults.done(task)
     }
 
-    /// The checked request for a contact of this definition; its faults are noted at `at`.
+    /// The checked request for a contact of this definition; its faults beside the limits of its members are noted at
+    /// `at`.
     pub fn at(self, contact: &ContactDefinition, at: JsonPath<'_>, faults: &mut Faults) -> Option<SubsurfaceTask> {
-        self.check_members(at, faults);
-        let poisson_ratio = faults.part(|faults| self.poisson(contact, at, faults)).flatten();
+        let poisson_ratio = self.poisson(contact, at, faults);
         let fields = self.fields.unwrap_or_else(|| vec![SubsurfaceField::Tensor]);
         if fields.is_empty() {
             let names = "name at least one of `tensor`, `principal`, `von_mises`, `max_shear`, `hydrostatic`";
             faults.add(at.member("fields"), format_args!("empty: {names}"));
         }
-        let bulk = self.bulk.map(|bulk| {
-            bulk.check_members(at.member("bulk"), faults);
-            bulk.stress()
-        });
+        let bulk = self.bulk.map(|bulk| bulk.stress());
         let given = [self.points.is_some(), self.line.is_some(), self.plane.is_some(), self.surface.is_some()];
         let places = match (self.points, self.line, self.plane, self.surface) {
-            (Some(points), None, None, None) => Places::points(points, at.member("points"), faults),
-            (None, Some(line), None, None) => Places::line(line, at.member("line"), faults),
+            (Some(points), None, None, None) => Some(Places::points(points, at.member("points"), faults)),
+            (None, Some(line), None, None) => Some(Places::line(line, at.member("line"), faults)),
             (None, None, Some(plane), None) => Places::plane(&plane, at.member("plane"), faults),
             (None, None, None, Some(surface)) => Places::surface(&surface, at.member("surface"), faults),
             _ => {

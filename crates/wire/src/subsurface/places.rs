@@ -1,19 +1,15 @@
 //! The places below the surface at which stresses are asked for.
 
-use stickslip_mechanics::range;
-
-use crate::check::{Faults, JsonPath};
-use crate::choice::words;
-use crate::limits::{Limited as _, SUBSURFACE_POINTS, Triple};
-use crate::request::requests;
+use crate::limits::SUBSURFACE_POINTS;
+use crate::prelude::*;
 
 requests! {
 /// Points on a straight line, both ends included.
 pub struct SubsurfaceLine {
     /// Where it begins: x, y, z, m.
-    pub from: [f64; 3] = Triple(range::PLACE),
+    pub from: [f64; 3] = range::PLACE,
     /// Where it ends: x, y, z, m.
-    pub to: [f64; 3] = Triple(range::PLACE),
+    pub to: [f64; 3] = range::PLACE,
     /// Number of points.
     pub count: usize = LINE,
 }
@@ -26,19 +22,19 @@ pub struct SubsurfacePlane {
     /// Its value, m.
     pub offset: f64 = range::PLACE,
     /// Range of x as `[from, to, count]`; left out where `normal` is x.
-    pub x: Option<[f64; 3]> = Triple(range::PLACE),
+    pub x: Option<[f64; 3]> = range::PLACE,
     /// Range of y as `[from, to, count]`; left out where `normal` is y.
-    pub y: Option<[f64; 3]> = Triple(range::PLACE),
+    pub y: Option<[f64; 3]> = range::PLACE,
     /// Range of z as `[from, to, count]`; left out where `normal` is z.
-    pub z: Option<[f64; 3]> = Triple(range::PLACE),
+    pub z: Option<[f64; 3]> = range::PLACE,
 }
 
 /// A grid on the surface, z = 0. Each coordinate is `[from, to, count]`, m, both ends included.
 pub struct SubsurfaceSurface {
     /// Range of x as `[from, to, count]`.
-    pub x: [f64; 3] = Triple(range::PLACE),
+    pub x: [f64; 3] = range::PLACE,
     /// Range of y as `[from, to, count]`.
-    pub y: [f64; 3] = Triple(range::PLACE),
+    pub y: [f64; 3] = range::PLACE,
 }
 }
 
@@ -93,77 +89,56 @@ impl Steps {
 
     /// `[from, to, count]`, if it is sound.
     fn read([from, to, count]: [f64; 3], at: JsonPath<'_>, faults: &mut Faults) -> Option<Steps> {
-        faults.part(|faults| {
-            if from >= to {
-                faults.add(at.index(1), format_args!("{to:?} must be above {from:?}"));
-            }
-            let most = *SUBSURFACE_POINTS.end() as f64;
-            if !(count >= 2.0 && count <= most && count.fract() == 0.0) {
-                faults.add(at.index(2), format_args!("{count:?} points: a grid has 2 to {most}, a whole number"));
-            }
-            Steps { from, to, count: count as usize }
-        })
+        if from >= to {
+            faults.add(at.index(1), format_args!("{to:?} must be above {from:?}"));
+        }
+        let most = *SUBSURFACE_POINTS.end() as f64;
+        if !(count >= 2.0 && count <= most && count.fract() == 0.0) {
+            faults.add(at.index(2), format_args!("{count:?} points: a grid has 2 to {most}, a whole number"));
+        }
+        faults.none_within(at)?;
+        Some(Steps { from, to, count: count as usize })
     }
 }
 
 impl Places {
     /// A list of points, whose coordinates have been checked but for the depths.
-    pub(super) fn points(points: Vec<[f64; 3]>, at: JsonPath<'_>, faults: &mut Faults) -> Option<Places> {
-        faults
-            .part(|faults| {
-                for (index, point) in points.iter().enumerate() {
-                    check_depth(point[2], at.index(index).index(2), faults);
-                }
-            })
-            .map(|()| Places::Points(points))
+    pub(super) fn points(points: Vec<[f64; 3]>, at: JsonPath<'_>, faults: &mut Faults) -> Places {
+        for (index, point) in points.iter().enumerate() {
+            check_depth(point[2], at.index(index).index(2), faults);
+        }
+        Places::Points(points)
     }
 
-    pub(super) fn line(line: SubsurfaceLine, at: JsonPath<'_>, faults: &mut Faults) -> Option<Places> {
-        faults
-            .part(|faults| {
-                line.check_members(at, faults);
-                check_depth(line.from[2], at.member("from").index(2), faults);
-                check_depth(line.to[2], at.member("to").index(2), faults);
-                if line.from.iter().zip(&line.to).all(|(from, to)| from.to_bits() == to.to_bits()) {
-                    faults.add(at.member("to"), "the line ends where it begins");
-                }
-            })
-            .map(|()| Places::Line(line))
+    pub(super) fn line(line: SubsurfaceLine, at: JsonPath<'_>, faults: &mut Faults) -> Places {
+        check_depth(line.from[2], at.member("from").index(2), faults);
+        check_depth(line.to[2], at.member("to").index(2), faults);
+        if line.from.iter().zip(&line.to).all(|(from, to)| from.to_bits() == to.to_bits()) {
+            faults.add(at.member("to"), "the line ends where it begins");
+        }
+        Places::Line(line)
     }
 
     pub(super) fn plane(plane: &SubsurfacePlane, at: JsonPath<'_>, faults: &mut Faults) -> Option<Places> {
-        let steps = faults.part(|faults| {
-            plane.check_members(at, faults);
-            let all = [(Direction::X, "x", plane.x), (Direction::Y, "y", plane.y), (Direction::Z, "z", plane.z)];
-            let steps = all.map(|(direction, name, given)| {
-                let place = at.member(name);
-                match (direction == plane.normal, given) {
-                    (true, None) => {
-                        if direction == Direction::Z {
-                            check_depth(plane.offset, at.member("offset"), faults);
-                        }
-                        Some(Steps::single(plane.offset))
-                    }
-                    (true, Some(_)) => faults.refuse(place, "is constant, and given by `offset`: leave this out"),
-                    (false, None) => faults.refuse(place, "give `[from, to, count]`"),
-                    (false, Some(given)) => {
-                        if direction == Direction::Z {
-                            check_depth(given[0], place.index(0), faults);
-                        }
-                        Steps::read(given, place, faults)
-                    }
-                }
-            });
-            match steps {
-                [Some(x), Some(y), Some(z)] => Some([x, y, z]),
-                _ => None,
+        match plane.z {
+            Some([from, ..]) => check_depth(from, at.member("z").index(0), faults),
+            None if plane.normal == Direction::Z => check_depth(plane.offset, at.member("offset"), faults),
+            None => {}
+        }
+        let all = [(Direction::X, plane.x), (Direction::Y, plane.y), (Direction::Z, plane.z)];
+        let [x, y, z] = all.map(|(direction, given)| {
+            let place = at.member(direction.name());
+            match (direction == plane.normal, given) {
+                (true, None) => Some(Steps::single(plane.offset)),
+                (true, Some(_)) => faults.refuse(place, "is constant, and given by `offset`: leave this out"),
+                (false, None) => faults.refuse(place, "give `[from, to, count]`"),
+                (false, Some(given)) => Steps::read(given, place, faults),
             }
         });
-        Places::grid(steps.flatten()?, at, faults)
+        Places::grid([x?, y?, z?], at, faults)
     }
 
     pub(super) fn surface(surface: &SubsurfaceSurface, at: JsonPath<'_>, faults: &mut Faults) -> Option<Places> {
-        surface.check_members(at, faults);
         let x = Steps::read(surface.x, at.member("x"), faults);
         let y = Steps::read(surface.y, at.member("y"), faults);
         Places::grid([x?, y?, Steps::single(0.0)], at, faults)

@@ -1,14 +1,11 @@
 //! A fretting map: steady cycles under many loads; its plot has where gross slip begins, and lines of equal friction
 //! work, over the load.
 
-use stickslip_mechanics::Contact;
-use stickslip_plot::{Axis, Colour, Curve, Panel, Plot};
 use stickslip_wire::cycle::{CycleTask, FrettingMap};
-use stickslip_wire::{Accuracy, CycleReply, SteadyCycle};
+use stickslip_wire::{CycleReply, SteadyCycle};
 
 use super::steady::steady_cycles;
-use crate::Stop;
-use crate::simulation::{Failure, Timer};
+use crate::computations::prelude::*;
 
 /// The steady cycles of a contact under each load of a map, the loads one after the other; the rows say which.
 ///

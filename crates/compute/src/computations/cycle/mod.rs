@@ -4,19 +4,12 @@ mod map;
 mod steady;
 mod studies;
 
-use serde_json::json;
-
-use stickslip_mechanics::{Contact, Move, Profile, Tangential};
-use stickslip_plot::{Axis, Colour, Curve, Drawing, Panel, Plot};
+use stickslip_mechanics::{Move, Tangential};
 use stickslip_wire::cycle::CycleTask;
-use stickslip_wire::{ContactDefinition, CycleReply, CycleRequest, Harmonic, SteadyCycle};
+use stickslip_wire::{CycleReply, CycleRequest, Harmonic, SteadyCycle};
 
-use super::{About, Computation, DisplayOptions, Example, OnContact, Outcome, Route, Task, example};
-use crate::formats::{Column, Table};
-use crate::simulation::bytes::{NUMBER, NUMBER_LENGTH, OBJECT, ROW, STATE_LENGTH, of_shape};
-use crate::simulation::cost::{RADIUS_COST, on_profile};
-use crate::simulation::{Failure, Timer, contact};
-use crate::{Nanoseconds, Stop};
+use crate::computations::prelude::*;
+use crate::simulation::bytes::STATE_LENGTH;
 
 /// One steady cycle with its row as JSON.
 const CYCLE_COST: u64 = 2_000;
@@ -157,12 +150,14 @@ impl SteadyCycles {
     }
 }
 
-impl Outcome for SteadyCycles {
-    type Reply = CycleReply;
-
-    fn reply(&self) -> &CycleReply {
+impl Borrow<CycleReply> for SteadyCycles {
+    fn borrow(&self) -> &CycleReply {
         &self.reply
     }
+}
+
+impl Outcome for SteadyCycles {
+    type Reply = CycleReply;
 
     /// A row for each amplitude, under each load of a map.
     fn table(&self, _: &DisplayOptions) -> Option<Table<'_>> {

@@ -3,14 +3,13 @@
 use std::f64::consts::TAU;
 
 use stickslip_mechanics::cycle::{self, OscillatingCycle, OscillatingLoad, Oscillation};
-use stickslip_mechanics::{Contact, Error, Move, Normal, Tangential};
+use stickslip_mechanics::{Error, Move, Normal, Tangential};
 use stickslip_wire::cycle::CycleTask;
-use stickslip_wire::reply::finite;
 use stickslip_wire::{CycleReply, FrictionWork, Harmonic, SteadyCycle};
 
 use super::studies::{best_load, resonance};
-use crate::Stop;
-use crate::simulation::{Failure, Timer, accuracy, excess_error, needs_stress_field, sampled, warnings_at};
+use crate::computations::prelude::*;
+use crate::simulation::{sampled, warnings_at};
 
 /// Radii between two checks of the flag: each time the contact is copied and turned.
 const RADII_PER_CHECK: usize = 512;
@@ -68,7 +67,7 @@ pub fn steady_cycles(
                 friction_energy: has_bulk(contact).then(|| found.friction_energy()),
                 stick_radius: found.stick_radius(),
                 regime: found.regime().into(),
-                harmonics: harmonics.map(|found| found.harmonics.into_iter().map(harmonic).collect()),
+                harmonics: harmonics.map(|found| found.harmonics.into_iter().map(Harmonic::from).collect()),
                 friction_work: places.as_ref().map(|places| friction_work(&found, places, stop)).transpose()?,
                 best_load: match task.best_load {
                     Some(study) => best_load(contact, (drive, compliance), study, stop)?,
@@ -127,14 +126,9 @@ fn stepped(cycle: OscillatingCycle, task: &CycleTask) -> SteadyCycle {
         sliding_ratio: if moves { cycle.sliding_ratio.and_then(finite) } else { Some(0.0) },
         stick_radius: cycle.stick_radius,
         regime: cycle.regime.into(),
-        harmonics: (task.harmonics > 0).then(|| cycle.harmonics.into_iter().map(harmonic).collect()),
+        harmonics: (task.harmonics > 0).then(|| cycle.harmonics.into_iter().map(Harmonic::from).collect()),
         ..SteadyCycle::default()
     }
-}
-
-fn harmonic(harmonic: cycle::Harmonic) -> Harmonic {
-    let cycle::Harmonic { order, in_phase, quadrature } = harmonic;
-    Harmonic { order, in_phase, quadrature }
 }
 
 fn has_bulk(contact: &Contact) -> bool {

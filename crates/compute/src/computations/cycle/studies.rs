@@ -1,12 +1,9 @@
 //! Studies besides steady cycles: the load that damps most, and the response of a mass.
 
-use stickslip_mechanics::Contact;
 use stickslip_mechanics::cycle::{Drive, Resonator, best_load as best_of, work_under_load};
-use stickslip_wire::reply::finite;
-use stickslip_wire::{BestLoad, BestLoadStudy, FrequencyResponse, LoadCurve, Resonance, ResonancePoint, Warning};
+use stickslip_wire::{BestLoad, BestLoadStudy, FrequencyResponse, LoadCurve, Resonance, ResonancePoint};
 
-use crate::Stop;
-use crate::simulation::{Cause, Failure, excess_error};
+use crate::computations::prelude::*;
 
 /// Frequencies where none are named, and the first and the last of them over that of small oscillations.
 pub(super) const FREQUENCIES: usize = 200;
@@ -58,7 +55,7 @@ pub fn resonance(
         (0..FREQUENCIES).map(at).filter(|frequency| *frequency > 0.0).collect()
     });
     let found = body.respond(contact, &frequencies, tolerance, &|| stop.check().is_ok());
-    let found = found.ok_or_else(|| Failure::at("", Cause::Stopped).unless_interrupted(stop, ""))?;
+    let found = found.ok_or_else(|| Failure::from(Interrupted::Abandoned).unless_interrupted(stop, ""))?;
     let point = |found: stickslip_mechanics::cycle::Response| ResonancePoint {
         frequency: found.frequency,
         amplitude: found.amplitude,

@@ -6,21 +6,15 @@ mod warnings;
 
 use std::iter;
 
-use serde_json::json;
-
+use stickslip_mechanics::Stress;
 use stickslip_mechanics::fatigue::{self, CriticalDistance};
-use stickslip_mechanics::{Profile, Stress};
-use stickslip_plot::Drawing;
 use stickslip_wire::fretting::FrettingTask;
-use stickslip_wire::{ContactDefinition, Fault, FrettingReply, FrettingRequest};
+use stickslip_wire::{FrettingReply, FrettingRequest};
 
 use super::subsurface::column_table;
-use super::{About, Choice, Computation, DisplayOptions, Example, Outcome, Route, Task, example};
-use crate::formats::Table;
-use crate::simulation::Failure;
-use crate::simulation::bytes::{NUMBER, NUMBER_LENGTH, PLACE_ROW, of_shape};
+use crate::computations::prelude::*;
+use crate::simulation::bytes::PLACE_ROW;
 use crate::simulation::cost::{KINK_COST, MOVE_COST, PLACE_COST};
-use crate::{Nanoseconds, Stop};
 
 /// One instant of a curved move, with the mesh of the many pieces that it leaves.
 const CURVED_INSTANT_COST: u64 = 20_000_000;
@@ -181,12 +175,14 @@ const CRITERION: Choice = Choice {
     words: &picture::NAMES,
 };
 
-impl Outcome for Rated {
-    type Reply = FrettingReply;
-
-    fn reply(&self) -> &FrettingReply {
+impl Borrow<FrettingReply> for Rated {
+    fn borrow(&self) -> &FrettingReply {
         &self.reply
     }
+}
+
+impl Outcome for Rated {
+    type Reply = FrettingReply;
 
     fn table(&self, _: &DisplayOptions) -> Option<Table<'_>> {
         let FrettingReply { x, y, z, .. } = &self.reply;

@@ -1,11 +1,11 @@
 //! The picture of one fatigue criterion: a map over a grid of places, or a curve over a line.
 
-use stickslip_plot::{Axis, Band, Colour, ContactEdge, Curve, Drawing, Panel, Peak, Plot, Section, on_axis};
+use stickslip_plot::{Band, ContactEdge, Peak, Section, on_axis};
 use stickslip_wire::fretting::{CRITERIA, FrettingTask};
 use stickslip_wire::subsurface::{Places, SubsurfaceLine};
-use stickslip_wire::{BodyName, Fault, FrettingReply, Largest};
+use stickslip_wire::{BodyName, FrettingReply, Largest};
 
-use crate::computations::DisplayOptions;
+use crate::computations::prelude::*;
 use crate::computations::subsurface::{COORDINATES, over_plane, shown_axes};
 
 /// The criteria by their names in the reply, in its order.

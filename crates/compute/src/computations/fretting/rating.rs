@@ -2,14 +2,12 @@
 
 use stickslip_mechanics::fatigue::{self, Cycle, Largest, Rated, Ratings, Study};
 use stickslip_mechanics::{Error, Stress};
-use stickslip_wire::definition::SharedSetup;
 use stickslip_wire::fretting::{self as wire, AskedMeasure, FrettingTask};
-use stickslip_wire::reply::finite;
-use stickslip_wire::{Accuracy, BelowSurface, FrettingReply, Rating, StressPath};
+use stickslip_wire::{BelowSurface, FrettingReply, Rating, StressPath};
 
 use super::warnings::{self, beyond_model, fretting_warnings};
-use crate::Stop;
-use crate::simulation::{Cause, Failure, Timer, accuracy, bulk_warning, contact, cycle_moves, present_warnings};
+use crate::computations::prelude::*;
+use crate::simulation::{bulk_warning, cycle_moves};
 
 /// Places of infinite stress below which a criterion is evaluated.
 const MOST_INFINITE: usize = 16;
@@ -83,7 +81,7 @@ pub fn rate(setup: SharedSetup, task: &FrettingTask, stop: &dyn Stop) -> Result<
             error: rated.error,
             point: places[place],
             plane: rated.plane,
-            at: rated.at.map(instant),
+            at: rated.at.map(wire::Instant::from),
         });
         let of_largest =
             most.filter(|_| bounded).map_or([f64::INFINITY, 0.0], |most| [most.rated.value, most.rated.error]);
@@ -99,7 +97,7 @@ pub fn rate(setup: SharedSetup, task: &FrettingTask, stop: &dyn Stop) -> Result<
                 error: rated.error,
                 point,
                 plane: rated.plane,
-                at: rated.at.map(instant),
+                at: rated.at.map(wire::Instant::from),
                 margin: limit.filter(|_| rated.value > 0.0).and_then(|limit| finite(limit / rated.value)),
                 life: life_of([rated.value, rated.error]),
             }),
@@ -146,10 +144,6 @@ fn worst_on_surface(places: &[[f64; 3]], values: &[f64]) -> Vec<[f64; 3]> {
     let worst = finite.reduce(|worst, next| if next.1 > worst.1 { next } else { worst });
     let infinite = on_surface().filter(|(_, value)| **value == f64::INFINITY).take(MOST_INFINITE);
     worst.into_iter().chain(infinite).map(|(place, _)| *place).collect()
-}
-
-fn instant(at: fatigue::Instant) -> wire::Instant {
-    wire::Instant { step: at.step, part: at.part }
 }
 
 /// An error over a value, the largest number where that is not known; a value of zero has no share that it errs by.

@@ -1,12 +1,13 @@
 //! Warnings about the largest value of a fatigue criterion, and about a cycle.
 
 use stickslip_mechanics::fatigue::{Criterion, Measure, Ratings, Worst};
-use stickslip_mechanics::{Contact, Move, in_unit};
+use stickslip_mechanics::{Move, in_unit};
+use stickslip_wire::FrettingReply;
 use stickslip_wire::fretting::{AskedMeasure, FrettingTask};
 use stickslip_wire::subsurface::Places;
-use stickslip_wire::{FrettingReply, Warning};
 
 use super::picture::NAMES;
+use crate::computations::prelude::*;
 use crate::simulation::MAX_SLOPE;
 
 /// Places farther than this from the centre of the contact, in contact radii, miss it.

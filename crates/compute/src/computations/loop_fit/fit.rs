@@ -3,20 +3,21 @@
 use stickslip_measured::loops::{self, Error, Known, LoopFit, Noise, Note, Parameter, Record, Start};
 use stickslip_mechanics as mechanics;
 use stickslip_wire::fit::{
-    FitEstimate, FitParameter, FitReply, FitResidual, FitTask, FitUnits, FittedLoop, LoopRecord, LoopStart,
-    NoiseLevels, SignRuns,
+    FitEstimate, FitParameter, FitReply, FitResidual, FitUnits, FittedLoop, LoopStart, MeasuredLoop, NoiseLevels,
+    SignRuns,
 };
-use stickslip_wire::{ContactDefinition, Effective, Material, Profile, Warning};
+use stickslip_wire::{Effective, FitRequest, Material, Profile};
 
-use crate::Stop;
-use crate::simulation::{Failure, contact, refused_at};
+use crate::computations::prelude::*;
+use crate::simulation::refused_at;
 
-/// Fits what is free to measured loops.
+/// Fits what is free to measured loops, which are in SI units.
 ///
 /// # Errors
 /// [`Failure`], which says what the loops lack, that the contact cannot be made, or that the work was ended.
-pub fn fit_loops(task: FitTask, stop: &dyn Stop) -> Result<FitReply, Failure> {
-    let FitTask { definition, setup, loops, free, known, noise, units } = task;
+pub fn fit_loops(request: FitRequest, setup: SharedSetup, stop: &dyn Stop) -> Result<FitReply, Failure> {
+    let FitRequest { contact: definition, loops, units, free, known, noise } = request;
+    let (known, noise) = (known.unwrap_or_default(), noise.unwrap_or_default());
     let (preload, has_friction) = (setup.preload, setup.friction > 0.0);
     let task = loops::Task {
         contact: contact(setup, "/contact")?,
@@ -35,7 +36,7 @@ pub fn fit_loops(task: FitTask, stop: &dyn Stop) -> Result<FitReply, Failure> {
     let fit = loops::fit(&task, &|| stop.check().is_ok()).map_err(|error| match (error, stop.check()) {
         (Error::Interrupted, Err(interrupted)) => Failure::interrupted(interrupted, "/loops"),
         (Error::Refused(error), _) => refused_at("/contact", preload)(error),
-        (error, _) => Failure::at(place(&error, &free, units, has_friction), error),
+        (error, _) => Failure::at(place(&error, &free, units.unwrap_or_default(), has_friction), error),
     })?;
     Ok(reply(fit, definition))
 }
@@ -49,13 +50,13 @@ fn name(parameter: Parameter) -> FitParameter {
     FitParameter::ALL[parameter as usize]
 }
 
-fn record(record: LoopRecord) -> Record {
-    let LoopRecord { displacement, force, time, normal_force, start, weight } = record;
+fn record(measured: MeasuredLoop) -> Record {
+    let MeasuredLoop { displacement, force, time, normal_force, start, weight } = measured;
     let start = start.map(|start| match start {
         LoopStart::Steady => Start::Steady,
         LoopStart::Virgin => Start::Virgin,
     });
-    Record { displacement, force, time, normal_force, start, weight }
+    Record { displacement, force, time, normal_force, start, weight: weight.unwrap_or(1.0) }
 }
 
 /// The JSON pointer to what an error is about.
@@ -86,28 +87,20 @@ fn reply(fit: LoopFit, definition: ContactDefinition) -> FitReply {
     let names: Vec<FitParameter> = fit.estimates.iter().map(|estimate| name(estimate.parameter)).collect();
     let correlations = |row: &Vec<Option<f64>>| names.iter().copied().zip(row.iter().copied()).collect();
     let correlations = names.iter().copied().zip(fit.correlations.iter().map(correlations)).collect();
-    let estimate = |estimate: &loops::Estimate| FitEstimate {
-        value: estimate.value,
-        standard_error: estimate.standard_error,
-        interval: estimate.interval,
-        at_bound: estimate.at_bound,
+    let estimate = |&loops::Estimate { value, standard_error, interval, at_bound, .. }: &loops::Estimate| FitEstimate {
+        value,
+        standard_error,
+        interval,
+        at_bound,
     };
+    let loops::Residual { rms, largest, outliers, runs: loops::Runs { count, expected, random } } = fit.residual;
     let [force, displacement] = fit.noise;
     FitReply {
         estimates: names.iter().copied().zip(fit.estimates.iter().map(estimate)).collect(),
         correlations,
         contact: fitted(definition, &fit, &names),
         identifiable: fit.identifiable,
-        residual: FitResidual {
-            rms: fit.residual.rms,
-            largest: fit.residual.largest,
-            outliers: fit.residual.outliers,
-            runs: SignRuns {
-                count: fit.residual.runs.count,
-                expected: fit.residual.runs.expected,
-                random: fit.residual.runs.random,
-            },
-        },
+        residual: FitResidual { rms, largest, outliers, runs: SignRuns { count, expected, random } },
         noise: NoiseLevels { force, displacement },
         curve: fit
             .curves

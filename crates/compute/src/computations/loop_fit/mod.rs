@@ -2,17 +2,12 @@
 
 mod fit;
 
-use serde_json::json;
-
-use stickslip_plot::{Axis, Colour, Curve, Drawing, Panel, Plot, in_unit};
-use stickslip_wire::fit::{FitTask, FittedLoop};
+use stickslip_plot::in_unit;
+use stickslip_wire::fit::FittedLoop;
 use stickslip_wire::{FitReply, FitRequest};
 
-use super::{About, Computation, DisplayOptions, Example, Outcome, Route, example};
-use crate::formats::{Column, Table};
-use crate::simulation::Failure;
-use crate::simulation::bytes::{ROW, WORKSPACE, of_shape};
-use crate::{Nanoseconds, Stop};
+use crate::computations::prelude::*;
+use crate::simulation::bytes::WORKSPACE;
 
 /// Time of a fit to loops, and for each of their points.
 const FIT_COST: Nanoseconds = 100_000_000;
@@ -62,29 +57,25 @@ impl Computation for FitLoops {
         )]
     }
 
-    fn bytes(task: &FitTask) -> usize {
-        WORKSPACE + ROW * task.points() + of_shape(&task.definition.profile)
+    fn bytes((request, _): &Task<Self>) -> usize {
+        WORKSPACE + ROW * request.points() + of_shape(&request.contact.profile)
     }
 
-    fn rows(task: &FitTask) -> (usize, usize) {
-        (task.points(), ROW)
+    fn rows((request, _): &Task<Self>) -> (usize, usize) {
+        (request.points(), ROW)
     }
 
-    fn cost(task: &FitTask) -> Nanoseconds {
-        FIT_COST + FIT_POINT_COST * task.points() as u64
+    fn cost((request, _): &Task<Self>) -> Nanoseconds {
+        FIT_COST + FIT_POINT_COST * request.points() as u64
     }
 
-    fn run(task: FitTask, stop: &dyn Stop) -> Result<FitReply, Failure> {
-        fit::fit_loops(task, stop)
+    fn run((request, setup): Task<Self>, stop: &dyn Stop) -> Result<FitReply, Failure> {
+        fit::fit_loops(request, setup, stop)
     }
 }
 
 impl Outcome for FitReply {
     type Reply = FitReply;
-
-    fn reply(&self) -> &FitReply {
-        self
-    }
 
     /// The points of measured loops, with what was fitted to them.
     fn table(&self, _: &DisplayOptions) -> Option<Table<'_>> {

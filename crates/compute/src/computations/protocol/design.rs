@@ -5,17 +5,13 @@ use stickslip_mechanics::protocol::{
     fewest, lower_bound, trials,
 };
 use stickslip_mechanics::range::Quantity;
-use stickslip_mechanics::{Contact, Error, Setup};
-use stickslip_wire::definition::SharedSetup;
+use stickslip_mechanics::{Error, Setup};
 use stickslip_wire::protocol::{
     Aim, Comparison, DisplacementPath, Gap, JudgedReply, Outcome, PressureUnit, ProtocolKind, ProtocolReply,
     ProtocolTask, Robustness, RobustnessReply, StartReply,
 };
-use stickslip_wire::reply::finite;
-use stickslip_wire::{Residual, limits};
 
-use crate::Stop;
-use crate::simulation::{Failure, Timer, accuracy, present_warnings};
+use crate::computations::prelude::*;
 
 /// A contact for which a protocol is designed, and the start of the reversals.
 pub struct Subject<'a> {
@@ -132,14 +128,7 @@ pub fn protocol(subject: &Subject<'_>, task: &ProtocolTask, stop: &dyn Stop) -> 
             pressure: if summary.max_pressure.is_some() { PressureUnit::Largest } else { PressureUnit::Mean },
             objective: objective(&judged),
         },
-        residual: own.residual,
-        largest: own.largest,
-        relative: own.relative,
-        displacement: own.displacement,
-        force: own.force,
-        dissipated_energy: own.dissipated_energy,
-        gap: own.gap,
-        robustness: own.robustness,
+        outcome: own,
         comparison,
         accuracy: accuracy(&chosen.contact, timer, "protocols are designed with the exact solver"),
         path: DisplacementPath { displacement: chosen.displacements },

@@ -2,19 +2,16 @@
 
 mod design;
 
-use serde_json::json;
 use uuid::Uuid;
 
 use stickslip_mechanics::range;
-use stickslip_mechanics::{Contact, Profile};
 use stickslip_wire::protocol::{Aim, ProtocolSubject, ProtocolTask};
-use stickslip_wire::{ContactDefinition, ProtocolReply, ProtocolRequest, limits};
+use stickslip_wire::{ProtocolReply, ProtocolRequest};
 
-use super::{About, Computation, Example, FromStored, OnContact, Plain, Route, Task, example, example_contact};
-use crate::simulation::bytes::{NUMBER, OBJECT, ROW, of_records, of_shape};
-use crate::simulation::cost::{MOVE_COST, Work, on_profile};
-use crate::simulation::{Cause, Failure, contact};
-use crate::{Nanoseconds, Stop};
+use super::FromStored;
+use crate::computations::prelude::*;
+use crate::simulation::bytes::of_records;
+use crate::simulation::cost::MOVE_COST;
 use design::{Subject, protocol};
 
 /// One pair of kinks of a protocol on a sphere, over all evaluations and all three laws.
@@ -42,7 +39,7 @@ impl Computation for FindProtocol {
     };
 
     type Request = ProtocolRequest;
-    type Outcome = Plain<ProtocolReply>;
+    type Outcome = ProtocolReply;
 
     fn examples() -> Vec<Example> {
         vec![
@@ -84,7 +81,7 @@ impl Computation for FindProtocol {
         }
     }
 
-    fn run((subject, task): Task<Self>, stop: &dyn Stop) -> Result<Plain<ProtocolReply>, Failure> {
+    fn run((subject, task): Task<Self>, stop: &dyn Stop) -> Result<ProtocolReply, Failure> {
         let ProtocolSubject::Virgin(made, first) = subject else {
             return Err(Failure::at("/start/contact_id", Cause::NeedsServer));
         };
@@ -95,7 +92,7 @@ impl Computation for FindProtocol {
             // What the request does not have cannot be at fault: the contact is.
             range::DISPLACEMENT.check(full).map_err(|error| Failure::at("/contact", error))?;
         }
-        protocol(&Subject { contact, first: first.or(Some(full)), setup: Some(setup) }, &task, stop).map(Plain)
+        protocol(&Subject { contact, first: first.or(Some(full)), setup: Some(setup) }, &task, stop)
     }
 }
 
@@ -111,7 +108,7 @@ impl FromStored for FindProtocol {
 }
 
 impl OnContact for ProtocolTask {
-    type Outcome = Plain<ProtocolReply>;
+    type Outcome = ProtocolReply;
 
     /// With its reply and, on a contact, its moves.
     fn bytes(&self) -> usize {
@@ -131,9 +128,13 @@ impl OnContact for ProtocolTask {
         on_profile(profile, PROTOCOL_COST + 3 * tried.saturating_mul(once), true).saturating_add(searched)
     }
 
-    fn run(self, contact: Contact, _: u64, stop: &dyn Stop) -> Result<Plain<ProtocolReply>, Failure> {
-        find_from_state(&contact, &self, stop).map(Plain)
+    fn run(self, contact: Contact, _: u64, stop: &dyn Stop) -> Result<ProtocolReply, Failure> {
+        find_from_state(&contact, &self, stop)
     }
+}
+
+impl Outcome for ProtocolReply {
+    type Reply = ProtocolReply;
 }
 
 /// The protocol that begins from the present state of a contact.

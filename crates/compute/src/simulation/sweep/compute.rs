@@ -6,14 +6,12 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread::{self, Builder};
 use std::time::{Duration, Instant};
 
-use serde_json::Value;
-
 use super::{Sweep, SweepResult};
-use crate::simulation::{Anew, Cause, Failure, check, simulate_any};
-use crate::{Nanoseconds, Part, Stop};
-use stickslip_wire::check::Fault;
+use crate::prelude::*;
+use crate::simulation::{Anew, check, simulate_any};
+use crate::{Part, Refusal};
+use stickslip_wire::PointFailure;
 use stickslip_wire::pointer_lookup::{Lookup, lookup};
-use stickslip_wire::{Code, PointFailure, Rejection, SimulateRequest, SimulationReply};
 
 /// How long a sweep keeps its threads.
 const SLICE_TIME: Duration = Duration::from_millis(25);
@@ -106,7 +104,7 @@ impl Sweep {
             done.flatten().collect::<Vec<_>>()
         });
         if done.is_empty() {
-            return Err(Failure::at("", Cause::Stopped));
+            return Err(Failure::from(Interrupted::Abandoned));
         }
         done.sort_by_key(|(first, _)| *first);
         done.into_iter().try_fold(SweepResult::default(), |mut result, (_, next)| {
@@ -134,45 +132,30 @@ impl Sweep {
                         Lookup::Number(None) | Lookup::Nothing | Lookup::Other => f64::NAN,
                     }))
                 }
-                Err(failure) => {
+                Err(refusal) => {
                     stop.check()?;
-                    let index = point as u64;
-                    result.push_failure(outputs, PointFailure { index, ..failure });
+                    result.push_failure(outputs, failure(point, refusal));
                 }
             }
         }
         Ok(result)
     }
 
-    fn point(&self, document: &mut Value, point: usize, stop: &dyn Stop) -> Result<SimulationReply, PointFailure> {
+    fn point(&self, document: &mut Value, point: usize, stop: &dyn Stop) -> Result<SimulationReply, Refusal> {
         self.checked.put(document, point);
-        let request = SimulateRequest::deserialize(&*document)
-            .map_err(|error| Rejection::Invalid(vec![Fault::new("", error.to_string())]));
-        let checked = check(request.map_err(of_rejection)?, &Anew(stop), stop).map_err(of_failure)?;
-        let simulation = checked.map_err(of_rejection)?;
-        let reply = match &self.shared {
-            Some(shared) => shared.simulate(simulation, stop),
-            None => simulate_any(&simulation, stop),
-        };
-        reply.map_err(of_failure)
+        let request = SimulateRequest::deserialize(&*document);
+        let request = request.map_err(|error| Refusal::at(Code::InvalidInput, "", error.to_string()))?;
+        let simulation = check(request, &Anew(stop), stop)??;
+        Ok(match &self.shared {
+            Some(shared) => shared.simulate(simulation, stop)?,
+            None => simulate_any(&simulation, stop)?,
+        })
     }
 }
 
-fn of_rejection(rejection: Rejection) -> PointFailure {
-    match rejection {
-        Rejection::Refused { pointer, error } => of_failure(Failure::at(pointer, error)),
-        Rejection::NotJson(detail) => failure(Code::InvalidInput, String::new(), detail),
-        Rejection::Invalid(faults) => {
-            let first = faults.into_iter().next().unwrap_or(Fault::new("", ""));
-            failure(Code::InvalidInput, first.pointer, first.detail)
-        }
-    }
-}
-
-fn of_failure(refusal: Failure) -> PointFailure {
-    failure(refusal.code(), refusal.pointer, refusal.cause.to_string())
-}
-
-fn failure(code: Code, pointer: String, detail: String) -> PointFailure {
-    PointFailure { index: 0, code: code.as_str().to_owned(), pointer, detail }
+/// The first fault of a refusal.
+fn failure(point: usize, Refusal { code, detail, errors, .. }: Refusal) -> PointFailure {
+    let first = errors.into_iter().next().map(|fault| (fault.pointer, fault.detail));
+    let (pointer, detail) = first.unwrap_or((String::new(), detail));
+    PointFailure { index: point as u64, code: code.as_str().to_owned(), pointer, detail }
 }

@@ -8,14 +8,13 @@ mod plan;
 mod result;
 mod shared;
 
-use serde_json::Value;
-
-use crate::Nanoseconds;
 use stickslip_wire::sweep::CheckedSweep;
 
 pub use compute::Worker;
 pub use result::SweepResult;
 use shared::Shared;
+
+use crate::prelude::*;
 
 /// Work of one chunk: what is stored at a time, and what a killed process loses.
 const CHUNK_COST: Nanoseconds = 1_000_000_000;

@@ -1,21 +1,15 @@
 //! Checking a sweep: at its corners, where each axis is at one of its ends, its numbers are smallest and largest.
 
-use serde_json::Value;
-
 use super::Sweep;
 use super::shared::{self, Shared};
-use crate::Nanoseconds;
-use crate::simulation::{bytes, cost};
+use crate::prelude::*;
 use stickslip_mechanics::profile::LineContact;
-use stickslip_wire::check::{Fault, Faults, JsonPath};
+use stickslip_wire::check::{Faults, JsonPath};
 use stickslip_wire::json_value::{Pointer, index};
 use stickslip_wire::pointer_lookup::{Lookup, lookup};
-use stickslip_wire::simulate::Simulation;
 use stickslip_wire::sweep::CheckedSweep;
 use stickslip_wire::{
-    Accuracy, ContactSummary, Document as _, Field, Peak, Plan, PlanarPlan, PlanarReply, PlanarState, PlanarStress,
-    Prepare, PrepareOnce, Protocol, Rejection, Residual, Sampling, SimulateReply, SimulateRequest, SimulationReply,
-    State, Steps, Stress, parse_value,
+    ContactSummary, Peak, PlanarPlan, PlanarReply, PlanarState, PlanarStress, PrepareOnce, parse_value,
 };
 
 /// What planning takes besides profiles: a thread of the solver, however small the sweep is.

@@ -4,10 +4,11 @@ use std::sync::Arc;
 
 use serde_json::Number;
 
+use stickslip_wire::PointFailure;
 use stickslip_wire::sweep::{CheckedSweep, indices};
-use stickslip_wire::{PointFailure, limits};
 
 use crate::formats::{Cells, Column, Table};
+use crate::prelude::*;
 
 /// The outputs of consecutive points.
 #[derive(Clone, Debug, Default, PartialEq)]

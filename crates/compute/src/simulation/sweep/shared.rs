@@ -3,16 +3,12 @@
 
 use std::sync::Arc;
 
-use serde_json::{Value, json};
-use stickslip_mechanics::{Contact, Profile};
-use stickslip_wire::simulate::Simulation;
+use stickslip_wire::Solver;
 use stickslip_wire::sweep::AxisValues;
-use stickslip_wire::{Plan, SimulationReply, Solver};
 
-use crate::Stop;
-use crate::simulation::run::{contact, simulate_on};
-use crate::simulation::stated_accuracy::Timer;
-use crate::simulation::{Failure, simulate_any};
+use crate::prelude::*;
+use crate::simulation::run::simulate_on;
+use crate::simulation::simulate_any;
 
 #[derive(Debug)]
 pub(super) struct Shared {
