@@ -42,6 +42,7 @@ impl RequestSmugglingGuard {
             let (piece, after) = rest.split_at(memchr(b'\n', rest).map_or(rest.len(), |place| place + 1));
             rest = after;
             if self.length < LINE {
+                self.line.reserve_exact(LINE - self.line.len());
                 self.line.extend_from_slice(&piece[..piece.len().min(LINE - self.length)]);
             }
             self.length += piece.len();
