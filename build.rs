@@ -5,6 +5,7 @@ mod commit;
 
 use std::ffi::OsStr;
 use std::fs::{self, File};
+use std::hash::{DefaultHasher, Hash as _, Hasher as _};
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -38,9 +39,14 @@ fn main() {
         let plain = path.canonicalize().expect("a file of the page exists");
         let name = plain.file_name().and_then(OsStr::to_str).expect("the files of the page have plain names");
         let packed = out.join(format!("{name}.gz"));
-        pack(&packed, &fs::read(&plain).expect("a file of the page can be read"));
+        let bytes = fs::read(&plain).expect("a file of the page can be read");
+        pack(&packed, &bytes);
+        let mut version = DefaultHasher::new();
+        bytes.hash(&mut version);
+        // Of both encodings, and so weak.
+        let tag = format!("W/\"{:016x}\"", version.finish());
         let (plain, packed) = (format!("include_bytes!({plain:?})"), format!("include_bytes!({packed:?})"));
-        list.push_str(&format!("Asset {{ name: {name:?}, plain: {plain}, packed: {packed} }},\n"));
+        list.push_str(&format!("Asset {{ name: {name:?}, tag: {tag:?}, plain: {plain}, packed: {packed} }},\n"));
     }
     list.push(']');
     fs::write(out.join("page.in"), list).expect("the folder can be written");

@@ -84,8 +84,8 @@ impl Holder {
     }
 }
 
-/// All known keys, by their hashes. The time of a lookup depends on hashes alone, which are no secrets: nobody finds the
-/// key to one.
+/// All known keys, by their hashes. The time of a lookup depends on hashes alone, which are no secrets: nobody finds
+/// the key to one.
 #[derive(Debug, Default)]
 pub struct Keys(HashMap<Hash, Arc<Holder>>);
 

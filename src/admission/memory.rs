@@ -25,7 +25,7 @@ use std::sync::Arc;
 
 use tokio::sync::{OwnedSemaphorePermit, Semaphore};
 
-use super::{Capacity, Pool, PoolError};
+use super::{Capacity, Permits, Pool, PoolError};
 
 /// Bytes of bodies, work and replies at a time by default.
 pub const BYTES: usize = 512 * 1024 * 1024;
@@ -87,18 +87,11 @@ impl Capacity {
 /// The memory of a pool.
 #[derive(Debug)]
 pub(super) struct Memory {
-    ordinary: Units,
-    small: Units,
-    states: Units,
+    ordinary: Permits,
+    small: Permits,
+    states: Permits,
     /// By their stages.
     reserves: [Reserve; 2],
-}
-
-/// So many bytes, as permits of a unit each.
-#[derive(Debug)]
-struct Units {
-    free: Arc<Semaphore>,
-    all: usize,
 }
 
 /// The reserve of a stage.
@@ -107,31 +100,17 @@ struct Reserve {
     /// One permit.
     turn: Arc<Semaphore>,
     /// Taken by whoever has the turn.
-    units: Units,
-}
-
-impl Units {
-    fn of(bytes: usize) -> Units {
-        let all = (bytes / UNIT).clamp(1, u32::MAX as usize);
-        Units { free: Arc::new(Semaphore::new(all)), all }
-    }
-
-    fn try_take(&self, units: usize) -> Option<OwnedSemaphorePermit> {
-        Arc::clone(&self.free).try_acquire_many_owned(u32::try_from(units).ok()?).ok()
-    }
-
-    fn taken(&self) -> usize {
-        self.all - self.free.available_permits()
-    }
+    units: Permits,
 }
 
 impl Memory {
     pub(super) fn new(capacity: Capacity) -> Memory {
         let reserves = [Stage::Body, Stage::Work].map(|stage| Reserve {
             turn: Arc::new(Semaphore::new(1)),
-            units: Units::of(capacity.reserve_bytes(stage)),
+            units: Permits::new(capacity.reserve_bytes(stage) / UNIT),
         });
-        let [ordinary, small, states] = [capacity.bytes, capacity.small_bytes(), capacity.state_bytes()].map(Units::of);
+        let [ordinary, small, states] =
+            [capacity.bytes, capacity.small_bytes(), capacity.state_bytes()].map(|bytes| Permits::new(bytes / UNIT));
         Memory { ordinary, small, states, reserves }
     }
 
@@ -238,7 +217,7 @@ impl Pool {
     pub async fn reserve_in_background(&self, bytes: usize) -> Result<Reservation, PoolError> {
         let memory = self.memory();
         let units = bytes.div_ceil(UNIT).min(memory.reserves[Stage::Work as usize].units.all);
-        self.permits(&memory.ordinary.free, units as u32).await.map(Reservation::of_shared)
+        self.permits(&memory.ordinary, units).await.map(Reservation::of_shared)
     }
 
     /// Reserves bytes for all the states that a piece of work loads or copies, but at most all that there are for
@@ -250,8 +229,8 @@ impl Pool {
         if bytes <= UNCOUNTED {
             return Ok(Reservation::default());
         }
-        let Units { free, all } = &self.memory().states;
-        self.permits(free, bytes.div_ceil(UNIT).min(*all) as u32).await.map(Reservation::of_shared)
+        let states = &self.memory().states;
+        self.permits(states, bytes.div_ceil(UNIT).min(states.all)).await.map(Reservation::of_shared)
     }
 
     /// Reserves bytes if they are free now.

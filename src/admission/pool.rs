@@ -70,11 +70,33 @@ pub struct Pool(Arc<Shared>);
 struct Shared {
     capacity: Capacity,
     threads: FairScheduler,
-    requests: Arc<Semaphore>,
+    requests: Permits,
     memory: Memory,
-    queue: Arc<Semaphore>,
+    queue: Permits,
     quotas: Quotas,
     meters: Arc<PoolMeters>,
+}
+
+/// Permits of which there are so many, at least one.
+#[derive(Debug)]
+pub(super) struct Permits {
+    pub(super) free: Arc<Semaphore>,
+    pub(super) all: usize,
+}
+
+impl Permits {
+    pub(super) fn new(all: usize) -> Permits {
+        let all = all.clamp(1, u32::MAX as usize);
+        Permits { free: Arc::new(Semaphore::new(all)), all }
+    }
+
+    pub(super) fn try_take(&self, number: usize) -> Option<OwnedSemaphorePermit> {
+        Arc::clone(&self.free).try_acquire_many_owned(u32::try_from(number).ok()?).ok()
+    }
+
+    pub(super) fn taken(&self) -> usize {
+        self.all - self.free.available_permits()
+    }
 }
 
 /// Permission to be served, held until dropped.
@@ -130,13 +152,12 @@ pub enum PoolError {
 impl Pool {
     /// A pool with these resources; at least one of each.
     pub fn new(capacity: Capacity) -> Pool {
-        let semaphore = |permits: usize| Arc::new(Semaphore::new(permits.clamp(1, Semaphore::MAX_PERMITS)));
         Pool(Arc::new(Shared {
             capacity,
             threads: FairScheduler::new(capacity.threads),
-            requests: semaphore(capacity.requests),
+            requests: Permits::new(capacity.requests),
             memory: Memory::new(capacity),
-            queue: semaphore(capacity.queue),
+            queue: Permits::new(capacity.queue),
             quotas: Quotas::new(capacity.quotas),
             meters: Arc::default(),
         }))
@@ -173,11 +194,10 @@ impl Pool {
 
     /// The resources in use.
     pub fn taken(&self) -> Taken {
-        let taken = |most: usize, semaphore: &Semaphore| most.max(1).saturating_sub(semaphore.available_permits());
         Taken {
             threads: self.0.threads.taken(),
-            requests: taken(self.0.capacity.requests, &self.0.requests),
-            waiting: taken(self.0.capacity.queue, &self.0.queue),
+            requests: self.0.requests.taken(),
+            waiting: self.0.queue.taken(),
             bytes: self.0.memory.taken(),
         }
     }
@@ -201,21 +221,18 @@ impl Pool {
         if let Poll::Ready(granted) = futures::poll!(request.as_mut()) {
             return Ok(granted);
         }
-        let _queued = self.0.queue.try_acquire().map_err(|_| PoolError::QueueFull)?;
+        let _queued = self.0.queue.free.try_acquire().map_err(|_| PoolError::QueueFull)?;
         timeout(self.0.capacity.wait, request).await.map_err(|_| PoolError::Busy)
     }
 
-    pub(super) async fn permits(
-        &self,
-        semaphore: &Arc<Semaphore>,
-        number: u32,
-    ) -> Result<OwnedSemaphorePermit, PoolError> {
-        if let Ok(permit) = Arc::clone(semaphore).try_acquire_many_owned(number) {
+    pub(super) async fn permits(&self, of: &Permits, number: usize) -> Result<OwnedSemaphorePermit, PoolError> {
+        if let Some(permit) = of.try_take(number) {
             return Ok(permit);
         }
         // In a box, so that a request that need not wait is not as large as one that does. The semaphores are never
         // closed, so their own error cannot occur.
-        Box::pin(self.wait(Arc::clone(semaphore).acquire_many_owned(number))).await?.map_err(|_| PoolError::Busy)
+        let permit = Arc::clone(&of.free).acquire_many_owned(u32::try_from(number).unwrap_or(u32::MAX));
+        Box::pin(self.wait(permit)).await?.map_err(|_| PoolError::Busy)
     }
 
     /// Waits until a request may be served.
@@ -253,12 +270,7 @@ impl Pool {
         while let Some(slot) = self.0.threads.another(&client, kind) {
             slots.push(slot);
         }
-        let meters = Arc::clone(&self.0.meters);
-        let task = spawn_blocking(move || {
-            let _running: Vec<_> = slots.iter().map(|_| Counted::by(&meters.running)).collect();
-            meters.timed(|| work(slots))
-        });
-        task.await.map_err(|_| PoolError::Panicked)
+        self.on_thread(slots.len(), move || work(slots)).await
     }
 
     /// Runs `work`: in place if its estimated cost is below [`INLINE`], else on a thread of the blocking pool, which it
@@ -278,22 +290,25 @@ impl Pool {
             return Ok(self.0.meters.timed(work));
         }
         // In a box, so that short work is not as large as long work.
-        Box::pin(self.run_on_thread(cost, work)).await
+        Box::pin(async move {
+            let slot = self.wait_for_slot(Client::current(), Kind::of(cost)).await?;
+            let request = Span::current();
+            // The slot stays with the work: a caller that gives up does not free a thread that is still busy.
+            self.on_thread(1, move || request.in_scope(|| slot.work(work))).await
+        })
+        .await
     }
 
-    /// Runs `work` on a thread of the blocking pool.
-    async fn run_on_thread<T: Send + 'static>(
+    /// Runs `work` on a thread of the blocking pool; it counts as so many pieces.
+    async fn on_thread<T: Send + 'static>(
         &self,
-        cost: Nanoseconds,
+        pieces: usize,
         work: impl FnOnce() -> T + Send + 'static,
     ) -> Result<T, PoolError> {
-        let slot = self.wait_for_slot(Client::current(), Kind::of(cost)).await?;
-        let (meters, request) = (Arc::clone(&self.0.meters), Span::current());
+        let meters = Arc::clone(&self.0.meters);
         let task = spawn_blocking(move || {
-            let _running = Counted::by(&meters.running);
-            let _request = request.entered();
-            // The slot stays with the work: a caller that gives up does not free a thread that is still busy.
-            slot.work(|| meters.timed(work))
+            let _running: Vec<_> = (0..pieces).map(|_| Counted::by(&meters.running)).collect();
+            meters.timed(work)
         });
         task.await.map_err(|_| PoolError::Panicked)
     }

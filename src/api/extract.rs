@@ -71,7 +71,7 @@ impl<T: Document + 'static, const OPTIONAL: bool> FromRequest<Arc<App>> for Chec
         if !declared.unwrap_or(OPTIONAL) {
             return Err(unsupported());
         }
-        let (parts, mut bytes, mut memory, permit) = receive(request, BODY_LIMIT, &app.pool).await?;
+        let (parts, mut bytes, mut held) = receive(request, BODY_LIMIT, &app.pool).await?;
         if OPTIONAL && bytes.is_empty() {
             bytes.extend_from_slice(b"{}");
         } else if declared.is_none() {
@@ -81,7 +81,7 @@ impl<T: Document + 'static, const OPTIONAL: bool> FromRequest<Arc<App>> for Chec
         let length = bytes.len();
         let cost = if length > cost::INLINE_BODY { INLINE } else { 0 };
         if cost > 0 {
-            app.pool.resize(&mut memory, length.saturating_mul(T::PARSED)).await?;
+            held.resize(&app.pool, length.saturating_mul(T::PARSED)).await?;
         }
         let (stop, _guard) = app.pool.deadline();
         let profiles = app.sessions.profiles(&stop);
@@ -100,12 +100,13 @@ impl<T: Document + 'static, const OPTIONAL: bool> FromRequest<Arc<App>> for Chec
             Ok(body) => body,
             Err((document, cost)) => {
                 let shape = document.profile().map_or(0, |defined| bytes::of_shape(defined.profile));
-                app.pool.resize(&mut memory, shape + length.saturating_mul(T::PARSED)).await?;
+                held.resize(&app.pool, shape + length.saturating_mul(T::PARSED)).await?;
                 let work = move || otlp::part!("prepare").in_scope(|| profiles.check(document));
                 app.pool.run(cost, work).await???
             }
         };
-        Ok(CheckedBody { body, key, held: HeldResources { memory, _permit: permit, spent: stop.flag().before() } })
+        held.spent = stop.flag().before();
+        Ok(CheckedBody { body, key, held })
     }
 }
 
@@ -127,9 +128,9 @@ impl FromRequest<Arc<App>> for FileBody {
             let detail = format!("Content-Type must be one of {}", FILE_TYPES.join(", "));
             return Err(Problem::new(Code::UnsupportedMediaType, detail));
         }
-        let (_, file, mut memory, permit) = receive(request, FILE_LIMIT, &app.pool).await?;
-        app.pool.resize(&mut memory, files::memory(&file)).await?;
-        Ok(FileBody { bytes: file, held: HeldResources { memory, _permit: permit, spent: Duration::ZERO } })
+        let (_, bytes, mut held) = receive(request, FILE_LIMIT, &app.pool).await?;
+        held.resize(&app.pool, files::memory(&bytes)).await?;
+        Ok(FileBody { bytes, held })
     }
 }
 
@@ -152,11 +153,7 @@ fn check_encoding(headers: &HeaderMap) -> Result<(), Problem> {
 
 /// Reads a body of at most so many bytes, and then acquires a permit for its request: a slow client keeps no others
 /// waiting. A client that expects to be asked for its body is not asked for one that is too long.
-async fn receive(
-    request: Request,
-    limit: usize,
-    pool: &Pool,
-) -> Result<(Parts, Vec<u8>, Reservation, RequestPermit), Problem> {
+async fn receive(request: Request, limit: usize, pool: &Pool) -> Result<(Parts, Vec<u8>, HeldResources), Problem> {
     let (parts, body) = request.into_parts();
     check_encoding(&parts.headers)?;
     let too_large = || {
@@ -195,7 +192,7 @@ async fn receive(
     }
     drop(share);
     let permit = pool.admit_request().await?;
-    Ok((parts, bytes, memory, permit))
+    Ok((parts, bytes, HeldResources { memory, _permit: permit, spent: Duration::ZERO }))
 }
 
 /// The body of a request while it arrives.

@@ -1,5 +1,5 @@
-//! What is known of a route beside its handler: the role that it needs, how it may be refused, and its events. The facts
-//! stand in the router, at the route (`api/mod.rs`).
+//! What is known of a route beside its handler: the role that it needs, how it may be refused, and its events. The
+//! facts stand in the router, at the route (`api/mod.rs`).
 
 use std::sync::Arc;
 

@@ -66,17 +66,15 @@ pub async fn serve_within(
     stop: impl Future<Output = ()> + Send + 'static,
 ) {
     let (sessions, jobs, pool) = (app.sessions.clone(), app.jobs.clone(), app.pool.clone());
-    let by_address = app.access.keys.is_none();
     // The document always parses; without it, metrics of endpoints would appear with their first request.
     let metrics = Arc::new(RequestMetrics::of(&serde_json::from_str(document()).unwrap_or_default()));
-    let hosts = app.access.hosts.clone();
     let (stopping, stops) = watch::channel(false);
     let service = Service {
+        by_address: app.access.keys.is_none(),
+        hosts: app.access.hosts.clone(),
         router: router(app, (metrics, pool.clone(), stops)),
         pool,
-        by_address,
         body_time: limiter.limits.body,
-        hosts,
         proxies: Arc::clone(&limiter.proxies),
         stopping,
     };

@@ -7,39 +7,41 @@ use axum::extract::{FromRequestParts, Path};
 use axum::http::request::Parts;
 use axum::http::{HeaderMap, HeaderValue};
 use utoipa::IntoParams;
-use utoipa::openapi::path::{Parameter, ParameterIn};
 use uuid::Uuid;
 
 use super::accept::{NAMED, admission, list_members};
 use super::problem::{Code, Problem};
-use super::query_parameters::move_number;
 use super::state::{App, TenantApp};
 use crate::sessions::Expected;
 
 /// Characters of an idempotency key.
 const KEY_LENGTH: usize = 255;
 
-/// The contact in the path.
-#[derive(IntoParams)]
-#[into_params(parameter_in = Path)]
-pub struct ContactPath {
-    /// The state that its tenant sees.
-    #[param(ignore)]
-    pub app: Arc<App>,
-    /// The identifier of the contact.
-    pub id: Uuid,
-}
+/// Declares a parameter of the path that identifies something of the tenant.
+macro_rules! identifier {
+    ($name:ident, $description:literal, $missing:ident, $noun:literal) => {
+        /// The state that the tenant of a request sees, and the identifier in its path.
+        #[derive(IntoParams)]
+        #[into_params(parameter_in = Path)]
+        pub struct $name {
+            #[param(ignore)]
+            pub app: Arc<App>,
+            #[doc = $description]
+            pub id: Uuid,
+        }
 
-/// The job in the path.
-#[derive(IntoParams)]
-#[into_params(parameter_in = Path)]
-pub struct JobPath {
-    /// The state that its tenant sees.
-    #[param(ignore)]
-    pub app: Arc<App>,
-    /// The identifier of the job.
-    pub id: Uuid,
+        impl FromRequestParts<Arc<App>> for $name {
+            type Rejection = Problem;
+
+            async fn from_request_parts(parts: &mut Parts, app: &Arc<App>) -> Result<Self, Problem> {
+                let (app, id) = identified(parts, app, Code::$missing, $noun).await?;
+                Ok($name { app, id })
+            }
+        }
+    };
 }
+identifier!(ContactPath, "The identifier of the contact.", ContactNotFound, "contact");
+identifier!(JobPath, "The identifier of the job.", JobNotFound, "job");
 
 /// The condition under which a contact is changed; `None` if the client sets none, or `*`.
 #[derive(IntoParams)]
@@ -65,19 +67,13 @@ pub struct IdempotencyKey {
 }
 
 /// Where a stream of events continues.
+#[derive(IntoParams)]
+#[into_params(parameter_in = Header)]
 pub struct LastEventId {
-    /// The sequence of the last event that the client has received.
+    /// The sequence of the last event that the client has received. The stream continues with the next one, without a
+    /// gap; if the header is left out, it begins with the present state.
+    #[param(rename = "Last-Event-ID", nullable = false, minimum = 0, maximum = 18_446_744_073_709_551_615_usize)]
     pub sequence: Option<u64>,
-}
-
-impl IntoParams for LastEventId {
-    fn into_params(_: impl Fn() -> Option<ParameterIn>) -> Vec<Parameter> {
-        let description = "The sequence of the last event that the client has received. The stream continues with the \
-                           next one, without a gap; if the header is left out, it begins with the present state.";
-        let mut parameter = move_number().described("Last-Event-ID", description);
-        parameter.parameter_in = ParameterIn::Header;
-        vec![parameter]
-    }
 }
 
 /// How the client wants to be answered (RFC 7240).
@@ -87,24 +83,6 @@ pub struct Prefer {
     /// `respond-async` runs the sweep as a job even if it is small (RFC 7240).
     #[param(rename = "Prefer", value_type = Option<String>, nullable = false)]
     pub respond_async: bool,
-}
-
-impl FromRequestParts<Arc<App>> for ContactPath {
-    type Rejection = Problem;
-
-    async fn from_request_parts(parts: &mut Parts, app: &Arc<App>) -> Result<Self, Problem> {
-        let (app, id) = identified(parts, app, Code::ContactNotFound, "contact").await?;
-        Ok(ContactPath { app, id })
-    }
-}
-
-impl FromRequestParts<Arc<App>> for JobPath {
-    type Rejection = Problem;
-
-    async fn from_request_parts(parts: &mut Parts, app: &Arc<App>) -> Result<Self, Problem> {
-        let (app, id) = identified(parts, app, Code::JobNotFound, "job").await?;
-        Ok(JobPath { app, id })
-    }
 }
 
 /// The state that the tenant of a request sees, and the identifier in the path. A text that is not a UUID cannot name
@@ -151,11 +129,10 @@ impl FromRequestParts<Arc<App>> for IfMatch {
 
 /// The version that a tag names: a sequence, and the checksum of a label behind a dot if it has one.
 fn expected(tag: &str) -> Option<Expected> {
-    let (sequence, label) = tag.split_once('.').map_or((tag, None), |(sequence, label)| (sequence, Some(label)));
-    let is_checksum = |label: &&str| label.len() == 8 && label.bytes().all(|digit| digit.is_ascii_hexdigit());
-    let label = match label {
-        Some(label) => Some(u32::from_str_radix(Some(label).filter(is_checksum)?, 16).ok()?),
-        None => None,
+    let checksum = |label: &str| const_hex::decode_to_array(label).ok().filter(|_| label.len() == 8);
+    let (sequence, label) = match tag.split_once('.') {
+        Some((sequence, label)) => (sequence, Some(u32::from_be_bytes(checksum(label)?))),
+        None => (tag, None),
     };
     Some(Expected { sequence: sequence.parse().ok()?, label })
 }

@@ -1,6 +1,6 @@
 //! Parameters of queries. Each is declared once, in `parameters!`: its name, its type, its limits and its description
-//! are what the handler and the command line read and what the OpenAPI document says. A parameter that an operation does
-//! not have is refused by name.
+//! are what the handler and the command line read and what the OpenAPI document says. A parameter that an operation
+//! does not have is refused by name.
 
 use std::ops::RangeInclusive;
 use std::sync::Arc;
@@ -90,9 +90,9 @@ impl<T: QueryParams> FromRequestParts<Arc<App>> for CheckedQuery<T> {
     }
 }
 
-/// Declares the parameters of a query, `parameters! { pub struct NAME { member: V = KIND, .. } }`. A member has the type
-/// `Option<V>` of its kind or, with `or DEFAULT`, `V`. With `..formats(FORMATS, WHAT THEY SHOW)` at the end it also has
-/// the `format` of the reply, or why there is none that `Accept` admits.
+/// Declares the parameters of a query, `parameters! { pub struct NAME { member: V = KIND, .. } }`. A member has the
+/// type `Option<V>` of its kind or, with `or DEFAULT`, `V`. With `..formats(FORMATS, WHAT THEY SHOW)` at the end it
+/// also has the `format` of the reply, or why there is none that `Accept` admits.
 macro_rules! parameters {
     (@type $type:ty) => { Option<$type> };
     (@type $type:ty, $default:expr) => { $type };
@@ -170,12 +170,9 @@ pub struct Kind<V> {
 type Parse<V> = Box<dyn Fn(&str) -> Result<V, String>>;
 type Check<V> = Box<dyn Fn(&V, JsonPath<'_>, &mut Faults)>;
 
-impl<V> Kind<V> {
+impl<V: 'static> Kind<V> {
     /// Values that `parse` reads, which `expected` describes for the text of a refusal.
-    pub fn new(expected: &'static str, parse: fn(&str) -> Option<V>, schema: fn() -> Value) -> Kind<V>
-    where
-        V: 'static,
-    {
+    pub fn new(expected: &'static str, parse: fn(&str) -> Option<V>, schema: fn() -> Value) -> Kind<V> {
         Kind::of(move |text| parse(text).ok_or_else(|| expected.to_owned()), schema)
     }
 
@@ -295,16 +292,16 @@ pub fn fields() -> Kind<Vec<Field>> {
 }
 
 /// One of some values that are known by words.
-pub fn words<V: Copy>(values: &'static [V], name: fn(V) -> &'static str) -> Kind<V> {
+pub fn words<V: Copy + 'static>(values: &'static [V], name: fn(V) -> &'static str) -> Kind<V> {
     choice(values, name, |words| json!({"type": "string", "pattern": format!("^({})$", words.join("|"))}))
 }
 
 /// One of these words, of which there will be no others.
-pub fn closed<V: Copy>(values: &'static [V], name: fn(V) -> &'static str) -> Kind<V> {
+pub fn closed<V: Copy + 'static>(values: &'static [V], name: fn(V) -> &'static str) -> Kind<V> {
     choice(values, name, |words| json!({"type": "string", "enum": words}))
 }
 
-fn choice<V: Copy>(
+fn choice<V: Copy + 'static>(
     values: &'static [V],
     name: fn(V) -> &'static str,
     schema: fn(Vec<&'static str>) -> Value,

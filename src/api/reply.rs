@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use axum::body::{Body, HttpBody as _};
-use axum::http::{HeaderMap, HeaderValue, StatusCode, header};
+use axum::http::{HeaderMap, HeaderName, HeaderValue, StatusCode, header};
 use axum::response::{IntoResponse, Response};
 
 use crate::admission::Reservation;
@@ -32,9 +32,14 @@ pub fn at_sequence(sequence: u64, body: Vec<u8>) -> Response {
 }
 
 /// A reply with its version as `ETag`.
-pub fn tagged(mut response: Response, tag: &str) -> Response {
-    if let Ok(tag) = HeaderValue::from_str(tag) {
-        response.headers_mut().insert(header::ETAG, tag);
+pub fn tagged(response: Response, tag: &str) -> Response {
+    with_header(response, header::ETAG, tag)
+}
+
+/// A reply with one more header, if its value is one that headers can have.
+pub fn with_header(mut response: Response, name: HeaderName, value: &str) -> Response {
+    if let Ok(value) = HeaderValue::from_str(value) {
+        response.headers_mut().insert(name, value);
     }
     response
 }
@@ -67,14 +72,13 @@ pub fn not_modified(tag: &str) -> Response {
 
 /// The reply to a change: 201 with the path of the new resource, or 200.
 pub fn of_change(reply: Reply) -> Response {
-    let mut response = at_sequence(reply.sequence, reply.body);
-    if let Some(id) = reply.created {
-        *response.status_mut() = StatusCode::CREATED;
-        if let Ok(place) = HeaderValue::from_str(&format!("/contacts/{id}")) {
-            response.headers_mut().insert(header::LOCATION, place);
+    let response = at_sequence(reply.sequence, reply.body);
+    match reply.created {
+        Some(id) => {
+            (StatusCode::CREATED, with_header(response, header::LOCATION, &format!("/contacts/{id}"))).into_response()
         }
+        None => response,
     }
-    response
 }
 
 /// A reply whose memory stays reserved until it is sent: that of its text, as what it was made of is gone.

@@ -17,7 +17,7 @@ const METHODS: [&str; 8] = ["GET", "HEAD", "POST", "PUT", "PATCH", "DELETE", "OP
 /// The route label of pages that the OpenAPI document does not describe, such as `/docs`.
 const OTHER: &str = "other";
 /// The route label of requests that match no route.
-const NONE: &str = "none";
+pub const NONE: &str = "none";
 /// The status of a request whose client did not wait for the answer. It is never sent.
 pub const ABANDONED: u16 = 499;
 

@@ -43,12 +43,6 @@ impl From<String> for CommandError {
     }
 }
 
-impl From<&str> for CommandError {
-    fn from(text: &str) -> CommandError {
-        text.to_owned().into()
-    }
-}
-
 impl From<Refusal> for CommandError {
     fn from(refusal: Refusal) -> CommandError {
         CommandError { text: None, refusal }

@@ -56,16 +56,14 @@ pub fn key(key: Key) -> Result<(), String> {
     print(format_args!("key   {}\nentry {}{note}", new.key, new.entry))
 }
 
-/// The roles of the first key: of an operator who is alone.
-const FIRST_ROLES: [Role; 2] = [Role::Write, Role::Metrics];
-
 /// Makes a file with the entry of a new key, for its owner alone, and prints the key; a file that exists stays as it
 /// is.
 pub fn make_first_key(file: &Path) -> Result<(), String> {
     if fs::symlink_metadata(file).is_ok() {
         return Ok(());
     }
-    let new = new_key("first", &FIRST_ROLES, "", None)?;
+    // Of an operator who is alone.
+    let new = new_key("first", &[Role::Write, Role::Metrics], "", None)?;
     let name = masked(&file.to_string_lossy());
     let write = || {
         let mut entries = OpenOptions::new().write(true).create_new(true).mode(0o600).open(file)?;

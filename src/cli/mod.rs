@@ -17,8 +17,10 @@ mod summary;
 mod sweep;
 
 use std::ffi::OsString;
+use std::path::PathBuf;
 
 use clap::{Parser, Subcommand};
+use clap_complete::Shell;
 
 use crate::api;
 
@@ -28,7 +30,6 @@ use compute::Compute;
 use healthcheck::Healthcheck;
 use io::print;
 use key::Key;
-use manual::{Completions, Man};
 use serve::Serve;
 use settings::{Settings, SettingsError};
 use sweep::Sweep;
@@ -66,9 +67,15 @@ enum Command {
     /// Verify a store: replay the moves of every contact, and compare the states. Nothing is written.
     Check(Check),
     /// Print a script for a shell that completes commands and flags.
-    Completions(Completions),
+    Completions {
+        /// The shell.
+        shell: Shell,
+    },
     /// Write the manual pages of all commands.
-    Man(Man),
+    Man {
+        /// The folder to write the pages to.
+        folder: PathBuf,
+    },
 }
 
 /// The exit code of a command that has failed, and of an invalid command line or setting.
@@ -122,8 +129,8 @@ impl Command {
             Command::Key(key) => key::key(key),
             Command::Backup(backup) => backup.run(),
             Command::Check(check) => check.run(),
-            Command::Completions(completions) => completions.run(),
-            Command::Man(man) => man.run(),
+            Command::Completions { shell } => manual::completions(shell),
+            Command::Man { folder } => manual::man(&folder),
         }
     }
 }

@@ -211,11 +211,9 @@ fn log_panics() {
 }
 
 fn collector(text: &str) -> Result<String, String> {
-    let place = text.strip_prefix("http://").or_else(|| text.strip_prefix("https://"));
-    match place.map(|_| text.parse::<Uri>()) {
-        Some(Ok(uri)) if uri.authority().is_some() => Ok(text.to_owned()),
-        _ => Err("expected http:// or https:// and the address of a collector".to_owned()),
-    }
+    let is_sound = |uri: &Uri| matches!(uri.scheme_str(), Some("http" | "https")) && uri.authority().is_some();
+    let sound = text.parse().ok().filter(is_sound).map(|_| text.to_owned());
+    sound.ok_or_else(|| "expected http:// or https:// and the address of a collector".to_owned())
 }
 
 type KeysInForce = watch::Sender<Arc<Keys>>;

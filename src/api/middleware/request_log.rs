@@ -24,7 +24,7 @@ use crate::api::middleware::access_control::Caller;
 use crate::api::middleware::{compression, security_headers};
 use crate::api::problem::{Code, MEDIA_TYPE, Problem};
 use crate::api::request_limits;
-use crate::api::request_metrics::{ABANDONED, Endpoint, RequestMetrics};
+use crate::api::request_metrics::{ABANDONED, Endpoint, NONE, RequestMetrics};
 use crate::api::resources::page;
 use crate::metrics::Counted;
 use crate::otlp;
@@ -82,8 +82,8 @@ async fn log_request(
     let request_id = request_id(request.headers());
     let id = request_id.to_str().unwrap_or_default();
     let method = request.method().clone();
-    let traceparent =
-        request.headers().get("traceparent").filter(|value| value.len() <= request_limits::REQUEST_ID_LENGTH).cloned();
+    let part_of = request.headers().get("traceparent");
+    let traceparent = part_of.filter(|value| value.len() <= request_limits::REQUEST_ID_LENGTH).cloned();
     // The route rather than the path: it holds no identifier, and cannot be made up by clients.
     let route = request.extensions().get::<MatchedPath>().cloned();
     let route = route.as_ref().map(MatchedPath::as_str);
@@ -93,27 +93,23 @@ async fn log_request(
     let endpoint = metrics.endpoint(route, &method);
     let in_flight = metrics.in_flight(endpoint);
     let _in_flight = Counted::by(&in_flight);
-    let traceparent = traceparent.as_ref().and_then(|value| value.to_str().ok());
-    let span = span(&request, route.unwrap_or(NO_ROUTE), id);
-    let client = request.extensions().get::<RequestClient>().map(|client| client.address);
-    let caller = Caller::default();
-    request.extensions_mut().insert(Caller::clone(&caller));
     let changes = !matches!(method, Method::GET | Method::HEAD | Method::OPTIONS);
-    let contact = contact_in(request.uri().path()).filter(|_| changes);
     let mut guard = RequestGuard {
         start,
         id,
-        traceparent,
+        traceparent: traceparent.as_ref().and_then(|value| value.to_str().ok()),
         method: &method,
         route,
-        client,
-        caller,
-        contact,
+        client: request.extensions().get::<RequestClient>().map(|client| client.address),
+        caller: Caller::default(),
+        contact: contact_in(request.uri().path()).filter(|_| changes),
         metrics,
         endpoint,
-        span: span.clone(),
+        span: span(&request, route.unwrap_or(NONE), id),
         outcome: Outcome { status: ABANDONED, code: None, cause: None },
     };
+    request.extensions_mut().insert(Caller::clone(&guard.caller));
+    let span = guard.span.clone();
     let answer = async {
         match request.extensions_mut().remove::<Refusal>() {
             Some(refusal) => Problem::from(refusal).into_response(),
@@ -129,7 +125,7 @@ async fn log_request(
         }
     };
     let made = response.headers().get(header::LOCATION).and_then(|location| location.to_str().ok());
-    guard.contact = made.and_then(contact_in).or(contact);
+    guard.contact = made.and_then(contact_in).or(guard.contact);
 
     let problem = response.extensions_mut().remove::<Problem>().or_else(|| foreign(&response));
     let mut outcome = Outcome { status: response.status().as_u16(), code: None, cause: None };
@@ -163,9 +159,6 @@ fn request_id(headers: &HeaderMap) -> HeaderValue {
             .unwrap_or(HeaderValue::from_static("-"))
     })
 }
-
-/// The route label of a request that matches no route.
-const NO_ROUTE: &str = "none";
 
 fn contact_in(path: &str) -> Option<Uuid> {
     path.strip_prefix("/contacts/")?.split('/').next()?.parse().ok()
@@ -208,7 +201,7 @@ impl Drop for RequestGuard<'_> {
             self.span.record("otel.status_code", "ERROR");
             self.span.record("otel.status_description", cause);
         }
-        let (route, duration_ms) = (self.route.unwrap_or(NO_ROUTE), time.as_secs_f64() * 1e3);
+        let (route, duration_ms) = (self.route.unwrap_or(NONE), time.as_secs_f64() * 1e3);
         let (client, contact) = (client.map(display), contact.map(display));
         let (key, tenant) = self.caller.get().map(|holder| (&*holder.name, holder.tenant.name())).unzip();
         /// The fields that all lines have, and more.

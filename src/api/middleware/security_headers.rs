@@ -5,7 +5,6 @@ use std::time::Duration;
 use axum::http::{HeaderMap, HeaderName, HeaderValue, Method, Uri, header};
 use tower_http::cors::CorsLayer;
 
-use crate::api::middleware::access_control::METHODS;
 use crate::api::middleware::request_log::REQUEST_ID;
 
 /// How long a browser may cache a CORS preflight reply.
@@ -81,7 +80,7 @@ pub fn cross_origin(origins: &[HeaderValue]) -> CorsLayer {
     ]);
     CorsLayer::new()
         .allow_origin(origins.to_vec())
-        .allow_methods(METHODS)
+        .allow_methods([Method::GET, Method::POST, Method::PATCH, Method::DELETE])
         .allow_headers(sent.collect::<Vec<_>>())
         .expose_headers([header::ETAG, header::LINK, header::LOCATION, header::RETRY_AFTER, REQUEST_ID])
         .max_age(REMEMBERED)

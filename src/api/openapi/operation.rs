@@ -1,5 +1,5 @@
-//! What an operation has beyond what its handler declares: the key that it needs, refusals, headers, formats, events and
-//! examples. They follow from its facts, from its parameter `format`, and from the `ETag` of what a reader gets.
+//! What an operation has beyond what its handler declares: the key that it needs, refusals, headers, formats, events
+//! and examples. They follow from its facts, from its parameter `format`, and from the `ETag` of what a reader gets.
 
 use std::sync::LazyLock;
 

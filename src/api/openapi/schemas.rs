@@ -8,9 +8,8 @@ use stickslip_wire::fit::FitParameter;
 
 pub fn write(document: &mut Value) {
     if let Some(Value::Object(schemas)) = document.pointer_mut("/components/schemas") {
-        close_choices(schemas);
+        write_choices(schemas);
         write_profiles(schemas);
-        write_titles(schemas);
         super::write_keywords(schemas, &additions());
         write_gaps(schemas);
         schemas.values_mut().for_each(describe_defaults);
@@ -29,14 +28,22 @@ fn describe_defaults(schema: &mut Value) {
     }
 }
 
-/// Closes the alternatives: a choice with one key allows no second one.
-fn close_choices(schemas: &mut Map<String, Value>) {
-    for alternative in schemas.values_mut().filter_map(|schema| schema.get_mut("oneOf")?.as_array_mut()).flatten() {
-        if alternative["type"] == "object" {
-            alternative["additionalProperties"] = json!(false);
-        } else if alternative["allOf"].is_array() {
-            // What its parts contain counts too.
-            alternative["unevaluatedProperties"] = json!(false);
+/// Closes the alternatives, as a choice with one key allows no second one, and names them by that key: the names become
+/// names of types.
+fn write_choices(schemas: &mut Map<String, Value>) {
+    for (name, schema) in schemas {
+        for choice in schema.get_mut("oneOf").and_then(Value::as_array_mut).into_iter().flatten() {
+            if choice["type"] == "object" {
+                choice["additionalProperties"] = json!(false);
+            } else if choice["allOf"].is_array() {
+                // What its parts contain counts too.
+                choice["unevaluatedProperties"] = json!(false);
+            }
+            let key = choice["properties"].as_object().and_then(|members| members.keys().next());
+            if let Some(key) = key {
+                let words = key.split('_').map(|word| word[..1].to_uppercase() + &word[1..]);
+                choice["title"] = json!(name.clone() + &words.collect::<String>());
+            }
         }
     }
 }
@@ -63,19 +70,6 @@ fn write_profiles(schemas: &mut Map<String, Value>) {
     }
     schemas["Profile"]["oneOf"] = json!(references);
     schemas["Profile"]["discriminator"] = json!({"propertyName": "type", "mapping": names});
-}
-
-/// Names for choices by one key: they become names of types.
-fn write_titles(schemas: &mut Map<String, Value>) {
-    for (name, schema) in schemas {
-        for choice in schema.get_mut("oneOf").and_then(Value::as_array_mut).into_iter().flatten() {
-            let key = choice["properties"].as_object().and_then(|members| members.keys().next());
-            if let Some(key) = key {
-                let words = key.split('_').map(|word| word[..1].to_uppercase() + &word[1..]);
-                choice["title"] = json!(name.clone() + &words.collect::<String>());
-            }
-        }
-    }
 }
 
 /// What the derived schemas leave out, to be merged into them: members that exclude each other, or of which one is

@@ -3,7 +3,7 @@
 use stickslip_plot::{Axis, Colour, Plot};
 use stickslip_wire::{Cycle, HistoryPage, ObservedForce, State};
 
-use super::move_series::{self, ITEM_BYTES, MoveSeries, MovesQuery};
+use super::move_series::{self, ITEM_BYTES, MoveSeries, MovesQuery, curve};
 use super::prelude::*;
 use crate::admission::Reservation;
 use crate::api::query_parameters::flag;
@@ -78,12 +78,7 @@ impl MoveSeries for History {
     /// Displacement, force and friction work over the moves.
     fn plot(page: &HistoryPage) -> Plot {
         let panel = |name, unit, colour, of: fn(&State) -> f64| {
-            move_series::curve(
-                name,
-                unit,
-                colour,
-                page.items.iter().map(|item| (item.sequence as f64, of(&item.state))),
-            )
+            curve(name, unit, colour, page.items.iter().map(|item| (item.sequence as f64, of(&item.state))))
         };
         Plot::new(
             format!("History{}", move_series::shown(page.items.iter().map(|item| item.sequence))),

@@ -94,11 +94,7 @@ pub async fn watch_job(JobPath { app, id }: JobPath, _: CheckedQuery<()>) -> Res
 pub async fn stream(app: &App, id: Uuid) -> Result<Response, Problem> {
     let events = app.jobs.events(id).await?.map(|event| match event {
         StreamEvent::State(job) => {
-            let name = match job.state {
-                JobState::Running => "progress",
-                JobState::Done => "done",
-                JobState::Failed => "failed",
-            };
+            let name = if job.state == JobState::Running { "progress" } else { job.state.name() };
             Event::default().event(name).json_data(job)
         }
         StreamEvent::End(reason) => Event::default().event("end").json_data(JobEndEvent { reason }),

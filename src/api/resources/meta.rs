@@ -4,10 +4,11 @@
 use std::any::Any;
 use std::sync::Arc;
 
+use axum::Json;
 use axum::extract::{Path, State};
 use axum::http::Uri;
 use axum::response::IntoResponse;
-use serde_json::json;
+use serde_json::{Value, json};
 
 use super::prelude::*;
 use crate::api;
@@ -22,8 +23,8 @@ use crate::store::StoreError;
     get, path = "/healthz", tag = "service",
     responses((status = 200, description = "Alive", body = serde_json::Value, example = json!({"status": "ok"})))
 )]
-pub async fn check_health() -> Result<Response, Problem> {
-    Ok(reply::json(reply::written(&json!({"status": "ok"}))?))
+pub async fn check_health() -> Json<Value> {
+    Json(json!({"status": "ok"}))
 }
 
 /// Check that the service is ready
@@ -34,9 +35,9 @@ pub async fn check_health() -> Result<Response, Problem> {
     get, path = "/readyz", tag = "service",
     responses((status = 200, description = "Ready", body = serde_json::Value, example = json!({"status": "ready"})))
 )]
-pub async fn check_readiness(State(app): State<Arc<App>>) -> Result<Response, Problem> {
+pub async fn check_readiness(State(app): State<Arc<App>>) -> Result<Json<Value>, Problem> {
     match app.sessions.ready().await {
-        Ok(()) => Ok(reply::json(reply::written(&json!({"status": "ready"}))?)),
+        Ok(()) => Ok(Json(json!({"status": "ready"}))),
         Err(error @ SessionError::Store(StoreError::Full(_))) => Err(error.into()),
         Err(error) => Err(Problem::new(Code::Overloaded, "the store is not ready").because(error.to_string())),
     }
@@ -62,11 +63,11 @@ pub async fn get_openapi() -> Response {
     responses((status = 200, description = "The title and the status of the problem", body = serde_json::Value,
         example = json!({"code": "invalid_input", "title": "The request is invalid", "status": 422})))
 )]
-pub async fn get_problem(Path(code): Path<String>, uri: Uri) -> Result<Response, Problem> {
-    let Some(kind) = Code::parse(&code) else {
-        return Err(not_found(uri).await);
-    };
-    Ok(reply::json(reply::written(&json!({"code": code, "title": kind.title(), "status": kind.status()}))?))
+pub async fn get_problem(Path(code): Path<String>, uri: Uri) -> Result<Json<Value>, Problem> {
+    match Code::parse(&code) {
+        Some(kind) => Ok(Json(json!({"code": code, "title": kind.title(), "status": kind.status()}))),
+        None => Err(not_found(uri).await),
+    }
 }
 
 pub async fn not_found(uri: Uri) -> Problem {

@@ -77,8 +77,8 @@ pub(super) trait MoveSeries: Clone + Send + Sync + 'static {
     fn table<'a>(&self, page: &'a Self::Page) -> Table<'a>;
 }
 
-/// The reply with the moves that the query asks for. If it does not say, a plot shows the newest moves, and a table that
-/// programs read row by row has all of them.
+/// The reply with the moves that the query asks for. If it does not say, a plot shows the newest moves, and a table
+/// that programs read row by row has all of them.
 pub(super) async fn reply<T: MoveSeries>(
     app: Arc<App>,
     id: Uuid,

@@ -1,13 +1,10 @@
 //! `/`: the web page. Its files are part of the program, compressed when it was built.
 
-use std::sync::LazyLock;
-
 use axum::Router;
 use axum::extract::Path;
 use axum::http::{HeaderMap, HeaderValue, StatusCode, Uri, header};
 use axum::response::{IntoResponse as _, Response};
 use axum::routing::get;
-use sha2::{Digest as _, Sha256};
 
 use super::meta;
 use crate::api::accept::admission;
@@ -19,6 +16,8 @@ pub const FILES: &str = "/page/{name}";
 
 struct Asset {
     name: &'static str,
+    /// Changes with its content.
+    tag: &'static str,
     plain: &'static [u8],
     packed: &'static [u8],
 }
@@ -26,38 +25,29 @@ struct Asset {
 /// All files, as the build script found them.
 const ASSETS: &[Asset] = &include!(concat!(env!("OUT_DIR"), "/page.in"));
 
-/// The truncated hashes of all files, in the order of [`ASSETS`].
-static HASHES: LazyLock<Vec<String>> = LazyLock::new(|| ASSETS.iter().map(|asset| hash(asset.plain)).collect());
-
 pub fn routes() -> Router {
     Router::new().route(PAGE, get(index)).route(FILES, get(file))
 }
 
 async fn index(headers: HeaderMap, uri: Uri) -> Response {
-    named("index.html", &headers, &uri).await
+    file(Path("index.html".to_owned()), headers, uri).await
 }
 
 async fn file(Path(name): Path<String>, headers: HeaderMap, uri: Uri) -> Response {
-    named(&name, &headers, &uri).await
-}
-
-async fn named(name: &str, headers: &HeaderMap, uri: &Uri) -> Response {
-    match ASSETS.iter().zip(&*HASHES).find(|(asset, _)| asset.name == name) {
-        Some((asset, hash)) => asset.answer(hash, headers),
-        None => meta::not_found(uri.clone()).await.into_response(),
+    match ASSETS.iter().find(|asset| asset.name == name) {
+        Some(asset) => asset.answer(&headers),
+        None => meta::not_found(uri).await.into_response(),
     }
 }
 
 impl Asset {
     /// The file, or 304 if the client has the current version.
-    fn answer(&self, hash: &str, asked: &HeaderMap) -> Response {
+    fn answer(&self, asked: &HeaderMap) -> Response {
         let gzip = admission(asked, "accept-encoding", "gzip").is_some_and(|gzip| gzip.quality > 0.0);
         let body = if gzip { self.packed } else { self.plain };
-        // Of both encodings, and so weak.
-        let tag = format!("W/\"{hash}\"");
-        let current = reply::is_current(asked, &tag);
+        let current = reply::is_current(asked, self.tag);
         let response = if current { StatusCode::NOT_MODIFIED.into_response() } else { body.into_response() };
-        let mut response = reply::tagged(response, &tag);
+        let mut response = reply::tagged(response, self.tag);
         let headers = response.headers_mut();
         headers.insert(header::VARY, HeaderValue::from_static("accept-encoding"));
         // Revalidated each time: after an update no old file is used with a new one.
@@ -79,8 +69,4 @@ impl Asset {
             _ => "text/javascript; charset=utf-8",
         }
     }
-}
-
-fn hash(bytes: &[u8]) -> String {
-    Sha256::digest(bytes).iter().take(16).map(|byte| format!("{byte:02x}")).collect()
 }

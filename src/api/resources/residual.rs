@@ -8,7 +8,8 @@ use stickslip_compute::computations::ResidualTask;
 
 parameters! {
     pub struct ResidualQuery {
-        ..formats(&Format::ALL, "A table has a row for each extremum with its radius, shear stress and kind (`maximum` or `minimum`).")
+        ..formats(&Format::ALL, "A table has a row for each extremum with its radius, shear stress and kind (`maximum` \
+            or `minimum`).")
     }
 }
 

@@ -64,9 +64,7 @@ pub async fn run_sweep(
             return jobs::stream(&app, id).await;
         }
         let mut response = (StatusCode::ACCEPTED, reply::json(made.body)).into_response();
-        if let Ok(location) = HeaderValue::from_str(&format!("/jobs/{id}")) {
-            response.headers_mut().insert(header::LOCATION, location);
-        }
+        response = reply::with_header(response, header::LOCATION, &format!("/jobs/{id}"));
         if respond_async {
             response.headers_mut().insert("preference-applied", HeaderValue::from_static("respond-async"));
         }

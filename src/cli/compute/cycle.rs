@@ -43,7 +43,9 @@ impl Flags for CycleFlags {
         let text = read(file.unwrap_or(Path::new("-")))?;
         let Some(map) = self.map else { return Ok(Body { text, ..Body::default() }) };
         let mut body: Value = parsed(&text)?;
-        body.as_object_mut().ok_or("the body must be a JSON object")?.insert("map".to_owned(), json!(map));
+        body.as_object_mut()
+            .ok_or_else(|| "the body must be a JSON object".to_owned())?
+            .insert("map".to_owned(), json!(map));
         Ok(Body { text: body.to_string().into_bytes(), format: Some(Format::Csv), ..Body::default() })
     }
 }

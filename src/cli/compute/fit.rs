@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use clap::{Args, Command};
+use clap::Args;
 use stickslip_compute::Refusal;
 use stickslip_compute::computations::files;
 use stickslip_wire::fit::{FitParameter, KnownValue, KnownValues, LoopStart, MeasuredLoop};
@@ -18,6 +18,8 @@ const USUALLY_FREE: [FitParameter; 3] = [FitParameter::Friction, FitParameter::G
 
 /// The flags for what a file of columns leaves open.
 #[derive(Args)]
+#[command(mut_arg("file", |file| file.help("The file, or - for standard input: columns of displacement and force as \
+    text, or the body of POST /fit")))]
 pub struct FitFlags {
     /// A file with the definition of the contact, for a file of columns.
     #[arg(long)]
@@ -43,12 +45,6 @@ pub struct FitFlags {
 }
 
 impl Flags for FitFlags {
-    fn add(command: Command) -> Command {
-        let help = "The file, or - for standard input: columns of displacement and force as text, or the body of POST \
-                    /fit";
-        Self::augment_args(command).mut_arg("file", |file| file.help(help))
-    }
-
     fn body(self, file: Option<&Path>) -> Result<Body, CommandError> {
         let only = self.only_contact.then_some::<ReplyPart>(|reply| member::<ContactDefinition>(reply, "contact"));
         Ok(Body { only, ..Body::of_file(file, |content, file| self.of_columns(content, file))? })
@@ -57,7 +53,9 @@ impl Flags for FitFlags {
 
 impl FitFlags {
     fn of_columns(self, content: &[u8], file: &Path) -> Result<(FitRequest, Vec<String>), CommandError> {
-        let contact = self.contact.ok_or("a file of columns needs --contact FILE, the definition of the contact")?;
+        let contact = self
+            .contact
+            .ok_or_else(|| "a file of columns needs --contact FILE, the definition of the contact".to_owned())?;
         let contact = wire::parse::<ContactDefinition>(&read(&contact)?)?;
         let hints = self.hints.0.map_err(Refusal::from)?.into();
         let found = files::measured_loop(content, &hints).map_err(|error| CommandError::of_file(file, error))?;

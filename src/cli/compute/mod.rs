@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 use axum::http::HeaderMap;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::error::{Error, ErrorKind};
-use clap::{Arg, ArgAction, ArgMatches, Args, Command, FromArgMatches, Subcommand};
+use clap::{Arg, ArgMatches, Args, Command, FromArgMatches, Subcommand, arg, value_parser};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use utoipa::IntoParams;
@@ -110,10 +110,6 @@ impl<Q: QueryParams + IntoParams> FromArgMatches for QueryFlags<Q> {
 
 /// Flags of a computation besides those that all have.
 trait Flags: Args {
-    fn add(command: Command) -> Command {
-        Self::augment_args(command)
-    }
-
     /// The body of the request.
     fn body(self, file: Option<&Path>) -> Result<Body, CommandError>;
 }
@@ -123,7 +119,7 @@ type FlagsOf = (fn(Command) -> Command, fn(&ArgMatches, Option<&Path>) -> Result
 
 fn flags(name: &str) -> FlagsOf {
     fn of<F: Flags>() -> FlagsOf {
-        (F::add, |matches, file| F::from_arg_matches(matches).map_err(|error| error.to_string())?.body(file))
+        (F::augment_args, |matches, file| F::from_arg_matches(matches).map_err(|error| error.to_string())?.body(file))
     }
     match name {
         "cycle" => of::<cycle::CycleFlags>(),
@@ -136,27 +132,14 @@ fn flags(name: &str) -> FlagsOf {
 
 fn command(about: &About) -> Command {
     let formats = about.formats.iter().map(|format| format.name()).collect::<Vec<_>>();
-    let mut command = Command::new(about.name)
-        .arg(
-            Arg::new("file")
-                .value_name("FILE")
-                .value_parser(clap::value_parser!(PathBuf))
-                .required(true)
-                .help("File with the body of the request, or - for standard input"),
-        )
-        .arg(
-            Arg::new("format")
-                .long("format")
-                .value_parser(PossibleValuesParser::new(formats))
-                .help(format!("The format [default: {}]. {}", about.printed.name(), about.shows).trim_end().to_owned()),
-        )
-        .arg(
-            Arg::new("json")
-                .long("json")
-                .action(ArgAction::SetTrue)
-                .conflicts_with("format")
-                .help("Print the JSON document instead of a summary, and faults as JSON, even on a terminal"),
-        );
+    let format = format!("The format [default: {}]. {}", about.printed.name(), about.shows);
+    let mut command = Command::new(about.name).args([
+        arg!(file: <FILE> "File with the body of the request, or - for standard input")
+            .value_parser(value_parser!(PathBuf)),
+        arg!(--format <FORMAT>).help(format.trim_end().to_owned()).value_parser(PossibleValuesParser::new(formats)),
+        arg!(--json "Print the JSON document instead of a summary, and faults as JSON, even on a terminal")
+            .conflicts_with("format"),
+    ]);
     if let Some(choice) = about.choice {
         let words = PossibleValuesParser::new(choice.words.iter().copied());
         command = command.arg(

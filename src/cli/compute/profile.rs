@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use clap::{Args, Command};
+use clap::Args;
 use stickslip_compute::Refusal;
 use stickslip_compute::computations::files;
 use stickslip_wire::profile_fit::{ScanLoad, ScanOrientation, Smoothing};
@@ -15,6 +15,8 @@ use crate::cli::io::read;
 
 /// The flags for what a file of columns leaves open.
 #[derive(Args)]
+#[command(mut_arg("file", |file| file.help("The file, or - for standard input: two columns (x, z) or three (x, y, z) \
+    of text, a matrix of heights, or the body of POST /profiles/fit")))]
 pub struct ProfileFlags {
     #[command(flatten)]
     hints: QueryFlags<ScanFileQuery>,
@@ -27,12 +29,6 @@ pub struct ProfileFlags {
 }
 
 impl Flags for ProfileFlags {
-    fn add(command: Command) -> Command {
-        let help = "The file, or - for standard input: two columns (x, z) or three (x, y, z) of text, a matrix of \
-                    heights, or the body of POST /profiles/fit";
-        Self::augment_args(command).mut_arg("file", |file| file.help(help))
-    }
-
     fn body(self, file: Option<&Path>) -> Result<Body, CommandError> {
         let only = self.only_profile.then_some::<ReplyPart>(|reply| member::<Profile>(reply, "profile"));
         Ok(Body { only, ..Body::of_file(file, |content, file| self.of_columns(content, file))? })

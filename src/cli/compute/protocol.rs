@@ -2,8 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
+use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser};
-use clap::{Args, Command};
 use serde_json::{Map, Value, json};
 
 use super::{Body, Flags};
@@ -17,6 +17,7 @@ fn names(names: &[&'static str]) -> PossibleValuesParser {
 
 /// The body of POST /protocols, or its members as flags; a flag replaces the member of the file.
 #[derive(Args)]
+#[command(mut_arg("file", |file| file.required(false).required_unless_present("contact")))]
 pub struct ProtocolFlags {
     /// A file with the definition of a contact: its profile, material, friction and preload.
     #[arg(long)]
@@ -46,10 +47,6 @@ pub struct ProtocolFlags {
 }
 
 impl Flags for ProtocolFlags {
-    fn add(command: Command) -> Command {
-        Self::augment_args(command).mut_arg("file", |file| file.required(false).required_unless_present("contact"))
-    }
-
     fn body(self, file: Option<&Path>) -> Result<Body, CommandError> {
         let word = |word: &Option<String>| json!(word.as_ref().map(|word| word.replace('-', "_")));
         let contact = self.contact.as_ref().map(|contact| parsed(&read(contact)?)).transpose()?;
@@ -69,7 +66,7 @@ impl Flags for ProtocolFlags {
             Some(text) => parsed(&text)?,
             None => json!({}),
         };
-        let members = body.as_object_mut().ok_or("the body must be a JSON object")?;
+        let members = body.as_object_mut().ok_or_else(|| "the body must be a JSON object".to_owned())?;
         if flags.contains_key("reversals") || flags.contains_key("target") {
             members.retain(|name, _| name != "reversals" && name != "target");
         }

@@ -41,7 +41,9 @@ pub fn from_clap(error: clap::Error, command: &Command, arguments: &[OsString], 
         _ => None,
     };
     let name = text(ContextKind::InvalidArg).unwrap_or_default();
-    let arg = || all(command).into_iter().find(|arg| arg.get_long().is_some() && arg.get_long() == long(name));
+    // Of any command.
+    let mut all = command.get_subcommands().chain([command]).flat_map(Command::get_arguments);
+    let mut arg = || all.find(|arg| arg.get_long().is_some() && arg.get_long() == long(name));
     let why = match (error.kind(), arg()) {
         (ErrorKind::UnknownArgument, _) => {
             // Of the command that the arguments name, right or wrong otherwise.
@@ -95,9 +97,4 @@ fn first_paragraph(text: &str) -> String {
 /// The name within `--name <VALUE>` or `--name[=<VALUE>]`.
 fn long(arg: &str) -> Option<&str> {
     arg.strip_prefix("--")?.split([' ', '=', '[']).next()
-}
-
-/// The arguments of a command and of those below it.
-fn all(command: &Command) -> Vec<&Arg> {
-    command.get_subcommands().chain([command]).flat_map(Command::get_arguments).collect()
 }

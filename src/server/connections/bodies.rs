@@ -18,13 +18,7 @@ use crate::server::connection_limits::{DISCARD_TIME, DISCARDED, PIECE};
 
 /// The body of a request, which a handler reads and the service after it.
 #[derive(Clone)]
-pub struct SharedBody(Arc<Mutex<Incoming>>);
-
-impl SharedBody {
-    pub fn new(body: Incoming) -> SharedBody {
-        SharedBody(Arc::new(Mutex::new(body)))
-    }
-}
+pub struct SharedBody(pub(super) Arc<Mutex<Incoming>>);
 
 impl http_body::Body for SharedBody {
     type Data = Bytes;

@@ -135,18 +135,15 @@ impl Table {
         if self.searched_at.is_some_and(|last| now < last + SEARCH_PAUSE) {
             return;
         }
-        let mut waiting: Vec<_> = self
-            .connections
-            .iter()
-            .filter_map(|(number, connection)| {
-                Some((*number, &connection.client, connection.activity.waiting_since()?))
-            })
-            .filter(|(.., since)| now.duration_since(*since) >= LEAST_WAIT)
-            .collect();
-        waiting.sort_by_key(|(_, client, since)| (Reverse(self.clients.get(*client).copied()), *since));
+        let waiting = self.connections.iter().filter_map(|(number, connection)| {
+            let since = connection.activity.waiting_since()?;
+            let others = self.clients.get(&connection.client).copied();
+            (now.duration_since(since) >= LEAST_WAIT).then_some((Reverse(others), since, *number))
+        });
+        let mut waiting: Vec<_> = waiting.collect();
+        waiting.sort();
         let mut found = false;
-        let numbers: Vec<u64> = waiting.into_iter().take(most).map(|(number, ..)| number).collect();
-        for number in numbers {
+        for (.., number) in waiting.into_iter().take(most) {
             // Its place is free from now on; the task only has to end.
             if self.connections.get(&number).is_some_and(|connection| connection.activity.try_close())
                 && let Some(connection) = self.remove(number)

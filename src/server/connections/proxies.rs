@@ -26,9 +26,8 @@ pub fn client(peer: IpAddr, headers: &HeaderMap, trusted: &[IpNet]) -> IpAddr {
     if !is_trusted(trusted, client) {
         return client;
     }
-    let lines = headers.get_all("x-forwarded-for");
-    let lines: Vec<&str> = lines.iter().map(|line| line.to_str().unwrap_or_default()).collect();
-    for stated in lines.into_iter().rev().flat_map(|line| line.rsplit(',')) {
+    let lines = headers.get_all("x-forwarded-for").iter().rev();
+    for stated in lines.flat_map(|line| line.to_str().unwrap_or_default().rsplit(',')) {
         let Some(stated) = address(stated.trim()) else { break };
         client = stated.to_canonical();
         if !is_trusted(trusted, client) {

@@ -9,6 +9,7 @@ use axum::body::{Body, Bytes, HttpBody as _};
 use axum::http::{HeaderValue, Method, Request, Response, StatusCode, Version, header};
 use hyper::body::Incoming;
 use ipnet::IpNet;
+use parking_lot::Mutex;
 use tokio::sync::watch;
 use tower_service::Service as _;
 
@@ -77,7 +78,7 @@ impl Service {
         }
         let in_progress = RequestInProgress(activity);
         let (head, body) = request.into_parts();
-        let body = SharedBody::new(body);
+        let body = SharedBody(Arc::new(Mutex::new(body)));
         let mut request = Request::from_parts(head, Body::new(body.clone()));
         let address = proxies::client(peer, request.headers(), &self.proxies);
         request.extensions_mut().insert(RequestClient { address, body_time: self.body_time });

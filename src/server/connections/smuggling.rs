@@ -20,21 +20,15 @@ pub enum BodyLength {
 }
 
 /// Inspects heads, in whatever pieces they arrive.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct RequestSmugglingGuard {
     /// The beginning of the line.
-    line: [u8; LINE],
+    line: Vec<u8>,
     length: usize,
     last: u8,
     /// Lines of this head so far.
     lines: usize,
     body: Option<BodyLength>,
-}
-
-impl Default for RequestSmugglingGuard {
-    fn default() -> Self {
-        RequestSmugglingGuard { line: [0; LINE], length: 0, last: 0, lines: 0, body: None }
-    }
 }
 
 impl RequestSmugglingGuard {
@@ -48,8 +42,8 @@ impl RequestSmugglingGuard {
             let (piece, after) = rest.split_at(memchr(b'\n', rest).map_or(rest.len(), |place| place + 1));
             rest = after;
             if self.length < LINE {
-                let part = &piece[..piece.len().min(LINE - self.length)];
-                self.line[self.length..self.length + part.len()].copy_from_slice(part);
+                self.line.reserve_exact(LINE - self.line.len());
+                self.line.extend_from_slice(&piece[..piece.len().min(LINE - self.length)]);
             }
             self.length += piece.len();
             let before = if let [.., before, _] = piece { *before } else { self.last };
@@ -66,6 +60,7 @@ impl RequestSmugglingGuard {
             } else if self.lines > 0 {
                 return Ok(Some((bytes.len() - rest.len(), self.body.unwrap_or(BodyLength::Bytes(0)))));
             }
+            self.line.clear();
             (self.length, self.last) = (0, 0);
         }
         Ok(None)
@@ -94,7 +89,7 @@ impl RequestSmugglingGuard {
 
     /// The value of the header in this line, if it has this name.
     fn value(&self, name: &str) -> Option<&[u8]> {
-        let (start, value) = self.line[..self.length.min(LINE)].split_at_checked(name.len())?;
+        let (start, value) = self.line.split_at_checked(name.len())?;
         let value = value.strip_prefix(b":")?;
         start.eq_ignore_ascii_case(name.as_bytes()).then(|| value.trim_ascii())
     }
