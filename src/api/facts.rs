@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use utoipa_axum::router::{OpenApiRouter, UtoipaMethodRouter};
 
+use super::openapi::operations;
 use super::state::App;
 use crate::access::Role;
 
@@ -58,11 +59,9 @@ pub struct Routes {
 
 impl Routes {
     /// Adds operations with these facts.
-    pub fn add(&mut self, facts: Facts, routes: UtoipaMethodRouter<Arc<App>>) {
-        for (path, item) in &routes.1.paths {
-            let methods = [("GET", &item.get), ("POST", &item.post), ("PATCH", &item.patch), ("DELETE", &item.delete)];
-            let described = methods.into_iter().filter(|(_, operation)| operation.is_some());
-            self.facts.extend(described.map(|(method, _)| (method, path.clone(), facts)));
+    pub fn add(&mut self, facts: Facts, mut routes: UtoipaMethodRouter<Arc<App>>) {
+        for (path, item) in &mut routes.1.paths {
+            self.facts.extend(operations(item).map(|(method, _)| (method, path.clone(), facts)));
         }
         self.router = std::mem::take(&mut self.router).routes(routes);
     }

@@ -11,16 +11,19 @@ use crate::api::facts::Routes;
 use stickslip_wire::all_limits;
 
 pub use base::base;
+pub use operation::operations;
 
 /// The text of the document with these routes.
 pub fn text(Routes { router, facts }: Routes) -> String {
-    let mut document = serde_json::to_value(router.into_openapi()).unwrap_or_default();
-    if let Some(paths) = document["paths"].as_object_mut() {
-        for (method, path, facts) in &facts {
-            operation::complete(method, path, &mut paths[path][method.to_lowercase()], facts);
+    let mut document = router.into_openapi();
+    for (method, path, facts) in &facts {
+        let of_path = document.paths.paths.get_mut(path).into_iter().flat_map(operations);
+        for (_, operation) in of_path.filter(|(of, _)| of == method) {
+            operation::complete(method, path, operation, facts);
         }
-        operation::link(paths);
     }
+    operation::link(&mut document);
+    let mut document = serde_json::to_value(&document).unwrap_or_default();
     write_limits(&mut document);
     schemas::write(&mut document);
     format!("{document:#}\n")

@@ -1,9 +1,16 @@
 //! What an operation has beyond what its handler declares: the key that it needs, refusals, headers, formats, events
 //! and examples. They follow from its facts, from its parameter `format`, and from the `ETag` of what a reader gets.
 
+use std::collections::BTreeMap;
 use std::sync::LazyLock;
 
 use serde_json::{Map, Value, json};
+use utoipa::openapi::header::HeaderBuilder;
+use utoipa::openapi::link::{Link, LinkBuilder};
+use utoipa::openapi::path::{Operation, Parameter, ParameterBuilder, ParameterIn, PathItem};
+use utoipa::openapi::schema::{AnyOfBuilder, ArrayBuilder, KnownFormat, ObjectBuilder, Schema, SchemaFormat, Type};
+use utoipa::openapi::security::SecurityRequirement;
+use utoipa::openapi::{Content, Header, Object, OpenApi, Ref, RefOr, Required, Response, ResponseBuilder};
 
 use crate::access::Role;
 use crate::api::facts::{Facts, Refusal};
@@ -36,161 +43,198 @@ const OF_BODIES: &[Refusal] = &[
 static EXAMPLES: LazyLock<Map<String, Value>> =
     LazyLock::new(|| serde_json::from_str(include_str!("../../../openapi/examples.json")).unwrap_or_default());
 
+/// The operations of a path, by their methods.
+pub fn operations(item: &mut PathItem) -> impl Iterator<Item = (&'static str, &mut Operation)> {
+    let PathItem { get, post, patch, delete, .. } = item;
+    let methods = [("GET", get), ("POST", post), ("PATCH", patch), ("DELETE", delete)];
+    methods.into_iter().filter_map(|(method, operation)| Some((method, operation.as_mut()?)))
+}
+
 /// Completes an operation.
-pub fn complete(method: &str, path: &str, operation: &mut Value, facts: &Facts) {
+pub fn complete(method: &str, path: &str, operation: &mut Operation, facts: &Facts) {
     refuse(path, operation, facts);
-    let named = parameters(operation).filter(|parameter| parameter["name"] == "format");
-    let named: Vec<Value> = named.filter_map(|format| format["schema"]["enum"].as_array()).flatten().cloned().collect();
+    let named = formats(operation);
     if !named.is_empty() {
-        operation["responses"]["406"] = refusal("Accept admits none of the formats");
-        for format in Format::ALL.iter().filter(|format| **format != Format::Columns) {
-            if named.contains(&json!(format.name())) {
-                operation["responses"]["200"]["content"][format.media_type()] = json!({"schema": schema(*format)});
-            }
-        }
+        insert(operation, "406", refusal("Accept admits none of the formats"));
+        let content = named.iter().filter(|format| **format != Format::Columns);
+        ok(operation).content.extend(content.map(|format| (format.media_type().to_owned(), shown(*format).into())));
     }
-    if method == "GET" && operation["responses"]["200"]["headers"]["ETag"].is_object() {
+    if method == "GET" && ok(operation).headers.contains_key("ETag") {
         tell_versions(operation, !named.is_empty());
     }
-    let name = operation["operationId"].as_str().unwrap_or_default().to_owned();
+    let name = operation.operation_id.clone().unwrap_or_default();
     if !facts.events.is_empty() {
-        let lines = json!({"type": "string", "description": "The lines of the events"});
-        operation["responses"]["200"]["content"]["text/event-stream"]["schema"] =
-            json!({"anyOf": [lines, event(&name, facts.events)]});
+        let schema = AnyOfBuilder::new()
+            .item(ObjectBuilder::new().schema_type(Type::String).description(Some("The lines of the events")))
+            .item(event(&name, facts.events));
+        if let Some(RefOr::T(content)) = ok(operation).content.get_mut("text/event-stream") {
+            content.schema = Some(Schema::AnyOf(schema.build()).into());
+        }
     }
     show_examples(operation, &name);
 }
 
-fn parameters(operation: &Value) -> impl Iterator<Item = &Value> {
-    operation["parameters"].as_array().into_iter().flatten()
-}
-
-/// Adds the refusals that an operation can meet, and the key that it needs.
-fn refuse(path: &str, operation: &mut Value, facts: &Facts) {
-    let is_conditional = parameters(operation).any(|parameter| parameter["name"] == "If-Match");
-    let refusals = [
-        (matches!(facts.role, Some(Role::Read | Role::Write)), LIMITED),
-        (path.starts_with("/contacts/{"), EXPIRED),
-        (is_conditional, CHANGES),
-        (operation["requestBody"].is_object(), OF_BODIES),
-        (true, facts.refusals),
-    ];
-    if facts.optional_body {
-        operation["requestBody"]["required"] = json!(false);
-    }
-    operation["security"] = facts.role.map_or(json!([]), |_| json!([{"key": []}, {}]));
-    let responses = &mut operation["responses"];
-    responses["431"] = json!({"description": format!("The head of the request has more than {HEAD} bytes")});
-    if path.contains('{') {
-        responses["404"] = refusal("Not found");
-    }
-    for (status, description) in refusals.iter().filter(|(applies, _)| *applies).flat_map(|(_, refusals)| *refusals) {
-        responses[*status] = refusal(description);
-        if ["429", "503"].contains(status) {
-            let seconds = json!({"type": "integer", "minimum": 0});
-            responses[*status]["headers"] =
-                json!({"Retry-After": {"description": "Seconds to wait", "schema": seconds}});
-        }
-    }
-    if let Some(role) = facts.role {
-        responses["401"] = refusal("The request has no key, or one that is not a key of the server");
-        responses["401"]["headers"] = json!({"WWW-Authenticate": text("`Bearer`")});
-        responses["403"] = refusal(&format!(
-            "The key does not have the role `{}`, or, without keys, the request comes from another site",
-            role.name()
-        ));
-    }
-}
-
-fn refusal(description: &str) -> Value {
-    let document = json!({"schema": {"$ref": "#/components/schemas/ProblemDocument"}});
-    json!({"description": description, "content": {MEDIA_TYPE: document}})
-}
-
-/// A header that is a text.
-fn text(description: &str) -> Value {
-    json!({"description": description, "schema": {"type": "string"}})
-}
-
-/// The schema of a reply in a format other than the document.
-fn schema(format: Format) -> Value {
-    match format {
-        Format::Rows => json!({"type": "array", "items": {"type": "object"}}),
-        Format::Arrow | Format::Png => json!({"type": "string", "format": "binary"}),
-        _ => json!({"type": "string"}),
-    }
-}
-
-/// The answer 304 to a client that has the current version.
-fn tell_versions(operation: &mut Value, varies: bool) {
-    let responses = &mut operation["responses"];
-    let unchanged = "The client already has this version (If-None-Match)";
-    responses["304"] = json!({
-        "description": unchanged, "headers": {"ETag": responses["200"]["headers"]["ETag"]}
-    });
-    for status in ["200", "304"] {
-        let headers = &mut responses[status]["headers"];
-        headers["Cache-Control"] =
-            text("`private, no-cache`: the client may cache the reply, but must ask before using it again");
-        if varies {
-            headers["Vary"] = text("`accept`: the reply depends on the format");
-        }
-    }
-    let condition = "The `ETag` of the version that the client has; if it is still current, the reply is 304";
-    if let Some(parameters) = operation["parameters"].as_array_mut() {
-        parameters.push(json!({
-            "name": "If-None-Match", "in": "header", "required": false, "description": condition,
-            "schema": {"type": "string"}
-        }));
-    }
-}
-
-/// A server-sent event: a text to clients that read a reply whole, and this to those that follow it.
-fn event(operation: &str, data: &[&str]) -> Value {
-    let schemas: Vec<Value> = data.iter().map(|name| json!({"$ref": format!("#/components/schemas/{name}")})).collect();
-    json!({
-        "type": "object",
-        "title": format!("{operation}_event"),
-        "description": "One event, as its lines",
-        "required": ["event", "data"],
-        "properties": {
-            "event": {"type": "string", "description": "The kind of event"},
-            "id": {"type": "string", "description": "The sequence, with an event `state`"},
-            "data": {
-                "type": "string",
-                "description": format!("A `{}`", data.join("` or, in the last event, a `")),
-                "contentMediaType": "application/json",
-                "contentSchema": {"oneOf": schemas}
-            }
-        }
+/// The parameter of a name.
+fn parameter<'a>(operation: &'a Operation, name: &str) -> Option<&'a Parameter> {
+    operation.parameters.iter().flatten().find_map(|parameter| match parameter {
+        RefOr::T(parameter) if parameter.name == name => Some(parameter),
+        _ => None,
     })
 }
 
+/// The formats that the parameter `format` names.
+fn formats(operation: &Operation) -> Vec<Format> {
+    let schema = parameter(operation, "format").and_then(|format| format.extensions.as_ref()?.get("schema"));
+    let named = schema.and_then(|schema| schema["enum"].as_array());
+    let is_named = |format: &Format| named.is_some_and(|named| named.iter().any(|name| name == format.name()));
+    Format::ALL.into_iter().filter(is_named).collect()
+}
+
+/// Adds the refusals that an operation can meet, and the key that it needs.
+fn refuse(path: &str, operation: &mut Operation, facts: &Facts) {
+    let refusals = [
+        (matches!(facts.role, Some(Role::Read | Role::Write)), LIMITED),
+        (path.starts_with("/contacts/{"), EXPIRED),
+        (parameter(operation, "If-Match").is_some(), CHANGES),
+        (operation.request_body.is_some(), OF_BODIES),
+        (true, facts.refusals),
+    ];
+    if let (true, Some(RefOr::T(body))) = (facts.optional_body, &mut operation.request_body) {
+        body.required = Some(Required::False);
+    }
+    insert(operation, "431", Response::new(format!("The head of the request has more than {HEAD} bytes")));
+    if path.contains('{') {
+        insert(operation, "404", refusal("Not found"));
+    }
+    for (status, description) in refusals.iter().filter(|(applies, _)| *applies).flat_map(|(_, refusals)| *refusals) {
+        let mut response = refusal(*description);
+        if ["429", "503"].contains(status) {
+            response.headers.insert("Retry-After".to_owned(), seconds().into());
+        }
+        insert(operation, status, response);
+    }
+    let mut security = Vec::new();
+    if let Some(role) = facts.role {
+        let mut unknown = refusal("The request has no key, or one that is not a key of the server");
+        unknown.headers.insert("WWW-Authenticate".to_owned(), text("`Bearer`").into());
+        insert(operation, "401", unknown);
+        let role = role.name();
+        let forbidden =
+            format!("The key does not have the role `{role}`, or, without keys, the request comes from another site");
+        insert(operation, "403", refusal(forbidden));
+        security = vec![SecurityRequirement::new("key", [""; 0]), SecurityRequirement::default()];
+    }
+    operation.security = Some(security);
+}
+
+fn insert(operation: &mut Operation, status: &str, response: Response) {
+    operation.responses.responses.insert(status.to_owned(), response.into());
+}
+
+/// The reply 200.
+fn ok(operation: &mut Operation) -> &mut Response {
+    let reply = operation.responses.responses.entry("200".to_owned());
+    match reply.or_insert_with(|| Response::default().into()) {
+        RefOr::T(response) => response,
+        RefOr::Ref(_) => unreachable!("no operation refers to a reply of another"),
+    }
+}
+
+fn refusal(description: impl Into<String>) -> Response {
+    let content = Content::new(Some(Ref::from_schema_name("ProblemDocument")));
+    ResponseBuilder::new().description(description).content(MEDIA_TYPE, content).build()
+}
+
+fn text(description: &str) -> Header {
+    HeaderBuilder::new().description(Some(description)).build()
+}
+
+fn seconds() -> Header {
+    let schema = ObjectBuilder::new().schema_type(Type::Integer).minimum(Some(0));
+    HeaderBuilder::new().description(Some("Seconds to wait")).schema(Some(schema)).build()
+}
+
+/// The content of a reply in a format other than the document.
+fn shown(format: Format) -> Content {
+    let string = ObjectBuilder::new().schema_type(Type::String);
+    let schema: RefOr<Schema> = match format {
+        Format::Rows => ArrayBuilder::new().items(Object::with_type(Type::Object)).into(),
+        Format::Arrow | Format::Png => string.format(Some(SchemaFormat::KnownFormat(KnownFormat::Binary))).into(),
+        _ => string.into(),
+    };
+    Content::new(Some(schema))
+}
+
+/// The answer 304 to a client that has the current version.
+fn tell_versions(operation: &mut Operation, varies: bool) {
+    let mut unchanged = Response::new("The client already has this version (If-None-Match)");
+    unchanged.headers.extend(ok(operation).headers.get("ETag").map(|tag| ("ETag".to_owned(), tag.clone())));
+    for reply in [&mut unchanged, ok(operation)] {
+        let cache = text("`private, no-cache`: the client may cache the reply, but must ask before using it again");
+        reply.headers.insert("Cache-Control".to_owned(), cache.into());
+        if varies {
+            let vary = text("`accept`: the reply depends on the format");
+            reply.headers.insert("Vary".to_owned(), vary.into());
+        }
+    }
+    insert(operation, "304", unchanged);
+    let condition = ParameterBuilder::new()
+        .name("If-None-Match")
+        .parameter_in(ParameterIn::Header)
+        .required(Required::False)
+        .schema(Some(Object::with_type(Type::String)))
+        .description(Some("The `ETag` of the version that the client has; if it is still current, the reply is 304"));
+    operation.parameters.get_or_insert_default().push(condition.build().into());
+}
+
+/// A server-sent event: a text to clients that read a reply whole, and this to those that follow it.
+fn event(operation: &str, data: &[&str]) -> ObjectBuilder {
+    let schemas: Vec<Value> = data.iter().map(|name| json!({"$ref": format!("#/components/schemas/{name}")})).collect();
+    let text = |description: &str| ObjectBuilder::new().schema_type(Type::String).description(Some(description));
+    let content = [("contentMediaType", json!("application/json")), ("contentSchema", json!({"oneOf": schemas}))];
+    let content = content.into_iter().collect();
+    ObjectBuilder::new()
+        .title(Some(format!("{operation}_event")))
+        .description(Some("One event, as its lines"))
+        .property("event", text("The kind of event"))
+        .property("id", text("The sequence, with an event `state`"))
+        .property("data", text(&format!("A `{}`", data.join("` or, in the last event, a `"))).extensions(Some(content)))
+        .required("event")
+        .required("data")
+}
+
 /// Adds what the program replied to the first example of each request, and to readers of the contact that it makes.
-fn show_examples(operation: &mut Value, name: &str) {
-    for (status, name) in [("200", name), ("201", name), ("202", "get_job")] {
-        for media in ["application/json", "text/event-stream", "text/plain"] {
-            let content = operation.pointer_mut(&format!("/responses/{status}/content/{}", media.replace('/', "~1")));
-            if let Some((content, example)) = content.zip(EXAMPLES.get(name)) {
-                content["example"] = example.clone();
+fn show_examples(operation: &mut Operation, name: &str) {
+    for (status, response) in &mut operation.responses.responses {
+        let example = match status.as_str() {
+            "200" | "201" => EXAMPLES.get(name),
+            "202" => EXAMPLES.get("get_job"),
+            _ => None,
+        };
+        let (Some(example), RefOr::T(response)) = (example, response) else { continue };
+        for (media, content) in &mut response.content {
+            let is_shown = ["application/json", "text/event-stream", "text/plain"].contains(&media.as_str());
+            if let (true, RefOr::T(content)) = (is_shown, content) {
+                content.example = Some(example.clone());
             }
         }
     }
 }
 
 /// Adds links from a new contact or job to every operation on it.
-pub fn link(paths: &mut Map<String, Value>) {
+pub fn link(document: &mut OpenApi) {
     for (status, place) in [("201", "/contacts/{id}"), ("202", "/jobs/{id}")] {
-        let items = paths.iter().filter(|(path, _)| path.starts_with(place));
-        let names = items.filter_map(|(_, item)| item.as_object()).flat_map(Map::values);
-        let link = |name: &str| json!({"operationId": name, "parameters": {"id": "$response.body#/id"}});
-        let links: Map<String, Value> = names
-            .filter_map(|operation| operation["operationId"].as_str())
-            .map(|name| (name.to_owned(), link(name)))
-            .collect();
-        for operation in paths.values_mut().filter_map(Value::as_object_mut).flat_map(Map::values_mut) {
-            if let Some(made) = operation["responses"].get_mut(status) {
-                made["links"] = json!(links);
+        let paths = document.paths.paths.iter_mut().filter(|(path, _)| path.starts_with(place));
+        let link = |(_, operation): (_, &mut Operation)| {
+            let name = operation.operation_id.clone()?;
+            let link = LinkBuilder::new().operation_id(&name).parameter("id", "$response.body#/id").build();
+            Some((name, RefOr::T(link)))
+        };
+        let links: BTreeMap<String, RefOr<Link>> =
+            paths.flat_map(|(_, item)| operations(item)).filter_map(link).collect();
+        for (_, operation) in document.paths.paths.values_mut().flat_map(operations) {
+            if let Some(RefOr::T(made)) = operation.responses.responses.get_mut(status) {
+                made.links.clone_from(&links);
             }
         }
     }
