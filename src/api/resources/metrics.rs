@@ -47,9 +47,8 @@ fn page(app: &App, traffic: &RequestMetrics) -> prometheus::Result<String> {
     let threads = app.pool.capacity().threads.max(1);
     gauge(&page, Opts::new("stickslip_solver_threads", "Threads of the solver."), threads as f64)?;
     show!(page, app.pool.quotas().refused);
-    if let Some(commits) = app.sessions.commits() {
-        show!(page, commits.time, commits.size, commits.failed, commits.pending);
-    }
+    let commits = app.sessions.commits();
+    show!(page, commits.time, commits.size, commits.failed, commits.pending);
     this_program(&page)?;
     TextEncoder::new().encode_to_string(&page.gather())
 }
