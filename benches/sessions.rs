@@ -21,7 +21,7 @@ use criterion::{Criterion, criterion_group, criterion_main};
 use load::resident;
 use stickslip::admission::Pool;
 use stickslip::sessions::Sessions;
-use stickslip::store::{MemoryStore, Snapshot, SqliteStore, Store};
+use stickslip::store::{Snapshot, SqliteStore, Store};
 use stickslip_wire::session::Advance;
 use stickslip_wire::{CreateRequest, Plan, Steps, read};
 use uuid::Uuid;
@@ -99,7 +99,7 @@ fn opening(criterion: &mut Criterion) {
     runtime.block_on(rest(sqlite("rest.db")));
     let url = runtime.block_on(postgres::Cluster::shared().database());
     let stores: [(&str, Arc<dyn Store>); 3] = [
-        ("memory", Arc::new(MemoryStore::new())),
+        ("memory", Arc::new(SqliteStore::in_memory().unwrap())),
         ("sqlite", sqlite("opening.db")),
         ("postgres", runtime.block_on(stickslip::store::open(&url)).expect("a database")),
     ];

@@ -175,6 +175,6 @@ impl Sessions {
 /// has woken those who listen.
 fn publish(common: &Common, guard: &mut Guard, mut live: Box<LoadedSession>, moves: u64) {
     common.metrics.moves.inc_by(moves);
-    common.snapshots.offer(&mut live);
+    common.offer_snapshot(&mut live);
     guard.live = Some(live);
 }

@@ -3,6 +3,7 @@
 
 use std::sync::Arc;
 
+use tokio::sync::Semaphore;
 use uuid::Uuid;
 
 use crate::admission::{Deadline, Pool, STREAMS};
@@ -14,7 +15,7 @@ use super::cache::{Cache, Guard};
 use super::error::SessionError;
 use super::handle::Sessions;
 use super::metrics::SessionMetrics;
-use super::snapshot::Snapshots;
+use super::snapshot;
 use super::storage_reservation::{StorageReservation, UsageByTenant};
 
 /// How often a change is tried if other processes move the contact first. Each time, one of them has made progress.
@@ -25,7 +26,8 @@ pub struct Common {
     pub(super) store: Arc<dyn Store>,
     pub(super) pool: Pool,
     pub(super) cache: Arc<Cache>,
-    pub(super) snapshots: Snapshots,
+    /// A permit for each snapshot that is being stored.
+    pub(super) snapshots: Arc<Semaphore>,
     pub(super) listeners: Listeners,
     /// Metrics that are counted as events happen.
     pub metrics: SessionMetrics,
@@ -37,7 +39,7 @@ impl Common {
     pub(super) fn new(store: Arc<dyn Store>, pool: Pool, capacity: usize) -> Common {
         let metrics = SessionMetrics::default();
         Common {
-            snapshots: Snapshots::new(Arc::clone(&store), pool.clone()),
+            snapshots: Arc::new(Semaphore::new(snapshot::AT_ONCE)),
             cache: Arc::new(Cache::new(capacity, metrics.hits.clone())),
             store,
             pool,

@@ -160,8 +160,8 @@ impl Sessions {
         self.listeners.count()
     }
 
-    /// What the store has committed, if it commits.
-    pub fn commits(&self) -> Option<&Commits> {
+    /// What the store has committed.
+    pub fn commits(&self) -> &Commits {
         self.store.commits()
     }
 }

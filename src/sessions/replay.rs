@@ -13,10 +13,10 @@ use stickslip_mechanics::Contact;
 use stickslip_wire::{ContactDefinition, limits};
 
 use super::cache::Guard;
+use super::common::Common;
 use super::error::SessionError;
 use super::handle::Sessions;
 use super::loaded::LoadedSession;
-use super::snapshot::Snapshots;
 
 /// Moves that are fetched from the store at a time.
 pub(super) const PAGE: usize = 10_000;
@@ -92,7 +92,7 @@ impl Sessions {
             live.shared |= moved && !live.is_behind;
             live.is_behind = false;
             if moved {
-                self.snapshots.offer(live);
+                self.offer_snapshot(live);
             }
         }
         Ok(moved)
@@ -129,7 +129,7 @@ impl Sessions {
         if followed.is_ok() {
             live.session.updated_at = updated_at;
         }
-        self.snapshots.offer(&mut live);
+        self.offer_snapshot(&mut live);
         // The state, and a copy of it, which shares the profile.
         guard.held.shrink(2 * live.bytes() + live.shape_bytes());
         guard.live = Some(live);
@@ -149,7 +149,7 @@ impl Sessions {
         let id = session.id;
         let mut live = self.first_state(guard, session).await?;
         (live.contact, live.session.sequence, live.unreadable) =
-            self.snapshots.load(&mut guard.loading, snapshot, live.contact, last).await?;
+            self.load_snapshot(&mut guard.loading, snapshot, live.contact, last).await?;
         while live.session.sequence < last {
             let page = self.page(id, live.session.sequence, last).await?;
             let followed;
@@ -248,7 +248,7 @@ impl Sessions {
         let common = Arc::clone(&self.common);
         let replay = move || {
             let timer = Timer::start(&stop);
-            let followed = replay(&mut live, &page, &stop, timer, &common.snapshots);
+            let followed = replay(&mut live, &page, &stop, timer, &common);
             (live, followed, timer.elapsed())
         };
         let (live, followed, loading) = self.pool.run(cost, replay).await?;
@@ -317,7 +317,7 @@ fn replay(
     page: &[Record],
     stop: &Deadline,
     timer: Timer<'_>,
-    snapshots: &Snapshots,
+    common: &Common,
 ) -> Result<Result<(), Interrupted>, stickslip_mechanics::Error> {
     let (mut moves, mut since) = (0, timer.elapsed());
     for record in page {
@@ -335,7 +335,7 @@ fn replay(
         let worked = timer.elapsed().saturating_sub(since);
         if checked.is_err() || worked >= KEPT_EVERY {
             live.replay_cost.add(moves, worked);
-            snapshots.offer(live);
+            common.offer_snapshot(live);
             (moves, since) = (0, timer.elapsed());
         }
         if checked.is_err() {

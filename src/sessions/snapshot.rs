@@ -4,20 +4,17 @@
 //! the session replayed from its beginning. It is due once what it spares a replay outweighs what it costs to write and
 //! read, which bounds both the time to open a session and the bytes written for a move.
 
-use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use tokio::sync::Semaphore;
-
-use crate::admission::Pool;
-use crate::store::{Snapshot, Store, StoreError};
+use crate::store::{Snapshot, StoreError};
 use stickslip_mechanics::Contact;
 
+use super::common::Common;
 use super::error::SessionError;
 use super::loaded::LoadedSession;
 
 /// Snapshots that are being stored at a time. A session for which there is no room tries again with its next move.
-const AT_ONCE: usize = 2;
+pub(super) const AT_ONCE: usize = 2;
 /// Bytes of the checksum at the end.
 const CHECKSUM: usize = 4;
 /// No replay shorter than this is worth a snapshot.
@@ -27,24 +24,13 @@ const FETCH: Duration = Duration::from_micros(2);
 /// Estimated cost of writing and reading a byte of a snapshot.
 const BYTE: Duration = Duration::from_nanos(3);
 
-pub(super) struct Snapshots {
-    store: Arc<dyn Store>,
-    pool: Pool,
-    // A permit for each snapshot that is being stored.
-    permits: Arc<Semaphore>,
-}
-
-impl Snapshots {
-    pub(super) fn new(store: Arc<dyn Store>, pool: Pool) -> Snapshots {
-        Snapshots { store, pool, permits: Arc::new(Semaphore::new(AT_ONCE)) }
-    }
-
+impl Common {
     /// Stores a snapshot of a stored state in the background, if one is due.
-    pub(super) fn offer(&self, live: &mut LoadedSession) {
+    pub(super) fn offer_snapshot(&self, live: &mut LoadedSession) {
         if !live.replay_cost.is_worth_snapshot(live.contact.packed_length()) {
             return;
         }
-        let Ok(permit) = self.permits.clone().try_acquire_owned() else { return };
+        let Ok(permit) = self.snapshots.clone().try_acquire_owned() else { return };
         live.replay_cost = ReplayCost::default();
         let (store, contact) = (self.store.clone(), live.contact.clone());
         let (id, sequence, unreadable) = (live.session.id, live.session.sequence, live.unreadable.take());
@@ -60,7 +46,7 @@ impl Snapshots {
 
     /// The contact after some stored move and the number of that move; `initial` and 0 if there is no snapshot to read,
     /// and the number of the move of one that is there all the same. `loading` is increased by the time that it takes.
-    pub(super) async fn load(
+    pub(super) async fn load_snapshot(
         &self,
         loading: &mut Duration,
         snapshot: Result<Option<Snapshot>, StoreError>,

@@ -49,7 +49,7 @@ pub async fn trace(
     let initial = sessions.copies(id, &stop, |live| live.contact.virgin()).await?;
     let snapshot = sessions.store.snapshot(id).await;
     let mut loading = Duration::ZERO;
-    let (mut contact, mut at, _) = sessions.snapshots.load(&mut loading, snapshot, initial, after).await?;
+    let (mut contact, mut at, _) = sessions.load_snapshot(&mut loading, snapshot, initial, after).await?;
     stop.flag().charge(loading);
     while at < last {
         let records = sessions.page(id, at, last).await?;

@@ -16,7 +16,7 @@ pub(super) fn collect<T>(first: T, queue: &mut mpsc::Receiver<T>, rows: impl Fn(
         && written < ROWS
         && let Ok(next) = queue.try_recv()
     {
-        written += rows(&next);
+        written = rows(&next).saturating_add(written);
         batch.push(next);
     }
     batch

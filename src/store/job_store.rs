@@ -3,13 +3,10 @@
 //! A store has the request of a job, the number of its points, and the number of points of a chunk. Chunks are
 //! claimed by any worker, and a claim ends with its worker. The store does not read the bytes of a result.
 
-use std::collections::{BTreeMap, BTreeSet};
-use std::ops::Bound::{Excluded, Unbounded};
 use std::time::Duration;
 
 use async_trait::async_trait;
 use jiff::Timestamp;
-use parking_lot::Mutex;
 use uuid::Uuid;
 
 use super::{Receipt, Result, StoreError, Tenant};
@@ -150,118 +147,4 @@ pub trait JobStore: Send + Sync + 'static {
 
     /// Deletes a job, whether it has ended or not.
     async fn delete_job(&self, id: Uuid) -> Result<()>;
-}
-
-/// The chunks that wait and those that are worked on, for stores that only one process works with: no claim outlives
-/// it.
-#[derive(Default)]
-pub(super) struct ChunkQueue {
-    // Locked for a lookup.
-    open: Mutex<BTreeMap<Uuid, OpenJob>>,
-}
-
-#[derive(Default)]
-struct OpenJob {
-    waiting: BTreeSet<u64>,
-    claimed: BTreeSet<u64>,
-}
-
-/// What a change that is durable means for the queue. Whoever makes it durable applies it, because its caller may have
-/// left by then.
-#[derive(Clone, Copy, Debug)]
-pub(super) enum QueueChange {
-    /// There is a new job with so many chunks.
-    Add(Uuid, u64),
-    /// The result of a chunk is stored.
-    Finish(Claim),
-    /// A job has failed or is deleted.
-    Remove(Uuid),
-}
-
-impl ChunkQueue {
-    /// Follows a durable change.
-    pub(super) fn follow(&self, change: QueueChange) {
-        match change {
-            QueueChange::Add(job, chunks) => self.add_job(job, 0..chunks),
-            QueueChange::Finish(claim) => self.finish(claim),
-            QueueChange::Remove(job) => self.remove_job(job),
-        }
-    }
-
-    /// Adds a job with its unfinished chunks.
-    pub(super) fn add_job(&self, id: Uuid, waiting: impl Iterator<Item = u64>) {
-        self.open.lock().insert(id, OpenJob { waiting: waiting.collect(), claimed: BTreeSet::new() });
-    }
-
-    /// A chunk to work on.
-    pub(super) fn claim(&self, owner: Uuid, after: Option<Uuid>) -> Option<Claim> {
-        let mut open = self.open.lock();
-        let from = after.unwrap_or_default();
-        let beyond = open.range((Excluded(from), Unbounded)).chain(open.range(..=from));
-        let job = beyond.filter(|(_, job)| !job.waiting.is_empty()).map(|(id, _)| *id).next()?;
-        let found = open.get_mut(&job)?;
-        let chunk = found.waiting.pop_first()?;
-        found.claimed.insert(chunk);
-        Some(Claim { job, chunk, owner })
-    }
-
-    /// Whether a claim is still valid.
-    pub(super) fn is_claimed(&self, claim: Claim) -> bool {
-        self.open.lock().get(&claim.job).is_some_and(|job| job.claimed.contains(&claim.chunk))
-    }
-
-    /// Releases a chunk.
-    pub(super) fn release(&self, claim: Claim) {
-        if let Some(job) = self.open.lock().get_mut(&claim.job)
-            && job.claimed.remove(&claim.chunk)
-        {
-            job.waiting.insert(claim.chunk);
-        }
-    }
-
-    /// Removes a chunk that is done.
-    pub(super) fn finish(&self, claim: Claim) {
-        let mut open = self.open.lock();
-        if let Some(job) = open.get_mut(&claim.job) {
-            job.claimed.remove(&claim.chunk);
-            if job.claimed.is_empty() && job.waiting.is_empty() {
-                open.remove(&claim.job);
-            }
-        }
-    }
-
-    /// Removes a job.
-    pub(super) fn remove_job(&self, id: Uuid) {
-        self.open.lock().remove(&id);
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::ChunkQueue;
-    use uuid::Uuid;
-
-    #[test]
-    fn jobs_take_turns_and_each_chunk_is_given_once() {
-        let (queue, owner) = (ChunkQueue::default(), Uuid::now_v7());
-        let (first, second) = (Uuid::now_v7(), Uuid::now_v7());
-        queue.add_job(first, 0..2);
-        queue.add_job(second, 0..2);
-        let mut last = None;
-        let mut turns = Vec::new();
-        while let Some(claim) = queue.claim(owner, last) {
-            last = Some(claim.job);
-            turns.push((claim.job, claim.chunk));
-        }
-        assert_eq!(turns, [(first, 0), (second, 0), (first, 1), (second, 1)]);
-        let claim = super::Claim { job: first, chunk: 1, owner };
-        assert!(queue.is_claimed(claim));
-        queue.release(claim);
-        assert!(!queue.is_claimed(claim));
-        assert_eq!(queue.claim(owner, None), Some(claim));
-        queue.remove_job(first);
-        assert!(!queue.is_claimed(claim));
-        queue.release(claim);
-        assert_eq!(queue.claim(owner, None), None);
-    }
 }

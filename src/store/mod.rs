@@ -1,9 +1,8 @@
 //! Stores: definitions of contacts, their moves, and the replies that retries get again.
 //!
 //! A store returns definitions and moves as they were saved, and contains no physics. Every call is atomic, and what it
-//! has acknowledged is as durable as the store is. [`memory`] keeps all of it in the process, until that ends;
-//! [`sqlite`] keeps it in a file, and [`postgres`] in a database that many processes share. [`open()`] chooses by the
-//! URL.
+//! has acknowledged is as durable as the store is. [`sqlite`] keeps all of it in a file, or in the process until that
+//! ends, and [`postgres`] in a database that many processes share. [`open()`] chooses by the URL.
 
 mod batch;
 pub mod changes;
@@ -12,7 +11,6 @@ pub mod idempotency;
 pub mod job_store;
 mod keyed_locks;
 pub mod listeners;
-pub mod memory;
 pub mod open;
 pub mod postgres;
 mod probe;
@@ -34,7 +32,6 @@ pub use idempotency::IdempotentRequest;
 pub use job_store::{ChunkResult, Claim, Job, JobLimits, JobStore};
 pub(crate) use keyed_locks::{KeyLock, KeyedLocks};
 pub use listeners::{Listener, Listeners, StreamEvent};
-pub use memory::MemoryStore;
 pub use open::{OpenError, backup, open, open_to_read};
 pub use postgres::PostgresStore;
 pub use sqlite::SqliteStore;
@@ -379,13 +376,9 @@ pub trait Store: JobStore {
     /// Wakes those who wait for changes, whichever process on the same storage makes them.
     fn changes(&self) -> &Changes;
 
-    /// Metrics of its transactions; none if it has no transactions.
-    fn commits(&self) -> Option<&Commits> {
-        None
-    }
+    /// Metrics of its transactions.
+    fn commits(&self) -> &Commits;
 
     /// Faults of the storage itself, a line each: damage, and rows that belong to no contact.
-    async fn check_integrity(&self) -> Result<Vec<String>> {
-        Ok(Vec::new())
-    }
+    async fn check_integrity(&self) -> Result<Vec<String>>;
 }

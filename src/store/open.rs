@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use super::{MemoryStore, PostgresStore, SqliteStore, Store};
+use super::{PostgresStore, SqliteStore, Store, sqlite};
 
 /// Why a store cannot be used, in one line.
 #[derive(Debug, thiserror::Error)]
@@ -61,7 +61,7 @@ pub async fn open(url: &str) -> Result<Arc<dyn Store>, OpenError> {
     match kind(url)? {
         Kind::Memory => {
             tracing::warn!("contacts are kept in memory: they are lost when this process ends");
-            Ok(Arc::new(MemoryStore::new()))
+            Ok(Arc::new(SqliteStore::in_memory().map_err(|why| OpenError::new(url, why))?))
         }
         Kind::Sqlite(path) => {
             let store = SqliteStore::open(path).map_err(|why| OpenError::new(url, why))?;
@@ -100,7 +100,7 @@ pub async fn open_to_read(url: &str) -> Result<Arc<dyn Store>, OpenError> {
 pub fn backup(url: &str, copy: &Path, progress: impl FnMut(u64, u64) + Send) -> Result<u64, OpenError> {
     match kind(url)? {
         Kind::Memory => Err(OpenError::new(url, "a `memory:` store exists only in the process that serves it")),
-        Kind::Sqlite(path) => SqliteStore::backup(path, copy, progress).map_err(|why| OpenError::new(url, why)),
+        Kind::Sqlite(path) => sqlite::backup::backup(path, copy, progress).map_err(|why| OpenError::new(url, why)),
         Kind::Postgres => {
             Err(OpenError::of(url, "a database is backed up by its own means: pg_dump --format=custom --file=FILE URL"))
         }

@@ -6,33 +6,12 @@
 
 use std::cmp::Ordering;
 
-/// Why tables of a version cannot be used.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum VersionError {
-    /// A later version of this program has migrated the store.
-    #[error("it has schema version {found}, but this program supports versions up to {known}: start the newer program")]
-    Newer {
-        /// The version of the tables.
-        found: i32,
-        /// The newest version that this program supports.
-        known: i32,
-    },
-    /// An earlier version has made the store, which is open for reading only.
-    #[error("it has schema version {found}: `stickslip serve` migrates it to version {known}")]
-    Older {
-        /// The version of the tables.
-        found: i32,
-        /// The version that this program works with.
-        known: i32,
-    },
-}
-
 /// Why the tables of a store cannot be used.
 #[derive(Debug, thiserror::Error)]
 pub enum SchemaError<E> {
-    /// They have another version.
-    #[error(transparent)]
-    Version(VersionError),
+    /// They have another version, which the text names.
+    #[error("{0}")]
+    Version(String),
     /// The database refused or was lost.
     #[error(transparent)]
     Database(#[from] E),
@@ -41,24 +20,28 @@ pub enum SchemaError<E> {
 /// The migrations that are still to be applied to tables of a version, each with the version that it leads to.
 ///
 /// # Errors
-/// [`VersionError::Newer`] if the version is later than all migrations.
+/// Why the tables cannot be used, if a later version of this program has migrated them.
 pub(super) fn pending<'a>(
     found: i32,
     migrations: &'a [&'a str],
-) -> Result<impl Iterator<Item = (i32, &'a str)>, VersionError> {
-    match check(found, migrations) {
-        Err(error @ VersionError::Newer { .. }) => Err(error),
-        _ => Ok((1..).zip(migrations.iter().copied()).filter(move |(version, _)| *version > found)),
+) -> Result<impl Iterator<Item = (i32, &'a str)>, String> {
+    if found > newest(migrations) {
+        check(found, migrations)?;
     }
+    Ok((1..).zip(migrations.iter().copied()).filter(move |(version, _)| *version > found))
 }
 
-/// Whether tables are at the version of the last of these migrations.
-pub(super) fn check(found: i32, migrations: &[&str]) -> Result<(), VersionError> {
+/// Refuses tables that are not at the version of the last of these migrations.
+pub(super) fn check(found: i32, migrations: &[&str]) -> Result<(), String> {
     let known = newest(migrations);
     match found.cmp(&known) {
-        Ordering::Less => Err(VersionError::Older { found, known }),
+        Ordering::Less => {
+            Err(format!("it has schema version {found}: `stickslip serve` migrates it to version {known}"))
+        }
         Ordering::Equal => Ok(()),
-        Ordering::Greater => Err(VersionError::Newer { found, known }),
+        Ordering::Greater => Err(format!(
+            "it has schema version {found}, but this program supports versions up to {known}: start the newer program"
+        )),
     }
 }
 

@@ -9,7 +9,7 @@ use reqwest::Method;
 use serde_json::{Value, json};
 use stickslip::admission::{Capacity, Pool};
 use stickslip::sessions::{CAPACITY, Sessions};
-use stickslip::store::MemoryStore;
+use stickslip::store::SqliteStore;
 
 use crate::common::{Server, assert_refused, ball, changed, good, of, problem, with};
 
@@ -26,7 +26,8 @@ async fn work_is_bounded() {
     let last = with(long, "/steps", json!("last"));
     good(server.post("/simulate", &last).await).await;
     let pool = Pool::new(Capacity { deadline: Duration::from_secs(1), ..Capacity::default() });
-    let server = Server::over(Sessions::new(Arc::new(MemoryStore::new()), pool.clone(), CAPACITY), pool).await;
+    let server =
+        Server::over(Sessions::new(Arc::new(SqliteStore::in_memory().unwrap()), pool.clone(), CAPACITY), pool).await;
     let refused = problem(server.post("/simulate", &changed(last, &json!({"residual": true}))).await).await;
     assert_eq!((refused.status, refused.code.as_str()), (422, "too_much_work"));
 }

@@ -12,7 +12,7 @@ use reqwest::{Method, Response};
 use serde_json::{Value, json};
 use stickslip::admission::Pool;
 use stickslip::sessions::{CAPACITY, Sessions};
-use stickslip::store::MemoryStore;
+use stickslip::store::SqliteStore;
 
 const CODINGS: [&str; 2] = ["gzip", "zstd"];
 
@@ -188,7 +188,9 @@ async fn a_client_that_accepts_nothing_gets_the_reply_to_what_was_done() {
 #[tokio::test]
 async fn an_encoder_counts_as_memory_until_its_reply_is_sent() {
     let pool = Pool::with_defaults();
-    let server = Server::over(Sessions::new(Arc::new(MemoryStore::new()), pool.clone(), CAPACITY), pool.clone()).await;
+    let server =
+        Server::over(Sessions::new(Arc::new(SqliteStore::in_memory().unwrap()), pool.clone(), CAPACITY), pool.clone())
+            .await;
     let contact = format!("/contacts/{}", server.contact().await);
     let long = json!({"contact": ball(), "path": {"falling_amplitude": {"reversals": 1900}}}).to_string();
     for coding in CODINGS {

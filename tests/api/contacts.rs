@@ -10,7 +10,7 @@ use reqwest::{Method, Response, StatusCode};
 use serde_json::{Value, json};
 use stickslip::admission::Pool;
 use stickslip::sessions::Sessions;
-use stickslip::store::MemoryStore;
+use stickslip::store::SqliteStore;
 use stickslip_wire::client::Options;
 use stickslip_wire::{ForkRequest, Move, Path, PathRequest, Steps};
 
@@ -45,7 +45,7 @@ async fn a_path_is_all_or_nothing() {
 async fn a_fork_begins_after_any_move_and_is_what_the_contact_was_then() {
     // Without a cache, every state is replayed.
     let pool = Pool::with_defaults();
-    let server = Server::over(Sessions::new(Arc::new(MemoryStore::new()), pool.clone(), 0), pool).await;
+    let server = Server::over(Sessions::new(Arc::new(SqliteStore::in_memory().unwrap()), pool.clone(), 0), pool).await;
     let (client, options) = (&server.client, Options::default());
     let id = client.create(&create(), &options).await.unwrap().id;
     let virgin = client.contact(id).await.unwrap().state;

@@ -13,7 +13,7 @@ use proptest::strategy::ValueTree as _;
 use proptest::test_runner::TestRunner;
 use serde_json::{Value, json};
 use stickslip::sessions::CAPACITY;
-use stickslip::store::MemoryStore;
+use stickslip::store::SqliteStore;
 use stickslip_mechanics::closed_cycles::{ClosedCycle, CycleLog};
 use stickslip_mechanics::{Contact, DEFAULT_TOLERANCE};
 use stickslip_wire::client::{Client, Event, Options};
@@ -112,7 +112,7 @@ async fn cycles_are_the_same_after_a_restart_in_a_fork_and_read_piece_by_piece()
     let store = format!("sqlite:{}", folder.path().join("contacts.db").display());
     let mut runner = TestRunner::deterministic();
     let path = draw(&mut runner, &prop::collection::vec(-1.4..1.4, 90));
-    let memory = Arc::new(MemoryStore::new());
+    let memory = Arc::new(SqliteStore::in_memory().unwrap());
     let (cached, uncached) = (Server::with(memory.clone(), CAPACITY).await, Server::with(memory, 0).await);
     let (id, unit) = new(&cached.client).await;
     for moves in path.chunks(7) {
@@ -150,7 +150,7 @@ async fn cycles_are_the_same_after_a_restart_in_a_fork_and_read_piece_by_piece()
 
 #[tokio::test]
 async fn a_history_is_marked_the_same_in_whatever_order_it_is_read() {
-    let memory = Arc::new(MemoryStore::new());
+    let memory = Arc::new(SqliteStore::in_memory().unwrap());
     let (cached, uncached) = (Server::with(memory.clone(), CAPACITY).await, Server::with(memory, 0).await);
     let (id, unit) = new(&cached.client).await;
     // More cycles than a list can have: each second move closes one that began two moves before.

@@ -13,7 +13,7 @@ use reqwest::Method;
 use serde_json::{Value, json};
 use stickslip::admission::{Pool, STREAMS};
 use stickslip::sessions::{CAPACITY, Sessions, events};
-use stickslip::store::MemoryStore;
+use stickslip::store::SqliteStore;
 use stickslip_wire::client::{Client, Error, Event, Options};
 use stickslip_wire::{EndReason, Move, Path, PathRequest, StateEvent, Steps};
 use uuid::Uuid;
@@ -181,7 +181,7 @@ async fn a_fault_in_last_event_id_is_named() {
 #[tokio::test]
 async fn the_number_of_listeners_is_limited() {
     let pool = Pool::with_defaults();
-    let sessions = Sessions::new(Arc::new(MemoryStore::new()), pool.clone(), CAPACITY);
+    let sessions = Sessions::new(Arc::new(SqliteStore::in_memory().unwrap()), pool.clone(), CAPACITY);
     let server = Server::over(sessions.clone(), pool).await;
     let id = server.client.create(&create(), &Options::default()).await.unwrap().id;
     let mut listeners = Vec::new();

@@ -16,7 +16,7 @@ use reqwest::{Method, StatusCode};
 use serde_json::{Value, json};
 use stickslip::metrics::{Counted, gauge, histogram};
 use stickslip::sessions::CAPACITY;
-use stickslip::store::{MemoryStore, SqliteStore};
+use stickslip::store::SqliteStore;
 
 /// How long a test waits for what should take a second.
 const PATIENCE: Duration = Duration::from_secs(60);
@@ -213,7 +213,7 @@ async fn promtool_has_nothing_against_the_page() {
 
 #[tokio::test]
 async fn an_uncached_contact_counts_as_a_miss() {
-    let server = Server::with(Arc::new(MemoryStore::new()), 1).await;
+    let server = Server::with(Arc::new(SqliteStore::in_memory().unwrap()), 1).await;
     let id = server.contact().await;
     for _ in 0..3 {
         server.get(&format!("/contacts/{id}")).await;

@@ -11,7 +11,7 @@ use common::{PATIENCE, Server, create, problem};
 use futures::StreamExt as _;
 use reqwest::Method;
 use serde_json::{Value, json};
-use stickslip::store::{MemoryStore, Store};
+use stickslip::store::{SqliteStore, Store};
 use stickslip_mechanics::Contact;
 use stickslip_wire::client::{Event, Options};
 use stickslip_wire::{
@@ -132,7 +132,7 @@ async fn bad_observations_are_refused_at_their_place_and_change_nothing() {
 
 #[tokio::test]
 async fn a_replay_gives_the_same_state_and_the_same_estimate() {
-    let store: Arc<dyn Store> = Arc::new(MemoryStore::new());
+    let store: Arc<dyn Store> = Arc::new(SqliteStore::in_memory().unwrap());
     let server = Server::start().await;
     let forgetful = Server::with(Arc::clone(&store), 0).await;
     let (made, other) = (contact(&server).await, contact(&forgetful).await);

@@ -29,7 +29,7 @@ use stickslip::admission::Pool;
 use stickslip::api::{self, Access, App};
 use stickslip::jobs::Jobs;
 use stickslip::sessions::{CAPACITY, Sessions};
-use stickslip::store::{MemoryStore, Store};
+use stickslip::store::{SqliteStore, Store};
 use stickslip_wire::client::Client;
 use stickslip_wire::{CreateRequest, Move, ProblemDocument};
 use tokio::net::TcpListener;
@@ -59,7 +59,7 @@ pub struct Server {
 
 impl Server {
     pub async fn start() -> Server {
-        Server::with(Arc::new(MemoryStore::new()), CAPACITY).await
+        Server::with(Arc::new(SqliteStore::in_memory().unwrap()), CAPACITY).await
     }
 
     /// A server over a store, with at most `bytes` bytes of cached states.
@@ -72,7 +72,7 @@ impl Server {
 
     /// A server over sessions that the test uses directly too; its jobs have a store of their own.
     pub async fn over(sessions: Sessions, pool: Pool) -> Server {
-        let jobs = Jobs::new(Arc::new(MemoryStore::new()), pool.clone());
+        let jobs = Jobs::new(Arc::new(SqliteStore::in_memory().unwrap()), pool.clone());
         Server::of(sessions, jobs, pool).await
     }
 

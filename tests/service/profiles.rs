@@ -7,7 +7,7 @@ use crate::common::{Server, ball, good, metric, of, with};
 use serde_json::{Value, json};
 use stickslip::admission::Pool;
 use stickslip::sessions::{CAPACITY, Sessions};
-use stickslip::store::MemoryStore;
+use stickslip::store::SqliteStore;
 
 const MIB: usize = 1024 * 1024;
 
@@ -36,7 +36,7 @@ async fn prepared(server: &Server) -> u64 {
 
 #[tokio::test]
 async fn requests_and_contacts_with_the_same_table_prepare_it_once() {
-    let store = Arc::new(MemoryStore::new());
+    let store = Arc::new(SqliteStore::in_memory().unwrap());
     let server = Server::with(store.clone(), CAPACITY).await;
     let first = good(server.post("/simulate", &moved(&table(200, 1))).await).await;
     let second = good(server.post("/simulate", &moved(&table(200, 1))).await).await;
@@ -79,7 +79,7 @@ async fn a_load_curve_is_shared_by_the_same_bodies_alone() {
 
 #[tokio::test]
 async fn many_profiles_and_contacts_stay_within_the_bound_of_the_cache() {
-    let store = Arc::new(MemoryStore::new());
+    let store = Arc::new(SqliteStore::in_memory().unwrap());
     let server = Server::with(store.clone(), MIB).await;
     let mut ids = Vec::new();
     for number in 0..20 {
@@ -105,7 +105,7 @@ async fn many_profiles_and_contacts_stay_within_the_bound_of_the_cache() {
     }
     assert_eq!((prepared(&sharing).await, metric(&sharing.base, "stickslip_cache_contacts").await), (1, 50));
     // Without a cache each request has its own.
-    let bare = Server::with(Arc::new(MemoryStore::new()), 0).await;
+    let bare = Server::with(Arc::new(SqliteStore::in_memory().unwrap()), 0).await;
     for _ in 0..2 {
         good(bare.post("/simulate", &moved(&table(40, 1))).await).await;
     }
@@ -114,7 +114,7 @@ async fn many_profiles_and_contacts_stay_within_the_bound_of_the_cache() {
 
 #[tokio::test]
 async fn a_profile_is_prepared_with_a_turn_on_a_thread_of_the_solver() {
-    let (store, pool) = (Arc::new(MemoryStore::new()), Pool::with_defaults());
+    let (store, pool) = (Arc::new(SqliteStore::in_memory().unwrap()), Pool::with_defaults());
     let server = Server::over(Sessions::new(store.clone(), pool.clone(), CAPACITY), pool.clone()).await;
     let turns = |pool: &Pool| pool.meters().wait.get_sample_count();
     // Few enough points that the body is parsed, and the simulation made, by whoever serves the connection.

@@ -22,8 +22,8 @@ use stickslip::admission::{Capacity, Pool, QuotaLimits};
 use stickslip::jobs::{JobError, Jobs, LEASE};
 use stickslip::sessions::{CAPACITY, SessionError, Sessions};
 use stickslip::store::{
-    Changes, ChunkResult, Claim, Extent, IsSmall, Job, JobLimits, JobStore, LabelChange, MemoryStore, Page, Receipt,
-    Record, Reply, RequestKey, Session, Snapshot, Store, StoreError, Tenant, Usage, Whole,
+    Changes, ChunkResult, Claim, Commits, Extent, IsSmall, Job, JobLimits, JobStore, LabelChange, Page, Receipt,
+    Record, Reply, RequestKey, Session, Snapshot, SqliteStore, Store, StoreError, Tenant, Usage, Whole,
 };
 use stickslip_compute::simulation::Sweep;
 use stickslip_wire::{
@@ -83,6 +83,7 @@ passed_on! {
         read receipt(key: &str) -> Option<Receipt>;
         read snapshot(id: Uuid) -> Option<Snapshot>;
         change save_snapshot(id: Uuid, snapshot: Snapshot, unreadable: Option<u64>) -> ();
+        read check_integrity() -> Vec<String>;
         read purge_expired(idle_since: Option<Timestamp>) -> u64;
     }
     async fn usage(&self, tenant: &Tenant) -> Stored<Usage> {
@@ -96,6 +97,9 @@ passed_on! {
     }
     fn changes(&self) -> &Changes {
         self.inner.changes()
+    }
+    fn commits(&self) -> &Commits {
+        self.inner.commits()
     }
 }
 
@@ -358,7 +362,7 @@ async fn all_of_it(store: Arc<dyn Store>) {
 
 #[tokio::test]
 async fn no_step_after_a_commit_in_memory_needs_its_client() {
-    all_of_it(Arc::new(MemoryStore::new())).await;
+    all_of_it(Arc::new(SqliteStore::in_memory().unwrap())).await;
 }
 
 #[tokio::test]

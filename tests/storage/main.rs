@@ -13,6 +13,7 @@ mod frozen;
 mod gaps;
 mod guarantees;
 mod hang_ups;
+mod in_memory;
 mod locks;
 mod migrations;
 mod order;

@@ -14,7 +14,7 @@ use reqwest::Method;
 use serde_json::json;
 use stickslip::admission::Pool;
 use stickslip::sessions::{Expected, SessionError, Sessions, label_checksum};
-use stickslip::store::{MemoryStore, Snapshot, SqliteStore, Store};
+use stickslip::store::{Snapshot, SqliteStore, Store};
 use stickslip_mechanics::Contact;
 use stickslip_wire::client::{Client, Event, Options};
 use stickslip_wire::{
@@ -59,7 +59,7 @@ async fn snapshot(store: &dyn Store, id: Uuid, sequence: u64) -> Snapshot {
 
 #[tokio::test]
 async fn a_session_opened_from_a_snapshot_is_the_same_to_the_last_bit() {
-    let store = Arc::new(MemoryStore::new());
+    let store = Arc::new(SqliteStore::in_memory().unwrap());
     let server = Server::with(store.clone(), NO_CACHE).await;
     let (client, options) = (&server.client, Options::default());
     let id = client.create(&create(), &options).await.unwrap().id;
@@ -79,7 +79,7 @@ async fn a_session_opened_from_a_snapshot_is_the_same_to_the_last_bit() {
 
 #[tokio::test]
 async fn a_snapshot_is_read_where_it_is_sound_and_ignored_where_it_is_not() {
-    let store = Arc::new(MemoryStore::new());
+    let store = Arc::new(SqliteStore::in_memory().unwrap());
     let server = Server::with(store.clone(), NO_CACHE).await;
     let (client, options) = (&server.client, Options::default());
     let (one, other) =
@@ -140,7 +140,7 @@ fn table(points: usize) -> CreateRequest {
 #[tokio::test]
 async fn a_tiny_cache_under_load_stays_within_its_bytes_and_changes_no_result() {
     let budget = 150_000;
-    let store = Arc::new(MemoryStore::new());
+    let store = Arc::new(SqliteStore::in_memory().unwrap());
     let pool = Pool::with_defaults();
     let sessions = Sessions::new(store.clone(), pool.clone(), budget);
     let server = Server::over(sessions.clone(), pool).await;
@@ -176,7 +176,7 @@ async fn a_tiny_cache_under_load_stays_within_its_bytes_and_changes_no_result() 
 
 #[tokio::test]
 async fn what_is_not_touched_and_what_does_not_exist_takes_no_room() {
-    let store = Arc::new(MemoryStore::new());
+    let store = Arc::new(SqliteStore::in_memory().unwrap());
     let pool = Pool::with_defaults();
     let (client, options) = {
         let server = Server::with(store.clone(), NO_CACHE).await;
@@ -212,7 +212,7 @@ async fn what_is_not_touched_and_what_does_not_exist_takes_no_room() {
 
 #[tokio::test]
 async fn an_expired_session_is_gone_for_reads_moves_and_events_though_it_was_cached() {
-    let store = Arc::new(MemoryStore::new());
+    let store = Arc::new(SqliteStore::in_memory().unwrap());
     let pool = Pool::with_defaults();
     let sessions = Sessions::new(store.clone(), pool.clone(), 1 << 20);
     let server = Server::over(sessions.clone(), pool).await;

@@ -39,12 +39,11 @@ fn page(app: &App, traffic: &RequestMetrics) -> prometheus::Result<String> {
         page.register(collector)?;
     }
     page.register(Box::new(pool.quotas().refused.clone()))?;
-    if let Some(Commits { time, size, failed, pending, .. }) = sessions.commits() {
-        page.register(Box::new(time.clone()))?;
-        page.register(Box::new(size.clone()))?;
-        page.register(Box::new(failed.clone()))?;
-        page.register(Box::new(pending.clone()))?;
-    }
+    let Commits { time, size, failed, pending, .. } = sessions.commits();
+    page.register(Box::new(time.clone()))?;
+    page.register(Box::new(size.clone()))?;
+    page.register(Box::new(failed.clone()))?;
+    page.register(Box::new(pending.clone()))?;
     let help = "Requests for a contact that was loaded from the store.";
     let misses = IntCounter::new("stickslip_cache_misses_total", help)?;
     misses.inc_by(sessions.metrics.open.get_sample_count());

@@ -144,7 +144,7 @@ impl From<SchemaError<tokio_postgres::Error>> for Fault {
     fn from(error: SchemaError<tokio_postgres::Error>) -> Fault {
         match error {
             SchemaError::Database(error) => error.into(),
-            SchemaError::Version(error) => Fault::Refused(StoreError::Failed(error.to_string())),
+            SchemaError::Version(why) => Fault::Refused(StoreError::Failed(why)),
         }
     }
 }
@@ -285,8 +285,8 @@ impl Store for PostgresStore {
         &self.changes
     }
 
-    fn commits(&self) -> Option<&Commits> {
-        Some(&self.writer.commits)
+    fn commits(&self) -> &Commits {
+        &self.writer.commits
     }
 
     async fn check_integrity(&self) -> Result<Vec<String>> {

@@ -43,7 +43,7 @@ fn mark(path: &Path) -> io::Result<i32> {
 /// Copies the store at a path to a file that is not there yet: one state of it, whatever is written meanwhile. The copy
 /// gets its name when it is complete and on the disk. Returns its bytes. Calls `progress` meanwhile with its bytes so
 /// far and those of the store.
-pub(super) fn backup(path: &Path, copy: &Path, progress: impl FnMut(u64, u64) + Send) -> Result<u64, String> {
+pub(in crate::store) fn backup(path: &Path, copy: &Path, progress: impl FnMut(u64, u64) + Send) -> Result<u64, String> {
     let describe = |error: io::Error| format!("{}: {error}", copy.display());
     if fs::symlink_metadata(copy).is_ok() {
         return Err(format!("{} already exists, and is not overwritten", copy.display()));

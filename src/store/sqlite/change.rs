@@ -1,13 +1,12 @@
 //! The changes that the writer makes, each checked before its first write: a refusal has written nothing.
 
-use std::sync::Arc;
+use std::sync::{Arc, LazyLock};
 
 use hashlink::LruCache;
 use jiff::Timestamp;
 use rusqlite::{Connection, params};
 use uuid::Uuid;
 
-use crate::store::job_store::QueueChange;
 use crate::store::rows::{RowReader as _, tenant};
 use crate::store::{EXPIRED_LIFETIME, LabelChange, RECEIPT_LIFETIME, Receipt, Record, Session, Snapshot, StoreError};
 
@@ -26,6 +25,14 @@ const RECEIPTS_AT_ONCE: i64 = 256;
 const MARKS_AT_ONCE: i64 = 1_000;
 /// Bytes of replies that it deletes, roughly.
 const RECEIPT_BYTES_AT_ONCE: i64 = 4 * 1024 * 1024;
+
+static INSERT_MOVE: LazyLock<String> = LazyLock::new(|| {
+    format!(
+        "INSERT INTO moves (contact, {MOVE_COLUMNS})
+         VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13, ?14, ?15, ?16, ?17, ?18, ?19, ?20,
+             ?21, ?22, ?23)"
+    )
+});
 
 /// Numbers and sequences of contacts that have moved lately, as the transaction under way leaves them: what the writer,
 /// which alone changes them, need not ask the database. A rollback clears the cache.
@@ -68,8 +75,6 @@ pub(super) enum Done {
     Made(u64),
     /// This many contacts are deleted; their moves are removed later.
     Removed(u64),
-    /// It is made, and the queue of chunks follows.
-    Queued(QueueChange),
     /// The fork has begun; copying goes on in small steps.
     Copying(Arc<Fork>, Copying),
 }
@@ -91,11 +96,7 @@ impl Transaction<'_> {
             Some((number, sequence)) if *sequence == expected => *number,
             _ => number_at(self.database, id, expected)?,
         };
-        let mut insert = self.database.prepare_cached(&format!(
-            "INSERT INTO moves (contact, {MOVE_COLUMNS})
-             VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13, ?14, ?15, ?16, ?17, ?18, ?19, ?20,
-                ?21, ?22, ?23)"
-        ))?;
+        let mut insert = self.database.prepare_cached(&INSERT_MOVE)?;
         records.iter().try_for_each(|record| insert_move(&mut insert, number, record))?;
         if let Some(last) = records.last() {
             self.cache.insert(id, (number, last.sequence));

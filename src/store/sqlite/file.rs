@@ -195,20 +195,25 @@ fn connect(path: &Path) -> Result<Connection, Refusal> {
         return Err(Refusal::Unusable(format!("write-ahead logging is not available there, only {mode}")));
     }
     database.pragma_update(None, "synchronous", "FULL").map_err(describe)?;
-    database.pragma_update(None, "foreign_keys", true).map_err(describe)?;
+    prepare(&database).map_err(describe)?;
     database.pragma_update(None, "cache_size", CACHE).map_err(describe)?;
     database.query_row(&format!("PRAGMA wal_autocheckpoint = {CHECKPOINT_PAGES}"), [], |_| Ok(())).map_err(describe)?;
     database.query_row(&format!("PRAGMA journal_size_limit = {LOG_BYTES}"), [], |_| Ok(())).map_err(describe)?;
-    database.set_prepared_statement_cache_capacity(STATEMENTS);
     schema::migrate(&mut database, MIGRATIONS).map_err(|error| match error {
         SchemaError::Database(error) => describe(error),
-        SchemaError::Version(error) => Refusal::Unusable(error.to_string()),
+        SchemaError::Version(why) => Refusal::Unusable(why),
     })?;
     schema::mark(&database, IN_USE).map_err(describe)?;
     // The version and the mark must be in the file itself, where the next start looks for them first.
     database.query_row("PRAGMA wal_checkpoint(TRUNCATE)", [], |_| Ok(())).map_err(describe)?;
     database.set_db_config(DbConfig::SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, false).map_err(describe)?;
     Ok(database)
+}
+
+/// What the connection of a writer needs, wherever the database is.
+pub(super) fn prepare(database: &Connection) -> rusqlite::Result<()> {
+    database.set_prepared_statement_cache_capacity(STATEMENTS);
+    database.pragma_update(None, "foreign_keys", true)
 }
 
 pub(super) fn lock(file: &File) -> Result<(), String> {

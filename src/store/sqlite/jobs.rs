@@ -1,6 +1,6 @@
 //! Jobs in the file. Claims are kept in the process alone, and end with it.
 
-use std::collections::BTreeSet;
+use std::collections::HashSet;
 use std::time::Duration;
 
 use async_trait::async_trait;
@@ -8,9 +8,7 @@ use jiff::Timestamp;
 use rusqlite::{Connection, params};
 use uuid::Uuid;
 
-use crate::store::job_store::{
-    ChunkQueue, ChunkResult, Claim, JOB_LIFETIME, JOB_TIME_LIMIT, Job, JobLimits, JobStore, QueueChange,
-};
+use crate::store::job_store::{ChunkResult, Claim, JOB_LIFETIME, JOB_TIME_LIMIT, Job, JobLimits, JobStore};
 use crate::store::rows::{self, RowReader as _};
 use crate::store::{Receipt, Result, StoreError, Tenant};
 
@@ -33,7 +31,7 @@ impl Transaction<'_> {
         let (points, chunk) = (to_integer(job.points)?, to_integer(job.chunk)?);
         let (bytes, cost) = (to_integer(job.bytes)?, to_integer(job.cost)?);
         execute(database, sql, params![id, tenant, created_at, points, chunk, bytes, cost, request])?;
-        Ok(Done::Queued(QueueChange::Add(job.id, job.chunks())))
+        Ok(Done::Made(1))
     }
 
     fn save_chunk(&self, claim: Claim, result: &ChunkResult) -> Result<Done, Fault> {
@@ -50,42 +48,50 @@ impl Transaction<'_> {
             let now = to_nanoseconds(Timestamp::now())?;
             execute(self.database, sql, [number, points, failed, now])?;
         }
-        Ok(Done::Queued(QueueChange::Finish(claim)))
+        Ok(Done::Made(1))
     }
 
     fn fail_job(&self, id: Uuid, error: &str) -> Result<Done, Fault> {
         let sql = "UPDATE jobs SET finished_at = ?2, error = ?3 WHERE id = ?1 AND finished_at IS NULL";
         let now = to_nanoseconds(Timestamp::now())?;
         execute(self.database, sql, params![id.to_string(), now, error])?;
-        Ok(Done::Queued(QueueChange::Remove(id)))
+        Ok(Done::Made(1))
     }
 
     fn delete_job(&self, id: Uuid) -> Result<Done, Fault> {
         match execute(self.database, "DELETE FROM jobs WHERE id = ?1", [id.to_string()])? {
             0 => Err(StoreError::NotFound.into()),
-            _ => Ok(Done::Queued(QueueChange::Remove(id))),
+            _ => Ok(Done::Made(1)),
         }
     }
 
     /// Deletes an expired job, if there is one; returns their number. One at a time: their results are large.
     fn purge_job(&self) -> Result<Done, Fault> {
         let sql = "DELETE FROM jobs WHERE number =
-                       (SELECT number FROM jobs WHERE finished_at < ?1 OR created_at < ?2 LIMIT 1)
-                   RETURNING id";
-        let deleted = first(self.database, sql, [JOB_LIFETIME, JOB_TIME_LIMIT].map(nanoseconds_ago), |row| row.uuid())?;
-        Ok(deleted.map_or(Done::Made(0), |id| Done::Queued(QueueChange::Remove(id))))
+                       (SELECT number FROM jobs WHERE finished_at < ?1 OR created_at < ?2 LIMIT 1)";
+        let deleted = execute(self.database, sql, [JOB_LIFETIME, JOB_TIME_LIMIT].map(nanoseconds_ago))?;
+        Ok(Done::Made(deleted as u64))
     }
 }
 
-/// Queues the chunks that are still to be done of the jobs that have not ended.
-pub(super) fn restore_queue(database: &Connection, queue: &ChunkQueue) -> rusqlite::Result<()> {
-    let sql = "SELECT id, (points + chunk - 1) / chunk, number FROM jobs WHERE finished_at IS NULL ORDER BY id";
-    for (id, count, number) in all(database, sql, [], |row| Ok((row.uuid()?, row.count()?, row.next::<i64>()?)))? {
+/// The first chunk without a result that is not taken, of the jobs after one, and then of the others.
+fn next_chunk(
+    database: &Connection,
+    after: Option<Uuid>,
+    taken: &HashSet<(Uuid, u64)>,
+) -> Result<Option<(Uuid, u64)>, Fault> {
+    let sql = "SELECT id, (points + chunk - 1) / chunk, number FROM jobs WHERE finished_at IS NULL
+               ORDER BY id <= ?1, id";
+    let after = after.map(|id| id.to_string()).unwrap_or_default();
+    for (id, count, number) in all(database, sql, [after], |row| Ok((row.uuid()?, row.count()?, row.next::<i64>()?)))? {
         let done = all(database, "SELECT chunk FROM job_chunks WHERE job = ?1", [number], |row| row.count())?;
-        let done: BTreeSet<u64> = done.into_iter().collect();
-        queue.add_job(id, (0..count).filter(|chunk| !done.contains(chunk)));
+        let done: HashSet<u64> = done.into_iter().collect();
+        let free = (0..count).find(|chunk| !done.contains(chunk) && !taken.contains(&(id, *chunk)));
+        if let Some(chunk) = free {
+            return Ok(Some((id, chunk)));
+        }
     }
-    Ok(())
+    Ok(None)
 }
 
 /// The columns of a job, in the order in which it is read.
@@ -109,13 +115,13 @@ impl JobStore for SqliteStore {
         let read = move |database: &Connection| {
             Ok(first(database, &sql, [id.to_string()], |row| rows::job(row))?.ok_or(StoreError::NotFound)?)
         };
-        self.readers.read(read).await
+        self.read(read).await
     }
 
     async fn jobs(&self, tenant: Tenant) -> Result<Vec<Job>> {
         let sql = format!("SELECT {COLUMNS} FROM jobs WHERE tenant = ?1 ORDER BY id");
         let read = move |database: &Connection| Ok(all(database, &sql, [tenant.name()], |row| rows::job(row))?);
-        self.readers.read(read).await
+        self.read(read).await
     }
 
     async fn job_request(&self, id: Uuid) -> Result<String> {
@@ -123,24 +129,49 @@ impl JobStore for SqliteStore {
         let read = move |database: &Connection| {
             Ok(first(database, sql, [id.to_string()], |row| row.next())?.ok_or(StoreError::NotFound)?)
         };
-        self.readers.read(read).await
+        self.read(read).await
     }
 
     async fn claim(&self, owner: Uuid, after: Option<Uuid>, _: Duration) -> Result<Option<Claim>> {
-        Ok(self.queue.claim(owner, after))
+        loop {
+            let taken = self.claims.lock().clone();
+            let Some(next) = self.read(move |database| next_chunk(database, after, &taken)).await? else {
+                return Ok(None);
+            };
+            if self.claims.lock().insert(next) {
+                return Ok(Some(Claim { job: next.0, chunk: next.1, owner }));
+            }
+        }
     }
 
     async fn renew(&self, claim: Claim, _: Duration) -> Result<bool> {
-        Ok(self.queue.is_claimed(claim))
+        if !self.claims.lock().contains(&(claim.job, claim.chunk)) {
+            return Ok(false);
+        }
+        let sql = "SELECT NOT EXISTS (SELECT 1 FROM job_chunks WHERE job = jobs.number AND chunk = ?2) FROM jobs
+                   WHERE id = ?1 AND finished_at IS NULL";
+        let read = move |database: &Connection| {
+            let which = params![claim.job.to_string(), to_integer(claim.chunk)?];
+            Ok(first(database, sql, which, |row| row.next())?.unwrap_or(false))
+        };
+        let holds = self.read(read).await?;
+        if !holds {
+            self.release(claim).await?;
+        }
+        Ok(holds)
     }
 
     async fn release(&self, claim: Claim) -> Result<()> {
-        self.queue.release(claim);
+        self.claims.lock().remove(&(claim.job, claim.chunk));
         Ok(())
     }
 
     async fn save_chunk(&self, claim: Claim, result: ChunkResult) -> Result<()> {
-        self.change(1, [claim.job], None, move |transaction| transaction.save_chunk(claim, &result)).await.map(drop)
+        let saved = self.change(1, [claim.job], None, move |transaction| transaction.save_chunk(claim, &result)).await;
+        if matches!(saved, Ok(_) | Err(StoreError::NotFound)) {
+            self.release(claim).await?;
+        }
+        saved.map(drop)
     }
 
     async fn fail_job(&self, id: Uuid, error: String) -> Result<()> {
@@ -154,7 +185,7 @@ impl JobStore for SqliteStore {
             let which = params![id.to_string(), to_integer(first)?, to_integer(limit as u64)?];
             Ok(all(database, sql, which, |row| row.next())?)
         };
-        self.readers.read(read).await
+        self.read(read).await
     }
 
     async fn delete_job(&self, id: Uuid) -> Result<()> {

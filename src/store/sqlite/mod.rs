@@ -1,17 +1,19 @@
-//! Everything in one SQLite file: durable when it is acknowledged, for one process at a time.
+//! Everything in one SQLite file: durable when it is acknowledged, for one process at a time. Or in the memory of the
+//! process (`memory.rs`), by the same statements.
 //!
 //! One thread writes (`writer.rs`): requests that wait share a transaction and its wait for the disk. Reads have
 //! connections of their own (`readers.rs`) and do not wait. Long work, such as the copy of a million moves, is done in
 //! small steps between the transactions of others (`fork.rs`). The tables are in `schema.rs`, and explained in
 //! `docs/storage.md`. Failures and their meanings are in `fault.rs`.
 
-mod backup;
+pub(super) mod backup;
 mod change;
 mod columns;
 mod fault;
 mod file;
 mod fork;
 mod jobs;
+mod memory;
 mod open_files;
 mod read;
 mod readers;
@@ -20,6 +22,7 @@ mod statements;
 mod wal_check;
 mod writer;
 
+use std::collections::HashSet;
 use std::path::Path;
 use std::sync::Arc;
 use std::thread::JoinHandle;
@@ -27,10 +30,11 @@ use std::time::Duration;
 
 use async_trait::async_trait;
 use jiff::Timestamp;
+use parking_lot::Mutex;
+use rusqlite::Connection;
 use tokio::sync::{mpsc, oneshot};
 use uuid::Uuid;
 
-use super::job_store::ChunkQueue;
 use super::probe::Probe;
 use super::{
     Changes, Commits, Extent, IsSmall, LabelChange, Page, Receipt, Record, Result, Session, Snapshot, Store,
@@ -40,6 +44,7 @@ use crate::metrics::Counted;
 use change::{Change, Done, Transaction};
 use fault::Fault;
 use fork::Fork;
+use memory::InMemory;
 use open_files::OpenFiles;
 use readers::Readers;
 use stickslip_wire::SessionSummary;
@@ -54,18 +59,25 @@ const STILL_BUSY: Duration = Duration::from_millis(50);
 /// Sessions that expire in one transaction.
 const EXPIRE_AT_ONCE: usize = 200;
 
-/// Sessions in an SQLite file.
+/// Sessions in an SQLite file, or in memory.
 pub struct SqliteStore {
-    // None once the store is being dropped, which ends the writer.
-    requests: Option<mpsc::Sender<Request>>,
-    writer: Option<JoinHandle<()>>,
-    readers: Readers,
+    place: Place,
+    /// The thread that writes to the file, if one may; it ends without senders.
+    writer: Option<(mpsc::Sender<Request>, JoinHandle<()>)>,
     changes: Arc<Changes>,
     commits: Arc<Commits>,
-    queue: Arc<ChunkQueue>,
+    /// The chunks that are worked on: none of them outlives the process.
+    claims: Mutex<HashSet<(Uuid, u64)>>,
     probe: Probe,
-    /// Why nothing can be changed, if the disk was full at start.
-    full: Option<String>,
+}
+
+enum Place {
+    File {
+        readers: Readers,
+        /// Why nothing can be changed, if the disk was full at start.
+        full: Option<String>,
+    },
+    Memory(InMemory),
 }
 
 impl SqliteStore {
@@ -87,26 +99,34 @@ impl SqliteStore {
         };
         let readers = Readers::new(path.to_owned(), Arc::clone(&files), Some(Arc::clone(&lock)), false);
         let mut store = SqliteStore::reading(readers, None);
-        jobs::restore_queue(&database, &store.queue).map_err(|error| error.to_string())?;
-        let (changes, queue, commits) =
-            (Arc::clone(&store.changes), Arc::clone(&store.queue), Arc::clone(&store.commits));
-        let writer = Writer::new(database, files, changes, queue, commits);
-        let writer = writer.map_err(|error| error.to_string())?;
+        let (changes, commits) = (Arc::clone(&store.changes), Arc::clone(&store.commits));
+        let writer = Writer::new(database, files, changes, commits).map_err(|error| error.to_string())?;
         let (sender, requests) = mpsc::channel(QUEUE);
         let thread = std::thread::Builder::new().name("sqlite-writer".to_owned()).spawn(move || {
             writer.run(requests);
             drop(lock);
         });
-        store.writer = Some(thread.map_err(|error| error.to_string())?);
-        store.requests = Some(sender);
+        store.writer = Some((sender, thread.map_err(|error| error.to_string())?));
         Ok(store)
     }
 
-    /// A store without a writer.
+    /// A store in the memory of the process, which is lost with it.
+    ///
+    /// # Errors
+    /// Why it cannot be made, in one line.
+    pub fn in_memory() -> Result<SqliteStore, String> {
+        let (changes, commits) = (Arc::default(), Arc::new(Commits::new("memory")));
+        let database = InMemory::new(Arc::clone(&changes), Arc::clone(&commits)).map_err(|error| error.to_string())?;
+        Ok(SqliteStore::at(Place::Memory(database), changes, commits))
+    }
+
+    /// A store in a file, without a writer.
     fn reading(readers: Readers, full: Option<String>) -> SqliteStore {
-        let (changes, commits) = (Arc::default(), Arc::new(Commits::new("sqlite")));
-        let (queue, probe) = (Arc::default(), Probe::default());
-        SqliteStore { requests: None, writer: None, readers, changes, commits, queue, probe, full }
+        SqliteStore::at(Place::File { readers, full }, Arc::default(), Arc::new(Commits::new("sqlite")))
+    }
+
+    fn at(place: Place, changes: Arc<Changes>, commits: Arc<Commits>) -> SqliteStore {
+        SqliteStore { writer: None, place, changes, commits, claims: Mutex::default(), probe: Probe::default() }
     }
 
     /// Opens a file for reading, while a process may serve it. Changes fail.
@@ -119,12 +139,26 @@ impl SqliteStore {
         Ok(SqliteStore::reading(Readers::new(path.to_owned(), files, None, false), None))
     }
 
-    /// Copies the store in a file to another that is not there yet, while it is in use or not; returns its bytes.
-    ///
-    /// # Errors
-    /// Why there is no copy, in one line.
-    pub fn backup(path: &Path, copy: &Path, progress: impl FnMut(u64, u64) + Send) -> Result<u64, String> {
-        backup::backup(path, copy, progress)
+    /// Answers a question that reads a few rows.
+    async fn look_up<T: Send + 'static>(
+        &self,
+        question: impl FnOnce(&Connection) -> Result<T, Fault> + Send + 'static,
+    ) -> Result<T> {
+        match &self.place {
+            Place::File { readers, .. } => readers.read(question).await,
+            Place::Memory(database) => database.look_up(question).await,
+        }
+    }
+
+    /// Answers a question that reads a page of rows, or a row or two of each contact.
+    async fn read<T: Send + 'static>(
+        &self,
+        question: impl FnOnce(&Connection) -> Result<T, Fault> + Send + 'static,
+    ) -> Result<T> {
+        match &self.place {
+            Place::File { readers, .. } => readers.read(question).await,
+            Place::Memory(database) => database.read(question).await,
+        }
     }
 
     /// Has the writer make a change of about `weight` rows and keep the receipt, and returns its count when it is
@@ -136,26 +170,34 @@ impl SqliteStore {
         receipt: Option<Receipt>,
         apply: impl Fn(&mut Transaction<'_>) -> Result<Done, Fault> + Send + 'static,
     ) -> Result<u64> {
-        let ended = || match &self.full {
-            Some(why) => StoreError::Full(why.clone()),
-            None => StoreError::Failed("the writer of the database has ended".to_owned()),
-        };
         let _pending = Counted::by(&self.commits.pending);
         let (reply, outcome) = oneshot::channel();
-        let requests = self.requests.as_ref().ok_or_else(ended)?;
         let change = Change { apply: Box::new(apply), weight, touched: touched.into(), receipt };
-        requests.send(Request { change, reply }).await.map_err(|_| ended())?;
-        outcome.await.map_err(|_| ended())?
+        let request = Request { change, reply };
+        match (&self.place, &self.writer) {
+            (Place::Memory(database), _) => database.change(request).await,
+            // A request that is not sent is dropped, and has no outcome.
+            (_, Some((requests, _))) => drop(requests.send(request).await),
+            (_, None) => drop(request),
+        }
+        outcome.await.map_err(|_| match &self.place {
+            Place::File { full: Some(why), .. } => StoreError::Full(why.clone()),
+            _ => StoreError::Failed("the writer of the database has ended".to_owned()),
+        })?
     }
 }
 
 impl Drop for SqliteStore {
     /// Ends the writer, which does what it has accepted and merges the log into the file.
     fn drop(&mut self) {
-        self.readers.close();
-        self.requests = None;
-        if self.writer.take().is_some_and(|writer| writer.join().is_err()) {
-            tracing::error!("the writer of the database panicked");
+        if let Place::File { readers, .. } = &self.place {
+            readers.close();
+        }
+        if let Some((requests, writer)) = self.writer.take() {
+            drop(requests);
+            if writer.join().is_err() {
+                tracing::error!("the writer of the database panicked");
+            }
         }
     }
 }
@@ -163,7 +205,7 @@ impl Drop for SqliteStore {
 #[async_trait]
 impl Store for SqliteStore {
     async fn ready(&self) -> Result<()> {
-        self.readers.read(read::alive).await?;
+        self.read(read::alive).await?;
         self.probe.outcome(async { self.change(1, [], None, |transaction| transaction.probe()).await.map(drop) }).await
     }
 
@@ -172,16 +214,16 @@ impl Store for SqliteStore {
     }
 
     async fn extent(&self, id: Uuid) -> Result<Extent> {
-        self.readers.read(move |database| read::extent(database, id)).await
+        self.look_up(move |database| read::extent(database, id)).await
     }
 
     async fn load(&self, id: Uuid, is_small: IsSmall) -> Result<(Extent, Option<Whole>)> {
-        self.readers.read(move |database| read::load(database, id, is_small)).await
+        self.look_up(move |database| read::load(database, id, is_small)).await
     }
 
     async fn usage(&self, tenant: &Tenant) -> Result<Usage> {
         let tenant = tenant.clone();
-        self.readers.read(move |database| read::usage(database, &tenant)).await
+        self.read(move |database| read::usage(database, &tenant)).await
     }
 
     fn move_bytes(&self) -> u64 {
@@ -189,13 +231,16 @@ impl Store for SqliteStore {
     }
 
     async fn find(&self, id: Uuid) -> Result<Session> {
-        self.readers.read(move |database| read::find(database, id)).await
+        self.look_up(move |database| read::find(database, id)).await
     }
 
     async fn list(&self, tenant: Option<Tenant>, label: Option<String>, page: Page) -> Result<Vec<SessionSummary>> {
         let is_search = label.is_some();
         let list = move |database: &_| read::list(database, tenant.as_ref(), label.as_deref(), page);
-        if is_search { self.readers.search(list).await } else { self.readers.read(list).await }
+        match &self.place {
+            Place::File { readers, .. } if is_search => readers.search(list).await,
+            _ => self.read(list).await,
+        }
     }
 
     async fn rename(&self, id: Uuid, label: LabelChange, expected: u64, receipt: Option<Receipt>) -> Result<()> {
@@ -211,16 +256,17 @@ impl Store for SqliteStore {
     }
 
     async fn history(&self, id: Uuid, after: u64, limit: usize) -> Result<Vec<Record>> {
-        self.readers.read(move |database| read::history(database, id, after, limit)).await
+        self.read(move |database| read::history(database, id, after, limit)).await
     }
 
     async fn count_moves(&self, id: Uuid, end: u64) -> Result<u64> {
-        self.readers.read(move |database| read::count_moves(database, id, end)).await
+        self.read(move |database| read::count_moves(database, id, end)).await
     }
 
     async fn fork(&self, id: Uuid, copy: Session, receipt: Option<Receipt>) -> Result<()> {
+        let weight = usize::try_from(copy.sequence).unwrap_or(usize::MAX).max(1);
         let fork = Arc::new(Fork { id, copy });
-        self.change(1, [], receipt, move |transaction| transaction.fork(&fork)).await.map(drop)
+        self.change(weight, [], receipt, move |transaction| transaction.fork(&fork)).await.map(drop)
     }
 
     async fn delete(&self, id: Uuid, expected: u64) -> Result<()> {
@@ -233,11 +279,11 @@ impl Store for SqliteStore {
 
     async fn receipt(&self, key: &str) -> Result<Option<Receipt>> {
         let key = key.to_owned();
-        self.readers.read(move |database| read::receipt(database, &key)).await
+        self.look_up(move |database| read::receipt(database, &key)).await
     }
 
     async fn snapshot(&self, id: Uuid) -> Result<Option<Snapshot>> {
-        self.readers.read(move |database| read::snapshot(database, id)).await
+        self.look_up(move |database| read::snapshot(database, id)).await
     }
 
     async fn save_snapshot(&self, id: Uuid, snapshot: Snapshot, unreadable: Option<u64>) -> Result<()> {
@@ -248,11 +294,14 @@ impl Store for SqliteStore {
     async fn purge_expired(&self, idle_since: Option<Timestamp>) -> Result<u64> {
         while self.change(1, [], None, |transaction| transaction.purge_records()).await? > 0 {}
         self.purge_jobs().await?;
+        if let Place::Memory(_) = self.place {
+            self.change(usize::MAX, [], None, |transaction| memory::forget(transaction)).await?;
+        }
         let Some(since) = idle_since else { return Ok(0) };
         let (mut expired, mut next) = (0, Some(0));
         while let Some(after) = next {
             let idle;
-            (idle, next) = self.readers.read(move |database| read::idle(database, since, after)).await?;
+            (idle, next) = self.read(move |database| read::idle(database, since, after)).await?;
             for ids in idle.chunks(EXPIRE_AT_ONCE) {
                 let idle = ids.to_vec();
                 expired +=
@@ -266,11 +315,11 @@ impl Store for SqliteStore {
         &self.changes
     }
 
-    fn commits(&self) -> Option<&Commits> {
-        Some(&self.commits)
+    fn commits(&self) -> &Commits {
+        &self.commits
     }
 
     async fn check_integrity(&self) -> Result<Vec<String>> {
-        self.readers.read(read::check_integrity).await
+        self.read(read::check_integrity).await
     }
 }

@@ -9,6 +9,7 @@ use std::path::{Path, PathBuf};
 use rusqlite::{Error, ffi};
 
 /// Paths with the device and inode of the file that has been opened there.
+#[derive(Default)]
 pub(super) struct OpenFiles(Vec<(PathBuf, (u64, u64))>);
 
 impl OpenFiles {

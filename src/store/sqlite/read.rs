@@ -126,7 +126,7 @@ pub(super) fn receipt(database: &Connection, key: &str) -> Result<Option<Receipt
 }
 
 pub(super) fn snapshot(database: &Connection, id: Uuid) -> Result<Option<Snapshot>, Fault> {
-    let number = number(database, id)?;
+    let (number, _) = number_and_sequence(database, id)?;
     let sql = "SELECT sequence, state FROM snapshots WHERE contact = ?1";
     Ok(first(database, sql, [number], |row| rows::snapshot(row))?)
 }
@@ -206,8 +206,3 @@ SELECT 'job ' || id || ': its request is not JSON' FROM jobs WHERE NOT json_vali
 UNION ALL
 SELECT 'the chunk ' || chunk || ' of job number ' || job || ' belongs to no job' FROM job_chunks
 WHERE job NOT IN (SELECT number FROM jobs)";
-
-fn number(database: &Connection, id: Uuid) -> Result<i64, Fault> {
-    let found = first(database, "SELECT number FROM contacts WHERE id = ?1", [id.to_string()], |row| row.next())?;
-    found.ok_or_else(|| missing(database, id))
-}

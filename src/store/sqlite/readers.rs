@@ -3,8 +3,8 @@
 use std::fs::File;
 use std::os::unix::ffi::OsStrExt as _;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Weak};
 
 use parking_lot::Mutex;
 use percent_encoding::{NON_ALPHANUMERIC, percent_encode};
@@ -32,15 +32,6 @@ pub(super) struct Readers {
     permits: Arc<Semaphore>,
     searches: Arc<Semaphore>,
     idle: Arc<Idle>,
-}
-
-/// Whether nobody waits for a search any more: set when its request is dropped.
-struct Abandoned(Arc<AtomicBool>);
-
-impl Drop for Abandoned {
-    fn drop(&mut self) {
-        self.0.store(true, Ordering::Relaxed);
-    }
 }
 
 /// The idle connections, and what is needed to open more.
@@ -73,10 +64,10 @@ impl Readers {
         self.run(None, question).await
     }
 
-    /// Runs a query that ends once it is abandoned.
+    /// Runs a query that ends once nobody waits for it.
     async fn run<T: Send + 'static>(
         &self,
-        abandoned: Option<Arc<AtomicBool>>,
+        waiting: Option<Weak<()>>,
         question: impl FnOnce(&Connection) -> Result<T, Fault> + Send + 'static,
     ) -> Result<T> {
         let permit = Arc::clone(&self.permits).acquire_owned().await;
@@ -85,7 +76,7 @@ impl Readers {
             idle.files.check()?;
             let mut connection = idle.take()?;
             // In place of that of the last query. An interrupt would be lost on a statement that has not begun.
-            let ends = abandoned.map(|abandoned| move || abandoned.load(Ordering::Relaxed));
+            let ends = waiting.map(|waiting| move || waiting.strong_count() == 0);
             connection.progress_handler(CHECKED, ends)?;
             let found =
                 connection.unchecked_transaction().map_err(Fault::from).and_then(|transaction| question(&transaction));
@@ -109,9 +100,9 @@ impl Readers {
         question: impl FnOnce(&Connection) -> Result<T, Fault> + Send + 'static,
     ) -> Result<T> {
         let permit = Arc::clone(&self.searches).acquire_owned().await;
-        let abandoned = Arc::new(AtomicBool::new(false));
-        let _abandoned = Abandoned(Arc::clone(&abandoned));
-        self.run(Some(abandoned), move |database| {
+        // Dropped with the request.
+        let waiting = Arc::new(());
+        self.run(Some(Arc::downgrade(&waiting)), move |database| {
             let _permit = permit;
             question(database)
         })

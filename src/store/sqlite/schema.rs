@@ -36,11 +36,10 @@ pub(super) fn check(connection: &Connection) -> Result<(), SchemaError<Error>> {
 
 /// Whether this program supports a version of tables, and so may migrate it.
 pub(super) fn known(version: i32) -> Result<(), String> {
-    match schema::pending(version, MIGRATIONS) {
-        Err(error) => Err(error.to_string()),
-        Ok(_) if version < 1 => Err("it is incomplete: its tables have no version".to_owned()),
-        Ok(_) => Ok(()),
+    if version < 1 {
+        return Err("it is incomplete: its tables have no version".to_owned());
     }
+    schema::pending(version, MIGRATIONS).map(drop)
 }
 
 /// Applies the migrations that a database has not seen, all of them or none.

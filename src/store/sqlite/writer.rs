@@ -13,7 +13,6 @@ use rusqlite::config::DbConfig;
 use tokio::sync::mpsc::error::TryRecvError;
 use tokio::sync::{mpsc, oneshot};
 
-use crate::store::job_store::ChunkQueue;
 use crate::store::{Changes, Commits, Result, StoreError, batch};
 
 use super::change::{Change, Done, SequenceCache, Transaction};
@@ -37,11 +36,10 @@ pub(super) struct Request {
 type Reply = oneshot::Sender<Result<u64>>;
 
 pub(super) struct Writer {
-    database: Connection,
+    pub(super) database: Connection,
     /// The files that it writes to.
     files: Arc<OpenFiles>,
     changes: Arc<Changes>,
-    queue: Arc<ChunkQueue>,
     cache: SequenceCache,
     commits: Arc<Commits>,
     /// A number that no session has had.
@@ -67,7 +65,6 @@ impl Writer {
         database: Connection,
         files: Arc<OpenFiles>,
         changes: Arc<Changes>,
-        queue: Arc<ChunkQueue>,
         commits: Arc<Commits>,
     ) -> rusqlite::Result<Writer> {
         // Forks that a crash has left incomplete are abandoned.
@@ -80,7 +77,6 @@ impl Writer {
             database,
             files,
             changes,
-            queue,
             cache: SequenceCache::new(CACHED),
             commits,
             next_number: highest + 1,
@@ -94,8 +90,7 @@ impl Writer {
     /// Serves until the store is dropped, then merges the log into the file.
     pub(super) fn run(mut self, mut requests: mpsc::Receiver<Request>) {
         loop {
-            let background = !self.forks.is_empty() || (self.healthy && self.unowned);
-            let first = if background {
+            let first = if self.has_background() {
                 match requests.try_recv() {
                     Ok(request) => Some(request),
                     Err(TryRecvError::Empty) => None,
@@ -120,6 +115,11 @@ impl Writer {
         }
     }
 
+    /// Whether there is work besides the changes.
+    pub(super) fn has_background(&self) -> bool {
+        !self.forks.is_empty() || (self.healthy && self.unowned)
+    }
+
     /// Marks the file as closed, and merges the log into it: with the log, the mark reaches the file.
     fn close(&self) -> rusqlite::Result<()> {
         if self.files.check().is_err() {
@@ -132,7 +132,7 @@ impl Writer {
     }
 
     /// Makes changes durable together, then answers; or, where that fails, each alone.
-    fn commit(&mut self, batch: Vec<Request>) {
+    pub(super) fn commit(&mut self, batch: Vec<Request>) {
         match self.attempt(&batch) {
             Ok(outcomes) => {
                 for (request, outcome) in batch.into_iter().zip(outcomes) {
@@ -179,10 +179,6 @@ impl Writer {
                 self.unowned = true;
                 count
             }
-            Ok(Done::Queued(change)) => {
-                self.queue.follow(change);
-                1
-            }
             Ok(Done::Copying(fork, copying)) => return self.forks.push_back((fork, copying, request)),
         };
         // The reply goes first: its client waits longer than the listeners have.
@@ -190,7 +186,8 @@ impl Writer {
         request.change.touched.iter().for_each(|id| self.changes.wake(*id));
     }
 
-    fn background_step(&mut self) {
+    /// Does a part of that work, if there is any; returns whether there is more.
+    pub(super) fn background_step(&mut self) -> bool {
         if let Some((fork, copying, request)) = self.forks.pop_front() {
             let (mut proceeded, receipt) = (copying, request.change.receipt.as_ref());
             let proceed = |database: &Connection, proceeded: &mut Copying| {
@@ -225,6 +222,7 @@ impl Writer {
                 Err(Failure { error, .. }) => tracing::warn!(%error, "deleted moves could not be removed for now"),
             }
         }
+        self.has_background()
     }
 
     /// Runs a transaction to its durable commit, or rolls it back.

@@ -12,7 +12,7 @@ mod wake_ups;
 use std::future::{Future, ready};
 use std::sync::Arc;
 
-use stickslip::store::{MemoryStore, PostgresStore, SqliteStore, Store};
+use stickslip::store::{PostgresStore, SqliteStore, Store};
 use tempfile::tempdir;
 use uuid::Uuid;
 
@@ -20,7 +20,7 @@ use crate::common::postgres::Cluster;
 
 #[tokio::test]
 async fn memory_gives_the_guarantees() {
-    are_given(|| ready(Arc::new(MemoryStore::new()) as Arc<dyn Store>)).await;
+    are_given(|| ready(Arc::new(SqliteStore::in_memory().unwrap()) as Arc<dyn Store>)).await;
 }
 
 #[tokio::test]
