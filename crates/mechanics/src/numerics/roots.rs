@@ -106,8 +106,8 @@ pub(crate) fn largest([mut low, mut high]: [f64; 2], part: f64, mut f: impl FnMu
     best
 }
 
-/// The largest value of a function that may have several maxima, and where it is, first: at one of `places`, which rise,
-/// or between so many `neighbours` of the best of them on both sides, as [`largest`] finds it.
+/// The largest value of a function that may have several maxima, and where it is, first: at one of `places`, which
+/// rise, or between so many `neighbours` of the best of them on both sides, as [`largest`] finds it.
 pub(crate) fn largest_of<T>(places: &[T], neighbours: usize, part: f64, f: impl Fn(T) -> f64) -> (T, f64)
 where
     T: Copy + Add<Output = T> + Sub<Output = T> + Mul<f64, Output = T>,
