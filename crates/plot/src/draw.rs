@@ -11,7 +11,7 @@ use plotters::style::register_font;
 use stickslip_mechanics::unit_prefix;
 
 use super::round_joins::RoundJoins;
-use super::{Axis, Band, Colour, Curve, DrawResult, Panel, Picture, Plot};
+use super::{Axis, Band, Colour, Curve, Drawing, Panel, Plot};
 
 /// Pixels of a plot. Twice the size shown on a page, so that curves and text are smooth.
 pub(super) const SIZE: (u32, u32) = (1520, 1000);
@@ -55,51 +55,52 @@ impl Colour {
     }
 }
 
+/// Whether the backend could draw it all.
+pub(super) type DrawResult = Result<(), Box<dyn Error>>;
+
 /// A picture as an SVG document.
-pub(super) fn svg(picture: &(impl Picture + ?Sized)) -> Result<Vec<u8>, Box<dyn Error>> {
+pub(super) fn svg(picture: &Drawing) -> Result<Vec<u8>, Box<dyn Error>> {
     let mut text = String::new();
-    let area = SVGBackend::with_string(&mut text, picture.size()).into_drawing_area();
-    prepare(picture, &area)?;
-    drop(area);
+    draw(picture, SVGBackend::with_string(&mut text, size(picture)))?;
     // Else lines have mitres, which at a sharp corner are spikes.
     Ok(text.replace("<polyline ", "<polyline stroke-linejoin=\"round\" ").into_bytes())
 }
 
 /// A picture as rows of pixels of three bytes, while `keep_going` returns true.
-pub(super) fn pixels(
-    picture: &(impl Picture + ?Sized),
-    keep_going: &dyn Fn() -> bool,
-) -> Result<Vec<u8>, Box<dyn Error>> {
-    let (width, height) = picture.size();
+pub(super) fn pixels(picture: &Drawing, keep_going: &dyn Fn() -> bool) -> Result<Vec<u8>, Box<dyn Error>> {
+    let (width, height) = size(picture);
     let mut pixels = vec![0; 3 * width as usize * height as usize];
     let backend = BitMapBackend::with_buffer(&mut pixels, (width, height));
-    let area = RoundJoins { pixels: backend, keep_going }.into_drawing_area();
-    prepare(picture, &area)?;
-    drop(area);
+    draw(picture, RoundJoins { pixels: backend, keep_going })?;
     Ok(pixels)
 }
 
+/// Width and height of a picture, pixels.
+pub(super) fn size(picture: &Drawing) -> (u32, u32) {
+    match picture {
+        Drawing::Plot(plot) => (SIZE.0, SIZE.1.max(PANEL * u32::try_from(plot.panels.len()).unwrap_or(1))),
+        Drawing::Section(section) => section.size(),
+    }
+}
+
 /// Draws on white, in a font that is a part of the program, because a server may have none.
-fn prepare<DB: DrawingBackend<ErrorType: 'static>>(
-    picture: &(impl Picture + ?Sized),
-    area: &DrawingArea<DB, Shift>,
-) -> DrawResult {
+fn draw<DB: DrawingBackend<ErrorType: 'static>>(picture: &Drawing, backend: DB) -> DrawResult {
     static FONT: Once = Once::new();
     FONT.call_once(|| {
         // The only error is that of an invalid font.
         let _ = register_font("sans-serif", FontStyle::Normal, dejavu::sans::regular());
     });
+    let area = backend.into_drawing_area();
     area.fill(&WHITE)?;
-    picture.draw(area)?;
+    match picture {
+        Drawing::Plot(plot) => plot.draw(&area)?,
+        Drawing::Section(section) => section.draw(&area)?,
+    }
     area.present()?;
     Ok(())
 }
 
-impl Picture for Plot {
-    fn size(&self) -> (u32, u32) {
-        (SIZE.0, SIZE.1.max(PANEL * u32::try_from(self.panels.len()).unwrap_or(1)))
-    }
-
+impl Plot {
     fn draw<DB: DrawingBackend<ErrorType: 'static>>(&self, area: &DrawingArea<DB, Shift>) -> DrawResult {
         let titled = area.margin(16, 0, 0, 0).titled(&self.title, ("sans-serif", 30))?;
         let ends = self.bands.iter().flat_map(|band| [band.from, band.to]);
@@ -116,9 +117,7 @@ impl Picture for Plot {
         }
         Ok(())
     }
-}
 
-impl Plot {
     /// The points of a curve as they are drawn: over decades their logarithms, without those that have none.
     fn points(&self, curve: &Curve) -> Vec<(f64, f64)> {
         if !self.over_decades {
@@ -313,13 +312,13 @@ pub(super) fn tick(value: &f64) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Colour, Curve, Picture as _, Plot};
+    use super::super::{Colour, Curve, Drawing, Plot};
     use super::SIZE;
 
     /// Every second of many points is high, so that each corner is sharp.
-    fn comb() -> Plot {
+    fn comb() -> Drawing {
         let points = (0..400).map(|index| (f64::from(index), if index % 2 == 0 { -1.0 } else { 1.0 }));
-        Plot::of_numbers("t", "x", "x", vec![Curve::line("", Colour::Red, points)])
+        Drawing::Plot(Plot::of_numbers("t", "x", "x", vec![Curve::line("", Colour::Red, points)]))
     }
 
     #[test]
@@ -349,7 +348,7 @@ mod tests {
     fn decades_are_labelled_and_what_has_no_logarithm_is_left_out() {
         let curve = Curve::line("a", None, [(1e-5, 1e-3), (0.0, 1.0), (1e-3, 1e-9)]);
         let plot = Plot { over_decades: true, ..Plot::of_numbers("t", "x", "y", vec![curve]) };
-        let svg = String::from_utf8(plot.svg().unwrap()).unwrap();
+        let svg = String::from_utf8(Drawing::Plot(plot).svg().unwrap()).unwrap();
         for label in ["1e-5", "1e-4", "1e-3", "1e-9", "1e-6"] {
             assert!(svg.contains(label), "{label}");
         }

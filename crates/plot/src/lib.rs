@@ -13,10 +13,6 @@ pub use section::{ContactEdge, Peak, Section};
 pub use stickslip_mechanics::in_unit;
 
 use std::borrow::Cow;
-use std::error::Error;
-
-use plotters::coord::Shift;
-use plotters::prelude::{DrawingArea, DrawingBackend};
 
 /// Panels one above the other, over the same axis.
 pub struct Plot {
@@ -142,41 +138,6 @@ pub enum Colour {
     Green,
 }
 
-/// Whether the backend could draw it all.
-pub type DrawResult = Result<(), Box<dyn Error>>;
-
-/// Something that can be drawn.
-pub trait Picture {
-    /// Draws it on an empty area.
-    ///
-    /// # Errors
-    /// What the backend cannot do.
-    fn draw<DB: DrawingBackend<ErrorType: 'static>>(&self, area: &DrawingArea<DB, Shift>) -> DrawResult;
-
-    /// Its width and height, pixels.
-    fn size(&self) -> (u32, u32) {
-        draw::SIZE
-    }
-
-    /// It as an SVG document.
-    ///
-    /// # Errors
-    /// A sentence for the log, if the drawing fails.
-    fn svg(&self) -> Result<Vec<u8>, String> {
-        draw::svg(self).map_err(|fault| fault.to_string())
-    }
-
-    /// It as a PNG file, while `keep_going` returns true, which is asked at each piece of a line.
-    ///
-    /// # Errors
-    /// A sentence for the log, if the drawing fails or was ended.
-    fn png(&self, keep_going: &dyn Fn() -> bool) -> Result<Vec<u8>, String> {
-        draw::pixels(self, keep_going)
-            .and_then(|pixels| png::encode(&pixels, self.size()))
-            .map_err(|fault| fault.to_string())
-    }
-}
-
 /// One of the two kinds of pictures.
 pub enum Drawing {
     /// Curves over one axis.
@@ -185,19 +146,23 @@ pub enum Drawing {
     Section(Section),
 }
 
-impl Picture for Drawing {
-    fn draw<DB: DrawingBackend<ErrorType: 'static>>(&self, area: &DrawingArea<DB, Shift>) -> DrawResult {
-        match self {
-            Drawing::Plot(plot) => plot.draw(area),
-            Drawing::Section(section) => section.draw(area),
-        }
+impl Drawing {
+    /// It as an SVG document.
+    ///
+    /// # Errors
+    /// A sentence for the log, if the drawing fails.
+    pub fn svg(&self) -> Result<Vec<u8>, String> {
+        draw::svg(self).map_err(|fault| fault.to_string())
     }
 
-    fn size(&self) -> (u32, u32) {
-        match self {
-            Drawing::Plot(plot) => plot.size(),
-            Drawing::Section(section) => section.size(),
-        }
+    /// It as a PNG file, while `keep_going` returns true, which is asked at each piece of a line.
+    ///
+    /// # Errors
+    /// A sentence for the log, if the drawing fails or was ended.
+    pub fn png(&self, keep_going: &dyn Fn() -> bool) -> Result<Vec<u8>, String> {
+        draw::pixels(self, keep_going)
+            .and_then(|pixels| png::encode(&pixels, draw::size(self)))
+            .map_err(|fault| fault.to_string())
     }
 }
 

@@ -7,9 +7,9 @@ use plotters::element::DashedPathElement;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
+use super::Axis;
 use super::contour::{Grid, Outline};
-use super::draw::{SIZE, Scale, extent, scale, tick};
-use super::{Axis, DrawResult, Picture};
+use super::draw::{DrawResult, SIZE, Scale, extent, scale, tick};
 
 /// Lines of equal value at most, and shades between two of them: so many that their steps are hardly seen.
 const LINES: f64 = 9.0;
@@ -234,12 +234,13 @@ fn draw_scale<DB: DrawingBackend<ErrorType: 'static>>(
     Ok(())
 }
 
-impl Picture for Section {
-    fn size(&self) -> (u32, u32) {
+impl Section {
+    /// Width and height, pixels.
+    pub(super) fn size(&self) -> (u32, u32) {
         (SIZE.0, ABOVE + self.extent_in_pixels().1 + BELOW)
     }
 
-    fn draw<DB: DrawingBackend<ErrorType: 'static>>(&self, area: &DrawingArea<DB, Shift>) -> DrawResult {
+    pub(super) fn draw<DB: DrawingBackend<ErrorType: 'static>>(&self, area: &DrawingArea<DB, Shift>) -> DrawResult {
         let grid = Grid::refined(&self.x.1, &self.y.1, &self.values.1);
         let [x_range, y_range, range] =
             [&self.x.1, &self.y.1, &self.values.1].map(|values| extent(values.iter().copied()));
@@ -294,6 +295,7 @@ impl Picture for Section {
 
 #[cfg(test)]
 mod tests {
+    use super::super::Drawing;
     use super::super::draw::pixels;
     use super::*;
 
@@ -330,13 +332,20 @@ mod tests {
         }
     }
 
+    /// The landscape with changes, as SVG.
+    fn svg_of(change: impl FnOnce(&mut Section)) -> String {
+        let mut section = section(landscape);
+        change(&mut section);
+        String::from_utf8(Drawing::Section(section).svg().unwrap()).unwrap()
+    }
+
     #[test]
     fn each_pixel_has_the_colour_of_the_value_there() {
         let section = section(landscape);
         let (width, height) = section.extent_in_pixels();
         let left = (SIZE.0 - LEFT - width - SCALE) / 2 + LEFT;
-        let drawn = pixels(&section, &|| true).unwrap();
         let range = extent(section.values.1.iter().map(|value| value / 1e6));
+        let drawn = pixels(&Drawing::Section(section), &|| true).unwrap();
         let levels = Levels::of(range);
         let fine = levels.step / SHADES as f64;
         let (mut blank, mut wrong, mut looked) = (0, 0, 0);
@@ -375,13 +384,13 @@ mod tests {
 
     #[test]
     fn the_largest_value_and_the_edge_of_the_contact_are_where_they_belong() {
-        let mut section = section(landscape);
-        section.largest = Some(Peak { value: 3.0e6, places: vec![(-0.75e-6, 0.375e-6)] });
-        section.edge = Some(ContactEdge { radius: 1e-6, offset: Some(0.0), name: "edge" });
-        let (width, height) = section.extent_in_pixels();
+        let (width, height) = section(landscape).extent_in_pixels();
         assert!(width.abs_diff(2 * height) < 3, "both coordinates have the same scale");
         let left = (SIZE.0 - LEFT - width - SCALE) / 2 + LEFT;
-        let svg = String::from_utf8(section.svg().unwrap()).unwrap();
+        let svg = svg_of(|section| {
+            section.largest = Some(Peak { value: 3.0e6, places: vec![(-0.75e-6, 0.375e-6)] });
+            section.edge = Some(ContactEdge { radius: 1e-6, offset: Some(0.0), name: "edge" });
+        });
         assert!(svg.contains("Crossland: largest 3 MPa at x = -0.75 µm, z = 0.375 µm"), "{svg:.900}");
         assert!(svg.contains("crossland / MPa"));
         let number = |text: &str, name: &str| -> u32 {
@@ -397,18 +406,19 @@ mod tests {
             assert!((x - 2..=x + 2).any(beside), "{x}");
         }
         // Beyond the picture there is nothing to mark.
-        section.largest = Some(Peak { value: 3.0e6, places: Vec::new() });
-        section.edge = Some(ContactEdge { radius: 1e-6, offset: Some(1.1e-6), name: "edge" });
-        let svg = String::from_utf8(section.svg().unwrap()).unwrap();
+        let svg = svg_of(|section| {
+            section.largest = Some(Peak { value: 3.0e6, places: Vec::new() });
+            section.edge = Some(ContactEdge { radius: 1e-6, offset: Some(1.1e-6), name: "edge" });
+        });
         assert!(svg.contains("largest 3 MPa off this picture") && !svg.contains("<circle"));
     }
 
     #[test]
     fn a_squared_unit_has_a_power_of_ten_for_a_prefix() {
-        let mut section = section(landscape);
-        section.values.0.unit = Some("N²/m³");
-        section.largest = Some(Peak { value: 3.0e6, places: Vec::new() });
-        let svg = String::from_utf8(section.svg().unwrap()).unwrap();
+        let svg = svg_of(|section| {
+            section.values.0.unit = Some("N²/m³");
+            section.largest = Some(Peak { value: 3.0e6, places: Vec::new() });
+        });
         for text in ["crossland / (10⁶ N²/m³)", "largest 3 · 10⁶ N²/m³"] {
             assert!(svg.contains(text), "{svg:.900}");
         }

@@ -1,6 +1,6 @@
 //! `/contacts/{id}/cycles`: the closed cycles of a contact's past.
 
-use stickslip_plot::{Axis, Colour, Plot};
+use stickslip_plot::{Axis, Colour, Drawing, Plot};
 use stickslip_wire::{Cycle, CyclePage, limits};
 
 use super::move_series::curve;
@@ -35,7 +35,8 @@ pub async fn get_cycles(
     }
     let mut memory = app.pool.reserve(last * OBJECT + format.bytes(0, 0)).await?;
     let (sequence, page) = app.sessions.cycles(id, last, &mut memory).await?;
-    let write = move || format.write(CAPACITY, &page, || Some(plot(&page)), || Some(table(&page)), &|| true);
+    let write =
+        move || format.write(CAPACITY, &page, || Some(Drawing::Plot(plot(&page))), || Some(table(&page)), &|| true);
     let body = app.pool.run(format.cost(), write).await??;
     let tag = formats::tag(format, &sequence.to_string());
     Ok(reply::holding(reply::tagged(formats::reply(format, body), &tag), memory))

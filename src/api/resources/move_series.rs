@@ -8,7 +8,7 @@ use axum::body::Body;
 use futures::{StreamExt as _, stream};
 use serde::Serialize;
 use serde_json::json;
-use stickslip_plot::{Axis, Colour, Curve, Panel, Plot};
+use stickslip_plot::{Axis, Colour, Curve, Drawing, Panel, Plot};
 use stickslip_wire::{HistoryPage, JsonPath};
 
 use super::prelude::*;
@@ -107,7 +107,7 @@ pub(super) async fn reply<T: MoveSeries>(
     let page = shown.page(&app, id, after, moves, format, &mut memory).await?;
     let (stop, _raised_at_the_end) = app.pool.deadline();
     let write = move || {
-        let (plot, table) = (|| Some(T::plot(&page)), || Some(shown.table(&page)));
+        let (plot, table) = (|| Some(Drawing::Plot(T::plot(&page))), || Some(shown.table(&page)));
         let written = format.write(CAPACITY, &page, plot, table, &|| stop.check().is_ok());
         if written.is_err() {
             stop.check().map_err(Failure::from)?;

@@ -8,7 +8,7 @@ use std::io;
 use serde::Serialize;
 
 use crate::Nanoseconds;
-use stickslip_plot::Picture;
+use stickslip_plot::Drawing;
 
 pub use table::{Block, Cells, Column, Table, TableStream};
 
@@ -100,11 +100,11 @@ impl Format {
     ///
     /// # Errors
     /// [`Unwritable`], which is a fault of the service, or because `keep_going` has returned false.
-    pub fn write<'p, P: Picture>(
+    pub fn write<'p>(
         self,
         length: usize,
         document: &impl Serialize,
-        picture: impl FnOnce() -> Option<P>,
+        picture: impl FnOnce() -> Option<Drawing>,
         table: impl FnOnce() -> Option<Table<'p>>,
         keep_going: &dyn Fn() -> bool,
     ) -> Result<Vec<u8>, Unwritable> {

@@ -143,10 +143,7 @@ impl Criterion {
         if matches!(self, Criterion::Crossland { .. } | Criterion::DangVan { .. }) {
             return self.of(path).value;
         }
-        let starts = self.starts(path);
-        let planes: Vec<&Vector> = grid(&starts).collect();
-        let (highest, _) = most(planes.iter().map(|normal| self.on_plane(path, normal, true).0));
-        self.on_plane(path, planes[highest], false).0
+        most(grid(&self.starts(path)).map(|normal| self.on_plane(path, normal).0)).1
     }
 
     /// The planes that a search must not miss: of largest tension, where a criterion is cut off without.
@@ -161,13 +158,13 @@ impl Criterion {
         tension
     }
 
-    /// The value on one plane, or a bound of it, and the instant of the largest normal stress.
-    fn on_plane(&self, path: &[Stress], normal: &Vector, bound: bool) -> (f64, usize) {
+    /// The value on one plane, and the instant of the largest normal stress.
+    fn on_plane(&self, path: &[Stress], normal: &Vector) -> (f64, usize) {
         let along = weights(normal, normal);
         let (instant, tension) = most(path.iter().map(|stress| resolved(stress, &along)));
         let value = match *self {
             Criterion::Crossland { .. } | Criterion::DangVan { .. } => 0.0,
-            Criterion::Findley { k } => shear_amplitude(path, normal, bound) + k * tension,
+            Criterion::Findley { k } => shear_amplitude(path, normal) + k * tension,
             Criterion::SmithWatsonTopper { .. } if tension <= 0.0 => 0.0,
             Criterion::SmithWatsonTopper { youngs_modulus, poisson } => {
                 let strain = |stress: &Stress| strained(stress, &along, poisson);
@@ -181,7 +178,7 @@ impl Criterion {
                     0.0
                 } else {
                     let shear_modulus = 0.5 * youngs_modulus / (1.0 + poisson);
-                    shear_amplitude(path, normal, bound) / shear_modulus * factor
+                    shear_amplitude(path, normal) / shear_modulus * factor
                 }
             }
         };
@@ -231,24 +228,11 @@ fn resolved(stress: &Stress, [xx, yy, zz, xy, yz, xz]: &[f64; 6]) -> f64 {
     (xx * stress.xx + yy * stress.yy + zz * stress.zz) + (xy * stress.xy + yz * stress.yz + xz * stress.xz)
 }
 
-/// The radius of the smallest circle around the shear stresses of a path in a plane, or of one about the middle of
-/// their ranges.
-fn shear_amplitude(path: &[Stress], normal: &Vector, bound: bool) -> f64 {
+/// The radius of the smallest circle around the shear stresses of a path in a plane.
+fn shear_amplitude(path: &[Stress], normal: &Vector) -> f64 {
     let [one, two] = shear_axes(normal);
     let shears: Vec<[f64; 2]> = path.iter().map(|stress| [resolved(stress, &one), resolved(stress, &two)]).collect();
-    if !bound {
-        return enclosing_ball(&shears).radius;
-    }
-    let mut ends = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
-    for shear in &shears {
-        for i in 0..2 {
-            ends[0][i] = ends[0][i].min(shear[i]);
-            ends[1][i] = ends[1][i].max(shear[i]);
-        }
-    }
-    let middle = [0, 1].map(|i| 0.5 * (ends[0][i] + ends[1][i]));
-    let distance = |shear: &[f64; 2]| (shear[0] - middle[0]).powi(2) + (shear[1] - middle[1]).powi(2);
-    shears.iter().map(distance).fold(0.0, f64::max).sqrt()
+    enclosing_ball(&shears).radius
 }
 
 /// The normal of a plane on which a stress has the largest tension.

@@ -55,26 +55,12 @@ pub(super) fn grid(more: &[Vector]) -> impl Iterator<Item = &Vector> {
 }
 
 /// The largest peaks of a function that opposite normals share, and their normals, sought from the grid and from
-/// `more`; the largest of all comes first. The second argument of the function asks for an upper
-/// bound alone, which is cheaper: planes of a low bound need no exact value.
-pub(super) fn peaks(more: &[Vector], mut value: impl FnMut(&Vector, bool) -> f64) -> Vec<(f64, Vector)> {
+/// `more`; the largest of all comes first.
+pub(super) fn peaks(more: &[Vector], mut value: impl FnMut(&Vector) -> f64) -> Vec<(f64, Vector)> {
     let highest_first = |one: &(f64, Vector), other: &(f64, Vector)| other.0.total_cmp(&one.0);
-    let mut bounds: Vec<(f64, Vector)> = grid(more).map(|normal| (value(normal, true), *normal)).collect();
-    bounds.sort_by(highest_first);
-    let bottom = bounds[bounds.len() - 1].0;
-    let mut best = (f64::NEG_INFINITY, bounds[0].1);
-    let mut normals: Vec<(f64, Vector)> = Vec::new();
-    for (bound, normal) in bounds {
-        if bound < best.0 - SLACK * (best.0 - bottom) {
-            break;
-        }
-        normals.push((value(&normal, false), normal));
-        if normals[normals.len() - 1].0 > best.0 {
-            best = normals[normals.len() - 1];
-        }
-    }
+    let mut normals: Vec<(f64, Vector)> = grid(more).map(|normal| (value(normal), *normal)).collect();
     normals.sort_by(highest_first);
-    let top = best.0;
+    let (mut best, top, bottom) = (normals[0], normals[0].0, normals[normals.len() - 1].0);
     let near = |normal: &Vector, others: &[(f64, Vector)]| {
         others.iter().any(|other| dot(&other.1, normal).abs() > NEIGHBOURS.cos())
     };
@@ -85,14 +71,14 @@ pub(super) fn peaks(more: &[Vector], mut value: impl FnMut(&Vector, bool) -> f64
         }
         let hidden = start.0 >= best.0 - OFF_PEAK * (top - bottom) && !near(&start.1, &found);
         if hidden || !near(&start.1, &normals[..rank]) {
-            let peak = climb(*start, FIRST_STEP, |normal| value(normal, false));
+            let peak = climb(*start, FIRST_STEP, &mut value);
             if peak.0 > best.0 {
                 best = peak;
             }
             found.push(peak);
         }
     }
-    found.extend(beside(&best.1, |normal| value(normal, false)));
+    found.extend(beside(&best.1, &mut value));
     found.push(best);
     found.sort_by(highest_first);
     found

@@ -223,8 +223,8 @@ fn candidates(criterion: &Criterion, curve: &StressCurve) -> Vec<Vector> {
         }
     }
     let mut range = [f64::INFINITY, f64::NEG_INFINITY];
-    let found = peaks(&criterion.starts(&few), |normal, bound| {
-        let value = criterion.on_plane(&few, normal, bound).0;
+    let found = peaks(&criterion.starts(&few), |normal| {
+        let value = criterion.on_plane(&few, normal).0;
         range = [range[0].min(value), range[1].max(value)];
         value
     });
@@ -248,7 +248,7 @@ fn on_worst_plane(criterion: &Criterion, curve: &StressCurve, off: f64, near: Op
         let mut value = f64::NEG_INFINITY;
         for round in 0..MOST_ROUNDS {
             let at = add_support_stresses(criterion, curve, &normal, &mut path);
-            let (here, _) = criterion.on_plane(&path, &normal, false);
+            let (here, _) = criterion.on_plane(&path, &normal);
             if here > best.value {
                 best = Rated { value: here, plane: Some(upward(normal)), at: Some(at), ..best };
             }
@@ -257,7 +257,7 @@ fn on_worst_plane(criterion: &Criterion, curve: &StressCurve, off: f64, near: Op
             }
             value = here;
             let step = if round == 0 { CLIMB_STEP } else { 0.1 * CLIMB_STEP };
-            normal = climb((here, normal), step, |normal| criterion.on_plane(&path, normal, false).0).1;
+            normal = climb((here, normal), step, |normal| criterion.on_plane(&path, normal).0).1;
         }
     }
     best

@@ -18,7 +18,7 @@ use clap::builder::PossibleValuesParser;
 use serde::Deserialize;
 use stickslip_mechanics::springs::{self, ShearEvaluation};
 use stickslip_mechanics::{Contact, Error, Springs};
-use stickslip_plot::{Curve, Picture as _, Plot};
+use stickslip_plot::{Curve, Drawing, Plot};
 
 use crate::report::{Failure, table, timed};
 use external_solver::SCRIPTS;
@@ -134,7 +134,10 @@ impl Speed {
         fs::create_dir_all(&self.out)?;
         fs::write(self.out.join("report.md"), page)?;
         for (name, ordinate, error) in CHARTS {
-            fs::write(self.out.join(format!("{name}.svg")), chart(&rows, charted, ordinate, error).svg()?)?;
+            fs::write(
+                self.out.join(format!("{name}.svg")),
+                Drawing::Plot(chart(&rows, charted, ordinate, error)).svg()?,
+            )?;
         }
         Ok(())
     }

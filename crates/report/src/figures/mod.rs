@@ -18,7 +18,7 @@ mod rough;
 use std::fs;
 use std::path::Path;
 
-use stickslip_plot::{Drawing, Picture as _};
+use stickslip_plot::Drawing;
 
 use crate::report::Failure;
 
