@@ -4,7 +4,7 @@ use std::ops::RangeInclusive;
 
 use stickslip_mechanics::range;
 use stickslip_wire::limits::{self, Array};
-use stickslip_wire::{Field, JsonPath, Sampling, StressReply, StressRequest};
+use stickslip_wire::{Field, JsonPath, StressReply, StressRequest};
 
 use super::prelude::*;
 use crate::api::query_parameters::{FLAG, Fields, List};
@@ -36,7 +36,7 @@ parameters! {
 }
 
 pub struct CheckedStress {
-    sampling: Sampling,
+    sampling: StressRequest,
     residual: bool,
     format: Option<Format>,
 }
