@@ -7,8 +7,8 @@ pub(crate) use stickslip_wire::reply::finite;
 pub(crate) use stickslip_wire::simulate::Simulation;
 pub(crate) use stickslip_wire::{
     self as wire, Accuracy, Code, ContactDefinition, Document, Fault, Field, Move, Plan, Prepare, Protocol, Rejection,
-    Residual, Sampling, SimulateReply, SimulateRequest, SimulationReply, SolverKind, State, Steps, Stress, Warning,
-    limits,
+    Residual, SimulateReply, SimulateRequest, SimulationReply, SolverKind, State, Steps, Stress, StressRequest,
+    Warning, limits,
 };
 
 pub(crate) use crate::simulation::bytes::{NUMBER, NUMBER_LENGTH, OBJECT, ROW, of_shape};

@@ -110,7 +110,7 @@ pub struct Comparison {
     /// The path.
     pub plan: Plan,
     /// Where the shear stress is compared; no other field is.
-    pub sampling: Sampling,
+    pub sampling: StressRequest,
     /// The solvers.
     pub solvers: Vec<Solver>,
     /// The tolerance of results that are not exact.
@@ -180,8 +180,8 @@ impl Document for AccuracyRequest {
             ..StressRequest::default()
         });
         let at = JsonPath::Root.member("stress");
-        let sampling = stress.sampling(at, faults);
-        if sampling.as_ref().is_some_and(|sampling| !sampling.fields.contains(&Field::Shear)) {
+        let sampling = stress.checked(at, faults);
+        if sampling.as_ref().is_some_and(|sampling| !sampling.wants(Field::Shear)) {
             faults.add(at.member("fields"), "only the shear stress is compared: include `shear`");
         }
         let mut tolerance = self.tolerance.unwrap_or(DEFAULT_TOLERANCE);
@@ -194,7 +194,7 @@ impl Document for AccuracyRequest {
                 faults.add(at.index(index), "follows no motion in the plane: name rings, or leave `solvers` out");
             });
         }
-        let radii = sampling.as_ref().map_or(0, Sampling::length);
+        let radii = sampling.as_ref().map_or(0, StressRequest::length);
         let passes = plan.as_ref().map_or(0, Plan::length).saturating_add(radii);
         solvers.iter().enumerate().for_each(|(index, solver)| solver.check(at.index(index), passes, faults));
         let comparison = setup.zip(plan).zip(sampling).map(|((setup, plan), sampling)| {

@@ -6,7 +6,7 @@
 use std::marker::PhantomData;
 
 use serde::de::value::SeqAccessDeserializer;
-use serde::de::{Deserialize, Deserializer, Error, SeqAccess, Visitor};
+use serde::de::{Deserialize, Deserializer, Error, IgnoredAny, SeqAccess, Visitor};
 
 /// Declares choices with the word of each, `words! { pub enum Name: Trait, .. of Other { Choice = "word", .. } .. }`,
 /// the traits that they have beside those of all, and the type of the mechanics that has the same choices.
@@ -213,12 +213,12 @@ pub enum NumberOr<A> {
 impl<A> crate::limits::Limited for NumberOr<A> {}
 
 /// An array of numbers that a single one may take the place of.
-pub trait Numbers: TryFrom<Vec<f64>> {
+pub trait Numbers {
     /// What is expected, for messages.
     const EXPECTED: &'static str;
 }
 
-impl<'de, A: Numbers> Deserialize<'de> for NumberOr<A> {
+impl<'de, A: Numbers + Deserialize<'de>> Deserialize<'de> for NumberOr<A> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         deserializer.deserialize_any(NumberOrVisitor(PhantomData))
     }
@@ -226,7 +226,7 @@ impl<'de, A: Numbers> Deserialize<'de> for NumberOr<A> {
 
 struct NumberOrVisitor<A>(PhantomData<A>);
 
-impl<'de, A: Numbers> Visitor<'de> for NumberOrVisitor<A> {
+impl<'de, A: Numbers + Deserialize<'de>> Visitor<'de> for NumberOrVisitor<A> {
     type Value = NumberOr<A>;
 
     fn expecting(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
@@ -245,10 +245,13 @@ impl<'de, A: Numbers> Visitor<'de> for NumberOrVisitor<A> {
         Ok(NumberOr::One(number as f64))
     }
 
-    fn visit_seq<S: SeqAccess<'de>>(self, elements: S) -> Result<NumberOr<A>, S::Error> {
+    fn visit_seq<S: SeqAccess<'de>>(self, mut elements: S) -> Result<NumberOr<A>, S::Error> {
         // A fault within has its index.
-        let numbers = Vec::deserialize(SeqAccessDeserializer::new(elements))?;
-        let length = numbers.len();
-        A::try_from(numbers).map(NumberOr::Many).map_err(|_| Error::invalid_length(length, &self))
+        let numbers = A::deserialize(SeqAccessDeserializer::new(&mut elements))?;
+        match elements.next_element::<IgnoredAny>()? {
+            None => Ok(NumberOr::Many(numbers)),
+            // That can only be a pair.
+            Some(_) => Err(Error::invalid_length(3, &self)),
+        }
     }
 }

@@ -54,53 +54,12 @@ pub mod wear;
 
 use limits::{Limited as _, LimitsOfSchemas};
 
-pub use accuracy::{AccuracyReply, AccuracyRequest, AccuracyRow, Comparison, Reference};
-pub use check::{Fault, Faults, JsonPath, Rejection};
-pub use closed_cycle::{Cycle, CyclePage};
-pub use cycle::{
-    Amplitudes, BestLoad, BestLoadStudy, CycleDrive, CycleReply, CycleRequest, FrequencyResponse, FrettingMap,
-    FrictionWork, Harmonic, LoadCurve, LoadSpan, Machine, Resonance, ResonancePoint, SteadyCycle, WorkDensity,
-};
-pub use definition::{Body, BodyName, ContactDefinition, DefinedProfile, Effective, ElasticBody, Material, Preload};
-pub use document::{Document, read};
-pub use event::{EndEvent, EndReason, StateEvent};
-pub use files::{FileColumn, FilePreview, LoopFileReply, RowsLeftOut, ScanFileReply};
-pub use fit::{FitReply, FitRequest};
-pub use fretting::{
-    BelowSurface, BulkCycle, Criteria, CriticalDistance, FatemiSocie, Findley, FrettingReply, FrettingRequest, Largest,
-    Life, Rating, SnCurve, StrainBased, StrainLife, StrainLifeCurve, StressLife, StressPath, SurfaceCriterion,
-    Weighted,
-};
-pub use history::{HistoryItem, HistoryPage, LoopPage};
-pub use job::{JobEndEvent, JobList, JobProgress, JobReply, JobState};
-pub use observation::{
-    FrictionEstimate, FrictionReply, ObservationsReply, ObservationsRequest, ObservedForce, ObservedMove,
-};
-pub use parse::{parse, parse_value};
-pub use path::{CyclicPath, EqualPeaks, FallingAmplitude, FirstTurn, Move, NormalOscillation, Observation, Path, Plan};
-pub use plane::{
-    Components, Ellipse, PlanarPlan, PlanarReply, PlanarState, PlanarStress, SimulatedMove, SimulatedPath,
-    SimulationReply,
-};
-pub use prepare::{Prepare, PrepareAnew, PrepareOnce};
-pub use problem::{Code, ProblemDocument};
-pub use profile::Profile;
-pub use profile_fit::{ProfileFitReply, ProfileFitRequest};
-pub use protocol::{ProtocolReply, ProtocolRequest, RelaxReply, RelaxRequest};
-pub use reply::{Accuracy, ContactSummary, Peak, Protocol, Regime, Residual, SolverKind, State, Warning};
-pub use session::{
-    ContactOrder, CreateRequest, ForkRequest, MoveReply, MoveRequest, NewSession, PathReply, PathRequest,
-    RenameRequest, SessionPage, SessionReply, SessionSummary, StressReply,
-};
-pub use simulate::{Rings, SimulateReply, SimulateRequest, Solver, Springs, Steps};
-pub use stress::{Field, Points, Sampling, Stress, StressRequest};
-pub use subsurface::{
-    Bulk, Direction, Subsurface, SubsurfaceField, SubsurfaceLine, SubsurfacePlane, SubsurfaceReply, SubsurfaceRequest,
-    SubsurfaceSurface,
-};
-pub use sweep::{Axis, NamedOutput, Output, PointFailure, Span, SweepReply, SweepRequest};
-pub use wear::{
-    Hold, WearDepth, WearDrive, WearReply, WearRequest, WornForce, WornPressure, WornProfileError, WornShape,
+pub use accuracy::Comparison;
+pub use simulate::Steps;
+pub use {
+    accuracy::*, check::*, closed_cycle::*, cycle::*, definition::*, document::*, event::*, files::*, fit::*,
+    fretting::*, history::*, job::*, observation::*, parse::*, path::*, plane::*, prepare::*, problem::*, profile::*,
+    profile_fit::*, protocol::*, reply::*, session::*, simulate::*, stress::*, subsurface::*, sweep::*, wear::*,
 };
 
 /// Schema, member and keywords of every limit.
@@ -109,25 +68,11 @@ pub fn all_limits() -> Vec<(&'static str, &'static str, serde_json::Value)> {
     macro_rules! of_all {
         ($($document:ty),*) => { $(<$document>::add_limits(&mut found);)* };
     }
-    of_all!(
-        AccuracyRequest,
-        CreateRequest,
-        CycleRequest,
-        FitRequest,
-        ForkRequest,
-        FrettingRequest,
-        MoveRequest,
-        ObservationsRequest,
-        PathRequest,
-        ProfileFitRequest,
-        ProtocolRequest,
-        RelaxRequest,
-        RenameRequest,
-        SimulateRequest,
-        SubsurfaceRequest,
-        SweepRequest,
-        WearRequest
-    );
+    of_all! {
+        AccuracyRequest, CreateRequest, CycleRequest, FitRequest, ForkRequest, FrettingRequest, MoveRequest,
+        ObservationsRequest, PathRequest, ProfileFitRequest, ProtocolRequest, RelaxRequest, RenameRequest,
+        SimulateRequest, SubsurfaceRequest, SweepRequest, WearRequest
+    }
     let members =
         |(schema, members): (_, Vec<_>)| members.into_iter().map(move |(member, keywords)| (schema, member, keywords));
     found.into_iter().flat_map(members).collect()

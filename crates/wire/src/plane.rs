@@ -178,7 +178,7 @@ pub struct PlanarStress: Default omits Option {
 }
 
 /// The result of a simulation in the plane.
-pub struct PlanarReply omits Option {
+pub struct PlanarReply: Default omits Option {
     /// Quantities that follow from the definition at the preload.
     pub contact: ContactSummary,
     /// The states along the path: all of them, or the last.

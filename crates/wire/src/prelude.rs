@@ -23,4 +23,4 @@ pub(crate) use crate::profile::Profile;
 pub(crate) use crate::reply::{Accuracy, ContactSummary, Protocol, Regime, Residual, SolverKind, State, Warning};
 pub(crate) use crate::request::{replies, requests};
 pub(crate) use crate::simulate::Steps;
-pub(crate) use crate::stress::{Field, Sampling, Stress, StressRequest};
+pub(crate) use crate::stress::{Field, Stress, StressRequest};

@@ -71,7 +71,7 @@ macro_rules! requests {
 
             fn check_limits(&self, at: $crate::check::JsonPath<'_>, faults: &mut $crate::check::Faults) {
                 $(
-                    let place = at.member($crate::request::name_in_json(stringify!($member)));
+                    let place = at.member(const { $crate::request::name_in_json(stringify!($member)) });
                     $($crate::limits::Limit::check(&$limit, &self.$member, place, faults);)?
                     $crate::limits::Limited::check_limits(&self.$member, place, faults);
                 )*
@@ -119,8 +119,8 @@ macro_rules! same_members {
 pub(crate) use same_members;
 
 /// The name of a member in JSON: that of a Rust keyword is written `r#name`.
-pub(crate) fn name_in_json(member: &'static str) -> &'static str {
-    member.trim_start_matches("r#")
+pub(crate) const fn name_in_json(member: &'static str) -> &'static str {
+    if let [b'r', b'#', ..] = member.as_bytes() { member.split_at(2).1 } else { member }
 }
 
 /// For members that may be left out but, once named, must have a value: some clients write NaN as `null`.

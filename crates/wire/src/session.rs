@@ -1,5 +1,6 @@
 //! The bodies and replies of `/contacts`: contacts that the server keeps.
 
+use super::document::checked_alone;
 use super::limits::Characters;
 use super::line_profiles::BulkPerForce;
 use super::path::PerhapsIncrement;
@@ -224,7 +225,7 @@ pub struct Advance {
     /// The moves.
     pub plan: Plan,
     /// The requested stresses.
-    pub stress: Option<Sampling>,
+    pub stress: Option<StressRequest>,
     /// Which states are requested.
     pub steps: Steps,
     /// The tolerance of results that are not exact.
@@ -257,27 +258,15 @@ impl Document for CreateRequest {
     }
 }
 
-impl MoveRequest {
-    /// The move itself.
-    pub fn step(&self) -> Move {
-        Move {
-            displacement: self.displacement,
-            force: self.force,
-            indentation: self.indentation,
-            normal_force: self.normal_force,
-            relative: self.relative,
-        }
-    }
-}
-
 impl Document for MoveRequest {
     type Checked = Advance;
 
     fn checked(self, _: &dyn Prepare, faults: &mut Faults) -> Option<Self::Checked> {
-        let step = self.step();
+        let MoveRequest { displacement, force, indentation, normal_force, relative, stress, tolerance } = self;
+        let step = Move { displacement, force, indentation, normal_force, relative };
         step.check(JsonPath::Root, faults);
-        let stress = self.stress.and_then(|stress| stress.sampling(JsonPath::Root.member("stress"), faults));
-        let tolerance = self.tolerance.unwrap_or(DEFAULT_TOLERANCE);
+        let stress = stress.and_then(|stress| stress.checked(JsonPath::Root.member("stress"), faults));
+        let tolerance = tolerance.unwrap_or(DEFAULT_TOLERANCE);
         Some(Advance { plan: Plan::Single(step), stress, steps: Steps::Last, tolerance, relax: None })
     }
 }
@@ -294,22 +283,10 @@ impl Document for PathRequest {
 
     fn checked(self, _: &dyn Prepare, faults: &mut Faults) -> Option<Self::Checked> {
         let plan = self.path.check(JsonPath::Root.member("path"), faults);
-        let stress = self.stress.and_then(|stress| stress.sampling(JsonPath::Root.member("stress"), faults));
+        let stress = self.stress.and_then(|stress| stress.checked(JsonPath::Root.member("stress"), faults));
         let tolerance = self.tolerance.unwrap_or(DEFAULT_TOLERANCE);
         plan.map(|plan| Advance { plan, stress, steps: self.steps, tolerance, relax: None })
     }
 }
 
-/// Documents of which their members are all that is checked.
-macro_rules! checked_alone {
-    ($($Name:ident)*) => {$(
-        impl Document for $Name {
-            type Checked = $Name;
-
-            fn checked(self, _: &dyn Prepare, _: &mut Faults) -> Option<Self::Checked> {
-                Some(self)
-            }
-        }
-    )*};
-}
-checked_alone! { RenameRequest ForkRequest }
+checked_alone!(RenameRequest, ForkRequest);

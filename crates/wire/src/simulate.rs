@@ -86,7 +86,7 @@ pub enum Solver: Copy, Eq {
 
 replies! {
 /// The result of a simulation.
-pub struct SimulateReply omits Option {
+pub struct SimulateReply: Default omits Option {
     /// Quantities that follow from the definition at the preload.
     pub contact: ContactSummary,
     /// The states along the path: all of them, or the last.
@@ -116,7 +116,7 @@ pub struct Simulation {
     /// The path.
     pub plan: Plan,
     /// The requested stresses.
-    pub stress: Option<Sampling>,
+    pub stress: Option<StressRequest>,
     /// Whether the extrema are requested.
     pub residual: bool,
     /// The requested stress below the surface.
@@ -143,7 +143,7 @@ impl Document for SimulateRequest {
         let setup = self.contact.check(JsonPath::Root.member("contact"), profiles, faults);
         let rings = matches!(self.solver, Some(Solver::Rings(_)));
         let plan = self.path.check(rings, JsonPath::Root.member("path"), faults);
-        let stress = self.stress.and_then(|stress| stress.sampling(JsonPath::Root.member("stress"), faults));
+        let stress = self.stress.and_then(|stress| stress.checked(JsonPath::Root.member("stress"), faults));
         let at = JsonPath::Root.member("subsurface");
         let subsurface = self.subsurface.and_then(|asked| asked.at(&self.contact, at, faults));
         if subsurface.is_some() && matches!(self.solver, Some(Solver::Springs(_))) {
@@ -173,7 +173,7 @@ impl Document for SimulateRequest {
         if let Some(solver) = &self.solver {
             let search = if self.residual { SPRING_SEARCH } else { 0 };
             let moves = plan.as_ref().map_or(0, Plan::length);
-            let radii = stress.as_ref().map_or(0, Sampling::length);
+            let radii = stress.as_ref().map_or(0, StressRequest::length);
             let passes = moves.saturating_add(radii).saturating_add(search);
             solver.check(JsonPath::Root.member("solver"), passes, faults);
         }
@@ -196,7 +196,7 @@ impl Document for SimulateRequest {
 /// Notes requested results that are not defined in the plane.
 fn check_in_plane(
     asked: &[(&'static str, bool)],
-    stress: Option<&Sampling>,
+    stress: Option<&StressRequest>,
     solver: Option<Solver>,
     plane: &PlanarPlan,
     faults: &mut Faults,
@@ -205,7 +205,7 @@ fn check_in_plane(
         let detail = format_args!("`{name}` is not defined for motion in the plane: leave it or the pairs out");
         faults.add(JsonPath::Root.member(name), detail);
     }
-    if stress.is_some_and(|stress| stress.fields.contains(&Field::Displacement)) {
+    if stress.is_some_and(|stress| stress.wants(Field::Displacement)) {
         let at = JsonPath::Root.member("stress");
         faults.add(at.member("fields"), "`displacement` is not computed for motion in the plane: ask for `slip`");
     }

@@ -61,75 +61,46 @@ impl Stress {
     }
 }
 
-/// A checked stress request.
-#[derive(Clone, Debug)]
-pub struct Sampling {
-    /// The radii.
-    pub points: Points,
-    /// The fields.
-    pub fields: Vec<Field>,
-}
-
-/// The radii of a checked stress request.
-#[derive(Clone, Debug)]
-pub enum Points {
-    /// This many, evenly spaced from the centre to the edge.
-    Uniform(usize),
-    /// A list, m.
-    Radii(Vec<f64>),
-    /// A list along x, m, of a line contact.
-    Places(Vec<f64>),
-}
-
 impl StressRequest {
-    /// The checked request; its faults are noted at `at`.
-    pub fn check(self, at: JsonPath<'_>, faults: &mut Faults) -> Option<Sampling> {
+    /// Checks the request, whose faults are noted at `at`.
+    pub fn check(self, at: JsonPath<'_>, faults: &mut Faults) -> Option<StressRequest> {
         self.check_limits(at, faults);
-        self.sampling(at, faults)
+        self.checked(at, faults)
     }
 
     /// The same beside the limits of its members.
-    pub(crate) fn sampling(self, at: JsonPath<'_>, faults: &mut Faults) -> Option<Sampling> {
+    pub(crate) fn checked(self, at: JsonPath<'_>, faults: &mut Faults) -> Option<StressRequest> {
         faults.none_within(at)?;
         if self.fields.as_ref().is_some_and(Vec::is_empty) {
             let all = Field::ALL.map(Field::name).join("`, `");
             return faults.refuse(at.member("fields"), format_args!("empty: name at least one of `{all}`"));
         }
-        let points = match (self.points, &self.radii, &self.x) {
-            (Some(count), None, None) => Points::Uniform(count),
-            (None, Some(radii), None) => Points::Radii(radii.clone()),
-            (None, None, Some(places)) => Points::Places(places.clone()),
-            (None, None, None) => {
-                return faults.refuse(at, "give one of `points` and `radii`, or `x` of a line contact");
-            }
-            (Some(_), Some(_), _) => return faults.refuse(at, "`points` conflicts with `radii`: give one of them"),
-            (.., Some(_)) => {
-                return faults.refuse(at.member("x"), "it conflicts with `points` and `radii`: give one of them");
-            }
-        };
-        Some(Sampling { points, fields: self.fields.unwrap_or_else(|| vec![Field::Pressure, Field::Shear]) })
-    }
-}
-
-impl Sampling {
-    /// How many radii there are.
-    pub fn length(&self) -> usize {
-        match &self.points {
-            Points::Uniform(count) => *count,
-            Points::Radii(places) | Points::Places(places) => places.len(),
+        match (self.points.is_some(), self.radii.is_some(), self.x.is_some()) {
+            (true, false, false) | (false, true, false) | (false, false, true) => Some(self),
+            (false, false, false) => faults.refuse(at, "give one of `points` and `radii`, or `x` of a line contact"),
+            (true, true, _) => faults.refuse(at, "`points` conflicts with `radii`: give one of them"),
+            (.., true) => faults.refuse(at.member("x"), "it conflicts with `points` and `radii`: give one of them"),
         }
+    }
+
+    /// Whether a field is asked for.
+    pub fn wants(&self, field: Field) -> bool {
+        self.fields.as_deref().unwrap_or(&[Field::Pressure, Field::Shear]).contains(&field)
+    }
+
+    /// How many places there are.
+    pub fn length(&self) -> usize {
+        self.points.unwrap_or_else(|| self.radii.as_ref().or(self.x.as_ref()).map_or(0, Vec::len))
     }
 
     /// The places, m, in a contact of this radius or half-width, m: radii or, of a line contact, x from edge to edge.
     pub fn places(&self, line: bool, size: f64) -> Vec<f64> {
-        match &self.points {
-            Points::Uniform(count) => {
-                let last = count.saturating_sub(1) as f64;
-                // Quotients: the last point is the edge itself, and those of a line are mirror images of each other.
-                let share = |index: f64| if line { (2.0 * index - last) / last } else { index / last };
-                (0..*count).map(|index| size * share(index as f64)).collect()
-            }
-            Points::Radii(places) | Points::Places(places) => places.clone(),
-        }
+        let Some(count) = self.points else {
+            return self.radii.as_ref().or(self.x.as_ref()).cloned().unwrap_or_default();
+        };
+        let last = count.saturating_sub(1) as f64;
+        // Quotients: the last point is the edge itself, and those of a line are mirror images of each other.
+        let share = |index: f64| if line { (2.0 * index - last) / last } else { index / last };
+        (0..count).map(|index| size * share(index as f64)).collect()
     }
 }

@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 
 use stickslip_mechanics as mechanics;
 use stickslip_mechanics::{ErrorEstimate, Tangential, rings};
-use stickslip_wire::{AccuracyReply, AccuracyRequest, AccuracyRow, Comparison, Points, Reference, Solver as Named};
+use stickslip_wire::{AccuracyReply, AccuracyRequest, AccuracyRow, Comparison, Reference, Solver as Named};
 
 use super::accuracy_in_plane as in_plane;
 use crate::computations::prelude::*;
@@ -45,7 +45,7 @@ struct Answer {
 struct Task<'a> {
     comparison: &'a Comparison,
     protocol: Option<&'a Protocol>,
-    sampling: &'a Sampling,
+    sampling: &'a StressRequest,
     stop: &'a dyn Stop,
 }
 
@@ -168,7 +168,8 @@ pub fn compare_solvers(comparison: &Comparison, stop: &dyn Stop) -> Result<Accur
     };
     let (truth, forces, unit) = followed?;
     let radii = comparison.sampling.places(false, truth.contact_radius());
-    let sampling = Sampling { points: Points::Radii(radii), fields: vec![Field::Shear] };
+    let fields = Some(vec![Field::Shear]);
+    let sampling = StressRequest { radii: Some(radii), fields, ..StressRequest::default() };
     let shears = stresses(&truth, &sampling, stop)?.shear.unwrap_or_default();
     let pressure = truth.summary().unit_pressure();
     let pressure = if pressure.is_finite() { pressure } else { 0.0 };

@@ -11,7 +11,7 @@ const ASSUMED_PEAKS: usize = 1_000;
 /// The extrema of which contact.
 pub struct ResidualTask {
     /// Where a plot has the shear stress between the extrema.
-    pub between: Option<Sampling>,
+    pub between: Option<StressRequest>,
 }
 
 /// The extrema, and the shear stress between them if it is drawn.
@@ -25,7 +25,7 @@ impl OnContact for ResidualTask {
     type Outcome = Extrema;
 
     fn bytes(&self) -> usize {
-        bytes::of_stress(ASSUMED_PEAKS + self.between.as_ref().map_or(0, Sampling::length))
+        bytes::of_stress(ASSUMED_PEAKS + self.between.as_ref().map_or(0, StressRequest::length))
     }
 
     fn rows(&self) -> (usize, usize) {
@@ -33,7 +33,7 @@ impl OnContact for ResidualTask {
     }
 
     fn cost(&self, profile: &Profile, depth: usize) -> Nanoseconds {
-        let radii = self.between.as_ref().map_or(0, Sampling::length);
+        let radii = self.between.as_ref().map_or(0, StressRequest::length);
         Work { depth, radii, residual: true, ..Work::default() }.cost(profile)
     }
 

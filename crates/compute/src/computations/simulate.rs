@@ -98,7 +98,7 @@ impl Computation for Simulate {
     }
 
     fn rows(task: &Simulation) -> (usize, usize) {
-        let radii = task.stress.as_ref().map_or(0, Sampling::length);
+        let radii = task.stress.as_ref().map_or(0, StressRequest::length);
         ((2 * task.plan.length()).max(radii), OBJECT)
     }
 

@@ -9,7 +9,7 @@ use crate::computations::prelude::*;
 /// Which stresses of which contact.
 pub struct StressTask {
     /// Where, and which fields.
-    pub sampling: Sampling,
+    pub sampling: StressRequest,
     /// Whether the extrema of the shear stress are asked for.
     pub residual: bool,
 }

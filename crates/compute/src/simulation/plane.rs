@@ -200,10 +200,10 @@ fn turn_losses(plane: &PlanarPlan, dissipated: impl Iterator<Item = f64>) -> Opt
     Some(at_ends.windows(2).map(|ends| ends[1] - ends[0]).collect())
 }
 
-fn stresses(solution: &Solution, sampling: &Sampling, stop: &dyn Stop) -> Result<PlanarStress, Failure> {
+fn stresses(solution: &Solution, sampling: &StressRequest, stop: &dyn Stop) -> Result<PlanarStress, Failure> {
     let pressed = solution.pressed();
     let radius = sampling.places(false, if pressed.indentation() > 0.0 { pressed.contact_radius() } else { 0.0 });
-    let asked = |field: Field| sampling.fields.contains(&field);
+    let asked = |field: Field| sampling.wants(field);
     let mut stress = PlanarStress::default();
     for radii in radius.chunks(RADII_PER_CHECK) {
         stop.check()?;

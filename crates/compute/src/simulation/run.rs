@@ -5,7 +5,6 @@ use std::time::Duration;
 use stickslip_mechanics as mechanics;
 use stickslip_mechanics::range::Quantity;
 use stickslip_mechanics::{Preload, Springs, protocol, springs};
-use stickslip_wire::Points;
 
 use super::stress_below::subsurface;
 use super::warnings::{FarMove, bulk_warning, stress_warning, warnings_at};
@@ -249,13 +248,13 @@ const RADII_PER_CHECK: usize = 512;
 ///
 /// # Errors
 /// [`Cause::Refused`] without a stress field, [`Cause::Interrupted`] if the client hung up.
-pub fn stresses<S: Solver>(solver: &S, sampling: &Sampling, stop: &dyn Stop) -> Result<Stress, Failure> {
+pub fn stresses<S: Solver>(solver: &S, sampling: &StressRequest, stop: &dyn Stop) -> Result<Stress, Failure> {
     needs_stress_field(solver.exact(), "/stress")?;
     let (places, line) = sampled(solver.exact(), sampling, solver.state().contact_radius, "/stress")?;
     let (terms, least) = solver.terms();
     let at_once = (TERMS_PER_CHECK / terms.max(1)).clamp(least, RADII_PER_CHECK);
     let along = |field: Field| -> Result<Option<Vec<Option<f64>>>, Failure> {
-        if !sampling.fields.contains(&field) {
+        if !sampling.wants(field) {
             return Ok(None);
         }
         let mut all = Vec::with_capacity(places.len());
@@ -277,16 +276,19 @@ pub fn stresses<S: Solver>(solver: &S, sampling: &Sampling, stop: &dyn Stop) -> 
 /// [`Cause::Refused`] for radii of a line contact, and x of a round one, at the member of `pointer`.
 pub fn sampled(
     contact: &Contact,
-    sampling: &Sampling,
+    sampling: &StressRequest,
     contact_radius: f64,
     pointer: &str,
 ) -> Result<(Vec<f64>, bool), Failure> {
     let refused = |member: &str, error| Err(Failure::at(format!("{pointer}/{member}"), error));
-    match (&sampling.points, contact.profile().line().is_some()) {
-        (Points::Radii(_), true) => refused("radii", mechanics::Error::LineContact("`radii`")),
-        (Points::Places(_), false) => refused("x", mechanics::Error::RoundContact("`x`")),
-        (_, line) => Ok((sampling.places(line, contact_radius), line)),
+    let line = contact.profile().line().is_some();
+    if line && sampling.radii.is_some() {
+        return refused("radii", mechanics::Error::LineContact("`radii`"));
     }
+    if !line && sampling.x.is_some() {
+        return refused("x", mechanics::Error::RoundContact("`x`"));
+    }
+    Ok((sampling.places(line, contact_radius), line))
 }
 
 /// Refuses a search for extrema that cannot end in time.

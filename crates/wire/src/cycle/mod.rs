@@ -148,7 +148,7 @@ pub struct CycleTask {
     /// The number of harmonics; zero if none are asked for.
     pub harmonics: usize,
     /// Where the friction work per area is asked for.
-    pub density: Option<Sampling>,
+    pub density: Option<StressRequest>,
     /// A load that oscillates, with the tolerance.
     pub normal: Option<(OscillatingLoad, f64)>,
     /// A mass on the contact, with the tolerance.
@@ -190,10 +190,10 @@ impl CycleTask {
         let density = match density {
             None => None,
             Some(WorkDensity { points, radii, x }) => {
-                Some(StressRequest { points, radii, x, fields: None }.sampling(at, faults)?)
+                Some(StressRequest { points, radii, x, fields: None }.checked(at, faults)?)
             }
         };
-        let (count, radii) = (drive.amplitudes().all().len(), density.as_ref().map_or(0, Sampling::length));
+        let (count, radii) = (drive.amplitudes().all().len(), density.as_ref().map_or(0, StressRequest::length));
         if count.saturating_mul(radii) > CYCLE_RADII {
             let detail =
                 format_args!("{radii} radii at each of {count} amplitudes: allowed are {CYCLE_RADII} radii in all");
@@ -243,7 +243,7 @@ impl CycleTask {
 
     /// How many radii there are for each cycle.
     pub fn radii(&self) -> usize {
-        self.density.as_ref().map_or(0, Sampling::length)
+        self.density.as_ref().map_or(0, StressRequest::length)
     }
 }
 

@@ -2,8 +2,6 @@
 
 use std::collections::BTreeMap;
 
-use serde_with::apply;
-
 use super::FitParameter;
 use crate::prelude::*;
 
@@ -27,12 +25,9 @@ pub struct FitReply {
     /// Warnings about the fit.
     pub warnings: Vec<Warning>,
 }
-}
 
 /// A quantity as the loops determine it, in its SI unit.
-#[apply(bool => #[serde(default, skip_serializing_if = "std::ops::Not::not")])]
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-pub struct FitEstimate {
+pub struct FitEstimate: Copy {
     /// The value of the best fit, in the SI unit of the quantity.
     pub value: f64,
     /// Its standard error from the linearised fit, in the SI unit of the quantity; `null` where it is not determined.
@@ -41,10 +36,10 @@ pub struct FitEstimate {
     /// end without a bound.
     pub interval: [Option<f64>; 2],
     /// Whether the value is at the end of its range; left out if not.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub at_bound: bool,
 }
 
-replies! {
 /// Measured less fitted forces, in a few numbers.
 pub struct FitResidual: Copy {
     /// Root mean square without outliers, N.

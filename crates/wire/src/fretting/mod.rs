@@ -13,7 +13,7 @@ use crate::definition::of_body;
 use crate::limits::{FRETTING_MOVES, SUBSURFACE_POINTS};
 use crate::path::PHASE;
 use crate::prelude::*;
-use crate::subsurface::{Places, SubsurfaceLine, SubsurfacePlane, SubsurfaceRequest, SubsurfaceSurface};
+use crate::subsurface::{Places, SubsurfaceLine, SubsurfacePlane, SubsurfaceSurface, poisson_ratio};
 
 /// Error of a criterion that is accepted if the request does not say, at given places and in a search.
 const DEFAULT_TOLERANCE: f64 = 1e-4;
@@ -235,30 +235,23 @@ impl Document for FrettingRequest {
             let [mean, amplitude, phase] = [bulk.mean, bulk.amplitude, bulk.phase].map(|part| part.unwrap_or(0.0));
             fatigue::Bulk { mean, amplitude, phase: phase.to_radians() }
         });
-        let places = SubsurfaceRequest {
-            body: self.body,
-            poisson_ratio: self.poisson_ratio,
-            // Any place: a search has none.
-            points: if searches { Some(vec![[0.0; 3]]) } else { self.points },
-            line: self.line,
-            plane: self.plane,
-            surface: self.surface,
-            fields: None,
-            bulk: None,
+        let places = if searches {
+            Some(Places::Points(Vec::new()))
+        } else {
+            Places::of(self.points, self.line, self.plane, self.surface, JsonPath::Root, faults)
         };
-        let mut asked = places.at(&self.contact, JsonPath::Root, faults);
-        if let Some(asked) = asked.as_mut().filter(|_| searches) {
-            asked.places = Places::Points(Vec::new());
-        }
+        let poisson = poisson_ratio(self.body, self.poisson_ratio, &self.contact, JsonPath::Root, faults);
         let youngs_modulus = self.contact.material.youngs_modulus(self.body);
-        let poisson = asked.as_ref().map_or(0.0, |asked| asked.poisson_ratio);
-        let measures = self.criteria.check((youngs_modulus, poisson), at("criteria"), faults);
+        let constants = (youngs_modulus, poisson.unwrap_or(0.0));
+        let measures = self.criteria.check(constants, at("criteria"), faults);
         let stress_paths = self.stress_paths.unwrap_or_default();
-        if let Some(asked) = &asked {
-            self.criteria.check_surface(&asked.places, at("criteria"), faults);
+        if let Some(places) = &places {
+            if (0..places.count()).any(|index| places.at(index)[2] != 0.0) {
+                self.criteria.refuse_below("ask for places with z = 0, or leave this out", at("criteria"), faults);
+            }
             if self.critical_distance.is_some() {
-                self.criteria.check_depth(at("criteria"), faults);
-                if !searches && (0..asked.places.count()).all(|index| asked.places.at(index)[2] > 0.0) {
+                self.criteria.refuse_below("leave this or `critical_distance` out", at("criteria"), faults);
+                if !searches && (0..places.count()).all(|index| places.at(index)[2] > 0.0) {
                     let detail = "starts from the surface: ask for a place with z = 0, or for no places, to search";
                     faults.add(at("critical_distance"), detail);
                 }
@@ -267,17 +260,17 @@ impl Document for FrettingRequest {
                 if searches {
                     let detail = "a search has no list of places: give one, or leave `stress_paths` out";
                     faults.add(at("stress_paths").index(index), detail);
-                } else if *place >= asked.places.count() {
-                    let most = asked.places.count().saturating_sub(1);
+                } else if *place >= places.count() {
+                    let most = places.count().saturating_sub(1);
                     let detail = format_args!("place {place} is not in the list: the last is {most}");
                     faults.add(at("stress_paths").index(index), detail);
                 }
             }
         }
-        let task = plan.zip(asked).map(|(plan, asked)| FrettingTask {
+        let task = plan.zip(places).zip(poisson).map(|((plan, places), poisson)| FrettingTask {
             plan,
-            body: (asked.side, asked.poisson_ratio),
-            places: asked.places,
+            body: (self.body.into(), poisson),
+            places,
             bulk,
             measures,
             critical_distance: self.critical_distance.map(|CriticalDistance { length, method }| match method {
@@ -340,26 +333,11 @@ impl Criteria {
         ]
     }
 
-    /// Those of the surface alone, by name.
-    fn of_surface(&self) -> impl Iterator<Item = &'static str> {
-        let asked = [("ruiz", self.ruiz.is_some()), ("friction_work", self.friction_work.is_some())];
-        asked.into_iter().filter_map(|(name, asked)| asked.then_some(name))
-    }
-
-    /// Notes the criteria of the surface that are asked for at a critical distance.
-    fn check_depth(&self, at: JsonPath<'_>, faults: &mut Faults) {
-        for name in self.of_surface() {
-            faults.add(at.member(name), "is defined on the surface only: leave this or `critical_distance` out");
-        }
-    }
-
     /// Notes the criteria of the surface that are asked for below it.
-    fn check_surface(&self, places: &Places, at: JsonPath<'_>, faults: &mut Faults) {
-        if (0..places.count()).all(|index| places.at(index)[2] == 0.0) {
-            return;
-        }
-        for name in self.of_surface() {
-            faults.add(at.member(name), "is defined on the surface only: ask for places with z = 0, or leave this out");
+    fn refuse_below(&self, advice: &str, at: JsonPath<'_>, faults: &mut Faults) {
+        let of_surface = [("ruiz", self.ruiz.is_some()), ("friction_work", self.friction_work.is_some())];
+        for (name, _) in of_surface.into_iter().filter(|(_, asked)| *asked) {
+            faults.add(at.member(name), format_args!("is defined on the surface only: {advice}"));
         }
     }
 }

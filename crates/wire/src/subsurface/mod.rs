@@ -8,6 +8,7 @@ use stickslip_mechanics as mechanics;
 use stickslip_mechanics::subsurface::Side;
 
 use crate::definition::{Body, of_body};
+use crate::document::checked_alone;
 use crate::limits::SUBSURFACE_POINTS;
 use crate::prelude::*;
 
@@ -192,14 +193,8 @@ impl SubsurfaceTask {
     }
 }
 
-impl Document for SubsurfaceRequest {
-    /// What can only be checked against a contact is checked by [`SubsurfaceRequest::of_contact`].
-    type Checked = SubsurfaceRequest;
-
-    fn checked(self, _: &dyn Prepare, _: &mut Faults) -> Option<Self::Checked> {
-        Some(self)
-    }
-}
+// What can only be checked against a contact is checked by [`SubsurfaceRequest::of_contact`].
+checked_alone!(SubsurfaceRequest);
 
 impl SubsurfaceRequest {
     /// The checked request for a contact of this definition.
@@ -216,44 +211,38 @@ impl SubsurfaceRequest {
     /// The checked request for a contact of this definition; its faults beside the limits of its members are noted at
     /// `at`.
     pub fn at(self, contact: &ContactDefinition, at: JsonPath<'_>, faults: &mut Faults) -> Option<SubsurfaceTask> {
-        let poisson_ratio = self.poisson(contact, at, faults);
+        let poisson_ratio = poisson_ratio(self.body, self.poisson_ratio, contact, at, faults);
         let fields = self.fields.unwrap_or_else(|| vec![SubsurfaceField::Tensor]);
         if fields.is_empty() {
             let names = "name at least one of `tensor`, `principal`, `von_mises`, `max_shear`, `hydrostatic`";
             faults.add(at.member("fields"), format_args!("empty: {names}"));
         }
         let bulk = self.bulk.map(|bulk| bulk.stress());
-        let given = [self.points.is_some(), self.line.is_some(), self.plane.is_some(), self.surface.is_some()];
-        let places = match (self.points, self.line, self.plane, self.surface) {
-            (Some(points), None, None, None) => Some(Places::points(points, at.member("points"), faults)),
-            (None, Some(line), None, None) => Some(Places::line(line, at.member("line"), faults)),
-            (None, None, Some(plane), None) => Places::plane(&plane, at.member("plane"), faults),
-            (None, None, None, Some(surface)) => Places::surface(&surface, at.member("surface"), faults),
-            _ => {
-                let many = given.into_iter().filter(|given| *given).count() > 1;
-                let detail = if many { "more than one place: give" } else { "give" };
-                faults.refuse(at, format_args!("{detail} one of `points`, `line`, `plane` and `surface`"))
-            }
-        };
+        let places = Places::of(self.points, self.line, self.plane, self.surface, at, faults);
         Some(SubsurfaceTask { side: self.body.into(), poisson_ratio: poisson_ratio?, places: places?, fields, bulk })
     }
+}
 
-    /// Poisson's ratio of the body, from the material or from the request.
-    fn poisson(&self, contact: &ContactDefinition, at: JsonPath<'_>, faults: &mut Faults) -> Option<f64> {
-        let index = usize::from(self.body == BodyName::Second);
-        let known = match contact.material.bodies() {
-            None => None,
-            Some(bodies) => match bodies.get(index)? {
-                Body::Rigid(_) => {
-                    let detail = "the stress in a rigid body is not known: ask for the other body";
-                    return faults.refuse(at.member("body"), detail);
-                }
-                Body::Elastic(body) => Some(body.poisson_ratio),
-            },
-        };
-        let missing = "give the body's `poisson_ratio`: reduced moduli do not determine it";
-        of_body(known, self.poisson_ratio, missing, at.member("poisson_ratio"), faults)
-    }
+/// Poisson's ratio of a body, from the material or from the request.
+pub(crate) fn poisson_ratio(
+    body: BodyName,
+    given: Option<f64>,
+    contact: &ContactDefinition,
+    at: JsonPath<'_>,
+    faults: &mut Faults,
+) -> Option<f64> {
+    let known = match contact.material.bodies() {
+        None => None,
+        Some(bodies) => match bodies.get(usize::from(body == BodyName::Second))? {
+            Body::Rigid(_) => {
+                return faults
+                    .refuse(at.member("body"), "the stress in a rigid body is not known: ask for the other body");
+            }
+            Body::Elastic(body) => Some(body.poisson_ratio),
+        },
+    };
+    let missing = "give the body's `poisson_ratio`: reduced moduli do not determine it";
+    of_body(known, given, missing, at.member("poisson_ratio"), faults)
 }
 
 impl Bulk {

@@ -102,15 +102,35 @@ impl Steps {
 }
 
 impl Places {
+    /// The places that are given in one of these ways, of the object at `at`.
+    pub(crate) fn of(
+        points: Option<Vec<[f64; 3]>>,
+        line: Option<SubsurfaceLine>,
+        plane: Option<SubsurfacePlane>,
+        surface: Option<SubsurfaceSurface>,
+        at: JsonPath<'_>,
+        faults: &mut Faults,
+    ) -> Option<Places> {
+        const WAYS: &str = "one of `points`, `line`, `plane` and `surface`";
+        match (points, line, plane, surface) {
+            (Some(points), None, None, None) => Some(Places::points(points, at.member("points"), faults)),
+            (None, Some(line), None, None) => Some(Places::line(line, at.member("line"), faults)),
+            (None, None, Some(plane), None) => Places::plane(&plane, at.member("plane"), faults),
+            (None, None, None, Some(surface)) => Places::surface(&surface, at.member("surface"), faults),
+            (None, None, None, None) => faults.refuse(at, format_args!("give {WAYS}")),
+            _ => faults.refuse(at, format_args!("more than one place: give {WAYS}")),
+        }
+    }
+
     /// A list of points, whose coordinates have been checked but for the depths.
-    pub(super) fn points(points: Vec<[f64; 3]>, at: JsonPath<'_>, faults: &mut Faults) -> Places {
+    fn points(points: Vec<[f64; 3]>, at: JsonPath<'_>, faults: &mut Faults) -> Places {
         for (index, point) in points.iter().enumerate() {
             check_depth(point[2], at.index(index).index(2), faults);
         }
         Places::Points(points)
     }
 
-    pub(super) fn line(line: SubsurfaceLine, at: JsonPath<'_>, faults: &mut Faults) -> Places {
+    fn line(line: SubsurfaceLine, at: JsonPath<'_>, faults: &mut Faults) -> Places {
         check_depth(line.from[2], at.member("from").index(2), faults);
         check_depth(line.to[2], at.member("to").index(2), faults);
         if line.from.iter().zip(&line.to).all(|(from, to)| from.to_bits() == to.to_bits()) {
@@ -119,7 +139,7 @@ impl Places {
         Places::Line(line)
     }
 
-    pub(super) fn plane(plane: &SubsurfacePlane, at: JsonPath<'_>, faults: &mut Faults) -> Option<Places> {
+    fn plane(plane: &SubsurfacePlane, at: JsonPath<'_>, faults: &mut Faults) -> Option<Places> {
         match plane.z {
             Some([from, ..]) => check_depth(from, at.member("z").index(0), faults),
             None if plane.normal == Direction::Z => check_depth(plane.offset, at.member("offset"), faults),
@@ -138,7 +158,7 @@ impl Places {
         Places::grid([x?, y?, z?], at, faults)
     }
 
-    pub(super) fn surface(surface: &SubsurfaceSurface, at: JsonPath<'_>, faults: &mut Faults) -> Option<Places> {
+    fn surface(surface: &SubsurfaceSurface, at: JsonPath<'_>, faults: &mut Faults) -> Option<Places> {
         let x = Steps::read(surface.x, at.member("x"), faults);
         let y = Steps::read(surface.y, at.member("y"), faults);
         Places::grid([x?, y?, Steps::single(0.0)], at, faults)

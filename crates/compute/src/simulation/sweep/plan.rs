@@ -8,9 +8,7 @@ use stickslip_wire::check::{Faults, JsonPath};
 use stickslip_wire::json_value::{Pointer, index};
 use stickslip_wire::pointer_lookup::{Lookup, lookup};
 use stickslip_wire::sweep::CheckedSweep;
-use stickslip_wire::{
-    ContactSummary, Peak, PlanarPlan, PlanarReply, PlanarState, PlanarStress, PrepareOnce, parse_value,
-};
+use stickslip_wire::{Peak, PlanarPlan, PlanarReply, PlanarState, PlanarStress, PrepareOnce, parse_value};
 
 /// What planning takes besides profiles: a thread of the solver, however small the sweep is.
 const PLANNING_COST: Nanoseconds = 100_000;
@@ -151,22 +149,19 @@ fn reply_template(simulation: &Simulation) -> SimulationReply {
     let state = State { stick_centre, ..State::default() };
     let protocol = || Protocol { displacement: vec![0.0; moves], cutoff_radius: 0.0 };
     SimulationReply::Line(SimulateReply {
-        contact: ContactSummary::default(),
         steps: vec![state; if simulation.steps == Steps::All { moves } else { 1 }],
         stress: simulation.stress.as_ref().map(|sampling| stress_template(sampling, line.is_some())),
         residual: simulation.residual.then(residual),
-        // No output of a sweep.
-        subsurface: None,
         protocol: matches!(simulation.plan, Plan::EqualPeaks(_)).then(protocol),
-        accuracy: Accuracy::default(),
-        warnings: Vec::new(),
+        // The stress below the surface is no output of a sweep.
+        ..SimulateReply::default()
     })
 }
 
 fn planar_template(simulation: &Simulation, plane: &PlanarPlan, moves: usize) -> PlanarReply {
-    let stress = |sampling: &Sampling| {
+    let stress = |sampling: &StressRequest| {
         let length = sampling.length();
-        let column = |field: Field| sampling.fields.contains(&field).then(|| vec![None; length]);
+        let column = |field: Field| sampling.wants(field).then(|| vec![None; length]);
         PlanarStress {
             radius: vec![0.0; length],
             pressure: column(Field::Pressure),
@@ -179,7 +174,6 @@ fn planar_template(simulation: &Simulation, plane: &PlanarPlan, moves: usize) ->
     };
     let (by_rings, turn) = (plane.line.is_none(), plane.steps_per_turn());
     PlanarReply {
-        contact: ContactSummary::default(),
         steps: vec![PlanarState::default(); if simulation.steps == Steps::All { moves } else { 1 }],
         stress: simulation.stress.as_ref().map(stress),
         turn_losses: turn.map(|turn| vec![0.0; moves / turn]),
@@ -189,13 +183,13 @@ fn planar_template(simulation: &Simulation, plane: &PlanarPlan, moves: usize) ->
             steps: by_rings.then_some(0),
             ..Accuracy::default()
         },
-        warnings: Vec::new(),
+        ..PlanarReply::default()
     }
 }
 
-fn stress_template(sampling: &Sampling, line: bool) -> Stress {
+fn stress_template(sampling: &StressRequest, line: bool) -> Stress {
     let length = sampling.length();
-    let column = |field: Field| sampling.fields.contains(&field).then(|| vec![None; length]);
+    let column = |field: Field| sampling.wants(field).then(|| vec![None; length]);
     Stress {
         radius: (!line).then(|| vec![0.0; length]),
         x: line.then(|| vec![0.0; length]),
