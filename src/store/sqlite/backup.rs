@@ -25,7 +25,7 @@ pub(super) fn open_read_only(path: &Path) -> Result<Connection, String> {
         check_mark(IN_USE, path, false)?;
     }
     let describe = |error: rusqlite::Error| error.to_string();
-    let database = open_reader(path).map_err(describe)?;
+    let database = open_reader(path, false).map_err(describe)?;
     let application: i32 = database.pragma_query_value(None, "application_id", |row| row.get(0)).map_err(describe)?;
     check_mark(application, path, true)?;
     schema::check(&database).map_err(|error| error.to_string())?;

@@ -5,10 +5,13 @@ use std::sync::{Arc, LazyLock};
 use hashlink::LruCache;
 use jiff::Timestamp;
 use rusqlite::{Connection, params};
+use tokio::sync::oneshot;
 use uuid::Uuid;
 
 use crate::store::rows::{RowReader as _, tenant};
-use crate::store::{EXPIRED_LIFETIME, LabelChange, RECEIPT_LIFETIME, Receipt, Record, Session, Snapshot, StoreError};
+use crate::store::{
+    self, EXPIRED_LIFETIME, LabelChange, RECEIPT_LIFETIME, Receipt, Record, Session, Snapshot, StoreError,
+};
 
 use super::columns::{
     CONTACTS, MOVE_COLUMNS, all, clamped_nanoseconds, execute, first, insert_move, nanoseconds_ago, to_integer,
@@ -41,6 +44,10 @@ pub(super) type SequenceCache = LruCache<Uuid, (i64, u64)>;
 /// Makes a change within the transaction under way.
 type Apply = dyn Fn(&mut Transaction<'_>) -> Result<Done, Fault> + Send;
 
+/// The channel for the outcome of a change.
+pub(super) type Reply = oneshot::Sender<store::Result<u64>>;
+
+/// A change whose caller waits.
 pub(super) struct Change {
     /// Makes it; called again if its transaction fails.
     pub(super) apply: Box<Apply>,
@@ -49,6 +56,7 @@ pub(super) struct Change {
     pub(super) touched: Vec<Uuid>,
     /// Kept with it.
     pub(super) receipt: Option<Receipt>,
+    pub(super) reply: Reply,
 }
 
 impl Change {

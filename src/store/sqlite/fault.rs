@@ -15,6 +15,16 @@ pub(super) enum Fault {
     Sqlite(#[from] Error),
 }
 
+impl Fault {
+    /// The error of a read, or of a change that has been rolled back.
+    pub(super) fn into_store_error(self) -> StoreError {
+        match self {
+            Fault::Refused(error) => error,
+            Fault::Sqlite(error) => store_error(&error, Stage::Before),
+        }
+    }
+}
+
 /// When a failure occurred.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Stage {

@@ -15,7 +15,7 @@ use crate::store::schema::SchemaError;
 
 use super::fault::is_full;
 use super::open_files::OpenFiles;
-use super::readers::{Readers, open_immutable, open_reader};
+use super::readers::{Readers, open_reader};
 use super::schema::{self, APPLICATION, IN_USE, MIGRATIONS};
 use super::{BUSY, wal_check};
 
@@ -105,8 +105,7 @@ fn open_full(path: &Path, lock: Arc<File>) -> Result<Readers, String> {
     // Without changes in a log the file is all there is; else its shared memory is there too.
     let immutable = length_at(&beside(path, "-wal")) == 0;
     let describe = |error: &dyn std::fmt::Display| error.to_string();
-    let database =
-        if immutable { open_immutable(path) } else { open_reader(path) }.map_err(|error| describe(&error))?;
+    let database = open_reader(path, immutable).map_err(|error| describe(&error))?;
     schema::check(&database).map_err(|error| describe(&error))?;
     let files = Arc::new(OpenFiles::at([path]).map_err(|error| describe(&error))?);
     Ok(Readers::new(path.to_owned(), files, Some(lock), immutable))

@@ -48,7 +48,7 @@ use memory::InMemory;
 use open_files::OpenFiles;
 use readers::Readers;
 use stickslip_wire::SessionSummary;
-use writer::{Request, Writer};
+use writer::Writer;
 
 /// Requests that may wait for the writer; further ones wait for a place.
 const QUEUE: usize = 1_024;
@@ -63,7 +63,7 @@ const EXPIRE_AT_ONCE: usize = 200;
 pub struct SqliteStore {
     place: Place,
     /// The thread that writes to the file, if one may; it ends without senders.
-    writer: Option<(mpsc::Sender<Request>, JoinHandle<()>)>,
+    writer: Option<(mpsc::Sender<Change>, JoinHandle<()>)>,
     changes: Arc<Changes>,
     commits: Arc<Commits>,
     /// The chunks that are worked on: none of them outlives the process.
@@ -172,8 +172,7 @@ impl SqliteStore {
     ) -> Result<u64> {
         let _pending = Counted::by(&self.commits.pending);
         let (reply, outcome) = oneshot::channel();
-        let change = Change { apply: Box::new(apply), weight, touched: touched.into(), receipt };
-        let request = Request { change, reply };
+        let request = Change { apply: Box::new(apply), weight, touched: touched.into(), receipt, reply };
         match (&self.place, &self.writer) {
             (Place::Memory(database), _) => database.change(request).await,
             // A request that is not sent is dropped, and has no outcome.
@@ -295,7 +294,7 @@ impl Store for SqliteStore {
         while self.change(1, [], None, |transaction| transaction.purge_records()).await? > 0 {}
         self.purge_jobs().await?;
         if let Place::Memory(_) = self.place {
-            self.change(usize::MAX, [], None, |transaction| memory::forget(transaction)).await?;
+            self.change(usize::MAX, [], None, memory::forget).await?;
         }
         let Some(since) = idle_since else { return Ok(0) };
         let (mut expired, mut next) = (0, Some(0));

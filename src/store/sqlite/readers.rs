@@ -14,7 +14,7 @@ use tokio::task::spawn_blocking;
 
 use crate::store::{Result, StoreError};
 
-use super::fault::{Fault, Stage, is_locked, store_error};
+use super::fault::{Fault, is_locked};
 use super::open_files::OpenFiles;
 use super::{BUSY, STILL_BUSY};
 
@@ -82,16 +82,12 @@ impl Readers {
                 connection.unchecked_transaction().map_err(Fault::from).and_then(|transaction| question(&transaction));
             let locked = matches!(&found, Err(Fault::Sqlite(error)) if is_locked(error));
             idle.locked.store(locked, Ordering::Relaxed);
-            idle.put(connection);
+            idle.connections.lock().push(connection);
             drop(permit);
             found
         });
-        match task.await {
-            Ok(Ok(found)) => Ok(found),
-            Ok(Err(Fault::Refused(error))) => Err(error),
-            Ok(Err(Fault::Sqlite(error))) => Err(store_error(&error, Stage::Before)),
-            Err(_) => Err(StoreError::Failed("a read of the database panicked".to_owned())),
-        }
+        let found = task.await.map_err(|_| StoreError::Failed("a read of the database panicked".to_owned()))?;
+        found.map_err(Fault::into_store_error)
     }
 
     /// The same for a query that may read much. It ends when its request is dropped.
@@ -117,36 +113,20 @@ impl Readers {
 impl Idle {
     fn take(&self) -> rusqlite::Result<Connection> {
         let pooled = self.connections.lock().pop();
-        let connection = match pooled {
-            Some(connection) => connection,
-            None => {
-                let connection = if self.immutable { open_immutable(&self.path)? } else { open_reader(&self.path)? };
-                connection.set_prepared_statement_cache_capacity(STATEMENTS);
-                connection
-            }
-        };
+        let connection = pooled.map_or_else(|| open_reader(&self.path, self.immutable), Ok)?;
         connection.busy_timeout(if self.locked.load(Ordering::Relaxed) { STILL_BUSY } else { BUSY })?;
         Ok(connection)
     }
-
-    fn put(&self, connection: Connection) {
-        self.connections.lock().push(connection);
-    }
 }
 
-/// A connection that can only read.
-pub(super) fn open_reader(path: &Path) -> rusqlite::Result<Connection> {
-    let connection =
-        Connection::open_with_flags(path, OpenFlags::SQLITE_OPEN_READ_ONLY | OpenFlags::SQLITE_OPEN_NO_MUTEX)?;
-    connection.busy_timeout(BUSY)?;
-    Ok(connection)
-}
-
-/// The same for a file that nobody writes to: SQLite makes no files beside it.
-pub(super) fn open_immutable(path: &Path) -> rusqlite::Result<Connection> {
+/// A connection that can only read; for a file that nobody writes to (`immutable`), SQLite makes no files beside it.
+pub(super) fn open_reader(path: &Path, immutable: bool) -> rusqlite::Result<Connection> {
     let name = percent_encode(path.as_os_str().as_bytes(), NON_ALPHANUMERIC);
     let flags = OpenFlags::SQLITE_OPEN_READ_ONLY | OpenFlags::SQLITE_OPEN_NO_MUTEX | OpenFlags::SQLITE_OPEN_URI;
-    Connection::open_with_flags(format!("file:{name}?immutable=1"), flags)
+    let connection = Connection::open_with_flags(format!("file:{name}?immutable={}", u8::from(immutable)), flags)?;
+    connection.busy_timeout(BUSY)?;
+    connection.set_prepared_statement_cache_capacity(STATEMENTS);
+    Ok(connection)
 }
 
 #[cfg(test)]

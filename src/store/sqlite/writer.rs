@@ -10,12 +10,12 @@ use std::time::Instant;
 
 use rusqlite::Connection;
 use rusqlite::config::DbConfig;
+use tokio::sync::mpsc;
 use tokio::sync::mpsc::error::TryRecvError;
-use tokio::sync::{mpsc, oneshot};
 
 use crate::store::{Changes, Commits, Result, StoreError, batch};
 
-use super::change::{Change, Done, SequenceCache, Transaction};
+use super::change::{Change, Done, Reply, SequenceCache, Transaction};
 use super::fault::{Fault, Stage, is_locked, store_error, worth_splitting};
 use super::fork::{self, Copying, Fork};
 use super::open_files::OpenFiles;
@@ -25,15 +25,6 @@ use super::{BUSY, STILL_BUSY};
 
 /// Contacts in the cache of sequences, of some 64 bytes each.
 const CACHED: usize = 131_072;
-
-/// A change whose caller waits.
-pub(super) struct Request {
-    pub(super) change: Change,
-    pub(super) reply: Reply,
-}
-
-/// The channel for the outcome of a change.
-type Reply = oneshot::Sender<Result<u64>>;
 
 pub(super) struct Writer {
     pub(super) database: Connection,
@@ -45,7 +36,7 @@ pub(super) struct Writer {
     /// A number that no session has had.
     next_number: i64,
     /// Forks under way; the first of them is being copied.
-    forks: VecDeque<(Arc<Fork>, Copying, Request)>,
+    forks: VecDeque<(Arc<Fork>, Copying, Change)>,
     /// Whether there may be moves without a contact.
     unowned: bool,
     /// Whether the last transaction succeeded: if not, background work rests.
@@ -88,7 +79,7 @@ impl Writer {
     }
 
     /// Serves until the store is dropped, then merges the log into the file.
-    pub(super) fn run(mut self, mut requests: mpsc::Receiver<Request>) {
+    pub(super) fn run(mut self, mut requests: mpsc::Receiver<Change>) {
         loop {
             let first = if self.has_background() {
                 match requests.try_recv() {
@@ -103,7 +94,7 @@ impl Writer {
                 }
             };
             if let Some(first) = first {
-                self.commit(batch::collect(first, &mut requests, |request| request.change.weight));
+                self.commit(batch::collect(first, &mut requests, |request| request.weight));
             }
             self.background_step();
         }
@@ -132,7 +123,7 @@ impl Writer {
     }
 
     /// Makes changes durable together, then answers; or, where that fails, each alone.
-    pub(super) fn commit(&mut self, batch: Vec<Request>) {
+    pub(super) fn commit(&mut self, batch: Vec<Change>) {
         match self.attempt(&batch) {
             Ok(outcomes) => {
                 for (request, outcome) in batch.into_iter().zip(outcomes) {
@@ -152,12 +143,12 @@ impl Writer {
         }
     }
 
-    fn attempt(&mut self, batch: &[Request]) -> Result<Vec<Result<Done>>, Failure> {
+    fn attempt(&mut self, batch: &[Change]) -> Result<Vec<Result<Done>>, Failure> {
         let (mut number, begin) = (self.next_number, Instant::now());
         let outcomes = self.transaction(|database, cache| {
             let mut outcomes = Vec::with_capacity(batch.len());
             for request in batch {
-                outcomes.push(match request.change.make(&mut Transaction { database, cache, number }) {
+                outcomes.push(match request.make(&mut Transaction { database, cache, number }) {
                     Ok(done) => Ok(done),
                     Err(Fault::Refused(error)) => Err(error),
                     Err(Fault::Sqlite(error)) => return Err(error),
@@ -171,7 +162,7 @@ impl Writer {
         Ok(outcomes)
     }
 
-    fn finish(&mut self, request: Request, outcome: Result<Done>) {
+    fn finish(&mut self, request: Change, outcome: Result<Done>) {
         let count = match outcome {
             Err(error) => return answer(request.reply, Err(error)),
             Ok(Done::Made(count)) => count,
@@ -183,13 +174,13 @@ impl Writer {
         };
         // The reply goes first: its client waits longer than the listeners have.
         answer(request.reply, Ok(count));
-        request.change.touched.iter().for_each(|id| self.changes.wake(*id));
+        request.touched.iter().for_each(|id| self.changes.wake(*id));
     }
 
     /// Does a part of that work, if there is any; returns whether there is more.
     pub(super) fn background_step(&mut self) -> bool {
         if let Some((fork, copying, request)) = self.forks.pop_front() {
-            let (mut proceeded, receipt) = (copying, request.change.receipt.as_ref());
+            let (mut proceeded, receipt) = (copying, request.receipt.as_ref());
             let proceed = |database: &Connection, proceeded: &mut Copying| {
                 check_key(database, receipt)?;
                 let complete = fork.proceed(database, proceeded)?;
