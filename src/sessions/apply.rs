@@ -1,12 +1,8 @@
 //! The way of a move: lock, load, compute, store, publish. This is the one place where the state of a session changes.
 
 use std::pin::pin;
-use std::sync::Arc;
 
-use uuid::Uuid;
-
-use crate::admission::Reservation;
-use crate::store::{IdempotentRequest, Reply, RequestKey, StoreError, Usage};
+use crate::store::{IdempotentRequest, Reply, RequestKey, Usage};
 use stickslip_compute::Stop as _;
 use stickslip_compute::computations::{OnContact as _, dry_run_relax};
 use stickslip_wire::RelaxReply;
@@ -17,10 +13,8 @@ use super::cache::Guard;
 use super::changes::answer_once;
 use super::common::{ATTEMPTS, Common};
 use super::compute::{Computed, compute};
-use super::error::SessionError;
 use super::expected::Expected;
-use super::handle::Sessions;
-use super::loaded::{LoadedSession, written};
+use super::prelude::*;
 use super::run_to_end::run_to_end;
 use super::storage_reservation::StorageReservation;
 

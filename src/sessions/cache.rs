@@ -9,20 +9,16 @@
 //! states is, so that it goes after them. A profile in use stays, because dropping it would free nothing.
 
 use std::collections::HashMap;
-use std::sync::Arc;
-use std::time::Duration;
 
 use hashlink::LruCache;
 use parking_lot::Mutex;
 use prometheus::IntCounter;
-use uuid::Uuid;
 
-use crate::admission::Reservation;
 use crate::store::{KeyLock, KeyedLocks, Tenant};
 use stickslip_compute::simulation::ProfileKey;
 use stickslip_mechanics::Profile;
 
-use super::loaded::LoadedSession;
+use super::prelude::*;
 
 /// How many bytes of states are cached by default.
 pub const CAPACITY: usize = 256 * 1024 * 1024;

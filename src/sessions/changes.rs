@@ -1,20 +1,16 @@
 //! Making, copying, naming and deleting sessions.
 
 use std::pin::{Pin, pin};
-use std::sync::Arc;
 
 use jiff::Timestamp;
-use uuid::Uuid;
 
-use crate::store::{CONTACT_BYTES, IdempotentRequest, LabelChange, Reply, RequestKey, Session, StoreError, Usage};
+use crate::store::{CONTACT_BYTES, IdempotentRequest, LabelChange, Reply, RequestKey, Session, Usage};
 use stickslip_wire::session::Creation;
 use stickslip_wire::{ForkRequest, SessionReply};
 
 use super::common::ATTEMPTS;
-use super::error::SessionError;
 use super::expected::Expected;
-use super::handle::Sessions;
-use super::loaded::{LoadedSession, written};
+use super::prelude::*;
 use super::run_to_end::run_to_end;
 
 impl Sessions {

@@ -5,13 +5,10 @@
 
 use std::fmt;
 
-use uuid::Uuid;
-
-use crate::store::{Page, Record, Snapshot, Store, StoreError};
-use stickslip_mechanics::Contact;
+use crate::store::{Page, Record, Snapshot, Store};
 use stickslip_wire::{Move, PrepareAnew, State};
 
-use super::loaded::LoadedSession;
+use super::prelude::*;
 use super::snapshot::compare;
 
 /// Sessions and moves that are fetched at a time.

@@ -1,20 +1,16 @@
 //! What the sessions of all tenants share: the store, the pool, and the cache with its locks. A handle uses it within
 //! its tenant.
 
-use std::sync::Arc;
-
 use tokio::sync::Semaphore;
-use uuid::Uuid;
 
-use crate::admission::{Deadline, Pool, STREAMS};
-use crate::store::{Extent, IdempotentRequest, Listeners, RequestKey, Session, Store, StoreError, Tenant, Usage};
+use crate::admission::{Pool, STREAMS};
+use crate::store::{Extent, IdempotentRequest, Listeners, RequestKey, Session, Store, Tenant, Usage};
 use stickslip_compute::simulation::{ProfileCache, ProfileKey, Profiles};
 use stickslip_mechanics::Profile;
 
 use super::cache::{Cache, Guard};
-use super::error::SessionError;
-use super::handle::Sessions;
 use super::metrics::SessionMetrics;
+use super::prelude::*;
 use super::snapshot;
 use super::storage_reservation::{StorageReservation, UsageByTenant};
 

@@ -1,10 +1,7 @@
 //! Computing the moves of a request on a loaded session, and the reply to them: what needs a processor and no store.
 
-use std::sync::Arc;
-
 use jiff::Timestamp;
 
-use crate::admission::{Deadline, Reservation};
 use crate::otlp;
 use crate::store::{Measured, Record, Reply};
 use stickslip_compute::computations::{Moved, OnContact as _, make_moves, shown_states};
@@ -14,10 +11,8 @@ use stickslip_wire::session::Advance;
 use stickslip_wire::{MoveReply, Observation, PathReply, Plan, RelaxReply, State, Steps, limits};
 
 use super::cache::Guard;
-use super::error::SessionError;
-use super::handle::Sessions;
-use super::loaded::{LoadedSession, written};
 use super::observations::check_plausible;
+use super::prelude::*;
 
 /// The most pieces that one straight move can add to the slip history, with a margin.
 const PIECES_OF_A_MOVE: usize = 8;

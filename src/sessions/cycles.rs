@@ -1,22 +1,14 @@
 //! The closed cycles of a session's past, from its recorded states alone.
 
-use std::sync::Arc;
-
-use uuid::Uuid;
-
-use crate::admission::{Deadline, Reservation};
 use crate::store::RECORD_BYTES;
 use stickslip_compute::simulation::Failure;
 use stickslip_compute::simulation::cost::Work;
 use stickslip_compute::{Interrupted, Nanoseconds, Stop};
-use stickslip_mechanics::Contact;
 use stickslip_mechanics::closed_cycles::{ClosedCycle, CycleLog, Loop};
 use stickslip_wire::reply::finite;
 use stickslip_wire::{Cycle, CyclePage, HistoryPage, State, limits};
 
-use super::error::SessionError;
-use super::handle::Sessions;
-use super::loaded::LoadedSession;
+use super::prelude::*;
 use super::replay::PAGE;
 
 /// Looking at one recorded state.

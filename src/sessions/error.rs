@@ -1,14 +1,11 @@
 //! Errors of operations on sessions.
 
-use std::time::Duration;
-
-use uuid::Uuid;
-
 use crate::admission::PoolError;
-use crate::store::StoreError;
 use stickslip_compute::formats::Unwritable;
 use stickslip_compute::simulation;
 use stickslip_wire::Rejection;
+
+use super::prelude::*;
 
 /// Why an operation on a session failed. Nothing has changed then.
 #[derive(Debug, thiserror::Error)]

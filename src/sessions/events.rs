@@ -5,19 +5,16 @@
 //! same way.
 
 use std::collections::VecDeque;
-use std::time::Duration;
 
 use futures::Stream;
-use uuid::Uuid;
 
-use crate::admission::{PoolError, Quota, Reservation, Share};
-use crate::store::{Listener, StoreError, StreamEvent};
+use crate::admission::{PoolError, Quota, Share};
+use crate::store::{Listener, StreamEvent};
 use stickslip_compute::Interrupted;
 use stickslip_compute::simulation::{Cause, Failure};
 use stickslip_wire::{EndReason, HistoryPage, StateEvent};
 
-use super::error::SessionError;
-use super::handle::Sessions;
+use super::prelude::*;
 
 /// Moves that a listener reads at a time.
 const PAGE: usize = 80;

@@ -1,6 +1,6 @@
 //! What a client expects a contact to be when it changes it.
 
-use super::error::SessionError;
+use super::prelude::*;
 
 /// The version of a contact that a client expects: an `ETag` of it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

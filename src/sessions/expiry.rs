@@ -1,11 +1,10 @@
 //! Periodic work: idle sessions expire, and old receipts are deleted.
 
-use std::sync::Arc;
-use std::time::Duration;
-
 use jiff::Timestamp;
 
 use crate::store::Store;
+
+use super::prelude::*;
 
 /// The shortest and the longest period.
 const PERIODS: (Duration, Duration) = (Duration::from_millis(100), Duration::from_secs(60));

@@ -2,11 +2,8 @@
 //! changes, the history, the cycles and the observations.
 
 use std::ops::Deref;
-use std::sync::Arc;
 
-use uuid::Uuid;
-
-use crate::admission::{Pool, Reservation};
+use crate::admission::Pool;
 use crate::otlp;
 use crate::store::{Commits, Page, Store, Tenant};
 use stickslip_compute::computations::{DisplayOptions, OnContact};
@@ -15,8 +12,7 @@ use stickslip_wire::subsurface::SubsurfaceTask;
 use stickslip_wire::{ContactDefinition, SessionPage, SessionReply, SubsurfaceRequest};
 
 use super::common::Common;
-use super::error::SessionError;
-use super::loaded::written;
+use super::prelude::*;
 
 /// The sessions of a tenant. Clones, and those of other tenants, are handles on the same.
 #[derive(Clone)]

@@ -1,13 +1,11 @@
 //! The moves of sessions as they are stored.
 
 use tracing::Instrument as _;
-use uuid::Uuid;
 
 use crate::otlp;
 use stickslip_wire::{HistoryItem, HistoryPage};
 
-use super::error::SessionError;
-use super::handle::Sessions;
+use super::prelude::*;
 use super::replay::damaged;
 
 impl Sessions {

@@ -1,19 +1,17 @@
 //! A loaded session: its state, and the memory that it takes.
 
 use std::cmp::Ordering;
-use std::sync::Arc;
 
 use crate::otlp;
 use crate::store::{CONTACT_BYTES, Reply, Session};
 use stickslip_compute::formats;
 use stickslip_compute::simulation::{self, bytes, present_warnings};
-use stickslip_mechanics::Contact;
 use stickslip_mechanics::closed_cycles::CycleLog;
 use stickslip_wire::definition::SharedSetup;
 use stickslip_wire::limits::Limited as _;
 use stickslip_wire::{ContactSummary, Faults, FrictionEstimate, JsonPath, NewSession, Prepare, SessionReply, Warning};
 
-use super::error::SessionError;
+use super::prelude::*;
 use super::snapshot::ReplayCost;
 
 /// Bytes of a session besides its pieces, its label and its tables: what is fixed, and the entry in the cache. The

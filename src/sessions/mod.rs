@@ -30,6 +30,7 @@ mod history;
 mod loaded;
 mod metrics;
 mod observations;
+mod prelude;
 mod replay;
 mod run_to_end;
 mod snapshot;

@@ -3,27 +3,20 @@
 //!
 //! The estimate follows from what is stored, and is kept with the cached session until the next such cycle closes.
 
-use std::sync::Arc;
-use std::time::Duration;
-
-use uuid::Uuid;
-
-use crate::admission::{Deadline, Reservation};
-use crate::store::{self, StoreError};
+use crate::store;
 use stickslip_compute::simulation::bytes::ROW;
 use stickslip_compute::{Nanoseconds, Part, Stop};
 use stickslip_measured::cycle_friction::{MeasuredCycle, newest_large};
 use stickslip_mechanics::closed_cycles::{ClosedCycle, CycleLog};
-use stickslip_mechanics::{Contact, in_unit, range};
+use stickslip_mechanics::{in_unit, range};
 use stickslip_wire::{
     Faults, FrictionEstimate, FrictionReply, JsonPath, Observation, ObservationsReply, ObservedMove, Rejection, limits,
 };
 
 use super::cache::Guard;
 use super::cycles::{STATE_COST, bytes_to_read};
-use super::error::SessionError;
-use super::handle::Sessions;
-use super::loaded::{Estimated, LoadedSession, written};
+use super::loaded::Estimated;
+use super::prelude::*;
 use super::replay::PAGE;
 
 /// How long an estimate may take.

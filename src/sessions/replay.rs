@@ -1,22 +1,15 @@
 //! The state of a session: the cached one, or a replay of its newest snapshot and the moves after it.
 
-use std::sync::Arc;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
-use uuid::Uuid;
-
-use crate::admission::{Deadline, Reservation};
-use crate::store::{Extent, RECORD_BYTES, Record, Session, Snapshot, StoreError, Whole};
+use crate::store::{Extent, RECORD_BYTES, Record, Session, Snapshot, Whole};
 use stickslip_compute::simulation::{Failure, Timer, cost::Work};
 use stickslip_compute::{Interrupted, Stop as _};
-use stickslip_mechanics::Contact;
 use stickslip_wire::{ContactDefinition, limits};
 
 use super::cache::Guard;
 use super::common::Common;
-use super::error::SessionError;
-use super::handle::Sessions;
-use super::loaded::LoadedSession;
+use super::prelude::*;
 
 /// Moves that are fetched from the store at a time.
 pub(super) const PAGE: usize = 10_000;

@@ -4,14 +4,12 @@
 //! the session replayed from its beginning. It is due once what it spares a replay outweighs what it costs to write and
 //! read, which bounds both the time to open a session and the bytes written for a move.
 
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
-use crate::store::{Snapshot, StoreError};
-use stickslip_mechanics::Contact;
+use crate::store::Snapshot;
 
 use super::common::Common;
-use super::error::SessionError;
-use super::loaded::LoadedSession;
+use super::prelude::*;
 
 /// Snapshots that are being stored at a time. A session for which there is no room tries again with its next move.
 pub(super) const AT_ONCE: usize = 2;

@@ -4,15 +4,14 @@
 //! because others on the same store change it too. In between, this process adds what it stores itself.
 
 use std::collections::HashMap;
-use std::sync::Arc;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use parking_lot::Mutex;
 
 use crate::admission::{Pool, PoolError, Quota};
-use crate::store::{Store, StoreError, Tenant, Usage};
+use crate::store::{Store, Tenant, Usage};
 
-use super::error::SessionError;
+use super::prelude::*;
 
 /// How long a count is taken to hold.
 const RECOUNT: Duration = Duration::from_secs(60);

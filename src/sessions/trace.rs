@@ -1,20 +1,13 @@
 //! The path between recorded states, computed again in small steps on a copy: the session itself does not move.
 
-use std::time::Duration;
-
-use uuid::Uuid;
-
-use crate::admission::{Deadline, Reservation};
 use crate::store::{RECORD_BYTES, Record};
 use stickslip_compute::Stop as _;
 use stickslip_compute::simulation::Failure;
 use stickslip_compute::simulation::bytes::ROW;
 use stickslip_compute::simulation::cost::Work;
-use stickslip_mechanics::Contact;
 use stickslip_wire::{HistoryItem, LoopPage, limits};
 
-use super::error::SessionError;
-use super::handle::Sessions;
+use super::prelude::*;
 use super::replay::{PAGE, PIECE_BYTES, damaged};
 
 /// JSON pointer to the number of points.

@@ -1,0 +1,13 @@
+//! What most files of this folder use.
+
+pub use std::sync::Arc;
+pub use std::time::Duration;
+
+pub use stickslip_mechanics::Contact;
+pub use uuid::Uuid;
+
+pub use super::error::SessionError;
+pub(super) use super::handle::Sessions;
+pub(super) use super::loaded::{LoadedSession, written};
+pub use crate::admission::{Deadline, Reservation};
+pub use crate::store::StoreError;
