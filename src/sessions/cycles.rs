@@ -8,6 +8,7 @@ use stickslip_mechanics::closed_cycles::{ClosedCycle, CycleLog, Loop};
 use stickslip_wire::reply::finite;
 use stickslip_wire::{Cycle, CyclePage, HistoryPage, State, limits};
 
+use super::history::mark_centres;
 use super::prelude::*;
 use super::replay::PAGE;
 
@@ -55,7 +56,8 @@ impl Sessions {
         Ok((sequence, CyclePage { items }))
     }
 
-    /// Adds to the moves of a page the cycles that they closed. The memory of the request is more meanwhile.
+    /// Adds to the moves of a page the cycles that they closed, and to their states what is not stored. The memory of
+    /// the request is more meanwhile.
     ///
     /// # Errors
     /// As [`Sessions::cycles`].
@@ -74,6 +76,7 @@ impl Sessions {
         };
         let (pool, before) = (&self.pool, memory.bytes());
         pool.resize(memory, before + bytes_with(&log, PAGE)).await?;
+        mark_centres(page, &virgin);
         let states: Vec<(u64, State)> = page.items.iter().map(|item| (item.sequence, item.state)).collect();
         let cost = Work { moves: CYCLE_MOVES * states.len(), ..Work::default() }.cost(virgin.profile());
         let look = move || {

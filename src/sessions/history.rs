@@ -3,7 +3,7 @@
 use tracing::Instrument as _;
 
 use crate::otlp;
-use stickslip_wire::{HistoryItem, HistoryPage};
+use stickslip_wire::{HistoryItem, HistoryPage, PrepareAnew};
 
 use super::prelude::*;
 use super::replay::damaged;
@@ -63,5 +63,25 @@ impl Sessions {
             at: record.at,
         });
         Ok(HistoryPage { items: items.collect(), next })
+    }
+
+    /// Adds to the states of a page where the part that stuck was, if a bulk stress comes with the force.
+    ///
+    /// # Errors
+    /// [`SessionError::NotFound`] or [`SessionError::Expired`], or a failure of the store.
+    pub async fn mark_centres(&self, id: Uuid, page: &mut HistoryPage) -> Result<(), SessionError> {
+        let session = self.find_own(id).await?;
+        if session.definition.bulk.is_some() {
+            let first = LoadedSession::of_stored(session, &PrepareAnew).map_err(|error| damaged(id, &error))?;
+            mark_centres(page, &first.contact);
+        }
+        Ok(())
+    }
+}
+
+/// The same for the contact of the page. The centre follows from the rest of a state, and is not stored.
+pub(super) fn mark_centres(page: &mut HistoryPage, contact: &Contact) {
+    for HistoryItem { state, .. } in &mut page.items {
+        state.stick_centre = contact.stick_centre(&(*state).into());
     }
 }

@@ -102,7 +102,7 @@ pub(super) fn record<R: RowReader>(row: &mut R) -> Result<Record, R::Error> {
             normal_force: row.next()?,
             contact_radius: row.next()?,
             stick_radius: row.next()?,
-            // It follows from the definition, and is not stored.
+            // It follows from the rest and the definition, and is not stored.
             stick_centre: None,
             regime: row.text(|name| Regime::deserialize(IntoDeserializer::<NameError>::into_deserializer(name)))?,
             dissipated_energy: row.next()?,

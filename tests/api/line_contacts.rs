@@ -21,6 +21,12 @@ async fn a_stored_line_contact_has_its_stresses_over_x() {
     let place = format!("/contacts/{}", made["id"].as_str().unwrap());
     let moved = good(server.post(&format!("{place}/path"), &json!({"path": path})).await).await;
     assert_eq!(moved["steps"][4], reply["steps"][4]);
+    // States are read as they were, with the middle of the stick zone.
+    for cycles in [true, false] {
+        let page = good(server.get(&format!("{place}/history?cycles={cycles}")).await).await;
+        let states = page["items"].as_array().unwrap().iter().map(|item| &item["state"]);
+        assert!(states.eq(moved["steps"].as_array().unwrap()), "{page}");
+    }
     let read = good(server.get(&format!("{place}/stress?points=5&residual=true")).await).await;
     assert_eq!(
         read["x"],

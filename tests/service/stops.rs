@@ -178,8 +178,9 @@ async fn a_contact_that_no_request_has_the_time_to_load_is_loaded_by_several() {
             }
             if answer.statuses != [200] {
                 assert_eq!(answer.statuses, [422], "{}", answer.text);
+                // On a busy machine a request may have no time for a single move.
                 let now = replayed(&answer.text);
-                assert!(now > before && answer.text.contains("too_much_work"), "{}, {before} before", answer.text);
+                assert!(now >= before && answer.text.contains("too_much_work"), "{}, {before} before", answer.text);
                 before = now;
             }
         }

@@ -19,6 +19,7 @@ use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::gauss::{TWENTY_POINTS, integral};
 use crate::numerics::roots::between;
 use crate::shear_stress::{Peak, Residual};
+use crate::state::State;
 
 /// Samples of the derivative of an eccentric shear stress between two ends of zones.
 const SAMPLES: usize = 48;
@@ -40,16 +41,17 @@ impl Contact {
         Cow::Owned(Contact { profile: line.shared_face(), history, ..self.clone_without_history() })
     }
 
-    /// Centre of the stuck zone of the half-width c, m, in a contact of the half-width a: e = R k kappa F_N (1 -
-    /// c^2/a^2).
+    /// Centre of the stuck zone of the half-width c, m, in the present contact.
     pub(super) fn zone_centre(&self, line: &LineContact, half_width: f64) -> f64 {
-        let edge = self.contact_radius();
-        let reach = line.reach_of_bulk(self.normal_force);
-        if reach == 0.0 || edge <= 0.0 {
-            0.0
-        } else {
-            reach * (edge - half_width) * (edge + half_width) / (edge * edge)
-        }
+        line.zone_centre(self.normal_force, self.contact_radius(), half_width)
+    }
+
+    /// Where the middle of the part that stuck is in a state of this contact, m, if a bulk stress comes with the force.
+    /// It follows from the radii and the load of the state, and needs no history.
+    #[must_use]
+    pub fn stick_centre(&self, state: &State) -> Option<f64> {
+        let line = self.profile.line().filter(|line| line.bulk().is_some())?;
+        Some(line.zone_centre(state.normal_force, state.contact_radius, state.stick_radius))
     }
 
     /// The line contact of a bulk stress that moves its zones.

@@ -119,7 +119,7 @@ impl Contact {
         let edge = self.history.edge();
         let scale = self.scale();
         let (stick_radius, regime) = self.stick();
-        State {
+        let state = State {
             displacement: self.displacement.value(),
             // The -0 of a virgin contact is 0.
             force: self.force() + 0.0,
@@ -127,16 +127,13 @@ impl Contact {
             normal_force: self.normal_force(),
             contact_radius: self.contact_radius(),
             stick_radius,
-            stick_centre: self
-                .profile
-                .line()
-                .filter(|line| line.bulk().is_some())
-                .map(|line| self.zone_centre(line, stick_radius)),
+            stick_centre: None,
             regime,
             dissipated_energy: self.dissipated.value(),
             elastic_energy: (2.0 * self.elasticity.g_star() * scale * scale * self.history.energy()).max(0.0),
             memory_depth: self.memory_depth(),
-        }
+        };
+        State { stick_centre: self.stick_centre(&state), ..state }
     }
 
     fn stick(&self) -> (f64, Regime) {

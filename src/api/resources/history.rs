@@ -69,8 +69,10 @@ impl MoveSeries for History {
         format: Format,
         memory: &mut Reservation,
     ) -> Result<HistoryPage, Problem> {
-        if self.cycles && !format.is_plot() {
-            app.sessions.mark_cycles(id, &mut moves, memory).await?;
+        match self.cycles {
+            _ if format.is_plot() => {}
+            true => app.sessions.mark_cycles(id, &mut moves, memory).await?,
+            false => app.sessions.mark_centres(id, &mut moves).await?,
         }
         Ok(moves)
     }
@@ -117,6 +119,9 @@ impl MoveSeries for History {
             observed("predicted_force", |observed| observed.predicted),
             observed("innovation", |observed| observed.innovation),
         ]);
+        if items.first().is_some_and(|item| item.state.stick_centre.is_some()) {
+            columns.push(Column::floats("stick_centre", "m", |row| items[row].state.stick_centre));
+        }
         if self.names_makers {
             columns.push(Column::new("by", Some(""), Cells::Words(Box::new(|row| items[row].by.as_deref()))));
         }

@@ -202,6 +202,17 @@ impl LineContact {
         self.bulk.map_or(0.0, |bulk| self.curvature_radius() * bulk.strain_per_force * normal_force)
     }
 
+    /// Centre of the zone of the half-width c, m, in a contact of the half-width a, m, under a normal force, N:
+    /// e = R k kappa F_N (1 - c^2/a^2).
+    pub(crate) fn zone_centre(&self, normal_force: f64, edge: f64, half_width: f64) -> f64 {
+        let reach = self.reach_of_bulk(normal_force);
+        if reach == 0.0 || edge <= 0.0 {
+            0.0
+        } else {
+            reach * (edge - half_width) * (edge + half_width) / (edge * edge)
+        }
+    }
+
     /// Whether zones are nested in a contact of this half-width, m, under this normal force, N.
     ///
     /// # Errors
