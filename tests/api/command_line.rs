@@ -97,24 +97,6 @@ fn with_json_every_fault_is_a_problem_document() {
 }
 
 #[test]
-fn a_sweep_prints_its_document_with_json() {
-    let folder = tempfile::tempdir().unwrap();
-    let file = folder.path().join("sweep.json");
-    let body = json!({
-        "base": {"contact": ball(), "path": {"displacement": [1e-8]}},
-        "axes": [{"pointer": "/contact/friction", "values": [0.1, 0.2]}], "outputs": ["/steps/0/force"]
-    });
-    std::fs::write(&file, body.to_string()).unwrap();
-    let file = file.to_str().unwrap();
-    let document: Value = serde_json::from_str(&printed(&["sweep", file, "--json"])).unwrap();
-    assert_eq!((&document["points"], &document["columns"]["/contact/friction"]), (&json!(2), &json!([0.1, 0.2])));
-    // The same numbers as in the table.
-    let table = printed(&["sweep", file]);
-    let force = &document["columns"]["/steps/0/force"][0];
-    assert_eq!(table.lines().nth(1).unwrap(), format!("0.1,{force}"));
-}
-
-#[test]
 fn a_body_is_read_from_standard_input_and_a_refusal_is_a_failure() {
     let simulated = |force: f64| {
         let body = tempfile::NamedTempFile::new().unwrap();

@@ -3,7 +3,6 @@
 use crate::common;
 
 use std::io::Read as _;
-use std::sync::Arc;
 use std::time::Duration;
 
 use common::{Server, ball, problem, until};
@@ -11,19 +10,10 @@ use flate2::read::GzDecoder;
 use reqwest::{Method, Response};
 use serde_json::{Value, json};
 use stickslip::admission::Pool;
-use stickslip::sessions::{CAPACITY, Sessions};
-use stickslip::store::SqliteStore;
+
+use crate::formats::moved;
 
 const CODINGS: [&str; 2] = ["gzip", "zstd"];
-
-/// A server, and the path of a contact with three moves behind it.
-async fn moved() -> (Server, String) {
-    let server = Server::start().await;
-    let contact = format!("/contacts/{}", server.contact().await);
-    let path = json!({"path": {"displacement": [1e-7, -5e-8, 2e-8]}});
-    assert!(server.post(&format!("{contact}/path"), &path).await.status().is_success());
-    (server, contact)
-}
 
 async fn get(server: &Server, path: &str, headers: &[(&str, &str)]) -> Response {
     server.send(Method::GET, path, None, headers).await
@@ -188,9 +178,7 @@ async fn a_client_that_accepts_nothing_gets_the_reply_to_what_was_done() {
 #[tokio::test]
 async fn an_encoder_counts_as_memory_until_its_reply_is_sent() {
     let pool = Pool::with_defaults();
-    let server =
-        Server::over(Sessions::new(Arc::new(SqliteStore::in_memory().unwrap()), pool.clone(), CAPACITY), pool.clone())
-            .await;
+    let server = Server::in_pool(pool.clone()).await;
     let contact = format!("/contacts/{}", server.contact().await);
     let long = json!({"contact": ball(), "path": {"falling_amplitude": {"reversals": 1900}}}).to_string();
     for coding in CODINGS {

@@ -12,10 +12,10 @@ use stickslip::admission::Pool;
 use stickslip::sessions::Sessions;
 use stickslip::store::SqliteStore;
 use stickslip_wire::client::Options;
-use stickslip_wire::{ForkRequest, Move, Path, PathRequest, Steps};
+use stickslip_wire::{ForkRequest, Move, PathRequest, Steps};
 
 fn along(moves: Vec<Move>) -> PathRequest {
-    PathRequest { path: Path::Moves(moves), stress: None, steps: Steps::All, tolerance: None }
+    PathRequest { steps: Steps::All, ..common::along(moves) }
 }
 
 #[tokio::test]
@@ -84,20 +84,15 @@ async fn the_newest_contacts_are_listed_first_where_that_is_asked_for() {
     for _ in 0..5 {
         made.push(server.client.create(&create(), &Options::default()).await.unwrap().id);
     }
-    let (mut seen, mut after) = (Vec::new(), None);
-    loop {
-        let page = server.client.newest_contacts(after, Some(2)).await.unwrap();
-        seen.extend(page.items.into_iter().map(|item| item.id));
-        after = page.next;
-        if after.is_none() {
-            break;
-        }
-    }
-    made.reverse();
-    assert_eq!(seen, made);
+    let page = async |after, limit| {
+        let page = server.client.newest_contacts(after, Some(limit)).await.unwrap();
+        (page.items.into_iter().map(|item| item.id).collect::<Vec<_>>(), page.next)
+    };
+    assert_eq!(page(None, 2).await, (vec![made[4], made[3]], Some(made[3])));
+    assert_eq!(page(Some(made[3]), 9).await, (vec![made[2], made[1], made[0]], None));
     let oldest = good(server.get("/contacts?order=oldest").await).await;
     assert_eq!(oldest, good(server.get("/contacts").await).await);
-    assert_eq!(oldest["items"][0]["id"], made[4].to_string());
+    assert_eq!(oldest["items"][0]["id"], made[0].to_string());
     let refused = problem(server.get("/contacts?order=latest").await).await;
     assert!(refused.errors[0].detail.contains("`oldest`, `newest`"), "{refused:?}");
 }
@@ -129,35 +124,17 @@ async fn a_new_label_is_no_move_and_is_found() {
     let new = tags().await;
     let headers = [("if-none-match", new.as_str())];
     assert_eq!(server.send(Method::GET, &target, None, &headers).await.status(), StatusCode::NOT_MODIFIED);
-    for label in ["Stahl", "ärger", "Ärger", "3 %_", "%_", ""] {
-        // Beyond A to Z, letters are what they are.
-        let expected = if label == "ärger" { vec![] } else { vec![id] };
-        assert_eq!(found(label).await, expected, "{label}");
-    }
-    assert!(found("3 %%").await.is_empty() && found("S_AHL").await.is_empty());
+    assert_eq!((found("im stahl, 3 %_").await, found("ärger").await), (vec![id], vec![]));
     client.rename(other, Some("stahl"), &options).await.unwrap();
     assert_eq!(found("stahl").await, [id, other]);
     let page = client.contacts_labelled("stahl", None, Some(1)).await.unwrap();
     assert_eq!((page.items[0].id, page.next), (id, Some(id)));
     assert_eq!(client.contacts_labelled("stahl", page.next, Some(1)).await.unwrap().items[0].id, other);
 
-    // Its tag serves as a condition, and a retry gets the first reply.
-    let body = json!({"label": null}).to_string();
-    let headers = [("if-match", new.as_str()), ("idempotency-key", "nameless")];
-    let first = server.send(Method::PATCH, &target, Some(&body), &headers).await;
-    assert_eq!(first.status(), StatusCode::OK);
-    client.rename(id, Some("again"), &options).await.unwrap();
-    let again = server.send(Method::PATCH, &target, Some(&body), &headers).await;
-    assert_eq!(first.bytes().await.unwrap(), again.bytes().await.unwrap());
-    assert_eq!(client.contact(id).await.unwrap().label.as_deref(), Some("again"));
-    assert_eq!(client.history(id, None, None).await.unwrap().items.len(), 1);
-
     let long = json!({"label": "x".repeat(201)}).to_string();
-    for (body, pointer) in
-        [("{}", "/label"), (&*long, "/label"), (r#"{"label": 3}"#, "/label"), (r#"{"label": "\u0000"}"#, "/label")]
-    {
+    for body in ["{}", &long] {
         let refused = problem(server.send(Method::PATCH, &target, Some(body), &[]).await).await;
-        assert_eq!((refused.status, refused.errors[0].pointer.as_str()), (422, pointer), "{body}");
+        assert_eq!((refused.status, refused.errors[0].pointer.as_str()), (422, "/label"), "{body}");
     }
     for query in [format!("label={}", "x".repeat(201)), "label=%00".to_owned()] {
         let refused = problem(server.get(&format!("/contacts?{query}")).await).await;

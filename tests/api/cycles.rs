@@ -5,8 +5,9 @@ use crate::common;
 
 use std::sync::Arc;
 
+use common::kill::history;
 use common::process::Process;
-use common::{PATIENCE, Server, create, problem};
+use common::{PATIENCE, Server, along, create, problem};
 use futures::StreamExt as _;
 use proptest::prelude::*;
 use proptest::strategy::ValueTree as _;
@@ -17,13 +18,9 @@ use stickslip::store::SqliteStore;
 use stickslip_mechanics::closed_cycles::{ClosedCycle, CycleLog};
 use stickslip_mechanics::{Contact, DEFAULT_TOLERANCE};
 use stickslip_wire::client::{Client, Event, Options};
-use stickslip_wire::{Cycle, Document as _, ForkRequest, HistoryItem, Move, Path, PathRequest, Steps};
+use stickslip_wire::{Cycle, Document as _, ForkRequest, HistoryItem, Move};
 use tempfile::tempdir;
 use uuid::Uuid;
-
-fn along(moves: Vec<Move>) -> PathRequest {
-    PathRequest { path: Path::Moves(moves), stress: None, steps: Steps::Last, tolerance: None }
-}
 
 /// A new contact, and its displacement of gross slip.
 async fn new(client: &Client) -> (Uuid, f64) {
@@ -44,10 +41,6 @@ async fn cycles(client: &Client, id: Uuid) -> Vec<Cycle> {
     client.cycles(id, Some(1_000)).await.unwrap().items
 }
 
-async fn history(client: &Client, id: Uuid) -> Vec<HistoryItem> {
-    client.history(id, None, Some(1_000)).await.unwrap().items
-}
-
 fn ends(cycles: &[Cycle]) -> Vec<(u64, u64)> {
     cycles.iter().map(|cycle| (cycle.from, cycle.to)).collect()
 }
@@ -58,11 +51,6 @@ fn assert_marked(history: &[HistoryItem], cycles: &[Cycle]) {
         let outermost = cycles.iter().rfind(|cycle| cycle.to == item.sequence);
         assert_eq!(item.cycle.as_ref(), outermost, "move {}", item.sequence);
     }
-}
-
-/// A value of a strategy, the next one of a fixed sequence.
-fn draw<T>(runner: &mut TestRunner, strategy: &impl Strategy<Value = T>) -> T {
-    strategy.new_tree(runner).unwrap().current()
 }
 
 /// The newest cycles after these moves, as the mechanics finds and measures them.
@@ -110,8 +98,7 @@ async fn cycles_are_those_of_the_library_with_their_loops() {
 async fn cycles_are_the_same_after_a_restart_in_a_fork_and_read_piece_by_piece() {
     let folder = tempdir().unwrap();
     let store = format!("sqlite:{}", folder.path().join("contacts.db").display());
-    let mut runner = TestRunner::deterministic();
-    let path = draw(&mut runner, &prop::collection::vec(-1.4..1.4, 90));
+    let path = prop::collection::vec(-1.4..1.4, 90).new_tree(&mut TestRunner::deterministic()).unwrap().current();
     let memory = Arc::new(SqliteStore::in_memory().unwrap());
     let (cached, uncached) = (Server::with(memory.clone(), CAPACITY).await, Server::with(memory, 0).await);
     let (id, unit) = new(&cached.client).await;

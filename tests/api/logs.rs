@@ -83,7 +83,7 @@ async fn the_line_of_a_change_says_who_made_it() {
 }
 
 #[tokio::test]
-async fn a_client_that_leaves_has_its_line_too() {
+async fn a_client_that_leaves_is_counted_and_has_its_line_too() {
     let server = Process::with("memory:", &["--log-format", "json"]);
     let long = common::long_simulation();
     let address = server.base.clone();
@@ -94,7 +94,9 @@ async fn a_client_that_leaves_has_its_line_too() {
     until("the work has begun", running).await;
     call.abort();
     assert!(call.await.unwrap_err().is_cancelled(), "too quick to leave");
-    server.client.healthz().await.unwrap();
+    let left = "stickslip_http_requests_total{method=\"POST\",route=\"/simulate\",status=\"499\"} 1\n";
+    let page = async || reqwest::get(format!("{address}/metrics")).await.unwrap().text().await.unwrap();
+    until("it is counted", async || page().await.contains(left).then_some(())).await;
     let log = end(server).await;
     let line =
         log.iter().find(|line| line["message"] == "the client disconnected").unwrap_or_else(|| panic!("{log:?}"));

@@ -36,7 +36,6 @@ mod openapi;
 mod otlp;
 mod pictures;
 mod profile_fit;
-mod profiles;
 mod protocols;
 mod settings;
 mod subsurface;

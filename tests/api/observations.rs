@@ -7,7 +7,7 @@ use std::pin::pin;
 use std::sync::Arc;
 
 use common::kill::{Random, exact};
-use common::{PATIENCE, Server, create, problem};
+use common::{PATIENCE, Server, along, create, problem};
 use futures::StreamExt as _;
 use reqwest::Method;
 use serde_json::{Value, json};
@@ -16,7 +16,7 @@ use stickslip_mechanics::Contact;
 use stickslip_wire::client::{Event, Options};
 use stickslip_wire::{
     CreateRequest, Document as _, ForkRequest, Move, NewSession, Observation, ObservationsReply, ObservationsRequest,
-    Path, PathRequest, Steps,
+    PathRequest, Steps,
 };
 use uuid::Uuid;
 
@@ -47,10 +47,6 @@ async fn observe(server: &Server, id: Uuid, observations: Vec<Observation>) -> O
     server.client.observe(id, &ObservationsRequest { observations }, &Options::default()).await.unwrap()
 }
 
-fn slide(displacement: Vec<f64>) -> PathRequest {
-    PathRequest { path: Path::Displacement(displacement), stress: None, steps: Steps::All, tolerance: None }
-}
-
 #[tokio::test]
 async fn observations_are_moves_with_what_was_measured_beside_them() {
     let server = Server::start().await;
@@ -59,7 +55,8 @@ async fn observations_are_moves_with_what_was_measured_beside_them() {
     let given = [(1e-7, 1.0, None), (-5e-8, -0.5, Some(at)), (2e-7, 2.5, Some(at))];
     let given = given.map(|(displacement, force, at)| Observation { displacement, force, at });
     let reply = observe(&server, bench.id, given.to_vec()).await;
-    let moved = slide(given.iter().map(|one| one.displacement).collect());
+    let moved = along(given.iter().map(|one| Move::displacement(one.displacement)).collect());
+    let moved = PathRequest { steps: Steps::All, ..moved };
     let steps = server.client.path(twin.id, &moved, &Options::default()).await.unwrap().steps;
     assert_eq!((reply.id, reply.sequence, reply.items.len(), reply.friction), (bench.id, 3, 3, None));
     for ((item, given), state) in reply.items.iter().zip(&given).zip(&steps) {

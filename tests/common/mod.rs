@@ -23,16 +23,18 @@ use std::process::{Command, Output};
 use std::sync::Arc;
 use std::time::Duration;
 
+use jiff::Timestamp;
 use reqwest::{Method, Response};
 use serde_json::{Value, json};
 use stickslip::admission::Pool;
 use stickslip::api::{self, Access, App};
 use stickslip::jobs::Jobs;
 use stickslip::sessions::{CAPACITY, Sessions};
-use stickslip::store::{SqliteStore, Store};
+use stickslip::store::{Session, SqliteStore, Store, Tenant};
 use stickslip_wire::client::Client;
-use stickslip_wire::{CreateRequest, Move, ProblemDocument};
+use stickslip_wire::{CreateRequest, Document as _, Move, Path, PathRequest, ProblemDocument, Steps};
 use tokio::net::TcpListener;
+use uuid::Uuid;
 
 /// How long a test waits before it gives up. It guards against hanging; nothing is measured by it.
 pub const PATIENCE: Duration = Duration::from_secs(120);
@@ -76,6 +78,12 @@ impl Server {
         Server::of(sessions, jobs, pool).await
     }
 
+    /// A server that keeps contacts in memory and works in a pool.
+    pub async fn in_pool(pool: Pool) -> Server {
+        let sessions = Sessions::new(Arc::new(SqliteStore::in_memory().unwrap()), pool.clone(), CAPACITY);
+        Server::over(sessions, pool).await
+    }
+
     /// A server that another process runs.
     pub fn at(base: &str) -> Server {
         Server { client: Client::new(base), base: base.to_owned(), http: reqwest::Client::new() }
@@ -114,6 +122,26 @@ impl Server {
     pub async fn contact(&self) -> String {
         let reply: Value = self.post("/contacts", &ball()).await.json().await.unwrap();
         reply["id"].as_str().unwrap().to_owned()
+    }
+}
+
+/// A path through moves, of whose states only the last is requested.
+pub fn along(moves: Vec<Move>) -> PathRequest {
+    PathRequest { path: Path::Moves(moves), stress: None, steps: Steps::Last, tolerance: None }
+}
+
+/// A contact that is not stored yet.
+pub fn session(contact: Value) -> Session {
+    let definition = serde_json::from_value::<CreateRequest>(contact).unwrap().check().unwrap().definition;
+    let now = Timestamp::now();
+    Session {
+        id: Uuid::now_v7(),
+        tenant: Tenant::default(),
+        label: None,
+        definition: Arc::new(definition),
+        sequence: 0,
+        created_at: now,
+        updated_at: now,
     }
 }
 

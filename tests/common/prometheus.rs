@@ -2,7 +2,7 @@
 
 use std::process::{Child, Command, Stdio};
 
-use serde_json::json;
+use serde_json::{Value, json};
 use tempfile::TempDir;
 use tokio::net::TcpSocket;
 
@@ -14,7 +14,8 @@ pub const MISSING: &str =
 pub struct Prometheus {
     child: Child,
     /// Where it answers.
-    pub base: String,
+    base: String,
+    http: reqwest::Client,
     // Keeps the port while the server is not yet there, or away.
     _reserved: TcpSocket,
     _folder: TempDir,
@@ -37,7 +38,24 @@ impl Prometheus {
             .stdout(Stdio::null())
             .spawn()
             .expect(MISSING);
-        Prometheus { child, base: format!("http://127.0.0.1:{port}"), _reserved: reserved, _folder: folder }
+        let base = format!("http://127.0.0.1:{port}");
+        Prometheus { child, base, http: reqwest::Client::new(), _reserved: reserved, _folder: folder }
+    }
+
+    /// What it answers; none while it is not yet there.
+    pub async fn ask(&self, path: &str, questions: &[(&str, &str)]) -> Option<Value> {
+        let call = self.http.get(format!("{}/api/v1/{path}", self.base)).query(questions);
+        let reply: Value = call.send().await.ok()?.json().await.ok()?;
+        assert_ne!(reply["errorType"], "bad_data", "{questions:?}: {reply}");
+        (reply["status"] == "success").then(|| reply["data"].clone())
+    }
+
+    /// The samples that a query finds: their labels and values.
+    pub async fn query(&self, questions: &[(&str, &str)]) -> Vec<(Value, f64)> {
+        let data = self.ask("query", questions).await.unwrap_or_default();
+        let value = |sample: &Value| sample["value"][1].as_str().unwrap().parse().unwrap();
+        let found = data["result"].as_array().into_iter().flatten();
+        found.map(|sample| (sample["metric"].clone(), value(sample))).collect()
     }
 }
 

@@ -14,15 +14,6 @@ use crate::common::prometheus::{MISSING, Prometheus};
 use crate::node::node;
 use crate::python::{file, program, succeed};
 
-/// What a query finds: a number for each set of labels. None if there is no answer.
-async fn ask(prometheus: &Prometheus, http: &reqwest::Client, query: &str) -> Option<Vec<(Value, f64)>> {
-    let reply = http.get(format!("{}/api/v1/query", prometheus.base)).query(&[("query", query)]).send().await.ok()?;
-    let answer: Value = reply.json().await.ok()?;
-    assert_ne!(answer["status"], "error", "{query}: {answer}");
-    let found = answer["data"]["result"].as_array()?.iter();
-    found.map(|one| Some((one["metric"].clone(), one["value"][1].as_str()?.parse().ok()?))).collect()
-}
-
 fn dashboard(name: &str) -> Value {
     let text = std::fs::read_to_string(file(&format!("deploy/grafana/dashboards/{name}.json"))).unwrap();
     serde_json::from_str(&text).unwrap()
@@ -46,7 +37,6 @@ async fn every_query_of_the_dashboards_is_answered() {
     let server = Process::start(&database).await;
     let prometheus = Prometheus::start(server.base.trim_start_matches("http://"));
     let made = server.client.create(&create(), &Default::default()).await.unwrap();
-    let http = reqwest::Client::new();
 
     // Rates need readings before and after; so the contact moves while each query is asked until it has an answer.
     let mut steps = 0_u32;
@@ -62,7 +52,7 @@ async fn every_query_of_the_dashboards_is_answered() {
                 steps += 1;
                 let step = Move::displacement(1e-8 * f64::from(steps % 7)).into();
                 server.client.apply(made.id, &step, &Default::default()).await.unwrap();
-                let found = ask(&prometheus, &http, &query).await.unwrap_or_default();
+                let found = prometheus.query(&[("query", &query)]).await;
                 if !found.is_empty() && found.iter().all(|(_, value)| value.is_finite()) {
                     let legend = target["legendFormat"].as_str().unwrap();
                     for label in legend.split("{{").skip(1).map(|rest| rest.split("}}").next().unwrap()) {

@@ -6,11 +6,31 @@ use std::process::Command;
 use stickslip::api::need;
 use stickslip_wire::Code;
 
+use crate::common::openapi::{document, operations};
 use crate::common::process::Process;
 use crate::python::{file, succeed};
 
 pub fn page(name: &str) -> String {
     std::fs::read_to_string(file("docs").join(name)).unwrap()
+}
+
+/// The names and texts of all pages.
+pub fn pages() -> impl Iterator<Item = (String, String)> {
+    let names = std::fs::read_dir(file("docs")).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap());
+    names.filter(|name| name.ends_with(".md")).map(|name| (name.clone(), page(&name)))
+}
+
+/// The commands that a text shows, block by block.
+fn commands(text: &str) -> Vec<&str> {
+    text.split("```sh\n").skip(1).map(|rest| rest.split("```").next().unwrap()).collect()
+}
+
+/// Bash with these options and commands, for a server at its address.
+fn bash(options: &str, commands: &str, server: &Process) -> Command {
+    let mut bash = Command::new("bash");
+    let script = commands.replace("localhost:8080", server.base.trim_start_matches("http://"));
+    bash.args([options, "pipefail", "-c", &script]);
+    bash
 }
 
 /// What a link to a heading ends with.
@@ -37,15 +57,12 @@ async fn every_command_of_the_pages_runs_as_printed() {
         ("errors.md", 1),
     ] {
         let text = page(name);
-        let found: Vec<&str> = text.split("```sh\n").skip(1).map(|rest| rest.split("```").next().unwrap()).collect();
+        let found = commands(&text);
         assert_eq!(found.len(), blocks, "{name}");
-        let script = found.concat().replace("localhost:8080", server.base.trim_start_matches("http://"));
         let folder = tempfile::tempdir().unwrap();
         std::os::unix::fs::symlink(concat!(env!("CARGO_MANIFEST_DIR"), "/examples"), folder.path().join("examples"))
             .unwrap();
-        let mut run = Command::new("bash");
-        run.args(["-euo", "pipefail", "-c", &script]).current_dir(folder.path());
-        let said = succeed(&mut run, "bash is there");
+        let said = succeed(bash("-euo", &found.concat(), &server).current_dir(folder.path()), "bash is there");
         assert!(name == "gallery.md" || said.contains('{'), "{name}: {said}");
     }
     // The pages leave nothing behind but the contact of the gallery and two forks.
@@ -56,7 +73,7 @@ async fn every_command_of_the_pages_runs_as_printed() {
 #[tokio::test(flavor = "multi_thread")]
 async fn a_key_is_added_to_a_running_server_as_the_page_says() {
     let text = page("access.md");
-    let block = text.split("```sh\n").nth(2).unwrap().split("```").next().unwrap();
+    let block = commands(&text)[1];
     let folder = tempfile::tempdir().unwrap();
     let first = stickslip::access::new_key("bench", &[stickslip::access::Role::Read], "lab", None).unwrap();
     let keys = folder.path().join("keys");
@@ -66,10 +83,8 @@ async fn a_key_is_added_to_a_running_server_as_the_page_says() {
     let path = std::env::join_paths(
         [programs.to_owned()].into_iter().chain(std::env::split_paths(&std::env::var_os("PATH").unwrap())),
     );
-    let mut run = Command::new("bash");
-    let script = block.replace("localhost:8080", server.base.trim_start_matches("http://"));
-    run.args(["-euo", "pipefail", "-c", &script]).current_dir(folder.path()).env("PATH", path.unwrap());
-    let said = succeed(&mut run, "bash is there");
+    let mut run = bash("-euo", block, &server);
+    let said = succeed(run.current_dir(folder.path()).env("PATH", path.unwrap()), "bash is there");
     assert!(said.contains("{\"items\":[]"), "{said}");
     // The key before still counts.
     let http = reqwest::Client::new();
@@ -80,9 +95,7 @@ async fn a_key_is_added_to_a_running_server_as_the_page_says() {
 
 #[test]
 fn every_link_between_the_pages_leads_somewhere() {
-    let pages = std::fs::read_dir(file("docs")).unwrap().map(|page| page.unwrap().file_name().into_string().unwrap());
-    for name in pages.filter(|name| name.ends_with(".md")) {
-        let text = page(&name);
+    for (name, text) in pages() {
         let targets = text.split("](").skip(1).map(|rest| rest.split(')').next().unwrap());
         for target in targets.filter(|target| !target.starts_with("http")) {
             let (path, place) = target.split_once('#').unwrap_or((target, ""));
@@ -102,13 +115,11 @@ fn every_link_between_the_pages_leads_somewhere() {
 async fn the_calls_of_the_readme_run_as_printed() {
     let server = Process::start("memory:").await;
     let text = std::fs::read_to_string(file("README.md")).unwrap();
-    let blocks = text.split("```sh\n").skip(1).map(|rest| rest.split("```").next().unwrap());
-    let calls: Vec<&str> = blocks.filter(|block| block.contains("localhost:8080")).collect();
+    let mut calls = commands(&text);
+    calls.retain(|block| block.contains("localhost:8080"));
     assert_eq!(calls.len(), 5);
-    let script = calls.concat().replace("localhost:8080", server.base.trim_start_matches("http://"));
     // Without -e: curl reports an error when its two seconds of events are over.
-    let mut run = Command::new("bash");
-    let printed = succeed(run.args(["-uo", "pipefail", "-c", &script]), "bash is installed");
+    let printed = succeed(&mut bash("-uo", &calls.concat(), &server), "bash is installed");
     for expected in ["\"residual\":{", "\"sequence\":1,", "event: state", "\"pressure\":[", "204"] {
         assert!(printed.contains(expected), "{expected} is missing: {printed}");
     }
@@ -189,17 +200,12 @@ fn a_floor_uses_those_below_it_alone() {
 
 #[test]
 fn the_page_of_access_lists_every_route_with_what_it_needs() {
-    let document: serde_json::Value = serde_json::from_str(stickslip::api::document()).unwrap();
-    let mut rows = Vec::new();
-    for (path, item) in document["paths"].as_object().unwrap() {
-        for method in item.as_object().unwrap().keys().map(|method| method.to_uppercase()) {
-            let needs = match need(&method, path) {
-                Some(role) => format!("`{}`", role.name()),
-                None => "no key".to_owned(),
-            };
-            rows.push((path.clone(), format!("| `{method} {path}` | {needs} |")));
-        }
-    }
+    let document = document();
+    let row = |(method, path, _): (String, &str, _)| {
+        let needs = need(&method, path).map_or("no key".to_owned(), |role| format!("`{}`", role.name()));
+        (path.to_owned(), format!("| `{method} {path}` | {needs} |"))
+    };
+    let mut rows: Vec<_> = operations(&document).map(row).collect();
     rows.sort();
     let page = page("access.md");
     let (_, table) = page.split_once("| route | needs |\n|---|---|\n").unwrap();
@@ -233,7 +239,7 @@ fn a_code_names_one_kind() {
 
 #[test]
 fn the_description_of_a_warning_lists_the_codes_of_the_page() {
-    let specification: serde_json::Value = serde_json::from_str(include_str!("../../openapi/openapi.json")).unwrap();
+    let specification = document();
     let described = &specification["components"]["schemas"]["Warning"]["properties"]["code"]["description"];
     let listed: BTreeSet<&str> = described.as_str().unwrap().split('`').skip(1).step_by(2).collect();
     let text = page("warnings.md");

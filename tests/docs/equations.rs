@@ -3,7 +3,7 @@
 
 use std::collections::BTreeSet;
 
-use crate::docs::{anchor, page};
+use crate::docs::{anchor, page, pages};
 
 /// Letters of indices, of the circle and of a place that is integrated over.
 const NO_SYMBOLS: [&str; 5] = ["i", "j", "l", "pi", "xi"];
@@ -67,12 +67,7 @@ fn numbers(text: &str) -> Vec<usize> {
 fn a_reference_leads_to_the_section_of_its_equation_and_every_equation_has_a_test() {
     let equations = equations();
     let mut tested = BTreeSet::new();
-    for entry in std::fs::read_dir(crate::python::file("docs")).unwrap() {
-        let name = entry.unwrap().file_name().into_string().unwrap();
-        if !name.ends_with(".md") {
-            continue;
-        }
-        let text = page(&name);
+    for (name, text) in pages() {
         for (at, link) in text.match_indices("](equations.md#") {
             let target = text[at + link.len()..].split(')').next().unwrap();
             let shown = &text[text[..at].rfind('[').unwrap()..at];
@@ -132,12 +127,13 @@ fn every_letter_of_an_equation_is_a_symbol_that_the_equation_of_its_row_introduc
 
 /// The last table of the page: which equations the numbers of a reply follow from.
 pub struct FieldTable {
-    lines: Vec<FieldLine>,
+    pub rows: Vec<FieldRow>,
 }
 
-struct FieldLine {
-    headings: Vec<String>,
-    fields: Vec<String>,
+/// A field under a heading. An empty name stands for all fields.
+pub struct FieldRow {
+    pub heading: String,
+    pub field: String,
     numbers: Vec<usize>,
 }
 
@@ -145,47 +141,36 @@ impl FieldTable {
     pub fn new() -> FieldTable {
         let text = page("equations.md");
         let (_, table) = text.split_once("| reply | fields | equation |\n|---|---|---|\n").unwrap();
-        let line = |row: &str| {
-            let cells: Vec<&str> = row.trim_matches('|').split(" | ").collect();
-            let heading = |cell: &str| cell.trim().trim_matches('`').trim_start_matches('[').to_owned();
-            let headings = cells[0].split(", ").map(|cell| heading(cell.split("](").next().unwrap())).collect();
-            let fields: Vec<String> = cells[1].split('`').skip(1).step_by(2).map(str::to_owned).collect();
-            assert!(!fields.is_empty() || cells[1] == "all", "{row}");
-            FieldLine { headings, fields, numbers: numbers(cells[2]) }
-        };
-        FieldTable { lines: table.lines().map(line).collect() }
-    }
-
-    /// The equations of a field under one of these headings; `None` where no line has it. The longest name counts.
-    pub fn equations_of(&self, headings: &[&str], place: &str) -> Option<BTreeSet<usize>> {
-        let fits = |field: &String| is_end_of(field, place);
-        let fitting = |line: &FieldLine| match line.fields.iter().filter(|field| fits(field)).map(String::len).max() {
-            None if line.fields.is_empty() => Some(0),
-            longest => longest,
-        };
-        let of_reply = |line: &&FieldLine| line.headings.iter().any(|heading| headings.contains(&heading.as_str()));
-        let lines: Vec<(usize, &FieldLine)> =
-            self.lines.iter().filter(of_reply).filter_map(|line| Some((fitting(line)?, line))).collect();
-        let longest = lines.iter().map(|(length, _)| *length).max()?;
-        let counted = lines.iter().filter(|(length, _)| *length == longest);
-        Some(counted.flat_map(|(_, line)| line.numbers.iter().copied()).collect())
-    }
-
-    /// The headings and fields of all lines, a field of `None` for all.
-    pub fn entries(&self) -> Vec<(&str, Option<&str>)> {
-        let mut entries = Vec::new();
-        for line in &self.lines {
-            for heading in &line.headings {
-                entries.extend(line.fields.iter().map(|field| (heading.as_str(), Some(field.as_str()))));
-                entries.extend(line.fields.is_empty().then_some((heading.as_str(), None)));
+        let mut rows = Vec::new();
+        for line in table.lines() {
+            let cells: Vec<&str> = line.trim_matches('|').split(" | ").collect();
+            let named: Vec<&str> = cells[1].split('`').skip(1).step_by(2).collect();
+            assert!(!named.is_empty() || cells[1] == "all", "{line}");
+            let fields = if named.is_empty() { vec![""] } else { named };
+            for cell in cells[0].split(", ") {
+                let heading = cell.split("](").next().unwrap().trim().trim_matches('`').trim_start_matches('[');
+                let row = |field: &&str| FieldRow {
+                    heading: heading.to_owned(),
+                    field: (*field).to_owned(),
+                    numbers: numbers(cells[2]),
+                };
+                rows.extend(fields.iter().map(row));
             }
         }
-        entries
+        FieldTable { rows }
+    }
+
+    /// The equations of a field under one of these headings; `None` where no row has it. The longest name counts.
+    pub fn equations_of(&self, headings: &[&str], place: &str) -> Option<BTreeSet<usize>> {
+        let fits = |row: &&FieldRow| headings.contains(&&*row.heading) && is_end_of(&row.field, place);
+        let longest = self.rows.iter().filter(fits).map(|row| row.field.len()).max()?;
+        let counted = self.rows.iter().filter(fits).filter(|row| row.field.len() == longest);
+        Some(counted.flat_map(|row| row.numbers.iter().copied()).collect())
     }
 }
 
-/// Whether a place such as `a[].b` ends with a field such as `b` or `a.b`.
+/// Whether a place such as `a[].b` ends with a field such as `b` or `a.b`, or with an empty one.
 pub fn is_end_of(field: &str, place: &str) -> bool {
     let place = place.replace("[]", "").replace(".{name}", "");
-    place.strip_suffix(field).is_some_and(|before| before.is_empty() || before.ends_with('.'))
+    place.strip_suffix(field).is_some_and(|before| field.is_empty() || before.is_empty() || before.ends_with('.'))
 }

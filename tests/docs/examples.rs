@@ -1,7 +1,6 @@
 //! The examples run unchanged, against the real program.
 
 use std::io::{BufRead as _, BufReader};
-use std::path::Path;
 use std::process::{Command, Stdio};
 
 use serde_json::{Value, json};
@@ -96,28 +95,24 @@ async fn a_curve_of_another_program_becomes_a_contact_and_a_closed_loop() {
     assert!((rows[150][1] / turned[1] + 1.0).abs() < 1e-12, "the lower end mirrors the upper: {:?}", rows[150]);
 }
 
-/// Runs the cells of a notebook in order in a folder, and then the assertions of a test.
-fn run_notebook(name: &str, folder: &Path, server: &Process, held: &str) {
-    let path = file("examples/python").join(name);
-    let notebook: Value = serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap();
+#[tokio::test(flavor = "multi_thread")]
+async fn the_notebook_runs_from_its_first_cell_to_its_last() {
+    let server = Process::start("memory:").await;
+    let notebook = std::fs::read_to_string(file("examples/python/stickslip.ipynb")).unwrap();
+    let notebook: Value = serde_json::from_str(&notebook).unwrap();
     let cells = notebook["cells"].as_array().unwrap().iter();
     assert!(cells.clone().all(|cell| cell["id"].is_string()), "nbformat 4.5 asks for identifiers");
     let code: Vec<&str> =
         cells.filter(|cell| cell["cell_type"] == "code").map(|cell| cell["source"].as_str().unwrap()).collect();
     assert!(code.len() > 6, "{}", code.len());
-    let mut run = program("python");
-    run.current_dir(folder).env("STICKSLIP_URL", &server.base);
-    succeed(run.arg("-c").arg(format!("{}\n{held}", code.join("\n"))), "");
-}
-
-#[tokio::test(flavor = "multi_thread")]
-async fn the_notebook_runs_from_its_first_cell_to_its_last() {
-    let server = Process::start("memory:").await;
     // The law is a column of the table: compare it with the results.
     let held = "assert (abs(reduction['max'] / reduction['law'] - 1)[1:] < 1e-9).all() and len(history) == 3\n\
                 assert len(stress) == 200 and plot.startswith('<svg') and event['sequence'] == 3\n\
                 assert requests.get(contact).status_code == 404";
-    run_notebook("stickslip.ipynb", tempfile::tempdir().unwrap().path(), &server, held);
+    let folder = tempfile::tempdir().unwrap();
+    let mut run = program("python");
+    run.current_dir(folder.path()).env("STICKSLIP_URL", &server.base);
+    succeed(run.arg("-c").arg(format!("{}\n{held}", code.join("\n"))), "");
 }
 
 #[tokio::test(flavor = "multi_thread")]

@@ -6,7 +6,8 @@ use std::fmt::Write as _;
 
 use serde_json::Value;
 
-use crate::equations::{FieldTable, equations, is_end_of};
+use crate::common::openapi::{document, operations, reference as name_of};
+use crate::equations::{FieldRow, FieldTable, equations, is_end_of};
 use crate::python::file;
 
 /// The units of the fields of replies, longer ones before those that they begin with.
@@ -33,10 +34,6 @@ struct Reference<'a> {
     /// Schemas that several fields refer to.
     parts: BTreeSet<&'a str>,
     equations: FieldTable,
-}
-
-fn name_of(node: &Value) -> Option<&str> {
-    node["$ref"].as_str()?.strip_prefix("#/components/schemas/")
 }
 
 /// The members of a node that can have further fields, without its example.
@@ -113,19 +110,17 @@ impl<'a> Reference<'a> {
     fn new(document: &'a Value) -> Reference<'a> {
         let schemas = document["components"]["schemas"].as_object().unwrap();
         let mut requests: Vec<(&str, Vec<String>)> = Vec::new();
-        for (path, item) in document["paths"].as_object().unwrap() {
-            for (method, operation) in item.as_object().unwrap() {
-                let replies = operation["responses"].as_object().unwrap().iter();
-                for (status, reply) in replies.filter(|(status, _)| status.starts_with('2')) {
-                    let mut named = Vec::new();
-                    collect_references(&reply["content"], &mut named);
-                    for schema in named {
-                        let note = if *status == "202" { ", as a job" } else { "" };
-                        let request = format!("`{} {path}`{note}", method.to_uppercase());
-                        match requests.iter_mut().find(|(known, _)| *known == schema) {
-                            Some((_, all)) => all.push(request),
-                            None => requests.push((schema, vec![request])),
-                        }
+        for (method, path, operation) in operations(document) {
+            let replies = operation["responses"].as_object().unwrap().iter();
+            for (status, reply) in replies.filter(|(status, _)| status.starts_with('2')) {
+                let note = if *status == "202" { ", as a job" } else { "" };
+                let mut named = Vec::new();
+                collect_references(&reply["content"], &mut named);
+                for schema in named {
+                    let request = format!("`{method} {path}`{note}");
+                    match requests.iter_mut().find(|(known, _)| *known == schema) {
+                        Some((_, all)) => all.push(request),
+                        None => requests.push((schema, vec![request])),
                     }
                 }
             }
@@ -283,10 +278,6 @@ impl<'a> Reference<'a> {
     }
 }
 
-fn document() -> Value {
-    serde_json::from_str(stickslip::api::document()).unwrap()
-}
-
 /// The page is printed anew by `UPDATE=1 cargo test --test docs reference`.
 #[test]
 fn the_page_of_reference_is_printed_from_the_specification() {
@@ -359,9 +350,9 @@ fn every_number_of_a_reply_is_in_the_table_of_equations_and_every_line_of_it_is_
             assert!(numbers.iter().all(|number| *number <= count), "{headings:?}: {}: {numbers:?}", row.place);
         }
     }
-    for (heading, field) in reference.equations.entries() {
-        let mut rows = sections.iter().filter(|(headings, _)| headings.contains(&heading)).flat_map(|(_, rows)| rows);
-        let is_there = rows.any(|row| field.is_none_or(|field| is_end_of(field, &row.place)));
-        assert!(is_there, "{heading} has no {field:?}");
+    for FieldRow { heading, field, .. } in &reference.equations.rows {
+        let mut rows =
+            sections.iter().filter(|(headings, _)| headings.contains(&&**heading)).flat_map(|(_, rows)| rows);
+        assert!(rows.any(|row| is_end_of(field, &row.place)), "{heading} has no {field:?}");
     }
 }

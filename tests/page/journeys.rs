@@ -9,7 +9,7 @@ use stickslip_wire::{Observation, ObservationsRequest};
 
 use crate::axe;
 use crate::browser::words;
-use crate::common::create;
+use crate::common::{create, number};
 use crate::scene::{LIVE, NOT_A_NUMBER, Scene};
 use crate::{four, three};
 
@@ -42,10 +42,6 @@ impl Scene {
     fn half_slip(&self) -> f64 {
         format!("{:.2e}", 0.5 * self.ball.contact.gross_slip_displacement).parse().unwrap()
     }
-}
-
-fn number(value: &Value) -> f64 {
-    value.as_f64().unwrap()
 }
 
 #[tokio::test]

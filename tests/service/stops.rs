@@ -3,16 +3,14 @@
 //! being loaded not even that.
 
 use std::path::Path;
-use std::sync::Arc;
 use std::time::Duration;
 
 use crate::common::raw::{Service, get, post};
-use crate::common::{ball, curved_move, long_path, long_simulation, metric, of, slow_contact, until, with};
-use jiff::Timestamp;
+use crate::common::{ball, curved_move, long_path, long_simulation, metric, of, session, slow_contact, until, with};
 use serde_json::{Value, json};
-use stickslip::store::{Record, Session, Snapshot, SqliteStore, Store as _, Tenant};
+use stickslip::store::{Record, Snapshot, SqliteStore, Store as _};
 use stickslip_wire::client::Options;
-use stickslip_wire::{CreateRequest, Document as _, Move, State};
+use stickslip_wire::{Move, State};
 use tempfile::TempDir;
 use tokio::io::{AsyncReadExt as _, AsyncWriteExt as _};
 use tokio::net::TcpStream;
@@ -35,17 +33,8 @@ fn curved(index: u64) -> Move {
 /// A contact with so many curved moves in a new file, written as if they had been made: a replay reads no states.
 async fn stored(path: &Path, contact: Value, moves: u64, tolerance: f64) -> Uuid {
     let store = SqliteStore::open(path).unwrap();
-    let definition = serde_json::from_value::<CreateRequest>(contact).unwrap().check().unwrap().definition;
-    let (id, now) = (Uuid::now_v7(), Timestamp::now());
-    let session = Session {
-        id,
-        tenant: Tenant::default(),
-        label: None,
-        definition: Arc::new(definition),
-        sequence: 0,
-        created_at: now,
-        updated_at: now,
-    };
+    let session = session(contact);
+    let (id, now) = (session.id, session.created_at);
     store.create(session, None).await.unwrap();
     let record = |sequence: u64| Record {
         sequence,

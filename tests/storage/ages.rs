@@ -2,10 +2,13 @@
 
 use futures::future::join_all;
 use jiff::Timestamp;
-use stickslip::store::{Session, StoreError};
+use stickslip::store::{ChunkResult, Job, Session, StoreError};
+use uuid::Uuid;
 
 use crate::common::place::Place;
-use crate::fixtures::{receipt, records, session};
+use crate::common::process::Process;
+use crate::common::until;
+use crate::fixtures::{JOB_LIMITS, LEASE, job, receipt, records, session};
 
 #[tokio::test]
 async fn a_key_may_be_used_again_after_a_day() {
@@ -53,5 +56,33 @@ async fn a_contact_that_expired_a_month_ago_leaves_nothing() {
         }
         assert!(matches!(store.find(young).await, Err(StoreError::Expired(_))));
         assert_eq!(place.number("SELECT count(*) FROM expired").await, 1);
+    }
+}
+
+#[tokio::test]
+async fn a_server_removes_results_after_a_day_and_jobs_that_do_not_end_after_a_week() {
+    for place in Place::both().await {
+        let store = place.open().await;
+        let mut kept = Vec::new();
+        for (is_done, hours, is_kept) in
+            [(true, 25, false), (true, 23, true), (false, 24 * 7 + 1, false), (false, 24 * 7 - 1, true)]
+        {
+            let job = Job { points: 1, ..job("") };
+            store.create_job(job.clone(), "{}".to_owned(), JOB_LIMITS, None).await.unwrap();
+            if is_done {
+                let claim = store.claim(Uuid::now_v7(), None, LEASE).await.unwrap().unwrap();
+                store.save_chunk(claim, ChunkResult { points: 1, failed: 0, content: vec![7] }).await.unwrap();
+            }
+            let column = if is_done { "finished_at" } else { "created_at" };
+            place.age("jobs", column, hours, &format!("id = '{}'", job.id)).await;
+            kept.extend(is_kept.then_some(job.id));
+        }
+        drop(store);
+        let server = Process::start(&place.url()).await;
+        let left = async || server.client.jobs(None).await.unwrap().items.iter().map(|job| job.id).collect::<Vec<_>>();
+        until("the others are gone", async || (left().await == kept).then_some(())).await;
+        let results = "SELECT count(*) FROM job_chunks WHERE content = ";
+        let content = if place.path().is_some() { "x'07'" } else { "'\\x07'" };
+        assert_eq!(place.number(&format!("{results}{content}")).await, 1);
     }
 }

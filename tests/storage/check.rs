@@ -17,23 +17,20 @@ use stickslip_wire::{ForkRequest, Move};
 use tempfile::tempdir;
 use uuid::Uuid;
 
-async fn check(store: &str, more: &[&str]) -> Output {
-    let arguments: Vec<String> =
-        ["check", "--store", store].iter().chain(more).map(|word| (*word).to_owned()).collect();
-    let run = move || run(&arguments.iter().map(String::as_str).collect::<Vec<_>>());
-    tokio::task::spawn_blocking(run).await.unwrap()
+fn check(store: &str, more: &[&str]) -> Output {
+    run(&[&["check", "--store", store], more].concat())
 }
 
-async fn is_sound(store: &str, summary: &str) {
-    let output = check(store, &[]).await;
+fn is_sound(store: &str, summary: &str) {
+    let output = check(store, &[]);
     let said = String::from_utf8(output.stdout).unwrap();
     assert_eq!((output.status.code(), said.lines().count()), (Some(0), 1), "{said}");
     assert!(said.starts_with(summary), "{said}");
 }
 
 /// It finds what is wrong, each in a line that has these words, and nothing else.
-async fn is_found(store: &str, findings: &[&str]) {
-    let output = check(store, &[]).await;
+fn is_found(store: &str, findings: &[&str]) {
+    let output = check(store, &[]);
     let said = String::from_utf8(output.stdout).unwrap();
     assert_eq!((output.status.code(), said.lines().count()), (Some(1), findings.len() + 1), "{findings:?}: {said}");
     for (finding, line) in findings.iter().zip(said.lines()) {
@@ -71,7 +68,7 @@ async fn are_found(place: &Place, damages: Vec<Damage>) {
     for (statement, findings) in damages {
         let copy = place.copy().await;
         copy.change(&statement).await;
-        is_found(&copy.url(), &findings).await;
+        is_found(&copy.url(), &findings);
     }
 }
 
@@ -82,11 +79,11 @@ async fn every_kind_of_damage_is_found() {
         let [long, fork, keyed, still] = fill(&server.client).await;
         place.has_snapshot().await;
         // Beside the service, and of what it has left.
-        is_sound(&place.url(), "checked 4 contacts, 24022 moves, ").await;
+        is_sound(&place.url(), "checked 4 contacts, 24022 moves, ");
         server.stop().await;
         let bytes = || place.path().map(|path| fs::read(path).unwrap());
         let before = bytes();
-        is_sound(&place.url(), "checked 4 contacts, 24022 moves, ").await;
+        is_sound(&place.url(), "checked 4 contacts, 24022 moves, ");
         assert!(bytes() == before, "to check a file changes it");
 
         let of = |id: Uuid| format!("contact = {}", place.key("contacts", id));
@@ -130,14 +127,14 @@ async fn every_kind_of_damage_is_found() {
         let copy = place.copy().await;
         copy.change(&moves("force = force * (1 + 1e-13)", keyed, 3)).await;
         for (tolerance, code) in [("1e-12", 0), ("1e-14", 1)] {
-            assert_eq!(check(&copy.url(), &["--tolerance", tolerance]).await.status.code(), Some(code));
+            assert_eq!(check(&copy.url(), &["--tolerance", tolerance]).status.code(), Some(code));
         }
         // A page of the file that is overwritten.
         if let (Some(mut bytes), Some(path)) = (before, copy.path()) {
             let middle = bytes.len() / 2 / 4096 * 4096;
             bytes[middle..middle + 4096].fill(0x5a);
             fs::write(path, bytes).unwrap();
-            assert_eq!(check(&copy.url(), &[]).await.status.code(), Some(1));
+            assert_eq!(check(&copy.url(), &[]).status.code(), Some(1));
         }
     }
 }
@@ -155,7 +152,7 @@ async fn damaged_jobs_are_found() {
             store.save_chunk(claim, ChunkResult { points: 3, failed: 1, content: vec![0; 24] }).await.unwrap();
         }
         drop(store);
-        is_sound(&place.url(), "checked 0 contacts").await;
+        is_sound(&place.url(), "checked 0 contacts");
         let set = |what: &str, job: &Job| format!("UPDATE jobs SET {what} WHERE id = '{}'", job.id);
         let chunks = format!("job = {}", place.key("jobs", done.id));
         let mut damages = vec![
@@ -187,7 +184,7 @@ async fn what_cannot_be_checked_is_refused_in_one_line() {
         (&*missing, "No such file"),
         ("postgres://me:secret@127.0.0.1:1/x", "127.0.0.1"),
     ] {
-        let output = check(store, &[]).await;
+        let output = check(store, &[]);
         let said = String::from_utf8(output.stderr).unwrap();
         assert_eq!((output.status.code(), said.lines().count()), (Some(1), 1), "{said}");
         assert!(said.contains(why) && !said.contains("secret") && output.stdout.is_empty(), "{said}");

@@ -2,7 +2,6 @@
 
 use std::future::Future;
 use std::path::Path;
-use std::sync::Arc;
 use std::time::Duration;
 
 use jiff::{SignedDuration, Timestamp};
@@ -10,10 +9,11 @@ use stickslip::store::{
     Job, JobLimits, Measured, Receipt, Record, Reply, RequestKey, Session, Snapshot, Store, Tenant,
 };
 use stickslip_wire::client::Options;
-use stickslip_wire::{CreateRequest, Document as _, Move, Path as Moves, PathRequest, Regime, State, Steps};
+use stickslip_wire::{Move, Regime, State};
 use uuid::Uuid;
 
 use crate::common;
+pub use crate::common::along;
 
 /// The store in a file, as a URL.
 pub fn url(path: &Path) -> String {
@@ -25,11 +25,6 @@ pub async fn soon<T>(future: impl Future<Output = T>) -> T {
     tokio::time::timeout(common::PATIENCE, future).await.expect("nothing happened")
 }
 
-/// A path through moves, of whose states only the last is requested.
-pub fn along(moves: Vec<Move>) -> PathRequest {
-    PathRequest { path: Moves::Moves(moves), stress: None, steps: Steps::Last, tolerance: None }
-}
-
 /// The options of a request with an idempotency key.
 pub fn keyed(key: impl ToString) -> Options {
     Options { idempotency_key: Some(key.to_string()), ..Options::default() }
@@ -37,17 +32,14 @@ pub fn keyed(key: impl ToString) -> Options {
 
 /// A session that is not stored yet.
 pub fn session(label: Option<&str>) -> Session {
-    let definition = serde_json::from_value::<CreateRequest>(common::ball()).unwrap().check().unwrap().definition;
-    let now = Timestamp::now();
-    Session {
-        id: Uuid::now_v7(),
-        tenant: Tenant::default(),
-        label: label.map(str::to_owned),
-        definition: Arc::new(definition),
-        sequence: 0,
-        created_at: now,
-        updated_at: now,
-    }
+    Session { label: label.map(str::to_owned), ..common::session(common::ball()) }
+}
+
+/// The identifier of a stored session without moves.
+pub async fn made(store: &dyn Store, label: Option<&str>) -> Uuid {
+    let new = session(label);
+    store.create(new.clone(), None).await.unwrap();
+    new.id
 }
 
 /// A move whose numbers differ from those of every other; of three the last is an observation, every other one with its

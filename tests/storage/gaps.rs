@@ -60,9 +60,7 @@ async fn is_damaged(process: &Process, store: &str, (damaged, whole): (Uuid, Uui
     let lines = process.log();
     let named = lines.lines().filter(|line| line.contains("ERROR") && line.contains(&damaged.to_string()));
     assert!(named.filter(|line| line.contains(missing)).count() >= 10, "{lines}");
-    let arguments = ["check".to_owned(), "--store".to_owned(), store.to_owned()];
-    let checking = move || run(&arguments.each_ref().map(String::as_str));
-    let checked = tokio::task::spawn_blocking(checking).await.unwrap();
+    let checked = run(&["check", "--store", store]);
     let said = String::from_utf8(checked.stdout).unwrap();
     assert!(said.starts_with(&format!("contact {damaged}: {missing}\n")) && said.contains(" 1 findings"), "{said}");
 }

@@ -14,7 +14,7 @@ use uuid::Uuid;
 
 use crate::common::process::Process;
 use crate::common::{create, until};
-use crate::fixtures::{keyed, records, session};
+use crate::fixtures::{keyed, made, records, session};
 
 const WRITERS: usize = 8;
 const READERS: usize = 8;
@@ -23,12 +23,6 @@ const MOVES: u64 = 100;
 /// Moves of the contact that is read, forked and deleted meanwhile, and of a page of them.
 const LONG: u64 = 9_000;
 const PAGE: u64 = 3_000;
-
-async fn made(store: &dyn Store) -> Uuid {
-    let new = session(Some("label"));
-    store.create(new.clone(), None).await.unwrap();
-    new.id
-}
 
 /// Reads as much as there is, again and again until all others are done.
 async fn read_on(store: Arc<SqliteStore>, id: Uuid, done: Arc<AtomicBool>, rounds: Arc<AtomicUsize>) {
@@ -47,11 +41,11 @@ async fn read_on(store: Arc<SqliteStore>, id: Uuid, done: Arc<AtomicBool>, round
 #[tokio::test(flavor = "multi_thread", worker_threads = 4)]
 async fn writers_and_readers_of_long_histories_have_their_turns() {
     let store = Arc::new(SqliteStore::in_memory().unwrap());
-    let long = made(&*store).await;
+    let long = made(&*store, Some("label")).await;
     for after in (0..LONG).step_by(PAGE as usize) {
         store.append(long, after, records(after, after + PAGE), None).await.unwrap();
     }
-    let ids = join_all((0..WRITERS).map(|_| made(&*store))).await;
+    let ids = join_all((0..WRITERS).map(|_| made(&*store, Some("label")))).await;
     let (done, rounds) = (Arc::new(AtomicBool::new(false)), Arc::new(AtomicUsize::new(0)));
     let readers = (0..READERS).map(|_| tokio::spawn(read_on(store.clone(), long, done.clone(), rounds.clone())));
     let readers: Vec<_> = readers.collect();

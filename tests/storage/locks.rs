@@ -2,7 +2,7 @@
 //! test says what happens while the lock is held, and none how long it takes.
 
 use crate::common;
-use crate::fixtures::{JOB_LIMITS, LEASE, job, receipt, record, records, session, soon};
+use crate::fixtures::{JOB_LIMITS, LEASE, job, made, receipt, record, records, session, soon};
 use crate::freezing_proxy::{FreezingProxy, Silence};
 
 use std::sync::Arc;
@@ -23,12 +23,6 @@ use uuid::Uuid;
 const UNANSWERED: Duration = Duration::from_secs(30);
 /// Rounds of other clients' requests beside a lock.
 const ROUNDS: usize = 20;
-
-async fn stored(store: &PostgresStore) -> Uuid {
-    let new = session(None);
-    store.create(new.clone(), None).await.unwrap();
-    new.id
-}
 
 /// Whether a transaction that has changed or locked something is open.
 async fn is_held(watcher: &Client) -> bool {
@@ -128,8 +122,8 @@ async fn a_replica_frozen_inside_a_change_stops_only_its_contacts() {
 async fn any_number_of_rows_held_from_outside_delays_nobody_else_and_the_order_stays() {
     let url = Cluster::shared().database().await;
     let (store, other) = (PostgresStore::open(&url).await.unwrap(), connected(&url).await);
-    let ids = join_all((0..300).map(|_| stored(&store))).await;
-    let free = stored(&store).await;
+    let ids = join_all((0..300).map(|_| made(&store, None))).await;
+    let free = made(&store, None).await;
     other.batch_execute("BEGIN").await.unwrap();
     other.query("SELECT id FROM contacts WHERE id = ANY($1) FOR UPDATE", &[&ids]).await.unwrap();
     let held = join_all(ids.iter().map(|id| store.append(*id, 0, vec![record(1)], None)));
@@ -164,7 +158,7 @@ async fn any_number_of_rows_held_from_outside_delays_nobody_else_and_the_order_s
 async fn a_key_held_from_outside_stops_only_the_request_that_has_it() {
     let url = Cluster::shared().database().await;
     let (store, other) = (PostgresStore::open(&url).await.unwrap(), connected(&url).await);
-    let ids = join_all((0..20).map(|_| stored(&store))).await;
+    let ids = join_all((0..20).map(|_| made(&store, None))).await;
     other.batch_execute("BEGIN").await.unwrap();
     let held = "INSERT INTO receipts (key, fingerprint, sequence, body) VALUES ('5', '', 0, '')";
     other.batch_execute(held).await.unwrap();
@@ -189,7 +183,7 @@ async fn changes_that_wait_for_rows_hold_no_connection() {
     let url = Cluster::shared().database().await;
     let (store, other) = (PostgresStore::open(&url).await.unwrap(), connected(&url).await);
     // More than there are connections.
-    let ids = join_all((0..24).map(|_| stored(&store))).await;
+    let ids = join_all((0..24).map(|_| made(&store, None))).await;
     let job = Job { points: 1, chunk: 1, ..job("lab") };
     store.create_job(job.clone(), "{}".to_owned(), JOB_LIMITS, None).await.unwrap();
     let claim = store.claim(Uuid::now_v7(), None, LEASE).await.unwrap().unwrap();
@@ -305,7 +299,7 @@ async fn a_transaction_of_a_replica_that_falls_silent_is_ended_by_the_server() {
 async fn a_writer_without_a_commit_while_changes_wait_is_not_ready() {
     let url = Cluster::shared().database().await;
     let (store, other) = (PostgresStore::open(&url).await.unwrap(), connected(&url).await);
-    let ids = join_all((0..4).map(|_| stored(&store))).await;
+    let ids = join_all((0..4).map(|_| made(&store, None))).await;
     other.batch_execute("BEGIN; LOCK TABLE moves IN EXCLUSIVE MODE").await.unwrap();
     let ended = tokio::sync::watch::Sender::new(false);
     let moves = join_all(ids.iter().map(|id| {

@@ -119,7 +119,7 @@ async fn a_step_is_taken_once_and_whole_and_keeps_what_is_stored() {
         assert!(migrate(&place, &[]).await.unwrap_err().contains(&newer));
         for refused in [store::open(&place.url()).await, store::open_to_read(&place.url()).await] {
             let refused = refused.map(drop).unwrap_err().to_string();
-            assert!(refused.contains(&newer), "{refused}");
+            assert!(refused.contains(&newer) && !refused.contains('@'), "{refused}");
         }
         assert!(bytes() == unchanged, "a file that was refused has changed");
         assert_eq!(found().await, (known + 1, 1));

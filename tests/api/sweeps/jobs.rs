@@ -1,13 +1,9 @@
 //! Jobs: how they are requested, watched, bounded and cancelled.
 
-use std::sync::Arc;
-
 use futures::StreamExt as _;
 use reqwest::Method;
 use serde_json::{Value, json};
 use stickslip::admission::{Capacity, Pool, QuotaLimits};
-use stickslip::sessions::{CAPACITY, Sessions};
-use stickslip::store::SqliteStore;
 
 use super::{long, small_job};
 use crate::common::{PATIENCE, Server, ball, problem, until, with};
@@ -173,8 +169,7 @@ async fn a_sweep_answered_at_once_honours_its_key() {
 async fn tables_that_are_kept_for_retries_count_against_the_quota() {
     let quotas = QuotaLimits { store_bytes: 2_000, ..QuotaLimits::default() };
     let pool = Pool::new(Capacity { quotas, ..Capacity::default() });
-    let sessions = Sessions::new(Arc::new(SqliteStore::in_memory().unwrap()), pool.clone(), CAPACITY);
-    let server = Server::over(sessions, pool).await;
+    let server = Server::in_pool(pool).await;
     let mut sweep = small_job();
     sweep["job"] = json!(false);
     let ask = async |key: String| {

@@ -2,7 +2,7 @@
 
 use std::sync::OnceLock;
 
-use serde_json::{Value, json};
+use serde_json::Value;
 use tempfile::tempdir;
 use tokio::io::AsyncWriteExt as _;
 
@@ -107,40 +107,6 @@ async fn a_replica_that_stops_gives_its_part_back_at_once() {
     assert_eq!(held, 0, "the lease is thirty seconds");
     let process = Process::start(&url).await;
     assert_eq!(Server::at(&process.base).send(reqwest::Method::DELETE, &path, None, &[]).await.status(), 204);
-    process.stop().await;
-}
-
-#[tokio::test(flavor = "multi_thread")]
-async fn results_are_gone_after_a_day_and_jobs_that_do_not_end_after_a_week() {
-    let folder = tempdir().unwrap();
-    let file = folder.path().join("old.db");
-    let store = format!("sqlite:{}", file.display());
-    let process = Process::start(&store).await;
-    let server = Server::at(&process.base);
-    let mut paths = Vec::new();
-    for _ in 0..3 {
-        paths.push(server.start_job(&super::small_job()).await);
-    }
-    for path in &paths {
-        server.job_result(path).await;
-    }
-    process.stop().await;
-    let database = rusqlite::Connection::open(&file).unwrap();
-    let hours = |hours: i64| hours * 3_600_000_000_000;
-    let id = |path: &str| path.rsplit_once('/').unwrap().1.to_owned();
-    let age = "UPDATE jobs SET finished_at = finished_at - ?2 WHERE id = ?1";
-    database.execute(age, (id(&paths[0]), hours(25))).unwrap();
-    database.execute(age, (id(&paths[1]), hours(23))).unwrap();
-    let open = "UPDATE jobs SET finished_at = NULL, created_at = created_at - ?2, done = 0 WHERE id = ?1";
-    database.execute(open, (id(&paths[2]), hours(24 * 7 + 1))).unwrap();
-    drop(database);
-    // A server removes expired jobs at its start.
-    let process = Process::start(&store).await;
-    let server = Server::at(&process.base);
-    for gone in [&paths[0], &paths[2]] {
-        until("it is gone", async || (server.get(gone).await.status() == 404).then_some(())).await;
-    }
-    assert_eq!(server.job(&paths[1]).await["state"], json!("done"));
     process.stop().await;
 }
 

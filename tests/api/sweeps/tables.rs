@@ -75,13 +75,18 @@ async fn the_command_line_prints_what_the_service_gives() {
     sweep["axes"][0]["values"] = (1..=200).map(|index| json!(f64::from(index) / 400.0)).collect();
     let file = folder.path().join("sweep.json");
     std::fs::write(&file, sweep.to_string()).unwrap();
-    for format in ["columns", "rows", "csv", "ndjson"] {
+    for (format, flags) in [
+        ("columns", &["--format", "columns"][..]),
+        ("columns", &["--json"]),
+        ("rows", &["--format", "rows"]),
+        ("csv", &[]),
+        ("ndjson", &["--format", "ndjson", "--threads", "1"]),
+        ("ndjson", &["--format", "ndjson", "--threads", "3"]),
+    ] {
         let served = server.post(&format!("/sweep?format={format}"), &sweep).await.text().await.unwrap();
-        for threads in ["1", "3"] {
-            let printed = run(&["sweep", file.to_str().unwrap(), "--format", format, "--threads", threads]);
-            assert!(printed.status.success());
-            assert_eq!(String::from_utf8(printed.stdout).unwrap(), served, "{format}");
-        }
+        let printed = run(&[&["sweep", file.to_str().unwrap()], flags].concat());
+        assert!(printed.status.success());
+        assert_eq!(String::from_utf8(printed.stdout).unwrap(), served, "{flags:?}");
     }
     let mut wrong = sweep.clone();
     wrong["axes"][0]["pointer"] = json!("/contact/colour");
