@@ -24,7 +24,7 @@ pub struct Backup {
 impl Backup {
     /// Copies the store, with progress on a terminal.
     pub fn run(&self) -> Result<(), String> {
-        let bar = progress::bar_of_bytes();
+        let bar = progress::bar(0, "{bytes} of {total_bytes}");
         let show = |copied: u64, whole: u64| {
             bar.set_length(whole);
             bar.set_position(copied.min(whole));

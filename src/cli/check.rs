@@ -31,7 +31,7 @@ impl Check {
             let store = store::open_to_read(&self.store).await.map_err(|error| error.to_string())?;
             // A store that cannot be listed is a finding of the check itself.
             let moves = if progress::is_shown() { sessions::count_moves(&*store).await.unwrap_or(0) } else { 0 };
-            let bar = progress::bar(moves, "moves");
+            let bar = progress::bar(moves, "{human_pos} of {human_len} moves");
             let mut report = |event: CheckEvent<'_>| match event {
                 // A finding that cannot be printed is counted nevertheless.
                 CheckEvent::Found(finding) => bar.suspend(|| drop(print(finding))),

@@ -43,7 +43,7 @@ impl Sweep {
         let threads = self.threads.unwrap_or(cores).max(1);
         let points = plan.points();
         let (mut result, mut done) = (SweepResult::default(), 0);
-        let bar = progress::bar(points as u64, "points");
+        let bar = progress::bar(points as u64, "{human_pos} of {human_len} points");
         while done < points {
             let slice = plan.slice(done..points, vec![(); threads], &Flag::default(), None);
             result.append(slice.map_err(Refusal::from)?);

@@ -9,9 +9,8 @@ use stickslip_wire::RelaxReply;
 use stickslip_wire::protocol::Relaxation;
 use stickslip_wire::session::Advance;
 
-use super::cache::Guard;
 use super::changes::answer_once;
-use super::common::{ATTEMPTS, Common};
+use super::common::ATTEMPTS;
 use super::compute::{Computed, compute};
 use super::expected::Expected;
 use super::prelude::*;

@@ -14,7 +14,7 @@ use hashlink::LruCache;
 use parking_lot::Mutex;
 use prometheus::IntCounter;
 
-use crate::store::{KeyLock, KeyedLocks, Tenant};
+use crate::store::{KeyLock, KeyedLocks};
 use stickslip_compute::simulation::ProfileKey;
 use stickslip_mechanics::Profile;
 

@@ -5,7 +5,7 @@
 
 use std::fmt;
 
-use crate::store::{Page, Record, Snapshot, Store};
+use crate::store::{Page, Record, Snapshot};
 use stickslip_wire::{Move, PrepareAnew, State};
 
 use super::prelude::*;

@@ -4,11 +4,11 @@
 use tokio::sync::Semaphore;
 
 use crate::admission::{Pool, STREAMS};
-use crate::store::{Extent, IdempotentRequest, Listeners, RequestKey, Session, Store, Tenant, Usage};
+use crate::store::{Extent, IdempotentRequest, Listeners, RequestKey, Session, Usage};
 use stickslip_compute::simulation::{ProfileCache, ProfileKey, Profiles};
 use stickslip_mechanics::Profile;
 
-use super::cache::{Cache, Guard};
+use super::cache::Cache;
 use super::metrics::SessionMetrics;
 use super::prelude::*;
 use super::snapshot;

@@ -2,7 +2,6 @@
 
 use jiff::Timestamp;
 
-use crate::otlp;
 use crate::store::{Measured, Record, Reply};
 use stickslip_compute::computations::{Moved, OnContact as _, make_moves, shown_states};
 use stickslip_compute::simulation::bytes::{of_moves, of_records, of_stress};
@@ -10,7 +9,6 @@ use stickslip_compute::simulation::cost::Work;
 use stickslip_wire::session::Advance;
 use stickslip_wire::{MoveReply, Observation, PathReply, Plan, RelaxReply, State, Steps, limits};
 
-use super::cache::Guard;
 use super::observations::check_plausible;
 use super::prelude::*;
 

@@ -2,8 +2,6 @@
 
 use jiff::Timestamp;
 
-use crate::store::Store;
-
 use super::prelude::*;
 
 /// The shortest and the longest period.

@@ -4,14 +4,12 @@
 use std::ops::Deref;
 
 use crate::admission::Pool;
-use crate::otlp;
-use crate::store::{Commits, Page, Store, Tenant};
+use crate::store::{Commits, Page};
 use stickslip_compute::computations::{DisplayOptions, OnContact};
 use stickslip_compute::simulation::{bytes, cost};
 use stickslip_wire::subsurface::SubsurfaceTask;
 use stickslip_wire::{ContactDefinition, SessionPage, SessionReply, SubsurfaceRequest};
 
-use super::common::Common;
 use super::prelude::*;
 
 /// The sessions of a tenant. Clones, and those of other tenants, are handles on the same.

@@ -2,7 +2,6 @@
 
 use tracing::Instrument as _;
 
-use crate::otlp;
 use stickslip_wire::{HistoryItem, HistoryPage, PrepareAnew};
 
 use super::prelude::*;

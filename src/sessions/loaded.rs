@@ -2,7 +2,6 @@
 
 use std::cmp::Ordering;
 
-use crate::otlp;
 use crate::store::{CONTACT_BYTES, Reply, Session};
 use stickslip_compute::formats;
 use stickslip_compute::simulation::{self, bytes, present_warnings};

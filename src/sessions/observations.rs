@@ -13,7 +13,6 @@ use stickslip_wire::{
     Faults, FrictionEstimate, FrictionReply, JsonPath, Observation, ObservationsReply, ObservedMove, Rejection, limits,
 };
 
-use super::cache::Guard;
 use super::cycles::{STATE_COST, bytes_to_read};
 use super::loaded::Estimated;
 use super::prelude::*;

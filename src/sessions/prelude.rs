@@ -6,8 +6,11 @@ pub use std::time::Duration;
 pub use stickslip_mechanics::Contact;
 pub use uuid::Uuid;
 
+pub(super) use super::cache::Guard;
+pub(super) use super::common::Common;
 pub use super::error::SessionError;
 pub(super) use super::handle::Sessions;
 pub(super) use super::loaded::{LoadedSession, written};
 pub use crate::admission::{Deadline, Reservation};
-pub use crate::store::StoreError;
+pub use crate::otlp;
+pub use crate::store::{Store, StoreError, Tenant};

@@ -7,8 +7,6 @@ use stickslip_compute::simulation::{Failure, Timer, cost::Work};
 use stickslip_compute::{Interrupted, Stop as _};
 use stickslip_wire::{ContactDefinition, limits};
 
-use super::cache::Guard;
-use super::common::Common;
 use super::prelude::*;
 
 /// Moves that are fetched from the store at a time.

@@ -9,7 +9,7 @@ use futures::future::BoxFuture;
 use tokio::runtime::Handle;
 use tracing::Instrument as _;
 
-use crate::otlp;
+use super::prelude::*;
 
 /// A change that continues in a task of its own if the request that waits for it is dropped.
 pub(super) struct RunToEnd<T: 'static>(Option<BoxFuture<'static, T>>);

@@ -8,7 +8,6 @@ use std::time::Instant;
 
 use crate::store::Snapshot;
 
-use super::common::Common;
 use super::prelude::*;
 
 /// Snapshots that are being stored at a time. A session for which there is no room tries again with its next move.

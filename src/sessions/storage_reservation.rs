@@ -9,7 +9,7 @@ use std::time::Instant;
 use parking_lot::Mutex;
 
 use crate::admission::{Pool, PoolError, Quota};
-use crate::store::{Store, Tenant, Usage};
+use crate::store::Usage;
 
 use super::prelude::*;
 

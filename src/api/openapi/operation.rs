@@ -109,7 +109,9 @@ fn refuse(path: &str, operation: &mut Operation, facts: &Facts) {
     for (status, description) in refusals.iter().filter(|(applies, _)| *applies).flat_map(|(_, refusals)| *refusals) {
         let mut response = refusal(*description);
         if ["429", "503"].contains(status) {
-            response.headers.insert("Retry-After".to_owned(), seconds().into());
+            let schema = ObjectBuilder::new().schema_type(Type::Integer).minimum(Some(0));
+            let seconds = HeaderBuilder::new().description(Some("Seconds to wait")).schema(Some(schema));
+            response.headers.insert("Retry-After".to_owned(), seconds.build().into());
         }
         insert(operation, status, response);
     }
@@ -118,10 +120,14 @@ fn refuse(path: &str, operation: &mut Operation, facts: &Facts) {
         let mut unknown = refusal("The request has no key, or one that is not a key of the server");
         unknown.headers.insert("WWW-Authenticate".to_owned(), text("`Bearer`").into());
         insert(operation, "401", unknown);
-        let role = role.name();
-        let forbidden =
-            format!("The key does not have the role `{role}`, or, without keys, the request comes from another site");
-        insert(operation, "403", refusal(forbidden));
+        insert(
+            operation,
+            "403",
+            refusal(format!(
+                "The key does not have the role `{}`, or, without keys, the request comes from another site",
+                role.name()
+            )),
+        );
         security = vec![SecurityRequirement::new("key", [""; 0]), SecurityRequirement::default()];
     }
     operation.security = Some(security);
@@ -147,11 +153,6 @@ fn refusal(description: impl Into<String>) -> Response {
 
 fn text(description: &str) -> Header {
     HeaderBuilder::new().description(Some(description)).build()
-}
-
-fn seconds() -> Header {
-    let schema = ObjectBuilder::new().schema_type(Type::Integer).minimum(Some(0));
-    HeaderBuilder::new().description(Some("Seconds to wait")).schema(Some(schema)).build()
 }
 
 /// The content of a reply in a format other than the document.
