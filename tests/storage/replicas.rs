@@ -97,8 +97,8 @@ async fn a_move_in_doubt_is_made_once_and_a_rival_in_between_keeps_its_place() {
     }
 }
 
-/// That they show what the other has acknowledged is tested by their recorded histories (`order`), whose moves are never
-/// refused by the mechanics.
+/// That they show what the other has acknowledged is tested by their recorded histories (`order`), whose moves are
+/// never refused by the mechanics.
 #[tokio::test]
 async fn what_the_cached_state_of_a_replica_would_refuse_is_made_in_the_stored_one() {
     let url = Cluster::shared().database().await;
